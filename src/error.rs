@@ -1,0 +1,272 @@
+//! Errors that say where, what was found, what was expected and what to try.
+//!
+//! Every fallible function of this crate returns [`Error`]. Its [`ErrorKind`] decides the exit code of
+//! the command: 1 where the data or the parameters do not allow an answer, 2 for wrong usage and for
+//! input that cannot be read.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// Result with this crate's [`Error`].
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// What went wrong, boxed so that results stay small.
+#[derive(Debug)]
+pub struct Error(Box<ErrorKind>);
+
+/// The three ways in which a request fails.
+#[derive(Debug)]
+pub enum ErrorKind {
+    /// The operating system refused to open, read or write.
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// What was being done: `open`, `read`, `write`, …
+        action: &'static str,
+        /// The system's own word.
+        source: std::io::Error,
+    },
+    /// Input that cannot be read as what it should be, or wrong usage.
+    Input(Fault),
+    /// Readable input that does not support an answer.
+    Refused {
+        /// Why there is no answer.
+        why: String,
+        /// What to try instead; empty where nothing would help.
+        hint: String,
+    },
+}
+
+/// Where input went wrong, and how.
+#[derive(Debug, Default, Clone, PartialEq)]
+pub struct Fault {
+    /// Place in the input.
+    pub place: Place,
+    /// What stands there.
+    pub found: String,
+    /// What should stand there; empty where `found` says it all.
+    pub expected: String,
+    /// What to try; empty where nothing would help.
+    pub hint: String,
+    /// The line at fault with a caret under it, ready to print.
+    pub excerpt: String,
+}
+
+/// A place in an input: as much of it as is known.
+#[derive(Debug, Default, Clone, PartialEq, Eq)]
+pub struct Place {
+    /// File.
+    pub path: Option<PathBuf>,
+    /// Line, counted from 1.
+    pub line: Option<u64>,
+    /// Column, counted from 1.
+    pub column: Option<u64>,
+    /// Byte offset, counted from 0, for binary formats.
+    pub byte: Option<u64>,
+}
+
+impl Place {
+    /// A whole file.
+    pub fn file(path: impl Into<PathBuf>) -> Self {
+        Place { path: Some(path.into()), ..Place::default() }
+    }
+
+    /// A line of a file, counted from 1.
+    pub fn line(path: impl Into<PathBuf>, line: u64) -> Self {
+        Place { line: Some(line), ..Place::file(path) }
+    }
+
+    /// A byte of a file, counted from 0.
+    pub fn byte(path: impl Into<PathBuf>, byte: u64) -> Self {
+        Place { byte: Some(byte), ..Place::file(path) }
+    }
+
+    /// The same place with a column, counted from 1.
+    pub fn column(mut self, column: u64) -> Self {
+        self.column = Some(column);
+        self
+    }
+}
+
+impl Error {
+    /// Input at `place` is not what it should be.
+    pub fn input(place: Place, found: impl Into<String>, expected: impl Into<String>) -> Self {
+        Error(Box::new(ErrorKind::Input(Fault {
+            place,
+            found: found.into(),
+            expected: expected.into(),
+            ..Fault::default()
+        })))
+    }
+
+    /// Wrong usage: no file is at fault.
+    pub fn usage(found: impl Into<String>, expected: impl Into<String>) -> Self {
+        Error::input(Place::default(), found, expected)
+    }
+
+    /// The data or the parameters do not allow an answer.
+    pub fn refused(why: impl Into<String>) -> Self {
+        Error(Box::new(ErrorKind::Refused { why: why.into(), hint: String::new() }))
+    }
+
+    /// The system refused `action` on `path`.
+    pub fn io(action: &'static str, path: impl AsRef<Path>, source: std::io::Error) -> Self {
+        Error(Box::new(ErrorKind::Io { path: path.as_ref().to_owned(), action, source }))
+    }
+
+    /// Adds what to try.
+    pub fn hint(mut self, text: impl Into<String>) -> Self {
+        match &mut *self.0 {
+            ErrorKind::Input(fault) => fault.hint = text.into(),
+            ErrorKind::Refused { hint, .. } => *hint = text.into(),
+            ErrorKind::Io { .. } => {}
+        }
+        self
+    }
+
+    /// Shows the offending line of `source` (the whole text) with a caret under the bytes `span`.
+    ///
+    /// Sets line and column of the place from the span. Tabs count as one column.
+    pub fn excerpt(mut self, source: &str, span: std::ops::Range<usize>) -> Self {
+        if let ErrorKind::Input(fault) = &mut *self.0 {
+            let start = floor_char(source, span.start);
+            let line_start = source[..start].rfind('\n').map_or(0, |i| i + 1);
+            let line_end = source[start..].find('\n').map_or(source.len(), |i| start + i);
+            let number = source[..start].matches('\n').count() as u64 + 1;
+            let text = source[line_start..line_end].trim_end_matches('\r').replace('\t', " ");
+            let before = source[line_start..start].chars().count();
+            let end = floor_char(source, span.end.clamp(start, line_end));
+            let width = source[start..end].trim_end().chars().count().max(1);
+            fault.place.line = Some(number);
+            fault.place.column = Some(before as u64 + 1);
+            let gutter = number.to_string().len();
+            fault.excerpt = format!(
+                "{:gutter$} |\n{number} | {text}\n{:gutter$} | {}{}",
+                "",
+                "",
+                " ".repeat(before),
+                "^".repeat(width)
+            );
+        }
+        self
+    }
+
+    /// Names the file where the place has none yet.
+    pub fn in_file(mut self, path: impl AsRef<Path>) -> Self {
+        if let ErrorKind::Input(fault) = &mut *self.0 {
+            fault.place.path.get_or_insert_with(|| path.as_ref().to_owned());
+        }
+        self
+    }
+
+    /// The kind, for matching.
+    pub fn kind(&self) -> &ErrorKind {
+        &self.0
+    }
+
+    /// Exit code of the command: 1 no answer possible, 2 unreadable input or wrong usage.
+    pub fn exit_code(&self) -> u8 {
+        match *self.0 {
+            ErrorKind::Refused { .. } => 1,
+            ErrorKind::Io { .. } | ErrorKind::Input(_) => 2,
+        }
+    }
+}
+
+fn floor_char(text: &str, at: usize) -> usize {
+    let mut at = at.min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
+    }
+    at
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut parts = Vec::new();
+        if let Some(path) = &self.path {
+            parts.push(path.display().to_string());
+        }
+        if let Some(line) = self.line {
+            parts.push(format!("line {line}"));
+        }
+        if let Some(column) = self.column {
+            parts.push(format!("column {column}"));
+        }
+        if let Some(byte) = self.byte {
+            parts.push(format!("byte {byte}"));
+        }
+        f.write_str(&parts.join(", "))
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &*self.0 {
+            ErrorKind::Io { path, action, source } => {
+                write!(f, "cannot {action} {}: {}", path.display(), plain_io(source))
+            }
+            ErrorKind::Input(fault) => {
+                if fault.place != Place::default() {
+                    write!(f, "{}: ", fault.place)?;
+                }
+                f.write_str(&fault.found)?;
+                if !fault.expected.is_empty() {
+                    write!(f, "; expected {}", fault.expected)?;
+                }
+                if !fault.excerpt.is_empty() {
+                    write!(f, "\n{}", fault.excerpt)?;
+                }
+                write_hint(f, &fault.hint)
+            }
+            ErrorKind::Refused { why, hint } => {
+                f.write_str(why)?;
+                write_hint(f, hint)
+            }
+        }
+    }
+}
+
+/// The system's message without Rust's ` (os error 2)`.
+fn plain_io(error: &std::io::Error) -> String {
+    let text = error.to_string();
+    text.split(" (os error").next().unwrap_or(&text).to_lowercase()
+}
+
+fn write_hint(f: &mut fmt::Formatter<'_>, hint: &str) -> fmt::Result {
+    if hint.is_empty() { Ok(()) } else { write!(f, "\n  try: {hint}") }
+}
+
+impl std::error::Error for Error {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match &*self.0 {
+            ErrorKind::Io { source, .. } => Some(source),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_caret_stands_under_the_span_even_after_non_ascii_text() {
+        let source = "a = 1\nµ² = 2\n";
+        let start = source.find("= 2").unwrap();
+        let error = Error::input(Place::file("x.toml"), "unknown key", "").excerpt(source, start..start + 1);
+        assert_eq!(error.to_string(), "x.toml, line 2, column 4: unknown key\n  |\n2 | µ² = 2\n  |    ^");
+    }
+
+    #[test]
+    fn a_span_outside_the_text_does_not_panic() {
+        let error = Error::usage("x", "").excerpt("µ", 1..99);
+        assert!(error.to_string().contains('^'));
+    }
+
+    #[test]
+    fn exit_codes_follow_the_kind() {
+        assert_eq!(Error::refused("no").exit_code(), 1);
+        assert_eq!(Error::usage("no", "yes").exit_code(), 2);
+    }
+}

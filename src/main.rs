@@ -1,0 +1,3 @@
+//! The command `vibro`.
+
+fn main() {}

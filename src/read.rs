@@ -1,0 +1,22 @@
+//! Files to records: one file a format, one ordered sniff table.
+//!
+//! ```no_run
+//! use vibroimpact::read::Reader;
+//! let recording = Reader::new().from_path("TRACE01.DAT")?;
+//! for record in &recording.records {
+//!     println!("{} {} {}", record.meta().name, record.len(), record.meta().unit);
+//! }
+//! # Ok::<(), vibroimpact::Error>(())
+//! ```
+
+mod format;
+mod header;
+mod reader;
+mod source;
+
+pub mod number;
+
+pub use format::Format;
+pub use header::{Header, Summary};
+pub use reader::{Options, Reader, Recording};
+pub use source::Source;

@@ -1,0 +1,209 @@
+//! Numbers as instruments print them.
+//!
+//! Beside what Rust's own parser reads: Fortran's `1.0D+03`, exponents without a letter (`1.234-101`), three-digit
+//! exponents, a decimal comma, blanks around and between sign and digits of a fixed-width field.
+//!
+//! Results are correctly rounded: up to 19 digits are gathered in a 64-bit integer; where that integer is below 2⁵³ and
+//! the power of ten at most 10²², one multiplication or division of exact numbers gives the nearest double (Clinger,
+//! "How to read floating point numbers accurately", 1990, section 4); otherwise the digits go to the standard library.
+
+/// 10⁰ … 10²², all exact in a double.
+const POWERS: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18,
+    1e19, 1e20, 1e21, 1e22,
+];
+
+/// Parses one number with a decimal point. Blanks around it are allowed; anything else left over gives `None`.
+///
+/// ```
+/// use vibroimpact::read::number::parse;
+/// assert_eq!(parse(b" 1.0D+03"), Some(1000.0));
+/// assert_eq!(parse(b"1.234-101"), Some(1.234e-101));
+/// assert_eq!(parse(b"1,5"), None);
+/// assert_eq!(parse(b"NaN"), None); // see `is_missing`
+/// ```
+pub fn parse(text: &[u8]) -> Option<f64> {
+    parse_with(text, b'.')
+}
+
+/// Parses one number with `decimal` as its decimal mark.
+pub fn parse_with(text: &[u8], decimal: u8) -> Option<f64> {
+    let text = text.trim_ascii();
+    let (value, used) = prefix(text, decimal)?;
+    (used == text.len()).then_some(value)
+}
+
+/// Whether a field stands for a missing value: blank, `NaN`, `Inf`, `-`, `NA`, `1.#QNAN`, `***`, …
+pub fn is_missing(text: &[u8]) -> bool {
+    let text = text.trim_ascii();
+    let text = text.strip_prefix(b"-").or(text.strip_prefix(b"+")).unwrap_or(text);
+    if text.is_empty() || text.iter().all(|b| *b == b'*') {
+        return true;
+    }
+    let lower = text.to_ascii_lowercase();
+    matches!(lower.as_slice(), b"nan" | b"inf" | b"infinity" | b"na" | b"n/a" | b"null" | b"none")
+        || lower.starts_with(b"nan(")
+        || lower.starts_with(b"1.#")
+}
+
+/// Parses the number at the start of `text`: its value and the bytes it took. Leading blanks are not allowed.
+///
+/// An exponent that would overflow gives `None`; one that underflows gives 0 or a subnormal, as it should.
+#[inline]
+pub fn prefix(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
+    let mut at = 0;
+    let negative = match text.first()? {
+        b'-' => {
+            at = 1;
+            true
+        }
+        b'+' => {
+            at = 1;
+            false
+        }
+        _ => false,
+    };
+    let digits_from = at;
+    let mut mantissa: u64 = 0;
+    while let Some(d) = text.get(at).map(|b| b.wrapping_sub(b'0')).filter(|d| *d < 10) {
+        mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(d));
+        at += 1;
+    }
+    let mut digits = at - digits_from;
+    let mut exponent: i32 = 0;
+    if text.get(at) == Some(&decimal) {
+        at += 1;
+        let from = at;
+        while let Some(d) = text.get(at).map(|b| b.wrapping_sub(b'0')).filter(|d| *d < 10) {
+            mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(d));
+            at += 1;
+        }
+        digits += at - from;
+        exponent = -i32::try_from(at - from).ok()?;
+    }
+    if digits == 0 {
+        return None;
+    }
+    let mantissa_to = at;
+    let mut printed: i32 = 0;
+    if let Some((power, used)) = exponent_part(&text[at..]) {
+        printed = power;
+        at += used;
+    }
+    let exponent = exponent.saturating_add(printed);
+    let magnitude = if digits <= 19 && mantissa < (1 << 53) && exponent.unsigned_abs() <= 22 {
+        let power = POWERS[exponent.unsigned_abs() as usize];
+        if exponent < 0 { mantissa as f64 / power } else { mantissa as f64 * power }
+    } else {
+        slow(&text[digits_from..mantissa_to], decimal, printed)?
+    };
+    Some((if negative { -magnitude } else { magnitude }, at))
+}
+
+/// `E+03`, `D-3`, `e5`, or a bare sign followed by digits; `None` where no exponent stands.
+#[inline]
+fn exponent_part(text: &[u8]) -> Option<(i32, usize)> {
+    let mut at = 0;
+    let lettered = matches!(text.first()?, b'e' | b'E' | b'd' | b'D' | b'q' | b'Q');
+    if lettered {
+        at = 1;
+    }
+    let negative = match text.get(at)? {
+        b'-' => {
+            at += 1;
+            true
+        }
+        b'+' => {
+            at += 1;
+            false
+        }
+        _ if lettered => false,
+        _ => return None,
+    };
+    let from = at;
+    let mut value: i32 = 0;
+    while let Some(d) = text.get(at).map(|b| b.wrapping_sub(b'0')).filter(|d| *d < 10) {
+        value = value.saturating_mul(10).saturating_add(i32::from(d));
+        at += 1;
+    }
+    // A letterless exponent has three digits: Fortran drops the letter only where the exponent needs the room.
+    // Without this rule `1.5-2` in a file of touching numbers would be read as one number.
+    let enough = if lettered { at > from } else { at - from == 3 };
+    enough.then_some((if negative { -value } else { value }, at))
+}
+
+#[cold]
+fn slow(mantissa: &[u8], decimal: u8, exponent: i32) -> Option<f64> {
+    let mut text: String =
+        mantissa.iter().map(|b| if *b == decimal { '.' } else { char::from(*b) }).collect();
+    text.push('e');
+    text.push_str(&exponent.to_string());
+    text.parse::<f64>().ok().filter(|v| v.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn spellings_of_instruments() {
+        let cases: [(&str, f64); 14] = [
+            ("1.0D+03", 1e3),
+            ("1.0d3", 1e3),
+            ("-3.09944E-004", -3.09944e-4),
+            ("1.234-101", 1.234e-101),
+            ("-1.234+101", -1.234e101),
+            ("+5", 5.0),
+            (".5", 0.5),
+            ("5.", 5.0),
+            ("  2.5  ", 2.5),
+            ("00000000000000000000001", 1.0),
+            ("0.000000000000000000000000000001", 1e-30),
+            ("123456789012345678901234567890", 123_456_789_012_345_678_901_234_567_890.0),
+            ("1e-400", 0.0),
+            ("4.9e-324", 4.9e-324),
+        ];
+        for (text, value) in cases {
+            assert_eq!(parse(text.as_bytes()), Some(value), "{text}");
+        }
+        assert_eq!(parse_with(b"1,5E-3", b','), Some(1.5e-3));
+        assert!(parse(b"-0").unwrap().is_sign_negative());
+    }
+
+    #[test]
+    fn what_is_not_a_number() {
+        for text in [
+            "", " ", "-", ".", "e5", "1e", "1e+", "1.2.3", "1,5", "0x10", "1 2", "1e999", "1.5-2", "--1",
+            "NaN",
+        ] {
+            assert_eq!(parse(text.as_bytes()), None, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn missing_values() {
+        for text in ["", "  ", "NaN", "-inf", "1.#QNAN", "*****", "NA", "-"] {
+            assert!(is_missing(text.as_bytes()), "{text:?}");
+        }
+        assert!(!is_missing(b"0"));
+        assert!(!is_missing(b"abc"));
+    }
+
+    proptest! {
+        /// The standard library's parser is the oracle: both are correctly rounded, so they agree to the bit.
+        #[test]
+        fn agrees_with_the_standard_library(value in proptest::num::f64::NORMAL | proptest::num::f64::ZERO, digits in 0usize..20) {
+            for text in [format!("{value:e}"), format!("{value:.digits$e}"), format!("{}", value as f32)] {
+                let expected = text.parse::<f64>().ok().filter(|v| v.is_finite());
+                prop_assert_eq!(parse(text.as_bytes()).map(f64::to_bits), expected.map(f64::to_bits), "{}", text);
+            }
+        }
+
+        #[test]
+        fn never_panics(bytes in proptest::collection::vec(any::<u8>(), 0..40)) {
+            let _ = parse(&bytes);
+            let _ = is_missing(&bytes);
+        }
+    }
+}

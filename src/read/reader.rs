@@ -1,0 +1,159 @@
+//! The reader: options, then a path or bytes, then records.
+
+use super::format::{Entry, Format, TABLE};
+use super::{Header, Source};
+use crate::error::{Error, Place, Result};
+use crate::record::Record;
+use crate::units::Unit;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// What a person knows of a file that the file does not say. A statement here that contradicts the file wins, with a
+/// doubt in the record.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Keep NaN, Inf and blank values as missing (NaN) instead of refusing them.
+    pub allow_missing: bool,
+    /// Sampling rate in Hz: the values are a time trace.
+    pub rate: Option<f64>,
+    /// Base band in Hz: the values are a spectrum from 0 to it.
+    pub base_band: Option<f64>,
+    /// Unit of the values.
+    pub unit: Option<Unit>,
+    /// Whether a comma is the decimal mark; `None` to find out.
+    pub decimal_comma: Option<bool>,
+}
+
+/// Everything a file holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// The file.
+    pub path: PathBuf,
+    /// Its format.
+    pub format: Format,
+    /// Its records in order.
+    pub records: Vec<Record>,
+    /// Sentences about the file as a whole: what was passed over, what was assumed.
+    pub doubts: Vec<String>,
+}
+
+impl Recording {
+    /// All doubts: the file's, then each record's with its name where there are several.
+    pub fn all_doubts(&self) -> Vec<String> {
+        let several = self.records.len() > 1;
+        let mut all = self.doubts.clone();
+        for record in &self.records {
+            let meta = record.meta();
+            all.extend(meta.doubts.iter().map(|d| {
+                if several && !meta.name.is_empty() { format!("{}: {d}", meta.name) } else { d.clone() }
+            }));
+        }
+        all
+    }
+}
+
+/// Reads measurement files of any known format.
+#[derive(Debug, Clone, Default)]
+pub struct Reader {
+    format: Option<Format>,
+    options: Options,
+}
+
+impl Reader {
+    /// A reader that finds out the format and refuses missing values.
+    pub fn new() -> Reader {
+        Reader::default()
+    }
+
+    /// Forces a format. Default: found out from the first bytes.
+    pub fn format(mut self, format: Option<Format>) -> Reader {
+        self.format = format;
+        self
+    }
+
+    /// Keeps NaN, Inf and blanks as missing values. Default: they are refused with their line numbers.
+    pub fn allow_missing(mut self, allow: bool) -> Reader {
+        self.options.allow_missing = allow;
+        self
+    }
+
+    /// States the sampling rate in Hz. Default: the file says it, or the abscissa is the sample number.
+    pub fn rate(mut self, rate: Option<f64>) -> Reader {
+        self.options.rate = rate;
+        self
+    }
+
+    /// States the base band in Hz of a spectrum. Default: the file says it.
+    pub fn base_band(mut self, base_band: Option<f64>) -> Reader {
+        self.options.base_band = base_band;
+        self
+    }
+
+    /// States the unit of the values. Default: the file says it.
+    pub fn unit(mut self, unit: Option<Unit>) -> Reader {
+        self.options.unit = unit;
+        self
+    }
+
+    /// States whether a comma is the decimal mark. Default: found out, and asked for where it is ambiguous.
+    pub fn decimal_comma(mut self, comma: Option<bool>) -> Reader {
+        self.options.decimal_comma = comma;
+        self
+    }
+
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// If it cannot be opened, is of no known format, or its content is not what its format requires.
+    pub fn from_path(&self, path: impl AsRef<Path>) -> Result<Recording> {
+        self.from_source(&Source::file(path)?)
+    }
+
+    /// Reads bytes; `name` stands for the path in messages and helps to tell the format.
+    ///
+    /// # Errors
+    /// As [`Reader::from_path`].
+    pub fn from_reader(&self, name: impl Into<PathBuf>, mut reader: impl Read) -> Result<Recording> {
+        let name = name.into();
+        let mut bytes = Vec::new();
+        reader.read_to_end(&mut bytes).map_err(|e| Error::io("read", &name, e))?;
+        self.from_source(&Source::memory(name, bytes)?)
+    }
+
+    /// Reads a source.
+    ///
+    /// # Errors
+    /// As [`Reader::from_path`].
+    pub fn from_source(&self, source: &Source) -> Result<Recording> {
+        (self.entry(source)?.read)(source, &self.options).map_err(|e| e.in_file(source.path()))
+    }
+
+    /// The records of a file without their values; memory does not grow with the file where the format allows.
+    ///
+    /// # Errors
+    /// As [`Reader::from_path`].
+    pub fn survey(&self, path: impl AsRef<Path>) -> Result<(Format, Vec<Header>, Vec<String>)> {
+        let source = Source::file(path)?;
+        let entry = self.entry(&source)?;
+        let (headers, doubts) =
+            (entry.survey)(&source, &self.options).map_err(|e| e.in_file(source.path()))?;
+        Ok((entry.format, headers, doubts))
+    }
+
+    fn entry(&self, source: &Source) -> Result<&'static Entry> {
+        if let Some(format) = self.format
+            && let Some(entry) = TABLE.iter().find(|e| e.format == format)
+        {
+            return Ok(entry);
+        }
+        let head = source.head()?;
+        TABLE.iter().find(|e| (e.sniff)(&head, source)).ok_or_else(|| {
+            Error::input(
+                Place::file(source.path()),
+                "not a format that is known here",
+                Format::names().join(", "),
+            )
+            .hint("force the format with --format, or export the record as text or UFF-58")
+        })
+    }
+}

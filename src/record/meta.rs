@@ -1,0 +1,83 @@
+//! What is known of a record beside its values.
+
+use crate::units::{Quantity, Unit};
+
+/// One step that made a record: its name, its arguments, the version of this crate.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct Step {
+    /// Name of the step, e.g. `read`, `to_si`, `integrate`.
+    pub name: String,
+    /// Arguments in order, as text.
+    pub arguments: Vec<(String, String)>,
+    /// Version of this crate.
+    pub version: String,
+}
+
+/// Channel, quantity, unit, history and doubts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Meta {
+    /// Channel or record name; may be empty.
+    pub name: String,
+    /// What the values measure.
+    pub quantity: Quantity,
+    /// SI unit of the values, or an opaque unit as the file had it.
+    pub unit: Unit,
+    /// Number of values that the file declares, where it does.
+    pub declared_n: Option<usize>,
+    /// Header lines that are kept but not interpreted, as key and value (the key may be empty).
+    pub notes: Vec<(String, String)>,
+    /// Sentences that a person must read before trusting the values.
+    pub doubts: Vec<String>,
+    /// Every step that made the record, oldest first.
+    pub history: Vec<Step>,
+}
+
+impl Meta {
+    /// Meta data of a record in `unit`, which is taken to be SI already (see [`Unit::si`]).
+    pub fn new(name: impl Into<String>, unit: Unit) -> Meta {
+        Meta {
+            name: name.into(),
+            quantity: unit.quantity(),
+            unit,
+            declared_n: None,
+            notes: Vec::new(),
+            doubts: Vec::new(),
+            history: Vec::new(),
+        }
+    }
+
+    /// Adds a sentence of doubt, once.
+    pub fn doubt(&mut self, sentence: impl Into<String>) {
+        let sentence = sentence.into();
+        if !self.doubts.contains(&sentence) {
+            self.doubts.push(sentence);
+        }
+    }
+
+    /// Adds a step to the history.
+    pub fn step(&mut self, name: &str, arguments: &[(&str, &dyn std::fmt::Display)]) {
+        self.history.push(Step {
+            name: name.to_owned(),
+            arguments: arguments.iter().map(|(k, v)| ((*k).to_owned(), v.to_string())).collect(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+        });
+    }
+
+    /// Takes the unit an instrument wrote: stores its SI unit and quantity, notes the conversion, and returns the factor
+    /// by which the values must be multiplied. An unknown unit is kept, with a doubt and factor 1.
+    pub fn adopt_unit(&mut self, text: &str) -> f64 {
+        let unit = Unit::parse_or_opaque(text);
+        if !unit.is_known() {
+            self.doubt(format!(
+                "The unit \"{}\" is not understood: the values are kept as they are.",
+                text.trim()
+            ));
+        }
+        self.unit = unit.si();
+        self.quantity = self.unit.quantity();
+        if unit.factor() != 1.0 {
+            self.step("to_si", &[("from", &unit.symbol()), ("factor", &unit.factor())]);
+        }
+        unit.factor()
+    }
+}

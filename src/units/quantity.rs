@@ -1,0 +1,97 @@
+//! What a number measures.
+
+use super::Dimension;
+
+/// Physical quantities this toolkit handles by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Quantity {
+    /// m
+    Displacement,
+    /// m/s
+    Velocity,
+    /// m/s²
+    Acceleration,
+    /// m/s³
+    Jerk,
+    /// N
+    Force,
+    /// N s
+    Impulse,
+    /// kg
+    Mass,
+    /// N/m
+    Stiffness,
+    /// V
+    Voltage,
+    /// Pa
+    Pressure,
+    /// s
+    Time,
+    /// Hz
+    Frequency,
+    /// 1: ratios, angles, coherence
+    Ratio,
+    /// m/N
+    Receptance,
+    /// m/(N s)
+    Mobility,
+    /// 1/kg, that is (m/s²)/N
+    Accelerance,
+    /// Anything else; the unit says what.
+    Other,
+}
+
+type Entry = (Quantity, &'static str, &'static str, [i8; 5]);
+
+/// One table for names, SI spellings and dimensions (exponents of m, kg, s, A, K; not doubled).
+const TABLE: &[Entry] = &[
+    (Quantity::Displacement, "displacement", "m", [1, 0, 0, 0, 0]),
+    (Quantity::Velocity, "velocity", "m/s", [1, 0, -1, 0, 0]),
+    (Quantity::Acceleration, "acceleration", "m/s²", [1, 0, -2, 0, 0]),
+    (Quantity::Jerk, "jerk", "m/s³", [1, 0, -3, 0, 0]),
+    (Quantity::Force, "force", "N", [1, 1, -2, 0, 0]),
+    (Quantity::Impulse, "impulse", "N s", [1, 1, -1, 0, 0]),
+    (Quantity::Mass, "mass", "kg", [0, 1, 0, 0, 0]),
+    (Quantity::Stiffness, "stiffness", "N/m", [0, 1, -2, 0, 0]),
+    (Quantity::Voltage, "voltage", "V", [2, 1, -3, -1, 0]),
+    (Quantity::Pressure, "pressure", "Pa", [-1, 1, -2, 0, 0]),
+    (Quantity::Time, "time", "s", [0, 0, 1, 0, 0]),
+    (Quantity::Frequency, "frequency", "Hz", [0, 0, -1, 0, 0]),
+    (Quantity::Ratio, "ratio", "1", [0, 0, 0, 0, 0]),
+    (Quantity::Receptance, "receptance", "m/N", [0, -1, 2, 0, 0]),
+    (Quantity::Mobility, "mobility", "(m/s)/N", [0, -1, 1, 0, 0]),
+    (Quantity::Accelerance, "accelerance", "(m/s²)/N", [0, -1, 0, 0, 0]),
+];
+
+impl Quantity {
+    /// The quantity of a dimension, [`Quantity::Other`] where it has no name here.
+    pub fn of(dimension: Dimension) -> Quantity {
+        TABLE.iter().find(|e| doubled(e.3) == dimension).map_or(Quantity::Other, |e| e.0)
+    }
+
+    /// Lower-case English name, as it stands in JSON.
+    pub fn name(self) -> &'static str {
+        TABLE.iter().find(|e| e.0 == self).map_or("other", |e| e.1)
+    }
+
+    /// The quantity with this name, ignoring case and surrounding blanks.
+    pub fn from_name(name: &str) -> Option<Quantity> {
+        let name = name.trim().to_lowercase();
+        TABLE.iter().find(|e| e.1 == name).map(|e| e.0)
+    }
+
+    /// SI symbol and dimension.
+    pub(super) fn si(self) -> Option<(&'static str, Dimension)> {
+        TABLE.iter().find(|e| e.0 == self).map(|e| (e.2, doubled(e.3)))
+    }
+}
+
+impl std::fmt::Display for Quantity {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+fn doubled(exponents: [i8; 5]) -> Dimension {
+    Dimension(exponents.map(|e| 2 * e))
+}
