@@ -9,10 +9,12 @@
 //! # Ok::<(), vibroimpact::Error>(())
 //! ```
 
+mod ascii;
 mod format;
 mod header;
 mod reader;
 mod source;
+mod text;
 
 pub mod number;
 

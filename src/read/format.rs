@@ -1,7 +1,7 @@
 //! The ordered table of formats.
 
 use super::reader::{Options, Recording};
-use super::{Header, Source};
+use super::{Header, Source, ascii};
 use crate::error::Result;
 
 /// A readable format.
@@ -33,7 +33,13 @@ pub(super) struct Entry {
 }
 
 /// Binary formats with a signature first, then text formats from the strictest to the loosest.
-pub(super) const TABLE: &[Entry] = &[];
+pub(super) const TABLE: &[Entry] = &[Entry {
+    format: Format::Ascii,
+    name: "ascii",
+    sniff: ascii::sniff,
+    read: ascii::read,
+    survey: ascii::survey,
+}];
 
 impl Format {
     /// Name on the command line and in JSON.

@@ -51,18 +51,10 @@ pub fn is_missing(text: &[u8]) -> bool {
 /// An exponent that would overflow gives `None`; one that underflows gives 0 or a subnormal, as it should.
 #[inline]
 pub fn prefix(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
-    let mut at = 0;
-    let negative = match text.first()? {
-        b'-' => {
-            at = 1;
-            true
-        }
-        b'+' => {
-            at = 1;
-            false
-        }
-        _ => false,
-    };
+    // Signs come at random: no branch on them, a wrong guess costs more than the whole number.
+    let first = *text.first()?;
+    let negative = first == b'-';
+    let mut at = usize::from(negative | (first == b'+'));
     let digits_from = at;
     let mut mantissa: u64 = 0;
     while let Some(d) = text.get(at).map(|b| b.wrapping_sub(b'0')).filter(|d| *d < 10) {
@@ -103,23 +95,15 @@ pub fn prefix(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
 /// `E+03`, `D-3`, `e5`, or a bare sign followed by digits; `None` where no exponent stands.
 #[inline]
 fn exponent_part(text: &[u8]) -> Option<(i32, usize)> {
-    let mut at = 0;
     let lettered = matches!(text.first()?, b'e' | b'E' | b'd' | b'D' | b'q' | b'Q');
-    if lettered {
-        at = 1;
+    let mut at = usize::from(lettered);
+    let sign = *text.get(at)?;
+    let negative = sign == b'-';
+    let signed = negative | (sign == b'+');
+    if !(lettered | signed) {
+        return None;
     }
-    let negative = match text.get(at)? {
-        b'-' => {
-            at += 1;
-            true
-        }
-        b'+' => {
-            at += 1;
-            false
-        }
-        _ if lettered => false,
-        _ => return None,
-    };
+    at += usize::from(signed);
     let from = at;
     let mut value: i32 = 0;
     while let Some(d) = text.get(at).map(|b| b.wrapping_sub(b'0')).filter(|d| *d < 10) {

@@ -5,6 +5,7 @@ use super::{Header, Source};
 use crate::error::{Error, Place, Result};
 use crate::record::Record;
 use crate::units::Unit;
+use rayon::prelude::*;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -22,6 +23,8 @@ pub struct Options {
     pub unit: Option<Unit>,
     /// Whether a comma is the decimal mark; `None` to find out.
     pub decimal_comma: Option<bool>,
+    /// Two value columns are real and imaginary part.
+    pub complex: bool,
 }
 
 /// Everything a file holds.
@@ -101,12 +104,40 @@ impl Reader {
         self
     }
 
+    /// States that two value columns are real and imaginary part. Default: only where a header says so.
+    pub fn complex(mut self, complex: bool) -> Reader {
+        self.options.complex = complex;
+        self
+    }
+
     /// Reads a file.
     ///
     /// # Errors
     /// If it cannot be opened, is of no known format, or its content is not what its format requires.
     pub fn from_path(&self, path: impl AsRef<Path>) -> Result<Recording> {
         self.from_source(&Source::file(path)?)
+    }
+
+    /// Reads many files, in parallel, in the order given.
+    ///
+    /// # Errors
+    /// As [`Reader::from_path`]; all files that do not exist are named at once.
+    pub fn from_paths<P: AsRef<Path> + Sync>(&self, paths: &[P]) -> Result<Vec<Recording>> {
+        let results: Vec<Result<Recording>> = paths.par_iter().map(|p| self.from_path(p)).collect();
+        if results.iter().any(Result::is_err) {
+            // Looked for only after a failure: asking for every file beforehand costs as much as opening it.
+            let missing: Vec<&P> = paths.iter().filter(|p| !p.as_ref().exists()).collect();
+            if let [first, _, ..] = missing.as_slice() {
+                let names: Vec<String> = missing.iter().map(|p| p.as_ref().display().to_string()).collect();
+                return Err(Error::input(
+                    Place::file(first.as_ref()),
+                    format!("{} of {} files are missing: {}", names.len(), paths.len(), names.join(", ")),
+                    "every file that is named",
+                )
+                .hint("check the folder and the spelling; on Linux upper and lower case differ"));
+            }
+        }
+        results.into_iter().collect()
     }
 
     /// Reads bytes; `name` stands for the path in messages and helps to tell the format.
