@@ -1,7 +1,7 @@
 //! Measurements of impacting machines: from instrument files to answers, each with its uncertainty.
 //!
 //! # Flow
-//! Data flows one way: [`read`] → `signal` → `measure` → `model` → `compare` → `report`.
+//! Data flows one way: [`read`] → [`signal`] → `measure` → `model` → `compare` → `report`.
 //! [`record`], [`units`], [`error`] and `math` lie below all of them.
 //!
 //! # Units and scaling
@@ -11,6 +11,7 @@
 pub mod error;
 pub mod read;
 pub mod record;
+pub mod signal;
 pub mod units;
 
 pub use error::{Error, Result};

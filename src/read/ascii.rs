@@ -300,7 +300,9 @@ fn real_record(
         meta.name = stated.name.clone().unwrap_or_default();
     }
     if factor != 1.0 {
-        values.iter_mut().for_each(|v| *v *= factor);
+        for value in &mut values {
+            *value *= factor;
+        }
     }
     if axis.kind == AxisKind::Frequency {
         meta.doubt(SCALING_UNSAID);
@@ -336,7 +338,9 @@ fn complex_record(
         .hint("give --base-band instead of --rate"));
     }
     if factor != 1.0 {
-        values.iter_mut().for_each(|v| *v *= factor);
+        for value in &mut values {
+            *value *= factor;
+        }
     }
     let kind = FrfKind::of(meta.quantity);
     if kind == FrfKind::Other {

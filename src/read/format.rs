@@ -19,6 +19,9 @@ pub enum Format {
     Ascii,
 }
 
+/// Headers of the records, and doubts about the file as a whole.
+pub(super) type Survey = (Vec<Header>, Vec<String>);
+
 /// How one format is told apart and read.
 pub(super) struct Entry {
     pub format: Format,
@@ -29,7 +32,7 @@ pub(super) struct Entry {
     pub read: fn(&Source, &Options) -> Result<Recording>,
     /// The records without their values, in memory that does not grow with the file where the format allows; and doubts
     /// about the file as a whole.
-    pub survey: fn(&Source, &Options) -> Result<(Vec<Header>, Vec<String>)>,
+    pub survey: fn(&Source, &Options) -> Result<Survey>,
 }
 
 /// Binary formats with a signature first, then text formats from the strictest to the loosest.

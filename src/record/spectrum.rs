@@ -79,7 +79,7 @@ impl Scaling {
     }
 }
 
-/// Windows by name; their samples and sums are in `signal::window`.
+/// Windows by name; their samples and sums are in [`crate::signal::window`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Window {

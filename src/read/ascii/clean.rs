@@ -14,6 +14,9 @@ const BLOCK: usize = 256 * 1024;
 /// Pieces smaller than this are not worth a thread.
 const SMALLEST_PIECE: u64 = 1024 * 1024;
 
+/// Values of a piece, and whether blank lines stand behind them.
+type Piece = (Vec<f64>, bool);
+
 /// All values, row by row; `None` where the file is not clean.
 pub fn read(source: &Source, layout: &Layout) -> Result<Option<Vec<f64>>> {
     let (from, to) = (layout.first_byte as u64, source.len());
@@ -21,7 +24,7 @@ pub fn read(source: &Source, layout: &Layout) -> Result<Option<Vec<f64>>> {
     let count = ((to - from) / SMALLEST_PIECE).clamp(1, threads);
     let bounds: Vec<u64> = (0..=count).map(|i| from + (to - from) * i / count).collect();
     let guess = |bytes: u64| (bytes / 12) as usize; // a shorter line only means that the vector grows
-    let parts: Vec<Result<Option<(Vec<f64>, bool)>>> = if count == 1 {
+    let parts: Vec<Result<Option<Piece>>> = if count == 1 {
         vec![collect(source, layout, from, to, guess(to - from))]
     } else {
         let mut parts: Vec<_> = (0..count).map(|_| Ok(None)).collect();
@@ -52,13 +55,7 @@ pub fn read(source: &Source, layout: &Layout) -> Result<Option<Vec<f64>>> {
     Ok((!values.is_empty()).then_some(values))
 }
 
-fn collect(
-    source: &Source,
-    layout: &Layout,
-    from: u64,
-    to: u64,
-    room: usize,
-) -> Result<Option<(Vec<f64>, bool)>> {
+fn collect(source: &Source, layout: &Layout, from: u64, to: u64, room: usize) -> Result<Option<Piece>> {
     let mut values = Vec::with_capacity(room);
     let end = scan(source, layout, from, to, |v| values.push(v))?;
     Ok(end.map(|blank_behind| (values, blank_behind)))

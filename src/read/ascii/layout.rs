@@ -178,7 +178,9 @@ fn marks(path: &Path, rows: &[(u64, usize, &[u8])], options: &Options) -> Result
         let line = line.trim_ascii();
         line.ends_with(b",")
             || line.windows(2).any(|w| w[0] == b',' && w[1].is_ascii_whitespace())
-            || line.split(u8::is_ascii_whitespace).any(|f| f.iter().filter(|b| **b == b',').count() > 1)
+            || line
+                .split(u8::is_ascii_whitespace)
+                .any(|f| f.iter().position(|b| *b == b',') != f.iter().rposition(|b| *b == b','))
     }) {
         return Ok((Separator::Char(b','), b'.'));
     }

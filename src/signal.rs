@@ -1,0 +1,3 @@
+//! Windows and spectra.
+
+pub mod window;

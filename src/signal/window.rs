@@ -1,0 +1,144 @@
+//! Windows: samples, sums, and the shape of a spectral line.
+//!
+//! All windows here are sums of cosines, w(n) = Σ (−1)ᵏ aₖ cos(2πkn/N), in the periodic form that an FFT analyser uses.
+//! Coefficients: F. J. Harris, "On the use of windows for harmonic analysis with the discrete Fourier transform",
+//! Proc. IEEE 66 (1978), table I; flat top: ISO 18431-2:2004, as tabulated by G. Heinzel et al., "Spectrum and spectral
+//! density estimation by the DFT" (2002), appendix D (SFT5 family as used by analysers).
+
+use crate::record::Window;
+use std::f64::consts::PI;
+
+/// Cosine coefficients a₀, a₁, …
+pub fn coefficients(window: Window) -> &'static [f64] {
+    match window {
+        Window::Rectangular => &[1.0],
+        Window::Hann => &[0.5, 0.5],
+        Window::Hamming => &[0.54, 0.46],
+        Window::Blackman => &[0.42, 0.5, 0.08],
+        Window::BlackmanHarris => &[0.358_75, 0.488_29, 0.141_28, 0.011_68],
+        Window::FlatTop => &[0.215_578_95, 0.416_631_58, 0.277_263_158, 0.083_578_947, 0.006_947_368],
+    }
+}
+
+/// The `n` samples of the periodic window.
+pub fn samples(window: Window, n: usize) -> Vec<f64> {
+    let a = coefficients(window);
+    (0..n)
+        .map(|i| {
+            let phase = 2.0 * PI * i as f64 / n as f64;
+            a.iter().enumerate().map(|(k, a)| sign(k) * a * (k as f64 * phase).cos()).sum()
+        })
+        .collect()
+}
+
+/// Mean of the samples: the factor by which a sine's line is too small before correction.
+pub fn coherent_gain(window: Window) -> f64 {
+    coefficients(window)[0]
+}
+
+/// Equivalent noise bandwidth in lines, Σw²·N/(Σw)² = 1 + Σₖ aₖ²/(2a₀²): 1 for none, 1.5 for Hann.
+pub fn enbw(window: Window) -> f64 {
+    let a = coefficients(window);
+    1.0 + a[1..].iter().map(|ak| ak * ak / (2.0 * a[0] * a[0])).sum::<f64>()
+}
+
+/// Signed height of a unit sine's line at a distance of `offset` lines, long records:
+/// W(δ) = Σ aₖ (sinc(δ−k) + sinc(δ+k))/2 / a₀.
+///
+/// The sign alternates from line to line of the main lobe as the phases of a DFT do; W(0) = 1.
+pub fn line_shape(window: Window, offset: f64) -> f64 {
+    let a = coefficients(window);
+    // Each cosine term is half a Dirichlet kernel at δ − k and half at δ + k; (−1)ᵏ of the window cancels (−1)ᵏ of the shift.
+    a.iter()
+        .enumerate()
+        .map(|(k, ak)| {
+            let k = k as f64;
+            let term = if k == 0.0 { sinc(offset) } else { (sinc(offset - k) + sinc(offset + k)) / 2.0 };
+            ak * term
+        })
+        .sum::<f64>()
+        / a[0]
+}
+
+/// sin(πx)/(πx).
+fn sinc(x: f64) -> f64 {
+    if x.abs() < 1e-9 { 1.0 } else { (PI * x).sin() / (PI * x) }
+}
+
+fn sign(k: usize) -> f64 {
+    if k.is_multiple_of(2) { 1.0 } else { -1.0 }
+}
+
+/// Correlation of white noise in two lines that are `distance` apart, with the sign that the main lobe's alternating
+/// phases give it: 1, 2/3, 1/6, 0 … for Hann.
+pub fn noise_correlation(window: Window, distance: usize) -> f64 {
+    let a = coefficients(window);
+    // Line weights of the window over unwindowed lines: a₀ in the middle, (−1)ᵏ aₖ/2 at ±k.
+    let weight = |k: i64| {
+        let m = k.unsigned_abs() as usize;
+        a.get(m).map_or(0.0, |ak| sign(m) * if m == 0 { *ak } else { ak / 2.0 })
+    };
+    let reach = a.len() as i64;
+    let sum = |d: i64| (-reach..=reach).map(|k| weight(k) * weight(k + d)).sum::<f64>();
+    sign(distance) * sum(distance as i64) / sum(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Slow oracle: one line of the windowed DFT of a sine of complex amplitude 1.
+    fn line_by_dft(window: Window, n: usize, offset: f64) -> f64 {
+        let w = samples(window, n);
+        let sum: f64 = w.iter().sum();
+        let (re, im) = w.iter().enumerate().fold((0.0, 0.0), |(re, im), (i, w)| {
+            let phase = 2.0 * PI * offset * i as f64 / n as f64;
+            (re + w * phase.cos(), im + w * phase.sin())
+        });
+        f64::hypot(re, im) / sum
+    }
+
+    #[test]
+    fn line_shapes_are_those_of_the_dft() {
+        let n = 4096;
+        for window in Window::ALL {
+            for step in -20..=20 {
+                let offset = f64::from(step) * 0.137;
+                let shape = line_shape(window, offset).abs();
+                let dft = line_by_dft(window, n, offset);
+                // Continuous against discrete kernel: relative difference (πδ/N)²/6 of terms of order one.
+                let tolerance = 10.0 * (PI * 3.0 / n as f64).powi(2) + 1e-13 * n as f64;
+                assert!((shape - dft).abs() < tolerance, "{window:?} {offset}: {shape} against {dft}");
+            }
+        }
+    }
+
+    #[test]
+    fn sums_agree_with_the_samples() {
+        for window in Window::ALL {
+            let w = samples(window, 64);
+            let sum: f64 = w.iter().sum();
+            let squares: f64 = w.iter().map(|w| w * w).sum();
+            assert!((sum / 64.0 - coherent_gain(window)).abs() < 1e-14, "{window:?}");
+            assert!((squares * 64.0 / (sum * sum) - enbw(window)).abs() < 1e-13, "{window:?}");
+        }
+        // Harris 1978, table I.
+        assert!((enbw(Window::Hann) - 1.5).abs() < 1e-15);
+        assert!((enbw(Window::Hamming) - 1.36).abs() < 5e-3);
+        assert!((enbw(Window::BlackmanHarris) - 2.0).abs() < 5e-3);
+    }
+
+    #[test]
+    fn worst_scalloping_of_hann_and_none() {
+        let decibel = |w| -20.0 * line_shape(w, 0.5).log10();
+        assert!((decibel(Window::Hann) - 1.42).abs() < 5e-3);
+        assert!((decibel(Window::Rectangular) - 3.92).abs() < 5e-3);
+    }
+
+    #[test]
+    fn noise_of_neighbouring_hann_lines() {
+        let c = |d| noise_correlation(Window::Hann, d);
+        assert!((c(1) - 2.0 / 3.0).abs() < 1e-15 && (c(2) - 1.0 / 6.0).abs() < 1e-15 && c(3).abs() < 1e-15);
+        assert_eq!(noise_correlation(Window::Rectangular, 1), 0.0);
+    }
+}
