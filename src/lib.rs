@@ -1,7 +1,7 @@
 //! Measurements of impacting machines: from instrument files to answers, each with its uncertainty.
 //!
 //! # Flow
-//! Data flows one way: [`read`] → [`signal`] → `measure` → `model` → `compare` → `report`.
+//! Data flows one way: [`read`] → [`signal`] → [`measure`] → `model` → `compare` → `report`.
 //! [`record`], [`units`], [`error`] and `math` lie below all of them.
 //!
 //! # Units and scaling
@@ -9,6 +9,7 @@
 //! every [`record::Spectrum`] names its [`record::Scaling`].
 
 pub mod error;
+pub mod measure;
 pub mod read;
 pub mod record;
 pub mod signal;

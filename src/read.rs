@@ -14,6 +14,8 @@ mod format;
 mod header;
 mod reader;
 mod source;
+mod sweep;
+mod sweep_list;
 mod text;
 
 pub mod number;
@@ -22,3 +24,5 @@ pub use format::Format;
 pub use header::{Header, Summary};
 pub use reader::{Options, Reader, Recording};
 pub use source::Source;
+pub use sweep::SweepReader;
+pub use sweep_list::{SweepList, inside};

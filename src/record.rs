@@ -8,12 +8,14 @@ mod axis;
 mod frf;
 mod meta;
 mod spectrum;
+mod sweep;
 mod trace;
 
 pub use axis::{Axis, AxisKind, Grid};
 pub use frf::{Frf, FrfKind};
 pub use meta::{Meta, Step};
 pub use spectrum::{Scaling, Spectrum, Values, Window};
+pub use sweep::{Direction, Sweep, SweepPoint};
 pub use trace::Trace;
 
 /// Anything a file can hold.

@@ -54,7 +54,7 @@ pub fn prefix(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
     // Signs come at random: no branch on them, a wrong guess costs more than the whole number.
     let first = *text.first()?;
     let negative = first == b'-';
-    let mut at = usize::from(negative | (first == b'+'));
+    let mut at = usize::from(negative) + usize::from(first == b'+');
     let digits_from = at;
     let mut mantissa: u64 = 0;
     while let Some(d) = text.get(at).map(|b| b.wrapping_sub(b'0')).filter(|d| *d < 10) {
@@ -99,8 +99,8 @@ fn exponent_part(text: &[u8]) -> Option<(i32, usize)> {
     let mut at = usize::from(lettered);
     let sign = *text.get(at)?;
     let negative = sign == b'-';
-    let signed = negative | (sign == b'+');
-    if !(lettered | signed) {
+    let signed = matches!(sign, b'-' | b'+');
+    if !lettered && !signed {
         return None;
     }
     at += usize::from(signed);

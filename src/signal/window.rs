@@ -53,7 +53,8 @@ pub fn line_shape(window: Window, offset: f64) -> f64 {
         .enumerate()
         .map(|(k, ak)| {
             let k = k as f64;
-            let term = if k == 0.0 { sinc(offset) } else { (sinc(offset - k) + sinc(offset + k)) / 2.0 };
+            let term =
+                if k == 0.0 { sinc(offset) } else { f64::midpoint(sinc(offset - k), sinc(offset + k)) };
             ak * term
         })
         .sum::<f64>()

@@ -1,0 +1,13 @@
+//! Answers from records: every number an [`Estimate`].
+
+mod estimate;
+pub mod excitation;
+pub mod legacy;
+pub mod line;
+pub mod noise;
+pub mod peaks;
+pub mod resonance;
+pub mod response;
+pub mod waterfall;
+
+pub use estimate::Estimate;

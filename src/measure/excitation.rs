@@ -1,0 +1,116 @@
+//! The excitation frequency of each step of a sweep, from its force spectrum (the job of the thesis' sineswpf).
+
+use super::line::{SubLine, interpolate};
+use super::noise;
+use crate::error::{Error, Place, Result};
+use crate::record::{Sweep, SweepPoint, Window};
+use serde::Serialize;
+
+/// Excitation of one step.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Excitation {
+    /// Force file, or response file where the frequency was given.
+    pub file: String,
+    /// Frequency in Hz.
+    pub frequency: f64,
+    /// Its standard uncertainty in Hz; `None` where it is not known.
+    pub std: Option<f64>,
+    /// Force amplitude in N; `None` where the frequency was given.
+    pub force: Option<f64>,
+    /// Its standard uncertainty in N.
+    pub force_std: Option<f64>,
+}
+
+/// How far the largest line must stand above the median of its neighbourhood to be taken for the excitation.
+const ABOVE_FLOOR: f64 = 8.0;
+
+/// Excitation of every step, in the order of the sweep.
+///
+/// The largest line of the force spectrum, interpolated below the line distance; 0 Hz, the line beside it and lines
+/// below `fmin` (Hz) are not looked at, so an offset of the force does no harm.
+///
+/// # Errors
+/// If a force spectrum is zero, holds no line above its noise, or has its largest line at the end of the base band.
+pub fn excitations(sweep: &Sweep, fmin: f64) -> Result<Vec<Excitation>> {
+    let df =
+        sweep.line_width().ok_or_else(|| Error::refused("the lines of the sweep are not evenly spaced"))?;
+    sweep.points.iter().map(|point| one(point, sweep.axis.start(), df, fmin)).collect()
+}
+
+fn one(point: &SweepPoint, start: f64, df: f64, fmin: f64) -> Result<Excitation> {
+    if let Some(frequency) = point.given {
+        // The hand-over file rounds to four decimals: a uniform error of ±5e-5 Hz.
+        let std = Some(5e-5 / f64::sqrt(3.0));
+        return Ok(Excitation { file: point.name(), frequency, std, force: None, force_std: None });
+    }
+    let path = point.force_path.clone().unwrap_or_default();
+    let peak = largest(&point.force, point.response.window, ((fmin - start) / df).ceil().max(0.0) as usize)
+        .map_err(|why| {
+            Error::input(Place::file(path), why, "one line that stands out: the excitation")
+                .hint("check that this is the force channel and that the shaker ran; take the point out of the list if not")
+        })?;
+    Ok(Excitation {
+        file: point.name(),
+        frequency: start + peak.position * df,
+        std: peak.position_std.map(|s| s * df),
+        force: Some(peak.amplitude),
+        force_std: peak.amplitude_std,
+    })
+}
+
+/// The largest line from `first` on (never below line 2), interpolated.
+fn largest(force: &[f64], window: Option<Window>, first: usize) -> std::result::Result<SubLine, String> {
+    let first = first.max(2);
+    let n = force.len();
+    if n < first + 3 {
+        return Err(format!("the force spectrum has {n} lines, too few"));
+    }
+    let k = (first..n).max_by(|a, b| force[*a].total_cmp(&force[*b])).unwrap_or(first);
+    if force[k] == 0.0 {
+        return Err("the force spectrum is zero".into());
+    }
+    if k == n - 1 {
+        return Err(
+            "the largest line of the force is the last one: the excitation may lie above the base band"
+                .into(),
+        );
+    }
+    let floor = noise::around(force, k);
+    if let Some(floor) = floor
+        && force[k] < ABOVE_FLOOR * floor
+    {
+        return Err(format!("no line of the force stands above its noise (largest {:.3e} N)", force[k]));
+    }
+    interpolate(force, k, window, floor).ok_or_else(|| "the lines beside the largest are missing".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::signal::window::line_shape;
+
+    fn sine(position: f64, offset: f64) -> Vec<f64> {
+        (0..401)
+            .map(|k| {
+                let k = f64::from(k);
+                line_shape(Window::Hann, k - position).abs() + offset * line_shape(Window::Hann, k).abs()
+            })
+            .collect()
+    }
+
+    #[test]
+    fn an_offset_larger_than_the_sine_does_no_harm() {
+        let found = largest(&sine(110.4, 150.0), Some(Window::Hann), 0).unwrap();
+        // The offset's own side lobes reach line 110 with 150·W(110) ≈ 1.5e-5 of the sine.
+        assert!((found.position - 110.4).abs() < 1e-4, "{}", found.position);
+    }
+
+    #[test]
+    fn what_is_no_excitation_is_refused() {
+        assert!(largest(&[0.0; 401], Some(Window::Hann), 0).unwrap_err().contains("zero"));
+        let noise: Vec<f64> = (0..401).map(|k| 1.0 + f64::from((k * 37) % 11) * 0.1).collect();
+        assert!(largest(&noise, Some(Window::Hann), 0).unwrap_err().contains("noise"));
+        assert!(largest(&sine(400.0, 0.0), Some(Window::Hann), 0).unwrap_err().contains("base band"));
+        assert!(largest(&[1.0; 3], Some(Window::Hann), 0).unwrap_err().contains("too few"));
+    }
+}

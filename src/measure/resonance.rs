@@ -1,0 +1,149 @@
+//! Resonances, antiresonances and jumps of a response curve.
+
+use super::peaks::{local_maxima, vertex};
+use crate::record::Direction;
+use serde::Serialize;
+
+/// A maximum or minimum of a response curve.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Resonance {
+    /// Frequency in Hz.
+    pub frequency: f64,
+    /// Its standard uncertainty in Hz.
+    pub frequency_std: Option<f64>,
+    /// Amplitude there.
+    pub amplitude: f64,
+    /// Its standard uncertainty.
+    pub amplitude_std: Option<f64>,
+    /// `resonance`, `antiresonance`; `grazing` or `clapping` where both masses were measured.
+    pub kind: String,
+    /// Whether the curve ends in a jump there, so that the true maximum may lie between the points.
+    pub at_jump: bool,
+}
+
+/// A sudden change of amplitude from one step of a sweep to the next.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Jump {
+    /// Last excitation frequency before, in Hz.
+    pub from: f64,
+    /// First excitation frequency behind, in Hz.
+    pub to: f64,
+    /// Amplitude before.
+    pub amplitude_before: f64,
+    /// Amplitude behind.
+    pub amplitude_after: f64,
+    /// `rise` or `drop`.
+    pub change: &'static str,
+    /// Direction of the sweep.
+    pub direction: Direction,
+}
+
+/// A maximum must stand this factor above its valleys.
+const PROMINENCE: f64 = 1.2;
+/// A jump changes the amplitude by at least this factor …
+const JUMP: f64 = 1.5;
+/// … and in logarithm by this much more than the steps beside it.
+const JUMP_AGAINST_NEIGHBOURS: f64 = 2.5;
+
+/// Resonances and antiresonances of a curve with rising `frequency`, given amplitudes, their uncertainties, and
+/// jumps.
+pub fn resonances(frequency: &[f64], amplitude: &[f64], std: &[f64], jumps: &[Jump]) -> Vec<Resonance> {
+    let inverse: Vec<f64> = amplitude.iter().map(|a| 1.0 / a).collect();
+    let mut found: Vec<Resonance> = Vec::new();
+    for (values, kind) in [(amplitude, "resonance"), (inverse.as_slice(), "antiresonance")] {
+        for i in local_maxima(values, PROMINENCE) {
+            let f = [frequency[i - 1], frequency[i], frequency[i + 1]];
+            let beside = |j: &Jump| {
+                let (low, high) = (j.from.min(j.to), j.from.max(j.to));
+                high >= f[0] && low <= f[2] && (low == f[1] || high == f[1])
+            };
+            let jump = jumps.iter().find(|j| beside(j));
+            let interpolated = if jump.is_none() && f[0] < f[1] && f[1] < f[2] {
+                let a = [values[i - 1], values[i], values[i + 1]];
+                // Relative uncertainties are the same for a value and its inverse.
+                let s = [i - 1, i, i + 1].map(|k| values[k] * std[k] / amplitude[k]);
+                vertex(f, a, s)
+            } else {
+                None
+            };
+            found.push(match interpolated {
+                Some(v) => {
+                    let height = if kind == "resonance" { v.height } else { 1.0 / v.height };
+                    Resonance {
+                        frequency: v.frequency,
+                        frequency_std: Some(v.frequency_std),
+                        amplitude: height,
+                        amplitude_std: Some(height * v.height_std / v.height),
+                        kind: kind.into(),
+                        at_jump: false,
+                    }
+                }
+                None => Resonance {
+                    frequency: f[1],
+                    // Anywhere between this point and its neighbours with equal chance.
+                    frequency_std: Some((f[1] - f[0]).max(f[2] - f[1]) / f64::sqrt(3.0)),
+                    amplitude: amplitude[i],
+                    amplitude_std: Some(std[i]).filter(|s| s.is_finite()),
+                    kind: kind.into(),
+                    at_jump: jump.is_some(),
+                },
+            });
+        }
+    }
+    found.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+    found
+}
+
+/// Jumps between neighbouring steps, in the order in which the sweep was run.
+pub fn jumps(frequency: &[f64], amplitude: &[f64], direction: Direction) -> Vec<Jump> {
+    let steps: Vec<f64> = amplitude.windows(2).map(|w| (w[1] / w[0]).ln()).collect();
+    (0..steps.len())
+        .filter(|&i| {
+            let beside = [i.checked_sub(1).and_then(|j| steps.get(j)), steps.get(i + 1)];
+            let usual = beside.into_iter().flatten().fold(0.0f64, |m, s| m.max(s.abs()));
+            steps[i].is_finite() && steps[i].abs() > JUMP.ln().max(JUMP_AGAINST_NEIGHBOURS * usual)
+        })
+        .map(|i| Jump {
+            from: frequency[i],
+            to: frequency[i + 1],
+            amplitude_before: amplitude[i],
+            amplitude_after: amplitude[i + 1],
+            change: if steps[i] > 0.0 { "rise" } else { "drop" },
+            direction,
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_hardening_peak_ends_in_a_drop() {
+        let f: Vec<f64> = (0..12).map(|i| 8.0 + 0.3 * f64::from(i)).collect();
+        let a: Vec<f64> = f.iter().map(|f| if *f < 10.6 { 1.0 + (f - 8.0) } else { 0.8 }).collect();
+        let jumps = jumps(&f, &a, Direction::Up);
+        assert_eq!(jumps.len(), 1);
+        assert_eq!((jumps[0].change, jumps[0].from), ("drop", f[8]));
+        let peaks = resonances(&f, &a, &[0.01; 12], &jumps);
+        assert_eq!(peaks.len(), 1);
+        assert!(peaks[0].at_jump && peaks[0].frequency == f[8]);
+    }
+
+    #[test]
+    fn a_smooth_resonance_is_no_jump() {
+        let f: Vec<f64> = (0..40).map(|i| 4.0 + 0.1 * f64::from(i)).collect();
+        let a: Vec<f64> =
+            f.iter().map(|f| 1.0 / (1.0 - (f / 5.6f64).powi(2)).hypot(0.04 * f / 5.6)).collect();
+        assert!(jumps(&f, &a, Direction::Up).is_empty());
+        let peaks = resonances(&f, &a, &[1e-3; 40], &[]);
+        assert_eq!(peaks.len(), 1);
+        assert!((peaks[0].frequency - 5.6).abs() < 0.02, "{peaks:?}");
+    }
+
+    #[test]
+    fn nothing_in_short_curves() {
+        assert!(resonances(&[1.0], &[1.0], &[0.0], &[]).is_empty());
+        assert!(jumps(&[1.0], &[1.0], Direction::Up).is_empty());
+    }
+}

@@ -1,0 +1,319 @@
+//! Response at the excitation, step by step (the job of the thesis' sinesw3).
+
+use super::excitation::{Excitation, excitations};
+use super::line::{amplitude_at, interpolate};
+use super::resonance::{Jump, Resonance, jumps, resonances};
+use super::{Estimate, noise};
+use crate::error::{Error, Result};
+use crate::record::{Direction, Sweep, SweepPoint};
+use crate::units::Quantity;
+use serde::Serialize;
+use std::f64::consts::PI;
+
+/// How a response is to be taken.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResponseOptions {
+    /// Lines on both sides of the excitation in which its peak is looked for. Default 3.
+    pub band: usize,
+    /// Integrations in frequency from the stored quantity: 1 takes velocity to displacement. Default 0.
+    pub integrate: i8,
+    /// Lowest frequency in Hz that is looked at. Default: the larger of two lines and a quarter of the lowest
+    /// excitation frequency.
+    pub fmin: Option<f64>,
+}
+
+impl Default for ResponseOptions {
+    fn default() -> Self {
+        ResponseOptions { band: 3, integrate: 0, fmin: None }
+    }
+}
+
+/// A line at a whole multiple or a fraction of the excitation frequency.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Harmonic {
+    /// `2`, `3`, … or `1/2`, `1/3`, …
+    pub order: String,
+    /// Frequency in Hz.
+    pub frequency: f64,
+    /// Amplitude; no value where the frequency lies outside the lines or below the cut-off.
+    pub amplitude: Estimate,
+}
+
+/// One step of the response curve.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ResponsePoint {
+    /// Excitation frequency in Hz.
+    pub excitation: f64,
+    /// Its standard uncertainty in Hz.
+    pub excitation_std: Option<f64>,
+    /// Force amplitude in N, where there is a force spectrum.
+    pub force: Option<f64>,
+    /// Frequency of the response peak in Hz.
+    pub frequency: f64,
+    /// Its standard uncertainty in Hz.
+    pub frequency_std: Option<f64>,
+    /// Peak amplitude at the excitation.
+    pub amplitude: Estimate,
+    /// Orders 2 to 5.
+    pub harmonics: Vec<Harmonic>,
+    /// Orders 1/2, 1/3, 1/4.
+    pub subharmonics: Vec<Harmonic>,
+    /// Whether the largest line of the spectrum is not at the excitation.
+    pub largest_elsewhere: bool,
+    /// Frequency of the largest line in Hz.
+    pub largest_at: f64,
+}
+
+/// A response curve.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Response {
+    /// Name of the sweep.
+    pub name: String,
+    /// Direction of the sweep, stated or found from the excitation frequencies.
+    pub direction: Option<Direction>,
+    /// Mass, where stated.
+    pub mass: Option<u8>,
+    /// Quantity of the amplitudes.
+    pub quantity: &'static str,
+    /// Unit of the amplitudes.
+    pub unit: &'static str,
+    /// Cut-off in Hz: lines below were not looked at.
+    pub fmin: f64,
+    /// Steps, in the order in which they were taken.
+    pub points: Vec<ResponsePoint>,
+    /// Maxima and minima of the curve.
+    pub resonances: Vec<Resonance>,
+    /// Sudden changes.
+    pub jumps: Vec<Jump>,
+    /// What a person must know.
+    pub warnings: Vec<String>,
+}
+
+/// The cut-off below which a spectrum that was divided by frequency is noise: the larger of two lines and a quarter of
+/// the lowest excitation frequency.
+pub fn default_cutoff(line_width: f64, excitations: &[Excitation]) -> f64 {
+    let lowest = excitations.iter().map(|e| e.frequency).fold(f64::INFINITY, f64::min);
+    (2.0 * line_width).max(if lowest.is_finite() { lowest / 4.0 } else { 0.0 })
+}
+
+/// Takes the response curve of a sweep.
+///
+/// Lines are interpolated in the spectrum of the measured signal: where the analyser divided by (2πf)ⁿ that is undone line by
+/// line, and the amplitude is divided by (2πf)ⁿ at the frequency found. So the slope of 1/fⁿ across a line's own
+/// shape does not bend the result.
+///
+/// # Errors
+/// If an excitation frequency cannot be found, or the lines are not evenly spaced.
+pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
+    let df =
+        sweep.line_width().ok_or_else(|| Error::refused("the lines of the sweep are not evenly spaced"))?;
+    let excitations = excitations(sweep, options.fmin.unwrap_or(0.0))?;
+    let fmin = options.fmin.unwrap_or_else(|| default_cutoff(df, &excitations));
+    let mut warnings = sweep.doubts.clone();
+    let unit = sweep.points.first().map_or_else(crate::units::Unit::none, |p| p.response.meta.unit.clone());
+    let quantity = unit.times_seconds(options.integrate).quantity();
+    let unit = unit_symbol(quantity);
+    let taker = Taker { sweep, options, df, fmin, unit };
+    let points: Vec<ResponsePoint> =
+        sweep.points.iter().zip(&excitations).map(|(p, e)| taker.point(p, e)).collect();
+
+    let frequency: Vec<f64> = excitations.iter().map(|e| e.frequency).collect();
+    let direction = direction(&frequency, sweep.direction, &mut warnings);
+    let amplitude: Vec<f64> = points.iter().map(|p| p.amplitude.value).collect();
+    let std: Vec<f64> = points.iter().map(|p| p.amplitude.std.unwrap_or(f64::NAN)).collect();
+    let faint =
+        points.iter().filter(|p| p.amplitude.std.is_some_and(|s| p.amplitude.value < 3.0 * s)).count();
+    if faint > 0 {
+        warnings
+            .push(format!("{faint} amplitude(s) stand less than three standard deviations above the noise."));
+    }
+    if points.iter().any(|p| p.amplitude.value.is_nan()) {
+        warnings.push(format!(
+            "Points whose excitation lies below the cut-off of {fmin:.3} Hz have no amplitude."
+        ));
+    }
+    let (jumps, resonances) = match direction {
+        Some(direction) if points.len() >= 3 => {
+            let jumps = jumps(&frequency, &amplitude, direction);
+            let mut order: Vec<usize> = (0..points.len()).collect();
+            order.sort_by(|a, b| frequency[*a].total_cmp(&frequency[*b]));
+            let sorted = |v: &[f64]| -> Vec<f64> { order.iter().map(|i| v[*i]).collect() };
+            let found = resonances(&sorted(&frequency), &sorted(&amplitude), &sorted(&std), &jumps);
+            (jumps, found)
+        }
+        _ => {
+            warnings.push("Resonances and jumps need three or more points in one direction.".to_owned());
+            (Vec::new(), Vec::new())
+        }
+    };
+    Ok(Response {
+        name: sweep.name.clone(),
+        direction,
+        mass: sweep.mass,
+        quantity: quantity.name(),
+        unit,
+        fmin,
+        points,
+        resonances,
+        jumps,
+        warnings,
+    })
+}
+
+fn unit_symbol(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Displacement => "m",
+        Quantity::Velocity => "m/s",
+        Quantity::Acceleration => "m/s²",
+        Quantity::Force => "N",
+        Quantity::Voltage => "V",
+        _ => "",
+    }
+}
+
+/// Direction of a sweep from its frequencies, with doubts where they are not in order.
+fn direction(frequency: &[f64], stated: Option<Direction>, warnings: &mut Vec<String>) -> Option<Direction> {
+    if frequency.len() == 1 {
+        warnings.push("The sweep has one point only.".to_owned());
+    }
+    let rising = frequency.windows(2).filter(|w| w[1] > w[0]).count();
+    let falling = frequency.windows(2).filter(|w| w[1] < w[0]).count();
+    // Equal to a hundred-thousandth: no stepped sweep is that fine.
+    let equal = frequency.windows(2).filter(|w| (w[1] - w[0]).abs() <= 1e-5 * w[0]).count();
+    if equal > 0 {
+        warnings.push(format!("{equal} step(s) repeat the excitation frequency of the step before."));
+    }
+    let found = match rising.cmp(&falling) {
+        std::cmp::Ordering::Greater => Some(Direction::Up),
+        std::cmp::Ordering::Less => Some(Direction::Down),
+        std::cmp::Ordering::Equal => None,
+    };
+    let against = rising.min(falling);
+    if against > 0 {
+        warnings.push(format!(
+            "The points are not in order of frequency: {against} of {} steps go the other way; jumps are judged in the order given.",
+            frequency.len() - 1
+        ));
+    }
+    if let (Some(stated), Some(found)) = (stated, found)
+        && stated != found
+    {
+        warnings.push(format!(
+            "The sweep is said to go {}, but its excitation frequencies go {}.",
+            stated.name(),
+            found.name()
+        ));
+    }
+    stated.or(found)
+}
+
+/// Takes single points.
+struct Taker<'a> {
+    sweep: &'a Sweep,
+    options: &'a ResponseOptions,
+    df: f64,
+    fmin: f64,
+    unit: &'static str,
+}
+
+impl Taker<'_> {
+    fn frequency(&self, position: f64) -> f64 {
+        self.sweep.axis.start() + position * self.df
+    }
+
+    fn position(&self, frequency: f64) -> f64 {
+        (frequency - self.sweep.axis.start()) / self.df
+    }
+
+    /// (2πf)ⁿ from the measured signal to the wanted quantity.
+    fn divisor(&self, frequency: f64) -> f64 {
+        (2.0 * PI * frequency)
+            .powi(i32::from(self.sweep.analyser_integrated) + i32::from(self.options.integrate))
+    }
+
+    fn point(&self, point: &SweepPoint, excitation: &Excitation) -> ResponsePoint {
+        let stored = point.response.values.magnitudes();
+        let undo = i32::from(self.sweep.analyser_integrated);
+        let measured: Vec<f64> = stored
+            .iter()
+            .enumerate()
+            .map(|(k, m)| m * (2.0 * PI * self.frequency(k as f64)).powi(undo))
+            .collect();
+        let at = self.position(excitation.frequency);
+        let centre = at.round().max(0.0) as usize;
+        let window = point.response.window;
+        let floor = noise::around(&measured, centre);
+        let low = centre.saturating_sub(self.options.band).max(1);
+        let high = (centre + self.options.band).min(measured.len().saturating_sub(2));
+        let peak = (low..=high)
+            .filter(|&k| measured[k] >= measured[k - 1] && measured[k] >= measured[k + 1])
+            .max_by(|a, b| measured[*a].total_cmp(&measured[*b]))
+            .and_then(|k| interpolate(&measured, k, window, floor));
+        let (frequency, frequency_std, amplitude, method) = if excitation.frequency < self.fmin {
+            (excitation.frequency, None, (f64::NAN, None), "below the cut-off".to_owned())
+        } else if let Some(peak) = peak {
+            let method = match window {
+                Some(w) => format!("peak of three lines, {} window", w.name()),
+                None => "parabola through log magnitudes, window unknown".to_owned(),
+            };
+            let frequency = self.frequency(peak.position);
+            let std = peak.position_std.map(|s| s * self.df);
+            (frequency, std, (peak.amplitude, peak.amplitude_std), method)
+        } else {
+            let found = amplitude_at(&measured, at, window, floor).unwrap_or((f64::NAN, None));
+            (excitation.frequency, excitation.std, found, "at the excitation, no peak of its own".to_owned())
+        };
+        let divisor = self.divisor(frequency);
+        let amplitude =
+            Estimate::new(amplitude.0 / divisor, amplitude.1.map(|s| s / divisor), self.unit, 3, method);
+        let harmonic = |numerator: u32, denominator: u32| {
+            let order = if denominator == 1 { numerator.to_string() } else { format!("1/{denominator}") };
+            let f = excitation.frequency * f64::from(numerator) / f64::from(denominator);
+            self.harmonic(&measured, order, f, window)
+        };
+        let largest = self.largest(&stored);
+        ResponsePoint {
+            excitation: excitation.frequency,
+            excitation_std: excitation.std,
+            force: excitation.force,
+            frequency,
+            frequency_std,
+            amplitude,
+            harmonics: (2..=5).map(|n| harmonic(n, 1)).collect(),
+            subharmonics: (2..=4).map(|n| harmonic(1, n)).collect(),
+            largest_elsewhere: largest.abs_diff(centre) > self.options.band,
+            largest_at: self.frequency(largest as f64),
+        }
+    }
+
+    fn harmonic(
+        &self,
+        measured: &[f64],
+        order: String,
+        frequency: f64,
+        window: Option<crate::record::Window>,
+    ) -> Harmonic {
+        let at = self.position(frequency);
+        let inside = frequency >= self.fmin && at >= 1.0 && at.round() < measured.len() as f64 - 1.0;
+        let found = inside
+            .then(|| amplitude_at(measured, at, window, noise::around(measured, at.round() as usize)))
+            .flatten();
+        let divisor = self.divisor(frequency);
+        let (value, std, method) = match found {
+            Some((value, std)) => {
+                (value / divisor, std.map(|s| s / divisor), "three lines at a known frequency")
+            }
+            None => (f64::NAN, None, "outside the lines or below the cut-off"),
+        };
+        Harmonic { order, frequency, amplitude: Estimate::new(value, std, self.unit, 3, method) }
+    }
+
+    /// Index of the largest line of the wanted quantity, cut-off and above.
+    fn largest(&self, stored: &[f64]) -> usize {
+        let first = self.position(self.fmin).ceil().max(1.0) as usize;
+        let wanted = |k: usize| {
+            stored[k] / (2.0 * PI * self.frequency(k as f64)).powi(i32::from(self.options.integrate))
+        };
+        (first..stored.len()).max_by(|a, b| wanted(*a).total_cmp(&wanted(*b))).unwrap_or(first)
+    }
+}

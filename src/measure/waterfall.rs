@@ -1,0 +1,72 @@
+//! All response spectra of a sweep as one matrix (the job of the thesis' sinesw).
+
+use super::excitation::excitations;
+use super::response::{ResponseOptions, default_cutoff};
+use crate::error::{Error, Result};
+use crate::record::Sweep;
+use ndarray::Array2;
+use std::f64::consts::PI;
+
+/// Spectra over excitation frequency.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Waterfall {
+    /// Name of the sweep.
+    pub name: String,
+    /// Frequencies of the lines in Hz, shape [lines].
+    pub frequency: Vec<f64>,
+    /// Excitation frequencies in Hz in the order of the sweep, shape [points].
+    pub excitation: Vec<f64>,
+    /// Magnitudes, shape [points, lines]; NaN below the cut-off.
+    pub magnitude: Array2<f64>,
+    /// Quantity of the magnitudes.
+    pub quantity: crate::units::Quantity,
+    /// SI unit of the magnitudes.
+    pub unit: String,
+    /// Cut-off in Hz; 0 where nothing was cut off.
+    pub fmin: f64,
+    /// What a person must know.
+    pub warnings: Vec<String>,
+}
+
+/// Gathers the matrix. Where the spectra were or are integrated, lines below the cut-off hold noise divided by frequency and
+/// are left out; otherwise all lines are kept unless a cut-off is given.
+///
+/// # Errors
+/// As [`super::response::response`].
+pub fn waterfall(sweep: &Sweep, options: &ResponseOptions) -> Result<Waterfall> {
+    let df =
+        sweep.line_width().ok_or_else(|| Error::refused("the lines of the sweep are not evenly spaced"))?;
+    let excitations = excitations(sweep, options.fmin.unwrap_or(0.0))?;
+    let integrated = options.integrate > 0 || sweep.analyser_integrated > 0;
+    let fmin = match options.fmin {
+        Some(fmin) => fmin,
+        None if integrated => default_cutoff(df, &excitations),
+        None => 0.0,
+    };
+    let frequency = sweep.axis.values();
+    let mut magnitude = Array2::from_elem((sweep.points.len(), frequency.len()), f64::NAN);
+    for (mut row, point) in magnitude.rows_mut().into_iter().zip(&sweep.points) {
+        for (k, (cell, f)) in row.iter_mut().zip(&frequency).enumerate() {
+            let divisor = (2.0 * PI * f).powi(i32::from(options.integrate));
+            if *f >= fmin && divisor != 0.0 && k < point.response.values.len() {
+                *cell = point.response.values.magnitude(k) / divisor;
+            }
+        }
+    }
+    let stored = sweep.points.first().map_or_else(crate::units::Unit::none, |p| p.response.meta.unit.clone());
+    let unit = stored.times_seconds(options.integrate);
+    let mut warnings = sweep.doubts.clone();
+    if fmin > 0.0 {
+        warnings.push(format!("Lines below the cut-off of {fmin:.3} Hz are left out."));
+    }
+    Ok(Waterfall {
+        name: sweep.name.clone(),
+        frequency,
+        excitation: excitations.iter().map(|e| e.frequency).collect(),
+        magnitude,
+        quantity: unit.quantity(),
+        unit: unit.symbol().to_owned(),
+        fmin,
+        warnings,
+    })
+}

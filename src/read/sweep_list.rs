@@ -1,0 +1,240 @@
+//! The thesis' list file, and the hand-over file of its script sineswpf.
+//!
+//! ```text
+//! 12                 number of points N
+//! 400                spectral lines L: files hold L + 1 values
+//! 20                 base band in Hz
+//! FUP0001.DAT        N force files, one a line         hand-over file: N excitation frequencies instead,
+//! …                                                    then N names of 11 characters without a separator
+//! RUP0001.DAT        N response files
+//! …
+//! ```
+
+use super::{Source, number, text};
+use crate::error::{Error, Place, Result};
+use std::path::{Component, Path, PathBuf};
+
+/// Files of a stepped-sine sweep.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SweepList {
+    /// Spectral lines, not counting 0 Hz.
+    pub lines: usize,
+    /// Base band in Hz.
+    pub base_band: f64,
+    /// Force files; empty for a hand-over file.
+    pub force: Vec<PathBuf>,
+    /// Excitation frequencies in Hz from a hand-over file; empty for a list file.
+    pub excitation: Vec<f64>,
+    /// Response files.
+    pub response: Vec<PathBuf>,
+}
+
+/// Length of a name in a hand-over file: eight characters, a point, three characters.
+const NAME: usize = 11;
+
+impl SweepList {
+    /// Reads a list file or a hand-over file. Names are taken relative to its folder.
+    ///
+    /// # Errors
+    /// If a number or a name is missing or out of range, or a name leads outside the folder and `allow_outside` is not set.
+    pub fn from_path(path: impl AsRef<Path>, allow_outside: bool) -> Result<SweepList> {
+        let path = path.as_ref();
+        let bytes = Source::file(path)?.all()?;
+        if !text::is_text(&bytes[..bytes.len().min(4096)]) {
+            return Err(Error::input(Place::file(path), "binary data", "a list file of text").hint(
+                "give a list file (N, lines, base band, force names, response names) or campaign.toml#name",
+            ));
+        }
+        let text = text::decode(&bytes);
+        let mut list = parse(path, &text)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        for name in list.force.iter_mut().chain(&mut list.response) {
+            *name = inside(folder, name, allow_outside).map_err(|e| e.in_file(path))?;
+        }
+        Ok(list)
+    }
+
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.response.len()
+    }
+
+    /// Whether there are none; never so for a list that was read.
+    pub fn is_empty(&self) -> bool {
+        self.response.is_empty()
+    }
+}
+
+/// `folder/name`, refused where it leads outside the folder (by `..`, an absolute name or a link), unless allowed.
+///
+/// # Errors
+/// As said.
+pub fn inside(folder: &Path, name: &Path, allow_outside: bool) -> Result<PathBuf> {
+    // Lists come from DOS machines, too.
+    let name = PathBuf::from(name.to_string_lossy().replace('\\', "/"));
+    let joined = folder.join(&name);
+    let drive = name.to_string_lossy().as_bytes().get(1) == Some(&b':');
+    let climbs = name
+        .components()
+        .try_fold(0i32, |depth, part| match part {
+            Component::Normal(_) => Some(depth + 1),
+            Component::ParentDir if depth > 0 => Some(depth - 1),
+            Component::CurDir => Some(depth),
+            _ => None,
+        })
+        .is_none();
+    let linked = || match (joined.canonicalize(), folder_or_here(folder).canonicalize()) {
+        (Ok(file), Ok(folder)) => !file.starts_with(folder),
+        _ => false, // a missing file is named when it is opened
+    };
+    if !allow_outside && (climbs || drive || linked()) {
+        return Err(Error::usage(
+            format!("the name {:?} leads outside the folder of the list", name.display().to_string()),
+            "names of files beside or below the list",
+        )
+        .hint("move the files beside the list, or give --allow-outside if you trust it"));
+    }
+    Ok(joined)
+}
+
+fn folder_or_here(folder: &Path) -> &Path {
+    if folder.as_os_str().is_empty() { Path::new(".") } else { folder }
+}
+
+fn parse(path: &Path, text: &str) -> Result<SweepList> {
+    let mut lines = text
+        .lines()
+        .enumerate()
+        .map(|(i, l)| (i as u64 + 1, l.trim()))
+        .filter(|(_, l)| !l.is_empty())
+        .peekable();
+    let end = text.lines().count() as u64 + 1;
+    let mut number = |what: &str| -> Result<(u64, f64)> {
+        let (line, found) = lines.next().unwrap_or((end, ""));
+        let value = number::parse(found.as_bytes()).filter(|v| *v > 0.0);
+        value.map(|v| (line, v)).ok_or_else(|| {
+            Error::input(Place::line(path, line), format!("found {found:?}"), format!("{what}, a number above 0")).hint(
+                "a list file holds: number of points, lines, base band in Hz, force names, response names, one a line",
+            )
+        })
+    };
+    let (count_line, points) = number("the number of points")?;
+    let (lines_line, spectral) = number("the number of spectral lines")?;
+    let (_, base_band) = number("the base band in Hz")?;
+    let whole = |line: u64, v: f64, what: &str| {
+        if v.fract() == 0.0 && v < 1e9 {
+            Ok(v as usize)
+        } else {
+            Err(Error::input(Place::line(path, line), format!("found {v}"), format!("a whole {what}")))
+        }
+    };
+    let points = whole(count_line, points, "number of points")?;
+    let spectral = whole(lines_line, spectral, "number of lines")?;
+    let rest: Vec<(u64, &str)> = lines.collect();
+    let mut list = SweepList {
+        lines: spectral,
+        base_band,
+        force: Vec::new(),
+        excitation: Vec::new(),
+        response: Vec::new(),
+    };
+    let given = rest.iter().take_while(|(_, l)| number::parse(l.as_bytes()).is_some()).count();
+    if given > 0 {
+        hand_over(path, points, &rest, given, &mut list)?;
+    } else {
+        if rest.len() != 2 * points {
+            let line = rest.get(2 * points).map_or(end, |r| r.0);
+            return Err(Error::input(
+                Place::line(path, line),
+                format!("found {} file names for {points} points", rest.len()),
+                format!("{} names: {points} force and {points} response files, one a line", 2 * points),
+            )
+            .hint("correct the number of points in the first line, or add the missing names"));
+        }
+        list.force = rest[..points].iter().map(|(_, name)| PathBuf::from(name)).collect();
+        list.response = rest[points..].iter().map(|(_, name)| PathBuf::from(name)).collect();
+    }
+    Ok(list)
+}
+
+fn hand_over(
+    path: &Path,
+    points: usize,
+    rest: &[(u64, &str)],
+    given: usize,
+    list: &mut SweepList,
+) -> Result<()> {
+    if given != points {
+        return Err(Error::input(
+            Place::line(path, rest[given - 1].0),
+            format!("found {given} excitation frequencies for {points} points"),
+            format!("{points} frequencies"),
+        ));
+    }
+    list.excitation = rest[..given].iter().filter_map(|(_, l)| number::parse(l.as_bytes())).collect();
+    let names: Vec<String> = match &rest[given..] {
+        // The script writes names of 11 characters without a separator.
+        [(_, one)] if one.chars().count() == NAME * points => {
+            let characters: Vec<char> = one.chars().collect();
+            characters.chunks(NAME).map(|c| c.iter().collect()).collect()
+        }
+        several => several.iter().flat_map(|(_, l)| l.split_whitespace()).map(str::to_owned).collect(),
+    };
+    if names.len() != points {
+        let line = rest.get(given).map_or(rest[given - 1].0, |r| r.0);
+        return Err(Error::input(
+            Place::line(path, line),
+            format!("found {} response names for {points} points", names.len()),
+            format!("{points} names of {NAME} characters, or separated by blanks or lines"),
+        ));
+    }
+    list.response = names.into_iter().map(PathBuf::from).collect();
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(text: &str) -> Result<SweepList> {
+        parse(Path::new("LIST.TXT"), text)
+    }
+
+    #[test]
+    fn list_and_hand_over() {
+        let list = of("2\r\n400\r\n20\r\nF1.DAT\r\nF2.DAT\r\nR1.DAT\r\nR2.DAT\r\n").unwrap();
+        assert_eq!((list.len(), list.lines, list.base_band), (2, 400, 20.0));
+        assert_eq!(list.response[1], Path::new("R2.DAT"));
+        let hand = of("2.0000\n400.0000\n20.0000\n 5.0000\n 5.2000\nRUP0001.DATRUP0002.DAT").unwrap();
+        assert_eq!(hand.excitation, [5.0, 5.2]);
+        assert_eq!(hand.response[1], Path::new("RUP0002.DAT"));
+    }
+
+    #[test]
+    fn complaints_name_the_line() {
+        for (text, line, word) in [
+            ("x\n", "line 1", "number of points"),
+            ("2\n400\n0\n", "line 3", "base band"),
+            ("2\n400\n20\na\nb\nc\n", "line 7", "3 file names"),
+            ("2\n400\n20\na\nb\nc\nd\ne\n", "line 8", "5 file names"),
+            ("2.5\n400\n20\n", "line 1", "whole"),
+            ("1e12\n400\n20\na", "line 1", "whole"),
+            ("3\n400\n20\n5\n6\nA B C", "line 5", "2 excitation"),
+            ("2\n400\n20\n5\n6\nA B C", "line 6", "3 response"),
+            ("", "line 1", "number of points"),
+        ] {
+            let error = of(text).unwrap_err().to_string();
+            assert!(error.contains(line) && error.contains(word), "{text:?}: {error}");
+        }
+    }
+
+    #[test]
+    fn names_stay_in_their_folder() {
+        let ok = |name: &str| inside(Path::new("data"), Path::new(name), false).is_ok();
+        assert!(ok("A.DAT") && ok("sub/A.DAT") && ok("sub/../A.DAT") && ok(r"sub\A.DAT"));
+        assert!(
+            !ok("../A.DAT") && !ok("/etc/passwd") && !ok(r"..\A.DAT") && !ok(r"C:\A.DAT") && !ok("a/../../b")
+        );
+        assert!(inside(Path::new("data"), Path::new("../A.DAT"), true).is_ok());
+    }
+}

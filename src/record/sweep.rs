@@ -1,0 +1,74 @@
+//! A stepped-sine sweep: one force and one response spectrum a step.
+
+use super::{Axis, Spectrum};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// Direction in which a sweep was run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Direction {
+    /// Rising frequency.
+    Up,
+    /// Falling frequency.
+    Down,
+}
+
+impl Direction {
+    /// `up` or `down`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Direction::Up => "up",
+            Direction::Down => "down",
+        }
+    }
+}
+
+/// One step of a sweep.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SweepPoint {
+    /// Force file; `None` where the excitation frequency is given instead.
+    pub force_path: Option<PathBuf>,
+    /// Response file.
+    pub response_path: PathBuf,
+    /// Peak magnitudes of the force spectrum, in order of the lines; empty where there is none.
+    pub force: Vec<f64>,
+    /// Excitation frequency in Hz where a hand-over file gives it.
+    pub given: Option<f64>,
+    /// Response: peak magnitudes.
+    pub response: Spectrum,
+}
+
+impl SweepPoint {
+    /// Name of the force file, without its folder; of the response file where there is none.
+    pub fn name(&self) -> String {
+        let path = self.force_path.as_ref().unwrap_or(&self.response_path);
+        path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned())
+    }
+}
+
+/// All steps in the order in which they were taken.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sweep {
+    /// Name, for figures and messages.
+    pub name: String,
+    /// Direction, where it was stated.
+    pub direction: Option<Direction>,
+    /// 1 excited mass, 2 passive mass, where it was stated.
+    pub mass: Option<u8>,
+    /// Frequencies of the lines, the same for all spectra.
+    pub axis: Axis,
+    /// How often the analyser integrated a measured signal in frequency before it stored the response.
+    pub analyser_integrated: u8,
+    /// The steps.
+    pub points: Vec<SweepPoint>,
+    /// Sentences of doubt about the sweep as a whole.
+    pub doubts: Vec<String>,
+}
+
+impl Sweep {
+    /// Distance of the lines in Hz; `None` if uneven.
+    pub fn line_width(&self) -> Option<f64> {
+        self.axis.step()
+    }
+}
