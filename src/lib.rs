@@ -9,6 +9,7 @@
 //! every [`record::Spectrum`] names its [`record::Scaling`].
 
 pub mod error;
+pub mod math;
 pub mod measure;
 pub mod read;
 pub mod record;
