@@ -11,6 +11,7 @@
 pub mod error;
 pub mod math;
 pub mod measure;
+pub mod model;
 pub mod read;
 pub mod record;
 pub mod signal;
