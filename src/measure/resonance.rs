@@ -114,6 +114,34 @@ pub fn jumps(frequency: &[f64], amplitude: &[f64], direction: Direction) -> Vec<
         .collect()
 }
 
+/// Names the resonances of curves of both masses: the largest maximum below the antiresonance of mass 1 is the grazing
+/// resonance (masses move in phase), the largest above it the clapping one (out of phase). `curves` are the
+/// resonances of each curve with its mass and direction; curves without an antiresonance of mass 1 in their direction use
+/// that of the other direction. Gives the antiresonance frequencies used, for up and for down.
+pub fn name_modes(curves: &mut [(u8, Direction, &mut Vec<Resonance>)]) -> [Option<f64>; 2] {
+    let antiresonance = |wanted: Direction, curves: &[(u8, Direction, &mut Vec<Resonance>)]| {
+        let first = curves.iter().find(|c| c.0 == 1 && c.1 == wanted)?;
+        let deepest = first.2.iter().filter(|r| r.kind == "antiresonance");
+        deepest.min_by(|a, b| a.amplitude.total_cmp(&b.amplitude)).map(|r| r.frequency)
+    };
+    let found = [antiresonance(Direction::Up, curves), antiresonance(Direction::Down, curves)];
+    for (_, direction, resonances) in curves {
+        let [up, down] = found;
+        let between = if *direction == Direction::Up { up.or(down) } else { down.or(up) };
+        let Some(between) = between else { continue };
+        for (name, below) in [("grazing", true), ("clapping", false)] {
+            let largest = resonances
+                .iter_mut()
+                .filter(|r| r.kind == "resonance" && (r.frequency < between) == below)
+                .max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
+            if let Some(largest) = largest {
+                name.clone_into(&mut largest.kind);
+            }
+        }
+    }
+    found
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -110,7 +110,7 @@ impl SweepReader {
                     values: Values::Real(values),
                     scaling: Scaling::Peak,
                     window: self.window,
-                    enbw: self.window.map(crate::signal::window::enbw),
+                    enbw: self.window.map(Window::enbw),
                 },
             });
         }
