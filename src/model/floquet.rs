@@ -16,7 +16,7 @@ fn flow(rig: &Rig, t: f64) -> Matrix4<f64> {
 }
 
 /// Saltation matrix S = D + (f⁺ − D f⁻)nᵀ/(nᵀf⁻) of an impact, with n = ∇g, D the change of velocities, f the rate of
-/// the state just before and just after (Müller 1995; Leine and Nijmeijer 2004, section 7).
+/// the state just before and just after (Müller 1995; Leine and Nijmeijer 2004).
 ///
 /// Its determinant is R². Its elements grow like 1/vᵣ when the impact grazes.
 fn saltation(rig: &Rig, before: &[f64; 4], after: &[f64; 4]) -> Matrix4<f64> {
