@@ -52,6 +52,9 @@ pub fn resonances(frequency: &[f64], amplitude: &[f64], std: &[f64], jumps: &[Ju
     let mut found: Vec<Resonance> = Vec::new();
     for (values, kind) in [(amplitude, "resonance"), (inverse.as_slice(), "antiresonance")] {
         for i in local_maxima(values, PROMINENCE) {
+            if !significant(amplitude, std, i, kind == "resonance") {
+                continue;
+            }
             let f = [frequency[i - 1], frequency[i], frequency[i + 1]];
             let beside = |j: &Jump| {
                 let (low, high) = (j.from.min(j.to), j.from.max(j.to));
@@ -94,14 +97,30 @@ pub fn resonances(frequency: &[f64], amplitude: &[f64], std: &[f64], jumps: &[Ju
     found
 }
 
+/// Differences below this many standard deviations are noise.
+const SIGMA: f64 = 4.0;
+
+/// Whether the maximum (or minimum) at `i` differs from the extreme on either side by more than noise. Unknown
+/// uncertainties count as none.
+fn significant(amplitude: &[f64], std: &[f64], i: usize, maximum: bool) -> bool {
+    let sign = if maximum { 1.0 } else { -1.0 };
+    let clear = |k: usize| {
+        let noise = [std[i], std[k]].map(|s| if s.is_finite() { s } else { 0.0 });
+        sign * (amplitude[i] - amplitude[k]) > SIGMA * noise[0].hypot(noise[1])
+    };
+    (0..i).any(clear) && (i + 1..amplitude.len()).any(clear)
+}
+
 /// Jumps between neighbouring steps, in the order in which the sweep was run.
-pub fn jumps(frequency: &[f64], amplitude: &[f64], direction: Direction) -> Vec<Jump> {
+pub fn jumps(frequency: &[f64], amplitude: &[f64], std: &[f64], direction: Direction) -> Vec<Jump> {
     let steps: Vec<f64> = amplitude.windows(2).map(|w| (w[1] / w[0]).ln()).collect();
     (0..steps.len())
         .filter(|&i| {
             let beside = [i.checked_sub(1).and_then(|j| steps.get(j)), steps.get(i + 1)];
             let usual = beside.into_iter().flatten().fold(0.0f64, |m, s| m.max(s.abs()));
-            steps[i].is_finite() && steps[i].abs() > JUMP.ln().max(JUMP_AGAINST_NEIGHBOURS * usual)
+            let noise = [std[i], std[i + 1]].map(|s| if s.is_finite() { s } else { 0.0 });
+            let clear = (amplitude[i + 1] - amplitude[i]).abs() > SIGMA * noise[0].hypot(noise[1]);
+            clear && steps[i].is_finite() && steps[i].abs() > JUMP.ln().max(JUMP_AGAINST_NEIGHBOURS * usual)
         })
         .map(|i| Jump {
             from: frequency[i],
@@ -142,15 +161,52 @@ pub fn name_modes(curves: &mut [(u8, Direction, &mut Vec<Resonance>)]) -> [Optio
     found
 }
 
+/// Frequencies where two curves over frequency cross, and whether the second is the larger one above. Each curve may be
+/// in any order; the second is interpolated at the frequencies of the first (linear in the logarithm).
+pub fn crossings(mut first: Vec<(f64, f64)>, mut second: Vec<(f64, f64)>) -> Vec<(f64, bool)> {
+    first.sort_by(|a, b| a.0.total_cmp(&b.0));
+    second.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let at = |f: f64| -> Option<f64> {
+        let i = second.partition_point(|p| p.0 < f);
+        if let Some(exact) = second.get(i).filter(|p| p.0 == f) {
+            return Some(exact.1.ln());
+        }
+        let (a, b) = (second.get(i.checked_sub(1)?)?, second.get(i)?);
+        let t = (f - a.0) / (b.0 - a.0);
+        Some(a.1.ln() * (1.0 - t) + b.1.ln() * t)
+    };
+    let difference: Vec<(f64, f64)> = first
+        .iter()
+        .filter_map(|(f, a)| at(*f).map(|b| (*f, b - a.ln())))
+        .filter(|(_, d)| d.is_finite())
+        .collect();
+    difference
+        .windows(2)
+        .filter(|w| (w[0].1 > 0.0) != (w[1].1 > 0.0))
+        .map(|w| (w[0].0 + (w[1].0 - w[0].0) * w[0].1 / (w[0].1 - w[1].1), w[1].1 > 0.0))
+        .collect()
+}
+
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn curves_cross_where_their_logarithms_do() {
+        // e^f against e^(10−f): they cross at 5.
+        let up: Vec<(f64, f64)> = (0..11).map(|i| (f64::from(i), f64::from(i).exp())).collect();
+        let down: Vec<(f64, f64)> =
+            (0..11).map(|i| (f64::from(i) + 0.3, (9.7 - f64::from(i)).exp())).collect();
+        let found = crossings(up, down);
+        assert_eq!(found.len(), 1);
+        assert!((found[0].0 - 5.0).abs() < 1e-12 && !found[0].1, "{found:?}");
+    }
+
     use super::*;
 
     #[test]
     fn a_hardening_peak_ends_in_a_drop() {
         let f: Vec<f64> = (0..12).map(|i| 8.0 + 0.3 * f64::from(i)).collect();
         let a: Vec<f64> = f.iter().map(|f| if *f < 10.6 { 1.0 + (f - 8.0) } else { 0.8 }).collect();
-        let jumps = jumps(&f, &a, Direction::Up);
+        let jumps = jumps(&f, &a, &[0.01; 12], Direction::Up);
         assert_eq!(jumps.len(), 1);
         assert_eq!((jumps[0].change, jumps[0].from), ("drop", f[8]));
         let peaks = resonances(&f, &a, &[0.01; 12], &jumps);
@@ -163,15 +219,25 @@ mod tests {
         let f: Vec<f64> = (0..40).map(|i| 4.0 + 0.1 * f64::from(i)).collect();
         let a: Vec<f64> =
             f.iter().map(|f| 1.0 / (1.0 - (f / 5.6f64).powi(2)).hypot(0.04 * f / 5.6)).collect();
-        assert!(jumps(&f, &a, Direction::Up).is_empty());
+        assert!(jumps(&f, &a, &[1e-3; 40], Direction::Up).is_empty());
         let peaks = resonances(&f, &a, &[1e-3; 40], &[]);
         assert_eq!(peaks.len(), 1);
         assert!((peaks[0].frequency - 5.6).abs() < 0.02, "{peaks:?}");
     }
 
     #[test]
+    fn noise_has_no_resonances_and_no_jumps() {
+        // Alternating values whose differences are three standard deviations.
+        let f: Vec<f64> = (0..20).map(f64::from).collect();
+        let a: Vec<f64> = (0..20).map(|i| if i % 2 == 0 { 4.0 } else { 1.0 }).collect();
+        assert!(resonances(&f, &a, &[1.0; 20], &[]).is_empty());
+        assert!(jumps(&f, &a, &[1.0; 20], Direction::Up).is_empty());
+        assert!(!resonances(&f, &a, &[0.1; 20], &[]).is_empty());
+    }
+
+    #[test]
     fn nothing_in_short_curves() {
         assert!(resonances(&[1.0], &[1.0], &[0.0], &[]).is_empty());
-        assert!(jumps(&[1.0], &[1.0], Direction::Up).is_empty());
+        assert!(jumps(&[1.0], &[1.0], &[0.0], Direction::Up).is_empty());
     }
 }

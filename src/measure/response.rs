@@ -136,7 +136,7 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
     }
     let (jumps, resonances) = match direction {
         Some(direction) if points.len() >= 3 => {
-            let jumps = jumps(&frequency, &amplitude, direction);
+            let jumps = jumps(&frequency, &amplitude, &std, direction);
             let mut order: Vec<usize> = (0..points.len()).collect();
             order.sort_by(|a, b| frequency[*a].total_cmp(&frequency[*b]));
             let sorted = |v: &[f64]| -> Vec<f64> { order.iter().map(|i| v[*i]).collect() };
