@@ -4,7 +4,7 @@ use super::observable::Observable;
 use super::prediction::{Kind, Motion, Prediction};
 use crate::error::{Error, Result};
 use crate::measure::Estimate;
-use crate::measure::peaks::local_maxima;
+use crate::measure::peaks::{local_maxima, vertex};
 use crate::measure::resonance::Resonance;
 use crate::measure::response::Response;
 use crate::model::Rig;
@@ -232,7 +232,7 @@ fn peaks(response: &Response, mass: u8, direction: Direction, curve: &Prediction
     // Where a branch ends, its last point is the peak: a missing value beside it counts as low.
     let closed: Vec<f64> = amplitude.iter().map(|a| if a.is_nan() { 0.0 } else { *a }).collect();
     let predicted: Vec<(f64, f64)> =
-        local_maxima(&closed, 1.2).into_iter().map(|i| (curve.frequency[i], closed[i])).collect();
+        local_maxima(&closed, 1.2).into_iter().map(|i| top(curve, &closed, i)).collect();
     let found = response.resonances.iter().filter(|r| r.kind != "antiresonance");
     found
         .map(|r: &Resonance| {
@@ -258,4 +258,13 @@ fn peaks(response: &Response, mass: u8, direction: Direction, curve: &Prediction
             }
         })
         .collect()
+}
+
+/// Top of a predicted curve at its grid point `i`: the vertex, or the point itself where the branch ends beside it.
+fn top(curve: &Prediction, closed: &[f64], i: usize) -> (f64, f64) {
+    let near = [i - 1, i, i + 1];
+    let heights = near.map(|k| closed[k]);
+    vertex(near.map(|k| curve.frequency[k]), heights, [0.0; 3])
+        .filter(|_| heights[0].min(heights[2]) > 0.5 * heights[1])
+        .map_or((curve.frequency[i], closed[i]), |v| (v.frequency, v.height))
 }

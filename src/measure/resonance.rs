@@ -133,32 +133,66 @@ pub fn jumps(frequency: &[f64], amplitude: &[f64], std: &[f64], direction: Direc
         .collect()
 }
 
-/// Names the resonances of curves of both masses: the largest maximum below the antiresonance of mass 1 is the grazing
-/// resonance (masses move in phase), the largest above it the clapping one (out of phase). `curves` are the
-/// resonances of each curve with its mass and direction; curves without an antiresonance of mass 1 in their direction use
-/// that of the other direction. Gives the antiresonance frequencies used, for up and for down.
-pub fn name_modes(curves: &mut [(u8, Direction, &mut Vec<Resonance>)]) -> [Option<f64>; 2] {
-    let antiresonance = |wanted: Direction, curves: &[(u8, Direction, &mut Vec<Resonance>)]| {
-        let first = curves.iter().find(|c| c.0 == 1 && c.1 == wanted)?;
-        let deepest = first.2.iter().filter(|r| r.kind == "antiresonance");
-        deepest.min_by(|a, b| a.amplitude.total_cmp(&b.amplitude)).map(|r| r.frequency)
-    };
-    let found = [antiresonance(Direction::Up, curves), antiresonance(Direction::Down, curves)];
-    for (_, direction, resonances) in curves {
-        let [up, down] = found;
-        let between = if *direction == Direction::Up { up.or(down) } else { down.or(up) };
-        let Some(between) = between else { continue };
+/// A response curve whose resonances are to be named: excited (1) or passive (2) mass.
+#[derive(Debug)]
+pub struct NamedCurve<'a> {
+    /// 1 excited, 2 passive.
+    pub mass: u8,
+    /// Direction of the sweep.
+    pub direction: Direction,
+    /// Excitation frequency in Hz and amplitude, rising in frequency.
+    pub curve: Vec<(f64, f64)>,
+    /// Its resonances.
+    pub resonances: &'a mut Vec<Resonance>,
+}
+
+/// The other mass must move at least this fraction of the one that resonates, or they do not resonate together.
+const TOGETHER: f64 = 0.1;
+
+/// Names the resonances in which both masses move: the largest maximum below the antiresonance of mass 1 is the grazing
+/// resonance (in phase), the largest above it the clapping one (out of phase).
+///
+/// A maximum at which the other mass of the same sweep rests keeps its kind, as do all where the other mass was not
+/// measured. A sweep without an antiresonance of mass 1 uses that of the other direction.
+pub fn name_modes(curves: &mut [NamedCurve<'_>]) {
+    let up = antiresonance(curves, Direction::Up);
+    let down = antiresonance(curves, Direction::Down);
+    for i in 0..curves.len() {
+        let (mass, direction) = (curves[i].mass, curves[i].direction);
+        let between = if direction == Direction::Up { up.or(down) } else { down.or(up) };
+        let partner = curves.iter().find(|c| c.mass != mass && c.direction == direction);
+        let (Some(between), Some(partner)) = (between, partner.map(|p| p.curve.clone())) else { continue };
         for (name, below) in [("grazing", true), ("clapping", false)] {
-            let largest = resonances
+            let largest = curves[i]
+                .resonances
                 .iter_mut()
                 .filter(|r| r.kind == "resonance" && (r.frequency < between) == below)
+                .filter(|r| at(&partner, r.frequency).is_some_and(|other| other >= TOGETHER * r.amplitude))
                 .max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
             if let Some(largest) = largest {
                 name.clone_into(&mut largest.kind);
             }
         }
     }
-    found
+}
+
+/// Frequency of the deepest minimum of mass 1.
+fn antiresonance(curves: &[NamedCurve<'_>], direction: Direction) -> Option<f64> {
+    let first = curves.iter().find(|c| c.mass == 1 && c.direction == direction)?;
+    let minima = first.resonances.iter().filter(|r| r.kind == "antiresonance");
+    minima.min_by(|a, b| a.amplitude.total_cmp(&b.amplitude)).map(|r| r.frequency)
+}
+
+/// A curve between its points, linear in the logarithm; `None` outside.
+fn at(curve: &[(f64, f64)], f: f64) -> Option<f64> {
+    let i = curve.partition_point(|p| p.0 < f);
+    let b = curve.get(i)?;
+    if b.0 == f {
+        return Some(b.1);
+    }
+    let a = curve.get(i.checked_sub(1)?)?;
+    let t = (f - a.0) / (b.0 - a.0);
+    Some((a.1.ln() * (1.0 - t) + b.1.ln() * t).exp())
 }
 
 /// Frequencies where two curves over frequency cross, and whether the second is the larger one above. Each curve may be
@@ -166,18 +200,9 @@ pub fn name_modes(curves: &mut [(u8, Direction, &mut Vec<Resonance>)]) -> [Optio
 pub fn crossings(mut first: Vec<(f64, f64)>, mut second: Vec<(f64, f64)>) -> Vec<(f64, bool)> {
     first.sort_by(|a, b| a.0.total_cmp(&b.0));
     second.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let at = |f: f64| -> Option<f64> {
-        let i = second.partition_point(|p| p.0 < f);
-        if let Some(exact) = second.get(i).filter(|p| p.0 == f) {
-            return Some(exact.1.ln());
-        }
-        let (a, b) = (second.get(i.checked_sub(1)?)?, second.get(i)?);
-        let t = (f - a.0) / (b.0 - a.0);
-        Some(a.1.ln() * (1.0 - t) + b.1.ln() * t)
-    };
     let difference: Vec<(f64, f64)> = first
         .iter()
-        .filter_map(|(f, a)| at(*f).map(|b| (*f, b - a.ln())))
+        .filter_map(|(f, a)| at(&second, *f).map(|b| (*f, (b / a).ln())))
         .filter(|(_, d)| d.is_finite())
         .collect();
     difference
@@ -189,6 +214,36 @@ pub fn crossings(mut first: Vec<(f64, f64)>, mut second: Vec<(f64, f64)>) -> Vec
 
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn a_mass_that_moves_alone_does_not_clap() {
+        let resonance = |f, a, kind: &str| Resonance {
+            frequency: f,
+            frequency_std: None,
+            amplitude: a,
+            amplitude_std: None,
+            kind: kind.into(),
+            at_jump: false,
+        };
+        let mut first = vec![
+            resonance(5.5, 10.0, "resonance"),
+            resonance(7.5, 0.1, "antiresonance"),
+            resonance(10.6, 2.0, "resonance"),
+        ];
+        let mut second = vec![resonance(5.5, 9.0, "resonance")];
+        let curve = |above| vec![(4.0, 1.0), (5.5, 9.0), (9.0, above), (13.0, above)];
+        for (above, expected) in [(1e-6, "resonance"), (1.0, "clapping")] {
+            first[2].kind = "resonance".into();
+            first[0].kind = "resonance".into();
+            let direction = Direction::Up;
+            name_modes(&mut [
+                NamedCurve { mass: 1, direction, curve: curve(1.0), resonances: &mut first },
+                NamedCurve { mass: 2, direction, curve: curve(above), resonances: &mut second },
+            ]);
+            assert_eq!((first[0].kind.as_str(), first[2].kind.as_str()), ("grazing", expected));
+            assert_eq!(second[0].kind, "grazing");
+        }
+    }
+
     #[test]
     fn curves_cross_where_their_logarithms_do() {
         // e^f against e^(10−f): they cross at 5.
