@@ -16,5 +16,6 @@ pub mod read;
 pub mod record;
 pub mod signal;
 pub mod units;
+pub mod write;
 
 pub use error::{Error, Result};
