@@ -17,6 +17,8 @@ mod source;
 mod sweep;
 mod sweep_list;
 mod text;
+mod uff;
+mod uff58;
 
 pub mod number;
 

@@ -1,0 +1,3 @@
+//! Records to files, one file a format.
+
+pub mod uff58;
