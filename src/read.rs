@@ -17,6 +17,7 @@ mod source;
 mod sweep;
 mod sweep_list;
 mod text;
+mod wav;
 
 pub mod number;
 
@@ -26,3 +27,4 @@ pub use reader::{Options, Reader, Recording};
 pub use source::Source;
 pub use sweep::SweepReader;
 pub use sweep_list::{SweepList, inside};
+pub use wav::WavStream;

@@ -1,7 +1,7 @@
 //! The ordered table of formats.
 
 use super::reader::{Options, Recording};
-use super::{Header, Source, ascii};
+use super::{Header, Source, ascii, wav};
 use crate::error::Result;
 
 /// A readable format.
@@ -36,13 +36,16 @@ pub(super) struct Entry {
 }
 
 /// Binary formats with a signature first, then text formats from the strictest to the loosest.
-pub(super) const TABLE: &[Entry] = &[Entry {
-    format: Format::Ascii,
-    name: "ascii",
-    sniff: ascii::sniff,
-    read: ascii::read,
-    survey: ascii::survey,
-}];
+pub(super) const TABLE: &[Entry] = &[
+    Entry { format: Format::Wav, name: "wav", sniff: wav::sniff, read: wav::read, survey: wav::survey },
+    Entry {
+        format: Format::Ascii,
+        name: "ascii",
+        sniff: ascii::sniff,
+        read: ascii::read,
+        survey: ascii::survey,
+    },
+];
 
 impl Format {
     /// Name on the command line and in JSON.
