@@ -9,7 +9,9 @@
 //! # Ok::<(), vibroimpact::Error>(())
 //! ```
 
+mod abscissa;
 mod ascii;
+mod csv;
 mod format;
 mod header;
 mod reader;
