@@ -14,6 +14,7 @@ mod ascii;
 mod csv;
 mod format;
 mod header;
+mod mat;
 mod reader;
 mod source;
 mod sweep;

@@ -9,6 +9,8 @@ use std::path::Path;
 
 /// How many places a complaint lists.
 const LISTED: usize = 8;
+/// How many comments between rows are kept.
+const KEPT: usize = 32;
 
 /// The numbers of a file.
 #[derive(Debug, Default, PartialEq)]
@@ -21,8 +23,10 @@ pub struct Columns {
     pub resolution: f64,
     /// Whether the decimal mark is a comma.
     pub comma: bool,
-    /// Comments between and behind the rows.
-    pub comments: Vec<(u64, String)>,
+    /// Number of comments between and behind the rows.
+    pub comments: usize,
+    /// The first of them with their lines.
+    pub kept: Vec<(u64, String)>,
 }
 
 /// Reads all rows; `axis` is the column whose digits count.
@@ -43,7 +47,10 @@ pub fn read(
     let (mut fields, mut gaps, mut digits) = (Vec::new(), Vec::new(), Digits::default());
     for line in Lines::from(text, layout.first.at, layout.first.number) {
         if let Some(comment) = line.comment() {
-            columns.comments.push((line.number, comment.to_owned()));
+            columns.comments += 1;
+            if columns.kept.len() < KEPT {
+                columns.kept.push((line.number, comment.to_owned()));
+            }
             continue;
         }
         if line.is_blank() || line.text == "\u{1a}" {
@@ -179,7 +186,7 @@ mod tests {
     fn numbers_and_marks() {
         let plain = columns("t,a\n0,1.5\n1,-2e-3\n\n# end\n\u{1a}", &Options::default()).unwrap();
         assert_eq!(plain.values, [[0.0, 1.0], [1.5, -2e-3]]);
-        assert_eq!(plain.comments, [(5, "end".to_owned())]);
+        assert_eq!((plain.comments, plain.kept), (1, vec![(5, "end".to_owned())]));
         // The first mark decides, however late it comes.
         let comma = columns("t;a\n0;1\n1;\"2,5\"\n", &Options::default()).unwrap();
         assert_eq!((comma.values[1].as_slice(), comma.comma), ([1.0, 2.5].as_slice(), true));

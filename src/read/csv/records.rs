@@ -27,9 +27,13 @@ pub fn build(
     options: &Options,
 ) -> Result<(Vec<Record>, Vec<String>)> {
     let mut lines = layout.preamble;
-    lines.extend(columns.comments.iter().cloned());
+    lines.extend(columns.kept.iter().cloned());
     let stated = stated::read(&lines);
     let mut doubts = Vec::new();
+    if columns.comments > columns.kept.len() {
+        let kept = columns.kept.len();
+        doubts.push(format!("Of {} remarks between the rows the first {kept} are kept.", columns.comments));
+    }
     if columns.missing > 0 {
         doubts.push(format!("{} value(s) are missing and kept as such.", columns.missing));
     }

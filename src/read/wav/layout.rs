@@ -14,6 +14,8 @@ use std::io::{Read, SeekFrom};
 const MOST_CHUNKS: usize = 10_000;
 /// How many bytes of texts are kept.
 const MOST_TEXT: u64 = 64 * 1024;
+/// Most channels of any recorder; more are a damaged header.
+const MOST_CHANNELS: usize = 1024;
 /// A size that was never filled in.
 const UNSAID: u64 = 0xffff_ffff;
 /// Behind the format tag in a sub-format: {xxxx0000-0000-0010-8000-00AA00389B71}.
@@ -216,11 +218,12 @@ fn kind(source: &Source, at: u64, format: &[u8], doubts: &mut Vec<String>) -> Re
     let channels = usize::from(channels);
     let bytes = usize::from(frame).checked_div(channels).unwrap_or(0);
     let sample = match (tag, bytes) {
-        (1, 1..=4) => Sample::Integer(bytes),
-        (3, 4 | 8) => Sample::Float(bytes),
+        (1, 1..=4) if channels <= MOST_CHANNELS => Sample::Integer(bytes),
+        (3, 4 | 8) if channels <= MOST_CHANNELS => Sample::Float(bytes),
         _ => {
             let found = format!("{} of {bits} bits, {channels} channel(s), {frame} bytes a frame", name(tag));
-            let expected = "integers of 8, 16, 24 or 32 bits or floats of 32 or 64 bits";
+            let expected =
+                "integers of 8, 16, 24 or 32 bits or floats of 32 or 64 bits in 1 to 1024 channels";
             return Err(fault(source, at, found, expected).hint("convert it to one of these"));
         }
     };
