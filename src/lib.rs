@@ -14,5 +14,6 @@ pub mod read;
 pub mod record;
 pub mod signal;
 pub mod units;
+pub mod write;
 
 pub use error::{Error, Result};

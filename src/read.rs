@@ -20,7 +20,7 @@ mod source;
 mod sweep;
 mod sweep_list;
 mod text;
-mod wav;
+pub(crate) mod wav;
 
 pub mod number;
 

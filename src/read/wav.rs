@@ -14,6 +14,7 @@ mod layout;
 mod scales;
 mod stream;
 
+pub(crate) use scales::{Scale, Scales};
 pub use stream::WavStream;
 
 use super::format::{Format, Survey};
@@ -160,6 +161,11 @@ fn dress(trace: &mut Trace, stream: &WavStream, options: &Options, channel: usiz
     let Some(scale) = stream.scales().and_then(|s| s.channels.get(channel)) else { return Ok(1.0) };
     let unit = Unit::parse_or_opaque(&scale.unit);
     trace.calibrate(scale.factor, &unit)?;
+    if scale.unit == FULL_SCALE {
+        // Only the level was kept: there never was a calibration.
+        trace.meta.doubt(Trace::UNCALIBRATED);
+        return Ok(scale.factor);
+    }
     trace.meta.doubt(format!(
         "Full scale is {} {}, as a comment in the file says: wrong if an audio program has changed the level since.",
         scale.factor, scale.unit

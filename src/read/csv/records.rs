@@ -278,7 +278,11 @@ impl Made<'_> {
         if scaling == Scaling::Unknown {
             meta.doubt(SCALING_UNSAID);
         }
-        let window = self.said("window", &name).and_then(|w| Window::from_name(&w)).or(self.stated.window);
+        let window = match self.said("window", &name) {
+            Some(window) => Window::from_name(&window),
+            // A remark about another column says nothing of this one.
+            None => self.stated.window.filter(|_| !self.remarks("window").any(|(_, v)| v.contains(" of "))),
+        };
         let enbw = self.said("enbw", &name).and_then(|e| number::parse(e.as_bytes()));
         Record::Spectrum(Spectrum { meta, axis, values, scaling, window, enbw })
     }
@@ -298,11 +302,16 @@ impl Made<'_> {
         1.0
     }
 
+    fn remarks(&self, key: &str) -> impl Iterator<Item = &(String, String)> {
+        self.stated.notes.iter().filter(move |(k, _)| k.eq_ignore_ascii_case(key))
+    }
+
     /// A remark about one column, `key: value of name`, or about all, `key: value`.
     fn said(&self, key: &str, name: &str) -> Option<String> {
-        let notes = || self.stated.notes.iter().filter(|(k, _)| k.eq_ignore_ascii_case(key));
-        let own = notes().find_map(|(_, v)| v.split_once(" of ").filter(|(_, n)| *n == name).map(|(v, _)| v));
-        let common = || notes().find(|(_, v)| !v.contains(" of ")).map(|(_, v)| v.as_str());
+        let own = self
+            .remarks(key)
+            .find_map(|(_, v)| v.split_once(" of ").filter(|(_, n)| *n == name).map(|(v, _)| v));
+        let common = || self.remarks(key).find(|(_, v)| !v.contains(" of ")).map(|(_, v)| v.as_str());
         own.or_else(common).map(|v| v.trim().to_lowercase())
     }
 }

@@ -1,0 +1,93 @@
+//! Records to files that other programs read.
+//!
+//! Values are written in the SI units that the records hold. What a format has no place for is lost or refused: see each
+//! writer. History, notes and doubts are written by none of them.
+//!
+//! ```
+//! use vibroimpact::read::Reader;
+//! use vibroimpact::write::Target;
+//! let recording = Reader::new().from_reader("x.csv", "t [ms],v [mm/s]\n0.0,1\n0.5,2\n".as_bytes())?;
+//! let mut out = Vec::new();
+//! Target::of("x.tsv")?.write(&recording.records, &mut out)?;
+//! assert_eq!(String::from_utf8_lossy(&out), "time [s]\tv [m/s]\n0\t0.001\n0.0005\t0.002\n");
+//! # Ok::<(), vibroimpact::Error>(())
+//! ```
+
+pub mod csv;
+pub mod npy;
+pub mod wav;
+
+use crate::error::{Error, Result};
+use crate::record::Record;
+use std::io::Write;
+use std::path::Path;
+
+/// A format to write.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Target {
+    /// Columns with names and units between commas.
+    Csv,
+    /// Columns with names and units between tabs.
+    Tsv,
+    /// Wave audio of 32-bit floats.
+    Wav,
+    /// numpy's array file.
+    Npy,
+}
+
+impl Target {
+    /// The format that the ending of a file name stands for; upper or lower case does not count.
+    ///
+    /// # Errors
+    /// If no format has this ending.
+    pub fn of(path: impl AsRef<Path>) -> Result<Target> {
+        let path = path.as_ref();
+        let ending = path.extension().map_or_else(String::new, |e| e.to_string_lossy().to_lowercase());
+        Ok(match ending.as_str() {
+            "csv" => Target::Csv,
+            "tsv" => Target::Tsv,
+            "wav" => Target::Wav,
+            "npy" => Target::Npy,
+            _ => {
+                let found = format!("the ending of {}", path.display());
+                return Err(Error::usage(found, ".csv, .tsv, .wav or .npy"));
+            }
+        })
+    }
+
+    /// Writes records in this format.
+    ///
+    /// # Errors
+    /// If the format cannot hold the records together, with the reason, or the output cannot be written.
+    pub fn write(self, records: &[Record], out: &mut impl Write) -> Result<()> {
+        match self {
+            Target::Csv => csv::write(records, ',', out),
+            Target::Tsv => csv::write(records, '\t', out),
+            Target::Wav => wav::write(records, wav::Sample::Float32, out),
+            Target::Npy => npy::write(records, out),
+        }
+    }
+}
+
+/// How a record is called in a complaint.
+fn label(record: &Record) -> String {
+    format!("the {} {:?}", record.kind(), record.meta().name)
+}
+
+fn failed(error: std::io::Error) -> Error {
+    Error::io("write", "the output", error)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ending_chooses() {
+        assert_eq!(Target::of("a/b.CSV").unwrap(), Target::Csv);
+        assert_eq!(Target::of("b.npy").unwrap(), Target::Npy);
+        for path in ["x", "x.xls", ".csv"] {
+            assert!(Target::of(path).unwrap_err().to_string().contains(path), "{path}");
+        }
+    }
+}
