@@ -9,9 +9,12 @@
 //! # Ok::<(), vibroimpact::Error>(())
 //! ```
 
+mod abscissa;
 mod ascii;
+mod csv;
 mod format;
 mod header;
+mod mat;
 mod reader;
 mod source;
 mod sweep;
@@ -19,6 +22,7 @@ mod sweep_list;
 mod text;
 mod uff;
 mod uff58;
+pub(crate) mod wav;
 
 pub mod number;
 
@@ -28,3 +32,4 @@ pub use reader::{Options, Reader, Recording};
 pub use source::Source;
 pub use sweep::SweepReader;
 pub use sweep_list::{SweepList, inside};
+pub use wav::WavStream;

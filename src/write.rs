@@ -1,3 +1,111 @@
-//! Records to files, one file a format.
+//! Records to files that other programs read.
+//!
+//! Values are written in the SI units that the records hold. What a format has no place for is lost or refused: see each
+//! writer. History, notes and doubts are written by none of them.
+//!
+//! ```
+//! use vibroimpact::read::Reader;
+//! use vibroimpact::write::{Storage, Target};
+//! let recording = Reader::new().from_reader("x.csv", "t [ms],v [mm/s]\n0.0,1\n0.5,2\n".as_bytes())?;
+//! let mut out = Vec::new();
+//! Target::of("x.tsv")?.write(&recording.records, Storage::default(), &mut out)?;
+//! assert_eq!(String::from_utf8_lossy(&out), "time [s]\tv [m/s]\n0\t0.001\n0.0005\t0.002\n");
+//! # Ok::<(), vibroimpact::Error>(())
+//! ```
 
+pub mod csv;
+pub mod npy;
 pub mod uff58;
+pub mod wav;
+
+use crate::error::{Error, Result};
+use crate::record::Record;
+use std::io::Write;
+use std::path::Path;
+pub use uff58::{Precision, Storage};
+
+/// A format to write.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Target {
+    /// Universal file, data sets 58 or 58b.
+    Uff,
+    /// Columns with names and units between commas.
+    Csv,
+    /// Columns with names and units between tabs.
+    Tsv,
+    /// Wave audio of 32-bit floats.
+    Wav,
+    /// numpy's array file.
+    Npy,
+}
+
+impl Target {
+    /// The format that the ending of a file name stands for; upper or lower case does not count.
+    ///
+    /// # Errors
+    /// If no format has this ending.
+    pub fn of(path: impl AsRef<Path>) -> Result<Target> {
+        let path = path.as_ref();
+        let ending = path.extension().map_or_else(String::new, |e| e.to_string_lossy().to_lowercase());
+        Ok(match ending.as_str() {
+            "uff" | "unv" | "ufb" | "58" => Target::Uff,
+            "csv" => Target::Csv,
+            "tsv" => Target::Tsv,
+            "wav" => Target::Wav,
+            "npy" => Target::Npy,
+            _ => {
+                let found = format!("the ending of {}", path.display());
+                return Err(Error::usage(found, ".uff, .unv, .csv, .tsv, .wav or .npy"));
+            }
+        })
+    }
+
+    /// Name, as in JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            Target::Uff => "uff",
+            Target::Csv => "csv",
+            Target::Tsv => "tsv",
+            Target::Wav => "wav",
+            Target::Npy => "npy",
+        }
+    }
+
+    /// Writes records in this format; `storage` says how a universal file keeps its numbers, and how exact a wave file is.
+    ///
+    /// # Errors
+    /// If the format cannot hold the records together, with the reason, or the output cannot be written.
+    pub fn write(self, records: &[Record], storage: Storage, out: &mut impl Write) -> Result<()> {
+        match self {
+            Target::Uff => uff58::write_uff58(records, out, storage),
+            Target::Csv => csv::write(records, ',', out),
+            Target::Tsv => csv::write(records, '\t', out),
+            Target::Wav => wav::write(records, wav::Sample::Float32, out),
+            Target::Npy => npy::write(records, out),
+        }
+    }
+}
+
+/// How a record is called in a complaint.
+fn label(record: &Record) -> String {
+    format!("the {} {:?}", record.kind(), record.meta().name)
+}
+
+fn failed(error: std::io::Error) -> Error {
+    Error::io("write", "the output", error)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ending_chooses() {
+        assert_eq!(Target::of("a/b.CSV").unwrap(), Target::Csv);
+        assert_eq!(Target::of("b.unv").unwrap(), Target::Uff);
+        assert_eq!(Target::of("b.npy").unwrap(), Target::Npy);
+        for path in ["x", "x.xls", ".csv"] {
+            assert!(Target::of(path).unwrap_err().to_string().contains(path), "{path}");
+        }
+    }
+}

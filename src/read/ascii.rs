@@ -12,7 +12,7 @@
 mod clean;
 mod layout;
 mod rows;
-mod stated;
+pub(super) mod stated;
 
 use super::format::Format;
 use super::reader::{Options, Recording};
@@ -318,7 +318,7 @@ fn real_record(
     Record::Trace(Trace { meta, axis: axis.clone(), values })
 }
 
-const SCALING_UNSAID: &str =
+pub(super) const SCALING_UNSAID: &str =
     "The file does not say how its spectrum is scaled; where it matters, peak amplitudes are assumed.";
 
 fn complex_record(

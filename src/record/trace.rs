@@ -1,6 +1,8 @@
 //! Samples over time.
 
 use super::{Axis, Meta};
+use crate::error::{Error, Result};
+use crate::units::Unit;
 
 /// Samples over time (or over index, where the file says nothing of its sampling).
 #[derive(Debug, Clone, PartialEq)]
@@ -17,5 +19,80 @@ impl Trace {
     /// Sampling rate in Hz; `None` if the axis is uneven or not time.
     pub fn rate(&self) -> Option<f64> {
         matches!(self.axis.kind, super::AxisKind::Time).then(|| self.axis.step().map(|dt| 1.0 / dt)).flatten()
+    }
+
+    /// The doubt of a trace whose values are fractions of a recorder's full scale.
+    pub const UNCALIBRATED: &str = "No calibration is known: values are fractions of full scale.";
+
+    /// Applies a calibration: a value v becomes `factor`·v in `unit`, stored in SI.
+    ///
+    /// The doubt that no calibration is known goes; all other doubts, notes and steps stay, and a step `calibrate` is
+    /// added. A negative factor turns the sensor around.
+    ///
+    /// ```
+    /// use vibroimpact::record::{Axis, Meta, Trace};
+    /// use vibroimpact::units::Unit;
+    /// let (meta, axis) = (Meta::new("laser", Unit::parse("V").unwrap()), Axis::time(0.0, 1e-3, 2));
+    /// let mut trace = Trace { meta, axis, values: vec![0.0, 2.0] };
+    /// trace.calibrate(125.0, &Unit::parse("mm/s").unwrap())?; // 125 mm/s a volt
+    /// assert_eq!(trace.values[1], 0.25);
+    /// assert_eq!(trace.meta.unit.symbol(), "m/s");
+    /// # Ok::<(), vibroimpact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the factor is 0 or not finite.
+    pub fn calibrate(&mut self, factor: f64, unit: &Unit) -> Result<()> {
+        if factor == 0.0 || !factor.is_finite() {
+            return Err(Error::usage(
+                format!("a calibration factor of {factor} {unit}"),
+                "a number that is not 0",
+            ));
+        }
+        let to_si = factor * unit.factor();
+        for value in &mut self.values {
+            *value *= to_si;
+        }
+        let from = std::mem::replace(&mut self.meta.unit, unit.si());
+        self.meta.quantity = self.meta.unit.quantity();
+        self.meta.doubts.retain(|doubt| doubt != Trace::UNCALIBRATED);
+        self.meta.step("calibrate", &[("factor", &factor), ("unit", unit), ("from", &from)]);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::Quantity;
+
+    fn trace() -> Trace {
+        let mut meta = Meta::new("a", Unit::opaque("FS"));
+        meta.doubt(Trace::UNCALIBRATED);
+        meta.doubt("Something else.");
+        meta.step("read", &[]);
+        Trace { meta, axis: Axis::time(0.0, 0.1, 2), values: vec![0.5, f64::NAN] }
+    }
+
+    #[test]
+    fn a_calibration_leaves_its_step_and_takes_only_its_doubt() {
+        let mut t = trace();
+        t.calibrate(-40.0, &Unit::parse("mm/s").unwrap()).unwrap();
+        // 0.5 · 40 mm/s = 20 mm/s; one product of two roundings.
+        assert!((t.values[0] + 0.02).abs() < 1e-17);
+        assert!(t.values[1].is_nan());
+        assert_eq!((t.meta.quantity, t.meta.unit.symbol()), (Quantity::Velocity, "m/s"));
+        assert_eq!(t.meta.doubts, ["Something else."]);
+        assert_eq!(t.meta.history.len(), 2);
+        assert_eq!(t.meta.history[1].arguments[1], ("unit".to_owned(), "mm/s".to_owned()));
+    }
+
+    #[test]
+    fn a_factor_that_loses_the_signal_is_refused() {
+        for factor in [0.0, f64::NAN, f64::INFINITY] {
+            let mut t = trace();
+            assert!(t.calibrate(factor, &Unit::opaque("FS")).is_err());
+            assert_eq!(t.values[0], 0.5);
+        }
     }
 }

@@ -1,0 +1,243 @@
+use super::*;
+use crate::read::Reader;
+use crate::record::{Axis, AxisKind, FrfKind, Record, Scaling, Values};
+use crate::units::{Quantity, Unit};
+use num_complex::Complex64;
+use proptest::prelude::*;
+
+fn read_with(reader: &Reader, text: impl AsRef<[u8]>) -> Result<Recording> {
+    reader.from_reader("x.csv", text.as_ref())
+}
+
+fn of(text: impl AsRef<[u8]>) -> Recording {
+    let recording = read_with(&Reader::new(), text).unwrap();
+    assert_eq!(recording.format, Format::Csv);
+    recording
+}
+
+fn values(record: &Record) -> &[f64] {
+    match record {
+        Record::Trace(t) => &t.values,
+        Record::Spectrum(s) => match &s.values {
+            Values::Real(v) => v,
+            Values::Complex(v) => panic!("{v:?}"),
+        },
+        Record::Frf(f) => panic!("{f:?}"),
+    }
+}
+
+fn says(doubts: &[String], word: &str) -> bool {
+    doubts.iter().any(|d| d.contains(word))
+}
+
+#[test]
+fn traces_over_a_time_column() {
+    let recording = of("time [ms],velocity [mm/s],Force (N)\n0.0,1.5,-2\n0.5,2.5,3e1\n1.0,0,0\n");
+    assert_eq!(recording.records.len(), 2);
+    assert!(recording.doubts.is_empty());
+    let Record::Trace(velocity) = &recording.records[0] else { panic!() };
+    assert_eq!((velocity.meta.name.as_str(), velocity.meta.quantity), ("velocity", Quantity::Velocity));
+    assert_eq!(velocity.values, [1.5 * 1e-3, 2.5 * 1e-3, 0.0]);
+    assert_eq!(velocity.axis, Axis::time(0.0, 0.5e-3, 3));
+    assert_eq!(values(&recording.records[1]), [-2.0, 30.0, 0.0]);
+    assert!(velocity.meta.doubts.is_empty(), "{:?}", velocity.meta.doubts);
+    let (step, arguments) = (&velocity.meta.history[0].name, &velocity.meta.history[0].arguments);
+    assert_eq!((step.as_str(), arguments[2].1.as_str()), ("read", "2"));
+}
+
+#[test]
+fn a_table_from_a_german_spreadsheet() {
+    let text = "\u{feff}Messung;7\r\nAbtastrate;1000;Hz\r\nZeit [s];Weg [µm]\r\n0,000;1,5\r\n0,001;-2,5\r\n";
+    let utf16: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let latin1: Vec<u8> =
+        text.trim_start_matches('\u{feff}').chars().map(|c| u8::try_from(u32::from(c)).unwrap()).collect();
+    let cr = text.replace("\r\n", "\r");
+    for bytes in [text.as_bytes(), &utf16, &latin1, cr.as_bytes()] {
+        let recording = of(bytes);
+        let Record::Trace(trace) = &recording.records[0] else { panic!() };
+        assert_eq!((trace.meta.name.as_str(), trace.meta.unit.symbol()), ("Weg", "m"));
+        assert_eq!(trace.values, [1.5 * 1e-6, -2.5 * 1e-6]);
+        assert_eq!(trace.axis, Axis::time(0.0, 1e-3, 2));
+        assert_eq!(trace.meta.notes[0], ("Messung".to_owned(), "7".to_owned()));
+    }
+}
+
+#[test]
+fn a_rate_in_the_preamble_or_stated() {
+    let text = "Sampling rate;2;kHz\n# operator: A\na;b\n1;2\n3;4\n";
+    let recording = of(text);
+    assert_eq!(recording.records[1].axis(), &Axis::time(0.0, 1.0 / 2000.0, 2));
+    assert!(says(&recording.records[0].meta().doubts, "no unit"));
+    let stated = read_with(&Reader::new().rate(Some(100.0)).unit(Unit::parse("mm")), text).unwrap();
+    assert_eq!(stated.records[0].axis(), &Axis::time(0.0, 0.01, 2));
+    assert_eq!(values(&stated.records[0]), [1.0 * 1e-3, 3.0 * 1e-3]);
+    let spectrum = read_with(&Reader::new().base_band(Some(100.0)), text).unwrap();
+    assert_eq!(spectrum.records[0].axis(), &Axis::frequency(0.0, 100.0, 2));
+}
+
+#[test]
+fn what_is_stated_wins_over_the_column_with_a_doubt() {
+    let text = "t [s],a [m/s²]\n1.0,1\n1.1,2\n1.2,3\n";
+    let same = read_with(&Reader::new().rate(Some(10.0)), text).unwrap();
+    assert!(same.doubts.is_empty(), "{:?}", same.doubts);
+    assert_eq!(same.records[0].axis(), &Axis::time(1.0, 0.1, 3));
+    let other = read_with(&Reader::new().rate(Some(20.0)).unit(Unit::parse("g")), text).unwrap();
+    assert_eq!(other.records[0].axis(), &Axis::time(1.0, 0.05, 3));
+    assert!(says(&other.doubts, "step of 0.1; a step of 0.05 was stated"), "{:?}", other.doubts);
+    assert!(says(&other.records[0].meta().doubts, "\"m/s²\"; g was stated"));
+    let band = read_with(&Reader::new().base_band(Some(50.0)), text).unwrap();
+    assert_eq!(band.records[0].axis(), &Axis::frequency(0.0, 25.0, 3));
+    assert!(says(&band.doubts, "passed over"));
+    let contradicted = of("fs: 1000\nt [s],a [g]\n0.0,1\n0.1,2\n");
+    assert_eq!(contradicted.records[0].axis().step(), Some(0.1));
+    assert!(says(&contradicted.doubts, "states a step of 0.001"), "{:?}", contradicted.doubts);
+}
+
+#[test]
+fn times_with_too_few_digits() {
+    let dt = 1.0 / 1024.0;
+    let rows: Vec<String> = (0..3000).map(|i| format!("{:.3},{i}", f64::from(i) * dt)).collect();
+    let recording = of(format!("t [s],a [g]\n{}\n", rows.join("\n")));
+    let axis = recording.records[0].axis();
+    // Both ends are rounded by half a millisecond at most, spread over 2999 steps.
+    assert!((axis.step().unwrap() - dt).abs() <= 1e-3 / 2999.0);
+    assert!(says(&recording.doubts, "too few digits"), "{:?}", recording.doubts);
+}
+
+#[test]
+fn uneven_times_are_kept_and_said() {
+    let recording = of("t [s],a [g]\n0.00,1\n0.10,2\n0.20,3\n0.50,4\n");
+    let axis = recording.records[0].axis();
+    assert_eq!((axis.step(), axis.at(3)), (None, 0.5));
+    assert!(says(&recording.doubts, "uneven: steps from 0.1 to 0.3 s"), "{:?}", recording.doubts);
+}
+
+#[test]
+fn a_column_of_intervals_is_no_abscissa() {
+    let recording = of("flight [ms],height [mm]\n30,2\n20,1\n25,1\n");
+    assert_eq!(recording.records.len(), 2);
+    assert_eq!(recording.records[0].meta().quantity, Quantity::Time);
+    assert_eq!(recording.records[0].axis().kind, AxisKind::Index);
+    assert!(says(&recording.doubts, "says nothing of its abscissa"));
+}
+
+#[test]
+fn a_column_that_only_counts_is_left_out() {
+    let recording = of("Sample,a [g]\n1,5\n2,6\n3,7\n");
+    assert_eq!(recording.records.len(), 1);
+    assert_eq!(recording.records[0].axis().values(), [1.0, 2.0, 3.0]);
+    let with_time = of(",t [s],a [g]\n0,0.0,5\n1,0.1,6\n");
+    assert_eq!(with_time.records.len(), 1);
+    assert_eq!(with_time.records[0].axis(), &Axis::time(0.0, 0.1, 2));
+    // Not counting: a record.
+    assert_eq!(of("n,a [g]\n1,5\n3,6\n").records.len(), 2);
+    assert_eq!(of("index\n0\n1\n").records.len(), 1);
+}
+
+#[test]
+fn spectra_and_frequency_responses() {
+    let recording = of("f [Hz],v rms [mm/s],PSD [g²/Hz],H_re [(m/s²)/N],H_im [(m/s²)/N],X_re,X_im\n\
+                        0,1,2,3,4,5,6\n0.5,1,2,3,-4,5,6\n");
+    let kinds: Vec<&str> = recording.records.iter().map(Record::kind).collect();
+    assert_eq!(kinds, ["spectrum", "spectrum", "frf", "spectrum"]);
+    let Record::Spectrum(plain) = &recording.records[0] else { panic!() };
+    assert_eq!((plain.scaling, plain.axis.clone()), (Scaling::Unknown, Axis::frequency(0.0, 0.5, 2)));
+    assert!(says(&plain.meta.doubts, "scaled"));
+    let Record::Spectrum(density) = &recording.records[1] else { panic!() };
+    assert_eq!(density.scaling, Scaling::Psd);
+    let Record::Frf(frf) = &recording.records[2] else { panic!() };
+    assert_eq!((frf.meta.name.as_str(), frf.kind), ("H", FrfKind::Accelerance));
+    assert_eq!(frf.values, [Complex64::new(3.0, 4.0), Complex64::new(3.0, -4.0)]);
+    let Record::Spectrum(complex) = &recording.records[3] else { panic!() };
+    assert_eq!(complex.values, Values::Complex(vec![Complex64::new(5.0, 6.0); 2]));
+}
+
+#[test]
+fn remarks_about_scaling_hold_for_one_column_or_for_all() {
+    let text = "# scaling: peak\n# scaling: rms of b\n# window: hann of b\n# enbw: 1.5 of b\nf [Hz],a [V],b [V]\n0,1,2\n";
+    let recording = of(text);
+    let [Record::Spectrum(a), Record::Spectrum(b)] = recording.records.as_slice() else { panic!() };
+    assert_eq!((a.scaling, b.scaling), (Scaling::Peak, Scaling::Rms));
+    assert_eq!((b.window.map(crate::record::Window::name), b.enbw), (Some("hann"), Some(1.5)));
+    assert!(b.meta.doubts.is_empty(), "{:?}", b.meta.doubts);
+}
+
+#[test]
+fn parts_must_agree_and_are_apart_over_time() {
+    let error = read_with(&Reader::new(), "f [Hz],H_re [m/N],H_im [mm/N]\n0,1,2\n").unwrap_err();
+    assert!(error.to_string().contains("\"H_re\" and \"H_im\" have different units"), "{error}");
+    assert_eq!(of("t [s],x_re [m],x_im [m]\n0.0,1,2\n0.1,1,2\n").records.len(), 2);
+    let stated = read_with(&Reader::new().complex(true), "f [Hz],a,b\n0,1,2\n1,1,2\n").unwrap();
+    assert!(stated.records.len() == 1 && stated.records[0].is_complex());
+}
+
+#[test]
+fn what_is_assumed_is_said() {
+    let recording = of("time,a [EU]\n0.0,1\n0.1,2\n");
+    assert!(says(&recording.doubts, "\"time\" has no unit: seconds are assumed"), "{:?}", recording.doubts);
+    assert!(says(&recording.records[0].meta().doubts, "\"EU\" is not understood"));
+    let lone = read_with(&Reader::new(), "velocity [mm/s]\n1,5\n2,5\n").unwrap();
+    assert_eq!(values(&lone.records[0]), [1.5 * 1e-3, 2.5 * 1e-3]);
+    assert!(says(&lone.doubts, "decimal mark"));
+    let error = read_with(&Reader::new(), "time [h],a\n0,1\n1,2\n").unwrap_err().to_string();
+    assert!(error.contains("the unit \"h\" of the abscissa"), "{error}");
+    let error = read_with(&Reader::new(), "time [s]\n0\n1\n").unwrap_err().to_string();
+    assert!(error.contains("only an abscissa"), "{error}");
+}
+
+#[test]
+fn missing_values_kept_are_counted() {
+    let text = "t [s],a [g]\n0.0,1\n0.1,\n0.2,3\n";
+    assert!(read_with(&Reader::new(), text).unwrap_err().to_string().contains("line 3"));
+    let kept = read_with(&Reader::new().allow_missing(true), text).unwrap();
+    assert!(values(&kept.records[0])[1].is_nan());
+    assert!(says(&kept.doubts, "1 value(s) are missing"));
+}
+
+/// Which texts are taken for CSV when nobody says so, under a name without an ending.
+#[test]
+fn plain_columns_are_left_to_the_reader_of_plain_columns() {
+    let sniffed = |name: &str, text: &[u8]| {
+        sniff(&text[..text.len().min(1 << 16)], &Source::memory(name, text).unwrap())
+    };
+    assert!(sniffed("x", b"t,a\n0,1\n"));
+    assert!(sniffed("x.csv", b"a\n1\n"));
+    for text in ["a\n1\n", "0,1\n1,2\n", "header\n0,1\n", "t a\n0 1\n", "t,a\n"] {
+        assert!(!sniffed("x", text.as_bytes()), "{text:?}");
+    }
+    assert!(!sniffed("x.csv", b"t,a\n0,\x001\n"));
+    // A head that ends within a row.
+    let long = format!("t,a\n{}", "0.125,1\n".repeat(10_000));
+    assert!(sniffed("x", long.as_bytes()));
+}
+
+#[test]
+fn a_survey_says_what_reading_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.csv");
+    std::fs::write(&path, "t [s],a [g],b [mm/s]\n0.0,1,-9\n0.1,2,3\n").unwrap();
+    let (format, headers, _) = Reader::new().survey(&path).unwrap();
+    assert_eq!((format, headers.len()), (Format::Csv, 2));
+    assert_eq!((headers[1].max_abs, headers[1].max_at, headers[1].n), (Some(9.0 * 1e-3), Some(0.0), 2));
+}
+
+proptest! {
+    #[test]
+    fn never_panics_on_random_tables(text in "[tf \\[\\]Hzms,;\t\"#%:=\r\n0-9.eE+µ-]{0,120}") {
+        for head in ["", "t,a\n0,1\n", "f [Hz];H_re;H_im\n0,5;1;2\n"] {
+            let bytes = format!("{head}{text}").into_bytes();
+            if !bytes.is_empty() {
+                let source = Source::memory("x.csv", bytes).unwrap();
+                let _ = sniff(&source.head().unwrap(), &source);
+                let _ = read(&source, &Options::default());
+            }
+        }
+    }
+
+    #[test]
+    fn never_panics_on_random_bytes(bytes in prop::collection::vec(any::<u8>(), 1..200)) {
+        let source = Source::memory("x.csv", bytes).unwrap();
+        let _ = sniff(&source.head().unwrap(), &source);
+        let _ = read(&source, &Options { allow_missing: true, ..Options::default() });
+    }
+}
