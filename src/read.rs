@@ -20,6 +20,8 @@ mod source;
 mod sweep;
 mod sweep_list;
 mod text;
+mod uff;
+mod uff58;
 pub(crate) mod wav;
 
 pub mod number;

@@ -10,13 +10,15 @@ mod meta;
 mod spectrum;
 mod sweep;
 mod trace;
+mod window;
 
 pub use axis::{Axis, AxisKind, Grid};
 pub use frf::{Frf, FrfKind};
 pub use meta::{Meta, Step};
-pub use spectrum::{Scaling, Spectrum, Values, Window};
+pub use spectrum::{Scaling, Spectrum, Values};
 pub use sweep::{Direction, Sweep, SweepPoint};
 pub use trace::Trace;
+pub use window::Window;
 
 /// Anything a file can hold.
 #[derive(Debug, Clone, PartialEq)]

@@ -15,6 +15,7 @@
 
 pub mod csv;
 pub mod npy;
+pub mod uff58;
 pub mod wav;
 
 use crate::error::{Error, Result};
@@ -25,6 +26,10 @@ use std::path::Path;
 /// A format to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Target {
+    /// Universal file, data set 58: text in double precision.
+    Uff,
+    /// Universal file, data set 58b: the same in binary.
+    UffBinary,
     /// Columns with names and units between commas.
     Csv,
     /// Columns with names and units between tabs.
@@ -44,13 +49,18 @@ impl Target {
         let path = path.as_ref();
         let ending = path.extension().map_or_else(String::new, |e| e.to_string_lossy().to_lowercase());
         Ok(match ending.as_str() {
+            "uff" | "unv" => Target::Uff,
+            "ufb" => Target::UffBinary,
             "csv" => Target::Csv,
             "tsv" => Target::Tsv,
             "wav" => Target::Wav,
             "npy" => Target::Npy,
             _ => {
                 let found = format!("the ending of {}", path.display());
-                return Err(Error::usage(found, ".csv, .tsv, .wav or .npy"));
+                return Err(Error::usage(
+                    found,
+                    ".uff, .unv (text), .ufb (binary), .csv, .tsv, .wav or .npy",
+                ));
             }
         })
     }
@@ -60,7 +70,10 @@ impl Target {
     /// # Errors
     /// If the format cannot hold the records together, with the reason, or the output cannot be written.
     pub fn write(self, records: &[Record], out: &mut impl Write) -> Result<()> {
+        let uff = |binary| uff58::Storage { binary, ..uff58::Storage::default() };
         match self {
+            Target::Uff => uff58::write_uff58(records, out, uff(false)),
+            Target::UffBinary => uff58::write_uff58(records, out, uff(true)),
             Target::Csv => csv::write(records, ',', out),
             Target::Tsv => csv::write(records, '\t', out),
             Target::Wav => wav::write(records, wav::Sample::Float32, out),
@@ -81,13 +94,41 @@ fn failed(error: std::io::Error) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::read::{Format, Reader};
 
     #[test]
     fn the_ending_chooses() {
         assert_eq!(Target::of("a/b.CSV").unwrap(), Target::Csv);
+        assert_eq!(Target::of("b.unv").unwrap(), Target::Uff);
         assert_eq!(Target::of("b.npy").unwrap(), Target::Npy);
         for path in ["x", "x.xls", ".csv"] {
             assert!(Target::of(path).unwrap_err().to_string().contains(path), "{path}");
+        }
+    }
+
+    /// What every target writes, the reader knows again by itself; numpy's arrays it does not read.
+    #[test]
+    fn what_is_written_is_recognised() {
+        let records =
+            Reader::new().from_reader("x.csv", "t [s],v [m/s]\n0,1\n0.5,2\n".as_bytes()).unwrap().records;
+        for (name, format) in [
+            ("x.uff", Format::Uff),
+            ("x.ufb", Format::Uff),
+            ("x.csv", Format::Csv),
+            ("x.tsv", Format::Csv),
+            ("x.wav", Format::Wav),
+        ] {
+            let mut out = Vec::new();
+            Target::of(name).unwrap().write(&records, &mut out).unwrap();
+            let back = Reader::new().from_reader("unnamed", out.as_slice()).unwrap();
+            assert_eq!(back.format, format, "{name}");
+            let [Record::Trace(trace)] = back.records.as_slice() else { panic!("{name}") };
+            assert_eq!(
+                (trace.values.as_slice(), trace.meta.unit.symbol()),
+                ([1.0, 2.0].as_slice(), "m/s"),
+                "{name}"
+            );
+            assert_eq!(trace.rate(), Some(2.0), "{name}");
         }
     }
 }

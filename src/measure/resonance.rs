@@ -52,6 +52,9 @@ pub fn resonances(frequency: &[f64], amplitude: &[f64], std: &[f64], jumps: &[Ju
     let mut found: Vec<Resonance> = Vec::new();
     for (values, kind) in [(amplitude, "resonance"), (inverse.as_slice(), "antiresonance")] {
         for i in local_maxima(values, PROMINENCE) {
+            if !significant(amplitude, std, i, kind == "resonance") {
+                continue;
+            }
             let f = [frequency[i - 1], frequency[i], frequency[i + 1]];
             let beside = |j: &Jump| {
                 let (low, high) = (j.from.min(j.to), j.from.max(j.to));
@@ -94,14 +97,30 @@ pub fn resonances(frequency: &[f64], amplitude: &[f64], std: &[f64], jumps: &[Ju
     found
 }
 
+/// Differences below this many standard deviations are noise.
+const SIGMA: f64 = 4.0;
+
+/// Whether the maximum (or minimum) at `i` differs from the extreme on either side by more than noise. Unknown
+/// uncertainties count as none.
+fn significant(amplitude: &[f64], std: &[f64], i: usize, maximum: bool) -> bool {
+    let sign = if maximum { 1.0 } else { -1.0 };
+    let clear = |k: usize| {
+        let noise = [std[i], std[k]].map(|s| if s.is_finite() { s } else { 0.0 });
+        sign * (amplitude[i] - amplitude[k]) > SIGMA * noise[0].hypot(noise[1])
+    };
+    (0..i).any(clear) && (i + 1..amplitude.len()).any(clear)
+}
+
 /// Jumps between neighbouring steps, in the order in which the sweep was run.
-pub fn jumps(frequency: &[f64], amplitude: &[f64], direction: Direction) -> Vec<Jump> {
+pub fn jumps(frequency: &[f64], amplitude: &[f64], std: &[f64], direction: Direction) -> Vec<Jump> {
     let steps: Vec<f64> = amplitude.windows(2).map(|w| (w[1] / w[0]).ln()).collect();
     (0..steps.len())
         .filter(|&i| {
             let beside = [i.checked_sub(1).and_then(|j| steps.get(j)), steps.get(i + 1)];
             let usual = beside.into_iter().flatten().fold(0.0f64, |m, s| m.max(s.abs()));
-            steps[i].is_finite() && steps[i].abs() > JUMP.ln().max(JUMP_AGAINST_NEIGHBOURS * usual)
+            let noise = [std[i], std[i + 1]].map(|s| if s.is_finite() { s } else { 0.0 });
+            let clear = (amplitude[i + 1] - amplitude[i]).abs() > SIGMA * noise[0].hypot(noise[1]);
+            clear && steps[i].is_finite() && steps[i].abs() > JUMP.ln().max(JUMP_AGAINST_NEIGHBOURS * usual)
         })
         .map(|i| Jump {
             from: frequency[i],
@@ -114,15 +133,135 @@ pub fn jumps(frequency: &[f64], amplitude: &[f64], direction: Direction) -> Vec<
         .collect()
 }
 
+/// A response curve whose resonances are to be named: excited (1) or passive (2) mass.
+#[derive(Debug)]
+pub struct NamedCurve<'a> {
+    /// 1 excited, 2 passive.
+    pub mass: u8,
+    /// Direction of the sweep.
+    pub direction: Direction,
+    /// Excitation frequency in Hz and amplitude, rising in frequency.
+    pub curve: Vec<(f64, f64)>,
+    /// Its resonances.
+    pub resonances: &'a mut Vec<Resonance>,
+}
+
+/// The other mass must move at least this fraction of the one that resonates, or they do not resonate together.
+const TOGETHER: f64 = 0.1;
+
+/// Names the resonances in which both masses move: the largest maximum below the antiresonance of mass 1 is the grazing
+/// resonance (in phase), the largest above it the clapping one (out of phase).
+///
+/// A maximum at which the other mass of the same sweep rests keeps its kind, as do all where the other mass was not
+/// measured. A sweep without an antiresonance of mass 1 uses that of the other direction.
+pub fn name_modes(curves: &mut [NamedCurve<'_>]) {
+    let up = antiresonance(curves, Direction::Up);
+    let down = antiresonance(curves, Direction::Down);
+    for i in 0..curves.len() {
+        let (mass, direction) = (curves[i].mass, curves[i].direction);
+        let between = if direction == Direction::Up { up.or(down) } else { down.or(up) };
+        let partner = curves.iter().find(|c| c.mass != mass && c.direction == direction);
+        let (Some(between), Some(partner)) = (between, partner.map(|p| p.curve.clone())) else { continue };
+        for (name, below) in [("grazing", true), ("clapping", false)] {
+            let largest = curves[i]
+                .resonances
+                .iter_mut()
+                .filter(|r| r.kind == "resonance" && (r.frequency < between) == below)
+                .filter(|r| at(&partner, r.frequency).is_some_and(|other| other >= TOGETHER * r.amplitude))
+                .max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
+            if let Some(largest) = largest {
+                name.clone_into(&mut largest.kind);
+            }
+        }
+    }
+}
+
+/// Frequency of the deepest minimum of mass 1.
+fn antiresonance(curves: &[NamedCurve<'_>], direction: Direction) -> Option<f64> {
+    let first = curves.iter().find(|c| c.mass == 1 && c.direction == direction)?;
+    let minima = first.resonances.iter().filter(|r| r.kind == "antiresonance");
+    minima.min_by(|a, b| a.amplitude.total_cmp(&b.amplitude)).map(|r| r.frequency)
+}
+
+/// A curve between its points, linear in the logarithm; `None` outside.
+fn at(curve: &[(f64, f64)], f: f64) -> Option<f64> {
+    let i = curve.partition_point(|p| p.0 < f);
+    let b = curve.get(i)?;
+    if b.0 == f {
+        return Some(b.1);
+    }
+    let a = curve.get(i.checked_sub(1)?)?;
+    let t = (f - a.0) / (b.0 - a.0);
+    Some((a.1.ln() * (1.0 - t) + b.1.ln() * t).exp())
+}
+
+/// Frequencies where two curves over frequency cross, and whether the second is the larger one above. Each curve may be
+/// in any order; the second is interpolated at the frequencies of the first (linear in the logarithm).
+pub fn crossings(mut first: Vec<(f64, f64)>, mut second: Vec<(f64, f64)>) -> Vec<(f64, bool)> {
+    first.sort_by(|a, b| a.0.total_cmp(&b.0));
+    second.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let difference: Vec<(f64, f64)> = first
+        .iter()
+        .filter_map(|(f, a)| at(&second, *f).map(|b| (*f, (b / a).ln())))
+        .filter(|(_, d)| d.is_finite())
+        .collect();
+    difference
+        .windows(2)
+        .filter(|w| (w[0].1 > 0.0) != (w[1].1 > 0.0))
+        .map(|w| (w[0].0 + (w[1].0 - w[0].0) * w[0].1 / (w[0].1 - w[1].1), w[1].1 > 0.0))
+        .collect()
+}
+
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn a_mass_that_moves_alone_does_not_clap() {
+        let resonance = |f, a, kind: &str| Resonance {
+            frequency: f,
+            frequency_std: None,
+            amplitude: a,
+            amplitude_std: None,
+            kind: kind.into(),
+            at_jump: false,
+        };
+        let mut first = vec![
+            resonance(5.5, 10.0, "resonance"),
+            resonance(7.5, 0.1, "antiresonance"),
+            resonance(10.6, 2.0, "resonance"),
+        ];
+        let mut second = vec![resonance(5.5, 9.0, "resonance")];
+        let curve = |above| vec![(4.0, 1.0), (5.5, 9.0), (9.0, above), (13.0, above)];
+        for (above, expected) in [(1e-6, "resonance"), (1.0, "clapping")] {
+            first[2].kind = "resonance".into();
+            first[0].kind = "resonance".into();
+            let direction = Direction::Up;
+            name_modes(&mut [
+                NamedCurve { mass: 1, direction, curve: curve(1.0), resonances: &mut first },
+                NamedCurve { mass: 2, direction, curve: curve(above), resonances: &mut second },
+            ]);
+            assert_eq!((first[0].kind.as_str(), first[2].kind.as_str()), ("grazing", expected));
+            assert_eq!(second[0].kind, "grazing");
+        }
+    }
+
+    #[test]
+    fn curves_cross_where_their_logarithms_do() {
+        // e^f against e^(10−f): they cross at 5.
+        let up: Vec<(f64, f64)> = (0..11).map(|i| (f64::from(i), f64::from(i).exp())).collect();
+        let down: Vec<(f64, f64)> =
+            (0..11).map(|i| (f64::from(i) + 0.3, (9.7 - f64::from(i)).exp())).collect();
+        let found = crossings(up, down);
+        assert_eq!(found.len(), 1);
+        assert!((found[0].0 - 5.0).abs() < 1e-12 && !found[0].1, "{found:?}");
+    }
+
     use super::*;
 
     #[test]
     fn a_hardening_peak_ends_in_a_drop() {
         let f: Vec<f64> = (0..12).map(|i| 8.0 + 0.3 * f64::from(i)).collect();
         let a: Vec<f64> = f.iter().map(|f| if *f < 10.6 { 1.0 + (f - 8.0) } else { 0.8 }).collect();
-        let jumps = jumps(&f, &a, Direction::Up);
+        let jumps = jumps(&f, &a, &[0.01; 12], Direction::Up);
         assert_eq!(jumps.len(), 1);
         assert_eq!((jumps[0].change, jumps[0].from), ("drop", f[8]));
         let peaks = resonances(&f, &a, &[0.01; 12], &jumps);
@@ -135,15 +274,25 @@ mod tests {
         let f: Vec<f64> = (0..40).map(|i| 4.0 + 0.1 * f64::from(i)).collect();
         let a: Vec<f64> =
             f.iter().map(|f| 1.0 / (1.0 - (f / 5.6f64).powi(2)).hypot(0.04 * f / 5.6)).collect();
-        assert!(jumps(&f, &a, Direction::Up).is_empty());
+        assert!(jumps(&f, &a, &[1e-3; 40], Direction::Up).is_empty());
         let peaks = resonances(&f, &a, &[1e-3; 40], &[]);
         assert_eq!(peaks.len(), 1);
         assert!((peaks[0].frequency - 5.6).abs() < 0.02, "{peaks:?}");
     }
 
     #[test]
+    fn noise_has_no_resonances_and_no_jumps() {
+        // Alternating values whose differences are three standard deviations.
+        let f: Vec<f64> = (0..20).map(f64::from).collect();
+        let a: Vec<f64> = (0..20).map(|i| if i % 2 == 0 { 4.0 } else { 1.0 }).collect();
+        assert!(resonances(&f, &a, &[1.0; 20], &[]).is_empty());
+        assert!(jumps(&f, &a, &[1.0; 20], Direction::Up).is_empty());
+        assert!(!resonances(&f, &a, &[0.1; 20], &[]).is_empty());
+    }
+
+    #[test]
     fn nothing_in_short_curves() {
         assert!(resonances(&[1.0], &[1.0], &[0.0], &[]).is_empty());
-        assert!(jumps(&[1.0], &[1.0], Direction::Up).is_empty());
+        assert!(jumps(&[1.0], &[1.0], &[0.0], Direction::Up).is_empty());
     }
 }

@@ -5,7 +5,7 @@ use super::line::{amplitude_at, interpolate};
 use super::resonance::{Jump, Resonance, jumps, resonances};
 use super::{Estimate, noise};
 use crate::error::{Error, Result};
-use crate::record::{Direction, Sweep, SweepPoint};
+use crate::record::{Direction, Step, Sweep, SweepPoint};
 use crate::units::Quantity;
 use serde::Serialize;
 use std::f64::consts::PI;
@@ -87,6 +87,8 @@ pub struct Response {
     pub jumps: Vec<Jump>,
     /// What a person must know.
     pub warnings: Vec<String>,
+    /// Every step from file to curve.
+    pub history: Vec<Step>,
 }
 
 /// The cut-off below which a spectrum that was divided by frequency is noise: the larger of two lines and a quarter of
@@ -134,7 +136,7 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
     }
     let (jumps, resonances) = match direction {
         Some(direction) if points.len() >= 3 => {
-            let jumps = jumps(&frequency, &amplitude, direction);
+            let jumps = jumps(&frequency, &amplitude, &std, direction);
             let mut order: Vec<usize> = (0..points.len()).collect();
             order.sort_by(|a, b| frequency[*a].total_cmp(&frequency[*b]));
             let sorted = |v: &[f64]| -> Vec<f64> { order.iter().map(|i| v[*i]).collect() };
@@ -146,6 +148,16 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
             (Vec::new(), Vec::new())
         }
     };
+    let mut history = sweep.history().to_vec();
+    history.push(Step::new(
+        "response",
+        &[
+            ("band", &options.band),
+            ("integrate", &options.integrate),
+            ("analyser_integrated", &sweep.analyser_integrated),
+            ("fmin", &fmin),
+        ],
+    ));
     Ok(Response {
         name: sweep.name.clone(),
         direction,
@@ -157,6 +169,7 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
         resonances,
         jumps,
         warnings,
+        history,
     })
 }
 

@@ -1,7 +1,7 @@
 //! The ordered table of formats.
 
 use super::reader::{Options, Recording};
-use super::{Header, Source, ascii, csv, mat, wav};
+use super::{Header, Source, ascii, csv, mat, uff, wav};
 use crate::error::Result;
 
 /// A readable format.
@@ -39,6 +39,7 @@ pub(super) struct Entry {
 pub(super) const TABLE: &[Entry] = &[
     Entry { format: Format::Wav, name: "wav", sniff: wav::sniff, read: wav::read, survey: wav::survey },
     Entry { format: Format::Mat, name: "mat", sniff: mat::sniff, read: mat::read, survey: mat::survey },
+    Entry { format: Format::Uff, name: "uff", sniff: uff::sniff, read: uff::read, survey: uff::survey },
     Entry { format: Format::Csv, name: "csv", sniff: csv::sniff, read: csv::read, survey: csv::survey },
     Entry {
         format: Format::Ascii,

@@ -3,7 +3,7 @@
 use crate::record::{Axis, Record};
 
 /// One record of a file, without its values.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Header {
     /// Channel or record name.
     pub name: String,
@@ -28,6 +28,7 @@ pub struct Header {
     /// Abscissa of the largest magnitude.
     pub max_at: Option<f64>,
     /// Sentences of doubt.
+    #[serde(rename = "warnings")]
     pub doubts: Vec<String>,
 }
 

@@ -92,6 +92,39 @@ pub fn prefix(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
     Some((if negative { -magnitude } else { magnitude }, at))
 }
 
+/// Parses a field of `W` characters as Fortran's `1PEw.d` and C's `%w.de` print it: a blank, a sign or blank, a digit, the
+/// point, `W` − 8 digits, `E`, a sign, two digits. `None` for every other field, which [`prefix`] may still read.
+///
+/// ```
+/// use vibroimpact::read::number::scientific;
+/// assert_eq!(scientific(b" -1.47553E-02"), Some(-1.47553e-2));
+/// assert_eq!(scientific(b"-1.47553E-002"), None);
+/// ```
+#[inline]
+pub fn scientific<const W: usize>(field: &[u8; W]) -> Option<f64> {
+    const { assert!(W > 8 && W <= 22, "the digits must fit into an exact integer") };
+    let digit = |at: usize| field[at].wrapping_sub(b'0');
+    let mut mantissa = u64::from(digit(2));
+    let mut worst = digit(2);
+    for at in 4..W - 4 {
+        mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit(at)));
+        worst = worst.max(digit(at));
+    }
+    let (tens, ones) = (digit(W - 2), digit(W - 1));
+    worst = worst.max(tens).max(ones);
+    let marks = field[0] == b' ' && field[3] == b'.' && matches!(field[W - 4], b'E' | b'e');
+    let signs = matches!(field[1], b' ' | b'-') && matches!(field[W - 3], b'-' | b'+');
+    if worst > 9 || !marks || !signs {
+        return None;
+    }
+    let printed = i32::from(tens) * 10 + i32::from(ones);
+    let printed = if field[W - 3] == b'-' { -printed } else { printed };
+    let exponent = printed - (W as i32 - 8);
+    let power = *POWERS.get(exponent.unsigned_abs() as usize)?;
+    let magnitude = if exponent < 0 { mantissa as f64 / power } else { mantissa as f64 * power };
+    Some(if field[1] == b'-' { -magnitude } else { magnitude })
+}
+
 /// `E+03`, `D-3`, `e5`, or a bare sign followed by digits; `None` where no exponent stands.
 #[inline]
 fn exponent_part(text: &[u8]) -> Option<(i32, usize)> {
@@ -181,6 +214,44 @@ mod tests {
             for text in [format!("{value:e}"), format!("{value:.digits$e}"), format!("{}", value as f32)] {
                 let expected = text.parse::<f64>().ok().filter(|v| v.is_finite());
                 prop_assert_eq!(parse(text.as_bytes()).map(f64::to_bits), expected.map(f64::to_bits), "{}", text);
+            }
+        }
+
+        /// The general parser is the oracle.
+        #[test]
+        fn scientific_fields_agree_with_the_general_parser(value in -1e20f64..1e20, power in -40i32..20) {
+            fn check<const W: usize>(text: &str) -> Result<(), TestCaseError> {
+                let field: &[u8; W] = text.as_bytes().try_into().expect("the field is as wide as asked");
+                let general = parse(field).expect("a printed number");
+                match scientific(field) {
+                    Some(value) => prop_assert_eq!(value.to_bits(), general.to_bits(), "{}", text),
+                    // Beyond 10^22 the power of ten is not exact.
+                    None => prop_assert!(general == 0.0 || !(1e-10..1e20).contains(&general.abs()), "{}", text),
+                }
+                Ok(())
+            }
+            let value = value / 1e20 * 10f64.powi(power);
+            let printed = |digits: usize| {
+                let text = format!("{value:.digits$e}");
+                let (mantissa, exponent) = text.split_once('e').expect("an exponent");
+                let exponent: i32 = exponent.parse().expect("a whole exponent");
+                format!("{mantissa:>width$}E{}{:02}", if exponent < 0 { '-' } else { '+' }, exponent.abs(), width = digits + 4)
+            };
+            check::<13>(&printed(5))?;
+            check::<20>(&printed(12))?;
+        }
+
+        #[test]
+        fn scientific_takes_nothing_that_the_general_parser_refuses(
+            at in 0usize..13,
+            with in proptest::sample::select(b" -+.0123456789eED/:\0".to_vec()),
+            then in 0usize..13,
+        ) {
+            let mut field = *b" -1.47553E-02";
+            field[at] = with;
+            field[then] = b' ';
+            if let Some(value) = scientific(&field) {
+                prop_assert_eq!(parse(&field).map(f64::to_bits), Some(value.to_bits()));
             }
         }
 

@@ -2,7 +2,7 @@
 
 use super::{Format, Reader, Recording, SweepList};
 use crate::error::{Error, Place, Result};
-use crate::record::{Axis, Direction, Record, Scaling, Spectrum, Step, Sweep, SweepPoint, Values, Window};
+use crate::record::{Axis, Direction, Record, Scaling, Spectrum, Sweep, SweepPoint, Values, Window};
 use crate::units::{Quantity, Unit};
 
 /// What the analyser stored, as far as its files do not say.
@@ -110,7 +110,7 @@ impl SweepReader {
                     values: Values::Real(values),
                     scaling: Scaling::Peak,
                     window: self.window,
-                    enbw: self.window.map(crate::signal::window::enbw),
+                    enbw: self.window.map(Window::enbw),
                 },
             });
         }
@@ -190,13 +190,5 @@ impl SweepReader {
             }
         }
         Ok(magnitudes)
-    }
-}
-
-/// History of a sweep's response, for provenance: that of its first point.
-impl Sweep {
-    /// Steps that made the responses.
-    pub fn history(&self) -> &[Step] {
-        self.points.first().map_or(&[], |p| &p.response.meta.history)
     }
 }

@@ -13,6 +13,17 @@ pub struct Step {
     pub version: String,
 }
 
+impl Step {
+    /// A step of this version of the crate.
+    pub fn new(name: &str, arguments: &[(&str, &dyn std::fmt::Display)]) -> Step {
+        Step {
+            name: name.to_owned(),
+            arguments: arguments.iter().map(|(k, v)| ((*k).to_owned(), v.to_string())).collect(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+        }
+    }
+}
+
 /// Channel, quantity, unit, history and doubts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Meta {
@@ -56,11 +67,7 @@ impl Meta {
 
     /// Adds a step to the history.
     pub fn step(&mut self, name: &str, arguments: &[(&str, &dyn std::fmt::Display)]) {
-        self.history.push(Step {
-            name: name.to_owned(),
-            arguments: arguments.iter().map(|(k, v)| ((*k).to_owned(), v.to_string())).collect(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-        });
+        self.history.push(Step::new(name, arguments));
     }
 
     /// Takes the unit an instrument wrote: stores its SI unit and quantity, notes the conversion, and returns the factor

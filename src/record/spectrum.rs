@@ -1,6 +1,6 @@
 //! Lines over frequency.
 
-use super::{Axis, Meta};
+use super::{Axis, Meta, Window};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
@@ -76,65 +76,6 @@ impl Scaling {
             Scaling::Coherence => "coherence",
             Scaling::Unknown => "unknown",
         }
-    }
-}
-
-/// Windows by name; their samples and sums are in [`crate::signal::window`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Window {
-    /// No window.
-    #[serde(alias = "none", alias = "boxcar", alias = "uniform")]
-    Rectangular,
-    /// Raised cosine.
-    #[serde(alias = "hanning")]
-    Hann,
-    /// 0.54 − 0.46 cos.
-    Hamming,
-    /// Three-term Blackman (exact coefficients 0.42, 0.5, 0.08).
-    Blackman,
-    /// Four-term Blackman–Harris, −92 dB.
-    BlackmanHarris,
-    /// Five-term flat top (ISO 18431-2, as in scipy's `flattop`).
-    #[serde(alias = "flattop")]
-    FlatTop,
-}
-
-impl Window {
-    /// Name, as in JSON and in `campaign.toml`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Window::Rectangular => "rectangular",
-            Window::Hann => "hann",
-            Window::Hamming => "hamming",
-            Window::Blackman => "blackman",
-            Window::BlackmanHarris => "blackman-harris",
-            Window::FlatTop => "flat-top",
-        }
-    }
-
-    /// Every window.
-    pub const ALL: [Window; 6] = [
-        Window::Rectangular,
-        Window::Hann,
-        Window::Hamming,
-        Window::Blackman,
-        Window::BlackmanHarris,
-        Window::FlatTop,
-    ];
-
-    /// The window with this name, in the spellings analysers use; case, blanks, `-` and `_` do not count.
-    pub fn from_name(name: &str) -> Option<Window> {
-        let key: String = name.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect();
-        Some(match key.as_str() {
-            "none" | "rectangular" | "rect" | "boxcar" | "uniform" => Window::Rectangular,
-            "hann" | "hanning" => Window::Hann,
-            "hamming" => Window::Hamming,
-            "blackman" => Window::Blackman,
-            "blackmanharris" => Window::BlackmanHarris,
-            "flattop" => Window::FlatTop,
-            _ => return None,
-        })
     }
 }
 

@@ -1,6 +1,6 @@
 //! A stepped-sine sweep: one force and one response spectrum a step.
 
-use super::{Axis, Spectrum};
+use super::{Axis, Spectrum, Step};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -67,6 +67,11 @@ pub struct Sweep {
 }
 
 impl Sweep {
+    /// Steps that made the responses: those of the first point.
+    pub fn history(&self) -> &[Step] {
+        self.points.first().map_or(&[], |p| &p.response.meta.history)
+    }
+
     /// Distance of the lines in Hz; `None` if uneven.
     pub fn line_width(&self) -> Option<f64> {
         self.axis.step()

@@ -1,28 +1,14 @@
-//! Windows: samples, sums, and the shape of a spectral line.
+//! Windows: samples, and the shape of a spectral line.
 //!
-//! All windows here are sums of cosines, w(n) = Σ (−1)ᵏ aₖ cos(2πkn/N), in the periodic form that an FFT analyser uses.
-//! Coefficients: F. J. Harris, "On the use of windows for harmonic analysis with the discrete Fourier transform",
-//! Proc. IEEE 66 (1978), table I; flat top: ISO 18431-2:2004, as tabulated by G. Heinzel et al., "Spectrum and spectral
-//! density estimation by the DFT" (2002), appendix D (SFT5 family as used by analysers).
+//! All windows here are sums of cosines, w(n) = Σ (−1)ᵏ aₖ cos(2πkn/N), in the periodic form that an FFT analyser uses;
+//! their coefficients and sums belong to [`Window`].
 
 use crate::record::Window;
 use std::f64::consts::PI;
 
-/// Cosine coefficients a₀, a₁, …
-pub fn coefficients(window: Window) -> &'static [f64] {
-    match window {
-        Window::Rectangular => &[1.0],
-        Window::Hann => &[0.5, 0.5],
-        Window::Hamming => &[0.54, 0.46],
-        Window::Blackman => &[0.42, 0.5, 0.08],
-        Window::BlackmanHarris => &[0.358_75, 0.488_29, 0.141_28, 0.011_68],
-        Window::FlatTop => &[0.215_578_95, 0.416_631_58, 0.277_263_158, 0.083_578_947, 0.006_947_368],
-    }
-}
-
 /// The `n` samples of the periodic window.
 pub fn samples(window: Window, n: usize) -> Vec<f64> {
-    let a = coefficients(window);
+    let a = window.coefficients();
     (0..n)
         .map(|i| {
             let phase = 2.0 * PI * i as f64 / n as f64;
@@ -31,23 +17,12 @@ pub fn samples(window: Window, n: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Mean of the samples: the factor by which a sine's line is too small before correction.
-pub fn coherent_gain(window: Window) -> f64 {
-    coefficients(window)[0]
-}
-
-/// Equivalent noise bandwidth in lines, Σw²·N/(Σw)² = 1 + Σₖ aₖ²/(2a₀²): 1 for none, 1.5 for Hann.
-pub fn enbw(window: Window) -> f64 {
-    let a = coefficients(window);
-    1.0 + a[1..].iter().map(|ak| ak * ak / (2.0 * a[0] * a[0])).sum::<f64>()
-}
-
 /// Signed height of a unit sine's line at a distance of `offset` lines, long records:
 /// W(δ) = Σ aₖ (sinc(δ−k) + sinc(δ+k))/2 / a₀.
 ///
 /// The sign alternates from line to line of the main lobe as the phases of a DFT do; W(0) = 1.
 pub fn line_shape(window: Window, offset: f64) -> f64 {
-    let a = coefficients(window);
+    let a = window.coefficients();
     // Each cosine term is half a Dirichlet kernel at δ − k and half at δ + k; (−1)ᵏ of the window cancels (−1)ᵏ of the shift.
     a.iter()
         .enumerate()
@@ -73,7 +48,7 @@ fn sign(k: usize) -> f64 {
 /// Correlation of white noise in two lines that are `distance` apart, with the sign that the main lobe's alternating
 /// phases give it: 1, 2/3, 1/6, 0 … for Hann.
 pub fn noise_correlation(window: Window, distance: usize) -> f64 {
-    let a = coefficients(window);
+    let a = window.coefficients();
     // Line weights of the window over unwindowed lines: a₀ in the middle, (−1)ᵏ aₖ/2 at ±k.
     let weight = |k: i64| {
         let m = k.unsigned_abs() as usize;
@@ -120,13 +95,13 @@ mod tests {
             let w = samples(window, 64);
             let sum: f64 = w.iter().sum();
             let squares: f64 = w.iter().map(|w| w * w).sum();
-            assert!((sum / 64.0 - coherent_gain(window)).abs() < 1e-14, "{window:?}");
-            assert!((squares * 64.0 / (sum * sum) - enbw(window)).abs() < 1e-13, "{window:?}");
+            assert!((sum / 64.0 - window.coherent_gain()).abs() < 1e-14, "{window:?}");
+            assert!((squares * 64.0 / (sum * sum) - window.enbw()).abs() < 1e-13, "{window:?}");
         }
         // Harris 1978, table I.
-        assert!((enbw(Window::Hann) - 1.5).abs() < 1e-15);
-        assert!((enbw(Window::Hamming) - 1.36).abs() < 5e-3);
-        assert!((enbw(Window::BlackmanHarris) - 2.0).abs() < 5e-3);
+        assert!((Window::Hann.enbw() - 1.5).abs() < 1e-15);
+        assert!((Window::Hamming.enbw() - 1.36).abs() < 5e-3);
+        assert!((Window::BlackmanHarris.enbw() - 2.0).abs() < 5e-3);
     }
 
     #[test]

@@ -1,0 +1,43 @@
+//! Noise that is the same on every run.
+
+use std::f64::consts::TAU;
+
+/// Gaussian numbers from splitmix64 (Steele, Lea, Flood 2014) by the method of Box and Muller (1958).
+pub struct Noise {
+    state: u64,
+    spare: Option<f64>,
+}
+
+impl Noise {
+    /// Noise of one channel at one point; each has its own, so that any point can be made without the others.
+    pub fn new(direction: u64, point: u64, channel: u64) -> Noise {
+        let mut noise = Noise { state: (direction << 32) | (point << 8) | channel, spare: None };
+        // Neighbouring seeds part after the first output.
+        noise.bits();
+        noise
+    }
+
+    fn bits(&mut self) -> u64 {
+        self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    /// Uniform in 0 < u ≤ 1.
+    pub fn uniform(&mut self) -> f64 {
+        ((self.bits() >> 11) + 1) as f64 * f64::powi(2.0, -53)
+    }
+
+    /// Gaussian with mean 0 and variance 1.
+    pub fn gaussian(&mut self) -> f64 {
+        if let Some(value) = self.spare.take() {
+            return value;
+        }
+        let radius = (-2.0 * self.uniform().ln()).sqrt();
+        let (sin, cos) = (TAU * self.uniform()).sin_cos();
+        self.spare = Some(radius * sin);
+        radius * cos
+    }
+}

@@ -1,0 +1,259 @@
+//! `campaign.toml`: rig, files, what the instruments stored, what to compute.
+//!
+//! ```toml
+//! name = "Two-mass rig on the shaker"
+//! out = "results"                 # folder for results, beside this file
+//!
+//! [rig]                           # keys of a rig file; what is left out is the thesis' rig
+//! gap = 1e-3
+//! restitution = 0.97
+//!
+//! [excitation]
+//! kind = "sine"
+//! force = 0.1                     # N; left out: the measured force
+//!
+//! [[sweep]]
+//! name = "mass 1, up"
+//! direction = "up"
+//! mass = 1
+//! list = "UP1.TXT"                # or force = [...], response = [...], lines = 400, base_band = 20
+//! quantity = "velocity"           # what the analyser stored
+//! window = "hann"
+//! scaling = "peak"
+//! analyser_integrated = 1
+//!
+//! [[frf]]
+//! file = "hammer_test.uff"
+//! ```
+//! An unknown key is an error that points at its line.
+
+mod entry;
+mod locate;
+
+pub use entry::{Compute, Drive, RecordEntry, SweepEntry};
+
+use crate::error::{Error, Place, Result};
+use crate::model::Rig;
+use crate::read::{SweepList, SweepReader, inside};
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+
+/// A campaign as its file has it.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Campaign {
+    /// Title of the report.
+    pub name: String,
+    /// Folder for results, relative to the campaign file. Default `results`.
+    pub out: Option<PathBuf>,
+    /// The rig; needed for an overlay.
+    pub rig: Option<Rig>,
+    /// What drives it.
+    pub excitation: Option<Drive>,
+    /// Stepped-sine sweeps.
+    pub sweep: Vec<SweepEntry>,
+    /// Frequency response functions.
+    pub frf: Vec<RecordEntry>,
+    /// Impact traces.
+    pub impacts: Vec<RecordEntry>,
+    /// Drop tests.
+    pub drop: Vec<RecordEntry>,
+    /// Contact pulses.
+    pub pulse: Vec<RecordEntry>,
+    /// Hammer-drill traces.
+    pub drill: Vec<RecordEntry>,
+    /// What to compute, and how.
+    pub compute: Compute,
+    #[serde(skip)]
+    path: PathBuf,
+    #[serde(skip)]
+    text: String,
+}
+
+impl Campaign {
+    /// Reads and checks a campaign file.
+    ///
+    /// # Errors
+    /// If it is not TOML, has an unknown key, or a value that cannot be; each points at its line.
+    pub fn from_path(path: impl AsRef<Path>) -> Result<Campaign> {
+        let path = path.as_ref();
+        let bytes = crate::read::Source::file(path)?.all()?;
+        let text = String::from_utf8(bytes).map_err(|e| {
+            Error::input(
+                Place::byte(path, e.utf8_error().valid_up_to() as u64),
+                "bytes that are not UTF-8",
+                "text in UTF-8",
+            )
+            .hint("save the file as UTF-8 in your editor")
+        })?;
+        Campaign::parse(path, text)
+    }
+
+    fn parse(path: &Path, text: String) -> Result<Campaign> {
+        let mut campaign: Campaign =
+            toml::from_str(&text).map_err(|e| locate::toml_error(path, &text, &e))?;
+        path.clone_into(&mut campaign.path);
+        campaign.text = text;
+        campaign.check()?;
+        Ok(campaign)
+    }
+
+    /// The campaign file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Folder of the campaign file, to which its names are relative.
+    pub fn folder(&self) -> &Path {
+        self.path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
+    }
+
+    /// Folder for results.
+    pub fn out(&self) -> PathBuf {
+        self.folder().join(self.out.as_deref().unwrap_or(Path::new("results")))
+    }
+
+    fn check(&self) -> Result<()> {
+        if let Some(rig) = &self.rig {
+            rig.check().map_err(|e| e.in_file(&self.path))?;
+        }
+        if let Some(out) = &self.out {
+            inside(self.folder(), out, false).map_err(|_| {
+                self.at(
+                    locate::find(&self.text, "out", None),
+                    format!("out = {} leads outside this folder", out.display()),
+                )
+                .hint("name a folder beside the campaign, or give --out on the command line")
+            })?;
+        }
+        let mut seen: Vec<&str> = Vec::new();
+        for entry in &self.sweep {
+            let name = entry.name.get_ref();
+            if seen.contains(&name.as_str()) {
+                return Err(self.at(entry.name.span(), format!("two sweeps are named {name:?}")));
+            }
+            seen.push(name);
+            entry.check().map_err(|why| self.at(why.span, why.found).hint(why.hint))?;
+        }
+        Ok(())
+    }
+
+    /// An error that points into this file.
+    fn at(&self, span: std::ops::Range<usize>, found: String) -> Error {
+        Error::input(Place::file(&self.path), found, "").excerpt(&self.text, span)
+    }
+
+    /// List and reader of the sweep `name`; of the only sweep where `name` is `None`.
+    ///
+    /// # Errors
+    /// If there is no such sweep, or its list cannot be read.
+    pub fn sweep(&self, name: Option<&str>, allow_outside: bool) -> Result<(SweepList, SweepReader)> {
+        let names = || self.sweep.iter().map(|s| s.name.get_ref().as_str()).collect::<Vec<_>>().join(", ");
+        let entry = match (name, self.sweep.as_slice()) {
+            (Some(name), all) => all.iter().find(|s| s.name.get_ref() == name).ok_or_else(|| {
+                Error::input(Place::file(&self.path), format!("no sweep is named {name:?}"), names())
+            })?,
+            (None, [only]) => only,
+            (None, all) => {
+                return Err(Error::input(
+                    Place::file(&self.path),
+                    format!("{} sweeps and none was chosen", all.len()),
+                    names(),
+                )
+                .hint(format!("name one: {}#NAME", self.path.display())));
+            }
+        };
+        Ok((self.list(entry, allow_outside)?, entry.reader()))
+    }
+
+    /// The files of a sweep.
+    ///
+    /// # Errors
+    /// If its list cannot be read or a name leads outside the folder.
+    pub fn list(&self, entry: &SweepEntry, allow_outside: bool) -> Result<SweepList> {
+        let folder = self.folder();
+        let place = |path: &Path, span: std::ops::Range<usize>| {
+            inside(folder, path, allow_outside).map_err(|e| e.in_file(&self.path).excerpt(&self.text, span))
+        };
+        if let Some(list) = &entry.list {
+            let path = place(list.get_ref(), list.span())?;
+            if !path.exists() {
+                return Err(self
+                    .at(list.span(), format!("the list {} does not exist", path.display()))
+                    .hint("names are relative to the folder of the campaign file"));
+            }
+            return SweepList::from_path(path, allow_outside);
+        }
+        let all = |names: &[PathBuf]| -> Result<Vec<PathBuf>> {
+            names.iter().map(|n| place(n, entry.name.span())).collect()
+        };
+        Ok(SweepList {
+            lines: entry.lines.unwrap_or(0),
+            base_band: entry.base_band.unwrap_or(0.0),
+            force: all(&entry.force)?,
+            excitation: Vec::new(),
+            response: all(&entry.response)?,
+        })
+    }
+
+    /// Path of a record entry.
+    ///
+    /// # Errors
+    /// If it leads outside the folder.
+    pub fn record_path(&self, entry: &RecordEntry, allow_outside: bool) -> Result<PathBuf> {
+        inside(self.folder(), entry.file.get_ref(), allow_outside)
+            .map_err(|e| e.in_file(&self.path).excerpt(&self.text, entry.file.span()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(text: &str) -> Result<Campaign> {
+        Campaign::parse(Path::new("campaign.toml"), text.to_owned())
+    }
+
+    const SWEEP: &str = "[[sweep]]\nname = \"a\"\nlist = \"L.TXT\"\n";
+
+    #[test]
+    fn a_campaign_of_every_part() {
+        let text = format!(
+            "name = \"x\"\n[rig]\ngap = 2e-3\n[excitation]\nkind = \"sine\"\nforce = 0.1\n{SWEEP}\
+             quantity = \"velocity\"\ndirection = \"down\"\nmass = 2\nwindow = \"hann\"\n\
+             [[frf]]\nfile = \"a.uff\"\n[[drop]]\nfile = \"d.wav\"\n[compute]\noverlay = false\n"
+        );
+        let campaign = of(&text).unwrap();
+        assert_eq!(campaign.rig.map(|r| r.gap), Some(2e-3));
+        assert_eq!(campaign.sweep[0].reader().unit.symbol(), "m/s");
+        assert_eq!(campaign.out(), Path::new("./results"));
+    }
+
+    #[test]
+    fn mistakes_point_at_their_line() {
+        for (text, line, word) in [
+            ("nam = 1", "line 1, column 1", "`name`"),
+            ("name = \"a\"\n[rig]\nm3 = 1", "line 3, column 1", "m3"),
+            ("[[sweep]]\nname = \"a\"", "line 2", "neither a list"),
+            (&format!("{SWEEP}{SWEEP}"), "line 5", "two sweeps"),
+            (&format!("{SWEEP}mass = 3"), "line 4", "mass"),
+            (&format!("{SWEEP}quantity = \"speed\""), "line 4", "speed"),
+            (&format!("{SWEEP}unit = \"mm\"\nquantity = \"velocity\""), "line 4", "displacement"),
+            (&format!("{SWEEP}window = \"kaiser\""), "line 4", "kaiser"),
+            (&format!("{SWEEP}calibration = 0.0"), "line 4", "calibration"),
+            ("out = \"../x\"", "line 1", "outside"),
+            ("name = ", "line 1", ""),
+        ] {
+            let error = of(text).unwrap_err().to_string();
+            assert!(error.contains(line) && error.contains(word) && error.contains('^'), "{text}\n{error}");
+        }
+    }
+
+    #[test]
+    fn a_sweep_is_chosen_by_name() {
+        let campaign = of(&format!("{SWEEP}[[sweep]]\nname = \"b\"\nlist = \"M.TXT\"\n")).unwrap();
+        assert!(campaign.sweep(None, false).unwrap_err().to_string().contains("a, b"));
+        assert!(campaign.sweep(Some("c"), false).unwrap_err().to_string().contains("a, b"));
+        assert!(campaign.sweep(Some("a"), false).unwrap_err().to_string().contains("does not exist"));
+    }
+}

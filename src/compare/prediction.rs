@@ -1,0 +1,141 @@
+//! The closed-form prediction over frequency, and which of its motions a sweep would follow.
+
+use super::observable::Observable;
+use crate::error::Result;
+use crate::model::{Rig, orbits};
+use crate::record::Direction;
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Kind of a predicted motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// One impact a cycle.
+    Impacting,
+    /// No impact.
+    Free,
+}
+
+/// One predicted motion at one frequency.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Motion {
+    /// Impacting or free.
+    pub kind: Kind,
+    /// Observed amplitudes of x₁ and x₂ in m.
+    pub amplitude: [f64; 2],
+    /// Whether it can be seen: admissible and stable, or clear of the other mass.
+    pub seen: bool,
+}
+
+/// Everything the closed form predicts over a grid of frequencies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prediction {
+    /// Frequencies in Hz, rising.
+    pub frequency: Vec<f64>,
+    /// Force amplitude in N.
+    pub force: f64,
+    /// Motions at each frequency: impacting ones with the larger impulse first, then the free one.
+    pub motions: Vec<Vec<Motion>>,
+}
+
+impl Prediction {
+    /// Predicts at the given frequencies (Hz, rising) for the force amplitude `force` in N.
+    ///
+    /// # Errors
+    /// As [`orbits`].
+    pub fn at(rig: &Rig, force: f64, frequency: Vec<f64>, observable: Observable) -> Result<Prediction> {
+        let motions =
+            frequency.par_iter().map(|f| motions(rig, force, *f, observable)).collect::<Result<_>>()?;
+        Ok(Prediction { frequency, force, motions })
+    }
+
+    /// Predicts on `n` evenly spaced frequencies (two or more).
+    ///
+    /// # Errors
+    /// As [`orbits`].
+    pub fn over(
+        rig: &Rig,
+        force: f64,
+        range: (f64, f64),
+        n: usize,
+        observable: Observable,
+    ) -> Result<Prediction> {
+        let n = n.max(2);
+        let step = (range.1 - range.0) / (n - 1) as f64;
+        Prediction::at(rig, force, (0..n).map(|i| range.0 + i as f64 * step).collect(), observable)
+    }
+
+    /// The motion a slow sweep in `direction` would show at each frequency, in order of rising frequency.
+    ///
+    /// A sweep starts at rest, so without impacts where that is possible. Free motion lasts until it is no longer clear of
+    /// the other mass; impacts last until no orbit with impacts exists. `None` where impacts go on but no orbit with one
+    /// impact a cycle can be seen: the motion there has another pattern (after a flip, say) and is not predicted here.
+    pub fn followed(&self, direction: Direction) -> Vec<Option<Motion>> {
+        let n = self.frequency.len();
+        let mut followed = vec![None; n];
+        let mut kind = Kind::Free;
+        for step in 0..n {
+            let i = if direction == Direction::Up { step } else { n - 1 - step };
+            let motions = &self.motions[i];
+            let seen = |kind: Kind| motions.iter().find(|m| m.seen && m.kind == kind).copied();
+            let goes_on = match kind {
+                Kind::Free => seen(Kind::Free).is_some(),
+                Kind::Impacting => motions.iter().any(|m| m.kind == Kind::Impacting),
+            };
+            if !goes_on {
+                kind = if kind == Kind::Free { Kind::Impacting } else { Kind::Free };
+            }
+            followed[i] = seen(kind);
+        }
+        followed
+    }
+}
+
+fn motions(rig: &Rig, force: f64, frequency: f64, observable: Observable) -> Result<Vec<Motion>> {
+    let found = orbits(rig, force, frequency)?;
+    let mut motions: Vec<Motion> = found
+        .orbits
+        .iter()
+        .filter(|o| o.validity.exists)
+        .map(|o| Motion {
+            kind: Kind::Impacting,
+            amplitude: observable.of_orbit(o),
+            seen: o.validity.admissible && o.validity.stable,
+        })
+        .collect();
+    motions.push(Motion {
+        kind: Kind::Free,
+        amplitude: observable.of_no_impact(&found.no_impact),
+        seen: found.no_impact.possible,
+    });
+    Ok(motions)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Near its upper end the impacting branch coexists with the free motion: the direction decides.
+    #[test]
+    fn history_decides_where_two_motions_exist() {
+        let rig = Rig { restitution: 0.95, ..Rig::thesis() };
+        let p = Prediction::over(&rig, 0.1, (6.0, 13.0), 1401, Observable::Fundamental).unwrap();
+        let (up, down) = (p.followed(Direction::Up), p.followed(Direction::Down));
+        let largest = |f: &[Option<Motion>]| {
+            let mut best = (0.0, 0.0);
+            for (f, m) in p.frequency.iter().zip(f) {
+                if let Some(m) = m.filter(|m| m.amplitude[0] > best.1 && *f > 8.0) {
+                    best = (*f, m.amplitude[0]);
+                }
+            }
+            best
+        };
+        assert!(largest(&up).1 > 2.0 * largest(&down).1, "{:?} {:?}", largest(&up), largest(&down));
+        for (i, motion) in up.iter().enumerate() {
+            if let Some(motion) = motion {
+                assert!(motion.seen && p.motions[i].contains(motion));
+            }
+        }
+    }
+}

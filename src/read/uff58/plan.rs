@@ -1,0 +1,388 @@
+//! What record a data set 58 becomes: kind, axis, scaling, unit, and the doubts about each.
+
+use super::codes::{self, Domain};
+use super::heading::Heading;
+use super::ordinate::Ordinate;
+use super::sink::{Counted, Kept};
+use super::values::Taken;
+use crate::error::{Error, Result};
+use crate::read::uff::system::System;
+use crate::read::{Header, Options, Summary};
+use crate::record::{
+    Axis, AxisKind, Frf, FrfKind, Grid, Meta, Record, Scaling, Spectrum, Trace, Values, Window,
+};
+use crate::units::{Quantity, Unit};
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    Trace,
+    Spectrum(Scaling),
+    Frf,
+}
+
+/// Everything about a record but its values.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// Channel, unit, doubts.
+    pub meta: Meta,
+    kind: Kind,
+    complex: bool,
+    axis: AxisKind,
+    start: f64,
+    /// `None` where the abscissa is stored.
+    step: Option<f64>,
+    /// From stored abscissa values to SI.
+    abscissa_factor: f64,
+    /// From stored values to SI.
+    factor: f64,
+    window: Option<Window>,
+    enbw: Option<f64>,
+}
+
+impl Plan {
+    /// Finds out what a header means.
+    ///
+    /// # Errors
+    /// If values are complex over time: no record can hold them.
+    pub fn new(heading: &Heading, system: &System, options: &Options, file: &str) -> Result<Plan> {
+        let mut meta = Meta::new(heading.name(), Unit::none());
+        for (i, line) in heading.id.iter().enumerate().filter(|(_, line)| !line.is_empty()) {
+            meta.notes.push((format!("id line {}", i + 1), line.clone()));
+        }
+        meta.notes.push(("record 6".to_owned(), heading.record6.clone()));
+        meta.notes.push(("point".to_owned(), heading.name()));
+        meta.declared_n = Some(heading.n);
+        meta.step("read", &[("file", &file), ("format", &"uff"), ("case", &heading.layout.case())]);
+        let factor = unit(heading, system, options, &mut meta);
+        let (axis, abscissa_factor) = abscissa(heading, options, &mut meta);
+        let complex = heading.layout.complex;
+        if complex && axis == AxisKind::Time {
+            return Err(Error::input(
+                heading.place.clone(),
+                "complex values over time",
+                "complex values over frequency, or real values over time",
+            )
+            .hint("export real and imaginary part as two real data sets"));
+        }
+        let stated = Stated::of(&heading.id[4]);
+        let kind = kind(heading, &axis, stated.scaling, &mut meta);
+        let mut plan = Plan {
+            meta,
+            kind,
+            complex,
+            axis,
+            start: heading.start * abscissa_factor,
+            step: heading.layout.even.then_some(heading.step * abscissa_factor),
+            abscissa_factor,
+            factor,
+            window: stated.window,
+            enbw: stated.enbw,
+        };
+        plan.settle_step(options);
+        Ok(plan)
+    }
+
+    /// A step that is given wins; a step that is no step leaves numbered values.
+    fn settle_step(&mut self, options: &Options) {
+        if options.base_band.is_some() && self.axis == AxisKind::Frequency {
+            self.meta.doubt("The base band that was given is not used: the file has its own frequencies.");
+        }
+        if let Some(rate) = options.rate.filter(|_| self.axis == AxisKind::Time) {
+            let said = 1.0 / rate;
+            let differs = |step: f64| (step / said - 1.0).abs() > 1e-5; // record 7 prints six digits
+            if self.step.is_none_or(differs) {
+                let file =
+                    self.step.map_or_else(|| "its own instants".to_owned(), |s| format!("a step of {s} s"));
+                self.meta.doubt(format!("The file has {file}; a rate of {rate} Hz was given and is used."));
+            }
+            self.step = Some(said);
+        }
+        if let Some(step) = self.step
+            && !(step > 0.0 && step.is_finite() && self.start.is_finite())
+        {
+            self.meta.doubt(format!(
+                "The file says an abscissa increment of {step}: values are numbered (give --rate for a time trace)."
+            ));
+            (self.axis, self.start, self.step) = (AxisKind::Index, 0.0, Some(1.0));
+        }
+    }
+
+    /// Doubts that only the values bring.
+    pub fn counted(&mut self, declared: usize, taken: Taken) {
+        if taken.n < declared {
+            self.meta.doubt(format!("The header declares {declared} values; the file holds {}.", taken.n));
+        } else if declared == 0 {
+            self.meta.doubt("The header declares no values.");
+        }
+        if taken.cut {
+            self.meta.doubt("The last value ends with the file: digits of it may be missing.");
+        }
+        if taken.missing > 0 {
+            self.meta.doubt(format!("{} numbers are missing and kept as such.", taken.missing));
+        }
+    }
+
+    /// The record.
+    pub fn record(self, kept: Kept) -> Record {
+        let n = kept.values.len();
+        let grid = match (self.step, self.axis == AxisKind::Time) {
+            (Some(step), _) => Grid::Even { start: self.start, step, n },
+            // A trace needs its sampling rate; lines of a spectrum are used one by one and keep their frequencies.
+            (None, true) if kept.spacing().step().is_some() => {
+                let spacing = kept.spacing();
+                let step = spacing.step().unwrap_or_default() * self.abscissa_factor;
+                Grid::Even { start: spacing.first() * self.abscissa_factor, step, n }
+            }
+            _ => Grid::Uneven(kept.abscissa.iter().map(|x| x * self.abscissa_factor).collect()),
+        };
+        let mut values = kept.values;
+        if self.factor != 1.0 {
+            match &mut values {
+                Values::Real(values) => values.iter_mut().for_each(|v| *v *= self.factor),
+                Values::Complex(values) => values.iter_mut().for_each(|v| *v *= self.factor),
+            }
+        }
+        self.build(grid, values)
+    }
+
+    /// The record's header, from a count of its values.
+    pub fn header(self, counted: &Counted) -> Header {
+        let (summary, spacing) = (counted.summary, &counted.spacing);
+        let time = self.axis == AxisKind::Time;
+        let factor = self.factor;
+        let even = match self.step {
+            Some(step) => Some((self.start, step)),
+            None if time => spacing
+                .step()
+                .map(|s| (spacing.first(), s))
+                .map(|(x, s)| (x * self.abscissa_factor, s * self.abscissa_factor)),
+            None => None,
+        };
+        let x0 = spacing.first() * self.abscissa_factor;
+        let max_at = counted.max_at.map(|x| x * self.abscissa_factor);
+        let grid = match even {
+            Some((start, step)) => Grid::Even { start, step, n: summary.n },
+            None => Grid::Uneven(Vec::new()),
+        };
+        let none = if self.complex { Values::Complex(Vec::new()) } else { Values::Real(Vec::new()) };
+        let empty = self.build(grid, none);
+        let mut header = Header::of(&empty).with_summary(&Summary { ..summary }, factor, empty.axis());
+        if even.is_none() {
+            (header.x0, header.max_at) = (x0, max_at);
+        }
+        header
+    }
+
+    fn build(self, grid: Grid, values: Values) -> Record {
+        let Plan { meta, axis, .. } = self;
+        let axis = Axis { kind: axis, grid };
+        match (self.kind, values) {
+            (Kind::Trace, Values::Real(values)) => Record::Trace(Trace { meta, axis, values }),
+            (Kind::Frf, Values::Complex(values)) => {
+                let kind = FrfKind::of(meta.quantity);
+                Record::Frf(Frf { meta, axis, values, kind })
+            }
+            (kind, values) => {
+                let scaling = if let Kind::Spectrum(scaling) = kind { scaling } else { Scaling::Unknown };
+                Record::Spectrum(Spectrum {
+                    meta,
+                    axis,
+                    values,
+                    scaling,
+                    window: self.window,
+                    enbw: self.enbw,
+                })
+            }
+        }
+    }
+}
+
+/// Settles unit and quantity; gives the factor to SI.
+fn unit(heading: &Heading, system: &System, options: &Options, meta: &mut Meta) -> f64 {
+    let Ordinate { unit, factor, written, doubts } = Ordinate::of(heading, system);
+    if let Some(said) = &options.unit {
+        if unit.is_known() && (unit.dimension() != said.dimension() || factor != said.factor()) {
+            meta.doubt(format!("The file says the unit {written}; {said} was given and is used."));
+        }
+        return meta.adopt_unit(said.symbol());
+    }
+    for doubt in doubts {
+        meta.doubt(doubt);
+    }
+    if factor != 1.0 {
+        let from = if written.is_empty() { "data set 164" } else { &written };
+        meta.step("to_si", &[("from", &from), ("factor", &factor)]);
+    }
+    meta.quantity = unit.quantity();
+    meta.unit = unit;
+    factor
+}
+
+/// Kind of the abscissa and factor to s or Hz.
+fn abscissa(heading: &Heading, options: &Options, meta: &mut Meta) -> (AxisKind, f64) {
+    let axis = &heading.abscissa;
+    let typed = match axis.data_type {
+        17 => Some(AxisKind::Time),
+        18 => Some(AxisKind::Frequency),
+        _ => None,
+    };
+    let shown = |kind: &AxisKind| if *kind == AxisKind::Time { "time" } else { "frequency" };
+    if !axis.unit.is_empty() && !matches!(axis.data_type, 19 | 20) {
+        let unit = Unit::parse_or_opaque(&axis.unit);
+        let by_unit = match unit.quantity() {
+            Quantity::Time => Some(AxisKind::Time),
+            Quantity::Frequency => Some(AxisKind::Frequency),
+            _ => None,
+        };
+        match (by_unit, typed) {
+            (Some(kind), typed) => {
+                if let Some(typed) = typed.filter(|t| *t != kind) {
+                    meta.doubt(format!(
+                        "The data type of the abscissa is {}, but its unit {} is that of {}: the unit is believed.",
+                        shown(&typed),
+                        axis.unit,
+                        shown(&kind)
+                    ));
+                }
+                return (kind, unit.factor());
+            }
+            (None, Some(kind)) => {
+                meta.doubt(format!(
+                    "The unit \"{}\" of the abscissa is not one of {}: s or Hz are assumed.",
+                    axis.unit,
+                    shown(&kind)
+                ));
+                return (kind, 1.0);
+            }
+            (None, None) => return (AxisKind::Other(format!("{} [{}]", axis.label, axis.unit)), 1.0),
+        }
+    }
+    if let Some(kind) = typed {
+        return (kind, 1.0);
+    }
+    if axis.data_type > 1 || !axis.label.is_empty() {
+        let label = axis.label.to_lowercase();
+        if axis.data_type <= 1 {
+            for (word, kind) in
+                [("time", AxisKind::Time), ("freq", AxisKind::Frequency), ("index", AxisKind::Index)]
+            {
+                if label.contains(word) {
+                    return (kind, 1.0);
+                }
+            }
+        }
+        let name = match axis.data_type {
+            19 => "rotational speed",
+            20 => "order",
+            code => codes::data_type(code, false).map_or("", |t| t.0),
+        };
+        let name = if axis.label.is_empty() { name } else { &axis.label };
+        let unit = if axis.unit.is_empty() { String::new() } else { format!(" [{}]", axis.unit) };
+        return (AxisKind::Other(format!("{name}{unit}")), 1.0);
+    }
+    let (name, domain) = codes::function(heading.function);
+    let kind = match domain {
+        Domain::Time => AxisKind::Time,
+        Domain::Frequency => AxisKind::Frequency,
+        Domain::Either if options.rate.is_some() => return (AxisKind::Time, 1.0),
+        Domain::Either => {
+            meta.doubt("The file does not say whether the abscissa is time or frequency.");
+            return (AxisKind::Index, 1.0);
+        }
+    };
+    meta.doubt(format!(
+        "The file does not say what its abscissa is; the function is of the kind \"{name}\", so {} is assumed.",
+        if kind == AxisKind::Time { "time in s" } else { "frequency in Hz" }
+    ));
+    (kind, 1.0)
+}
+
+/// Kind of record; where function type and abscissa disagree, the abscissa decides.
+fn kind(heading: &Heading, axis: &AxisKind, stated: Option<Scaling>, meta: &mut Meta) -> Kind {
+    let (name, domain) = codes::function(heading.function);
+    let complex = heading.layout.complex;
+    if *axis == AxisKind::Time || (*axis != AxisKind::Frequency && !complex) {
+        let usual = matches!(heading.function, 0 | 1) && matches!(axis, AxisKind::Time | AxisKind::Index);
+        if *axis == AxisKind::Time && domain == Domain::Frequency {
+            meta.doubt(format!(
+                "The function type says {name}, but the abscissa is time: read as a time trace."
+            ));
+        } else if !usual {
+            meta.doubt(format!("The function type says {name}: read as a trace over its abscissa."));
+        }
+        return Kind::Trace;
+    }
+    if let Some(scaling) = stated {
+        return Kind::Spectrum(scaling);
+    }
+    let unknown = |meta: &mut Meta, doubt: String| {
+        meta.doubt(doubt);
+        Kind::Spectrum(Scaling::Unknown)
+    };
+    match heading.function {
+        4 | 5 if complex => Kind::Frf,
+        4 | 5 => unknown(
+            meta,
+            format!(
+                "A {name} with real values only: whether they are magnitudes or one of two parts is not said, so it is read as a spectrum."
+            ),
+        ),
+        2 | 3 => unknown(
+            meta,
+            format!(
+                "Whether the lines of this {name} are squared RMS or squared peak values, the format does not say."
+            ),
+        ),
+        12 => unknown(
+            meta,
+            "Whether the lines of this spectrum are peak or RMS amplitudes, the format does not say."
+                .to_owned(),
+        ),
+        6 | 21 | 26 => Kind::Spectrum(Scaling::Coherence),
+        9 => Kind::Spectrum(Scaling::Psd),
+        10 => Kind::Spectrum(Scaling::Energy),
+        _ => unknown(
+            meta,
+            format!(
+                "The function type says {name}: read as a spectrum over its abscissa, its scaling is not known."
+            ),
+        ),
+    }
+}
+
+/// What an identification line of this crate's own writer says: `scaling rms; window hann; enbw 1.5`.
+#[derive(Debug, Default)]
+struct Stated {
+    scaling: Option<Scaling>,
+    window: Option<Window>,
+    enbw: Option<f64>,
+}
+
+impl Stated {
+    fn of(line: &str) -> Stated {
+        let mut stated = Stated::default();
+        if !line.starts_with("scaling ") {
+            return stated;
+        }
+        for (key, value) in line.split("; ").filter_map(|part| part.split_once(' ')) {
+            match key {
+                "scaling" => {
+                    stated.scaling = [
+                        Scaling::Peak,
+                        Scaling::Rms,
+                        Scaling::Power,
+                        Scaling::Psd,
+                        Scaling::Energy,
+                        Scaling::Coherence,
+                    ]
+                    .into_iter()
+                    .find(|s| s.name() == value);
+                }
+                "window" => stated.window = Window::from_name(value),
+                "enbw" => stated.enbw = value.parse().ok().filter(|v: &f64| v.is_finite() && *v > 0.0),
+                _ => {}
+            }
+        }
+        stated
+    }
+}

@@ -1,0 +1,90 @@
+//! Data flows one way: a folder of `src` uses only folders to its left, and what lies below all of them.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The flow, left to right.
+const FLOW: [&str; 9] =
+    ["read", "write", "signal", "measure", "model", "campaign", "compare", "report", "cli"];
+/// What may be used from everywhere, and what each of these may use.
+const GROUND: [(&str, &[&str]); 4] =
+    [("error", &[]), ("units", &["error"]), ("record", &["error", "units"]), ("math", &["error"])];
+
+fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).expect("a folder of sources") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            sources(&path, found);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+/// Top-level modules that a line of code names behind `crate::`, braces included. Doc links do not count.
+fn used(line: &str) -> Vec<String> {
+    if line.trim_start().starts_with("//") {
+        return Vec::new();
+    }
+    let name =
+        |text: &str| -> String { text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect() };
+    line.match_indices("crate::")
+        .filter(|(at, _)| *at == 0 || !line[..*at].ends_with(|c: char| c.is_alphanumeric() || c == '_'))
+        .flat_map(|(at, word)| {
+            let rest = &line[at + word.len()..];
+            match rest.strip_prefix('{') {
+                Some(list) => list.split(',').map(|part| name(part.trim())).collect(),
+                None => vec![name(rest)],
+            }
+        })
+        .collect()
+}
+
+#[test]
+fn no_arrow_runs_back() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    sources(&src, &mut files);
+    assert!(files.len() > 30, "only {} files found: is this the right folder?", files.len());
+    let mut wrong = Vec::new();
+    for file in files {
+        let inside = file.strip_prefix(&src).expect("a file of src");
+        let first = inside.components().next().expect("a name").as_os_str().to_string_lossy().into_owned();
+        let layer = first.trim_end_matches(".rs").to_owned();
+        if matches!(layer.as_str(), "lib" | "main") {
+            continue;
+        }
+        let place = FLOW.iter().position(|l| *l == layer);
+        let ground = GROUND.iter().find(|g| g.0 == layer);
+        assert!(
+            place.is_some() || ground.is_some(),
+            "{} is in no layer: add it to this test",
+            inside.display()
+        );
+        let text = fs::read_to_string(&file).expect("text");
+        for (number, line) in text.lines().enumerate() {
+            for target in used(line) {
+                let to = FLOW.iter().position(|l| *l == target);
+                let allowed = target == layer
+                    || target.starts_with(char::is_uppercase)
+                    || match (place, ground) {
+                        (Some(from), _) => to.is_none_or(|to| to < from),
+                        (None, Some((_, may))) => may.contains(&target.as_str()),
+                        (None, None) => false,
+                    };
+                if !allowed {
+                    wrong.push(format!("{}:{}: {layer} uses {target}", inside.display(), number + 1));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "arrows that run back:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_test_sees_an_arrow() {
+    assert_eq!(used("use crate::report::Output;"), ["report"]);
+    assert_eq!(used("let x = crate::cli::main();"), ["cli"]);
+    assert_eq!(used("use crate::{read, report};"), ["read", "report"]);
+    assert!(used("/// See [`crate::report`].").is_empty());
+}

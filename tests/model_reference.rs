@@ -1,0 +1,161 @@
+//! Closed-form orbits against an independent implementation: every root on four frequency grids.
+
+use std::f64::consts::TAU;
+use std::path::Path;
+use vibroimpact::model::{Orbit, Rig, orbits};
+
+/// One row of a reference file.
+struct Row {
+    nu: f64,
+    omega: f64,
+    impulse: f64,
+    timing: f64,
+    approach: f64,
+    min_gap: f64,
+    radius: f64,
+    peak_to_peak: [f64; 2],
+    admissible: bool,
+    stable: bool,
+}
+
+/// The reference sampled each period at this many times.
+const SAMPLES: f64 = 8000.0;
+
+fn rows(text: &str) -> Vec<Row> {
+    let row = |line: &str| {
+        let v: Vec<f64> = line.split(',').map(|field| field.trim().parse().unwrap()).collect();
+        assert_eq!(v.len(), 13, "{line}");
+        Row {
+            nu: v[0],
+            omega: v[1],
+            impulse: v[2],
+            timing: v[3],
+            approach: v[4],
+            min_gap: v[5],
+            radius: v[6],
+            peak_to_peak: [v[9], v[10]],
+            admissible: v[11] == 1.0,
+            stable: v[12] == 1.0,
+        }
+    };
+    text.lines().skip(1).map(row).collect()
+}
+
+/// How the quadratic amplifies roundings of its coefficients: the size of its roots over their distance, large at a fold.
+fn condition(pair: &[Orbit]) -> f64 {
+    let [first, second] = pair else { return 1.0 };
+    1.0 + first.impulse.abs().max(second.impulse.abs()) / (first.impulse - second.impulse).abs()
+}
+
+fn check_file(name: &str, force: f64, rig: &Rig) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/reference/orbits").join(name);
+    let Ok(text) = std::fs::read_to_string(&path) else {
+        eprintln!("skipped: ../shared/reference is absent ({name})");
+        return;
+    };
+    let rows = rows(&text);
+    assert!(rows.len() > 400, "{name} holds {} rows", rows.len());
+    let (mut worst, mut borders) = (0.0_f64, 0);
+    for row in &rows {
+        let found = orbits(rig, force, row.omega / TAU).unwrap().orbits;
+        let place = format!("{name} ν {} J {}", row.nu, row.impulse);
+        let orbit = found
+            .iter()
+            .min_by(|a, b| (a.impulse - row.impulse).abs().total_cmp(&(b.impulse - row.impulse).abs()))
+            .unwrap_or_else(|| panic!("{place}: no root found"));
+        let amplify = condition(&found);
+        let tolerance = 1e-10 * amplify;
+        let error = (orbit.impulse / row.impulse - 1.0).abs();
+        worst = worst.max(error / amplify);
+        assert!(error < tolerance, "{place}: {} ({error:e})", orbit.impulse);
+        let turn = (orbit.timing - row.timing).rem_euclid(TAU);
+        assert!(turn.min(TAU - turn) < tolerance, "{place}: φ {} for {}", orbit.timing, row.timing);
+        assert!((orbit.approach_velocity / row.approach - 1.0).abs() < tolerance, "{place}");
+        borders += check_verdicts(row, orbit, &place);
+        check_samples(row, orbit, &place);
+    }
+    // Each row has its own root: as many roots as rows at each frequency.
+    for pair in rows.chunk_by(|a, b| a.omega == b.omega) {
+        assert_eq!(
+            orbits(rig, force, pair[0].omega / TAU).unwrap().orbits.len(),
+            pair.len(),
+            "ν {}",
+            pair[0].nu
+        );
+    }
+    println!("{name}: {} rows, worst J {worst:e}, {borders} on a border", rows.len());
+    assert!(borders * 50 < rows.len(), "{name}: {borders} verdicts on a border");
+}
+
+/// Verdicts must agree except on a border; returns 1 where this row is on one.
+fn check_verdicts(row: &Row, orbit: &Orbit, place: &str) -> usize {
+    let v = &orbit.validity;
+    assert_eq!(v.exists, row.impulse > 0.0, "{place}");
+    let radius = orbit.spectral_radius().unwrap_or(f64::NAN);
+    let mut border = 0;
+    if row.radius.is_nan() {
+        assert!(radius.is_nan() && !v.stable && !row.stable, "{place}: radius {radius}");
+    } else {
+        // Elements of the monodromy grow like accelerations over the approach speed; a double multiplier feels the root of
+        // that rounding.
+        let size = 1.0 + 40.0 / orbit.approach_velocity;
+        let simple = (radius - row.radius).abs() < 1e-10 * size;
+        let double = (radius - row.radius).abs() < (1e-15 * size).sqrt() * 10.0;
+        assert!(simple || double, "{place}: radius {radius} for {}", row.radius);
+        if (row.radius - 1.0).abs() < 1e-9 { border = 1 } else { assert_eq!(v.stable, row.stable, "{place}") }
+    }
+    // The reference lets an overlap of 0.1 µm pass; here none passes.
+    if row.impulse > 0.0 && row.min_gap < 0.0 && row.min_gap > -1e-7 {
+        border = 1;
+    } else {
+        assert_eq!(v.admissible, row.admissible, "{place}: min gap {} for {}", v.min_gap, row.min_gap);
+    }
+    border
+}
+
+/// Sampled quantities: exact ones here reach at least as far, and no further than a sample's distance allows.
+fn check_samples(row: &Row, orbit: &Orbit, place: &str) {
+    let step = orbit.period() / SAMPLES;
+    let (before, after) = (orbit.before_impact(), orbit.state(0.0));
+    // Slopes at the impact's kink, and curvature elsewhere (harmonics of no more than ω and the natural frequencies).
+    let slope = [before.v1.abs().max(after.v1.abs()), before.v2.abs().max(after.v2.abs())];
+    for (i, (exact, sampled)) in orbit.peak_to_peak.iter().zip(row.peak_to_peak).enumerate() {
+        let top = row.omega.max(40.0).powi(2) * exact;
+        let missed = slope[i] * step + top * step * step;
+        let rounding = 1e-9 * exact;
+        assert!(
+            *exact >= sampled - rounding && exact - sampled <= missed + rounding,
+            "{place}: peak to peak of x{} {exact} for {sampled}, at most {missed} missed",
+            i + 1
+        );
+    }
+    let top = row.omega.max(40.0).powi(2) * (orbit.peak_to_peak[0] + orbit.peak_to_peak[1]);
+    let missed = (slope[0] + slope[1]) * step + top * step * step;
+    let error = row.min_gap - orbit.validity.min_gap;
+    assert!(
+        error >= -1e-9 * row.min_gap.abs() - 1e-15 && error <= missed,
+        "{place}: min gap {} for {}, at most {missed} missed",
+        orbit.validity.min_gap,
+        row.min_gap
+    );
+}
+
+#[test]
+fn light_force_elastic_impacts() {
+    check_file("sine_F0.1_R1_c0.1.csv", 0.1, &Rig { restitution: 1.0, ..Rig::thesis() });
+}
+
+#[test]
+fn medium_force() {
+    check_file("sine_F0.5_R0.7_c0.1.csv", 0.5, &Rig::thesis());
+}
+
+#[test]
+fn medium_force_without_dampers() {
+    check_file("sine_F0.5_R0.7_c0.csv", 0.5, &Rig { c1: 0.0, c2: 0.0, ..Rig::thesis() });
+}
+
+#[test]
+fn large_force_elastic_impacts() {
+    check_file("sine_F0.9_R1_c0.1.csv", 0.9, &Rig { restitution: 1.0, ..Rig::thesis() });
+}
