@@ -27,8 +27,10 @@ pub use uff58::{Precision, Storage};
 /// A format to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Target {
-    /// Universal file, data sets 58 or 58b.
+    /// Universal file, data set 58: text or, where asked for, binary.
     Uff,
+    /// Universal file, data set 58b: always binary.
+    UffBinary,
     /// Columns with names and units between commas.
     Csv,
     /// Columns with names and units between tabs.
@@ -48,14 +50,18 @@ impl Target {
         let path = path.as_ref();
         let ending = path.extension().map_or_else(String::new, |e| e.to_string_lossy().to_lowercase());
         Ok(match ending.as_str() {
-            "uff" | "unv" | "ufb" | "58" => Target::Uff,
+            "uff" | "unv" | "58" => Target::Uff,
+            "ufb" => Target::UffBinary,
             "csv" => Target::Csv,
             "tsv" => Target::Tsv,
             "wav" => Target::Wav,
             "npy" => Target::Npy,
             _ => {
                 let found = format!("the ending of {}", path.display());
-                return Err(Error::usage(found, ".uff, .unv, .csv, .tsv, .wav or .npy"));
+                return Err(Error::usage(
+                    found,
+                    ".uff, .unv (text), .ufb (binary), .csv, .tsv, .wav or .npy",
+                ));
             }
         })
     }
@@ -63,7 +69,7 @@ impl Target {
     /// Name, as in JSON.
     pub fn name(self) -> &'static str {
         match self {
-            Target::Uff => "uff",
+            Target::Uff | Target::UffBinary => "uff",
             Target::Csv => "csv",
             Target::Tsv => "tsv",
             Target::Wav => "wav",
@@ -78,6 +84,7 @@ impl Target {
     pub fn write(self, records: &[Record], storage: Storage, out: &mut impl Write) -> Result<()> {
         match self {
             Target::Uff => uff58::write_uff58(records, out, storage),
+            Target::UffBinary => uff58::write_uff58(records, out, Storage { binary: true, ..storage }),
             Target::Csv => csv::write(records, ',', out),
             Target::Tsv => csv::write(records, '\t', out),
             Target::Wav => wav::write(records, wav::Sample::Float32, out),
@@ -98,6 +105,7 @@ fn failed(error: std::io::Error) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::read::{Format, Reader};
 
     #[test]
     fn the_ending_chooses() {
@@ -106,6 +114,32 @@ mod tests {
         assert_eq!(Target::of("b.npy").unwrap(), Target::Npy);
         for path in ["x", "x.xls", ".csv"] {
             assert!(Target::of(path).unwrap_err().to_string().contains(path), "{path}");
+        }
+    }
+
+    /// What every target writes, the reader knows again by itself; numpy's arrays it does not read.
+    #[test]
+    fn what_is_written_is_recognised() {
+        let records =
+            Reader::new().from_reader("x.csv", "t [s],v [m/s]\n0,1\n0.5,2\n".as_bytes()).unwrap().records;
+        for (name, format) in [
+            ("x.uff", Format::Uff),
+            ("x.ufb", Format::Uff),
+            ("x.csv", Format::Csv),
+            ("x.tsv", Format::Csv),
+            ("x.wav", Format::Wav),
+        ] {
+            let mut out = Vec::new();
+            Target::of(name).unwrap().write(&records, Storage::default(), &mut out).unwrap();
+            let back = Reader::new().from_reader("unnamed", out.as_slice()).unwrap();
+            assert_eq!(back.format, format, "{name}");
+            let [Record::Trace(trace)] = back.records.as_slice() else { panic!("{name}") };
+            assert_eq!(
+                (trace.values.as_slice(), trace.meta.unit.symbol()),
+                ([1.0, 2.0].as_slice(), "m/s"),
+                "{name}"
+            );
+            assert_eq!(trace.rate(), Some(2.0), "{name}");
         }
     }
 }

@@ -37,9 +37,9 @@ pub(super) struct Entry {
 
 /// Binary formats with a signature first, then text formats from the strictest to the loosest.
 pub(super) const TABLE: &[Entry] = &[
-    Entry { format: Format::Uff, name: "uff", sniff: uff::sniff, read: uff::read, survey: uff::survey },
     Entry { format: Format::Wav, name: "wav", sniff: wav::sniff, read: wav::read, survey: wav::survey },
     Entry { format: Format::Mat, name: "mat", sniff: mat::sniff, read: mat::read, survey: mat::survey },
+    Entry { format: Format::Uff, name: "uff", sniff: uff::sniff, read: uff::read, survey: uff::survey },
     Entry { format: Format::Csv, name: "csv", sniff: csv::sniff, read: csv::read, survey: csv::survey },
     Entry {
         format: Format::Ascii,

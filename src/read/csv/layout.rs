@@ -116,12 +116,16 @@ fn headings<'a>(line: &Line<'a>, separator: char, values: &Fields) -> Option<Fie
     Some(fields)
 }
 
-/// Whether fields name columns: some letters, and not `key: value`.
+/// Whether fields name columns: some letters that are no exponent, and not `key: value`.
 fn named(fields: &Fields) -> bool {
     let statement =
         fields.first().is_some_and(|(_, f)| f.contains(": ") || f.ends_with(':') || f.contains('='));
-    !statement
-        && fields.iter().any(|(_, f)| f.contains(char::is_alphabetic) && !number::is_missing(f.as_bytes()))
+    let is_name = |field: &str| {
+        let bytes = field.as_bytes();
+        let number = number::parse(bytes).is_some() || number::parse_with(bytes, b',').is_some();
+        field.contains(char::is_alphabetic) && !number && !number::is_missing(bytes)
+    };
+    !statement && fields.iter().any(|(_, f)| is_name(f))
 }
 
 fn units(fields: &Fields) -> bool {
@@ -200,6 +204,8 @@ mod tests {
             "Date: 1, x\n0,1\n",
             "fs=5, x\n0,1\n",
             "t,a,b\n0,1\n",
+            "1,5E-03\n2,5E-03\n",
+            "1.5E-03;2\n2.5D-03;2\n",
             "velocity\n1\n",
             "",
             "-,-\n1,2\n",
