@@ -223,8 +223,27 @@ fn extreme_doubles_keep_their_bits() {
     let bits = |values: Vec<Complex64>| values.iter().map(|v| v.re.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(numbers(&after[0])), bits(numbers(&record)));
     // Text of three-digit exponents: thirteen digits, and no number is lost.
-    for (a, b) in numbers(&record).iter().zip(numbers(&again(&[record.clone()], STORAGES[1])[0])) {
+    for (a, b) in numbers(&record).iter().zip(numbers(&again(std::slice::from_ref(&record), STORAGES[1])[0]))
+    {
         assert!(near(a.re, b.re, 0.5e-12) || a.re < 1e-300, "{a} became {b}");
+    }
+}
+
+/// Numbers and lines that lie across the end of the reader's buffer.
+#[test]
+fn long_records_are_read_across_buffers() {
+    let n = 60_000;
+    let values = (0..n).map(|i| Complex64::new(f64::from(i), -0.5 * f64::from(i))).collect();
+    let axis =
+        Axis { kind: AxisKind::Frequency, grid: Grid::Uneven((0..n).map(|i| f64::from(i).sqrt()).collect()) };
+    let meta = Meta::new("long", Unit::of(Quantity::Receptance));
+    let record = Record::Frf(Frf { meta, axis, values, kind: FrfKind::Receptance });
+    for storage in STORAGES {
+        let after = again(&[record.clone(), record.clone()], storage);
+        for (i, mut after) in after.into_iter().enumerate() {
+            "long".clone_into(&mut after.meta_mut().name);
+            same(&record, &after, storage).unwrap_or_else(|e| panic!("record {i}: {e}"));
+        }
     }
 }
 

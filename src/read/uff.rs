@@ -30,22 +30,23 @@ use system::System;
 /// Endings under which text may stand before the first data set.
 const ENDINGS: [&str; 5] = ["uff", "unv", "ufb", "bunv", "uf"];
 
-/// A delimiter with the number of a data set behind it: the first lines that are not blank, or, under a usual ending,
-/// any lines.
+/// A delimiter with the number of a data set behind it. These must be the first lines that are not blank and stand in
+/// their very columns, for `-1` and `58` may also be two values; under a usual ending any two lines will do.
 pub(super) fn sniff(head: &[u8], source: &Source) -> bool {
-    let anywhere = ENDINGS.contains(&source.extension().as_str());
+    let known = ENDINGS.contains(&source.extension().as_str());
     let head = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
-    let mut delimited = false;
-    for line in head.split(|b| *b == b'\n').filter(|l| !l.trim_ascii().is_empty()) {
-        if delimited && set_number(line).is_some() {
-            return true;
-        }
-        delimited = is_delimiter(line);
-        if !delimited && !anywhere {
-            return false;
-        }
+    let mut lines = head.split(|b| *b == b'\n').map(<[u8]>::trim_ascii_end).filter(|l| !l.is_empty());
+    if !known {
+        let first = lines.next() == Some(b"    -1");
+        let number = |l: &[u8]| l.get(5).is_some_and(u8::is_ascii_digit) && set_number(l).is_some();
+        return first && lines.next().is_some_and(number);
     }
-    false
+    let mut delimited = false;
+    lines.any(|line| {
+        let opens = delimited && set_number(line).is_some();
+        delimited = is_delimiter(line);
+        opens
+    })
 }
 
 pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
@@ -121,7 +122,7 @@ fn walk<S: Sink>(source: &Source, options: &Options, mut each: impl FnMut(Set<S>
                 }
             }
         }
-        delimited = uff58::to_delimiter(&mut stream)?.closed;
+        delimited = stream.pass_set()?.closed;
     }
     around.finish(functions)
 }

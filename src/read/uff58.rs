@@ -28,7 +28,7 @@ mod spacing;
 mod values;
 
 use super::Options;
-use super::uff::delimiter::{closes, is_delimiter};
+use super::uff::delimiter::closes;
 use super::uff::stream::Stream;
 use super::uff::system::System;
 use crate::error::{Error, Result};
@@ -89,7 +89,7 @@ pub fn read<S: Sink>(
         values::text(stream, layout, n, missing, &mut sink)?
     };
     plan.counted(n, taken);
-    let end = to_delimiter(stream)?;
+    let end = stream.pass_set()?;
     if end.lines > 0 {
         plan.meta.doubt(format!(
             "Behind the {} declared values stand {} more lines before the closing -1: they are not read.",
@@ -101,29 +101,6 @@ pub fn read<S: Sink>(
         plan.meta.doubt(format!("The file ends without the closing -1 of the data set{from}."));
     }
     Ok(Ok(Set { plan, sink }))
-}
-
-/// How a data set ends.
-pub struct End {
-    /// Lines that are not blank before the delimiter.
-    pub lines: u64,
-    /// Whether there is a delimiter.
-    pub closed: bool,
-}
-
-/// Passes over everything up to and with the next delimiter.
-///
-/// # Errors
-/// If the file cannot be read.
-pub fn to_delimiter(stream: &mut Stream) -> Result<End> {
-    let mut lines = 0;
-    while stream.next_line()? {
-        if is_delimiter(stream.text()) {
-            return Ok(End { lines, closed: true });
-        }
-        lines += u64::from(!stream.text().trim_ascii().is_empty());
-    }
-    Ok(End { lines, closed: false })
 }
 
 /// The number line of a 58b: `58b`, byte order, number format, header lines, bytes.

@@ -33,12 +33,14 @@ pub fn set_number(line: &[u8]) -> Option<Number> {
     Some(Number { number, binary })
 }
 
-/// Whether `bytes` begin with a closing `-1`, alone or behind one line end.
+/// Whether `bytes`, which stand behind binary values, begin with a closing `-1`, alone or behind one line end.
+///
+/// It must stand in its very columns: values are searched for it, and looser forms would be found in the wrong place.
 pub fn closes(bytes: &[u8]) -> bool {
     let bytes = bytes.strip_prefix(b"\r").unwrap_or(bytes);
     let bytes = bytes.strip_prefix(b"\n").unwrap_or(bytes);
     let end = bytes.iter().position(|b| *b == b'\n').unwrap_or(bytes.len());
-    is_delimiter(&bytes[..end])
+    bytes[..end].strip_prefix(b"    -1").is_some_and(|rest| rest.trim_ascii().is_empty())
 }
 
 #[cfg(test)]
@@ -75,6 +77,7 @@ mod tests {
         assert!(closes(b"\n    -1  \n"));
         assert!(!closes(b"\n\n    -1"));
         assert!(!closes(b"\x00    -1"));
+        assert!(!closes(b"   -1\n"));
         assert!(!closes(b""));
     }
 }

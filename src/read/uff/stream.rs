@@ -1,17 +1,18 @@
 //! Lines and binary blocks of one file, read once through a buffer of fixed size.
 
+use super::delimiter::is_delimiter;
 use crate::error::{Error, Place, Result};
 use crate::read::Source;
 use crate::read::source::ReadSeek;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
-/// Bytes read at a time: small enough to stay in the second-level cache.
-const BLOCK: usize = 256 * 1024;
+/// Bytes read at a time: few enough to stay in the cache, and that the allocator hands out the same memory for each file.
+const BLOCK: usize = 64 * 1024;
 
 /// Bytes of one line that are kept. Standard lines have 80; binary data that is searched for the next data set may have
 /// "lines" of any length.
-const LONGEST: usize = 4096;
+const LONGEST: usize = 1 << 20;
 
 /// Byte order mark of UTF-8, which some editors put first.
 const MARK: &[u8] = b"\xef\xbb\xbf";
@@ -27,7 +28,16 @@ pub struct Stream<'a> {
     text: Vec<u8>,
     line_start: u64,
     terminated: bool,
+    too_long: bool,
     held: bool,
+}
+
+/// How a data set ends.
+pub struct End {
+    /// Lines that are not blank before the delimiter.
+    pub lines: u64,
+    /// Whether there is a delimiter.
+    pub closed: bool,
 }
 
 impl<'a> Stream<'a> {
@@ -43,6 +53,7 @@ impl<'a> Stream<'a> {
             text: Vec::with_capacity(128),
             line_start: 0,
             terminated: false,
+            too_long: false,
             held: false,
         };
         if stream.buffer()?.starts_with(MARK) {
@@ -59,6 +70,7 @@ impl<'a> Stream<'a> {
         self.text.clear();
         self.line_start = self.position;
         self.terminated = false;
+        self.too_long = false;
         while !self.terminated {
             let buffer = self.input.fill_buf().map_err(|e| Error::io("read", self.path, e))?;
             if buffer.is_empty() {
@@ -68,6 +80,7 @@ impl<'a> Stream<'a> {
             let content = &buffer[..end.unwrap_or(buffer.len())];
             let room = LONGEST.saturating_sub(self.text.len());
             self.text.extend_from_slice(&content[..content.len().min(room)]);
+            self.too_long |= content.len() > room;
             let used = content.len() + usize::from(end.is_some());
             self.terminated = end.is_some();
             self.input.consume(used);
@@ -95,6 +108,23 @@ impl<'a> Stream<'a> {
     /// Whether the line taken last ended with a line feed, and not with the file.
     pub fn terminated(&self) -> bool {
         self.terminated
+    }
+
+    /// Whether the line taken last is longer than what is kept of it.
+    pub fn too_long(&self) -> bool {
+        self.too_long
+    }
+
+    /// Passes over everything up to and with the next delimiter.
+    pub fn pass_set(&mut self) -> Result<End> {
+        let mut lines = 0;
+        while self.next_line()? {
+            if is_delimiter(&self.text) {
+                return Ok(End { lines, closed: true });
+            }
+            lines += u64::from(!self.text.trim_ascii().is_empty());
+        }
+        Ok(End { lines, closed: false })
     }
 
     /// Bytes that are buffered; none at the end of the file.

@@ -1,5 +1,6 @@
 //! Records 1 to 11 of data set 58: identification, degrees of freedom, data form, axis characteristics.
 
+use super::codes;
 use super::layout::Layout;
 use crate::error::{Error, Place, Result};
 use crate::read::number;
@@ -80,6 +81,20 @@ pub struct Axis {
     pub label: String,
     /// Unit; empty where it is `NONE`.
     pub unit: String,
+}
+
+impl Axis {
+    /// `speed [rpm]`: label, or else the name of the data type, and unit.
+    pub fn described(&self) -> String {
+        let data_type = match self.data_type {
+            19 => "rotational speed",
+            20 => "order",
+            code => codes::data_type(code, false).map_or("", |t| t.0),
+        };
+        let name = if self.label.is_empty() { data_type } else { &self.label };
+        let unit = if self.unit.is_empty() { String::new() } else { format!(" [{}]", self.unit) };
+        format!("{name}{unit}").trim_start().to_owned()
+    }
 }
 
 impl Heading {

@@ -1,7 +1,7 @@
 //! What record a data set 58 becomes: kind, axis, scaling, unit, and the doubts about each.
 
 use super::codes::{self, Domain};
-use super::heading::Heading;
+use super::heading::{self, Heading};
 use super::ordinate::Ordinate;
 use super::sink::{Counted, Kept};
 use super::values::Taken;
@@ -114,9 +114,6 @@ impl Plan {
         } else if declared == 0 {
             self.meta.doubt("The header declares no values.");
         }
-        if taken.cut {
-            self.meta.doubt("The last value ends with the file: digits of it may be missing.");
-        }
         if taken.missing > 0 {
             self.meta.doubt(format!("{} numbers are missing and kept as such.", taken.missing));
         }
@@ -221,80 +218,72 @@ fn unit(heading: &Heading, system: &System, options: &Options, meta: &mut Meta) 
 /// Kind of the abscissa and factor to s or Hz.
 fn abscissa(heading: &Heading, options: &Options, meta: &mut Meta) -> (AxisKind, f64) {
     let axis = &heading.abscissa;
-    let typed = match axis.data_type {
-        17 => Some(AxisKind::Time),
-        18 => Some(AxisKind::Frequency),
+    let unit = Unit::parse_or_opaque(&axis.unit);
+    let by_unit = match unit.quantity() {
+        Quantity::Time => Some(AxisKind::Time),
+        Quantity::Frequency => Some(AxisKind::Frequency),
         _ => None,
     };
     let shown = |kind: &AxisKind| if *kind == AxisKind::Time { "time" } else { "frequency" };
-    if !axis.unit.is_empty() && !matches!(axis.data_type, 19 | 20) {
-        let unit = Unit::parse_or_opaque(&axis.unit);
-        let by_unit = match unit.quantity() {
-            Quantity::Time => Some(AxisKind::Time),
-            Quantity::Frequency => Some(AxisKind::Frequency),
-            _ => None,
-        };
-        match (by_unit, typed) {
-            (Some(kind), typed) => {
-                if let Some(typed) = typed.filter(|t| *t != kind) {
-                    meta.doubt(format!(
-                        "The data type of the abscissa is {}, but its unit {} is that of {}: the unit is believed.",
-                        shown(&typed),
-                        axis.unit,
-                        shown(&kind)
-                    ));
-                }
-                return (kind, unit.factor());
+    let by_type = match axis.data_type {
+        17 => AxisKind::Time,
+        18 => AxisKind::Frequency,
+        0 | 1 => match by_unit {
+            Some(kind) => return (kind, unit.factor()),
+            None if axis.label.is_empty() && axis.unit.is_empty() => {
+                return (by_function(heading, options, meta), 1.0);
             }
-            (None, Some(kind)) => {
-                meta.doubt(format!(
-                    "The unit \"{}\" of the abscissa is not one of {}: s or Hz are assumed.",
-                    axis.unit,
-                    shown(&kind)
-                ));
-                return (kind, 1.0);
-            }
-            (None, None) => return (AxisKind::Other(format!("{} [{}]", axis.label, axis.unit)), 1.0),
+            None => return (by_label(axis), 1.0),
+        },
+        _ => return (AxisKind::Other(axis.described()), 1.0),
+    };
+    if axis.unit.is_empty() {
+        return (by_type, 1.0);
+    }
+    if let Some(kind) = by_unit {
+        if kind != by_type {
+            meta.doubt(format!(
+                "The data type of the abscissa is {}, but its unit {} is that of {}: the unit is believed.",
+                shown(&by_type),
+                axis.unit,
+                shown(&kind)
+            ));
         }
+        return (kind, unit.factor());
     }
-    if let Some(kind) = typed {
-        return (kind, 1.0);
-    }
-    if axis.data_type > 1 || !axis.label.is_empty() {
-        let label = axis.label.to_lowercase();
-        if axis.data_type <= 1 {
-            for (word, kind) in
-                [("time", AxisKind::Time), ("freq", AxisKind::Frequency), ("index", AxisKind::Index)]
-            {
-                if label.contains(word) {
-                    return (kind, 1.0);
-                }
-            }
-        }
-        let name = match axis.data_type {
-            19 => "rotational speed",
-            20 => "order",
-            code => codes::data_type(code, false).map_or("", |t| t.0),
-        };
-        let name = if axis.label.is_empty() { name } else { &axis.label };
-        let unit = if axis.unit.is_empty() { String::new() } else { format!(" [{}]", axis.unit) };
-        return (AxisKind::Other(format!("{name}{unit}")), 1.0);
-    }
+    meta.doubt(format!(
+        "The unit \"{}\" of the abscissa is not one of {}: s or Hz are assumed.",
+        axis.unit,
+        shown(&by_type)
+    ));
+    (by_type, 1.0)
+}
+
+/// Kind of an abscissa without data type or unit.
+fn by_label(axis: &heading::Axis) -> AxisKind {
+    let label = axis.label.to_lowercase();
+    [("time", AxisKind::Time), ("freq", AxisKind::Frequency), ("index", AxisKind::Index)]
+        .into_iter()
+        .find(|(word, _)| axis.unit.is_empty() && label.contains(word))
+        .map_or_else(|| AxisKind::Other(axis.described()), |(_, kind)| kind)
+}
+
+/// Kind of an abscissa of which the file says nothing.
+fn by_function(heading: &Heading, options: &Options, meta: &mut Meta) -> AxisKind {
     let (name, domain) = codes::function(heading.function);
-    let kind = match domain {
-        Domain::Time => AxisKind::Time,
-        Domain::Frequency => AxisKind::Frequency,
-        Domain::Either if options.rate.is_some() => return (AxisKind::Time, 1.0),
+    let (kind, shown) = match domain {
+        Domain::Time => (AxisKind::Time, "time in s"),
+        Domain::Frequency => (AxisKind::Frequency, "frequency in Hz"),
+        Domain::Either if options.rate.is_some() => return AxisKind::Time,
         Domain::Either => {
             meta.doubt("The file does not say whether the abscissa is time or frequency.");
-            return (AxisKind::Index, 1.0);
+            return AxisKind::Index;
         }
     };
     meta.doubt(format!(
-        "The file does not say what its abscissa is; the function is of the kind \"{name}\", so {} is assumed.",
-        if kind == AxisKind::Time { "time in s" } else { "frequency in Hz" }
+        "The file does not say what its abscissa is; by the function type, {name}, {shown} is assumed."
     ));
-    (kind, 1.0)
+    kind
 }
 
 /// Kind of record; where function type and abscissa disagree, the abscissa decides.

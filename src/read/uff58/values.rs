@@ -15,8 +15,6 @@ const CHUNK: usize = 1536;
 pub struct Taken {
     /// Points that went to the sink.
     pub n: usize,
-    /// Whether the last of them ends with the file, so that digits may be missing.
-    pub cut: bool,
     /// Missing values (NaN) among them.
     pub missing: usize,
 }
@@ -38,31 +36,30 @@ impl<'a, S: Sink> Chunk<'a, S> {
         Chunk { sink, numbers, columns, due: n.saturating_mul(columns), taken: 0, missing: 0 }
     }
 
-    /// Hands whole points on.
-    fn flush(&mut self, allow_missing: bool) -> std::result::Result<(), usize> {
-        let whole = self.numbers.len() / self.columns * self.columns;
-        // No early end: this loop is vectorised.
-        if self.numbers[..whole].iter().fold(false, |bad, v| bad | !v.is_finite()) {
-            for (i, value) in self.numbers[..whole].iter_mut().enumerate() {
-                if !value.is_finite() {
-                    if !allow_missing {
-                        return Err(i);
-                    }
-                    *value = f64::NAN;
-                    self.missing += 1;
-                }
+    /// Index of the first number that is not finite.
+    fn odd(&self) -> Option<usize> {
+        // No early end: this loop is vectorised, and nearly always finds nothing.
+        let any = self.numbers.iter().fold(false, |any, v| any | !v.is_finite());
+        if any { self.numbers.iter().position(|v| !v.is_finite()) } else { None }
+    }
+
+    /// Hands whole points on; numbers that are not finite are missing ones.
+    fn flush(&mut self) {
+        if let Some(first) = self.odd() {
+            for value in self.numbers[first..].iter_mut().filter(|v| !v.is_finite()) {
+                *value = f64::NAN;
             }
         }
+        let whole = self.numbers.len() / self.columns * self.columns;
+        self.missing += self.numbers[..whole].iter().filter(|v| v.is_nan()).count();
         self.sink.take(&self.numbers[..whole]);
         self.taken += whole / self.columns;
         self.numbers.drain(..whole);
-        Ok(())
     }
 
-    fn end(mut self, cut: bool) -> Taken {
-        // Text marks its missing values line by line; what is left cannot be at fault any more.
-        let _ = self.flush(true);
-        Taken { n: self.taken, cut, missing: self.missing }
+    fn end(mut self) -> Taken {
+        self.flush();
+        Taken { n: self.taken, missing: self.missing }
     }
 }
 
@@ -80,7 +77,7 @@ pub fn text<S: Sink>(
         let (bytes, lines) = full_lines(stream.buffer()?, widths, &mut chunk.numbers, &mut chunk.due);
         stream.consume_lines(bytes, lines);
         if chunk.numbers.len() >= CHUNK {
-            let _ = chunk.flush(true); // missing values were refused where they stand
+            chunk.flush();
         }
         if lines > 0 {
             continue;
@@ -92,17 +89,24 @@ pub fn text<S: Sink>(
             stream.hold();
             break;
         }
+        if stream.too_long() {
+            return Err(Error::input(
+                stream.place(),
+                "a line of more than a million characters among the values of data set 58",
+                "lines of 80 characters",
+            ));
+        }
         let before = chunk.numbers.len();
         if !stream.terminated() {
-            let cut = last_line(stream.text(), widths, chunk.due, &mut chunk.numbers);
+            last_line(stream.text(), widths, &mut chunk.numbers);
             chunk.numbers.truncate(before + chunk.due);
-            return Ok(chunk.end(cut));
+            break;
         }
         odd_line(stream, widths, allow_missing, &mut chunk.numbers)?;
         chunk.numbers.truncate(before + chunk.due); // what fills the last line is not data
         chunk.due -= chunk.numbers.len() - before;
     }
-    Ok(chunk.end(false))
+    Ok(chunk.end())
 }
 
 /// Reads lines that hold a full row of fixed-width numbers, the usual case, straight from the buffer. Gives bytes and
@@ -197,40 +201,28 @@ fn odd_line(stream: &Stream, widths: &[usize], allow_missing: bool, numbers: &mu
     Ok(())
 }
 
-/// Numbers of a line that the end of the file cut off. The last of them counts only where it fills its field, or where
-/// it is the last that is due; gives whether that leaves a doubt.
-fn last_line(line: &[u8], widths: &[usize], due: usize, numbers: &mut Vec<f64>) -> bool {
-    let before = numbers.len();
-    let mut ends = 0;
-    let whole: usize = widths
-        .iter()
-        .take_while(|w| {
-            ends += *w;
-            ends <= line.len()
-        })
-        .sum();
-    if by_columns(line, widths, numbers) {
-        let found = numbers.len() - before;
-        if found >= due || whole == line.len() {
-            return found == due && whole < line.len();
+/// Numbers of a line that ends with the file and not with a line end. What stands last may be half a number that looks
+/// like a whole one: it counts only where it fills its field.
+fn last_line(line: &[u8], widths: &[usize], numbers: &mut Vec<f64>) {
+    let mut whole = 0;
+    for width in widths {
+        if whole + width <= line.len() {
+            whole += width;
         }
-        numbers.truncate(before);
     }
-    if whole > 0 && by_columns(&line[..whole], widths, numbers) {
-        return false;
+    let before = line[..whole].last().copied().unwrap_or(b' ');
+    let behind = line.get(whole).copied().unwrap_or(b' ');
+    let between = before == b' ' || matches!(behind, b' ' | b'-' | b'+');
+    if between && whole > 0 && by_columns(&line[..whole], widths, numbers) {
+        return;
     }
-    let mut last_ends = 0;
     for (column, token) in tokens(line) {
-        let Some(value) = number::parse(token) else { break };
-        numbers.push(value);
-        last_ends = column - 1 + token.len();
+        let ends = column - 1 + token.len();
+        match number::parse(token) {
+            Some(value) if ends < line.len() => numbers.push(value),
+            _ => break,
+        }
     }
-    let cut = last_ends == line.len();
-    let complete = numbers.len() - before >= due;
-    if cut && !complete {
-        numbers.pop();
-    }
-    cut && complete
 }
 
 /// Tokens between blanks, with their columns from 1.
@@ -297,13 +289,18 @@ pub fn binary<S: Sink>(
             }
             decode(point, layout, storage, &mut chunk.numbers);
         }
-        chunk.flush(allow_missing).map_err(|index| {
+        if !allow_missing && let Some(index) = chunk.odd() {
             let byte = position + (index / layout.columns() * size) as u64;
-            Error::input(stream.byte_place(byte), "a value that is not a finite number", "finite numbers")
-                .hint("keep missing values with --allow-missing")
-        })?;
+            return Err(Error::input(
+                stream.byte_place(byte),
+                "a value that is not a finite number",
+                "finite numbers",
+            )
+            .hint("keep missing values with --allow-missing"));
+        }
+        chunk.flush();
     }
-    Ok(chunk.end(false))
+    Ok(chunk.end())
 }
 
 fn decode(bytes: &[u8], layout: Layout, storage: Binary, numbers: &mut Vec<f64>) {
