@@ -378,7 +378,7 @@ fn an_abscissa_in_double_precision() {
     assert!(doubts(&recording).contains("stored in double precision"));
     // And as the standard has it.
     let mut narrow = Vec::new();
-    for (x, y) in [(0.0f32, 1.5f64), (0.25, 2.5), (1.5, 3.5)] {
+    for (x, y) in [(0.0f32, 1.5f64), (0.25, 2.5), (0.5, 3.5)] {
         narrow.extend_from_slice(&x.to_le_bytes());
         narrow.extend_from_slice(&y.to_le_bytes());
     }
@@ -590,6 +590,19 @@ fn instants_that_are_stored_and_even_give_a_rate() {
     let step = recording.records[0].axis().step().expect("an even axis");
     // 8/3 is printed as 2.66667, so the step is off by half a unit over eight steps.
     assert!((step - 1.0 / 3.0).abs() <= 0.5e-5 / 8.0);
+}
+
+#[test]
+fn a_lost_sample_leaves_no_rate() {
+    let pairs: Vec<String> =
+        (0..9).filter(|i| *i != 4).map(|i| format!("{:13.5e}{i:13}\n", f64::from(i) / 3.0)).collect();
+    let set = Set { form: form(2, 8, 0), ..Set::trace(0, &pairs.concat()) };
+    let recording = read(&set.file());
+    assert_eq!(recording.records[0].axis().step(), None);
+    assert!(doubts(&recording).contains("uneven: there is no sampling rate"));
+    let stated = try_read(&reader().rate(Some(3.0)), &set.file()).unwrap();
+    assert_eq!(stated.records[0].axis().step(), Some(1.0 / 3.0));
+    assert!(doubts(&stated).contains("its own instants"));
 }
 
 #[test]

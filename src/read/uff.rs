@@ -28,7 +28,7 @@ use stream::Stream;
 use system::System;
 
 /// Endings under which text may stand before the first data set.
-const ENDINGS: [&str; 5] = ["uff", "unv", "ufb", "bunv", "uf"];
+const ENDINGS: [&str; 6] = ["uff", "unv", "ufb", "bunv", "uf", "58"];
 
 /// A delimiter with the number of a data set behind it. These must be the first lines that are not blank and stand in
 /// their very columns, for `-1` and `58` may also be two values; under a usual ending any two lines will do.

@@ -4,10 +4,11 @@ use super::codes::{self, Domain};
 use super::heading::{self, Heading};
 use super::ordinate::Ordinate;
 use super::sink::{Counted, Kept};
+use super::spacing::Spacing;
 use super::values::Taken;
 use crate::error::{Error, Result};
 use crate::read::uff::system::System;
-use crate::read::{Header, Options, Summary};
+use crate::read::{Header, Options};
 use crate::record::{
     Axis, AxisKind, Frf, FrfKind, Grid, Meta, Record, Scaling, Spectrum, Trace, Values, Window,
 };
@@ -119,18 +120,32 @@ impl Plan {
         }
     }
 
+    /// Start and step of a stored abscissa that is even within its digits. Only a trace needs them, for its rate; lines of
+    /// a spectrum are used one by one and keep their frequencies.
+    fn evened(&mut self, spacing: &Spacing) -> Option<(f64, f64)> {
+        if self.axis != AxisKind::Time {
+            return None;
+        }
+        let Some(step) = spacing.step() else {
+            self.meta.doubt("The instants are stored one by one and are uneven: there is no sampling rate.");
+            return None;
+        };
+        let (start, seconds) = (spacing.first() * self.abscissa_factor, step * self.abscissa_factor);
+        if spacing.is_coarse(step) {
+            self.meta.doubt(format!(
+                "The instants have too few digits to show whether a sample is missing: the step is taken as (last - first)/(n - 1) = {seconds} s."
+            ));
+        }
+        Some((start, seconds))
+    }
+
     /// The record.
-    pub fn record(self, kept: Kept) -> Record {
+    pub fn record(mut self, kept: Kept) -> Record {
         let n = kept.values.len();
-        let grid = match (self.step, self.axis == AxisKind::Time) {
-            (Some(step), _) => Grid::Even { start: self.start, step, n },
-            // A trace needs its sampling rate; lines of a spectrum are used one by one and keep their frequencies.
-            (None, true) if kept.spacing().step().is_some() => {
-                let spacing = kept.spacing();
-                let step = spacing.step().unwrap_or_default() * self.abscissa_factor;
-                Grid::Even { start: spacing.first() * self.abscissa_factor, step, n }
-            }
-            _ => Grid::Uneven(kept.abscissa.iter().map(|x| x * self.abscissa_factor).collect()),
+        let even = self.step.map(|step| (self.start, step)).or_else(|| self.evened(&kept.spacing()));
+        let grid = match even {
+            Some((start, step)) => Grid::Even { start, step, n },
+            None => Grid::Uneven(kept.abscissa.iter().map(|x| x * self.abscissa_factor).collect()),
         };
         let mut values = kept.values;
         if self.factor != 1.0 {
@@ -143,27 +158,18 @@ impl Plan {
     }
 
     /// The record's header, from a count of its values.
-    pub fn header(self, counted: &Counted) -> Header {
-        let (summary, spacing) = (counted.summary, &counted.spacing);
-        let time = self.axis == AxisKind::Time;
-        let factor = self.factor;
-        let even = match self.step {
-            Some(step) => Some((self.start, step)),
-            None if time => spacing
-                .step()
-                .map(|s| (spacing.first(), s))
-                .map(|(x, s)| (x * self.abscissa_factor, s * self.abscissa_factor)),
-            None => None,
-        };
-        let x0 = spacing.first() * self.abscissa_factor;
+    pub fn header(mut self, counted: &Counted) -> Header {
+        let (summary, factor) = (counted.summary, self.factor);
+        let x0 = counted.spacing.first() * self.abscissa_factor;
         let max_at = counted.max_at.map(|x| x * self.abscissa_factor);
+        let even = self.step.map(|step| (self.start, step)).or_else(|| self.evened(&counted.spacing));
         let grid = match even {
             Some((start, step)) => Grid::Even { start, step, n: summary.n },
             None => Grid::Uneven(Vec::new()),
         };
         let none = if self.complex { Values::Complex(Vec::new()) } else { Values::Real(Vec::new()) };
         let empty = self.build(grid, none);
-        let mut header = Header::of(&empty).with_summary(&Summary { ..summary }, factor, empty.axis());
+        let mut header = Header::of(&empty).with_summary(&summary, factor, empty.axis());
         if even.is_none() {
             (header.x0, header.max_at) = (x0, max_at);
         }

@@ -22,6 +22,7 @@ pub struct Spacing {
     last: f64,
     least: f64,
     most: f64,
+    slack: f64,
     decade: f64,
 }
 
@@ -35,6 +36,7 @@ impl Spacing {
             last: 0.0,
             least: f64::NEG_INFINITY,
             most: f64::INFINITY,
+            slack: 0.0,
             decade: 1.0,
         }
     }
@@ -46,6 +48,7 @@ impl Spacing {
         } else {
             // Three times the rounding of one value: of this one, the first and the last.
             let slack = 3.0 * self.rounding(value.abs().max(self.first.abs()));
+            self.slack = self.slack.max(slack);
             self.least = self.least.max((value - self.first - slack) / self.n as f64);
             self.most = self.most.min((value - self.first + slack) / self.n as f64);
         }
@@ -81,6 +84,12 @@ impl Spacing {
         let step = (self.last - self.first) / (self.n - 1) as f64;
         (step > 0.0 && (self.least..=self.most).contains(&step)).then_some(step)
     }
+
+    /// Whether the digits are too few to see a value that is missing between even ones: it moves one of the others by
+    /// half a step or more from the mean line.
+    pub fn is_coarse(&self, step: f64) -> bool {
+        2.0 * self.slack >= step
+    }
 }
 
 #[cfg(test)]
@@ -110,6 +119,22 @@ mod tests {
         let stored: Vec<f64> = (0..5000).map(|i| f64::from((f64::from(i) * dt) as f32)).collect();
         assert!((step(Digits::Single, &stored).unwrap() / dt - 1.0).abs() < 1e-7);
         assert_eq!(step(Digits::Double, &stored), None);
+    }
+
+    #[test]
+    fn a_lost_value_is_seen_or_cannot_be() {
+        for (n, dt, coarse) in
+            [(1000, 1e-3, false), (1000, 1e-2, false), (5000, 1e-3, false), (60_000, 2e-4, true)]
+        {
+            for lost in [1, n / 3, n / 2, n - 2] {
+                let mut spacing = Spacing::new(Digits::Text);
+                for i in (0..n).filter(|i| *i != lost) {
+                    spacing.push(format!("{:.5e}", f64::from(i) * dt).parse().unwrap());
+                }
+                assert_eq!(spacing.is_coarse(dt), coarse);
+                assert!(coarse || spacing.step().is_none(), "{n} values of step {dt}, {lost} lost");
+            }
+        }
     }
 
     #[test]
