@@ -2,7 +2,7 @@
 //!
 //! # Flow
 //! Data flows one way: [`read`] → [`signal`] → [`measure`] → [`model`] → [`compare`] → `report`.
-//! [`write`] stands beside [`read`]; [`record`], [`units`], [`error`] and [`math`] lie below all of them.
+//! [`mod@write`] stands beside [`read`]; [`record`], [`units`], [`error`] and [`math`] lie below all of them.
 //!
 //! # Units and scaling
 //! SI throughout: m, m/s, m/s², N, kg, s; frequencies in Hz unless a name says ω (rad/s). Spectra are one-sided, and
