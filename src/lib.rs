@@ -1,7 +1,7 @@
 //! Measurements of impacting machines: from instrument files to answers, each with its uncertainty.
 //!
 //! # Flow
-//! Data flows one way: [`read`] → [`signal`] → [`measure`] → [`model`] → [`compare`] → `report`.
+//! Data flows one way: [`read`] → [`signal`] → [`measure`] → [`model`] → [`compare`] → [`report`].
 //! [`mod@write`] stands beside [`read`]; [`record`], [`units`], [`error`] and [`math`] lie below all of them.
 //!
 //! # Units and scaling
@@ -16,6 +16,7 @@ pub mod measure;
 pub mod model;
 pub mod read;
 pub mod record;
+pub mod report;
 pub mod signal;
 pub mod units;
 pub mod write;

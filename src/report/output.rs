@@ -1,0 +1,191 @@
+//! A folder of results, each file of which appears whole or not at all.
+
+use crate::error::{Error, Result};
+use std::fs;
+use std::io::Write;
+use std::path::{Component, Path, PathBuf};
+
+/// Folder into which results are written.
+///
+/// A file is written beside its place under a temporary name and then renamed, so that a reader sees the old
+/// file or the new one, never a part. This holds against failures and interruptions of this program; nothing
+/// is forced to the disk, so a power failure in the seconds after may still lose the new content.
+#[derive(Debug)]
+pub struct Output {
+    folder: PathBuf,
+    written: Vec<String>,
+}
+
+impl Output {
+    /// A folder, made with its parents where absent.
+    ///
+    /// # Errors
+    /// If the folder cannot be made, or if a file has its name.
+    pub fn new(folder: impl Into<PathBuf>) -> Result<Output> {
+        let folder = folder.into();
+        fs::create_dir_all(&folder).map_err(|e| Error::io("make the folder", &folder, e))?;
+        Ok(Output { folder, written: Vec::new() })
+    }
+
+    /// The folder.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Names of the files written, in order and each once.
+    pub fn written(&self) -> &[String] {
+        &self.written
+    }
+
+    /// Writes a file whole; `name` is relative to the folder, and folders in it are made. Returns its path.
+    ///
+    /// # Errors
+    /// If `name` is empty, absolute, or leads outside the folder, be it by `..` or over a link; if the system
+    /// refuses. In either case a file that had this name stays as it was, and no temporary file is left.
+    pub fn write(&mut self, name: &str, bytes: impl AsRef<[u8]>) -> Result<PathBuf> {
+        let path = self.folder.join(checked(name)?);
+        let parent = path.parent().unwrap_or(&self.folder).to_owned();
+        self.make_inside(&parent, name)?;
+        if path.is_dir() {
+            return Err(outside(name, "names a folder").hint("remove that folder or choose another name"));
+        }
+        let temporary = temporary_beside(&path);
+        let replaced = fill(&temporary, bytes.as_ref())
+            .and_then(|()| fs::rename(&temporary, &path).map_err(|e| Error::io("replace", &path, e)));
+        if let Err(error) = replaced {
+            // The first failure is the one to report; a leftover that cannot be removed either has the same
+            // cause.
+            let _ = fs::remove_file(&temporary);
+            return Err(error);
+        }
+        if !self.written.iter().any(|w| w == name) {
+            self.written.push(name.to_owned());
+        }
+        Ok(path)
+    }
+
+    /// Makes `parent` after checking that the deepest part of it that exists lies inside the folder.
+    fn make_inside(&self, parent: &Path, name: &str) -> Result<()> {
+        let real = |p: &Path| p.canonicalize().map_err(|e| Error::io("find", p, e));
+        let root = real(&self.folder)?;
+        let present = parent.ancestors().find(|p| p.symlink_metadata().is_ok()).unwrap_or(&self.folder);
+        if !real(present)?.starts_with(&root) {
+            return Err(outside(name, "leads outside the output folder over a link"));
+        }
+        fs::create_dir_all(parent).map_err(|e| Error::io("make the folder", parent, e))
+    }
+}
+
+/// The name as a path of plain parts. A backslash or a colon would mean something else on another system, so
+/// both are refused.
+fn checked(name: &str) -> Result<&Path> {
+    let path = Path::new(name);
+    let plain = path.components().all(|c| matches!(c, Component::Normal(_)));
+    if name.is_empty() || name.ends_with('/') || name.contains(['\\', ':', '\0']) || !plain {
+        return Err(outside(name, "is not a plain name inside the output folder"));
+    }
+    Ok(path)
+}
+
+fn outside(name: &str, why: &str) -> Error {
+    Error::usage(format!("the output name \"{name}\" {why}"), "a name such as figures/response.svg")
+}
+
+/// A hidden name in the same folder, hence on the same file system; the process number keeps two programs
+/// apart.
+fn temporary_beside(path: &Path) -> PathBuf {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    // Names may be up to 255 bytes long on common file systems: the temporary one must not be the first to
+    // exceed that.
+    let head: String = name.chars().take(40).collect();
+    path.with_file_name(format!(".{head}.{}.part", std::process::id()))
+}
+
+fn fill(path: &Path, bytes: &[u8]) -> Result<()> {
+    // A leftover of a program that was killed and had this process number is ours to replace.
+    let _ = fs::remove_file(path);
+    let write = || {
+        let mut file = fs::OpenOptions::new().write(true).create_new(true).open(path)?;
+        file.write_all(bytes)?;
+        file.flush()
+    };
+    write().map_err(|e| Error::io("write", path, e))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<String> =
+            fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn files_are_replaced_whole_and_remembered_once_in_order() {
+        let dir = tempfile::tempdir().unwrap();
+        let mut out = Output::new(dir.path().join("a/b")).unwrap();
+        out.write("z.txt", "one").unwrap();
+        out.write("figures/x.svg", b"<svg/>").unwrap();
+        out.write("z.txt", "two").unwrap();
+        assert_eq!(out.written(), ["z.txt", "figures/x.svg"]);
+        assert_eq!(fs::read_to_string(out.folder().join("z.txt")).unwrap(), "two");
+        assert_eq!(names(out.folder()), ["figures", "z.txt"]);
+    }
+
+    #[test]
+    fn names_that_lead_outside_are_refused() {
+        let dir = tempfile::tempdir().unwrap();
+        let mut out = Output::new(dir.path().join("in")).unwrap();
+        for name in ["", ".", "..", "../x", "a/../../x", "/etc/x", "a\\b", "c:x", "a/", "./a", "a\0b"] {
+            let error = out.write(name, "x").unwrap_err();
+            assert_eq!(error.exit_code(), 2, "{name:?}");
+        }
+        assert_eq!(names(dir.path()), ["in"]);
+        assert!(names(out.folder()).is_empty() && out.written().is_empty());
+    }
+
+    #[test]
+    fn a_failure_leaves_the_old_content_and_no_temporary() {
+        let dir = tempfile::tempdir().unwrap();
+        let mut out = Output::new(dir.path()).unwrap();
+        fs::create_dir(dir.path().join("x")).unwrap();
+        fs::write(dir.path().join("x/old"), "old").unwrap();
+        assert!(out.write("x", "new").is_err());
+        // A name that fits for the temporary file, but not for the file itself: the rename fails.
+        let long = "n".repeat(300);
+        assert!(out.write(&long, "new").is_err());
+        assert_eq!(names(dir.path()), ["x"]);
+        assert_eq!(fs::read_to_string(dir.path().join("x/old")).unwrap(), "old");
+        assert!(out.written().is_empty());
+    }
+
+    #[test]
+    fn a_file_in_the_place_of_a_folder_is_an_error() {
+        let dir = tempfile::tempdir().unwrap();
+        fs::write(dir.path().join("f"), "x").unwrap();
+        assert!(Output::new(dir.path().join("f")).is_err());
+        assert!(Output::new(dir.path()).unwrap().write("f/g", "x").is_err());
+        assert_eq!(fs::read_to_string(dir.path().join("f")).unwrap(), "x");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_not_followed() {
+        use std::os::unix::fs::symlink;
+        let dir = tempfile::tempdir().unwrap();
+        let elsewhere = tempfile::tempdir().unwrap();
+        fs::write(elsewhere.path().join("kept"), "kept").unwrap();
+        let mut out = Output::new(dir.path()).unwrap();
+        symlink(elsewhere.path(), dir.path().join("door")).unwrap();
+        symlink(elsewhere.path().join("kept"), dir.path().join("file")).unwrap();
+        assert!(out.write("door/x", "x").is_err());
+        assert!(out.write("door/deep/x", "x").is_err());
+        out.write("file", "new").unwrap();
+        assert_eq!(names(elsewhere.path()), ["kept"]);
+        assert_eq!(fs::read_to_string(elsewhere.path().join("kept")).unwrap(), "kept");
+        assert_eq!(fs::read_to_string(dir.path().join("file")).unwrap(), "new");
+    }
+}
