@@ -1,5 +1,30 @@
-//! Results on their way out: a folder in which each file appears whole.
+//! Figures as data, and their pictures.
+//!
+//! A [`Figure`] is data: panels with axes and series, no drawing. [`Figure::draw`] makes a [`Drawing`] of it,
+//! which is written as SVG or PNG. Drawing needs nothing but the figure, so that many can be drawn at once;
+//! the same figure gives the same bytes on every machine.
 
+pub mod colour;
+pub mod notation;
+
+mod axis;
+mod draw;
+mod figure;
+mod font;
+mod heatmap;
+mod horizon;
 mod output;
+mod path;
+mod png;
+mod projection;
+mod series;
+mod ticks;
+mod waterfall;
 
+pub use axis::{AxisSpec, Scale};
+pub use draw::Drawing;
+pub use figure::{Figure, Legend, Note, Panel, Plot};
+pub use heatmap::{Heatmap, Key};
 pub use output::Output;
+pub use series::{Ink, Marker, Series, Shape, Stroke};
+pub use waterfall::{Peak, Waterfall};

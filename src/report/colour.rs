@@ -1,0 +1,136 @@
+//! Colours that survive colour blindness and a grey printer.
+
+/// sRGB, 8 bits a channel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Rgb(pub u8, pub u8, pub u8);
+
+/// Colours of series in their order: the palette of Okabe and Ito (2008), *Color Universal Design*, without
+/// its yellow, which is too light for lines on white.
+pub const SERIES: [Rgb; 7] = [
+    Rgb(0, 114, 178),
+    Rgb(213, 94, 0),
+    Rgb(0, 158, 115),
+    Rgb(204, 121, 167),
+    Rgb(230, 159, 0),
+    Rgb(86, 180, 233),
+    Rgb(0, 0, 0),
+];
+
+/// Frames, ticks and text.
+pub const BLACK: Rgb = Rgb(0, 0, 0);
+/// Reference lines and leaders.
+pub const GREY: Rgb = Rgb(110, 110, 110);
+/// Lines that only guide the eye.
+pub const PALE: Rgb = Rgb(205, 205, 205);
+/// Paper.
+pub const WHITE: Rgb = Rgb(255, 255, 255);
+
+/// Every eighth colour of the map *viridis* (Smith, van der Walt and Firing 2015, released under CC0).
+const VIRIDIS: [[u8; 3]; 33] = [
+    [68, 1, 84],
+    [71, 13, 96],
+    [72, 24, 106],
+    [72, 35, 116],
+    [71, 45, 123],
+    [69, 54, 129],
+    [66, 64, 134],
+    [63, 73, 137],
+    [59, 82, 139],
+    [55, 90, 141],
+    [51, 99, 141],
+    [47, 106, 142],
+    [44, 114, 142],
+    [41, 122, 142],
+    [38, 129, 142],
+    [35, 137, 142],
+    [33, 144, 140],
+    [31, 152, 139],
+    [31, 159, 136],
+    [33, 166, 133],
+    [40, 174, 128],
+    [49, 181, 123],
+    [62, 188, 116],
+    [76, 194, 108],
+    [93, 201, 99],
+    [110, 206, 88],
+    [130, 211, 76],
+    [150, 216, 63],
+    [171, 220, 50],
+    [192, 223, 36],
+    [213, 226, 26],
+    [234, 229, 26],
+    [253, 231, 37],
+];
+
+/// Perceptually uniform map from 0 (dark violet) to 1 (yellow); linear between the tabulated colours, within
+/// 2/255 of the original 256. Values outside are clamped, NaN counts as 0.
+pub fn viridis(fraction: f64) -> Rgb {
+    let fraction = if fraction.is_nan() { 0.0 } else { fraction.clamp(0.0, 1.0) };
+    let at = fraction * (VIRIDIS.len() - 1) as f64;
+    let low = (at as usize).min(VIRIDIS.len() - 2);
+    let [from, to] = [VIRIDIS[low], VIRIDIS[low + 1]];
+    let mix = |i: usize| mixed(from[i], to[i], at - low as f64);
+    Rgb(mix(0), mix(1), mix(2))
+}
+
+impl Rgb {
+    /// The colour mixed with white: 0 leaves it, 1 gives white.
+    pub fn tint(self, white: f64) -> Rgb {
+        let mix = |c| mixed(c, 255, white);
+        Rgb(mix(self.0), mix(self.1), mix(self.2))
+    }
+
+    /// Relative luminance from 0 to 1 (WCAG 2.1, from IEC 61966-2-1).
+    pub fn luminance(self) -> f64 {
+        let linear = |c: u8| {
+            let c = f64::from(c) / 255.0;
+            if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+        };
+        0.2126 * linear(self.0) + 0.7152 * linear(self.1) + 0.0722 * linear(self.2)
+    }
+}
+
+impl std::fmt::Display for Rgb {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "#{:02x}{:02x}{:02x}", self.0, self.1, self.2)
+    }
+}
+
+fn mixed(from: u8, to: u8, fraction: f64) -> u8 {
+    let (from, to) = (f64::from(from), f64::from(to));
+    (from + (to - from) * fraction.clamp(0.0, 1.0)).round() as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_map_grows_lighter_throughout_and_clamps() {
+        let steps: Vec<f64> = (0..=400).map(|i| viridis(f64::from(i) / 400.0).luminance()).collect();
+        // Neighbours may fall to the same 8-bit colour, or back by the rounding of one channel (at most 1/255
+        // of its slope).
+        assert!(steps.windows(2).all(|w| w[1] > w[0] - 0.004), "{steps:?}");
+        assert!(steps.windows(40).all(|w| w[39] > w[0]), "{steps:?}");
+        assert_eq!(viridis(-3.0), viridis(0.0));
+        assert_eq!(viridis(f64::INFINITY), Rgb(253, 231, 37));
+        assert_eq!(viridis(f64::NAN), viridis(0.0));
+    }
+
+    #[test]
+    fn series_stand_out_from_paper_and_from_each_other() {
+        for (i, a) in SERIES.iter().enumerate() {
+            // 3:1 is the least contrast of graphical objects in WCAG 2.1, 1.4.11; the two light colours of
+            // the palette come last among the colours and reach 2:1.
+            let contrast = 1.05 / (a.luminance() + 0.05);
+            assert!(contrast > if (3..6).contains(&i) { 2.0 } else { 3.0 }, "{a} {contrast}");
+            assert!(SERIES[i + 1..].iter().all(|b| a != b));
+        }
+    }
+
+    #[test]
+    fn tints_end_in_white() {
+        assert_eq!(Rgb(10, 20, 30).tint(1.0), WHITE);
+        assert_eq!(Rgb(10, 20, 30).tint(0.0).to_string(), "#0a141e");
+    }
+}

@@ -1,0 +1,233 @@
+//! How numbers, uncertainties and units are written.
+
+/// Minus sign, as wide as a digit.
+const MINUS: &str = "\u{2212}";
+
+/// A number with a fixed count of decimals and a true minus sign; never `−0`.
+pub fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(digits) if digits.bytes().all(|b| matches!(b, b'0' | b'.')) => digits.to_owned(),
+        Some(digits) => format!("{MINUS}{digits}"),
+        None => text,
+    }
+}
+
+/// `10ⁿ` in superscript digits.
+pub fn power_of_ten(exponent: i32) -> String {
+    let mut text = String::from("10");
+    for c in exponent.to_string().chars() {
+        text.push(match c {
+            '-' => '⁻',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            '4'..='9' => char::from_u32(c as u32 - '4' as u32 + '⁴' as u32).unwrap_or(c),
+            _ => '⁰',
+        });
+    }
+    text
+}
+
+/// A number with so many significant digits, as a plain decimal between 10⁻⁴ and 10⁷, else with a power of
+/// ten.
+///
+/// Infinite values are written `∞`, a missing one (NaN) as a dash.
+pub fn significant(value: f64, digits: usize) -> String {
+    if !value.is_finite() {
+        return match value {
+            v if v.is_nan() => "–".to_owned(),
+            v if v > 0.0 => "∞".to_owned(),
+            _ => format!("{MINUS}∞"),
+        };
+    }
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let (exponent, places) = (decade(value, digits), digits.max(1) as i32 - 1);
+    if (-4..7).contains(&exponent) {
+        return rounded(value, places - exponent);
+    }
+    let (mantissa, _) = scientific(value, digits);
+    format!("{}×{}", mantissa.replace('-', MINUS), power_of_ten(exponent))
+}
+
+/// A value with its standard uncertainty, both rounded to two significant digits of the uncertainty (GUM,
+/// 7.2.6).
+///
+/// Without a usable uncertainty the value is given to five significant digits.
+///
+/// ```
+/// use vibroimpact::report::notation::estimate;
+/// assert_eq!(estimate(7.489_51, Some(0.012_34)), "7.490 ± 0.012");
+/// assert_eq!(estimate(-3.2e-9, Some(1.1e-10)), "(−3.20 ± 0.11)×10⁻⁹");
+/// assert_eq!(estimate(7.489_51, None), "7.4895");
+/// ```
+pub fn estimate(value: f64, std: Option<f64>) -> String {
+    let Some(std) = std.filter(|s| s.is_finite() && *s > 0.0 && value.is_finite()) else {
+        return significant(value, 5);
+    };
+    let exponent = engineering(value.abs().max(std));
+    if (-3..=3).contains(&exponent) {
+        let places = 1 - decade(std, 2);
+        return format!("{} ± {}", rounded(value, places), rounded(std, places));
+    }
+    let scale = 10f64.powi(-exponent);
+    let places = 1 - decade(std * scale, 2);
+    format!(
+        "({} ± {})×{}",
+        rounded(value * scale, places),
+        rounded(std * scale, places),
+        power_of_ten(exponent)
+    )
+}
+
+/// Decimals that show `value` to `digits` significant digits, none of them a trailing zero.
+pub(super) fn decimals_needed(value: f64, digits: usize) -> usize {
+    let (mantissa, exponent) = scientific(value, digits);
+    let kept = mantissa.trim_start_matches('-').trim_end_matches('0').len().saturating_sub(2) as i32;
+    usize::try_from(kept - exponent).unwrap_or(0)
+}
+
+/// The power of ten, a multiple of three, that brings `largest` to between 1 and 1000; 0 where a number from
+/// 0.1 to below 10 000 needs none.
+pub fn engineering(largest: f64) -> i32 {
+    if !largest.is_finite() || largest == 0.0 || (0.1..1e4).contains(&largest.abs()) {
+        return 0;
+    }
+    // Ten digits, so that 999.999 999 999 9 counts as 1000.
+    decade(largest, 10).div_euclid(3) * 3
+}
+
+/// A unit multiplied by a power of ten, with an SI prefix where one fits (`m` and −3 give `mm`).
+///
+/// Only coherent units take a prefix, in first place and to the first power, and metres and seconds only that
+/// of a part; any other unit is preceded by the power itself.
+pub fn scaled_unit(unit: &str, exponent: i32) -> String {
+    const PREFIXES: [(i32, &str); 8] =
+        [(-12, "p"), (-9, "n"), (-6, "µ"), (-3, "m"), (3, "k"), (6, "M"), (9, "G"), (12, "T")];
+    const PARTS: [&str; 2] = ["m", "s"];
+    const COHERENT: [&str; 9] = ["N", "V", "A", "K", "W", "J", "Pa", "Hz", "Ω"];
+    let unit = if unit == "1" { "" } else { unit };
+    if exponent == 0 {
+        return unit.to_owned();
+    }
+    let start = unit.find(|c| c != '(').unwrap_or(0);
+    let (opening, rest) = unit.split_at(start);
+    let end = rest.find(|c: char| !c.is_alphabetic()).unwrap_or(rest.len());
+    let (symbol, tail) = rest.split_at(end);
+    let first_power = !tail.starts_with(['²', '³', '⁴', '⁻', '^', '·']);
+    let (symbol, total) = if symbol == "kg" { ("g", exponent + 3) } else { (symbol, exponent) };
+    let takes = COHERENT.contains(&symbol) || PARTS.contains(&symbol) && total < 0 || rest.starts_with("kg");
+    if first_power && takes {
+        if total == 0 {
+            return format!("{opening}{symbol}{tail}");
+        }
+        if let Some((_, prefix)) = PREFIXES.iter().find(|p| p.0 == total) {
+            return format!("{opening}{prefix}{symbol}{tail}");
+        }
+    }
+    if unit.is_empty() { power_of_ten(exponent) } else { format!("{} {unit}", power_of_ten(exponent)) }
+}
+
+/// Label of an axis or a column: `Displacement amplitude (mm)`; square brackets where the unit has round
+/// ones.
+pub fn labelled(label: &str, unit: &str) -> String {
+    match (label.is_empty(), unit.is_empty() || unit == "1") {
+        (_, true) => label.to_owned(),
+        (true, false) => unit.to_owned(),
+        (false, false) if unit.contains('(') => format!("{label} [{unit}]"),
+        (false, false) => format!("{label} ({unit})"),
+    }
+}
+
+/// Rounds to `places` decimals, or to tens, hundreds, … where negative.
+fn rounded(value: f64, places: i32) -> String {
+    if places >= 0 {
+        return fixed(value, places as usize);
+    }
+    let unit = 10f64.powi(-places);
+    fixed((value / unit).round() * unit, 0)
+}
+
+/// Decade of the first digit once rounded to `digits` significant ones.
+fn decade(value: f64, digits: usize) -> i32 {
+    scientific(value, digits).1
+}
+
+fn scientific(value: f64, digits: usize) -> (String, i32) {
+    let text = format!("{:.*e}", digits.max(1) - 1, value);
+    match text.split_once('e') {
+        Some((mantissa, exponent)) => (mantissa.to_owned(), exponent.parse().unwrap_or(0)),
+        None => (text, 0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_uncertainty_has_two_digits_and_sets_those_of_the_value() {
+        assert_eq!(estimate(5.583_4, Some(0.012)), "5.583 ± 0.012");
+        assert_eq!(estimate(5.583_4, Some(0.099_6)), "5.58 ± 0.10");
+        assert_eq!(estimate(149_876.0, Some(2_345.0)), "149900 ± 2300");
+        assert_eq!(estimate(0.0, Some(3.0)), "0.0 ± 3.0");
+        assert_eq!(estimate(-0.04, Some(2.0)), "0.0 ± 2.0");
+        assert_eq!(estimate(0.211_2, Some(0.0)), "0.21120");
+        assert_eq!(estimate(f64::NAN, Some(1.0)), "–");
+        assert_eq!(estimate(25.0e6, Some(0.4e6)), "(25.00 ± 0.40)×10⁶");
+    }
+
+    #[test]
+    fn numbers_have_a_true_minus_and_no_negative_zero() {
+        assert_eq!(fixed(-0.04, 1), "0.0");
+        assert_eq!(fixed(-1.25, 2), "−1.25");
+        assert_eq!(significant(-6.9e9, 3), "−6.90×10⁹");
+        assert_eq!(significant(0.21117, 3), "0.211");
+        assert_eq!(significant(f64::NEG_INFINITY, 3), "−∞");
+        assert_eq!(power_of_ten(-120), "10⁻¹²⁰");
+        assert_eq!(power_of_ten(456_789), "10⁴⁵⁶⁷⁸⁹");
+    }
+
+    #[test]
+    fn prefixes_go_only_where_they_may() {
+        assert_eq!(scaled_unit("m", -3), "mm");
+        assert_eq!(scaled_unit("m/s²", -6), "µm/s²");
+        assert_eq!(scaled_unit("(m/s²)/N", -3), "(mm/s²)/N");
+        assert_eq!(scaled_unit("m/s²", 3), "10³ m/s²");
+        assert_eq!(scaled_unit("N/m", 3), "kN/m");
+        assert_eq!(scaled_unit("kg", -3), "g");
+        assert_eq!(scaled_unit("kg", -6), "mg");
+        assert_eq!(scaled_unit("N s", -3), "mN s");
+        assert_eq!(scaled_unit("m²/Hz", -6), "10⁻⁶ m²/Hz");
+        assert_eq!(scaled_unit("mm", 3), "10³ mm");
+        assert_eq!(scaled_unit("1", -3), "10⁻³");
+        assert_eq!(scaled_unit("m", 21), "10²¹ m");
+        assert_eq!(scaled_unit("", 0), "");
+    }
+
+    #[test]
+    fn engineering_powers_leave_ordinary_numbers_alone() {
+        let cases = [(0.5, 0), (9_999.0, 0), (10_000.0, 3), (0.02, -3), (0.099_9, -3), (3e-7, -9), (0.0, 0)];
+        for (value, power) in cases {
+            assert_eq!(engineering(value), power, "{value}");
+        }
+        assert_eq!(engineering(f64::INFINITY), 0);
+    }
+
+    #[test]
+    fn labels_carry_their_unit() {
+        assert_eq!(labelled("Frequency", "Hz"), "Frequency (Hz)");
+        assert_eq!(labelled("Accelerance", "(m/s²)/N"), "Accelerance [(m/s²)/N]");
+        assert_eq!(labelled("Coherence", "1"), "Coherence");
+    }
+
+    #[test]
+    fn decimals_do_not_trail_zeros() {
+        assert_eq!(decimals_needed(5.5, 5), 1);
+        assert_eq!(decimals_needed(60.0, 5), 0);
+        assert_eq!(decimals_needed(0.012_345_678, 5), 6);
+        assert_eq!(decimals_needed(1.0 / 3.0, 5), 5);
+    }
+}
