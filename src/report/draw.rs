@@ -11,7 +11,7 @@ mod plot;
 mod style;
 mod waterfall;
 
-pub(super) use canvas::Image;
+pub(super) use canvas::{Image, escaped};
 
 use super::axis::Extent;
 use super::figure::{Figure, Panel};

@@ -175,7 +175,7 @@ pub(super) fn document((width, height): (f64, f64), name: &str, images: &[Image]
 }
 
 /// Text for use between tags and in attributes; characters that XML 1.0 forbids (2.2) become `\u{FFFD}`.
-fn escaped(text: &str) -> String {
+pub(in crate::report) fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

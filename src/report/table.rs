@@ -1,0 +1,389 @@
+//! Tables of results: one content for the terminal, for other programs and for the page.
+
+use super::draw::escaped;
+use super::notation::{decimals_needed, engineering, estimate, fixed, labelled, scaled_unit, significant};
+use crate::measure::Estimate;
+use std::fmt::Write;
+
+/// Rows of results under named columns.
+///
+/// Numbers are given in SI units. In the terminal and on the page a column takes a prefix where that makes it
+/// readable (`Amplitude (mm)`) and estimates are rounded to two digits of their uncertainty; as CSV every
+/// number has full precision and its SI unit.
+///
+/// ```
+/// use vibroimpact::report::{Cell, Table};
+/// let table = Table::new("Resonances")
+///     .column("Kind", "")
+///     .column("Frequency", "Hz")
+///     .row(["grazing".into(), Cell::Estimate { value: 5.583_1, std: Some(0.012_3) }])
+///     .row(["clapping".into(), 10.59.into()]);
+/// assert!(table.text().contains("5.583 ± 0.012"));
+/// assert!(table.csv().starts_with("Kind,Frequency (Hz),Frequency std (Hz)\n"));
+/// ```
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Table {
+    /// What the table shows.
+    pub title: String,
+    /// Names and units of the columns.
+    pub columns: Vec<Column>,
+    /// Rows, each with a cell for every column; a row that is too short ends with missing cells.
+    pub rows: Vec<Vec<Cell>>,
+}
+
+/// Head of a column.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Column {
+    /// Quantity.
+    pub name: String,
+    /// Unit of the numbers; empty or `1` for none.
+    pub unit: String,
+}
+
+/// One result.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Cell {
+    /// Words.
+    Text(String),
+    /// A number without uncertainty; NaN counts as missing.
+    Number(f64),
+    /// A value with its standard uncertainty, where known.
+    Estimate {
+        /// Value.
+        value: f64,
+        /// Standard uncertainty in the unit of the value.
+        std: Option<f64>,
+    },
+    /// No result.
+    Missing,
+}
+
+impl From<&str> for Cell {
+    fn from(text: &str) -> Cell {
+        Cell::Text(text.to_owned())
+    }
+}
+
+impl From<String> for Cell {
+    fn from(text: String) -> Cell {
+        Cell::Text(text)
+    }
+}
+
+impl From<f64> for Cell {
+    fn from(value: f64) -> Cell {
+        Cell::Number(value)
+    }
+}
+
+impl From<usize> for Cell {
+    fn from(count: usize) -> Cell {
+        Cell::Number(count as f64)
+    }
+}
+
+impl From<&Estimate> for Cell {
+    fn from(estimate: &Estimate) -> Cell {
+        Cell::Estimate { value: estimate.value, std: estimate.std }
+    }
+}
+
+impl From<Option<f64>> for Cell {
+    fn from(value: Option<f64>) -> Cell {
+        value.map_or(Cell::Missing, Cell::Number)
+    }
+}
+
+impl Cell {
+    fn value(&self) -> Option<f64> {
+        match self {
+            Cell::Number(value) | Cell::Estimate { value, .. } if !value.is_nan() => Some(*value),
+            _ => None,
+        }
+    }
+
+    /// Usable uncertainty.
+    fn std(&self) -> Option<f64> {
+        match self {
+            Cell::Estimate { std, .. } => std.filter(|s| s.is_finite() && *s > 0.0),
+            _ => None,
+        }
+    }
+}
+
+impl Table {
+    /// A table without columns.
+    pub fn new(title: impl Into<String>) -> Table {
+        Table { title: title.into(), ..Table::default() }
+    }
+
+    /// Adds a column.
+    pub fn column(mut self, name: impl Into<String>, unit: impl Into<String>) -> Table {
+        self.columns.push(Column { name: name.into(), unit: unit.into() });
+        self
+    }
+
+    /// Adds a row.
+    pub fn row(mut self, cells: impl IntoIterator<Item = Cell>) -> Table {
+        self.push(cells);
+        self
+    }
+
+    /// Adds a row, in a loop.
+    pub fn push(&mut self, cells: impl IntoIterator<Item = Cell>) {
+        self.rows.push(cells.into_iter().collect());
+    }
+
+    /// For the terminal: columns set apart by blanks, words to the left, numbers with their decimal points
+    /// under each other.
+    pub fn text(&self) -> String {
+        let columns: Vec<Vec<String>> = self.formatted().iter().map(Formatted::aligned).collect();
+        let mut out = String::new();
+        if !self.title.is_empty() {
+            let _ = writeln!(out, "{}", self.title);
+        }
+        for line in 0..=self.rows.len() {
+            let cells = columns.iter().filter_map(|c| c.get(line).map(String::as_str));
+            let row = cells.collect::<Vec<_>>().join("  ");
+            // A hyphen can be copied into other programs, a typographic minus cannot.
+            let _ = writeln!(out, "{}", row.trim_end().replace('\u{2212}', "-"));
+        }
+        out
+    }
+
+    /// For other programs (RFC 4180): every number with all its digits, missing ones empty, and a column `…
+    /// std` beside each column with uncertainties.
+    pub fn csv(&self) -> String {
+        let uncertain: Vec<bool> =
+            (0..self.columns.len()).map(|i| self.cells(i).any(|c| c.std().is_some())).collect();
+        let mut out = String::new();
+        let mut head = Vec::new();
+        for (column, uncertain) in self.columns.iter().zip(&uncertain) {
+            head.push(quoted(&labelled(&column.name, &column.unit)));
+            if *uncertain {
+                head.push(quoted(&labelled(&format!("{} std", column.name), &column.unit)));
+            }
+        }
+        let _ = writeln!(out, "{}", head.join(","));
+        for row in &self.rows {
+            let mut line = Vec::new();
+            for (i, uncertain) in uncertain.iter().enumerate() {
+                let cell = row.get(i).unwrap_or(&Cell::Missing);
+                line.push(match cell {
+                    Cell::Text(text) => quoted(text),
+                    cell => cell.value().map_or_else(String::new, exact),
+                });
+                if *uncertain {
+                    line.push(cell.std().map_or_else(String::new, exact));
+                }
+            }
+            let _ = writeln!(out, "{}", line.join(","));
+        }
+        out
+    }
+
+    /// For a page: a `table` element with its title as caption.
+    pub fn html(&self) -> String {
+        let columns = self.formatted();
+        let mut out = String::from("<div class=\"table\"><table>\n");
+        if !self.title.is_empty() {
+            let _ = writeln!(out, "<caption>{}</caption>", escaped(&self.title));
+        }
+        let class = |c: &Formatted| if c.numeric { " class=\"number\"" } else { "" };
+        let _ = write!(out, "<thead><tr>");
+        for column in &columns {
+            let _ = write!(out, "<th scope=\"col\"{}>{}</th>", class(column), escaped(&column.head));
+        }
+        let _ = writeln!(out, "</tr></thead>\n<tbody>");
+        for line in 0..self.rows.len() {
+            let _ = write!(out, "<tr>");
+            for column in &columns {
+                let cell = column.cells.get(line).map_or("", String::as_str);
+                let _ = write!(out, "<td{}>{}</td>", class(column), escaped(cell));
+            }
+            let _ = writeln!(out, "</tr>");
+        }
+        out.push_str("</tbody></table></div>\n");
+        out
+    }
+
+    fn cells(&self, column: usize) -> impl Iterator<Item = &Cell> {
+        self.rows.iter().map(move |row| row.get(column).unwrap_or(&Cell::Missing))
+    }
+
+    fn formatted(&self) -> Vec<Formatted> {
+        self.columns
+            .iter()
+            .enumerate()
+            .map(|(i, c)| Formatted::new(c, &self.cells(i).collect::<Vec<_>>()))
+            .collect()
+    }
+}
+
+/// A column in words.
+struct Formatted {
+    head: String,
+    cells: Vec<String>,
+    numeric: bool,
+}
+
+impl Formatted {
+    fn new(column: &Column, cells: &[&Cell]) -> Formatted {
+        let values: Vec<f64> = cells.iter().filter_map(|c| c.value()).filter(|v| v.is_finite()).collect();
+        let largest = values.iter().fold(0.0f64, |a, v| a.max(v.abs()));
+        let power = if column.unit == "°" { 0 } else { engineering(largest) };
+        // Counts and other bare numbers are not rescaled, as no unit would say so; a power of ten stands with
+        // the number instead.
+        let power = if column.unit.is_empty() || column.unit == "1" { 0 } else { power };
+        let scale = 10f64.powi(-power);
+        let bare =
+            cells.iter().filter(|c| c.std().is_none()).filter_map(|c| c.value()).filter(|v| v.is_finite());
+        let decimals = common_decimals(&bare.map(|v| v * scale).collect::<Vec<_>>());
+        let written = |cell: &&Cell| match (cell, cell.value()) {
+            (Cell::Text(text), _) => text.clone(),
+            (_, None) => "–".to_owned(),
+            (Cell::Estimate { std, .. }, Some(value)) if cell.std().is_some() => {
+                estimate(value * scale, std.map(|s| s * scale))
+            }
+            (_, Some(value)) => match decimals {
+                Some(decimals) if value.is_finite() => fixed(value * scale, decimals),
+                _ => significant(value * scale, 5),
+            },
+        };
+        Formatted {
+            head: labelled(&column.name, &scaled_unit(&column.unit, power)),
+            cells: cells.iter().map(written).collect(),
+            numeric: !cells.iter().any(|c| matches!(c, Cell::Text(_))),
+        }
+    }
+
+    /// Head and cells, all of one width.
+    fn aligned(&self) -> Vec<String> {
+        let count = |text: &str| text.chars().count();
+        // Characters up to the decimal point of the value: these are made equal first.
+        let whole = |text: &str| text.find(['.', ' ', '×']).map_or(count(text), |at| count(&text[..at]));
+        let point = self.cells.iter().map(|c| whole(c)).max().unwrap_or(0);
+        let lead = |cell: &String| if self.numeric { point - whole(cell) } else { 0 };
+        let cells: Vec<String> = self.cells.iter().map(|c| format!("{}{c}", " ".repeat(lead(c)))).collect();
+        let width = cells.iter().map(|c| count(c)).chain([count(&self.head)]).max().unwrap_or(0);
+        let block = cells.iter().map(|c| count(c)).max().unwrap_or(0);
+        let indent = if self.numeric { " ".repeat(width - block) } else { String::new() };
+        let head =
+            if self.numeric { format!("{:>width$}", self.head) } else { format!("{:<width$}", self.head) };
+        let rows = cells.iter().map(|c| format!("{:<width$}", format!("{indent}{c}")));
+        std::iter::once(head).chain(rows).collect()
+    }
+}
+
+/// Decimals that show all values to five significant digits of the largest, or fewer where all are round;
+/// `None` where the values differ so much that small ones would lose their digits.
+fn common_decimals(values: &[f64]) -> Option<usize> {
+    let sizes = || values.iter().map(|v| v.abs()).filter(|v| *v > 0.0);
+    let (smallest, largest) = (sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
+    if largest == 0.0 {
+        return Some(0);
+    }
+    let needed = values.iter().map(|v| decimals_needed(*v, 5)).max().unwrap_or(0);
+    let room = 4 - largest.log10().floor() as i32;
+    let decimals = needed.min(usize::try_from(room.max(0)).unwrap_or(0));
+    // The smallest keeps two digits.
+    let kept = smallest * 10f64.powi(decimals as i32) >= 10.0 || decimals == needed;
+    (kept && (1e-3..1e9).contains(&largest)).then_some(decimals)
+}
+
+/// The shortest text that reads back as the same number.
+fn exact(value: f64) -> String {
+    if value.abs() >= 1e15 || value != 0.0 && value.abs() < 1e-4 {
+        format!("{value:e}")
+    } else {
+        value.to_string()
+    }
+}
+
+fn quoted(text: &str) -> String {
+    if text.contains(['"', ',', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn resonances() -> Table {
+        Table::new("Resonances")
+            .column("Kind", "")
+            .column("Frequency", "Hz")
+            .column("Amplitude", "m")
+            .column("Impacts", "")
+            .row([
+                "grazing".into(),
+                estimated(5.583_1, 0.012_3),
+                estimated(0.004_213, 0.000_041),
+                56usize.into(),
+            ])
+            .row(["clapping, up".into(), estimated(10.59, 0.1), Cell::Missing, 107usize.into()])
+            .row(["none".into(), 7.49.into(), 0.000_35.into()])
+    }
+
+    fn estimated(value: f64, std: f64) -> Cell {
+        Cell::Estimate { value, std: Some(std) }
+    }
+
+    #[test]
+    fn the_terminal_shows_rounded_values_in_readable_units_under_each_other() {
+        let expected = "\
+Resonances
+Kind          Frequency (Hz)  Amplitude (mm)  Impacts
+grazing        5.583 ± 0.012   4.213 ± 0.041       56
+clapping, up  10.59 ± 0.10     –                  107
+none           7.49            0.35                 –
+";
+        assert_eq!(resonances().text(), expected);
+    }
+
+    #[test]
+    fn csv_keeps_every_digit_and_quotes_what_needs_it() {
+        let csv = resonances().csv();
+        let lines: Vec<&str> = csv.lines().collect();
+        assert_eq!(
+            lines[0],
+            "Kind,Frequency (Hz),Frequency std (Hz),Amplitude (m),Amplitude std (m),Impacts"
+        );
+        assert_eq!(lines[1], "grazing,5.5831,0.0123,0.004213,4.1e-5,56");
+        assert_eq!(lines[2], "\"clapping, up\",10.59,0.1,,,107");
+        assert_eq!(lines[3], "none,7.49,,3.5e-4,,".replace("3.5e-4", "0.00035"));
+        let third = Table::new("").column("a", "m").row([(1.0f64 / 3.0).into()]).csv();
+        assert_eq!(third.lines().nth(1).unwrap().parse::<f64>().unwrap(), 1.0 / 3.0);
+    }
+
+    #[test]
+    fn markup_in_cells_is_only_text() {
+        let table = Table::new("<b>").column("a & b", "m").row(["<script>".into()]);
+        let html = table.html();
+        assert!(html.contains("&lt;script&gt;") && html.contains("a &amp; b") && html.contains("&lt;b&gt;"));
+        assert!(!html.contains("<script") && !html.contains("<b>"));
+    }
+
+    #[test]
+    fn numbers_that_differ_in_size_keep_their_digits() {
+        assert_eq!(common_decimals(&[60.0, 7.0]), Some(0));
+        assert_eq!(common_decimals(&[5.5, 7.49, 11.1]), Some(2));
+        assert_eq!(common_decimals(&[1e-9, 1.0 / 3.0]), None);
+        assert_eq!(common_decimals(&[]), Some(0));
+        let table = Table::new("").column("error", "1").row([2e-12.into()]).row([0.031_25.into()]).text();
+        assert!(table.contains("2.0000×10⁻¹²") && table.contains("0.031250"), "{table}");
+    }
+
+    #[test]
+    fn nothing_and_infinity_are_shown_as_such() {
+        let table =
+            Table::new("").column("a", "m").row([f64::NAN.into()]).row([f64::INFINITY.into()]).row([]);
+        let text = table.text();
+        let cells: Vec<&str> = text.lines().skip(1).map(str::trim).collect();
+        assert_eq!(cells, ["–", "∞", "–"]);
+        assert_eq!(table.csv(), "a (m)\n\ninf\n\n");
+    }
+}
