@@ -113,8 +113,9 @@ pub(super) enum Room {
     Tight,
     /// Some at both ends, for markers.
     Margin,
-    /// None, and a linear axis begins at zero: for magnitudes that stand on a floor.
-    FromZero,
+    /// None, and the lower limit is a floor on which magnitudes stand: zero, or 60 dB under the largest, since
+    /// noise on a hundred spectra behind each other would hide all else.
+    Floor,
     /// This much above; below some, or none if the axis can begin at zero, which it does where the data come
     /// near.
     Above(f64),
@@ -202,7 +203,11 @@ fn roomy(scale: Scale, data: Extent, room: Room) -> (f64, f64) {
     let span = hi - lo;
     match room {
         Room::Tight => (lo, hi),
-        Room::FromZero => (if matches!(scale, Scale::Linear) { lo.min(0.0) } else { lo }, hi),
+        Room::Floor => match scale {
+            Scale::Linear => (lo.min(0.0), hi),
+            Scale::Log => (lo, hi),
+            Scale::Db { .. } => (lo.max(hi - 60.0), hi),
+        },
         Room::Margin => (lo - 0.03 * span, hi + 0.03 * span),
         Room::Above(part) => {
             let zero = matches!(scale, Scale::Linear);

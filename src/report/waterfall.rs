@@ -113,7 +113,7 @@ impl Waterfall {
             self.rows.iter().map(|(e, row)| (depth.at(*e), &row[..])).filter(|(at, _)| inside(at)).collect();
         let value = |row: &[f64], column: usize| row.get(column).copied().unwrap_or(f64::NAN);
         let mut heights = rows.iter().flat_map(|(_, row)| columns.iter().map(|(i, _)| value(row, *i)));
-        let up = Axis::new(&self.height, extent(&self.height, &mut heights), Room::FromZero)?;
+        let up = Axis::new(&self.height, extent(&self.height, &mut heights), Room::Floor)?;
         // NaN stays NaN: a gap.
         let line =
             |row: &[f64]| columns.iter().map(|(i, x)| (*x, up.at(value(row, *i)).clamp(0.0, 1.0))).collect();

@@ -75,6 +75,11 @@ impl Canvas {
         }
     }
 
+    /// The sides of a rectangle.
+    pub fn outline(&mut self, r: Rect, pen: Pen) {
+        let _ = writeln!(self.body, "<path d=\"{}\"{}/>", path(&[corners(r)], true), stroke(pen));
+    }
+
     /// One straight line.
     pub fn line(&mut self, a: Point, b: Point, pen: Pen) {
         self.lines(&[vec![a, b]], pen);
@@ -91,8 +96,7 @@ impl Canvas {
 
     /// A filled rectangle.
     pub fn rect(&mut self, r: Rect, fill: Rgb, outline: Option<Pen>) {
-        let corners = vec![(r.x, r.y), (r.right(), r.y), (r.right(), r.bottom()), (r.x, r.bottom())];
-        self.areas(&[corners], fill, outline);
+        self.areas(&[corners(r)], fill, outline);
     }
 
     /// Circles of one radius.
@@ -190,6 +194,10 @@ pub(in crate::report) fn escaped(text: &str) -> String {
         }
     }
     out
+}
+
+fn corners(r: Rect) -> Vec<Point> {
+    vec![(r.x, r.y), (r.right(), r.y), (r.right(), r.bottom()), (r.x, r.bottom())]
 }
 
 fn stroke(pen: Pen) -> String {

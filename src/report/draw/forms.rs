@@ -14,7 +14,7 @@ use crate::report::series::{Marker, Series, Shape};
 pub(super) enum Form {
     Lines(Vec<Vec<Point>>, Pen),
     Areas(Vec<Vec<Point>>, Rgb),
-    Markers(Vec<Point>, Marker, Rgb),
+    Markers(Vec<Point>, Marker, f64, Rgb),
 }
 
 /// What a series consists of, the lowest first.
@@ -32,7 +32,10 @@ pub(super) fn forms(series: &Series, look: Look, place: &Place<'_>) -> Vec<Form>
             ));
             let inside = place.frame.grown(0.01);
             let points = x.iter().zip(y).map(|(x, y)| place.at(*x, *y)).filter(|p| inside.contains(*p));
-            forms.push(Form::Markers(points.collect(), look.marker, look.colour));
+            let points: Vec<Point> = points.collect();
+            // Many points are smaller, down to half, so that they stay apart.
+            let size = MARKER * (60.0 / points.len().max(1) as f64).sqrt().clamp(0.5, 1.0);
+            forms.push(Form::Markers(points, look.marker, size, look.colour));
             forms
         }
         Shape::Band { x, lower, upper } => {
@@ -58,7 +61,7 @@ impl Form {
         match self {
             Form::Lines(parts, pen) => canvas.lines(parts, *pen),
             Form::Areas(parts, fill) => canvas.areas(parts, *fill, None),
-            Form::Markers(points, marker, colour) => markers(canvas, points, *marker, *colour),
+            Form::Markers(points, marker, size, colour) => markers(canvas, points, *marker, *size, *colour),
         }
     }
 
@@ -75,26 +78,26 @@ impl Form {
                     clutter.add_lines(&across.collect::<Vec<_>>());
                 }
             }
-            Form::Markers(points, ..) => {
+            Form::Markers(points, _, size, _) => {
                 for point in points {
-                    clutter.add_box(Rect::around(*point, MARKER + 0.5));
+                    clutter.add_box(Rect::around(*point, size + 0.5));
                 }
             }
         }
     }
 }
 
-/// Markers of one form and colour. Open ones are white inside.
-pub(super) fn markers(canvas: &mut Canvas, points: &[Point], marker: Marker, colour: Rgb) {
+/// Markers of one form, half width and colour. Open ones are white inside.
+pub(super) fn markers(canvas: &mut Canvas, points: &[Point], marker: Marker, size: f64, colour: Rgb) {
     let polygon = |corners: &[Point]| -> Vec<Vec<Point>> {
-        let at = |p: &Point| corners.iter().map(|c| (p.0 + c.0 * MARKER, p.1 + c.1 * MARKER)).collect();
+        let at = |p: &Point| corners.iter().map(|c| (p.0 + c.0 * size, p.1 + c.1 * size)).collect();
         points.iter().map(at).collect()
     };
     let square = [(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)];
     let pen = Some(Pen::solid(colour, OUTLINE));
     match marker {
-        Marker::Auto | Marker::Circle => canvas.circles(points, MARKER, colour, None),
-        Marker::OpenCircle => canvas.circles(points, MARKER, WHITE, pen),
+        Marker::Auto | Marker::Circle => canvas.circles(points, size, colour, None),
+        Marker::OpenCircle => canvas.circles(points, size, WHITE, pen),
         Marker::Square => canvas.areas(&polygon(&square), WHITE, pen),
         Marker::FilledSquare => canvas.areas(&polygon(&square), colour, None),
         Marker::Triangle => canvas.areas(&polygon(&[(0.0, -1.3), (1.2, 0.85), (-1.2, 0.85)]), colour, None),

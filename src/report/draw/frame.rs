@@ -132,14 +132,14 @@ pub(super) fn draw(canvas: &mut Canvas, place: &Place<'_>, named_x: bool, outsid
         }
     }
     canvas.lines(&lines, TICKS);
-    outline(canvas, frame);
+    canvas.outline(frame, FRAME);
     let away = GAP + if outside { TICK - 1.0 } else { 0.0 };
     for tick in ty.major.iter().filter(|t| !t.label.is_empty()) {
         let y = place.up(place.y.at_scaled(tick.at)) + font::DIGIT_HEIGHT * SMALL / 2.0;
         label(canvas, &tick.label, (frame.x - away, y), SMALL, Anchor::End);
     }
     let beside = frame.x - away - widest(&ty) - GAP;
-    along(canvas, &place.y.title, (beside, frame.y + frame.h / 2.0), frame.h + 2.0 * LEADING);
+    along(canvas, &place.y.title, beside, frame, if named_x { 2.0 * LEADING } else { GAP });
     if named_x {
         for tick in &tx.major {
             let x = place.across(place.x.at_scaled(tick.at));
@@ -151,18 +151,16 @@ pub(super) fn draw(canvas: &mut Canvas, place: &Place<'_>, named_x: bool, outsid
     }
 }
 
-/// The bare frame.
-pub(super) fn outline(canvas: &mut Canvas, r: Rect) {
-    let corners = [(r.x, r.y), (r.right(), r.y), (r.right(), r.bottom()), (r.x, r.bottom()), (r.x, r.y)];
-    canvas.lines(&[corners.to_vec()], FRAME);
-}
-
-/// A name turned to read upwards, its baseline through `at`.
-pub(super) fn along(canvas: &mut Canvas, name: &str, at: Point, room: f64) {
-    let (name, size) = fitted(name, LARGE, room);
+/// A name turned to read upwards, its baseline at `x`, beside the middle of `frame` and no longer than fits from
+/// a little above it to `below` its lower edge.
+pub(super) fn along(canvas: &mut Canvas, name: &str, x: f64, frame: Rect, below: f64) {
+    const ABOVE: f64 = 4.0;
+    let (name, size) = fitted(name, LARGE, frame.h + ABOVE + below);
+    let half = font::width(&name, size) / 2.0;
+    let y = frame.middle().1.max(frame.y - ABOVE + half);
     canvas.text(Text {
         words: &name,
-        at,
+        at: (x, y),
         size,
         anchor: Anchor::Middle,
         turn: 90.0,

@@ -4,7 +4,7 @@ use super::canvas::{Anchor, Canvas, Pen};
 use super::clutter::Clutter;
 use super::forms::markers;
 use super::frame::label;
-use super::style::{LEADING, Look, OUTLINE, SMALL};
+use super::style::{LEADING, Look, MARKER, OUTLINE, SMALL};
 use crate::report::colour::WHITE;
 use crate::report::font;
 use crate::report::heatmap::{Heatmap, Key};
@@ -170,7 +170,7 @@ impl Entry {
                 if joined {
                     canvas.line(line.0, line.1, self.look.pen);
                 }
-                markers(canvas, &[(x + sample / 2.0, y)], self.look.marker, self.look.colour);
+                markers(canvas, &[(x + sample / 2.0, y)], self.look.marker, MARKER, self.look.colour);
             }
             Sample::Area => canvas.rect(swatch, self.look.colour.tint(0.72), None),
             Sample::Bar => canvas.rect(swatch, self.look.colour.tint(0.6), Some(outline)),

@@ -2,7 +2,7 @@
 
 use super::canvas::{Anchor, Canvas, Image};
 use super::frame::{self, Insets, Place, label};
-use super::style::{GAP, LARGE, SMALL, TICK, TICKS};
+use super::style::{FRAME, GAP, LARGE, LEADING, SMALL, TICK, TICKS};
 use crate::report::axis::Axis;
 use crate::report::font;
 use crate::report::heatmap::{self, Heatmap};
@@ -45,7 +45,7 @@ pub(super) fn draw_bar(canvas: &mut Canvas, bar: &Axis, frame: Rect) {
         label(canvas, &tick.label, at, SMALL, Anchor::Start);
     }
     canvas.lines(&lines, TICKS);
-    frame::outline(canvas, place);
+    canvas.outline(place, FRAME);
     let x = place.right() + TICK + 1.0 + frame::widest(&ticks) + GAP + 0.85 * LARGE;
-    frame::along(canvas, &bar.title, (x, frame.y + frame.h / 2.0), frame.h + 16.0);
+    frame::along(canvas, &bar.title, x, frame, 2.0 * LEADING);
 }

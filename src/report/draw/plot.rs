@@ -5,7 +5,7 @@ use super::clutter::Clutter;
 use super::forms::{self, Form};
 use super::frame::{self, Insets, Place, fitted, label};
 use super::legend::KeyList;
-use super::style::{self, GAP, LARGE, LEADING, Look, SMALL};
+use super::style::{self, FRAME, GAP, LARGE, LEADING, Look, SMALL};
 use super::{map, notes};
 use crate::report::axis::{Axis, Extent, Room, Scale};
 use crate::report::figure::{Legend, Plot};
@@ -222,7 +222,7 @@ impl<'a> Sheet<'a> {
 
     /// An empty frame that says so.
     fn draw_nothing(&self, canvas: &mut Canvas, frame: Rect) {
-        frame::outline(canvas, frame);
+        canvas.outline(frame, FRAME);
         let (x, y) = frame.middle();
         label(canvas, "no data", (x, y), LARGE, Anchor::Middle);
         let plot = self.plot;
@@ -230,7 +230,7 @@ impl<'a> Sheet<'a> {
             let name = labelled(&plot.x.label, &plot.x.unit);
             label(canvas, &name, (x, frame.bottom() + 1.3 * LARGE), LARGE, Anchor::Middle);
         }
-        frame::along(canvas, &labelled(&plot.y.label, &plot.y.unit), (frame.x - 0.6 * LARGE, y), frame.h);
+        frame::along(canvas, &labelled(&plot.y.label, &plot.y.unit), frame.x - 0.6 * LARGE, frame, GAP);
     }
 }
 

@@ -26,7 +26,7 @@ pub(super) fn draw(canvas: &mut Canvas, waterfall: &Waterfall, cell: Rect) {
     };
     let rough = framed(SIDE, SIDE);
     let Some(cube) = waterfall.cube() else {
-        frame::outline(canvas, rough);
+        canvas.outline(rough, FRAME);
         return label(canvas, "no data", rough.middle(), LARGE, Anchor::Middle);
     };
     // With the numbers known, the room beside them is too.
@@ -173,11 +173,9 @@ impl Sheet<'_> {
         }
         canvas.lines(&lines, TICKS);
         let x = self.frame.x - TICK - 2.0 - frame::widest(&ticks) - GAP;
-        let y = self.frame.bottom() - view.rise / 2.0;
-        // The name may be longer than its axis: it may use the height of the whole scene.
-        let (name, size) = fitted(&up.title, LARGE, self.frame.h);
-        let half = font::width(&name, size) / 2.0;
-        let y = y.min(self.frame.bottom() - half).max(self.frame.y + half);
-        frame::along(canvas, &up.title, (x, y), self.frame.h);
+        // The name may be longer than its axis: it then goes on upwards.
+        let name = font::width(&up.title, LARGE).clamp(view.rise, self.frame.h);
+        let beside = Rect { y: self.frame.bottom() - name, h: name, ..self.frame };
+        frame::along(canvas, &up.title, x, beside, 0.0);
     }
 }
