@@ -121,6 +121,14 @@ fn a_picture_has_the_size_in_print_and_its_resolution() {
     assert_eq!((word(phys + 4), word(phys + 8), png[phys + 12]), (11_811, 11_811, 1));
 }
 
+#[test]
+fn a_picture_too_large_for_memory_is_refused() {
+    let figure = Figure { width: 1000.0, height: 1000.0, ..Figure::single("poster") };
+    let error = figure.draw().png(1200.0).unwrap_err();
+    assert_eq!(error.exit_code(), 1);
+    assert!(error.to_string().contains("47244 × 47244"), "{error}");
+}
+
 /// Share of pixels that are not white.
 fn ink(drawing: &Drawing) -> f64 {
     let png = drawing.png(100.0).unwrap();

@@ -24,8 +24,14 @@ pub(super) fn rasterised(drawing: &Drawing, dpi: f64) -> Result<Vec<u8>> {
     let refused = |why: String| Error::refused(format!("the figure \"{}\" {why}", drawing.name()));
     let (width, height) = drawing.size();
     let pixels = |mm: f64| (mm / 25.4 * dpi).round().max(1.0) as u32;
-    let mut pixmap = Pixmap::new(pixels(width), pixels(height))
-        .ok_or_else(|| refused(format!("is too large for a picture of {dpi} dots per inch")))?;
+    let (across, down) = (pixels(width), pixels(height));
+    let mut pixmap = Some((across, down))
+        .filter(|(w, h)| u64::from(*w) * u64::from(*h) <= MOST)
+        .and_then(|(w, h)| Pixmap::new(w, h))
+        .ok_or_else(|| {
+            refused(format!("would have {across} × {down} pixels at {dpi} dots per inch"))
+                .hint("fewer dots per inch, or the SVG, which has no pixels")
+        })?;
     pixmap.fill(Color::WHITE);
     let points = dpi as f32 / 72.0;
     for image in drawing.images() {
@@ -42,6 +48,9 @@ pub(super) fn rasterised(drawing: &Drawing, dpi: f64) -> Result<Vec<u8>> {
     resvg::render(&tree, transform, &mut pixmap.as_mut());
     Ok(compact(&pixmap, dpi))
 }
+
+/// Pixels of the largest picture: four times a double column as high as wide at 1200 dots per inch, in memory 1.1 GB.
+const MOST: u64 = 280_000_000;
 
 /// The pixels with a palette where 256 colours are enough, as they are for black lines with soft edges; else
 /// with three bytes each.

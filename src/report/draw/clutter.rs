@@ -45,3 +45,21 @@ impl Clutter {
         self.boxes.iter().filter(|r| r.cut(a, b).is_some()).count()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_box_covers_what_crosses_it_and_nothing_else() {
+        let mut clutter = Clutter::default();
+        clutter.add_lines(&[vec![(0.0, 5.0), (10.0, 5.0)]]);
+        clutter.add_box(Rect { x: 20.0, y: 0.0, w: 4.0, h: 4.0 });
+        let at = |x, y| Rect { x, y, w: 2.0, h: 2.0 };
+        assert_eq!(clutter.under(at(4.0, 6.0)), 0.0);
+        assert_eq!(clutter.under(at(4.0, 4.0)), 3.0);
+        assert_eq!(clutter.under(at(23.0, 3.0)), 4.0);
+        assert_eq!(clutter.crossed((15.0, 2.0), (30.0, 2.0)), 1);
+        assert_eq!(clutter.crossed((15.0, 9.0), (30.0, 9.0)), 0);
+    }
+}

@@ -179,3 +179,42 @@ pub(super) fn fitted(text: &str, size: f64, room: f64) -> (String, f64) {
     let size = (size * room / font::width(text, size).max(1.0)).clamp(0.75 * size, size);
     (font::fit(text, size, room + 0.01), size)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::axis::{AxisSpec, Extent, Room};
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn numbers_do_not_touch(
+            lo in -1e5..1e5f64, span in 1e-3..1e6f64, log: bool, length in 40.0..500.0f64,
+        ) {
+            let spec = if log { AxisSpec::new("x", "m").log() } else { AxisSpec::new("x", "m") };
+            let lo = if log { lo.abs() + 1e-3 } else { lo };
+            let axis = Axis::new(&spec.limits(lo, lo + span), Extent::NONE, Room::Tight).unwrap();
+            let ticks = across(&axis, length);
+            let ends: Vec<(f64, f64)> = ticks
+                .major
+                .iter()
+                .filter(|t| !t.label.is_empty())
+                .map(|t| (axis.at_scaled(t.at) * length, font::width(&t.label, SMALL) / 2.0))
+                .map(|(at, half)| (at - half, at + half))
+                .collect();
+            prop_assert!(!ends.is_empty());
+            prop_assert!(ends.windows(2).all(|w| w[0].1 < w[1].0), "{ticks:?}");
+        }
+    }
+
+    #[test]
+    fn a_name_too_long_is_made_smaller_and_then_cut() {
+        let name = "Displacement amplitude of the passive mass (mm)";
+        let whole = font::width(name, LARGE);
+        assert_eq!(fitted(name, LARGE, whole), (name.to_owned(), LARGE));
+        let (same, smaller) = fitted(name, LARGE, 0.8 * whole);
+        assert!(same == name && smaller < LARGE && font::width(&same, smaller) <= 0.8 * whole + 0.02);
+        let (cut, size) = fitted(name, LARGE, 0.5 * whole);
+        assert!(cut.ends_with('…') && font::width(&cut, size) <= 0.5 * whole + 0.02);
+    }
+}

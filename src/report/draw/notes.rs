@@ -142,3 +142,53 @@ fn around(text: &str, at: Point, taken: f64, frame: Rect, clutter: &Clutter) -> 
 fn best(spots: impl Iterator<Item = Spot>) -> Option<Spot> {
     spots.min_by(|a, b| a.cost.total_cmp(&b.cost)).filter(|spot| spot.cost < 1e5)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const FRAME: Rect = Rect { x: 0.0, y: 0.0, w: 300.0, h: 200.0 };
+
+    proptest! {
+        /// Four notes anywhere have room in a frame of this size, so none may cover another or leave the frame.
+        #[test]
+        fn notes_stand_clear_of_each_other(points in prop::collection::vec((0.0..300.0f64, 0.0..200.0f64), 1..=4)) {
+            let mut clutter = Clutter::default();
+            for at in &points {
+                clutter.add_box(Rect::around(*at, MARKER));
+            }
+            let mut areas: Vec<Rect> = Vec::new();
+            for at in points {
+                let spot = around("a note of words", at, MARKER, FRAME, &clutter).unwrap();
+                prop_assert!(FRAME.holds(spot.area), "{spot:?}");
+                prop_assert!(areas.iter().all(|a| a.overlap(spot.area) == 0.0), "{areas:?} {spot:?}");
+                clutter.add_box(spot.area);
+                areas.push(spot.area);
+            }
+        }
+    }
+
+    #[test]
+    fn a_note_without_neighbours_stands_right_above_its_point() {
+        let spot = around("peak", (150.0, 100.0), MARKER, FRAME, &Clutter::default()).unwrap();
+        assert!(spot.leader.is_none());
+        assert!((spot.area.middle().0 - 150.0).abs() < 1e-9 && spot.area.bottom() < 100.0 - MARKER);
+    }
+
+    #[test]
+    fn a_note_that_cannot_stand_inside_is_left_out() {
+        let narrow = Rect { w: 12.0, ..FRAME };
+        assert!(around("a note of words", (6.0, 100.0), MARKER, narrow, &Clutter::default()).is_none());
+    }
+
+    #[test]
+    fn a_line_is_named_along_its_free_end() {
+        let mut clutter = Clutter::default();
+        clutter.add_box(Rect { x: 100.0, y: 0.0, w: 200.0, h: 200.0 });
+        let spot = beside("mean", 100.0, false, FRAME, &clutter).unwrap();
+        assert!(spot.cost < 1.0 && spot.area.right() < 100.0, "{spot:?}");
+        let spot = beside("mean", 100.0, true, FRAME, &clutter).unwrap();
+        assert!(spot.cost < 1.0 && spot.area.right() < 100.0 && spot.area.y < 20.0, "{spot:?}");
+    }
+}

@@ -85,3 +85,33 @@ fn form(marker: Marker, turn: usize) -> Marker {
     ];
     if marker == Marker::Auto { TURNS[turn % TURNS.len()] } else { marker }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbouring_series_differ_without_their_colour() {
+        let lines: Vec<Series> = (0..4).map(|_| Series::line("", [], [])).collect();
+        let points: Vec<Series> = (0..7).map(|_| Series::points("", [], [])).collect();
+        let (lines, points) = (looks(&lines), looks(&points));
+        for (i, a) in lines.iter().enumerate() {
+            assert!(lines[i + 1..].iter().all(|b| a.pen.dashes != b.pen.dashes && a.colour != b.colour));
+        }
+        for (i, a) in points.iter().enumerate() {
+            assert!(points[i + 1..].iter().all(|b| a.marker != b.marker && a.colour != b.colour));
+        }
+    }
+
+    #[test]
+    fn series_that_belong_together_do_not_take_the_next_colour() {
+        let series = [
+            Series::band("", [], [], []).ink(Ink::Nth(0)),
+            Series::line("", [], []),
+            Series::vertical("", 0.0),
+            Series::line("", [], []),
+        ];
+        let colours: Vec<Rgb> = looks(&series).iter().map(|l| l.colour).collect();
+        assert_eq!(colours, [colour::SERIES[0], colour::SERIES[0], GREY, colour::SERIES[1]]);
+    }
+}
