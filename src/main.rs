@@ -1,3 +1,5 @@
-//! The command `vibro`.
+//! The command `vibro`: see [`vibroimpact::cli`].
 
-fn main() {}
+fn main() -> std::process::ExitCode {
+    vibroimpact::cli::main().into()
+}

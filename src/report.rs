@@ -5,7 +5,12 @@
 //! the same figure gives the same bytes on every machine.
 
 pub mod colour;
+pub mod files;
+pub mod job;
 pub mod notation;
+pub mod page;
+pub mod pictures;
+pub mod tables;
 
 mod axis;
 mod draw;

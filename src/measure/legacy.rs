@@ -55,7 +55,7 @@ pub fn hand_over<P: AsRef<Path>>(lines: usize, base_band: f64, excitation: &[f64
     text
 }
 
-/// sinesw: all stored magnitudes, shape [points][lines]; nothing is integrated or cut off.
+/// sinesw: all stored magnitudes, one row a point; nothing is integrated or cut off.
 pub fn waterfall(sweep: &Sweep) -> Vec<Vec<f64>> {
     sweep.points.iter().map(|p| p.response.values.magnitudes()).collect()
 }

@@ -12,11 +12,11 @@ use std::f64::consts::PI;
 pub struct Waterfall {
     /// Name of the sweep.
     pub name: String,
-    /// Frequencies of the lines in Hz, shape [lines].
+    /// Frequencies of the lines in Hz, one a column.
     pub frequency: Vec<f64>,
-    /// Excitation frequencies in Hz in the order of the sweep, shape [points].
+    /// Excitation frequencies in Hz in the order of the sweep, one a row.
     pub excitation: Vec<f64>,
-    /// Magnitudes, shape [points, lines]; NaN below the cut-off.
+    /// Magnitudes, points × lines; NaN below the cut-off.
     pub magnitude: Array2<f64>,
     /// Quantity of the magnitudes.
     pub quantity: crate::units::Quantity,

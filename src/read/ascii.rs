@@ -99,9 +99,7 @@ fn plain(source: &Source) -> Result<Source> {
     let head = source.head()?;
     let cr_only = head.contains(&b'\r') && !head.contains(&b'\n');
     if !text::is_utf16(&head) && !cr_only {
-        // A small file is in memory already: do not open it again.
-        let small = head.len() as u64 == source.len();
-        return if small { Source::memory(source.path(), head) } else { Ok(source.clone()) };
+        return Ok(source.clone());
     }
     let text = text::decode(&source.all()?).replace("\r\n", "\n").replace('\r', "\n");
     Source::memory(source.path(), text.into_bytes())

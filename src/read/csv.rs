@@ -22,7 +22,7 @@ use super::{Header, Source, text};
 use crate::error::{Error, Place, Result};
 
 pub(super) fn sniff(head: &[u8], source: &Source) -> bool {
-    if !text::is_text(head) {
+    if !text::is_text(head) || !holds_words(head) {
         return false;
     }
     let decoded = text::decode(head);
@@ -32,6 +32,16 @@ pub(super) fn sniff(head: &[u8], source: &Source) -> bool {
         whole = whole.rfind(['\n', '\r']).map_or("", |end| &whole[..end]);
     }
     layout::detect(whole, &Options::default(), named_csv(source)).is_some()
+}
+
+/// Whether any letter stands there that numbers do not hold: names need some, and most files of numbers have none.
+fn holds_words(head: &[u8]) -> bool {
+    // Counting all, without an early end, lets the compiler look at many bytes at once.
+    let of_words = |b: &&u8| {
+        let lower = **b | 0x20;
+        **b >= 0x80 || lower.wrapping_sub(b'a') < 26 && !matches!(lower, b'd' | b'e' | b'i' | b'j' | b'q')
+    };
+    head.iter().filter(of_words).count() > 0
 }
 
 fn named_csv(source: &Source) -> bool {

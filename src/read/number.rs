@@ -102,27 +102,70 @@ pub fn prefix(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
 /// ```
 #[inline]
 pub fn scientific<const W: usize>(field: &[u8; W]) -> Option<f64> {
-    const { assert!(W > 8 && W <= 22, "the digits must fit into an exact integer") };
-    let digit = |at: usize| field[at].wrapping_sub(b'0');
-    let mut mantissa = u64::from(digit(2));
-    let mut worst = digit(2);
-    for at in 4..W - 4 {
-        mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit(at)));
-        worst = worst.max(digit(at));
+    if field[0] != b' ' || !matches!(field[1], b' ' | b'-') {
+        return None;
     }
-    let (tens, ones) = (digit(W - 2), digit(W - 1));
+    let magnitude = exponential(&field[2..])?;
+    Some(if field[1] == b'-' { -magnitude } else { magnitude })
+}
+
+/// Parses all of `field` as a digit, the point, digits, `E`, a sign and two digits; `None` for everything else.
+///
+/// The loop over the digits has no branch: where the length of the field is known to the compiler it is unrolled.
+#[inline(always)]
+#[allow(clippy::inline_always)] // the length must be known to the compiler
+pub fn exponential(field: &[u8]) -> Option<f64> {
+    let w = field.len();
+    // Nineteen digits always fit into 64 bits; the check for an exact integer comes below.
+    if !(8..=24).contains(&w) {
+        return None;
+    }
+    let digit = |at: usize| field[at].wrapping_sub(b'0');
+    let mut mantissa = u64::from(digit(0));
+    let mut worst = digit(0);
+    for b in &field[2..w - 4] {
+        let d = b.wrapping_sub(b'0');
+        mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(d));
+        worst = worst.max(d);
+    }
+    let (tens, ones) = (digit(w - 2), digit(w - 1));
     worst = worst.max(tens).max(ones);
-    let marks = field[0] == b' ' && field[3] == b'.' && matches!(field[W - 4], b'E' | b'e');
-    let signs = matches!(field[1], b' ' | b'-') && matches!(field[W - 3], b'-' | b'+');
-    if worst > 9 || !marks || !signs {
+    let marks =
+        field[1] == b'.' && matches!(field[w - 4], b'E' | b'e') && matches!(field[w - 3], b'-' | b'+');
+    if worst > 9 || !marks || mantissa >= 1 << 53 {
         return None;
     }
     let printed = i32::from(tens) * 10 + i32::from(ones);
-    let printed = if field[W - 3] == b'-' { -printed } else { printed };
-    let exponent = printed - (W as i32 - 8);
+    let printed = if field[w - 3] == b'-' { -printed } else { printed };
+    let exponent = printed - (w as i32 - 6);
     let power = *POWERS.get(exponent.unsigned_abs() as usize)?;
-    let magnitude = if exponent < 0 { mantissa as f64 / power } else { mantissa as f64 * power };
-    Some(if field[1] == b'-' { -magnitude } else { magnitude })
+    Some(if exponent < 0 { mantissa as f64 / power } else { mantissa as f64 * power })
+}
+
+/// A parser of fields of one length, made for that length.
+pub type Exponential = fn(&[u8]) -> Option<f64>;
+
+/// [`exponential`] for fields of `width` characters, made for that width; `None` for widths that instruments do not print.
+pub fn exponential_of(width: usize) -> Option<Exponential> {
+    fn of<const W: usize>(field: &[u8]) -> Option<f64> {
+        field.first_chunk::<W>().and_then(|field| exponential(field))
+    }
+    Some(match width {
+        8 => of::<8>,
+        9 => of::<9>,
+        10 => of::<10>,
+        11 => of::<11>,
+        12 => of::<12>,
+        13 => of::<13>,
+        14 => of::<14>,
+        15 => of::<15>,
+        16 => of::<16>,
+        17 => of::<17>,
+        18 => of::<18>,
+        19 => of::<19>,
+        20 => of::<20>,
+        _ => return None,
+    })
 }
 
 /// `E+03`, `D-3`, `e5`, or a bare sign followed by digits; `None` where no exponent stands.

@@ -156,7 +156,8 @@ impl Reader {
     /// # Errors
     /// As [`Reader::from_path`].
     pub fn from_source(&self, source: &Source) -> Result<Recording> {
-        (self.entry(source)?.read)(source, &self.options).map_err(|e| e.in_file(source.path()))
+        let (entry, source) = self.entry(source)?;
+        (entry.read)(&source, &self.options).map_err(|e| e.in_file(source.path()))
     }
 
     /// The records of a file without their values; memory does not grow with the file where the format allows.
@@ -165,26 +166,25 @@ impl Reader {
     /// As [`Reader::from_path`].
     pub fn survey(&self, path: impl AsRef<Path>) -> Result<(Format, Vec<Header>, Vec<String>)> {
         let source = Source::file(path)?;
-        let entry = self.entry(&source)?;
+        let (entry, source) = self.entry(&source)?;
         let (headers, doubts) =
             (entry.survey)(&source, &self.options).map_err(|e| e.in_file(source.path()))?;
         Ok((entry.format, headers, doubts))
     }
 
-    fn entry(&self, source: &Source) -> Result<&'static Entry> {
-        if let Some(format) = self.format
-            && let Some(entry) = TABLE.iter().find(|e| e.format == format)
-        {
-            return Ok(entry);
-        }
+    /// The format of a source, and the source itself: in memory where its first bytes are all of it.
+    fn entry(&self, source: &Source) -> Result<(&'static Entry, Source)> {
         let head = source.head()?;
-        TABLE.iter().find(|e| (e.sniff)(&head, source)).ok_or_else(|| {
+        let forced = self.format.and_then(|format| TABLE.iter().find(|e| e.format == format));
+        let entry = forced.or_else(|| TABLE.iter().find(|e| (e.sniff)(&head, source))).ok_or_else(|| {
             Error::input(
                 Place::file(source.path()),
                 "not a format that is known here",
                 Format::names().join(", "),
             )
             .hint("force the format with --format, or export the record as text or UFF-58")
-        })
+        })?;
+        let small = head.len() as u64 == source.len();
+        Ok((entry, if small { Source::memory(source.path(), head)? } else { source.clone() }))
     }
 }

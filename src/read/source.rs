@@ -84,7 +84,7 @@ impl Source {
         })
     }
 
-    /// The first [`HEAD`] bytes, or all if there are fewer.
+    /// The first 64 KiB, or all if there are fewer.
     ///
     /// # Errors
     /// If the file cannot be read.

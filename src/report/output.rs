@@ -1,6 +1,6 @@
 //! A folder of results, each file of which appears whole or not at all.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Place, Result};
 use std::fs;
 use std::io::Write;
 use std::path::{Component, Path, PathBuf};
@@ -17,13 +17,16 @@ pub struct Output {
 }
 
 impl Output {
-    /// A folder, made with its parents where absent.
+    /// A folder, made with its parents when the first file is written, so that a job that fails before leaves nothing.
     ///
     /// # Errors
-    /// If the folder cannot be made, or if a file has its name.
+    /// If a file has its name.
     pub fn new(folder: impl Into<PathBuf>) -> Result<Output> {
         let folder = folder.into();
-        fs::create_dir_all(&folder).map_err(|e| Error::io("make the folder", &folder, e))?;
+        if folder.exists() && !folder.is_dir() {
+            return Err(Error::input(Place::file(&folder), "this is a file", "a folder for results")
+                .hint("name another folder"));
+        }
         Ok(Output { folder, written: Vec::new() })
     }
 
@@ -44,6 +47,7 @@ impl Output {
     /// refuses. In either case a file that had this name stays as it was, and no temporary file is left.
     pub fn write(&mut self, name: &str, bytes: impl AsRef<[u8]>) -> Result<PathBuf> {
         let path = self.folder.join(checked(name)?);
+        fs::create_dir_all(&self.folder).map_err(|e| Error::io("make the folder", &self.folder, e))?;
         let parent = path.parent().unwrap_or(&self.folder).to_owned();
         self.make_inside(&parent, name)?;
         if path.is_dir() {
@@ -143,8 +147,8 @@ mod tests {
             let error = out.write(name, "x").unwrap_err();
             assert_eq!(error.exit_code(), 2, "{name:?}");
         }
-        assert_eq!(names(dir.path()), ["in"]);
-        assert!(names(out.folder()).is_empty() && out.written().is_empty());
+        // The folder is made for the first file only.
+        assert!(names(dir.path()).is_empty() && out.written().is_empty());
     }
 
     #[test]

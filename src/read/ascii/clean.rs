@@ -129,6 +129,21 @@ pub fn scan(
     }
 }
 
+/// The number at the start of `bytes` and the bytes it takes.
+#[inline]
+fn value(bytes: &[u8], layout: &Layout) -> Option<(f64, usize)> {
+    if let Some((parse, width)) = layout.exponential {
+        let first = *bytes.first()?;
+        let sign = usize::from(matches!(first, b'-' | b'+'));
+        // What follows must end the number, or it is longer than the others.
+        let ended = bytes.get(sign + width).is_none_or(|b| !b.is_ascii_digit());
+        if let Some(magnitude) = bytes.get(sign..sign + width).filter(|_| ended).and_then(parse) {
+            return Some((if first == b'-' { -magnitude } else { magnitude }, sign + width));
+        }
+    }
+    number::prefix(bytes, layout.decimal)
+}
+
 enum Row {
     /// A full row, and the bytes it took with its line end.
     Values(usize),
@@ -163,7 +178,7 @@ fn row(bytes: &[u8], layout: &Layout, sink: &mut impl FnMut(f64)) -> Row {
             at += 1;
             blank(&mut at);
         }
-        let Some((value, used)) = number::prefix(&bytes[at..], layout.decimal) else { return Row::Odd };
+        let Some((value, used)) = value(&bytes[at..], layout) else { return Row::Odd };
         sink(value);
         at += used;
         // Two numbers must not touch.

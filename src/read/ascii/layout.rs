@@ -1,7 +1,8 @@
 //! Finding out how a text file of numbers is laid out.
 
 use crate::error::{Error, Place, Result};
-use crate::read::{Options, number};
+use crate::read::Options;
+use crate::read::number::{self, Exponential};
 use std::path::Path;
 
 /// What stands between two values of a row.
@@ -23,7 +24,7 @@ pub enum Cell {
 }
 
 /// How rows are to be cut and read.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Layout {
     /// Lines before the first row of numbers, without comment marks, with their line numbers.
     pub header: Vec<(u64, String)>,
@@ -39,6 +40,8 @@ pub struct Layout {
     pub columns: usize,
     /// Real or complex.
     pub cell: Cell,
+    /// Parser of unsigned numbers and their width, where the first rows print them all like `1.234e+05`.
+    pub exponential: Option<(Exponential, usize)>,
 }
 
 /// Rows that tell the layout where no comma makes it doubtful.
@@ -130,7 +133,31 @@ pub fn detect(path: &Path, head: &[u8], cut: bool, options: &Options) -> Result<
     };
     let spaced = cell == Cell::Complex && separator == Separator::Blank && imaginary(whole.trim().as_bytes());
     let columns = if spaced { 1 } else { cells.len() };
-    Ok(Layout { header, first_line, first_byte, separator, decimal, columns, cell })
+    let exponential = exponential(&rows, separator, decimal);
+    Ok(Layout { header, first_line, first_byte, separator, decimal, columns, cell, exponential })
+}
+
+/// The parser for numbers of one width, if all rows hold such numbers.
+fn exponential(
+    rows: &[(u64, usize, &[u8])],
+    separator: Separator,
+    decimal: u8,
+) -> Option<(Exponential, usize)> {
+    let mut width = None;
+    let mut cells = Vec::new();
+    for (_, _, row) in rows.iter().take(ENOUGH) {
+        cut_row(row, separator, &mut cells);
+        for (_, cell) in &cells {
+            let unsigned = cell.strip_prefix(b"-").or(cell.strip_prefix(b"+")).unwrap_or(cell);
+            if *width.get_or_insert(unsigned.len()) != unsigned.len()
+                || number::exponential(unsigned).is_none()
+            {
+                return None;
+            }
+        }
+    }
+    let width = width.filter(|_| decimal == b'.')?;
+    number::exponential_of(width).map(|parse| (parse, width))
 }
 
 fn decode_line(line: &[u8]) -> String {

@@ -1,0 +1,43 @@
+//! The command `vibro`: what was typed, checked, done and printed. Nothing in the library uses this folder.
+
+mod args;
+mod compare;
+mod complain;
+mod convert;
+mod excitation;
+mod info;
+mod print;
+mod progress;
+mod response;
+mod run;
+mod settings;
+mod waterfall;
+
+use crate::error::Result;
+use args::{Args, Command};
+use clap::Parser;
+
+/// Parses the command line, does what it says, and gives the exit code: 0 done, 1 no answer possible, 2 wrong usage or
+/// unreadable input.
+pub fn main() -> u8 {
+    let args = match Args::try_parse() {
+        Ok(args) => args,
+        Err(error) => return complain::usage(&error),
+    };
+    match dispatch(&args) {
+        Ok(()) => 0,
+        Err(error) => complain::error(&error),
+    }
+}
+
+fn dispatch(args: &Args) -> Result<()> {
+    match &args.command {
+        Command::Info(typed) => info::run(typed, args.json),
+        Command::Convert(typed) => convert::run(typed, args.json),
+        Command::Excitation(typed) => excitation::run(typed, args.json),
+        Command::Waterfall(typed) => waterfall::run(typed, args.json),
+        Command::Response(typed) => response::run(typed, args.json),
+        Command::Compare(typed) => compare::run(typed, args.json),
+        Command::Run(typed) => run::run(typed, args.json),
+    }
+}

@@ -1,0 +1,79 @@
+//! `vibro excitation`: the job of sineswpf.
+
+use super::{args, complain, print, settings};
+use crate::error::{Error, Result};
+use crate::measure::excitation::{Excitation, excitations};
+use crate::measure::legacy;
+use crate::report::Output;
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+#[derive(Serialize)]
+struct Answer {
+    points: Vec<Excitation>,
+    warnings: Vec<String>,
+    written: Vec<PathBuf>,
+}
+
+pub fn run(typed: &args::Excitation, json: bool) -> Result<()> {
+    let (list, how) = settings::sweep(&typed.sweep)?;
+    let sweep = how.read(&list)?;
+    let mut warnings = sweep.doubts.clone();
+    let points = if typed.sweep.legacy {
+        warnings = vec!["These are the answers of the script sineswpf, mistakes included.".to_owned()];
+        legacy::excitation(&sweep)?
+            .into_iter()
+            .zip(&sweep.points)
+            .map(|(frequency, p)| Excitation {
+                file: p.name(),
+                frequency,
+                std: None,
+                force: None,
+                force_std: None,
+            })
+            .collect()
+    } else {
+        excitations(&sweep, typed.sweep.fmin.unwrap_or(0.0))?
+    };
+    let mut written = Vec::new();
+    if let Some([force, response]) = typed.write_lists.as_deref() {
+        if list.force.is_empty() {
+            return Err(Error::usage(
+                "--write-lists needs a list file with force names",
+                "a list, no hand-over file",
+            ));
+        }
+        let frequency: Vec<f64> = points.iter().map(|p| p.frequency).collect();
+        for (path, names) in [(force, &list.force), (response, &list.response)] {
+            let text = legacy::hand_over(list.lines, list.base_band, &frequency, names);
+            written.push(write_beside(path, &text)?);
+        }
+    }
+    if json {
+        return print::json(&Answer { points, warnings, written });
+    }
+    let mut text = format!("{:<16} {:>12} {:>12} {:>12}\n", "file", "frequency/Hz", "std/Hz", "force/N");
+    for p in &points {
+        let cell = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{v:.3e}"));
+        let _ =
+            writeln!(text, "{:<16} {:>12.5} {:>12} {:>12}", p.file, p.frequency, cell(p.std), cell(p.force));
+    }
+    complain::warn(&warnings);
+    print::text(&text)
+}
+
+/// Writes a file whole, in a folder that must exist.
+pub fn write_beside(path: &Path, bytes: impl AsRef<[u8]>) -> Result<PathBuf> {
+    let name = path
+        .file_name()
+        .ok_or_else(|| Error::usage(format!("{} is no file name", path.display()), "a file"))?;
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        return Err(Error::usage(
+            format!("the folder {} does not exist", folder.display()),
+            "an existing folder",
+        ));
+    }
+    Output::new(folder)?.write(&name.to_string_lossy(), bytes)
+}

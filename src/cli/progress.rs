@@ -1,0 +1,33 @@
+//! Progress for a person at a terminal; nothing anywhere else.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::IsTerminal;
+
+/// A bar on standard error where that is a terminal and no JSON was asked for.
+pub fn bar(json: bool) -> ProgressBar {
+    let bar = ProgressBar::no_length();
+    if json || !std::io::stderr().is_terminal() {
+        bar.set_draw_target(ProgressDrawTarget::hidden());
+        return bar;
+    }
+    if let Ok(style) = ProgressStyle::with_template("{msg:24} {wide_bar} {pos}/{len}") {
+        bar.set_style(style);
+    }
+    bar
+}
+
+impl crate::report::job::Progress for ProgressBar {
+    fn start(&self, what: &str, steps: usize) {
+        self.set_length(steps as u64);
+        self.set_position(0);
+        self.set_message(what.to_owned());
+    }
+
+    fn step(&self) {
+        self.inc(1);
+    }
+
+    fn done(&self) {
+        self.finish_and_clear();
+    }
+}

@@ -1,0 +1,83 @@
+//! `vibro response`: the job of sinesw3.
+
+use super::{args, complain, print, settings};
+use crate::error::Result;
+use crate::measure::legacy;
+use crate::measure::response::{Response, response};
+use crate::report::{Output, files, pictures, tables};
+use serde::Serialize;
+use std::fmt::Write as _;
+
+#[derive(Serialize)]
+struct Answer {
+    #[serde(flatten)]
+    response: Response,
+    files: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Legacy {
+    points: Vec<LegacyPoint>,
+    warnings: Vec<String>,
+}
+
+/// What the script printed: a frequency and a largest line.
+#[derive(Serialize)]
+struct LegacyPoint {
+    excitation: f64,
+    frequency: f64,
+    amplitude: crate::measure::Estimate,
+}
+
+pub fn run(typed: &args::Response, json: bool) -> Result<()> {
+    let (list, how) = settings::sweep(&typed.sweep)?;
+    let sweep = how.read(&list)?;
+    if typed.sweep.legacy {
+        return legacy(&sweep, json);
+    }
+    let options = settings::taking(&typed.taking, typed.sweep.fmin, how.unit.quantity());
+    let response = response(&sweep, &options)?;
+    let mut written = Vec::new();
+    if let Some(folder) = &typed.out {
+        let mut output = Output::new(folder)?;
+        let figure = pictures::response(&response.name, std::slice::from_ref(&response));
+        files::figures(&mut output, &[("response".to_owned(), figure)], &|| ())?;
+        output.write("response.csv", tables::response(&response).csv())?;
+        written = output.written().to_vec();
+    }
+    if json {
+        return print::json(&Answer { response, files: written });
+    }
+    complain::warn(&response.warnings);
+    let mut text = tables::response(&response).text();
+    for table in [tables::resonances(&response), tables::jumps(&response)] {
+        if !table.rows.is_empty() {
+            let _ = write!(text, "\n{}", table.text());
+        }
+    }
+    for file in written {
+        let _ = writeln!(text, "wrote {file}");
+    }
+    print::text(&text)
+}
+
+fn legacy(sweep: &crate::record::Sweep, json: bool) -> Result<()> {
+    let warnings = vec!["These are the answers of the script sinesw3, mistakes included.".to_owned()];
+    let points: Vec<LegacyPoint> = legacy::response(sweep)?
+        .into_iter()
+        .map(|(excitation, amplitude)| LegacyPoint {
+            excitation,
+            frequency: excitation,
+            amplitude: crate::measure::Estimate::new(amplitude, None, "m", 1, "largest line, as sinesw3"),
+        })
+        .collect();
+    if json {
+        return print::json(&Legacy { points, warnings });
+    }
+    complain::warn(&warnings);
+    let mut text = String::new();
+    for p in points {
+        let _ = writeln!(text, "{:>10.4} {:>14.6e}", p.excitation, p.amplitude.value);
+    }
+    print::text(&text)
+}

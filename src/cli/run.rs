@@ -1,0 +1,38 @@
+//! `vibro run`: all that a campaign asks for.
+
+use super::{args, complain, print, progress};
+use crate::campaign::Campaign;
+use crate::error::Result;
+use crate::report::Output;
+use crate::report::job::{self, JobOptions, Results};
+use crate::report::tables;
+use serde::Serialize;
+use std::fmt::Write as _;
+
+#[derive(Serialize)]
+struct Answer {
+    results: Results,
+    files: Vec<String>,
+    folder: String,
+    warnings: Vec<String>,
+}
+
+pub fn run(typed: &args::Run, json: bool) -> Result<()> {
+    let campaign = Campaign::from_path(&typed.campaign)?;
+    let folder = typed.out.clone().unwrap_or_else(|| campaign.out());
+    let options = JobOptions { allow_outside: typed.allow_outside };
+    let mut output = Output::new(&folder)?;
+    let results = job::run(&campaign, options, &mut output, &progress::bar(json))?;
+    let files = output.written().to_vec();
+    let warnings = results.warnings.clone();
+    if json {
+        return print::json(&Answer { results, files, folder: folder.display().to_string(), warnings });
+    }
+    complain::warn(&warnings);
+    let mut text = String::new();
+    for table in tables::summary(&results) {
+        let _ = writeln!(text, "{}", table.text());
+    }
+    let _ = writeln!(text, "{} files in {}; open report.html there", files.len(), folder.display());
+    print::text(&text)
+}

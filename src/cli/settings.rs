@@ -1,0 +1,135 @@
+//! From what was typed to what is meant: checked options.
+
+use super::args::{Decimal, Reading, Sweep, Taking};
+use crate::campaign::Campaign;
+use crate::error::{Error, Result};
+use crate::measure::response::ResponseOptions;
+use crate::read::{Format, Reader, SweepList, SweepReader};
+use crate::record::{Scaling, Window};
+use crate::units::{Quantity, Unit};
+use std::path::Path;
+
+/// A reader with the options of a file.
+///
+/// # Errors
+/// On an unknown format or unit, and on rates that are not above 0.
+pub fn reader(typed: &Reading) -> Result<Reader> {
+    let format = typed.format.as_deref().map(format).transpose()?;
+    let unit = typed.unit.as_deref().map(unit).transpose()?;
+    let decimal_comma = typed.decimal.map(|d| d == Decimal::Comma);
+    above_zero("--rate", typed.rate)?;
+    above_zero("--base-band", typed.base_band)?;
+    Ok(Reader::new()
+        .format(format)
+        .allow_missing(typed.allow_missing)
+        .rate(typed.rate)
+        .base_band(typed.base_band)
+        .unit(unit)
+        .decimal_comma(decimal_comma)
+        .complex(typed.complex))
+}
+
+fn format(name: &str) -> Result<Format> {
+    Format::from_name(name)
+        .ok_or_else(|| Error::usage(format!("--format {name:?} is not known"), Format::names().join(", ")))
+}
+
+fn unit(text: &str) -> Result<Unit> {
+    Unit::parse(text).ok_or_else(|| {
+        Error::usage(
+            format!("--unit {text:?} is not understood"),
+            "a unit such as m, mm/s, g, m/s², V, (m/s²)/N",
+        )
+    })
+}
+
+/// Checks a number that must be finite and above 0.
+///
+/// # Errors
+/// If it is not.
+pub fn above_zero(name: &str, value: Option<f64>) -> Result<()> {
+    match value {
+        Some(v) if !(v.is_finite() && v > 0.0) => {
+            Err(Error::usage(format!("{name} is {v}"), "a finite number above 0"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The list of a sweep, how to read it, and how to take its response to displacement.
+///
+/// # Errors
+/// On options that contradict each other, an unknown name, or a list that cannot be read.
+pub fn sweep(typed: &Sweep) -> Result<(SweepList, SweepReader)> {
+    let (path, name) = match typed.source.rsplit_once('#') {
+        Some((path, name)) if path.to_lowercase().ends_with(".toml") => (path, Some(name)),
+        _ => (typed.source.as_str(), None),
+    };
+    let (list, mut how) = if path.to_lowercase().ends_with(".toml") {
+        let campaign = Campaign::from_path(path)?;
+        campaign.sweep(name, typed.allow_outside)?
+    } else {
+        (SweepList::from_path(path, typed.allow_outside)?, SweepReader::default())
+    };
+    if how.name.is_empty() {
+        how.name = Path::new(path).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+    }
+    above_zero("--fmin", typed.fmin)?;
+    if let Some(text) = &typed.unit {
+        how.unit = unit(text)?;
+    }
+    if let Some(factor) = typed.calibration {
+        above_zero("--calibration", Some(factor))?;
+        how.calibration = factor;
+    }
+    if let Some(name) = &typed.window {
+        how.window = window(name)?;
+        how.window_assumed = false;
+    }
+    if let Some(name) = &typed.scaling {
+        how.scaling = scaling(name)?;
+        how.scaling_assumed = false;
+    }
+    how.analyser_integrated = typed.analyser_integrated.or(how.analyser_integrated);
+    Ok((list, how))
+}
+
+/// A window by name, `None` for `unknown`.
+///
+/// # Errors
+/// On any other name.
+pub fn window(name: &str) -> Result<Option<Window>> {
+    if name.eq_ignore_ascii_case("unknown") {
+        return Ok(None);
+    }
+    Window::from_name(name).map(Some).ok_or_else(|| {
+        let names: Vec<_> = Window::ALL.iter().map(|w| w.name()).collect();
+        Error::usage(format!("window {name:?} is not known"), format!("{} or unknown", names.join(", ")))
+    })
+}
+
+fn scaling(name: &str) -> Result<Scaling> {
+    match name.to_lowercase().as_str() {
+        "peak" => Ok(Scaling::Peak),
+        "rms" => Ok(Scaling::Rms),
+        _ => Err(Error::usage(format!("--scaling {name:?} is not known"), "peak or rms")),
+    }
+}
+
+/// How responses are taken; the stored quantity decides how often to integrate where that was not typed.
+pub fn taking(typed: &Taking, fmin: Option<f64>, stored: Quantity) -> ResponseOptions {
+    ResponseOptions {
+        band: usize::from(typed.band),
+        integrate: typed.integrate.unwrap_or_else(|| to_displacement(stored)),
+        fmin,
+    }
+}
+
+/// Integrations that take a quantity to displacement; 0 for what has none.
+pub fn to_displacement(stored: Quantity) -> i8 {
+    match stored {
+        Quantity::Velocity => 1,
+        Quantity::Acceleration => 2,
+        _ => 0,
+    }
+}

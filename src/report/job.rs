@@ -1,0 +1,381 @@
+//! All that a campaign asks for: responses, waterfalls, overlay, frequency response functions, and their files.
+
+use super::{Figure, Output, files, page, pictures, tables};
+use crate::campaign::{Campaign, RecordEntry};
+use crate::compare::{Overlay, overlay};
+use crate::error::{Error, Result};
+use crate::measure::peaks::frf_peaks;
+use crate::measure::resonance::{NamedCurve, crossings, name_modes};
+use crate::measure::response::{Response, ResponseOptions, response};
+use crate::measure::waterfall::{Waterfall, waterfall};
+use crate::read::{Header, Reader};
+use crate::record::{Direction, Frf, FrfKind, Record, Sweep};
+use crate::units::{Quantity, Unit};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Told how far a job is.
+pub trait Progress: Sync {
+    /// A part with this many steps begins.
+    fn start(&self, what: &str, steps: usize);
+    /// One step is done.
+    fn step(&self);
+    /// All is done.
+    fn done(&self);
+}
+
+/// Nobody is told.
+impl Progress for () {
+    fn start(&self, _: &str, _: usize) {}
+    fn step(&self) {}
+    fn done(&self) {}
+}
+
+/// How a job may go about its files.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct JobOptions {
+    /// Allow names that lead outside the campaign's folder.
+    pub allow_outside: bool,
+}
+
+/// Peaks of a frequency response function.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FrfResult {
+    /// Name of the record.
+    pub name: String,
+    /// File.
+    pub file: String,
+    /// Receptance, mobility, accelerance, or another ratio.
+    pub quantity: &'static str,
+    /// Unit.
+    pub unit: String,
+    /// Frequency in Hz and magnitude of each peak.
+    pub peaks: Vec<FrfPeak>,
+    /// What a person must know.
+    pub warnings: Vec<String>,
+}
+
+/// One peak of a frequency response function.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct FrfPeak {
+    /// Frequency in Hz.
+    pub frequency: f64,
+    /// What the choice of the interpolating curve may cost, in Hz.
+    pub frequency_std: f64,
+    /// Magnitude.
+    pub magnitude: f64,
+}
+
+/// Where the curves of both masses cross.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Crossing {
+    /// Direction of the two sweeps.
+    pub direction: Direction,
+    /// Frequency in Hz.
+    pub frequency: f64,
+    /// The mass that moves more above it.
+    pub larger_above: u8,
+}
+
+/// A file that a campaign names but that is only listed here.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Listed {
+    /// Part of the campaign: `drop`, `pulse`, …
+    pub part: &'static str,
+    /// File.
+    pub file: String,
+    /// Its records.
+    pub records: Vec<Header>,
+}
+
+/// Everything a job found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Results {
+    /// Name of the campaign.
+    pub campaign: String,
+    /// Version of this crate.
+    pub version: &'static str,
+    /// One response a sweep.
+    pub responses: Vec<Response>,
+    /// Antiresonance of mass 1 in Hz, going up and going down.
+    pub antiresonance: [Option<f64>; 2],
+    /// Where the curves of both masses cross.
+    pub crossings: Vec<Crossing>,
+    /// Comparison with the model.
+    pub overlay: Option<Overlay>,
+    /// Frequency response functions.
+    pub frf: Vec<FrfResult>,
+    /// Files that are listed only.
+    pub listed: Vec<Listed>,
+    /// What a person must know, each sentence once.
+    pub warnings: Vec<String>,
+}
+
+/// Reads all sweeps of a campaign and takes their responses to displacement, with the resonances named.
+///
+/// # Errors
+/// If a list or a spectrum cannot be read, or an excitation cannot be found.
+pub fn responses(campaign: &Campaign, options: JobOptions, progress: &dyn Progress) -> Result<Vec<Response>> {
+    let taken = sweeps(campaign, options, progress)?;
+    Ok(taken.into_iter().map(|(_, response, _)| response).collect())
+}
+
+type Taken = (Sweep, Response, ResponseOptions);
+
+fn sweeps(campaign: &Campaign, options: JobOptions, progress: &dyn Progress) -> Result<Vec<Taken>> {
+    progress.start("reading sweeps", campaign.sweep.len());
+    let mut taken: Vec<Taken> = campaign
+        .sweep
+        .par_iter()
+        .map(|entry| {
+            let list = campaign.list(entry, options.allow_outside)?;
+            let how = entry.reader();
+            let integrate = match how.unit.quantity() {
+                Quantity::Velocity => 1,
+                Quantity::Acceleration => 2,
+                _ => 0,
+            };
+            let compute = &campaign.compute;
+            let options = ResponseOptions { band: compute.band, integrate, fmin: compute.fmin };
+            let sweep = how.read(&list)?;
+            let response = response(&sweep, &options)?;
+            progress.step();
+            Ok((sweep, response, options))
+        })
+        .collect::<Result<_>>()?;
+    let mut curves: Vec<NamedCurve<'_>> = taken
+        .iter_mut()
+        .filter_map(|(_, r, _)| {
+            let (mass, direction) = (r.mass?, r.direction?);
+            let mut curve: Vec<(f64, f64)> =
+                r.points.iter().map(|p| (p.excitation, p.amplitude.value)).collect();
+            curve.sort_by(|a, b| a.0.total_cmp(&b.0));
+            Some(NamedCurve { mass, direction, curve, resonances: &mut r.resonances })
+        })
+        .collect();
+    name_modes(&mut curves);
+    Ok(taken)
+}
+
+/// Does everything and writes it to `output`.
+///
+/// # Errors
+/// As [`responses`]; if the overlay is not possible; if a file cannot be written.
+pub fn run(
+    campaign: &Campaign,
+    options: JobOptions,
+    output: &mut Output,
+    progress: &dyn Progress,
+) -> Result<Results> {
+    let taken = sweeps(campaign, options, progress)?;
+    let mut figures: Vec<(String, Figure)> = Vec::new();
+    let mut matrices: Vec<Waterfall> = Vec::new();
+    for (sweep, _, options) in &taken {
+        matrices.push(waterfall(sweep, options)?);
+    }
+    let responses: Vec<Response> = taken.into_iter().map(|(_, response, _)| response).collect();
+    let mut warnings: Vec<String> = Vec::new();
+    for response in &responses {
+        merge(&mut warnings, &response.name, &response.warnings);
+    }
+    let name = if campaign.name.is_empty() { "Campaign".to_owned() } else { campaign.name.clone() };
+    if !responses.is_empty() {
+        figures.push(("response".to_owned(), pictures::response(&name, &responses)));
+    }
+    let overlay = model(campaign, &responses, &mut warnings)?;
+    if let Some(overlay) = &overlay {
+        figures.push(("overlay".to_owned(), pictures::overlay(&name, overlay, &responses)));
+    }
+    if campaign.compute.waterfall {
+        let fmax = campaign.compute.fmax;
+        for (i, matrix) in matrices.iter().enumerate() {
+            let slug = unique(&files::slug(&matrix.name), i);
+            figures.push((format!("waterfall_{slug}"), pictures::waterfall(matrix, fmax)?));
+            figures.push((format!("map_{slug}"), pictures::map(matrix, fmax)?));
+        }
+    }
+    let frf = frfs(campaign, options, &mut figures, &mut warnings)?;
+    let listed = listed(campaign, options, &mut warnings)?;
+    let found = antiresonances(&responses);
+    let results = Results {
+        campaign: name,
+        version: env!("CARGO_PKG_VERSION"),
+        antiresonance: found,
+        crossings: all_crossings(&responses),
+        responses,
+        overlay,
+        frf,
+        listed,
+        warnings,
+    };
+    progress.start("drawing figures", figures.len());
+    let drawings = files::figures(output, &figures, &|| progress.step())?;
+    for (i, (response, matrix)) in results.responses.iter().zip(&matrices).enumerate() {
+        let slug = unique(&files::slug(&response.name), i);
+        output.write(&format!("response_{slug}.csv"), tables::response(response).csv())?;
+        output.write(&format!("waterfall_{slug}.csv"), files::matrix_csv(matrix))?;
+    }
+    if let Some(overlay) = &results.overlay {
+        output.write("pairs.csv", tables::pairs(overlay).csv())?;
+        output.write("peaks.csv", tables::peaks(overlay).csv())?;
+    }
+    let json = serde_json::to_string_pretty(&results)
+        .map_err(|e| Error::refused(format!("the results cannot be written as JSON: {e}")))?;
+    output.write("results.json", json + "\n")?;
+    output.write("report.html", page::page(&results, &figures, &drawings).html())?;
+    progress.done();
+    Ok(results)
+}
+
+/// Adds sentences, once each, with the sweep's name where they differ from sweep to sweep.
+fn merge(all: &mut Vec<String>, name: &str, sentences: &[String]) {
+    for sentence in sentences {
+        let general = sentence.starts_with("The files do not");
+        let text = if general || name.is_empty() { sentence.clone() } else { format!("{name}: {sentence}") };
+        if !all.contains(&text) {
+            all.push(text);
+        }
+    }
+}
+
+fn unique(slug: &str, index: usize) -> String {
+    if slug.is_empty() { (index + 1).to_string() } else { slug.to_owned() }
+}
+
+fn model(campaign: &Campaign, responses: &[Response], warnings: &mut Vec<String>) -> Result<Option<Overlay>> {
+    let Some(rig) = campaign.rig.filter(|_| campaign.compute.overlay) else { return Ok(None) };
+    if responses.iter().all(|r| r.mass.is_none() || r.direction.is_none()) {
+        if !responses.is_empty() {
+            warnings.push("No sweep names its mass, so nothing is overlaid on the model.".to_owned());
+        }
+        return Ok(None);
+    }
+    let overlay = overlay(&rig, campaign.excitation.and_then(|e| e.force), responses)?;
+    merge(warnings, "", &overlay.warnings);
+    Ok(Some(overlay))
+}
+
+fn antiresonances(responses: &[Response]) -> [Option<f64>; 2] {
+    [Direction::Up, Direction::Down].map(|direction| {
+        let first = responses.iter().find(|r| r.mass == Some(1) && r.direction == Some(direction))?;
+        let deepest = first.resonances.iter().filter(|r| r.kind == "antiresonance");
+        deepest.min_by(|a, b| a.amplitude.total_cmp(&b.amplitude)).map(|r| r.frequency)
+    })
+}
+
+fn all_crossings(responses: &[Response]) -> Vec<Crossing> {
+    let mut found = Vec::new();
+    for direction in [Direction::Up, Direction::Down] {
+        let of = |mass| responses.iter().find(|r| r.mass == Some(mass) && r.direction == Some(direction));
+        if let (Some(first), Some(second)) = (of(1), of(2)) {
+            let curve = |r: &Response| r.points.iter().map(|p| (p.excitation, p.amplitude.value)).collect();
+            for (frequency, second_above) in crossings(curve(first), curve(second)) {
+                found.push(Crossing { direction, frequency, larger_above: if second_above { 2 } else { 1 } });
+            }
+        }
+    }
+    found
+}
+
+/// A peak of a frequency response function must stand this factor above its valleys.
+const FRF_PROMINENCE: f64 = 2.0;
+
+fn frfs(
+    campaign: &Campaign,
+    options: JobOptions,
+    figures: &mut Vec<(String, Figure)>,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<FrfResult>> {
+    let mut results = Vec::new();
+    for entry in &campaign.frf {
+        let path = campaign.record_path(entry, options.allow_outside)?;
+        let recording = reader(entry).from_path(&path)?;
+        merge(warnings, &file_name(&path), &recording.doubts);
+        let records = recording.records.into_iter();
+        let wanted = records.filter(|r| entry.channel.as_ref().is_none_or(|c| *c == r.meta().name));
+        let before = results.len();
+        for record in wanted {
+            let Some(frf) = as_frf(record) else { continue };
+            let peaks: Vec<FrfPeak> = frf_peaks(&frf, FRF_PROMINENCE)
+                .iter()
+                .map(|v| FrfPeak {
+                    frequency: v.frequency,
+                    frequency_std: v.frequency_std,
+                    magnitude: v.height,
+                })
+                .collect();
+            let marks: Vec<(f64, f64)> = peaks.iter().map(|p| (p.frequency, p.magnitude)).collect();
+            let name = entry.name.clone().unwrap_or_else(|| file_name(&path));
+            let number = results.len() + 1;
+            figures.push((format!("frf_{number}"), pictures::frf(&name, &frf, &marks)));
+            merge(warnings, &name, &frf.meta.doubts);
+            results.push(FrfResult {
+                name,
+                file: file_name(&path),
+                quantity: frf.meta.quantity.name(),
+                unit: frf.meta.unit.symbol().to_owned(),
+                peaks,
+                warnings: frf.meta.doubts,
+            });
+        }
+        if results.len() == before {
+            let what = entry.channel.as_ref().map_or_else(String::new, |c| format!(" named {c:?}"));
+            return Err(Error::refused(format!("{}: no frequency response function{what}", path.display()))
+                .hint("`vibro info` lists what is in the file"));
+        }
+    }
+    Ok(results)
+}
+
+fn reader(entry: &RecordEntry) -> Reader {
+    Reader::new()
+        .rate(entry.rate)
+        .base_band(entry.base_band)
+        .unit(entry.unit.as_deref().map(Unit::parse_or_opaque))
+}
+
+/// A complex spectrum under `[[frf]]` is taken for what the campaign says it is.
+fn as_frf(record: Record) -> Option<Frf> {
+    match record {
+        Record::Frf(frf) => Some(frf),
+        Record::Spectrum(s) => match s.values {
+            crate::record::Values::Complex(values) => {
+                let kind = FrfKind::of(s.meta.quantity);
+                Some(Frf { meta: s.meta, axis: s.axis, values, kind })
+            }
+            crate::record::Values::Real(_) => None,
+        },
+        Record::Trace(_) => None,
+    }
+}
+
+/// Parts of a campaign that have no analysis yet are listed, and that is said.
+fn listed(campaign: &Campaign, options: JobOptions, warnings: &mut Vec<String>) -> Result<Vec<Listed>> {
+    let parts = [
+        ("impacts", &campaign.impacts),
+        ("drop", &campaign.drop),
+        ("pulse", &campaign.pulse),
+        ("drill", &campaign.drill),
+    ];
+    let mut listed = Vec::new();
+    for (part, entries) in parts {
+        for entry in entries {
+            let path = campaign.record_path(entry, options.allow_outside)?;
+            let (_, records, doubts) = reader(entry).survey(&path)?;
+            merge(warnings, &file_name(&path), &doubts);
+            listed.push(Listed { part, file: file_name(&path), records });
+        }
+        if !entries.is_empty() {
+            warnings.push(format!(
+                "[[{part}]] files are listed, not analysed: this version has no analysis for them."
+            ));
+        }
+    }
+    Ok(listed)
+}
+
+fn file_name(path: &std::path::Path) -> String {
+    path.file_name()
+        .map_or_else(|| PathBuf::from(path).display().to_string(), |n| n.to_string_lossy().into_owned())
+}

@@ -1,0 +1,11 @@
+//! The figures of this toolkit: results in, [`super::Figure`] out.
+
+mod frf;
+mod overlay;
+mod response;
+mod waterfall;
+
+pub use frf::frf;
+pub use overlay::overlay;
+pub use response::response;
+pub use waterfall::{map, waterfall};

@@ -1,0 +1,108 @@
+//! Response curves: every mass and direction, with uncertainties and named resonances.
+
+use crate::measure::response::Response;
+use crate::record::Direction;
+use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
+
+/// Amplitude over excitation frequency, linear above and logarithmic below.
+pub fn response(title: &str, responses: &[Response]) -> Figure {
+    let mut linear = plot(responses, false);
+    for (text, f, a) in names(responses) {
+        linear = linear.note(text, f, a);
+    }
+    Figure::double(title)
+        .height(150.0)
+        .shared_x()
+        .panel(linear)
+        .panel(plot(responses, true))
+        .caption("Amplitude at the excitation frequency; bars are one standard uncertainty where larger than the marker.")
+}
+
+fn plot(responses: &[Response], log: bool) -> Plot {
+    let first = responses.first();
+    let quantity = first.map_or("Amplitude", |r| r.quantity);
+    let label = format!("{} amplitude", capital(quantity));
+    let y = AxisSpec::new(label, first.map_or("", |r| r.unit));
+    let x = AxisSpec::new("Excitation frequency", "Hz");
+    let y = match log_limits(responses.iter()) {
+        Some((low, high)) if log => y.log().limits(low, high),
+        _ => y,
+    };
+    let mut plot = Plot::new(x, y);
+    for response in responses {
+        plot = plot.with(series(response).stroke(Stroke::Thin));
+    }
+    plot
+}
+
+/// Limits of a logarithmic axis that shows all points, but no uncertainty that reaches down to nothing.
+pub(super) fn log_limits<'a>(responses: impl Iterator<Item = &'a Response>) -> Option<(f64, f64)> {
+    let amplitudes = responses.flat_map(|r| &r.points).map(|p| p.amplitude.value).filter(|a| *a > 0.0);
+    let (low, high) = amplitudes.fold((f64::INFINITY, 0.0f64), |(l, h), a| (l.min(a), h.max(a)));
+    (low <= high).then_some((low / 2.0, high * 2.0))
+}
+
+/// One curve in the ink of its mass and the marker of its direction.
+pub(super) fn series(response: &Response) -> Series {
+    let (mut x, mut y, mut std) = (Vec::new(), Vec::new(), Vec::new());
+    for point in &response.points {
+        x.push(point.excitation);
+        y.push(point.amplitude.value);
+        std.push(point.amplitude.std.unwrap_or(0.0));
+    }
+    let series = Series::points(curve_name(response), x, y).y_error(std);
+    let (up, down) = match response.mass {
+        Some(2) => (Marker::Square, Marker::Diamond),
+        _ => (Marker::Circle, Marker::OpenCircle),
+    };
+    let series = match response.direction {
+        Some(Direction::Down) => series.marker(down),
+        _ => series.marker(up),
+    };
+    match response.mass {
+        Some(mass) => series.ink(Ink::Nth(usize::from(mass) - 1)),
+        None => series,
+    }
+}
+
+/// `mass 1, up`, or the sweep's name where it does not say.
+pub(super) fn curve_name(response: &Response) -> String {
+    match (response.mass, response.direction) {
+        (Some(mass), Some(direction)) => format!("mass {mass}, {}", direction.name()),
+        _ => response.name.clone(),
+    }
+}
+
+/// Names of resonances at the larger of the curves that show them; one name where both directions agree.
+fn names(responses: &[Response]) -> Vec<(String, f64, f64)> {
+    let mut found: Vec<(String, Vec<Direction>, f64, f64)> = Vec::new();
+    for response in responses {
+        let Some(direction) = response.direction else { continue };
+        for r in response.resonances.iter().filter(|r| r.kind == "grazing" || r.kind == "clapping") {
+            // Equal to what the label prints.
+            match found.iter_mut().find(|f| f.0 == r.kind && (f.2 - r.frequency).abs() < 0.01) {
+                Some(known) => {
+                    if !known.1.contains(&direction) {
+                        known.1.push(direction);
+                    }
+                    if known.3 < r.amplitude {
+                        (known.2, known.3) = (r.frequency, r.amplitude);
+                    }
+                }
+                None => found.push((r.kind.clone(), vec![direction], r.frequency, r.amplitude)),
+            }
+        }
+    }
+    found
+        .into_iter()
+        .map(|(kind, directions, f, a)| {
+            let going: Vec<&str> = directions.iter().map(|d| d.name()).collect();
+            (format!("{kind} {f:.2} Hz, {}", going.join(" and ")), f, a)
+        })
+        .collect()
+}
+
+pub(super) fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |c| c.to_uppercase().chain(letters).collect())
+}

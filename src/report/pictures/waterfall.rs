@@ -1,0 +1,67 @@
+//! Spectra of a sweep behind each other, and as a map.
+
+use super::response::capital;
+use crate::error::Result;
+use crate::measure::waterfall::Waterfall as Matrix;
+use crate::report::{AxisSpec, Figure, Heatmap, Legend, Plot, Waterfall};
+use crate::units::decibel;
+use ndarray::Axis;
+
+/// Reference of levels in SI units: 1 µm, 1 µm/s, …
+const REFERENCE: f64 = 1e-6;
+/// Range of a map in dB.
+const RANGE: f64 = 80.0;
+
+/// Waterfall from the cut-off to `fmax` (Hz; the last line where it is `None`).
+///
+/// # Errors
+/// If the matrix and its axes do not fit.
+pub fn waterfall(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
+    let height = AxisSpec::new(format!("{} amplitude", capital(matrix.quantity.name())), matrix.unit.clone());
+    let (low, high) = range(matrix, fmax);
+    let scene = Waterfall::new(&matrix.frequency, &matrix.excitation, &matrix.magnitude, height)?
+        .frequencies(low, high);
+    Ok(Figure::double(matrix.name.clone()).height(120.0).panel(scene).caption(caption(matrix)))
+}
+
+/// Level over frequency and excitation in dB, the largest line and 80 dB below it.
+///
+/// # Errors
+/// If the matrix and its axes do not fit.
+pub fn map(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
+    let mut order: Vec<usize> = (0..matrix.excitation.len()).collect();
+    order.sort_by(|a, b| matrix.excitation[*a].total_cmp(&matrix.excitation[*b]));
+    // A map has one row a position: of repeated excitations the first stays.
+    order.dedup_by(|a, b| matrix.excitation[*a] <= matrix.excitation[*b]);
+    let (low, high) = range(matrix, fmax);
+    let columns: Vec<usize> =
+        (0..matrix.frequency.len()).filter(|k| (low..=high).contains(&matrix.frequency[*k])).collect();
+    let x: Vec<f64> = columns.iter().map(|k| matrix.frequency[*k]).collect();
+    let y: Vec<f64> = order.iter().map(|i| matrix.excitation[*i]).collect();
+    let values = matrix.magnitude.select(Axis(0), &order).select(Axis(1), &columns);
+    let largest = values.iter().copied().filter(|v| v.is_finite()).fold(0.0, f64::max);
+    // A level needs a reference; a millionth of the unit is the usual one for vibration amplitudes.
+    let top = decibel(largest, REFERENCE);
+    let key = AxisSpec::new(format!("{} level", capital(matrix.quantity.name())), matrix.unit.clone())
+        .db(REFERENCE);
+    let key = if largest > 0.0 { key.limits(top - RANGE, top) } else { key };
+    let heatmap = Heatmap::new(&x, &y, &values, key)?;
+    let frequency = AxisSpec::frequency().limits(low, high);
+    let plot = Plot::new(frequency, AxisSpec::new("Excitation frequency", "Hz"))
+        .heatmap(heatmap)
+        .legend(Legend::Hidden);
+    Ok(Figure::double(matrix.name.clone()).height(100.0).panel(plot).caption(caption(matrix)))
+}
+
+fn range(matrix: &Matrix, fmax: Option<f64>) -> (f64, f64) {
+    let last = matrix.frequency.last().copied().unwrap_or(1.0);
+    (matrix.fmin, fmax.unwrap_or(last).min(last))
+}
+
+fn caption(matrix: &Matrix) -> String {
+    if matrix.fmin > 0.0 {
+        format!("Spectra of {}; lines below the cut-off of {:.2} Hz are left out.", matrix.name, matrix.fmin)
+    } else {
+        format!("Spectra of {}.", matrix.name)
+    }
+}

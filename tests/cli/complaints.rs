@@ -1,0 +1,170 @@
+//! Every failure names the place, what was found, what was expected and what to try; nothing is half-written.
+
+use super::rig::{frequencies, spectrum, sweep};
+use super::{complaint, json, text};
+use std::fs;
+
+fn has(complaint: &str, words: &[&str]) {
+    for word in words {
+        assert!(complaint.contains(word), "no {word:?} in:\n{complaint}");
+    }
+}
+
+#[test]
+fn unreadable_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        path
+    };
+    has(&complaint(&["info", text(&at("empty.txt", b""))], 2), &["empty.txt", "empty", "try:"]);
+    has(&complaint(&["info", text(folder.path())], 2), &["folder", "try:"]);
+    has(&complaint(&["info", text(&folder.path().join("absent.txt"))], 2), &["absent.txt", "no such file"]);
+    let noise: Vec<u8> = (0..4000u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
+    has(&complaint(&["info", text(&at("noise.bin", &noise))], 2), &["noise.bin", "not a format", "--format"]);
+    has(&complaint(&["info", text(&at("word.txt", b"1\n2\nx\n"))], 2), &["line 3", "\"x\"", "a number"]);
+}
+
+#[test]
+fn wrong_usage() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.txt");
+    fs::write(&path, "1\n2\n").unwrap();
+    let path = text(&path);
+    for arguments in [
+        &["nonsense"][..],
+        &[],
+        &["info"],
+        &["info", path, "--rate", "-5"],
+        &["info", path, "--rate", "x"],
+        &["info", path, "--rate", "nan"],
+        &["info", path, "--format", "xyz"],
+        &["info", path, "--unit", "furlong"],
+        &["info", path, "--rate", "1", "--base-band", "2"],
+        &["convert", path],
+        &["convert", path, "a.xyz"],
+        &["response", path, "--band", "0"],
+        &["response", path, "--window", "kaiser"],
+        &["run", "absent.toml"],
+    ] {
+        complaint(arguments, 2);
+    }
+}
+
+#[test]
+fn all_missing_files_are_named_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = sweep(folder.path(), &frequencies());
+    fs::remove_file(folder.path().join("FUP0004.DAT")).unwrap();
+    fs::remove_file(folder.path().join("VUP0007.DAT")).unwrap();
+    let found = complaint(&["response", text(&list)], 2);
+    has(&found, &["2 of 24 files are missing", "FUP0004.DAT", "VUP0007.DAT", "try:"]);
+}
+
+#[test]
+fn a_list_that_leads_outside_its_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let inner = folder.path().join("inner");
+    fs::create_dir(&inner).unwrap();
+    let list = sweep(&inner, &frequencies());
+    let escaped = fs::read_to_string(&list).unwrap().replace("VUP0003.DAT", "../VUP0003.DAT");
+    fs::write(&list, escaped).unwrap();
+    fs::rename(inner.join("VUP0003.DAT"), folder.path().join("VUP0003.DAT")).unwrap();
+    has(&complaint(&["response", text(&list)], 2), &["../VUP0003.DAT", "outside", "--allow-outside"]);
+    json(&["response", text(&list), "--allow-outside"]);
+}
+
+#[test]
+fn a_file_of_another_length() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = sweep(folder.path(), &frequencies());
+    fs::write(folder.path().join("VUP0005.DAT"), "1\n2\n3\n").unwrap();
+    has(&complaint(&["response", text(&list)], 2), &["VUP0005.DAT", "3 values", "201", "try:"]);
+}
+
+#[test]
+fn a_force_of_zeros() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = sweep(folder.path(), &frequencies());
+    fs::write(folder.path().join("FUP0002.DAT"), "0.0\n".repeat(201)).unwrap();
+    has(&complaint(&["excitation", text(&list)], 2), &["FUP0002.DAT", "zero", "try:"]);
+}
+
+#[test]
+fn odd_sweeps_are_answered_with_a_warning() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut shuffled = frequencies();
+    shuffled.swap(3, 4);
+    let warned = |frequencies: &[f64], word: &str| {
+        let list = sweep(folder.path(), frequencies);
+        let value = json(&["response", text(&list), "--unit", "m/s"]);
+        assert_eq!(value["points"].as_array().unwrap().len(), frequencies.len());
+        assert!(value["warnings"].to_string().contains(word), "{}", value["warnings"]);
+    };
+    warned(&shuffled, "not in order");
+    let mut doubled = frequencies();
+    doubled[5] = doubled[4];
+    warned(&doubled, "repeat");
+    warned(&[5.03], "one point");
+    // A map of repeated excitations has one row each.
+    let list = sweep(folder.path(), &doubled);
+    let out = folder.path().join("out");
+    json(&["waterfall", text(&list), "--unit", "m/s", "--out", text(&out)]);
+}
+
+#[test]
+fn the_largest_line_elsewhere_is_flagged() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = sweep(folder.path(), &frequencies());
+    fs::write(folder.path().join("VUP0006.DAT"), spectrum(15.02, 1.0)).unwrap();
+    let value = json(&["response", text(&list), "--unit", "m/s"]);
+    assert_eq!(value["points"][5]["largest_elsewhere"], true);
+    assert_eq!(value["points"][4]["largest_elsewhere"], false);
+}
+
+#[test]
+fn mistakes_in_a_campaign_point_at_their_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("campaign.toml");
+    let with = |content: &str| fs::write(&path, content).unwrap();
+    with("name = \"x\"\n\n[[sweep]]\nname = \"a\"\nlist = \"L.TXT\"\ndirektion = \"up\"\n");
+    let found = complaint(&["run", text(&path)], 2);
+    has(&found, &["campaign.toml, line 6, column 1", "direktion", "^^^", "did you mean `direction`?"]);
+    with("[[sweep]]\nname = \"a\"\nlist = \"L.TXT\"\n");
+    has(&complaint(&["run", text(&path)], 2), &["line 3", "L.TXT", "does not exist", "^"]);
+    with("[rig]\nm1 = -1.0\n");
+    has(&complaint(&["run", text(&path)], 2), &["m1 is -1 kg"]);
+    with("[[sweep]]\nname = \"a\"\nlist = \"../L.TXT\"\n");
+    has(&complaint(&["run", text(&path)], 2), &["outside", "line 3"]);
+    // Nothing was made for runs that failed.
+    let left: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
+    assert!(left.iter().all(|n| n == "campaign.toml"), "{left:?}");
+    with("name = \"nothing asked\"\n");
+    json(&["run", text(&path)]);
+    has(&complaint(&["compare", text(&path)], 2), &["[rig]", "try:"]);
+}
+
+#[test]
+fn a_name_that_is_not_in_the_campaign() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("campaign.toml");
+    sweep(folder.path(), &frequencies());
+    fs::write(&path, "[[sweep]]\nname = \"a\"\nlist = \"LIST.TXT\"\nquantity = \"velocity\"\n").unwrap();
+    has(&complaint(&["response", &format!("{}#b", text(&path))], 2), &["\"b\"", "expected a"]);
+    json(&["response", &format!("{}#a", text(&path))]);
+    json(&["response", text(&path)]);
+}
+
+#[test]
+fn a_failed_conversion_leaves_the_old_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let (bad, out) = (folder.path().join("bad.txt"), folder.path().join("out.csv"));
+    fs::write(&bad, "1\nx\n").unwrap();
+    fs::write(&out, "old").unwrap();
+    complaint(&["convert", text(&bad), text(&out)], 2);
+    assert_eq!(fs::read_to_string(&out).unwrap(), "old");
+    let deep = folder.path().join("no/such/folder/out.csv");
+    fs::write(&bad, "1\n2\n").unwrap();
+    has(&complaint(&["convert", text(&bad), text(&deep)], 2), &["folder", "does not exist"]);
+}

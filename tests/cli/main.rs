@@ -1,0 +1,39 @@
+//! The command as a person or a program meets it: exit codes, JSON keys, complaints.
+
+mod answers;
+mod complaints;
+mod rig;
+
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// Runs `vibro` with these arguments.
+fn vibro<S: AsRef<std::ffi::OsStr>>(arguments: &[S]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_vibro")).args(arguments).output().expect("vibro starts")
+}
+
+/// Runs `vibro … --json`, expects exit code 0, and gives the object.
+fn json<S: AsRef<std::ffi::OsStr>>(arguments: &[S]) -> Value {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_vibro"));
+    let output = command.args(arguments).arg("--json").output().expect("vibro starts");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    let value: Value = serde_json::from_slice(&output.stdout).expect("one JSON object and nothing else");
+    assert!(value["warnings"].is_array(), "every result carries warnings");
+    value
+}
+
+/// Runs `vibro`, expects this exit code and nothing on standard output, and gives the complaint.
+fn complaint<S: AsRef<std::ffi::OsStr>>(arguments: &[S], code: i32) -> String {
+    let output = vibro(arguments);
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{stderr}");
+    assert!(output.stdout.is_empty(), "{}", String::from_utf8_lossy(&output.stdout));
+    assert!(!stderr.contains("panicked"), "{stderr}");
+    stderr
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("a path in UTF-8")
+}
