@@ -7,30 +7,58 @@ use std::fmt::Write as _;
 use std::hint::black_box;
 use vibroimpact::read::Reader;
 
-fn column(lines: usize) -> String {
+/// How the numbers are printed.
+#[derive(Clone, Copy)]
+enum Style {
+    /// C's `%13.6e`: lines of one length.
+    Padded,
+    /// C's `%.6e`: a sign makes a line longer.
+    Exponent,
+    /// Nine decimals.
+    Decimal,
+}
+
+/// Numbers between −1 and 1, one a line.
+fn column(lines: usize, style: Style) -> String {
     let mut text = String::with_capacity(lines * 14);
     let mut state = 1u64;
     for _ in 0..lines {
         // Knuth's MMIX generator: any spread of digits will do.
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let value = (state >> 11) as f64 / (1u64 << 53) as f64 * 2.0 - 1.0;
-        let _ = writeln!(text, "{:>13}", format!("{value:.6e}"));
+        let printed = format!("{value:.6e}");
+        let (mantissa, exponent) = printed.split_once('e').unwrap_or((&printed, "0"));
+        let exponent: i32 = exponent.parse().unwrap_or(0);
+        let sign = if exponent < 0 { '-' } else { '+' };
+        let width = if matches!(style, Style::Padded) { 9 } else { 0 };
+        let _ = match style {
+            Style::Decimal => writeln!(text, "{value:.9}"),
+            _ => writeln!(text, "{mantissa:>width$}e{sign}{:02}", exponent.abs()),
+        };
     }
     text
 }
 
 fn bench(c: &mut Criterion) {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = folder.path().join("five_million_lines.txt");
-    std::fs::write(&path, column(5_000_000)).expect("room for 70 MB");
     let mut group = c.benchmark_group("ascii");
     group.sample_size(20);
-    group.bench_function("5M lines: bytes only", |b| b.iter(|| std::fs::read(black_box(&path))));
-    group.bench_function("5M lines: parsed", |b| b.iter(|| Reader::new().from_path(black_box(&path))));
+    for (name, style) in
+        [("padded", Style::Padded), ("exponent", Style::Exponent), ("decimal", Style::Decimal)]
+    {
+        let path = folder.path().join(name);
+        std::fs::write(&path, column(5_000_000, style)).expect("room for 70 MB");
+        group.bench_function(format!("5M lines, {name}: bytes only"), |b| {
+            b.iter(|| std::fs::read(black_box(&path)));
+        });
+        group.bench_function(format!("5M lines, {name}: parsed"), |b| {
+            b.iter(|| Reader::new().from_path(black_box(&path)));
+        });
+    }
     let spectra: Vec<_> = (0..1000)
         .map(|i| {
             let path = folder.path().join(format!("S{i:04}.DAT"));
-            std::fs::write(&path, column(801)).expect("room for 12 MB");
+            std::fs::write(&path, column(801, Style::Padded)).expect("room for 12 MB");
             path
         })
         .collect();

@@ -10,6 +10,7 @@
 //! understood: lines, base band, sampling rate, dt, df, unit, window, channel; the rest stays as notes.
 
 mod clean;
+mod fixed;
 mod layout;
 mod rows;
 pub(super) mod stated;
@@ -109,7 +110,10 @@ fn fast(source: &Source, layout: &Layout) -> Result<Option<Vec<f64>>> {
     if layout.cell == Cell::Complex {
         return Ok(None);
     }
-    clean::read(source, layout)
+    match fixed::read(source, layout)? {
+        Some(values) => Ok(Some(values)),
+        None => clean::read(source, layout),
+    }
 }
 
 enum Columns {

@@ -1,5 +1,6 @@
 //! Finding out how a text file of numbers is laid out.
 
+use super::fixed::Fixed;
 use crate::error::{Error, Place, Result};
 use crate::read::Options;
 use crate::read::number::{self, Exponential};
@@ -42,6 +43,8 @@ pub struct Layout {
     pub cell: Cell,
     /// Parser of unsigned numbers and their width, where the first rows print them all like `1.234e+05`.
     pub exponential: Option<(Exponential, usize)>,
+    /// Shape of the rows, where the first ones are all alike.
+    pub fixed: Option<Fixed>,
 }
 
 /// Rows that tell the layout where no comma makes it doubtful.
@@ -134,7 +137,19 @@ pub fn detect(path: &Path, head: &[u8], cut: bool, options: &Options) -> Result<
     let spaced = cell == Cell::Complex && separator == Separator::Blank && imaginary(whole.trim().as_bytes());
     let columns = if spaced { 1 } else { cells.len() };
     let exponential = exponential(&rows, separator, decimal);
-    Ok(Layout { header, first_line, first_byte, separator, decimal, columns, cell, exponential })
+    let mut layout = Layout {
+        header,
+        first_line,
+        first_byte,
+        separator,
+        decimal,
+        columns,
+        cell,
+        exponential,
+        fixed: None,
+    };
+    layout.fixed = Fixed::of(&rows, &layout);
+    Ok(layout)
 }
 
 /// The parser for numbers of one width, if all rows hold such numbers.
@@ -145,7 +160,7 @@ fn exponential(
 ) -> Option<(Exponential, usize)> {
     let mut width = None;
     let mut cells = Vec::new();
-    for (_, _, row) in rows.iter().take(ENOUGH) {
+    for (_, _, row) in rows {
         cut_row(row, separator, &mut cells);
         for (_, cell) in &cells {
             let unsigned = cell.strip_prefix(b"-").or(cell.strip_prefix(b"+")).unwrap_or(cell);
