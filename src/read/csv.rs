@@ -34,14 +34,11 @@ pub(super) fn sniff(head: &[u8], source: &Source) -> bool {
     layout::detect(whole, &Options::default(), named_csv(source)).is_some()
 }
 
-/// Whether any letter stands there that numbers do not hold: names need some, and most files of numbers have none.
+/// Whether any letter stands at the beginning that numbers do not hold: names need some, and most files of numbers have none.
 fn holds_words(head: &[u8]) -> bool {
-    // Counting all, without an early end, lets the compiler look at many bytes at once.
-    let of_words = |b: &&u8| {
-        let lower = **b | 0x20;
-        **b >= 0x80 || lower.wrapping_sub(b'a') < 26 && !matches!(lower, b'd' | b'e' | b'i' | b'j' | b'q')
-    };
-    head.iter().filter(of_words).count() > 0
+    head[..head.len().min(text::LOOK)]
+        .iter()
+        .any(|b| !b.is_ascii() || b.is_ascii_alphabetic() && !b"eEdDqQijIJ".contains(b))
 }
 
 fn named_csv(source: &Source) -> bool {

@@ -83,9 +83,18 @@ pub fn inside(folder: &Path, name: &Path, allow_outside: bool) -> Result<PathBuf
             _ => None,
         })
         .is_none();
-    let linked = || match (joined.canonicalize(), folder_or_here(folder).canonicalize()) {
-        (Ok(file), Ok(folder)) => !file.starts_with(folder),
-        _ => false, // a missing file is named when it is opened
+    // Only where a part of the name is a link can the file be elsewhere; asking for the real path of every file is slow.
+    let linked = || {
+        let mut path = folder.to_path_buf();
+        let mut link = |part: Component| {
+            path.push(part);
+            path.symlink_metadata().is_ok_and(|m| m.file_type().is_symlink())
+        };
+        name.components().any(&mut link)
+            && match (joined.canonicalize(), folder_or_here(folder).canonicalize()) {
+                (Ok(file), Ok(folder)) => !file.starts_with(folder),
+                _ => false, // a missing file is named when it is opened
+            }
     };
     if !allow_outside && (climbs || drive || linked()) {
         return Err(Error::usage(
@@ -236,5 +245,19 @@ mod tests {
             !ok("../A.DAT") && !ok("/etc/passwd") && !ok(r"..\A.DAT") && !ok(r"C:\A.DAT") && !ok("a/../../b")
         );
         assert!(inside(Path::new("data"), Path::new("../A.DAT"), true).is_ok());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_that_leads_outside_is_no_name_inside() {
+        use std::os::unix::fs::symlink;
+        let (folder, elsewhere) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        std::fs::write(elsewhere.path().join("A.DAT"), "1").unwrap();
+        std::fs::write(folder.path().join("B.DAT"), "1").unwrap();
+        symlink(elsewhere.path(), folder.path().join("door")).unwrap();
+        symlink(elsewhere.path().join("A.DAT"), folder.path().join("A.DAT")).unwrap();
+        symlink(folder.path().join("B.DAT"), folder.path().join("C.DAT")).unwrap();
+        let ok = |name: &str| inside(folder.path(), Path::new(name), false).is_ok();
+        assert!(!ok("A.DAT") && !ok("door/A.DAT") && ok("B.DAT") && ok("C.DAT"));
     }
 }

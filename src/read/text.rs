@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-/// How many bytes are looked at to tell UTF-16 without a byte order mark.
-const LOOK: usize = 4096;
+/// How many bytes are looked at to tell text from binary data, and UTF-16 without a byte order mark.
+pub const LOOK: usize = 4096;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Order {
@@ -11,11 +11,10 @@ enum Order {
     Big,
 }
 
-/// Whether the bytes look like text: UTF-16, or no control characters but blanks, line ends and the end mark of DOS.
+/// Whether the first bytes look like text: UTF-16, or no control characters but blanks, line ends and the end mark of DOS.
 pub fn is_text(head: &[u8]) -> bool {
-    // Counting all, without an early end, lets the compiler look at many bytes at once.
-    let control = |b: &&u8| **b < 0x20 && !matches!(**b, b'\t' | b'\n' | b'\r' | 0x0c | 0x1a);
-    head.iter().filter(control).count() == 0 || is_utf16(head)
+    let control = |b: &u8| *b < 0x20 && !b"\t\n\r\x0c\x1a".contains(b);
+    is_utf16(head) || !head[..head.len().min(LOOK)].iter().any(control)
 }
 
 /// Whether the bytes are UTF-16, by byte order mark or by the zero bytes that western text has in every second place.

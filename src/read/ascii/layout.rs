@@ -48,7 +48,7 @@ pub struct Layout {
 }
 
 /// Rows that tell the layout where no comma makes it doubtful.
-const ENOUGH: usize = 64;
+const ENOUGH: usize = 24;
 
 /// Lines of `bytes` with their numbers and offsets, ended by LF or CRLF. A lone CR is a blank here; files that end
 /// their lines with CR alone are converted before.
