@@ -2,7 +2,7 @@
 
 use super::job::Results;
 use super::{Drawing, Figure, Page, tables};
-use crate::record::Step;
+use crate::record::{Direction, Step};
 use std::fmt::Write as _;
 
 /// Lays out results, tables and drawings; `figures` and `drawings` belong together one by one.
@@ -35,26 +35,47 @@ pub fn page(results: &Results, figures: &[(String, Figure)], drawings: &[Drawing
     ))
 }
 
-/// One sentence for each named resonance, and one for each crossing.
+/// One sentence for each named resonance, and one for each direction in which both masses were measured.
 fn summary(results: &Results) -> Vec<String> {
     let mut sentences = Vec::new();
     for kind in ["grazing", "clapping"] {
-        let mut found = Vec::new();
+        // Sweeps by the frequency as it is printed.
+        let mut found: Vec<(String, Vec<&str>)> = Vec::new();
         for response in &results.responses {
             for r in response.resonances.iter().filter(|r| r.kind == kind) {
-                found.push(format!("{:.2} Hz ({})", r.frequency, response.name));
+                let frequency = format!("{:.2} Hz", r.frequency);
+                match found.iter_mut().find(|f| f.0 == frequency) {
+                    Some(known) => known.1.push(&response.name),
+                    None => found.push((frequency, vec![&response.name])),
+                }
             }
         }
         if !found.is_empty() {
-            sentences.push(format!("The {kind} resonance lies at {}.", found.join(", ")));
+            let places: Vec<String> =
+                found.iter().map(|(f, sweeps)| format!("{f} ({})", sweeps.join("; "))).collect();
+            sentences.push(format!("The {kind} resonance lies at {}.", places.join(", ")));
         }
     }
-    for c in &results.crossings {
-        let going = c.direction.name();
-        sentences.push(format!(
-            "Going {going}, the curves of the two masses cross at {:.2} Hz; above it mass {} moves more.",
-            c.frequency, c.larger_above
-        ));
+    for direction in [Direction::Up, Direction::Down] {
+        let crossings: Vec<_> = results.crossings.iter().filter(|c| c.direction == direction).collect();
+        let mut stretches = Vec::new();
+        for (i, crossing) in crossings.iter().enumerate() {
+            match crossing.larger_above {
+                2 => stretches.push(match crossings.get(i + 1) {
+                    Some(end) => format!("between {:.2} and {:.2} Hz", crossing.frequency, end.frequency),
+                    None => format!("above {:.2} Hz", crossing.frequency),
+                }),
+                _ if i == 0 => stretches.push(format!("below {:.2} Hz", crossing.frequency)),
+                _ => {}
+            }
+        }
+        if !stretches.is_empty() {
+            sentences.push(format!(
+                "Going {}, the passive mass moves more than the excited one {}.",
+                direction.name(),
+                stretches.join(" and ")
+            ));
+        }
     }
     sentences
 }

@@ -231,7 +231,8 @@ impl Formatted {
     fn new(column: &Column, cells: &[&Cell]) -> Formatted {
         let values: Vec<f64> = cells.iter().filter_map(|c| c.value()).filter(|v| v.is_finite()).collect();
         let largest = values.iter().fold(0.0f64, |a, v| a.max(v.abs()));
-        let power = if column.unit == "°" { 0 } else { engineering(largest) };
+        // A degree and a per cent are scaled already.
+        let power = if matches!(column.unit.as_str(), "°" | "%") { 0 } else { engineering(largest) };
         // Counts and other bare numbers are not rescaled, as no unit would say so; a power of ten stands with
         // the number instead.
         let power = if column.unit.is_empty() || column.unit == "1" { 0 } else { power };

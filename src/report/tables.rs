@@ -119,13 +119,13 @@ pub fn pairs(overlay: &Overlay) -> Table {
 pub fn peaks(overlay: &Overlay) -> Table {
     let columns = [
         ("sweep", ""),
-        ("resonance", ""),
-        ("measured at", "Hz"),
-        ("predicted at", "Hz"),
-        ("difference", "Hz"),
+        ("kind", ""),
+        ("measured", "Hz"),
+        ("predicted", "Hz"),
+        ("off by", "Hz"),
         ("measured", "m"),
         ("predicted", "m"),
-        ("difference", "%"),
+        ("off by", "%"),
     ];
     let mut table = headed("Resonances against the model", &columns);
     for p in &overlay.peaks {

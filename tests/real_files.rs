@@ -1,0 +1,97 @@
+//! The pipeline of `vibro run` on measurement files made by other people's instruments.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use vibroimpact::campaign::Campaign;
+use vibroimpact::read::Reader;
+use vibroimpact::report::Output;
+use vibroimpact::report::job::{JobOptions, Results, run};
+
+fn data() -> Option<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    eprintln!("skipped: ../shared/data is absent");
+    None
+}
+
+fn results(campaign: &str) -> (Results, tempfile::TempDir) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("campaign.toml");
+    fs::write(&path, campaign).unwrap();
+    let campaign = Campaign::from_path(&path).unwrap();
+    let mut output = Output::new(folder.path().join("out")).unwrap();
+    let found = run(&campaign, JobOptions { allow_outside: true }, &mut output, &()).unwrap();
+    for name in output.written() {
+        assert!(folder.path().join("out").join(name).is_file(), "{name}");
+    }
+    (found, folder)
+}
+
+fn near(results: &Results, index: usize, frequency: f64, tolerance: f64) -> bool {
+    results.frf[index].peaks.iter().any(|p| (p.frequency - frequency).abs() <= tolerance)
+}
+
+#[test]
+fn resonances_of_a_hammer_test() {
+    let Some(data) = data() else { return };
+    let file = data.join("uff/dataset58_FRF.unv");
+    let (found, _folder) =
+        results(&format!("name = \"hammer test\"\n[[frf]]\nfile = {:?}\n", file.display().to_string()));
+    // Lines are 0.5 Hz apart and the stated figures are lines: interpolated peaks lie within one line.
+    for f in [41.0, 62.0, 81.5, 96.5, 125.0, 140.5, 175.0] {
+        assert!(near(&found, 0, f, 0.5), "{f}: {:?}", found.frf[0].peaks);
+    }
+    // Label and unit of that file contradict each other, and the report says so.
+    assert!(found.warnings.iter().any(|w| w.contains("eceptance")), "{:?}", found.warnings);
+}
+
+#[test]
+fn resonances_of_measured_accelerances() {
+    let Some(data) = data() else { return };
+    let mut text = String::from("name = \"accelerance\"\n");
+    for i in 1..=3 {
+        let file = data.join(format!("analyser/accelerance_point_{i}.txt"));
+        let file = file.display().to_string();
+        let _ = writeln!(
+            text,
+            "[[frf]]\nname = \"point {i}\"\nfile = {file:?}\nbase_band = 1000.0\nunit = \"(m/s²)/N\""
+        );
+    }
+    let (found, _folder) = results(&text);
+    for f in [52.0, 142.0, 279.0, 460.0, 687.0, 959.0] {
+        assert!((0..3).any(|i| near(&found, i, f, 1.0)), "{f}");
+    }
+}
+
+/// Every file is read or refused with a sentence, and a survey says of each record what reading it says.
+#[test]
+fn every_file_is_listed_as_it_is_read() {
+    let Some(data) = data() else { return };
+    let mut files = 0;
+    for folder in ["uff", "analyser"] {
+        for entry in fs::read_dir(data.join(folder)).unwrap() {
+            let path = entry.unwrap().path();
+            if path.file_name().unwrap().to_string_lossy().starts_with("LICENSE") {
+                continue;
+            }
+            let recording = Reader::new().from_path(&path).unwrap_or_else(|e| panic!("{e}"));
+            let (format, headers, _) = Reader::new().survey(&path).unwrap();
+            assert_eq!((format, headers.len()), (recording.format, recording.records.len()), "{path:?}");
+            for (header, record) in headers.iter().zip(&recording.records) {
+                assert_eq!(header.n, record.len(), "{path:?}");
+                let max = record.max_abs().map(|m| m.1);
+                let same = match (header.max_abs, max) {
+                    // A complex magnitude may be scaled before or after it is taken.
+                    (Some(a), Some(b)) => (a - b).abs() <= 4.0 * f64::EPSILON * b,
+                    (a, b) => a == b,
+                };
+                assert!(same, "{path:?}: {:?} against {max:?}", header.max_abs);
+            }
+            files += 1;
+        }
+    }
+    assert!(files >= 36, "{files}");
+}
