@@ -50,7 +50,8 @@ pub fn run(typed: &args::Response, json: bool) -> Result<()> {
     }
     complain::warn(&response.warnings);
     let mut text = tables::response(&response).text();
-    for table in [tables::resonances(&response), tables::jumps(&response)] {
+    let all = std::slice::from_ref(&response);
+    for table in [tables::resonances(all), tables::jumps(all)] {
         if !table.rows.is_empty() {
             let _ = write!(text, "\n{}", table.text());
         }

@@ -229,13 +229,9 @@ fn abscissa(values: Vec<f64>, layout: &Layout, stated: &Stated, options: &Option
         }
     };
     let resolution = printed_resolution(&values);
-    let axis = Axis::from_values(kind, values, resolution);
-    if axis.step().is_none() {
-        let (smallest, largest) = axis
-            .values()
-            .windows(2)
-            .fold((f64::INFINITY, 0.0f64), |(a, b), w| (a.min(w[1] - w[0]), b.max(w[1] - w[0])));
-        meta.doubt(format!("The abscissa is uneven: steps from {smallest} to {largest}."));
+    let (axis, doubt) = super::abscissa::from_values(kind, values, resolution, "The first column");
+    if let Some(doubt) = doubt {
+        meta.doubt(doubt);
     }
     axis
 }

@@ -296,7 +296,11 @@ fn frfs(
         let wanted = records.filter(|r| entry.channel.as_ref().is_none_or(|c| *c == r.meta().name));
         let before = results.len();
         for record in wanted {
-            let Some(frf) = as_frf(record) else { continue };
+            let Some(mut frf) = as_frf(record) else { continue };
+            if let Some(factor) = entry.calibration {
+                frf.meta.step("calibrate", &[("factor", &factor)]);
+                frf.values.iter_mut().for_each(|v| *v *= factor);
+            }
             let peaks: Vec<FrfPeak> = frf_peaks(&frf, FRF_PROMINENCE)
                 .iter()
                 .map(|v| FrfPeak {
@@ -364,6 +368,12 @@ fn listed(campaign: &Campaign, options: JobOptions, warnings: &mut Vec<String>) 
             let path = campaign.record_path(entry, options.allow_outside)?;
             let (_, records, doubts) = reader(entry).survey(&path)?;
             merge(warnings, &file_name(&path), &doubts);
+            if entry.calibration.is_some() {
+                warnings.push(format!(
+                    "{}: the calibration is not applied to a file that is listed only.",
+                    file_name(&path)
+                ));
+            }
             listed.push(Listed { part, file: file_name(&path), records });
         }
         if !entries.is_empty() {

@@ -44,41 +44,43 @@ pub fn response(response: &Response) -> Table {
     table
 }
 
-/// Resonances and antiresonances of one response.
-pub fn resonances(response: &Response) -> Table {
-    let columns = [("kind", ""), ("frequency", "Hz"), ("amplitude", response.unit), ("ends in a jump", "")];
-    let mut table = headed(format!("Resonances, {}", response.name), &columns);
-    for r in &response.resonances {
-        table.push([
-            Cell::from(r.kind.as_str()),
-            pair(r.frequency, r.frequency_std),
-            pair(r.amplitude, r.amplitude_std),
-            Cell::from(if r.at_jump { "yes" } else { "no" }),
-        ]);
+/// Resonances and antiresonances.
+pub fn resonances(responses: &[Response]) -> Table {
+    let unit = responses.first().map_or("", |r| r.unit);
+    let columns =
+        [("sweep", ""), ("kind", ""), ("frequency", "Hz"), ("amplitude", unit), ("ends in a jump", "")];
+    let mut table = headed("Resonances", &columns);
+    for response in responses {
+        for r in &response.resonances {
+            table.push([
+                Cell::from(response.name.as_str()),
+                Cell::from(r.kind.as_str()),
+                pair(r.frequency, r.frequency_std),
+                pair(r.amplitude, r.amplitude_std),
+                Cell::from(if r.at_jump { "yes" } else { "no" }),
+            ]);
+        }
     }
     table
 }
 
-/// Jumps of one response.
-pub fn jumps(response: &Response) -> Table {
-    let columns = [
-        ("going", ""),
-        ("change", ""),
-        ("from", "Hz"),
-        ("to", "Hz"),
-        ("before", response.unit),
-        ("after", response.unit),
-    ];
-    let mut table = headed(format!("Jumps, {}", response.name), &columns);
-    for j in &response.jumps {
-        table.push([
-            Cell::from(j.direction.name()),
-            Cell::from(j.change),
-            Cell::Number(j.from),
-            Cell::Number(j.to),
-            Cell::Number(j.amplitude_before),
-            Cell::Number(j.amplitude_after),
-        ]);
+/// Jumps.
+pub fn jumps(responses: &[Response]) -> Table {
+    let unit = responses.first().map_or("", |r| r.unit);
+    let columns =
+        [("sweep", ""), ("change", ""), ("from", "Hz"), ("to", "Hz"), ("before", unit), ("after", unit)];
+    let mut table = headed("Jumps", &columns);
+    for response in responses {
+        for j in &response.jumps {
+            table.push([
+                Cell::from(response.name.as_str()),
+                Cell::from(j.change),
+                Cell::Number(j.from),
+                Cell::Number(j.to),
+                Cell::Number(j.amplitude_before),
+                Cell::Number(j.amplitude_after),
+            ]);
+        }
     }
     table
 }
@@ -165,46 +167,6 @@ pub fn scores(overlay: &Overlay) -> Table {
     table
 }
 
-/// Resonances of all sweeps in one table.
-fn all_resonances(results: &Results) -> Table {
-    let unit = results.responses.first().map_or("", |r| r.unit);
-    let columns =
-        [("sweep", ""), ("kind", ""), ("frequency", "Hz"), ("amplitude", unit), ("ends in a jump", "")];
-    let mut table = headed("Resonances", &columns);
-    for response in &results.responses {
-        for r in &response.resonances {
-            table.push([
-                Cell::from(response.name.as_str()),
-                Cell::from(r.kind.as_str()),
-                pair(r.frequency, r.frequency_std),
-                pair(r.amplitude, r.amplitude_std),
-                Cell::from(if r.at_jump { "yes" } else { "no" }),
-            ]);
-        }
-    }
-    table
-}
-
-fn all_jumps(results: &Results) -> Table {
-    let unit = results.responses.first().map_or("", |r| r.unit);
-    let columns =
-        [("sweep", ""), ("change", ""), ("from", "Hz"), ("to", "Hz"), ("before", unit), ("after", unit)];
-    let mut table = headed("Jumps", &columns);
-    for response in &results.responses {
-        for j in &response.jumps {
-            table.push([
-                Cell::from(response.name.as_str()),
-                Cell::from(j.change),
-                Cell::Number(j.from),
-                Cell::Number(j.to),
-                Cell::Number(j.amplitude_before),
-                Cell::Number(j.amplitude_after),
-            ]);
-        }
-    }
-    table
-}
-
 fn frf_peaks(results: &Results) -> Table {
     let columns = [("record", ""), ("quantity", ""), ("frequency", "Hz"), ("magnitude", "")];
     let mut table = headed("Peaks of frequency response functions", &columns);
@@ -223,7 +185,7 @@ fn frf_peaks(results: &Results) -> Table {
 
 /// The tables that a person wants first, empty ones left out.
 pub fn summary(results: &Results) -> Vec<Table> {
-    let mut tables = vec![all_resonances(results), all_jumps(results)];
+    let mut tables = vec![resonances(&results.responses), jumps(&results.responses)];
     if let Some(overlay) = &results.overlay {
         tables.push(peaks(overlay));
         tables.push(scores(overlay));
