@@ -2,8 +2,9 @@
 
 use super::{args, complain, print, settings};
 use crate::error::Result;
-use crate::measure::legacy;
 use crate::measure::response::{Response, response};
+use crate::measure::{Estimate, legacy};
+use crate::record::Sweep;
 use crate::report::{Output, files, pictures, tables};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -18,22 +19,27 @@ struct Answer {
 #[derive(Serialize)]
 struct Legacy {
     points: Vec<LegacyPoint>,
+    resonances: [(); 0],
+    jumps: [(); 0],
     warnings: Vec<String>,
 }
 
-/// What the script printed: a frequency and a largest line.
+/// What the script printed: a frequency and a largest line. It knew nothing of the rest.
 #[derive(Serialize)]
 struct LegacyPoint {
     excitation: f64,
     frequency: f64,
-    amplitude: crate::measure::Estimate,
+    amplitude: Estimate,
+    harmonics: [(); 0],
+    subharmonics: [(); 0],
+    largest_elsewhere: Option<bool>,
 }
 
 pub fn run(typed: &args::Response, json: bool) -> Result<()> {
     let (list, how) = settings::sweep(&typed.sweep)?;
     let sweep = how.read(&list)?;
     if typed.sweep.legacy {
-        return legacy(&sweep, json);
+        return legacy(&sweep, how.unit.quantity().symbol(), json);
     }
     let options = settings::taking(&typed.taking, typed.sweep.fmin, how.unit.quantity());
     let response = response(&sweep, &options)?;
@@ -62,18 +68,21 @@ pub fn run(typed: &args::Response, json: bool) -> Result<()> {
     print::text(&text)
 }
 
-fn legacy(sweep: &crate::record::Sweep, json: bool) -> Result<()> {
+fn legacy(sweep: &Sweep, unit: &'static str, json: bool) -> Result<()> {
     let warnings = vec!["These are the answers of the script sinesw3, mistakes included.".to_owned()];
     let points: Vec<LegacyPoint> = legacy::response(sweep)?
         .into_iter()
         .map(|(excitation, amplitude)| LegacyPoint {
             excitation,
             frequency: excitation,
-            amplitude: crate::measure::Estimate::new(amplitude, None, "m", 1, "largest line, as sinesw3"),
+            amplitude: Estimate::new(amplitude, None, unit, 1, "largest line, as sinesw3"),
+            harmonics: [],
+            subharmonics: [],
+            largest_elsewhere: None,
         })
         .collect();
     if json {
-        return print::json(&Legacy { points, warnings });
+        return print::json(&Legacy { points, resonances: [], jumps: [], warnings });
     }
     complain::warn(&warnings);
     let mut text = String::new();

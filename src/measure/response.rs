@@ -6,7 +6,6 @@ use super::resonance::{Jump, Resonance, jumps, resonances};
 use super::{Estimate, noise};
 use crate::error::{Error, Result};
 use crate::record::{Direction, Step, Sweep, SweepPoint};
-use crate::units::Quantity;
 use serde::Serialize;
 use std::f64::consts::PI;
 
@@ -114,7 +113,7 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
     let mut warnings = sweep.doubts.clone();
     let unit = sweep.points.first().map_or_else(crate::units::Unit::none, |p| p.response.meta.unit.clone());
     let quantity = unit.times_seconds(options.integrate).quantity();
-    let unit = unit_symbol(quantity);
+    let unit = quantity.symbol();
     let taker = Taker { sweep, options, df, fmin, unit };
     let points: Vec<ResponsePoint> =
         sweep.points.iter().zip(&excitations).map(|(p, e)| taker.point(p, e)).collect();
@@ -171,17 +170,6 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
         warnings,
         history,
     })
-}
-
-fn unit_symbol(quantity: Quantity) -> &'static str {
-    match quantity {
-        Quantity::Displacement => "m",
-        Quantity::Velocity => "m/s",
-        Quantity::Acceleration => "m/s²",
-        Quantity::Force => "N",
-        Quantity::Voltage => "V",
-        _ => "",
-    }
 }
 
 /// Direction of a sweep from its frequencies, with doubts where they are not in order.

@@ -74,6 +74,11 @@ impl Quantity {
         TABLE.iter().find(|e| e.0 == self).map_or("other", |e| e.1)
     }
 
+    /// SI symbol; empty for [`Quantity::Other`].
+    pub fn symbol(self) -> &'static str {
+        TABLE.iter().find(|e| e.0 == self).map_or("", |e| e.2)
+    }
+
     /// The quantity with this name, ignoring case and surrounding blanks.
     pub fn from_name(name: &str) -> Option<Quantity> {
         let name = name.trim().to_lowercase();
