@@ -174,7 +174,6 @@ impl SweepEntry {
 
     /// How the files of this sweep are to be read.
     pub fn reader(&self) -> SweepReader {
-        let default = SweepReader::default();
         let quantity = self.quantity.as_ref().and_then(|q| Quantity::from_name(q.get_ref()));
         let unit = self.unit.as_ref().map(|u| Unit::parse_or_opaque(u.get_ref()));
         let factor = |f: &Option<Spanned<f64>>| f.as_ref().map_or(1.0, |f| *f.get_ref());
@@ -182,13 +181,11 @@ impl SweepEntry {
             name: self.name.get_ref().clone(),
             direction: self.direction,
             mass: self.mass.as_ref().map(|m| *m.get_ref()),
-            unit: unit.or(quantity.map(Unit::of)).unwrap_or(default.unit),
+            unit: unit.or(quantity.map(Unit::of)),
             calibration: factor(&self.calibration),
             force_calibration: factor(&self.force_calibration),
-            window: self.window.as_ref().map_or(default.window, |w| Window::from_name(w.get_ref())),
-            window_assumed: self.window.is_none(),
-            scaling: self.scaling.unwrap_or(default.scaling),
-            scaling_assumed: self.scaling.is_none(),
+            window: self.window.as_ref().map(|w| Window::from_name(w.get_ref())),
+            scaling: self.scaling,
             analyser_integrated: self.analyser_integrated.as_ref().map(|n| *n.get_ref()),
             format: None,
         }

@@ -39,9 +39,9 @@ pub fn run(typed: &args::Response, json: bool) -> Result<()> {
     let (list, how) = settings::sweep(&typed.sweep)?;
     let sweep = how.read(&list)?;
     if typed.sweep.legacy {
-        return legacy(&sweep, how.unit.quantity().symbol(), json);
+        return legacy(&sweep, sweep.unit().quantity().symbol(), json);
     }
-    let options = settings::taking(&typed.taking, typed.sweep.fmin, how.unit.quantity());
+    let options = settings::taking(&typed.taking, typed.sweep.fmin, sweep.unit().quantity());
     let response = response(&sweep, &options)?;
     let mut written = Vec::new();
     if let Some(folder) = &typed.out {

@@ -3,7 +3,7 @@
 use super::args::{Decimal, Reading, Sweep, Taking};
 use crate::campaign::Campaign;
 use crate::error::{Error, Result};
-use crate::measure::response::ResponseOptions;
+use crate::measure::response::{ResponseOptions, to_displacement};
 use crate::read::{Format, Reader, SweepList, SweepReader};
 use crate::record::{Scaling, Window};
 use crate::units::{Quantity, Unit};
@@ -76,19 +76,27 @@ pub fn sweep(typed: &Sweep) -> Result<(SweepList, SweepReader)> {
     }
     above_zero("--fmin", typed.fmin)?;
     if let Some(text) = &typed.unit {
-        how.unit = unit(text)?;
+        let unit = unit(text)?;
+        let motion = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
+        if !motion.contains(&unit.quantity()) {
+            let found = format!("--unit {text:?} is a unit of {}", unit.quantity());
+            return Err(Error::usage(found, "a unit of displacement, velocity or acceleration"));
+        }
+        if let Some(stated) = how.unit.as_ref().filter(|s| s.quantity() != unit.quantity()) {
+            let found = format!("--unit {text:?}, but the campaign says {}", stated.quantity());
+            return Err(Error::usage(found, "a unit of the same quantity"));
+        }
+        how.unit = Some(unit);
     }
     if let Some(factor) = typed.calibration {
         above_zero("--calibration", Some(factor))?;
         how.calibration = factor;
     }
     if let Some(name) = &typed.window {
-        how.window = window(name)?;
-        how.window_assumed = false;
+        how.window = Some(window(name)?);
     }
     if let Some(name) = &typed.scaling {
-        how.scaling = scaling(name)?;
-        how.scaling_assumed = false;
+        how.scaling = Some(scaling(name)?);
     }
     how.analyser_integrated = typed.analyser_integrated.or(how.analyser_integrated);
     Ok((list, how))
@@ -122,14 +130,5 @@ pub fn taking(typed: &Taking, fmin: Option<f64>, stored: Quantity) -> ResponseOp
         band: usize::from(typed.band),
         integrate: typed.integrate.unwrap_or_else(|| to_displacement(stored)),
         fmin,
-    }
-}
-
-/// Integrations that take a quantity to displacement; 0 for what has none.
-pub fn to_displacement(stored: Quantity) -> i8 {
-    match stored {
-        Quantity::Velocity => 1,
-        Quantity::Acceleration => 2,
-        _ => 0,
     }
 }

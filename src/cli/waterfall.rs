@@ -34,13 +34,13 @@ pub fn run(typed: &args::Waterfall, json: bool) -> Result<()> {
             frequency: sweep.axis.values(),
             excitation,
             magnitude: Array2::from_shape_fn(shape, |(i, k)| rows[i][k]),
-            quantity: how.unit.quantity(),
-            unit: how.unit.si().symbol().to_owned(),
+            quantity: sweep.unit().quantity(),
+            unit: sweep.unit().symbol().to_owned(),
             fmin: 0.0,
             warnings: vec!["This is the matrix of the script sinesw, mistakes included.".to_owned()],
         }
     } else {
-        waterfall(&sweep, &settings::taking(&typed.taking, typed.sweep.fmin, how.unit.quantity()))?
+        waterfall(&sweep, &settings::taking(&typed.taking, typed.sweep.fmin, sweep.unit().quantity()))?
     };
     let mut files = Vec::new();
     if let Some(folder) = &typed.out {

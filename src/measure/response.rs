@@ -6,6 +6,7 @@ use super::resonance::{Jump, Resonance, jumps, resonances};
 use super::{Estimate, noise};
 use crate::error::{Error, Result};
 use crate::record::{Direction, Step, Sweep, SweepPoint};
+use crate::units::Quantity;
 use serde::Serialize;
 use std::f64::consts::PI;
 
@@ -24,6 +25,15 @@ pub struct ResponseOptions {
 impl Default for ResponseOptions {
     fn default() -> Self {
         ResponseOptions { band: 3, integrate: 0, fmin: None }
+    }
+}
+
+/// Integrations that take a quantity to displacement; 0 for what has none.
+pub fn to_displacement(stored: Quantity) -> i8 {
+    match stored {
+        Quantity::Velocity => 1,
+        Quantity::Acceleration => 2,
+        _ => 0,
     }
 }
 
@@ -111,8 +121,15 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
     let excitations = excitations(sweep, options.fmin.unwrap_or(0.0))?;
     let fmin = options.fmin.unwrap_or_else(|| default_cutoff(df, &excitations));
     let mut warnings = sweep.doubts.clone();
-    let unit = sweep.points.first().map_or_else(crate::units::Unit::none, |p| p.response.meta.unit.clone());
-    let quantity = unit.times_seconds(options.integrate).quantity();
+    let quantity = sweep.unit().times_seconds(options.integrate).quantity();
+    if quantity == Quantity::Other {
+        return Err(Error::refused(format!(
+            "{} integration(s) of values in {} give no displacement, velocity or acceleration",
+            options.integrate,
+            sweep.unit()
+        ))
+        .hint("1 takes velocity to displacement, 2 acceleration to displacement"));
+    }
     let unit = quantity.symbol();
     let taker = Taker { sweep, options, df, fmin, unit };
     let points: Vec<ResponsePoint> =

@@ -53,8 +53,7 @@ pub fn waterfall(sweep: &Sweep, options: &ResponseOptions) -> Result<Waterfall> 
             }
         }
     }
-    let stored = sweep.points.first().map_or_else(crate::units::Unit::none, |p| p.response.meta.unit.clone());
-    let unit = stored.times_seconds(options.integrate);
+    let unit = sweep.unit().times_seconds(options.integrate);
     let mut warnings = sweep.doubts.clone();
     if fmin > 0.0 {
         warnings.push(format!("Lines below the cut-off of {fmin:.3} Hz are left out."));

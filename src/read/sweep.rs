@@ -2,10 +2,11 @@
 
 use super::{Format, Reader, Recording, SweepList};
 use crate::error::{Error, Place, Result};
-use crate::record::{Axis, Direction, Record, Scaling, Spectrum, Sweep, SweepPoint, Values, Window};
+use crate::record::{Axis, Direction, Meta, Record, Scaling, Spectrum, Sweep, SweepPoint, Values, Window};
 use crate::units::{Quantity, Unit};
 
-/// What the analyser stored, as far as its files do not say.
+/// What the analyser stored. What its files state themselves is believed where nothing is stated here; where both are and
+/// differ, the statement here is used, with a doubt.
 #[derive(Debug, Clone)]
 pub struct SweepReader {
     /// Name of the sweep.
@@ -14,40 +15,42 @@ pub struct SweepReader {
     pub direction: Option<Direction>,
     /// Mass, if stated.
     pub mass: Option<u8>,
-    /// Unit in which responses are stored.
-    pub unit: Unit,
+    /// Unit in which responses are stored, if stated; else that of the files, else metres are assumed.
+    pub unit: Option<Unit>,
     /// Factor on stored responses: unit per stored number.
     pub calibration: f64,
     /// Factor on stored forces: newtons per stored number.
     pub force_calibration: f64,
-    /// Window, `None` if unknown and not to be assumed.
-    pub window: Option<Window>,
-    /// Whether the window was assumed rather than stated.
-    pub window_assumed: bool,
-    /// Peak or RMS.
-    pub scaling: Scaling,
-    /// Whether the scaling was assumed rather than stated.
-    pub scaling_assumed: bool,
-    /// How often the analyser integrated in frequency before it stored; `None` if not stated.
+    /// Window, if stated: `Some(None)` says that it is unknown. Else that of the files, else Hann is assumed.
+    pub window: Option<Option<Window>>,
+    /// Peak or RMS, if stated; else that of the files, else peak is assumed.
+    pub scaling: Option<Scaling>,
+    /// How often the analyser integrated in frequency before it stored, if stated.
     pub analyser_integrated: Option<u8>,
     /// Format of the files, found out if `None`.
     pub format: Option<Format>,
 }
 
+/// What is used for one file.
+struct Settled {
+    /// Factor from the record's values to SI peak amplitudes.
+    factor: f64,
+    unit: Unit,
+    window: Option<Window>,
+}
+
 impl Default for SweepReader {
-    /// Displacement in m, Hann window and peak amplitudes, both assumed.
+    /// Nothing stated, factors 1.
     fn default() -> Self {
         SweepReader {
             name: String::new(),
             direction: None,
             mass: None,
-            unit: Unit::of(Quantity::Displacement),
+            unit: None,
             calibration: 1.0,
             force_calibration: 1.0,
-            window: Some(Window::Hann),
-            window_assumed: true,
-            scaling: Scaling::Peak,
-            scaling_assumed: true,
+            window: None,
+            scaling: None,
             analyser_integrated: None,
             format: None,
         }
@@ -67,38 +70,39 @@ impl SweepReader {
         let forces = recordings.split_off(list.response.len());
         let axis = Axis::frequency(0.0, list.base_band / list.lines as f64, list.lines + 1);
         let mut doubts = Vec::new();
-        if self.window_assumed {
-            doubts.push("The files do not name their window: Hann is assumed.".to_owned());
-        }
-        if self.scaling_assumed {
-            doubts.push("The files do not name their scaling: peak amplitudes are assumed.".to_owned());
-        }
-        let displacement = self.unit.quantity() == Quantity::Displacement;
-        let analyser_integrated = self.analyser_integrated.unwrap_or(u8::from(displacement));
-        if self.analyser_integrated.is_none() && displacement {
-            doubts.push(
-                "The files do not say how the displacement was measured: one integration of a velocity in the analyser is assumed."
-                    .to_owned(),
-            );
-        }
         let mut points = Vec::with_capacity(list.len());
+        let mut unit: Option<Unit> = None;
         for (i, response) in recordings.into_iter().enumerate() {
             let force = match forces.get(i) {
                 Some(recording) => {
-                    self.spectrum(recording, list, &axis, self.force_calibration, &mut doubts)?
+                    let newton = Unit::of(Quantity::Force);
+                    let settled =
+                        self.settle(recording, Some(&newton), self.force_calibration, &mut doubts)?;
+                    magnitudes(recording, list, &axis, settled.factor)?
                 }
                 None => Vec::new(),
             };
-            let calibration = self.calibration * self.unit.factor();
-            let values = self.spectrum(&response, list, &axis, calibration, &mut doubts)?;
+            let settled = self.settle(&response, self.unit.as_ref(), self.calibration, &mut doubts)?;
+            let values = magnitudes(&response, list, &axis, settled.factor)?;
+            match &unit {
+                Some(first) if *first != settled.unit => {
+                    return Err(Error::input(
+                        Place::file(&response.path),
+                        format!("the values of this file are in {}", settled.unit),
+                        format!("{first}, as in the files before"),
+                    ));
+                }
+                _ => unit = Some(settled.unit.clone()),
+            }
+            gather(&response, &mut doubts);
             let mut meta = response.records.into_iter().next().map_or_else(
-                || crate::record::Meta::new("", self.unit.si()),
-                |mut record| std::mem::replace(record.meta_mut(), crate::record::Meta::new("", Unit::none())),
+                || Meta::new("", settled.unit.clone()),
+                |mut record| std::mem::replace(record.meta_mut(), Meta::new("", Unit::none())),
             );
-            meta.unit = self.unit.si();
+            meta.unit = settled.unit;
             meta.quantity = meta.unit.quantity();
             meta.doubts.clear(); // said once, for the sweep
-            meta.step("calibrate", &[("factor", &calibration), ("unit", &meta.unit.clone())]);
+            meta.step("calibrate", &[("factor", &settled.factor), ("unit", &meta.unit.clone())]);
             points.push(SweepPoint {
                 force_path: list.force.get(i).cloned(),
                 response_path: list.response[i].clone(),
@@ -109,10 +113,18 @@ impl SweepReader {
                     axis: axis.clone(),
                     values: Values::Real(values),
                     scaling: Scaling::Peak,
-                    window: self.window,
-                    enbw: self.window.map(Window::enbw),
+                    window: settled.window,
+                    enbw: settled.window.map(Window::enbw),
                 },
             });
+        }
+        let displacement = unit.is_some_and(|u| u.quantity() == Quantity::Displacement);
+        let analyser_integrated = self.analyser_integrated.unwrap_or(u8::from(displacement));
+        if self.analyser_integrated.is_none() && displacement {
+            doubts.push(
+                "The files do not say how the displacement was measured: one integration of a velocity in the analyser is assumed."
+                    .to_owned(),
+            );
         }
         Ok(Sweep {
             name: self.name.clone(),
@@ -125,70 +137,124 @@ impl SweepReader {
         })
     }
 
-    /// Peak magnitudes of the one spectrum in a recording.
-    fn spectrum(
+    /// Brings together what a file states and what was stated for it.
+    fn settle(
         &self,
         recording: &Recording,
-        list: &SweepList,
-        axis: &Axis,
+        stated: Option<&Unit>,
         calibration: f64,
         doubts: &mut Vec<String>,
-    ) -> Result<Vec<f64>> {
-        let place = || Place::file(&recording.path);
-        let [record] = recording.records.as_slice() else {
-            return Err(Error::input(
-                place(),
-                format!("{} records in the file", recording.records.len()),
-                "one spectrum a file",
-            )
-            .hint("convert it first, and name one file a spectrum in the list"));
-        };
-        let mut magnitudes = match record {
-            Record::Spectrum(s) => s.values.magnitudes(),
-            Record::Frf(f) => f.values.iter().map(|v| v.norm()).collect(),
-            Record::Trace(_) => {
-                return Err(Error::input(place(), "a time trace", "a spectrum")
-                    .hint("list the spectra of the analyser, not its time records"));
+    ) -> Result<Settled> {
+        let mut doubt = |sentence: String| {
+            if !doubts.contains(&sentence) {
+                doubts.push(sentence);
             }
         };
-        if magnitudes.len() != list.lines + 1 {
+        let Some(Record::Spectrum(spectrum)) = recording.records.first() else {
+            return Err(no_spectrum(recording));
+        };
+        let scaling = match (self.scaling, spectrum.scaling) {
+            (Some(stated), _) => stated,
+            (None, Scaling::Unknown) => {
+                doubt("The files do not name their scaling: peak amplitudes are assumed.".into());
+                Scaling::Peak
+            }
+            (None, written) => written,
+        };
+        if !matches!(scaling, Scaling::Peak | Scaling::Rms) {
+            return Err(Error::input(
+                Place::file(&recording.path),
+                format!("a spectrum scaled as {}", scaling.name()),
+                "peak or RMS amplitudes",
+            )
+            .hint("export amplitudes; a density or a coherence has no amplitude of a single line"));
+        }
+        let window = match (self.window, spectrum.window) {
+            (Some(stated), _) => stated,
+            (None, Some(written)) => Some(written),
+            (None, None) => {
+                doubt("The files do not name their window: Hann is assumed.".into());
+                Some(Window::Hann)
+            }
+        };
+        // The reader has taken a unit that the file states to SI already.
+        let written = Some(&spectrum.meta.unit).filter(|u| u.is_known());
+        let (factor, unit) = match (stated, written) {
+            (Some(stated), Some(written)) if stated.quantity() != written.quantity() => {
+                return Err(Error::input(
+                    Place::file(&recording.path),
+                    format!("the file says its values are in {written}, {}", written.quantity()),
+                    format!("{}, as was stated", stated.quantity()),
+                )
+                .hint("leave the unit out, and the file is believed; or check that this is the channel you mean"));
+            }
+            (_, Some(written)) => (1.0, written.clone()),
+            (Some(stated), None) => (stated.factor(), stated.si()),
+            (None, None) => {
+                doubt("The files do not name their unit: metres are assumed.".into());
+                (1.0, Unit::of(Quantity::Displacement))
+            }
+        };
+        let peak = if scaling == Scaling::Rms { std::f64::consts::SQRT_2 } else { 1.0 };
+        Ok(Settled { factor: factor * calibration * peak, unit, window })
+    }
+}
+
+fn no_spectrum(recording: &Recording) -> Error {
+    let place = Place::file(&recording.path);
+    match recording.records.as_slice() {
+        [Record::Trace(_)] => Error::input(place, "a time trace", "a spectrum")
+            .hint("list the spectra of the analyser, not its time records"),
+        [Record::Frf(_)] => Error::input(place, "a frequency response function", "a spectrum")
+            .hint("name it under [[frf]] in a campaign"),
+        records => {
+            Error::input(place, format!("{} records in the file", records.len()), "one spectrum a file")
+                .hint("convert it first, and name one file a spectrum in the list")
+        }
+    }
+}
+
+/// Peak magnitudes of the one spectrum in a recording.
+fn magnitudes(recording: &Recording, list: &SweepList, axis: &Axis, factor: f64) -> Result<Vec<f64>> {
+    let place = || Place::file(&recording.path);
+    let [Record::Spectrum(spectrum)] = recording.records.as_slice() else {
+        return Err(no_spectrum(recording));
+    };
+    let mut magnitudes = spectrum.values.magnitudes();
+    if magnitudes.len() != list.lines + 1 {
+        return Err(Error::input(
+            place(),
+            format!("the file holds {} values", magnitudes.len()),
+            format!("{} (the list says {} lines, and 0 Hz counts)", list.lines + 1, list.lines),
+        )
+        .hint("correct the number of lines in the list; or this one file was stored with another setting"));
+    }
+    if let Some(step) = spectrum.axis.step() {
+        let expected = axis.step().unwrap_or(step);
+        if (step / expected - 1.0).abs() > 1e-6 {
             return Err(Error::input(
                 place(),
-                format!("the file holds {} values", magnitudes.len()),
-                format!("{} (the list says {} lines, and 0 Hz counts)", list.lines + 1, list.lines),
-            )
-            .hint(
-                "correct the number of lines in the list; or this one file was stored with another setting",
+                format!("the lines of this file are {step} Hz apart"),
+                format!("{expected} Hz, as base band and lines of the list say"),
             ));
         }
-        if let Some(step) = record.axis().step() {
-            let expected = axis.step().unwrap_or(step);
-            if (step / expected - 1.0).abs() > 1e-6 {
-                return Err(Error::input(
-                    place(),
-                    format!("the lines of this file are {step} Hz apart"),
-                    format!("{expected} Hz, as base band and lines of the list say"),
-                ));
-            }
+    }
+    if let Some(i) = magnitudes.iter().position(|m| !m.is_finite()) {
+        return Err(Error::input(place(), format!("line {i} is missing"), "a number in every line"));
+    }
+    for m in &mut magnitudes {
+        *m *= factor;
+    }
+    Ok(magnitudes)
+}
+
+/// Doubts of the files, each once; what a sweep settles for itself is not repeated.
+fn gather(recording: &Recording, doubts: &mut Vec<String>) {
+    const SETTLED: [&str; 3] = ["scaled", "unit is stated", "says nothing of its abscissa"];
+    for doubt in recording.all_doubts() {
+        let settled = SETTLED.iter().any(|part| doubt.contains(part));
+        if !settled && doubts.len() < 50 && !doubts.contains(&doubt) {
+            doubts.push(doubt);
         }
-        if let Some(i) = magnitudes.iter().position(|m| !m.is_finite()) {
-            return Err(Error::input(place(), format!("line {i} is missing"), "a number in every line"));
-        }
-        let factor = match self.scaling {
-            Scaling::Rms => calibration * std::f64::consts::SQRT_2,
-            _ => calibration,
-        };
-        if factor != 1.0 {
-            for m in &mut magnitudes {
-                *m *= factor;
-            }
-        }
-        for doubt in recording.all_doubts() {
-            let scaling = doubt.starts_with("The file does not say how its spectrum is scaled");
-            if !scaling && doubts.len() < 50 && !doubts.contains(&doubt) {
-                doubts.push(doubt);
-            }
-        }
-        Ok(magnitudes)
     }
 }

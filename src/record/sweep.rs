@@ -1,6 +1,7 @@
 //! A stepped-sine sweep: one force and one response spectrum a step.
 
 use super::{Axis, Spectrum, Step};
+use crate::units::Unit;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -70,6 +71,11 @@ impl Sweep {
     /// Steps that made the responses: those of the first point.
     pub fn history(&self) -> &[Step] {
         self.points.first().map_or(&[], |p| &p.response.meta.history)
+    }
+
+    /// SI unit of the responses.
+    pub fn unit(&self) -> Unit {
+        self.points.first().map_or_else(Unit::none, |p| p.response.meta.unit.clone())
     }
 
     /// Distance of the lines in Hz; `None` if uneven.

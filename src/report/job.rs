@@ -6,11 +6,11 @@ use crate::compare::{Overlay, overlay};
 use crate::error::{Error, Result};
 use crate::measure::peaks::frf_peaks;
 use crate::measure::resonance::{NamedCurve, crossings, name_modes};
-use crate::measure::response::{Response, ResponseOptions, response};
+use crate::measure::response::{Response, ResponseOptions, response, to_displacement};
 use crate::measure::waterfall::{Waterfall, waterfall};
 use crate::read::{Header, Reader};
 use crate::record::{Direction, Frf, FrfKind, Record, Sweep};
-use crate::units::{Quantity, Unit};
+use crate::units::Unit;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -131,14 +131,10 @@ fn sweeps(campaign: &Campaign, options: JobOptions, progress: &dyn Progress) -> 
         .map(|entry| {
             let list = campaign.list(entry, options.allow_outside)?;
             let how = entry.reader();
-            let integrate = match how.unit.quantity() {
-                Quantity::Velocity => 1,
-                Quantity::Acceleration => 2,
-                _ => 0,
-            };
             let compute = &campaign.compute;
-            let options = ResponseOptions { band: compute.band, integrate, fmin: compute.fmin };
             let sweep = how.read(&list)?;
+            let integrate = to_displacement(sweep.unit().quantity());
+            let options = ResponseOptions { band: compute.band, integrate, fmin: compute.fmin };
             let response = response(&sweep, &options)?;
             progress.step();
             Ok((sweep, response, options))
