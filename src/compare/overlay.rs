@@ -147,7 +147,16 @@ fn choose_force(
 ) -> Result<f64> {
     let mut measured: Vec<f64> = usable.iter().flat_map(|u| &u.0.points).filter_map(|p| p.force).collect();
     measured.sort_by(f64::total_cmp);
-    let median = measured.get(measured.len() / 2).copied();
+    let median = median(&measured);
+    if let Some(force) = stated.or(median) {
+        let worst = measured.iter().map(|m| (m / force - 1.0).abs()).fold(0.0, f64::max);
+        if worst > 0.05 {
+            warnings.push(format!(
+                "The measured force strays by up to {:.0} % from the {force:.4} N of the prediction, which holds one force for all points.",
+                100.0 * worst
+            ));
+        }
+    }
     match (stated, median) {
         (Some(stated), median) => {
             if let Some(median) = median.filter(|m| (m / stated - 1.0).abs() > 0.02) {
@@ -166,6 +175,13 @@ fn choose_force(
         (None, None) => Err(Error::refused("the force is neither stated nor measured")
             .hint("give [excitation] force = … in N in the campaign")),
     }
+}
+
+/// Median of sorted values.
+fn median(sorted: &[f64]) -> Option<f64> {
+    let middle = sorted.len() / 2;
+    let upper = *sorted.get(middle)?;
+    Some(if sorted.len().is_multiple_of(2) { f64::midpoint(sorted[middle - 1], upper) } else { upper })
 }
 
 fn pairs(rig: &Rig, force: f64, response: &Response, mass: u8, direction: Direction) -> Result<Vec<Pair>> {
@@ -215,7 +231,7 @@ fn score(sweep: &str, pairs: &[Pair]) -> Score {
         sweep: sweep.to_owned(),
         n,
         without: pairs.len() - n,
-        median_relative: relative.get(relative.len() / 2).copied(),
+        median_relative: median(&relative),
         rms: (n > 0).then(|| (squares.iter().sum::<f64>() / n as f64).sqrt()),
     }
 }
@@ -224,15 +240,20 @@ fn score(sweep: &str, pairs: &[Pair]) -> Score {
 const NEAR: f64 = 1.25;
 
 fn peaks(response: &Response, mass: u8, direction: Direction, curve: &Prediction) -> Vec<PeakPair> {
-    let amplitude: Vec<f64> = curve
-        .followed(direction)
+    let followed = curve.followed(direction);
+    let impacting = |i: usize| followed[i].is_some_and(|m| m.kind == Kind::Impacting);
+    let amplitude: Vec<f64> = followed
         .iter()
         .map(|m: &Option<Motion>| m.map_or(f64::NAN, |m| m.amplitude[usize::from(mass) - 1]))
         .collect();
     // Where a branch ends, its last point is the peak: a missing value beside it counts as low.
     let closed: Vec<f64> = amplitude.iter().map(|a| if a.is_nan() { 0.0 } else { *a }).collect();
-    let predicted: Vec<(f64, f64)> =
-        local_maxima(&closed, 1.2).into_iter().map(|i| top(curve, &closed, i)).collect();
+    let predicted: Vec<(f64, f64)> = local_maxima(&closed, 1.2)
+        .into_iter()
+        // Free motion has no peak in reach of the gap: its end is where impacts begin.
+        .filter(|m| impacting(m.at))
+        .map(|m| top(curve, &closed, m.at))
+        .collect();
     let found = response.resonances.iter().filter(|r| r.kind != "antiresonance");
     found
         .map(|r: &Resonance| {

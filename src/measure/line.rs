@@ -16,6 +16,9 @@ pub struct SubLine {
     pub amplitude_std: Option<f64>,
 }
 
+/// Noise can push a sine this far from its largest line, in lines; never beyond a whole one.
+const LIMIT: f64 = 0.99;
+
 /// Frequency and amplitude of the sine whose largest line is `k`, from three magnitudes.
 ///
 /// For a window with a main lobe of four lines or more, the distance δ from line `k` solves
@@ -48,6 +51,8 @@ pub fn interpolate(
     };
     let (delta, amplitude) = solve(lines, window);
     let (position_std, amplitude_std) = match noise {
+        // At the limit the lines have not the shape of one sine, and slopes mean nothing.
+        Some(_) if delta.abs() >= LIMIT => (None, None),
         Some(noise) => propagate(lines, window, noise),
         None => (None, None),
     };
@@ -116,15 +121,14 @@ fn solve(lines: [f64; 3], window: Window) -> (f64, f64) {
             })
         }
     };
-    // Noise can push δ beyond half a line, never beyond a whole one.
-    let delta = delta.clamp(-0.99, 0.99);
+    let delta = delta.clamp(-LIMIT, LIMIT);
     let weights = weights(window);
     (delta, dot(weights, lines) / dot(weights, shapes(window, delta)))
 }
 
-/// Root of a rising function on ±0.99 lines, to rounding.
+/// Root of a rising function within the limit, to rounding.
 fn bisect(f: impl Fn(f64) -> f64) -> f64 {
-    let (mut low, mut high) = (-0.99, 0.99);
+    let (mut low, mut high) = (-LIMIT, LIMIT);
     for _ in 0..60 {
         let middle = f64::midpoint(low, high);
         if f(middle) < 0.0 {

@@ -16,7 +16,7 @@ const GUARD: usize = 4;
 /// The median is not moved by a few further peaks. `None` where fewer than eight lines are left.
 pub fn around(magnitudes: &[f64], centre: usize) -> Option<f64> {
     let low = centre.saturating_sub(REACH).max(2);
-    let high = (centre + REACH + 1).min(magnitudes.len());
+    let high = centre.saturating_add(REACH + 1).min(magnitudes.len());
     let mut lines: Vec<f64> = (low..high)
         .filter(|k| k.abs_diff(centre) > GUARD)
         .map(|k| magnitudes[k])

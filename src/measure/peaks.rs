@@ -15,51 +15,80 @@ pub struct Vertex {
     pub height_std: f64,
 }
 
-/// Indices of local maxima that rise by at least the factor `ratio` above the higher of the two valleys beside them
-/// (their prominence), in order. Ends are no maxima; missing values end a stretch.
-pub fn local_maxima(values: &[f64], ratio: f64) -> Vec<usize> {
+/// A local maximum and the lowest points on the way to a higher one, or to the end, on both sides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Maximum {
+    /// Index of the maximum.
+    pub at: usize,
+    /// Indices of the valleys.
+    pub valleys: [usize; 2],
+}
+
+/// Local maxima that rise by at least the factor `ratio` above the higher of the two valleys beside them (their
+/// prominence), in order. Ends are no maxima; missing values end a stretch.
+pub fn local_maxima(values: &[f64], ratio: f64) -> Vec<Maximum> {
     let n = values.len();
+    let lowest = |side: &mut dyn Iterator<Item = usize>, v: f64| {
+        side.take_while(|k| values[*k] <= v).min_by(|a, b| values[*a].total_cmp(&values[*b]))
+    };
     (1..n.saturating_sub(1))
-        .filter(|&i| {
+        .filter_map(|i| {
             let v = values[i];
             if !(v > values[i - 1] && v >= values[i + 1]) {
-                return false;
+                return None;
             }
-            // Lowest value on the way to a higher one, or to the end.
-            let valley = |side: &mut dyn Iterator<Item = &f64>| {
-                side.take_while(|w| **w <= v).fold(f64::INFINITY, |low, w| low.min(*w))
-            };
-            let left = valley(&mut values[..i].iter().rev());
-            let right = valley(&mut values[i + 1..].iter());
-            v >= ratio * left.max(right)
+            let valleys = [lowest(&mut (0..i).rev(), v)?, lowest(&mut (i + 1..n), v)?];
+            let higher = values[valleys[0]].max(values[valleys[1]]);
+            (v >= ratio * higher).then_some(Maximum { at: i, valleys })
         })
         .collect()
 }
 
 /// Vertex through three points `f` (rising) with heights `a` and their standard uncertainties.
 ///
-/// Near a resonance of one mode 1/a² is a parabola in frequency, so that parabola gives the vertex. A parabola through ln a is
-/// the rival: the distance between the two stands for what the choice of curve may cost, and is added to the
-/// propagated uncertainty of the heights. `None` where the middle point is not the highest.
+/// Near a resonance of one mode 1/a² is a parabola in frequency, so that parabola gives the vertex. Its uncertainty is made of
+/// the propagated uncertainty of the heights; the distance to the vertex of a parabola through ln a, for the choice of
+/// curve; and h²/2f for points h apart, the size of what a resonance curve has beyond the parabola:
+/// (1 − r²)² = 4δ²(1 + δ + δ²/4) with δ = r − 1. Where a neighbour is below half of the middle point, the curve is not resolved: the
+/// middle point is given with the uncertainty of its place, and no uncertainty (NaN) of its height.
+///
+/// `None` where the middle point is not the highest.
 pub fn vertex(f: [f64; 3], a: [f64; 3], std: [f64; 3]) -> Option<Vertex> {
-    if !(a[1] >= a[0] && a[1] >= a[2] && a[1] > 0.0 && a[0] > 0.0 && a[2] > 0.0) {
+    if !(a[1] >= a[0] && a[1] >= a[2] && a[0] > 0.0 && a[2] > 0.0) {
         return None;
     }
-    let (frequency, inverse) = parabola(f, a.map(|v| 1.0 / (v * v)))?;
-    // A sharp peak between coarse points can put the parabola below zero: the curve does not hold there.
-    let rival = parabola(f, a.map(f64::ln)).map(|(f, h)| (f, h.exp()));
-    let (frequency, height) = if inverse > 0.0 { (frequency, 1.0 / inverse.sqrt()) } else { rival? };
-    let (rival_f, rival_h) = rival.unwrap_or((f[1], a[1]));
-    let mut variance = [(frequency - rival_f).powi(2), (height - rival_h).powi(2)];
+    let spacing = (f[2] - f[0]) / 2.0;
+    let unresolved = Vertex {
+        frequency: f[1],
+        frequency_std: (f[1] - f[0]).max(f[2] - f[1]) / f64::sqrt(3.0),
+        height: a[1],
+        height_std: f64::NAN,
+    };
+    // Relative to the top, so that no square can overflow.
+    let top = a[1];
+    let (a, std) = (a.map(|v| v / top), std.map(|s| s / top));
+    if a[0] < 0.5 || a[2] < 0.5 {
+        return Some(unresolved);
+    }
+    let place = |a: [f64; 3]| parabola(f, a.map(|v| 1.0 / (v * v))).filter(|v| v.1 > 0.0);
+    let Some((frequency, inverse)) = place(a) else { return Some(unresolved) };
+    let height = 1.0 / inverse.sqrt();
+    let (rival_f, rival_h) = parabola(f, a.map(f64::ln)).map_or((f[1], 1.0), |(f, h)| (f, h.exp()));
+    let beyond = spacing * spacing / (2.0 * frequency);
+    let mut variance = [(frequency - rival_f).powi(2) + beyond * beyond, (height - rival_h).powi(2)];
     for i in 0..3 {
         let mut moved = a;
         moved[i] += std[i];
-        if let Some((f_moved, inverse)) = parabola(f, moved.map(|v| 1.0 / (v * v))).filter(|v| v.1 > 0.0) {
-            variance[0] += (f_moved - frequency).powi(2);
-            variance[1] += (1.0 / inverse.sqrt() - height).powi(2);
+        match place(moved) {
+            Some((f_moved, inverse)) => {
+                variance[0] += (f_moved - frequency).powi(2);
+                variance[1] += (1.0 / inverse.sqrt() - height).powi(2);
+            }
+            None => return Some(unresolved),
         }
     }
-    Some(Vertex { frequency, frequency_std: variance[0].sqrt(), height, height_std: variance[1].sqrt() })
+    let [frequency_std, height_std] = variance.map(f64::sqrt);
+    Some(Vertex { frequency, frequency_std, height: height * top, height_std: height_std * top })
 }
 
 /// Peaks of the magnitude of a frequency response function that stand at least the factor `ratio` above their valleys.
@@ -69,8 +98,8 @@ pub fn frf_peaks(frf: &Frf, ratio: f64) -> Vec<Vertex> {
     let magnitude: Vec<f64> = frf.values.iter().map(|v| v.norm()).collect();
     local_maxima(&magnitude, ratio)
         .into_iter()
-        .filter_map(|i| {
-            let at = [i - 1, i, i + 1];
+        .filter_map(|m| {
+            let at = [m.at - 1, m.at, m.at + 1];
             vertex(at.map(|k| frf.axis.at(k)), at.map(|k| magnitude[k]), [0.0; 3])
         })
         .collect()
@@ -94,27 +123,49 @@ mod tests {
     #[test]
     fn prominence_passes_over_ripples() {
         let values = [1.0, 5.0, 4.9, 5.1, 2.0, 3.0, 1.0, 0.5];
-        assert_eq!(local_maxima(&values, 1.2), [3, 5]);
-        assert_eq!(local_maxima(&values, 1.01), [1, 3, 5]);
+        let at = |ratio| local_maxima(&values, ratio).iter().map(|m| m.at).collect::<Vec<_>>();
+        assert_eq!(at(1.2), [3, 5]);
+        assert_eq!(at(1.01), [1, 3, 5]);
+        assert_eq!(local_maxima(&values, 1.2)[1].valleys, [4, 7]);
         assert!(local_maxima(&[1.0, f64::NAN, 1.0], 1.2).is_empty());
         assert!(local_maxima(&[], 1.2).is_empty());
     }
 
+    /// |1/(1 − r² + 2iζr)|, its maximum at f₀√(1−2ζ²), on grids of every offset: the stated uncertainty covers the error.
     #[test]
-    fn the_vertex_of_a_damped_resonance() {
-        // |1/(1 − (f/f0)² + 2iζ f/f0)| on an uneven grid; its maximum lies at f0 √(1−2ζ²).
-        let (f0, zeta) = (5.6, 0.02);
-        let height = |f: f64| {
-            let r: f64 = f / f0;
-            1.0 / (1.0 - r * r).hypot(2.0 * zeta * r)
-        };
-        let f = [5.53, 5.59, 5.68];
-        let found = vertex(f, f.map(height), [0.0; 3]).unwrap();
-        let truth = f0 * f64::sqrt(1.0 - 2.0 * zeta * zeta);
-        // 1/a² is a quartic: what the parabola leaves out is of third order in (f − f0)/f0 ≈ 0.015.
-        assert!((found.frequency - truth).abs() < 0.003, "{found:?}");
-        assert!((found.height / height(truth) - 1.0).abs() < 0.01);
-        assert!((found.frequency - truth).abs() < found.frequency_std, "{found:?}");
+    fn vertices_of_damped_resonances_lie_within_their_uncertainty() {
+        let f0 = 5.6;
+        for zeta in [0.1, 0.025, 0.01, 0.003] {
+            for step in [0.4, 0.2, 0.1, 0.03, 0.01] {
+                let height = |f: f64| {
+                    let r: f64 = f / f0;
+                    1.0 / (1.0 - r * r).hypot(2.0 * zeta * r)
+                };
+                let truth = f0 * f64::sqrt(1.0 - 2.0 * zeta * zeta);
+                for offset in 0..20 {
+                    let middle = truth + step * (f64::from(offset) / 20.0 - 0.475);
+                    let f = [middle - step, middle, middle + step];
+                    let Some(found) = vertex(f, f.map(height), [0.0; 3]) else { continue };
+                    let error = (found.frequency - truth).abs();
+                    // No noise: the error is one of the curve, and twice the stated size bounds it.
+                    assert!(
+                        error <= 2.0 * found.frequency_std,
+                        "ζ {zeta}, step {step}, {offset}: {error} {found:?}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn scale_does_not_matter() {
+        let (f, a) = ([1.0, 1.1, 1.25], [0.8, 1.0, 0.7]);
+        let plain = vertex(f, a, [0.01; 3]).unwrap();
+        for scale in [1e-250, 1e250] {
+            let scaled = vertex(f, a.map(|v| v * scale), [0.01 * scale; 3]).unwrap();
+            assert!((scaled.frequency - plain.frequency).abs() < 1e-12, "{scaled:?}");
+            assert!((scaled.frequency_std / plain.frequency_std - 1.0).abs() < 1e-9, "{scaled:?}");
+        }
     }
 
     #[test]

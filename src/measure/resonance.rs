@@ -51,8 +51,9 @@ pub fn resonances(frequency: &[f64], amplitude: &[f64], std: &[f64], jumps: &[Ju
     let inverse: Vec<f64> = amplitude.iter().map(|a| 1.0 / a).collect();
     let mut found: Vec<Resonance> = Vec::new();
     for (values, kind) in [(amplitude, "resonance"), (inverse.as_slice(), "antiresonance")] {
-        for i in local_maxima(values, PROMINENCE) {
-            if !significant(amplitude, std, i, kind == "resonance") {
+        for maximum in local_maxima(values, PROMINENCE) {
+            let i = maximum.at;
+            if !maximum.valleys.iter().all(|k| differ(amplitude, std, i, *k)) {
                 continue;
             }
             let f = [frequency[i - 1], frequency[i], frequency[i + 1]];
@@ -61,6 +62,9 @@ pub fn resonances(frequency: &[f64], amplitude: &[f64], std: &[f64], jumps: &[Ju
                 high >= f[0] && low <= f[2] && (low == f[1] || high == f[1])
             };
             let jump = jumps.iter().find(|j| beside(j));
+            if kind == "antiresonance" && jump.is_some() {
+                continue; // the foot of a jump
+            }
             let interpolated = if jump.is_none() && f[0] < f[1] && f[1] < f[2] {
                 let a = [values[i - 1], values[i], values[i + 1]];
                 // Relative uncertainties are the same for a value and its inverse.
@@ -72,11 +76,12 @@ pub fn resonances(frequency: &[f64], amplitude: &[f64], std: &[f64], jumps: &[Ju
             found.push(match interpolated {
                 Some(v) => {
                     let height = if kind == "resonance" { v.height } else { 1.0 / v.height };
+                    let relative = v.height_std / v.height;
                     Resonance {
                         frequency: v.frequency,
                         frequency_std: Some(v.frequency_std),
                         amplitude: height,
-                        amplitude_std: Some(height * v.height_std / v.height),
+                        amplitude_std: Some(height * relative).filter(|s| s.is_finite()),
                         kind: kind.into(),
                         at_jump: false,
                     }
@@ -86,7 +91,7 @@ pub fn resonances(frequency: &[f64], amplitude: &[f64], std: &[f64], jumps: &[Ju
                     // Anywhere between this point and its neighbours with equal chance.
                     frequency_std: Some((f[1] - f[0]).max(f[2] - f[1]) / f64::sqrt(3.0)),
                     amplitude: amplitude[i],
-                    amplitude_std: Some(std[i]).filter(|s| s.is_finite()),
+                    amplitude_std: jump.and_then(|j| at_a_jump(frequency, amplitude, std, i, j)),
                     kind: kind.into(),
                     at_jump: jump.is_some(),
                 },
@@ -97,37 +102,53 @@ pub fn resonances(frequency: &[f64], amplitude: &[f64], std: &[f64], jumps: &[Ju
     found
 }
 
+/// Uncertainty of the height of a branch that ends in a jump beside point `i`: the slope towards it, carried on over the
+/// distance to the point behind the jump.
+fn at_a_jump(frequency: &[f64], amplitude: &[f64], std: &[f64], i: usize, jump: &Jump) -> Option<f64> {
+    let behind =
+        if (jump.from - frequency[i]).abs() < (jump.to - frequency[i]).abs() { jump.to } else { jump.from };
+    let before = if behind > frequency[i] { i.checked_sub(1)? } else { i + 1 };
+    let slope = (amplitude[i] - amplitude.get(before)?) / (frequency[i] - frequency.get(before)?);
+    let reach = slope * (behind - frequency[i]) / f64::sqrt(3.0);
+    Some(reach.hypot(std[i])).filter(|s| s.is_finite())
+}
+
 /// Differences below this many standard deviations are noise.
 const SIGMA: f64 = 4.0;
 
-/// Whether the maximum (or minimum) at `i` differs from the extreme on either side by more than noise. Unknown
-/// uncertainties count as none.
-fn significant(amplitude: &[f64], std: &[f64], i: usize, maximum: bool) -> bool {
-    let sign = if maximum { 1.0 } else { -1.0 };
-    let clear = |k: usize| {
-        let noise = [std[i], std[k]].map(|s| if s.is_finite() { s } else { 0.0 });
-        sign * (amplitude[i] - amplitude[k]) > SIGMA * noise[0].hypot(noise[1])
-    };
-    (0..i).any(clear) && (i + 1..amplitude.len()).any(clear)
+/// Whether two amplitudes differ by more than noise. Unknown uncertainties count as none.
+fn differ(amplitude: &[f64], std: &[f64], i: usize, k: usize) -> bool {
+    let noise = [std[i], std[k]].map(|s| if s.is_finite() { s } else { 0.0 });
+    (amplitude[i] - amplitude[k]).abs() > SIGMA * noise[0].hypot(noise[1])
 }
 
 /// Jumps between neighbouring steps, in the order in which the sweep was run.
 pub fn jumps(frequency: &[f64], amplitude: &[f64], std: &[f64], direction: Direction) -> Vec<Jump> {
-    let steps: Vec<f64> = amplitude.windows(2).map(|w| (w[1] / w[0]).ln()).collect();
-    (0..steps.len())
+    let n = amplitude.len();
+    let step = |i: usize| (amplitude[i + 1] / amplitude[i]).ln();
+    let width = |i: usize| (frequency[i + 1] - frequency[i]).abs();
+    (0..n.saturating_sub(1))
         .filter(|&i| {
-            let beside = [i.checked_sub(1).and_then(|j| steps.get(j)), steps.get(i + 1)];
-            let usual = beside.into_iter().flatten().fold(0.0f64, |m, s| m.max(s.abs()));
-            let noise = [std[i], std[i + 1]].map(|s| if s.is_finite() { s } else { 0.0 });
-            let clear = (amplitude[i + 1] - amplitude[i]).abs() > SIGMA * noise[0].hypot(noise[1]);
-            clear && steps[i].is_finite() && steps[i].abs() > JUMP.ln().max(JUMP_AGAINST_NEIGHBOURS * usual)
+            // What the curve does on its own over this distance: the steepest of two steps on each side. Without a step on both sides,
+            // and where a sharp peak stands beside the step, a jump cannot be told from a flank.
+            let sides = [i.saturating_sub(2)..i, i + 1..(i + 3).min(n - 1)];
+            let usual = sides.map(|side| {
+                side.filter(|k| width(*k) > 1e-5 * frequency[*k])
+                    .map(|k| (step(k) * width(i) / width(k)).abs())
+                    .fold(f64::NAN, f64::max)
+            });
+            let s = step(i).abs();
+            s.is_finite()
+                && s > JUMP.ln()
+                && usual.iter().all(|u| s > JUMP_AGAINST_NEIGHBOURS * u)
+                && differ(amplitude, std, i, i + 1)
         })
         .map(|i| Jump {
             from: frequency[i],
             to: frequency[i + 1],
             amplitude_before: amplitude[i],
             amplitude_after: amplitude[i + 1],
-            change: if steps[i] > 0.0 { "rise" } else { "drop" },
+            change: if step(i) > 0.0 { "rise" } else { "drop" },
             direction,
         })
         .collect()
@@ -173,6 +194,8 @@ pub fn name_modes(curves: &mut [NamedCurve<'_>]) {
                 name.clone_into(&mut largest.kind);
             }
         }
+        // A maximum at a jump of one mass alone is the jump's edge.
+        curves[i].resonances.retain(|r| !(r.at_jump && r.kind == "resonance"));
     }
 }
 
@@ -267,6 +290,23 @@ mod tests {
         let peaks = resonances(&f, &a, &[0.01; 12], &jumps);
         assert_eq!(peaks.len(), 1);
         assert!(peaks[0].at_jump && peaks[0].frequency == f[8]);
+    }
+
+    #[test]
+    fn a_coarse_sweep_of_a_linear_resonance_has_no_jump() {
+        for q in [5.0, 20.0, 50.0, 150.0] {
+            for n in [10, 20, 40, 100] {
+                for offset in 0..25 {
+                    let f: Vec<f64> = (0..n)
+                        .map(|i| 4.0 + 4.0 * (f64::from(i) + f64::from(offset) / 25.0) / f64::from(n))
+                        .collect();
+                    let a: Vec<f64> =
+                        f.iter().map(|f| 1.0 / (1.0 - (f / 5.6f64).powi(2)).hypot(f / 5.6 / q)).collect();
+                    let found = jumps(&f, &a, &vec![1e-6; f.len()], Direction::Up);
+                    assert!(found.is_empty(), "Q {q}, {n} points, {offset}: {found:?}");
+                }
+            }
+        }
     }
 
     #[test]

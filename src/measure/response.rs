@@ -225,6 +225,12 @@ fn direction(frequency: &[f64], stated: Option<Direction>, warnings: &mut Vec<St
     stated.or(found)
 }
 
+/// A response peak must stand this factor above the noise of a line; a fainter one is read at the excitation frequency, where
+/// noise cannot choose the line.
+const PEAK_ABOVE: f64 = 5.0;
+/// A response peak lies within this many lines of the excitation.
+const NEAR: f64 = 1.0;
+
 /// Takes single points.
 struct Taker<'a> {
     sweep: &'a Sweep,
@@ -262,11 +268,15 @@ impl Taker<'_> {
         let window = point.response.window;
         let floor = noise::around(&measured, centre);
         let low = centre.saturating_sub(self.options.band).max(1);
-        let high = (centre + self.options.band).min(measured.len().saturating_sub(2));
+        let high = centre.saturating_add(self.options.band).min(measured.len().saturating_sub(2));
         let peak = (low..=high)
             .filter(|&k| measured[k] >= measured[k - 1] && measured[k] >= measured[k + 1])
             .max_by(|a, b| measured[*a].total_cmp(&measured[*b]))
-            .and_then(|k| interpolate(&measured, k, window, floor));
+            .and_then(|k| interpolate(&measured, k, window, floor))
+            // A hump of noise, or another line beside the excitation, is not the response.
+            .filter(|p| {
+                floor.is_none_or(|f| p.amplitude >= PEAK_ABOVE * f) && (p.position - at).abs() <= NEAR
+            });
         let (frequency, frequency_std, amplitude, method) = if excitation.frequency < self.fmin {
             (excitation.frequency, None, (f64::NAN, None), "below the cut-off".to_owned())
         } else if let Some(peak) = peak {
