@@ -237,7 +237,7 @@ fn score(sweep: &str, pairs: &[Pair]) -> Score {
 }
 
 /// A predicted peak belongs to a measured one within this ratio of frequencies.
-const NEAR: f64 = 1.25;
+const NEAR: f64 = 1.1;
 
 fn peaks(response: &Response, mass: u8, direction: Direction, curve: &Prediction) -> Vec<PeakPair> {
     let followed = curve.followed(direction);

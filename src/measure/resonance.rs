@@ -161,8 +161,10 @@ pub struct NamedCurve<'a> {
     pub mass: u8,
     /// Direction of the sweep.
     pub direction: Direction,
-    /// Excitation frequency in Hz and amplitude, rising in frequency.
-    pub curve: Vec<(f64, f64)>,
+    /// Excitation frequency in Hz, amplitude and its standard uncertainty, rising in frequency.
+    pub curve: Vec<(f64, f64, f64)>,
+    /// Its jumps.
+    pub jumps: Vec<Jump>,
     /// Its resonances.
     pub resonances: &'a mut Vec<Resonance>,
 }
@@ -173,16 +175,26 @@ const TOGETHER: f64 = 0.1;
 /// Names the resonances in which both masses move: the largest maximum below the antiresonance of mass 1 is the grazing
 /// resonance (in phase), the largest above it the clapping one (out of phase).
 ///
+/// Where one mass jumps, the motion of both has changed: resonances are found again with the jumps of both.
 /// A maximum at which the other mass of the same sweep rests keeps its kind, as do all where the other mass was not
 /// measured. A sweep without an antiresonance of mass 1 uses that of the other direction.
 pub fn name_modes(curves: &mut [NamedCurve<'_>]) {
+    for i in 0..curves.len() {
+        let other = curves.iter().find(|c| c.mass != curves[i].mass && c.direction == curves[i].direction);
+        let Some(foreign) = other.map(|o| o.jumps.clone()).filter(|j| !j.is_empty()) else { continue };
+        let own = &curves[i];
+        let all: Vec<Jump> = own.jumps.iter().cloned().chain(foreign).collect();
+        let column = |of: fn(&(f64, f64, f64)) -> f64| own.curve.iter().map(of).collect::<Vec<f64>>();
+        *curves[i].resonances = resonances(&column(|p| p.0), &column(|p| p.1), &column(|p| p.2), &all);
+    }
     let up = antiresonance(curves, Direction::Up);
     let down = antiresonance(curves, Direction::Down);
     for i in 0..curves.len() {
         let (mass, direction) = (curves[i].mass, curves[i].direction);
         let between = if direction == Direction::Up { up.or(down) } else { down.or(up) };
         let partner = curves.iter().find(|c| c.mass != mass && c.direction == direction);
-        let (Some(between), Some(partner)) = (between, partner.map(|p| p.curve.clone())) else { continue };
+        let partner = partner.map(|p| p.curve.iter().map(|p| (p.0, p.1)).collect::<Vec<_>>());
+        let (Some(between), Some(partner)) = (between, partner) else { continue };
         for (name, below) in [("grazing", true), ("clapping", false)] {
             let largest = curves[i]
                 .resonances
@@ -253,14 +265,26 @@ mod tests {
             resonance(10.6, 2.0, "resonance"),
         ];
         let mut second = vec![resonance(5.5, 9.0, "resonance")];
-        let curve = |above| vec![(4.0, 1.0), (5.5, 9.0), (9.0, above), (13.0, above)];
+        let curve = |above| vec![(4.0, 1.0, 0.0), (5.5, 9.0, 0.0), (9.0, above, 0.0), (13.0, above, 0.0)];
         for (above, expected) in [(1e-6, "resonance"), (1.0, "clapping")] {
             first[2].kind = "resonance".into();
             first[0].kind = "resonance".into();
             let direction = Direction::Up;
             name_modes(&mut [
-                NamedCurve { mass: 1, direction, curve: curve(1.0), resonances: &mut first },
-                NamedCurve { mass: 2, direction, curve: curve(above), resonances: &mut second },
+                NamedCurve {
+                    mass: 1,
+                    direction,
+                    curve: curve(1.0),
+                    jumps: Vec::new(),
+                    resonances: &mut first,
+                },
+                NamedCurve {
+                    mass: 2,
+                    direction,
+                    curve: curve(above),
+                    jumps: Vec::new(),
+                    resonances: &mut second,
+                },
             ]);
             assert_eq!((first[0].kind.as_str(), first[2].kind.as_str()), ("grazing", expected));
             assert_eq!(second[0].kind, "grazing");

@@ -144,10 +144,13 @@ fn sweeps(campaign: &Campaign, options: JobOptions, progress: &dyn Progress) -> 
         .iter_mut()
         .filter_map(|(_, r, _)| {
             let (mass, direction) = (r.mass?, r.direction?);
-            let mut curve: Vec<(f64, f64)> =
-                r.points.iter().map(|p| (p.excitation, p.amplitude.value)).collect();
+            let mut curve: Vec<(f64, f64, f64)> = r
+                .points
+                .iter()
+                .map(|p| (p.excitation, p.amplitude.value, p.amplitude.std.unwrap_or(f64::NAN)))
+                .collect();
             curve.sort_by(|a, b| a.0.total_cmp(&b.0));
-            Some(NamedCurve { mass, direction, curve, resonances: &mut r.resonances })
+            Some(NamedCurve { mass, direction, curve, jumps: r.jumps.clone(), resonances: &mut r.resonances })
         })
         .collect();
     name_modes(&mut curves);
