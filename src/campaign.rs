@@ -38,6 +38,9 @@ use crate::read::{SweepList, SweepReader, inside};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
+/// Folder for results where none is named.
+const RESULTS: &str = "results";
+
 /// A campaign as its file has it.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -77,6 +80,11 @@ impl Campaign {
     /// If it is not TOML, has an unknown key, or a value that cannot be; each points at its line.
     pub fn from_path(path: impl AsRef<Path>) -> Result<Campaign> {
         let path = path.as_ref();
+        let toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
+        if !toml || path.is_dir() {
+            return Err(Error::input(Place::file(path), "not a campaign", "a campaign file, NAME.toml")
+                .hint("a list of files goes to `vibro response`; the README shows a campaign.toml"));
+        }
         let bytes = crate::read::Source::file(path)?.all()?;
         let text = String::from_utf8(bytes).map_err(|e| {
             Error::input(
@@ -110,21 +118,27 @@ impl Campaign {
 
     /// Folder for results.
     pub fn out(&self) -> PathBuf {
-        self.folder().join(self.out.as_deref().unwrap_or(Path::new("results")))
+        self.folder().join(self.out.as_deref().unwrap_or(Path::new(RESULTS)))
     }
 
     fn check(&self) -> Result<()> {
         if let Some(rig) = &self.rig {
             rig.check().map_err(|e| e.in_file(&self.path))?;
         }
-        if let Some(out) = &self.out {
-            inside(self.folder(), out, false).map_err(|_| {
-                self.at(
-                    locate::find(&self.text, "out", None),
-                    format!("out = {} leads outside this folder", out.display()),
-                )
-                .hint("name a folder beside the campaign, or give --out on the command line")
-            })?;
+        let out = self.out.as_deref().unwrap_or(Path::new(RESULTS));
+        inside(self.folder(), out, false).map_err(|_| {
+            self.at(
+                locate::find(&self.text, "out", None),
+                format!("out = {} leads outside this folder", out.display()),
+            )
+            .hint("name a folder beside the campaign, or give --out on the command line")
+        })?;
+        self.compute.check().map_err(|(key, why)| {
+            let from = self.text.find("[compute]");
+            self.at(locate::find(&self.text, key, from), why)
+        })?;
+        for entry in [&self.frf, &self.impacts, &self.drop, &self.pulse, &self.drill].into_iter().flatten() {
+            entry.check().map_err(|why| self.at(entry.file.span(), why))?;
         }
         let mut seen: Vec<&str> = Vec::new();
         for entry in &self.sweep {
@@ -136,6 +150,18 @@ impl Campaign {
             entry.check().map_err(|why| self.at(why.span, why.found).hint(why.hint))?;
         }
         Ok(())
+    }
+
+    /// A sentence that names the keys of the rig that are not given and were taken from the thesis' rig; `None` where
+    /// all are given.
+    pub fn rig_left_out(&self) -> Option<String> {
+        let table = toml::from_str::<toml::Table>(&self.text).ok()?;
+        let rig = table.get("rig")?.as_table()?;
+        let keys = ["m1", "m2", "k1", "k2", "c1", "c2", "gap", "restitution"];
+        let missing: Vec<&str> = keys.into_iter().filter(|k| !rig.contains_key(*k)).collect();
+        (!missing.is_empty()).then(|| {
+            format!("[rig] does not give {}: the values of the thesis' rig are used.", missing.join(", "))
+        })
     }
 
     /// An error that points into this file.

@@ -25,19 +25,20 @@ pub fn main() -> u8 {
         Err(error) => return complain::usage(&error),
     };
     match dispatch(&args) {
-        Ok(()) => 0,
-        Err(error) => complain::error(&error),
+        Ok(code) => code,
+        Err(error) => complain::error(&error, args.json),
     }
 }
 
-fn dispatch(args: &Args) -> Result<()> {
-    match &args.command {
-        Command::Info(typed) => info::run(typed, args.json),
+fn dispatch(args: &Args) -> Result<u8> {
+    let done = match &args.command {
+        Command::Info(typed) => return info::run(typed, args.json),
         Command::Convert(typed) => convert::run(typed, args.json),
         Command::Excitation(typed) => excitation::run(typed, args.json),
         Command::Waterfall(typed) => waterfall::run(typed, args.json),
         Command::Response(typed) => response::run(typed, args.json),
         Command::Compare(typed) => compare::run(typed, args.json),
         Command::Run(typed) => run::run(typed, args.json),
-    }
+    };
+    done.map(|()| 0)
 }

@@ -66,7 +66,10 @@ fn legacy_gives_what_the_scripts_gave() {
             let x: Vec<f64> = printed.lines().filter_map(|l| l.trim().parse().ok()).collect();
             let found = legacy::excitation(&sweep).expect("frequencies");
             assert_eq!(found, x, "{case}: sineswpf");
-            let text = |names| legacy::hand_over(list.lines, list.base_band, &found, names);
+            let text = |names: &[PathBuf]| {
+                let names: Vec<_> = names.iter().filter_map(|n| n.file_name()).collect();
+                legacy::hand_over(list.lines, list.base_band, &found, &names)
+            };
             for (name, names) in [("FORCE.TXT", &list.force), ("RESP.TXT", &list.response)] {
                 assert_eq!(text(names), fs::read_to_string(folder.join(name)).expect(name), "{case}: {name}");
             }

@@ -228,6 +228,38 @@ pub struct Compute {
     pub fmax: Option<f64>,
 }
 
+impl RecordEntry {
+    /// What cannot be, as a sentence.
+    pub(super) fn check(&self) -> Result<(), String> {
+        for (key, value) in
+            [("calibration", self.calibration), ("rate", self.rate), ("base_band", self.base_band)]
+        {
+            if let Some(v) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
+                return Err(format!("{key} = {v} of this file is not a finite number above 0"));
+            }
+        }
+        match self.unit.as_deref().filter(|u| Unit::parse(u).is_none()) {
+            Some(unit) => Err(format!("the unit {unit:?} of this file is not known")),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Compute {
+    /// What cannot be: key and sentence.
+    pub(super) fn check(&self) -> Result<(), (&'static str, String)> {
+        for (key, value) in [("fmin", self.fmin), ("fmax", self.fmax)] {
+            if let Some(v) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
+                return Err((key, format!("{key} = {v} is not a finite number above 0")));
+            }
+        }
+        if !(1..=1000).contains(&self.band) {
+            return Err(("band", format!("band = {} is not between 1 and 1000 lines", self.band)));
+        }
+        Ok(())
+    }
+}
+
 impl Default for Compute {
     fn default() -> Compute {
         Compute { overlay: true, waterfall: true, band: 3, fmin: None, fmax: None }

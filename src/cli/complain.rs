@@ -1,10 +1,25 @@
-//! Complaints go to standard error, in one form.
+//! Complaints go to standard error, in one form. A closed standard error is no reason to fail.
 
 use crate::error::Error;
+use serde::Serialize;
+use std::io::Write;
 
-/// Prints an error and gives its exit code.
-pub fn error(error: &Error) -> u8 {
-    eprintln!("vibro: {error}");
+/// What a program reads in place of an answer.
+#[derive(Serialize)]
+struct Failure {
+    error: String,
+    exit_code: u8,
+    warnings: [(); 0],
+}
+
+/// Prints an error, with `json` as an object on standard output as well, and gives its exit code.
+pub fn error(error: &Error, json: bool) -> u8 {
+    line(&format!("vibro: {error}"));
+    if json {
+        let failure = Failure { error: error.to_string(), exit_code: error.exit_code(), warnings: [] };
+        // There is nobody left to tell of a failure to print a failure.
+        let _ = super::print::json(&failure);
+    }
     error.exit_code()
 }
 
@@ -18,6 +33,11 @@ pub fn usage(error: &clap::Error) -> u8 {
 /// Prints a warning for a person; JSON carries warnings itself.
 pub fn warn(sentences: &[String]) {
     for sentence in sentences {
-        eprintln!("note: {sentence}");
+        line(&format!("note: {sentence}"));
     }
+}
+
+/// One line on standard error.
+pub fn line(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{text}");
 }

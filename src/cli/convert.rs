@@ -1,15 +1,14 @@
 //! `vibro convert`: any readable file to UFF-58, CSV, WAV or NPY.
 
-use super::excitation::write_beside;
+use super::excitation::{apart, write_beside};
 use super::{args, complain, print, settings};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::write::{Precision, Storage, Target};
 use serde::Serialize;
-use std::path::PathBuf;
 
 #[derive(Serialize)]
 struct Answer {
-    written: PathBuf,
+    written: String,
     format: &'static str,
     records: usize,
     warnings: Vec<String>,
@@ -17,15 +16,25 @@ struct Answer {
 
 pub fn run(typed: &args::Convert, json: bool) -> Result<()> {
     let target = Target::of(&typed.output)?;
+    apart(&typed.input, &typed.output)?;
+    if (typed.binary || typed.single) && matches!(target, Target::Csv | Target::Tsv | Target::Npy) {
+        return Err(Error::usage(
+            format!("--binary and --single say nothing for {}", target.name()),
+            "a .uff or .wav file with them",
+        ));
+    }
     let recording = settings::reader(&typed.reading)?.from_path(&typed.input)?;
     let mut bytes = Vec::new();
     let precision = if typed.single { Precision::Single } else { Precision::Double };
     target.write(&recording.records, Storage { binary: typed.binary, precision }, &mut bytes)?;
-    let warnings = recording.all_doubts();
+    let mut warnings = recording.all_doubts();
+    if target == Target::Npy {
+        warnings.push("An array file holds values only: axis and unit are not in it.".to_owned());
+    }
     let written = write_beside(&typed.output, &bytes)?;
     if json {
         return print::json(&Answer {
-            written,
+            written: written.display().to_string(),
             format: target.name(),
             records: recording.records.len(),
             warnings,

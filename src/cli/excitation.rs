@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 struct Answer {
     points: Vec<Excitation>,
     warnings: Vec<String>,
-    written: Vec<PathBuf>,
+    written: Vec<String>,
 }
 
 pub fn run(typed: &args::Excitation, json: bool) -> Result<()> {
@@ -44,10 +44,17 @@ pub fn run(typed: &args::Excitation, json: bool) -> Result<()> {
                 "a list, no hand-over file",
             ));
         }
+        apart(force, response)?;
+        let (path, _) = typed.sweep.source.rsplit_once('#').unwrap_or((&typed.sweep.source, ""));
+        for target in [force, response] {
+            apart(Path::new(path), target)?;
+        }
+        let folder = Path::new(path).parent().unwrap_or(Path::new(""));
         let frequency: Vec<f64> = points.iter().map(|p| p.frequency).collect();
         for (path, names) in [(force, &list.force), (response, &list.response)] {
-            let text = legacy::hand_over(list.lines, list.base_band, &frequency, names);
-            written.push(write_beside(path, &text)?);
+            let names: Vec<_> = names.iter().map(|n| n.strip_prefix(folder).unwrap_or(n)).collect();
+            let text = legacy::hand_over(list.lines, list.base_band, &frequency, &names);
+            written.push(write_beside(path, &text)?.display().to_string());
         }
     }
     if json {
@@ -61,6 +68,22 @@ pub fn run(typed: &args::Excitation, json: bool) -> Result<()> {
     }
     complain::warn(&warnings);
     print::text(&text)
+}
+
+/// Refuses two names of one file: what is read must not be written.
+pub fn apart(a: &Path, b: &Path) -> Result<()> {
+    let same = match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => a == b,
+    };
+    if same {
+        return Err(Error::usage(
+            format!("{} and {} are the same file", a.display(), b.display()),
+            "two files",
+        )
+        .hint("name another file to write"));
+    }
+    Ok(())
 }
 
 /// Writes a file whole, in a folder that must exist.

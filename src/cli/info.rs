@@ -5,35 +5,35 @@ use crate::error::Result;
 use crate::read::Header;
 use serde::Serialize;
 use std::fmt::Write as _;
-use std::path::PathBuf;
 
 #[derive(Serialize)]
 struct Answer {
     files: Vec<File>,
+    /// Complaints about files that could not be listed.
+    errors: Vec<String>,
     warnings: Vec<String>,
 }
 
 #[derive(Serialize)]
 struct File {
-    path: PathBuf,
+    path: String,
     format: &'static str,
     records: Vec<Header>,
 }
 
-pub fn run(typed: &args::Info, json: bool) -> Result<()> {
+/// Lists what can be listed and complains of the rest; gives the exit code of the first failure.
+pub fn run(typed: &args::Info, json: bool) -> Result<u8> {
     let reader = settings::reader(&typed.reading)?;
-    let mut answer = Answer { files: Vec::new(), warnings: Vec::new() };
-    let mut failure = None;
+    let mut answer = Answer { files: Vec::new(), errors: Vec::new(), warnings: Vec::new() };
+    let mut code = 0;
     for path in &typed.files {
         let (format, records, doubts) = match reader.survey(path) {
             Ok(found) => found,
             // The other files are still worth listing; the first failure decides the exit code.
             Err(error) => {
-                if failure.is_some() {
-                    complain::error(&error);
-                } else {
-                    failure = Some(error);
-                }
+                let failed = complain::error(&error, false);
+                code = if code == 0 { failed } else { code };
+                answer.errors.push(error.to_string());
                 continue;
             }
         };
@@ -47,7 +47,7 @@ pub fn run(typed: &args::Info, json: bool) -> Result<()> {
                 answer.warnings.push(about(&named));
             }
         }
-        answer.files.push(File { path: path.clone(), format: format.name(), records });
+        answer.files.push(File { path: path.display().to_string(), format: format.name(), records });
     }
     if json {
         print::json(&answer)?;
@@ -55,13 +55,13 @@ pub fn run(typed: &args::Info, json: bool) -> Result<()> {
         complain::warn(&answer.warnings);
         print::text(&table(&answer.files))?;
     }
-    failure.map_or(Ok(()), Err)
+    Ok(code)
 }
 
 fn table(files: &[File]) -> String {
     let mut text = String::new();
     for file in files {
-        let _ = writeln!(text, "{} ({})", file.path.display(), file.format);
+        let _ = writeln!(text, "{} ({})", file.path, file.format);
         for r in &file.records {
             let n = match r.declared_n {
                 Some(declared) if declared != r.n => format!("{} of {declared}", r.n),

@@ -1,7 +1,7 @@
 //! `vibro response`: the job of sinesw3.
 
 use super::{args, complain, print, settings};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::measure::response::{Response, response};
 use crate::measure::{Estimate, legacy};
 use crate::record::Sweep;
@@ -38,6 +38,12 @@ struct LegacyPoint {
 pub fn run(typed: &args::Response, json: bool) -> Result<()> {
     let (list, how) = settings::sweep(&typed.sweep)?;
     let sweep = how.read(&list)?;
+    if typed.sweep.legacy && typed.out.is_some() {
+        return Err(Error::usage(
+            "--legacy prints what the script printed, it draws nothing",
+            "--legacy or --out",
+        ));
+    }
     if typed.sweep.legacy {
         return legacy(&sweep, sweep.unit().quantity().symbol(), json);
     }

@@ -43,14 +43,22 @@ pub fn rounded(excitation: &[f64]) -> Vec<f64> {
     excitation.iter().map(|f| format!("{f:7.4}").trim().parse().unwrap_or(*f)).collect()
 }
 
-/// The hand-over file: number of points, lines, base band, frequencies, then all names without a separator.
+/// Length of a name in a hand-over file of the script.
+const NAME: usize = 11;
+
+/// The hand-over file: number of points, lines, base band, frequencies, then all names without a separator, as the script
+/// wrote them; names that are not 11 characters long stand one a line.
 pub fn hand_over<P: AsRef<Path>>(lines: usize, base_band: f64, excitation: &[f64], names: &[P]) -> String {
     let mut text = String::new();
     for number in [excitation.len() as f64, lines as f64, base_band].iter().chain(excitation) {
         let _ = writeln!(text, "{number:7.4}");
     }
-    for name in names {
-        text.push_str(&name.as_ref().file_name().unwrap_or_default().to_string_lossy());
+    let names: Vec<String> = names.iter().map(|n| n.as_ref().to_string_lossy().into_owned()).collect();
+    if names.iter().all(|n| n.chars().count() == NAME) {
+        text.extend(names);
+    } else {
+        text += &names.join("\n");
+        text.push('\n');
     }
     text
 }

@@ -90,11 +90,15 @@ pub fn inside(folder: &Path, name: &Path, allow_outside: bool) -> Result<PathBuf
             path.push(part);
             path.symlink_metadata().is_ok_and(|m| m.file_type().is_symlink())
         };
-        name.components().any(&mut link)
-            && match (joined.canonicalize(), folder_or_here(folder).canonicalize()) {
-                (Ok(file), Ok(folder)) => !file.starts_with(folder),
-                _ => false, // a missing file is named when it is opened
-            }
+        if !name.components().any(&mut link) {
+            return false;
+        }
+        // What does not exist yet is judged by the deepest folder that does.
+        let real = joined.ancestors().find_map(|a| a.canonicalize().ok());
+        match (real, folder_or_here(folder).canonicalize()) {
+            (Some(real), Ok(folder)) => !real.starts_with(folder),
+            _ => true,
+        }
     };
     if !allow_outside && (climbs || drive || linked()) {
         return Err(Error::usage(
@@ -134,7 +138,11 @@ fn parse(path: &Path, text: &str) -> Result<SweepList> {
         if v.fract() == 0.0 && v < 1e9 {
             Ok(v as usize)
         } else {
-            Err(Error::input(Place::line(path, line), format!("found {v}"), format!("a whole {what}")))
+            Err(Error::input(
+                Place::line(path, line),
+                format!("found {v}"),
+                format!("a whole {what} below 1e9"),
+            ))
         }
     };
     let points = whole(count_line, points, "number of points")?;
@@ -259,5 +267,6 @@ mod tests {
         symlink(folder.path().join("B.DAT"), folder.path().join("C.DAT")).unwrap();
         let ok = |name: &str| inside(folder.path(), Path::new(name), false).is_ok();
         assert!(!ok("A.DAT") && !ok("door/A.DAT") && ok("B.DAT") && ok("C.DAT"));
+        assert!(!ok("door/not/yet") && ok("not/yet"));
     }
 }

@@ -8,6 +8,7 @@ use crate::measure::peaks::frf_peaks;
 use crate::measure::resonance::{NamedCurve, crossings, name_modes};
 use crate::measure::response::{Response, ResponseOptions, response, to_displacement};
 use crate::measure::waterfall::{Waterfall, waterfall};
+use crate::model::Rig;
 use crate::read::{Header, Reader};
 use crate::record::{Direction, Frf, FrfKind, Record, Sweep};
 use crate::units::Unit;
@@ -102,6 +103,8 @@ pub struct Results {
     pub antiresonance: [Option<f64>; 2],
     /// Where the curves of both masses cross.
     pub crossings: Vec<Crossing>,
+    /// The rig of the comparison.
+    pub rig: Option<Rig>,
     /// Comparison with the model.
     pub overlay: Option<Overlay>,
     /// Frequency response functions.
@@ -178,6 +181,7 @@ pub fn run(
     for response in &responses {
         merge(&mut warnings, &response.name, &response.warnings);
     }
+    let slugs = slugs(responses.iter().map(|r| r.name.as_str()));
     let name = if campaign.name.is_empty() { "Campaign".to_owned() } else { campaign.name.clone() };
     if !responses.is_empty() {
         figures.push(("response".to_owned(), pictures::response(&name, &responses)));
@@ -188,14 +192,20 @@ pub fn run(
     }
     if campaign.compute.waterfall {
         let fmax = campaign.compute.fmax;
-        for (i, matrix) in matrices.iter().enumerate() {
-            let slug = unique(&files::slug(&matrix.name), i);
+        for (slug, matrix) in slugs.iter().zip(&matrices) {
             figures.push((format!("waterfall_{slug}"), pictures::waterfall(matrix, fmax)?));
             figures.push((format!("map_{slug}"), pictures::map(matrix, fmax)?));
         }
     }
     let frf = frfs(campaign, options, &mut figures, &mut warnings)?;
     let listed = listed(campaign, options, &mut warnings)?;
+    if responses.is_empty() && frf.is_empty() && listed.is_empty() {
+        warnings.push("The campaign names no file: nothing was computed.".to_owned());
+    }
+    twice(&responses, &mut warnings);
+    if overlay.is_some() {
+        warnings.extend(campaign.rig_left_out());
+    }
     let found = antiresonances(&responses);
     let results = Results {
         campaign: name,
@@ -203,6 +213,7 @@ pub fn run(
         antiresonance: found,
         crossings: all_crossings(&responses),
         responses,
+        rig: campaign.rig.filter(|_| overlay.is_some()),
         overlay,
         frf,
         listed,
@@ -210,8 +221,7 @@ pub fn run(
     };
     progress.start("drawing figures", figures.len());
     let drawings = files::figures(output, &figures, &|| progress.step())?;
-    for (i, (response, matrix)) in results.responses.iter().zip(&matrices).enumerate() {
-        let slug = unique(&files::slug(&response.name), i);
+    for (slug, (response, matrix)) in slugs.iter().zip(results.responses.iter().zip(&matrices)) {
         output.write(&format!("response_{slug}.csv"), tables::response(response).csv())?;
         output.write(&format!("waterfall_{slug}.csv"), files::matrix_csv(matrix))?;
     }
@@ -238,8 +248,28 @@ fn merge(all: &mut Vec<String>, name: &str, sentences: &[String]) {
     }
 }
 
-fn unique(slug: &str, index: usize) -> String {
-    if slug.is_empty() { (index + 1).to_string() } else { slug.to_owned() }
+/// File names of the sweeps, each once.
+fn slugs<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut slugs: Vec<String> = Vec::new();
+    for (i, name) in names.enumerate() {
+        let slug = files::slug(name);
+        let numbered = slug.is_empty() || slugs.contains(&slug);
+        slugs.push(if numbered { format!("{slug}_{}", i + 1) } else { slug });
+    }
+    slugs
+}
+
+/// Several sweeps of one mass and direction: naming and crossings know only the first.
+fn twice(responses: &[Response], warnings: &mut Vec<String>) {
+    for (i, r) in responses.iter().enumerate() {
+        let same = |o: &&Response| o.mass.is_some() && (o.mass, o.direction) == (r.mass, r.direction);
+        if let Some(first) = responses[..i].iter().find(same) {
+            warnings.push(format!(
+                "\"{}\" and \"{}\" are sweeps of the same mass and direction: resonances of both are named by the first sweep of the other mass, and crossings are those of the first.",
+                first.name, r.name
+            ));
+        }
+    }
 }
 
 fn model(campaign: &Campaign, responses: &[Response], warnings: &mut Vec<String>) -> Result<Option<Overlay>> {

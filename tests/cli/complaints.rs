@@ -168,3 +168,63 @@ fn a_failed_conversion_leaves_the_old_file() {
     fs::write(&bad, "1\n2\n").unwrap();
     has(&complaint(&["convert", text(&bad), text(&deep)], 2), &["folder", "does not exist"]);
 }
+
+#[test]
+fn a_source_is_never_overwritten() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scope.csv");
+    fs::write(&path, "t [s],v [m/s]\n0,1\n1,2\n").unwrap();
+    let other = folder.path().join(".").join("scope.csv");
+    has(&complaint(&["convert", text(&path), text(&other)], 2), &["same file", "try:"]);
+    let list = sweep(folder.path(), &frequencies());
+    complaint(&["excitation", text(&list), "--write-lists", text(&list), "x.txt"], 2);
+    complaint(&["excitation", text(&list), "--write-lists", text(&other), text(&path)], 2);
+}
+
+#[test]
+fn what_files_state_is_believed_and_contradictions_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = sweep(folder.path(), &frequencies());
+    let plain = json(&["response", text(&list), "--unit", "m/s"]);
+    for i in 1..=frequencies().len() {
+        let path = folder.path().join(format!("VUP{i:04}.DAT"));
+        let values: Vec<f64> =
+            fs::read_to_string(&path).unwrap().lines().map(|l| l.parse().unwrap()).collect();
+        let rms: Vec<String> = values.iter().map(|v| format!("{:e}", v * 1e3)).collect();
+        fs::write(&path, format!("unit: mm/s\nwindow: hann\n{}\n", rms.join("\n"))).unwrap();
+    }
+    for arguments in [&["response", text(&list)][..], &["response", text(&list), "--unit", "mm/s"]] {
+        let value = json(arguments);
+        let (a, b) = (&value["points"][3]["amplitude"]["value"], &plain["points"][3]["amplitude"]["value"]);
+        assert!((a.as_f64().unwrap() / b.as_f64().unwrap() - 1.0).abs() < 1e-12, "{a} against {b}");
+        assert_eq!(value["unit"], "m");
+    }
+    has(&complaint(&["response", text(&list), "--unit", "mm"], 2), &["velocity", "displacement", "try:"]);
+    has(&complaint(&["response", text(&list), "--unit", "N"], 2), &["force"]);
+}
+
+#[test]
+fn frequency_limits_that_leave_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = sweep(folder.path(), &frequencies());
+    for fmin in ["50", "1e30"] {
+        has(&complaint(&["response", text(&list), "--fmin", fmin], 2), &["cut-off", "20 Hz"]);
+    }
+    let out = folder.path().join("out");
+    let limits = ["waterfall", text(&list), "--fmin", "3", "--fmax", "2", "--out", text(&out)];
+    has(&complaint(&limits, 2), &["cut-off", "try:"]);
+    assert!(!out.exists());
+}
+
+#[test]
+fn failures_are_objects_where_json_was_asked_for() {
+    for arguments in [&["response", "absent.txt", "--json"][..], &["run", "absent.toml", "--json"]] {
+        let output = super::vibro(arguments);
+        assert_eq!(output.status.code(), Some(2));
+        let value: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one object");
+        assert!(value["error"].as_str().unwrap().contains("absent") && value["warnings"].is_array());
+    }
+    let output = super::vibro(&["info", "absent.txt", "--json"]);
+    let value: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one object");
+    assert_eq!(value["errors"].as_array().unwrap().len(), 1);
+}

@@ -1,7 +1,7 @@
 //! Spectra of a sweep behind each other, and as a map.
 
 use super::response::capital;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::measure::waterfall::Waterfall as Matrix;
 use crate::report::{AxisSpec, Figure, Heatmap, Legend, Plot, Waterfall};
 use crate::units::decibel;
@@ -18,7 +18,7 @@ const RANGE: f64 = 80.0;
 /// If the matrix and its axes do not fit.
 pub fn waterfall(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     let height = AxisSpec::new(format!("{} amplitude", capital(matrix.quantity.name())), matrix.unit.clone());
-    let (low, high) = range(matrix, fmax);
+    let (low, high) = range(matrix, fmax)?;
     let scene = Waterfall::new(&matrix.frequency, &matrix.excitation, &matrix.magnitude, height)?
         .frequencies(low, high);
     Ok(Figure::double(matrix.name.clone()).height(120.0).panel(scene).caption(caption(matrix)))
@@ -33,7 +33,7 @@ pub fn map(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     order.sort_by(|a, b| matrix.excitation[*a].total_cmp(&matrix.excitation[*b]));
     // A map has one row a position: of repeated excitations the first stays.
     order.dedup_by(|a, b| matrix.excitation[*a] <= matrix.excitation[*b]);
-    let (low, high) = range(matrix, fmax);
+    let (low, high) = range(matrix, fmax)?;
     let columns: Vec<usize> =
         (0..matrix.frequency.len()).filter(|k| (low..=high).contains(&matrix.frequency[*k])).collect();
     let x: Vec<f64> = columns.iter().map(|k| matrix.frequency[*k]).collect();
@@ -53,9 +53,17 @@ pub fn map(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     Ok(Figure::double(matrix.name.clone()).height(100.0).panel(plot).caption(caption(matrix)))
 }
 
-fn range(matrix: &Matrix, fmax: Option<f64>) -> (f64, f64) {
+fn range(matrix: &Matrix, fmax: Option<f64>) -> Result<(f64, f64)> {
     let last = matrix.frequency.last().copied().unwrap_or(1.0);
-    (matrix.fmin, fmax.unwrap_or(last).min(last))
+    let high = fmax.unwrap_or(last).min(last);
+    if high <= matrix.fmin {
+        return Err(Error::usage(
+            format!("a picture from {:.3} Hz (the cut-off) to {high:.3} Hz", matrix.fmin),
+            "an upper end above the cut-off",
+        )
+        .hint("raise --fmax, or lower --fmin"));
+    }
+    Ok((matrix.fmin, high))
 }
 
 fn caption(matrix: &Matrix) -> String {
