@@ -21,20 +21,35 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Top-level modules that a line of code names behind `crate::`, braces included. Doc links do not count.
-fn used(line: &str) -> Vec<String> {
-    if line.trim_start().starts_with("//") {
-        return Vec::new();
-    }
-    let name =
-        |text: &str| -> String { text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect() };
-    line.match_indices("crate::")
-        .filter(|(at, _)| *at == 0 || !line[..*at].ends_with(|c: char| c.is_alphanumeric() || c == '_'))
+/// Top-level modules that a text of code names behind `crate::` with their line numbers, lists over several lines
+/// included. Comments do not count.
+fn used(code: &str) -> Vec<(usize, String)> {
+    let code: String =
+        code.lines().map(|l| l.find("//").map_or(l, |at| &l[..at])).collect::<Vec<_>>().join("\n");
+    let name = |text: &str| -> String {
+        text.trim_start().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect()
+    };
+    code.match_indices("crate::")
+        .filter(|(at, _)| *at == 0 || !code[..*at].ends_with(|c: char| c.is_alphanumeric() || c == '_'))
         .flat_map(|(at, word)| {
-            let rest = &line[at + word.len()..];
+            let line = code[..at].matches('\n').count() + 1;
+            let rest = &code[at + word.len()..];
             match rest.strip_prefix('{') {
-                Some(list) => list.split(',').map(|part| name(part.trim())).collect(),
-                None => vec![name(rest)],
+                // The first names of a list, whatever stands behind them in braces of their own.
+                Some(list) => {
+                    let (mut depth, mut parts) = (0, vec![String::new()]);
+                    for c in list.chars() {
+                        match c {
+                            '{' => depth += 1,
+                            '}' if depth == 0 => break,
+                            '}' => depth -= 1,
+                            ',' if depth == 0 => parts.push(String::new()),
+                            c => parts.last_mut().expect("one part at least").push(c),
+                        }
+                    }
+                    parts.iter().map(|p| (line, name(p))).filter(|p| !p.1.is_empty()).collect()
+                }
+                None => vec![(line, name(rest))],
             }
         })
         .collect()
@@ -62,19 +77,21 @@ fn no_arrow_runs_back() {
             inside.display()
         );
         let text = fs::read_to_string(&file).expect("text");
-        for (number, line) in text.lines().enumerate() {
-            for target in used(line) {
-                let to = FLOW.iter().position(|l| *l == target);
-                let allowed = target == layer
-                    || target.starts_with(char::is_uppercase)
-                    || match (place, ground) {
-                        (Some(from), _) => to.is_none_or(|to| to < from),
-                        (None, Some((_, may))) => may.contains(&target.as_str()),
-                        (None, None) => false,
-                    };
-                if !allowed {
-                    wrong.push(format!("{}:{}: {layer} uses {target}", inside.display(), number + 1));
-                }
+        let depth = inside.components().count();
+        if text.contains(&"super::".repeat(depth + 1)) {
+            wrong.push(format!("{}: a path of `super` that leaves its layer", inside.display()));
+        }
+        for (line, target) in used(&text) {
+            let to = FLOW.iter().position(|l| *l == target);
+            let allowed = target == layer
+                || target.starts_with(char::is_uppercase)
+                || match (place, ground) {
+                    (Some(from), _) => to.is_none_or(|to| to < from),
+                    (None, Some((_, may))) => may.contains(&target.as_str()),
+                    (None, None) => false,
+                };
+            if !allowed {
+                wrong.push(format!("{}:{line}: {layer} uses {target}", inside.display()));
             }
         }
     }
@@ -83,8 +100,9 @@ fn no_arrow_runs_back() {
 
 #[test]
 fn the_test_sees_an_arrow() {
-    assert_eq!(used("use crate::report::Output;"), ["report"]);
-    assert_eq!(used("let x = crate::cli::main();"), ["cli"]);
-    assert_eq!(used("use crate::{read, report};"), ["read", "report"]);
-    assert!(used("/// See [`crate::report`].").is_empty());
+    let targets = |code: &str| used(code).into_iter().map(|u| u.1).collect::<Vec<_>>();
+    assert_eq!(targets("use crate::report::Output;"), ["report"]);
+    assert_eq!(targets("let x = crate::cli::main();"), ["cli"]);
+    assert_eq!(targets("use crate::{\n    read::{A, B},\n    report,\n};"), ["read", "report"]);
+    assert!(targets("/// See [`crate::report`].").is_empty());
 }
