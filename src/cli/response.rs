@@ -61,13 +61,14 @@ pub fn run(typed: &args::Response, json: bool) -> Result<()> {
         return print::json(&Answer { response, files: written });
     }
     complain::warn(&response.warnings);
-    let mut text = tables::response(&response).text();
+    let mut text = tables::curve(&response).text();
     let all = std::slice::from_ref(&response);
     for table in [tables::resonances(all), tables::jumps(all)] {
         if !table.rows.is_empty() {
             let _ = write!(text, "\n{}", table.text());
         }
     }
+    text.push_str("\nharmonics and sub-harmonics: --json, or response.csv with --out\n");
     for file in written {
         let _ = writeln!(text, "wrote {file}");
     }

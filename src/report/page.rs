@@ -2,6 +2,7 @@
 
 use super::job::Results;
 use super::{Drawing, Figure, Page, tables};
+use crate::model::Rig;
 use crate::record::{Direction, Step};
 use std::fmt::Write as _;
 
@@ -22,10 +23,14 @@ pub fn page(results: &Results, figures: &[(String, Figure)], drawings: &[Drawing
         page = page.figure(drawing, &figure.caption, &files.each_ref().map(String::as_str));
     }
     for response in &results.responses {
-        page = page.table(&tables::response(response));
+        page = page.table(&tables::curve(response));
     }
     let histories: Vec<(String, String)> =
         results.responses.iter().map(|r| (r.name.clone(), history(&r.history))).collect();
+    if let Some(rig) = &results.rig {
+        let values = rig_values(rig);
+        page = page.details("Rig of the comparison", values.iter().map(|(n, v)| (*n, v.as_str())));
+    }
     page = page
         .heading("Where the numbers come from")
         .details("Steps from file to curve", histories.iter().map(|(n, h)| (n.as_str(), h.as_str())));
@@ -78,6 +83,19 @@ fn summary(results: &Results) -> Vec<String> {
         }
     }
     sentences
+}
+
+fn rig_values(rig: &Rig) -> [(&'static str, String); 8] {
+    [
+        ("m1, excited mass", format!("{} kg", rig.m1)),
+        ("m2, passive mass", format!("{} kg", rig.m2)),
+        ("k1", format!("{} N/m", rig.k1)),
+        ("k2", format!("{} N/m", rig.k2)),
+        ("c1", format!("{} N s/m", rig.c1)),
+        ("c2", format!("{} N s/m", rig.c2)),
+        ("gap", format!("{} m", rig.gap)),
+        ("restitution", rig.restitution.to_string()),
+    ]
 }
 
 fn history(steps: &[Step]) -> String {

@@ -14,7 +14,29 @@ fn headed(title: impl Into<String>, columns: &[(&str, &str)]) -> Table {
     columns.iter().fold(Table::new(title), |table, (name, unit)| table.column(*name, *unit))
 }
 
-/// Point by point: excitation, amplitude, harmonics and sub-harmonics.
+/// Point by point, what fits a page: excitation, force, response.
+pub fn curve(response: &Response) -> Table {
+    let columns = [
+        ("excitation", "Hz"),
+        ("force", "N"),
+        ("response at", "Hz"),
+        ("amplitude", response.unit),
+        ("largest at", "Hz"),
+    ];
+    let mut table = headed(format!("Response, {}", response.name), &columns);
+    for p in &response.points {
+        table.push([
+            pair(p.excitation, p.excitation_std),
+            Cell::from(p.force),
+            pair(p.frequency, p.frequency_std),
+            Cell::from(&p.amplitude),
+            if p.largest_elsewhere { Cell::Number(p.largest_at) } else { Cell::from("excitation") },
+        ]);
+    }
+    table
+}
+
+/// Point by point with harmonics and sub-harmonics, for files.
 pub fn response(response: &Response) -> Table {
     let unit = response.unit;
     let mut columns = vec![

@@ -1,6 +1,6 @@
 //! Measured responses over the predicted branches.
 
-use super::response::{log_limits, series};
+use super::response::{log_limits, series, shown};
 use crate::compare::Overlay;
 use crate::compare::prediction::{Kind, Prediction};
 use crate::measure::response::Response;
@@ -10,8 +10,8 @@ use crate::report::{AxisSpec, Figure, Ink, Plot, Series, Stroke};
 /// top.
 pub fn overlay(title: &str, overlay: &Overlay, responses: &[Response]) -> Figure {
     let mut figure = Figure::double(title).height(170.0).shared_x().caption(format!(
-        "Fundamental of the displacement. Lines: closed form for a force of {} N; solid: admissible and stable, dashed: not, \
-         thin: without impacts. Points: measured.",
+        "Fundamental of the displacement. Lines: closed form for a force of {:.4} N; solid: admissible and stable, dashed: not, \
+         thin: without impacts (mass 2 then rests and has no line). Points: measured.",
         overlay.force
     ));
     for mass in [1, 2] {
@@ -25,16 +25,17 @@ pub fn overlay(title: &str, overlay: &Overlay, responses: &[Response]) -> Figure
 }
 
 fn panel(mass: u8, curve: &Prediction, measured: &[&Response]) -> Plot {
-    let y = AxisSpec::new(format!("Displacement of mass {mass}"), "m").log();
+    let (factor, unit) = shown("m");
+    let y = AxisSpec::new(format!("Displacement of mass {mass}"), unit).log();
     // The dashed branches and the undisturbed resonance may run out of the picture: what is measured decides its size.
     let y = match log_limits(measured.iter().copied()) {
-        Some((low, high)) => y.limits(low, high),
+        Some((low, high)) => y.limits(factor * low, factor * high),
         None => y,
     };
     let mut plot = Plot::new(AxisSpec::new("Excitation frequency", "Hz"), y);
     for (solid, name) in [(true, "one impact a cycle"), (false, "not stable or not admissible")] {
         for rank in 0..2 {
-            let y = branch(curve, mass, rank, solid);
+            let y: Vec<f64> = branch(curve, mass, rank, solid).iter().map(|v| factor * v).collect();
             if y.iter().any(|v| v.is_finite()) {
                 let stroke = if solid { Stroke::Solid } else { Stroke::Dashed };
                 // One entry in the legend for both branches.
@@ -45,7 +46,7 @@ fn panel(mass: u8, curve: &Prediction, measured: &[&Response]) -> Plot {
         }
     }
     if mass == 1 {
-        let y: Vec<f64> = curve.motions.iter().map(|m| free(m, usize::from(mass) - 1)).collect();
+        let y: Vec<f64> = curve.motions.iter().map(|m| factor * free(m, usize::from(mass) - 1)).collect();
         plot = plot.with(
             Series::line("without impacts", curve.frequency.clone(), y).ink(Ink::Grey).stroke(Stroke::Thin),
         );

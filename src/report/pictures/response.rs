@@ -7,8 +7,9 @@ use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 /// Amplitude over excitation frequency, linear above and logarithmic below.
 pub fn response(title: &str, responses: &[Response]) -> Figure {
     let mut linear = plot(responses, false);
+    let factor = responses.first().map_or(1.0, |r| shown(r.unit).0);
     for (text, f, a) in names(responses) {
-        linear = linear.note(text, f, a);
+        linear = linear.note(text, f, factor * a);
     }
     Figure::double(title)
         .height(150.0)
@@ -22,10 +23,11 @@ fn plot(responses: &[Response], log: bool) -> Plot {
     let first = responses.first();
     let quantity = first.map_or("Amplitude", |r| r.quantity);
     let label = format!("{} amplitude", capital(quantity));
-    let y = AxisSpec::new(label, first.map_or("", |r| r.unit));
+    let (factor, unit) = first.map_or((1.0, ""), |r| shown(r.unit));
+    let y = AxisSpec::new(label, unit);
     let x = AxisSpec::new("Excitation frequency", "Hz");
     let y = match log_limits(responses.iter()) {
-        Some((low, high)) if log => y.log().limits(low, high),
+        Some((low, high)) if log => y.log().limits(low * factor, high * factor),
         _ => y,
     };
     let mut plot = Plot::new(x, y);
@@ -45,10 +47,17 @@ pub(super) fn log_limits<'a>(responses: impl Iterator<Item = &'a Response>) -> O
 /// One curve in the ink of its mass and the marker of its direction.
 pub(super) fn series(response: &Response) -> Series {
     let (mut x, mut y, mut std) = (Vec::new(), Vec::new(), Vec::new());
+    let (factor, _) = shown(response.unit);
     for point in &response.points {
         x.push(point.excitation);
-        y.push(point.amplitude.value);
-        std.push(point.amplitude.std.unwrap_or(0.0));
+        y.push(factor * point.amplitude.value);
+        std.push(factor * point.amplitude.std.unwrap_or(0.0));
+        // No line across a jump.
+        if response.jumps.iter().any(|j| j.from == point.excitation) {
+            x.push(f64::NAN);
+            y.push(f64::NAN);
+            std.push(0.0);
+        }
     }
     let series = Series::points(curve_name(response), x, y).y_error(std);
     let (up, down) = match response.mass {
@@ -62,6 +71,15 @@ pub(super) fn series(response: &Response) -> Series {
     match response.mass {
         Some(mass) => series.ink(Ink::Nth(usize::from(mass) - 1)),
         None => series,
+    }
+}
+
+/// The unit in which motion is shown, and the factor from SI: the same on every axis.
+pub(super) fn shown(unit: &str) -> (f64, &str) {
+    match unit {
+        "m" => (1e3, "mm"),
+        "m/s" => (1e3, "mm/s"),
+        other => (1.0, other),
     }
 }
 
