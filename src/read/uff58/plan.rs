@@ -227,7 +227,7 @@ fn abscissa(heading: &Heading, options: &Options, meta: &mut Meta) -> (AxisKind,
     let unit = Unit::parse_or_opaque(&axis.unit);
     let by_unit = match unit.quantity() {
         Quantity::Time => Some(AxisKind::Time),
-        Quantity::Frequency => Some(AxisKind::Frequency),
+        Quantity::Frequency | Quantity::AngularVelocity => Some(AxisKind::Frequency),
         _ => None,
     };
     let shown = |kind: &AxisKind| if *kind == AxisKind::Time { "time" } else { "frequency" };
@@ -235,7 +235,7 @@ fn abscissa(heading: &Heading, options: &Options, meta: &mut Meta) -> (AxisKind,
         17 => AxisKind::Time,
         18 => AxisKind::Frequency,
         0 | 1 => match by_unit {
-            Some(kind) => return (kind, unit.factor()),
+            Some(kind) => return (kind, abscissa_factor(&unit, meta)),
             None if axis.label.is_empty() && axis.unit.is_empty() => {
                 return (by_function(heading, options, meta), 1.0);
             }
@@ -255,7 +255,7 @@ fn abscissa(heading: &Heading, options: &Options, meta: &mut Meta) -> (AxisKind,
                 shown(&kind)
             ));
         }
-        return (kind, unit.factor());
+        return (kind, abscissa_factor(&unit, meta));
     }
     meta.doubt(format!(
         "The unit \"{}\" of the abscissa is not one of {}: s or Hz are assumed.",
@@ -263,6 +263,16 @@ fn abscissa(heading: &Heading, options: &Options, meta: &mut Meta) -> (AxisKind,
         shown(&by_type)
     ));
     (by_type, 1.0)
+}
+
+/// Factor of a unit of time to s, of frequency or angular frequency to Hz.
+fn abscissa_factor(unit: &Unit, meta: &mut Meta) -> f64 {
+    if unit.quantity() == Quantity::AngularVelocity {
+        meta.doubt(format!(
+            "The abscissa is an angular frequency in {unit}: it is divided by 2π and stands in Hz."
+        ));
+    }
+    unit.hertz().unwrap_or(unit.factor())
 }
 
 /// Kind of an abscissa without data type or unit.
