@@ -9,6 +9,7 @@
 mod parse;
 mod quantity;
 
+use crate::error::{Error, Result};
 pub use quantity::Quantity;
 
 /// Exponents of m, kg, s, A, K and rad, doubled so that `√Hz` is a whole number.
@@ -160,6 +161,24 @@ impl std::fmt::Display for Unit {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.pad(&self.symbol)
     }
+}
+
+/// Multiplies values by a factor to SI; missing values (NaN) stay missing.
+///
+/// # Errors
+/// If a value becomes infinite, for a double cannot hold it; the values before it are multiplied then.
+pub fn scale<'a>(values: impl IntoIterator<Item = &'a mut f64>, factor: f64) -> Result<()> {
+    for value in values {
+        let product = *value * factor;
+        if product.is_infinite() {
+            let found =
+                format!("the value {value:e} is beyond all numbers when it is multiplied by {factor:e}");
+            return Err(Error::usage(found, "values that a number can hold in SI units")
+                .hint("check the unit and the exponent of this value"));
+        }
+        *value = product;
+    }
+    Ok(())
 }
 
 /// Level in decibels of an amplitude against a reference amplitude of the same unit: 20 lg(value/reference).

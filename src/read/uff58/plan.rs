@@ -12,7 +12,7 @@ use crate::read::{Header, Options};
 use crate::record::{
     Axis, AxisKind, Frf, FrfKind, Grid, Meta, Record, Scaling, Spectrum, Trace, Values, Window,
 };
-use crate::units::{Quantity, Unit};
+use crate::units::{self, Quantity, Unit};
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
@@ -140,7 +140,10 @@ impl Plan {
     }
 
     /// The record.
-    pub fn record(mut self, kept: Kept) -> Record {
+    ///
+    /// # Errors
+    /// If a value is beyond all numbers in SI units.
+    pub fn record(mut self, kept: Kept) -> Result<Record> {
         let n = kept.values.len();
         let even = self.step.map(|step| (self.start, step)).or_else(|| self.evened(&kept.spacing()));
         let grid = match even {
@@ -150,16 +153,24 @@ impl Plan {
         let mut values = kept.values;
         if self.factor != 1.0 {
             match &mut values {
-                Values::Real(values) => values.iter_mut().for_each(|v| *v *= self.factor),
-                Values::Complex(values) => values.iter_mut().for_each(|v| *v *= self.factor),
+                Values::Real(values) => units::scale(values, self.factor)?,
+                Values::Complex(values) => {
+                    units::scale(values.iter_mut().flat_map(|v| [&mut v.re, &mut v.im]), self.factor)?;
+                }
             }
         }
-        self.build(grid, values)
+        Ok(self.build(grid, values))
     }
 
     /// The record's header, from a count of its values.
-    pub fn header(mut self, counted: &Counted) -> Header {
+    ///
+    /// # Errors
+    /// If a value is beyond all numbers in SI units.
+    pub fn header(mut self, counted: &Counted) -> Result<Header> {
         let (summary, factor) = (counted.summary, self.factor);
+        if let Some((_, mut max)) = summary.max {
+            units::scale([&mut max], factor)?;
+        }
         let x0 = counted.spacing.first() * self.abscissa_factor;
         let max_at = counted.max_at.map(|x| x * self.abscissa_factor);
         let even = self.step.map(|step| (self.start, step)).or_else(|| self.evened(&counted.spacing));
@@ -173,7 +184,7 @@ impl Plan {
         if even.is_none() {
             (header.x0, header.max_at) = (x0, max_at);
         }
-        header
+        Ok(header)
     }
 
     fn build(self, grid: Grid, values: Values) -> Record {
