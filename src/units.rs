@@ -9,15 +9,18 @@
 mod parse;
 mod quantity;
 
+use crate::error::{Error, Result};
 pub use quantity::Quantity;
 
-/// Exponents of m, kg, s, A and K, doubled so that `√Hz` is a whole number.
+/// Exponents of m, kg, s, A, K and rad, doubled so that `√Hz` is a whole number.
+///
+/// The angle is a base of its own, though SI counts it as a number: else rad/s would be Hz, wrong by 2π.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub struct Dimension(pub [i8; 5]);
+pub struct Dimension(pub [i8; 6]);
 
 impl Dimension {
-    /// No dimension: ratios, angles, coherence.
-    pub const NONE: Dimension = Dimension([0; 5]);
+    /// No dimension: ratios, coherence.
+    pub const NONE: Dimension = Dimension([0; 6]);
 
     /// Product of two quantities' dimensions.
     pub fn times(self, other: Dimension) -> Dimension {
@@ -31,7 +34,7 @@ impl Dimension {
 
     /// Dimension to the power `halves / 2`; `None` where an exponent would not be a multiple of one half.
     pub fn half_power(self, halves: i8) -> Option<Dimension> {
-        let mut out = [0; 5];
+        let mut out = [0; 6];
         for (o, e) in out.iter_mut().zip(self.0) {
             let product = i16::from(e) * i16::from(halves);
             *o = i8::try_from(product / 2).ok().filter(|_| product % 2 == 0)?;
@@ -111,6 +114,22 @@ impl Unit {
         self.dimension
     }
 
+    /// One of this unit in Hz: a frequency as it is, an angular velocity divided by 2π; `None` for anything else.
+    ///
+    /// ```
+    /// use vibroimpact::units::Unit;
+    /// assert_eq!(Unit::parse("kHz").unwrap().hertz(), Some(1e3));
+    /// assert_eq!(Unit::parse("rad/s").unwrap().hertz(), Some(0.5 / std::f64::consts::PI));
+    /// assert_eq!(Unit::parse("s").unwrap().hertz(), None);
+    /// ```
+    pub fn hertz(&self) -> Option<f64> {
+        match self.quantity() {
+            Quantity::Frequency => Some(self.factor),
+            Quantity::AngularVelocity => Some(self.factor / std::f64::consts::TAU),
+            _ => None,
+        }
+    }
+
     /// What this unit measures.
     pub fn quantity(&self) -> Quantity {
         self.dimension.map_or(Quantity::Other, Quantity::of)
@@ -132,7 +151,7 @@ impl Unit {
     /// SI unit of this unit multiplied by `s^power` (integration in time is `power = 1`).
     pub fn times_seconds(&self, power: i8) -> Unit {
         match self.dimension {
-            Some(d) => Unit::from_dimension(d.times(Dimension([0, 0, power.saturating_mul(2), 0, 0]))),
+            Some(d) => Unit::from_dimension(d.times(Dimension([0, 0, power.saturating_mul(2), 0, 0, 0]))),
             None => Unit::opaque(&format!("{}·s^{power}", self.symbol)),
         }
     }
@@ -142,6 +161,24 @@ impl std::fmt::Display for Unit {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.pad(&self.symbol)
     }
+}
+
+/// Multiplies values by a factor to SI; missing values (NaN) stay missing.
+///
+/// # Errors
+/// If a value becomes infinite, for a double cannot hold it; the values before it are multiplied then.
+pub fn scale<'a>(values: impl IntoIterator<Item = &'a mut f64>, factor: f64) -> Result<()> {
+    for value in values {
+        let product = *value * factor;
+        if product.is_infinite() {
+            let found =
+                format!("the value {value:e} is beyond all numbers when it is multiplied by {factor:e}");
+            return Err(Error::usage(found, "values that a number can hold in SI units")
+                .hint("check the unit and the exponent of this value"));
+        }
+        *value = product;
+    }
+    Ok(())
 }
 
 /// Level in decibels of an amplitude against a reference amplitude of the same unit: 20 lg(value/reference).

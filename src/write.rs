@@ -35,7 +35,7 @@ pub enum Target {
     Csv,
     /// Columns with names and units between tabs.
     Tsv,
-    /// Wave audio of 32-bit floats.
+    /// Wave audio of 64-bit floats, or of 32-bit floats in single precision.
     Wav,
     /// numpy's array file.
     Npy,
@@ -87,7 +87,13 @@ impl Target {
             Target::UffBinary => uff58::write_uff58(records, out, Storage { binary: true, ..storage }),
             Target::Csv => csv::write(records, ',', out),
             Target::Tsv => csv::write(records, '\t', out),
-            Target::Wav => wav::write(records, wav::Sample::Float32, out),
+            Target::Wav => {
+                let sample = match storage.precision {
+                    Precision::Single => wav::Sample::Float32,
+                    Precision::Double => wav::Sample::Float64,
+                };
+                wav::write(records, sample, out)
+            }
             Target::Npy => npy::write(records, out),
         }
     }
@@ -114,6 +120,20 @@ mod tests {
         assert_eq!(Target::of("b.npy").unwrap(), Target::Npy);
         for path in ["x", "x.xls", ".csv"] {
             assert!(Target::of(path).unwrap_err().to_string().contains(path), "{path}");
+        }
+    }
+
+    /// Nothing is lost unless single precision was asked for.
+    #[test]
+    fn a_wave_file_is_as_exact_as_was_asked_for() {
+        let text = "t [s],v [m/s]\n0,0.1\n0.5,-2\n";
+        let records = Reader::new().from_reader("x.csv", text.as_bytes()).unwrap().records;
+        for (precision, kept) in [(Precision::Double, 0.1), (Precision::Single, f64::from(0.1f32))] {
+            let mut out = Vec::new();
+            Target::Wav.write(&records, Storage { binary: false, precision }, &mut out).unwrap();
+            let back = Reader::new().from_reader("x.wav", out.as_slice()).unwrap();
+            let [Record::Trace(trace)] = back.records.as_slice() else { panic!() };
+            assert_eq!(trace.values, [kept, -2.0]);
         }
     }
 

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use vibroimpact::read::{Header, Reader, Recording};
 use vibroimpact::record::{AxisKind, Record, Scaling};
-use vibroimpact::units::Unit;
+use vibroimpact::units::{Quantity, Unit};
 
 const ENTITY: &str = "         1    0         0 Mic                7   3 NONE               0   0";
 const NONE: &str = "         0    0    0    0 NONE                 NONE";
@@ -466,6 +466,14 @@ fn units_without_text() {
     let recording = read(rotation.as_bytes());
     assert_eq!(recording.records[0].meta().unit.dimension(), Unit::parse("rad/s²").unwrap().dimension());
     assert_eq!(recording.records[0].meta().name, "Mic 7+RZ");
+    for (ordinate, said) in [(axis(11, "NONE", "NONE"), 1), (axis(11, "Velocity", "rad/s"), 0)] {
+        set.axes[1] = ordinate;
+        let rotation = String::from_utf8(set.file()).unwrap().replace("   7   3 NONE", "   7   6 NONE");
+        let recording = read(rotation.as_bytes());
+        let meta = recording.records[0].meta();
+        assert_eq!((meta.quantity, meta.unit.symbol()), (Quantity::AngularVelocity, "rad/s"));
+        assert_eq!(meta.doubts.len(), said, "{:?}", meta.doubts);
+    }
 }
 
 #[test]
@@ -551,8 +559,25 @@ fn the_abscissa_is_time_frequency_or_something_else() {
     assert!(found == AxisKind::Index && text.contains("does not say"), "{text}");
     let (found, _, text) = kind(1, &axis(17, "NONE", "fortnight"));
     assert!(found == AxisKind::Time && text.contains("fortnight"), "{text}");
+    // 2π rad are one turn.
+    for (code, unit) in [(18, "rad/s"), (0, "rad/s"), (1, "1/s*rad")] {
+        let (found, step, text) = kind(12, &axis(code, "omega", unit));
+        assert!(found == AxisKind::Frequency && text.contains("divided by 2π"), "{unit}: {text}");
+        // One product and one quotient, each rounded by half an ulp.
+        assert!((step * 2.0 * std::f64::consts::PI / 0.25 - 1.0).abs() < 4.0 * f64::EPSILON, "{step}");
+    }
     assert_eq!(kind(0, &axis(19, "speed", "rpm")).0, AxisKind::Other("speed [rpm]".into()));
     assert_eq!(kind(0, &axis(5, "NONE", "K")).0, AxisKind::Other("temperature [K]".into()));
+}
+
+#[test]
+fn values_that_leave_the_range_of_numbers_are_refused() {
+    let mut set = Set::trace(2, "  1.00000E+00  1.00000+308\n");
+    set.axes[1] = axis(8, "NONE", "km");
+    let error = refused(&set.file());
+    assert!(error.contains("odd.uff: the value 1e308"), "{error}");
+    set.axes[1] = axis(8, "NONE", "m");
+    assert_eq!(values(&read(&set.file())), [1.0, 1e308]);
 }
 
 #[test]

@@ -112,11 +112,19 @@ fn number() -> impl Strategy<Value = f64> {
     ]
 }
 
+/// Steps of two and one times a number of two digits in turn: few enough digits for text and single precision.
+fn uneven(first: u32, n: usize) -> Vec<f64> {
+    (0..n).map(|i| f64::from(first) * (i + i.div_ceil(2)) as f64).collect()
+}
+
 fn axis(kind: AxisKind, n: usize) -> impl Strategy<Value = Axis> {
-    let even = (-1.0f64..1.0, 1e-6f64..1e3).prop_map(move |(start, step)| Grid::Even { start, step, n });
-    // Steps of one half more each: uneven in six digits too.
-    let uneven = (1e-3f64..1e3)
-        .prop_map(move |first| Grid::Uneven((0..n).map(|i| first * 1.5f64.powi(i as i32 % 40)).collect()));
+    // A start of few digits: others do not survive beside a small step, and are refused.
+    let even = (-9999i32..9999, 1e-6f64..1e3).prop_map(move |(start, step)| Grid::Even {
+        start: f64::from(start) / 1e4,
+        step,
+        n,
+    });
+    let uneven = (1u32..100).prop_map(move |first| Grid::Uneven(uneven(first, n)));
     prop_oneof![even, uneven].prop_map(move |grid| Axis { kind: kind.clone(), grid })
 }
 
@@ -235,8 +243,7 @@ fn extreme_doubles_keep_their_bits() {
 fn long_records_are_read_across_buffers() {
     let n = 60_000;
     let values = (0..n).map(|i| Complex64::new(f64::from(i), -0.5 * f64::from(i))).collect();
-    let axis =
-        Axis { kind: AxisKind::Frequency, grid: Grid::Uneven((0..n).map(|i| f64::from(i).sqrt()).collect()) };
+    let axis = Axis { kind: AxisKind::Frequency, grid: Grid::Uneven(uneven(3, n as usize)) };
     let meta = Meta::new("long", Unit::of(Quantity::Receptance));
     let record = Record::Frf(Frf { meta, axis, values, kind: FrfKind::Receptance });
     for storage in STORAGES {
@@ -311,7 +318,7 @@ fn files_of_instruments_survive_a_second_writing() {
         eprintln!("skipped: ../shared/data is absent");
         return;
     }
-    let mut records = 0;
+    let (mut records, mut refused) = (0, 0);
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if !path.extension().is_some_and(|e| ["uff", "unv", "ufb"].iter().any(|k| e == *k)) {
@@ -322,6 +329,12 @@ fn files_of_instruments_survive_a_second_writing() {
             continue; // nodes and trace lines only
         }
         for storage in STORAGES {
+            // An uneven abscissa may need more digits than there are.
+            if let Err(error) = write_uff58(&before, &mut Vec::new(), storage) {
+                assert!(error.to_string().contains("has too few digits"), "{error}");
+                refused += 1;
+                continue;
+            }
             let after = again(&before, storage);
             assert_eq!(before.len(), after.len());
             for (a, b) in before.iter().zip(&after) {
@@ -331,5 +344,6 @@ fn files_of_instruments_survive_a_second_writing() {
             }
         }
     }
+    eprintln!("{records} records survived, {refused} files were refused");
     assert!(records >= 4 * 30, "only {records} records: is ../shared/data whole?");
 }

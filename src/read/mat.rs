@@ -25,8 +25,14 @@ use variable::Variable;
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Bytes before the first variable.
 const HEADER: u64 = 128;
-/// How many values packed variables may hold: 4 GiB of doubles.
-const BUDGET: u64 = 1 << 29;
+/// Most bytes that deflate makes of one: 258 of two bits.
+const MOST_INFLATED: u64 = 1032;
+
+/// How many values the packed variables of a file of this length may hold, as doubles: 64 times its size, but no less
+/// than 64 MiB and no more than 4 GiB.
+fn budget(length: u64) -> u64 {
+    length.saturating_mul(64).clamp(64 << 20, 4 << 30) / 8
+}
 
 /// The levels of the format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,7 +91,7 @@ pub(super) fn survey(source: &Source, options: &Options) -> Result<Survey> {
 fn variables(source: &Source, big_endian: bool, doubts: &mut Vec<String>) -> Result<Vec<Variable>> {
     let io = |e| Error::io("read", source.path(), e);
     let mut file = BufReader::new(source.open()?);
-    let (mut variables, mut budget) = (Vec::new(), BUDGET);
+    let (mut variables, mut budget) = (Vec::new(), budget(source.len()));
     let mut at = HEADER;
     while source.len().saturating_sub(at) >= 8 {
         let place = Place::byte(source.path(), at);
@@ -115,6 +121,12 @@ fn variables(source: &Source, big_endian: bool, doubts: &mut Vec<String>) -> Res
                     return Err(
                         outer.fault(format!("an element of kind {}", inner.kind), "a packed variable")
                     );
+                }
+                if inner.size > MOST_INFLATED.saturating_mul(tag.size) {
+                    let found = format!("a variable of {} bytes packed in {}", inner.size, tag.size);
+                    return Err(outer
+                        .fault(found, "at most 1032 times the packed size, which is all that deflate can do")
+                        .hint("the file is damaged; save it again without compression (save -v6)"));
                 }
                 let mut body = packed.take(inner.size);
                 variables

@@ -51,7 +51,10 @@ pub(super) fn sniff(head: &[u8], source: &Source) -> bool {
 
 pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
     let mut records: Vec<Record> = Vec::new();
-    let doubts = walk(source, options, |set: Set<Kept>| records.push(set.plan.record(set.sink)))?;
+    let doubts = walk(source, options, |set: Set<Kept>| {
+        records.push(set.plan.record(set.sink)?);
+        Ok(())
+    })?;
     tell_apart(records.iter_mut().map(|r| &mut r.meta_mut().name).collect());
     Ok(Recording { path: source.path().to_owned(), format: Format::Uff, records, doubts })
 }
@@ -59,7 +62,10 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
 /// Goes through the file once, in memory that does not grow with it.
 pub(super) fn survey(source: &Source, options: &Options) -> Result<Survey> {
     let mut headers: Vec<Header> = Vec::new();
-    let doubts = walk(source, options, |set: Set<Counted>| headers.push(set.plan.header(&set.sink)))?;
+    let doubts = walk(source, options, |set: Set<Counted>| {
+        headers.push(set.plan.header(&set.sink)?);
+        Ok(())
+    })?;
     tell_apart(headers.iter_mut().map(|h| &mut h.name).collect());
     Ok((headers, doubts))
 }
@@ -79,7 +85,11 @@ fn tell_apart(mut names: Vec<&mut String>) {
 }
 
 /// Hands every data set 58 to `each`; gives the doubts about the file as a whole.
-fn walk<S: Sink>(source: &Source, options: &Options, mut each: impl FnMut(Set<S>)) -> Result<Vec<String>> {
+fn walk<S: Sink>(
+    source: &Source,
+    options: &Options,
+    mut each: impl FnMut(Set<S>) -> Result<()>,
+) -> Result<Vec<String>> {
     let mut stream = Stream::open(source)?;
     let file = source.name();
     let mut around = Around::default();
@@ -106,7 +116,7 @@ fn walk<S: Sink>(source: &Source, options: &Options, mut each: impl FnMut(Set<S>
             match uff58::read(&mut stream, binary, &system, options, &file)? {
                 Ok(set) => {
                     functions += 1;
-                    each(set);
+                    each(set).map_err(|e| e.in_file(source.path()))?;
                     continue;
                 }
                 Err(lines) => around.cut_short(place, lines),

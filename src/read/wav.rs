@@ -22,10 +22,13 @@ use super::reader::{Options, Recording};
 use super::{Header, Source, Summary};
 use crate::error::{Error, Place, Result};
 use crate::record::{Axis, Meta, Record, Trace};
-use crate::units::Unit;
+use crate::units::{self, Unit};
 
 /// The unit of values without a calibration.
 const FULL_SCALE: &str = "FS";
+
+/// How many bytes of texts are copied for all channels together.
+const MOST_COPIED: usize = 256 * 1024;
 
 /// How many frame numbers a complaint lists.
 const LISTED: usize = 8;
@@ -49,7 +52,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
     for (channel, (column, summary)) in values.into_iter().zip(&found).enumerate() {
         let mut trace = describe(source, &stream, options, channel, summary);
         trace.values = column;
-        dress(&mut trace, &stream, options, channel)?;
+        dress(&mut trace, &stream, options, channel).map_err(|e| e.in_file(source.path()))?;
         records.push(Record::Trace(trace));
     }
     let path = source.path().to_owned();
@@ -63,7 +66,10 @@ pub(super) fn survey(source: &Source, options: &Options) -> Result<Survey> {
     let mut headers = Vec::with_capacity(found.len());
     for (channel, summary) in found.iter().enumerate() {
         let mut trace = describe(source, &stream, options, channel, summary);
-        let factor = dress(&mut trace, &stream, options, channel)?;
+        let factor = dress(&mut trace, &stream, options, channel).map_err(|e| e.in_file(source.path()))?;
+        if let Some((_, mut max)) = summary.max {
+            units::scale([&mut max], factor).map_err(|e| e.in_file(source.path()))?;
+        }
         let axis = trace.axis.clone();
         headers.push(Header::of(&Record::Trace(trace)).with_summary(summary, factor, &axis));
     }
@@ -135,7 +141,11 @@ fn describe(
     let name = name.filter(|n| !n.is_empty()).unwrap_or_else(|| format!("channel {}", channel + 1));
     let mut meta = Meta::new(name, Unit::opaque(FULL_SCALE));
     meta.step("read", &[("file", &source.name()), ("format", &"wav"), ("samples", &stream.sample())]);
-    meta.notes = stream.notes().to_vec();
+    // Each channel has its own copy of the texts, unless these are many: then the first has them.
+    let bytes: usize = stream.notes().iter().map(|(key, text)| key.len() + text.len()).sum();
+    if channel == 0 || bytes.saturating_mul(stream.channels()) <= MOST_COPIED {
+        meta.notes = stream.notes().to_vec();
+    }
     meta.declared_n = stream.declared_frames().map(|n| n as usize);
     meta.doubt(Trace::UNCALIBRATED);
     let scaled = scales.is_some() || options.unit.is_some();

@@ -2,7 +2,7 @@
 
 use super::{Axis, Meta};
 use crate::error::{Error, Result};
-use crate::units::Unit;
+use crate::units::{self, Unit};
 
 /// Samples over time (or over index, where the file says nothing of its sampling).
 #[derive(Debug, Clone, PartialEq)]
@@ -41,18 +41,16 @@ impl Trace {
     /// ```
     ///
     /// # Errors
-    /// If the factor is 0 or not finite.
+    /// If the factor is 0 or not finite, or takes a value beyond what a number can hold; values before it are multiplied then.
     pub fn calibrate(&mut self, factor: f64, unit: &Unit) -> Result<()> {
-        if factor == 0.0 || !factor.is_finite() {
+        let to_si = factor * unit.factor();
+        if to_si == 0.0 || !to_si.is_finite() {
             return Err(Error::usage(
                 format!("a calibration factor of {factor} {unit}"),
                 "a number that is not 0",
             ));
         }
-        let to_si = factor * unit.factor();
-        for value in &mut self.values {
-            *value *= to_si;
-        }
+        units::scale(&mut self.values, to_si)?;
         let from = std::mem::replace(&mut self.meta.unit, unit.si());
         self.meta.quantity = self.meta.unit.quantity();
         self.meta.doubts.retain(|doubt| doubt != Trace::UNCALIBRATED);
@@ -94,5 +92,11 @@ mod tests {
             assert!(t.calibrate(factor, &Unit::opaque("FS")).is_err());
             assert_eq!(t.values[0], 0.5);
         }
+        // The factor alone, and then only the product, is beyond all numbers.
+        assert!(trace().calibrate(1e306, &Unit::parse("km").unwrap()).is_err());
+        let mut t = trace();
+        t.values[0] = 1e10;
+        let error = t.calibrate(1e300, &Unit::parse("m").unwrap()).unwrap_err().to_string();
+        assert!(error.contains("the value 1e10"), "{error}");
     }
 }

@@ -29,8 +29,14 @@ pub enum Quantity {
     Time,
     /// Hz
     Frequency,
-    /// 1: ratios, angles, coherence
+    /// 1: ratios, coherence
     Ratio,
+    /// rad
+    Angle,
+    /// rad/s: 2π times a frequency, and never taken for one
+    AngularVelocity,
+    /// rad/s²
+    AngularAcceleration,
     /// m/N
     Receptance,
     /// m/(N s)
@@ -41,26 +47,29 @@ pub enum Quantity {
     Other,
 }
 
-type Entry = (Quantity, &'static str, &'static str, [i8; 5]);
+type Entry = (Quantity, &'static str, &'static str, [i8; 6]);
 
-/// One table for names, SI spellings and dimensions (exponents of m, kg, s, A, K; not doubled).
+/// One table for names, SI spellings and dimensions (exponents of m, kg, s, A, K, rad; not doubled).
 const TABLE: &[Entry] = &[
-    (Quantity::Displacement, "displacement", "m", [1, 0, 0, 0, 0]),
-    (Quantity::Velocity, "velocity", "m/s", [1, 0, -1, 0, 0]),
-    (Quantity::Acceleration, "acceleration", "m/s²", [1, 0, -2, 0, 0]),
-    (Quantity::Jerk, "jerk", "m/s³", [1, 0, -3, 0, 0]),
-    (Quantity::Force, "force", "N", [1, 1, -2, 0, 0]),
-    (Quantity::Impulse, "impulse", "N s", [1, 1, -1, 0, 0]),
-    (Quantity::Mass, "mass", "kg", [0, 1, 0, 0, 0]),
-    (Quantity::Stiffness, "stiffness", "N/m", [0, 1, -2, 0, 0]),
-    (Quantity::Voltage, "voltage", "V", [2, 1, -3, -1, 0]),
-    (Quantity::Pressure, "pressure", "Pa", [-1, 1, -2, 0, 0]),
-    (Quantity::Time, "time", "s", [0, 0, 1, 0, 0]),
-    (Quantity::Frequency, "frequency", "Hz", [0, 0, -1, 0, 0]),
-    (Quantity::Ratio, "ratio", "1", [0, 0, 0, 0, 0]),
-    (Quantity::Receptance, "receptance", "m/N", [0, -1, 2, 0, 0]),
-    (Quantity::Mobility, "mobility", "(m/s)/N", [0, -1, 1, 0, 0]),
-    (Quantity::Accelerance, "accelerance", "(m/s²)/N", [0, -1, 0, 0, 0]),
+    (Quantity::Displacement, "displacement", "m", [1, 0, 0, 0, 0, 0]),
+    (Quantity::Velocity, "velocity", "m/s", [1, 0, -1, 0, 0, 0]),
+    (Quantity::Acceleration, "acceleration", "m/s²", [1, 0, -2, 0, 0, 0]),
+    (Quantity::Jerk, "jerk", "m/s³", [1, 0, -3, 0, 0, 0]),
+    (Quantity::Force, "force", "N", [1, 1, -2, 0, 0, 0]),
+    (Quantity::Impulse, "impulse", "N s", [1, 1, -1, 0, 0, 0]),
+    (Quantity::Mass, "mass", "kg", [0, 1, 0, 0, 0, 0]),
+    (Quantity::Stiffness, "stiffness", "N/m", [0, 1, -2, 0, 0, 0]),
+    (Quantity::Voltage, "voltage", "V", [2, 1, -3, -1, 0, 0]),
+    (Quantity::Pressure, "pressure", "Pa", [-1, 1, -2, 0, 0, 0]),
+    (Quantity::Time, "time", "s", [0, 0, 1, 0, 0, 0]),
+    (Quantity::Frequency, "frequency", "Hz", [0, 0, -1, 0, 0, 0]),
+    (Quantity::Ratio, "ratio", "1", [0, 0, 0, 0, 0, 0]),
+    (Quantity::Angle, "angle", "rad", [0, 0, 0, 0, 0, 1]),
+    (Quantity::AngularVelocity, "angular velocity", "rad/s", [0, 0, -1, 0, 0, 1]),
+    (Quantity::AngularAcceleration, "angular acceleration", "rad/s²", [0, 0, -2, 0, 0, 1]),
+    (Quantity::Receptance, "receptance", "m/N", [0, -1, 2, 0, 0, 0]),
+    (Quantity::Mobility, "mobility", "(m/s)/N", [0, -1, 1, 0, 0, 0]),
+    (Quantity::Accelerance, "accelerance", "(m/s²)/N", [0, -1, 0, 0, 0, 0]),
 ];
 
 impl Quantity {
@@ -97,6 +106,6 @@ impl std::fmt::Display for Quantity {
     }
 }
 
-fn doubled(exponents: [i8; 5]) -> Dimension {
+fn doubled(exponents: [i8; 6]) -> Dimension {
     Dimension(exponents.map(|e| 2 * e))
 }

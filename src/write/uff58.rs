@@ -4,6 +4,7 @@
 //! the standard: real or complex, single or double precision, even or uneven abscissa. See `read::uff58` for the format
 //! and its source.
 
+mod abscissa;
 mod header;
 
 use crate::error::{Error, Result};
@@ -11,7 +12,7 @@ use crate::record::{Grid, Record, Values};
 use header::Header;
 use std::io::Write;
 
-/// Precision of the values. The abscissa has single precision, or six digits, in either.
+/// Precision of the values. An uneven abscissa has single precision, or six digits, in either.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Precision {
     /// Six digits of text, or four bytes.
@@ -36,9 +37,9 @@ pub struct Storage {
 /// file, else the name becomes the first identification line. A scaling, a window and a noise bandwidth that the function
 /// type cannot tell stand in the fifth. Missing values are written as NaN, which few programs can read.
 ///
-/// Double precision in binary keeps every bit of the values. Start and step of an even abscissa are printed with seven
-/// digits (six where negative), an uneven abscissa is rounded to six digits or single precision: the format has no room
-/// for more.
+/// Double precision in binary keeps every bit of the values. Start and step of an even abscissa are printed with up to
+/// nine digits, an uneven abscissa is rounded to six digits or single precision: the format has no room for more. Where
+/// that would move a value by more than a thousandth of the (smallest) step, the record is refused.
 ///
 /// ```
 /// use vibroimpact::record::{Axis, Meta, Record, Trace};
@@ -53,11 +54,13 @@ pub struct Storage {
 /// ```
 ///
 /// # Errors
-/// If `out` cannot be written, there are no records, or one has more values than ten digits can count.
+/// If `out` cannot be written, there are no records, or one has more values than ten digits can count or an abscissa that
+/// the format would distort.
 pub fn write_uff58(records: &[Record], out: &mut impl Write, storage: Storage) -> Result<()> {
     if records.is_empty() {
         return Err(Error::refused("there are no records to write, and a file without any cannot be read"));
     }
+    let mut forms = Vec::with_capacity(records.len());
     for record in records {
         if record.len() as u64 > 9_999_999_999 {
             return Err(Error::refused(format!(
@@ -66,15 +69,18 @@ pub fn write_uff58(records: &[Record], out: &mut impl Write, storage: Storage) -
                 record.len()
             )));
         }
-        write(record, out, storage).map_err(|e| Error::io("write", "the UFF data", e))?;
+        forms.push(abscissa::form(record, storage.binary)?);
+    }
+    for (record, form) in records.iter().zip(&forms) {
+        write(record, form, out, storage).map_err(|e| Error::io("write", "the UFF data", e))?;
     }
     Ok(())
 }
 
-fn write(record: &Record, out: &mut impl Write, storage: Storage) -> std::io::Result<()> {
+fn write(record: &Record, form: &[String; 2], out: &mut impl Write, storage: Storage) -> std::io::Result<()> {
     let layout = Layout::of(record, storage.precision);
     let bytes = layout.point_size() * record.len();
-    Header::of(record).write(out, layout, storage.binary.then_some(bytes), record)?;
+    Header::of(record).write(out, layout, storage.binary.then_some(bytes), form, record)?;
     if storage.binary {
         points(record, &mut Binary { out, layout })?;
     } else {

@@ -15,9 +15,9 @@ use std::io::Write;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Sample {
     /// 24 significant bits, which every audio program reads.
-    #[default]
     Float32,
-    /// Exact, read by few programs.
+    /// Exact, read by most programs.
+    #[default]
     Float64,
 }
 

@@ -7,13 +7,14 @@ use crate::read::abscissa::{from_values, short};
 use crate::read::ascii::SCALING_UNSAID;
 use crate::read::reader::Options;
 use crate::record::{Axis, AxisKind, Frf, FrfKind, Meta, Record, Scaling, Spectrum, Trace, Values};
-use crate::units::Unit;
+use crate::units::{self, Unit};
 use num_complex::Complex64;
 
 /// How many places a complaint lists.
 const LISTED: usize = 8;
 /// How many scalars and texts are kept.
 const MOST_NOTES: usize = 256;
+const MOST_NOTE_BYTES: usize = 16 * 1024;
 /// More columns than this are taken for a matrix that lies on its side.
 const MOST_COLUMNS: u64 = 1000;
 
@@ -51,10 +52,18 @@ pub fn build(
             },
         }
     }
-    if notes.len() > MOST_NOTES {
-        doubts
-            .push(format!("Of {} scalars and texts the first {MOST_NOTES} are kept as notes.", notes.len()));
-        notes.truncate(MOST_NOTES);
+    // Every record has a copy of them.
+    let mut room = MOST_NOTE_BYTES;
+    let kept = notes.iter().take(MOST_NOTES).take_while(|(name, text)| {
+        let size = name.len() + text.len();
+        let fits = size <= room;
+        room = room.saturating_sub(size);
+        fits
+    });
+    let kept = kept.count();
+    if notes.len() > kept {
+        doubts.push(format!("Of {} scalars and texts the first {kept} are kept as notes.", notes.len()));
+        notes.truncate(kept);
     }
     let axes = Axes::find(source, &mut arrays, &rates, options, doubts)?;
     let mut made = Made { source, options, notes, axes, missing: 0, gaps: Vec::new() };
@@ -216,6 +225,22 @@ fn vector_axis(kind: AxisKind, array: Array, name: &str) -> (Axis, Option<String
     from_values(kind, array.real, single.max(0.5e-6 * step), &format!("The vector {name:?}"))
 }
 
+/// Columns of a matrix: cut from the end, so that memory is given back as they are made.
+fn by_columns(mut values: Vec<f64>, rows: usize, columns: usize) -> Vec<Vec<f64>> {
+    let mut cut = Vec::new();
+    for column in (1..columns).rev() {
+        cut.push(values.split_off((column * rows).min(values.len())));
+        values.shrink_to_fit();
+    }
+    cut.push(values);
+    cut.reverse();
+    cut
+}
+
+fn by_rows(values: &[f64], rows: usize) -> Vec<Vec<f64>> {
+    (0..rows).map(|row| values.iter().skip(row).step_by(rows).copied().collect()).collect()
+}
+
 /// What all records share.
 struct Made<'a> {
     source: &'a Source,
@@ -237,7 +262,7 @@ impl Made<'_> {
     ) -> Result<()> {
         let mut long = array.dimensions.iter().copied().filter(|d| *d > 1);
         let (Some(rows), Some(columns)) = (long.next(), long.next()) else {
-            let record = self.record(name.to_owned(), array.real, array.imaginary, doubts);
+            let record = self.record(name.to_owned(), array.real, array.imaginary, doubts)?;
             records.push(record);
             return Ok(());
         };
@@ -251,17 +276,13 @@ impl Made<'_> {
             .hint(format!("transpose it and save it again: {name} = {name}.';")));
         }
         let (rows, columns) = (rows as usize, columns as usize);
-        for k in 0..if lying { rows } else { columns } {
-            let cut = |values: &[f64]| -> Vec<f64> {
-                if lying {
-                    values.iter().skip(k).step_by(rows).copied().collect()
-                } else {
-                    values.iter().skip(k * rows).take(rows).copied().collect()
-                }
-            };
+        let cut = |values: Vec<f64>| {
+            if lying { by_rows(&values, rows) } else { by_columns(values, rows, columns) }
+        };
+        let mut imaginary = array.imaginary.map(cut).into_iter().flatten();
+        for (k, real) in cut(array.real).into_iter().enumerate() {
             let part = if lying { format!("{name}({},:)", k + 1) } else { format!("{name}(:,{})", k + 1) };
-            let imaginary = array.imaginary.as_deref().map(cut);
-            let record = self.record(part, cut(&array.real), imaginary, doubts);
+            let record = self.record(part, real, imaginary.next(), doubts)?;
             records.push(record);
         }
         Ok(())
@@ -273,7 +294,7 @@ impl Made<'_> {
         mut real: Vec<f64>,
         mut imaginary: Option<Vec<f64>>,
         doubts: &mut Vec<String>,
-    ) -> Record {
+    ) -> Result<Record> {
         self.mark_missing(&name, &mut real, imaginary.as_deref_mut());
         let axis = self.axes.of(real.len(), imaginary.is_some(), &name, doubts);
         let mut meta = Meta::new(name, Unit::opaque(""));
@@ -281,7 +302,8 @@ impl Made<'_> {
         meta.step("read", &[("file", &self.source.name()), ("format", &"mat")]);
         let factor = self.options.unit.as_ref().map_or(1.0, |unit| meta.adopt_unit(unit.symbol()));
         if factor != 1.0 {
-            real.iter_mut().chain(imaginary.iter_mut().flatten()).for_each(|v| *v *= factor);
+            units::scale(real.iter_mut().chain(imaginary.iter_mut().flatten()), factor)
+                .map_err(|e| e.in_file(self.source.path()))?;
         }
         if axis.kind == AxisKind::Index {
             meta.doubt(
@@ -290,20 +312,21 @@ impl Made<'_> {
         }
         let values = match imaginary {
             None if axis.kind != AxisKind::Frequency => {
-                return Record::Trace(Trace { meta, axis, values: real });
+                return Ok(Record::Trace(Trace { meta, axis, values: real }));
             }
             None => Values::Real(real),
             Some(imaginary) => {
                 let pairs = real.iter().zip(&imaginary).map(|(re, im)| Complex64::new(*re, *im));
                 let kind = FrfKind::of(meta.quantity);
                 if kind != FrfKind::Other {
-                    return Record::Frf(Frf { meta, axis, values: pairs.collect(), kind });
+                    return Ok(Record::Frf(Frf { meta, axis, values: pairs.collect(), kind }));
                 }
                 Values::Complex(pairs.collect())
             }
         };
         meta.doubt(SCALING_UNSAID);
-        Record::Spectrum(Spectrum { meta, axis, values, scaling: Scaling::Unknown, window: None, enbw: None })
+        let scaling = Scaling::Unknown;
+        Ok(Record::Spectrum(Spectrum { meta, axis, values, scaling, window: None, enbw: None }))
     }
 
     /// Infinite values are as missing as NaN; a complex value is missing as a whole.

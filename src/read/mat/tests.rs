@@ -183,6 +183,10 @@ fn matrices_column_by_column() {
     assert_eq!(lying.records.len(), 3);
     assert_eq!(lying.records[2].meta().name, "m(3,:)");
     assert_eq!(values(&lying.records[2]), [3.0, 6.0]);
+    let parts = [LITTLE.doubles(&[1.0, 2.0, 3.0, 4.0]), LITTLE.doubles(&[5.0, 6.0, 7.0, 8.0])];
+    let complex = of(&[LITTLE.matrix(6 | 0x800, &[2, 2], "H", &parts)]).unwrap();
+    let Record::Spectrum(second) = &complex.records[1] else { panic!() };
+    assert_eq!(second.values, Values::Complex(vec![Complex64::new(3.0, 7.0), Complex64::new(4.0, 8.0)]));
     let wide = LITTLE.matrix(6, &[2, 1001], "w", &[LITTLE.doubles(&vec![0.0; 2002])]);
     assert!(complaint(&[wide]).contains("try: transpose it and save it again: w = w.';"));
 }
@@ -242,6 +246,13 @@ fn integers_that_a_double_cannot_hold_are_said() {
 }
 
 #[test]
+fn values_that_leave_the_range_of_numbers_are_refused() {
+    let file = LITTLE.file(&[LITTLE.column("x", &[1.0, 1e308])]);
+    let error = Reader::new().unit(Unit::parse("km")).from_reader("x.mat", file.as_slice()).unwrap_err();
+    assert!(error.to_string().contains("x.mat: the value 1e308"), "{error}");
+}
+
+#[test]
 fn missing_values_are_refused_or_kept() {
     let file = LITTLE.file(&[LITTLE.column("x", &[1.0, f64::NAN, f64::INFINITY])]);
     let error = Reader::new().from_reader("x.mat", file.as_slice()).unwrap_err().to_string();
@@ -298,8 +309,16 @@ fn packed_bombs_are_refused() {
     let body_of =
         |rows: u32, columns: u32| LITTLE.matrix(6, &[rows, columns], "x", &[LITTLE.doubles(&[0.0; 1000])]);
     let error = complaint(&[packed(&body_of(30_000, 30_000))]);
-    assert!(error.contains("declares 900000000 values") && error.contains("4 GiB"), "{error}");
-    assert!(complaint(&[packed(&body_of(u32::MAX, u32::MAX))]).contains("4 GiB"));
+    assert!(error.contains("declares 900000000 values") && error.contains("-v6"), "{error}");
+    assert!(complaint(&[packed(&body_of(u32::MAX, u32::MAX))]).contains("64 MiB"));
+    // Nine million zeros pack a thousandfold: 72 MB out of a small file.
+    let zeros = LITTLE.column("x", &vec![0.0; 9_000_000]);
+    let error = complaint(&[packed(&zeros)]);
+    assert!(error.contains("8388608 may still be inflated") && error.contains("-v6"), "{error}");
+    assert_eq!(of(&[packed(&LITTLE.column("x", &vec![0.0; 100_000]))]).unwrap().records[0].len(), 100_000);
+    let mut lying = LITTLE.column("x", &[0.0; 1000]);
+    lying[4..8].copy_from_slice(&u32::MAX.to_le_bytes());
+    assert!(complaint(&[packed(&lying)]).contains("1032 times"));
     // More content than declared is not inflated either.
     let error = complaint(&[packed(&body_of(10, 10))]);
     assert!(error.contains("declares 100 values and holds 1000"), "{error}");

@@ -64,10 +64,13 @@ pub fn read(elements: &mut Elements, budget: &mut u64) -> Result<Variable> {
         6..=15 => {
             let wanted = count.saturating_mul(1 + u64::from(complex));
             if wanted > *budget {
-                let found = format!("{name:?} declares {wanted} values");
+                let found = format!("{name:?} declares {wanted} values, and {budget} may still be inflated");
                 return Err(elements
-                    .fault(found, "at most 4 GiB of inflated values in a file")
-                    .hint("save the variables one by one, or without compression (save -v6)"));
+                    .fault(
+                        found,
+                        "packed variables that hold at most 64 times the size of the file, or 64 MiB",
+                    )
+                    .hint("save the file without compression: save('name.mat', '-v6')"));
             }
             *budget -= wanted;
             Content::Array(array(elements, dimensions, count, complex, class)?)

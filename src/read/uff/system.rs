@@ -51,7 +51,7 @@ impl System {
     /// SI units in one unit of the file, for a quantity of this dimension. Mass is force times time squared over length,
     /// and time is in seconds in every system.
     pub fn factor(&self, dimension: Dimension) -> f64 {
-        let [m, kg, _, _, kelvin] = dimension.0.map(|doubled| f64::from(doubled) / 2.0);
+        let [m, kg, _, _, kelvin, _] = dimension.0.map(|doubled| f64::from(doubled) / 2.0);
         self.length.powf(kg - m) * self.force.powf(-kg) * self.temperature.powf(-kelvin)
     }
 

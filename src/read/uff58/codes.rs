@@ -54,22 +54,22 @@ pub fn function(code: i64) -> (String, Domain) {
     }
 }
 
-/// Specific data types that name a physical quantity: code, name, exponents of m, kg, s, A, K along an axis and about it.
-const DATA_TYPES: &[(i64, &str, [i8; 5], [i8; 5])] = &[
-    (2, "stress", [-1, 1, -2, 0, 0], [-1, 1, -2, 0, 0]),
-    (3, "strain", [0, 0, 0, 0, 0], [0, 0, 0, 0, 0]),
-    (5, "temperature", [0, 0, 0, 0, 1], [0, 0, 0, 0, 1]),
-    (8, "displacement", [1, 0, 0, 0, 0], [0, 0, 0, 0, 0]),
-    (9, "reaction force", [1, 1, -2, 0, 0], [2, 1, -2, 0, 0]),
-    (11, "velocity", [1, 0, -1, 0, 0], [0, 0, -1, 0, 0]),
-    (12, "acceleration", [1, 0, -2, 0, 0], [0, 0, -2, 0, 0]),
-    (13, "excitation force", [1, 1, -2, 0, 0], [2, 1, -2, 0, 0]),
-    (15, "pressure", [-1, 1, -2, 0, 0], [-1, 1, -2, 0, 0]),
-    (16, "mass", [0, 1, 0, 0, 0], [2, 1, 0, 0, 0]),
-    (17, "time", [0, 0, 1, 0, 0], [0, 0, 1, 0, 0]),
-    (18, "frequency", [0, 0, -1, 0, 0], [0, 0, -1, 0, 0]),
+/// Specific data types that name a physical quantity: code, name, exponents of m, kg, s, A, K, rad along an axis and about it.
+const DATA_TYPES: &[(i64, &str, [i8; 6], [i8; 6])] = &[
+    (2, "stress", [-1, 1, -2, 0, 0, 0], [-1, 1, -2, 0, 0, 0]),
+    (3, "strain", [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0]),
+    (5, "temperature", [0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 1, 0]),
+    (8, "displacement", [1, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 1]),
+    (9, "reaction force", [1, 1, -2, 0, 0, 0], [2, 1, -2, 0, 0, 0]),
+    (11, "velocity", [1, 0, -1, 0, 0, 0], [0, 0, -1, 0, 0, 1]),
+    (12, "acceleration", [1, 0, -2, 0, 0, 0], [0, 0, -2, 0, 0, 1]),
+    (13, "excitation force", [1, 1, -2, 0, 0, 0], [2, 1, -2, 0, 0, 0]),
+    (15, "pressure", [-1, 1, -2, 0, 0, 0], [-1, 1, -2, 0, 0, 0]),
+    (16, "mass", [0, 1, 0, 0, 0, 0], [2, 1, 0, 0, 0, 0]),
+    (17, "time", [0, 0, 1, 0, 0, 0], [0, 0, 1, 0, 0, 0]),
+    (18, "frequency", [0, 0, -1, 0, 0, 0], [0, 0, -1, 0, 0, 0]),
     // Behind the published list, but written by instruments.
-    (21, "sound pressure", [-1, 1, -2, 0, 0], [-1, 1, -2, 0, 0]),
+    (21, "sound pressure", [-1, 1, -2, 0, 0, 0], [-1, 1, -2, 0, 0, 0]),
 ];
 
 /// Name and dimension of a specific data type; `None` for unknown, general and unlisted ones.

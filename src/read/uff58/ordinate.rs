@@ -113,7 +113,7 @@ impl Ordinate {
             Ok((dimension, power, seconds)) => {
                 doubts.extend(sources(heading, &above, &below, system));
                 let squared = dimension.half_power(2 * power).unwrap_or(dimension);
-                let dimension = squared.times(Dimension([0, 0, 2 * seconds, 0, 0]));
+                let dimension = squared.times(Dimension([0, 0, 2 * seconds, 0, 0, 0]));
                 let factor = (above.factor / below.factor).powi(i32::from(power));
                 (spelled(dimension, factor, &written), factor)
             }
@@ -260,7 +260,15 @@ fn label_against_unit(heading: &Heading, ordinate: &mut Ordinate) {
         0 | 1 | 12 => !matches!(label, Quantity::Time | Quantity::Frequency | Quantity::Ratio),
         _ => false,
     };
-    if comparable && Quantity::of(dimension) != label {
+    // A rotation is labelled as the motion it is, without the word angular.
+    let unit = match Quantity::of(dimension) {
+        Quantity::Angle => Quantity::Displacement,
+        Quantity::AngularVelocity => Quantity::Velocity,
+        Quantity::AngularAcceleration => Quantity::Acceleration,
+        other => other,
+    };
+    let rotation = unit != Quantity::of(dimension) && label == unit;
+    if comparable && Quantity::of(dimension) != label && !rotation {
         let unit = if ordinate.written.is_empty() { ordinate.unit.symbol() } else { &ordinate.written };
         ordinate.doubts.push(format!(
             "The ordinate is labelled \"{}\", but its unit {unit} is that of {}: the unit is believed.",

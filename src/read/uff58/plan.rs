@@ -12,7 +12,7 @@ use crate::read::{Header, Options};
 use crate::record::{
     Axis, AxisKind, Frf, FrfKind, Grid, Meta, Record, Scaling, Spectrum, Trace, Values, Window,
 };
-use crate::units::{Quantity, Unit};
+use crate::units::{self, Quantity, Unit};
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
@@ -140,7 +140,10 @@ impl Plan {
     }
 
     /// The record.
-    pub fn record(mut self, kept: Kept) -> Record {
+    ///
+    /// # Errors
+    /// If a value is beyond all numbers in SI units.
+    pub fn record(mut self, kept: Kept) -> Result<Record> {
         let n = kept.values.len();
         let even = self.step.map(|step| (self.start, step)).or_else(|| self.evened(&kept.spacing()));
         let grid = match even {
@@ -150,16 +153,24 @@ impl Plan {
         let mut values = kept.values;
         if self.factor != 1.0 {
             match &mut values {
-                Values::Real(values) => values.iter_mut().for_each(|v| *v *= self.factor),
-                Values::Complex(values) => values.iter_mut().for_each(|v| *v *= self.factor),
+                Values::Real(values) => units::scale(values, self.factor)?,
+                Values::Complex(values) => {
+                    units::scale(values.iter_mut().flat_map(|v| [&mut v.re, &mut v.im]), self.factor)?;
+                }
             }
         }
-        self.build(grid, values)
+        Ok(self.build(grid, values))
     }
 
     /// The record's header, from a count of its values.
-    pub fn header(mut self, counted: &Counted) -> Header {
+    ///
+    /// # Errors
+    /// If a value is beyond all numbers in SI units.
+    pub fn header(mut self, counted: &Counted) -> Result<Header> {
         let (summary, factor) = (counted.summary, self.factor);
+        if let Some((_, mut max)) = summary.max {
+            units::scale([&mut max], factor)?;
+        }
         let x0 = counted.spacing.first() * self.abscissa_factor;
         let max_at = counted.max_at.map(|x| x * self.abscissa_factor);
         let even = self.step.map(|step| (self.start, step)).or_else(|| self.evened(&counted.spacing));
@@ -173,7 +184,7 @@ impl Plan {
         if even.is_none() {
             (header.x0, header.max_at) = (x0, max_at);
         }
-        header
+        Ok(header)
     }
 
     fn build(self, grid: Grid, values: Values) -> Record {
@@ -227,7 +238,7 @@ fn abscissa(heading: &Heading, options: &Options, meta: &mut Meta) -> (AxisKind,
     let unit = Unit::parse_or_opaque(&axis.unit);
     let by_unit = match unit.quantity() {
         Quantity::Time => Some(AxisKind::Time),
-        Quantity::Frequency => Some(AxisKind::Frequency),
+        Quantity::Frequency | Quantity::AngularVelocity => Some(AxisKind::Frequency),
         _ => None,
     };
     let shown = |kind: &AxisKind| if *kind == AxisKind::Time { "time" } else { "frequency" };
@@ -235,7 +246,7 @@ fn abscissa(heading: &Heading, options: &Options, meta: &mut Meta) -> (AxisKind,
         17 => AxisKind::Time,
         18 => AxisKind::Frequency,
         0 | 1 => match by_unit {
-            Some(kind) => return (kind, unit.factor()),
+            Some(kind) => return (kind, abscissa_factor(&unit, meta)),
             None if axis.label.is_empty() && axis.unit.is_empty() => {
                 return (by_function(heading, options, meta), 1.0);
             }
@@ -255,7 +266,7 @@ fn abscissa(heading: &Heading, options: &Options, meta: &mut Meta) -> (AxisKind,
                 shown(&kind)
             ));
         }
-        return (kind, unit.factor());
+        return (kind, abscissa_factor(&unit, meta));
     }
     meta.doubt(format!(
         "The unit \"{}\" of the abscissa is not one of {}: s or Hz are assumed.",
@@ -263,6 +274,16 @@ fn abscissa(heading: &Heading, options: &Options, meta: &mut Meta) -> (AxisKind,
         shown(&by_type)
     ));
     (by_type, 1.0)
+}
+
+/// Factor of a unit of time to s, of frequency or angular frequency to Hz.
+fn abscissa_factor(unit: &Unit, meta: &mut Meta) -> f64 {
+    if unit.quantity() == Quantity::AngularVelocity {
+        meta.doubt(format!(
+            "The abscissa is an angular frequency in {unit}: it is divided by 2π and stands in Hz."
+        ));
+    }
+    unit.hertz().unwrap_or(unit.factor())
 }
 
 /// Kind of an abscissa without data type or unit.

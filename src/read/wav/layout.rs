@@ -12,8 +12,11 @@ use std::io::{Read, SeekFrom};
 
 /// How many chunks are looked at: real files have a dozen.
 const MOST_CHUNKS: usize = 10_000;
-/// How many bytes of texts are kept.
+/// How many bytes of texts are looked at in one chunk.
 const MOST_TEXT: u64 = 64 * 1024;
+/// How many texts are kept, and how many bytes of them: real files have ten, of a line each.
+const MOST_NOTES: usize = 64;
+const MOST_NOTE_BYTES: usize = 64 * 1024;
 /// Most channels of any recorder; more are a damaged header.
 const MOST_CHANNELS: usize = 1024;
 /// A size that was never filled in.
@@ -91,7 +94,7 @@ pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<Layout> {
         return Err(fault(source, 0, "no wave file", "RIFF, RF64 or BW64, then a size and WAVE"));
     }
     let (mut wide, mut format, mut data) = (None, None, None);
-    let (mut notes, mut scales) = (Vec::new(), None);
+    let (mut notes, mut scales, mut dropped) = (Vec::new(), None, 0);
     let mut at = 12;
     for _ in 0..MOST_CHUNKS {
         let tag = file.bytes(at, 8)?;
@@ -110,7 +113,7 @@ pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<Layout> {
                 }
                 data = Some((body, size));
             }
-            b"LIST" => info(&file.bytes(body, size.min(MOST_TEXT))?, &mut notes, &mut scales),
+            b"LIST" => info(&file.bytes(body, size.min(MOST_TEXT))?, &mut notes, &mut scales, &mut dropped),
             _ => {}
         }
         at = body.saturating_add(size);
@@ -128,6 +131,13 @@ pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<Layout> {
             .hint("the recording may have been cut off before its first sample"));
     };
     let mut doubts = Vec::new();
+    if dropped > 0 {
+        doubts.push(format!(
+            "Of {} texts in the file the first {} are kept.",
+            notes.len() + dropped,
+            notes.len()
+        ));
+    }
     let Format { sample, channels, rate } = kind(source, format_at, &format, &mut doubts)?;
     let frame = (sample.bytes() * channels) as u64;
     let room = source.len().saturating_sub(data_at);
@@ -253,8 +263,9 @@ fn name(tag: u16) -> String {
 }
 
 /// Keeps the texts of a LIST chunk of type INFO.
-fn info(list: &[u8], notes: &mut Vec<(String, String)>, scales: &mut Option<Scales>) {
+fn info(list: &[u8], notes: &mut Vec<(String, String)>, scales: &mut Option<Scales>, dropped: &mut usize) {
     let Some(mut rest) = list.strip_prefix(b"INFO") else { return };
+    let mut bytes: usize = notes.iter().map(|(_, text)| text.len()).sum();
     while let Some((id, size)) = chunk(rest) {
         let body = &rest[8..];
         let size = (size as usize).min(body.len());
@@ -263,7 +274,12 @@ fn info(list: &[u8], notes: &mut Vec<(String, String)>, scales: &mut Option<Scal
         if id == b"ICMT" && scales.is_none() {
             *scales = Scales::parse(&value);
         }
-        notes.push((String::from_utf8_lossy(id).into_owned(), value));
+        bytes = bytes.saturating_add(value.len());
+        if notes.len() < MOST_NOTES && bytes <= MOST_NOTE_BYTES && *dropped == 0 {
+            notes.push((String::from_utf8_lossy(id).into_owned(), value));
+        } else {
+            *dropped += 1;
+        }
         rest = body.get(size + size % 2..).unwrap_or_default();
     }
 }

@@ -257,6 +257,36 @@ fn survey_and_stream_agree_with_reading() {
     assert!(blocks > 1);
 }
 
+/// A small file with many channels and long texts must not become a large recording.
+#[test]
+fn texts_are_bounded_and_not_copied_for_a_thousand_channels() {
+    let note = [b"INFOICMT".as_slice(), &60_000u32.to_le_bytes(), &b"x".repeat(60_000)].concat();
+    let mut list: Vec<(&[u8; 4], Vec<u8>)> = vec![(b"LIST", note); 16];
+    list.push((b"fmt ", fmt(1, 1024, 8)));
+    list.push((b"data", vec![0; 1024]));
+    let recording = read_bytes(&chunks(&list)).unwrap();
+    let length = |r: &Record| r.meta().notes.iter().map(|(_, text)| text.len()).sum::<usize>();
+    assert_eq!(length(&recording.records[0]), 60_000);
+    assert_eq!(recording.records.iter().skip(1).map(length).sum::<usize>(), 0);
+    assert_eq!(recording.doubts, ["Of 16 texts in the file the first 1 are kept."]);
+    let many = [b"INFO".to_vec(), b"ICMT\x02\0\0\0ab".repeat(1000)].concat();
+    let recording =
+        read_bytes(&chunks(&[(b"LIST", many), (b"fmt ", fmt(1, 1, 8)), (b"data", vec![0; 4])])).unwrap();
+    assert_eq!(recording.records[0].meta().notes.len(), 64);
+}
+
+#[test]
+fn values_that_leave_the_range_of_numbers_are_refused() {
+    let bytes = wav(3, 1, 64, &1e308f64.to_le_bytes());
+    let reader = Reader::new().unit(Unit::parse("km"));
+    let error = reader.from_reader("x.wav", bytes.as_slice()).unwrap_err().to_string();
+    assert!(error.contains("x.wav: the value 1e308"), "{error}");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.wav");
+    std::fs::write(&path, bytes).unwrap();
+    assert!(reader.survey(&path).is_err());
+}
+
 proptest! {
     /// hound, written by others, is the oracle for what it can write.
     #[test]

@@ -1,7 +1,7 @@
 //! The eleven header lines of a record.
 
 use super::{Layout, field};
-use crate::record::{Axis, AxisKind, Grid, Meta, Record, Scaling, Spectrum};
+use crate::record::{Axis, AxisKind, Meta, Record, Scaling, Spectrum};
 use crate::units::{Quantity, Unit};
 use std::fmt::Write as _;
 use std::io::Write;
@@ -46,12 +46,13 @@ impl Header {
         Header { id, point, function: function(record, before) }
     }
 
-    /// Writes delimiter, number line and header; `bytes` is the size of binary values.
+    /// Writes delimiter, number line and header; `bytes` is the size of binary values, `start` and `step` stand in record 7.
     pub fn write(
         &self,
         out: &mut impl Write,
         layout: Layout,
         bytes: Option<usize>,
+        [start, step]: &[String; 2],
         record: &Record,
     ) -> std::io::Result<()> {
         writeln!(out, "{:80}", "    -1")?;
@@ -70,15 +71,8 @@ impl Header {
             (true, false) => 5,
             (true, true) => 6,
         };
-        let (start, step) = match record.axis().grid {
-            Grid::Even { start, step, .. } => (start, step),
-            Grid::Uneven(_) => (0.0, 0.0),
-        };
-        let mut form = format!("{kind:10}{:10}{:10}", record.len(), u8::from(layout.even));
-        for value in [start, step, 0.0] {
-            // One more digit than E13.5 where there is no sign: a step of six digits drifts over a long record.
-            let _ = write!(form, "{}", field(value, 13, if value < 0.0 { 5 } else { 6 }));
-        }
+        let even = u8::from(layout.even);
+        let form = format!("{kind:10}{:10}{even:10}{start}{step}{}", record.len(), field(0.0, 13, 6));
         writeln!(out, "{form:80}")?;
         let [above, below] = ordinate(record.meta());
         for line in [abscissa(record.axis()), above, below, Characteristics::default()] {
