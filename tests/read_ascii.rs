@@ -200,6 +200,45 @@ fn a_large_file_read_in_pieces_is_the_same() {
 }
 
 #[test]
+fn a_byte_order_mark_is_no_part_of_the_first_number() {
+    assert_eq!(values(&read(b"\xef\xbb\xbf1.5\n2.5\n")), [1.5, 2.5]);
+    assert_eq!(values(&read(b"\xef\xbb\xbf1.500e+00\n2.500e+00\n3.500e+00\n")), [1.5, 2.5, 3.5]);
+}
+
+#[test]
+fn line_ends_and_end_marks_of_every_kind() {
+    for text in [
+        "1.5\n2.5\n3.5\n\x1a",
+        "1.5\r\n2.5\r\n3.5\x1a",
+        "1.5\n2.5\r3.5\n",
+        "1.5\r\r\n2.5\r\r\n3.5\r\r\n",
+        "1.5\r2.5\r3.5",
+    ] {
+        assert_eq!(values(&read(text.as_bytes())), [1.5, 2.5, 3.5], "{text:?}");
+    }
+    // A lone CR far behind the first bytes.
+    let long = format!("{}8 9\r1 2\n", "5 6\n7 1\n".repeat(10_000));
+    let recording = read(long.as_bytes());
+    assert_eq!((recording.records.len(), recording.records[0].len()), (2, 20_002));
+    // Inside a text the end mark is an error.
+    assert!(complaint(b"1.5\n\x1a\n2.5\n").contains("line 2"));
+}
+
+#[test]
+fn blank_lines_claim_no_room_for_many_columns() {
+    // 30 000 columns and a million blank lines would be 240 GB.
+    let row = "1 ".repeat(30_000);
+    let text = format!("{row}\n{}{row}\n", "\n".repeat(1_000_000));
+    let error = complaint(text.as_bytes());
+    assert!(error.contains("30000000000 missing value(s)") && error.contains("line(s) 2, 3"), "{error}");
+    let kept =
+        Reader::new().allow_missing(true).from_reader("x.txt", text.as_bytes()).unwrap_err().to_string();
+    assert!(kept.contains("1000000 blank lines"), "{kept}");
+    let tail = format!("{row}\n{}", "\n".repeat(1_000_000));
+    assert_eq!(read(tail.as_bytes()).records.len(), 30_000);
+}
+
+#[test]
 fn the_measured_accelerances() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/analyser");
     if !folder.is_dir() {

@@ -40,6 +40,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         Columns::Real(deal(values, layout.columns))
     } else {
         let bytes = source.all()?;
+        let bytes = if lone_cr(&bytes, false) { with_lf(bytes) } else { bytes };
         let rows = rows::read(source.path(), &bytes, &layout, options.allow_missing)?;
         drop(bytes);
         if rows.missing > 0 {
@@ -95,15 +96,36 @@ fn streamed(empty: &Record, summary: &Summary, stated: &Stated, options: &Option
     header
 }
 
-/// UTF-16 and CR line ends are turned into UTF-8 with LF; everything else stays on disk.
+/// UTF-16 and lone CRs in the head are turned into UTF-8 with LF; everything else stays on disk.
 fn plain(source: &Source) -> Result<Source> {
     let head = source.head()?;
-    let cr_only = head.contains(&b'\r') && !head.contains(&b'\n');
-    if !text::is_utf16(&head) && !cr_only {
+    let bytes = if text::is_utf16(&head) {
+        text::decode(&source.all()?).into_owned().into_bytes()
+    } else if lone_cr(&head, source.len() > head.len() as u64) {
+        source.all()?
+    } else {
         return Ok(source.clone());
+    };
+    Source::memory(source.path(), with_lf(bytes))
+}
+
+/// Whether a CR stands before anything but LF or another CR; the last byte of a head that is `cut` off tells nothing.
+fn lone_cr(bytes: &[u8], cut: bool) -> bool {
+    bytes.windows(2).any(|w| w[0] == b'\r' && !matches!(w[1], b'\r' | b'\n'))
+        || (!cut && bytes.last() == Some(&b'\r'))
+}
+
+/// Every CR that no LF follows becomes LF; several CRs before LF are one line end, as text that was converted twice has it.
+fn with_lf(mut bytes: Vec<u8>) -> Vec<u8> {
+    let mut before_lf = false;
+    for b in bytes.iter_mut().rev() {
+        if *b == b'\r' && !before_lf {
+            *b = b'\n';
+        } else {
+            before_lf = matches!(*b, b'\n' | b'\r');
+        }
     }
-    let text = text::decode(&source.all()?).replace("\r\n", "\n").replace('\r', "\n");
-    Source::memory(source.path(), text.into_bytes())
+    bytes
 }
 
 fn fast(source: &Source, layout: &Layout) -> Result<Option<Vec<f64>>> {
