@@ -3,7 +3,7 @@
 use super::format::{Entry, Format, TABLE};
 use super::{Header, Source};
 use crate::error::{Error, Place, Result};
-use crate::record::Record;
+use crate::record::{Meta, Record};
 use crate::units::Unit;
 use rayon::prelude::*;
 use std::io::Read;
@@ -25,6 +25,23 @@ pub struct Options {
     pub decimal_comma: Option<bool>,
     /// Two value columns are real and imaginary part.
     pub complex: bool,
+}
+
+impl Options {
+    /// Adopts the unit of values: what a person states, else what the file says. Returns the factor to SI.
+    pub(super) fn adopt(&self, meta: &mut Meta, said: Option<&str>) -> f64 {
+        if let Some(given) = &self.unit {
+            if let Some(said) = said.filter(|u| Unit::parse_or_opaque(u) != *given) {
+                meta.doubt(format!("The file says the unit {said:?}; {given} was stated and is used."));
+            }
+            return meta.adopt_unit(given.symbol());
+        }
+        if let Some(said) = said {
+            return meta.adopt_unit(said);
+        }
+        meta.doubt("The file says no unit: the values are kept as they are.");
+        1.0
+    }
 }
 
 /// Everything a file holds.
