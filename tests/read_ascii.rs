@@ -296,6 +296,8 @@ fn a_clock_is_no_name_of_a_column() {
     assert_eq!(axis(&clock).0, &AxisKind::Frequency);
     let columns = read(b"Base band: 20 Hz\nTime 14:22:05\n0 5\n10 6\n20 4\n");
     assert_eq!(axis(&columns), (&AxisKind::Frequency, Some(10.0)));
+    let wide = read(b"Base band: 20 Hz\nTime  14:22:05\n0 5\n10 6\n20 4\n");
+    assert_eq!(axis(&wide), (&AxisKind::Frequency, Some(10.0)));
     // Free text further up names nothing either.
     let above = read(b"freq [Hz] real imag\nsome remark\n1 5 6\n2 7 8\n3 9 1\n");
     assert!(!above.records[0].is_complex());
@@ -428,8 +430,8 @@ proptest! {
         tail in prop::sample::select(vec!["", " Hz", " lines", " ms"]),
         n in 1usize..6,
     ) {
-        let header: String = keys.iter().zip(&numbers).map(|(k, v)| format!("{k}{v}{tail}\n")).collect();
-        let text = header + &"7\n".repeat(n);
+        let header: Vec<String> = keys.iter().zip(&numbers).map(|(k, v)| format!("{k}{v}{tail}\n")).collect();
+        let text = header.concat() + &"7\n".repeat(n);
         if let Ok(recording) = Reader::new().format(Some(Format::Ascii)).from_reader("x", text.as_bytes()) {
             for record in &recording.records {
                 let step = record.axis().step();

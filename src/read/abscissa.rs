@@ -141,11 +141,15 @@ pub(super) fn to_si(path: &Path, values: &mut Values, factor: f64) -> Result<()>
     }
     let over = match values {
         Values::Real(values) => {
-            values.iter_mut().for_each(|v| *v *= factor);
+            for v in values.iter_mut() {
+                *v *= factor;
+            }
             values.iter().position(|v| v.is_infinite())
         }
         Values::Complex(values) => {
-            values.iter_mut().for_each(|v| *v *= factor);
+            for v in values.iter_mut() {
+                *v *= factor;
+            }
             values.iter().position(|v| v.re.is_infinite() || v.im.is_infinite())
         }
     };

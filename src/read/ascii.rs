@@ -28,6 +28,7 @@ use crate::record::{Axis, AxisKind, Frf, FrfKind, Meta, Record, Scaling, Spectru
 use layout::{Cell, Layout};
 use num_complex::Complex64;
 use stated::Stated;
+use std::borrow::Cow;
 
 /// Text of any kind: this is the last format tried.
 pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
@@ -165,8 +166,8 @@ fn assemble(
     let mut doubts = stated.doubts.clone();
     let pair = options.complex && columns.len() == 2 && layout.cell == Cell::Real;
     let printed = if columns.len() > 1 && !pair && is_abscissa(&columns[0], &names[0]) {
-        let values = real_parts(&columns.remove(0));
-        Some(printed(source, &names.remove(0), values, layout, stated, options)?)
+        let values = columns.remove(0);
+        Some(printed(source, &names.remove(0), &real_parts(&values), layout, stated, options)?)
     } else {
         None
     };
@@ -262,9 +263,9 @@ fn numbered(meta: &Meta, index: usize, name: &Name) -> Meta {
     meta
 }
 
-fn real_parts(values: &Values) -> Vec<f64> {
+fn real_parts(values: &Values) -> Cow<'_, [f64]> {
     match values {
-        Values::Real(values) => values.clone(),
+        Values::Real(values) => values.into(),
         Values::Complex(values) => values.iter().map(|v| v.re).collect(),
     }
 }
@@ -277,7 +278,7 @@ fn rising(values: &[f64]) -> bool {
 fn printed(
     source: &Source,
     name: &Name,
-    values: Vec<f64>,
+    values: &[f64],
     layout: &Layout,
     stated: &Stated,
     options: &Options,
@@ -319,7 +320,7 @@ fn printed(
         let name = if name.name.is_empty() { "first column" } else { &name.name };
         (AxisKind::Other(name.into()), 1.0)
     };
-    let resolution = printed_resolution(&values) * factor;
+    let resolution = printed_resolution(values) * factor;
     let values = values.iter().map(|v| v * factor).collect();
     let (axis, doubt) = abscissa::from_values(kind, values, resolution, &label);
     doubts.extend(doubt);

@@ -199,6 +199,7 @@ fn row(bytes: &[u8], layout: &Layout, sink: &mut impl FnMut(f64)) -> Row {
     // CR ends a line only before LF; elsewhere it is a line end of its own, which the slow path sees to.
     let line_end = |at: usize| match bytes.get(at) {
         None | Some(b'\n') => Some(at + 1),
+        Some(b'\r') if bytes.get(at + 1) == Some(&b'\n') => Some(at + 2),
         Some(b'\r') => {
             let crs = bytes[at..].iter().take_while(|b| **b == b'\r').count();
             matches!(bytes.get(at + crs), None | Some(b'\n')).then_some(at + crs + 1)

@@ -16,7 +16,9 @@ pub fn bridge(columns: &mut [Values]) -> Option<String> {
     for pair in known.windows(2) {
         let (from, to) = (pair[0], pair[1]);
         let step = (first[to] - first[from]) / (to - from) as f64;
-        (from + 1..to).for_each(|i| filled[i] = first[from] + step * (i - from) as f64);
+        for (i, value) in filled[from..to].iter_mut().enumerate().skip(1) {
+            *value = first[from] + step * i as f64;
+        }
     }
     let gaps = first.len() - known.len();
     // Even to a hundredth of a step: what is printed may be rounded.

@@ -25,7 +25,7 @@ fn fields(line: &str, layout: &Layout) -> Option<Vec<String>> {
     if !stated::split(line).0.is_empty() || !line.contains(char::is_alphabetic) {
         return None;
     }
-    let fit = |fields: Vec<String>| (fields.len() == layout.columns).then_some(fields);
+    let fit = |fields: Vec<String>| (fields.len() == layout.columns && are_words(&fields)).then_some(fields);
     let cut = |at: &str| -> Vec<String> {
         line.split(at).map(|f| f.trim().to_owned()).filter(|f| !f.is_empty()).collect()
     };
@@ -38,6 +38,12 @@ fn fields(line: &str, layout: &Layout) -> Option<Vec<String>> {
         return Some(fields);
     }
     fit(cut("\t")).or_else(|| fit(cut("  "))).or_else(|| fit(words(line)).filter(|f| are_names(f)))
+}
+
+/// Whether no field is a number, a date or a clock; one that ends with a unit may begin with a digit.
+fn are_words(fields: &[String]) -> bool {
+    let digit = |f: &String| f.starts_with(|c: char| c.is_ascii_digit()) && !f.ends_with([']', ')']);
+    !fields.iter().any(|f| digit(f) || f.contains(':'))
 }
 
 /// Words between single blanks; a bracket belongs to the word before it.
@@ -58,10 +64,9 @@ fn words(line: &str) -> Vec<String> {
     out
 }
 
-/// Whether words may name columns: none is a number, a date or a clock, and the first is an abscissa or one has a bracket.
+/// Whether words between single blanks may name columns: the first is an abscissa, or one has a bracket.
 fn are_names(words: &[String]) -> bool {
-    let wordy = words.iter().all(|w| !w.contains(':') && !w.starts_with(|c: char| c.is_ascii_digit()));
     let units = words.iter().any(|w| w.ends_with([']', ')']));
     let axis: Option<AxisKind> = words.first().and_then(|w| Name::parse(w).axis(true));
-    wordy && (units || axis.is_some())
+    units || axis.is_some()
 }

@@ -42,7 +42,9 @@ pub fn read(path: &Path, bytes: &[u8], layout: &Layout, allow_missing: bool) -> 
         if let Some(since) = blank_since.take() {
             // Blank lines with rows behind them are rows without values.
             let blanks = usize::try_from(number - since).unwrap_or(usize::MAX);
-            (since..number).for_each(|blank| missing.take(blank, layout.columns, String::new));
+            for blank in since..number {
+                missing.take(blank, layout.columns, String::new);
+            }
             if allow_missing {
                 // A blank line is one byte: many columns would make much of nothing.
                 let wanted = blanks.saturating_mul(layout.columns);
