@@ -347,6 +347,10 @@ fn what_a_person_states_wins_with_a_doubt_that_names_both() {
     let other = told(&Reader::new().rate(Some(5.0)), "rate: 100\n1\n2\n");
     assert_eq!(axis(&other), (&AxisKind::Time, Some(0.2)));
     assert!(says(&other, &["100 Hz", "5 Hz"]), "{:?}", other.all_doubts());
+    for impossible in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-320] {
+        let stated = [Reader::new().rate(Some(impossible)), Reader::new().base_band(Some(impossible))];
+        assert!(stated.iter().all(|r| r.from_reader("x.txt", &b"1\n2\n"[..]).is_err()), "{impossible}");
+    }
     for text in ["1\n2\n", "1 2 4\n2 1 3\n0 1 5\n"] {
         let error =
             Reader::new().complex(true).from_reader("x.txt", text.as_bytes()).unwrap_err().to_string();

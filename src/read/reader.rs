@@ -9,6 +9,9 @@ use rayon::prelude::*;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+/// Rates, bands and line widths in Hz of any instrument lie far inside; steps made of them are finite and positive.
+pub(super) const POSSIBLE: std::ops::RangeInclusive<f64> = 1e-12..=1e15;
+
 /// What a person knows of a file that the file does not say. A statement here that contradicts the file wins, with a
 /// doubt in the record.
 #[derive(Debug, Clone, Default)]
@@ -191,6 +194,12 @@ impl Reader {
 
     /// The format of a source, and the source itself: in memory where its first bytes are all of it.
     fn entry(&self, source: &Source) -> Result<(&'static Entry, Source)> {
+        for (what, value) in [("sampling rate", self.options.rate), ("base band", self.options.base_band)] {
+            if let Some(value) = value.filter(|v| !POSSIBLE.contains(v)) {
+                let found = format!("a {what} of {value} Hz was stated");
+                return Err(Error::input(Place::file(source.path()), found, "a possible number of hertz"));
+            }
+        }
         let head = source.head()?;
         let forced = self.format.and_then(|format| TABLE.iter().find(|e| e.format == format));
         let entry = forced.or_else(|| TABLE.iter().find(|e| (e.sniff)(&head, source))).ok_or_else(|| {

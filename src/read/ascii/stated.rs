@@ -1,6 +1,7 @@
 //! What header lines state: lines, base band, sampling rate, unit, window, date.
 
 use crate::read::number;
+use crate::read::reader::POSSIBLE;
 use crate::record::Window;
 
 /// Statements of a header that are understood; the rest stays as notes.
@@ -28,9 +29,6 @@ pub struct Stated {
     /// What stands under a key that is understood and is no possible value of it.
     pub doubts: Vec<String>,
 }
-
-/// Rates, bands and line widths of any instrument lie far inside.
-const POSSIBLE: std::ops::RangeInclusive<f64> = 1e-12..=1e15;
 
 /// More lines than any analyser has.
 const MOST_LINES: f64 = 1e9;
