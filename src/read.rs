@@ -15,6 +15,7 @@ mod csv;
 mod format;
 mod header;
 mod mat;
+mod missing;
 mod reader;
 mod source;
 mod sweep;

@@ -200,6 +200,194 @@ fn a_large_file_read_in_pieces_is_the_same() {
 }
 
 #[test]
+fn a_byte_order_mark_is_no_part_of_the_first_number() {
+    assert_eq!(values(&read(b"\xef\xbb\xbf1.5\n2.5\n")), [1.5, 2.5]);
+    assert_eq!(values(&read(b"\xef\xbb\xbf1.500e+00\n2.500e+00\n3.500e+00\n")), [1.5, 2.5, 3.5]);
+}
+
+#[test]
+fn line_ends_and_end_marks_of_every_kind() {
+    for text in [
+        "1.5\n2.5\n3.5\n\x1a",
+        "1.5\r\n2.5\r\n3.5\x1a",
+        "1.5\n2.5\r3.5\n",
+        "1.5\r\r\n2.5\r\r\n3.5\r\r\n",
+        "1.5\r2.5\r3.5",
+    ] {
+        assert_eq!(values(&read(text.as_bytes())), [1.5, 2.5, 3.5], "{text:?}");
+    }
+    // A lone CR far behind the first bytes.
+    let long = format!("{}8 9\r1 2\n", "5 6\n7 1\n".repeat(10_000));
+    let recording = read(long.as_bytes());
+    assert_eq!((recording.records.len(), recording.records[0].len()), (2, 20_002));
+    // Inside a text the end mark is an error.
+    assert!(complaint(b"1.5\n\x1a\n2.5\n").contains("line 2"));
+}
+
+#[test]
+fn blank_lines_claim_no_room_for_many_columns() {
+    // 30 000 columns and a million blank lines would be 240 GB.
+    let row = "1 ".repeat(30_000);
+    let text = format!("{row}\n{}{row}\n", "\n".repeat(1_000_000));
+    let error = complaint(text.as_bytes());
+    assert!(error.contains("30000000000 missing value(s)") && error.contains("line(s) 2, 3"), "{error}");
+    let kept =
+        Reader::new().allow_missing(true).from_reader("x.txt", text.as_bytes()).unwrap_err().to_string();
+    assert!(kept.contains("1000000 blank lines"), "{kept}");
+    let tail = format!("{row}\n{}", "\n".repeat(1_000_000));
+    assert_eq!(read(tail.as_bytes()).records.len(), 30_000);
+}
+
+fn told(reader: &Reader, text: &str) -> Recording {
+    reader.from_reader("x.txt", text.as_bytes()).unwrap_or_else(|e| panic!("{text:?}: {e}"))
+}
+
+fn says(recording: &Recording, words: &[&str]) -> bool {
+    recording.all_doubts().iter().any(|d| words.iter().all(|w| d.contains(w)))
+}
+
+/// Kind of the axis and its step.
+fn axis(recording: &Recording) -> (&AxisKind, Option<f64>) {
+    let axis = recording.records[0].axis();
+    (&axis.kind, axis.step())
+}
+
+#[test]
+fn impossible_statements_are_passed_over_with_a_doubt() {
+    for header in [
+        "Base band: 20 Hz\nLines: 1e30",
+        "20 Hz inf lines",
+        "20 Hz 0 lines",
+        "20 Hz -400 lines",
+        "dt: 1e-320",
+        "df: nan",
+    ] {
+        let recording = read(format!("{header}\n1\n2\n3\n").as_bytes());
+        let step = recording.records[0].axis().step().unwrap();
+        assert!(step.is_finite() && step > 0.0, "{header}: {step}");
+        assert!(says(&recording, &["states no possible value"]), "{header}: {:?}", recording.all_doubts());
+    }
+}
+
+#[test]
+fn what_else_a_header_names_makes_no_spectrum() {
+    let band = read(b"Sample rate: 50 kHz\nBandwidth: 20 kHz\nResolution: 16\n1\n2\n3\n");
+    assert_eq!(axis(&band), (&AxisKind::Time, Some(1.0 / 50e3)));
+    // Both domains: a time trace, and it is said so.
+    let both = read(b"Sampling rate: 100 Hz\nBase band: 20 Hz\n1\n2\n3\n");
+    assert_eq!(axis(&both), (&AxisKind::Time, Some(0.01)));
+    assert!(says(&both, &["100 Hz", "time trace"]), "{:?}", both.all_doubts());
+    // As many values as lines and 0 Hz: a spectrum.
+    let lines = read(b"Sampling rate: 51.2 Hz\nBase band: 20 Hz\nLines: 4\n1\n2\n3\n4\n5\n");
+    assert_eq!(axis(&lines), (&AxisKind::Frequency, Some(5.0)));
+    let named = read(b"Base band: 20 Hz\nTime [s]  Force [N]\n0.0 1\n0.5 2\n1.0 3\n");
+    assert_eq!(axis(&named), (&AxisKind::Time, Some(0.5)));
+    // A survey says the same.
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.txt");
+    std::fs::write(&path, "Sampling rate: 51.2 Hz\nBase band: 20 Hz\nLines: 4\n1\n2\n3\n4\n5\n").unwrap();
+    let (_, headers, _) = Reader::new().survey(&path).unwrap();
+    assert_eq!((headers[0].kind, headers[0].dx), ("spectrum", Some(5.0)));
+}
+
+#[test]
+fn a_clock_is_no_name_of_a_column() {
+    let clock = read(b"Time 14:22:05\nBase band: 20 Hz\n1\n2\n3\n");
+    assert_eq!(axis(&clock).0, &AxisKind::Frequency);
+    let columns = read(b"Base band: 20 Hz\nTime 14:22:05\n0 5\n10 6\n20 4\n");
+    assert_eq!(axis(&columns), (&AxisKind::Frequency, Some(10.0)));
+    let wide = read(b"Base band: 20 Hz\nTime  14:22:05\n0 5\n10 6\n20 4\n");
+    assert_eq!(axis(&wide), (&AxisKind::Frequency, Some(10.0)));
+    // Free text further up names nothing either.
+    let above = read(b"freq [Hz] real imag\nsome remark\n1 5 6\n2 7 8\n3 9 1\n");
+    assert!(!above.records[0].is_complex());
+}
+
+#[test]
+fn names_and_units_between_blanks() {
+    for header in [
+        "Time (ms)  Velocity (mm/s)",
+        "Time (ms) Velocity (mm/s)",
+        "Time (ms)\tVelocity (mm/s)",
+        "Time  Velocity\nms    mm/s",
+        "# time [millisecond] Velocity [mm/s]",
+    ] {
+        let recording = read(format!("{header}\n0.0  0.5\n0.5  1.5\n1.0  -2\n").as_bytes());
+        assert_eq!(axis(&recording), (&AxisKind::Time, Some(0.5e-3)), "{header}");
+        let meta = recording.records[0].meta();
+        assert_eq!((meta.name.as_str(), meta.unit.symbol()), ("Velocity", "m/s"), "{header}");
+        assert_eq!(values(&recording), [0.5 * 1e-3, 1.5 * 1e-3, -2.0 * 1e-3], "{header}");
+        assert!(recording.all_doubts().is_empty(), "{header}: {:?}", recording.all_doubts());
+    }
+    assert!(says(
+        &read(b"Time  Velocity\n0.0  0.5\n0.5  1.5\n1.0  -2\n"),
+        &["\"Time\" has no unit: seconds"]
+    ));
+    let bare = read(b"Sampling rate: 2 Hz\n0.0  0.5\n0.5  1.5\n1.0  -2\n");
+    assert!(says(&bare, &["The first column is taken as the time; no unit is stated: seconds are assumed."]));
+    assert!(says(&bare, &["The file says no unit"]));
+    assert!(complaint(b"Time [moons]  v [m/s]\n0.0 1\n0.5 2\n1.0 3\n").contains("\"moons\""));
+    let lone = read(b"v [mm/s]\n1\n2\n");
+    assert_eq!((values(&lone), lone.records[0].meta().unit.symbol()), (vec![1e-3, 2e-3], "m/s"));
+}
+
+#[test]
+fn what_a_person_states_wins_with_a_doubt_that_names_both() {
+    let rate = told(&Reader::new().rate(Some(1000.0)), "t [s]  v [m/s]\n0.0 1\n0.5 2\n1.0 3\n");
+    assert_eq!(axis(&rate), (&AxisKind::Time, Some(1e-3)));
+    assert!(says(&rate, &["0.5", "0.001 was stated"]), "{:?}", rate.all_doubts());
+    let unnamed = told(&Reader::new().rate(Some(1000.0)), "0.0 1\n0.5 2\n1.0 3\n");
+    assert_eq!(axis(&unnamed), (&AxisKind::Time, Some(1e-3)));
+    let band = told(&Reader::new().base_band(Some(30.0)), "df: 5 Hz\nbase band: 20 Hz\n1\n2\n3\n4\n");
+    assert_eq!(axis(&band), (&AxisKind::Frequency, Some(10.0)));
+    assert!(says(&band, &["20 Hz", "30 Hz"]) && says(&band, &["5 Hz", "10 Hz"]), "{:?}", band.all_doubts());
+    let unit = told(&Reader::new().unit(Unit::parse("m/s")), "unit: mm/s\n1\n2\n");
+    assert_eq!(values(&unit), [1.0, 2.0]);
+    assert!(says(&unit, &["\"mm/s\"", "m/s was stated"]), "{:?}", unit.all_doubts());
+    let other = told(&Reader::new().rate(Some(5.0)), "rate: 100\n1\n2\n");
+    assert_eq!(axis(&other), (&AxisKind::Time, Some(0.2)));
+    assert!(says(&other, &["100 Hz", "5 Hz"]), "{:?}", other.all_doubts());
+    for impossible in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-320] {
+        let stated = [Reader::new().rate(Some(impossible)), Reader::new().base_band(Some(impossible))];
+        assert!(stated.iter().all(|r| r.from_reader("x.txt", &b"1\n2\n"[..]).is_err()), "{impossible}");
+    }
+    for text in ["1\n2\n", "1 2 4\n2 1 3\n0 1 5\n"] {
+        let error =
+            Reader::new().complex(true).from_reader("x.txt", text.as_bytes()).unwrap_err().to_string();
+        assert!(error.contains("where complex values were stated"), "{error}");
+    }
+    let csv = Reader::new()
+        .complex(true)
+        .from_reader("x.csv", &b"f [Hz],a\n0,1\n1,2\n"[..])
+        .unwrap_err()
+        .to_string();
+    assert!(csv.contains("1 column(s) of values, where complex"), "{csv}");
+}
+
+#[test]
+fn values_too_large_for_si_are_refused() {
+    for (name, text) in [("x.txt", "unit: km\n1\n1e308\n"), ("x.csv", "t [s],v [km]\n0,1\n1,1e308\n")] {
+        let error = Reader::new().from_reader(name, text.as_bytes()).unwrap_err().to_string();
+        assert!(error.contains("value 2 is too large"), "{error}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.txt");
+    std::fs::write(&path, "unit: km\n1\n1e308\n").unwrap();
+    assert!(Reader::new().survey(&path).is_err());
+}
+
+#[test]
+fn a_blank_line_leaves_the_time_column_in_place() {
+    let reader = Reader::new().allow_missing(true);
+    let lost = told(&reader, "t [s]  v [m/s]\n0.0 1\n0.1 2\n\n0.3 4\n0.4 5\n");
+    assert_eq!((lost.records.len(), axis(&lost)), (1, (&AxisKind::Time, Some(0.1))));
+    assert!(values(&lost)[2].is_nan() && values(&lost).len() == 5);
+    let apart = told(&reader, "0.0 1\n0.1 2\n\n0.2 4\n0.3 5\n");
+    assert_eq!((apart.records.len(), values(&apart)), (1, vec![1.0, 2.0, 4.0, 5.0]));
+    assert!(says(&apart, &["1 row(s) without a first value are left out"]));
+}
+
+#[test]
 fn the_measured_accelerances() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/analyser");
     if !folder.is_dir() {
@@ -235,6 +423,25 @@ proptest! {
     fn random_text_never_panics(text in "[0-9eE+.,;\t\n ij()-]{0,120}") {
         let _ = Reader::new().format(Some(Format::Ascii)).from_reader("x", text.as_bytes());
         let _ = Reader::new().format(Some(Format::Ascii)).allow_missing(true).from_reader("x", text.as_bytes());
+    }
+
+    #[test]
+    fn whatever_a_header_states_steps_are_finite_and_positive(
+        keys in prop::collection::vec(prop::sample::select(vec![
+            "lines: ", "base band: ", "df: ", "dt: ", "dt [us]: ", "rate: ", "fs [MHz]: ", "20 Hz ", "1e-300 Hz ",
+        ]), 1..4),
+        numbers in prop::collection::vec("-?[0-9]{1,3}(e-?[0-9]{1,3})?|inf|nan|[0-9e. ]{0,6}", 3),
+        tail in prop::sample::select(vec!["", " Hz", " lines", " ms"]),
+        n in 1usize..6,
+    ) {
+        let header: Vec<String> = keys.iter().zip(&numbers).map(|(k, v)| format!("{k}{v}{tail}\n")).collect();
+        let text = header.concat() + &"7\n".repeat(n);
+        if let Ok(recording) = Reader::new().format(Some(Format::Ascii)).from_reader("x", text.as_bytes()) {
+            for record in &recording.records {
+                let step = record.axis().step();
+                prop_assert!(record.len() < 2 || step.is_some_and(|s| s.is_finite() && s > 0.0), "{:?}: {:?}", text, step);
+            }
+        }
     }
 
     #[test]

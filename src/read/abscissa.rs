@@ -1,6 +1,168 @@
 //! An abscissa that a file prints or stores value by value.
 
-use crate::record::{Axis, AxisKind, Grid};
+use super::ascii::stated::Stated;
+use super::reader::Options;
+use crate::error::{Error, Place, Result};
+use crate::record::{Axis, AxisKind, Grid, Values};
+use std::path::Path;
+
+/// An abscissa that stands in the file as a column.
+pub(super) struct Printed {
+    pub axis: Axis,
+    /// Names the column at the start of a sentence.
+    pub label: String,
+    /// What is to be said of it, if it is used.
+    pub doubts: Vec<String>,
+}
+
+/// The axis of `n` values: what a person states, then the printed one, then what the header states.
+pub(super) fn choose(
+    printed: Option<Printed>,
+    n: usize,
+    stated: &Stated,
+    options: &Options,
+    doubts: &mut Vec<String>,
+) -> Axis {
+    let given = match (options.rate, options.base_band) {
+        (Some(rate), _) => Axis::time(0.0, 1.0 / rate, n),
+        (None, Some(band)) => Axis::frequency(0.0, band / stated.lines_of(n), n),
+        (None, None) => {
+            return match printed {
+                Some(printed) => trusted(printed, stated, doubts),
+                None => headed(n, stated, doubts),
+            };
+        }
+    };
+    let step = given.step().unwrap_or(f64::NAN);
+    contradicted(stated, options, step, doubts);
+    let Some(Printed { axis, label, .. }) = printed else { return given };
+    if given.kind != axis.kind {
+        doubts.push(format!("{label} is no axis for what was stated, and is passed over."));
+        return given;
+    }
+    let close = |a: f64, b: f64| (a / b - 1.0).abs() <= 1e-6;
+    if let (AxisKind::Frequency, Some(band), true) = (&axis.kind, options.base_band, n > 1)
+        && axis.step().is_some()
+        && close(axis.at(n - 1), band)
+    {
+        return axis; // it ends at the base band, wherever it begins
+    }
+    // Six digits of a printed column are the least that a statement should agree with.
+    if !axis.step().is_some_and(|printed| close(printed, step)) {
+        let said = axis.step().map_or("is uneven".to_owned(), |s| format!("has a step of {}", short(s)));
+        doubts.push(format!("{label} {said}; a step of {} was stated and is used.", short(step)));
+    }
+    if given.kind == AxisKind::Time { Axis::time(axis.start(), step, n) } else { given }
+}
+
+/// Says where a person's statement and the header differ.
+fn contradicted(stated: &Stated, options: &Options, step: f64, doubts: &mut Vec<String>) {
+    let mut differ = |what: &str, written: Option<f64>, said: Option<f64>| {
+        if let (Some(written), Some(said)) = (written, said)
+            && written != said
+        {
+            doubts.push(format!("The file says a {what} of {written} Hz; {said} Hz was given and is used."));
+        }
+    };
+    if let Some(rate) = options.rate {
+        differ("sampling rate", stated.rate, Some(rate));
+        if stated.rate.is_none()
+            && let Some(band) = stated.base_band.or(stated.line_width)
+        {
+            doubts.push(format!(
+                "The file states a spectrum (of {band} Hz); a rate of {rate} Hz was given: the values are taken as a time trace."
+            ));
+        }
+        if options.base_band.is_some() {
+            doubts.push("A rate and a base band were given: the rate is used.".to_owned());
+        }
+    } else {
+        differ("base band", stated.base_band, options.base_band);
+        differ("line distance", stated.line_width.map(short), Some(short(step)));
+        if let (Some(rate), Some(band), None, None) =
+            (stated.rate, options.base_band, stated.base_band, stated.line_width)
+        {
+            doubts.push(format!(
+                "The file says a sampling rate of {rate} Hz; a base band of {band} Hz was given: the values are taken as a spectrum."
+            ));
+        }
+    }
+}
+
+/// A printed axis, compared with what the header states.
+fn trusted(printed: Printed, stated: &Stated, doubts: &mut Vec<String>) -> Axis {
+    let Printed { axis, label, doubts: said } = printed;
+    doubts.extend(said);
+    let step = match axis.kind {
+        AxisKind::Time => stated.rate.map(|rate| 1.0 / rate),
+        AxisKind::Frequency => stated.line_width,
+        AxisKind::Index | AxisKind::Other(_) => None,
+    };
+    if let (Some(stated), Some(step)) = (step, axis.step())
+        && (step / stated - 1.0).abs() > 1e-3
+    {
+        doubts.push(format!(
+            "The preamble states a step of {}; {label} has {} and is used.",
+            short(stated),
+            short(step)
+        ));
+    }
+    axis
+}
+
+/// The axis that the header states.
+fn headed(n: usize, stated: &Stated, doubts: &mut Vec<String>) -> Axis {
+    match (stated.spacing(n), stated.rate) {
+        (Some(df), rate) if rate.is_none() || stated.all_lines(n) => Axis::frequency(0.0, df, n),
+        (spacing, Some(rate)) => {
+            if spacing.is_some() {
+                doubts.push(format!(
+                    "The file states a sampling rate of {rate} Hz and a spectrum too: the values are taken as a time trace (give --base-band for a spectrum)."
+                ));
+            }
+            Axis::time(0.0, 1.0 / rate, n)
+        }
+        _ => {
+            doubts.push(
+                "The file says nothing of its abscissa: values are numbered (give --rate for a time trace, --base-band for a spectrum).".to_owned(),
+            );
+            Axis::index(n)
+        }
+    }
+}
+
+/// Multiplies values by the factor of their unit.
+///
+/// # Errors
+/// If one becomes too large for a number.
+pub(super) fn to_si(path: &Path, values: &mut Values, factor: f64) -> Result<()> {
+    if factor == 1.0 {
+        return Ok(());
+    }
+    let over = match values {
+        Values::Real(values) => {
+            for v in values.iter_mut() {
+                *v *= factor;
+            }
+            values.iter().position(|v| v.is_infinite())
+        }
+        Values::Complex(values) => {
+            for v in values.iter_mut() {
+                *v *= factor;
+            }
+            values.iter().position(|v| v.re.is_infinite() || v.im.is_infinite())
+        }
+    };
+    match over {
+        Some(at) => Err(Error::input(
+            Place::file(path),
+            format!("value {} is too large for a number once it is taken to SI by {factor}", at + 1),
+            "values that a measurement can have",
+        )
+        .hint("check the unit, or state it with --unit")),
+        None => Ok(()),
+    }
+}
 
 /// Axis of `values` (SI) and a sentence where it is uneven or was printed with too few digits.
 ///

@@ -11,10 +11,14 @@
 
 mod clean;
 mod fixed;
+mod gaps;
 mod layout;
+mod names;
 mod rows;
 pub(super) mod stated;
 
+use super::abscissa::{self, Printed, to_si};
+use super::csv::name::{Name, Part};
 use super::format::Format;
 use super::reader::{Options, Recording};
 use super::text;
@@ -24,6 +28,7 @@ use crate::record::{Axis, AxisKind, Frf, FrfKind, Meta, Record, Scaling, Spectru
 use layout::{Cell, Layout};
 use num_complex::Complex64;
 use stated::Stated;
+use std::borrow::Cow;
 
 /// Text of any kind: this is the last format tried.
 pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
@@ -36,10 +41,11 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
     let layout = layout::detect(source.path(), &head, source.len() > head.len() as u64, options)?;
     let stated = stated::read(&layout.header);
     let mut doubts = Vec::new();
-    let columns = if let Some(values) = fast(source, &layout)? {
-        Columns::Real(deal(values, layout.columns))
+    let mut columns = if let Some(values) = fast(source, &layout)? {
+        deal(values, layout.columns).into_iter().map(Values::Real).collect()
     } else {
         let bytes = source.all()?;
+        let bytes = if lone_cr(&bytes, false) { with_lf(bytes) } else { bytes };
         let rows = rows::read(source.path(), &bytes, &layout, options.allow_missing)?;
         drop(bytes);
         if rows.missing > 0 {
@@ -52,11 +58,16 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
             ));
         }
         match layout.cell {
-            Cell::Complex => Columns::Complex(deal(rows.values, layout.columns)),
-            Cell::Real => Columns::Real(deal(rows.values.iter().map(|v| v.re).collect(), layout.columns)),
+            Cell::Complex => deal(rows.values, layout.columns).into_iter().map(Values::Complex).collect(),
+            Cell::Real => {
+                let values = rows.values.iter().map(|v| v.re).collect();
+                deal(values, layout.columns).into_iter().map(Values::Real).collect::<Vec<_>>()
+            }
         }
     };
-    let records = assemble(source, columns, &layout, &stated, options)?;
+    doubts.extend(gaps::bridge(&mut columns));
+    let n = columns.first().map_or(0, Values::len);
+    let records = assemble(source, columns, n, &layout, &stated, options)?;
     Ok(Recording { path: source.path().to_owned(), format: Format::Ascii, records, doubts })
 }
 
@@ -71,9 +82,17 @@ pub(super) fn survey(source: &Source, options: &Options) -> Result<(Vec<Header>,
             clean::scan(&text, &layout, layout.first_byte as u64, text.len(), |v| summary.push(v.abs()))?;
         if clean.is_some() {
             let stated = stated::read(&layout.header);
-            let mut records = assemble(&text, Columns::Real(vec![Vec::new()]), &layout, &stated, options)?;
+            let empty = vec![Values::Real(Vec::new())];
+            let mut records = assemble(&text, empty, summary.n, &layout, &stated, options)?;
             if let Some(record) = records.pop() {
-                return Ok((vec![streamed(&record, &summary, &stated, options)], Vec::new()));
+                let said = names::of(&layout).and_then(|mut names| names.pop()?.unit).or(stated.unit);
+                let factor = options.adopt(&mut record.meta().clone(), said.as_deref());
+                // The values themselves are gone: the largest stands for them.
+                let largest = summary.max.map(|(_, max)| max).into_iter().collect();
+                to_si(text.path(), &mut Values::Real(largest), factor)?;
+                let mut header = Header::of(&record).with_summary(&summary, factor, record.axis());
+                header.declared_n = record.meta().declared_n;
+                return Ok((vec![header], Vec::new()));
             }
         }
     }
@@ -81,29 +100,36 @@ pub(super) fn survey(source: &Source, options: &Options) -> Result<(Vec<Header>,
     Ok((recording.records.iter().map(Header::of).collect(), recording.doubts))
 }
 
-/// Header of a single streamed column: `empty` carries everything but the values.
-fn streamed(empty: &Record, summary: &Summary, stated: &Stated, options: &Options) -> Header {
-    let mut meta = empty.meta().clone();
-    let axis = axis_of(summary.n, stated, options, &mut meta);
-    let factor =
-        unit_of(stated, options).map_or(1.0, |text| crate::units::Unit::parse_or_opaque(&text).factor());
-    let mut header = Header::of(empty).with_summary(summary, factor, &axis);
-    header.x0 = axis.start();
-    header.dx = axis.step();
-    header.declared_n = meta.declared_n;
-    header.doubts = meta.doubts;
-    header
-}
-
-/// UTF-16 and CR line ends are turned into UTF-8 with LF; everything else stays on disk.
+/// UTF-16 and lone CRs in the head are turned into UTF-8 with LF; everything else stays on disk.
 fn plain(source: &Source) -> Result<Source> {
     let head = source.head()?;
-    let cr_only = head.contains(&b'\r') && !head.contains(&b'\n');
-    if !text::is_utf16(&head) && !cr_only {
+    let bytes = if text::is_utf16(&head) {
+        text::decode(&source.all()?).into_owned().into_bytes()
+    } else if lone_cr(&head, source.len() > head.len() as u64) {
+        source.all()?
+    } else {
         return Ok(source.clone());
+    };
+    Source::memory(source.path(), with_lf(bytes))
+}
+
+/// Whether a CR stands before anything but LF or another CR; the last byte of a head that is `cut` off tells nothing.
+fn lone_cr(bytes: &[u8], cut: bool) -> bool {
+    bytes.windows(2).any(|w| w[0] == b'\r' && !matches!(w[1], b'\r' | b'\n'))
+        || (!cut && bytes.last() == Some(&b'\r'))
+}
+
+/// Every CR that no LF follows becomes LF; several CRs before LF are one line end, as text that was converted twice has it.
+fn with_lf(mut bytes: Vec<u8>) -> Vec<u8> {
+    let mut before_lf = false;
+    for b in bytes.iter_mut().rev() {
+        if *b == b'\r' && !before_lf {
+            *b = b'\n';
+        } else {
+            before_lf = matches!(*b, b'\n' | b'\r');
+        }
     }
-    let text = text::decode(&source.all()?).replace("\r\n", "\n").replace('\r', "\n");
-    Source::memory(source.path(), text.into_bytes())
+    bytes
 }
 
 fn fast(source: &Source, layout: &Layout) -> Result<Option<Vec<f64>>> {
@@ -116,11 +142,6 @@ fn fast(source: &Source, layout: &Layout) -> Result<Option<Vec<f64>>> {
     }
 }
 
-enum Columns {
-    Real(Vec<Vec<f64>>),
-    Complex(Vec<Vec<Complex64>>),
-}
-
 /// Row-wise values to columns.
 fn deal<T: Copy>(values: Vec<T>, columns: usize) -> Vec<Vec<T>> {
     if columns == 1 {
@@ -129,111 +150,181 @@ fn deal<T: Copy>(values: Vec<T>, columns: usize) -> Vec<Vec<T>> {
     (0..columns).map(|c| values.iter().skip(c).step_by(columns).copied().collect()).collect()
 }
 
+/// Records of `n` rows.
 fn assemble(
     source: &Source,
-    columns: Columns,
+    mut columns: Vec<Values>,
+    n: usize,
     layout: &Layout,
     stated: &Stated,
     options: &Options,
 ) -> Result<Vec<Record>> {
+    let found = names::of(layout);
+    let named = found.is_some();
+    let nameless = Name { name: String::new(), unit: None };
+    let mut names = found.unwrap_or_else(|| vec![nameless; layout.columns]);
+    let mut doubts = stated.doubts.clone();
+    let pair = options.complex && columns.len() == 2 && layout.cell == Cell::Real;
+    let printed = if columns.len() > 1 && !pair && is_abscissa(&columns[0], &names[0]) {
+        let values = columns.remove(0);
+        Some(printed(source, &names.remove(0), &real_parts(&values), layout, stated, options)?)
+    } else {
+        None
+    };
+    let has_axis = printed.is_some();
+    let axis = abscissa::choose(printed, n, stated, options, &mut doubts);
     let mut meta = Meta::new(stated.name.clone().unwrap_or_default(), crate::units::Unit::opaque(""));
     meta.notes.clone_from(&stated.notes);
     meta.step("read", &[("file", &source.name()), ("format", &"ascii")]);
-    let factor = match unit_of(stated, options) {
-        Some(text) => meta.adopt_unit(&text),
-        None => 1.0,
-    };
-    match columns {
-        Columns::Complex(mut columns) => {
-            let axis_column =
-                (columns.len() > 1 && rising(&real_parts(&columns[0]))).then(|| columns.remove(0));
-            let axis = match axis_column {
-                Some(column) => abscissa(real_parts(&column), layout, stated, options, &mut meta),
-                None => axis_of(columns[0].len(), stated, options, &mut meta),
-            };
-            columns
-                .into_iter()
-                .enumerate()
-                .map(|(i, values)| complex_record(source, numbered(&meta, i), &axis, values, factor, stated))
-                .collect()
-        }
-        Columns::Real(mut columns) => {
-            let first_is_axis = columns.len() > 1 && rising(&columns[0]);
-            let axis = if first_is_axis {
-                let column = columns.remove(0);
-                abscissa(column, layout, stated, options, &mut meta)
-            } else {
-                axis_of(columns[0].len(), stated, options, &mut meta)
-            };
-            if columns.len() == 2 && (stated.complex || options.complex) {
-                let imaginary = columns.pop().unwrap_or_default();
-                let values =
-                    columns[0].iter().zip(&imaginary).map(|(re, im)| Complex64::new(*re, *im)).collect();
-                return Ok(vec![complex_record(source, meta, &axis, values, factor, stated)?]);
-            }
-            if columns.len() == 2 && !first_is_axis {
-                meta.doubt(
-                    "Two columns are read as two channels; if they are real and imaginary part, give --complex.",
-                );
-            }
-            Ok(columns
-                .into_iter()
-                .enumerate()
-                .map(|(i, values)| {
-                    real_record(numbered(&meta, i), &axis, values, factor, stated, layout.columns)
-                })
-                .collect())
-        }
+    for doubt in doubts {
+        meta.doubt(doubt);
     }
+    if axis.kind == AxisKind::Frequency
+        && !has_axis
+        && let Some(lines) = stated.lines
+        && n != lines as usize
+        && n != lines as usize + 1
+    {
+        let expected = lines as usize + 1;
+        meta.declared_n = Some(expected);
+        meta.doubt(format!("The header declares {lines} lines, so {expected} values; the file holds {n}."));
+    }
+    join_parts(source, &mut columns, &mut names, &axis, layout, options)?;
+    if columns.len() == 2 && !has_axis && !named {
+        meta.doubt(
+            "Two columns are read as two channels; if they are real and imaginary part, give --complex.",
+        );
+    }
+    let alone = layout.columns == 1;
+    let made = columns.into_iter().zip(names).enumerate().map(|(i, (mut values, name))| {
+        let mut meta = if alone { meta.clone() } else { numbered(&meta, i, &name) };
+        if alone && meta.name.is_empty() {
+            meta.name = name.name;
+        }
+        let factor = options.adopt(&mut meta, name.unit.as_deref().or(stated.unit.as_deref()));
+        to_si(source.path(), &mut values, factor)?;
+        record(source, meta, axis.clone(), values, stated)
+    });
+    made.collect()
+}
+
+/// The first column is an abscissa by name, or because it rises.
+fn is_abscissa(values: &Values, name: &Name) -> bool {
+    let nameless = Name { name: name.name.clone(), unit: None };
+    let values = real_parts(values);
+    rising(&values) || (nameless.axis(true).is_some() && values.iter().all(|v| v.is_finite()))
+}
+
+/// Two columns become one where they are real and imaginary part, by their names or because a person says so.
+fn join_parts(
+    source: &Source,
+    columns: &mut Vec<Values>,
+    names: &mut Vec<Name>,
+    axis: &Axis,
+    layout: &Layout,
+    options: &Options,
+) -> Result<()> {
+    if layout.cell == Cell::Complex {
+        return Ok(());
+    }
+    if options.complex && columns.len() != 2 {
+        return Err(Error::input(
+            Place::file(source.path()),
+            format!("{} column(s) of values, where complex values were stated", columns.len()),
+            "two columns of values: real and imaginary part",
+        )
+        .hint("leave out --complex"));
+    }
+    let parts: Vec<_> = names.iter().map(Name::part).collect();
+    let whole = match parts.as_slice() {
+        [Some((Part::Real, whole)), Some((Part::Imaginary, other))] if whole == other => Some(whole.clone()),
+        _ => None,
+    };
+    if !options.complex && (whole.is_none() || axis.kind == AxisKind::Time) {
+        return Ok(());
+    }
+    if let [Values::Real(real), Values::Real(imaginary)] = columns.as_slice() {
+        let values = real.iter().zip(imaginary).map(|(re, im)| Complex64::new(*re, *im)).collect();
+        let unit = names.iter_mut().find_map(|name| name.unit.take());
+        *columns = vec![Values::Complex(values)];
+        *names = vec![Name { name: whole.unwrap_or_default(), unit }];
+    }
+    Ok(())
 }
 
 /// Several columns without names are told apart by number.
-fn numbered(meta: &Meta, index: usize) -> Meta {
+fn numbered(meta: &Meta, index: usize, name: &Name) -> Meta {
     let mut meta = meta.clone();
-    if index > 0 || meta.name.is_empty() {
+    if !name.name.is_empty() {
+        meta.name.clone_from(&name.name);
+    } else if index > 0 || meta.name.is_empty() {
         meta.name = format!("{} {}", if meta.name.is_empty() { "column" } else { &meta.name }, index + 1);
     }
     meta
 }
 
-fn real_parts(values: &[Complex64]) -> Vec<f64> {
-    values.iter().map(|v| v.re).collect()
+fn real_parts(values: &Values) -> Cow<'_, [f64]> {
+    match values {
+        Values::Real(values) => values.into(),
+        Values::Complex(values) => values.iter().map(|v| v.re).collect(),
+    }
 }
 
 fn rising(values: &[f64]) -> bool {
     values.len() > 2 && values.windows(2).all(|w| w[1] > w[0])
 }
 
-fn unit_of(stated: &Stated, options: &Options) -> Option<String> {
-    options.unit.as_ref().map(|u| u.symbol().to_owned()).or_else(|| stated.unit.clone())
-}
-
 /// Axis from a printed first column.
-fn abscissa(values: Vec<f64>, layout: &Layout, stated: &Stated, options: &Options, meta: &mut Meta) -> Axis {
-    let frequency =
-        if options.base_band.is_some() || stated.base_band.is_some() || stated.line_width.is_some() {
-            Some(true)
-        } else if options.rate.is_some() || stated.rate.is_some() {
-            Some(false)
+fn printed(
+    source: &Source,
+    name: &Name,
+    values: &[f64],
+    layout: &Layout,
+    stated: &Stated,
+    options: &Options,
+) -> Result<Printed> {
+    let mut doubts = Vec::new();
+    let label = match name.name.as_str() {
+        "" => "The first column".to_owned(),
+        name => format!("The column {name:?}"),
+    };
+    let by_name = name.axis(true);
+    let by_header = || {
+        if options.rate.is_some() {
+            Some(AxisKind::Time)
+        } else if options.base_band.is_some() || stated.all_lines(values.len()) {
+            Some(AxisKind::Frequency)
+        } else if stated.rate.is_some() {
+            Some(AxisKind::Time)
+        } else if stated.spacing(values.len()).is_some() || layout.cell == Cell::Complex {
+            Some(AxisKind::Frequency)
         } else {
-            stated.frequency.or((layout.cell == Cell::Complex).then_some(true))
-        };
-    let kind = match frequency {
-        Some(true) => AxisKind::Frequency,
-        Some(false) => AxisKind::Time,
-        None => {
-            meta.doubt(
-                "The first column rises and is taken as the abscissa; the file does not say whether it is time or frequency (give --rate or --base-band).",
-            );
-            AxisKind::Other("first column".into())
+            None
         }
     };
-    let resolution = printed_resolution(&values);
-    let (axis, doubt) = super::abscissa::from_values(kind, values, resolution, "The first column");
-    if let Some(doubt) = doubt {
-        meta.doubt(doubt);
-    }
-    axis
+    let (kind, factor) = if let Some(kind) = by_name {
+        let (factor, doubt) = name.to_axis(&kind, &label).map_err(|found| {
+            Error::input(Place::file(source.path()), format!("{found} {:?}", name.name), "s, ms, Hz, kHz, …")
+                .hint("name another unit in the header, e.g. time [s]")
+        })?;
+        doubts.extend(doubt);
+        (kind, factor)
+    } else if let Some(kind) = by_header() {
+        let (what, unit) = if kind == AxisKind::Time { ("time", "seconds") } else { ("frequency", "hertz") };
+        doubts.push(format!("{label} is taken as the {what}; no unit is stated: {unit} are assumed."));
+        (kind, 1.0)
+    } else {
+        doubts.push(format!(
+            "{label} rises and is taken as the abscissa; the file does not say whether it is time or frequency (give --rate or --base-band)."
+        ));
+        let name = if name.name.is_empty() { "first column" } else { &name.name };
+        (AxisKind::Other(name.into()), 1.0)
+    };
+    let resolution = printed_resolution(values) * factor;
+    let values = values.iter().map(|v| v * factor).collect();
+    let (axis, doubt) = abscissa::from_values(kind, values, resolution, &label);
+    doubts.extend(doubt);
+    Ok(Printed { axis, label, doubts })
 }
 
 /// Half a unit in the last printed digit, judged from the values themselves: the coarsest power of ten (between 1 and
@@ -250,107 +341,29 @@ fn printed_resolution(values: &[f64]) -> f64 {
         .map_or(0.0, |unit| unit / 2.0)
 }
 
-/// Axis of values without an abscissa of their own.
-fn axis_of(n: usize, stated: &Stated, options: &Options, meta: &mut Meta) -> Axis {
-    if let Some(rate) = options.rate {
-        return Axis::time(0.0, 1.0 / rate, n);
-    }
-    let base_band = options.base_band.or(stated.base_band);
-    if let (Some(said), Some(written)) = (options.base_band, stated.base_band)
-        && said != written
-    {
-        meta.doubt(format!("The file says a base band of {written} Hz; {said} Hz was given and is used."));
-    }
-    if let Some(df) = stated.line_width {
-        return Axis::frequency(0.0, df, n);
-    }
-    if let Some(base_band) = base_band {
-        let lines = stated.lines.unwrap_or_else(|| n.saturating_sub(1).max(1) as f64);
-        if let Some(lines) = stated.lines {
-            let expected = lines as usize + 1;
-            if n != expected && n + 1 != expected {
-                meta.declared_n = Some(expected);
-                meta.doubt(format!(
-                    "The header declares {lines} lines, so {expected} values; the file holds {n}."
-                ));
-            }
-        }
-        return Axis::frequency(0.0, base_band / lines, n);
-    }
-    if let Some(rate) = stated.rate {
-        return Axis::time(0.0, 1.0 / rate, n);
-    }
-    meta.doubt(
-        "The file says nothing of its abscissa: values are numbered (give --rate for a time trace, --base-band for a spectrum).",
-    );
-    Axis::index(n)
-}
-
-fn real_record(
-    mut meta: Meta,
-    axis: &Axis,
-    mut values: Vec<f64>,
-    factor: f64,
-    stated: &Stated,
-    columns: usize,
-) -> Record {
-    if columns == 1 {
-        meta.name = stated.name.clone().unwrap_or_default();
-    }
-    if factor != 1.0 {
-        for value in &mut values {
-            *value *= factor;
-        }
-    }
-    if axis.kind == AxisKind::Frequency {
-        meta.doubt(SCALING_UNSAID);
-        return Record::Spectrum(Spectrum {
-            meta,
-            axis: axis.clone(),
-            values: Values::Real(values),
-            scaling: Scaling::Unknown,
-            window: stated.window,
-            enbw: None,
-        });
-    }
-    Record::Trace(Trace { meta, axis: axis.clone(), values })
-}
-
 pub(super) const SCALING_UNSAID: &str =
     "The file does not say how its spectrum is scaled; where it matters, peak amplitudes are assumed.";
 
-fn complex_record(
-    source: &Source,
-    mut meta: Meta,
-    axis: &Axis,
-    mut values: Vec<Complex64>,
-    factor: f64,
-    stated: &Stated,
-) -> Result<Record> {
-    if axis.kind == AxisKind::Time {
-        return Err(Error::input(
-            Place::file(source.path()),
-            "complex values over time",
-            "complex values over frequency, or real values over time",
-        )
-        .hint("give --base-band instead of --rate"));
-    }
-    if factor != 1.0 {
-        for value in &mut values {
-            *value *= factor;
+fn record(source: &Source, mut meta: Meta, axis: Axis, values: Values, stated: &Stated) -> Result<Record> {
+    let values = match values {
+        Values::Real(values) if axis.kind != AxisKind::Frequency => {
+            return Ok(Record::Trace(Trace { meta, axis, values }));
         }
-    }
-    let kind = FrfKind::of(meta.quantity);
-    if kind == FrfKind::Other {
-        meta.doubt(SCALING_UNSAID);
-        return Ok(Record::Spectrum(Spectrum {
-            meta,
-            axis: axis.clone(),
-            values: Values::Complex(values),
-            scaling: Scaling::Unknown,
-            window: stated.window,
-            enbw: None,
-        }));
-    }
-    Ok(Record::Frf(Frf { meta, axis: axis.clone(), values, kind }))
+        Values::Complex(_) if axis.kind == AxisKind::Time => {
+            return Err(Error::input(
+                Place::file(source.path()),
+                "complex values over time",
+                "complex values over frequency, or real values over time",
+            )
+            .hint("give --base-band instead of --rate"));
+        }
+        Values::Complex(values) if FrfKind::of(meta.quantity) != FrfKind::Other => {
+            let kind = FrfKind::of(meta.quantity);
+            return Ok(Record::Frf(Frf { meta, axis, values, kind }));
+        }
+        values => values,
+    };
+    meta.doubt(SCALING_UNSAID);
+    let (scaling, window) = (Scaling::Unknown, stated.window);
+    Ok(Record::Spectrum(Spectrum { meta, axis, values, scaling, window, enbw: None }))
 }

@@ -12,7 +12,7 @@
 
 mod columns;
 mod layout;
-mod name;
+pub(super) mod name;
 mod records;
 mod rows;
 

@@ -3,11 +3,14 @@
 use super::format::{Entry, Format, TABLE};
 use super::{Header, Source};
 use crate::error::{Error, Place, Result};
-use crate::record::Record;
+use crate::record::{Meta, Record};
 use crate::units::Unit;
 use rayon::prelude::*;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+
+/// Rates, bands and line widths in Hz of any instrument lie far inside; steps made of them are finite and positive.
+pub(super) const POSSIBLE: std::ops::RangeInclusive<f64> = 1e-12..=1e15;
 
 /// What a person knows of a file that the file does not say. A statement here that contradicts the file wins, with a
 /// doubt in the record.
@@ -25,6 +28,23 @@ pub struct Options {
     pub decimal_comma: Option<bool>,
     /// Two value columns are real and imaginary part.
     pub complex: bool,
+}
+
+impl Options {
+    /// Adopts the unit of values: what a person states, else what the file says. Returns the factor to SI.
+    pub(super) fn adopt(&self, meta: &mut Meta, said: Option<&str>) -> f64 {
+        if let Some(given) = &self.unit {
+            if let Some(said) = said.filter(|u| Unit::parse_or_opaque(u) != *given) {
+                meta.doubt(format!("The file says the unit {said:?}; {given} was stated and is used."));
+            }
+            return meta.adopt_unit(given.symbol());
+        }
+        if let Some(said) = said {
+            return meta.adopt_unit(said);
+        }
+        meta.doubt("The file says no unit: the values are kept as they are.");
+        1.0
+    }
 }
 
 /// Everything a file holds.
@@ -174,6 +194,12 @@ impl Reader {
 
     /// The format of a source, and the source itself: in memory where its first bytes are all of it.
     fn entry(&self, source: &Source) -> Result<(&'static Entry, Source)> {
+        for (what, value) in [("sampling rate", self.options.rate), ("base band", self.options.base_band)] {
+            if let Some(value) = value.filter(|v| !POSSIBLE.contains(v)) {
+                let found = format!("a {what} of {value} Hz was stated");
+                return Err(Error::input(Place::file(source.path()), found, "a possible number of hertz"));
+            }
+        }
         let head = source.head()?;
         let forced = self.format.and_then(|format| TABLE.iter().find(|e| e.format == format));
         let entry = forced.or_else(|| TABLE.iter().find(|e| (e.sniff)(&head, source))).ok_or_else(|| {

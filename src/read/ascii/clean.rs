@@ -27,7 +27,12 @@ pub fn read(source: &Source, layout: &Layout) -> Result<Option<Vec<f64>>> {
         .map(|i| (from + (to - from) * i / pieces, from + (to - from) * (i + 1) / pieces))
         .collect();
     let counts: Vec<usize> = bounds.par_iter().map(|b| rows_in(source, layout, *b)).collect::<Result<_>>()?;
-    let mut values = vec![0.0; counts.iter().sum::<usize>() * layout.columns];
+    let total = counts.iter().sum::<usize>().saturating_mul(layout.columns);
+    // A value takes two bytes with what ends it: blank lines must not claim room for rows of many columns.
+    if total as u64 > (to - from) / 2 + 1 {
+        return Ok(None);
+    }
+    let mut values = vec![0.0; total];
     let mut rest = values.as_mut_slice();
     let parts: Vec<(&mut [f64], (u64, u64))> = counts
         .iter()
@@ -187,16 +192,26 @@ enum Row {
 #[inline]
 fn row(bytes: &[u8], layout: &Layout, sink: &mut impl FnMut(f64)) -> Row {
     let blank = |at: &mut usize| {
-        while bytes.get(*at).is_some_and(|b| matches!(b, b' ' | b'\r' | b'\t')) {
+        while bytes.get(*at).is_some_and(|b| matches!(b, b' ' | b'\t')) {
             *at += 1;
         }
+    };
+    // CR ends a line only before LF; elsewhere it is a line end of its own, which the slow path sees to.
+    let line_end = |at: usize| match bytes.get(at) {
+        None | Some(b'\n') => Some(at + 1),
+        Some(b'\r') if bytes.get(at + 1) == Some(&b'\n') => Some(at + 2),
+        Some(b'\r') => {
+            let crs = bytes[at..].iter().take_while(|b| **b == b'\r').count();
+            matches!(bytes.get(at + crs), None | Some(b'\n')).then_some(at + crs + 1)
+        }
+        Some(_) => None,
     };
     // Signs make the number of leading blanks random: take two without a branch.
     let mut at = usize::from(bytes.first() == Some(&b' '));
     at += usize::from(bytes.get(at) == Some(&b' '));
     blank(&mut at);
-    if matches!(bytes.get(at), None | Some(b'\n')) {
-        return Row::Blank(at + 1);
+    if let Some(used) = line_end(at) {
+        return Row::Blank(used);
     }
     for column in 0..layout.columns {
         if column > 0
@@ -222,8 +237,5 @@ fn row(bytes: &[u8], layout: &Layout, sink: &mut impl FnMut(f64)) -> Row {
             return Row::Odd;
         }
     }
-    match bytes.get(at) {
-        None | Some(b'\n') => Row::Values(at + 1),
-        _ => Row::Odd,
-    }
+    line_end(at).map_or(Row::Odd, Row::Values)
 }

@@ -1,6 +1,7 @@
 //! Finding out how a text file of numbers is laid out.
 
 use super::fixed::Fixed;
+use super::rows::without_end_mark;
 use crate::error::{Error, Place, Result};
 use crate::read::Options;
 use crate::read::number::{self, Exponential};
@@ -50,8 +51,7 @@ pub struct Layout {
 /// Rows that tell the layout where no comma makes it doubtful.
 const ENOUGH: usize = 24;
 
-/// Lines of `bytes` with their numbers and offsets, ended by LF or CRLF. A lone CR is a blank here; files that end
-/// their lines with CR alone are converted before.
+/// Lines of `bytes` with their numbers and offsets, ended by LF or CRLF. A lone CR is converted before.
 pub fn lines(bytes: &[u8]) -> impl Iterator<Item = (u64, usize, &[u8])> {
     let mut offset = 0;
     bytes.split(|b| *b == b'\n').enumerate().map(move |(i, line)| {
@@ -94,8 +94,13 @@ pub fn detect(path: &Path, head: &[u8], cut: bool, options: &Options) -> Result<
     let mut rows: Vec<(u64, usize, &[u8])> = Vec::new();
     let mut comma = false;
     // The last line of the head may be half a line.
-    let whole = if cut { head.iter().rposition(|b| *b == b'\n').unwrap_or(head.len()) } else { head.len() };
-    for (number, start, line) in lines(&head[..whole]) {
+    let whole = if cut {
+        &head[..head.iter().rposition(|b| *b == b'\n').unwrap_or(head.len())]
+    } else {
+        without_end_mark(head)
+    };
+    let mark = if whole.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+    for (number, start, line) in lines(&whole[mark..]).map(|(n, start, line)| (n, start + mark, line)) {
         if rows.len() >= ENOUGH && !comma {
             break;
         }

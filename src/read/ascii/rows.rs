@@ -2,12 +2,10 @@
 
 use super::layout::{Cell, Layout, comment, complex, cut_row, lines, shorten};
 use crate::error::{Error, Place, Result};
+use crate::read::missing::Missing;
 use crate::read::number;
 use num_complex::Complex64;
 use std::path::Path;
-
-/// How many line numbers a complaint lists.
-const LISTED: usize = 8;
 
 /// Columns of numbers and what was met on the way.
 #[derive(Debug, Default, PartialEq)]
@@ -24,10 +22,11 @@ pub struct Rows {
 ///
 /// # Errors
 /// On the first word that is no number and the first row with another number of values; on missing values, all at once,
-/// unless `allow_missing`.
+/// unless `allow_missing`; on more blank lines than values that the bytes could hold.
 pub fn read(path: &Path, bytes: &[u8], layout: &Layout, allow_missing: bool) -> Result<Rows> {
     let mut rows = Rows::default();
-    let mut missing_lines: Vec<u64> = Vec::new();
+    let bytes = without_end_mark(bytes);
+    let mut missing = Missing::default();
     let mut blank_since: Option<u64> = None;
     let mut cells = Vec::new();
     for (index, _, line) in lines(&bytes[layout.first_byte.min(bytes.len())..]) {
@@ -42,10 +41,17 @@ pub fn read(path: &Path, bytes: &[u8], layout: &Layout, allow_missing: bool) -> 
         }
         if let Some(since) = blank_since.take() {
             // Blank lines with rows behind them are rows without values.
+            let blanks = usize::try_from(number - since).unwrap_or(usize::MAX);
             for blank in since..number {
-                missing_lines.push(blank);
-                rows.values.extend(std::iter::repeat_n(Complex64::new(f64::NAN, 0.0), layout.columns));
-                rows.missing += layout.columns;
+                missing.take(blank, layout.columns, String::new);
+            }
+            if allow_missing {
+                // A blank line is one byte: many columns would make much of nothing.
+                let wanted = blanks.saturating_mul(layout.columns);
+                if wanted > bytes.len().saturating_sub(rows.values.len()) {
+                    return Err(too_many(path, since, blanks, layout.columns));
+                }
+                rows.values.extend(std::iter::repeat_n(Complex64::new(f64::NAN, 0.0), wanted));
             }
         }
         if layout.columns == 1 && layout.cell == Cell::Complex {
@@ -55,7 +61,7 @@ pub fn read(path: &Path, bytes: &[u8], layout: &Layout, allow_missing: bool) -> 
         } else {
             cut_row(line, layout.separator, &mut cells);
         }
-        let mut gap = false;
+        let mut gaps = 0;
         for &(offset, cell) in &cells {
             let value = match layout.cell {
                 Cell::Real => number::parse_with(cell, layout.decimal).map(|v| Complex64::new(v, 0.0)),
@@ -64,8 +70,7 @@ pub fn read(path: &Path, bytes: &[u8], layout: &Layout, allow_missing: bool) -> 
             let value = match value {
                 Some(value) => value,
                 None if number::is_missing(cell) || (layout.cell == Cell::Complex && holds_nan(cell)) => {
-                    gap = true;
-                    rows.missing += 1;
+                    gaps += 1;
                     Complex64::new(f64::NAN, 0.0)
                 }
                 None => return Err(not_a_number(path, number, offset, cell, layout)),
@@ -80,25 +85,28 @@ pub fn read(path: &Path, bytes: &[u8], layout: &Layout, allow_missing: bool) -> 
             )
             .hint("mend or remove the row; a half-written last line means that the export was cut off"));
         }
-        if gap {
-            missing_lines.push(number);
+        if gaps > 0 {
+            missing.take(number, gaps, String::new);
         }
     }
-    if !missing_lines.is_empty() && !allow_missing {
-        let listed: Vec<String> = missing_lines.iter().take(LISTED).map(u64::to_string).collect();
-        let more = if missing_lines.len() > LISTED { ", …" } else { "" };
-        return Err(Error::input(
-            Place::line(path, missing_lines[0]),
-            format!(
-                "{} missing value(s) (NaN, Inf or blank) in line(s) {}{more}",
-                rows.missing,
-                listed.join(", ")
-            ),
-            "a number in every place",
-        )
-        .hint("give --allow-missing to keep them as missing"));
-    }
+    missing.check(path, allow_missing)?;
+    rows.missing = missing.count;
     Ok(rows)
+}
+
+/// Without the mark that DOS programs end a text with.
+pub fn without_end_mark(bytes: &[u8]) -> &[u8] {
+    let end = bytes.iter().rposition(|b| *b != 0x1a).map_or(0, |last| last + 1);
+    &bytes[..end]
+}
+
+fn too_many(path: &Path, line: u64, blanks: usize, columns: usize) -> Error {
+    Error::input(
+        Place::line(path, line),
+        format!("{blanks} blank lines between rows of {columns} values"),
+        "at most one missing value for each byte of the file",
+    )
+    .hint("remove the blank lines")
 }
 
 fn holds_nan(cell: &[u8]) -> bool {

@@ -1,8 +1,13 @@
-//! What header lines state: lines, base band, sampling rate, unit, window, date, names.
+//! What header lines state: lines, base band, sampling rate, unit, window, date.
 
+use crate::read::number;
+use crate::read::reader::POSSIBLE;
 use crate::record::Window;
 
 /// Statements of a header that are understood; the rest stays as notes.
+///
+/// Every number here is finite, positive and so far from the ends of what a double holds that its inverse and its quotients
+/// are too.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Stated {
     /// Number of spectral lines, not counting 0 Hz.
@@ -19,12 +24,32 @@ pub struct Stated {
     pub window: Option<Window>,
     /// Channel name or title.
     pub name: Option<String>,
-    /// The columns are said to be real and imaginary part.
-    pub complex: bool,
-    /// The first column is said to be a frequency (`Some(true)`) or a time (`Some(false)`).
-    pub frequency: Option<bool>,
     /// Header lines as key and value; the key is empty where a line has none.
     pub notes: Vec<(String, String)>,
+    /// What stands under a key that is understood and is no possible value of it.
+    pub doubts: Vec<String>,
+}
+
+/// More lines than any analyser has.
+const MOST_LINES: f64 = 1e9;
+
+impl Stated {
+    /// Whether `n` values are all lines of the base band: then they are a spectrum, whatever else is stated, since analysers
+    /// print the sampling rate too.
+    pub fn all_lines(&self, n: usize) -> bool {
+        self.base_band.is_some() && self.lines.is_some_and(|lines| lines as usize + 1 == n)
+    }
+
+    /// Distance of `n` lines in Hz, as the header states it.
+    pub fn spacing(&self, n: usize) -> Option<f64> {
+        let band = self.base_band.map(|band| band / self.lines_of(n));
+        if self.all_lines(n) { band } else { self.line_width.or(band) }
+    }
+
+    /// Number of lines, by the header or else by the number of values.
+    pub fn lines_of(&self, n: usize) -> f64 {
+        self.lines.unwrap_or_else(|| n.saturating_sub(1).max(1) as f64)
+    }
 }
 
 /// Reads header lines.
@@ -35,15 +60,17 @@ pub fn read(header: &[(u64, String)]) -> Stated {
         stated.notes.push((key.to_owned(), value.to_owned()));
         if key.is_empty() {
             free_text(line, &mut stated);
-        } else {
-            keyed(&key.to_lowercase(), value, &mut stated);
+        } else if keyed(&key.to_lowercase(), value, &mut stated).is_none() {
+            stated
+                .doubts
+                .push(format!("The header line {line:?} states no possible value and is passed over."));
         }
     }
     stated
 }
 
 /// `key: value` or `key = value`; an empty key where the line is neither. A time of day is no key.
-fn split(line: &str) -> (&str, &str) {
+pub fn split(line: &str) -> (&str, &str) {
     let at = line.find([':', '=']).filter(|at| {
         let key = line[..*at].trim();
         !key.is_empty() && !key.ends_with(|c: char| c.is_ascii_digit()) && key.len() <= 40
@@ -51,7 +78,8 @@ fn split(line: &str) -> (&str, &str) {
     at.map_or(("", line.trim()), |at| (line[..at].trim(), line[at + 1..].trim()))
 }
 
-fn keyed(key: &str, value: &str, stated: &mut Stated) {
+/// `None` where the key is understood and its value is not.
+fn keyed(key: &str, value: &str, stated: &mut Stated) -> Option<()> {
     let (key, unit_in_key) = match key.find(['[', '(']) {
         Some(at) => (key[..at].trim(), key[at + 1..].trim_end_matches([']', ')'])),
         None => (key, ""),
@@ -59,28 +87,24 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
     let key: String = key.chars().map(|c| if matches!(c, '_' | '-' | '.') { ' ' } else { c }).collect();
     let hertz =
         || quantity(value, unit_in_key, &[("mhz", 1e6), ("khz", 1e3), ("hz", 1.0), ("1/s", 1.0), ("", 1.0)]);
+    // `bandwidth`, `span` and `resolution` are no keys: they also stand over time traces, and for other things.
     match key.trim() {
         "lines" | "spectral lines" | "number of lines" | "no of lines" | "fft lines" => {
-            stated.lines = quantity(value, "", &[("", 1.0), ("lines", 1.0)]);
+            stated.lines = Some(line_count(quantity(value, "", &[("", 1.0), ("lines", 1.0)])?)?);
         }
-        "base band" | "baseband" | "frequency range" | "frequency span" | "span" | "bandwidth" | "fmax"
-        | "f max" => {
-            stated.base_band = hertz();
+        "base band" | "baseband" | "frequency range" | "frequency span" | "fmax" | "f max" => {
+            stated.base_band = Some(hertz()?);
         }
         "sampling rate" | "sample rate" | "sampling frequency" | "sample frequency" | "samplerate" | "fs"
         | "rate" => {
-            stated.rate = hertz();
+            stated.rate = Some(hertz()?);
         }
         "dt" | "delta t" | "sampling interval" | "sample interval" | "time step" | "delta time" => {
-            stated.rate = quantity(
-                value,
-                unit_in_key,
-                &[("us", 1e-6), ("µs", 1e-6), ("ms", 1e-3), ("s", 1.0), ("", 1.0)],
-            )
-            .map(|dt| 1.0 / dt);
+            let units = [("us", 1e-6), ("µs", 1e-6), ("ms", 1e-3), ("s", 1.0), ("", 1.0)];
+            stated.rate = Some(checked(1.0 / quantity(value, unit_in_key, &units)?)?);
         }
-        "df" | "delta f" | "line width" | "resolution" | "frequency resolution" | "line spacing" => {
-            stated.line_width = hertz();
+        "df" | "delta f" | "line width" | "frequency resolution" | "line spacing" => {
+            stated.line_width = Some(hertz()?);
         }
         "unit" | "units" | "y unit" | "yunit" | "amplitude unit" | "engineering unit" => {
             stated.unit = Some(value.trim_matches(['[', ']']).to_owned()).filter(|v| !v.is_empty());
@@ -94,46 +118,42 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         }
         _ => {}
     }
+    Some(())
 }
 
-/// Lines without a key: `20 Hz 400 lines`, or names of columns.
+/// Lines without a key: `20 Hz 400 lines`.
 fn free_text(line: &str, stated: &mut Stated) {
     let words: Vec<String> = line.split_whitespace().map(str::to_lowercase).collect();
-    let before = |name: &[&str]| {
-        words.windows(2).find(|w| name.contains(&w[1].trim_end_matches(','))).and_then(|w| w[0].parse().ok())
+    let before = |name: &str| {
+        let pair = words.windows(2).find(|w| w[1].trim_end_matches(',') == name)?;
+        pair[0].parse::<f64>().ok()
     };
-    if let (Some(hz), Some(lines)) = (before(&["hz"]), before(&["lines"])) {
-        stated.base_band = Some(hz);
-        stated.lines = Some(lines);
-        return;
-    }
-    let lower = line.to_lowercase();
-    if lower.contains("real") && lower.contains("imag") {
-        stated.complex = true;
-    }
-    if lower.starts_with("freq")
-        || lower.starts_with("f ")
-        || lower.contains("[hz]")
-        || lower.contains("(hz)")
-    {
-        stated.frequency = Some(true);
-    } else if lower.starts_with("time")
-        || lower.starts_with("t ")
-        || lower.contains("[s]")
-        || lower.contains("(s)")
-    {
-        stated.frequency = Some(false);
+    if let (Some(hz), Some(lines)) = (before("hz"), before("lines")) {
+        match (checked(hz), line_count(lines)) {
+            (Some(hz), Some(lines)) => (stated.base_band, stated.lines) = (Some(hz), Some(lines)),
+            _ => stated
+                .doubts
+                .push(format!("The header line {line:?} states no possible value and is passed over.")),
+        }
     }
 }
 
-/// A positive number with one of `units` behind it (or the unit from the key).
+/// A number with one of `units` behind it (or the unit from the key), checked.
 fn quantity(value: &str, unit_in_key: &str, units: &[(&str, f64)]) -> Option<f64> {
     let value = value.trim();
-    let (number, used) = crate::read::number::prefix(value.as_bytes(), b'.')?;
+    let (number, used) = number::prefix(value.as_bytes(), b'.')?;
     let rest = value.get(used..)?.trim().trim_matches(['[', ']']).to_lowercase();
     let unit = if rest.is_empty() { unit_in_key.to_lowercase() } else { rest };
     let factor = units.iter().find(|u| u.0 == unit)?.1;
-    Some(number * factor).filter(|v| v.is_finite() && *v > 0.0)
+    checked(number * factor)
+}
+
+fn checked(value: f64) -> Option<f64> {
+    POSSIBLE.contains(&value).then_some(value)
+}
+
+fn line_count(lines: f64) -> Option<f64> {
+    ((1.0..=MOST_LINES).contains(&lines) && lines.fract() == 0.0).then_some(lines)
 }
 
 #[cfg(test)]
@@ -169,7 +189,31 @@ mod tests {
 
     #[test]
     fn nonsense_states_nothing() {
-        let s = of(&["Lines: many", "Base band: -3 Hz", "rate: 5 apples", "dt: 0 s"]);
-        assert_eq!((s.lines, s.base_band, s.rate), (None, None, None));
+        let lines = [
+            "Lines: many",
+            "Base band: -3 Hz",
+            "rate: 5 apples",
+            "dt: 0 s",
+            "Lines: 1e30",
+            "Lines: 2.5",
+            "dt: 1e-320",
+            "df: 1e-300 Hz",
+            "20 Hz inf lines",
+            "20 Hz 0 lines",
+            "20 Hz -400 lines",
+            "nan Hz 400 lines",
+        ];
+        for line in lines {
+            let s = of(&[line]);
+            assert_eq!((s.lines, s.base_band, s.rate, s.line_width), (None, None, None, None), "{line}");
+            assert!(s.doubts.len() == 1 && s.doubts[0].contains(line), "{line}: {:?}", s.doubts);
+        }
+    }
+
+    #[test]
+    fn keys_with_other_meanings_state_nothing() {
+        let s = of(&["Resolution: 16", "Bandwidth: 20 kHz", "Span: 20 Hz"]);
+        assert_eq!((s.base_band, s.line_width), (None, None));
+        assert!(s.doubts.is_empty(), "{:?}", s.doubts);
     }
 }

@@ -3,12 +3,11 @@
 use super::layout::Layout;
 use super::rows::{Line, Lines, cut};
 use crate::error::{Error, Place, Result};
+use crate::read::missing::Missing;
 use crate::read::number;
 use crate::read::reader::Options;
 use std::path::Path;
 
-/// How many places a complaint lists.
-const LISTED: usize = 8;
 /// How many comments between rows are kept.
 const KEPT: usize = 32;
 
@@ -44,7 +43,7 @@ pub fn read(
     let decimal = decimal(text, layout, options);
     let n = layout.names.len();
     let mut columns = Columns { values: vec![Vec::new(); n], comma: decimal == b',', ..Columns::default() };
-    let (mut fields, mut gaps, mut digits) = (Vec::new(), Vec::new(), Digits::default());
+    let (mut fields, mut missing, mut digits) = (Vec::new(), Missing::default(), Digits::default());
     for line in Lines::from(text, layout.first.at, layout.first.number) {
         if let Some(comment) = line.comment() {
             columns.comments += 1;
@@ -77,10 +76,7 @@ pub fn read(
                         return Err(fault(path, &line, *at, &format!("found {field:?}"), expected)
                             .hint("remove the row"));
                     }
-                    columns.missing += 1;
-                    if gaps.len() < LISTED {
-                        gaps.push((line.number, i));
-                    }
+                    missing.take(line.number, 1, || layout.names[i].name.clone());
                     f64::NAN
                 }
                 None => return Err(not_a_number(path, &line, *at, field, decimal)),
@@ -91,21 +87,8 @@ pub fn read(
             values.push(value);
         }
     }
-    if let Some((line, _)) = gaps.first().filter(|_| !options.allow_missing) {
-        let listed: Vec<String> =
-            gaps.iter().map(|(line, i)| format!("{line} ({:?})", layout.names[*i].name)).collect();
-        let more = if columns.missing > listed.len() { ", …" } else { "" };
-        return Err(Error::input(
-            Place::line(path, *line),
-            format!(
-                "{} missing value(s) (NaN, Inf or blank) in line(s) {}{more}",
-                columns.missing,
-                listed.join(", ")
-            ),
-            "a number in every field",
-        )
-        .hint("give --allow-missing to keep them as missing"));
-    }
+    missing.check(path, options.allow_missing)?;
+    columns.missing = missing.count;
     columns.resolution = digits.resolution();
     Ok(columns)
 }

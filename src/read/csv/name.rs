@@ -27,13 +27,13 @@ impl Name {
     pub fn parse(text: &str) -> Name {
         let text = text.trim();
         if let Some((name, unit)) = bracketed(text, '[', ']') {
-            let unit = Some(unit.trim().to_owned()).filter(|u| !u.is_empty());
+            let unit = Some(symbol(unit.trim()).to_owned()).filter(|u| !u.is_empty());
             return Name { name: name.trim_end().to_owned(), unit };
         }
         let known = |name: &str, unit: &str| {
-            let name = name.trim_end();
-            (!name.is_empty() && Unit::parse(unit).is_some())
-                .then(|| Name { name: name.to_owned(), unit: Some(unit.trim().to_owned()) })
+            let (name, unit) = (name.trim_end(), symbol(unit.trim()));
+            (!name.is_empty() && (Unit::parse(unit).is_some() || unit == HOUR))
+                .then(|| Name { name: name.to_owned(), unit: Some(unit.to_owned()) })
         };
         text.split_once(" / ")
             .and_then(|(name, unit)| known(name, unit))
@@ -41,7 +41,7 @@ impl Name {
             .or_else(|| text.split_once(", ").and_then(|(name, unit)| known(name, unit)))
             .or_else(|| {
                 let (name, unit) = text.rsplit_once([' ', '_'])?;
-                known(name, unit).filter(|_| cannot_be_name(name, unit))
+                known(name, unit).filter(|_| cannot_be_name(name, symbol(unit)))
             })
             .unwrap_or_else(|| Name { name: text.to_owned(), unit: None })
     }
@@ -50,8 +50,32 @@ impl Name {
     pub fn with_unit_row(text: &str, unit: &str) -> Name {
         match bare_unit(unit) {
             "" => Name::parse(text),
-            unit => Name { name: text.trim().to_owned(), unit: Some(unit.to_owned()) },
+            unit => Name { name: text.trim().to_owned(), unit: Some(symbol(unit).to_owned()) },
         }
+    }
+
+    /// Factor that takes this column as an abscissa to s or Hz, and a sentence where something is assumed.
+    ///
+    /// # Errors
+    /// What was found, where the unit is not understood.
+    pub fn to_axis(&self, kind: &AxisKind, label: &str) -> Result<(f64, Option<String>), String> {
+        let si = if *kind == AxisKind::Time { "seconds" } else { "hertz" };
+        let Some(text) = &self.unit else {
+            let doubt = match bracketed(&self.name, '(', ')') {
+                Some((_, unit)) => format!("{label}: the unit {unit:?} is not understood: {si} are assumed."),
+                None => format!("{label} has no unit: {si} are assumed."),
+            };
+            return Ok((1.0, Some(doubt)));
+        };
+        if text == HOUR {
+            return Ok((3600.0, None));
+        }
+        let unit = Unit::parse(text).ok_or_else(|| format!("the unit {text:?} of the abscissa"))?;
+        if *kind == AxisKind::Frequency && is_angular(text) {
+            let doubt = format!("{label} is an angular frequency: it is divided by 2π to give Hz.");
+            return Ok((unit.factor() / std::f64::consts::TAU, Some(doubt)));
+        }
+        Ok((unit.factor(), None))
     }
 
     /// Whether the values are an abscissa: by name, or (only asked of a first column) by unit alone.
@@ -63,6 +87,11 @@ impl Name {
             && unit.as_ref().is_some_and(|u| u.symbol().ends_with("Hz"));
         let known = unit.as_ref().is_some_and(Unit::is_known);
         let key = self.name.to_lowercase();
+        let angular = self.unit.as_deref().is_some_and(is_angular);
+        let omega = matches!(key.as_str(), "omega" | "ω" | "w" | "angular frequency" | "kreisfrequenz");
+        if first && angular && (omega || begins(&key, "freq") || self.name == "f") {
+            return Some(AxisKind::Frequency);
+        }
         let time =
             matches!(key.as_str(), "time" | "timestamp" | "time stamp" | "zeit" | "temps" | "elapsed time")
                 || (self.name == "t" && (first || quantity == Some(Quantity::Time)))
@@ -111,6 +140,30 @@ impl Name {
             .or_else(|| name.rsplit_once(joints).and_then(|(rest, word)| found(word, rest)))
             .or_else(|| name.split_once(joints).and_then(|(word, rest)| found(word, rest)))
     }
+}
+
+/// Hours have no symbol among the units of values.
+const HOUR: &str = "hour";
+
+/// The symbol of a unit that is written as a word; any other text as it is.
+fn symbol(text: &str) -> &str {
+    let lower = text.to_lowercase();
+    match lower.strip_suffix('s').filter(|t| t.len() > 2).unwrap_or(&lower) {
+        "second" | "sec" | "sekunde" | "sekunden" => "s",
+        "millisecond" | "msec" => "ms",
+        "microsecond" | "usec" | "µsec" => "µs",
+        "minute" => "min",
+        "hour" => HOUR,
+        "hertz" => "Hz",
+        "kilohertz" => "kHz",
+        _ => text,
+    }
+}
+
+/// Radians over a time: no hertz, though the dimension is the same.
+fn is_angular(unit: &str) -> bool {
+    let rate = crate::units::Dimension([0, 0, -2, 0, 0]);
+    unit.contains("rad") && Unit::parse(unit).is_some_and(|u| u.dimension() == Some(rate))
 }
 
 /// Whether a row of fields holds units only: all blank, known or in brackets; or, where the first is known, at least

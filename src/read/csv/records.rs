@@ -4,12 +4,14 @@ use super::columns::Columns;
 use super::layout::Layout;
 use super::name::{Name, Part};
 use crate::error::{Error, Place, Result};
-use crate::read::abscissa::{from_values, short};
+use crate::read::abscissa::{Printed, choose, from_values, to_si};
 use crate::read::ascii::SCALING_UNSAID;
 use crate::read::ascii::stated::{self, Stated};
 use crate::read::reader::Options;
 use crate::read::{Source, number};
-use crate::record::{Axis, AxisKind, Frf, FrfKind, Meta, Record, Scaling, Spectrum, Trace, Values, Window};
+use crate::record::{
+    Axis, AxisKind, Frf, FrfKind, Grid, Meta, Record, Scaling, Spectrum, Trace, Values, Window,
+};
 use crate::units::Unit;
 use num_complex::Complex64;
 
@@ -29,7 +31,7 @@ pub fn build(
     let mut lines = layout.preamble;
     lines.extend(columns.kept.iter().cloned());
     let stated = stated::read(&lines);
-    let mut doubts = Vec::new();
+    let mut doubts = stated.doubts.clone();
     if columns.comments > columns.kept.len() {
         let kept = columns.kept.len();
         doubts.push(format!("Of {} remarks between the rows the first {kept} are kept.", columns.comments));
@@ -57,7 +59,10 @@ pub fn build(
         Some((kind, column)) => Some(printed_axis(source, kind, &column, columns.resolution)?),
         None => None,
     };
-    let axis = choose(axis, rows, first, &stated, options, &mut doubts);
+    let mut axis = choose(axis, rows, &stated, options, &mut doubts);
+    if let (AxisKind::Index, Some(first), Grid::Even { start, .. }) = (&axis.kind, first, &mut axis.grid) {
+        *start = first;
+    }
     if table.is_empty() {
         return Err(Error::input(
             Place::file(source.path()),
@@ -68,7 +73,7 @@ pub fn build(
     let made = Made { source, axis, stated, options };
     let mut records = Vec::new();
     for (column, imaginary) in pairs(source, table, &made.axis, options)? {
-        records.push(made.record(column, imaginary));
+        records.push(made.record(column, imaginary)?);
     }
     Ok((records, doubts))
 }
@@ -98,101 +103,18 @@ impl Column {
 }
 
 /// Axis from its column, and what is to be said of it.
-fn printed_axis(
-    source: &Source,
-    kind: AxisKind,
-    column: &Column,
-    resolution: f64,
-) -> Result<(Axis, String, Vec<String>)> {
+fn printed_axis(source: &Source, kind: AxisKind, column: &Column, resolution: f64) -> Result<Printed> {
     let label = format!("The column {:?}", column.label());
     let mut doubts = Vec::new();
-    let factor = if let Some(text) = &column.name.unit {
-        let unit = Unit::parse(text).ok_or_else(|| {
-            let found = format!("the unit {text:?} of the abscissa {:?}", column.label());
-            Error::input(Place::file(source.path()), found, "s, ms, Hz, kHz, …")
-                .hint("rename the column, e.g. to time [s]")
-        })?;
-        unit.factor()
-    } else {
-        let unit = if kind == AxisKind::Time { "seconds" } else { "hertz" };
-        doubts.push(format!("{label} has no unit: {unit} are assumed."));
-        1.0
-    };
+    let (factor, doubt) = column.name.to_axis(&kind, &label).map_err(|found| {
+        Error::input(Place::file(source.path()), format!("{found} {:?}", column.label()), "s, ms, Hz, kHz, …")
+            .hint("rename the column, e.g. to time [s]")
+    })?;
+    doubts.extend(doubt);
     let values = column.values.iter().map(|v| v * factor).collect();
     let (axis, doubt) = from_values(kind, values, resolution * factor, &label);
     doubts.extend(doubt);
-    Ok((axis, label, doubts))
-}
-
-/// The axis of all records: what a person states, then the printed one, then what the preamble states.
-fn choose(
-    printed: Option<(Axis, String, Vec<String>)>,
-    n: usize,
-    first_index: Option<f64>,
-    stated: &Stated,
-    options: &Options,
-    doubts: &mut Vec<String>,
-) -> Axis {
-    let lines = stated.lines.unwrap_or(n.saturating_sub(1).max(1) as f64);
-    let given = match (options.rate, options.base_band) {
-        (Some(rate), _) => Some(Axis::time(0.0, 1.0 / rate, n)),
-        (None, Some(band)) => Some(Axis::frequency(0.0, band / lines, n)),
-        _ => None,
-    };
-    match (given, printed) {
-        (Some(given), Some((axis, label, _))) if given.kind != axis.kind => {
-            doubts.push(format!("{label} is no axis for what was stated, and is passed over."));
-            given
-        }
-        (Some(mut given), Some((axis, label, _))) => {
-            let step = given.step().unwrap_or(f64::NAN);
-            if given.kind == AxisKind::Time {
-                given = Axis::time(axis.start(), step, n);
-            }
-            // Six digits of a printed column are the least that a rate should agree with.
-            if axis.step().is_none_or(|printed| (printed / step - 1.0).abs() > 1e-6) {
-                let said =
-                    axis.step().map_or("is uneven".to_owned(), |s| format!("has a step of {}", short(s)));
-                doubts.push(format!("{label} {said}; a step of {} was stated and is used.", short(step)));
-            }
-            given
-        }
-        (Some(given), None) => given,
-        (None, Some((axis, label, said))) => {
-            doubts.extend(said);
-            let step = match axis.kind {
-                AxisKind::Time => stated.rate.map(|rate| 1.0 / rate),
-                _ => stated.line_width,
-            };
-            if let (Some(stated), Some(step)) = (step, axis.step())
-                && (step / stated - 1.0).abs() > 1e-3
-            {
-                doubts.push(format!(
-                    "The preamble states a step of {}; {label} has {} and is used.",
-                    short(stated),
-                    short(step)
-                ));
-            }
-            axis
-        }
-        (None, None) => {
-            let band = stated.base_band.map(|band| band / lines);
-            if let Some(df) = stated.line_width.or(band) {
-                return Axis::frequency(0.0, df, n);
-            }
-            if let Some(rate) = stated.rate {
-                return Axis::time(0.0, 1.0 / rate, n);
-            }
-            doubts.push(
-                "The file says nothing of its abscissa: values are numbered (give --rate for a time trace, --base-band for a spectrum).".to_owned(),
-            );
-            let mut axis = Axis::index(n);
-            if let (Some(first), crate::record::Grid::Even { start, .. }) = (first_index, &mut axis.grid) {
-                *start = first;
-            }
-            axis
-        }
-    }
+    Ok(Printed { axis, label, doubts })
 }
 
 /// Joins real and imaginary parts that belong together; over time there are none.
@@ -230,6 +152,19 @@ fn pairs(
             None => out.push((column, None)),
         }
     }
+    if options.complex && !out.iter().any(|(_, imaginary)| imaginary.is_some()) {
+        let found = if axis.kind == AxisKind::Time {
+            "columns over time".to_owned()
+        } else {
+            format!("{} column(s) of values", out.len())
+        };
+        return Err(Error::input(
+            Place::file(source.path()),
+            format!("{found}, where complex values were stated"),
+            "two columns over frequency, real and imaginary part",
+        )
+        .hint("leave out --complex, or give --base-band"));
+    }
     for (real, imaginary) in &mut out {
         if let (Some((_, whole)), Some(_)) = (real.name.part(), imaginary) {
             real.name.name = whole;
@@ -247,31 +182,36 @@ struct Made<'a> {
 }
 
 impl Made<'_> {
-    fn record(&self, column: Column, imaginary: Option<Column>) -> Record {
+    fn record(&self, column: Column, imaginary: Option<Column>) -> Result<Record> {
         let name = column.label();
         let mut meta = Meta::new(name.clone(), Unit::opaque(""));
         meta.notes.clone_from(&self.stated.notes);
         meta.step("read", &[("file", &self.source.name()), ("format", &"csv"), ("column", &column.at)]);
-        let factor = self.unit(&mut meta, column.name.unit.as_deref());
-        let axis = self.axis.clone();
-        if axis.kind == AxisKind::Time || (axis.kind == AxisKind::Index && imaginary.is_none()) {
-            let values = column.values.into_iter().map(|v| v * factor).collect();
-            return Record::Trace(Trace { meta, axis, values });
-        }
-        let scaling = self.said("scaling", &name).and_then(|s| scaling(&s));
-        let values = match imaginary {
+        let said = column.name.unit.as_deref().or(self.stated.unit.as_deref());
+        let factor = self.options.adopt(&mut meta, said);
+        let complex = imaginary.is_some();
+        let mut values = match imaginary {
             Some(imaginary) => {
                 let pairs = column.values.iter().zip(&imaginary.values);
-                let values: Vec<Complex64> =
-                    pairs.map(|(re, im)| Complex64::new(*re, *im) * factor).collect();
-                let kind = FrfKind::of(meta.quantity);
-                let frf = self.said("kind", &name).is_some_and(|k| k == "frf");
-                if frf || (kind != FrfKind::Other && scaling.is_none()) {
-                    return Record::Frf(Frf { meta, axis, values, kind });
-                }
-                Values::Complex(values)
+                Values::Complex(pairs.map(|(re, im)| Complex64::new(*re, *im)).collect())
             }
-            None => Values::Real(column.values.into_iter().map(|v| v * factor).collect()),
+            None => Values::Real(column.values),
+        };
+        to_si(self.source.path(), &mut values, factor)?;
+        let axis = self.axis.clone();
+        let trace = axis.kind == AxisKind::Time || (axis.kind == AxisKind::Index && !complex);
+        let values = match values {
+            Values::Real(values) if trace => return Ok(Record::Trace(Trace { meta, axis, values })),
+            values => values,
+        };
+        let scaling = self.said("scaling", &name).and_then(|s| scaling(&s));
+        let kind = FrfKind::of(meta.quantity);
+        let frf = self.said("kind", &name).is_some_and(|k| k == "frf");
+        let values = match values {
+            Values::Complex(values) if frf || (kind != FrfKind::Other && scaling.is_none()) => {
+                return Ok(Record::Frf(Frf { meta, axis, values, kind }));
+            }
+            values => values,
         };
         let density = column.name.unit.as_deref().is_some_and(is_density).then_some(Scaling::Psd);
         let scaling = scaling.or(density).unwrap_or(Scaling::Unknown);
@@ -284,22 +224,7 @@ impl Made<'_> {
             None => self.stated.window.filter(|_| !self.remarks("window").any(|(_, v)| v.contains(" of "))),
         };
         let enbw = self.said("enbw", &name).and_then(|e| number::parse(e.as_bytes()));
-        Record::Spectrum(Spectrum { meta, axis, values, scaling, window, enbw })
-    }
-
-    /// Adopts the unit of a column; returns its factor.
-    fn unit(&self, meta: &mut Meta, unit: Option<&str>) -> f64 {
-        if let Some(given) = &self.options.unit {
-            if let Some(said) = unit.filter(|u| Unit::parse_or_opaque(u) != *given) {
-                meta.doubt(format!("The file says the unit {said:?}; {given} was stated and is used."));
-            }
-            return meta.adopt_unit(given.symbol());
-        }
-        if let Some(unit) = unit.or(self.stated.unit.as_deref()) {
-            return meta.adopt_unit(unit);
-        }
-        meta.doubt("The file says no unit: the values are kept as they are.");
-        1.0
+        Ok(Record::Spectrum(Spectrum { meta, axis, values, scaling, window, enbw }))
     }
 
     fn remarks(&self, key: &str) -> impl Iterator<Item = &(String, String)> {

@@ -186,6 +186,44 @@ fn what_is_assumed_is_said() {
 }
 
 #[test]
+fn units_of_an_abscissa_as_words() {
+    for (unit, step) in [
+        ("second", 1.0),
+        ("Seconds", 1.0),
+        ("sec", 1.0),
+        ("msec", 1e-3),
+        ("milliseconds", 1e-3),
+        ("microsecond", 1e-6),
+        ("minutes", 60.0),
+        ("hours", 3600.0),
+    ] {
+        for text in [format!("time [{unit}],a [g]"), format!("Time ({unit}),a [g]")] {
+            let recording = of(format!("{text}\n0,1\n1,2\n2,3\n"));
+            let axis = recording.records[0].axis();
+            assert_eq!((&axis.kind, axis.step()), (&AxisKind::Time, Some(step)), "{text}");
+            assert!(recording.doubts.is_empty(), "{text}: {:?}", recording.doubts);
+        }
+    }
+    assert_eq!(of("f (Hertz),a [g]\n0,1\n1,2\n").records[0].axis(), &Axis::frequency(0.0, 1.0, 2));
+    let unknown = of("Time (moons),a [g]\n0,1\n1,2\n");
+    assert!(
+        says(&unknown.doubts, "\"moons\" is not understood: seconds are assumed"),
+        "{:?}",
+        unknown.doubts
+    );
+}
+
+#[test]
+fn angular_frequencies_become_hertz() {
+    let recording = of("omega [rad/s],a [g]\n0,1\n1,2\n2,3\n");
+    assert_eq!(recording.records.len(), 1);
+    let axis = recording.records[0].axis();
+    // One division by 2π.
+    assert_eq!((&axis.kind, axis.step()), (&AxisKind::Frequency, Some(1.0 / std::f64::consts::TAU)));
+    assert!(says(&recording.doubts, "divided by 2π"), "{:?}", recording.doubts);
+}
+
+#[test]
 fn missing_values_kept_are_counted() {
     let text = "t [s],a [g]\n0.0,1\n0.1,\n0.2,3\n";
     assert!(read_with(&Reader::new(), text).unwrap_err().to_string().contains("line 3"));

@@ -1,0 +1,49 @@
+//! The complaint about values that are missing.
+
+use crate::error::{Error, Place, Result};
+use std::path::Path;
+
+/// How many places a complaint lists.
+const LISTED: usize = 8;
+
+/// Values that are missing: how many, and where the first of them stand.
+#[derive(Debug, Default)]
+pub(super) struct Missing {
+    /// Number of values.
+    pub count: usize,
+    places: Vec<(u64, String)>,
+    more: bool,
+}
+
+impl Missing {
+    /// Counts `count` values of a line; `what` says which of the line where that is known.
+    pub fn take(&mut self, line: u64, count: usize, what: impl FnOnce() -> String) {
+        self.count = self.count.saturating_add(count);
+        if self.places.len() < LISTED {
+            self.places.push((line, what()));
+        } else {
+            self.more = true;
+        }
+    }
+
+    /// Refuses all of them at once.
+    ///
+    /// # Errors
+    /// If there are any and they are not `allowed`.
+    pub fn check(&self, path: &Path, allowed: bool) -> Result<()> {
+        let Some((first, _)) = self.places.first().filter(|_| !allowed) else { return Ok(()) };
+        let listed: Vec<String> = self
+            .places
+            .iter()
+            .map(|(line, what)| if what.is_empty() { line.to_string() } else { format!("{line} ({what:?})") })
+            .collect();
+        let more = if self.more { ", …" } else { "" };
+        let found = format!(
+            "{} missing value(s) (NaN, Inf or blank) in line(s) {}{more}",
+            self.count,
+            listed.join(", ")
+        );
+        Err(Error::input(Place::line(path, *first), found, "a number in every place")
+            .hint("give --allow-missing to keep them as missing"))
+    }
+}
