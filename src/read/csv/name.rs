@@ -160,10 +160,9 @@ fn symbol(text: &str) -> &str {
     }
 }
 
-/// Radians over a time: no hertz, though the dimension is the same.
+/// Radians over a time: hertz only by 1/(2π).
 fn is_angular(unit: &str) -> bool {
-    let rate = crate::units::Dimension([0, 0, -2, 0, 0]);
-    unit.contains("rad") && Unit::parse(unit).is_some_and(|u| u.dimension() == Some(rate))
+    Unit::parse(unit).is_some_and(|u| u.quantity() == Quantity::AngularVelocity)
 }
 
 /// Whether a row of fields holds units only: all blank, known or in brackets; or, where the first is known, at least
