@@ -41,7 +41,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
     let layout = layout::detect(source.path(), &head, source.len() > head.len() as u64, options)?;
     let stated = stated::read(&layout.header);
     let mut doubts = Vec::new();
-    let mut columns = if let Some(values) = fast(source, &layout)? {
+    let columns = if let Some(values) = fast(source, &layout)? {
         deal(values, layout.columns).into_iter().map(Values::Real).collect()
     } else {
         let bytes = source.all()?;
@@ -57,15 +57,18 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
                 rows.comments.len()
             ));
         }
-        match layout.cell {
+        let mut columns = match layout.cell {
             Cell::Complex => deal(rows.values, layout.columns).into_iter().map(Values::Complex).collect(),
             Cell::Real => {
                 let values = rows.values.iter().map(|v| v.re).collect();
                 deal(values, layout.columns).into_iter().map(Values::Real).collect::<Vec<_>>()
             }
+        };
+        if rows.missing > 0 {
+            doubts.extend(gaps::bridge(&mut columns));
         }
+        columns
     };
-    doubts.extend(gaps::bridge(&mut columns));
     let n = columns.first().map_or(0, Values::len);
     let records = assemble(source, columns, n, &layout, &stated, options)?;
     Ok(Recording { path: source.path().to_owned(), format: Format::Ascii, records, doubts })
