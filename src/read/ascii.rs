@@ -118,8 +118,10 @@ fn plain(source: &Source) -> Result<Source> {
 
 /// Whether a CR stands before anything but LF or another CR; the last byte of a head that is `cut` off tells nothing.
 fn lone_cr(bytes: &[u8], cut: bool) -> bool {
-    bytes.windows(2).any(|w| w[0] == b'\r' && !matches!(w[1], b'\r' | b'\n'))
-        || (!cut && bytes.last() == Some(&b'\r'))
+    // Most files have none at all, and that is told quickly.
+    bytes.contains(&b'\r')
+        && (bytes.windows(2).any(|w| w[0] == b'\r' && !matches!(w[1], b'\r' | b'\n'))
+            || (!cut && bytes.last() == Some(&b'\r')))
 }
 
 /// Every CR that no LF follows becomes LF; several CRs before LF are one line end, as text that was converted twice has it.

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 /// How many bytes are looked at to tell text from binary data, and UTF-16 without a byte order mark.
-pub const LOOK: usize = 4096;
+pub const LOOK: usize = 2048;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Order {
@@ -14,7 +14,7 @@ enum Order {
 /// Whether the first bytes look like text: UTF-16, or no control characters but blanks, line ends and the end mark of DOS.
 pub fn is_text(head: &[u8]) -> bool {
     let control = |b: &u8| *b < 0x20 && !b"\t\n\r\x0c\x1a".contains(b);
-    is_utf16(head) || !head[..head.len().min(LOOK)].iter().any(control)
+    !head[..head.len().min(LOOK)].iter().any(control) || is_utf16(head)
 }
 
 /// Whether the bytes are UTF-16, by byte order mark or by the zero bytes that western text has in every second place.
@@ -49,7 +49,11 @@ fn order(bytes: &[u8]) -> Option<Order> {
     if bytes.starts_with(&[0xfe, 0xff]) {
         return Some(Order::Big);
     }
-    let pairs = bytes[..bytes.len().min(LOOK)].chunks_exact(2);
+    let bytes = &bytes[..bytes.len().min(LOOK)];
+    if !bytes.contains(&0) {
+        return None;
+    }
+    let pairs = bytes.chunks_exact(2);
     let (total, mut first, mut second) = (pairs.len(), 0, 0);
     for pair in pairs {
         first += usize::from(pair[0] == 0);
