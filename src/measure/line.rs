@@ -53,10 +53,24 @@ pub fn interpolate(
     let (position_std, amplitude_std) = match noise {
         // At the limit the lines have not the shape of one sine, and slopes mean nothing.
         Some(_) if delta.abs() >= LIMIT => (None, None),
+        // Without a window noise may choose the wrong neighbour: then no small uncertainty is true.
+        Some(noise) if window == Window::Rectangular && (right - left).abs() < 6.0 * noise => (None, None),
         Some(noise) => propagate(lines, window, noise),
         None => (None, None),
     };
     Some(SubLine { position: k as f64 + delta, position_std, amplitude, amplitude_std })
+}
+
+/// How far the three lines are from the shape of one sine under `window`, in parts of the largest: 0 for a clean one. `None` as
+/// in [`interpolate`].
+pub fn misfit(magnitudes: &[f64], k: usize, window: Window) -> Option<f64> {
+    let lines: [f64; 3] = magnitudes.get(k.checked_sub(1)?..=k + 1)?.try_into().ok()?;
+    if !lines.iter().all(|m| m.is_finite()) || lines[1] <= 0.0 {
+        return None;
+    }
+    let (delta, amplitude) = solve(lines, window);
+    let off = lines.iter().zip(shapes(window, delta)).map(|(m, w)| (m - amplitude * w).abs());
+    Some(off.fold(0.0, f64::max) / lines[1])
 }
 
 /// Amplitude of a sine at a known `position` in lines, with its standard uncertainty: the three nearest lines against
@@ -199,6 +213,17 @@ mod tests {
                 );
                 let (amplitude, _) = amplitude_at(&lines, truth, Some(window), None).unwrap();
                 assert!((amplitude / 2.5 - 1.0).abs() < 1e-13, "{window:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_wrong_window_does_not_fit() {
+        for truth in [30.0, 30.2, 30.45] {
+            let lines = clean(Window::Hann, truth, 1.0);
+            assert!(misfit(&lines, 30, Window::Hann).unwrap() < 1e-12);
+            for window in [Window::Rectangular, Window::FlatTop, Window::BlackmanHarris] {
+                assert!(misfit(&lines, 30, window).unwrap() > 0.02, "{window:?} {truth}");
             }
         }
     }

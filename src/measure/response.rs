@@ -1,11 +1,11 @@
 //! Response at the excitation, step by step (the job of the thesis' sinesw3).
 
 use super::excitation::{Excitation, excitations};
-use super::line::{amplitude_at, interpolate};
+use super::line::{amplitude_at, interpolate, misfit};
 use super::resonance::{Jump, Resonance, jumps, resonances};
 use super::{Estimate, noise};
 use crate::error::{Error, Result};
-use crate::record::{Direction, Step, Sweep, SweepPoint};
+use crate::record::{Direction, Step, Sweep, SweepPoint, Window};
 use crate::units::Quantity;
 use serde::Serialize;
 use std::f64::consts::PI;
@@ -131,6 +131,7 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
         .hint("1 takes velocity to displacement, 2 acceleration to displacement"));
     }
     let unit = quantity.symbol();
+    warnings.extend(wrong_window(sweep, &excitations, df));
     let taker = Taker { sweep, options, df, fmin, unit };
     let points: Vec<ResponsePoint> =
         sweep.points.iter().zip(&excitations).map(|(p, e)| taker.point(p, e)).collect();
@@ -189,6 +190,37 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
     })
 }
 
+/// A sentence where the force lines, which hold one strong sine, have not the shape that the window gives them.
+fn wrong_window(sweep: &Sweep, excitations: &[Excitation], df: f64) -> Option<String> {
+    let window = sweep.points.first()?.response.window?;
+    let typical = |window: Window| {
+        let mut found: Vec<f64> = sweep
+            .points
+            .iter()
+            .zip(excitations)
+            .filter_map(|(p, e)| {
+                let k = ((e.frequency - sweep.axis.start()) / df).round().max(0.0) as usize;
+                misfit(&p.force, k, window)
+            })
+            .collect();
+        found.sort_by(f64::total_cmp);
+        found.get(found.len() / 2).copied()
+    };
+    let off = typical(window).filter(|off| *off > WRONG_SHAPE)?;
+    let better =
+        Window::ALL.into_iter().filter_map(|w| Some((typical(w)?, w))).min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let hint = if better.0 < off / 3.0 {
+        format!("; {} would fit to {:.1} %", better.1.name(), 100.0 * better.0)
+    } else {
+        String::new()
+    };
+    Some(format!(
+        "The lines of the force are off the shape of a {} window by {:.0} % of the largest{hint}: amplitudes and their uncertainties are not to be relied on.",
+        window.name(),
+        100.0 * off
+    ))
+}
+
 /// Direction of a sweep from its frequencies, with doubts where they are not in order.
 fn direction(frequency: &[f64], stated: Option<Direction>, warnings: &mut Vec<String>) -> Option<Direction> {
     if frequency.len() == 1 {
@@ -225,6 +257,8 @@ fn direction(frequency: &[f64], stated: Option<Direction>, warnings: &mut Vec<St
     stated.or(found)
 }
 
+/// Force lines further than this from their window's shape are not under that window.
+const WRONG_SHAPE: f64 = 0.02;
 /// A response peak must stand this factor above the noise of a line; a fainter one is read at the excitation frequency, where
 /// noise cannot choose the line.
 const PEAK_ABOVE: f64 = 5.0;
@@ -314,13 +348,7 @@ impl Taker<'_> {
         }
     }
 
-    fn harmonic(
-        &self,
-        measured: &[f64],
-        order: String,
-        frequency: f64,
-        window: Option<crate::record::Window>,
-    ) -> Harmonic {
+    fn harmonic(&self, measured: &[f64], order: String, frequency: f64, window: Option<Window>) -> Harmonic {
         let at = self.position(frequency);
         let inside = frequency >= self.fmin && at >= 1.0 && at.round() < measured.len() as f64 - 1.0;
         let found = inside

@@ -114,6 +114,17 @@ fn odd_sweeps_are_answered_with_a_warning() {
 }
 
 #[test]
+fn a_window_that_does_not_fit_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = sweep(folder.path(), &frequencies());
+    for (window, said) in [("hann", false), ("rectangular", true), ("flat-top", true)] {
+        let value = json(&["response", text(&list), "--unit", "m/s", "--window", window]);
+        assert_eq!(value["warnings"].to_string().contains("off the shape"), said, "{window}");
+        assert_eq!(value["warnings"].to_string().contains("hann would fit"), said, "{window}");
+    }
+}
+
+#[test]
 fn the_largest_line_elsewhere_is_flagged() {
     let folder = tempfile::tempdir().unwrap();
     let list = sweep(folder.path(), &frequencies());
