@@ -11,6 +11,7 @@ mod progress;
 mod response;
 mod run;
 mod settings;
+mod target;
 mod waterfall;
 
 use crate::error::Result;

@@ -1,6 +1,6 @@
 //! `vibro convert`: any readable file to UFF-58, CSV, WAV or NPY.
 
-use super::excitation::{apart, write_beside};
+use super::target::{apart, write_beside};
 use super::{args, complain, print, settings};
 use crate::error::{Error, Result};
 use crate::write::{Precision, Storage, Target};

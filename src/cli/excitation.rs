@@ -1,13 +1,13 @@
 //! `vibro excitation`: the job of sineswpf.
 
+use super::target::{apart, write_beside};
 use super::{args, complain, print, settings};
 use crate::error::{Error, Result};
 use crate::measure::excitation::{Excitation, excitations};
 use crate::measure::legacy;
-use crate::report::Output;
 use serde::Serialize;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 #[derive(Serialize)]
 struct Answer {
@@ -68,35 +68,4 @@ pub fn run(typed: &args::Excitation, json: bool) -> Result<()> {
     }
     complain::warn(&warnings);
     print::text(&text)
-}
-
-/// Refuses two names of one file: what is read must not be written.
-pub fn apart(a: &Path, b: &Path) -> Result<()> {
-    let same = match (a.canonicalize(), b.canonicalize()) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => a == b,
-    };
-    if same {
-        return Err(Error::usage(
-            format!("{} and {} are the same file", a.display(), b.display()),
-            "two files",
-        )
-        .hint("name another file to write"));
-    }
-    Ok(())
-}
-
-/// Writes a file whole, in a folder that must exist.
-pub fn write_beside(path: &Path, bytes: impl AsRef<[u8]>) -> Result<PathBuf> {
-    let name = path
-        .file_name()
-        .ok_or_else(|| Error::usage(format!("{} is no file name", path.display()), "a file"))?;
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    if !folder.is_dir() {
-        return Err(Error::usage(
-            format!("the folder {} does not exist", folder.display()),
-            "an existing folder",
-        ));
-    }
-    Output::new(folder)?.write(&name.to_string_lossy(), bytes)
 }

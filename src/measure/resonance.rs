@@ -213,8 +213,12 @@ pub fn name_modes(curves: &mut [NamedCurve<'_>]) {
 
 /// Frequency of the deepest minimum of mass 1.
 fn antiresonance(curves: &[NamedCurve<'_>], direction: Direction) -> Option<f64> {
-    let first = curves.iter().find(|c| c.mass == 1 && c.direction == direction)?;
-    let minima = first.resonances.iter().filter(|r| r.kind == "antiresonance");
+    deepest(curves.iter().find(|c| c.mass == 1 && c.direction == direction)?.resonances)
+}
+
+/// Frequency of the deepest antiresonance of a curve.
+pub fn deepest(resonances: &[Resonance]) -> Option<f64> {
+    let minima = resonances.iter().filter(|r| r.kind == "antiresonance");
     minima.min_by(|a, b| a.amplitude.total_cmp(&b.amplitude)).map(|r| r.frequency)
 }
 

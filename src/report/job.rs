@@ -1,16 +1,19 @@
 //! All that a campaign asks for: responses, waterfalls, overlay, frequency response functions, and their files.
 
+mod frf;
+
+pub use frf::{FrfPeak, FrfResult};
+
 use super::{Figure, Output, files, page, pictures, tables};
 use crate::campaign::{Campaign, RecordEntry};
 use crate::compare::{Overlay, overlay};
 use crate::error::{Error, Result};
-use crate::measure::peaks::frf_peaks;
-use crate::measure::resonance::{NamedCurve, crossings, name_modes};
+use crate::measure::resonance::{NamedCurve, crossings, deepest, name_modes};
 use crate::measure::response::{Response, ResponseOptions, response, to_displacement};
 use crate::measure::waterfall::{Waterfall, waterfall};
 use crate::model::Rig;
 use crate::read::{Header, Reader};
-use crate::record::{Direction, Frf, FrfKind, Record, Sweep};
+use crate::record::{Direction, Sweep};
 use crate::units::Unit;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -38,34 +41,6 @@ impl Progress for () {
 pub struct JobOptions {
     /// Allow names that lead outside the campaign's folder.
     pub allow_outside: bool,
-}
-
-/// Peaks of a frequency response function.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct FrfResult {
-    /// Name of the record.
-    pub name: String,
-    /// File.
-    pub file: String,
-    /// Receptance, mobility, accelerance, or another ratio.
-    pub quantity: &'static str,
-    /// Unit.
-    pub unit: String,
-    /// Frequency in Hz and magnitude of each peak.
-    pub peaks: Vec<FrfPeak>,
-    /// What a person must know.
-    pub warnings: Vec<String>,
-}
-
-/// One peak of a frequency response function.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct FrfPeak {
-    /// Frequency in Hz.
-    pub frequency: f64,
-    /// What the choice of the interpolating curve may cost, in Hz.
-    pub frequency_std: f64,
-    /// Magnitude.
-    pub magnitude: f64,
 }
 
 /// Where the curves of both masses cross.
@@ -197,7 +172,7 @@ pub fn run(
             figures.push((format!("map_{slug}"), pictures::map(matrix, fmax)?));
         }
     }
-    let frf = frfs(campaign, options, &mut figures, &mut warnings)?;
+    let frf = frf::frfs(campaign, options, &mut figures, &mut warnings)?;
     let listed = listed(campaign, options, &mut warnings)?;
     if responses.is_empty() && frf.is_empty() && listed.is_empty() {
         warnings.push("The campaign names no file: nothing was computed.".to_owned());
@@ -287,9 +262,7 @@ fn model(campaign: &Campaign, responses: &[Response], warnings: &mut Vec<String>
 
 fn antiresonances(responses: &[Response]) -> [Option<f64>; 2] {
     [Direction::Up, Direction::Down].map(|direction| {
-        let first = responses.iter().find(|r| r.mass == Some(1) && r.direction == Some(direction))?;
-        let deepest = first.resonances.iter().filter(|r| r.kind == "antiresonance");
-        deepest.min_by(|a, b| a.amplitude.total_cmp(&b.amplitude)).map(|r| r.frequency)
+        deepest(&responses.iter().find(|r| r.mass == Some(1) && r.direction == Some(direction))?.resonances)
     })
 }
 
@@ -307,80 +280,11 @@ fn all_crossings(responses: &[Response]) -> Vec<Crossing> {
     found
 }
 
-/// A peak of a frequency response function must stand this factor above its valleys.
-const FRF_PROMINENCE: f64 = 2.0;
-
-fn frfs(
-    campaign: &Campaign,
-    options: JobOptions,
-    figures: &mut Vec<(String, Figure)>,
-    warnings: &mut Vec<String>,
-) -> Result<Vec<FrfResult>> {
-    let mut results = Vec::new();
-    for entry in &campaign.frf {
-        let path = campaign.record_path(entry, options.allow_outside)?;
-        let recording = reader(entry).from_path(&path)?;
-        merge(warnings, &file_name(&path), &recording.doubts);
-        let records = recording.records.into_iter();
-        let wanted = records.filter(|r| entry.channel.as_ref().is_none_or(|c| *c == r.meta().name));
-        let before = results.len();
-        for record in wanted {
-            let Some(mut frf) = as_frf(record) else { continue };
-            if let Some(factor) = entry.calibration {
-                frf.meta.step("calibrate", &[("factor", &factor)]);
-                frf.values.iter_mut().for_each(|v| *v *= factor);
-            }
-            let peaks: Vec<FrfPeak> = frf_peaks(&frf, FRF_PROMINENCE)
-                .iter()
-                .map(|v| FrfPeak {
-                    frequency: v.frequency,
-                    frequency_std: v.frequency_std,
-                    magnitude: v.height,
-                })
-                .collect();
-            let marks: Vec<(f64, f64)> = peaks.iter().map(|p| (p.frequency, p.magnitude)).collect();
-            let name = entry.name.clone().unwrap_or_else(|| file_name(&path));
-            let number = results.len() + 1;
-            figures.push((format!("frf_{number}"), pictures::frf(&name, &frf, &marks)));
-            merge(warnings, &name, &frf.meta.doubts);
-            results.push(FrfResult {
-                name,
-                file: file_name(&path),
-                quantity: frf.meta.quantity.name(),
-                unit: frf.meta.unit.symbol().to_owned(),
-                peaks,
-                warnings: frf.meta.doubts,
-            });
-        }
-        if results.len() == before {
-            let what = entry.channel.as_ref().map_or_else(String::new, |c| format!(" named {c:?}"));
-            return Err(Error::refused(format!("{}: no frequency response function{what}", path.display()))
-                .hint("`vibro info` lists what is in the file"));
-        }
-    }
-    Ok(results)
-}
-
 fn reader(entry: &RecordEntry) -> Reader {
     Reader::new()
         .rate(entry.rate)
         .base_band(entry.base_band)
         .unit(entry.unit.as_deref().map(Unit::parse_or_opaque))
-}
-
-/// A complex spectrum under `[[frf]]` is taken for what the campaign says it is.
-fn as_frf(record: Record) -> Option<Frf> {
-    match record {
-        Record::Frf(frf) => Some(frf),
-        Record::Spectrum(s) => match s.values {
-            crate::record::Values::Complex(values) => {
-                let kind = FrfKind::of(s.meta.quantity);
-                Some(Frf { meta: s.meta, axis: s.axis, values, kind })
-            }
-            crate::record::Values::Real(_) => None,
-        },
-        Record::Trace(_) => None,
-    }
 }
 
 /// Parts of a campaign that have no analysis yet are listed, and that is said.
