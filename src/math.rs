@@ -1,6 +1,8 @@
-//! Own numerical kernels, each with its source and its error bound.
+//! Numerical kernels, each with its source and its error bound.
 
+mod least_squares;
 pub mod oscillator;
 pub mod root;
 
+pub use least_squares::{Fit, least_squares};
 pub use oscillator::Oscillator;
