@@ -259,7 +259,9 @@ mod tests {
         // Only the product of the first two parameters acts.
         let error = least_squares(
             |p, r| {
-                r.iter_mut().enumerate().for_each(|(i, r)| *r = (p[0] * p[1] - 3.0) * i as f64 + p[2] - 1.0)
+                for (i, r) in r.iter_mut().enumerate() {
+                    *r = (p[0] * p[1] - 3.0) * i as f64 + p[2] - 1.0;
+                }
             },
             9,
             &[1.0, 2.0, 0.0],
