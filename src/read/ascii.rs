@@ -21,6 +21,7 @@ use super::abscissa::{self, Printed, to_si};
 use super::csv::name::{Name, Part};
 use super::ending;
 use super::format::Format;
+use super::missing;
 use super::reader::{Options, Recording};
 use super::text;
 use super::{Header, Source, Summary};
@@ -49,9 +50,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         let bytes = if lone_cr(&bytes, false) { with_lf(bytes) } else { bytes };
         let rows = rows::read(source.path(), &bytes, &layout, options.allow_missing)?;
         drop(bytes);
-        if rows.missing > 0 {
-            doubts.push(format!("{} value(s) are missing and kept as such.", rows.missing));
-        }
+        doubts.extend(missing::kept(rows.missing));
         if !rows.comments.is_empty() {
             doubts.push(format!(
                 "{} comment line(s) between the values were passed over.",

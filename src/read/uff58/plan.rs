@@ -10,7 +10,7 @@ use super::stated::Stated;
 use super::values::Taken;
 use crate::error::{Error, Result};
 use crate::read::uff::system::System;
-use crate::read::{Header, Options};
+use crate::read::{Header, Options, missing};
 use crate::record::{
     Axis, AxisKind, Frf, FrfKind, Grid, Meta, Record, Scaling, Spectrum, Trace, Values, Window,
 };
@@ -110,8 +110,8 @@ impl Plan {
         } else if declared == 0 {
             self.meta.doubt("The header declares no values.");
         }
-        if taken.missing > 0 {
-            self.meta.doubt(format!("{} numbers are missing and kept as such.", taken.missing));
+        if let Some(kept) = missing::kept(taken.missing) {
+            self.meta.doubt(kept);
         }
     }
 
