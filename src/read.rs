@@ -12,6 +12,7 @@
 mod abscissa;
 mod ascii;
 mod csv;
+mod ending;
 mod format;
 mod header;
 mod mat;
