@@ -19,7 +19,7 @@ pub use stream::WavStream;
 
 use super::format::{Format, Survey};
 use super::reader::{Options, Recording};
-use super::{Header, Source, Summary};
+use super::{Header, Source, Summary, missing};
 use crate::error::{Error, Place, Result};
 use crate::record::{Axis, Meta, Record, Trace};
 use crate::units::{self, Unit};
@@ -29,9 +29,6 @@ const FULL_SCALE: &str = "FS";
 
 /// How many bytes of texts are copied for all channels together.
 const MOST_COPIED: usize = 256 * 1024;
-
-/// How many frame numbers a complaint lists.
-const LISTED: usize = 8;
 
 pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
     let form = head.get(..4);
@@ -96,7 +93,7 @@ fn pass(
 ) -> Result<Vec<Summary>> {
     let mut found = vec![Summary::default(); stream.channels()];
     let mut block = Vec::new();
-    let (mut missing, mut listed, mut first) = (0usize, Vec::new(), 0usize);
+    let (mut gaps, mut listed, mut first) = (0usize, Vec::new(), 0usize);
     loop {
         let frames = stream.next_block(&mut block)?;
         if frames == 0 {
@@ -106,8 +103,8 @@ fn pass(
             for (i, value) in values.iter_mut().enumerate() {
                 if !value.is_finite() {
                     *value = f64::NAN;
-                    missing += 1;
-                    if listed.len() < LISTED {
+                    gaps += 1;
+                    if listed.len() < missing::LISTED {
                         listed.push(format!("{} of channel {}", first + i, channel + 1));
                     }
                 }
@@ -117,13 +114,9 @@ fn pass(
         }
         first += frames;
     }
-    if missing > 0 && !options.allow_missing {
-        return Err(Error::input(
-            Place::file(source.path()),
-            format!("{missing} sample(s) are NaN or infinite: frame {}", listed.join(", ")),
-            "a number in every sample",
-        )
-        .hint("give --allow-missing to keep them as missing"));
+    if gaps > 0 && !options.allow_missing {
+        let found = format!("{gaps} sample(s) are NaN or infinite: frame {}", listed.join(", "));
+        return Err(missing::refusal(Place::file(source.path()), found));
     }
     Ok(found)
 }
