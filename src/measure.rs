@@ -3,11 +3,14 @@
 mod estimate;
 pub mod excitation;
 pub mod legacy;
+pub mod limit;
 pub mod line;
 pub mod noise;
 pub mod peaks;
 pub mod resonance;
 pub mod response;
+#[cfg(test)]
+mod synthetic;
 pub mod waterfall;
 
 pub use estimate::Estimate;

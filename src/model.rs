@@ -11,7 +11,7 @@
 //! ```
 //! use vibroimpact::model::{Rig, orbits};
 //! let found = orbits(&Rig::thesis(), 0.5, 11.0)?;
-//! let real = found.orbits.iter().filter(|o| o.validity.exists && o.validity.admissible && o.validity.stable);
+//! let real = found.orbits.iter().filter(|o| o.validity.admissible && o.validity.stable == Some(true));
 //! assert_eq!(real.count(), 1);
 //! # Ok::<(), vibroimpact::Error>(())
 //! ```

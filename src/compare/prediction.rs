@@ -101,7 +101,7 @@ fn motions(rig: &Rig, force: f64, frequency: f64, observable: Observable) -> Res
         .map(|o| Motion {
             kind: Kind::Impacting,
             amplitude: observable.of_orbit(o),
-            seen: o.validity.admissible && o.validity.stable,
+            seen: o.validity.admissible && o.validity.stable == Some(true),
         })
         .collect();
     motions.push(Motion {

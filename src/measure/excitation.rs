@@ -93,7 +93,7 @@ fn largest(force: &[f64], window: Option<Window>, first: usize) -> std::result::
                 .into(),
         );
     }
-    let floor = noise::around(force, k);
+    let floor = noise::around(force, k, window);
     if let Some(floor) = floor
         && force[k] < ABOVE_FLOOR * floor
     {

@@ -28,10 +28,18 @@ pub struct Jump {
     pub from: f64,
     /// First excitation frequency behind, in Hz.
     pub to: f64,
+    /// Frequency of the jump in Hz: the middle of the two.
+    pub frequency: f64,
+    /// Its standard uncertainty in Hz: anywhere between the two with equal chance, their distance over √12.
+    pub frequency_std: f64,
     /// Amplitude before.
     pub amplitude_before: f64,
+    /// Its standard uncertainty.
+    pub amplitude_before_std: Option<f64>,
     /// Amplitude behind.
     pub amplitude_after: f64,
+    /// Its standard uncertainty.
+    pub amplitude_after_std: Option<f64>,
     /// `rise` or `drop`.
     pub change: &'static str,
     /// Direction of the sweep.
@@ -113,6 +121,10 @@ fn at_a_jump(frequency: &[f64], amplitude: &[f64], std: &[f64], i: usize, jump: 
     Some(reach.hypot(std[i])).filter(|s| s.is_finite())
 }
 
+fn known(std: f64) -> Option<f64> {
+    Some(std).filter(|s| s.is_finite())
+}
+
 /// Differences below this many standard deviations are noise.
 const SIGMA: f64 = 4.0;
 
@@ -146,8 +158,12 @@ pub fn jumps(frequency: &[f64], amplitude: &[f64], std: &[f64], direction: Direc
         .map(|i| Jump {
             from: frequency[i],
             to: frequency[i + 1],
+            frequency: f64::midpoint(frequency[i], frequency[i + 1]),
+            frequency_std: width(i) / f64::sqrt(12.0),
             amplitude_before: amplitude[i],
+            amplitude_before_std: known(std[i]),
             amplitude_after: amplitude[i + 1],
+            amplitude_after_std: known(std[i + 1]),
             change: if step(i) > 0.0 { "rise" } else { "drop" },
             direction,
         })
@@ -193,7 +209,7 @@ pub fn name_modes(curves: &mut [NamedCurve<'_>]) {
         let (mass, direction) = (curves[i].mass, curves[i].direction);
         let between = if direction == Direction::Up { up.or(down) } else { down.or(up) };
         let partner = curves.iter().find(|c| c.mass != mass && c.direction == direction);
-        let partner = partner.map(|p| p.curve.iter().map(|p| (p.0, p.1)).collect::<Vec<_>>());
+        let partner = partner.map(|p| p.curve.clone());
         let (Some(between), Some(partner)) = (between, partner) else { continue };
         for (name, below) in [("grazing", true), ("clapping", false)] {
             let largest = curves[i]
@@ -222,145 +238,84 @@ pub fn deepest(resonances: &[Resonance]) -> Option<f64> {
     minima.min_by(|a, b| a.amplitude.total_cmp(&b.amplitude)).map(|r| r.frequency)
 }
 
-/// A curve between its points, linear in the logarithm; `None` outside.
-fn at(curve: &[(f64, f64)], f: f64) -> Option<f64> {
+/// The points between which `f` lies in a rising curve, and their weights in its logarithm there; `None` outside.
+fn between(curve: &[(f64, f64, f64)], f: f64) -> Option<[(usize, f64); 2]> {
     let i = curve.partition_point(|p| p.0 < f);
     let b = curve.get(i)?;
     if b.0 == f {
-        return Some(b.1);
+        return Some([(i, 1.0), (i, 0.0)]);
     }
     let a = curve.get(i.checked_sub(1)?)?;
     let t = (f - a.0) / (b.0 - a.0);
-    Some((a.1.ln() * (1.0 - t) + b.1.ln() * t).exp())
+    Some([(i - 1, 1.0 - t), (i, t)])
 }
 
-/// Frequencies where two curves over frequency cross, and whether the second is the larger one above. Each curve may be
-/// in any order; the second is interpolated at the frequencies of the first (linear in the logarithm).
-pub fn crossings(mut first: Vec<(f64, f64)>, mut second: Vec<(f64, f64)>) -> Vec<(f64, bool)> {
+/// A curve between its points, linear in the logarithm; `None` outside.
+fn at(curve: &[(f64, f64, f64)], f: f64) -> Option<f64> {
+    Some(between(curve, f)?.iter().map(|(i, weight)| weight * curve[*i].1.ln()).sum::<f64>().exp())
+}
+
+/// Where two curves cross.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crossing {
+    /// Frequency in Hz.
+    pub frequency: f64,
+    /// Its standard uncertainty in Hz; `None` where that of an amplitude is not known.
+    pub frequency_std: Option<f64>,
+    /// Whether the second curve is the larger one above.
+    pub second_above: bool,
+}
+
+/// Where two curves over frequency cross. Each is given as (frequency, amplitude, its standard uncertainty) in any order; the
+/// second is interpolated at the frequencies of the first (linear in the logarithm).
+///
+/// The uncertainty is that of the amplitudes, carried through the interpolation. Where one of the curves jumps between the two
+/// points, the crossing is that jump: it lies anywhere between the points with equal chance.
+pub fn crossings(
+    mut first: Vec<(f64, f64, f64)>,
+    mut second: Vec<(f64, f64, f64)>,
+    jumps: &[Jump],
+) -> Vec<Crossing> {
     first.sort_by(|a, b| a.0.total_cmp(&b.0));
     second.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let difference: Vec<(f64, f64)> = first
+    // Frequency, logarithm of the ratio, relative uncertainty of the first, points of the second.
+    let ratios: Vec<_> = first
         .iter()
-        .filter_map(|(f, a)| at(&second, *f).map(|b| (*f, (b / a).ln())))
-        .filter(|(_, d)| d.is_finite())
+        .filter_map(|(f, a, s)| Some((*f, (at(&second, *f)? / a).ln(), s / a, between(&second, *f)?)))
+        .filter(|r| r.1.is_finite())
         .collect();
-    difference
+    ratios
         .windows(2)
         .filter(|w| (w[0].1 > 0.0) != (w[1].1 > 0.0))
-        .map(|w| (w[0].0 + (w[1].0 - w[0].0) * w[0].1 / (w[0].1 - w[1].1), w[1].1 > 0.0))
+        .map(|w| {
+            let (low, high) = (&w[0], &w[1]);
+            let (width, turn) = (high.0 - low.0, low.1 - high.1);
+            let second_above = high.1 > 0.0;
+            if jumps.iter().any(|j| j.from.min(j.to) < high.0 && j.from.max(j.to) > low.0) {
+                let frequency_std = Some(width / f64::sqrt(12.0));
+                return Crossing { frequency: f64::midpoint(low.0, high.0), frequency_std, second_above };
+            }
+            // Slopes of the crossing over the two logarithms.
+            let slopes = [-width * high.1 / (turn * turn), width * low.1 / (turn * turn)];
+            let mut variance = (slopes[0] * low.2).powi(2) + (slopes[1] * high.2).powi(2);
+            // One point of the second curve may stand behind both.
+            let parts: Vec<(usize, f64)> = [(slopes[0], low.3), (slopes[1], high.3)]
+                .iter()
+                .flat_map(|(slope, points)| points.map(|(i, weight)| (i, slope * weight)))
+                .filter(|part| part.1 != 0.0)
+                .collect();
+            for (i, a) in &parts {
+                let shared: f64 = parts.iter().filter(|p| p.0 == *i).map(|p| p.1).sum();
+                variance += a * shared * (second[*i].2 / second[*i].1).powi(2);
+            }
+            Crossing {
+                frequency: low.0 + width * low.1 / turn,
+                frequency_std: known(variance.sqrt()),
+                second_above,
+            }
+        })
         .collect()
 }
 
 #[cfg(test)]
-mod tests {
-    #[test]
-    fn a_mass_that_moves_alone_does_not_clap() {
-        let resonance = |f, a, kind: &str| Resonance {
-            frequency: f,
-            frequency_std: None,
-            amplitude: a,
-            amplitude_std: None,
-            kind: kind.into(),
-            at_jump: false,
-        };
-        let mut first = vec![
-            resonance(5.5, 10.0, "resonance"),
-            resonance(7.5, 0.1, "antiresonance"),
-            resonance(10.6, 2.0, "resonance"),
-        ];
-        let mut second = vec![resonance(5.5, 9.0, "resonance")];
-        let curve = |above| vec![(4.0, 1.0, 0.0), (5.5, 9.0, 0.0), (9.0, above, 0.0), (13.0, above, 0.0)];
-        for (above, expected) in [(1e-6, "resonance"), (1.0, "clapping")] {
-            first[2].kind = "resonance".into();
-            first[0].kind = "resonance".into();
-            let direction = Direction::Up;
-            name_modes(&mut [
-                NamedCurve {
-                    mass: 1,
-                    direction,
-                    curve: curve(1.0),
-                    jumps: Vec::new(),
-                    resonances: &mut first,
-                },
-                NamedCurve {
-                    mass: 2,
-                    direction,
-                    curve: curve(above),
-                    jumps: Vec::new(),
-                    resonances: &mut second,
-                },
-            ]);
-            assert_eq!((first[0].kind.as_str(), first[2].kind.as_str()), ("grazing", expected));
-            assert_eq!(second[0].kind, "grazing");
-        }
-    }
-
-    #[test]
-    fn curves_cross_where_their_logarithms_do() {
-        // e^f against e^(10−f): they cross at 5.
-        let up: Vec<(f64, f64)> = (0..11).map(|i| (f64::from(i), f64::from(i).exp())).collect();
-        let down: Vec<(f64, f64)> =
-            (0..11).map(|i| (f64::from(i) + 0.3, (9.7 - f64::from(i)).exp())).collect();
-        let found = crossings(up, down);
-        assert_eq!(found.len(), 1);
-        assert!((found[0].0 - 5.0).abs() < 1e-12 && !found[0].1, "{found:?}");
-    }
-
-    use super::*;
-
-    #[test]
-    fn a_hardening_peak_ends_in_a_drop() {
-        let f: Vec<f64> = (0..12).map(|i| 8.0 + 0.3 * f64::from(i)).collect();
-        let a: Vec<f64> = f.iter().map(|f| if *f < 10.6 { 1.0 + (f - 8.0) } else { 0.8 }).collect();
-        let jumps = jumps(&f, &a, &[0.01; 12], Direction::Up);
-        assert_eq!(jumps.len(), 1);
-        assert_eq!((jumps[0].change, jumps[0].from), ("drop", f[8]));
-        let peaks = resonances(&f, &a, &[0.01; 12], &jumps);
-        assert_eq!(peaks.len(), 1);
-        assert!(peaks[0].at_jump && peaks[0].frequency == f[8]);
-    }
-
-    #[test]
-    fn a_coarse_sweep_of_a_linear_resonance_has_no_jump() {
-        for q in [5.0, 20.0, 50.0, 150.0] {
-            for n in [10, 20, 40, 100] {
-                for offset in 0..25 {
-                    let f: Vec<f64> = (0..n)
-                        .map(|i| 4.0 + 4.0 * (f64::from(i) + f64::from(offset) / 25.0) / f64::from(n))
-                        .collect();
-                    let a: Vec<f64> =
-                        f.iter().map(|f| 1.0 / (1.0 - (f / 5.6f64).powi(2)).hypot(f / 5.6 / q)).collect();
-                    let found = jumps(&f, &a, &vec![1e-6; f.len()], Direction::Up);
-                    assert!(found.is_empty(), "Q {q}, {n} points, {offset}: {found:?}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn a_smooth_resonance_is_no_jump() {
-        let f: Vec<f64> = (0..40).map(|i| 4.0 + 0.1 * f64::from(i)).collect();
-        let a: Vec<f64> =
-            f.iter().map(|f| 1.0 / (1.0 - (f / 5.6f64).powi(2)).hypot(0.04 * f / 5.6)).collect();
-        assert!(jumps(&f, &a, &[1e-3; 40], Direction::Up).is_empty());
-        let peaks = resonances(&f, &a, &[1e-3; 40], &[]);
-        assert_eq!(peaks.len(), 1);
-        assert!((peaks[0].frequency - 5.6).abs() < 0.02, "{peaks:?}");
-    }
-
-    #[test]
-    fn noise_has_no_resonances_and_no_jumps() {
-        // Alternating values whose differences are three standard deviations.
-        let f: Vec<f64> = (0..20).map(f64::from).collect();
-        let a: Vec<f64> = (0..20).map(|i| if i % 2 == 0 { 4.0 } else { 1.0 }).collect();
-        assert!(resonances(&f, &a, &[1.0; 20], &[]).is_empty());
-        assert!(jumps(&f, &a, &[1.0; 20], Direction::Up).is_empty());
-        assert!(!resonances(&f, &a, &[0.1; 20], &[]).is_empty());
-    }
-
-    #[test]
-    fn nothing_in_short_curves() {
-        assert!(resonances(&[1.0], &[1.0], &[0.0], &[]).is_empty());
-        assert!(jumps(&[1.0], &[1.0], &[0.0], Direction::Up).is_empty());
-    }
-}
+mod tests;

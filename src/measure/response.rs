@@ -1,7 +1,8 @@
 //! Response at the excitation, step by step (the job of the thesis' sinesw3).
 
 use super::excitation::{Excitation, excitations};
-use super::line::{amplitude_at, interpolate, misfit};
+use super::limit::upper_limit;
+use super::line::{amplitude_at, interpolate, misfit, nearest};
 use super::resonance::{Jump, Resonance, jumps, resonances};
 use super::{Estimate, noise};
 use crate::error::{Error, Result};
@@ -61,8 +62,11 @@ pub struct ResponsePoint {
     pub frequency: f64,
     /// Its standard uncertainty in Hz.
     pub frequency_std: Option<f64>,
-    /// Peak amplitude at the excitation.
+    /// Peak amplitude at the excitation. Where the response does not stand out of the noise, the line nearest to the excitation
+    /// as it is: noise lifts it, so a faint amplitude is more likely too large than too small.
     pub amplitude: Estimate,
+    /// What the true amplitude stays below with 95 % confidence, where it does not stand out of the noise.
+    pub upper_limit: Option<f64>,
     /// Orders 2 to 5.
     pub harmonics: Vec<Harmonic>,
     /// Orders 1/2, 1/3, 1/4.
@@ -140,11 +144,11 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
     let direction = direction(&frequency, sweep.direction, &mut warnings);
     let amplitude: Vec<f64> = points.iter().map(|p| p.amplitude.value).collect();
     let std: Vec<f64> = points.iter().map(|p| p.amplitude.std.unwrap_or(f64::NAN)).collect();
-    let faint =
-        points.iter().filter(|p| p.amplitude.std.is_some_and(|s| p.amplitude.value < 3.0 * s)).count();
+    let faint = points.iter().filter(|p| p.upper_limit.is_some()).count();
     if faint > 0 {
-        warnings
-            .push(format!("{faint} amplitude(s) stand less than three standard deviations above the noise."));
+        warnings.push(format!(
+            "{faint} amplitude(s) do not stand out of the noise, which lifts them: the true ones stay below their upper limits with 95 % confidence."
+        ));
     }
     if points.iter().any(|p| p.amplitude.value.is_nan()) {
         warnings.push(format!(
@@ -260,7 +264,7 @@ fn direction(frequency: &[f64], stated: Option<Direction>, warnings: &mut Vec<St
 /// Force lines further than this from their window's shape are not under that window.
 const WRONG_SHAPE: f64 = 0.02;
 /// A response peak must stand this factor above the noise of a line; a fainter one is read at the excitation frequency, where
-/// noise cannot choose the line.
+/// noise cannot choose the line, and gets an upper limit.
 const PEAK_ABOVE: f64 = 5.0;
 /// A response peak lies within this many lines of the excitation.
 const NEAR: f64 = 1.0;
@@ -300,17 +304,19 @@ impl Taker<'_> {
         let at = self.position(excitation.frequency);
         let centre = at.round().max(0.0) as usize;
         let window = point.response.window;
-        let floor = noise::around(&measured, centre);
         let low = centre.saturating_sub(self.options.band).max(1);
         let high = centre.saturating_add(self.options.band).min(measured.len().saturating_sub(2));
-        let peak = (low..=high)
+        let top = (low..=high)
             .filter(|&k| measured[k] >= measured[k - 1] && measured[k] >= measured[k + 1])
-            .max_by(|a, b| measured[*a].total_cmp(&measured[*b]))
+            .max_by(|a, b| measured[*a].total_cmp(&measured[*b]));
+        let floor = noise::around(&measured, top.unwrap_or(centre), window);
+        let peak = top
             .and_then(|k| interpolate(&measured, k, window, floor))
             // A hump of noise, or another line beside the excitation, is not the response.
             .filter(|p| {
                 floor.is_none_or(|f| p.amplitude >= PEAK_ABOVE * f) && (p.position - at).abs() <= NEAR
             });
+        let mut limit = None;
         let (frequency, frequency_std, amplitude, method) = if excitation.frequency < self.fmin {
             (excitation.frequency, None, (f64::NAN, None), "below the cut-off".to_owned())
         } else if let Some(peak) = peak {
@@ -322,8 +328,12 @@ impl Taker<'_> {
             let std = peak.position_std.map(|s| s * self.df);
             (frequency, std, (peak.amplitude, peak.amplitude_std), method)
         } else {
-            let found = amplitude_at(&measured, at, window, floor).unwrap_or((f64::NAN, None));
-            (excitation.frequency, excitation.std, found, "at the excitation, no peak of its own".to_owned())
+            // One line, because the distribution of its magnitude is known.
+            let (line, gain) = nearest(&measured, at, window).unwrap_or((f64::NAN, 1.0));
+            limit = window.and(floor).and_then(|f| upper_limit(line, f)).map(|l| l / gain);
+            let std = window.and(floor).map(|f| f / gain);
+            let method = "line nearest to the excitation, no peak of its own, noise not taken out".to_owned();
+            (excitation.frequency, excitation.std, (line / gain, std), method)
         };
         let divisor = self.divisor(frequency);
         let amplitude =
@@ -341,6 +351,7 @@ impl Taker<'_> {
             frequency,
             frequency_std,
             amplitude,
+            upper_limit: limit.map(|l| l / divisor),
             harmonics: (2..=5).map(|n| harmonic(n, 1)).collect(),
             subharmonics: (2..=4).map(|n| harmonic(1, n)).collect(),
             largest_elsewhere: largest.abs_diff(centre) > self.options.band,
@@ -352,7 +363,7 @@ impl Taker<'_> {
         let at = self.position(frequency);
         let inside = frequency >= self.fmin && at >= 1.0 && at.round() < measured.len() as f64 - 1.0;
         let found = inside
-            .then(|| amplitude_at(measured, at, window, noise::around(measured, at.round() as usize)))
+            .then(|| amplitude_at(measured, at, window, noise::around(measured, at.round() as usize, window)))
             .flatten();
         let divisor = self.divisor(frequency);
         let (value, std, method) = match found {
@@ -373,3 +384,6 @@ impl Taker<'_> {
         (first..stored.len()).max_by(|a, b| wanted(*a).total_cmp(&wanted(*b))).unwrap_or(first)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -2,7 +2,7 @@
 
 use super::Rig;
 use crate::error::{Error, Result};
-use nalgebra::{Matrix2, Matrix4, RowVector4, Schur, Vector4};
+use nalgebra::{Matrix2, Matrix4, RowVector4, SVD, Schur, Vector4};
 use num_complex::Complex64;
 
 /// Free flow Φ(t) of both masses in (x₁, v₁, x₂, v₂); the force moves every neighbour alike and does not enter.
@@ -37,6 +37,38 @@ fn saltation(rig: &Rig, before: &[f64; 4], after: &[f64; 4]) -> Matrix4<f64> {
 /// `before` and `after` are rates of change of the state (v₁, a₁, v₂, a₂) on both sides of the impact.
 pub(super) fn monodromy(rig: &Rig, period: f64, before: &[f64; 4], after: &[f64; 4]) -> Matrix4<f64> {
     flow(rig, period) * saltation(rig, before, after)
+}
+
+/// A bound on the rounding of [`monodromy`] in the Frobenius norm, for relative errors of ε in its arguments.
+///
+/// The kernels err by ε times their phase ΩT, sums and products of four by 4ε each, the quotient of the saltation by the four
+/// terms of each acceleration; the Schur form by a few ε of the product. Together below 64 (1 + ΩT) ε of both norms.
+pub(super) fn rounding(rig: &Rig, period: f64, before: &[f64; 4], after: &[f64; 4]) -> f64 {
+    let phase = rig.oscillators().iter().map(|o| o.omega2().sqrt() * period).fold(0.0, f64::max);
+    let norms = flow(rig, period).norm() * saltation(rig, before, after).norm();
+    64.0 * f64::EPSILON * (1.0 + phase) * norms
+}
+
+/// Whether all multipliers lie inside the unit circle; `None` where an error of norm `rounding` in the monodromy could move
+/// one onto it, and none lies outside for certain.
+///
+/// A matrix within `rounding` has the eigenvalue z exactly where the smallest singular value of M − z does not exceed it (L. N.
+/// Trefethen and M. Embree, *Spectra and Pseudospectra* (2005), §2), however ill-conditioned a double multiplier is.
+pub(super) fn inside(monodromy: &Matrix4<f64>, multipliers: &[Complex64; 4], rounding: f64) -> Option<bool> {
+    let open = |z: &Complex64| {
+        let nearest = z / z.norm();
+        // So far from the circle no rounding that leaves multipliers at all reaches it.
+        if (z.norm() - 1.0).abs() > 0.1 {
+            return false;
+        }
+        let moved = monodromy.map(Complex64::from) - Matrix4::from_diagonal_element(nearest);
+        let svd = SVD::try_new(moved, false, false, f64::EPSILON, 1000);
+        svd.is_none_or(|svd| svd.singular_values.min() <= rounding)
+    };
+    if multipliers.iter().any(|z| z.norm() > 1.0 && !open(z)) {
+        return Some(false);
+    }
+    (!multipliers.iter().any(open)).then_some(true)
 }
 
 /// Eigenvalues, largest modulus first.

@@ -162,11 +162,18 @@ impl<'a> Solver<'a> {
             let (low, high) = motion.range(signal, self.period);
             high - low
         };
-        let multipliers = (impulse > 0.0)
-            .then(|| floquet::monodromy(rig, self.period, &motion.rate(self.period), &motion.rate(0.0)))
-            .and_then(|m| floquet::multipliers(&m).ok());
         // From the quadratic: (aJ + ΔC) dJ = −(CJ + Δ) dΔ.
         let sensitivity = (self.c * impulse + rig.gap).abs() / self.discriminant().max(0.0).sqrt();
+        let (mut multipliers, mut stable) = (None, Some(false));
+        if impulse > 0.0 {
+            let (before, after) = (motion.rate(self.period), motion.rate(0.0));
+            let monodromy = floquet::monodromy(rig, self.period, &before, &after);
+            multipliers = floquet::multipliers(&monodromy).ok();
+            // Roundings of gap and amplitude reach the impulse through its sensitivity.
+            let amplified = 1.0 + (rig.gap.abs() + self.amplitude) * sensitivity / impulse;
+            let rounding = amplified * floquet::rounding(rig, self.period, &before, &after);
+            stable = multipliers.as_ref().map_or(stable, |m| floquet::inside(&monodromy, m, rounding));
+        }
         Orbit {
             frequency: omega / TAU,
             cycles: self.cycles,
@@ -176,7 +183,7 @@ impl<'a> Solver<'a> {
             approach_velocity: impulse / (rig.reduced_mass() * (1.0 + rig.restitution)),
             fundamental: [forced - l1 * train, l2 * train],
             peak_to_peak: [spread(Signal::X1), spread(Signal::X2)],
-            validity: Validity::judge(impulse, sensitivity, &motion, self.period, multipliers.as_ref()),
+            validity: Validity::judge(impulse, sensitivity, &motion, self.period, stable),
             multipliers,
             motion,
         }

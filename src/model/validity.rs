@@ -1,7 +1,6 @@
 //! Is a computed orbit real? Four verdicts, each on its own.
 
 use super::flow::{Flight, Signal};
-use num_complex::Complex64;
 use serde::Serialize;
 
 /// Verdicts on an orbit. A motion that can be measured needs `exists`, `admissible` and `stable`; how far it is from
@@ -12,8 +11,12 @@ pub struct Validity {
     pub exists: bool,
     /// The masses do not pass through each other between the impacts, found by a search that misses no contact.
     pub admissible: bool,
-    /// Every Floquet multiplier lies inside the unit circle. False where there are no multipliers.
-    pub stable: bool,
+    /// Every Floquet multiplier lies inside the unit circle; `None` where rounding cannot tell the largest from 1. False
+    /// where there are no multipliers.
+    pub stable: Option<bool>,
+    /// The same in a word: `stable`, `unstable` or `neutral`. A neutral motion neither dies away after a disturbance nor is left: that of a
+    /// rig without losses, or one at the border of stability.
+    pub stability: &'static str,
     /// Smallest gap over the period in m: 0, that of the impact itself, or the depth by which the masses would pass
     /// through each other, as a negative number.
     pub min_gap: f64,
@@ -28,13 +31,13 @@ pub struct Validity {
 impl Validity {
     /// Judges the orbit that flies `motion` for one `period`.
     ///
-    /// `sensitivity` is |dJ/dΔ| in N s/m, infinite at a fold.
+    /// `sensitivity` is |dJ/dΔ| in N s/m, infinite at a fold; `stable` the verdict of the multipliers.
     pub(super) fn judge(
         impulse: f64,
         sensitivity: f64,
         motion: &Flight,
         period: f64,
-        multipliers: Option<&[Complex64; 4]>,
+        stable: Option<bool>,
     ) -> Validity {
         // What lies nearer to the impact than this is the impact itself (without rebound the gap starts at zero rate).
         let (noise, margin) = (8.0 * motion.noise(), 1e-9 * period);
@@ -56,7 +59,12 @@ impl Validity {
         Validity {
             exists,
             admissible,
-            stable: multipliers.is_some_and(|m| m.iter().all(|z| z.norm() < 1.0)),
+            stable,
+            stability: match stable {
+                Some(true) => "stable",
+                Some(false) => "unstable",
+                None => "neutral",
+            },
             min_gap,
             clearance,
             grazing_distance: clearance.map_or(own, |c| own.min(c.max(0.0))),
@@ -65,6 +73,6 @@ impl Validity {
 
     /// Whether the orbit is real, and stays so for any gap within `gap_uncertainty` (m) of the stated one.
     pub fn robust(&self, gap_uncertainty: f64) -> bool {
-        self.exists && self.admissible && self.stable && self.grazing_distance > gap_uncertainty
+        self.exists && self.admissible && self.stable == Some(true) && self.grazing_distance > gap_uncertainty
     }
 }

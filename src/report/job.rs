@@ -49,6 +49,8 @@ pub struct Crossing {
     pub direction: Direction,
     /// Frequency in Hz.
     pub frequency: f64,
+    /// Its standard uncertainty in Hz.
+    pub frequency_std: Option<f64>,
     /// The mass that moves more above it.
     pub larger_above: u8,
 }
@@ -121,11 +123,7 @@ fn sweeps(campaign: &Campaign, options: JobOptions, progress: &dyn Progress) -> 
         .iter_mut()
         .filter_map(|(_, r, _)| {
             let (mass, direction) = (r.mass?, r.direction?);
-            let mut curve: Vec<(f64, f64, f64)> = r
-                .points
-                .iter()
-                .map(|p| (p.excitation, p.amplitude.value, p.amplitude.std.unwrap_or(f64::NAN)))
-                .collect();
+            let mut curve = curve(r);
             curve.sort_by(|a, b| a.0.total_cmp(&b.0));
             Some(NamedCurve { mass, direction, curve, jumps: r.jumps.clone(), resonances: &mut r.resonances })
         })
@@ -265,15 +263,24 @@ fn antiresonances(responses: &[Response]) -> [Option<f64>; 2] {
     })
 }
 
+/// Excitation frequency, amplitude and its standard uncertainty.
+fn curve(response: &Response) -> Vec<(f64, f64, f64)> {
+    let points = response.points.iter();
+    points.map(|p| (p.excitation, p.amplitude.value, p.amplitude.std.unwrap_or(f64::NAN))).collect()
+}
+
 fn all_crossings(responses: &[Response]) -> Vec<Crossing> {
     let mut found = Vec::new();
     for direction in [Direction::Up, Direction::Down] {
         let of = |mass| responses.iter().find(|r| r.mass == Some(mass) && r.direction == Some(direction));
         if let (Some(first), Some(second)) = (of(1), of(2)) {
-            let curve = |r: &Response| r.points.iter().map(|p| (p.excitation, p.amplitude.value)).collect();
-            for (frequency, second_above) in crossings(curve(first), curve(second)) {
-                found.push(Crossing { direction, frequency, larger_above: if second_above { 2 } else { 1 } });
-            }
+            let jumps = [first.jumps.as_slice(), &second.jumps].concat();
+            found.extend(crossings(curve(first), curve(second), &jumps).into_iter().map(|c| Crossing {
+                direction,
+                frequency: c.frequency,
+                frequency_std: c.frequency_std,
+                larger_above: if c.second_above { 2 } else { 1 },
+            }));
         }
     }
     found

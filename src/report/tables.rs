@@ -16,22 +16,30 @@ fn headed(title: impl Into<String>, columns: &[(&str, &str)]) -> Table {
 
 /// Point by point, what fits a page: excitation, force, response.
 pub fn curve(response: &Response) -> Table {
-    let columns = [
+    let limited = response.points.iter().any(|p| p.upper_limit.is_some());
+    let mut columns = vec![
         ("excitation", "Hz"),
         ("force", "N"),
         ("response at", "Hz"),
         ("amplitude", response.unit),
         ("largest at", "Hz"),
     ];
+    if limited {
+        columns.push(("upper limit", response.unit));
+    }
     let mut table = headed(format!("Response, {}", response.name), &columns);
     for p in &response.points {
-        table.push([
+        let mut row = vec![
             pair(p.excitation, p.excitation_std),
             Cell::from(p.force),
             pair(p.frequency, p.frequency_std),
             Cell::from(&p.amplitude),
             if p.largest_elsewhere { Cell::Number(p.largest_at) } else { Cell::from("excitation") },
-        ]);
+        ];
+        if limited {
+            row.push(Cell::from(p.upper_limit));
+        }
+        table.push(row);
     }
     table
 }
@@ -50,6 +58,7 @@ pub fn response(response: &Response) -> Table {
         columns.extend(orders.map(|h| (format!("order {}", h.order), unit)));
     }
     columns.push(("largest at".to_owned(), "Hz"));
+    columns.push(("upper limit".to_owned(), unit));
     let columns: Vec<(&str, &str)> = columns.iter().map(|(n, u)| (n.as_str(), *u)).collect();
     let mut table = headed(format!("Response, {}", response.name), &columns);
     for p in &response.points {
@@ -61,6 +70,7 @@ pub fn response(response: &Response) -> Table {
         ];
         row.extend(p.harmonics.iter().chain(&p.subharmonics).map(|h| Cell::from(&h.amplitude)));
         row.push(if p.largest_elsewhere { Cell::Number(p.largest_at) } else { Cell::from("excitation") });
+        row.push(Cell::from(p.upper_limit));
         table.push(row);
     }
     table
@@ -89,18 +99,16 @@ pub fn resonances(responses: &[Response]) -> Table {
 /// Jumps.
 pub fn jumps(responses: &[Response]) -> Table {
     let unit = responses.first().map_or("", |r| r.unit);
-    let columns =
-        [("sweep", ""), ("change", ""), ("from", "Hz"), ("to", "Hz"), ("before", unit), ("after", unit)];
+    let columns = [("sweep", ""), ("change", ""), ("at", "Hz"), ("before", unit), ("after", unit)];
     let mut table = headed("Jumps", &columns);
     for response in responses {
         for j in &response.jumps {
             table.push([
                 Cell::from(response.name.as_str()),
                 Cell::from(j.change),
-                Cell::Number(j.from),
-                Cell::Number(j.to),
-                Cell::Number(j.amplitude_before),
-                Cell::Number(j.amplitude_after),
+                pair(j.frequency, Some(j.frequency_std)),
+                pair(j.amplitude_before, j.amplitude_before_std),
+                pair(j.amplitude_after, j.amplitude_after_std),
             ]);
         }
     }

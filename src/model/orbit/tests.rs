@@ -174,7 +174,7 @@ fn golden_numbers_of_the_clapping_scene() {
     }
     let product: Complex64 = first.multipliers.unwrap().iter().product();
     assert!((product - 0.413_524_143_627_467_14).norm() < 1e-13);
-    assert!(first.validity.exists && first.validity.admissible && first.validity.stable);
+    assert!(first.validity.exists && first.validity.admissible && first.validity.stable == Some(true));
     assert!(!second.validity.exists && second.multipliers.is_none());
 }
 
@@ -185,7 +185,7 @@ fn golden_losses_of_stability() {
     let flip = orbits(&rig, 0.9, at(&rig, 1.2)).unwrap().orbits[0];
     let m = flip.multipliers.unwrap()[0];
     assert!((m - Complex64::new(-1.326, 0.0)).norm() < 6e-4, "{m}");
-    assert!(flip.validity.exists && !flip.validity.stable);
+    assert!(flip.validity.exists && flip.validity.stable == Some(false));
     // A pair outside the circle, printed as 0.389 ± 1.047i.
     let pair = orbits(&rig, 0.05, at(&rig, 1.3)).unwrap().orbits[0];
     let m = pair.multipliers.unwrap();
@@ -196,6 +196,46 @@ fn golden_losses_of_stability() {
     // Passes through the other mass by 6.2 mm.
     let deep = orbits(&Rig::thesis(), 0.5, at(&rig, 0.8)).unwrap().orbits[0];
     assert!((deep.validity.min_gap + 6.2e-3).abs() < 0.05e-3 && !deep.validity.admissible);
+}
+
+/// Without losses the multipliers come in pairs z, 1/z: z⁴ − az³ + bz² − az + 1 with w = z + 1/z from w² − aw + b − 2. All lie on the
+/// circle where both w are real and within ±2; else one lies outside. None is ever stable.
+#[test]
+fn a_rig_without_losses_is_neutral_or_unstable() {
+    let rig = Rig { c1: 0.0, c2: 0.0, restitution: 1.0, ..Rig::thesis() };
+    let (mut neutral, mut unstable) = (0, 0);
+    for force in [0.02, 0.1, 0.5, 3.0] {
+        for i in 0..300 {
+            let nu = 0.7031 + 0.0067 * f64::from(i);
+            for orbit in &orbits(&rig, force, at(&rig, nu)).unwrap().orbits {
+                let Some(m) = orbit.multipliers else { continue };
+                let a: f64 = m.iter().map(|z| z.re).sum();
+                let b = (0..4)
+                    .flat_map(|i| (0..i).map(move |j| (i, j)))
+                    .map(|(i, j)| (m[i] * m[j]).re)
+                    .sum::<f64>();
+                let root = a * a - 4.0 * (b - 2.0);
+                let w = [-1.0, 1.0].map(|sign| f64::midpoint(a, sign * root.max(0.0).sqrt()));
+                let outermost = w[0].abs().max(w[1].abs());
+                let place = format!("{force} N, ν {nu}: {m:?}");
+                // The margin is far above the rounding of a and b, far below what separates the two.
+                if root > 1e-6 && outermost < 2.0 - 1e-6 {
+                    assert_eq!(
+                        (orbit.validity.stable, orbit.validity.stability),
+                        (None, "neutral"),
+                        "{place}"
+                    );
+                    neutral += 1;
+                } else if root < -1e-6 || outermost > 2.0 + 1e-6 {
+                    assert_eq!(orbit.validity.stable, Some(false), "{place}");
+                    unstable += 1;
+                }
+                assert_ne!(orbit.validity.stable, Some(true), "{place}");
+            }
+        }
+    }
+    println!("{neutral} neutral, {unstable} unstable");
+    assert!(neutral > 50 && unstable > 50, "{neutral} {unstable}");
 }
 
 #[test]
