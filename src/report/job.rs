@@ -1,19 +1,20 @@
 //! All that a campaign asks for: responses, waterfalls, overlay, frequency response functions, and their files.
 
 mod frf;
+mod pairing;
 
 pub use frf::{FrfPeak, FrfResult};
+pub use pairing::Crossing;
 
 use super::{Figure, Output, files, page, pictures, tables};
 use crate::campaign::{Campaign, RecordEntry};
 use crate::compare::{Overlay, overlay};
 use crate::error::{Error, Result};
-use crate::measure::resonance::{NamedCurve, crossings, deepest, name_modes};
 use crate::measure::response::{Response, ResponseOptions, response, to_displacement};
-use crate::measure::waterfall::{Waterfall, waterfall};
+use crate::measure::waterfall::{Waterfall, gathered};
 use crate::model::Rig;
 use crate::read::{Header, Reader};
-use crate::record::{Direction, Sweep};
+use crate::record::Sweep;
 use crate::units::Unit;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -43,17 +44,6 @@ pub struct JobOptions {
     pub allow_outside: bool,
 }
 
-/// Where the curves of both masses cross.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Crossing {
-    /// Direction of the two sweeps.
-    pub direction: Direction,
-    /// Frequency in Hz.
-    pub frequency: f64,
-    /// The mass that moves more above it.
-    pub larger_above: u8,
-}
-
 /// A file that a campaign names but that is only listed here.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Listed {
@@ -74,7 +64,7 @@ pub struct Results {
     pub version: &'static str,
     /// One response a sweep.
     pub responses: Vec<Response>,
-    /// Antiresonance of mass 1 in Hz, going up and going down.
+    /// Antiresonance of mass 1 in Hz, going up and going down, at the first level of force.
     pub antiresonance: [Option<f64>; 2],
     /// Where the curves of both masses cross.
     pub crossings: Vec<Crossing>,
@@ -118,22 +108,13 @@ fn sweeps(campaign: &Campaign, options: JobOptions, progress: &dyn Progress) -> 
             Ok((sweep, response, options))
         })
         .collect::<Result<_>>()?;
-    let mut curves: Vec<NamedCurve<'_>> = taken
-        .iter_mut()
-        .filter_map(|(_, r, _)| {
-            let (mass, direction) = (r.mass?, r.direction?);
-            let mut curve: Vec<(f64, f64, f64)> = r
-                .points
-                .iter()
-                .map(|p| (p.excitation, p.amplitude.value, p.amplitude.std.unwrap_or(f64::NAN)))
-                .collect();
-            curve.sort_by(|a, b| a.0.total_cmp(&b.0));
-            Some(NamedCurve { mass, direction, curve, jumps: r.jumps.clone(), resonances: &mut r.resonances })
-        })
-        .collect();
-    name_modes(&mut curves);
+    pairing::name(&mut taken.iter_mut().map(|(_, response, _)| response).collect::<Vec<_>>());
     Ok(taken)
 }
+
+/// Names of the files that hold all results.
+const RESULTS: &str = "results.json";
+const REPORT: &str = "report.html";
 
 /// Does everything and writes it to `output`.
 ///
@@ -147,11 +128,11 @@ pub fn run(
 ) -> Result<Results> {
     let taken = sweeps(campaign, options, progress)?;
     let mut figures: Vec<(String, Figure)> = Vec::new();
-    let mut matrices: Vec<Waterfall> = Vec::new();
-    for (sweep, _, options) in &taken {
-        matrices.push(waterfall(sweep, options)?);
-    }
-    let responses: Vec<Response> = taken.into_iter().map(|(_, response, _)| response).collect();
+    let matrix = |(sweep, response, options): Taken| {
+        let excitation = response.points.iter().map(|p| p.excitation).collect();
+        (gathered(&sweep, &options, excitation, response.fmin), response)
+    };
+    let (matrices, responses): (Vec<Waterfall>, Vec<Response>) = taken.into_par_iter().map(matrix).unzip();
     let mut warnings: Vec<String> = Vec::new();
     for response in &responses {
         merge(&mut warnings, &response.name, &response.warnings);
@@ -177,16 +158,15 @@ pub fn run(
     if responses.is_empty() && frf.is_empty() && listed.is_empty() {
         warnings.push("The campaign names no file: nothing was computed.".to_owned());
     }
-    twice(&responses, &mut warnings);
+    pairing::twice(&responses, &mut warnings);
     if overlay.is_some() {
         warnings.extend(campaign.rig_left_out());
     }
-    let found = antiresonances(&responses);
-    let results = Results {
+    let mut results = Results {
         campaign: name,
         version: env!("CARGO_PKG_VERSION"),
-        antiresonance: found,
-        crossings: all_crossings(&responses),
+        antiresonance: pairing::antiresonances(&responses),
+        crossings: pairing::all_crossings(&responses),
         responses,
         rig: campaign.rig.filter(|_| overlay.is_some()),
         overlay,
@@ -204,10 +184,11 @@ pub fn run(
         output.write("pairs.csv", tables::pairs(overlay).csv())?;
         output.write("peaks.csv", tables::peaks(overlay).csv())?;
     }
+    results.warnings.extend(files::left_over(output, &[RESULTS, REPORT]));
     let json = serde_json::to_string_pretty(&results)
         .map_err(|e| Error::refused(format!("the results cannot be written as JSON: {e}")))?;
-    output.write("results.json", json + "\n")?;
-    output.write("report.html", page::page(&results, &figures, &drawings).html())?;
+    output.write(RESULTS, json + "\n")?;
+    output.write(REPORT, page::page(&results, &figures, &drawings).html())?;
     progress.done();
     Ok(results)
 }
@@ -234,19 +215,6 @@ fn slugs<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     slugs
 }
 
-/// Several sweeps of one mass and direction: naming and crossings know only the first.
-fn twice(responses: &[Response], warnings: &mut Vec<String>) {
-    for (i, r) in responses.iter().enumerate() {
-        let same = |o: &&Response| o.mass.is_some() && (o.mass, o.direction) == (r.mass, r.direction);
-        if let Some(first) = responses[..i].iter().find(same) {
-            warnings.push(format!(
-                "\"{}\" and \"{}\" are sweeps of the same mass and direction: resonances of both are named by the first sweep of the other mass, and crossings are those of the first.",
-                first.name, r.name
-            ));
-        }
-    }
-}
-
 fn model(campaign: &Campaign, responses: &[Response], warnings: &mut Vec<String>) -> Result<Option<Overlay>> {
     let Some(rig) = campaign.rig.filter(|_| campaign.compute.overlay) else { return Ok(None) };
     if responses.iter().all(|r| r.mass.is_none() || r.direction.is_none()) {
@@ -258,26 +226,6 @@ fn model(campaign: &Campaign, responses: &[Response], warnings: &mut Vec<String>
     let overlay = overlay(&rig, campaign.excitation.and_then(|e| e.force), responses)?;
     merge(warnings, "", &overlay.warnings);
     Ok(Some(overlay))
-}
-
-fn antiresonances(responses: &[Response]) -> [Option<f64>; 2] {
-    [Direction::Up, Direction::Down].map(|direction| {
-        deepest(&responses.iter().find(|r| r.mass == Some(1) && r.direction == Some(direction))?.resonances)
-    })
-}
-
-fn all_crossings(responses: &[Response]) -> Vec<Crossing> {
-    let mut found = Vec::new();
-    for direction in [Direction::Up, Direction::Down] {
-        let of = |mass| responses.iter().find(|r| r.mass == Some(mass) && r.direction == Some(direction));
-        if let (Some(first), Some(second)) = (of(1), of(2)) {
-            let curve = |r: &Response| r.points.iter().map(|p| (p.excitation, p.amplitude.value)).collect();
-            for (frequency, second_above) in crossings(curve(first), curve(second)) {
-                found.push(Crossing { direction, frequency, larger_above: if second_above { 2 } else { 1 } });
-            }
-        }
-    }
-    found
 }
 
 fn reader(entry: &RecordEntry) -> Reader {
