@@ -289,3 +289,67 @@ fn top(curve: &Prediction, closed: &[f64], i: usize) -> (f64, f64) {
         .filter(|_| heights[0].min(heights[2]) > 0.5 * heights[1])
         .map_or((curve.frequency[i], closed[i]), |v| (v.frequency, v.height))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::response::ResponsePoint;
+
+    /// A sweep of mass 1 whose force rises from `force` by half a thousandth a step, with the amplitudes of the closed form
+    /// without impacts, F/|k − ω²m + iωc|.
+    fn free(name: &str, rig: &Rig, force: f64) -> Response {
+        let point = |i: i32| {
+            let (excitation, force) = (20.0 + 0.5 * f64::from(i), force * (1.0 + 5e-4 * f64::from(i)));
+            let w = 2.0 * std::f64::consts::PI * excitation;
+            let amplitude = force / (rig.k1 - w * w * rig.m1).hypot(w * rig.c1);
+            ResponsePoint {
+                excitation,
+                excitation_std: None,
+                force: Some(force),
+                frequency: excitation,
+                frequency_std: None,
+                amplitude: Estimate::new(amplitude, None, "m", 1, "closed form"),
+                harmonics: Vec::new(),
+                subharmonics: Vec::new(),
+                largest_elsewhere: false,
+                largest_at: excitation,
+            }
+        };
+        Response {
+            name: name.to_owned(),
+            direction: Some(Direction::Down),
+            mass: Some(1),
+            quantity: "displacement",
+            unit: "m",
+            fmin: 0.0,
+            points: (0..30).map(point).collect(),
+            resonances: Vec::new(),
+            jumps: Vec::new(),
+            warnings: Vec::new(),
+            history: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn each_point_is_predicted_for_its_own_force() {
+        let rig = Rig::thesis();
+        let responses =
+            [free("weak", &rig, 0.05), free("strong", &rig, 0.1), free("weak again", &rig, 0.052)];
+        let own = overlay(&rig, None, &responses).unwrap();
+        assert_eq!(own.force, None);
+        let levels: Vec<&[String]> = own.levels.iter().map(|l| l.sweeps.as_slice()).collect();
+        assert_eq!(levels, [&["weak".to_owned(), "weak again".to_owned()][..], &["strong".to_owned()][..]]);
+        assert_eq!(own.pairs.len(), 90);
+        for pair in &own.pairs {
+            // Both are the same quotient, computed along different ways: a few roundings.
+            let residual = pair.residual.unwrap();
+            assert!(residual.abs() < 1e-12 * pair.measured.value, "{pair:?}");
+        }
+        // With one force for all, the points at another are off by the ratio of forces.
+        let stated = overlay(&rig, Some(0.1), &responses[..1]).unwrap();
+        assert_eq!(stated.force, Some(0.1));
+        let worst = stated.pairs.iter().map(|p| p.measured.value / p.predicted.unwrap()).fold(1.0, f64::min);
+        assert!((worst - 0.5).abs() < 1e-12, "{worst}");
+        assert!(stated.warnings.iter().any(|w| w.contains("strays by up to 50 %")), "{:?}", stated.warnings);
+    }
+}

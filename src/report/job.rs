@@ -133,10 +133,7 @@ pub fn run(
         (gathered(&sweep, &options, excitation, response.fmin), response)
     };
     let (matrices, responses): (Vec<Waterfall>, Vec<Response>) = taken.into_par_iter().map(matrix).unzip();
-    let mut warnings: Vec<String> = Vec::new();
-    for response in &responses {
-        merge(&mut warnings, &response.name, &response.warnings);
-    }
+    let mut warnings = common(&responses);
     let slugs = slugs(responses.iter().map(|r| r.name.as_str()));
     let name = if campaign.name.is_empty() { "Campaign".to_owned() } else { campaign.name.clone() };
     if !responses.is_empty() {
@@ -193,11 +190,31 @@ pub fn run(
     Ok(results)
 }
 
-/// Adds sentences, once each, with the sweep's name where they differ from sweep to sweep.
+/// The sentences of all sweeps, once each, with the names of the sweeps that they hold for where these are not all.
+fn common(responses: &[Response]) -> Vec<String> {
+    let mut found: Vec<(&str, Vec<&str>)> = Vec::new();
+    for response in responses {
+        for sentence in &response.warnings {
+            match found.iter_mut().find(|f| f.0 == sentence) {
+                Some(known) => known.1.push(&response.name),
+                None => found.push((sentence, vec![&response.name])),
+            }
+        }
+    }
+    let said = |(sentence, names): (&str, Vec<&str>)| {
+        if responses.len() > 1 && names.len() < responses.len() {
+            format!("{}: {sentence}", names.join("; "))
+        } else {
+            sentence.to_owned()
+        }
+    };
+    found.into_iter().map(said).collect()
+}
+
+/// Adds sentences, once each, with the name of what they are about.
 fn merge(all: &mut Vec<String>, name: &str, sentences: &[String]) {
     for sentence in sentences {
-        let general = sentence.starts_with("The files do not");
-        let text = if general || name.is_empty() { sentence.clone() } else { format!("{name}: {sentence}") };
+        let text = if name.is_empty() { sentence.clone() } else { format!("{name}: {sentence}") };
         if !all.contains(&text) {
             all.push(text);
         }

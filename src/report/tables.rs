@@ -150,7 +150,7 @@ pub fn scores(overlay: &Overlay) -> Table {
 fn frf_peaks(frfs: &[FrfResult], (quantity, unit): (&str, &str)) -> Table {
     let same = frfs.iter().filter(|f| (f.quantity, f.unit.as_str()) == (quantity, unit));
     table(
-        format!("Peaks of frequency response functions, {quantity}"),
+        format!("Peaks of frequency response functions, {quantity} (± of the interpolation alone)"),
         same.flat_map(|f| f.peaks.iter().map(move |p| (f, p))),
         &[
             ("record", "", &|(f, _)| Cell::from(f.name.as_str())),

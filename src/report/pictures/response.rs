@@ -28,7 +28,9 @@ fn plot(responses: &[Response], log: bool) -> Plot {
     let x = AxisSpec::new("Excitation frequency", "Hz");
     let y = match log_limits(responses.iter()) {
         Some((low, high)) if log => y.log().limits(low * factor, high * factor),
-        _ => y,
+        // Room for markers at zero.
+        Some((_, high)) => y.limits(-0.02 * high * factor, f64::NAN),
+        None => y,
     };
     let mut plot = Plot::new(x, y);
     for (i, response) in responses.iter().enumerate() {
