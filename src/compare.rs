@@ -1,8 +1,10 @@
 //! Measured results on model predictions, through the same measurement.
 
+pub mod forcing;
 pub mod observable;
 pub mod overlay;
 pub mod prediction;
 
-pub use overlay::{Overlay, Pair, PeakPair, Score, overlay};
+pub use forcing::{Forcing, levels};
+pub use overlay::{Level, Overlay, Pair, PeakPair, Score, overlay};
 pub use prediction::{Kind, Prediction};

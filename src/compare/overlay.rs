@@ -1,5 +1,6 @@
 //! Pairs of measured and predicted amplitudes, their peaks, and a score.
 
+use super::forcing::{Forcing, levels, median};
 use super::observable::Observable;
 use super::prediction::{Kind, Motion, Prediction};
 use crate::error::{Error, Result};
@@ -22,6 +23,8 @@ pub struct Pair {
     pub direction: Direction,
     /// Excitation frequency in Hz.
     pub frequency: f64,
+    /// Force amplitude of the prediction in N.
+    pub force: f64,
     /// Measured amplitude in m.
     pub measured: Estimate,
     /// Predicted amplitude in m; `None` where no motion of the closed form can be seen.
@@ -72,11 +75,25 @@ pub struct Score {
     pub rms: Option<f64>,
 }
 
+/// Sweeps of about one force, and the prediction for them.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Level {
+    /// Median force amplitude in N.
+    pub force: f64,
+    /// Sweeps.
+    pub sweeps: Vec<String>,
+    /// The curve for figures: for the stated force, else for the mean of the measured forces of these sweeps.
+    #[serde(skip)]
+    pub curve: Prediction,
+}
+
 /// A whole comparison.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Overlay {
-    /// Force amplitude of the prediction in N.
-    pub force: f64,
+    /// Stated force amplitude in N; `None` where each point is predicted for its own measured force.
+    pub force: Option<f64>,
+    /// Levels of force.
+    pub levels: Vec<Level>,
     /// Point by point.
     pub pairs: Vec<Pair>,
     /// Peak by peak.
@@ -85,16 +102,21 @@ pub struct Overlay {
     pub scores: Vec<Score>,
     /// What was assumed.
     pub warnings: Vec<String>,
-    /// The curve for figures.
-    #[serde(skip)]
-    pub curve: Prediction,
 }
 
 /// Frequencies of the predicted curve.
 const CURVE: usize = 1200;
 
-/// Overlays measured displacement responses (fundamentals of spectra) on the closed-form prediction. `force` in N; `None`
-/// takes the median of the measured force.
+/// One sweep to be overlaid.
+struct Swept<'a> {
+    response: &'a Response,
+    mass: u8,
+    direction: Direction,
+    forcing: Forcing,
+}
+
+/// Overlays measured displacement responses (fundamentals of spectra) on the closed-form prediction. `force` in N; where it
+/// is `None` each point is predicted for its own measured force, and the curve between points for the force between theirs.
 ///
 /// # Errors
 /// If no response names its mass and direction, no force is known, or the rig is impossible.
@@ -117,18 +139,38 @@ pub fn overlay(rig: &Rig, force: Option<f64>, responses: &[Response]) -> Result<
         return Err(Error::refused("no response can be overlaid on the model")
             .hint("give `mass = 1` or `2` for each sweep, and three or more points in one direction"));
     }
-    let force = choose_force(force, &usable, &mut warnings)?;
     let margin = 0.02 * (high - low);
     let range = ((low - margin).max(low / 2.0), high + margin);
-    let curve = Prediction::over(rig, force, range, CURVE, Observable::Fundamental)?;
-    let mut overlay =
-        Overlay { force, pairs: Vec::new(), peaks: Vec::new(), scores: Vec::new(), warnings, curve };
-    for (response, mass, direction) in usable {
-        let pairs = pairs(rig, force, response, mass, direction)?;
-        overlay.scores.push(score(&response.name, &pairs));
-        overlay.pairs.extend(pairs);
-        let peaks = peaks(response, mass, direction, &overlay.curve);
-        overlay.peaks.extend(peaks);
+    let curve = |forcing: &Forcing| Prediction::over(rig, forcing, range, CURVE, Observable::Fundamental);
+    let forcings = Forcing::of_all(force, &usable.iter().map(|u| u.0).collect::<Vec<_>>(), &mut warnings)?;
+    let medians: Vec<Option<f64>> = forcings.iter().map(|f| Some(f.median())).collect();
+    let swept: Vec<Swept<'_>> = usable
+        .into_iter()
+        .zip(forcings)
+        .map(|((response, mass, direction), forcing)| Swept { response, mass, direction, forcing })
+        .collect();
+    let mut overlay = Overlay {
+        force,
+        levels: Vec::new(),
+        pairs: Vec::new(),
+        peaks: Vec::new(),
+        scores: Vec::new(),
+        warnings,
+    };
+    for level in levels(&medians) {
+        let members: Vec<&Swept<'_>> = level.iter().filter_map(|i| swept.get(*i)).collect();
+        let forcings: Vec<&Forcing> = members.iter().map(|s| &s.forcing).collect();
+        let Some(mean) = Forcing::mean(&forcings) else { continue };
+        let common = curve(&mean)?;
+        for sweep in &members {
+            let pairs = pairs(rig, sweep)?;
+            overlay.scores.push(score(&sweep.response.name, &pairs));
+            overlay.pairs.extend(pairs);
+            let own = if sweep.forcing == mean { None } else { Some(curve(&sweep.forcing)?) };
+            overlay.peaks.extend(peaks(sweep, own.as_ref().unwrap_or(&common)));
+        }
+        let sweeps = members.iter().map(|s| s.response.name.clone()).collect();
+        overlay.levels.push(Level { force: mean.median(), sweeps, curve: common });
     }
     let without: usize = overlay.scores.iter().map(|s| s.without).sum();
     if without > 0 {
@@ -139,56 +181,12 @@ pub fn overlay(rig: &Rig, force: Option<f64>, responses: &[Response]) -> Result<
     Ok(overlay)
 }
 
-/// The stated force, checked against the measured one; the measured one where none is stated.
-fn choose_force(
-    stated: Option<f64>,
-    usable: &[(&Response, u8, Direction)],
-    warnings: &mut Vec<String>,
-) -> Result<f64> {
-    let mut measured: Vec<f64> = usable.iter().flat_map(|u| &u.0.points).filter_map(|p| p.force).collect();
-    measured.sort_by(f64::total_cmp);
-    let median = median(&measured);
-    if let Some(force) = stated.or(median) {
-        let worst = measured.iter().map(|m| (m / force - 1.0).abs()).fold(0.0, f64::max);
-        if worst > 0.05 {
-            warnings.push(format!(
-                "The measured force strays by up to {:.0} % from the {force:.4} N of the prediction, which holds one force for all points.",
-                100.0 * worst
-            ));
-        }
-    }
-    match (stated, median) {
-        (Some(stated), median) => {
-            if let Some(median) = median.filter(|m| (m / stated - 1.0).abs() > 0.02) {
-                warnings.push(format!(
-                    "The force is stated as {stated} N, but its measured median is {median:.4} N; the stated one is used."
-                ));
-            }
-            Ok(stated)
-        }
-        (None, Some(median)) => {
-            warnings.push(format!(
-                "No force is stated: the prediction uses the median of the measured one, {median:.4} N."
-            ));
-            Ok(median)
-        }
-        (None, None) => Err(Error::refused("the force is neither stated nor measured")
-            .hint("give [excitation] force = … in N in the campaign")),
-    }
-}
-
-/// Median of sorted values.
-fn median(sorted: &[f64]) -> Option<f64> {
-    let middle = sorted.len() / 2;
-    let upper = *sorted.get(middle)?;
-    Some(if sorted.len().is_multiple_of(2) { f64::midpoint(sorted[middle - 1], upper) } else { upper })
-}
-
-fn pairs(rig: &Rig, force: f64, response: &Response, mass: u8, direction: Direction) -> Result<Vec<Pair>> {
+fn pairs(rig: &Rig, sweep: &Swept<'_>) -> Result<Vec<Pair>> {
+    let Swept { response, mass, direction, ref forcing } = *sweep;
     let mut order: Vec<usize> = (0..response.points.len()).collect();
     order.sort_by(|a, b| response.points[*a].excitation.total_cmp(&response.points[*b].excitation));
-    let frequency: Vec<f64> = order.iter().map(|i| response.points[*i].excitation).collect();
-    let prediction = Prediction::at(rig, force, frequency, Observable::Fundamental)?;
+    let points = order.iter().map(|i| &response.points[*i]).map(|p| (p.excitation, forcing.of(p)));
+    let prediction = Prediction::at(rig, points.collect(), Observable::Fundamental)?;
     let followed = prediction.followed(direction);
     let mut pairs: Vec<Pair> = order
         .iter()
@@ -201,6 +199,7 @@ fn pairs(rig: &Rig, force: f64, response: &Response, mass: u8, direction: Direct
                 mass,
                 direction,
                 frequency: point.excitation,
+                force: forcing.of(point),
                 measured: point.amplitude.clone(),
                 predicted,
                 motion: motion.map(|m| m.kind),
@@ -239,7 +238,8 @@ fn score(sweep: &str, pairs: &[Pair]) -> Score {
 /// A predicted peak belongs to a measured one within this ratio of frequencies.
 const NEAR: f64 = 1.1;
 
-fn peaks(response: &Response, mass: u8, direction: Direction, curve: &Prediction) -> Vec<PeakPair> {
+fn peaks(sweep: &Swept<'_>, curve: &Prediction) -> Vec<PeakPair> {
+    let Swept { response, mass, direction, .. } = *sweep;
     let followed = curve.followed(direction);
     let impacting = |i: usize| followed[i].is_some_and(|m| m.kind == Kind::Impacting);
     let amplitude: Vec<f64> = followed
@@ -288,4 +288,69 @@ fn top(curve: &Prediction, closed: &[f64], i: usize) -> (f64, f64) {
     vertex(near.map(|k| curve.frequency[k]), heights, [0.0; 3])
         .filter(|_| heights[0].min(heights[2]) > 0.5 * heights[1])
         .map_or((curve.frequency[i], closed[i]), |v| (v.frequency, v.height))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::response::ResponsePoint;
+
+    /// A sweep of mass 1 whose force rises from `force` by half a thousandth a step, with the amplitudes of the closed form
+    /// without impacts, F/|k − ω²m + iωc|.
+    fn free(name: &str, rig: &Rig, force: f64) -> Response {
+        let point = |i: i32| {
+            let (excitation, force) = (20.0 + 0.5 * f64::from(i), force * (1.0 + 5e-4 * f64::from(i)));
+            let w = 2.0 * std::f64::consts::PI * excitation;
+            let amplitude = force / (rig.k1 - w * w * rig.m1).hypot(w * rig.c1);
+            ResponsePoint {
+                excitation,
+                excitation_std: None,
+                force: Some(force),
+                frequency: excitation,
+                frequency_std: None,
+                amplitude: Estimate::new(amplitude, None, "m", 1, "closed form"),
+                upper_limit: None,
+                harmonics: Vec::new(),
+                subharmonics: Vec::new(),
+                largest_elsewhere: false,
+                largest_at: excitation,
+            }
+        };
+        Response {
+            name: name.to_owned(),
+            direction: Some(Direction::Down),
+            mass: Some(1),
+            quantity: "displacement",
+            unit: "m",
+            fmin: 0.0,
+            points: (0..30).map(point).collect(),
+            resonances: Vec::new(),
+            jumps: Vec::new(),
+            warnings: Vec::new(),
+            history: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn each_point_is_predicted_for_its_own_force() {
+        let rig = Rig::thesis();
+        let responses =
+            [free("weak", &rig, 0.05), free("strong", &rig, 0.1), free("weak again", &rig, 0.052)];
+        let own = overlay(&rig, None, &responses).unwrap();
+        assert_eq!(own.force, None);
+        let levels: Vec<&[String]> = own.levels.iter().map(|l| l.sweeps.as_slice()).collect();
+        assert_eq!(levels, [&["weak".to_owned(), "weak again".to_owned()][..], &["strong".to_owned()][..]]);
+        assert_eq!(own.pairs.len(), 90);
+        for pair in &own.pairs {
+            // Both are the same quotient, computed along different ways: a few roundings.
+            let residual = pair.residual.unwrap();
+            assert!(residual.abs() < 1e-12 * pair.measured.value, "{pair:?}");
+        }
+        // With one force for all, the points at another are off by the ratio of forces.
+        let stated = overlay(&rig, Some(0.1), &responses[..1]).unwrap();
+        assert_eq!(stated.force, Some(0.1));
+        let worst = stated.pairs.iter().map(|p| p.measured.value / p.predicted.unwrap()).fold(1.0, f64::min);
+        assert!((worst - 0.5).abs() < 1e-12, "{worst}");
+        assert!(stated.warnings.iter().any(|w| w.contains("strays by up to 50 %")), "{:?}", stated.warnings);
+    }
 }

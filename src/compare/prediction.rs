@@ -1,5 +1,6 @@
 //! The closed-form prediction over frequency, and which of its motions a sweep would follow.
 
+use super::forcing::Forcing;
 use super::observable::Observable;
 use crate::error::Result;
 use crate::model::{Rig, orbits};
@@ -33,20 +34,23 @@ pub struct Motion {
 pub struct Prediction {
     /// Frequencies in Hz, rising.
     pub frequency: Vec<f64>,
-    /// Force amplitude in N.
-    pub force: f64,
+    /// Force amplitude in N at each frequency.
+    pub force: Vec<f64>,
     /// Motions at each frequency: impacting ones with the larger impulse first, then the free one.
     pub motions: Vec<Vec<Motion>>,
 }
 
 impl Prediction {
-    /// Predicts at the given frequencies (Hz, rising) for the force amplitude `force` in N.
+    /// Predicts at `points`: frequency in Hz, rising, and force amplitude in N.
     ///
     /// # Errors
     /// As [`orbits`].
-    pub fn at(rig: &Rig, force: f64, frequency: Vec<f64>, observable: Observable) -> Result<Prediction> {
-        let motions =
-            frequency.par_iter().map(|f| motions(rig, force, *f, observable)).collect::<Result<_>>()?;
+    pub fn at(rig: &Rig, points: Vec<(f64, f64)>, observable: Observable) -> Result<Prediction> {
+        let motions = points
+            .par_iter()
+            .map(|(frequency, force)| motions(rig, *force, *frequency, observable))
+            .collect::<Result<_>>()?;
+        let (frequency, force) = points.into_iter().unzip();
         Ok(Prediction { frequency, force, motions })
     }
 
@@ -56,14 +60,15 @@ impl Prediction {
     /// As [`orbits`].
     pub fn over(
         rig: &Rig,
-        force: f64,
+        forcing: &Forcing,
         range: (f64, f64),
         n: usize,
         observable: Observable,
     ) -> Result<Prediction> {
         let n = n.max(2);
         let step = (range.1 - range.0) / (n - 1) as f64;
-        Prediction::at(rig, force, (0..n).map(|i| range.0 + i as f64 * step).collect(), observable)
+        let frequencies = (0..n).map(|i| range.0 + i as f64 * step);
+        Prediction::at(rig, frequencies.map(|f| (f, forcing.at(f))).collect(), observable)
     }
 
     /// The motion a slow sweep in `direction` would show at each frequency, in order of rising frequency.
@@ -120,7 +125,8 @@ mod tests {
     #[test]
     fn history_decides_where_two_motions_exist() {
         let rig = Rig { restitution: 0.95, ..Rig::thesis() };
-        let p = Prediction::over(&rig, 0.1, (6.0, 13.0), 1401, Observable::Fundamental).unwrap();
+        let p = Prediction::over(&rig, &Forcing::Constant(0.1), (6.0, 13.0), 1401, Observable::Fundamental)
+            .unwrap();
         let (up, down) = (p.followed(Direction::Up), p.followed(Direction::Down));
         let largest = |f: &[Option<Motion>]| {
             let mut best = (0.0, 0.0);

@@ -28,8 +28,7 @@ pub struct Waterfall {
     pub warnings: Vec<String>,
 }
 
-/// Gathers the matrix. Where the spectra were or are integrated, lines below the cut-off hold noise divided by frequency and
-/// are left out; otherwise all lines are kept unless a cut-off is given.
+/// Finds the excitation frequencies and gathers the matrix, as [`gathered`].
 ///
 /// # Errors
 /// As [`super::response::response`].
@@ -37,12 +36,16 @@ pub fn waterfall(sweep: &Sweep, options: &ResponseOptions) -> Result<Waterfall> 
     let df =
         sweep.line_width().ok_or_else(|| Error::refused("the lines of the sweep are not evenly spaced"))?;
     let excitations = excitations(sweep, options.fmin.unwrap_or(0.0))?;
+    let cutoff = options.fmin.unwrap_or_else(|| default_cutoff(df, &excitations));
+    Ok(gathered(sweep, options, excitations.iter().map(|e| e.frequency).collect(), cutoff))
+}
+
+/// Gathers the matrix for known excitation frequencies (Hz), one a point. Where the spectra were or are integrated, lines below
+/// `cutoff` (Hz) hold noise divided by frequency and are left out; otherwise all lines are kept unless the options give a
+/// cut-off.
+pub fn gathered(sweep: &Sweep, options: &ResponseOptions, excitation: Vec<f64>, cutoff: f64) -> Waterfall {
     let integrated = options.integrate > 0 || sweep.analyser_integrated > 0;
-    let fmin = match options.fmin {
-        Some(fmin) => fmin,
-        None if integrated => default_cutoff(df, &excitations),
-        None => 0.0,
-    };
+    let fmin = if integrated { cutoff } else { options.fmin.unwrap_or(0.0) };
     let frequency = sweep.axis.values();
     let mut magnitude = Array2::from_elem((sweep.points.len(), frequency.len()), f64::NAN);
     for (mut row, point) in magnitude.rows_mut().into_iter().zip(&sweep.points) {
@@ -58,14 +61,14 @@ pub fn waterfall(sweep: &Sweep, options: &ResponseOptions) -> Result<Waterfall> 
     if fmin > 0.0 {
         warnings.push(format!("Lines below the cut-off of {fmin:.3} Hz are left out."));
     }
-    Ok(Waterfall {
+    Waterfall {
         name: sweep.name.clone(),
         frequency,
-        excitation: excitations.iter().map(|e| e.frequency).collect(),
+        excitation,
         magnitude,
         quantity: unit.quantity(),
         unit: unit.symbol().to_owned(),
         fmin,
         warnings,
-    })
+    }
 }

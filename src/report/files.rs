@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::measure::waterfall::Waterfall;
 use rayon::prelude::*;
 use std::fmt::Write as _;
+use std::path::Path;
 
 /// Resolution of the PNG figures in dots an inch: enough for print.
 const DPI: f64 = 300.0;
@@ -58,6 +59,36 @@ pub fn matrix_csv(matrix: &Waterfall) -> String {
     text
 }
 
+/// Endings of the files that results are written in.
+const ENDINGS: [&str; 5] = ["svg", "png", "csv", "json", "html"];
+/// So many names of left-over files are said.
+const NAMED: usize = 8;
+
+/// A sentence on the files in the folder that look like results but were not written by this run, nor are among `coming`: they
+/// may be those of an earlier one. They are left as they are.
+pub fn left_over(output: &Output, coming: &[&str]) -> Option<String> {
+    let written = |name: &str| coming.contains(&name) || output.written().iter().any(|w| w == name);
+    let entries = std::fs::read_dir(output.folder()).ok()?.filter_map(std::result::Result::ok);
+    let mut names: Vec<String> = entries
+        .filter(|e| e.file_type().is_ok_and(|t| t.is_file()))
+        .filter(|e| Path::new(&e.file_name()).extension().is_some_and(|x| ENDINGS.iter().any(|e| x == *e)))
+        .map(|e| e.file_name().to_string_lossy().into_owned())
+        .filter(|name| !written(name))
+        .collect();
+    names.sort();
+    let others = match names.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        n => format!(" and {n} more"),
+    };
+    names.truncate(NAMED);
+    (!names.is_empty()).then(|| {
+        format!(
+            "Files in the folder of the results that this run did not write, perhaps of an earlier one: {}{others}.",
+            names.join(", ")
+        )
+    })
+}
+
 /// A name as part of a file name: letters and digits, everything else one `_`.
 pub fn slug(name: &str) -> String {
     let mut slug = String::new();
@@ -74,6 +105,28 @@ pub fn slug(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn files_of_an_earlier_run_are_named() {
+        let dir = tempfile::tempdir().unwrap();
+        let mut output = Output::new(dir.path()).unwrap();
+        output.write("response.svg", "new").unwrap();
+        std::fs::create_dir(dir.path().join("folder.svg")).unwrap();
+        for name in ["notes.txt", "report.html"] {
+            std::fs::write(dir.path().join(name), "").unwrap();
+        }
+        assert_eq!(left_over(&output, &["report.html"]), None);
+        for i in 0..10 {
+            std::fs::write(dir.path().join(format!("map_{i}.png")), "").unwrap();
+        }
+        let sentence = left_over(&output, &["report.html"]).unwrap();
+        assert!(
+            sentence.contains("map_0.png, map_1.png") && sentence.ends_with("map_7.png and 2 more."),
+            "{sentence}"
+        );
+        assert!(dir.path().join("map_0.png").exists());
+        assert_eq!(left_over(&Output::new(dir.path().join("none")).unwrap(), &[]), None);
+    }
 
     #[test]
     fn names_become_file_names() {

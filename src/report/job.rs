@@ -1,19 +1,20 @@
 //! All that a campaign asks for: responses, waterfalls, overlay, frequency response functions, and their files.
 
 mod frf;
+mod pairing;
 
 pub use frf::{FrfPeak, FrfResult};
+pub use pairing::Crossing;
 
 use super::{Figure, Output, files, page, pictures, tables};
 use crate::campaign::{Campaign, DrillEntry, DropEntry, ImpactsEntry, PulseEntry};
 use crate::compare::{Overlay, overlay};
 use crate::error::{Error, Result};
-use crate::measure::resonance::{NamedCurve, crossings, deepest, name_modes};
 use crate::measure::response::{Response, ResponseOptions, response, to_displacement};
-use crate::measure::waterfall::{Waterfall, waterfall};
+use crate::measure::waterfall::{Waterfall, gathered};
 use crate::model::Rig;
 use crate::read::Header;
-use crate::record::{Direction, Sweep};
+use crate::record::Sweep;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -42,19 +43,6 @@ pub struct JobOptions {
     pub allow_outside: bool,
 }
 
-/// Where the curves of both masses cross.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Crossing {
-    /// Direction of the two sweeps.
-    pub direction: Direction,
-    /// Frequency in Hz.
-    pub frequency: f64,
-    /// Its standard uncertainty in Hz.
-    pub frequency_std: Option<f64>,
-    /// The mass that moves more above it.
-    pub larger_above: u8,
-}
-
 /// A file that a campaign names but that is only listed here.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Listed {
@@ -75,7 +63,7 @@ pub struct Results {
     pub version: &'static str,
     /// One response a sweep.
     pub responses: Vec<Response>,
-    /// Antiresonance of mass 1 in Hz, going up and going down.
+    /// Antiresonance of mass 1 in Hz, going up and going down, at the first level of force.
     pub antiresonance: [Option<f64>; 2],
     /// Where the curves of both masses cross.
     pub crossings: Vec<Crossing>,
@@ -119,18 +107,13 @@ fn sweeps(campaign: &Campaign, options: JobOptions, progress: &dyn Progress) -> 
             Ok((sweep, response, options))
         })
         .collect::<Result<_>>()?;
-    let mut curves: Vec<NamedCurve<'_>> = taken
-        .iter_mut()
-        .filter_map(|(_, r, _)| {
-            let (mass, direction) = (r.mass?, r.direction?);
-            let mut curve = curve(r);
-            curve.sort_by(|a, b| a.0.total_cmp(&b.0));
-            Some(NamedCurve { mass, direction, curve, jumps: r.jumps.clone(), resonances: &mut r.resonances })
-        })
-        .collect();
-    name_modes(&mut curves);
+    pairing::name(&mut taken.iter_mut().map(|(_, response, _)| response).collect::<Vec<_>>());
     Ok(taken)
 }
+
+/// Names of the files that hold all results.
+const RESULTS: &str = "results.json";
+const REPORT: &str = "report.html";
 
 /// Does everything and writes it to `output`.
 ///
@@ -144,15 +127,12 @@ pub fn run(
 ) -> Result<Results> {
     let taken = sweeps(campaign, options, progress)?;
     let mut figures: Vec<(String, Figure)> = Vec::new();
-    let mut matrices: Vec<Waterfall> = Vec::new();
-    for (sweep, _, options) in &taken {
-        matrices.push(waterfall(sweep, options)?);
-    }
-    let responses: Vec<Response> = taken.into_iter().map(|(_, response, _)| response).collect();
-    let mut warnings: Vec<String> = Vec::new();
-    for response in &responses {
-        merge(&mut warnings, &response.name, &response.warnings);
-    }
+    let matrix = |(sweep, response, options): Taken| {
+        let excitation = response.points.iter().map(|p| p.excitation).collect();
+        (gathered(&sweep, &options, excitation, response.fmin), response)
+    };
+    let (matrices, responses): (Vec<Waterfall>, Vec<Response>) = taken.into_par_iter().map(matrix).unzip();
+    let mut warnings = common(&responses);
     let slugs = slugs(responses.iter().map(|r| r.name.as_str()));
     let name = if campaign.name.is_empty() { "Campaign".to_owned() } else { campaign.name.clone() };
     if !responses.is_empty() {
@@ -174,16 +154,15 @@ pub fn run(
     if responses.is_empty() && frf.is_empty() && listed.is_empty() {
         warnings.push("The campaign names no file: nothing was computed.".to_owned());
     }
-    twice(&responses, &mut warnings);
+    pairing::twice(&responses, &mut warnings);
     if overlay.is_some() {
         warnings.extend(campaign.rig_left_out());
     }
-    let found = antiresonances(&responses);
-    let results = Results {
+    let mut results = Results {
         campaign: name,
         version: env!("CARGO_PKG_VERSION"),
-        antiresonance: found,
-        crossings: all_crossings(&responses),
+        antiresonance: pairing::antiresonances(&responses),
+        crossings: pairing::all_crossings(&responses),
         responses,
         rig: campaign.rig.filter(|_| overlay.is_some()),
         overlay,
@@ -201,19 +180,40 @@ pub fn run(
         output.write("pairs.csv", tables::pairs(overlay).csv())?;
         output.write("peaks.csv", tables::peaks(overlay).csv())?;
     }
+    results.warnings.extend(files::left_over(output, &[RESULTS, REPORT]));
     let json = serde_json::to_string_pretty(&results)
         .map_err(|e| Error::refused(format!("the results cannot be written as JSON: {e}")))?;
-    output.write("results.json", json + "\n")?;
-    output.write("report.html", page::page(&results, &figures, &drawings).html())?;
+    output.write(RESULTS, json + "\n")?;
+    output.write(REPORT, page::page(&results, &figures, &drawings).html())?;
     progress.done();
     Ok(results)
 }
 
-/// Adds sentences, once each, with the sweep's name where they differ from sweep to sweep.
+/// The sentences of all sweeps, once each, with the names of the sweeps that they hold for where these are not all.
+fn common(responses: &[Response]) -> Vec<String> {
+    let mut found: Vec<(&str, Vec<&str>)> = Vec::new();
+    for response in responses {
+        for sentence in &response.warnings {
+            match found.iter_mut().find(|f| f.0 == sentence) {
+                Some(known) => known.1.push(&response.name),
+                None => found.push((sentence, vec![&response.name])),
+            }
+        }
+    }
+    let said = |(sentence, names): (&str, Vec<&str>)| {
+        if responses.len() > 1 && names.len() < responses.len() {
+            format!("{}: {sentence}", names.join("; "))
+        } else {
+            sentence.to_owned()
+        }
+    };
+    found.into_iter().map(said).collect()
+}
+
+/// Adds sentences, once each, with the name of what they are about.
 fn merge(all: &mut Vec<String>, name: &str, sentences: &[String]) {
     for sentence in sentences {
-        let general = sentence.starts_with("The files do not");
-        let text = if general || name.is_empty() { sentence.clone() } else { format!("{name}: {sentence}") };
+        let text = if name.is_empty() { sentence.clone() } else { format!("{name}: {sentence}") };
         if !all.contains(&text) {
             all.push(text);
         }
@@ -231,19 +231,6 @@ fn slugs<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     slugs
 }
 
-/// Several sweeps of one mass and direction: naming and crossings know only the first.
-fn twice(responses: &[Response], warnings: &mut Vec<String>) {
-    for (i, r) in responses.iter().enumerate() {
-        let same = |o: &&Response| o.mass.is_some() && (o.mass, o.direction) == (r.mass, r.direction);
-        if let Some(first) = responses[..i].iter().find(same) {
-            warnings.push(format!(
-                "\"{}\" and \"{}\" are sweeps of the same mass and direction: resonances of both are named by the first sweep of the other mass, and crossings are those of the first.",
-                first.name, r.name
-            ));
-        }
-    }
-}
-
 fn model(campaign: &Campaign, responses: &[Response], warnings: &mut Vec<String>) -> Result<Option<Overlay>> {
     let Some(rig) = campaign.rig.filter(|_| campaign.compute.overlay) else { return Ok(None) };
     if responses.iter().all(|r| r.mass.is_none() || r.direction.is_none()) {
@@ -255,35 +242,6 @@ fn model(campaign: &Campaign, responses: &[Response], warnings: &mut Vec<String>
     let overlay = overlay(&rig, campaign.excitation.and_then(|e| e.force), responses)?;
     merge(warnings, "", &overlay.warnings);
     Ok(Some(overlay))
-}
-
-fn antiresonances(responses: &[Response]) -> [Option<f64>; 2] {
-    [Direction::Up, Direction::Down].map(|direction| {
-        deepest(&responses.iter().find(|r| r.mass == Some(1) && r.direction == Some(direction))?.resonances)
-    })
-}
-
-/// Excitation frequency, amplitude and its standard uncertainty.
-fn curve(response: &Response) -> Vec<(f64, f64, f64)> {
-    let points = response.points.iter();
-    points.map(|p| (p.excitation, p.amplitude.value, p.amplitude.std.unwrap_or(f64::NAN))).collect()
-}
-
-fn all_crossings(responses: &[Response]) -> Vec<Crossing> {
-    let mut found = Vec::new();
-    for direction in [Direction::Up, Direction::Down] {
-        let of = |mass| responses.iter().find(|r| r.mass == Some(mass) && r.direction == Some(direction));
-        if let (Some(first), Some(second)) = (of(1), of(2)) {
-            let jumps = [first.jumps.as_slice(), &second.jumps].concat();
-            found.extend(crossings(curve(first), curve(second), &jumps).into_iter().map(|c| Crossing {
-                direction,
-                frequency: c.frequency,
-                frequency_std: c.frequency_std,
-                larger_above: if c.second_above { 2 } else { 1 },
-            }));
-        }
-    }
-    found
 }
 
 /// Parts of a campaign that have no analysis yet are listed, and that is said.

@@ -52,6 +52,11 @@ pub fn significant(value: f64, digits: usize) -> String {
     format!("{}×{}", mantissa.replace('-', MINUS), power_of_ten(exponent))
 }
 
+/// The shortest text of a number to twelve significant digits: what computing leaves in the last ones is no one's input.
+pub fn shortest(value: f64) -> String {
+    format!("{value:.11e}").parse().unwrap_or(value).to_string()
+}
+
 /// A value with its standard uncertainty, both rounded to two significant digits of the uncertainty (GUM,
 /// 7.2.6).
 ///

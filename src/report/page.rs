@@ -1,9 +1,10 @@
 //! The report of a campaign as one page.
 
-use super::job::Results;
+use super::job::{Crossing, Results};
+use super::notation::{shortest, significant};
 use super::{Drawing, Figure, Page, tables};
 use crate::model::Rig;
-use crate::record::{Direction, Step};
+use crate::record::Step;
 use std::fmt::Write as _;
 
 /// Lays out results, tables and drawings; `figures` and `drawings` belong together one by one.
@@ -61,8 +62,8 @@ fn summary(results: &Results) -> Vec<String> {
             sentences.push(format!("The {kind} resonance lies at {}.", places.join(", ")));
         }
     }
-    for direction in [Direction::Up, Direction::Down] {
-        let crossings: Vec<_> = results.crossings.iter().filter(|c| c.direction == direction).collect();
+    let same = |a: &Crossing, b: &Crossing| (a.direction, a.force) == (b.direction, b.force);
+    for crossings in results.crossings.chunk_by(same) {
         let mut stretches = Vec::new();
         for (i, crossing) in crossings.iter().enumerate() {
             match crossing.larger_above {
@@ -74,13 +75,13 @@ fn summary(results: &Results) -> Vec<String> {
                 _ => {}
             }
         }
-        if !stretches.is_empty() {
-            sentences.push(format!(
-                "Going {}, the passive mass moves more than the excited one {}.",
-                direction.name(),
-                stretches.join(" and ")
-            ));
-        }
+        let Some(first) = crossings.first().filter(|_| !stretches.is_empty()) else { continue };
+        let force = first.force.map_or_else(String::new, |f| format!(" at {} N", significant(f, 3)));
+        sentences.push(format!(
+            "Going {}{force}, the passive mass moves more than the excited one {}.",
+            first.direction.name(),
+            stretches.join(" and ")
+        ));
     }
     sentences
 }
@@ -101,8 +102,31 @@ fn rig_values(rig: &Rig) -> [(&'static str, String); 8] {
 fn history(steps: &[Step]) -> String {
     let mut text = String::new();
     for step in steps {
-        let arguments: Vec<String> = step.arguments.iter().map(|(k, v)| format!("{k} {v}")).collect();
+        let arguments: Vec<String> =
+            step.arguments.iter().map(|(k, v)| format!("{k} {}", brief(v))).collect();
         let _ = writeln!(text, "{} (version {}): {}", step.name, step.version, arguments.join(", "));
     }
     text
+}
+
+/// An argument as it is, but a decimal number to no more than twelve digits.
+fn brief(argument: &str) -> String {
+    match argument.parse() {
+        Ok(number) if argument.contains('.') => shortest(number),
+        _ => argument.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arguments_are_shown_without_the_remains_of_computing() {
+        assert_eq!(brief("0.00019999999999999998"), "0.0002");
+        assert_eq!(brief("0.039990000000000005"), "0.03999");
+        assert_eq!(brief("135.0625"), "135.0625");
+        assert_eq!(brief("20251120123456"), "20251120123456");
+        assert_eq!(brief("UP1.TXT"), "UP1.TXT");
+    }
 }

@@ -126,6 +126,8 @@ pub enum Marker {
     FilledSquare,
     /// Upright cross.
     Cross,
+    /// Open triangle that points down: an upper limit.
+    Limit,
 }
 
 impl Series {

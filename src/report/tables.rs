@@ -1,77 +1,64 @@
 //! Results as tables: for the terminal, for CSV, for the report.
 
-use super::job::Results;
-use super::{Cell, Table};
-use crate::compare::Overlay;
-use crate::compare::prediction::Kind;
-use crate::measure::response::Response;
+use super::job::{FrfResult, Results};
+use super::{Cell, Column, Table};
+use crate::compare::{Kind, Overlay};
+use crate::measure::response::{Response, ResponsePoint};
+use std::collections::BTreeSet;
+
+/// A column: name, unit, and what it shows of an item.
+type Shown<'a, T> = (&'a str, &'a str, &'a dyn Fn(&T) -> Cell);
+
+/// One row an item.
+fn table<T>(title: impl Into<String>, items: impl IntoIterator<Item = T>, columns: &[Shown<'_, T>]) -> Table {
+    let head = columns.iter().fold(Table::new(title), |table, c| table.column(c.0, c.1));
+    items.into_iter().fold(head, |table, item| table.row(columns.iter().map(|c| c.2(&item))))
+}
 
 fn pair(value: f64, std: Option<f64>) -> Cell {
     Cell::Estimate { value, std }
 }
 
-fn headed(title: impl Into<String>, columns: &[(&str, &str)]) -> Table {
-    columns.iter().fold(Table::new(title), |table, (name, unit)| table.column(*name, *unit))
-}
-
-/// Point by point, what fits a page: excitation, force, response.
+/// Point by point, what fits a page: excitation, force, response, and a limit where an amplitude is faint.
 pub fn curve(response: &Response) -> Table {
-    let limited = response.points.iter().any(|p| p.upper_limit.is_some());
-    let mut columns = vec![
-        ("excitation", "Hz"),
-        ("force", "N"),
-        ("response at", "Hz"),
-        ("amplitude", response.unit),
-        ("largest at", "Hz"),
-    ];
-    if limited {
-        columns.push(("upper limit", response.unit));
-    }
-    let mut table = headed(format!("Response, {}", response.name), &columns);
-    for p in &response.points {
-        let mut row = vec![
-            pair(p.excitation, p.excitation_std),
-            Cell::from(p.force),
-            pair(p.frequency, p.frequency_std),
-            Cell::from(&p.amplitude),
-            if p.largest_elsewhere { Cell::Number(p.largest_at) } else { Cell::from("excitation") },
-        ];
-        if limited {
-            row.push(Cell::from(p.upper_limit));
+    let mut table = points(response);
+    if response.points.iter().all(|p| p.upper_limit.is_none()) {
+        table.columns.pop();
+        for row in &mut table.rows {
+            row.pop();
         }
-        table.push(row);
     }
     table
 }
 
+fn points(response: &Response) -> Table {
+    table(
+        format!("Response, {}", response.name),
+        &response.points,
+        &[
+            ("excitation", "Hz", &|p| pair(p.excitation, p.excitation_std)),
+            ("force", "N", &|p| Cell::from(p.force)),
+            ("response at", "Hz", &|p| pair(p.frequency, p.frequency_std)),
+            ("amplitude", response.unit, &|p| Cell::from(&p.amplitude)),
+            ("largest at", "Hz", &|p| {
+                if p.largest_elsewhere { Cell::Number(p.largest_at) } else { Cell::from("excitation") }
+            }),
+            ("upper limit", response.unit, &|p| Cell::from(p.upper_limit)),
+        ],
+    )
+}
+
 /// Point by point with harmonics and sub-harmonics, for files.
 pub fn response(response: &Response) -> Table {
-    let unit = response.unit;
-    let mut columns = vec![
-        ("excitation".to_owned(), "Hz"),
-        ("force".to_owned(), "N"),
-        ("response at".to_owned(), "Hz"),
-        ("amplitude".to_owned(), unit),
-    ];
-    if let Some(first) = response.points.first() {
-        let orders = first.harmonics.iter().chain(&first.subharmonics);
-        columns.extend(orders.map(|h| (format!("order {}", h.order), unit)));
-    }
-    columns.push(("largest at".to_owned(), "Hz"));
-    columns.push(("upper limit".to_owned(), unit));
-    let columns: Vec<(&str, &str)> = columns.iter().map(|(n, u)| (n.as_str(), *u)).collect();
-    let mut table = headed(format!("Response, {}", response.name), &columns);
-    for p in &response.points {
-        let mut row = vec![
-            pair(p.excitation, p.excitation_std),
-            Cell::from(p.force),
-            pair(p.frequency, p.frequency_std),
-            Cell::from(&p.amplitude),
-        ];
-        row.extend(p.harmonics.iter().chain(&p.subharmonics).map(|h| Cell::from(&h.amplitude)));
-        row.push(if p.largest_elsewhere { Cell::Number(p.largest_at) } else { Cell::from("excitation") });
-        row.push(Cell::from(p.upper_limit));
-        table.push(row);
+    let mut table = points(response);
+    let before = table.columns.len() - 2;
+    let orders = |p: &ResponsePoint| p.harmonics.iter().chain(&p.subharmonics).cloned().collect::<Vec<_>>();
+    let heads = response.points.first().map(orders).unwrap_or_default();
+    let unit = response.unit.to_owned();
+    let heads = heads.iter().map(|h| Column { name: format!("order {}", h.order), unit: unit.clone() });
+    drop(table.columns.splice(before..before, heads));
+    for (row, point) in table.rows.iter_mut().zip(&response.points) {
+        drop(row.splice(before..before, orders(point).iter().map(|h| Cell::from(&h.amplitude))));
     }
     table
 }
@@ -79,138 +66,109 @@ pub fn response(response: &Response) -> Table {
 /// Resonances and antiresonances.
 pub fn resonances(responses: &[Response]) -> Table {
     let unit = responses.first().map_or("", |r| r.unit);
-    let columns =
-        [("sweep", ""), ("kind", ""), ("frequency", "Hz"), ("amplitude", unit), ("ends in a jump", "")];
-    let mut table = headed("Resonances", &columns);
-    for response in responses {
-        for r in &response.resonances {
-            table.push([
-                Cell::from(response.name.as_str()),
-                Cell::from(r.kind.as_str()),
-                pair(r.frequency, r.frequency_std),
-                pair(r.amplitude, r.amplitude_std),
-                Cell::from(if r.at_jump { "yes" } else { "no" }),
-            ]);
-        }
-    }
-    table
+    table(
+        "Resonances",
+        responses.iter().flat_map(|sweep| sweep.resonances.iter().map(move |r| (sweep, r))),
+        &[
+            ("sweep", "", &|(sweep, _)| Cell::from(sweep.name.as_str())),
+            ("kind", "", &|(_, r)| Cell::from(r.kind.as_str())),
+            ("frequency", "Hz", &|(_, r)| pair(r.frequency, r.frequency_std)),
+            ("amplitude", unit, &|(_, r)| pair(r.amplitude, r.amplitude_std)),
+            ("ends in a jump", "", &|(_, r)| Cell::from(if r.at_jump { "yes" } else { "no" })),
+        ],
+    )
 }
 
 /// Jumps.
 pub fn jumps(responses: &[Response]) -> Table {
     let unit = responses.first().map_or("", |r| r.unit);
-    let columns = [("sweep", ""), ("change", ""), ("at", "Hz"), ("before", unit), ("after", unit)];
-    let mut table = headed("Jumps", &columns);
-    for response in responses {
-        for j in &response.jumps {
-            table.push([
-                Cell::from(response.name.as_str()),
-                Cell::from(j.change),
-                pair(j.frequency, Some(j.frequency_std)),
-                pair(j.amplitude_before, j.amplitude_before_std),
-                pair(j.amplitude_after, j.amplitude_after_std),
-            ]);
-        }
-    }
-    table
+    table(
+        "Jumps",
+        responses.iter().flat_map(|sweep| sweep.jumps.iter().map(move |j| (sweep, j))),
+        &[
+            ("sweep", "", &|(sweep, _)| Cell::from(sweep.name.as_str())),
+            ("change", "", &|(_, j)| Cell::from(j.change)),
+            ("at", "Hz", &|(_, j)| pair(j.frequency, Some(j.frequency_std))),
+            ("before", unit, &|(_, j)| pair(j.amplitude_before, j.amplitude_before_std)),
+            ("after", unit, &|(_, j)| pair(j.amplitude_after, j.amplitude_after_std)),
+        ],
+    )
 }
 
 /// Measured against predicted, point by point.
 pub fn pairs(overlay: &Overlay) -> Table {
-    let columns = [
-        ("sweep", ""),
-        ("mass", ""),
-        ("direction", ""),
-        ("frequency", "Hz"),
-        ("measured", "m"),
-        ("predicted", "m"),
-        ("residual", "m"),
-        ("motion", ""),
-    ];
-    let mut table = headed("Measured against predicted", &columns);
-    for p in &overlay.pairs {
-        table.push([
-            Cell::from(p.sweep.as_str()),
-            Cell::from(usize::from(p.mass)),
-            Cell::from(p.direction.name()),
-            Cell::Number(p.frequency),
-            Cell::from(&p.measured),
-            Cell::from(p.predicted),
-            Cell::from(p.residual),
-            Cell::from(match p.motion {
-                Some(Kind::Impacting) => "impacting",
-                Some(Kind::Free) => "free",
-                None => "not predicted",
+    table(
+        "Measured against predicted",
+        &overlay.pairs,
+        &[
+            ("sweep", "", &|p| Cell::from(p.sweep.as_str())),
+            ("mass", "", &|p| Cell::from(usize::from(p.mass))),
+            ("direction", "", &|p| Cell::from(p.direction.name())),
+            ("frequency", "Hz", &|p| Cell::Number(p.frequency)),
+            ("force", "N", &|p| Cell::Number(p.force)),
+            ("measured", "m", &|p| Cell::from(&p.measured)),
+            ("predicted", "m", &|p| Cell::from(p.predicted)),
+            ("residual", "m", &|p| Cell::from(p.residual)),
+            ("motion", "", &|p| {
+                Cell::from(match p.motion {
+                    Some(Kind::Impacting) => "impacting",
+                    Some(Kind::Free) => "free",
+                    None => "not predicted",
+                })
             }),
-        ]);
-    }
-    table
+        ],
+    )
 }
 
-/// Measured against predicted resonances.
+/// Measured against predicted resonances; a difference is as uncertain as what was measured.
 pub fn peaks(overlay: &Overlay) -> Table {
-    let columns = [
-        ("sweep", ""),
-        ("kind", ""),
-        ("measured", "Hz"),
-        ("predicted", "Hz"),
-        ("off by", "Hz"),
-        ("measured", "m"),
-        ("predicted", "m"),
-        ("off by", "%"),
-    ];
-    let mut table = headed("Resonances against the model", &columns);
-    for p in &overlay.peaks {
-        table.push([
-            Cell::from(p.sweep.as_str()),
-            Cell::from(p.kind.as_str()),
-            Cell::from(&p.measured_frequency),
-            Cell::from(p.predicted_frequency),
-            Cell::from(p.frequency_difference),
-            Cell::from(&p.measured_amplitude),
-            Cell::from(p.predicted_amplitude),
-            Cell::from(p.amplitude_difference.map(|d| 100.0 * d)),
-        ]);
-    }
-    table
+    let difference = |value: Option<f64>, std: Option<f64>| value.map_or(Cell::Missing, |v| pair(v, std));
+    table(
+        "Resonances against the model",
+        &overlay.peaks,
+        &[
+            ("sweep", "", &|p| Cell::from(p.sweep.as_str())),
+            ("kind", "", &|p| Cell::from(p.kind.as_str())),
+            ("measured", "Hz", &|p| Cell::from(&p.measured_frequency)),
+            ("predicted", "Hz", &|p| Cell::from(p.predicted_frequency)),
+            ("off by", "Hz", &|p| difference(p.frequency_difference, p.measured_frequency.std)),
+            ("measured", "m", &|p| Cell::from(&p.measured_amplitude)),
+            ("predicted", "m", &|p| Cell::from(p.predicted_amplitude)),
+            ("off by", "%", &|p| {
+                let std = p.measured_amplitude.std.zip(p.predicted_amplitude).map(|(s, a)| 100.0 * s / a);
+                difference(p.amplitude_difference.map(|d| 100.0 * d), std)
+            }),
+        ],
+    )
 }
 
 /// How well each sweep is predicted.
 pub fn scores(overlay: &Overlay) -> Table {
-    let columns = [
-        ("sweep", ""),
-        ("points predicted", ""),
-        ("not predicted", ""),
-        ("median deviation", "%"),
-        ("RMS deviation", "m"),
-    ];
-    let mut table = headed("Agreement with the model", &columns);
-    for s in &overlay.scores {
-        table.push([
-            Cell::from(s.sweep.as_str()),
-            Cell::from(s.n),
-            Cell::from(s.without),
-            Cell::from(s.median_relative.map(|r| 100.0 * r)),
-            Cell::from(s.rms),
-        ]);
-    }
-    table
+    table(
+        "Agreement with the model",
+        &overlay.scores,
+        &[
+            ("sweep", "", &|s| Cell::from(s.sweep.as_str())),
+            ("points predicted", "", &|s| Cell::from(s.n)),
+            ("not predicted", "", &|s| Cell::from(s.without)),
+            ("median deviation", "%", &|s| Cell::from(s.median_relative.map(|r| 100.0 * r))),
+            ("RMS deviation", "m", &|s| Cell::from(s.rms)),
+        ],
+    )
 }
 
-fn frf_peaks(results: &Results) -> Table {
-    let columns = [("record", ""), ("quantity", ""), ("frequency", "Hz"), ("magnitude", "")];
-    let mut table = headed("Peaks of frequency response functions", &columns);
-    for frf in &results.frf {
-        for p in &frf.peaks {
-            table.push([
-                Cell::from(frf.name.as_str()),
-                Cell::from(format!("{} [{}]", frf.quantity, frf.unit)),
-                pair(p.frequency, Some(p.frequency_std)),
-                Cell::Number(p.magnitude),
-            ]);
-        }
-    }
-    table
+/// Peaks of the functions of one quantity and unit.
+fn frf_peaks(frfs: &[FrfResult], (quantity, unit): (&str, &str)) -> Table {
+    let same = frfs.iter().filter(|f| (f.quantity, f.unit.as_str()) == (quantity, unit));
+    table(
+        format!("Peaks of frequency response functions, {quantity} (± of the interpolation alone)"),
+        same.flat_map(|f| f.peaks.iter().map(move |p| (f, p))),
+        &[
+            ("record", "", &|(f, _)| Cell::from(f.name.as_str())),
+            ("frequency", "Hz", &|(_, p)| pair(p.frequency, Some(p.frequency_std))),
+            ("magnitude", unit, &|(_, p)| pair(p.magnitude, p.magnitude_std)),
+        ],
+    )
 }
 
 /// The tables that a person wants first, empty ones left out.
@@ -220,7 +178,8 @@ pub fn summary(results: &Results) -> Vec<Table> {
         tables.push(peaks(overlay));
         tables.push(scores(overlay));
     }
-    tables.push(frf_peaks(results));
+    let kinds: BTreeSet<(&str, &str)> = results.frf.iter().map(|f| (f.quantity, f.unit.as_str())).collect();
+    tables.extend(kinds.into_iter().map(|kind| frf_peaks(&results.frf, kind)));
     tables.retain(|t| !t.rows.is_empty());
     tables
 }

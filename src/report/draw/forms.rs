@@ -104,6 +104,9 @@ pub(super) fn markers(canvas: &mut Canvas, points: &[Point], marker: Marker, siz
         Marker::Diamond => {
             canvas.areas(&polygon(&[(0.0, -1.3), (1.2, 0.0), (0.0, 1.3), (-1.2, 0.0)]), WHITE, pen);
         }
+        Marker::Limit => {
+            canvas.areas(&polygon(&[(0.0, 1.3), (1.2, -0.85), (-1.2, -0.85)]), WHITE, pen);
+        }
         Marker::Cross => {
             let mut parts = polygon(&[(-1.2, 0.0), (1.2, 0.0)]);
             parts.extend(polygon(&[(0.0, -1.2), (0.0, 1.2)]));

@@ -61,7 +61,9 @@ impl Slope {
         let (dx, dy) = view.back;
         let length = dx.hypot(dy).max(1.0);
         let (right, up) = (dx / length, dy / length);
-        Slope { length, right, up, off: (numbers + GAP) * up + 0.85 * LARGE }
+        // The lower right corner of a number is what comes nearest to the name.
+        let corner = numbers * up + font::DIGIT_HEIGHT * SMALL / 2.0 * right;
+        Slope { length, right, up, off: corner + GAP + 0.85 * LARGE }
     }
 
     /// How far the name reaches to the right of the back end of the axis.

@@ -19,7 +19,7 @@ pub struct FrfResult {
     pub quantity: &'static str,
     /// Unit.
     pub unit: String,
-    /// Frequency in Hz and magnitude of each peak.
+    /// Its peaks, rising in frequency.
     pub peaks: Vec<FrfPeak>,
     /// What a person must know.
     pub warnings: Vec<String>,
@@ -32,8 +32,10 @@ pub struct FrfPeak {
     pub frequency: f64,
     /// What the choice of the interpolating curve may cost, in Hz.
     pub frequency_std: f64,
-    /// Magnitude.
+    /// Magnitude in the unit of the function.
     pub magnitude: f64,
+    /// What the choice of the interpolating curve may cost, in the same unit; `None` where the peak is not resolved.
+    pub magnitude_std: Option<f64>,
 }
 
 /// A peak of a frequency response function must stand this factor above its valleys.
@@ -65,6 +67,7 @@ pub(super) fn frfs(
                     frequency: v.frequency,
                     frequency_std: v.frequency_std,
                     magnitude: v.height,
+                    magnitude_std: Some(v.height_std).filter(|s| s.is_finite()),
                 })
                 .collect();
             let marks: Vec<(f64, f64)> = peaks.iter().map(|p| (p.frequency, p.magnitude)).collect();

@@ -1,34 +1,53 @@
 //! Measured responses over the predicted branches.
 
-use super::response::{log_limits, series, shown};
-use crate::compare::Overlay;
+use super::response::{MARKS, log_limits, rank, series, shown};
 use crate::compare::prediction::{Kind, Prediction};
+use crate::compare::{Level, Overlay};
 use crate::measure::response::Response;
+use crate::report::notation::significant;
 use crate::report::{AxisSpec, Figure, Ink, Plot, Series, Stroke};
 
-/// One panel a mass: branches that can be seen solid, others dashed, the motion without impacts thin; measured points on
-/// top.
+/// Height of a panel in mm.
+const PANEL: f64 = 85.0;
+
+/// One panel a mass and level of force: branches that can be seen solid, others dashed, the motion without impacts thin;
+/// measured points on top.
 pub fn overlay(title: &str, overlay: &Overlay, responses: &[Response]) -> Figure {
-    let mut figure = Figure::double(title).height(170.0).shared_x().caption(format!(
-        "Fundamental of the displacement. Lines: closed form for a force of {:.4} N; solid: admissible and stable, dashed: not, \
-         thin: without impacts (mass 2 then rests and has no line). Points: measured.",
-        overlay.force
+    let force = match overlay.force {
+        Some(force) => format!("a force of {force:.4} N"),
+        None => "the measured force".to_owned(),
+    };
+    let mut figure = Figure::double(title).shared_x().caption(format!(
+        "Fundamental of the displacement. Lines: closed form for {force}; solid: admissible and stable, dashed: not, \
+         thin: without impacts (mass 2 then rests and has no line). Points: measured. {MARKS}"
     ));
-    for mass in [1, 2] {
-        let measured: Vec<&Response> =
-            responses.iter().filter(|r| r.mass == Some(mass) && r.quantity == "displacement").collect();
-        if !measured.is_empty() {
-            figure = figure.panel(panel(mass, &overlay.curve, &measured));
+    for level in &overlay.levels {
+        for mass in [1, 2] {
+            let measured: Vec<(usize, &Response)> = (0..)
+                .zip(responses)
+                .filter(|(_, r)| r.mass == Some(mass) && level.sweeps.contains(&r.name))
+                .map(|(i, r)| (rank(responses, i), r))
+                .collect();
+            if !measured.is_empty() {
+                let plot = panel(mass, &level.curve, &measured);
+                let several = overlay.levels.len() > 1;
+                figure = figure.panel(if several { plot.title(level_name(level)) } else { plot });
+            }
         }
     }
-    figure
+    let panels = figure.panels.len().max(1) as f64;
+    figure.height(PANEL * panels)
 }
 
-fn panel(mass: u8, curve: &Prediction, measured: &[&Response]) -> Plot {
+fn level_name(level: &Level) -> String {
+    format!("Force {} N", significant(level.force, 3))
+}
+
+fn panel(mass: u8, curve: &Prediction, measured: &[(usize, &Response)]) -> Plot {
     let (factor, unit) = shown("m");
     let y = AxisSpec::new(format!("Displacement of mass {mass}"), unit).log();
     // The dashed branches and the undisturbed resonance may run out of the picture: what is measured decides its size.
-    let y = match log_limits(measured.iter().copied()) {
+    let y = match log_limits(measured.iter().map(|m| m.1)) {
         Some((low, high)) => y.limits(factor * low, factor * high),
         None => y,
     };
@@ -51,8 +70,9 @@ fn panel(mass: u8, curve: &Prediction, measured: &[&Response]) -> Plot {
             Series::line("without impacts", curve.frequency.clone(), y).ink(Ink::Grey).stroke(Stroke::Thin),
         );
     }
-    for response in measured {
-        plot = plot.with(series(response));
+    for (rank, response) in measured {
+        let [points, limits] = series(response, *rank);
+        plot = plot.with(limits).with(points);
     }
     plot
 }

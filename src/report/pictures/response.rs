@@ -1,6 +1,6 @@
 //! Response curves: every mass and direction, with uncertainties and named resonances.
 
-use crate::measure::response::Response;
+use crate::measure::response::{Response, ResponsePoint};
 use crate::record::Direction;
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 
@@ -16,7 +16,7 @@ pub fn response(title: &str, responses: &[Response]) -> Figure {
         .shared_x()
         .panel(linear)
         .panel(plot(responses, true))
-        .caption("Amplitude at the excitation frequency; bars are one standard uncertainty where larger than the marker.")
+        .caption(format!("Amplitude at the excitation frequency. {MARKS}"))
 }
 
 fn plot(responses: &[Response], log: bool) -> Plot {
@@ -28,29 +28,50 @@ fn plot(responses: &[Response], log: bool) -> Plot {
     let x = AxisSpec::new("Excitation frequency", "Hz");
     let y = match log_limits(responses.iter()) {
         Some((low, high)) if log => y.log().limits(low * factor, high * factor),
-        _ => y,
+        // Room for markers at zero.
+        Some((_, high)) => y.limits(-0.02 * high * factor, f64::NAN),
+        None => y,
     };
     let mut plot = Plot::new(x, y);
-    for response in responses {
-        plot = plot.with(series(response).stroke(Stroke::Thin));
+    for (i, response) in responses.iter().enumerate() {
+        let [measured, limits] = series(response, rank(responses, i));
+        plot = plot.with(limits).with(measured.stroke(Stroke::Thin));
     }
     plot
 }
 
+/// What stands below figures of measured points.
+pub(super) const MARKS: &str = "Bars are one standard uncertainty where larger than the marker; \
+    triangles that point down are upper limits, where no motion stands out of the noise.";
+
 /// Limits of a logarithmic axis that shows all points, but no uncertainty that reaches down to nothing.
 pub(super) fn log_limits<'a>(responses: impl Iterator<Item = &'a Response>) -> Option<(f64, f64)> {
-    let amplitudes = responses.flat_map(|r| &r.points).map(|p| p.amplitude.value).filter(|a| *a > 0.0);
+    let shown = |p: &ResponsePoint| p.upper_limit.unwrap_or(p.amplitude.value);
+    let amplitudes = responses.flat_map(|r| &r.points).map(shown).filter(|a| *a > 0.0);
     let (low, high) = amplitudes.fold((f64::INFINITY, 0.0f64), |(l, h), a| (l.min(a), h.max(a)));
     (low <= high).then_some((low / 2.0, high * 2.0))
 }
 
-/// One curve in the ink of its mass and the marker of its direction.
-pub(super) fn series(response: &Response) -> Series {
+/// How many earlier sweeps are of the same mass and direction: the level of force, usually.
+pub(super) fn rank(responses: &[Response], i: usize) -> usize {
+    let of = |r: &Response| (r.mass, r.direction);
+    let earlier = responses.iter().take(i);
+    responses.get(i).map_or(0, |own| earlier.filter(|r| of(r) == of(own)).count())
+}
+
+/// Measured points and upper limits of one curve, in the ink of its mass and `rank` and the marker of its direction.
+pub(super) fn series(response: &Response, rank: usize) -> [Series; 2] {
     let (mut x, mut y, mut std) = (Vec::new(), Vec::new(), Vec::new());
+    let mut limits = (Vec::new(), Vec::new());
     let (factor, _) = shown(response.unit);
     for point in &response.points {
+        let limit = point.upper_limit;
+        if let Some(limit) = limit {
+            limits.0.push(point.excitation);
+            limits.1.push(factor * limit);
+        }
         x.push(point.excitation);
-        y.push(factor * point.amplitude.value);
+        y.push(if limit.is_some() { f64::NAN } else { factor * point.amplitude.value });
         std.push(factor * point.amplitude.std.unwrap_or(0.0));
         // No line across a jump.
         if response.jumps.iter().any(|j| j.from == point.excitation) {
@@ -59,19 +80,17 @@ pub(super) fn series(response: &Response) -> Series {
             std.push(0.0);
         }
     }
-    let series = Series::points(curve_name(response), x, y).y_error(std);
-    let (up, down) = match response.mass {
-        Some(2) => (Marker::Square, Marker::Diamond),
-        _ => (Marker::Circle, Marker::OpenCircle),
+    let marker = match (response.mass, response.direction) {
+        (Some(2), Some(Direction::Down)) => Marker::Diamond,
+        (Some(2), _) => Marker::Square,
+        (Some(_), Some(Direction::Down)) => Marker::OpenCircle,
+        (Some(_), _) => Marker::Circle,
+        (None, _) => Marker::Auto,
     };
-    let series = match response.direction {
-        Some(Direction::Down) => series.marker(down),
-        _ => series.marker(up),
-    };
-    match response.mass {
-        Some(mass) => series.ink(Ink::Nth(usize::from(mass) - 1)),
-        None => series,
-    }
+    let measured = Series::points(response.name.clone(), x, y).y_error(std).marker(marker);
+    let limits = Series::points("", limits.0, limits.1).marker(Marker::Limit);
+    let ink = response.mass.map_or(2 * rank, |mass| 2 * rank + usize::from(mass.saturating_sub(1)));
+    [measured, limits].map(|series| series.ink(Ink::Nth(ink)))
 }
 
 /// The unit in which motion is shown, and the factor from SI: the same on every axis.
@@ -80,14 +99,6 @@ pub(super) fn shown(unit: &str) -> (f64, &str) {
         "m" => (1e3, "mm"),
         "m/s" => (1e3, "mm/s"),
         other => (1.0, other),
-    }
-}
-
-/// `mass 1, up`, or the sweep's name where it does not say.
-pub(super) fn curve_name(response: &Response) -> String {
-    match (response.mass, response.direction) {
-        (Some(mass), Some(direction)) => format!("mass {mass}, {}", direction.name()),
-        _ => response.name.clone(),
     }
 }
 

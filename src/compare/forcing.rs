@@ -1,0 +1,181 @@
+//! The force behind each point of a sweep.
+
+use crate::error::{Error, Result};
+use crate::measure::response::{Response, ResponsePoint};
+
+/// Force amplitude in N over excitation frequency.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Forcing {
+    /// One for all points.
+    Constant(f64),
+    /// Frequency in Hz and force of each point, rising in frequency, one point or more.
+    Measured(Vec<(f64, f64)>),
+}
+
+/// Forces within this ratio are one level: a shaker's force drops by less at a resonance, and levels that are chosen differ by
+/// more.
+const LEVEL: f64 = 1.2;
+/// A stated force that the measured one leaves by more than this is doubted.
+const STRAYS: f64 = 0.05;
+/// A median that differs by more than this from the stated force is said.
+const DIFFERS: f64 = 0.02;
+
+impl Forcing {
+    /// The measured force of a sweep, where it was measured.
+    pub fn measured(response: &Response) -> Option<Forcing> {
+        let points = response.points.iter().filter_map(|p| Some((p.excitation, p.force?)));
+        let mut points: Vec<(f64, f64)> = points.collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        (!points.is_empty()).then_some(Forcing::Measured(points))
+    }
+
+    /// The force of each of these responses: the stated one for all, else each its own. A sweep without one takes the median
+    /// of the others.
+    ///
+    /// # Errors
+    /// If no force is stated and none was measured.
+    pub fn of_all(
+        stated: Option<f64>,
+        responses: &[&Response],
+        warnings: &mut Vec<String>,
+    ) -> Result<Vec<Forcing>> {
+        let mut all: Vec<f64> = responses.iter().flat_map(|r| &r.points).filter_map(|p| p.force).collect();
+        all.sort_by(f64::total_cmp);
+        let median = median(&all);
+        if let Some(stated) = stated {
+            let worst = all.iter().map(|m| (m / stated - 1.0).abs()).fold(0.0, f64::max);
+            if worst > STRAYS {
+                warnings.push(format!(
+                    "The measured force strays by up to {:.0} % from the stated {stated} N, which the prediction holds for all points; without `force` in [excitation] each point is predicted for its own.",
+                    100.0 * worst
+                ));
+            }
+            if let Some(median) = median.filter(|m| (m / stated - 1.0).abs() > DIFFERS) {
+                warnings.push(format!(
+                    "The force is stated as {stated} N, but its measured median is {median:.4} N; the stated one is used."
+                ));
+            }
+            return Ok(vec![Forcing::Constant(stated); responses.len()]);
+        }
+        let (Some(median), Some(low), Some(high)) = (median, all.first(), all.last()) else {
+            return Err(Error::refused("the force is neither stated nor measured")
+                .hint("give [excitation] force = … in N in the campaign"));
+        };
+        warnings.push(format!(
+            "No force is stated: each point is predicted for its own measured one, {low:.4} to {high:.4} N."
+        ));
+        let own = |r: &&Response| {
+            Forcing::measured(r).unwrap_or_else(|| {
+                warnings.push(format!(
+                    "\"{}\" has no measured force: it is predicted for the median of the others, {median:.4} N.",
+                    r.name
+                ));
+                Forcing::Constant(median)
+            })
+        };
+        Ok(responses.iter().map(own).collect())
+    }
+
+    /// The mean of several; `None` of none.
+    pub fn mean(of: &[&Forcing]) -> Option<Forcing> {
+        let [first, others @ ..] = of else { return None };
+        if others.iter().all(|o| o == first) {
+            return Some((*first).clone());
+        }
+        let mean = |f: f64| of.iter().map(|o| o.at(f)).sum::<f64>() / of.len() as f64;
+        let points = of.iter().flat_map(|o| match o {
+            Forcing::Constant(_) => &[],
+            Forcing::Measured(points) => points.as_slice(),
+        });
+        let mut points: Vec<(f64, f64)> = points.map(|p| (p.0, mean(p.0))).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Some(if points.is_empty() { Forcing::Constant(mean(0.0)) } else { Forcing::Measured(points) })
+    }
+
+    /// Force in N at a frequency in Hz, linear between points and constant beyond the last.
+    pub fn at(&self, frequency: f64) -> f64 {
+        let points = match self {
+            Forcing::Constant(force) => return *force,
+            Forcing::Measured(points) => points,
+        };
+        let above = points.partition_point(|p| p.0 < frequency);
+        let before = above.checked_sub(1).and_then(|i| points.get(i));
+        match (before, points.get(above)) {
+            (Some(a), Some(b)) => a.1 + (b.1 - a.1) * (frequency - a.0) / (b.0 - a.0),
+            (Some(only), None) | (None, Some(only)) => only.1,
+            (None, None) => f64::NAN,
+        }
+    }
+
+    /// Force in N of a point of the sweep.
+    pub fn of(&self, point: &ResponsePoint) -> f64 {
+        match (self, point.force) {
+            (Forcing::Measured(_), Some(force)) => force,
+            _ => self.at(point.excitation),
+        }
+    }
+
+    /// Median in N.
+    pub fn median(&self) -> f64 {
+        match self {
+            Forcing::Constant(force) => *force,
+            Forcing::Measured(points) => {
+                let mut forces: Vec<f64> = points.iter().map(|p| p.1).collect();
+                forces.sort_by(f64::total_cmp);
+                median(&forces).unwrap_or(f64::NAN)
+            }
+        }
+    }
+}
+
+/// Median of sorted values.
+pub(super) fn median(sorted: &[f64]) -> Option<f64> {
+    let middle = sorted.len() / 2;
+    let upper = *sorted.get(middle)?;
+    Some(if sorted.len().is_multiple_of(2) { f64::midpoint(sorted[middle - 1], upper) } else { upper })
+}
+
+/// Levels of force in order of their first sweep: indices into `forces`, the median of each sweep where known. A sweep of
+/// unknown force belongs to the first level.
+pub fn levels(forces: &[Option<f64>]) -> Vec<Vec<usize>> {
+    let mut levels: Vec<(Option<f64>, Vec<usize>)> = Vec::new();
+    for (i, force) in forces.iter().enumerate() {
+        let near = |level: Option<f64>| match (level, *force) {
+            (Some(a), Some(b)) => (a / b).max(b / a) < LEVEL,
+            _ => true,
+        };
+        match levels.iter_mut().find(|level| near(level.0)) {
+            Some(level) => {
+                level.0 = level.0.or(*force);
+                level.1.push(i);
+            }
+            None => levels.push((*force, vec![i])),
+        }
+    }
+    levels.into_iter().map(|level| level.1).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_measured_force_is_linear_between_its_points() {
+        let forcing = Forcing::Measured(vec![(4.0, 0.1), (6.0, 0.2), (6.0, 0.3), (8.0, 0.3)]);
+        let at: Vec<f64> = [3.0, 4.0, 5.0, 6.0, 7.0, 9.0].map(|f| forcing.at(f)).to_vec();
+        // 0.1 + 0.1/2 is rounded once more than 0.15.
+        assert!((at[2] - 0.15).abs() < 1e-16, "{at:?}");
+        assert_eq!((at[0], at[1], at[3], at[4], at[5]), (0.1, 0.1, 0.2, 0.3, 0.3));
+        let mean = Forcing::mean(&[&forcing, &Forcing::Constant(0.5)]).unwrap();
+        assert!((mean.at(5.0) - 0.325).abs() < 1e-15);
+        assert_eq!(Forcing::mean(&[&forcing, &forcing]), Some(forcing));
+    }
+
+    #[test]
+    fn levels_are_told_apart_by_a_fifth() {
+        let forces = [Some(0.1), Some(0.2), Some(0.105), None, Some(0.19)];
+        assert_eq!(levels(&forces), [vec![0, 2, 3], vec![1, 4]]);
+        assert_eq!(levels(&[None, Some(2.0), Some(3.0)]), [vec![0, 1], vec![2]]);
+        assert!(levels(&[]).is_empty());
+    }
+}
