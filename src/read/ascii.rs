@@ -183,7 +183,7 @@ fn assemble(
         None
     };
     let has_axis = printed.is_some();
-    let axis = abscissa::choose(printed, n, stated, options, &mut doubts);
+    let axis = abscissa::choose(source.path(), printed, n, stated, options, &mut doubts)?;
     let mut meta = Meta::new(stated.name.clone().unwrap_or_default(), crate::units::Unit::opaque(""));
     meta.notes.clone_from(&stated.notes);
     meta.step("read", &[("file", &source.name()), ("format", &"ascii")]);
@@ -313,6 +313,7 @@ fn printed(
             None
         }
     };
+    let assumed = by_name.is_none();
     let (kind, factor) = if let Some(kind) = by_name {
         let (factor, doubt) = name.to_axis(&kind, &label).map_err(|found| {
             Error::input(Place::file(source.path()), format!("{found} {:?}", name.name), "s, ms, Hz, kHz, …")
@@ -335,7 +336,7 @@ fn printed(
     let values = values.iter().map(|v| v * factor).collect();
     let (axis, doubt) = abscissa::from_values(kind, values, resolution, &label);
     doubts.extend(doubt);
-    Ok(Printed { axis, label, doubts })
+    Ok(Printed { axis, label, resolution, assumed, doubts })
 }
 
 /// Half a unit in the last printed digit, judged from the values themselves: the coarsest power of ten (between 1 and
