@@ -252,10 +252,7 @@ mod tests {
         );
         let campaign = of(&text).unwrap();
         assert_eq!(campaign.rig.map(|r| r.gap), Some(2e-3));
-        assert_eq!(
-            campaign.sweep[0].reader().unit.map(|u| u.quantity()),
-            Some(crate::units::Quantity::Velocity)
-        );
+        assert_eq!(campaign.sweep[0].reader().quantity, Some(crate::units::Quantity::Velocity));
         assert_eq!(campaign.out(), Path::new("./results"));
     }
 
