@@ -24,9 +24,10 @@ use super::format::Format;
 use super::missing;
 use super::reader::{Options, Recording};
 use super::text;
-use super::{Header, Source, Summary};
+use super::{Header, Source, Summary, SweepList};
 use crate::error::{Error, Place, Result};
 use crate::record::{Axis, AxisKind, Frf, FrfKind, Meta, Record, Scaling, Spectrum, Trace, Values};
+pub(super) use layout::shorten;
 use layout::{Cell, Layout, Separator};
 use num_complex::Complex64;
 use stated::Stated;
@@ -50,6 +51,10 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         let bytes = if lone_cr(&bytes, false) { with_lf(bytes) } else { bytes };
         let rows = rows::read(source.path(), &bytes, &layout, options.allow_missing)?;
         drop(bytes);
+        if rows.footer.is_some() && SweepList::of(source).is_some() {
+            return Err(Error::input(Place::file(source.path()), "names behind numbers", "numbers"));
+        }
+        doubts.extend(rows.footer);
         doubts.extend(missing::kept(rows.missing));
         if !rows.comments.is_empty() {
             doubts.push(format!(

@@ -130,7 +130,10 @@ fn convert_keeps_the_values() {
         );
         assert!((record["dx"].as_f64().unwrap() - 0.01).abs() < 1e-12, "{name}: {record}");
     }
-    json(&["convert", text(&path), text(&folder.path().join("f.npy"))]);
+    let out = folder.path().join("f.npy");
+    let replaced = |value: &Value| value["warnings"].to_string().contains("f.npy existed and was replaced.");
+    assert!(!replaced(&json(&["convert", text(&path), text(&out)])));
+    assert!(replaced(&json(&["convert", text(&path), text(&out)])));
 }
 
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {

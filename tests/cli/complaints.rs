@@ -407,3 +407,28 @@ fn one_true_sentence_is_said_of_the_unit() {
     has(&found, &["line 5", "a unit of velocity, such as m/s or mm/s"]);
     assert!(!found.contains("or g"), "{found}");
 }
+
+#[test]
+fn a_spectrum_in_place_of_a_list_and_an_empty_campaign() {
+    let folder = tempfile::tempdir().unwrap();
+    sweep(folder.path(), &frequencies());
+    let found = complaint(&["response", text(&folder.path().join("VUP0001.DAT"))], 2);
+    has(&found, &["this looks like a measurement file", "not a list"]);
+    let path = folder.path().join("campaign.toml");
+    fs::write(&path, "").unwrap();
+    has(&complaint(&["run", text(&path)], 2), &["the file is empty; expected a campaign", "[[sweep]]"]);
+    fs::write(&path, "name = \"x\"\n[[frf]]\nfile = \"absent.uff\"\n").unwrap();
+    has(&complaint(&["run", text(&path)], 2), &["line 3", "absent.uff does not exist", "^"]);
+}
+
+#[test]
+fn a_file_that_a_list_names_and_that_is_missing() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = sweep(folder.path(), &frequencies());
+    fs::remove_file(folder.path().join("VUP0002.DAT")).unwrap();
+    // Three numbers, twelve force names, and the second of the response names.
+    has(
+        &complaint(&["response", text(&list)], 2),
+        &["LIST.TXT, line 17", "1 of 24 files is missing", "VUP0002.DAT"],
+    );
+}

@@ -214,6 +214,16 @@ fn marks(path: &Path, rows: &[(u64, usize, &[u8])], options: &Options) -> Result
         None => {}
     }
     if has(b'.') {
+        if explicit.is_none() && grouped(rows) {
+            let (line, _, text) = rows[0];
+            let found = format!(
+                "{:?} may be one number with grouped digits or two numbers",
+                shorten(&decode_line(text))
+            );
+            return Err(
+                Error::input(Place::line(path, line), found, "a file where this can be told").hint(GROUPED)
+            );
+        }
         // Points are decimal marks, so commas separate.
         return Ok((explicit.unwrap_or(Separator::Char(b',')), b'.'));
     }
@@ -254,6 +264,31 @@ fn marks(path: &Path, rows: &[(u64, usize, &[u8])], options: &Options) -> Result
         "a file where this can be told",
     )
     .hint("say which: --decimal comma, or --decimal point"))
+}
+
+/// What to try where digits may be grouped; such numbers are not read.
+pub const GROUPED: &str = "if a comma separates two numbers, give --decimal point; if digits are grouped in threes, export them without grouping";
+
+/// Whether every row is one number with decimals, and some have their digits grouped in threes: `1.234,50` or `1,234.50`.
+fn grouped(rows: &[(u64, usize, &[u8])]) -> bool {
+    [(b'.', b','), (b',', b'.')].iter().any(|&(group, decimal)| {
+        let groups: Option<Vec<usize>> = rows.iter().map(|row| groups(row.2, group, decimal)).collect();
+        groups.is_some_and(|groups| groups.iter().any(|n| *n > 1))
+    })
+}
+
+/// Number of groups of digits before the decimal mark; `None` where a line is no such number.
+fn groups(line: &[u8], group: u8, decimal: u8) -> Option<usize> {
+    let line = line.trim_ascii();
+    let line = line.strip_prefix(b"-").or(line.strip_prefix(b"+")).unwrap_or(line);
+    let at = line.iter().position(|b| *b == decimal)?;
+    let digits = |text: &[u8]| !text.is_empty() && text.iter().all(u8::is_ascii_digit);
+    let parts: Vec<&[u8]> = line[..at].split(|b| *b == group).collect();
+    let first = parts[0];
+    // Nobody groups `0.123`.
+    let leads = (1..=3).contains(&first.len()) && digits(first) && (parts.len() == 1 || first[0] != b'0');
+    let whole = leads && parts[1..].iter().all(|part| part.len() == 3 && digits(part));
+    (whole && digits(&line[at + 1..])).then_some(parts.len())
 }
 
 /// Cuts a row into cells with their byte offset in the line.
@@ -352,6 +387,20 @@ mod tests {
         assert_eq!(detect(Path::new("x"), b"1,5\n", false, &comma).unwrap().columns, 1);
         let point = Options { decimal_comma: Some(false), ..Options::default() };
         assert_eq!(detect(Path::new("x"), b"1,5\n", false, &point).unwrap().columns, 2);
+    }
+
+    #[test]
+    fn grouped_digits_are_asked_about() {
+        for text in ["1.234,50\n2.345,60\n", "-1,234.50\n", "999,50\n1.000,25\n"] {
+            let error = layout(text).unwrap_err().to_string();
+            assert!(error.contains("grouped") && error.contains("--decimal point"), "{text}: {error}");
+            let point = Options { decimal_comma: Some(false), ..Options::default() };
+            let columns = detect(Path::new("x"), text.as_bytes(), false, &point).unwrap().columns;
+            assert_eq!(columns, text.lines().next().unwrap().split(',').count(), "{text}");
+        }
+        for text in ["0.123,50\n", "1.234,50\n1.2345,5\n", "1.234,5e1\n", "1.234,50\n12,5\n0.100,5\n"] {
+            assert_eq!(shape(text), (Separator::Char(b','), b'.', 2, Cell::Real), "{text}");
+        }
     }
 
     #[test]

@@ -36,6 +36,7 @@ pub fn build(
         let kept = columns.kept.len();
         doubts.push(format!("Of {} remarks between the rows the first {kept} are kept.", columns.comments));
     }
+    doubts.extend(columns.footer);
     doubts.extend(missing::kept(columns.missing));
     if columns.comma && layout.names.len() == 1 {
         doubts.push("There is one column, so the comma is taken as the decimal mark.".to_owned());

@@ -100,6 +100,17 @@ fn a_base_band_must_go_with_the_frequency_column() {
 }
 
 #[test]
+fn words_behind_the_rows_are_passed_over_and_quoted() {
+    let rows = "t [s],v [m/s]\n0,1\n1,2\n2,3\n3,4\n";
+    let recording = of(format!("{rows}End of data\n\nbye\n"));
+    assert_eq!(values(&recording.records[0]), [1.0, 2.0, 3.0, 4.0]);
+    assert!(says(&recording.doubts, "2 line(s) without any, passed over: \"End of data\", \"bye\""));
+    for end in ["End of data\n4,5\n", "4,5x\n", "x,5\n"] {
+        assert!(read_with(&Reader::new(), format!("{rows}{end}")).is_err(), "{end}");
+    }
+}
+
+#[test]
 fn what_is_stated_may_refine_a_column_and_not_contradict_it() {
     let text = "t [s],a [m/s²]\n1.0,1\n1.1,2\n1.2,3\n";
     let same = read_with(&Reader::new().rate(Some(10.0)), text).unwrap();
