@@ -12,6 +12,7 @@
 mod clean;
 mod fixed;
 mod gaps;
+mod grouping;
 mod layout;
 mod names;
 mod rows;
@@ -39,6 +40,7 @@ pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
 }
 
 pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
+    let raw = source.head()?;
     let source = &plain(source)?;
     let head = source.head()?;
     let layout = layout::detect(source.path(), &head, source.len() > head.len() as u64, options)?;
@@ -75,7 +77,10 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         columns
     };
     let n = columns.first().map_or(0, Values::len);
-    let records = assemble(source, columns, n, &layout, &stated, options)?;
+    let mut records = assemble(source, columns, n, &layout, &stated, options)?;
+    for record in &mut records {
+        text::read_as(record.meta_mut(), &raw, layout.decimal);
+    }
     Ok(Recording { path: source.path().to_owned(), format: Format::Ascii, records, doubts })
 }
 
@@ -92,7 +97,8 @@ pub(super) fn survey(source: &Source, options: &Options) -> Result<(Vec<Header>,
             let stated = stated::read(&layout.header);
             let empty = vec![Values::Real(Vec::new())];
             let mut records = assemble(&text, empty, summary.n, &layout, &stated, options)?;
-            if let Some(record) = records.pop() {
+            if let Some(mut record) = records.pop() {
+                text::read_as(record.meta_mut(), &source.head()?, layout.decimal);
                 let said = names::of(&layout).and_then(|mut names| names.pop()?.unit).or(stated.unit);
                 let factor = options.adopt(&mut record.meta().clone(), said.as_deref());
                 // The values themselves are gone: the largest stands for them.

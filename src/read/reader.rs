@@ -61,18 +61,29 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// All doubts: the file's, then each record's with its name where there are several.
+    /// All doubts: the file's, then those of the records, see [`gathered`].
     pub fn all_doubts(&self) -> Vec<String> {
-        let several = self.records.len() > 1;
         let mut all = self.doubts.clone();
-        for record in &self.records {
-            let meta = record.meta();
-            all.extend(meta.doubts.iter().map(|d| {
-                if several && !meta.name.is_empty() { format!("{}: {d}", meta.name) } else { d.clone() }
-            }));
-        }
+        let records: Vec<_> =
+            self.records.iter().map(|r| (r.meta().name.as_str(), r.meta().doubts.as_slice())).collect();
+        all.extend(gathered(&records));
         all
     }
+}
+
+/// Doubts of records, given as name and doubts: one that all share once, any other with the name of its record.
+pub fn gathered(records: &[(&str, &[String])]) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    for (name, doubts) in records {
+        for doubt in *doubts {
+            let shared = records.iter().all(|(_, others)| others.contains(doubt));
+            let said = if shared || name.is_empty() { doubt.clone() } else { format!("{name}: {doubt}") };
+            if !shared || !all.contains(&said) {
+                all.push(said);
+            }
+        }
+    }
+    all
 }
 
 /// Reads measurement files of any known format.

@@ -1,6 +1,7 @@
 //! The careful path: one line after the other, each complaint with its line and column.
 
-use super::layout::{Cell, GROUPED, Layout, comment, complex, cut_row, lines, shorten};
+use super::grouping::GROUPED;
+use super::layout::{Cell, Layout, comment, complex, cut_row, lines, shorten};
 use crate::error::{Error, Place, Result};
 use crate::read::ending::{self, CUT_OFF};
 use crate::read::missing::Missing;
