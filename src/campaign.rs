@@ -40,6 +40,9 @@ use crate::read::{Recording, SweepList, SweepReader, inside};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
+/// Keys of a rig.
+const RIG: [&str; 8] = ["m1", "m2", "k1", "k2", "c1", "c2", "gap", "restitution"];
+
 /// Folder for results where none is named.
 const RESULTS: &str = "results";
 
@@ -87,7 +90,12 @@ impl Campaign {
             return Err(Error::input(Place::file(path), "not a campaign", "a campaign file, NAME.toml")
                 .hint("a list of files goes to `vibro response`; the README shows a campaign.toml"));
         }
-        let bytes = crate::read::Source::file(path)?.all()?;
+        let bytes = std::fs::read(path).map_err(|e| Error::io("open", path, e))?;
+        if bytes.trim_ascii().is_empty() {
+            return Err(Error::input(Place::file(path), "the file is empty", "a campaign").hint(
+                "write what it is to do, e.g. a table [[sweep]] with name, list and quantity, or [[frf]] with file; docs/campaign.md lists every key",
+            ));
+        }
         let text = String::from_utf8(bytes).map_err(|e| {
             Error::input(
                 Place::byte(path, e.utf8_error().valid_up_to() as u64),
@@ -125,7 +133,13 @@ impl Campaign {
 
     fn check(&self) -> Result<()> {
         if let Some(rig) = &self.rig {
-            rig.check().map_err(|e| e.in_file(&self.path))?;
+            rig.check().map_err(|e| {
+                let told = e.to_string();
+                let key =
+                    RIG.into_iter().find(|key| told.starts_with(&format!("{key} is"))).unwrap_or("[rig]");
+                let span = locate::find(&self.text, key, self.text.find("[rig]"));
+                e.in_file(&self.path).excerpt(&self.text, span)
+            })?;
         }
         let out = self.out.as_deref().unwrap_or(Path::new(RESULTS));
         inside(self.folder(), out, false).map_err(|_| {
@@ -169,8 +183,7 @@ impl Campaign {
     pub fn rig_left_out(&self) -> Option<String> {
         let table = toml::from_str::<toml::Table>(&self.text).ok()?;
         let rig = table.get("rig")?.as_table()?;
-        let keys = ["m1", "m2", "k1", "k2", "c1", "c2", "gap", "restitution"];
-        let missing: Vec<&str> = keys.into_iter().filter(|k| !rig.contains_key(*k)).collect();
+        let missing: Vec<&str> = RIG.into_iter().filter(|k| !rig.contains_key(*k)).collect();
         (!missing.is_empty()).then(|| {
             format!("[rig] does not give {}: the values of the thesis' rig are used.", missing.join(", "))
         })
@@ -246,10 +259,16 @@ impl Campaign {
     /// Path of a record entry.
     ///
     /// # Errors
-    /// If it leads outside the folder.
+    /// If it leads outside the folder or does not exist.
     pub fn record_path(&self, entry: &RecordEntry, allow_outside: bool) -> Result<PathBuf> {
-        inside(self.folder(), entry.file.get_ref(), allow_outside)
-            .map_err(|e| e.in_file(&self.path).excerpt(&self.text, entry.file.span()))
+        let path = inside(self.folder(), entry.file.get_ref(), allow_outside)
+            .map_err(|e| e.in_file(&self.path).excerpt(&self.text, entry.file.span()))?;
+        if !path.exists() {
+            return Err(self
+                .at(entry.file.span(), format!("the file {} does not exist", path.display()))
+                .hint("names are relative to the folder of the campaign file"));
+        }
+        Ok(path)
     }
 }
 
@@ -272,10 +291,7 @@ mod tests {
         );
         let campaign = of(&text).unwrap();
         assert_eq!(campaign.rig.map(|r| r.gap), Some(2e-3));
-        assert_eq!(
-            campaign.sweep[0].reader().unit.map(|u| u.quantity()),
-            Some(crate::units::Quantity::Velocity)
-        );
+        assert_eq!(campaign.sweep[0].reader().quantity, Some(crate::units::Quantity::Velocity));
         assert_eq!(campaign.out(), Path::new("./results"));
     }
 
@@ -301,6 +317,13 @@ mod tests {
             (&format!("{SWEEP}scaling = 1 # ?"), "line 4", "scaling = 1; expected \"peak\" or \"rms\""),
             (&format!("{SWEEP}mass = -1"), "line 4", "found the integer `-1`; expected a small whole number"),
             ("[[sweep]]\nlist = \"L\"", "line 1", "add name = "),
+            ("[rig]\nm1 = 0,5\nm2 = 1", "line 2", "write m1 = 0.5"),
+            ("[rig]\nm2 = 1.0\nk1 = -1.0", "line 3, column 1", "k1 is -1 N/m"),
+            (
+                "[[sweep]]\nname = \"a\"\nforce = [\"f\"]\nresponse = [\"r\"]\nlines = 400",
+                "line 2",
+                "1 force and 1 response files, lines 400, base_band left out",
+            ),
         ] {
             let error = of(text).unwrap_err().to_string();
             assert!(error.contains(line) && error.contains(word) && error.contains('^'), "{text}\n{error}");

@@ -124,6 +124,14 @@ impl Error {
         self
     }
 
+    /// Adds to what was found, in brackets.
+    pub fn aside(mut self, text: impl fmt::Display) -> Self {
+        if let ErrorKind::Input(fault) = &mut *self.0 {
+            fault.found = format!("{} ({text})", fault.found);
+        }
+        self
+    }
+
     /// Shows the offending line of `source` (the whole text) with a caret under the bytes `span`.
     ///
     /// Sets line and column of the place from the span. Tabs count as one column.

@@ -31,7 +31,7 @@ pub mod number;
 
 pub use format::Format;
 pub use header::{Header, Summary};
-pub use reader::{Options, Reader, Recording};
+pub use reader::{Options, Reader, Recording, gathered};
 pub use source::Source;
 pub use sweep::SweepReader;
 pub use sweep_list::{SweepList, inside};

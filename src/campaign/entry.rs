@@ -52,7 +52,7 @@ pub struct SweepEntry {
     pub base_band: Option<f64>,
     /// What the analyser stored: displacement, velocity or acceleration. Default displacement.
     pub quantity: Option<Spanned<String>>,
-    /// Unit in which it was stored. Default SI.
+    /// Unit in which it was stored. Default SI, with a warning.
     pub unit: Option<Spanned<String>>,
     /// Factor on stored responses. Default 1.
     pub calibration: Option<Spanned<f64>>,
@@ -92,12 +92,13 @@ impl SweepEntry {
         if written {
             let band = self.base_band.is_some_and(|b| b.is_finite() && b > 0.0);
             if !band || self.lines.is_none_or(|l| l == 0) || self.force.len() != self.response.len() {
+                let said = |value: Option<String>| value.unwrap_or_else(|| "left out".to_owned());
                 let found = format!(
-                    "{} force and {} response files, lines = {:?}, base_band = {:?}",
+                    "{} force and {} response files, lines {}, base_band {}",
                     self.force.len(),
                     self.response.len(),
-                    self.lines,
-                    self.base_band
+                    said(self.lines.map(|n| n.to_string())),
+                    said(self.base_band.map(|b| b.to_string()))
                 );
                 return Err(complaint(
                     self.name.span(),
@@ -161,12 +162,13 @@ impl SweepEntry {
             let of = unit.quantity();
             if !motion(of) || quantity.is_some_and(|q| q != of) {
                 let found = format!("the unit {:?} is one of {of}", text.get_ref());
-                let expected = quantity.map_or("displacement, velocity or acceleration", Quantity::name);
-                return Err(complaint(
-                    text.span(),
-                    found,
-                    format!("a unit of {expected}, such as mm, mm/s or g"),
-                ));
+                let (expected, such) = match quantity {
+                    Some(Quantity::Displacement) => ("displacement", "m, mm or µm"),
+                    Some(Quantity::Velocity) => ("velocity", "m/s or mm/s"),
+                    Some(Quantity::Acceleration) => ("acceleration", "m/s², mm/s² or g"),
+                    _ => ("displacement, velocity or acceleration", "mm, mm/s or g"),
+                };
+                return Err(complaint(text.span(), found, format!("a unit of {expected}, such as {such}")));
             }
         }
         Ok(())
@@ -181,7 +183,8 @@ impl SweepEntry {
             name: self.name.get_ref().clone(),
             direction: self.direction,
             mass: self.mass.as_ref().map(|m| *m.get_ref()),
-            unit: unit.or(quantity.map(Unit::of)),
+            unit,
+            quantity,
             calibration: factor(&self.calibration),
             force_calibration: factor(&self.force_calibration),
             window: self.window.as_ref().map(|w| Window::from_name(w.get_ref())),

@@ -20,6 +20,20 @@ struct Told {
 }
 
 fn tell(message: &str, line: &str) -> Told {
+    if let Some((key, value)) = line.split_once('=')
+        && let Some((whole, decimals)) = value.split('#').next().unwrap_or_default().trim().split_once(',')
+        && [whole.trim_start_matches(['+', '-']), decimals]
+            .iter()
+            .all(|d| d.starts_with(|c: char| c.is_ascii_digit()))
+        && decimals.chars().all(|c| c.is_ascii_digit() || "eE+-".contains(c))
+    {
+        let key = key.trim();
+        return Told {
+            found: format!("{key} = {whole},{decimals}"),
+            expected: "a number with a decimal point".to_owned(),
+            hint: format!("write {key} = {whole}.{decimals}"),
+        };
+    }
     let names: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     if message.starts_with("unknown field")
         && let Some((wrong, known)) = names.split_first()

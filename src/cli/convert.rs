@@ -31,7 +31,11 @@ pub fn run(typed: &args::Convert, json: bool) -> Result<()> {
     if target == Target::Npy {
         warnings.push("An array file holds values only: axis and unit are not in it.".to_owned());
     }
+    let existed = typed.output.exists();
     let written = write_beside(&typed.output, &bytes)?;
+    if existed {
+        warnings.push(format!("{} existed and was replaced.", typed.output.display()));
+    }
     if json {
         return print::json(&Answer {
             written: written.display().to_string(),

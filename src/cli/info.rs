@@ -2,7 +2,7 @@
 
 use super::{args, complain, print, settings};
 use crate::error::Result;
-use crate::read::Header;
+use crate::read::{Header, gathered};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -40,13 +40,8 @@ pub fn run(typed: &args::Info, json: bool) -> Result<u8> {
         let about =
             |d: &String| if typed.files.len() > 1 { format!("{}: {d}", path.display()) } else { d.clone() };
         answer.warnings.extend(doubts.iter().map(about));
-        for record in &records {
-            for doubt in &record.doubts {
-                let named =
-                    if records.len() > 1 { format!("{}: {doubt}", record.name) } else { doubt.clone() };
-                answer.warnings.push(about(&named));
-            }
-        }
+        let of_records: Vec<_> = records.iter().map(|r| (r.name.as_str(), r.doubts.as_slice())).collect();
+        answer.warnings.extend(gathered(&of_records).iter().map(about));
         answer.files.push(File { path: path.display().to_string(), format: format.name(), records });
     }
     if json {
@@ -67,19 +62,49 @@ fn table(files: &[File]) -> String {
                 Some(declared) if declared != r.n => format!("{} of {declared}", r.n),
                 _ => r.n.to_string(),
             };
-            let step = r.dx.map_or_else(|| "uneven".to_owned(), |dx| format!("step {dx}"));
+            let step = r.dx.map_or_else(|| "uneven".to_owned(), |dx| format!("step {}", short(dx)));
             let max = match (r.max_abs, r.max_at) {
-                (Some(max), Some(at)) => format!("max {max} at {at}"),
+                (Some(max), Some(at)) => format!("max {} at {}", short(max), short(at)),
                 _ => "max not known".to_owned(),
             };
             let complex = if r.complex { "complex " } else { "" };
             let name = if r.name.is_empty() { "(no name)" } else { &r.name };
+            let what = match (r.quantity, r.unit.as_str()) {
+                ("other", "") => ", unit not known".to_owned(),
+                ("other", unit) => format!(" in {unit}"),
+                (quantity, unit) => format!(" of {quantity} [{unit}]"),
+            };
+            // What a universal file calls itself; the name is made of its points.
+            let title = r.notes.iter().find_map(|n| n.strip_prefix("id line 1: ")).filter(|t| *t != name);
+            let title = title.map_or_else(String::new, |t| format!(" ({t})"));
             let _ = writeln!(
                 text,
-                "  {name}: {complex}{} of {} [{}], {n} values from {}, {step}, {max}",
-                r.kind, r.quantity, r.unit, r.x0
+                "  {name}{title}: {complex}{}{what}, {n} values from {}, {step}, {max}",
+                r.kind,
+                short(r.x0)
             );
+        }
+        let notes: Vec<&String> =
+            file.records.first().map_or(&[][..], |r| &r.notes).iter().filter(|n| !shown_before(n)).collect();
+        if !notes.is_empty() {
+            let shown: Vec<String> = notes.iter().take(NOTES).map(|n| n.chars().take(40).collect()).collect();
+            let more = notes.len().saturating_sub(NOTES);
+            let more = if more > 0 { format!(" | and {more} more (--json)") } else { String::new() };
+            let _ = writeln!(text, "  notes: {}{more}", shown.join(" | "));
         }
     }
     text
+}
+
+/// Whether a note of a universal file stands in the line of its record: title, point, function.
+fn shown_before(note: &str) -> bool {
+    ["id line 1: ", "record 6: ", "point: "].iter().any(|key| note.starts_with(key))
+}
+
+/// Notes of a file that a table shows.
+const NOTES: usize = 4;
+
+/// Twelve digits: what is behind them is rounding.
+fn short(value: f64) -> f64 {
+    format!("{value:.11e}").parse().unwrap_or(value)
 }

@@ -95,8 +95,9 @@ pub fn sweep(typed: &Sweep) -> Result<(SweepList, SweepReader)> {
             let found = format!("--unit {text:?} is a unit of {}", unit.quantity());
             return Err(Error::usage(found, "a unit of displacement, velocity or acceleration"));
         }
-        if let Some(stated) = how.unit.as_ref().filter(|s| s.quantity() != unit.quantity()) {
-            let found = format!("--unit {text:?}, but the campaign says {}", stated.quantity());
+        let stated = how.quantity.or(how.unit.as_ref().map(Unit::quantity));
+        if let Some(stated) = stated.filter(|s| *s != unit.quantity()) {
+            let found = format!("--unit {text:?}, but the campaign says {stated}");
             return Err(Error::usage(found, "a unit of the same quantity"));
         }
         how.unit = Some(unit);

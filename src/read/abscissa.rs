@@ -11,48 +11,104 @@ pub(super) struct Printed {
     pub axis: Axis,
     /// Names the column at the start of a sentence.
     pub label: String,
+    /// Half a unit in the last digit that it was printed with, in s or Hz.
+    pub resolution: f64,
+    /// Whether it is time or frequency only because a person's statement says so.
+    pub assumed: bool,
     /// What is to be said of it, if it is used.
     pub doubts: Vec<String>,
 }
 
 /// The axis of `n` values: what a person states, then the printed one, then what the header states.
+///
+/// # Errors
+/// If a person's statement contradicts a whole printed column.
 pub(super) fn choose(
+    path: &Path,
     printed: Option<Printed>,
     n: usize,
     stated: &Stated,
     options: &Options,
     doubts: &mut Vec<String>,
-) -> Axis {
+) -> Result<Axis> {
     let given = match (options.rate, options.base_band) {
         (Some(rate), _) => Axis::time(0.0, 1.0 / rate, n),
         (None, Some(band)) => Axis::frequency(0.0, band / stated.lines_of(n), n),
         (None, None) => {
-            return match printed {
+            return Ok(match printed {
                 Some(printed) => trusted(printed, stated, doubts),
                 None => headed(n, stated, doubts),
-            };
+            });
         }
     };
     let step = given.step().unwrap_or(f64::NAN);
     contradicted(stated, options, step, doubts);
-    let Some(Printed { axis, label, .. }) = printed else { return given };
-    if given.kind != axis.kind {
+    let Some(printed) = printed else { return Ok(given) };
+    let Printed { axis, label, .. } = &printed;
+    if !matches!(axis.kind, AxisKind::Time | AxisKind::Frequency) {
         doubts.push(format!("{label} is no axis for what was stated, and is passed over."));
-        return given;
+        return Ok(given);
     }
-    let close = |a: f64, b: f64| (a / b - 1.0).abs() <= 1e-6;
-    if let (AxisKind::Frequency, Some(band), true) = (&axis.kind, options.base_band, n > 1)
-        && axis.step().is_some()
-        && close(axis.at(n - 1), band)
-    {
-        return axis; // it ends at the base band, wherever it begins
+    if printed.goes_with(&given, options.base_band) {
+        if axis.step().is_none() {
+            doubts.push(format!("{label} is uneven; a step of {} was stated and is used.", short(step)));
+        } else if given.kind == AxisKind::Frequency {
+            return Ok(printed.axis);
+        }
+    } else if printed.assumed && printed.counts() {
+        doubts.push(format!("{label} counts the values; a step of {} was stated and is used.", short(step)));
+        return Ok(given);
+    } else {
+        return Err(printed.contradiction(path, &given, options));
     }
-    // Six digits of a printed column are the least that a statement should agree with.
-    if !axis.step().is_some_and(|printed| close(printed, step)) {
-        let said = axis.step().map_or("is uneven".to_owned(), |s| format!("has a step of {}", short(s)));
-        doubts.push(format!("{label} {said}; a step of {} was stated and is used.", short(step)));
+    Ok(if given.kind == AxisKind::Time { Axis::time(axis.start(), step, n) } else { given })
+}
+
+impl Printed {
+    /// Whether what was stated can be meant by the digits of the column: a time may begin anywhere, lines that do not begin
+    /// at 0 Hz must end at the base band.
+    fn goes_with(&self, given: &Axis, base_band: Option<f64>) -> bool {
+        let axis = &self.axis;
+        let (Some(last), true) = (axis.len().checked_sub(1), axis.kind == given.kind) else { return false };
+        // Six digits are the least that a person states.
+        let close = |a: f64, b: f64, resolution: f64| (a - b).abs() <= resolution + 1e-6 * b.abs();
+        let (from, to) = (axis.start(), axis.at(last));
+        // Both ends are rounded; a lost sample makes a whole step, an unsteady clock less than half of one.
+        let tolerance = axis.step().map_or(0.5 * given.step().unwrap_or(0.0), |_| 2.0 * self.resolution);
+        let span = close(to - from, given.at(last) - given.start(), tolerance);
+        let ends = base_band.is_some_and(|band| close(to, band, self.resolution)) && axis.step().is_some();
+        match given.kind {
+            AxisKind::Frequency => ends || (span && from.abs() <= self.resolution + 1e-6 * to.abs()),
+            _ => span,
+        }
     }
-    if given.kind == AxisKind::Time { Axis::time(axis.start(), step, n) } else { given }
+
+    /// Whether the column counts 0, 1, 2, … or 1, 2, 3, …
+    fn counts(&self) -> bool {
+        self.axis.step() == Some(1.0) && matches!(self.axis.start(), 0.0 | 1.0)
+    }
+
+    fn contradiction(&self, path: &Path, given: &Axis, options: &Options) -> Error {
+        let runs = |axis: &Axis| {
+            let (what, unit) = if axis.kind == AxisKind::Time { ("time", "s") } else { ("frequency", "Hz") };
+            let (from, to) = (short(axis.start()), short(axis.at(axis.len().saturating_sub(1))));
+            let steps =
+                axis.step().map_or("uneven steps".to_owned(), |s| format!("steps of {} {unit}", short(s)));
+            format!("{what} from {from} to {to} {unit} in {steps}")
+        };
+        let (said, option) = match (options.rate, options.base_band) {
+            (Some(rate), _) => (format!("sampling rate of {rate} Hz"), "--rate"),
+            (None, band) => (format!("base band of {} Hz", band.unwrap_or(f64::NAN)), "--base-band"),
+        };
+        Error::input(
+            Place::file(path),
+            format!("{} holds a {}", self.label, runs(&self.axis)),
+            format!("a {}, since a {said} was stated", runs(given)),
+        )
+        .hint(format!(
+            "correct what was stated (in the list, the campaign or {option}), or leave {option} out and the column is believed; if the column has another unit, write it into its header, e.g. [ms] or [kHz]"
+        ))
+    }
 }
 
 /// Says where a person's statement and the header differ.
@@ -91,7 +147,7 @@ fn contradicted(stated: &Stated, options: &Options, step: f64, doubts: &mut Vec<
 
 /// A printed axis, compared with what the header states.
 fn trusted(printed: Printed, stated: &Stated, doubts: &mut Vec<String>) -> Axis {
-    let Printed { axis, label, doubts: said } = printed;
+    let Printed { axis, label, doubts: said, .. } = printed;
     doubts.extend(said);
     let step = match axis.kind {
         AxisKind::Time => stated.rate.map(|rate| 1.0 / rate),

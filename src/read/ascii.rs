@@ -12,6 +12,7 @@
 mod clean;
 mod fixed;
 mod gaps;
+mod grouping;
 mod layout;
 mod names;
 mod rows;
@@ -24,9 +25,10 @@ use super::format::Format;
 use super::missing;
 use super::reader::{Options, Recording};
 use super::text;
-use super::{Header, Source, Summary};
+use super::{Header, Source, Summary, SweepList};
 use crate::error::{Error, Place, Result};
 use crate::record::{Axis, AxisKind, Frf, FrfKind, Meta, Record, Scaling, Spectrum, Trace, Values};
+pub(super) use layout::shorten;
 use layout::{Cell, Layout, Separator};
 use num_complex::Complex64;
 use stated::Stated;
@@ -38,6 +40,7 @@ pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
 }
 
 pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
+    let raw = source.head()?;
     let source = &plain(source)?;
     let head = source.head()?;
     let layout = layout::detect(source.path(), &head, source.len() > head.len() as u64, options)?;
@@ -50,6 +53,10 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         let bytes = if lone_cr(&bytes, false) { with_lf(bytes) } else { bytes };
         let rows = rows::read(source.path(), &bytes, &layout, options.allow_missing)?;
         drop(bytes);
+        if rows.footer.is_some() && SweepList::of(source).is_some() {
+            return Err(Error::input(Place::file(source.path()), "names behind numbers", "numbers"));
+        }
+        doubts.extend(rows.footer);
         doubts.extend(missing::kept(rows.missing));
         if !rows.comments.is_empty() {
             doubts.push(format!(
@@ -70,7 +77,10 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         columns
     };
     let n = columns.first().map_or(0, Values::len);
-    let records = assemble(source, columns, n, &layout, &stated, options)?;
+    let mut records = assemble(source, columns, n, &layout, &stated, options)?;
+    for record in &mut records {
+        text::read_as(record.meta_mut(), &raw, layout.decimal);
+    }
     Ok(Recording { path: source.path().to_owned(), format: Format::Ascii, records, doubts })
 }
 
@@ -87,7 +97,8 @@ pub(super) fn survey(source: &Source, options: &Options) -> Result<(Vec<Header>,
             let stated = stated::read(&layout.header);
             let empty = vec![Values::Real(Vec::new())];
             let mut records = assemble(&text, empty, summary.n, &layout, &stated, options)?;
-            if let Some(record) = records.pop() {
+            if let Some(mut record) = records.pop() {
+                text::read_as(record.meta_mut(), &source.head()?, layout.decimal);
                 let said = names::of(&layout).and_then(|mut names| names.pop()?.unit).or(stated.unit);
                 let factor = options.adopt(&mut record.meta().clone(), said.as_deref());
                 // The values themselves are gone: the largest stands for them.
@@ -183,7 +194,7 @@ fn assemble(
         None
     };
     let has_axis = printed.is_some();
-    let axis = abscissa::choose(printed, n, stated, options, &mut doubts);
+    let axis = abscissa::choose(source.path(), printed, n, stated, options, &mut doubts)?;
     let mut meta = Meta::new(stated.name.clone().unwrap_or_default(), crate::units::Unit::opaque(""));
     meta.notes.clone_from(&stated.notes);
     meta.step("read", &[("file", &source.name()), ("format", &"ascii")]);
@@ -313,6 +324,7 @@ fn printed(
             None
         }
     };
+    let assumed = by_name.is_none();
     let (kind, factor) = if let Some(kind) = by_name {
         let (factor, doubt) = name.to_axis(&kind, &label).map_err(|found| {
             Error::input(Place::file(source.path()), format!("{found} {:?}", name.name), "s, ms, Hz, kHz, …")
@@ -335,7 +347,7 @@ fn printed(
     let values = values.iter().map(|v| v * factor).collect();
     let (axis, doubt) = abscissa::from_values(kind, values, resolution, &label);
     doubts.extend(doubt);
-    Ok(Printed { axis, label, doubts })
+    Ok(Printed { axis, label, resolution, assumed, doubts })
 }
 
 /// Half a unit in the last printed digit, judged from the values themselves: the coarsest power of ten (between 1 and

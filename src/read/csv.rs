@@ -18,6 +18,7 @@ mod rows;
 
 use super::format::{Format, Survey};
 use super::reader::{Options, Recording};
+use super::source::HEAD;
 use super::{Header, Source, ending, text};
 use crate::error::{Error, Place, Result};
 
@@ -62,8 +63,11 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
     let tail = &text.as_bytes()[text.len().saturating_sub(ending::LOOK)..];
     let decimal = if columns.comma { b',' } else { b'.' };
     let cut_off = ending::doubt(tail, layout.separator as u8, decimal);
-    let (records, mut doubts) = records::build(source, layout, columns, axis, options)?;
+    let (mut records, mut doubts) = records::build(source, layout, columns, axis, options)?;
     doubts.extend(cut_off);
+    for record in &mut records {
+        text::read_as(record.meta_mut(), &bytes[..bytes.len().min(HEAD)], decimal);
+    }
     Ok(Recording { path: source.path().to_owned(), format: Format::Csv, records, doubts })
 }
 

@@ -1,4 +1,4 @@
-//! How a text of numbers ends: with a whole row, or in the middle of its last number.
+//! How a text of numbers ends: with a whole row, with words, or in the middle of its last number.
 
 use super::Source;
 use crate::error::{Error, Result};
@@ -50,6 +50,41 @@ pub(super) fn doubt(tail: &[u8], separator: u8, decimal: u8) -> Option<String> {
     })
 }
 
+/// Fewer rows may be the head of a list of files.
+const FEW: usize = 4;
+/// How many lines may stand behind the values.
+const FOOTER: usize = 16;
+
+/// A doubt that quotes `rest`, the last lines of a file with `rows` rows of numbers, where they are nothing but words;
+/// `None` where they may hold values.
+pub(super) fn footer<'a>(rows: usize, rest: impl Iterator<Item = &'a [u8]>) -> Option<String> {
+    let mut lines = Vec::new();
+    for line in rest.map(<[u8]>::trim_ascii).filter(|l| !matches!(l, [] | [0x1a])) {
+        if lines.len() == FOOTER || !is_words(line) {
+            return None;
+        }
+        lines.push(format!("{:?}", super::ascii::shorten(&String::from_utf8_lossy(line))));
+    }
+    (rows >= FEW && !lines.is_empty()).then(|| {
+        format!(
+            "Behind the values stand {} line(s) without any, passed over: {}.",
+            lines.len(),
+            lines.join(", ")
+        )
+    })
+}
+
+/// Whether a line begins with a word: what begins like a number may be one that is cut off, and a word beside numbers may
+/// stand for a value.
+pub(super) fn is_words(line: &[u8]) -> bool {
+    let begin = line.iter().find(|b| !b"+-.,( ".contains(b));
+    let mut fields = line.split(|b| b" \t,;".contains(b)).filter(|f| !f.is_empty());
+    begin.is_some_and(|b| !b.is_ascii_digit())
+        && line.iter().filter(|b| b.is_ascii_alphabetic() || !b.is_ascii()).count() > 2
+        && fields.next().is_some_and(|first| !super::number::is_missing(first))
+        && !fields.any(|field| super::number::parse_with(field, b'.').is_some())
+}
+
 /// Digits behind the decimal mark and digits of the exponent; `None` for what is no number.
 fn digits(cell: &[u8], decimal: u8) -> Option<(usize, usize)> {
     super::number::parse_with(cell, decimal)?;
@@ -82,6 +117,34 @@ mod tests {
         }
         assert!(said("1.25\r1.35\r1.45\r1.5"));
         assert!(doubt(b"a;b\n1;1,25\n2;1,35\n3;1,45\n4;1,5", b';', b',').is_some());
+    }
+
+    #[test]
+    fn a_footer_is_words_and_nothing_else() {
+        let of = |rows, text: &str| footer(rows, text.lines().map(str::as_bytes));
+        let doubt = of(4, "End of data\n\n-- SPS390 --\n\u{1a}").unwrap();
+        assert!(
+            doubt.contains("2 line(s)") && doubt.contains("\"End of data\", \"-- SPS390 --\""),
+            "{doubt}"
+        );
+        for text in [
+            "1.096639e",
+            "-1.2x",
+            ".5x",
+            "(-1.5e-2+j",
+            "x",
+            "End\n1.5",
+            "sum 12",
+            "NaN x",
+            "---",
+            "",
+            "a;1,5;2",
+        ] {
+            assert_eq!(of(9, text), None, "{text:?}");
+        }
+        // Three numbers and a name are a list of files.
+        assert_eq!(of(3, "F1.DAT"), None);
+        assert_eq!(of(99, &"end\n".repeat(17)), None);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! What `vibro info` says of a record, gathered without holding its values.
 
-use crate::record::{Axis, Record};
+use crate::record::{Axis, Meta, Record};
 
 /// One record of a file, without its values.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -27,6 +27,8 @@ pub struct Header {
     pub max_abs: Option<f64>,
     /// Abscissa of the largest magnitude.
     pub max_at: Option<f64>,
+    /// Header lines that were kept and not understood, and what the text was read as: encoding, decimal mark.
+    pub notes: Vec<String>,
     /// Sentences of doubt.
     #[serde(rename = "warnings")]
     pub doubts: Vec<String>,
@@ -49,6 +51,7 @@ impl Header {
             complex: record.is_complex(),
             max_abs: max.map(|(_, m)| m),
             max_at: max.map(|(i, _)| axis.at(i)),
+            notes: notes(meta),
             doubts: meta.doubts.clone(),
         }
     }
@@ -60,6 +63,18 @@ impl Header {
         self.max_at = summary.max.filter(|(i, _)| *i < axis.len()).map(|(i, _)| axis.at(i));
         self
     }
+}
+
+/// Header lines, then the arguments of the step `read` that say how text was read.
+fn notes(meta: &Meta) -> Vec<String> {
+    let lines = meta.notes.iter().map(
+        |(key, value)| {
+            if key.is_empty() { value.clone() } else { format!("{key}: {value}") }
+        },
+    );
+    let how = meta.history.iter().filter(|step| step.name == "read").flat_map(|step| &step.arguments);
+    let how = how.filter(|(key, _)| matches!(key.as_str(), "encoding" | "decimal mark"));
+    lines.chain(how.map(|(key, value)| format!("{key}: {value}"))).collect()
 }
 
 /// Count and largest magnitude of a stream of values.

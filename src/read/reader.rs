@@ -61,18 +61,29 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// All doubts: the file's, then each record's with its name where there are several.
+    /// All doubts: the file's, then those of the records, see [`gathered`].
     pub fn all_doubts(&self) -> Vec<String> {
-        let several = self.records.len() > 1;
         let mut all = self.doubts.clone();
-        for record in &self.records {
-            let meta = record.meta();
-            all.extend(meta.doubts.iter().map(|d| {
-                if several && !meta.name.is_empty() { format!("{}: {d}", meta.name) } else { d.clone() }
-            }));
-        }
+        let records: Vec<_> =
+            self.records.iter().map(|r| (r.meta().name.as_str(), r.meta().doubts.as_slice())).collect();
+        all.extend(gathered(&records));
         all
     }
+}
+
+/// Doubts of records, given as name and doubts: one that all share once, any other with the name of its record.
+pub fn gathered(records: &[(&str, &[String])]) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    for (name, doubts) in records {
+        for doubt in *doubts {
+            let shared = records.iter().all(|(_, others)| others.contains(doubt));
+            let said = if shared || name.is_empty() { doubt.clone() } else { format!("{name}: {doubt}") };
+            if !shared || !all.contains(&said) {
+                all.push(said);
+            }
+        }
+    }
+    all
 }
 
 /// Reads measurement files of any known format.
@@ -141,7 +152,7 @@ impl Reader {
     /// Reads many files, in parallel, in the order given.
     ///
     /// # Errors
-    /// As [`Reader::from_path`]; all files that do not exist are named at once.
+    /// As [`Reader::from_path`], for the first file at fault; all others at fault, and all that do not exist, are named too.
     pub fn from_paths<P: AsRef<Path> + Sync>(&self, paths: &[P]) -> Result<Vec<Recording>> {
         let results: Vec<Result<Recording>> = paths.par_iter().map(|p| self.from_path(p)).collect();
         if results.iter().any(Result::is_err) {
@@ -157,7 +168,15 @@ impl Reader {
                 .hint("check the folder and the spelling; on Linux upper and lower case differ"));
             }
         }
-        results.into_iter().collect()
+        let failed: Vec<&P> =
+            paths.iter().zip(&results).filter(|(_, r)| r.is_err()).map(|(p, _)| p).collect();
+        let many = match failed.len() {
+            all if all == paths.len() && all > 1 => format!("none of the {all} files can be read so"),
+            0 | 1 => String::new(),
+            some => format!("{some} of {} files cannot be read so: {}", paths.len(), listed(&failed)),
+        };
+        let whole: Result<Vec<Recording>> = results.into_iter().collect();
+        whole.map_err(|error| if many.is_empty() { error } else { error.aside(many) })
     }
 
     /// Reads bytes; `name` stands for the path in messages and helps to tell the format.
@@ -213,6 +232,14 @@ impl Reader {
         let small = head.len() as u64 == source.len();
         Ok((entry, if small { Source::memory(source.path(), head)? } else { source.clone() }))
     }
+}
+
+/// Names of files, the first of them where there are many.
+fn listed<P: AsRef<Path>>(paths: &[&P]) -> String {
+    const LISTED: usize = 12;
+    let name = |p: &&P| p.as_ref().file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    let more = if paths.len() > LISTED { ", …" } else { "" };
+    paths.iter().take(LISTED).map(name).collect::<Vec<_>>().join(", ") + more
 }
 
 /// What to say where reading failed with `error`: a list of a sweep is a likely thing to be taken for a measurement.

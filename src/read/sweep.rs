@@ -15,8 +15,11 @@ pub struct SweepReader {
     pub direction: Option<Direction>,
     /// Mass, if stated.
     pub mass: Option<u8>,
-    /// Unit in which responses are stored, if stated; else that of the files, else metres are assumed.
+    /// Unit in which responses are stored, if stated; else that of the files, else the SI unit of `quantity` is assumed, with
+    /// a doubt.
     pub unit: Option<Unit>,
+    /// What was stored, if stated; else what the unit says, else a displacement is assumed.
+    pub quantity: Option<Quantity>,
     /// Factor on stored responses: unit per stored number.
     pub calibration: f64,
     /// Factor on stored forces: newtons per stored number.
@@ -47,6 +50,7 @@ impl Default for SweepReader {
             direction: None,
             mass: None,
             unit: None,
+            quantity: None,
             calibration: 1.0,
             force_calibration: 1.0,
             window: None,
@@ -76,13 +80,14 @@ impl SweepReader {
             let force = match forces.get(i) {
                 Some(recording) => {
                     let newton = Unit::of(Quantity::Force);
-                    let settled =
-                        self.settle(recording, Some(&newton), self.force_calibration, &mut doubts)?;
+                    let force = (Some(&newton), Some(Quantity::Force));
+                    let settled = self.settle(recording, force, self.force_calibration, &mut doubts)?;
                     magnitudes(recording, list, &axis, settled.factor)?
                 }
                 None => Vec::new(),
             };
-            let settled = self.settle(&response, self.unit.as_ref(), self.calibration, &mut doubts)?;
+            let stored = (self.unit.as_ref(), self.quantity);
+            let settled = self.settle(&response, stored, self.calibration, &mut doubts)?;
             let values = magnitudes(&response, list, &axis, settled.factor)?;
             match &unit {
                 Some(first) if *first != settled.unit => {
@@ -141,7 +146,7 @@ impl SweepReader {
     fn settle(
         &self,
         recording: &Recording,
-        stated: Option<&Unit>,
+        (stated, quantity): (Option<&Unit>, Option<Quantity>),
         calibration: f64,
         doubts: &mut Vec<String>,
     ) -> Result<Settled> {
@@ -153,6 +158,10 @@ impl SweepReader {
         let Some(Record::Spectrum(spectrum)) = recording.records.first() else {
             return Err(no_spectrum(recording));
         };
+        if let Some(said) = decibels(&spectrum.meta) {
+            let found = format!("the file says that its values are decibels: {said:?}");
+            return Err(Error::input(Place::file(&recording.path), found, "linear amplitudes").hint(LINEAR));
+        }
         let scaling = match (self.scaling, spectrum.scaling) {
             (Some(stated), _) => stated,
             (None, Scaling::Unknown) => {
@@ -179,25 +188,58 @@ impl SweepReader {
         };
         // The reader has taken a unit that the file states to SI already.
         let written = Some(&spectrum.meta.unit).filter(|u| u.is_known());
-        let (factor, unit) = match (stated, written) {
-            (Some(stated), Some(written)) if stated.quantity() != written.quantity() => {
-                return Err(Error::input(
-                    Place::file(&recording.path),
-                    format!("the file says its values are in {written}, {}", written.quantity()),
-                    format!("{}, as was stated", stated.quantity()),
-                )
-                .hint("leave the unit out, and the file is believed; or check that this is the channel you mean"));
-            }
-            (_, Some(written)) => (1.0, written.clone()),
-            (Some(stated), None) => (stated.factor(), stated.si()),
+        if let (Some(meant), Some(written)) = (stated.map(Unit::quantity).or(quantity), written)
+            && meant != written.quantity()
+        {
+            return Err(Error::input(
+                Place::file(&recording.path),
+                format!("the file says its values are in {written}, {}", written.quantity()),
+                format!("{meant}, as was stated"),
+            )
+            .hint("leave quantity and unit out, and the file is believed; or check that this is the channel you mean"));
+        }
+        let (factor, unit) = match (written, stated) {
+            (Some(written), _) => (1.0, written.clone()),
+            (None, Some(stated)) => (stated.factor(), stated.si()),
             (None, None) => {
-                doubt("The files do not name their unit: metres are assumed.".into());
-                (1.0, Unit::of(Quantity::Displacement))
+                let unit = Unit::of(quantity.unwrap_or(Quantity::Displacement));
+                doubt(format!(
+                    "Neither the files nor what was stated name the unit of the responses: {unit} is assumed."
+                ));
+                (1.0, unit)
             }
         };
         let peak = if scaling == Scaling::Rms { std::f64::consts::SQRT_2 } else { 1.0 };
         Ok(Settled { factor: factor * calibration * peak, unit, window })
     }
+}
+
+/// What to try where values are levels.
+const LINEAR: &str = "export linear amplitudes; levels in decibels are not read";
+
+/// What a file says where its values are decibels: its unit, its name, or a header line with the word.
+fn decibels(meta: &Meta) -> Option<String> {
+    let unit = meta.unit.symbol();
+    if !meta.unit.is_known() && unit.to_lowercase().starts_with("db") {
+        return Some(unit.to_owned());
+    }
+    let lines = meta.notes.iter().map(|(key, value)| match key.as_str() {
+        "" => value.clone(),
+        key => format!("{key}: {value}"),
+    });
+    std::iter::once(meta.name.clone()).chain(lines).find(|line| says_decibels(line))
+}
+
+/// Whether a line holds the word dB and no number before or behind it, as `gain: 20 dB` and `gain [dB]: 20` have.
+fn says_decibels(line: &str) -> bool {
+    let words: Vec<&str> = line
+        .split(|c: char| c.is_whitespace() || "[](){}:=,;/\"".contains(c))
+        .filter(|w| !w.is_empty())
+        .collect();
+    let number =
+        |at: Option<usize>| at.and_then(|at| words.get(at)).is_some_and(|w| w.parse::<f64>().is_ok());
+    let level = |word: &str| matches!(word.to_lowercase().as_str(), "db" | "decibel" | "decibels");
+    (0..words.len()).any(|i| level(words[i]) && !number(i.checked_sub(1)) && !number(Some(i + 1)))
 }
 
 fn no_spectrum(recording: &Recording) -> Error {
@@ -220,6 +262,14 @@ fn magnitudes(recording: &Recording, list: &SweepList, axis: &Axis, factor: f64)
     let [Record::Spectrum(spectrum)] = recording.records.as_slice() else {
         return Err(no_spectrum(recording));
     };
+    if let Values::Real(values) = &spectrum.values
+        && let Some(i) = values.iter().position(|v| *v < 0.0)
+    {
+        let at =
+            if i < spectrum.axis.len() { format!(" ({} Hz)", spectrum.axis.at(i)) } else { String::new() };
+        let found = format!("negative magnitudes: are these decibels? Line {i}{at} holds {}", values[i]);
+        return Err(Error::input(place(), found, "linear amplitudes, 0 or more").hint(LINEAR));
+    }
     let mut magnitudes = spectrum.values.magnitudes();
     if magnitudes.len() != list.lines + 1 {
         return Err(Error::input(
@@ -250,11 +300,28 @@ fn magnitudes(recording: &Recording, list: &SweepList, axis: &Axis, factor: f64)
 
 /// Doubts of the files, each once; what a sweep settles for itself is not repeated.
 fn gather(recording: &Recording, doubts: &mut Vec<String>) {
-    const SETTLED: [&str; 3] = ["scaled", "unit is stated", "says nothing of its abscissa"];
+    const SETTLED: [&str; 4] =
+        ["scaled", "says no unit", "no unit is stated", "says nothing of its abscissa"];
     for doubt in recording.all_doubts() {
         let settled = SETTLED.iter().any(|part| doubt.contains(part));
         if !settled && doubts.len() < 50 && !doubts.contains(&doubt) {
             doubts.push(doubt);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::says_decibels;
+
+    #[test]
+    fn levels_are_told_from_settings_in_decibels() {
+        for line in ["Level (dB)", "Y axis: dB", "amplitude [dB re 1 m/s]", "scale: log dB", "Decibels"] {
+            assert!(says_decibels(line), "{line}");
+        }
+        for line in ["gain: 20 dB", "gain [dB]: 20", "Window: flat top (-93 dB)", "v", "adb", "range dB = 10"]
+        {
+            assert!(!says_decibels(line), "{line}");
         }
     }
 }

@@ -10,7 +10,7 @@
 //! …
 //! ```
 
-use super::{Source, number, text};
+use super::{Reader, Source, ending, number, text};
 use crate::error::{Error, Place, Result};
 use std::path::{Component, Path, PathBuf};
 
@@ -48,7 +48,7 @@ impl SweepList {
             ));
         }
         let text = text::decode(&bytes);
-        let mut list = parse(path, &text)?;
+        let mut list = parse(path, &text).map_err(|e| no_measurement(path, &text, e))?;
         let folder = path.parent().unwrap_or(Path::new(""));
         for (name, place) in list.force.iter_mut().chain(&mut list.response).zip(&list.places) {
             *name = inside(folder, name, allow_outside).map_err(|e| e.at(place))?;
@@ -143,6 +143,22 @@ fn folder_or_here(folder: &Path) -> &Path {
     if folder.as_os_str().is_empty() { Path::new(".") } else { folder }
 }
 
+/// What stands in a list file.
+const HOLDS: &str = "number of points, lines, base band in Hz, force names, response names, one a line";
+
+/// What to say where a list could not be read with `error`: a measurement is a likely thing to be taken for a list.
+fn no_measurement(path: &Path, text: &str, error: Error) -> Error {
+    let words =
+        text.lines().map(str::trim).rfind(|l| !l.is_empty()).is_none_or(|l| ending::is_words(l.as_bytes()));
+    match Reader::new().survey(path) {
+        Ok((format, _, _)) if !words => error.hint(format!(
+            "this looks like a measurement file ({}), not a list: `vibro info` says what is in it; a list holds: {HOLDS}",
+            format.name()
+        )),
+        _ => error,
+    }
+}
+
 fn parse(path: &Path, text: &str) -> Result<SweepList> {
     let mut lines = text
         .lines()
@@ -150,14 +166,16 @@ fn parse(path: &Path, text: &str) -> Result<SweepList> {
         .map(|(i, l)| (i as u64 + 1, l.trim()))
         .filter(|(_, l)| !l.is_empty())
         .peekable();
-    let end = text.lines().count() as u64 + 1;
+    let end = text.lines().count().max(1) as u64;
     let mut number = |what: &str| -> Result<(u64, f64)> {
-        let (line, found) = lines.next().unwrap_or((end, ""));
-        let value = number::parse(found.as_bytes()).filter(|v| *v > 0.0);
-        value.map(|v| (line, v)).ok_or_else(|| {
-            Error::input(Place::line(path, line), format!("found {found:?}"), format!("{what}, a number above 0")).hint(
-                "a list file holds: number of points, lines, base band in Hz, force names, response names, one a line",
-            )
+        let next = lines.next();
+        let value =
+            next.and_then(|(line, l)| Some((line, number::parse(l.as_bytes()).filter(|v| *v > 0.0)?)));
+        value.ok_or_else(|| {
+            let (line, found) = next
+                .map_or((end, "the list ends here".to_owned()), |(line, l)| (line, format!("found {l:?}")));
+            Error::input(Place::line(path, line), found, format!("{what}, a number above 0"))
+                .hint(format!("a list file holds: {HOLDS}"))
         })
     };
     let (count_line, points) = number("the number of points")?;
@@ -190,10 +208,13 @@ fn parse(path: &Path, text: &str) -> Result<SweepList> {
         hand_over(path, points, &rest, given, &mut list)?;
     } else {
         if rest.len() != 2 * points {
-            let line = rest.get(2 * points).map_or(end, |r| r.0);
+            let (line, found) = match rest.get(2 * points) {
+                Some(surplus) => (surplus.0, "found"),
+                None => (rest.last().map_or(end, |last| last.0), "the list ends here with"),
+            };
             return Err(Error::input(
                 Place::line(path, line),
-                format!("found {} file names for {points} points", rest.len()),
+                format!("{found} {} file names for {points} points", rest.len()),
                 format!("{} names: {points} force and {points} response files, one a line", 2 * points),
             )
             .hint("correct the number of points in the first line, or add the missing names"));
@@ -268,13 +289,14 @@ mod tests {
         for (text, line, word) in [
             ("x\n", "line 1", "number of points"),
             ("2\n400\n0\n", "line 3", "base band"),
-            ("2\n400\n20\na\nb\nc\n", "line 7", "3 file names"),
+            ("2\n400\n20\na\nb\nc\n\n", "line 6", "the list ends here with 3 file names for 2 points"),
             ("2\n400\n20\na\nb\nc\nd\ne\n", "line 8", "5 file names"),
             ("2.5\n400\n20\n", "line 1", "whole"),
             ("1e12\n400\n20\na", "line 1", "whole"),
             ("3\n400\n20\n5\n6\nA B C", "line 5", "2 excitation"),
             ("2\n400\n20\n5\n6\nA B C", "line 6", "3 response"),
             ("", "line 1", "number of points"),
+            ("2\n400\n", "line 2", "the list ends here; expected the base band"),
         ] {
             let error = of(text).unwrap_err().to_string();
             assert!(error.contains(line) && error.contains(word), "{text:?}: {error}");

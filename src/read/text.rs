@@ -1,5 +1,6 @@
 //! Bytes to text, whatever the instrument's code page.
 
+use crate::record::Meta;
 use std::borrow::Cow;
 
 /// How many bytes are looked at to tell text from binary data, and UTF-16 without a byte order mark.
@@ -20,6 +21,24 @@ pub fn is_text(head: &[u8]) -> bool {
 /// Whether the bytes are UTF-16, by byte order mark or by the zero bytes that western text has in every second place.
 pub fn is_utf16(head: &[u8]) -> bool {
     order(head).is_some()
+}
+
+/// Adds encoding and decimal mark of a text to the arguments of the step `read`, where they are not the plain ones.
+pub fn read_as(meta: &mut Meta, head: &[u8], decimal: u8) {
+    let encoding = if is_utf16(head) {
+        "UTF-16"
+    } else if std::str::from_utf8(head).is_err_and(|e| e.error_len().is_some()) {
+        "Latin-1"
+    } else {
+        ""
+    };
+    let decimal = if decimal == b',' { "comma" } else { "" };
+    let Some(step) = meta.history.iter_mut().find(|step| step.name == "read") else { return };
+    for (key, value) in [("encoding", encoding), ("decimal mark", decimal)] {
+        if !value.is_empty() {
+            step.arguments.push((key.to_owned(), value.to_owned()));
+        }
+    }
 }
 
 /// Text without a byte order mark: UTF-8 borrowed as it is, UTF-16 converted, everything else taken as Latin-1.

@@ -36,6 +36,36 @@ fn info_says_what_is_in_a_file() {
 }
 
 #[test]
+fn info_says_what_was_passed_over_and_how_text_was_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("trace.txt");
+    let written = "SPS390 TRACE\nOperator: X\n0,25\t1\n-0,5\t3\n0,1\t2\n";
+    let utf16: Vec<u8> =
+        [0xff, 0xfe].into_iter().chain(written.encode_utf16().flat_map(u16::to_le_bytes)).collect();
+    fs::write(&path, utf16).unwrap();
+    let value = json(&["info", text(&path)]);
+    let notes = &value["files"][0]["records"][0]["notes"];
+    assert_eq!(
+        *notes,
+        serde_json::json!(["SPS390 TRACE", "Operator: X", "encoding: UTF-16", "decimal mark: comma"])
+    );
+    // What holds for both channels is said once.
+    let units = value["warnings"].as_array().unwrap().iter().filter(|w| w.to_string().contains("no unit"));
+    assert_eq!(units.count(), 1, "{}", value["warnings"]);
+    let output = vibro(&["info", text(&path)]);
+    let table = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        table.contains("notes: SPS390 TRACE | Operator: X | encoding: UTF-16 | decimal mark: comma"),
+        "{table}"
+    );
+    assert!(table.contains("trace, unit not known") && !table.contains("[]"), "{table}");
+    // 0.1 + 0.2 is no number that a person wants to see.
+    fs::write(&path, "unit: mm\nrate: 3 Hz\n0.30000000000000004\n0.1\n").unwrap();
+    let table = String::from_utf8(vibro(&["info", text(&path)]).stdout).unwrap();
+    assert!(table.contains("step 0.333333333333, max 0.0003 at 0"), "{table}");
+}
+
+#[test]
 fn excitation_response_and_waterfall_of_a_list() {
     let folder = tempfile::tempdir().unwrap();
     let list = sweep(folder.path(), &frequencies());
@@ -130,7 +160,10 @@ fn convert_keeps_the_values() {
         );
         assert!((record["dx"].as_f64().unwrap() - 0.01).abs() < 1e-12, "{name}: {record}");
     }
-    json(&["convert", text(&path), text(&folder.path().join("f.npy"))]);
+    let out = folder.path().join("f.npy");
+    let replaced = |value: &Value| value["warnings"].to_string().contains("f.npy existed and was replaced.");
+    assert!(!replaced(&json(&["convert", text(&path), text(&out)])));
+    assert!(replaced(&json(&["convert", text(&path), text(&out)])));
 }
 
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {

@@ -324,3 +324,111 @@ fn failures_are_objects_where_json_was_asked_for() {
     let value: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one object");
     assert_eq!(value["errors"].as_array().unwrap().len(), 1);
 }
+
+/// Gives the response files of a sweep another text, made from their values.
+fn rewrite(
+    folder: &std::path::Path,
+    which: std::ops::RangeInclusive<usize>,
+    make: impl Fn(&[f64]) -> String,
+) {
+    for i in which {
+        let path = folder.join(format!("VUP{i:04}.DAT"));
+        let values: Vec<f64> =
+            fs::read_to_string(&path).unwrap().lines().map(|l| l.parse().unwrap()).collect();
+        fs::write(&path, make(&values)).unwrap();
+    }
+}
+
+#[test]
+fn a_list_that_contradicts_the_frequency_column_of_its_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = sweep(folder.path(), &frequencies());
+    let plain = json(&["response", text(&list), "--unit", "m/s"]);
+    // The same lines with their own frequencies, to 20 Hz in steps of 0.1 Hz.
+    let column = |values: &[f64]| {
+        let rows = values.iter().enumerate().map(|(k, v)| format!("{:.1},{v:e}", k as f64 * 0.1));
+        format!("Frequency [Hz],v [m/s]\n{}\n", rows.collect::<Vec<_>>().join("\n"))
+    };
+    rewrite(folder.path(), 3..=4, column);
+    let same = json(&["response", text(&list), "--unit", "m/s"]);
+    assert_eq!(same["points"][3]["amplitude"]["value"], plain["points"][3]["amplitude"]["value"]);
+    let written = fs::read_to_string(&list).unwrap();
+    fs::write(&list, written.replacen("\n20\n", "\n40\n", 1)).unwrap();
+    let found = complaint(&["response", text(&list)], 2);
+    has(&found, &["VUP0003.DAT", "from 0 to 20 Hz", "base band of 40 Hz", "try:"]);
+    has(&found, &["2 of 24 files cannot be read so: VUP0003.DAT, VUP0004.DAT"]);
+}
+
+#[test]
+fn decibels_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = sweep(folder.path(), &frequencies());
+    let level = |v: f64| 20.0 * (v / 1e-6).log10();
+    rewrite(folder.path(), 2..=2, |values| {
+        values.iter().map(|v| format!("{:.3}", level(*v) - 90.0)).collect::<Vec<_>>().join("\n")
+    });
+    let found = complaint(&["response", text(&list)], 2);
+    has(&found, &["VUP0002.DAT", "are these decibels?", "Line 0 (0 Hz)", "linear amplitudes"]);
+    // Levels above the reference are no less levels.
+    for header in ["Unit: dB", "Y axis: dB re 1e-9 m/s", "Level (dB)"] {
+        sweep(folder.path(), &frequencies());
+        rewrite(folder.path(), 2..=2, |_| format!("{header}\n{}", "60.5\n".repeat(201)));
+        has(&complaint(&["response", text(&list)], 2), &["VUP0002.DAT", "says that its values are decibels"]);
+    }
+}
+
+#[test]
+fn one_true_sentence_is_said_of_the_unit() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = sweep(folder.path(), &frequencies());
+    let campaign = folder.path().join("campaign.toml");
+    let said = |arguments: &[&str]| {
+        let warnings = json(arguments)["warnings"].as_array().unwrap().clone();
+        warnings
+            .iter()
+            .map(|w| w.as_str().unwrap().to_owned())
+            .filter(|w| w.contains("unit"))
+            .collect::<Vec<_>>()
+    };
+    let list = text(&list);
+    assert_eq!(said(&["response", list, "--unit", "mm/s"]), Vec::<String>::new());
+    let assumed = |unit: &str| {
+        format!("Neither the files nor what was stated name the unit of the responses: {unit} is assumed.")
+    };
+    assert_eq!(said(&["response", list]), [assumed("m")]);
+    fs::write(&campaign, "[[sweep]]\nname = \"a\"\nlist = \"LIST.TXT\"\nquantity = \"velocity\"\n").unwrap();
+    assert_eq!(said(&["response", text(&campaign)]), [assumed("m/s")]);
+    fs::write(
+        &campaign,
+        "[[sweep]]\nname = \"a\"\nlist = \"LIST.TXT\"\nquantity = \"velocity\"\nunit = \"mm\"\n",
+    )
+    .unwrap();
+    let found = complaint(&["response", text(&campaign)], 2);
+    has(&found, &["line 5", "a unit of velocity, such as m/s or mm/s"]);
+    assert!(!found.contains("or g"), "{found}");
+}
+
+#[test]
+fn a_spectrum_in_place_of_a_list_and_an_empty_campaign() {
+    let folder = tempfile::tempdir().unwrap();
+    sweep(folder.path(), &frequencies());
+    let found = complaint(&["response", text(&folder.path().join("VUP0001.DAT"))], 2);
+    has(&found, &["this looks like a measurement file", "not a list"]);
+    let path = folder.path().join("campaign.toml");
+    fs::write(&path, "").unwrap();
+    has(&complaint(&["run", text(&path)], 2), &["the file is empty; expected a campaign", "[[sweep]]"]);
+    fs::write(&path, "name = \"x\"\n[[frf]]\nfile = \"absent.uff\"\n").unwrap();
+    has(&complaint(&["run", text(&path)], 2), &["line 3", "absent.uff does not exist", "^"]);
+}
+
+#[test]
+fn a_file_that_a_list_names_and_that_is_missing() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = sweep(folder.path(), &frequencies());
+    fs::remove_file(folder.path().join("VUP0002.DAT")).unwrap();
+    // Three numbers, twelve force names, and the second of the response names.
+    has(
+        &complaint(&["response", text(&list)], 2),
+        &["LIST.TXT, line 17", "1 of 24 files is missing", "VUP0002.DAT"],
+    );
+}

@@ -235,3 +235,23 @@ fn blank_lines_claim_no_room_for_many_columns() {
     let tail = format!("{row}\n{}", "\n".repeat(1_000_000));
     assert_eq!(read(tail.as_bytes()).records.len(), 30_000);
 }
+
+#[test]
+fn words_behind_the_values_are_passed_over_and_quoted() {
+    for (text, n) in [
+        ("1.5\n2.5\n3.5\n4.5\nEnd of data", 4),
+        ("1.5e0\n2.5e0\n3.5e0\n4.5e0\n\n\nEnd of data\n\n", 4),
+        ("1 2\n1 2\n1 2\n1 2\nEnd of data\nSPS390\n", 4),
+        ("1,5\t2\n1,5\t2\n1,5\t2\n1,5\t2\nEnd of data\n", 4),
+    ] {
+        let recording = read(text.as_bytes());
+        assert_eq!(recording.records[0].len(), n, "{text}");
+        assert!(recording.doubts.iter().any(|d| d.contains("\"End of data\"")), "{:?}", recording.doubts);
+    }
+    for text in ["1\n2\n3\n4\nEnd\n5\n", "1\n2\n3\n4\n1.096639e", "1 2\n1 2\n1 2\n1 2\nOVL 2\n", "1\n2\nx\n"]
+    {
+        assert!(!complaint(text.as_bytes()).is_empty(), "{text}");
+    }
+    // A hand-over file is no measurement with a footer.
+    assert!(complaint(b"2\n400\n20\n5.0\n5.2\nRUP0001.DATRUP0002.DAT").contains("list of a sweep"));
+}

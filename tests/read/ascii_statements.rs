@@ -101,12 +101,33 @@ fn names_and_units_between_blanks() {
 }
 
 #[test]
+fn a_statement_that_a_whole_column_contradicts_is_refused() {
+    for text in ["t [s]  v [m/s]\n0.0 1\n0.5 2\n1.0 3\n", "0.0 1\n0.5 2\n1.0 3\n"] {
+        let error = Reader::new().rate(Some(1000.0)).from_reader("x.txt", text.as_bytes()).unwrap_err();
+        let told = error.to_string();
+        assert!(
+            told.contains("from 0 to 1 s in steps of 0.5 s") && told.contains("rate of 1000 Hz"),
+            "{told}"
+        );
+        assert_eq!(error.exit_code(), 2);
+        told_rate(text, 2.0);
+    }
+    // A lost sample changes the length by a whole step, an unsteady clock does not.
+    let jitter = "t [s]  v [m/s]\n0.000 1\n0.104 2\n0.200 3\n0.301 4\n";
+    told_rate(jitter, 10.0);
+    let lost = "t [s]  v [m/s]\n0.0 1\n0.1 2\n0.2 3\n0.4 4\n";
+    assert!(Reader::new().rate(Some(10.0)).from_reader("x.txt", lost.as_bytes()).is_err());
+}
+
+fn told_rate(text: &str, rate: f64) {
+    assert_eq!(axis(&told(&Reader::new().rate(Some(rate)), text)), (&AxisKind::Time, Some(1.0 / rate)));
+}
+
+#[test]
 fn what_a_person_states_wins_with_a_doubt_that_names_both() {
-    let rate = told(&Reader::new().rate(Some(1000.0)), "t [s]  v [m/s]\n0.0 1\n0.5 2\n1.0 3\n");
-    assert_eq!(axis(&rate), (&AxisKind::Time, Some(1e-3)));
-    assert!(says(&rate, &["0.5", "0.001 was stated"]), "{:?}", rate.all_doubts());
-    let unnamed = told(&Reader::new().rate(Some(1000.0)), "0.0 1\n0.5 2\n1.0 3\n");
-    assert_eq!(axis(&unnamed), (&AxisKind::Time, Some(1e-3)));
+    let counted = told(&Reader::new().rate(Some(1000.0)), "1 0.1\n2 0.5\n3 0.2\n");
+    assert_eq!(axis(&counted), (&AxisKind::Time, Some(1e-3)));
+    assert!(says(&counted, &["first column counts", "0.001 was stated"]), "{:?}", counted.all_doubts());
     let band = told(&Reader::new().base_band(Some(30.0)), "df: 5 Hz\nbase band: 20 Hz\n1\n2\n3\n4\n");
     assert_eq!(axis(&band), (&AxisKind::Frequency, Some(10.0)));
     assert!(says(&band, &["20 Hz", "30 Hz"]) && says(&band, &["5 Hz", "10 Hz"]), "{:?}", band.all_doubts());

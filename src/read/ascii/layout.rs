@@ -1,6 +1,7 @@
 //! Finding out how a text file of numbers is laid out.
 
 use super::fixed::Fixed;
+use super::grouping::{GROUPED, grouped};
 use super::rows::without_end_mark;
 use crate::error::{Error, Place, Result};
 use crate::read::Options;
@@ -214,6 +215,16 @@ fn marks(path: &Path, rows: &[(u64, usize, &[u8])], options: &Options) -> Result
         None => {}
     }
     if has(b'.') {
+        if explicit.is_none() && grouped(rows) {
+            let (line, _, text) = rows[0];
+            let found = format!(
+                "{:?} may be one number with grouped digits or two numbers",
+                shorten(&decode_line(text))
+            );
+            return Err(
+                Error::input(Place::line(path, line), found, "a file where this can be told").hint(GROUPED)
+            );
+        }
         // Points are decimal marks, so commas separate.
         return Ok((explicit.unwrap_or(Separator::Char(b',')), b'.'));
     }
@@ -352,6 +363,20 @@ mod tests {
         assert_eq!(detect(Path::new("x"), b"1,5\n", false, &comma).unwrap().columns, 1);
         let point = Options { decimal_comma: Some(false), ..Options::default() };
         assert_eq!(detect(Path::new("x"), b"1,5\n", false, &point).unwrap().columns, 2);
+    }
+
+    #[test]
+    fn grouped_digits_are_asked_about() {
+        for text in ["1.234,50\n2.345,60\n", "-1,234.50\n", "999,50\n1.000,25\n"] {
+            let error = layout(text).unwrap_err().to_string();
+            assert!(error.contains("grouped") && error.contains("--decimal point"), "{text}: {error}");
+            let point = Options { decimal_comma: Some(false), ..Options::default() };
+            let columns = detect(Path::new("x"), text.as_bytes(), false, &point).unwrap().columns;
+            assert_eq!(columns, text.lines().next().unwrap().split(',').count(), "{text}");
+        }
+        for text in ["0.123,50\n", "1.234,50\n1.2345,5\n", "1.234,5e1\n", "1.234,50\n12,5\n0.100,5\n"] {
+            assert_eq!(shape(text), (Separator::Char(b','), b'.', 2, Cell::Real), "{text}");
+        }
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! The careful path: one line after the other, each complaint with its line and column.
 
+use super::grouping::GROUPED;
 use super::layout::{Cell, Layout, comment, complex, cut_row, lines, shorten};
 use crate::error::{Error, Place, Result};
-use crate::read::ending::CUT_OFF;
+use crate::read::ending::{self, CUT_OFF};
 use crate::read::missing::Missing;
 use crate::read::number;
 use num_complex::Complex64;
@@ -17,6 +18,8 @@ pub struct Rows {
     pub missing: usize,
     /// Comment lines between or behind the rows.
     pub comments: Vec<String>,
+    /// What is to be said of words behind the rows.
+    pub footer: Option<String>,
 }
 
 /// Reads all rows from the first one on.
@@ -30,7 +33,8 @@ pub fn read(path: &Path, bytes: &[u8], layout: &Layout, allow_missing: bool) -> 
     let mut missing = Missing::default();
     let mut blank_since: Option<u64> = None;
     let mut cells = Vec::new();
-    for (index, _, line) in lines(&bytes[layout.first_byte.min(bytes.len())..]) {
+    let bytes_of_rows = &bytes[layout.first_byte.min(bytes.len())..];
+    for (index, at, line) in lines(bytes_of_rows) {
         let number = layout.first_line + index - 1;
         if line.trim_ascii().is_empty() {
             blank_since.get_or_insert(number);
@@ -39,6 +43,13 @@ pub fn read(path: &Path, bytes: &[u8], layout: &Layout, allow_missing: bool) -> 
         if let Some(text) = comment(line) {
             rows.comments.push(String::from_utf8_lossy(text).into_owned());
             continue;
+        }
+        if ending::is_words(line.trim_ascii()) {
+            let (whole, rest) = (rows.values.len() / layout.columns, lines(&bytes_of_rows[at..]));
+            rows.footer = ending::footer(whole, rest.map(|(_, _, line)| line));
+            if rows.footer.is_some() {
+                break;
+            }
         }
         if let Some(since) = blank_since.take() {
             // Blank lines with rows behind them are rows without values.
@@ -132,6 +143,8 @@ fn not_a_number(path: &Path, line: u64, offset: usize, cell: &[u8], layout: &Lay
     };
     let hint = if number::parse_with(cell, if layout.decimal == b'.' { b',' } else { b'.' }).is_some() {
         "if the decimal mark is a comma, give --decimal comma; if it is a point, --decimal point"
+    } else if cell.contains(&b'.') && cell.contains(&b',') {
+        GROUPED
     } else {
         "remove the line, or put # before it if it is a remark"
     };

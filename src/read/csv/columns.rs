@@ -3,7 +3,7 @@
 use super::layout::Layout;
 use super::rows::{Line, Lines, cut};
 use crate::error::{Error, Place, Result};
-use crate::read::ending::CUT_OFF;
+use crate::read::ending::{self, CUT_OFF};
 use crate::read::missing::Missing;
 use crate::read::number;
 use crate::read::reader::Options;
@@ -27,6 +27,8 @@ pub struct Columns {
     pub comments: usize,
     /// The first of them with their lines.
     pub kept: Vec<(u64, String)>,
+    /// What is to be said of words behind the rows.
+    pub footer: Option<String>,
 }
 
 /// Reads all rows; `axis` is the column whose digits count.
@@ -55,6 +57,13 @@ pub fn read(
         }
         if line.is_blank() || line.text == "\u{1a}" {
             continue;
+        }
+        if ending::is_words(line.text.trim().as_bytes()) {
+            let rest = Lines::from(text, line.at, line.number).map(|line| line.text.as_bytes());
+            columns.footer = ending::footer(columns.values.first().map_or(0, Vec::len), rest);
+            if columns.footer.is_some() {
+                break;
+            }
         }
         cut(line.text, layout.separator, &mut fields).map_err(|at| {
             fault(path, &line, at, "text behind a closing quote", "a separator or the end of the line")

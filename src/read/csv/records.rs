@@ -36,6 +36,7 @@ pub fn build(
         let kept = columns.kept.len();
         doubts.push(format!("Of {} remarks between the rows the first {kept} are kept.", columns.comments));
     }
+    doubts.extend(columns.footer);
     doubts.extend(missing::kept(columns.missing));
     if columns.comma && layout.names.len() == 1 {
         doubts.push("There is one column, so the comma is taken as the decimal mark.".to_owned());
@@ -57,7 +58,7 @@ pub fn build(
         Some((kind, column)) => Some(printed_axis(source, kind, &column, columns.resolution)?),
         None => None,
     };
-    let mut axis = choose(axis, rows, &stated, options, &mut doubts);
+    let mut axis = choose(source.path(), axis, rows, &stated, options, &mut doubts)?;
     if let (AxisKind::Index, Some(first), Grid::Even { start, .. }) = (&axis.kind, first, &mut axis.grid) {
         *start = first;
     }
@@ -110,9 +111,10 @@ fn printed_axis(source: &Source, kind: AxisKind, column: &Column, resolution: f6
     })?;
     doubts.extend(doubt);
     let values = column.values.iter().map(|v| v * factor).collect();
-    let (axis, doubt) = from_values(kind, values, resolution * factor, &label);
+    let resolution = resolution * factor;
+    let (axis, doubt) = from_values(kind, values, resolution, &label);
     doubts.extend(doubt);
-    Ok(Printed { axis, label, doubts })
+    Ok(Printed { axis, label, resolution, assumed: false, doubts })
 }
 
 /// Joins real and imaginary parts that belong together; over time there are none.

@@ -75,19 +75,55 @@ fn a_rate_in_the_preamble_or_stated() {
     assert_eq!(spectrum.records[0].axis(), &Axis::frequency(0.0, 100.0, 2));
 }
 
+/// A spectrum of 0 to 50 Hz; printed with one decimal, 12.5 Hz apart.
 #[test]
-fn what_is_stated_wins_over_the_column_with_a_doubt() {
+fn a_base_band_must_go_with_the_frequency_column() {
+    let spectrum = |frequencies: &[f64]| {
+        let rows: Vec<String> = frequencies.iter().map(|f| format!("{f:.1},1")).collect();
+        format!("Frequency [Hz],v [m/s]\n{}\n", rows.join("\n"))
+    };
+    let whole = spectrum(&[0.0, 12.5, 25.0, 37.5, 50.0]);
+    let step = |text: &str, band| {
+        read_with(&Reader::new().base_band(Some(band)), text).map(|r| r.records[0].axis().clone())
+    };
+    assert_eq!(step(&whole, 50.0).unwrap(), Axis::frequency(0.0, 12.5, 5));
+    // Half a tenth is what the digits leave open at the end.
+    assert!(step(&whole, 50.04).is_ok() && step(&whole, 50.2).is_err());
+    let error = step(&whole, 100.0).unwrap_err().to_string();
+    assert!(error.contains("from 0 to 50 Hz") && error.contains("base band of 100 Hz"), "{error}");
+    // Lines without 0 Hz end at the base band; a zoomed spectrum does not begin at 0 Hz, nor end there.
+    assert_eq!(step(&spectrum(&[12.5, 25.0, 37.5, 50.0]), 50.0).unwrap(), Axis::frequency(12.5, 12.5, 4));
+    assert!(step(&spectrum(&[100.0, 112.5, 125.0, 137.5, 150.0]), 50.0).is_err());
+    // A kilohertz column says so.
+    let kilo = "f [kHz],v [m/s]\n0,1\n0.025,1\n0.05,1\n";
+    assert_eq!(step(kilo, 50.0).unwrap(), Axis::frequency(0.0, 25.0, 3));
+}
+
+#[test]
+fn words_behind_the_rows_are_passed_over_and_quoted() {
+    let rows = "t [s],v [m/s]\n0,1\n1,2\n2,3\n3,4\n";
+    let recording = of(format!("{rows}End of data\n\nbye\n"));
+    assert_eq!(values(&recording.records[0]), [1.0, 2.0, 3.0, 4.0]);
+    assert!(says(&recording.doubts, "2 line(s) without any, passed over: \"End of data\", \"bye\""));
+    for end in ["End of data\n4,5\n", "4,5x\n", "x,5\n"] {
+        assert!(read_with(&Reader::new(), format!("{rows}{end}")).is_err(), "{end}");
+    }
+}
+
+#[test]
+fn what_is_stated_may_refine_a_column_and_not_contradict_it() {
     let text = "t [s],a [m/s²]\n1.0,1\n1.1,2\n1.2,3\n";
     let same = read_with(&Reader::new().rate(Some(10.0)), text).unwrap();
     assert!(same.doubts.is_empty(), "{:?}", same.doubts);
     assert_eq!(same.records[0].axis(), &Axis::time(1.0, 0.1, 3));
-    let other = read_with(&Reader::new().rate(Some(20.0)).unit(Unit::parse("g")), text).unwrap();
-    assert_eq!(other.records[0].axis(), &Axis::time(1.0, 0.05, 3));
-    assert!(says(&other.doubts, "step of 0.1; a step of 0.05 was stated"), "{:?}", other.doubts);
-    assert!(says(&other.records[0].meta().doubts, "\"m/s²\"; g was stated"));
-    let band = read_with(&Reader::new().base_band(Some(50.0)), text).unwrap();
-    assert_eq!(band.records[0].axis(), &Axis::frequency(0.0, 25.0, 3));
-    assert!(says(&band.doubts, "passed over"));
+    let refined = read_with(&Reader::new().rate(Some(9.9)).unit(Unit::parse("g")), text).unwrap();
+    assert_eq!(refined.records[0].axis(), &Axis::time(1.0, 1.0 / 9.9, 3));
+    assert!(says(&refined.records[0].meta().doubts, "\"m/s²\"; g was stated"));
+    let other = read_with(&Reader::new().rate(Some(50.0)), text).unwrap_err().to_string();
+    assert!(other.contains("\"t\" holds a time from 1 to 1.2 s in steps of 0.1 s"), "{other}");
+    assert!(other.contains("sampling rate of 50 Hz"), "{other}");
+    let band = read_with(&Reader::new().base_band(Some(50.0)), text).unwrap_err().to_string();
+    assert!(band.contains("a time from 1 to 1.2 s") && band.contains("base band of 50 Hz"), "{band}");
     let contradicted = of("fs: 1000\nt [s],a [g]\n0.0,1\n0.1,2\n");
     assert_eq!(contradicted.records[0].axis().step(), Some(0.1));
     assert!(says(&contradicted.doubts, "states a step of 0.001"), "{:?}", contradicted.doubts);
