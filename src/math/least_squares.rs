@@ -81,7 +81,8 @@ impl Fit {
 /// ```
 ///
 /// # Errors
-/// If there are fewer residuals than parameters, the model gives a value that is not finite at the start, or the residuals
+/// If there is no parameter or not one scale a parameter, a scale is 0 or not finite, there are fewer residuals than
+/// parameters, the model gives a value that is not finite at the start, or the residuals
 /// at the minimum do not depend on some combination of the parameters, which is named by their numbers.
 pub fn least_squares(
     residuals: impl Fn(&[f64], &mut [f64]),
@@ -89,6 +90,13 @@ pub fn least_squares(
     start: &[f64],
     scale: &[f64],
 ) -> Result<Fit> {
+    let scaled = scale.iter().all(|s| s.is_finite() && *s != 0.0);
+    if start.is_empty() || scale.len() != start.len() || !scaled {
+        return Err(Error::usage(
+            format!("a fit of {} parameters with the scales {scale:?}", start.len()),
+            "one scale other than 0 a parameter",
+        ));
+    }
     if n < start.len() {
         return Err(Error::refused(format!("{n} values do not determine {} parameters", start.len())));
     }
@@ -120,6 +128,9 @@ pub fn least_squares(
 /// (JᵀJ)⁻¹ by the singular values of J with its columns scaled to length 1, so that units do not decide what is small.
 fn cofactor(mut jacobian: DMatrix<f64>) -> Result<DMatrix<f64>> {
     let lengths: Vec<f64> = jacobian.column_iter().map(|c| c.norm()).collect();
+    if lengths.iter().any(|l| !l.is_finite()) {
+        return Err(Error::refused("the model of a fit changes beyond all numbers at its minimum"));
+    }
     if let Some(i) = lengths.iter().position(|l| *l == 0.0) {
         return Err(undetermined(&[i]));
     }
@@ -136,7 +147,8 @@ fn cofactor(mut jacobian: DMatrix<f64>) -> Result<DMatrix<f64>> {
     let largest = svd.singular_values.max();
     // Central differences are good to about ε^(2/3); below that a singular value is noise.
     let least = largest * f64::EPSILON.powf(2.0 / 3.0) * rows.sqrt().max(1.0);
-    if let Some((k, _)) = svd.singular_values.iter().enumerate().find(|(_, s)| **s <= least) {
+    if let Some((k, _)) = svd.singular_values.iter().enumerate().find(|(_, s)| **s <= least || !s.is_finite())
+    {
         let part: Vec<usize> =
             v_t.row(k).iter().enumerate().filter(|(_, v)| v.abs() > 0.3).map(|(i, _)| i).collect();
         return Err(undetermined(&part));
@@ -271,6 +283,9 @@ mod tests {
         .to_string();
         assert!(error.contains("1, 2"), "{error}");
         assert!(least_squares(|_, r| r.fill(1.0), 1, &[1.0, 1.0], &[1.0, 1.0]).is_err());
+        assert!(least_squares(|_, r| r.fill(1.0), 3, &[1.0], &[]).is_err());
+        assert!(least_squares(|_, r| r.fill(1.0), 3, &[1.0], &[0.0]).is_err());
+        assert!(least_squares(|_, r| r.fill(1.0), 3, &[], &[]).is_err());
         assert!(least_squares(|_, r| r.fill(f64::NAN), 3, &[1.0], &[1.0]).is_err());
         let flat = least_squares(|p, r| r.fill(p[0]), 3, &[1.0, 1.0], &[1.0, 1.0]).unwrap_err().to_string();
         assert!(flat.contains("parameter 2"), "{flat}");
