@@ -11,6 +11,7 @@
 
 mod abscissa;
 mod ascii;
+mod choose;
 mod csv;
 mod format;
 mod header;
