@@ -4,6 +4,7 @@ use super::wav::Calibrated;
 use super::{Format, Reader, Source};
 use crate::error::{Error, Place, Result};
 use crate::record::{Meta, Record, Trace};
+use crate::units;
 use std::path::{Path, PathBuf};
 
 /// Frames of a block from memory.
@@ -37,6 +38,8 @@ pub struct Traces {
     rate: f64,
     start: f64,
     frames: usize,
+    /// Factor of each channel on top of what its reader applied.
+    factors: Vec<f64>,
     origin: Origin,
 }
 
@@ -81,15 +84,27 @@ impl Reader {
             return Err(nothing);
         }
         let chosen = choose(&path, channels, all.iter().flatten().map(|t| &t.meta))?;
-        let mut traces: Vec<Trace> = chosen.iter().filter_map(|i| all.get_mut(*i)?.take()).collect();
-        check_lengths(&path, &traces)?;
-        let values: Vec<Vec<f64>> = traces.iter_mut().map(|t| std::mem::take(&mut t.values)).collect();
-        let frames = values.first().map_or(0, Vec::len);
-        Traces::of(path, recording.doubts, &traces, frames, Origin::Memory { values, at: 0 })
+        let traces = chosen.iter().filter_map(|i| all.get_mut(*i)?.take()).collect();
+        Traces::memory(path, recording.doubts, traces)
     }
 }
 
 impl Traces {
+    /// Traces that are in memory already.
+    ///
+    /// # Errors
+    /// If there are none, or they have no sampling rate, or different rates, lengths or start times.
+    pub fn from_memory(traces: Vec<Trace>) -> Result<Traces> {
+        Traces::memory(PathBuf::new(), Vec::new(), traces)
+    }
+
+    fn memory(path: PathBuf, doubts: Vec<String>, mut traces: Vec<Trace>) -> Result<Traces> {
+        check_lengths(&path, &traces)?;
+        let values: Vec<Vec<f64>> = traces.iter_mut().map(|t| std::mem::take(&mut t.values)).collect();
+        let frames = values.first().map_or(0, Vec::len);
+        Traces::of(path, doubts, &traces, frames, Origin::Memory { values, at: 0 })
+    }
+
     fn of(
         path: PathBuf,
         doubts: Vec<String>,
@@ -98,8 +113,9 @@ impl Traces {
         origin: Origin,
     ) -> Result<Traces> {
         let (rate, start) = clock(&path, traces, frames)?;
-        let channels = traces.iter().map(|t| t.meta.clone()).collect();
-        Ok(Traces { path, channels, doubts, rate, start, frames, origin })
+        let channels: Vec<Meta> = traces.iter().map(|t| t.meta.clone()).collect();
+        let factors = vec![1.0; channels.len()];
+        Ok(Traces { path, channels, doubts, rate, start, frames, factors, origin })
     }
 
     /// File.
@@ -155,13 +171,13 @@ impl Traces {
     /// # Errors
     /// If the file cannot be read, or a sample is missing (or beyond all numbers in its unit) and that is not allowed.
     pub fn next_block(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize> {
-        match &mut self.origin {
+        let frames = match &mut self.origin {
             Origin::Wav(stream) => {
                 let frames = stream.next_block(block)?;
                 if frames == 0 {
                     stream.doubt(&mut self.channels);
                 }
-                Ok(frames)
+                frames
             }
             Origin::Memory { values, at } => {
                 let end = at.saturating_add(BLOCK).min(self.frames);
@@ -172,9 +188,50 @@ impl Traces {
                 }
                 let frames = end - *at;
                 *at = end;
-                Ok(frames)
+                frames
             }
+        };
+        for (values, factor) in block.iter_mut().zip(&self.factors).filter(|(_, factor)| **factor != 1.0) {
+            units::scale(values, *factor)?;
         }
+        Ok(frames)
+    }
+
+    /// Hands out these channels only from here on, in this order; an index that does not exist is passed over.
+    pub fn keep(&mut self, channels: &[usize]) {
+        fn picked<T: Clone>(all: &[T], indices: &[usize]) -> Vec<T> {
+            indices.iter().filter_map(|i| all.get(*i).cloned()).collect()
+        }
+        match &mut self.origin {
+            Origin::Wav(stream) => {
+                stream.keep(channels);
+            }
+            Origin::Memory { values, .. } => *values = picked(values, channels),
+        }
+        self.factors = picked(&self.factors, channels);
+        self.channels = picked(&self.channels, channels);
+    }
+
+    /// Multiplies a channel by a factor from here on.
+    ///
+    /// # Errors
+    /// If there is no such channel, the factor is 0 or not finite, or the channel is in fractions of full scale and no unit was
+    /// stated.
+    pub fn calibrate(&mut self, channel: usize, factor: f64) -> Result<()> {
+        let (Some(meta), Some(known)) = (self.channels.get_mut(channel), self.factors.get_mut(channel))
+        else {
+            return Err(Error::usage(format!("channel {}", channel + 1), "a channel of the file"));
+        };
+        if factor == 0.0 || !factor.is_finite() {
+            return Err(Error::usage(format!("a calibration of {factor}"), "a number that is not 0"));
+        }
+        if meta.doubts.iter().any(|d| d == Trace::UNCALIBRATED) {
+            let found = format!("a calibration of {factor} without a unit");
+            return Err(Error::usage(found, "the unit, too: --unit, or unit = \"…\" in a campaign"));
+        }
+        *known *= factor;
+        meta.step("calibrate", &[("factor", &factor)]);
+        Ok(())
     }
 }
 
@@ -201,16 +258,21 @@ fn find<'a>(path: &Path, wanted: &str, all: impl Iterator<Item = &'a Meta> + Clo
         ([one], _) => Ok(*one),
         ([], Some(number)) => Ok(number - 1),
         ([], None) => Err(Error::input(
-            Place::file(path),
+            place(path),
             format!("no channel {wanted:?}"),
             format!("one of the {n}: {}", list.join(", ")),
         )),
         (several, _) => Err(Error::input(
-            Place::file(path),
+            place(path),
             format!("{} channels are called {wanted:?}", several.len()),
             format!("the number of one: {}", list.join(", ")),
         )),
     }
+}
+
+/// The file, where there is one.
+fn place(path: &Path) -> Place {
+    if path.as_os_str().is_empty() { Place::default() } else { Place::file(path) }
 }
 
 fn no_trace(path: &Path, kinds: &[&str]) -> Error {
@@ -219,7 +281,7 @@ fn no_trace(path: &Path, kinds: &[&str]) -> Error {
         [one] => format!("a {one} and no time trace"),
         all => format!("{} records and no time trace among them (the first is a {})", all.len(), all[0]),
     };
-    Error::input(Place::file(path), found, "samples over time")
+    Error::input(place(path), found, "samples over time")
         .hint("state the sampling rate with --rate, if the values are samples over time")
 }
 
@@ -236,7 +298,7 @@ fn check_lengths(path: &Path, traces: &[Trace]) -> Result<()> {
 
 fn apart(path: &Path, [a, b]: [&Trace; 2], of_a: &str, of_b: &str) -> Error {
     let found = format!("channel {:?} has {of_a} and channel {:?} {of_b}", a.meta.name, b.meta.name);
-    Error::input(Place::file(path), found, "channels that were sampled together")
+    Error::input(place(path), found, "channels that were sampled together")
         .hint("name the channels that belong together")
 }
 
@@ -246,7 +308,7 @@ fn clock(path: &Path, traces: &[Trace], frames: usize) -> Result<(f64, f64)> {
     for trace in traces {
         let Some(rate) = trace.rate().filter(|r| r.is_finite() && *r > 0.0) else {
             let found = format!("the sampling rate of channel {:?} is not known", trace.meta.name);
-            return Err(Error::input(Place::file(path), found, "samples at even distances in time")
+            return Err(Error::input(place(path), found, "samples at even distances in time")
                 .hint("state the sampling rate with --rate"));
         };
         let Some((first, known)) = common else {
@@ -268,7 +330,7 @@ fn clock(path: &Path, traces: &[Trace], frames: usize) -> Result<(f64, f64)> {
     }
     common
         .map(|(trace, rate)| (rate, trace.axis.start()))
-        .ok_or_else(|| Error::input(Place::file(path), "no channel", "at least one"))
+        .ok_or_else(|| Error::input(place(path), "no channel", "at least one"))
 }
 
 #[cfg(test)]

@@ -52,6 +52,11 @@ fn streaming_agrees_with_reading() {
         let mut one = Reader::new().stream_channels(&path, &["velocity"]).unwrap();
         assert_eq!(one.channels().len(), 1);
         assert!(all(&mut one).0[0] == columns[1], "{name}");
+        let mut turned = Reader::new().stream(&path).unwrap();
+        turned.keep(&[1, 0]);
+        turned.keep(&[1]);
+        assert_eq!(turned.channels()[0].name, "force");
+        assert!(all(&mut turned).0[0] == columns[0], "{name}");
     }
 }
 
@@ -122,4 +127,14 @@ fn missing_samples_of_a_wave_are_refused_with_their_frames_or_kept() {
     let error = read(Reader::new()).unwrap_err().to_string();
     assert!(error.contains("2 sample(s)") && error.contains("99000 of channel 1, 99002 of"), "{error}");
     assert_eq!(read(Reader::new().allow_missing(true)).unwrap(), 2);
+}
+
+#[test]
+fn a_calibration_multiplies_what_comes() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = file(folder.path(), "x.wav", &[trace("a", "m/s", 48_000.0, vec![0.5; 10])]);
+    let mut traces = Reader::new().stream(&path).unwrap();
+    traces.calibrate(0, -4.0).unwrap();
+    assert_eq!(all(&mut traces).0[0], [-2.0; 10]);
+    assert!(traces.calibrate(0, 0.0).is_err() && traces.calibrate(1, 1.0).is_err());
 }

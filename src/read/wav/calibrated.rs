@@ -61,11 +61,11 @@ impl Calibrated {
         self.stream.frames() as usize
     }
 
-    /// Hands out these channels only, in this order; returns them without values.
+    /// Hands out these of the channels handed out so far, in this order; returns them without values.
     pub fn keep(&mut self, channels: &[usize]) -> Vec<Trace> {
-        self.kept = channels.to_vec();
-        self.largest = vec![0.0; channels.len()];
-        channels.iter().filter_map(|i| self.all.get(*i).cloned()).collect()
+        self.kept = channels.iter().filter_map(|i| self.kept.get(*i).copied()).collect();
+        self.largest = vec![0.0; self.kept.len()];
+        self.kept.iter().filter_map(|i| self.all.get(*i).cloned()).collect()
     }
 
     pub fn next_block(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize> {
