@@ -8,6 +8,7 @@ pub mod noise;
 pub mod peaks;
 pub mod resonance;
 pub mod response;
+pub mod sine;
 pub mod waterfall;
 
 pub use estimate::Estimate;
