@@ -231,6 +231,7 @@ impl Campaign {
             force: all(&entry.force)?,
             excitation: Vec::new(),
             response: all(&entry.response)?,
+            places: Vec::new(),
         })
     }
 
@@ -292,6 +293,14 @@ mod tests {
             (&format!("{SWEEP}calibration = 0.0"), "line 4", "calibration"),
             ("out = \"../x\"", "line 1", "outside"),
             ("name = ", "line 1", ""),
+            ("[sweep]\nname = \"a\"", "line 1", "write [[sweep]]"),
+            ("[[rig]]\nm1 = 1.0", "line 1", "write [rig]"),
+            ("sweep = \"a\"", "line 1", "double brackets"),
+            (&format!("{SWEEP}direction = 3"), "line 4", "direction = 3; expected \"up\" or \"down\""),
+            (&format!("{SWEEP}direction = \"left\""), "line 4", "`up` or `down`"),
+            (&format!("{SWEEP}scaling = 1 # ?"), "line 4", "scaling = 1; expected \"peak\" or \"rms\""),
+            (&format!("{SWEEP}mass = -1"), "line 4", "found the integer `-1`; expected a small whole number"),
+            ("[[sweep]]\nlist = \"L\"", "line 1", "add name = "),
         ] {
             let error = of(text).unwrap_err().to_string();
             assert!(error.contains(line) && error.contains(word) && error.contains('^'), "{text}\n{error}");

@@ -159,6 +159,16 @@ impl Error {
         self
     }
 
+    /// Says the place where none is known yet.
+    pub fn at(mut self, place: &Place) -> Self {
+        if let ErrorKind::Input(fault) = &mut *self.0
+            && fault.place == Place::default()
+        {
+            fault.place = place.clone();
+        }
+        self
+    }
+
     /// The kind, for matching.
     pub fn kind(&self) -> &ErrorKind {
         &self.0

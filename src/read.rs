@@ -13,6 +13,7 @@ mod abscissa;
 mod ascii;
 mod choose;
 mod csv;
+mod ending;
 mod format;
 mod header;
 mod mat;

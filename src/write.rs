@@ -57,11 +57,13 @@ impl Target {
             "wav" => Target::Wav,
             "npy" => Target::Npy,
             _ => {
-                let found = format!("the ending of {}", path.display());
+                let what =
+                    if ending.is_empty() { "has no ending".into() } else { format!("ends in .{ending}") };
                 return Err(Error::usage(
-                    found,
-                    ".uff, .unv (text), .ufb (binary), .csv, .tsv, .wav or .npy",
-                ));
+                    format!("{} {what}, which stands for no format to write", path.display()),
+                    "a name that ends in .uff, .unv or .58 (UFF-58), .ufb (UFF-58b), .csv, .tsv, .wav or .npy",
+                )
+                .hint("give the file to write one of these endings"));
             }
         })
     }

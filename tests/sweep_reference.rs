@@ -7,13 +7,8 @@ use vibroimpact::measure::{excitation, legacy};
 use vibroimpact::read::{SweepList, SweepReader};
 use vibroimpact::record::Sweep;
 
-fn cases() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/reference/scripts");
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    eprintln!("skipped: ../shared/reference/scripts is absent");
-    None
+fn cases() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/reference/scripts")
 }
 
 fn load(folder: &Path) -> (SweepList, Sweep) {
@@ -33,7 +28,7 @@ const ALL: [&str; 6] =
 
 #[test]
 fn the_default_is_right_on_every_point() {
-    let Some(folder) = cases() else { return };
+    let folder = cases();
     for case in ALL {
         let (_, sweep) = load(&folder.join(case));
         let df = sweep.line_width().expect("even lines");
@@ -56,7 +51,7 @@ fn the_default_is_right_on_every_point() {
 
 #[test]
 fn legacy_gives_what_the_scripts_gave() {
-    let Some(folder) = cases() else { return };
+    let folder = cases();
     let mut compared = 0;
     for case in ALL {
         let folder = folder.join(case);
@@ -101,7 +96,7 @@ fn legacy_gives_what_the_scripts_gave() {
 
 #[test]
 fn a_tie_stops_the_script_and_not_the_default() {
-    let Some(folder) = cases() else { return };
+    let folder = cases();
     let (_, sweep) = load(&folder.join("sweep_tie"));
     let error = legacy::excitation(&sweep).unwrap_err().to_string();
     assert!(error.contains("equally large"), "{error}");
@@ -111,7 +106,7 @@ fn a_tie_stops_the_script_and_not_the_default() {
 
 #[test]
 fn a_hand_over_file_is_a_sweep_too() {
-    let Some(folder) = cases() else { return };
+    let folder = cases();
     let path = folder.join("sweep_nominal/RESP.TXT");
     let list = SweepList::from_path(&path, false).expect("a hand-over file");
     let sweep = SweepReader::default().read(&list).expect("its spectra");

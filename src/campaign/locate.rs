@@ -6,24 +6,84 @@ use std::path::Path;
 
 /// The parser's complaint as ours.
 pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error) -> Error {
-    let message = error.message();
+    let span = error.span().unwrap_or(0..0);
+    let Told { found, expected, hint } = tell(error.message(), line_at(text, span.start));
+    Error::input(Place::file(path), found, expected).excerpt(text, span).hint(hint)
+}
+
+/// A complaint in the words of a campaign file.
+#[derive(Debug, Default, PartialEq)]
+struct Told {
+    found: String,
+    expected: String,
+    hint: String,
+}
+
+fn tell(message: &str, line: &str) -> Told {
     let names: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
-    let (found, expected) = match message.split_once(", expected ") {
-        Some((found, _)) if message.starts_with("unknown field") => {
-            (found.replace("unknown field", "unknown key"), String::new())
-        }
-        Some((found, expected)) => (found.to_owned(), expected.to_owned()),
-        None => (message.to_owned(), String::new()),
-    };
-    let hint = match names.split_first() {
-        Some((wrong, known)) if message.starts_with("unknown field") => match nearest(wrong, known) {
+    if message.starts_with("unknown field")
+        && let Some((wrong, known)) = names.split_first()
+    {
+        let hint = match nearest(wrong, known) {
             Some(near) => format!("did you mean `{near}`?"),
             None => format!("keys known here: {}", known.join(", ")),
-        },
-        _ => String::new(),
+        };
+        return Told { found: format!("unknown key `{wrong}`"), hint, ..Told::default() };
+    }
+    if let Some(key) = message.strip_prefix("missing field ") {
+        let hint = format!("add {} = …", key.trim_matches('`'));
+        return Told { found: format!("the key {key} is missing"), hint, ..Told::default() };
+    }
+    // The parser calls a table that is no list a map, and its names are those of Rust.
+    if message.starts_with("invalid type: map") {
+        if let Some(name) = line.strip_prefix("[[").and_then(|l| l.split(']').next()) {
+            return Told {
+                found: format!("[[{name}]] begins one table of several"),
+                expected: "a single table".to_owned(),
+                hint: format!("write [{name}]"),
+            };
+        }
+        if let Some(name) = line.strip_prefix('[').and_then(|l| l.split(']').next()) {
+            return Told {
+                found: format!("[{name}] is a single table"),
+                expected: "one table for each, with double brackets".to_owned(),
+                hint: format!("write [[{name}]]"),
+            };
+        }
+    }
+    if message.starts_with("wanted string") {
+        let (key, value) = line.split_once('=').unwrap_or((line, ""));
+        let value = value.split('#').next().unwrap_or_default();
+        let expected = match key.trim() {
+            "direction" => "\"up\" or \"down\"",
+            "scaling" => "\"peak\" or \"rms\"",
+            "kind" => "\"sine\"",
+            _ => "a name between quotes",
+        };
+        let found = format!("{} = {}", key.trim(), value.trim());
+        return Told { found, expected: expected.to_owned(), hint: String::new() };
+    }
+    let (found, expected) = message.split_once(", expected ").unwrap_or((message, ""));
+    let found = match found.split_once(": ") {
+        Some(("invalid type" | "invalid value", what)) => format!("found the {what}"),
+        _ => found.to_owned(),
     };
-    let span = error.span().unwrap_or(0..0);
-    Error::input(Place::file(path), found, expected).excerpt(text, span).hint(hint)
+    let expected = match expected {
+        "u8" => "a small whole number",
+        "usize" | "u64" => "a whole number, 0 or more",
+        "f64" => "a number",
+        "a string" | "path string" => "text between quotes",
+        "a sequence" => "a list between square brackets, or tables with double brackets",
+        "a boolean" => "true or false",
+        other => other,
+    };
+    Told { found, expected: expected.to_owned(), hint: String::new() }
+}
+
+/// The line that holds byte `at`, without the blanks around it.
+fn line_at(text: &str, at: usize) -> &str {
+    let start = text.get(..at).and_then(|before| before.rfind('\n')).map_or(0, |end| end + 1);
+    text.get(start..).and_then(|rest| rest.lines().next()).unwrap_or_default().trim()
 }
 
 /// The first line of `text` that sets `key`, at top level or behind the byte `from`.

@@ -19,13 +19,15 @@ pub(super) mod stated;
 
 use super::abscissa::{self, Printed, to_si};
 use super::csv::name::{Name, Part};
+use super::ending;
 use super::format::Format;
+use super::missing;
 use super::reader::{Options, Recording};
 use super::text;
 use super::{Header, Source, Summary};
 use crate::error::{Error, Place, Result};
 use crate::record::{Axis, AxisKind, Frf, FrfKind, Meta, Record, Scaling, Spectrum, Trace, Values};
-use layout::{Cell, Layout};
+use layout::{Cell, Layout, Separator};
 use num_complex::Complex64;
 use stated::Stated;
 use std::borrow::Cow;
@@ -40,7 +42,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
     let head = source.head()?;
     let layout = layout::detect(source.path(), &head, source.len() > head.len() as u64, options)?;
     let stated = stated::read(&layout.header);
-    let mut doubts = Vec::new();
+    let mut doubts: Vec<String> = cut_off(source, &layout)?.into_iter().collect();
     let columns = if let Some(values) = fast(source, &layout)? {
         deal(values, layout.columns).into_iter().map(Values::Real).collect()
     } else {
@@ -48,9 +50,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         let bytes = if lone_cr(&bytes, false) { with_lf(bytes) } else { bytes };
         let rows = rows::read(source.path(), &bytes, &layout, options.allow_missing)?;
         drop(bytes);
-        if rows.missing > 0 {
-            doubts.push(format!("{} value(s) are missing and kept as such.", rows.missing));
-        }
+        doubts.extend(missing::kept(rows.missing));
         if !rows.comments.is_empty() {
             doubts.push(format!(
                 "{} comment line(s) between the values were passed over.",
@@ -95,12 +95,18 @@ pub(super) fn survey(source: &Source, options: &Options) -> Result<(Vec<Header>,
                 to_si(text.path(), &mut Values::Real(largest), factor)?;
                 let mut header = Header::of(&record).with_summary(&summary, factor, record.axis());
                 header.declared_n = record.meta().declared_n;
-                return Ok((vec![header], Vec::new()));
+                return Ok((vec![header], cut_off(&text, &layout)?.into_iter().collect()));
             }
         }
     }
     let recording = read(source, options)?;
     Ok((recording.records.iter().map(Header::of).collect(), recording.doubts))
+}
+
+/// A doubt about the last number.
+fn cut_off(source: &Source, layout: &Layout) -> Result<Option<String>> {
+    let separator = if let Separator::Char(mark) = layout.separator { mark } else { b' ' };
+    ending::doubt_of(source, separator, layout.decimal)
 }
 
 /// UTF-16 and lone CRs in the head are turned into UTF-8 with LF; everything else stays on disk.

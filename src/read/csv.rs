@@ -18,7 +18,7 @@ mod rows;
 
 use super::format::{Format, Survey};
 use super::reader::{Options, Recording};
-use super::{Header, Source, text};
+use super::{Header, Source, ending, text};
 use crate::error::{Error, Place, Result};
 
 pub(super) fn sniff(head: &[u8], source: &Source) -> bool {
@@ -59,7 +59,11 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
     let axis = records::axis_column(&layout.names);
     let at = axis.as_ref().map(|(at, _)| *at);
     let columns = columns::read(source.path(), &text, &layout, options, at)?;
-    let (records, doubts) = records::build(source, layout, columns, axis, options)?;
+    let tail = &text.as_bytes()[text.len().saturating_sub(ending::LOOK)..];
+    let decimal = if columns.comma { b',' } else { b'.' };
+    let cut_off = ending::doubt(tail, layout.separator as u8, decimal);
+    let (records, mut doubts) = records::build(source, layout, columns, axis, options)?;
+    doubts.extend(cut_off);
     Ok(Recording { path: source.path().to_owned(), format: Format::Csv, records, doubts })
 }
 

@@ -20,7 +20,7 @@ use crate::error::{Error, Place, Result};
 use element::Elements;
 use flate2::read::ZlibDecoder;
 use std::io::{BufReader, Read, Seek, SeekFrom};
-use variable::Variable;
+use variable::{Content, Variable};
 
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Bytes before the first variable.
@@ -78,7 +78,14 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         None => return Err(refuse("no MAT-file header")),
     };
     let mut doubts = Vec::new();
-    let variables = variables(source, big_endian, &mut doubts)?;
+    let (variables, cut) = variables(source, big_endian)?;
+    if let Some(cut) = cut {
+        let numbers = |v: &Variable| matches!(&v.content, Content::Array(a) if a.real.len() > 1);
+        if !variables.iter().any(numbers) {
+            return Err(cut.error(source));
+        }
+        doubts.push(format!("The file is cut off: {cut}, and it is passed over."));
+    }
     let records = records::build(source, variables, options, &mut doubts)?;
     Ok(Recording { path: source.path().to_owned(), format: Format::Mat, records, doubts })
 }
@@ -88,23 +95,53 @@ pub(super) fn survey(source: &Source, options: &Options) -> Result<Survey> {
     Ok((recording.records.iter().map(Header::of).collect(), recording.doubts))
 }
 
-fn variables(source: &Source, big_endian: bool, doubts: &mut Vec<String>) -> Result<Vec<Variable>> {
+/// The variable at which a file ends early.
+struct Cut {
+    /// Where it begins.
+    byte: u64,
+    /// Bytes that its tag declares; `None` where the tag itself is cut.
+    declared: Option<u64>,
+    /// Bytes that are there, behind the tag or of it.
+    there: u64,
+}
+
+impl Cut {
+    fn error(&self, source: &Source) -> Error {
+        let place = Place::byte(source.path(), self.byte);
+        Error::input(place, format!("the file is cut off: {self}"), "a whole variable of numbers")
+            .hint("copy or save the file again")
+    }
+}
+
+impl std::fmt::Display for Cut {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Cut { byte, there, .. } = self;
+        match self.declared {
+            Some(declared) => {
+                write!(f, "its last variable, at byte {byte}, declares {declared} bytes, {there} are there")
+            }
+            None => write!(f, "of its last variable, at byte {byte}, only {there} bytes are there"),
+        }
+    }
+}
+
+/// All whole variables, and where the file ends within one.
+fn variables(source: &Source, big_endian: bool) -> Result<(Vec<Variable>, Option<Cut>)> {
     let io = |e| Error::io("read", source.path(), e);
     let mut file = BufReader::new(source.open()?);
     let (mut variables, mut budget) = (Vec::new(), budget(source.len()));
     let mut at = HEADER;
-    while source.len().saturating_sub(at) >= 8 {
+    while at < source.len() {
+        let (byte, there) = (at, source.len() - at);
+        if there < 8 {
+            return Ok((variables, Some(Cut { byte, declared: None, there })));
+        }
         let place = Place::byte(source.path(), at);
         file.seek(SeekFrom::Start(at)).map_err(io)?;
         let tag = Elements::new(&mut file, big_endian, place.clone()).tag()?;
         at += 8 + tag.behind();
         if at > source.len() {
-            doubts.push(format!(
-                "The file is cut off: its last variable declares {} bytes, {} are there, and it is passed over.",
-                tag.size,
-                source.len() + tag.size - at
-            ));
-            break;
+            return Ok((variables, Some(Cut { byte, declared: Some(tag.size), there: there - 8 })));
         }
         let mut body = (&mut file).take(tag.size);
         match tag.kind {
@@ -136,7 +173,7 @@ fn variables(source: &Source, big_endian: bool, doubts: &mut Vec<String>) -> Res
             _ => {}
         }
     }
-    Ok(variables)
+    Ok((variables, None))
 }
 
 #[cfg(test)]

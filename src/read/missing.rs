@@ -4,7 +4,18 @@ use crate::error::{Error, Place, Result};
 use std::path::Path;
 
 /// How many places a complaint lists.
-const LISTED: usize = 8;
+pub(super) const LISTED: usize = 8;
+
+/// Refuses missing values; `found` says which.
+pub(super) fn refusal(place: Place, found: impl Into<String>) -> Error {
+    Error::input(place, found, "a finite number in every place")
+        .hint("give --allow-missing to keep them as missing")
+}
+
+/// What is said where `count` of them are kept; nothing where there are none.
+pub(super) fn kept(count: usize) -> Option<String> {
+    (count > 0).then(|| format!("{count} value(s) are missing and kept as such."))
+}
 
 /// Values that are missing: how many, and where the first of them stand.
 #[derive(Debug, Default)]
@@ -43,7 +54,6 @@ impl Missing {
             self.count,
             listed.join(", ")
         );
-        Err(Error::input(Place::line(path, *first), found, "a number in every place")
-            .hint("give --allow-missing to keep them as missing"))
+        Err(refusal(Place::line(path, *first), found))
     }
 }

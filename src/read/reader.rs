@@ -1,7 +1,7 @@
 //! The reader: options, then a path or bytes, then records.
 
 use super::format::{Entry, Format, TABLE};
-use super::{Header, Source};
+use super::{Header, Source, SweepList};
 use crate::error::{Error, Place, Result};
 use crate::record::{Meta, Record};
 use crate::units::Unit;
@@ -177,7 +177,7 @@ impl Reader {
     /// As [`Reader::from_path`].
     pub fn from_source(&self, source: &Source) -> Result<Recording> {
         let (entry, source) = self.entry(source)?;
-        (entry.read)(&source, &self.options).map_err(|e| e.in_file(source.path()))
+        (entry.read)(&source, &self.options).map_err(|e| no_list(&source, e).in_file(source.path()))
     }
 
     /// The records of a file without their values; memory does not grow with the file where the format allows.
@@ -188,7 +188,7 @@ impl Reader {
         let source = Source::file(path)?;
         let (entry, source) = self.entry(&source)?;
         let (headers, doubts) =
-            (entry.survey)(&source, &self.options).map_err(|e| e.in_file(source.path()))?;
+            (entry.survey)(&source, &self.options).map_err(|e| no_list(&source, e).in_file(source.path()))?;
         Ok((entry.format, headers, doubts))
     }
 
@@ -216,5 +216,25 @@ impl Reader {
         })?;
         let small = head.len() as u64 == source.len();
         Ok((entry, if small { Source::memory(source.path(), head)? } else { source.clone() }))
+    }
+}
+
+/// What to say where reading failed with `error`: a list of a sweep is a likely thing to be taken for a measurement.
+fn no_list(source: &Source, error: Error) -> Error {
+    // A list of ten thousand points is smaller.
+    let small = source.len() < 1 << 20;
+    match Some(source).filter(|_| small).and_then(SweepList::of) {
+        Some(list) => Error::input(
+            Place::file(source.path()),
+            format!(
+                "this is the list of a sweep: {} points, {} lines to {} Hz",
+                list.len(),
+                list.lines,
+                list.base_band
+            ),
+            "a measurement file",
+        )
+        .hint("give the list to `vibro response`, or name the files that stand in it"),
+        None => error,
     }
 }

@@ -66,7 +66,7 @@ impl SweepReader {
         let reader = Reader::new().base_band(Some(list.base_band)).format(self.format);
         // One batch, so that all missing files are named at once.
         let paths: Vec<_> = list.response.iter().chain(&list.force).collect();
-        let mut recordings = reader.from_paths(&paths)?;
+        let mut recordings = reader.from_paths(&paths).map_err(|e| list.missing().unwrap_or(e))?;
         let forces = recordings.split_off(list.response.len());
         let axis = Axis::frequency(0.0, list.base_band / list.lines as f64, list.lines + 1);
         let mut doubts = Vec::new();

@@ -27,6 +27,8 @@ pub struct SweepList {
     pub excitation: Vec<f64>,
     /// Response files.
     pub response: Vec<PathBuf>,
+    /// Where the names stand, of the force files and then of the response files; none where they were not read from a list.
+    pub places: Vec<Place>,
 }
 
 /// Length of a name in a hand-over file: eight characters, a point, three characters.
@@ -48,10 +50,37 @@ impl SweepList {
         let text = text::decode(&bytes);
         let mut list = parse(path, &text)?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        for name in list.force.iter_mut().chain(&mut list.response) {
-            *name = inside(folder, name, allow_outside).map_err(|e| e.in_file(path))?;
+        for (name, place) in list.force.iter_mut().chain(&mut list.response).zip(&list.places) {
+            *name = inside(folder, name, allow_outside).map_err(|e| e.at(place))?;
         }
         Ok(list)
+    }
+
+    /// The list that a source holds; `None` where it is anything else.
+    pub(super) fn of(source: &Source) -> Option<SweepList> {
+        let bytes = source.all().ok()?;
+        parse(source.path(), &text::decode(&bytes)).ok()
+    }
+
+    /// A complaint about all files that do not exist, each with the line that names it; `None` where all exist.
+    pub(super) fn missing(&self) -> Option<Error> {
+        let files: Vec<&PathBuf> = self.force.iter().chain(&self.response).collect();
+        let missing: Vec<usize> = (0..files.len()).filter(|i| !files[*i].exists()).collect();
+        let first = *missing.first()?;
+        let place = self.places.get(first).cloned().unwrap_or_else(|| Place::file(files[first]));
+        let names: Vec<String> = missing
+            .iter()
+            .map(|i| match self.places.get(*i).and_then(|p| p.line) {
+                Some(line) => format!("{} (line {line})", files[*i].display()),
+                None => files[*i].display().to_string(),
+            })
+            .collect();
+        let (count, are) = (names.len(), if names.len() == 1 { "is" } else { "are" });
+        let found = format!("{count} of {} files {are} missing: {}", files.len(), names.join(", "));
+        Some(
+            Error::input(place, found, "every file that is named")
+                .hint("check the folder and the spelling; on Linux upper and lower case differ"),
+        )
     }
 
     /// Number of points.
@@ -154,6 +183,7 @@ fn parse(path: &Path, text: &str) -> Result<SweepList> {
         force: Vec::new(),
         excitation: Vec::new(),
         response: Vec::new(),
+        places: Vec::new(),
     };
     let given = rest.iter().take_while(|(_, l)| number::parse(l.as_bytes()).is_some()).count();
     if given > 0 {
@@ -168,6 +198,7 @@ fn parse(path: &Path, text: &str) -> Result<SweepList> {
             )
             .hint("correct the number of points in the first line, or add the missing names"));
         }
+        list.places = rest.iter().map(|(line, _)| Place::line(path, *line)).collect();
         list.force = rest[..points].iter().map(|(_, name)| PathBuf::from(name)).collect();
         list.response = rest[points..].iter().map(|(_, name)| PathBuf::from(name)).collect();
     }
@@ -189,13 +220,15 @@ fn hand_over(
         ));
     }
     list.excitation = rest[..given].iter().filter_map(|(_, l)| number::parse(l.as_bytes())).collect();
-    let names: Vec<String> = match &rest[given..] {
+    let names: Vec<(u64, String)> = match &rest[given..] {
         // The script writes names of 11 characters without a separator.
-        [(_, one)] if one.chars().count() == NAME * points => {
+        [(line, one)] if one.chars().count() == NAME * points => {
             let characters: Vec<char> = one.chars().collect();
-            characters.chunks(NAME).map(|c| c.iter().collect()).collect()
+            characters.chunks(NAME).map(|c| (*line, c.iter().collect())).collect()
         }
-        several => several.iter().flat_map(|(_, l)| l.split_whitespace()).map(str::to_owned).collect(),
+        several => {
+            several.iter().flat_map(|(n, l)| l.split_whitespace().map(|name| (*n, name.to_owned()))).collect()
+        }
     };
     if names.len() != points {
         let line = rest.get(given).map_or(rest[given - 1].0, |r| r.0);
@@ -205,7 +238,10 @@ fn hand_over(
             format!("{points} names of {NAME} characters, or separated by blanks or lines"),
         ));
     }
-    list.response = names.into_iter().map(PathBuf::from).collect();
+    for (line, name) in names {
+        list.places.push(Place::line(path, line));
+        list.response.push(PathBuf::from(name));
+    }
     Ok(())
 }
 

@@ -18,13 +18,16 @@
 //! Source: Structural Dynamics Research Laboratory, University of Cincinnati, "Universal File Formats for Modal Analysis
 //! Testing", data sets 58 and 58b.
 
+mod abscissa;
 pub mod codes;
 mod heading;
+mod kind;
 mod layout;
 mod ordinate;
 mod plan;
 mod sink;
 mod spacing;
+mod stated;
 mod values;
 
 use super::Options;

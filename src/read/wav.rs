@@ -21,7 +21,7 @@ pub use stream::WavStream;
 
 use super::format::{Format, Survey};
 use super::reader::{Options, Recording};
-use super::{Header, Source, Summary};
+use super::{Header, Source, Summary, missing};
 use crate::error::{Error, Place, Result};
 use crate::record::{Axis, Meta, Record, Trace};
 use crate::units::{self, Unit};
@@ -32,9 +32,6 @@ const FULL_SCALE: &str = "FS";
 
 /// How many bytes of texts are copied for all channels together.
 const MOST_COPIED: usize = 256 * 1024;
-
-/// How many frame numbers a complaint lists.
-const LISTED: usize = 8;
 
 pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
     let form = head.get(..4);
@@ -110,7 +107,7 @@ fn pass(
                 if !value.is_finite() {
                     *value = f64::NAN;
                     count += 1;
-                    if listed.len() < LISTED {
+                    if listed.len() < missing::LISTED {
                         listed.push((first + i, channel));
                     }
                 }
@@ -121,18 +118,19 @@ fn pass(
         first += frames;
     }
     if count > 0 && !options.allow_missing {
-        return Err(missing(source.path(), count, listed.into_iter()));
+        return Err(gaps(source.path(), count, listed.into_iter()));
     }
     Ok(found)
 }
 
 /// The complaint about `count` missing samples, of which the first are listed by frame and channel.
-fn missing(path: &Path, count: usize, listed: impl Iterator<Item = (usize, usize)>) -> Error {
-    let places: Vec<String> =
-        listed.take(LISTED).map(|(frame, channel)| format!("{frame} of channel {}", channel + 1)).collect();
+fn gaps(path: &Path, count: usize, listed: impl Iterator<Item = (usize, usize)>) -> Error {
+    let places: Vec<String> = listed
+        .take(missing::LISTED)
+        .map(|(frame, channel)| format!("{frame} of channel {}", channel + 1))
+        .collect();
     let found = format!("{count} sample(s) are NaN or infinite: frame {}", places.join(", "));
-    Error::input(Place::file(path), found, "a number in every sample")
-        .hint("give --allow-missing to keep them as missing")
+    missing::refusal(Place::file(path), found)
 }
 
 /// The doubt about values without a calibration that a fraction of full scale cannot have.

@@ -54,13 +54,12 @@ impl Output {
             return Err(outside(name, "names a folder").hint("remove that folder or choose another name"));
         }
         let temporary = temporary_beside(&path);
-        let replaced = fill(&temporary, bytes.as_ref())
-            .and_then(|()| fs::rename(&temporary, &path).map_err(|e| Error::io("replace", &path, e)));
+        let replaced = fill(&temporary, bytes.as_ref()).and_then(|()| fs::rename(&temporary, &path));
         if let Err(error) = replaced {
             // The first failure is the one to report; a leftover that cannot be removed either has the same
             // cause.
             let _ = fs::remove_file(&temporary);
-            return Err(error);
+            return Err(Error::io("write", &path, error));
         }
         if !self.written.iter().any(|w| w == name) {
             self.written.push(name.to_owned());
@@ -105,15 +104,12 @@ fn temporary_beside(path: &Path) -> PathBuf {
     path.with_file_name(format!(".{head}.{}.part", std::process::id()))
 }
 
-fn fill(path: &Path, bytes: &[u8]) -> Result<()> {
+fn fill(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     // A leftover of a program that was killed and had this process number is ours to replace.
     let _ = fs::remove_file(path);
-    let write = || {
-        let mut file = fs::OpenOptions::new().write(true).create_new(true).open(path)?;
-        file.write_all(bytes)?;
-        file.flush()
-    };
-    write().map_err(|e| Error::io("write", path, e))
+    let mut file = fs::OpenOptions::new().write(true).create_new(true).open(path)?;
+    file.write_all(bytes)?;
+    file.flush()
 }
 
 #[cfg(test)]
@@ -160,7 +156,8 @@ mod tests {
         assert!(out.write("x", "new").is_err());
         // A name that fits for the temporary file, but not for the file itself: the rename fails.
         let long = "n".repeat(300);
-        assert!(out.write(&long, "new").is_err());
+        let error = out.write(&long, "new").unwrap_err().to_string();
+        assert!(error.contains(&long) && !error.contains(".part"), "{error}");
         assert_eq!(names(dir.path()), ["x"]);
         assert_eq!(fs::read_to_string(dir.path().join("x/old")).unwrap(), "old");
         assert!(out.written().is_empty());

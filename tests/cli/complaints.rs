@@ -59,7 +59,92 @@ fn all_missing_files_are_named_at_once() {
     fs::remove_file(folder.path().join("FUP0004.DAT")).unwrap();
     fs::remove_file(folder.path().join("VUP0007.DAT")).unwrap();
     let found = complaint(&["response", text(&list)], 2);
-    has(&found, &["2 of 24 files are missing", "FUP0004.DAT", "VUP0007.DAT", "try:"]);
+    // Three numbers stand above twelve force files and twelve response files.
+    let lines = ["FUP0004.DAT (line 7)", "VUP0007.DAT (line 22)"];
+    has(&found, &["LIST.TXT, line 7: 2 of 24 files are missing", lines[0], lines[1], "try:"]);
+}
+
+#[test]
+fn a_list_is_no_measurement() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = sweep(folder.path(), &frequencies());
+    let out = folder.path().join("out.csv");
+    for arguments in [&["info", text(&list)][..], &["convert", text(&list), text(&out)]] {
+        has(&complaint(arguments, 2), &["the list of a sweep: 12 points, 200 lines", "vibro response"]);
+    }
+}
+
+#[test]
+fn numbers_below_zero_are_no_options() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.txt");
+    fs::write(&path, "1\n2\n").unwrap();
+    let path = text(&path);
+    let list = sweep(folder.path(), &frequencies());
+    let list = text(&list);
+    for (arguments, option) in [
+        (&["info", path, "--rate", "-5"][..], "--rate is -5"),
+        (&["info", path, "--base-band", "-1e3"], "--base-band is -1000"),
+        (&["response", list, "--fmin", "-5"], "--fmin is -5"),
+        (&["response", list, "--calibration", "-0.5"], "--calibration is -0.5"),
+        (&["waterfall", list, "--fmax", "-5"], "--fmax is -5"),
+    ] {
+        has(&complaint(arguments, 2), &[option, "expected a finite number above 0"]);
+    }
+    has(&complaint(&["response", list, "--band", "-3"], 2), &["-3", "1..=1000"]);
+    has(&complaint(&["response", list, "--analyser-integrated", "-1"], 2), &["-1", "0..=2"]);
+}
+
+#[test]
+fn a_file_cut_within_its_last_number() {
+    let folder = tempfile::tempdir().unwrap();
+    let with = |name: &str, content: &str| {
+        let path = folder.path().join(name);
+        fs::write(&path, content).unwrap();
+        path
+    };
+    for (name, rows) in
+        [("a.csv", "t [s],v [m/s]\n0.0,1.25\n0.1,1.35\n0.2,1.45\n"), ("a.txt", "1.25\n1.35\n1.45\n")]
+    {
+        let row = if name == "a.csv" { "0.3," } else { "" };
+        let half = with(name, &format!("{rows}{row}3.4e"));
+        has(&complaint(&["info", text(&half)], 2), &["\"3.4e\"", "the export was cut off"]);
+        let short = with(name, &format!("{rows}{row}3.4"));
+        let value = json(&["info", text(&short)]);
+        assert!(value["warnings"].to_string().contains("may be cut off"), "{}", value["warnings"]);
+        let whole = with(name, &format!("{rows}{row}3.40"));
+        let value = json(&["info", text(&whole)]);
+        assert!(!value["warnings"].to_string().contains("cut off"), "{}", value["warnings"]);
+    }
+    let narrow = with("b.csv", "t [s],v [m/s]\n0.0,1.25\n0.1");
+    has(&complaint(&["info", text(&narrow)], 2), &["line 3", "1 field(s)", "cut off"]);
+    let narrow = with("b.txt", "0.0 1.25\n0.1 1.35\n0.2");
+    has(&complaint(&["info", text(&narrow)], 2), &["line 3", "1 values", "cut off"]);
+}
+
+#[test]
+fn endings_that_stand_for_no_format_are_told() {
+    for (name, found) in [("x.xyz", "x.xyz ends in .xyz"), ("x", "x has no ending")] {
+        has(
+            &complaint(&["convert", "absent.csv", name], 2),
+            &[found, ".uff", ".ufb", ".csv", ".npy", "try:"],
+        );
+    }
+}
+
+/// Nobody may write here, whoever runs the tests.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_folder_that_cannot_be_written_is_named_and_no_other_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.csv");
+    fs::write(&path, "t [s],v [m/s]\n0,1\n1,2\n").unwrap();
+    let found = complaint(&["convert", text(&path), "/proc/self/out.csv"], 2);
+    has(&found, &["cannot write /proc/self/out.csv"]);
+    assert!(!found.contains(".part"), "{found}");
+    let list = sweep(folder.path(), &frequencies());
+    let found = complaint(&["response", text(&list), "--out", "/proc/self/out"], 2);
+    has(&found, &["/proc/self/out:"]);
 }
 
 #[test]

@@ -12,10 +12,10 @@ pub struct Reading {
     #[arg(long)]
     pub allow_missing: bool,
     /// Sampling rate in Hz: the values are a time trace
-    #[arg(long, value_name = "HZ", conflicts_with = "base_band")]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true, conflicts_with = "base_band")]
     pub rate: Option<f64>,
     /// Base band in Hz: the values are a spectrum from 0 to it
-    #[arg(long, value_name = "HZ")]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     pub base_band: Option<f64>,
     /// Unit of the values, such as mm/s
     #[arg(long)]

@@ -16,7 +16,7 @@ pub struct Sweep {
     #[arg(long)]
     pub unit: Option<String>,
     /// Factor on the stored responses
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     pub calibration: Option<f64>,
     /// Window of the analyser: hann, rectangular, hamming, blackman, blackman-harris, flat-top, unknown [default: hann, assumed]
     #[arg(long)]
@@ -25,10 +25,10 @@ pub struct Sweep {
     #[arg(long)]
     pub scaling: Option<String>,
     /// How often the analyser integrated before it stored [default: once for a displacement]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=2))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u8).range(0..=2))]
     pub analyser_integrated: Option<u8>,
     /// Lowest frequency looked at, in Hz [default: two lines or a quarter of the lowest excitation]
-    #[arg(long, value_name = "HZ")]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     pub fmin: Option<f64>,
 }
 
@@ -39,6 +39,6 @@ pub struct Taking {
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(i8).range(-2..=2))]
     pub integrate: Option<i8>,
     /// Lines on both sides of the excitation in which the peak is looked for
-    #[arg(long, value_name = "LINES", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(long, value_name = "LINES", allow_negative_numbers = true, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub band: u16,
 }

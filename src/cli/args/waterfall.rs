@@ -10,7 +10,7 @@ pub struct Waterfall {
     #[command(flatten)]
     pub taking: Taking,
     /// Highest frequency drawn, in Hz [default: the base band]
-    #[arg(long)]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     pub fmax: Option<f64>,
     /// Folder for waterfall and map as SVG and PNG, and the matrix as CSV
     #[arg(long, value_name = "DIR")]

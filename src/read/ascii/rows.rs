@@ -2,6 +2,7 @@
 
 use super::layout::{Cell, Layout, comment, complex, cut_row, lines, shorten};
 use crate::error::{Error, Place, Result};
+use crate::read::ending::CUT_OFF;
 use crate::read::missing::Missing;
 use crate::read::number;
 use num_complex::Complex64;
@@ -73,7 +74,10 @@ pub fn read(path: &Path, bytes: &[u8], layout: &Layout, allow_missing: bool) -> 
                     gaps += 1;
                     Complex64::new(f64::NAN, 0.0)
                 }
-                None => return Err(not_a_number(path, number, offset, cell, layout)),
+                None => {
+                    let error = not_a_number(path, number, offset, cell, layout);
+                    return Err(if is_last(line, bytes) { error.hint(CUT_OFF) } else { error });
+                }
             };
             rows.values.push(value);
         }
@@ -83,7 +87,7 @@ pub fn read(path: &Path, bytes: &[u8], layout: &Layout, allow_missing: bool) -> 
                 format!("found {} values in this row", cells.len()),
                 format!("{} as in line {}", layout.columns, layout.first_line),
             )
-            .hint("mend or remove the row; a half-written last line means that the export was cut off"));
+            .hint(if is_last(line, bytes) { CUT_OFF } else { "mend or remove the row" }));
         }
         if gaps > 0 {
             missing.take(number, gaps, String::new);
@@ -92,6 +96,11 @@ pub fn read(path: &Path, bytes: &[u8], layout: &Layout, allow_missing: bool) -> 
     missing.check(path, allow_missing)?;
     rows.missing = missing.count;
     Ok(rows)
+}
+
+/// Whether a line ends with the file and not with a line end.
+fn is_last(line: &[u8], bytes: &[u8]) -> bool {
+    line.as_ptr_range().end == bytes.as_ptr_range().end
 }
 
 /// Without the mark that DOS programs end a text with.

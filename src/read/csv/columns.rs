@@ -3,6 +3,7 @@
 use super::layout::Layout;
 use super::rows::{Line, Lines, cut};
 use crate::error::{Error, Place, Result};
+use crate::read::ending::CUT_OFF;
 use crate::read::missing::Missing;
 use crate::read::number;
 use crate::read::reader::Options;
@@ -58,13 +59,17 @@ pub fn read(
         cut(line.text, layout.separator, &mut fields).map_err(|at| {
             fault(path, &line, at, "text behind a closing quote", "a separator or the end of the line")
         })?;
+        let last = line.at + line.text.len() == text.len();
         let blank_end = fields.last().is_some_and(|(_, f)| f.is_empty());
         if fields.len() != n && !(fields.len() == n + 1 && blank_end) {
             let at = fields.get(n).map_or(line.text.len(), |(at, _)| *at);
             let found = format!("{} field(s) in this row", fields.len());
             let expected = format!("{n}, as many as line {} names", layout.named_in);
-            return Err(fault(path, &line, at, &found, &expected)
-                .hint("mend or remove the row; a half-written last line means that the export was cut off"));
+            return Err(fault(path, &line, at, &found, &expected).hint(if last {
+                CUT_OFF
+            } else {
+                "mend or remove the row"
+            }));
         }
         for (i, ((at, field), values)) in fields.iter().zip(&mut columns.values).enumerate() {
             let bytes = field.as_bytes();
@@ -79,7 +84,10 @@ pub fn read(
                     missing.take(line.number, 1, || layout.names[i].name.clone());
                     f64::NAN
                 }
-                None => return Err(not_a_number(path, &line, *at, field, decimal)),
+                None => {
+                    let error = not_a_number(path, &line, *at, field, decimal);
+                    return Err(if last { error.hint(CUT_OFF) } else { error });
+                }
             };
             if axis == Some(i) {
                 digits.take(bytes, decimal, value);

@@ -8,7 +8,7 @@ use crate::read::abscissa::{Printed, choose, from_values, to_si};
 use crate::read::ascii::SCALING_UNSAID;
 use crate::read::ascii::stated::{self, Stated};
 use crate::read::reader::Options;
-use crate::read::{Source, number};
+use crate::read::{Source, missing, number};
 use crate::record::{
     Axis, AxisKind, Frf, FrfKind, Grid, Meta, Record, Scaling, Spectrum, Trace, Values, Window,
 };
@@ -36,9 +36,7 @@ pub fn build(
         let kept = columns.kept.len();
         doubts.push(format!("Of {} remarks between the rows the first {kept} are kept.", columns.comments));
     }
-    if columns.missing > 0 {
-        doubts.push(format!("{} value(s) are missing and kept as such.", columns.missing));
-    }
+    doubts.extend(missing::kept(columns.missing));
     if columns.comma && layout.names.len() == 1 {
         doubts.push("There is one column, so the comma is taken as the decimal mark.".to_owned());
     }

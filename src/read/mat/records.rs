@@ -5,13 +5,12 @@ use crate::error::{Error, Place, Result};
 use crate::read::Source;
 use crate::read::abscissa::{from_values, short};
 use crate::read::ascii::SCALING_UNSAID;
+use crate::read::missing;
 use crate::read::reader::Options;
 use crate::record::{Axis, AxisKind, Frf, FrfKind, Meta, Record, Scaling, Spectrum, Trace, Values};
 use crate::units::{self, Unit};
 use num_complex::Complex64;
 
-/// How many places a complaint lists.
-const LISTED: usize = 8;
 /// How many scalars and texts are kept.
 const MOST_NOTES: usize = 256;
 const MOST_NOTE_BYTES: usize = 16 * 1024;
@@ -71,20 +70,19 @@ pub fn build(
     for (name, array) in arrays {
         made.split(&name, array, &mut records, doubts)?;
     }
-    let fault = |found: String, expected: &str| Error::input(Place::file(source.path()), found, expected);
     if records.is_empty() {
-        return Err(fault("no numeric vector or matrix".into(), "at least one to make a record of"));
+        return Err(Error::input(
+            Place::file(source.path()),
+            "no numeric vector or matrix",
+            "at least one to make a record of",
+        ));
     }
     if made.missing > 0 && !options.allow_missing {
         let more = if made.missing > made.gaps.len() { ", …" } else { "" };
         let found = format!("{} value(s) are NaN or infinite: {}{more}", made.missing, made.gaps.join(", "));
-        return Err(
-            fault(found, "a number in every place").hint("give --allow-missing to keep them as missing")
-        );
+        return Err(missing::refusal(Place::file(source.path()), found));
     }
-    if made.missing > 0 {
-        doubts.push(format!("{} value(s) are missing and kept as such.", made.missing));
-    }
+    doubts.extend(missing::kept(made.missing));
     if options.unit.is_none() {
         doubts.push(
             "A MAT-file knows no units: time is taken in s, frequency in Hz, and values are kept as they are.".into(),
@@ -341,7 +339,7 @@ impl Made<'_> {
                 *im = f64::NAN;
             }
             self.missing += 1;
-            if self.gaps.len() < LISTED {
+            if self.gaps.len() < missing::LISTED {
                 self.gaps.push(format!("{} of {name:?}", i + 1));
             }
         }

@@ -290,6 +290,21 @@ fn a_file_that_is_cut_off_keeps_what_is_whole() {
 }
 
 #[test]
+fn a_file_that_is_cut_off_within_its_only_vector_is_refused_with_the_byte() {
+    let rate = LITTLE.matrix(6, &[1, 1], "fs", &[LITTLE.doubles(&[100.0])]);
+    let mut file = LITTLE.file(&[rate.clone(), LITTLE.column("x", &[1.0, 2.0, 3.0])]);
+    // 128 bytes of header.
+    let start = 128 + rate.len();
+    file.truncate(file.len() - 10);
+    let error = Reader::new().from_reader("x.mat", file.as_slice()).unwrap_err().to_string();
+    assert!(error.starts_with(&format!("x.mat, byte {start}: the file is cut off")), "{error}");
+    assert!(error.contains("declares 72 bytes, 62 are there"), "{error}");
+    file.truncate(start + 4);
+    let error = Reader::new().from_reader("x.mat", file.as_slice()).unwrap_err().to_string();
+    assert!(error.contains(&format!("byte {start}, only 4 bytes are there")), "{error}");
+}
+
+#[test]
 fn damage_is_named_with_its_byte() {
     let short = LITTLE.matrix(6, &[3, 1], "x", &[LITTLE.doubles(&[1.0, 2.0])]);
     let error = complaint(&[LITTLE.column("a", &[1.0, 2.0]), short]);

@@ -1,25 +1,20 @@
 //! What record a data set 58 becomes: kind, axis, scaling, unit, and the doubts about each.
 
-use super::codes::{self, Domain};
-use super::heading::{self, Heading};
+use super::abscissa;
+use super::heading::Heading;
+use super::kind::Kind;
 use super::ordinate::Ordinate;
 use super::sink::{Counted, Kept};
 use super::spacing::Spacing;
+use super::stated::Stated;
 use super::values::Taken;
 use crate::error::{Error, Result};
 use crate::read::uff::system::System;
-use crate::read::{Header, Options};
+use crate::read::{Header, Options, missing};
 use crate::record::{
     Axis, AxisKind, Frf, FrfKind, Grid, Meta, Record, Scaling, Spectrum, Trace, Values, Window,
 };
-use crate::units::{self, Quantity, Unit};
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
-    Trace,
-    Spectrum(Scaling),
-    Frf,
-}
+use crate::units::{self, Unit};
 
 /// Everything about a record but its values.
 #[derive(Debug, Clone)]
@@ -55,7 +50,7 @@ impl Plan {
         meta.declared_n = Some(heading.n);
         meta.step("read", &[("file", &file), ("format", &"uff"), ("case", &heading.layout.case())]);
         let factor = unit(heading, system, options, &mut meta);
-        let (axis, abscissa_factor) = abscissa(heading, options, &mut meta);
+        let (axis, abscissa_factor) = abscissa::kind_and_factor(heading, options, &mut meta);
         let complex = heading.layout.complex;
         if complex && axis == AxisKind::Time {
             return Err(Error::input(
@@ -66,7 +61,7 @@ impl Plan {
             .hint("export real and imaginary part as two real data sets"));
         }
         let stated = Stated::of(&heading.id[4]);
-        let kind = kind(heading, &axis, stated.scaling, &mut meta);
+        let kind = Kind::of(heading, &axis, stated.scaling, &mut meta);
         let mut plan = Plan {
             meta,
             kind,
@@ -115,8 +110,8 @@ impl Plan {
         } else if declared == 0 {
             self.meta.doubt("The header declares no values.");
         }
-        if taken.missing > 0 {
-            self.meta.doubt(format!("{} numbers are missing and kept as such.", taken.missing));
+        if let Some(kept) = missing::kept(taken.missing) {
+            self.meta.doubt(kept);
         }
     }
 
@@ -230,175 +225,4 @@ fn unit(heading: &Heading, system: &System, options: &Options, meta: &mut Meta) 
     meta.quantity = unit.quantity();
     meta.unit = unit;
     factor
-}
-
-/// Kind of the abscissa and factor to s or Hz.
-fn abscissa(heading: &Heading, options: &Options, meta: &mut Meta) -> (AxisKind, f64) {
-    let axis = &heading.abscissa;
-    let unit = Unit::parse_or_opaque(&axis.unit);
-    let by_unit = match unit.quantity() {
-        Quantity::Time => Some(AxisKind::Time),
-        Quantity::Frequency | Quantity::AngularVelocity => Some(AxisKind::Frequency),
-        _ => None,
-    };
-    let shown = |kind: &AxisKind| if *kind == AxisKind::Time { "time" } else { "frequency" };
-    let by_type = match axis.data_type {
-        17 => AxisKind::Time,
-        18 => AxisKind::Frequency,
-        0 | 1 => match by_unit {
-            Some(kind) => return (kind, abscissa_factor(&unit, meta)),
-            None if axis.label.is_empty() && axis.unit.is_empty() => {
-                return (by_function(heading, options, meta), 1.0);
-            }
-            None => return (by_label(axis), 1.0),
-        },
-        _ => return (AxisKind::Other(axis.described()), 1.0),
-    };
-    if axis.unit.is_empty() {
-        return (by_type, 1.0);
-    }
-    if let Some(kind) = by_unit {
-        if kind != by_type {
-            meta.doubt(format!(
-                "The data type of the abscissa is {}, but its unit {} is that of {}: the unit is believed.",
-                shown(&by_type),
-                axis.unit,
-                shown(&kind)
-            ));
-        }
-        return (kind, abscissa_factor(&unit, meta));
-    }
-    meta.doubt(format!(
-        "The unit \"{}\" of the abscissa is not one of {}: s or Hz are assumed.",
-        axis.unit,
-        shown(&by_type)
-    ));
-    (by_type, 1.0)
-}
-
-/// Factor of a unit of time to s, of frequency or angular frequency to Hz.
-fn abscissa_factor(unit: &Unit, meta: &mut Meta) -> f64 {
-    if unit.quantity() == Quantity::AngularVelocity {
-        meta.doubt(format!(
-            "The abscissa is an angular frequency in {unit}: it is divided by 2π and stands in Hz."
-        ));
-    }
-    unit.hertz().unwrap_or(unit.factor())
-}
-
-/// Kind of an abscissa without data type or unit.
-fn by_label(axis: &heading::Axis) -> AxisKind {
-    let label = axis.label.to_lowercase();
-    [("time", AxisKind::Time), ("freq", AxisKind::Frequency), ("index", AxisKind::Index)]
-        .into_iter()
-        .find(|(word, _)| axis.unit.is_empty() && label.contains(word))
-        .map_or_else(|| AxisKind::Other(axis.described()), |(_, kind)| kind)
-}
-
-/// Kind of an abscissa of which the file says nothing.
-fn by_function(heading: &Heading, options: &Options, meta: &mut Meta) -> AxisKind {
-    let (name, domain) = codes::function(heading.function);
-    let (kind, shown) = match domain {
-        Domain::Time => (AxisKind::Time, "time in s"),
-        Domain::Frequency => (AxisKind::Frequency, "frequency in Hz"),
-        Domain::Either if options.rate.is_some() => return AxisKind::Time,
-        Domain::Either => {
-            meta.doubt("The file does not say whether the abscissa is time or frequency.");
-            return AxisKind::Index;
-        }
-    };
-    meta.doubt(format!(
-        "The file does not say what its abscissa is; by the function type, {name}, {shown} is assumed."
-    ));
-    kind
-}
-
-/// Kind of record; where function type and abscissa disagree, the abscissa decides.
-fn kind(heading: &Heading, axis: &AxisKind, stated: Option<Scaling>, meta: &mut Meta) -> Kind {
-    let (name, domain) = codes::function(heading.function);
-    let complex = heading.layout.complex;
-    if *axis == AxisKind::Time || (*axis != AxisKind::Frequency && !complex) {
-        let usual = matches!(heading.function, 0 | 1) && matches!(axis, AxisKind::Time | AxisKind::Index);
-        if *axis == AxisKind::Time && domain == Domain::Frequency {
-            meta.doubt(format!(
-                "The function type says {name}, but the abscissa is time: read as a time trace."
-            ));
-        } else if !usual {
-            meta.doubt(format!("The function type says {name}: read as a trace over its abscissa."));
-        }
-        return Kind::Trace;
-    }
-    if let Some(scaling) = stated {
-        return Kind::Spectrum(scaling);
-    }
-    let unknown = |meta: &mut Meta, doubt: String| {
-        meta.doubt(doubt);
-        Kind::Spectrum(Scaling::Unknown)
-    };
-    match heading.function {
-        4 | 5 if complex => Kind::Frf,
-        4 | 5 => unknown(
-            meta,
-            format!(
-                "A {name} with real values only: whether they are magnitudes or one of two parts is not said, so it is read as a spectrum."
-            ),
-        ),
-        2 | 3 => unknown(
-            meta,
-            format!(
-                "Whether the lines of this {name} are squared RMS or squared peak values, the format does not say."
-            ),
-        ),
-        12 => unknown(
-            meta,
-            "Whether the lines of this spectrum are peak or RMS amplitudes, the format does not say."
-                .to_owned(),
-        ),
-        6 | 21 | 26 => Kind::Spectrum(Scaling::Coherence),
-        9 => Kind::Spectrum(Scaling::Psd),
-        10 => Kind::Spectrum(Scaling::Energy),
-        _ => unknown(
-            meta,
-            format!(
-                "The function type says {name}: read as a spectrum over its abscissa, its scaling is not known."
-            ),
-        ),
-    }
-}
-
-/// What an identification line of this crate's own writer says: `scaling rms; window hann; enbw 1.5`.
-#[derive(Debug, Default)]
-struct Stated {
-    scaling: Option<Scaling>,
-    window: Option<Window>,
-    enbw: Option<f64>,
-}
-
-impl Stated {
-    fn of(line: &str) -> Stated {
-        let mut stated = Stated::default();
-        if !line.starts_with("scaling ") {
-            return stated;
-        }
-        for (key, value) in line.split("; ").filter_map(|part| part.split_once(' ')) {
-            match key {
-                "scaling" => {
-                    stated.scaling = [
-                        Scaling::Peak,
-                        Scaling::Rms,
-                        Scaling::Power,
-                        Scaling::Psd,
-                        Scaling::Energy,
-                        Scaling::Coherence,
-                    ]
-                    .into_iter()
-                    .find(|s| s.name() == value);
-                }
-                "window" => stated.window = Window::from_name(value),
-                "enbw" => stated.enbw = value.parse().ok().filter(|v: &f64| v.is_finite() && *v > 0.0),
-                _ => {}
-            }
-        }
-        stated
-    }
 }

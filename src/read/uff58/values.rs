@@ -3,9 +3,9 @@
 use super::layout::Layout;
 use super::sink::Sink;
 use crate::error::{Error, Result};
-use crate::read::number;
 use crate::read::uff::delimiter::is_delimiter;
 use crate::read::uff::stream::Stream;
+use crate::read::{missing, number};
 
 /// Numbers gathered before they go to the sink: they stay in the first-level cache.
 const CHUNK: usize = 1536;
@@ -240,15 +240,12 @@ fn tokens(line: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
 #[cold]
 fn odd_token(stream: &Stream, column: usize, token: &[u8]) -> Error {
     let found = String::from_utf8_lossy(&token[..token.len().min(40)]).into_owned();
-    let error = |expected| {
-        let place = stream.place().column(column as u64);
-        Error::input(place, format!("{found:?} among the values of data set 58"), expected)
-    };
+    let found = format!("{found:?} among the values of data set 58");
+    let place = stream.place().column(column as u64);
     if number::is_missing(token) {
-        error("a finite number").hint("keep missing values with --allow-missing")
-    } else {
-        error("numbers in the columns of record 12 or between blanks, or the closing -1")
+        return missing::refusal(place, found);
     }
+    Error::input(place, found, "numbers in the columns of record 12 or between blanks, or the closing -1")
 }
 
 /// How binary numbers are stored.
@@ -291,12 +288,7 @@ pub fn binary<S: Sink>(
         }
         if !allow_missing && let Some(index) = chunk.odd() {
             let byte = position + (index / layout.columns() * size) as u64;
-            return Err(Error::input(
-                stream.byte_place(byte),
-                "a value that is not a finite number",
-                "finite numbers",
-            )
-            .hint("keep missing values with --allow-missing"));
+            return Err(missing::refusal(stream.byte_place(byte), "a value that is not a finite number"));
         }
         chunk.flush();
     }

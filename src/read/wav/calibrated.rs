@@ -1,6 +1,6 @@
 //! A wave file block by block in the units of its channels.
 
-use super::{WavStream, beyond_full_scale, describe, dress, missing, open};
+use super::{WavStream, beyond_full_scale, describe, dress, gaps, open};
 use crate::error::Result;
 use crate::read::reader::Options;
 use crate::read::{Source, Summary};
@@ -82,7 +82,7 @@ impl Calibrated {
                 let places: Vec<usize> = (0..values.len()).filter(|i| !values[*i].is_finite()).collect();
                 if !self.allow_missing {
                     let listed = places.iter().map(|i| (self.at + i, *channel));
-                    return Err(missing(&self.path, places.len(), listed));
+                    return Err(gaps(&self.path, places.len(), listed));
                 }
                 for i in places {
                     values[i] = f64::NAN;

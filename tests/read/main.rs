@@ -1,0 +1,11 @@
+//! Reading: files of other people's instruments, and what can be odd about a file.
+
+mod ascii_rows;
+mod ascii_statements;
+mod formats;
+mod uff_binary;
+mod uff_damage;
+mod uff_files;
+mod uff_meaning;
+mod uff_set;
+mod uff_text;
