@@ -11,6 +11,7 @@ mod progress;
 mod response;
 mod run;
 mod settings;
+mod spectrum;
 mod target;
 mod waterfall;
 
@@ -35,6 +36,7 @@ fn dispatch(args: &Args) -> Result<u8> {
     let done = match &args.command {
         Command::Info(typed) => return info::run(typed, args.json),
         Command::Convert(typed) => convert::run(typed, args.json),
+        Command::Spectrum(typed) => spectrum::run(typed, args.json),
         Command::Excitation(typed) => excitation::run(typed, args.json),
         Command::Waterfall(typed) => waterfall::run(typed, args.json),
         Command::Response(typed) => response::run(typed, args.json),

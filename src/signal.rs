@@ -1,3 +1,11 @@
-//! Windows and spectra.
+//! Windows, filters, spectra, integration and frequency response functions.
 
+pub mod fft;
+pub mod filter;
+pub mod impact;
+pub mod integrate;
+pub mod segment;
+pub mod spectrum;
+pub mod transfer;
+pub mod welch;
 pub mod window;

@@ -7,6 +7,7 @@ mod info;
 mod reading;
 mod response;
 mod run;
+mod spectrum;
 mod sweep;
 mod waterfall;
 
@@ -18,6 +19,7 @@ pub use info::Info;
 pub use reading::{Channel, Decimal, Reading};
 pub use response::Response;
 pub use run::Run;
+pub use spectrum::{Estimator, Method, Spectrum};
 pub use sweep::{Sweep, Taking};
 pub use waterfall::Waterfall;
 
@@ -40,6 +42,8 @@ pub enum Command {
     Info(Info),
     /// Rewrite a file as UFF-58, CSV, WAV or NPY, chosen by the ending of OUT
     Convert(Convert),
+    /// Give the spectrum of a channel, or the frequency response function of two
+    Spectrum(Spectrum),
     /// Find the excitation frequency of every point of a sweep
     Excitation(Excitation),
     /// Draw all response spectra of a sweep as a waterfall

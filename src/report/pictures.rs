@@ -3,9 +3,11 @@
 mod frf;
 mod overlay;
 mod response;
+mod spectrum;
 mod waterfall;
 
 pub use frf::frf;
 pub use overlay::overlay;
 pub use response::response;
+pub use spectrum::{spectrum, transfer};
 pub use waterfall::{map, waterfall};

@@ -3,6 +3,7 @@
 mod answers;
 mod complaints;
 mod rig;
+mod spectrum;
 
 use serde_json::Value;
 use std::path::Path;

@@ -1,0 +1,67 @@
+//! `vibro spectrum`, as typed.
+
+use super::{Channel, Reading};
+use clap::ValueEnum;
+use std::path::PathBuf;
+
+#[derive(Debug, clap::Args)]
+pub struct Spectrum {
+    /// Measurement file with samples over time
+    pub file: PathBuf,
+    #[command(flatten)]
+    pub channel: Channel,
+    /// One transform of the whole record, or the average over segments
+    #[arg(long, value_name = "METHOD", default_value = "welch")]
+    pub method: Method,
+    /// Samples of a segment [default: 8192, or the whole of a shorter record]
+    #[arg(long, value_name = "SAMPLES")]
+    pub segment: Option<usize>,
+    /// Part of a segment that it shares with the next
+    #[arg(long, value_name = "PART", default_value_t = 0.5, allow_negative_numbers = true)]
+    pub overlap: f64,
+    /// Window: hann, rectangular, hamming, blackman, blackman-harris, flat-top
+    #[arg(long, value_name = "NAME", default_value = "hann")]
+    pub window: String,
+    /// What a line means: peak, rms, power or psd
+    #[arg(long, value_name = "NAME", default_value = "peak")]
+    pub scaling: String,
+    /// Integrations in frequency: 1 takes velocity to displacement, −1 to acceleration
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = clap::value_parser!(i8).range(-2..=2))]
+    pub integrate: i8,
+    /// Lowest frequency given, in Hz [default: two lines where integrated, else 0]
+    #[arg(long, value_name = "HZ")]
+    pub fmin: Option<f64>,
+    /// Channel of the excitation: gives the frequency response function from it
+    #[arg(long, value_name = "NAME")]
+    pub reference: Option<String>,
+    /// Which noise the function does not mind: h1 that of the response, h2 that of the excitation, hv both alike
+    #[arg(long, value_name = "NAME", default_value = "h1", requires = "reference")]
+    pub estimator: Estimator,
+    /// The excitation is a hammer: one record a blow, of --segment samples
+    #[arg(long, requires = "reference")]
+    pub hammer: bool,
+    /// Width of the force window in s
+    #[arg(long, value_name = "S", requires = "hammer")]
+    pub force_window: Option<f64>,
+    /// What an exponential window leaves of the response at the end of a record, e.g. 0.01
+    #[arg(long, value_name = "PART", requires = "hammer")]
+    pub left_at_end: Option<f64>,
+    /// Folder for the figure as SVG and PNG, and the lines as CSV and UFF
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub reading: Reading,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Method {
+    Fft,
+    Welch,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Estimator {
+    H1,
+    H2,
+    Hv,
+}

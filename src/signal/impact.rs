@@ -1,0 +1,213 @@
+//! Frequency response functions from hammer blows: one record a blow, of the force and of the response that rings down.
+//!
+//! The force counts only while the hammer touches (force window); a response that has not died away when the record ends is
+//! made to (exponential window, on the force, too). That adds damping, by an amount that is known and reported.
+
+use super::fft::Transform;
+use super::segment::Segments;
+use super::transfer::{Estimator, Transfer, transfer};
+use super::welch::Sums;
+use crate::error::{Error, Result};
+use crate::record::{Meta, Trace};
+use serde::Serialize;
+use std::f64::consts::PI;
+
+/// Part of the largest force at which a blow is noticed, and of a blow's own peak at which a second one is.
+const TRIGGER: f64 = 0.2;
+/// So many samples in a row at the very extreme are a clipped signal.
+const CLIPPED: usize = 3;
+
+/// How blows are taken out of a long record.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Blows {
+    /// Samples of one record.
+    pub length: usize,
+    /// Samples before the blow.
+    pub before: usize,
+    /// Width in s of the force window from the blow on; the whole record where `None`.
+    pub force_window: Option<f64>,
+    /// What the exponential window leaves at the end of the record, e.g. 0.01; none where `None`.
+    pub left_at_end: Option<f64>,
+}
+
+/// One blow.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Blow {
+    /// Time in s at which the force passes the trigger.
+    pub time: f64,
+    /// Largest force.
+    pub peak: f64,
+    /// Why it was left out; `None` where it counts.
+    pub rejected: Option<&'static str>,
+}
+
+/// A function from blows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BlowTransfer {
+    /// The function; an exponential window has not been corrected for.
+    pub transfer: Transfer,
+    /// Every blow.
+    pub blows: Vec<Blow>,
+    /// Decay in 1/s that the exponential window adds: a mode of f Hz seems to have a damping ratio that is this over 2πf larger.
+    pub added_decay: f64,
+}
+
+/// Finds the blows in a force, averages those that are clean, and relates the response to the force.
+///
+/// # Errors
+/// If the traces are of different rate or length, samples are missing, or fewer than two blows are clean.
+pub fn from_blows(
+    force: &Trace,
+    response: &Trace,
+    how: &Blows,
+    estimator: Estimator,
+) -> Result<BlowTransfer> {
+    let (Some(rate), Some(other)) = (force.rate(), response.rate()) else {
+        return Err(Error::refused("the sampling rate is not known").hint("state it with --rate"));
+    };
+    let n = force.values.len();
+    if rate != other || n != response.values.len() {
+        return Err(Error::refused(format!(
+            "the force has {n} samples at {rate} Hz, the response {} at {other} Hz",
+            response.values.len()
+        )));
+    }
+    if let Some(i) =
+        force.values.iter().zip(&response.values).position(|(f, r)| !(f.is_finite() && r.is_finite()))
+    {
+        return Err(Error::refused(format!("sample {i} is missing")).hint("cut the record before the gap"));
+    }
+    if how.length < 8 || how.before >= how.length {
+        return Err(Error::usage(
+            format!("records of {} samples, {} of them before the blow", how.length, how.before),
+            "at least 8 samples, and the blow among them",
+        ));
+    }
+    let blows = find(force, response, how, rate);
+    let kept: Vec<usize> =
+        blows.iter().filter(|(_, b)| b.rejected.is_none()).map(|(start, _)| *start).collect();
+    if kept.len() < 2 {
+        let why: Vec<String> = blows
+            .iter()
+            .filter_map(|(_, b)| b.rejected.map(|why| format!("{:.3} s: {why}", b.time)))
+            .take(8)
+            .collect();
+        return Err(Error::refused(format!(
+            "{} of {} blows are clean, two are needed at least{}{}",
+            kept.len(),
+            blows.len(),
+            if why.is_empty() { "" } else { ": " },
+            why.join(", ")
+        )));
+    }
+    let (decay, weights) = windows(how, rate)?;
+    let transform = Transform::new(how.length);
+    let mut work = [transform.workspace(), transform.workspace()];
+    let mut sums = Sums::new(2, true, transform.lines());
+    for start in &kept {
+        for ((work, weights), trace) in work.iter_mut().zip(&weights).zip([force, response]) {
+            let part = trace.values.get(*start..start + how.length).unwrap_or_default();
+            // The level before the blow is the zero of this record.
+            let level = part[..how.before].iter().sum::<f64>() / how.before.max(1) as f64;
+            for ((to, v), w) in work.input.iter_mut().zip(part).zip(weights) {
+                *to = (v - level) * w;
+            }
+            transform.run(work);
+        }
+        sums.add(&work);
+    }
+    let apart = Segments { length: how.length, hop: how.length };
+    let averages = sums.mean(&vec![1.0; how.length], apart, rate);
+    let metas: [Meta; 2] = [force.meta.clone(), response.meta.clone()];
+    let mut transfer = transfer(&averages, 1, &metas, estimator)?;
+    let left_out = blows.len() - kept.len();
+    if left_out > 0 {
+        transfer.warnings.push(format!("{left_out} of {} blows are left out.", blows.len()));
+    }
+    if decay > 0.0 {
+        transfer.warnings.push(format!(
+            "The exponential window adds a decay of {decay:.4} 1/s: the damping ratio of a mode at f Hz is too large by {:.4}/f.",
+            decay / (2.0 * PI)
+        ));
+        transfer.frf.meta.step("exponential_window", &[("decay", &decay)]);
+    }
+    Ok(BlowTransfer { transfer, blows: blows.into_iter().map(|(_, b)| b).collect(), added_decay: decay })
+}
+
+/// First sample of each record, and its blow.
+fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<(usize, Blow)> {
+    let values = &force.values;
+    let extreme = values.iter().copied().fold(0.0f64, |m, v| if v.abs() > m.abs() { v } else { m });
+    let sign = if extreme < 0.0 { -1.0 } else { 1.0 };
+    let up = |i: usize, level: f64| sign * values[i] > level;
+    let level = TRIGGER * extreme.abs();
+    let (mut found, mut i) = (Vec::new(), 0);
+    let clipping = [clip(values), clip(&response.values)];
+    while i < values.len() {
+        if !up(i, level) {
+            i += 1;
+            continue;
+        }
+        let (trigger, end) = (i, (i + how.length - how.before).min(values.len()));
+        let first_end = (trigger..end).find(|j| !up(*j, 0.0)).unwrap_or(end);
+        let peak = (trigger..first_end).map(|j| sign * values[j]).fold(0.0, f64::max);
+        let second = (first_end..end).any(|j| up(j, TRIGGER * peak));
+        let start = trigger.checked_sub(how.before);
+        let part = |at: &Option<f64>, v: &[f64]| {
+            at.is_some_and(|limit| overloaded(&v[start.unwrap_or(0)..end], limit))
+        };
+        let rejected = if start.is_none() || end - trigger < how.length - how.before {
+            Some("the record cuts it off")
+        } else if second {
+            Some("double hit")
+        } else if part(&clipping[0], values) || part(&clipping[1], &response.values) {
+            Some("overload")
+        } else {
+            None
+        };
+        let time = force.axis.start() + trigger as f64 / rate;
+        found.push((start.unwrap_or(0), Blow { time, peak: sign * peak, rejected }));
+        i = end.max(trigger + 1);
+    }
+    found
+}
+
+/// The level at which a signal is clipped, where it is.
+fn clip(values: &[f64]) -> Option<f64> {
+    let most = values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    (most > 0.0 && overloaded(values, most)).then_some(most)
+}
+
+fn overloaded(values: &[f64], limit: f64) -> bool {
+    let run = |w: &[f64]| w.iter().all(|v| *v == w[0] && v.abs() >= limit);
+    values.windows(CLIPPED).any(run)
+}
+
+/// Decay in 1/s, and the weights of force and response.
+fn windows(how: &Blows, rate: f64) -> Result<(f64, [Vec<f64>; 2])> {
+    let after = (how.length - how.before) as f64 / rate;
+    let decay = match how.left_at_end {
+        Some(left) if left > 0.0 && left <= 1.0 => -left.ln() / after,
+        Some(left) => {
+            return Err(Error::usage(format!("an exponential window that leaves {left}"), "above 0 to 1"));
+        }
+        None => 0.0,
+    };
+    let width = match how.force_window {
+        Some(width) if width > 0.0 => width,
+        Some(width) => return Err(Error::usage(format!("a force window of {width} s"), "a width above 0")),
+        None => f64::INFINITY,
+    };
+    let exponential: Vec<f64> =
+        (0..how.length).map(|i| (-decay * (i as f64 - how.before as f64).max(0.0) / rate).exp()).collect();
+    let force = exponential.iter().enumerate().map(|(i, weight)| {
+        let t = (i as f64 - how.before as f64) / rate;
+        // A quarter of its width to come down, so that the window itself rings little.
+        let down = if width.is_finite() { ((t - width) / (0.25 * width)).clamp(0.0, 1.0) } else { 0.0 };
+        weight * 0.5 * (1.0 + (PI * down).cos())
+    });
+    Ok((decay, [force.collect(), exponential]))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,114 @@
+use super::*;
+use crate::record::{Axis, FrfKind};
+use crate::units::Unit;
+use num_complex::Complex64;
+
+const RATE: f64 = 4096.0;
+/// One mode: mass in kg, frequency in Hz, damping ratio.
+const MODE: (f64, f64, f64) = (2.0, 60.0, 0.01);
+
+fn trace(unit: &str, values: Vec<f64>) -> Trace {
+    let meta = Meta::new(unit, Unit::parse(unit).unwrap());
+    Trace { meta, axis: Axis::time(0.0, 1.0 / RATE, values.len()), values }
+}
+
+/// Half-sine blows of 1 ms, and the displacement of the mode by the exact impulse response, sample by sample.
+fn bench(blows: &[(usize, f64)], n: usize) -> [Trace; 2] {
+    let (m, f, zeta) = MODE;
+    let (omega, width) = (2.0 * PI * f, 5);
+    let damped = omega * (1.0 - zeta * zeta).sqrt();
+    let mut force = vec![0.0; n];
+    for (at, peak) in blows {
+        for i in 0..width {
+            force[at + i] += peak * (PI * (i as f64 + 0.5) / width as f64).sin();
+        }
+    }
+    let mut response = vec![0.0; n];
+    // z is the rotating amplitude of the free motion; each sample of force is a small impulse.
+    let (mut z, turn) = (Complex64::ZERO, (Complex64::new(-zeta * omega, damped) / RATE).exp());
+    for i in 0..n {
+        response[i] = z.im / (m * damped);
+        z = (z + force[i] / RATE) * turn;
+    }
+    [trace("N", force), trace("m", response)]
+}
+
+/// Receptance of the mode with some decay more.
+fn truth(f: f64, added: f64) -> Complex64 {
+    let (m, f0, zeta) = MODE;
+    let omega = 2.0 * PI * f0;
+    let (damped, decay) = (omega * (1.0 - zeta * zeta).sqrt(), zeta * omega + added);
+    let s = Complex64::new(decay, 2.0 * PI * f);
+    1.0 / (m * (s * s + damped * damped))
+}
+
+fn near(found: &BlowTransfer, tolerance: f64) {
+    for (k, h) in found.transfer.frf.values.iter().enumerate() {
+        let f = found.transfer.frf.axis.at(k);
+        if (20.0..200.0).contains(&f) {
+            let expected = truth(f, found.added_decay);
+            assert!((h / expected - 1.0).norm() < tolerance, "{f} Hz: {h} against {expected}");
+        }
+    }
+}
+
+#[test]
+fn blows_give_the_receptance_and_the_decay_that_the_window_adds() {
+    let [force, response] = bench(&[(500, 100.0), (18_000, 80.0), (36_000, 120.0)], 53_000);
+    let how = Blows { length: 16_384, before: 100, force_window: Some(0.01), left_at_end: None };
+    let plain = from_blows(&force, &response, &how, Estimator::H1).unwrap();
+    assert_eq!(
+        (plain.transfer.frf.kind, plain.transfer.averages, plain.added_decay),
+        (FrfKind::Receptance, 3, 0.0)
+    );
+    // Sampled impulses against a continuous system: half a sample of delay and (ωΔt)²/12, at 200 Hz below 1 %; what the last
+    // blow left is e^(−ζωt) of it after four seconds.
+    near(&plain, 0.01);
+    // A quarter of the time: the response has not died away, the window sees to it.
+    let how = Blows { length: 2048, left_at_end: Some(0.001), ..how };
+    let short = from_blows(&force, &response, &how, Estimator::H1).unwrap();
+    let expected = -0.001f64.ln() / ((2048.0 - 100.0) / RATE);
+    assert!((short.added_decay / expected - 1.0).abs() < 1e-12);
+    assert!(short.transfer.warnings.iter().any(|w| w.contains("adds a decay")));
+    // The part cut off is 0.001·e^(−ζωt) of the whole, over the damped peak of the mode.
+    near(&short, 0.015);
+}
+
+#[test]
+fn double_hits_and_overload_are_left_out_by_name() {
+    let blows =
+        [(500, 100.0), (18_000, 80.0), (18_200, 40.0), (36_000, 120.0), (54_000, 90.0), (69_900, 90.0)];
+    let [mut force, response] = bench(&blows, 70_000);
+    force.values.iter_mut().for_each(|v| *v = v.min(78.0));
+    let how = Blows { length: 8192, before: 100, force_window: None, left_at_end: None };
+    // The blows of 100 and 120 N pass 78 N with the sample in the middle and both its neighbours: three equal ones.
+    let found = from_blows(&force, &response, &how, Estimator::H1).err().unwrap().to_string();
+    assert!(
+        found.contains("double hit") && found.contains("overload") && found.contains("cuts it off"),
+        "{found}"
+    );
+    let [force, response] = bench(&blows, 70_000);
+    let found = from_blows(&force, &response, &how, Estimator::H1).unwrap();
+    let rejected: Vec<Option<&str>> = found.blows.iter().map(|b| b.rejected).collect();
+    assert_eq!(rejected, [None, Some("double hit"), None, None, Some("the record cuts it off")]);
+    assert!((found.blows[2].time - 36_000.0 / RATE).abs() < 3.0 / RATE);
+    assert!((found.blows[2].peak - 120.0).abs() < 1e-9);
+    assert_eq!(found.transfer.averages, 3);
+}
+
+#[test]
+fn impossible_windows_are_refused() {
+    let [force, response] = bench(&[(500, 100.0), (5000, 80.0)], 20_000);
+    let how = Blows { length: 1024, before: 100, force_window: None, left_at_end: None };
+    for bad in [
+        Blows { length: 4, ..how },
+        Blows { before: 1024, ..how },
+        Blows { left_at_end: Some(0.0), ..how },
+        Blows { left_at_end: Some(2.0), ..how },
+        Blows { force_window: Some(0.0), ..how },
+    ] {
+        assert!(from_blows(&force, &response, &bad, Estimator::H1).is_err(), "{bad:?}");
+    }
+    let short = trace("m", vec![0.0; 10]);
+    assert!(from_blows(&force, &short, &how, Estimator::H1).err().unwrap().to_string().contains("10 at"));
+}

@@ -1,0 +1,129 @@
+//! `vibro spectrum`: keys, numbers and complaints.
+
+use super::{complaint, json, text, vibro};
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Force (noise) and velocity (its copy two samples later, doubled) with a sine of 64 Hz; 1024 Hz.
+fn bench(folder: &Path) -> PathBuf {
+    let (mut state, mut force) = (1u64, Vec::new());
+    for _ in 0..20_000 {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        force.push((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5);
+    }
+    let mut table = String::from("time [s],force [N],velocity [mm/s]\n");
+    for i in 20..force.len() {
+        let t = (i - 20) as f64 / 1024.0;
+        let velocity = 2.0 * force[i - 2] + 5.0 * (TAU * 64.0 * t).cos();
+        let _ = writeln!(table, "{t:.12},{:.9},{velocity:.9}", force[i]);
+    }
+    let path = folder.join("bench.csv");
+    fs::write(&path, table).unwrap();
+    path
+}
+
+fn numbers(value: &serde_json::Value, key: &str) -> Vec<f64> {
+    value[key].as_array().unwrap().iter().map(|v| v.as_f64().unwrap_or(f64::NAN)).collect()
+}
+
+#[test]
+fn lines_of_a_channel() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = bench(folder.path());
+    let value = json(&["spectrum", text(&path), "--channel", "velocity", "--segment", "1024"]);
+    assert_eq!((value["scaling"].as_str(), value["unit"].as_str()), (Some("peak"), Some("m/s")));
+    assert_eq!((value["window"].as_str(), value["averages"].as_u64()), (Some("hann"), Some(38)));
+    assert!((value["enbw"].as_f64().unwrap() - 1.5).abs() < 1e-12);
+    let (f, v) = (numbers(&value, "frequency"), numbers(&value, "value"));
+    assert_eq!((f.len(), f[64]), (513, 64.0));
+    // 5 mm/s over noise of 2·0.29 mm/s·√(2·1.5/1024)·√2 a line.
+    assert!((v[64] / 5e-3 - 1.0).abs() < 0.02, "{}", v[64]);
+    let once = json(&["spectrum", text(&path), "--channel", "2", "--segment", "1024", "--integrate", "1"]);
+    assert_eq!(once["unit"], "m");
+    // Two lines and above; the first is named.
+    assert_eq!(numbers(&once, "frequency")[0], 2.0);
+    assert!((numbers(&once, "value")[62] / (v[64] / (TAU * 64.0)) - 1.0).abs() < 1e-9);
+    assert!(once["warnings"][0].as_str().unwrap().contains("left out"));
+    let whole = json(&[
+        "spectrum",
+        text(&path),
+        "--channel",
+        "2",
+        "--method",
+        "fft",
+        "--scaling",
+        "psd",
+        "--fmin",
+        "10",
+    ]);
+    assert_eq!((whole["averages"].as_u64(), whole["unit"].as_str()), (Some(1), Some("(m/s)²/Hz")));
+    assert!(numbers(&whole, "frequency")[0] >= 9.999);
+}
+
+#[test]
+fn response_to_a_reference_with_files_that_are_read_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, out) = (bench(folder.path()), folder.path().join("out"));
+    let arguments =
+        ["spectrum", text(&path), "--reference", "force", "--segment", "256", "--out", text(&out)];
+    let value = json(&arguments);
+    assert_eq!((value["scaling"].as_str(), value["unit"].as_str()), (Some("frf"), Some("(m/s)/N")));
+    let (f, h, phase) = (numbers(&value, "frequency"), numbers(&value, "value"), numbers(&value, "phase"));
+    let std = numbers(&value, "value_std");
+    assert_eq!((numbers(&value, "coherence").len(), numbers(&value, "phase_std").len()), (f.len(), f.len()));
+    // Away from the sine of 64 Hz: a gain of 2 mm/s over 1 N, two samples late.
+    for k in 30..100 {
+        assert!((h[k] - 2e-3).abs() < 6.0 * std[k] + 2e-5, "{} Hz: {} ± {}", f[k], h[k], std[k]);
+        let late = -360.0 * f[k] * 2.0 / 1024.0;
+        assert!(
+            ((phase[k] - late + 540.0).rem_euclid(360.0) - 180.0).abs() < 1.5,
+            "{} Hz: {}",
+            f[k],
+            phase[k]
+        );
+    }
+    for name in ["frf.svg", "frf.png", "frf.csv", "frf.uff"] {
+        assert!(out.join(name).is_file(), "{name}");
+    }
+    for name in ["frf.csv", "frf.uff"] {
+        let read = json(&["info", text(&out.join(name))]);
+        let records = read["files"][0]["records"].as_array().unwrap();
+        let frf = records.iter().find(|r| r["kind"] == "frf").unwrap();
+        assert_eq!((frf["quantity"].as_str(), frf["n"].as_u64()), (Some("mobility"), Some(128)), "{name}");
+    }
+    let receptance =
+        json(&["spectrum", text(&path), "--reference", "1", "--segment", "256", "--integrate", "1"]);
+    assert_eq!(receptance["unit"], "m/N");
+    assert!(vibro(&arguments).status.success());
+}
+
+#[test]
+fn what_has_no_answer_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = bench(folder.path());
+    let ask = |more: &[&str], code| {
+        let mut arguments = vec!["spectrum", text(&path)];
+        arguments.extend(more);
+        complaint(&arguments, code)
+    };
+    assert!(ask(&[], 2).contains("force, velocity"));
+    assert!(ask(&["--channel", "x"], 2).contains("\"velocity\""));
+    assert!(ask(&["--channel", "1", "--segment", "30000"], 1).contains("not one segment"));
+    assert!(ask(&["--channel", "1", "--overlap", "1"], 2).contains("overlap"));
+    assert!(ask(&["--channel", "1", "--window", "kaiser"], 2).contains("hann"));
+    assert!(ask(&["--channel", "1", "--scaling", "decibel"], 2).contains("psd"));
+    assert!(
+        ask(&["--channel", "2", "--reference", "1", "--segment", "19980"], 1).contains("coherence of one")
+    );
+    let plain = folder.path().join("plain.txt");
+    fs::write(&plain, "1\n2\n3\n1\n2\n3\n1\n2\n3\n4\n").unwrap();
+    assert!(complaint(&["spectrum", text(&plain)], 2).contains("--rate"));
+    fs::write(&plain, "5\n".repeat(100)).unwrap();
+    assert!(complaint(&["spectrum", text(&plain), "--rate", "100"], 1).contains("nothing but the value 5"));
+    fs::write(&plain, "5\nNaN\n".repeat(50)).unwrap();
+    assert!(complaint(&["spectrum", text(&plain), "--rate", "100"], 2).contains("--allow-missing"));
+    let missing = ["spectrum", text(&plain), "--rate", "100", "--allow-missing"];
+    assert!(complaint(&missing, 1).contains("is missing"));
+}
