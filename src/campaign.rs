@@ -29,12 +29,14 @@
 
 mod entry;
 mod locate;
+mod record;
 
-pub use entry::{Compute, Drive, RecordEntry, SweepEntry};
+pub use entry::{Compute, Drive, SweepEntry};
+pub use record::{DrillEntry, DropEntry, FrfEntry, ImpactsEntry, PulseEntry, RecordEntry};
 
 use crate::error::{Error, Place, Result};
 use crate::model::Rig;
-use crate::read::{SweepList, SweepReader, inside};
+use crate::read::{Recording, SweepList, SweepReader, inside};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -56,15 +58,15 @@ pub struct Campaign {
     /// Stepped-sine sweeps.
     pub sweep: Vec<SweepEntry>,
     /// Frequency response functions.
-    pub frf: Vec<RecordEntry>,
+    pub frf: Vec<FrfEntry>,
     /// Impact traces.
-    pub impacts: Vec<RecordEntry>,
+    pub impacts: Vec<ImpactsEntry>,
     /// Drop tests.
-    pub drop: Vec<RecordEntry>,
+    pub drop: Vec<DropEntry>,
     /// Contact pulses.
-    pub pulse: Vec<RecordEntry>,
+    pub pulse: Vec<PulseEntry>,
     /// Hammer-drill traces.
-    pub drill: Vec<RecordEntry>,
+    pub drill: Vec<DrillEntry>,
     /// What to compute, and how.
     pub compute: Compute,
     #[serde(skip)]
@@ -137,7 +139,7 @@ impl Campaign {
             let from = self.text.find("[compute]");
             self.at(locate::find(&self.text, key, from), why)
         })?;
-        for entry in [&self.frf, &self.impacts, &self.drop, &self.pulse, &self.drill].into_iter().flatten() {
+        for entry in self.records() {
             entry.check().map_err(|why| self.at(entry.file.span(), why))?;
         }
         let mut seen: Vec<&str> = Vec::new();
@@ -150,6 +152,16 @@ impl Campaign {
             entry.check().map_err(|why| self.at(why.span, why.found).hint(why.hint))?;
         }
         Ok(())
+    }
+
+    /// The common keys of all entries of files.
+    fn records(&self) -> impl Iterator<Item = RecordEntry> {
+        let frf = self.frf.iter().map(FrfEntry::record);
+        let impacts = self.impacts.iter().map(ImpactsEntry::record);
+        let drop = self.drop.iter().map(DropEntry::record);
+        let pulse = self.pulse.iter().map(PulseEntry::record);
+        let drill = self.drill.iter().map(DrillEntry::record);
+        frf.chain(impacts).chain(drop).chain(pulse).chain(drill)
     }
 
     /// A sentence that names the keys of the rig that are not given and were taken from the thesis' rig; `None` where
@@ -220,6 +232,14 @@ impl Campaign {
             excitation: Vec::new(),
             response: all(&entry.response)?,
         })
+    }
+
+    /// The records of an entry's file.
+    ///
+    /// # Errors
+    /// If it leads outside the folder or cannot be read.
+    pub fn recording(&self, entry: &RecordEntry, allow_outside: bool) -> Result<Recording> {
+        entry.reader().from_path(self.record_path(entry, allow_outside)?)
     }
 
     /// Path of a record entry.

@@ -11,6 +11,7 @@
 
 mod abscissa;
 mod ascii;
+mod choose;
 mod csv;
 mod format;
 mod header;
@@ -21,6 +22,7 @@ mod source;
 mod sweep;
 mod sweep_list;
 mod text;
+mod traces;
 mod uff;
 mod uff58;
 pub(crate) mod wav;
@@ -33,4 +35,5 @@ pub use reader::{Options, Reader, Recording};
 pub use source::Source;
 pub use sweep::SweepReader;
 pub use sweep_list::{SweepList, inside};
+pub use traces::Traces;
 pub use wav::WavStream;

@@ -1,3 +1,4 @@
-//! Windows and spectra.
+//! Windows, filters and spectra.
 
+pub mod filter;
 pub mod window;

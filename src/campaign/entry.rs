@@ -192,26 +192,6 @@ impl SweepEntry {
     }
 }
 
-/// A file with records, and what is known of it beside.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RecordEntry {
-    /// Name; the file's name where it is left out.
-    pub name: Option<String>,
-    /// File.
-    pub file: Spanned<PathBuf>,
-    /// Channel by name; all where it is left out.
-    pub channel: Option<String>,
-    /// Unit of the stored values.
-    pub unit: Option<String>,
-    /// Factor on the stored values: volts or m/s at full scale for a wave file.
-    pub calibration: Option<f64>,
-    /// Sampling rate in Hz, where the file does not say.
-    pub rate: Option<f64>,
-    /// Base band in Hz, where the file does not say.
-    pub base_band: Option<f64>,
-}
-
 /// What to compute, and how.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -226,23 +206,6 @@ pub struct Compute {
     pub fmin: Option<f64>,
     /// Highest frequency in waterfalls, in Hz. Default: the base band.
     pub fmax: Option<f64>,
-}
-
-impl RecordEntry {
-    /// What cannot be, as a sentence.
-    pub(super) fn check(&self) -> Result<(), String> {
-        for (key, value) in
-            [("calibration", self.calibration), ("rate", self.rate), ("base_band", self.base_band)]
-        {
-            if let Some(v) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
-                return Err(format!("{key} = {v} of this file is not a finite number above 0"));
-            }
-        }
-        match self.unit.as_deref().filter(|u| Unit::parse(u).is_none()) {
-            Some(unit) => Err(format!("the unit {unit:?} of this file is not known")),
-            None => Ok(()),
-        }
-    }
 }
 
 impl Compute {

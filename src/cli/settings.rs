@@ -1,11 +1,11 @@
 //! From what was typed to what is meant: checked options.
 
-use super::args::{Decimal, Reading, Sweep, Taking};
+use super::args::{Channel, Decimal, Reading, Sweep, Taking};
 use crate::campaign::Campaign;
 use crate::error::{Error, Result};
 use crate::measure::response::{ResponseOptions, to_displacement};
 use crate::read::{Format, Reader, SweepList, SweepReader};
-use crate::record::{Scaling, Window};
+use crate::record::{Scaling, Trace, Window};
 use crate::units::{Quantity, Unit};
 use std::path::Path;
 
@@ -27,6 +27,19 @@ pub fn reader(typed: &Reading) -> Result<Reader> {
         .unit(unit)
         .decimal_comma(decimal_comma)
         .complex(typed.complex))
+}
+
+/// The trace that is meant, and the sentences about it and its file.
+///
+/// # Errors
+/// As [`reader`]; if the file cannot be read or has no such trace.
+#[allow(dead_code)] // until the first command on a trace
+pub fn trace(file: &Path, reading: &Reading, chosen: &Channel) -> Result<(Trace, Vec<String>)> {
+    let recording = reader(reading)?.from_path(file)?;
+    let trace = recording.trace(chosen.channel.as_deref(), chosen.calibration)?;
+    let mut doubts = recording.doubts;
+    doubts.extend(trace.meta.doubts.iter().cloned());
+    Ok((trace, doubts))
 }
 
 fn format(name: &str) -> Result<Format> {

@@ -192,8 +192,12 @@ impl Reader {
         Ok((entry.format, headers, doubts))
     }
 
+    pub(super) fn options(&self) -> &Options {
+        &self.options
+    }
+
     /// The format of a source, and the source itself: in memory where its first bytes are all of it.
-    fn entry(&self, source: &Source) -> Result<(&'static Entry, Source)> {
+    pub(super) fn entry(&self, source: &Source) -> Result<(&'static Entry, Source)> {
         for (what, value) in [("sampling rate", self.options.rate), ("base band", self.options.base_band)] {
             if let Some(value) = value.filter(|v| !POSSIBLE.contains(v)) {
                 let found = format!("a {what} of {value} Hz was stated");

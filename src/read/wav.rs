@@ -10,10 +10,12 @@
 //! the opaque unit `FS`, until [`crate::record::Trace::calibrate`] gives them a unit. A file written by `write::wav`
 //! carries its calibration in a comment (see [`scales`]), which is applied.
 
+mod calibrated;
 mod layout;
 mod scales;
 mod stream;
 
+pub(super) use calibrated::Calibrated;
 pub(crate) use scales::{Scale, Scales};
 pub use stream::WavStream;
 
@@ -23,6 +25,7 @@ use super::{Header, Source, Summary};
 use crate::error::{Error, Place, Result};
 use crate::record::{Axis, Meta, Record, Trace};
 use crate::units::{self, Unit};
+use std::path::Path;
 
 /// The unit of values without a calibration.
 const FULL_SCALE: &str = "FS";
@@ -96,7 +99,7 @@ fn pass(
 ) -> Result<Vec<Summary>> {
     let mut found = vec![Summary::default(); stream.channels()];
     let mut block = Vec::new();
-    let (mut missing, mut listed, mut first) = (0usize, Vec::new(), 0usize);
+    let (mut count, mut listed, mut first) = (0usize, Vec::new(), 0usize);
     loop {
         let frames = stream.next_block(&mut block)?;
         if frames == 0 {
@@ -106,9 +109,9 @@ fn pass(
             for (i, value) in values.iter_mut().enumerate() {
                 if !value.is_finite() {
                     *value = f64::NAN;
-                    missing += 1;
+                    count += 1;
                     if listed.len() < LISTED {
-                        listed.push(format!("{} of channel {}", first + i, channel + 1));
+                        listed.push((first + i, channel));
                     }
                 }
                 summary.push(value.abs());
@@ -117,15 +120,24 @@ fn pass(
         }
         first += frames;
     }
-    if missing > 0 && !options.allow_missing {
-        return Err(Error::input(
-            Place::file(source.path()),
-            format!("{missing} sample(s) are NaN or infinite: frame {}", listed.join(", ")),
-            "a number in every sample",
-        )
-        .hint("give --allow-missing to keep them as missing"));
+    if count > 0 && !options.allow_missing {
+        return Err(missing(source.path(), count, listed.into_iter()));
     }
     Ok(found)
+}
+
+/// The complaint about `count` missing samples, of which the first are listed by frame and channel.
+fn missing(path: &Path, count: usize, listed: impl Iterator<Item = (usize, usize)>) -> Error {
+    let places: Vec<String> =
+        listed.take(LISTED).map(|(frame, channel)| format!("{frame} of channel {}", channel + 1)).collect();
+    let found = format!("{count} sample(s) are NaN or infinite: frame {}", places.join(", "));
+    Error::input(Place::file(path), found, "a number in every sample")
+        .hint("give --allow-missing to keep them as missing")
+}
+
+/// The doubt about values without a calibration that a fraction of full scale cannot have.
+fn beyond_full_scale(max: f64) -> String {
+    format!("Values reach {max}, beyond full scale: they may be in a physical unit already.")
 }
 
 /// Channel `channel` without values and without calibration.
@@ -150,7 +162,7 @@ fn describe(
     meta.doubt(Trace::UNCALIBRATED);
     let scaled = scales.is_some() || options.unit.is_some();
     if let Some((_, max)) = summary.max.filter(|(_, max)| *max > 1.0 && !scaled) {
-        meta.doubt(format!("Values reach {max}, beyond full scale: they may be in a physical unit already."));
+        meta.doubt(beyond_full_scale(max));
     }
     let mut rate = stream.rate();
     if let Some(stated) = options.rate.filter(|stated| *stated != rate) {

@@ -5,16 +5,15 @@ mod frf;
 pub use frf::{FrfPeak, FrfResult};
 
 use super::{Figure, Output, files, page, pictures, tables};
-use crate::campaign::{Campaign, RecordEntry};
+use crate::campaign::{Campaign, DrillEntry, DropEntry, ImpactsEntry, PulseEntry};
 use crate::compare::{Overlay, overlay};
 use crate::error::{Error, Result};
 use crate::measure::resonance::{NamedCurve, crossings, deepest, name_modes};
 use crate::measure::response::{Response, ResponseOptions, response, to_displacement};
 use crate::measure::waterfall::{Waterfall, waterfall};
 use crate::model::Rig;
-use crate::read::{Header, Reader};
+use crate::read::Header;
 use crate::record::{Direction, Sweep};
-use crate::units::Unit;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -280,26 +279,19 @@ fn all_crossings(responses: &[Response]) -> Vec<Crossing> {
     found
 }
 
-fn reader(entry: &RecordEntry) -> Reader {
-    Reader::new()
-        .rate(entry.rate)
-        .base_band(entry.base_band)
-        .unit(entry.unit.as_deref().map(Unit::parse_or_opaque))
-}
-
 /// Parts of a campaign that have no analysis yet are listed, and that is said.
 fn listed(campaign: &Campaign, options: JobOptions, warnings: &mut Vec<String>) -> Result<Vec<Listed>> {
     let parts = [
-        ("impacts", &campaign.impacts),
-        ("drop", &campaign.drop),
-        ("pulse", &campaign.pulse),
-        ("drill", &campaign.drill),
+        ("impacts", campaign.impacts.iter().map(ImpactsEntry::record).collect::<Vec<_>>()),
+        ("drop", campaign.drop.iter().map(DropEntry::record).collect()),
+        ("pulse", campaign.pulse.iter().map(PulseEntry::record).collect()),
+        ("drill", campaign.drill.iter().map(DrillEntry::record).collect()),
     ];
     let mut listed = Vec::new();
     for (part, entries) in parts {
-        for entry in entries {
+        for entry in &entries {
             let path = campaign.record_path(entry, options.allow_outside)?;
-            let (_, records, doubts) = reader(entry).survey(&path)?;
+            let (_, records, doubts) = entry.reader().survey(&path)?;
             merge(warnings, &file_name(&path), &doubts);
             if entry.calibration.is_some() {
                 warnings.push(format!(

@@ -87,6 +87,12 @@ impl WavStream {
     /// # Errors
     /// If the file cannot be read.
     pub fn next_block(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize> {
+        let all: Vec<usize> = (0..self.layout.channels).collect();
+        self.next_block_of(&all, block)
+    }
+
+    /// As [`WavStream::next_block`] for these channels only, each below [`WavStream::channels`].
+    pub(super) fn next_block_of(&mut self, channels: &[usize], block: &mut Vec<Vec<f64>>) -> Result<usize> {
         let sample = self.layout.sample;
         let frame = sample.bytes() * self.layout.channels;
         let frames = ((BLOCK / frame).max(1) as u64).min(self.left);
@@ -98,8 +104,8 @@ impl WavStream {
         // A file that shrank since it was opened ends early.
         let frames = self.bytes.len() / frame;
         self.left = if frames == 0 { 0 } else { self.left - frames as u64 };
-        block.resize_with(self.layout.channels, Vec::new);
-        for (channel, values) in block.iter_mut().enumerate() {
+        block.resize_with(channels.len(), Vec::new);
+        for (channel, values) in channels.iter().zip(&mut *block) {
             values.clear();
             let samples = self.bytes.chunks_exact(frame).map(|f| &f[channel * sample.bytes()..]);
             values.extend(samples.map(|s| sample.value(&s[..sample.bytes()])));

@@ -1,7 +1,7 @@
 //! Frequency response functions of a campaign: figures and peaks.
 
-use super::{JobOptions, file_name, merge, reader};
-use crate::campaign::Campaign;
+use super::{JobOptions, file_name, merge};
+use crate::campaign::{Campaign, FrfEntry};
 use crate::error::{Error, Result};
 use crate::measure::peaks::frf_peaks;
 use crate::record::{Frf, FrfKind, Record, Values};
@@ -46,10 +46,10 @@ pub(super) fn frfs(
     warnings: &mut Vec<String>,
 ) -> Result<Vec<FrfResult>> {
     let mut results = Vec::new();
-    for entry in &campaign.frf {
-        let path = campaign.record_path(entry, options.allow_outside)?;
-        let recording = reader(entry).from_path(&path)?;
-        merge(warnings, &file_name(&path), &recording.doubts);
+    for entry in campaign.frf.iter().map(FrfEntry::record) {
+        let recording = campaign.recording(&entry, options.allow_outside)?;
+        let path = &recording.path;
+        merge(warnings, &file_name(path), &recording.doubts);
         let records = recording.records.into_iter();
         let wanted = records.filter(|r| entry.channel.as_ref().is_none_or(|c| *c == r.meta().name));
         let before = results.len();
@@ -68,13 +68,13 @@ pub(super) fn frfs(
                 })
                 .collect();
             let marks: Vec<(f64, f64)> = peaks.iter().map(|p| (p.frequency, p.magnitude)).collect();
-            let name = entry.name.clone().unwrap_or_else(|| file_name(&path));
+            let name = entry.name.clone().unwrap_or_else(|| file_name(path));
             let number = results.len() + 1;
             figures.push((format!("frf_{number}"), pictures::frf(&name, &frf, &marks)));
             merge(warnings, &name, &frf.meta.doubts);
             results.push(FrfResult {
                 name,
-                file: file_name(&path),
+                file: file_name(path),
                 quantity: frf.meta.quantity.name(),
                 unit: frf.meta.unit.symbol().to_owned(),
                 peaks,

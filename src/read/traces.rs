@@ -1,0 +1,275 @@
+//! Time traces of one file block by block.
+
+use super::wav::Calibrated;
+use super::{Format, Reader, Source};
+use crate::error::{Error, Place, Result};
+use crate::record::{Meta, Record, Trace};
+use std::path::{Path, PathBuf};
+
+/// Frames of a block from memory.
+const BLOCK: usize = 16 * 1024;
+
+/// How far two channels of one record may be apart in time, in sampling intervals.
+const APART: f64 = 0.01;
+
+/// The time traces of one file, all of one sampling rate and length, handed out block by block in SI units.
+///
+/// A wave file is read as it goes, so that memory does not grow with its length; any other format is read whole first.
+///
+/// ```
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("rig.csv");
+/// # std::fs::write(&path, "t [s],force [N],velocity [mm/s]\n0,1,2\n0.5,3,4\n")?;
+/// use vibroimpact::read::Reader;
+/// let mut traces = Reader::new().stream(&path)?;
+/// let velocity = traces.channel("velocity")?;
+/// let (mut block, mut sum) = (Vec::new(), 0.0);
+/// while traces.next_block(&mut block)? > 0 {
+///     sum += block[velocity].iter().sum::<f64>();
+/// }
+/// assert_eq!((traces.rate(), traces.frames(), sum), (2.0, 2, 0.006));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Traces {
+    path: PathBuf,
+    channels: Vec<Meta>,
+    doubts: Vec<String>,
+    rate: f64,
+    start: f64,
+    frames: usize,
+    origin: Origin,
+}
+
+enum Origin {
+    Wav(Box<Calibrated>),
+    Memory { values: Vec<Vec<f64>>, at: usize },
+}
+
+impl Reader {
+    /// Opens all time traces of a file to be read block by block.
+    ///
+    /// # Errors
+    /// As [`Reader::from_path`]; if the file holds no trace, or its traces have no sampling rate, or different rates,
+    /// lengths or start times: [`Reader::stream_channels`] takes those that belong together.
+    pub fn stream(&self, path: impl AsRef<Path>) -> Result<Traces> {
+        self.stream_channels(path, &[])
+    }
+
+    /// As [`Reader::stream`] for some channels, by name or number from 1, in the order given; all where none is named.
+    ///
+    /// # Errors
+    /// As [`Reader::stream`]; if there is no such channel.
+    pub fn stream_channels(&self, path: impl AsRef<Path>, channels: &[&str]) -> Result<Traces> {
+        let (entry, source) = self.entry(&Source::file(path)?)?;
+        let path = source.path().to_owned();
+        if entry.format == Format::Wav {
+            let mut stream = Calibrated::open(&source, self.options())?;
+            let chosen = choose(&path, channels, stream.channels().iter().map(|t| &t.meta))?;
+            let traces = stream.keep(&chosen);
+            let doubts = stream.doubts().to_vec();
+            return Traces::of(path, doubts, &traces, stream.frames(), Origin::Wav(Box::new(stream)));
+        }
+        let recording = self.from_source(&source)?;
+        let kinds: Vec<&str> = recording.records.iter().map(Record::kind).collect();
+        let nothing = no_trace(&path, &kinds);
+        let traces = recording.records.into_iter().filter_map(|record| match record {
+            Record::Trace(trace) => Some(trace),
+            _ => None,
+        });
+        let mut all: Vec<Option<Trace>> = traces.map(Some).collect();
+        if all.is_empty() {
+            return Err(nothing);
+        }
+        let chosen = choose(&path, channels, all.iter().flatten().map(|t| &t.meta))?;
+        let mut traces: Vec<Trace> = chosen.iter().filter_map(|i| all.get_mut(*i)?.take()).collect();
+        check_lengths(&path, &traces)?;
+        let values: Vec<Vec<f64>> = traces.iter_mut().map(|t| std::mem::take(&mut t.values)).collect();
+        let frames = values.first().map_or(0, Vec::len);
+        Traces::of(path, recording.doubts, &traces, frames, Origin::Memory { values, at: 0 })
+    }
+}
+
+impl Traces {
+    fn of(
+        path: PathBuf,
+        doubts: Vec<String>,
+        traces: &[Trace],
+        frames: usize,
+        origin: Origin,
+    ) -> Result<Traces> {
+        let (rate, start) = clock(&path, traces, frames)?;
+        let channels = traces.iter().map(|t| t.meta.clone()).collect();
+        Ok(Traces { path, channels, doubts, rate, start, frames, origin })
+    }
+
+    /// File.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Name, unit, doubts and history of each channel; the values are in its unit.
+    pub fn channels(&self) -> &[Meta] {
+        &self.channels
+    }
+
+    /// Index of a channel by its name or by its number from 1.
+    ///
+    /// # Errors
+    /// If there is none, or two have this name.
+    pub fn channel(&self, channel: &str) -> Result<usize> {
+        find(&self.path, channel, self.channels.iter())
+    }
+
+    /// Sampling rate in Hz.
+    pub fn rate(&self) -> f64 {
+        self.rate
+    }
+
+    /// Time of the first sample in s.
+    pub fn start(&self) -> f64 {
+        self.start
+    }
+
+    /// Samples of each channel.
+    pub fn frames(&self) -> usize {
+        self.frames
+    }
+
+    /// Sentences about the file and its channels, these with their names where there are several. What only the values
+    /// show is among them once all have been read.
+    pub fn doubts(&self) -> Vec<String> {
+        let several = self.channels.len() > 1;
+        let mut all = self.doubts.clone();
+        for meta in &self.channels {
+            let named = several && !meta.name.is_empty();
+            all.extend(
+                meta.doubts.iter().map(|d| if named { format!("{}: {d}", meta.name) } else { d.clone() }),
+            );
+        }
+        all
+    }
+
+    /// Replaces the content of `block` by the next samples, one `Vec` a channel in SI units, and returns how many there
+    /// are of each; 0 at the end. Missing samples are NaN, where they are allowed.
+    ///
+    /// # Errors
+    /// If the file cannot be read, or a sample is missing (or beyond all numbers in its unit) and that is not allowed.
+    pub fn next_block(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize> {
+        match &mut self.origin {
+            Origin::Wav(stream) => {
+                let frames = stream.next_block(block)?;
+                if frames == 0 {
+                    stream.doubt(&mut self.channels);
+                }
+                Ok(frames)
+            }
+            Origin::Memory { values, at } => {
+                let end = at.saturating_add(BLOCK).min(self.frames);
+                block.resize_with(values.len(), Vec::new);
+                for (out, column) in block.iter_mut().zip(values) {
+                    out.clear();
+                    out.extend_from_slice(column.get(*at..end).unwrap_or_default());
+                }
+                let frames = end - *at;
+                *at = end;
+                Ok(frames)
+            }
+        }
+    }
+}
+
+/// Indices of the channels named; of all where none is.
+fn choose<'a>(
+    path: &Path,
+    named: &[&str],
+    all: impl Iterator<Item = &'a Meta> + Clone,
+) -> Result<Vec<usize>> {
+    if named.is_empty() {
+        return Ok((0..all.count()).collect());
+    }
+    named.iter().map(|name| find(path, name, all.clone())).collect()
+}
+
+fn find<'a>(path: &Path, wanted: &str, all: impl Iterator<Item = &'a Meta> + Clone) -> Result<usize> {
+    let same: Vec<usize> =
+        all.clone().enumerate().filter(|(_, m)| m.name == wanted).map(|(i, _)| i).collect();
+    let n = all.clone().count();
+    let number = wanted.parse::<usize>().ok().filter(|i| (1..=n).contains(i));
+    let list: Vec<String> =
+        all.take(20).enumerate().map(|(i, m)| format!("{} {:?}", i + 1, m.name)).collect();
+    match (same.as_slice(), number) {
+        ([one], _) => Ok(*one),
+        ([], Some(number)) => Ok(number - 1),
+        ([], None) => Err(Error::input(
+            Place::file(path),
+            format!("no channel {wanted:?}"),
+            format!("one of the {n}: {}", list.join(", ")),
+        )),
+        (several, _) => Err(Error::input(
+            Place::file(path),
+            format!("{} channels are called {wanted:?}", several.len()),
+            format!("the number of one: {}", list.join(", ")),
+        )),
+    }
+}
+
+fn no_trace(path: &Path, kinds: &[&str]) -> Error {
+    let found = match kinds {
+        [] => "no record".to_owned(),
+        [one] => format!("a {one} and no time trace"),
+        all => format!("{} records and no time trace among them (the first is a {})", all.len(), all[0]),
+    };
+    Error::input(Place::file(path), found, "samples over time")
+        .hint("state the sampling rate with --rate, if the values are samples over time")
+}
+
+fn check_lengths(path: &Path, traces: &[Trace]) -> Result<()> {
+    let Some((first, rest)) = traces.split_first() else { return Ok(()) };
+    let n = first.values.len();
+    match rest.iter().find(|t| t.values.len() != n) {
+        None => Ok(()),
+        Some(other) => {
+            Err(apart(path, [first, other], &format!("{n} samples"), &other.values.len().to_string()))
+        }
+    }
+}
+
+fn apart(path: &Path, [a, b]: [&Trace; 2], of_a: &str, of_b: &str) -> Error {
+    let found = format!("channel {:?} has {of_a} and channel {:?} {of_b}", a.meta.name, b.meta.name);
+    Error::input(Place::file(path), found, "channels that were sampled together")
+        .hint("name the channels that belong together")
+}
+
+/// The sampling rate and the start that all traces have.
+fn clock(path: &Path, traces: &[Trace], frames: usize) -> Result<(f64, f64)> {
+    let mut common: Option<(&Trace, f64)> = None;
+    for trace in traces {
+        let Some(rate) = trace.rate().filter(|r| r.is_finite() && *r > 0.0) else {
+            let found = format!("the sampling rate of channel {:?} is not known", trace.meta.name);
+            return Err(Error::input(Place::file(path), found, "samples at even distances in time")
+                .hint("state the sampling rate with --rate"));
+        };
+        let Some((first, known)) = common else {
+            common = Some((trace, rate));
+            continue;
+        };
+        if (rate / known - 1.0).abs() * frames as f64 > APART {
+            return Err(apart(path, [first, trace], &format!("a rate of {known} Hz"), &format!("{rate} Hz")));
+        }
+        let (a, b) = (first.axis.start(), trace.axis.start());
+        if (a - b).abs() * known > APART {
+            return Err(apart(
+                path,
+                [first, trace],
+                &format!("its first sample at {a} s"),
+                &format!("{b} s"),
+            ));
+        }
+    }
+    common
+        .map(|(trace, rate)| (rate, trace.axis.start()))
+        .ok_or_else(|| Error::input(Place::file(path), "no channel", "at least one"))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,108 @@
+//! A wave file block by block in the units of its channels.
+
+use super::{WavStream, beyond_full_scale, describe, dress, missing, open};
+use crate::error::Result;
+use crate::read::reader::Options;
+use crate::read::{Source, Summary};
+use crate::record::{Meta, Trace};
+use crate::units;
+use std::path::PathBuf;
+
+/// Some channels of a wave file, with what a person stated and what the file says applied.
+pub(in crate::read) struct Calibrated {
+    stream: WavStream,
+    path: PathBuf,
+    /// Every channel of the file without its values.
+    all: Vec<Trace>,
+    factors: Vec<f64>,
+    /// Indices of the channels that are handed out.
+    kept: Vec<usize>,
+    largest: Vec<f64>,
+    allow_missing: bool,
+    scaled: bool,
+    at: usize,
+}
+
+impl Calibrated {
+    pub fn open(source: &Source, options: &Options) -> Result<Calibrated> {
+        let stream = open(source, options)?;
+        let summary = Summary { n: stream.frames() as usize, max: None };
+        let (mut all, mut factors) = (Vec::new(), Vec::new());
+        for channel in 0..stream.channels() {
+            let mut trace = describe(source, &stream, options, channel, &summary);
+            let factor =
+                dress(&mut trace, &stream, options, channel).map_err(|e| e.in_file(source.path()))?;
+            all.push(trace);
+            factors.push(factor);
+        }
+        let n = all.len();
+        Ok(Calibrated {
+            scaled: stream.scales().is_some() || options.unit.is_some(),
+            stream,
+            path: source.path().to_owned(),
+            all,
+            factors,
+            kept: (0..n).collect(),
+            largest: vec![0.0; n],
+            allow_missing: options.allow_missing,
+            at: 0,
+        })
+    }
+
+    pub fn channels(&self) -> &[Trace] {
+        &self.all
+    }
+
+    pub fn doubts(&self) -> &[String] {
+        self.stream.doubts()
+    }
+
+    pub fn frames(&self) -> usize {
+        self.stream.frames() as usize
+    }
+
+    /// Hands out these channels only, in this order; returns them without values.
+    pub fn keep(&mut self, channels: &[usize]) -> Vec<Trace> {
+        self.kept = channels.to_vec();
+        self.largest = vec![0.0; channels.len()];
+        channels.iter().filter_map(|i| self.all.get(*i).cloned()).collect()
+    }
+
+    pub fn next_block(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize> {
+        let frames = self.stream.next_block_of(&self.kept, block)?;
+        for ((channel, values), largest) in self.kept.iter().zip(&mut *block).zip(&mut self.largest) {
+            // One pass that a compiler makes wide; what is found wrong is looked for again below.
+            let (mut most, mut sum) = (*largest, 0.0f64);
+            for v in &*values {
+                most = most.max(v.abs());
+                sum += v * 0.0;
+            }
+            *largest = most;
+            if sum != 0.0 {
+                let places: Vec<usize> = (0..values.len()).filter(|i| !values[*i].is_finite()).collect();
+                if !self.allow_missing {
+                    let listed = places.iter().map(|i| (self.at + i, *channel));
+                    return Err(missing(&self.path, places.len(), listed));
+                }
+                for i in places {
+                    values[i] = f64::NAN;
+                }
+            }
+            let factor = self.factors.get(*channel).copied().unwrap_or(1.0);
+            if factor != 1.0 {
+                units::scale(values.iter_mut(), factor).map_err(|e| e.in_file(&self.path))?;
+            }
+        }
+        self.at += frames;
+        Ok(frames)
+    }
+
+    /// Adds what only the values show, once they have been read.
+    pub fn doubt(&self, metas: &mut [Meta]) {
+        for (meta, largest) in metas.iter_mut().zip(&self.largest) {
+            if *largest > 1.0 && !self.scaled {
+                meta.doubt(beyond_full_scale(*largest));
+            }
+        }
+    }
+}
