@@ -3,6 +3,7 @@
 pub mod drill;
 mod estimate;
 pub mod excitation;
+pub mod exposure;
 pub mod legacy;
 pub mod line;
 pub mod noise;
