@@ -1,4 +1,4 @@
-//! Hand-arm vibration: the weighting W_h of ISO 5349-1 as a digital filter, a_hv and A(8).
+//! Hand-arm vibration: the weighting `W_h` of ISO 5349-1 as a digital filter, `a_hv` and A(8).
 
 use super::Estimate;
 use super::drill::Running;
@@ -175,7 +175,7 @@ impl Handle {
 
 /// Exposure from one to three axes of a handle; `hours` of it a day.
 ///
-/// a_hv = √(Σ a_hw²) and A(8) = a_hv √(T/8 h) (ISO 5349-1:2001, equations 1 and 2). Uncertainties are those of the scatter
+/// `a_hv` = √(Σ `a_hw²`) and A(8) = `a_hv` √(T/8 h) (ISO 5349-1:2001, equations 1 and 2). Uncertainties are those of the scatter
 /// from second to second; neither calibration nor mounting are in them.
 ///
 /// # Errors

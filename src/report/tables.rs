@@ -1,5 +1,9 @@
 //! Results as tables: for the terminal, for CSV, for the report.
 
+mod drill;
+
+pub use drill::{drill, drill_average, drill_impacts};
+
 use super::job::Results;
 use super::{Cell, Table};
 use crate::compare::Overlay;
@@ -213,6 +217,8 @@ pub fn summary(results: &Results) -> Vec<Table> {
         tables.push(scores(overlay));
     }
     tables.push(frf_peaks(results));
+    let drills: Vec<_> = results.drill.iter().map(|d| (d.name.as_str(), &d.drill)).collect();
+    tables.push(drill(&drills));
     tables.retain(|t| !t.rows.is_empty());
     tables
 }

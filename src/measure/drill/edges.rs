@@ -145,7 +145,7 @@ mod tests {
         let truth: Vec<f64> = (0..27).map(|k| (f64::from(k) + shift) * period * rate).collect();
         let rise = |s: f64| 0.5 + 0.5 * (s / 4.0).tanh();
         let values = (0..n)
-            .map(|i| truth.iter().map(|t| rise(i as f64 - t) - rise(i as f64 - t - 60.0)).sum())
+            .map(|i| truth.iter().map(|t| rise(f64::from(i) - t) - rise(f64::from(i) - t - 60.0)).sum())
             .collect();
         (values, truth)
     }

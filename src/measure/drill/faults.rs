@@ -141,9 +141,9 @@ impl Faults {
         values.extend((1..=n).map(|k| a + (b - a) * k as f64 / (n + 1) as f64));
         states.extend(std::iter::repeat_n(if lost { State::Lost } else { State::Bridged }, n));
         if lost {
-            self.count.lost += n
+            self.count.lost += n;
         } else {
-            self.count.bridged += n
+            self.count.bridged += n;
         }
         if self.endless {
             return;

@@ -42,7 +42,9 @@ mod tests {
         let values = [1e6 + 1.0, 1e6 + 2.0, 1e6 + 4.0];
         let mut running = Running::default();
         assert!(running.mean().is_nan());
-        values.iter().for_each(|v| running.push(*v));
+        for v in values {
+            running.push(v);
+        }
         let mean = values.iter().sum::<f64>() / 3.0;
         let std = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / 2.0).sqrt();
         // Roundings of 1e6 are 1e-10.
