@@ -137,8 +137,13 @@ fn uncertainties_of_a_drill_are_true() {
         for ((coverage, estimate), truth) in means.iter_mut().zip(estimates).zip(truths) {
             coverage.estimate(estimate.as_ref().expect("an estimate"), truth);
         }
-        let whole = run.edges.iter().filter(|e| (0.0..COUNT as f64 / RATE).contains(*e)).count() - 1;
-        assert_eq!(found.cycles, whole, "seed {seed}");
+        // A pulse that rises within ten samples of an end of the record may or may not be seen.
+        let edges = |margin: f64| {
+            let inside = margin / RATE..(COUNT as f64 - margin) / RATE;
+            run.edges.iter().filter(|e| inside.contains(*e)).count()
+        };
+        let whole = found.cycles;
+        assert!((edges(10.0) - 1..edges(0.0)).contains(&whole), "seed {seed}: {whole}");
         impacts += whole;
         found_impacts += found.impacts.len() + found.hidden;
         for impact in &found.impacts {
