@@ -4,6 +4,7 @@ mod args;
 mod compare;
 mod complain;
 mod convert;
+mod drill;
 mod excitation;
 mod info;
 mod print;
@@ -40,6 +41,7 @@ fn dispatch(args: &Args) -> Result<u8> {
         Command::Excitation(typed) => excitation::run(typed, args.json),
         Command::Waterfall(typed) => waterfall::run(typed, args.json),
         Command::Response(typed) => response::run(typed, args.json),
+        Command::Drill(typed) => drill::run(typed, args.json),
         Command::Compare(typed) => compare::run(typed, args.json),
         Command::Run(typed) => run::run(typed, args.json),
     };

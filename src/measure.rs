@@ -1,7 +1,9 @@
 //! Answers from records: every number an [`Estimate`].
 
+pub mod drill;
 mod estimate;
 pub mod excitation;
+pub mod exposure;
 pub mod legacy;
 pub mod limit;
 pub mod line;
@@ -9,9 +11,9 @@ pub mod noise;
 pub mod peaks;
 pub mod resonance;
 pub mod response;
+pub mod sine;
 #[cfg(test)]
 mod synthetic;
-pub mod sine;
 pub mod waterfall;
 
 pub use estimate::Estimate;

@@ -1,5 +1,6 @@
 //! Entries that name a file of records: what the file does not say, and what an analysis needs to know.
 
+use crate::measure::drill::{Edge, From};
 use crate::read::Reader;
 use crate::units::Unit;
 use serde::Deserialize;
@@ -81,7 +82,46 @@ record_entry! {
 
 record_entry! {
     /// A hammer-drill trace.
-    DrillEntry {}
+    DrillEntry {
+        /// Velocity channel.
+        velocity: Option<String>,
+        /// Channel with the pulses of the crank.
+        reference: Option<String>,
+        /// Velocity along the beam in m/s for one unit of the channel.
+        sensitivity: Option<f64>,
+        /// Angle of the beam in degrees.
+        beam_angle: Option<f64>,
+        /// From where that angle is counted: `normal` or `axis`.
+        from: Option<From>,
+        /// Pulses in a turn.
+        pulses_per_turn: Option<usize>,
+        /// `rising` or `falling`.
+        edge: Option<Edge>,
+        /// Level of the edge.
+        level: Option<f64>,
+        /// Mass that is measured, kg.
+        mass: Option<f64>,
+        /// Mass that it strikes, kg.
+        struck_mass: Option<f64>,
+        /// Longest contact, s.
+        contact: Option<f64>,
+        /// Duration of the fits, s.
+        fit: Option<f64>,
+        /// Corner of a zero-phase low-pass, Hz.
+        low_pass: Option<f64>,
+        /// Time constant of exponential smoothing, s.
+        smoothing: Option<f64>,
+        /// Highest frequency that the instrument passes, Hz.
+        instrument: Option<f64>,
+        /// Record without motion.
+        noise: Option<PathBuf>,
+        /// Acceleration channels of a handle.
+        handle: Vec<String>,
+        /// Acceleration in m/s² for one unit of these.
+        handle_sensitivity: Option<f64>,
+        /// Hours a day of the exposure.
+        exposure: Option<f64>,
+    }
 }
 
 impl RecordEntry {

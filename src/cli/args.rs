@@ -2,6 +2,7 @@
 
 mod compare;
 mod convert;
+mod drill;
 mod excitation;
 mod info;
 mod reading;
@@ -13,9 +14,9 @@ mod waterfall;
 
 pub use compare::Compare;
 pub use convert::Convert;
+pub use drill::{Drill, Edge, From};
 pub use excitation::Excitation;
 pub use info::Info;
-#[allow(unused_imports)]
 pub use reading::{Channel, Decimal, Reading};
 pub use response::Response;
 pub use run::Run;
@@ -50,6 +51,8 @@ pub enum Command {
     Waterfall(Waterfall),
     /// Take the response at the excitation, with resonances and jumps
     Response(Response),
+    /// Measure speed, impacts and the average turn of a hammer drill
+    Drill(Box<Drill>),
     /// Overlay a campaign's measured responses on the model's prediction
     Compare(Compare),
     /// Do all that a campaign asks for: results, tables, figures, report

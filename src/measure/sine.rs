@@ -60,7 +60,9 @@ pub fn sine(trace: &Trace, near: Option<f64>) -> Result<Sine> {
         .filter(within)
         .max_by(|a, b| magnitudes[*a].total_cmp(&magnitudes[*b]))
         .ok_or_else(|| Error::refused("no line of the spectrum lies there"))?;
-    if let Some(floor) = noise::around(&magnitudes, largest).filter(|n| magnitudes[largest] < VISIBLE * n) {
+    if let Some(floor) =
+        noise::around(&magnitudes, largest, Some(Window::Hann)).filter(|n| magnitudes[largest] < VISIBLE * n)
+    {
         return Err(Error::refused(format!(
             "no sine stands out of the noise: the largest line, {:.6} Hz, has {:.3e}, the noise of a line is {floor:.3e}",
             largest as f64 * step,

@@ -1,13 +1,15 @@
 //! All that a campaign asks for: responses, waterfalls, overlay, frequency response functions, and their files.
 
+mod drill;
 mod frf;
 mod pairing;
 
+pub use drill::DrillResult;
 pub use frf::{FrfPeak, FrfResult};
 pub use pairing::Crossing;
 
 use super::{Figure, Output, files, page, pictures, tables};
-use crate::campaign::{Campaign, DrillEntry, DropEntry, ImpactsEntry, PulseEntry};
+use crate::campaign::{Campaign, DropEntry, ImpactsEntry, PulseEntry};
 use crate::compare::{Overlay, overlay};
 use crate::error::{Error, Result};
 use crate::measure::response::{Response, ResponseOptions, response, to_displacement};
@@ -73,6 +75,8 @@ pub struct Results {
     pub overlay: Option<Overlay>,
     /// Frequency response functions.
     pub frf: Vec<FrfResult>,
+    /// Hammer drills.
+    pub drill: Vec<DrillResult>,
     /// Files that are listed only.
     pub listed: Vec<Listed>,
     /// What a person must know, each sentence once.
@@ -150,8 +154,9 @@ pub fn run(
         }
     }
     let frf = frf::frfs(campaign, options, &mut figures, &mut warnings)?;
+    let drilled = drill::drills(campaign, options, &mut figures, &mut warnings)?;
     let listed = listed(campaign, options, &mut warnings)?;
-    if responses.is_empty() && frf.is_empty() && listed.is_empty() {
+    if responses.is_empty() && frf.is_empty() && drilled.is_empty() && listed.is_empty() {
         warnings.push("The campaign names no file: nothing was computed.".to_owned());
     }
     pairing::twice(&responses, &mut warnings);
@@ -167,6 +172,7 @@ pub fn run(
         rig: campaign.rig.filter(|_| overlay.is_some()),
         overlay,
         frf,
+        drill: drilled,
         listed,
         warnings,
     };
@@ -180,6 +186,7 @@ pub fn run(
         output.write("pairs.csv", tables::pairs(overlay).csv())?;
         output.write("peaks.csv", tables::peaks(overlay).csv())?;
     }
+    drill::tables(&results.drill, output)?;
     results.warnings.extend(files::left_over(output, &[RESULTS, REPORT]));
     let json = serde_json::to_string_pretty(&results)
         .map_err(|e| Error::refused(format!("the results cannot be written as JSON: {e}")))?;
@@ -250,7 +257,6 @@ fn listed(campaign: &Campaign, options: JobOptions, warnings: &mut Vec<String>) 
         ("impacts", campaign.impacts.iter().map(ImpactsEntry::record).collect::<Vec<_>>()),
         ("drop", campaign.drop.iter().map(DropEntry::record).collect()),
         ("pulse", campaign.pulse.iter().map(PulseEntry::record).collect()),
-        ("drill", campaign.drill.iter().map(DrillEntry::record).collect()),
     ];
     let mut listed = Vec::new();
     for (part, entries) in parts {

@@ -1,11 +1,13 @@
 //! The figures of this toolkit: results in, [`super::Figure`] out.
 
+mod drill;
 mod frf;
 mod overlay;
 mod response;
 mod spectrum;
 mod waterfall;
 
+pub use drill::drill;
 pub use frf::frf;
 pub use overlay::overlay;
 pub use response::response;

@@ -1,5 +1,9 @@
 //! Results as tables: for the terminal, for CSV, for the report.
 
+mod drill;
+
+pub use drill::{drill, drill_average, drill_impacts};
+
 use super::job::{FrfResult, Results};
 use super::{Cell, Column, Table};
 use crate::compare::{Kind, Overlay};
@@ -8,6 +12,11 @@ use std::collections::BTreeSet;
 
 /// A column: name, unit, and what it shows of an item.
 type Shown<'a, T> = (&'a str, &'a str, &'a dyn Fn(&T) -> Cell);
+
+/// No rows yet.
+fn headed(title: impl Into<String>, columns: &[(&str, &str)]) -> Table {
+    columns.iter().fold(Table::new(title), |table, (name, unit)| table.column(*name, *unit))
+}
 
 /// One row an item.
 fn table<T>(title: impl Into<String>, items: impl IntoIterator<Item = T>, columns: &[Shown<'_, T>]) -> Table {
@@ -180,6 +189,8 @@ pub fn summary(results: &Results) -> Vec<Table> {
     }
     let kinds: BTreeSet<(&str, &str)> = results.frf.iter().map(|f| (f.quantity, f.unit.as_str())).collect();
     tables.extend(kinds.into_iter().map(|kind| frf_peaks(&results.frf, kind)));
+    let drills: Vec<_> = results.drill.iter().map(|d| (d.name.as_str(), &d.drill)).collect();
+    tables.push(drill(&drills));
     tables.retain(|t| !t.rows.is_empty());
     tables
 }

@@ -1,0 +1,100 @@
+//! A record as a vibrometer and a pulse pick-up on the crank give it.
+
+use super::noise::Noise;
+use super::stroke::{Machine, Struck};
+
+/// Samples a second.
+pub const RATE: f64 = 102_400.0;
+/// Mass of the striker in kg.
+pub const STRIKER: f64 = 0.14;
+/// Mass of the bit in kg.
+pub const BIT: f64 = 0.43;
+/// Restitution between them.
+pub const RESTITUTION: f64 = 0.45;
+
+/// Channels in volts, and what is true of them.
+pub struct Record {
+    /// Striker.
+    pub striker: Vec<f64>,
+    /// Bit.
+    pub bit: Vec<f64>,
+    /// Pulse at top dead centre.
+    pub pulse: Vec<f64>,
+    /// Impacts within the record.
+    pub impacts: Vec<Struck>,
+    /// Drop-outs of the striker's channel.
+    pub dropouts: usize,
+}
+
+/// Noise of the vibrometer in V: 6 mm/s along the beam.
+const NOISE: f64 = 0.003;
+
+/// A record of some seconds, always the same.
+pub fn record(seconds: f64) -> Record {
+    // Balance of momentum with a bit at rest: the striker keeps (m − R M)/(m + M) of its velocity.
+    let rebound = (STRIKER - RESTITUTION * BIT) / (STRIKER + BIT);
+    let machine = Machine {
+        speed: 47.3,
+        speed_scatter: 0.004,
+        phase: 0.62,
+        phase_scatter: 0.004,
+        before: 7.5,
+        before_scatter: 0.02,
+        rebound,
+        rebound_scatter: 0.01,
+        contact: 6e-5,
+    };
+    let count = (seconds * RATE) as usize;
+    let run = machine.run(seconds, &mut Noise::new(1));
+    let (mut laser, mut second, mut pick_up) = (Noise::new(2), Noise::new(3), Noise::new(4));
+    // Half of the motion along the beam, 2 m/s a volt.
+    let mut striker: Vec<f64> =
+        run.velocity(RATE, count).iter().map(|v| 0.25 * v + NOISE * laser.normal()).collect();
+    let bit = bit(&run.impacts, count, machine.contact)
+        .iter()
+        .map(|v| 0.25 * v + NOISE * second.normal())
+        .collect();
+    let pulse = run.pulse(RATE, count).iter().map(|p| 4.0 * p + 0.3 + 0.01 * pick_up.normal()).collect();
+    let dropouts = drop_out(&mut striker, &mut Noise::new(5));
+    let inside = |t: f64| (0.0..count as f64 / RATE).contains(&t);
+    Record {
+        striker,
+        bit,
+        pulse,
+        impacts: run.impacts.into_iter().filter(|i| inside(i.time)).collect(),
+        dropouts,
+    }
+}
+
+/// Noise of the vibrometer with the machine at rest.
+pub fn still(seconds: f64) -> Vec<f64> {
+    let mut laser = Noise::new(6);
+    (0..(seconds * RATE) as usize).map(|_| NOISE * laser.normal()).collect()
+}
+
+/// The bit takes what momentum the striker loses and comes to rest within 1.5 ms.
+fn bit(impacts: &[Struck], count: usize, contact: f64) -> Vec<f64> {
+    let mut velocity = vec![0.0; count];
+    for impact in impacts {
+        let gained = STRIKER * (impact.before - impact.after) / BIT;
+        let first = ((impact.time - 0.5 * contact) * RATE).ceil().max(0.0) as usize;
+        for (i, v) in velocity.iter_mut().enumerate().skip(first).take((0.01 * RATE) as usize) {
+            let t = i as f64 / RATE - impact.time;
+            let mix = 0.5 + 0.5 * (std::f64::consts::PI * (t / contact).min(0.5)).sin();
+            *v += gained * mix * (-t.max(0.0) / 1.5e-3).exp();
+        }
+    }
+    velocity
+}
+
+/// Loses the laser for 0.1 to 1 ms about three times a second; the decoder gives 0 then.
+fn drop_out(volts: &mut [f64], noise: &mut Noise) -> usize {
+    let (mut at, mut count) = (3000, 0);
+    while at + 500 < volts.len() {
+        let length = 10 + (90.0 * noise.uniform()) as usize;
+        volts[at..at + length].fill(0.0);
+        count += 1;
+        at += 10_000 + (50_000.0 * noise.uniform()) as usize;
+    }
+    count
+}

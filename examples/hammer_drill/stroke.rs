@@ -1,0 +1,125 @@
+//! A striker that goes to and fro once a turn, with everything known of it.
+//!
+//! Between two impacts its velocity is a straight line from the speed after the one to the speed before the other and half a
+//! sine that brings it back to where it struck. An impact takes a contact time, in which the velocity goes from the one course to
+//! the other as half a sine. Duration of a turn, phase of the impact and speeds vary from turn to turn.
+
+use super::noise::Noise;
+use std::f64::consts::PI;
+
+/// Nominal values and their scatter from turn to turn.
+#[derive(Debug, Clone)]
+pub struct Machine {
+    /// Turns a second.
+    pub speed: f64,
+    /// Relative scatter of the duration of a turn.
+    pub speed_scatter: f64,
+    /// Phase of the impact in turns after top dead centre.
+    pub phase: f64,
+    /// Its scatter in turns.
+    pub phase_scatter: f64,
+    /// Velocity before the impact in m/s.
+    pub before: f64,
+    /// Its relative scatter.
+    pub before_scatter: f64,
+    /// Velocity after over velocity before, negative for a rebound.
+    pub rebound: f64,
+    /// Its scatter.
+    pub rebound_scatter: f64,
+    /// Contact time in s.
+    pub contact: f64,
+}
+
+/// One impact.
+#[derive(Debug, Clone, Copy)]
+pub struct Struck {
+    /// Time of the middle of the contact in s.
+    pub time: f64,
+    /// Turn.
+    pub turn: usize,
+    /// Phase in turns.
+    pub phase: f64,
+    /// Velocity before in m/s, continued to the middle of the contact.
+    pub before: f64,
+    /// Velocity after in m/s.
+    pub after: f64,
+}
+
+/// A run of the machine.
+#[derive(Debug, Clone)]
+pub struct Run {
+    /// Times of the top dead centres in s.
+    pub edges: Vec<f64>,
+    /// Impacts.
+    pub impacts: Vec<Struck>,
+    contact: f64,
+}
+
+impl Machine {
+    /// A run of `duration` seconds and a little more, the first top dead centre before its end of the first turn.
+    pub fn run(&self, duration: f64, noise: &mut Noise) -> Run {
+        let mut edges = vec![-noise.uniform() / self.speed];
+        let mut impacts = Vec::new();
+        while edges[edges.len() - 1] < duration + 1.0 / self.speed {
+            let (turn, start) = (edges.len() - 1, edges[edges.len() - 1]);
+            let period = (1.0 + self.speed_scatter * noise.normal()) / self.speed;
+            let phase = self.phase + self.phase_scatter * noise.normal();
+            let before = self.before * (1.0 + self.before_scatter * noise.normal());
+            let after = before * (self.rebound + self.rebound_scatter * noise.normal());
+            impacts.push(Struck { time: start + phase * period, turn, phase, before, after });
+            edges.push(start + period);
+        }
+        Run { edges, impacts, contact: self.contact }
+    }
+}
+
+impl Run {
+    /// Velocity of the striker at `count` instants, `rate` a second.
+    pub fn velocity(&self, rate: f64, count: usize) -> Vec<f64> {
+        let mut k = 0;
+        (0..count)
+            .map(|i| {
+                let t = i as f64 / rate;
+                while self.impacts.get(k + 1).is_some_and(|next| t > next.time - 0.5 * self.contact) {
+                    k += 1;
+                }
+                // Contact k began last; before the first one the striker rests.
+                let s = (t - self.impacts[k].time) / self.contact;
+                if s < -0.5 {
+                    return 0.0;
+                }
+                let mix = 0.5 + 0.5 * (PI * s.min(0.5)).sin();
+                let before = if mix < 1.0 { self.course(k.wrapping_sub(1), t) } else { 0.0 };
+                (1.0 - mix) * before + mix * self.course(k, t)
+            })
+            .collect()
+    }
+
+    /// Velocity of the course that follows impact `k`.
+    fn course(&self, k: usize, t: f64) -> f64 {
+        let (Some(from), Some(to)) = (self.impacts.get(k), self.impacts.get(k.wrapping_add(1))) else {
+            return 0.0;
+        };
+        let s = (t - from.time) / (to.time - from.time);
+        let back = 0.25 * PI * (from.after + to.before);
+        from.after * (1.0 - s) + to.before * s - back * (PI * s).sin()
+    }
+
+    /// A pulse from 0 to 1 once a turn: it rises at the top dead centre within a few samples and lasts a tenth of a turn.
+    pub fn pulse(&self, rate: f64, count: usize) -> Vec<f64> {
+        let rise = |samples: f64| 0.5 + 0.5 * (samples / 3.0).tanh();
+        let mut k = 0;
+        (0..count)
+            .map(|i| {
+                let t = i as f64 / rate;
+                while self.edges.get(k + 2).is_some_and(|e| t > 0.5 * (self.edges[k + 1] + e)) {
+                    k += 1;
+                }
+                let near = [k, k + 1, k + 2]
+                    .into_iter()
+                    .filter_map(|j| Some((self.edges.get(j)?, self.edges.get(j + 1)?)));
+                near.map(|(a, b)| rise((t - a) * rate) - rise((t - a - 0.1 * (b - a)) * rate)).sum()
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,93 @@
+//! `vibro drill`: speed, impacts and the average turn of a hammer drill.
+
+use super::{args, complain, print, progress, settings};
+use crate::error::{Error, Result};
+use crate::measure::drill::{Beam, Drill, DrillFile, DrillOptions, Edge, From, Smoothing};
+use crate::report::{Output, files, pictures, tables};
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::path::Path;
+
+#[derive(Serialize)]
+struct Answer {
+    #[serde(flatten)]
+    drill: Drill,
+    files: Vec<String>,
+}
+
+pub fn run(typed: &args::Drill, json: bool) -> Result<()> {
+    let options = options(typed)?;
+    let file = DrillFile {
+        reader: settings::reader(&typed.reading)?,
+        path: typed.file.clone(),
+        velocity: typed.velocity.clone(),
+        reference: typed.reference.clone(),
+        handle: typed.handle.clone(),
+        handle_sensitivity: typed.handle_sensitivity,
+        noise: typed.noise.clone(),
+    };
+    let bar = progress::bar(json);
+    bar.set_message("samples, three passes");
+    let found = file.measure(&options, &|n| bar.inc(n as u64));
+    bar.finish_and_clear();
+    let drill = found?;
+    let mut written = Vec::new();
+    if let Some(folder) = &typed.out {
+        let mut output = Output::new(folder)?;
+        let name = typed.file.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        files::figures(&mut output, &pictures::drill(&name, &drill), &|| ())?;
+        output.write("average.csv", tables::drill_average(&drill).csv())?;
+        output.write("impacts.csv", tables::drill_impacts(&drill).csv())?;
+        written = output.written().to_vec();
+    }
+    if let Some(path) = &typed.each_cycle {
+        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let name = path.file_name().map(|n| n.to_string_lossy().into_owned());
+        let name =
+            name.ok_or_else(|| Error::usage("--each-cycle without a file name", "a file, NAME.csv"))?;
+        Output::new(folder)?.write(&name, tables::drill_impacts(&drill).csv())?;
+        written.push(path.display().to_string());
+    }
+    if json {
+        return print::json(&Answer { drill, files: written });
+    }
+    complain::warn(&drill.warnings);
+    let mut text = tables::drill(std::slice::from_ref(&("", &drill))).text();
+    text.push_str("\neach impact and the average turn: --json, or files with --out\n");
+    for file in written {
+        let _ = writeln!(text, "wrote {file}");
+    }
+    print::text(&text)
+}
+
+fn options(typed: &args::Drill) -> Result<DrillOptions> {
+    let from = match typed.from {
+        args::From::Normal => From::Normal,
+        args::From::Axis => From::Axis,
+    };
+    let edge = match typed.edge {
+        args::Edge::Rising => Edge::Rising,
+        args::Edge::Falling => Edge::Falling,
+    };
+    if let Some(bad) = typed.sensitivity.filter(|s| !s.is_finite()) {
+        return Err(Error::usage(format!("a sensitivity of {bad}"), "m/s a unit, not 0"));
+    }
+    let beam = Beam::new(typed.beam_angle, from)?;
+    // Without a number the file must say that the channel is a velocity.
+    let sensitivity = typed.sensitivity.unwrap_or(f64::NAN);
+    let low_pass = typed.low_pass.map(Smoothing::LowPass);
+    Ok(DrillOptions {
+        level: typed.level,
+        mass: typed.mass,
+        struck_mass: typed.struck_mass,
+        contact: typed.contact,
+        fit: typed.fit,
+        longest_dropout: typed.longest_dropout,
+        points: typed.points,
+        smoothing: low_pass.or(typed.smoothing.map(Smoothing::Exponential)),
+        instrument: typed.instrument,
+        margin: typed.margin,
+        hours: typed.exposure,
+        ..DrillOptions::new(sensitivity, beam, typed.pulses_per_turn, edge)
+    })
+}

@@ -1,0 +1,200 @@
+//! Hammer drills: a laser on the striker or the bit, and a pulse once a turn of the crank.
+//!
+//! The velocity is what the laser shows times its sensitivity over cos α, α the angle between beam and motion. Edges of the
+//! reference cut the record into turns; phases are parts of a turn after the edge, which for a pulse at the upper end of
+//! the piston's stroke is the phase after top dead centre. The record is gone over three times block by block, so that
+//! memory grows with the number of turns (some hundred bytes each) but not with the number of samples.
+//!
+//! ```
+//! use vibroimpact::measure::drill::{Beam, DrillOptions, Edge, From, Slices, drill};
+//! let rate = 20_000.0;
+//! let turn = |i: u32| f64::from(i) / 400.0; // 50 turns a second
+//! // A volt is 2 m/s; speeds up to 6 m/s, then an impact that leaves −1 m/s. The pulse comes at the beginning of a turn.
+//! let volts: Vec<f64> = (0..20_000).map(|i| 0.5 * (-1.0 + 7.0 * (turn(i) + 0.4).fract())).collect();
+//! let pulse: Vec<f64> = (0..20_000).map(|i| if turn(i).fract() < 0.1 { 5.0 } else { 0.0 }).collect();
+//! let options = DrillOptions::new(2.0, Beam::new(0.0, From::Axis)?, 1, Edge::Rising);
+//! let found = drill(&mut Slices { rate, channels: vec![&volts, &pulse] }, &options, None)?;
+//! assert!((found.speed.value - 50.0).abs() < 1e-3);
+//! assert!((found.impacts[0].before - 6.0).abs() < 0.05 && (found.impacts[0].phase - 0.6).abs() < 0.003);
+//! # Ok::<(), vibroimpact::Error>(())
+//! ```
+
+mod average;
+mod beam;
+mod channels;
+mod crossing;
+mod edges;
+mod faults;
+mod file;
+mod floor;
+mod jumps;
+mod motion;
+mod options;
+mod passing;
+mod result;
+mod running;
+mod summary;
+mod survey;
+mod turns;
+
+pub use average::Average;
+pub use beam::{Beam, From};
+pub use channels::{Channels, Slices};
+pub use edges::{Edge, Edges, Found};
+pub use faults::{FaultCount, Faults, State};
+pub use file::DrillFile;
+pub use floor::{NoiseFloor, Spectrum};
+pub use jumps::{Impact, Jumps};
+pub use motion::{Bandwidth, Motion, displacement};
+pub use options::{DrillOptions, Smoothing};
+pub use result::{BeamResult, Corner, Displacement, Drill, Phases, Pulses};
+pub use running::Running;
+pub use survey::Survey;
+pub use turns::{Turn, Turns};
+
+use super::exposure::{Handle, exposure};
+use crate::error::{Error, Result};
+use passing::Pass;
+
+/// Samples of the end and the middle of a part of the record that are kept to be drawn.
+const EXCERPT: usize = 1 << 16;
+
+/// Measures the turns and impacts of a drill; `still` is a record of the same velocity channel without motion, in m/s.
+///
+/// # Errors
+/// If the parameters cannot be; if the velocity is constant or missing; if velocity and reference are the same; if the
+/// reference has not two levels, or no whole turn between its edges; if a channel cannot be read.
+pub fn drill(channels: &mut dyn Channels, options: &DrillOptions, still: Option<&Spectrum>) -> Result<Drill> {
+    options.check()?;
+    let rate = channels.rate();
+    let factor = options.sensitivity * options.beam.factor();
+    let (mut velocity, mut reference) = (Survey::default(), Survey::default());
+    let mut handles: Vec<Handle> = Vec::new();
+    let mut same = true;
+    let mut scaled: Vec<f64> = Vec::new();
+    channels.play(&mut |block| {
+        let [v, r, axes @ ..] = block else {
+            return Err(Error::usage(format!("{} channels", block.len()), "a velocity and a reference"));
+        };
+        same = same && v.iter().zip(*r).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()));
+        scale(v, factor, &mut scaled);
+        velocity.push(&scaled);
+        reference.push(r);
+        while handles.len() < axes.len() {
+            handles.push(Handle::new(rate)?);
+        }
+        handles.iter_mut().zip(axes).for_each(|(handle, axis)| handle.push(axis));
+        Ok(())
+    })?;
+    let levels = check(&velocity, &reference, same, options)?;
+    let mut edges = Edges::new(levels.0, levels.1, options.edge);
+    channels.play(&mut |block| {
+        edges.push(block.get(1).copied().unwrap_or_default());
+        Ok(())
+    })?;
+    let found = edges.finish();
+    let turns = Turns::new(&found.edges, options.pulses_per_turn)?;
+    let mut pass = Pass::new(options, rate, &turns.turns, &velocity, still.is_some())?;
+    let mut excerpt = Excerpt::new(&turns.turns);
+    channels.play(&mut |block| {
+        scale(block.first().copied().unwrap_or_default(), factor, &mut scaled);
+        excerpt.push(&scaled, block.get(1).copied().unwrap_or_default());
+        pass.push(&scaled)
+    })?;
+    let pass = pass.finish()?;
+    let exposure = if handles.is_empty() { None } else { Some(exposure(&handles, options.hours)?) };
+    let edge = found.std(reference.noise());
+    Ok(summary::summary(summary::Measured {
+        options,
+        rate,
+        velocity: &velocity,
+        reference: &reference,
+        found: &found,
+        edge,
+        turns: &turns,
+        pass,
+        still,
+        exposure,
+        excerpt: (excerpt.from, excerpt.velocity, excerpt.reference),
+    }))
+}
+
+/// The spectrum of a record without motion, from the blocks of its velocity channel alone.
+///
+/// # Errors
+/// If it cannot be read.
+pub fn still(channels: &mut dyn Channels, options: &DrillOptions) -> Result<Spectrum> {
+    let factor = options.sensitivity * options.beam.factor();
+    let (mut spectrum, mut scaled) = (Spectrum::default(), Vec::new());
+    channels.play(&mut |block| {
+        scale(block.first().copied().unwrap_or_default(), factor, &mut scaled);
+        scaled.retain(|v| v.is_finite());
+        spectrum.push(&scaled);
+        Ok(())
+    })?;
+    Ok(spectrum)
+}
+
+fn scale(values: &[f64], factor: f64, scaled: &mut Vec<f64>) {
+    scaled.clear();
+    scaled.extend(values.iter().map(|v| factor * v));
+}
+
+/// Levels of the reference, once both channels are what they must be.
+fn check(velocity: &Survey, reference: &Survey, same: bool, options: &DrillOptions) -> Result<(f64, f64)> {
+    let Some((low, high)) = velocity.range() else {
+        return Err(Error::refused("the velocity channel holds no value"));
+    };
+    if same {
+        return Err(Error::refused("velocity and reference are the same channel")
+            .hint("name two channels with --velocity and --reference; `vibro info` lists them"));
+    }
+    if low == high {
+        return Err(Error::refused(format!("the velocity is constant, {low} m/s: the laser saw nothing")));
+    }
+    let Some((low, high)) = reference.levels() else {
+        let what = reference.range().map_or("without a value".to_owned(), |(v, _)| format!("constant, {v}"));
+        return Err(Error::refused(format!("no edge: the reference channel is {what}")));
+    };
+    match options.level {
+        None => Ok((low, high)),
+        // The level stands in the middle; the nearer of both levels gives the height.
+        Some(level) if level > low && level < high => {
+            let half = (level - low).min(high - level);
+            Ok((level - half, level + half))
+        }
+        Some(level) => Err(Error::refused(format!(
+            "the reference lies between {low:.4} and {high:.4}: it does not cross the level {level}"
+        ))),
+    }
+}
+
+/// A few turns of the middle of a record, to be drawn.
+struct Excerpt {
+    at: usize,
+    from: usize,
+    to: usize,
+    velocity: Vec<f64>,
+    reference: Vec<f64>,
+}
+
+/// Turns that are drawn.
+const DRAWN: usize = 3;
+
+impl Excerpt {
+    fn new(turns: &[Turn]) -> Excerpt {
+        let first = turns.len().saturating_sub(DRAWN) / 2;
+        let shown = turns.get(first..(first + DRAWN).min(turns.len())).unwrap_or(&[]);
+        let from = shown.first().map_or(0, |t| t.start as usize);
+        let to = shown.last().map_or(0, |t| t.end as usize + 1).min(from + EXCERPT);
+        Excerpt { at: 0, from, to, velocity: Vec::new(), reference: Vec::new() }
+    }
+
+    fn push(&mut self, velocity: &[f64], reference: &[f64]) {
+        let (from, to) = (self.from.saturating_sub(self.at), self.to.saturating_sub(self.at));
+        let part = from.min(velocity.len())..to.min(velocity.len());
+        self.velocity.extend(&velocity[part.clone()]);
+        self.reference.extend(reference.get(part).unwrap_or_default());
+        self.at += velocity.len();
+    }
+}

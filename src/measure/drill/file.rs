@@ -1,0 +1,150 @@
+//! Channels of a file, read block by block.
+
+use super::{Channels, Drill, DrillOptions, drill, still};
+use crate::error::{Error, Place, Result};
+use crate::read::Reader;
+use crate::record::{Meta, Trace};
+use crate::units::Quantity;
+use std::path::{Path, PathBuf};
+
+/// A file with the channels of a drill, by name or number from 1.
+#[derive(Debug, Clone)]
+pub struct DrillFile {
+    /// Knows what the file does not say. Missing values are taken: they are drop-outs.
+    pub reader: Reader,
+    /// File.
+    pub path: PathBuf,
+    /// Velocity along the beam.
+    pub velocity: String,
+    /// Pulses of the crank.
+    pub reference: String,
+    /// Acceleration of a handle, one to three axes; empty for none.
+    pub handle: Vec<String>,
+    /// Acceleration in m/s² for one unit of these channels, where they are not accelerations already.
+    pub handle_sensitivity: Option<f64>,
+    /// A record of the velocity channel without motion.
+    pub noise: Option<PathBuf>,
+}
+
+/// A file, and what its channels are.
+struct Played<'a> {
+    reader: Reader,
+    path: &'a Path,
+    names: Vec<&'a str>,
+    metas: Vec<Meta>,
+    doubts: Vec<String>,
+    rate: f64,
+    factors: Vec<f64>,
+    progress: &'a dyn Fn(usize),
+}
+
+impl DrillFile {
+    /// Opens the file once to learn its rate, and measures. `sensitivity` may stay NaN in the options where the velocity
+    /// channel is a velocity already. `progress` is told of every block: its number of samples; each sample comes three
+    /// times.
+    ///
+    /// # Errors
+    /// As [`drill`]; if a file cannot be read, a channel does not exist or is named twice, or has another rate; if a channel
+    /// that is no acceleration is given as a handle's without its sensitivity.
+    pub fn measure(&self, options: &DrillOptions, progress: &dyn Fn(usize)) -> Result<Drill> {
+        let mut names = vec![self.velocity.as_str(), self.reference.as_str()];
+        names.extend(self.handle.iter().map(String::as_str));
+        let mut doubts = Vec::new();
+        let mut channels = self.open(&self.path, names, progress)?;
+        let mut options = options.clone();
+        let is = |i: usize, quantity| channels.metas.get(i).is_some_and(|m: &Meta| m.quantity == quantity);
+        match (is(0, Quantity::Velocity), options.sensitivity.is_nan()) {
+            (true, true) => options.sensitivity = 1.0,
+            (true, false) if options.sensitivity != 1.0 => doubts.push(
+                "The velocity channel is in m/s already and is multiplied by the sensitivity all the same."
+                    .to_owned(),
+            ),
+            (false, true) => {
+                return Err(Error::usage(
+                    "no sensitivity",
+                    "the sensitivity in m/s for one unit of the velocity channel",
+                ));
+            }
+            _ => {}
+        }
+        if let Some((_, meta)) =
+            channels.metas.iter().enumerate().skip(2).find(|(i, _)| !is(*i, Quantity::Acceleration))
+            && self.handle_sensitivity.is_none()
+        {
+            let found = format!("the handle channel {:?} in {}", meta.name, meta.unit);
+            let expected = "an acceleration, or the sensitivity of the handle in m/s² a unit";
+            return Err(Error::input(Place::file(&self.path), found, expected));
+        }
+        if let Some(factor) = self.handle_sensitivity {
+            channels.factors.iter_mut().skip(2).for_each(|f| *f = factor);
+        }
+        let noise = match &self.noise {
+            None => None,
+            Some(path) => {
+                let mut silent = self.open(path, vec![self.velocity.as_str()], &|_| ())?;
+                if (silent.rate - channels.rate).abs() > 1e-9 * channels.rate {
+                    let found =
+                        format!("{} Hz, but the motion was sampled at {} Hz", silent.rate, channels.rate);
+                    return Err(Error::input(Place::file(path), found, "a record of the same rate"));
+                }
+                Some(still(&mut silent, &options)?)
+            }
+        };
+        let mut found = drill(&mut channels, &options, noise.as_ref())?;
+        // Sensitivities were given: that a file knows none is no doubt.
+        doubts.extend(channels.doubts.into_iter().filter(|d| !d.ends_with(Trace::UNCALIBRATED)));
+        doubts.append(&mut found.warnings);
+        found.warnings = doubts;
+        Ok(found)
+    }
+
+    fn open<'a>(
+        &self,
+        path: &'a Path,
+        names: Vec<&'a str>,
+        progress: &'a dyn Fn(usize),
+    ) -> Result<Played<'a>> {
+        for (i, name) in names.iter().enumerate() {
+            if names[..i].contains(name) {
+                return Err(Error::refused(format!("the channel {name:?} is named twice"))
+                    .hint("velocity, reference and handle are different channels; `vibro info` lists them"));
+            }
+        }
+        let reader = self.reader.clone().allow_missing(true);
+        let traces = reader.stream_channels(path, &names)?;
+        if traces.channels().len() != names.len() {
+            return Err(Error::refused(format!("two of the channels {} are one", names.join(", "))));
+        }
+        let (rate, factors) = (traces.rate(), vec![1.0; names.len()]);
+        let metas = traces.channels().to_vec();
+        Ok(Played { reader, path, names, metas, doubts: Vec::new(), rate, factors, progress })
+    }
+}
+
+impl Channels for Played<'_> {
+    fn rate(&self) -> f64 {
+        self.rate
+    }
+
+    fn play(&mut self, each: &mut dyn FnMut(&[&[f64]]) -> Result<()>) -> Result<()> {
+        let mut traces = self.reader.stream_channels(self.path, &self.names)?;
+        let mut block = Vec::new();
+        loop {
+            let n = traces.next_block(&mut block)?;
+            if n == 0 {
+                break;
+            }
+            for (values, factor) in block.iter_mut().zip(&self.factors).filter(|(_, f)| **f != 1.0) {
+                for v in values.iter_mut() {
+                    *v *= factor;
+                }
+            }
+            let slices: Vec<&[f64]> = block.iter().map(Vec::as_slice).collect();
+            each(&slices)?;
+            (self.progress)(n);
+        }
+        // What only the values show is known now.
+        self.doubts = traces.doubts();
+        Ok(())
+    }
+}

@@ -1,0 +1,116 @@
+//! What must be known of a drill's record, and how it is taken.
+
+use super::{Beam, Edge};
+use crate::error::{Error, Result};
+
+/// How the velocity is smoothed before it is averaged and integrated. Impacts are always taken from the velocity as it was
+/// measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Smoothing {
+    /// Butterworth low-pass of second order, forward and backward: no delay. Corner in Hz, at half the amplitude.
+    LowPass(f64),
+    /// Exponential smoothing with this time constant in s: delays by it.
+    Exponential(f64),
+}
+
+impl Smoothing {
+    /// Corner in Hz.
+    pub fn corner(self) -> f64 {
+        match self {
+            Smoothing::LowPass(corner) => corner,
+            Smoothing::Exponential(time) => 1.0 / (std::f64::consts::TAU * time),
+        }
+    }
+}
+
+/// Parameters of [`super::drill`]. There is no default for those of which a wrong guess gives a plausible wrong answer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DrillOptions {
+    /// Velocity along the beam in m/s for one unit of the velocity channel.
+    pub sensitivity: f64,
+    /// The beam.
+    pub beam: Beam,
+    /// Pulses of the reference in a turn.
+    pub pulses_per_turn: usize,
+    /// Edge of the pulse that counts.
+    pub edge: Edge,
+    /// Level of the edge in the unit of the reference. Default: the middle of its two levels.
+    pub level: Option<f64>,
+    /// Mass of what is measured, in kg: gives energies.
+    pub mass: Option<f64>,
+    /// Mass of what it strikes, in kg, at rest before: gives the restitution.
+    pub struck_mass: Option<f64>,
+    /// Longest duration of a contact in s. Default 0.2 ms.
+    pub contact: f64,
+    /// Duration in s of the fits on both sides of a contact. Default 0.5 ms.
+    pub fit: f64,
+    /// Longest drop-out in s that is bridged. Default 2 ms.
+    pub longest_dropout: f64,
+    /// Phases of the average. Default 720.
+    pub points: usize,
+    /// Default none.
+    pub smoothing: Option<Smoothing>,
+    /// Highest frequency in Hz that the instrument passes.
+    pub instrument: Option<f64>,
+    /// Margin in dB by which motion must stand above the noise floor. Default 10 dB.
+    pub margin: f64,
+    /// Hours a day of the exposure of a hand.
+    pub hours: Option<f64>,
+}
+
+impl DrillOptions {
+    /// Everything that has no default; the rest takes its default.
+    pub fn new(sensitivity: f64, beam: Beam, pulses_per_turn: usize, edge: Edge) -> DrillOptions {
+        DrillOptions {
+            sensitivity,
+            beam,
+            pulses_per_turn,
+            edge,
+            level: None,
+            mass: None,
+            struck_mass: None,
+            contact: 0.2e-3,
+            fit: 0.5e-3,
+            longest_dropout: 2e-3,
+            points: 720,
+            smoothing: None,
+            instrument: None,
+            margin: 10.0,
+            hours: None,
+        }
+    }
+
+    /// Checks every number.
+    pub(super) fn check(&self) -> Result<()> {
+        if self.sensitivity == 0.0 || !self.sensitivity.is_finite() {
+            return Err(Error::usage(format!("a sensitivity of {}", self.sensitivity), "m/s a unit, not 0"));
+        }
+        if self.pulses_per_turn == 0 {
+            return Err(Error::usage("0 pulses a turn", "1 or more"));
+        }
+        if self.points < 2 || self.points > 100_000 {
+            return Err(Error::usage(format!("an average at {} phases", self.points), "2 to 100000"));
+        }
+        let smoothing = self.smoothing.map(|s| match s {
+            Smoothing::LowPass(v) | Smoothing::Exponential(v) => v,
+        });
+        let numbers = [
+            ("mass", self.mass),
+            ("struck mass", self.struck_mass),
+            ("contact time", Some(self.contact)),
+            ("fit time", Some(self.fit)),
+            ("longest drop-out", Some(self.longest_dropout)),
+            ("smoothing", smoothing),
+            ("bandwidth of the instrument", self.instrument),
+        ];
+        for (name, value) in numbers {
+            if let Some(v) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
+                return Err(Error::usage(format!("a {name} of {v}"), "a finite number above 0"));
+            }
+        }
+        if self.struck_mass.is_some() && self.mass.is_none() {
+            return Err(Error::usage("a struck mass without the mass that strikes it", "both masses"));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,153 @@
+//! One pass over the velocity: repaired, cut into turns, and each turn handed to what measures it.
+
+use super::faults::{FaultCount, Faults, State};
+use super::turns::Turn;
+use super::{Average, DrillOptions, Jumps, Motion, Running, Smoothing, Spectrum, Survey};
+use crate::error::Result;
+use crate::signal::filter::Filter;
+
+/// Longest turn in samples; a turn that takes longer is passed over.
+const LONGEST: f64 = 4e6;
+/// Time constants of a filter after which it has settled.
+const SETTLED: f64 = 8.0;
+
+/// What the turns are handed to.
+pub(super) struct Pass<'a> {
+    options: &'a DrillOptions,
+    rate: f64,
+    turns: &'a [Turn],
+    next: usize,
+    faults: Faults,
+    filter: Option<Filter>,
+    /// Repaired velocity from sample `base` on.
+    values: Vec<f64>,
+    states: Vec<State>,
+    base: usize,
+    pub jumps: Jumps,
+    pub average: Average,
+    pub motion: Motion,
+    pub spectrum: Option<Spectrum>,
+    /// Turns in the average.
+    pub averaged: usize,
+    /// Turns with a part of the velocity lost, or too long.
+    pub left_out: usize,
+    pub speed: Running,
+    pub count: FaultCount,
+}
+
+impl<'a> Pass<'a> {
+    pub fn new(
+        options: &'a DrillOptions,
+        rate: f64,
+        turns: &'a [Turn],
+        survey: &Survey,
+        spectrum: bool,
+    ) -> Result<Pass<'a>> {
+        let filter = match options.smoothing {
+            Some(Smoothing::LowPass(corner)) => Some(Filter::low_pass(corner, 2, rate)?),
+            Some(s @ Smoothing::Exponential(_)) => Some(Filter::smoothing(s.corner(), rate)?),
+            None => None,
+        };
+        Ok(Pass {
+            options,
+            rate,
+            turns,
+            next: 0,
+            faults: Faults::new(survey, (options.longest_dropout * rate) as usize),
+            filter,
+            values: Vec::new(),
+            states: Vec::new(),
+            base: 0,
+            jumps: Jumps::new(options.contact * rate, options.fit * rate),
+            average: Average::new(options.points),
+            motion: Motion::default(),
+            spectrum: spectrum.then(Spectrum::default),
+            averaged: 0,
+            left_out: 0,
+            speed: Running::default(),
+            count: FaultCount::default(),
+        })
+    }
+
+    /// Takes the next samples of the velocity channel, multiplied by `factor` to m/s.
+    pub fn push(&mut self, block: &[f64]) -> Result<()> {
+        let known = self.values.len();
+        self.faults.push(block, &mut self.values, &mut self.states);
+        if let Some(spectrum) = &mut self.spectrum {
+            spectrum.push(&self.values[known..]);
+        }
+        self.measure(false)
+    }
+
+    pub fn finish(mut self) -> Result<Pass<'a>> {
+        let known = self.values.len();
+        self.count = self.faults.clone().finish(&mut self.values, &mut self.states);
+        if let Some(spectrum) = &mut self.spectrum {
+            spectrum.push(&self.values[known..]);
+        }
+        self.measure(true)?;
+        Ok(self)
+    }
+
+    /// Samples that must be known before and after a turn.
+    fn margin(&self) -> usize {
+        let settle = self.options.smoothing.map_or(0.0, |s| SETTLED * self.rate / s.corner());
+        self.jumps.margin().max(settle.min(LONGEST) as usize) + 4
+    }
+
+    fn measure(&mut self, last: bool) -> Result<()> {
+        let margin = self.margin();
+        while let Some(&turn) = self.turns.get(self.next) {
+            let known = self.base + self.values.len();
+            if turn.end + margin as f64 > known as f64 && !last {
+                break;
+            }
+            self.turn(turn, margin)?;
+            self.next += 1;
+        }
+        // What the next turn does not need goes; without turns ahead nothing is needed.
+        let needed = self.turns.get(self.next).map_or(f64::INFINITY, |t| t.start - margin as f64);
+        let end = self.base + self.values.len();
+        let drop = (needed.max(0.0).min(end as f64) as usize).saturating_sub(self.base);
+        // Moving the rest is dear: only when half of it goes.
+        if 2 * drop > self.values.len() {
+            self.values.drain(..drop);
+            self.states.drain(..drop);
+            self.base += drop;
+        }
+        Ok(())
+    }
+
+    fn turn(&mut self, turn: Turn, margin: usize) -> Result<()> {
+        let from = (turn.start as usize).saturating_sub(margin + self.base);
+        let to = ((turn.end.ceil() as usize + margin).saturating_sub(self.base)).min(self.values.len());
+        let base = (self.base + from) as f64;
+        let (start, end) = (turn.start - base, turn.end - base);
+        let (Some(values), Some(states)) = (self.values.get(from..to), self.states.get(from..to)) else {
+            self.left_out += 1;
+            return Ok(());
+        };
+        let inside = states.get(start as usize..(end.ceil() as usize + 1).min(states.len()));
+        let whole = inside.is_some_and(|s| s.len() as f64 >= end - start && !s.contains(&State::Lost));
+        if !whole || end - start > LONGEST {
+            self.left_out += 1;
+            return Ok(());
+        }
+        self.jumps.push(self.next, turn, values, states, base);
+        let smooth = match (&self.filter, self.options.smoothing) {
+            (Some(filter), Some(Smoothing::LowPass(_))) => Some(filter.zero_phase(values)?),
+            (Some(filter), _) => {
+                let mut out = values.to_vec();
+                filter.settled_at(values.first().copied().unwrap_or(0.0)).apply(&mut out);
+                Some(out)
+            }
+            _ => None,
+        };
+        let values = smooth.as_deref().unwrap_or(values);
+        self.average.push(values, states, start, end);
+        self.motion.push(values, states, start, end, self.rate);
+        self.speed.push(self.rate / (end - start));
+        self.averaged += 1;
+        Ok(())
+    }
+}

@@ -1,0 +1,276 @@
+//! From what the passes found to estimates and sentences.
+
+use super::passing::Pass;
+use super::result::{BeamResult, Corner, Displacement, Drill, Phases, Pulses};
+use super::{
+    DrillOptions, FaultCount, Found, Impact, NoiseFloor, Running, Smoothing, Spectrum, Survey, Turns,
+};
+use crate::measure::Estimate;
+use crate::measure::exposure::Exposure;
+use std::f64::consts::TAU;
+
+/// Everything that the passes leave behind.
+pub(super) struct Measured<'a> {
+    pub options: &'a DrillOptions,
+    pub rate: f64,
+    pub velocity: &'a Survey,
+    pub reference: &'a Survey,
+    pub found: &'a Found,
+    pub edge: f64,
+    pub turns: &'a Turns,
+    pub pass: Pass<'a>,
+    pub still: Option<&'a Spectrum>,
+    pub exposure: Option<Exposure>,
+    pub excerpt: (usize, Vec<f64>, Vec<f64>),
+}
+
+pub(super) fn summary(m: Measured<'_>) -> Drill {
+    let (rate, options) = (m.rate, m.options);
+    let (impacts, hidden) = m.pass.jumps.clone().finish(rate, m.edge);
+    let mean = m.pass.average.mean();
+    let period =
+        m.turns.turns.iter().map(|t| t.end - t.start).sum::<f64>() / m.turns.turns.len() as f64 / rate;
+    let value = super::displacement(&mean, period);
+    let mut spread = Running::default();
+    m.turns.speeds(rate).for_each(|s| spread.push(s));
+    let over = |running: Running, method: &str| {
+        let std = running.std() / (running.n() as f64).sqrt();
+        Estimate::new(running.mean(), Some(std), "m", running.n(), method)
+    };
+    let still =
+        m.still.and_then(|still| NoiseFloor::new(m.pass.spectrum.as_ref()?, still, rate, options.margin));
+    let count = m.pass.count;
+    let mut result = Drill {
+        speed: m.turns.speed(rate, m.edge),
+        speed_variation: spread.std(),
+        cycles: m.turns.turns.len(),
+        averaged: m.pass.averaged,
+        reference: Pulses {
+            edges: m.found.edges.len(),
+            missing: m.turns.missing,
+            extra: m.turns.extra,
+            pauses: m.turns.pauses,
+            std: m.edge / rate,
+        },
+        before: mean_of(&impacts, "m/s", "parabola up to the contact, mean over impacts", |i| i.before),
+        after: mean_of(&impacts, "m/s", "parabola from the contact on, mean over impacts", |i| i.after),
+        phase: phase(&impacts),
+        phase_variation: phase_scatter(&impacts),
+        energy: options.mass.and_then(|m| {
+            mean_of(&impacts, "J", "½ m v² before, mean over impacts", |i| 0.5 * m * i.before * i.before)
+        }),
+        energy_given: options.mass.and_then(|m| {
+            let taken = |i: &Impact| 0.5 * m * (i.before * i.before - i.after * i.after);
+            mean_of(&impacts, "J", "½ m (v² before − v² after), mean over impacts", taken)
+        }),
+        restitution: restitution(&impacts, options),
+        impacts,
+        hidden,
+        average: Phases { phase: m.pass.average.phase(), mean, std: m.pass.average.std() },
+        displacement: Displacement {
+            value,
+            stroke: over(m.pass.motion.stroke(), "peak to peak of the integrated velocity, mean over turns"),
+            drift: over(m.pass.motion.drift(), "integral of the velocity over a turn, mean over turns"),
+        },
+        dropouts: count.dropouts,
+        spikes: count.spikes,
+        faults: count,
+        bandwidth: m.pass.motion.bandwidth(rate),
+        noise_floor: still,
+        exposure: m.exposure,
+        beam: BeamResult { factor: options.beam.factor(), per_degree: options.beam.per_degree() },
+        smoothing: options.smoothing.map(|s| Corner {
+            kind: match s {
+                Smoothing::LowPass(_) => "zero-phase low-pass of second order, twice",
+                Smoothing::Exponential(_) => "exponential",
+            },
+            corner: s.corner(),
+        }),
+        speeds: m.turns.speeds(rate).collect(),
+        times: m.turns.turns.iter().map(|t| t.start / rate).collect(),
+        excerpt: m.excerpt.1,
+        excerpt_reference: m.excerpt.2,
+        excerpt_time: (m.excerpt.0 as f64 / rate, 1.0 / rate),
+        warnings: Vec::new(),
+    };
+    result.warnings = warnings(
+        &result,
+        options,
+        count,
+        (m.velocity, m.reference, m.found),
+        m.pass.left_out,
+        m.still.is_some(),
+    );
+    result
+}
+
+/// Mean over impacts, its standard uncertainty from their scatter.
+fn mean_of(
+    impacts: &[Impact],
+    unit: &'static str,
+    method: &str,
+    of: impl Fn(&Impact) -> f64,
+) -> Option<Estimate> {
+    let values: Vec<f64> = impacts.iter().map(of).collect();
+    if values.is_empty() {
+        return None;
+    }
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let std = (values.len() >= 4).then(|| super::turns::mean_variance(&values, mean).sqrt());
+    Some(Estimate::new(mean, std, unit, values.len(), method))
+}
+
+/// Phases run round the circle: differences from the direction of the mean do not.
+fn circle(impacts: &[Impact]) -> Option<(f64, Vec<f64>)> {
+    let (s, c) = impacts.iter().fold((0.0, 0.0), |(s, c), i| {
+        let (sin, cos) = (TAU * i.phase).sin_cos();
+        (s + sin, c + cos)
+    });
+    let centre = f64::atan2(s, c) / TAU;
+    let off = impacts.iter().map(|i| i.phase - centre).map(|d| d - d.round()).collect();
+    (!impacts.is_empty()).then_some((centre, off))
+}
+
+fn phase(impacts: &[Impact]) -> Option<Estimate> {
+    let (centre, off) = circle(impacts)?;
+    let shift = off.iter().sum::<f64>() / off.len() as f64;
+    let std = (off.len() >= 4).then(|| super::turns::mean_variance(&off, shift).sqrt());
+    let method = "turns after the edge, mean over impacts on the circle";
+    Some(Estimate::new((centre + shift).rem_euclid(1.0), std, "1", off.len(), method))
+}
+
+fn phase_scatter(impacts: &[Impact]) -> Option<f64> {
+    let mut running = Running::default();
+    circle(impacts)?.1.into_iter().for_each(|d| running.push(d));
+    Some(running.std()).filter(|s| s.is_finite())
+}
+
+/// R = (v₂⁺ − v₁⁺)/v₁⁻ with v₂⁺ = m₁(v₁⁻ − v₁⁺)/m₂ from the balance of momentum, the struck mass at rest before.
+fn restitution(impacts: &[Impact], options: &DrillOptions) -> Option<Estimate> {
+    let ratio = options.mass.zip(options.struck_mass).map(|(m, struck)| m / struck);
+    let method = if ratio.is_some() {
+        "balance of momentum, the struck mass at rest before"
+    } else {
+        "−after/before, which assumes that the struck mass does not move"
+    };
+    let ratio = ratio.unwrap_or(0.0);
+    mean_of(impacts, "1", method, |i| (ratio * (i.before - i.after) - i.after) / i.before)
+}
+
+fn warnings(
+    result: &Drill,
+    options: &DrillOptions,
+    count: FaultCount,
+    channels: (&Survey, &Survey, &Found),
+    left_out: usize,
+    still: bool,
+) -> Vec<String> {
+    let (velocity, reference, found) = channels;
+    let mut all = Vec::new();
+    let mut say = |when: bool, sentence: String| {
+        if when {
+            all.push(sentence);
+        }
+    };
+    let r = &result.reference;
+    say(r.missing > 0, format!("{} reference edges are missing; their turns are left out.", r.missing));
+    say(r.extra > 0, format!("{} reference edges too many are passed over.", r.extra));
+    say(r.pauses > 0, format!("The reference pauses {} times.", r.pauses));
+    say(
+        found.sharp,
+        format!("The reference rises within one sample: edges are known to {:.1e} s only.", r.std),
+    );
+    say(reference.missing() > 0, format!("{} samples of the reference are missing.", reference.missing()));
+    say(
+        options.pulses_per_turn > 1,
+        format!(
+            "With {} pulses a turn the phase counts from the first pulse of the record, whichever that is.",
+            options.pulses_per_turn
+        ),
+    );
+    let faults = count.dropouts + count.spikes;
+    let share = 100.0 * (count.bridged + count.lost) as f64 / velocity.samples().max(1) as f64;
+    say(
+        faults > 0,
+        format!(
+            "{} drop-outs and {} spikes of the velocity were found, {share:.2} % of the samples; {} samples were bridged by straight lines.",
+            count.dropouts, count.spikes, count.bridged
+        ),
+    );
+    say(
+        count.lost > 0,
+        format!(
+            "{} samples lie in drop-outs too long to be bridged; {left_out} turns are left out.",
+            count.lost
+        ),
+    );
+    say(
+        left_out > 0 && count.lost == 0,
+        format!(
+            "{left_out} turns are left out: they are longer than can be kept, or cut off by the end of the record."
+        ),
+    );
+    let limits = velocity.range().unwrap_or((0.0, 0.0));
+    say(
+        count.clipped > 0,
+        format!(
+            "{} samples stand at the end of the range, {:.3} or {:.3} m/s: the instrument was over-range, and speeds near there are too small.",
+            count.clipped, limits.0, limits.1
+        ),
+    );
+    say(result.hidden > 0, format!("{} impacts are hidden by faults of the velocity.", result.hidden));
+    say(result.impacts.is_empty(), "No impact was found: no jump of the velocity stands out.".to_owned());
+    let per_degree = 100.0 * result.beam.per_degree;
+    say(
+        per_degree > 0.5,
+        format!(
+            "One degree of error in the beam angle changes every velocity by {per_degree:.1} %; that is in no uncertainty."
+        ),
+    );
+    bandwidth(result, options, &mut say);
+    let unmoved = result.restitution.is_some() && options.struck_mass.is_none();
+    say(unmoved, "The restitution assumes that the struck mass does not move.".to_owned());
+    say(
+        result.restitution.as_ref().is_some_and(|e| !(0.0..=1.0).contains(&e.value)),
+        "The restitution lies outside 0 to 1: check masses, direction of the beam, and what is struck."
+            .to_owned(),
+    );
+    if let Some(floor) = &result.noise_floor {
+        say(
+            floor.bands.is_empty(),
+            format!("Nowhere does the motion stand {} dB above the noise.", floor.margin),
+        );
+    }
+    say(
+        still && result.noise_floor.is_none(),
+        "Motion or noise is shorter than 8192 samples: no spectra.".to_owned(),
+    );
+    all.extend(result.exposure.iter().flat_map(|e| e.warnings.clone()));
+    all
+}
+
+fn bandwidth(result: &Drill, options: &DrillOptions, say: &mut impl FnMut(bool, String)) {
+    let b = &result.bandwidth;
+    say(
+        b.sampling_limited,
+        format!(
+            "f2 = {:.0} Hz is within a factor of two of what differences of samples can show: it is the sampling that is measured, not the motion.",
+            b.f2
+        ),
+    );
+    if let Some(limit) = options.instrument {
+        say(b.f2 > limit, format!("f2 = {:.0} Hz lies beyond the instrument's {limit:.0} Hz.", b.f2));
+    }
+    if let Some(Smoothing::Exponential(time)) = options.smoothing {
+        say(true, format!("Exponential smoothing delays average and displacement by up to {time} s."));
+    }
+    if let Some(smoothing) = options.smoothing {
+        let corner = smoothing.corner();
+        say(
+            true,
+            format!(
+                "Average, displacement and bandwidth are smoothed with a corner of {corner:.1} Hz; impacts are not."
+            ),
+        );
+    }
+}

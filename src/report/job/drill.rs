@@ -1,0 +1,50 @@
+//! Hammer drills of a campaign.
+
+use super::{JobOptions, file_name, merge, slugs};
+use crate::campaign::Campaign;
+use crate::error::Result;
+use crate::measure::drill::Drill;
+use crate::report::{Figure, Output, pictures, tables};
+use serde::Serialize;
+
+/// What a drill's record gave.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DrillResult {
+    /// Name of the record.
+    pub name: String,
+    /// File.
+    pub file: String,
+    /// What was found.
+    #[serde(flatten)]
+    pub drill: Drill,
+}
+
+pub(super) fn drills(
+    campaign: &Campaign,
+    options: JobOptions,
+    figures: &mut Vec<(String, Figure)>,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<DrillResult>> {
+    let mut results = Vec::new();
+    for entry in &campaign.drill {
+        let (file, how) = campaign.drill(entry, options.allow_outside)?;
+        let drill = file.measure(&how, &|_| ())?;
+        let name = entry.record().name.unwrap_or_else(|| file_name(&file.path));
+        merge(warnings, &name, &drill.warnings);
+        results.push(DrillResult { name, file: file_name(&file.path), drill });
+    }
+    for (slug, result) in slugs(results.iter().map(|r| r.name.as_str())).iter().zip(&results) {
+        let drawn = pictures::drill(&result.name, &result.drill);
+        figures.extend(drawn.into_iter().map(|(name, figure)| (format!("{name}_{slug}"), figure)));
+    }
+    Ok(results)
+}
+
+/// Writes each record's impacts and its average turn.
+pub(super) fn tables(results: &[DrillResult], output: &mut Output) -> Result<()> {
+    for (slug, found) in slugs(results.iter().map(|r| r.name.as_str())).iter().zip(results) {
+        output.write(&format!("drill_impacts_{slug}.csv"), tables::drill_impacts(&found.drill).csv())?;
+        output.write(&format!("drill_average_{slug}.csv"), tables::drill_average(&found.drill).csv())?;
+    }
+    Ok(())
+}

@@ -1,0 +1,124 @@
+//! Hammer drills: the average turn, a few turns as measured, motion against noise, speed over time.
+
+use crate::measure::drill::Drill;
+use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
+
+/// Most points of a line: more are not seen in print.
+const POINTS: usize = 4000;
+
+/// All figures of a record, by file name.
+pub fn drill(name: &str, drill: &Drill) -> Vec<(String, Figure)> {
+    let mut figures = vec![
+        ("drill_average".to_owned(), average(name, drill)),
+        ("drill_trace".to_owned(), trace(name, drill)),
+        ("drill_speed".to_owned(), speed(name, drill)),
+    ];
+    figures.extend(floor(name, drill).map(|f| ("drill_noise".to_owned(), f)));
+    figures
+}
+
+fn average(name: &str, drill: &Drill) -> Figure {
+    let a = &drill.average;
+    let degrees: Vec<f64> = a.phase.iter().map(|p| 360.0 * p).collect();
+    let edge = |sign: f64| -> Vec<f64> { a.mean.iter().zip(&a.std).map(|(m, s)| m + sign * s).collect() };
+    let x = || AxisSpec::new("Crank angle after the pulse", "°").limits(0.0, 360.0);
+    let at: Vec<f64> = drill.impacts.iter().map(|i| 360.0 * i.phase).collect();
+    let points = |name: &str, of: fn(&crate::measure::drill::Impact) -> f64, nth, marker| {
+        let values: Vec<f64> = drill.impacts.iter().map(of).collect();
+        let (x, y) = (thin(&at), thin(&values));
+        Series::points(name, x, y).ink(Ink::Nth(nth)).marker(marker)
+    };
+    let mut above = Plot::new(x(), AxisSpec::new("Velocity", "m/s"))
+        .with(Series::band("± 1 standard deviation", degrees.clone(), edge(-1.0), edge(1.0)).ink(Ink::Nth(0)))
+        .with(Series::line("mean", degrees.clone(), a.mean.clone()).ink(Ink::Nth(0)).stroke(Stroke::Solid));
+    if !drill.impacts.is_empty() {
+        above = above.with(points("before impact", |i| i.before, 1, Marker::Circle)).with(points(
+            "after impact",
+            |i| i.after,
+            2,
+            Marker::Square,
+        ));
+    }
+    let below = Plot::new(x(), AxisSpec::new("Displacement", "m")).with(
+        Series::line("", degrees, drill.displacement.value.clone()).ink(Ink::Nth(0)).stroke(Stroke::Solid),
+    );
+    Figure::double(format!("Average turn, {name}")).height(130.0).shared_x().panel(above).panel(below).caption(format!(
+        "Mean of {} turns at {:.2} Hz with the scatter from turn to turn; displacement by integration over whole turns.",
+        drill.averaged, drill.speed.value
+    ))
+}
+
+fn trace(name: &str, drill: &Drill) -> Figure {
+    let (start, step) = drill.excerpt_time;
+    let time = |n: usize| -> Vec<f64> { (0..n).map(|k| start + k as f64 * step).collect() };
+    let n = drill.excerpt.len();
+    let end = start + n as f64 * step;
+    let x = || AxisSpec::new("Time", "s").limits(start, end);
+    let mut above = Plot::new(x(), AxisSpec::new("Velocity", "m/s"))
+        .with(Series::line("measured", time(n), drill.excerpt.clone()).ink(Ink::Grey).stroke(Stroke::Thin));
+    let shown: Vec<_> = drill.impacts.iter().filter(|i| i.time >= start && i.time <= end).collect();
+    let t: Vec<f64> = shown.iter().map(|i| i.time).collect();
+    if !shown.is_empty() {
+        let before: Vec<f64> = shown.iter().map(|i| i.before).collect();
+        let after: Vec<f64> = shown.iter().map(|i| i.after).collect();
+        above = above
+            .with(Series::points("before impact", t.clone(), before).ink(Ink::Nth(1)).marker(Marker::Circle))
+            .with(Series::points("after impact", t, after).ink(Ink::Nth(2)).marker(Marker::Square));
+    }
+    let reference = drill.excerpt_reference.clone();
+    let mut below = Plot::new(x(), AxisSpec::new("Reference", ""))
+        .with(Series::line("", time(reference.len()), reference).ink(Ink::Black).stroke(Stroke::Thin));
+    for edge in drill.times.iter().filter(|t| **t >= start - step && **t <= end) {
+        below = below.with(Series::vertical("", *edge));
+    }
+    let caption = "A few turns in the middle of the record, as measured: drop-outs are not bridged here.";
+    Figure::double(format!("Trace, {name}"))
+        .height(110.0)
+        .shared_x()
+        .panel(above)
+        .panel(below)
+        .caption(caption)
+}
+
+fn speed(name: &str, drill: &Drill) -> Figure {
+    let plot = Plot::new(AxisSpec::new("Time", "s"), AxisSpec::new("Speed", "Hz"))
+        .with(Series::line("each turn", thin(&drill.times), thin(&drill.speeds)).stroke(Stroke::Thin))
+        .with(Series::horizontal("mean", drill.speed.value));
+    Figure::double(format!("Speed, {name}"))
+        .height(70.0)
+        .panel(plot)
+        .caption("Turns of the crank in a second.")
+}
+
+fn floor(name: &str, drill: &Drill) -> Option<Figure> {
+    let floor = drill.noise_floor.as_ref()?;
+    let lowest = floor.noise.iter().copied().fold(f64::INFINITY, f64::min).max(-400.0);
+    let highest = floor.motion.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let y = AxisSpec::new("Level re 1 m/s", "dB").limits(lowest - 10.0, highest + 5.0);
+    let x = AxisSpec::frequency().log();
+    let mut plot = Plot::new(x, y)
+        .with(Series::line("motion", floor.frequency.clone(), floor.motion.clone()).stroke(Stroke::Thin))
+        .with(
+            Series::line("no motion", floor.frequency.clone(), floor.noise.clone())
+                .stroke(Stroke::Thin)
+                .ink(Ink::Grey),
+        );
+    let bands: Vec<String> = floor.bands.iter().map(|b| format!("{:.0} to {:.0} Hz", b[0], b[1])).collect();
+    // The end of the widest band is the one that is asked for.
+    let widest = floor.bands.iter().max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
+    if let Some(band) = widest {
+        plot = plot.with(Series::vertical(format!("{} dB margin ends", floor.margin), band[1]));
+    }
+    let few = bands.iter().take(3).cloned().collect::<Vec<_>>().join(", ");
+    Some(Figure::double(format!("Motion and noise, {name}")).panel(plot).caption(format!(
+        "RMS of lines {:.1} Hz wide. Motion stands {} dB or more above the noise in {} bands, first {few}.",
+        floor.line_width,
+        floor.margin,
+        bands.len()
+    )))
+}
+
+/// Every so many points.
+fn thin(values: &[f64]) -> Vec<f64> {
+    values.iter().step_by(values.len().div_ceil(POINTS).max(1)).copied().collect()
+}

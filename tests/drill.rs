@@ -1,0 +1,203 @@
+//! `vibro drill` from the command line: the example's record against its truth, and input that allows no answer.
+
+#[allow(dead_code)]
+#[path = "../examples/hammer_drill/noise.rs"]
+mod noise;
+#[path = "../examples/hammer_drill/record.rs"]
+mod record;
+#[allow(dead_code)]
+#[path = "../examples/hammer_drill/stroke.rs"]
+mod stroke;
+
+use serde_json::Value;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use vibroimpact::record::{Axis, Meta, Record, Trace};
+use vibroimpact::units::Unit;
+use vibroimpact::write::wav::{Sample, write};
+
+const PLAIN: [&str; 12] = [
+    "--velocity",
+    "striker",
+    "--reference",
+    "pulse",
+    "--sensitivity",
+    "2",
+    "--beam-angle",
+    "30",
+    "--pulses-per-turn",
+    "1",
+    "--edge",
+    "rising",
+];
+
+fn drill(file: &Path, more: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_vibro"));
+    command.arg("--json").arg("drill").arg(file).args(more).output().expect("vibro starts")
+}
+
+fn with(file: &Path, more: &[&str]) -> Output {
+    drill(file, &[&PLAIN[..], &["--from", "normal"], more].concat())
+}
+
+fn json(output: &Output) -> Value {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+fn volts(name: &str, values: Vec<f64>) -> Record {
+    let meta = Meta::new(name, Unit::parse_or_opaque("V"));
+    Record::Trace(Trace { meta, axis: Axis::time(0.0, 1.0 / record::RATE, values.len()), values })
+}
+
+fn wav(folder: &Path, name: &str, channels: &[Record]) -> PathBuf {
+    let path = folder.join(name);
+    write(channels, Sample::Float32, &mut std::fs::File::create(&path).unwrap()).unwrap();
+    path
+}
+
+#[test]
+fn the_example_comes_out_as_it_was_made() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = record::record(2.0);
+    let channels = [
+        volts("striker", made.striker.clone()),
+        volts("bit", made.bit.clone()),
+        volts("pulse", made.pulse.clone()),
+    ];
+    let file = wav(folder.path(), "drill.wav", &channels);
+    let still = wav(folder.path(), "still.wav", &[volts("striker", record::still(1.0))]);
+    let out = folder.path().join("out");
+    let found = json(&with(
+        &file,
+        &[
+            "--mass",
+            "0.14",
+            "--struck-mass",
+            "0.43",
+            "--noise",
+            still.to_str().unwrap(),
+            "--out",
+            out.to_str().unwrap(),
+        ],
+    ));
+    assert_eq!(found["dropouts"].as_u64(), Some(made.dropouts as u64));
+    // 95 turns scatter by 0.4 %: the mean by 0.02 Hz; four times that.
+    assert!((found["speed"]["value"].as_f64().unwrap() - 47.3).abs() < 0.08);
+    let impacts = found["impacts"].as_array().unwrap();
+    assert!(impacts.len() + found["hidden"].as_u64().unwrap() as usize + 2 >= made.impacts.len());
+    for impact in impacts {
+        let number = |key: &str| impact[key].as_f64().unwrap();
+        let truth =
+            made.impacts.iter().find(|t| (t.time - number("time")).abs() < 5e-5).expect("a true impact");
+        // Six standard uncertainties: with 200 values once in a million such records.
+        assert!((number("before") - truth.before).abs() < 6.0 * number("before_std"), "{impact}");
+        assert!((number("after") - truth.after).abs() < 6.0 * number("after_std"), "{impact}");
+        assert!((number("phase") - truth.phase).abs() < 6.0 * number("phase_std"), "{impact}");
+    }
+    let restitution = &found["restitution"];
+    let (value, std) = (restitution["value"].as_f64().unwrap(), restitution["std"].as_f64().unwrap());
+    assert!((value - record::RESTITUTION).abs() < 4.0 * std && std < 0.01);
+    assert!((found["beam"]["factor"].as_f64().unwrap() - 2.0).abs() < 1e-12);
+    let average = &found["average"];
+    for key in ["phase", "mean", "std"] {
+        assert_eq!(average[key].as_array().unwrap().len(), 720);
+    }
+    assert!(!found["noise_floor"]["bands"].as_array().unwrap().is_empty());
+    for name in ["drill_average.svg", "drill_trace.png", "drill_speed.svg", "drill_noise.svg", "impacts.csv"]
+    {
+        assert!(out.join(name).exists(), "{name}");
+    }
+}
+
+#[test]
+fn the_truth_beside_the_example_is_the_one_it_is_made_from() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/hammer_drill/TRUTH.csv");
+    let text = std::fs::read_to_string(path).unwrap();
+    let rows = text.lines().skip(1).map(|l| l.split(',').map(|v| v.parse().unwrap()).collect::<Vec<f64>>());
+    let made = record::record(0.5).impacts;
+    assert!(made.len() > 20 && text.lines().count() > 900);
+    for (row, made) in rows.zip(&made) {
+        // Four decimals, and the last digits of another machine's mathematics library.
+        for (written, made) in row[1..].iter().zip([made.time, made.phase, made.before, made.after]) {
+            assert!((written - made).abs() < 6e-5, "{row:?}");
+        }
+    }
+}
+
+#[test]
+fn a_campaign_measures_both_channels() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = record::record(0.6);
+    let channels = [volts("striker", made.striker), volts("bit", made.bit), volts("pulse", made.pulse)];
+    wav(folder.path(), "drill.wav", &channels);
+    wav(folder.path(), "still.wav", &[volts("striker", record::still(0.5))]);
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/hammer_drill/campaign.toml");
+    let text = std::fs::read_to_string(own).unwrap();
+    let campaign = folder.path().join("campaign.toml");
+    std::fs::write(&campaign, &text).unwrap();
+    let run = |path: &Path| {
+        Command::new(env!("CARGO_BIN_EXE_vibro")).arg("--json").arg("run").arg(path).output().unwrap()
+    };
+    let found = json(&run(&campaign));
+    let drills = found["results"]["drill"].as_array().unwrap();
+    assert_eq!(drills.len(), 2);
+    // The bit gains (1 + R) m/(m + M) of 7.5 m/s from rest.
+    let gained = drills[1]["after"]["value"].as_f64().unwrap();
+    assert!((gained - 7.5 * 1.45 * 0.14 / 0.57).abs() < 0.15, "{gained}");
+    assert!(folder.path().join("results/drill_average_striker.svg").exists());
+    // A key without a default that is left out is named.
+    std::fs::write(&campaign, text.replace("from = \"normal\"", "")).unwrap();
+    let without = run(&campaign);
+    assert_eq!(without.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&without.stderr).contains("needs from"));
+}
+
+/// Text of two channels at 10 kHz with a name each.
+fn csv(folder: &Path, name: &str, row: impl Fn(usize) -> (f64, f64)) -> PathBuf {
+    let mut text = String::from("t [s],striker [V],pulse [V]\n");
+    for i in 0..6000 {
+        let (v, r) = row(i);
+        let _ = writeln!(text, "{:.4},{v},{r}", i as f64 / 1e4);
+    }
+    let path = folder.join(name);
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+#[test]
+fn what_allows_no_answer_says_why() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let wave = |i: usize| (i as f64 * 0.03).sin();
+    let pulse = |i: usize| f64::from(u8::from(i % 200 < 20));
+    let good = csv(at, "good.csv", |i| (wave(i), pulse(i)));
+    let cases = [
+        (csv(at, "none.csv", |i| (wave(i), 0.0)), 1, "no edge"),
+        (csv(at, "one.csv", |i| (wave(i), f64::from(u8::from(i > 3000)))), 1, "one edge"),
+        (csv(at, "constant.csv", |i| (1.0, pulse(i))), 1, "constant"),
+        (csv(at, "same.csv", |i| (pulse(i), pulse(i))), 1, "the same channel"),
+    ];
+    for (file, code, why) in &cases {
+        let output = with(file, &[]);
+        let text =
+            String::from_utf8_lossy(&output.stderr).into_owned() + &String::from_utf8_lossy(&output.stdout);
+        assert_eq!(output.status.code(), Some(*code), "{why}: {text}");
+        assert!(text.contains(why), "{why}: {text}");
+    }
+    let code = |more: &[&str]| drill(&good, more).status.code();
+    assert_eq!(code(&PLAIN), Some(2), "an angle without --from");
+    let square = ["--velocity", "1", "--reference", "2", "--sensitivity", "2", "--beam-angle", "90"];
+    let rest = ["--pulses-per-turn", "1", "--edge", "rising", "--from", "axis"];
+    assert_eq!(code(&[&square[..], &rest].concat()), Some(1), "a beam square to the motion");
+    let twice = ["--velocity", "1", "--reference", "1", "--sensitivity", "2", "--beam-angle", "0"];
+    assert_eq!(code(&[&twice[..], &rest].concat()), Some(1), "one channel for both");
+    for bad in [["--mass", "-1"], ["--fit", "0"], ["--points", "1"], ["--low-pass", "6000"]] {
+        assert_eq!(with(&good, &bad).status.code(), Some(2), "{bad:?}");
+    }
+    let smooth = json(&with(&good, &["--low-pass", "500"]));
+    assert_eq!((smooth["impacts"].as_array().unwrap().len(), smooth["cycles"].as_u64()), (0, Some(28)));
+    let warnings = smooth["warnings"].to_string();
+    assert!(warnings.contains("No impact was found") && warnings.contains("500.0 Hz"), "{warnings}");
+}
