@@ -2,12 +2,14 @@
 
 mod estimate;
 pub mod excitation;
+pub mod impacts;
 pub mod legacy;
 pub mod line;
 pub mod noise;
 pub mod peaks;
 pub mod resonance;
 pub mod response;
+pub mod restitution;
 pub mod waterfall;
 
 pub use estimate::Estimate;
