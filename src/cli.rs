@@ -5,10 +5,12 @@ mod compare;
 mod complain;
 mod convert;
 mod excitation;
+mod impacts;
 mod info;
 mod print;
 mod progress;
 mod response;
+mod restitution;
 mod run;
 mod settings;
 mod target;
@@ -38,6 +40,8 @@ fn dispatch(args: &Args) -> Result<u8> {
         Command::Excitation(typed) => excitation::run(typed, args.json),
         Command::Waterfall(typed) => waterfall::run(typed, args.json),
         Command::Response(typed) => response::run(typed, args.json),
+        Command::Impacts(typed) => impacts::run(typed, args.json),
+        Command::Restitution(typed) => restitution::run(typed, args.json),
         Command::Compare(typed) => compare::run(typed, args.json),
         Command::Run(typed) => run::run(typed, args.json),
     };

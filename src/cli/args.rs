@@ -3,9 +3,11 @@
 mod compare;
 mod convert;
 mod excitation;
+mod impacts;
 mod info;
 mod reading;
 mod response;
+mod restitution;
 mod run;
 mod sweep;
 mod waterfall;
@@ -13,10 +15,11 @@ mod waterfall;
 pub use compare::Compare;
 pub use convert::Convert;
 pub use excitation::Excitation;
+pub use impacts::{Finding, Impacts};
 pub use info::Info;
-#[allow(unused_imports)]
 pub use reading::{Channel, Decimal, Reading};
 pub use response::Response;
+pub use restitution::Restitution;
 pub use run::Run;
 pub use sweep::{Sweep, Taking};
 pub use waterfall::Waterfall;
@@ -46,6 +49,10 @@ pub enum Command {
     Waterfall(Waterfall),
     /// Take the response at the excitation, with resonances and jumps
     Response(Response),
+    /// Find the impacts in a contact trace: interval, frequency, impacts per cycle
+    Impacts(Impacts),
+    /// Coefficient of restitution from drops, bounces or velocities, every method side by side
+    Restitution(Restitution),
     /// Overlay a campaign's measured responses on the model's prediction
     Compare(Compare),
     /// Do all that a campaign asks for: results, tables, figures, report

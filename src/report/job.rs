@@ -1,11 +1,13 @@
 //! All that a campaign asks for: responses, waterfalls, overlay, frequency response functions, and their files.
 
 mod frf;
+mod impacts;
 
 pub use frf::{FrfPeak, FrfResult};
+pub use impacts::{DropResult, ImpactsResult};
 
 use super::{Figure, Output, files, page, pictures, tables};
-use crate::campaign::{Campaign, DrillEntry, DropEntry, ImpactsEntry, PulseEntry};
+use crate::campaign::{Campaign, DrillEntry, PulseEntry};
 use crate::compare::{Overlay, overlay};
 use crate::error::{Error, Result};
 use crate::measure::resonance::{NamedCurve, crossings, deepest, name_modes};
@@ -83,6 +85,10 @@ pub struct Results {
     pub overlay: Option<Overlay>,
     /// Frequency response functions.
     pub frf: Vec<FrfResult>,
+    /// Impacts of contact traces.
+    pub impacts: Vec<ImpactsResult>,
+    /// Restitution from drops.
+    pub drops: Vec<DropResult>,
     /// Files that are listed only.
     pub listed: Vec<Listed>,
     /// What a person must know, each sentence once.
@@ -172,8 +178,10 @@ pub fn run(
         }
     }
     let frf = frf::frfs(campaign, options, &mut figures, &mut warnings)?;
+    let impacts = impacts::impacts(campaign, options, &mut figures, &mut warnings)?;
+    let drops = impacts::drops(campaign, options, &mut figures, &mut warnings)?;
     let listed = listed(campaign, options, &mut warnings)?;
-    if responses.is_empty() && frf.is_empty() && listed.is_empty() {
+    if figures.is_empty() && listed.is_empty() {
         warnings.push("The campaign names no file: nothing was computed.".to_owned());
     }
     twice(&responses, &mut warnings);
@@ -190,6 +198,8 @@ pub fn run(
         rig: campaign.rig.filter(|_| overlay.is_some()),
         overlay,
         frf,
+        impacts,
+        drops,
         listed,
         warnings,
     };
@@ -202,6 +212,9 @@ pub fn run(
     if let Some(overlay) = &results.overlay {
         output.write("pairs.csv", tables::pairs(overlay).csv())?;
         output.write("peaks.csv", tables::peaks(overlay).csv())?;
+    }
+    for (i, result) in results.impacts.iter().enumerate() {
+        output.write(&format!("impacts_{}.csv", i + 1), tables::impact_times(&result.impacts).csv())?;
     }
     let json = serde_json::to_string_pretty(&results)
         .map_err(|e| Error::refused(format!("the results cannot be written as JSON: {e}")))?;
@@ -282,9 +295,7 @@ fn all_crossings(responses: &[Response]) -> Vec<Crossing> {
 /// Parts of a campaign that have no analysis yet are listed, and that is said.
 fn listed(campaign: &Campaign, options: JobOptions, warnings: &mut Vec<String>) -> Result<Vec<Listed>> {
     let parts = [
-        ("impacts", campaign.impacts.iter().map(ImpactsEntry::record).collect::<Vec<_>>()),
-        ("drop", campaign.drop.iter().map(DropEntry::record).collect()),
-        ("pulse", campaign.pulse.iter().map(PulseEntry::record).collect()),
+        ("pulse", campaign.pulse.iter().map(PulseEntry::record).collect::<Vec<_>>()),
         ("drill", campaign.drill.iter().map(DrillEntry::record).collect()),
     ];
     let mut listed = Vec::new();

@@ -1,5 +1,9 @@
 //! Results as tables: for the terminal, for CSV, for the report.
 
+mod impacts;
+
+pub use impacts::{impact_times, impacts, restitution};
+
 use super::job::Results;
 use super::{Cell, Table};
 use crate::compare::Overlay;
@@ -213,6 +217,10 @@ pub fn summary(results: &Results) -> Vec<Table> {
         tables.push(scores(overlay));
     }
     tables.push(frf_peaks(results));
+    let trains: Vec<_> = results.impacts.iter().map(|r| (r.name.clone(), &r.impacts)).collect();
+    tables.push(impacts(&trains));
+    let drops: Vec<_> = results.drops.iter().map(|r| (r.name.clone(), &r.restitution)).collect();
+    tables.push(restitution(&drops));
     tables.retain(|t| !t.rows.is_empty());
     tables
 }

@@ -2,6 +2,7 @@
 
 mod answers;
 mod complaints;
+mod impacts;
 mod rig;
 
 use serde_json::Value;
