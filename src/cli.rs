@@ -6,10 +6,12 @@ mod complain;
 mod convert;
 mod drill;
 mod excitation;
+mod impacts;
 mod info;
 mod print;
 mod progress;
 mod response;
+mod restitution;
 mod run;
 mod settings;
 mod spectrum;
@@ -42,6 +44,8 @@ fn dispatch(args: &Args) -> Result<u8> {
         Command::Waterfall(typed) => waterfall::run(typed, args.json),
         Command::Response(typed) => response::run(typed, args.json),
         Command::Drill(typed) => drill::run(typed, args.json),
+        Command::Impacts(typed) => impacts::run(typed, args.json),
+        Command::Restitution(typed) => restitution::run(typed, args.json),
         Command::Compare(typed) => compare::run(typed, args.json),
         Command::Run(typed) => run::run(typed, args.json),
     };

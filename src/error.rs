@@ -177,6 +177,14 @@ impl Error {
         self
     }
 
+    /// Names the record that an answer was refused of.
+    pub fn of_record(mut self, name: &str) -> Self {
+        if let ErrorKind::Refused { why, .. } = &mut *self.0 {
+            *why = format!("{name}: {why}");
+        }
+        self
+    }
+
     /// The kind, for matching.
     pub fn kind(&self) -> &ErrorKind {
         &self.0

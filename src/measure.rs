@@ -4,6 +4,7 @@ pub mod drill;
 mod estimate;
 pub mod excitation;
 pub mod exposure;
+pub mod impacts;
 pub mod legacy;
 pub mod limit;
 pub mod line;
@@ -11,6 +12,7 @@ pub mod noise;
 pub mod peaks;
 pub mod resonance;
 pub mod response;
+pub mod restitution;
 pub mod sine;
 #[cfg(test)]
 mod synthetic;

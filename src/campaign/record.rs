@@ -67,12 +67,34 @@ record_entry! {
 
 record_entry! {
     /// A trace of impacts.
-    ImpactsEntry {}
+    ImpactsEntry {
+        /// Frequency of the excitation in Hz.
+        excitation: Option<f64>,
+        /// Channel of the same file that rises once a cycle of the excitation.
+        reference: Option<String>,
+        /// Lowest impact, as part of the median one. Default 1/8.
+        threshold: Option<f64>,
+        /// Pause in s that parts two impacts. Default: found from the trace.
+        refractory: Option<f64>,
+    }
 }
 
 record_entry! {
     /// A drop test.
-    DropEntry {}
+    DropEntry {
+        /// Height of the fall in m; without it, a train of bounces.
+        height: Option<f64>,
+        /// Its standard uncertainty in m.
+        height_std: Option<f64>,
+        /// Acceleration of free fall in m/s². Default 9.80665.
+        gravity: Option<f64>,
+        /// Its standard uncertainty in m/s².
+        gravity_std: Option<f64>,
+        /// Lowest impact, as part of the median one. Default 0.02.
+        threshold: Option<f64>,
+        /// Pause in s that parts two impacts. Default: found from the trace.
+        refractory: Option<f64>,
+    }
 }
 
 record_entry! {

@@ -4,9 +4,11 @@ mod compare;
 mod convert;
 mod drill;
 mod excitation;
+mod impacts;
 mod info;
 mod reading;
 mod response;
+mod restitution;
 mod run;
 mod spectrum;
 mod sweep;
@@ -16,9 +18,11 @@ pub use compare::Compare;
 pub use convert::Convert;
 pub use drill::{Drill, Edge, From};
 pub use excitation::Excitation;
+pub use impacts::{Finding, Impacts};
 pub use info::Info;
 pub use reading::{Channel, Decimal, Reading};
 pub use response::Response;
+pub use restitution::Restitution;
 pub use run::Run;
 pub use spectrum::{Estimator, Method, Spectrum};
 pub use sweep::{Sweep, Taking};
@@ -53,6 +57,10 @@ pub enum Command {
     Response(Response),
     /// Measure speed, impacts and the average turn of a hammer drill
     Drill(Box<Drill>),
+    /// Find the impacts in a contact trace: interval, frequency, impacts per cycle
+    Impacts(Impacts),
+    /// Coefficient of restitution from drops, bounces or velocities, every method side by side
+    Restitution(Restitution),
     /// Overlay a campaign's measured responses on the model's prediction
     Compare(Compare),
     /// Do all that a campaign asks for: results, tables, figures, report

@@ -1,8 +1,9 @@
 //! From what was typed to what is meant: checked options.
 
-use super::args::{Channel, Decimal, Reading, Sweep, Taking};
+use super::args::{Channel, Decimal, Finding, Reading, Sweep, Taking};
 use crate::campaign::Campaign;
 use crate::error::{Error, Place, Result};
+use crate::measure::impacts::ImpactsOptions;
 use crate::measure::response::{ResponseOptions, to_displacement};
 use crate::read::{Format, Reader, SweepList, SweepReader, Traces};
 use crate::record::{Scaling, Trace, Window};
@@ -29,12 +30,31 @@ pub fn reader(typed: &Reading) -> Result<Reader> {
         .complex(typed.complex))
 }
 
+/// A reader of time records, of which `--base-band` gives the sampling rate.
+///
+/// # Errors
+/// As [`reader`].
+pub fn time_reader(typed: &Reading) -> Result<Reader> {
+    Ok(reader(typed)?.rate_of_base_band())
+}
+
+/// How impacts are found; `threshold` where none was typed.
+pub fn finding(typed: &Finding, threshold: Option<f64>) -> ImpactsOptions {
+    let default = ImpactsOptions::default();
+    ImpactsOptions {
+        threshold: typed.threshold.or(threshold).unwrap_or(default.threshold),
+        refractory: typed.refractory,
+        hum: !typed.keep_hum,
+        ..default
+    }
+}
+
 /// The trace that is meant, and the sentences about it and its file.
 ///
 /// # Errors
 /// As [`reader`]; if the file cannot be read or has no such trace.
 pub fn trace(file: &Path, reading: &Reading, chosen: &Channel) -> Result<(Trace, Vec<String>)> {
-    let recording = reader(reading)?.from_path(file)?;
+    let recording = time_reader(reading)?.from_path(file)?;
     let trace = recording.trace(chosen.channel.as_deref(), chosen.calibration)?;
     let mut doubts = recording.doubts;
     doubts.extend(trace.meta.doubts.iter().cloned());
@@ -46,7 +66,7 @@ pub fn trace(file: &Path, reading: &Reading, chosen: &Channel) -> Result<(Trace,
 /// # Errors
 /// As [`reader`]; if there is no such channel, or several and none was chosen.
 pub fn traces(file: &Path, reading: &Reading, chosen: &Channel, reference: Option<&str>) -> Result<Traces> {
-    let reader = reader(reading)?;
+    let reader = time_reader(reading)?;
     let named: Vec<&str> = reference.into_iter().chain(chosen.channel.as_deref()).collect();
     let mut traces = if chosen.channel.is_some() {
         reader.stream_channels(file, &named)?

@@ -1,11 +1,11 @@
-//! What the thesis' scripts sineswpf, sinesw and sinesw3 gave, mistakes included, so that old results can be checked.
+//! What the thesis' scripts sineswpf, sinesw, sinesw3 and timeav gave, mistakes included, so that old results can be checked.
 //!
 //! They are wrong in known ways: the largest line may be 0 Hz, frequencies and amplitudes are read on the line, and the
-//! first and last search windows are open on one side. Use [`super::excitation`], [`super::waterfall`] and
-//! [`super::response`] for answers.
+//! first and last search windows are open on one side; timeav takes the mean interval of all that is higher than a quarter of one
+//! early peak. Use [`super::excitation`], [`super::waterfall`], [`super::response`] and [`super::impacts`] for answers.
 
 use crate::error::{Error, Place, Result};
-use crate::record::Sweep;
+use crate::record::{Sweep, Trace};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -87,4 +87,50 @@ pub fn response(sweep: &Sweep) -> Result<Vec<(f64, f64)>> {
             (x[i], largest)
         })
         .collect())
+}
+
+/// What timeav printed of a contact trace.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactTimes {
+    /// Local maxima that rise from above 0.
+    pub maxima: usize,
+    /// Times of those above the height rule, in s; the first sample counts as one sampling interval, not 0.
+    pub times: Vec<f64>,
+    /// (last − first)/(k − 1) in s; NaN of one peak, as 0/0.
+    pub interval: f64,
+    /// Its inverse in Hz.
+    pub frequency: f64,
+}
+
+/// timeav: local maxima that rise from above 0 and are higher than a quarter of the first big one.
+///
+/// Its own test of "big" is not kept with its outputs; the larger of the first two maxima reproduces all of them.
+///
+/// # Errors
+/// Where the file has a header, the trace no sampling rate or no maximum: the script stopped there.
+pub fn contact_times(trace: &Trace) -> Result<ContactTimes> {
+    if let Some((key, value)) = trace.meta.notes.first() {
+        return Err(Error::refused(format!(
+            "timeav stops at a file with a header (\"{}\"): it finds no number in the first line",
+            format!("{key} {value}").trim()
+        ))
+        .hint("leave out --legacy: header lines are passed over then"));
+    }
+    let rate = super::impacts::rate_of(trace)?;
+    let s = &trace.values;
+    let maxima: Vec<(usize, f64)> = s
+        .windows(3)
+        .enumerate()
+        .filter(|(_, w)| w[0] > 0.0 && w[1] > w[0] && w[1] > w[2])
+        .map(|(i, w)| (i + 1, w[1]))
+        .collect();
+    let big = maxima.iter().take(2).map(|m| m.1).fold(f64::NEG_INFINITY, f64::max);
+    // Octave counts from 1, and the script took the count for the time.
+    let times: Vec<f64> =
+        maxima.iter().filter(|m| m.1 > 0.25 * big).map(|m| (m.0 + 1) as f64 / rate).collect();
+    let (Some(first), Some(last)) = (times.first(), times.last()) else {
+        return Err(Error::refused("timeav stops at a trace without a maximum that rises from above 0"));
+    };
+    let interval = (last - first) / (times.len() - 1) as f64;
+    Ok(ContactTimes { maxima: maxima.len(), interval, frequency: 1.0 / interval, times })
 }

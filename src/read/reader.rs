@@ -123,6 +123,12 @@ impl Reader {
         self
     }
 
+    /// Takes a stated base band for that of a time trace, which analysers sample at 2.56 times their base band. Default: it is that of a spectrum.
+    pub fn rate_of_base_band(mut self) -> Reader {
+        self.options.rate = self.options.rate.or(self.options.base_band.take().map(|band| 2.56 * band));
+        self
+    }
+
     /// States the unit of the values. Default: the file says it.
     pub fn unit(mut self, unit: Option<Unit>) -> Reader {
         self.options.unit = unit;

@@ -2,14 +2,16 @@
 
 mod drill;
 mod frf;
+mod impacts;
 mod pairing;
 
 pub use drill::DrillResult;
 pub use frf::{FrfPeak, FrfResult};
+pub use impacts::{DropResult, ImpactsResult};
 pub use pairing::Crossing;
 
 use super::{Figure, Output, files, page, pictures, tables};
-use crate::campaign::{Campaign, DropEntry, ImpactsEntry, PulseEntry};
+use crate::campaign::{Campaign, PulseEntry};
 use crate::compare::{Overlay, overlay};
 use crate::error::{Error, Result};
 use crate::measure::response::{Response, ResponseOptions, response, to_displacement};
@@ -77,6 +79,10 @@ pub struct Results {
     pub frf: Vec<FrfResult>,
     /// Hammer drills.
     pub drill: Vec<DrillResult>,
+    /// Impacts of contact traces.
+    pub impacts: Vec<ImpactsResult>,
+    /// Restitution from drops.
+    pub drops: Vec<DropResult>,
     /// Files that are listed only.
     pub listed: Vec<Listed>,
     /// What a person must know, each sentence once.
@@ -155,8 +161,10 @@ pub fn run(
     }
     let frf = frf::frfs(campaign, options, &mut figures, &mut warnings)?;
     let drilled = drill::drills(campaign, options, &mut figures, &mut warnings)?;
+    let impacts = impacts::impacts(campaign, options, &mut figures, &mut warnings)?;
+    let drops = impacts::drops(campaign, options, &mut figures, &mut warnings)?;
     let listed = listed(campaign, options, &mut warnings)?;
-    if responses.is_empty() && frf.is_empty() && drilled.is_empty() && listed.is_empty() {
+    if figures.is_empty() && listed.is_empty() {
         warnings.push("The campaign names no file: nothing was computed.".to_owned());
     }
     pairing::twice(&responses, &mut warnings);
@@ -173,6 +181,8 @@ pub fn run(
         overlay,
         frf,
         drill: drilled,
+        impacts,
+        drops,
         listed,
         warnings,
     };
@@ -187,6 +197,9 @@ pub fn run(
         output.write("peaks.csv", tables::peaks(overlay).csv())?;
     }
     drill::tables(&results.drill, output)?;
+    for (i, result) in results.impacts.iter().enumerate() {
+        output.write(&format!("impacts_{}.csv", i + 1), tables::impact_times(&result.impacts).csv())?;
+    }
     results.warnings.extend(files::left_over(output, &[RESULTS, REPORT]));
     let json = serde_json::to_string_pretty(&results)
         .map_err(|e| Error::refused(format!("the results cannot be written as JSON: {e}")))?;
@@ -253,11 +266,7 @@ fn model(campaign: &Campaign, responses: &[Response], warnings: &mut Vec<String>
 
 /// Parts of a campaign that have no analysis yet are listed, and that is said.
 fn listed(campaign: &Campaign, options: JobOptions, warnings: &mut Vec<String>) -> Result<Vec<Listed>> {
-    let parts = [
-        ("impacts", campaign.impacts.iter().map(ImpactsEntry::record).collect::<Vec<_>>()),
-        ("drop", campaign.drop.iter().map(DropEntry::record).collect()),
-        ("pulse", campaign.pulse.iter().map(PulseEntry::record).collect()),
-    ];
+    let parts = [("pulse", campaign.pulse.iter().map(PulseEntry::record).collect::<Vec<_>>())];
     let mut listed = Vec::new();
     for (part, entries) in parts {
         for entry in &entries {

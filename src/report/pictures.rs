@@ -2,6 +2,7 @@
 
 mod drill;
 mod frf;
+mod impacts;
 mod overlay;
 mod response;
 mod spectrum;
@@ -9,6 +10,7 @@ mod waterfall;
 
 pub use drill::drill;
 pub use frf::frf;
+pub use impacts::{drop, impacts};
 pub use overlay::overlay;
 pub use response::response;
 pub use spectrum::{spectrum, transfer};

@@ -1,8 +1,10 @@
 //! Results as tables: for the terminal, for CSV, for the report.
 
 mod drill;
+mod impacts;
 
 pub use drill::{drill, drill_average, drill_impacts};
+pub use impacts::{impact_times, impacts, restitution};
 
 use super::job::{FrfResult, Results};
 use super::{Cell, Column, Table};
@@ -191,6 +193,10 @@ pub fn summary(results: &Results) -> Vec<Table> {
     tables.extend(kinds.into_iter().map(|kind| frf_peaks(&results.frf, kind)));
     let drills: Vec<_> = results.drill.iter().map(|d| (d.name.as_str(), &d.drill)).collect();
     tables.push(drill(&drills));
+    let trains: Vec<_> = results.impacts.iter().map(|r| (r.name.clone(), &r.impacts)).collect();
+    tables.push(impacts(&trains));
+    let drops: Vec<_> = results.drops.iter().map(|r| (r.name.clone(), &r.restitution)).collect();
+    tables.push(restitution(&drops));
     tables.retain(|t| !t.rows.is_empty());
     tables
 }

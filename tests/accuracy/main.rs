@@ -2,6 +2,9 @@
 //! Many random cases with fixed seeds; run with `--nocapture` to see the figures.
 
 mod drill;
+mod impacts;
+mod noise;
 mod random;
+mod restitution;
 mod sine;
 mod transfer;

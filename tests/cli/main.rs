@@ -2,6 +2,7 @@
 
 mod answers;
 mod complaints;
+mod impacts;
 mod rig;
 mod spectrum;
 

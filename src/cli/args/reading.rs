@@ -14,7 +14,7 @@ pub struct Reading {
     /// Sampling rate in Hz: the values are a time trace
     #[arg(long, value_name = "HZ", allow_negative_numbers = true, conflicts_with = "base_band")]
     pub rate: Option<f64>,
-    /// Base band in Hz: the values are a spectrum from 0 to it
+    /// Base band in Hz: the values are a spectrum from 0 to it, or a trace sampled at 2.56 times it
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     pub base_band: Option<f64>,
     /// Unit of the values, such as mm/s

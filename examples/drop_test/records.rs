@@ -1,0 +1,114 @@
+//! What the instruments of the drop test write.
+
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+
+/// Height of the drops in m.
+pub const HEIGHT: f64 = 0.57;
+/// Restitution of every impact.
+pub const RESTITUTION: f64 = 0.2112;
+/// Of the ball that bounces longer.
+pub const LIVELY: f64 = 0.62;
+/// Excitation of the contact trace in Hz, and its impacts a second.
+pub const EXCITATION: f64 = 11.2;
+const GRAVITY: f64 = 9.806_65;
+/// Samples a second of the accelerometer: coarse, so that the files stay small.
+const RATE: f64 = 5000.0;
+
+/// Noise with a seed: splitmix64 (Steele, Lea and Flood 2014), and the sum of twelve uniform numbers less six, which is close to
+/// normal and needs no function of a mathematics library.
+struct Noise(u64);
+
+impl Noise {
+    fn uniform(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn normal(&mut self) -> f64 {
+        (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
+    }
+}
+
+/// Times and speeds of the impacts of a ball that falls at time 0.
+fn bounces(restitution: f64, impacts: usize) -> Vec<(f64, f64)> {
+    let mut speed = (2.0 * GRAVITY * HEIGHT).sqrt();
+    let mut time = speed / GRAVITY;
+    let mut found = Vec::new();
+    for _ in 0..impacts {
+        found.push((time, speed));
+        speed *= restitution;
+        time += 2.0 * speed / GRAVITY;
+    }
+    found
+}
+
+/// Acceleration of the plate in m/s²: pulses of 0.6 ms, then its own decaying ring of 1300 Hz.
+fn plate(impacts: &[(f64, f64)], from: f64, seconds: f64, seed: u64) -> String {
+    let mut noise = Noise(seed);
+    let mut text = String::from("time (s),acceleration (m/s²)\n");
+    for i in 0..(seconds * RATE) as usize {
+        let t = from + i as f64 / RATE;
+        let mut a = 2.0 * noise.normal();
+        for (at, speed) in impacts {
+            let x = t - at;
+            if (0.0..0.6e-3).contains(&x) {
+                a += 400.0 * speed * (TAU * x / 1.2e-3).sin();
+            } else if x >= 0.6e-3 {
+                let y = x - 0.6e-3;
+                a -= 120.0 * speed * (-y / 2e-3).exp() * (TAU * 1300.0 * y).sin();
+            }
+        }
+        let _ = writeln!(text, "{:.4},{a:.1}", i as f64 / RATE);
+    }
+    text
+}
+
+/// Contact trace with mains hum: volts, one a line, no header, as the analyser wrote it.
+fn contact(seed: u64) -> (String, usize) {
+    let (rate, n) = (128.0, 1024);
+    let mut noise = Noise(seed);
+    let length = f64::from(n) / rate;
+    let times: Vec<f64> =
+        (0..n).map(|k| 0.05 + 2.0 * f64::from(k) / EXCITATION).take_while(|t| *t < length - 0.05).collect();
+    let mut text = String::new();
+    for i in 0..n {
+        let t = f64::from(i) / rate;
+        let mut v = 0.02 * noise.normal() + 0.6 * (TAU * 50.02 * t + 0.7).sin();
+        for at in &times {
+            let x = (t - at) * rate;
+            if x > -8.0 {
+                v += (-x * x / 1.8).exp();
+                if x > 0.0 {
+                    v += 0.4 * (-x / 2.0).exp() * (1.9 * x).sin();
+                }
+            }
+        }
+        let _ = writeln!(text, "{v:14.6e}");
+    }
+    (text, times.len())
+}
+
+/// All files, by name.
+pub fn all() -> Vec<(String, String)> {
+    let mut files = Vec::new();
+    let mut scatter = Noise(7);
+    for drop in 1..=5 {
+        // No two impacts are alike: 2 % from drop to drop.
+        let r = RESTITUTION * (1.0 + 0.02 * scatter.normal());
+        files.push((format!("DROP{drop:02}.CSV"), plate(&bounces(r, 2), 0.3, 0.2, 100 + drop)));
+    }
+    let train = bounces(LIVELY, 6);
+    files.push(("BOUNCE.CSV".to_owned(), plate(&train, 0.25, 1.12, 200)));
+    let (text, impacts) = contact(300);
+    files.push(("CONTACT.DAT".to_owned(), text));
+    let truth = format!(
+        "quantity,value,unit\nheight,{HEIGHT},m\nrestitution of the drops (mean; 2 % scatter),{RESTITUTION},\nrestitution of the bouncing ball,{LIVELY},\nexcitation of the contact trace,{EXCITATION},Hz\nimpacts in the contact trace,{impacts},\nimpact frequency,{},Hz\n",
+        EXCITATION / 2.0
+    );
+    files.push(("TRUTH.csv".to_owned(), truth));
+    files
+}

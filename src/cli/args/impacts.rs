@@ -1,0 +1,42 @@
+//! `vibro impacts`, as typed.
+
+use super::{Channel, Reading};
+use std::path::PathBuf;
+
+#[derive(Debug, clap::Args)]
+pub struct Impacts {
+    /// File with a contact trace, or any signal that jumps at each impact
+    pub file: PathBuf,
+    /// Print what the thesis' script timeav printed, mistakes included
+    #[arg(long)]
+    pub legacy: bool,
+    /// Frequency of the excitation in Hz
+    #[arg(long, value_name = "HZ", conflicts_with = "reference")]
+    pub excitation: Option<f64>,
+    /// Record of the same file that rises once a cycle of the excitation, by name or by number from 1
+    #[arg(long, value_name = "NAME")]
+    pub reference: Option<String>,
+    #[command(flatten)]
+    pub finding: Finding,
+    /// Folder for figures as SVG and PNG, and the times as CSV
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub channel: Channel,
+    #[command(flatten)]
+    pub reading: Reading,
+}
+
+/// How impacts are found in a trace.
+#[derive(Debug, clap::Args)]
+pub struct Finding {
+    /// Lowest impact, as part of the median one [default: 0.125; of drops 0.02]
+    #[arg(long, value_name = "PART")]
+    pub threshold: Option<f64>,
+    /// Pause in s that parts two impacts [default: found from the trace]
+    #[arg(long, value_name = "S")]
+    pub refractory: Option<f64>,
+    /// Leave mains hum in the trace
+    #[arg(long)]
+    pub keep_hum: bool,
+}

@@ -1,0 +1,105 @@
+//! `vibro restitution`: by every method that the data allow.
+
+use super::{args, complain, print, settings};
+use crate::error::{Error, Result};
+use crate::measure::restitution::{Bounces, Drop, GRAVITY, Restitution, Train, Velocities, restitution};
+use crate::report::{Output, files, pictures, tables};
+use serde::Serialize;
+use std::fmt::Write as _;
+
+#[derive(Serialize)]
+struct Answer {
+    #[serde(flatten)]
+    restitution: Restitution,
+    files: Vec<String>,
+}
+
+pub fn run(typed: &args::Restitution, json: bool) -> Result<()> {
+    if typed.interval.is_some() && !typed.intervals.is_empty() {
+        return Err(Error::usage(
+            "--interval and --intervals",
+            "one of them: the first of --intervals is the interval after the fall",
+        ));
+    }
+    let masses = pair("--masses", &typed.masses)?;
+    let mut bounces = Bounces::default();
+    let mut figures = Vec::new();
+    let mut warnings = Vec::new();
+    for (i, file) in typed.files.iter().enumerate() {
+        let (trace, doubts) = settings::trace(file, &typed.reading, &typed.channel)?;
+        warnings.extend(doubts);
+        let found = bounces.add(&trace, &settings::finding(&typed.finding, Some(Bounces::THRESHOLD)))?;
+        let name = file.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+        figures.push((format!("drop_{}", i + 1), pictures::drop(&name, &trace, &found)));
+    }
+    let drop = Drop {
+        height: typed.height.unwrap_or(f64::NAN),
+        height_std: typed.height_std,
+        intervals: typed.interval.into_iter().chain(typed.intervals.first().copied()).collect(),
+        interval_std: typed.interval_std,
+        gravity: typed.gravity.unwrap_or(GRAVITY),
+        gravity_std: typed.gravity_std,
+        masses,
+    };
+    if typed.interval.is_some() && typed.height.is_none() {
+        return Err(Error::usage("--interval without --height", "both, or flight times with --intervals"));
+    }
+    let mut measured = bounces.measured(drop, typed.height.is_some());
+    if !typed.intervals.is_empty() {
+        let onset_std = typed.interval_std.map(|s| s / 2f64.sqrt());
+        measured.trains.push(Train { intervals: typed.intervals.clone(), onset_std, after: None });
+    }
+    measured.velocities = velocities(typed, masses)?;
+    let mut found = restitution(&measured)?;
+    warnings.append(&mut found.warnings);
+    found.warnings = warnings;
+    let mut written = Vec::new();
+    if let Some(folder) = &typed.out {
+        let mut output = Output::new(folder)?;
+        files::figures(&mut output, &figures, &|| ())?;
+        output.write("restitution.csv", tables::restitution(&[(String::new(), &found)]).csv())?;
+        written = output.written().to_vec();
+    }
+    if json {
+        return print::json(&Answer { restitution: found, files: written });
+    }
+    complain::warn(&found.warnings);
+    let mut text = tables::restitution(&[(String::new(), &found)]).text();
+    if found.by.len() > 1 {
+        let _ = writeln!(text, "\nthe methods {}", if found.agree { "agree" } else { "disagree" });
+    }
+    for file in written {
+        let _ = writeln!(text, "wrote {file}");
+    }
+    print::text(&text)
+}
+
+fn velocities(typed: &args::Restitution, masses: Option<(f64, f64)>) -> Result<Option<Velocities>> {
+    let Some(before) = pair("--before", &typed.before)? else {
+        return match typed.after.len() {
+            0 => Ok(None),
+            _ => Err(Error::usage("--after without --before", "both")),
+        };
+    };
+    let (after1, after2) = match typed.after.as_slice() {
+        [one] => (*one, None),
+        [one, two] => (*one, Some(*two)),
+        other => {
+            return Err(Error::usage(
+                format!("--after has {} velocities", other.len()),
+                "V1,V2, or V1 with --masses",
+            ));
+        }
+    };
+    Ok(Some(Velocities { before, after1: Some(after1), after2, masses, std: typed.velocity_std }))
+}
+
+fn pair(name: &str, values: &[f64]) -> Result<Option<(f64, f64)>> {
+    match values {
+        [] => Ok(None),
+        [a, b] => Ok(Some((*a, *b))),
+        other => {
+            Err(Error::usage(format!("{name} has {} numbers", other.len()), "two, with a comma between them"))
+        }
+    }
+}

@@ -1,0 +1,384 @@
+//! Impacts in a trace: a contact circuit, or any signal that jumps at each of them.
+//!
+//! A burst over the background is one impact, ringing included; its time is that at which the first rising flank passes half its
+//! height, below a sample. What is counted, what is left out and what was assumed is in [`Impacts::warnings`].
+
+mod burst;
+mod count;
+mod cycle;
+mod hum;
+mod interval;
+mod onset;
+mod shape;
+
+pub use cycle::{PerCycle, Phase};
+pub use hum::Hum;
+pub use interval::{Interval, interval};
+pub use onset::Timing;
+pub use shape::{Matched, Shape};
+
+use super::Estimate;
+use crate::error::{Error, Result};
+use crate::record::Trace;
+use burst::{Background, background, bursts, median};
+use count::count;
+use onset::{Onset, onsets};
+use serde::Serialize;
+use std::ops::Range;
+
+/// How impacts are found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ImpactsOptions {
+    /// Bursts lower than this part of the median burst are no impacts. Default 1/8.
+    pub threshold: f64,
+    /// Pause in s that parts two impacts. Default: found from the pauses of the trace.
+    pub refractory: Option<f64>,
+    /// Whether mains hum is looked for and taken away. Default true.
+    pub hum: bool,
+    /// Frequency of the excitation in Hz, for impacts per cycle.
+    pub excitation: Option<f64>,
+    /// Samples of a channel that rises once a cycle of the excitation, taken together with the trace.
+    pub reference: Option<Vec<f64>>,
+    /// Shape of the pulses over time in samples, where it is known; its origin is the time of the impact.
+    pub shape: Option<Shape>,
+}
+
+impl Default for ImpactsOptions {
+    fn default() -> ImpactsOptions {
+        ImpactsOptions {
+            threshold: 0.125,
+            refractory: None,
+            hum: true,
+            excitation: None,
+            reference: None,
+            shape: None,
+        }
+    }
+}
+
+/// Impacts of a trace.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Impacts {
+    /// Impacts that were found.
+    pub n: usize,
+    /// Mean time between impacts in s, missed ones counted.
+    pub interval: Estimate,
+    /// Impacts a second.
+    pub frequency: Estimate,
+    /// Median of the intervals between neighbours, in s.
+    pub median_interval: f64,
+    /// Standard deviation of the intervals between neighbours that miss none, in s; null for fewer than two.
+    pub spread: Option<f64>,
+    /// Serial correlation of neighbouring intervals: −0.5 where onsets are noisy, 0 where intervals jitter.
+    pub serial_correlation: Option<f64>,
+    /// Impacts that should stand in intervals that are a multiple of the others.
+    pub missed: usize,
+    /// Impacts that follow another within less than half an interval.
+    pub doubled: usize,
+    /// Frequency of the excitation in Hz, as given or from the reference channel.
+    pub excitation: Option<f64>,
+    /// Impacts per excitation cycle; null where no fraction fits or no excitation is known.
+    pub per_cycle: Option<PerCycle>,
+    /// Whether impacts repeat: a fraction fits, or without an excitation, intervals spread by less than 5 %.
+    pub regular: bool,
+    /// Phases of the impacts of the pattern, in excitation cycles; empty where there is no pattern.
+    pub phases: Vec<Phase>,
+    /// Times of the impacts in s.
+    pub times: Vec<f64>,
+    /// Standard uncertainty of one time from the noise of the trace, in s (the median).
+    pub onset_std: Option<f64>,
+    /// Heights over the background, in the unit of the trace.
+    pub heights: Vec<f64>,
+    /// Phase of each impact in its excitation cycle, 0 to 1; empty where no excitation is known.
+    pub phase: Vec<f64>,
+    /// Hum that was taken away.
+    pub hum: Option<Hum>,
+    /// What a person must know.
+    pub warnings: Vec<String>,
+}
+
+/// Intervals that spread by less than this part of their median are regular.
+pub const REGULAR: f64 = 0.05;
+
+/// Finds the impacts of `trace` and what they repeat.
+///
+/// # Errors
+/// Where the trace has no sampling rate, missing or equal values, or fewer than two impacts; where the reference channel has fewer than two
+/// edges; on options that cannot be.
+pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
+    let rate = rate_of(trace)?;
+    check(trace, options)?;
+    let Found { onsets, timing, hum, mut warnings } = find(trace, rate, options);
+    if onsets.len() < 2 {
+        return Err(too_few(onsets.len()));
+    }
+    let start = trace.axis.start();
+    let times: Vec<f64> = onsets.iter().map(|o| start + o.time / rate).collect();
+    let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+    let counted = count(&times, &steps);
+    let kept: Vec<f64> = counted.kept.iter().map(|i| times[*i]).collect();
+    let found = interval(&kept, &counted.index).ok_or_else(|| too_few(kept.len()))?;
+    let std = Some(found.std).filter(|s| s.is_finite());
+    let single: Vec<f64> = kept
+        .windows(2)
+        .zip(counted.index.windows(2))
+        .filter(|(_, k)| k[1] - k[0] == 1)
+        .map(|(t, _)| t[1] - t[0])
+        .collect();
+    let median_interval = median(&steps);
+    let spread = deviation(&single);
+    let mut regular = spread.is_none_or(|s| s < REGULAR * median_interval);
+    let method = described(&found, kept.len(), timing);
+    let mut answer = Impacts {
+        n: times.len(),
+        interval: Estimate::new(found.mean, std, "s", kept.len(), method.as_str()),
+        frequency: Estimate::new(
+            1.0 / found.mean,
+            std.map(|s| s / found.mean.powi(2)),
+            "Hz",
+            kept.len(),
+            method,
+        ),
+        median_interval,
+        spread,
+        serial_correlation: Some(found.correlation).filter(|r| r.is_finite()),
+        missed: counted.missed,
+        doubled: counted.doubled,
+        excitation: None,
+        per_cycle: None,
+        regular,
+        phases: Vec::new(),
+        onset_std: Some(median(&onsets.iter().map(|o| o.std).collect::<Vec<f64>>()) / rate)
+            .filter(|s| s.is_finite()),
+        heights: onsets.iter().map(|o| o.height).collect(),
+        phase: Vec::new(),
+        hum,
+        times,
+        warnings: Vec::new(),
+    };
+    if let Some(cycles) = cycles(&answer.times, start, rate, options)? {
+        let per_cycle = cycle::per_cycle(
+            &cycles.at,
+            found.mean.recip() / cycles.frequency,
+            found.std / found.mean.powi(2) / cycles.frequency,
+        );
+        regular = per_cycle.is_some();
+        answer.phases = per_cycle.map_or_else(Vec::new, |p| cycle::phases(&cycles.at, p));
+        answer.phase = cycles.at.iter().map(|c| c.rem_euclid(1.0)).collect();
+        (answer.excitation, answer.per_cycle, answer.regular) = (Some(cycles.frequency), per_cycle, regular);
+        if per_cycle.is_none() {
+            warnings.push(format!(
+                "No fraction of up to 8 impacts in 8 cycles fits within {} % of the rate and {} of a cycle: irregular.",
+                100.0 * cycle::FITS,
+                cycle::REPEATS
+            ));
+        }
+    }
+    doubts(&answer, &mut warnings);
+    answer.warnings = warnings;
+    Ok(answer)
+}
+
+/// Impacts as onsets in samples, before anything is said of their times.
+struct Found {
+    onsets: Vec<Onset>,
+    timing: Timing,
+    hum: Option<Hum>,
+    warnings: Vec<String>,
+}
+
+/// Sampling rate of a trace.
+///
+/// # Errors
+/// Where it has none.
+pub(super) fn rate_of(trace: &Trace) -> Result<f64> {
+    trace.rate().filter(|r| r.is_finite() && *r > 0.0).ok_or_else(|| {
+        Error::usage("the file does not say at which even rate the trace was sampled", "a sampling rate")
+            .hint("--rate HZ, or --base-band HZ for an analyser that samples at 2.56 times its base band")
+    })
+}
+
+fn check(trace: &Trace, options: &ImpactsOptions) -> Result<()> {
+    if !(0.0..1.0).contains(&options.threshold) {
+        return Err(Error::usage(
+            format!("a threshold of {}", options.threshold),
+            "0 to 1, of the median height",
+        ));
+    }
+    for (what, value) in [("a refractory time", options.refractory), ("an excitation", options.excitation)] {
+        if let Some(v) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
+            return Err(Error::usage(format!("{what} of {v}"), "a finite number above 0"));
+        }
+    }
+    let missing = trace.values.iter().filter(|v| !v.is_finite()).count();
+    if missing > 0 {
+        return Err(Error::refused(format!(
+            "{missing} values of the trace are missing or infinite: an impact may stand in any of them"
+        )));
+    }
+    if trace.values.iter().all(|v| Some(v) == trace.values.first()) {
+        return Err(Error::refused("all values of the trace are equal: there are no impacts in it"));
+    }
+    if options.reference.as_ref().is_some_and(|r| r.len() != trace.values.len()) {
+        return Err(Error::refused("the reference channel has another number of samples than the trace"));
+    }
+    Ok(())
+}
+
+fn too_few(n: usize) -> Error {
+    Error::refused(format!(
+        "{n} impact{} found: an interval needs two",
+        if n == 1 { " was" } else { "s were" }
+    ))
+    .hint("--threshold lower, or --refractory shorter, where there are more")
+}
+
+fn find(trace: &Trace, rate: f64, options: &ImpactsOptions) -> Found {
+    let mut values = trace.values.clone();
+    let mut warnings = Vec::new();
+    let hum = if options.hum { hum::remove(&mut values, rate) } else { None };
+    if let Some(h) = &hum {
+        warnings.push(format!(
+            "Mains hum of {:.2} Hz, amplitude {:.3e}, with {} harmonics was fitted and taken away.",
+            h.frequency, h.amplitude, h.harmonics
+        ));
+    }
+    let quiet = options.refractory.map(|s| ((s * rate) as usize).max(1));
+    let found = background(&values);
+    for v in &mut values {
+        *v -= found.level;
+    }
+    let level = Background { level: 0.0, ..found };
+    let mut all = bursts(&values, level.reach, quiet);
+    let extreme = |b: &Range<usize>, sign: f64| {
+        values.get(b.clone()).unwrap_or_default().iter().map(|v| sign * v).fold(0.0, f64::max)
+    };
+    let typical = |sign: f64| median(&all.iter().map(|b| extreme(b, sign)).collect::<Vec<f64>>());
+    // Pulses that swing both ways begin upwards unless they are clearly deeper than high.
+    if typical(-1.0) > 1.2 * typical(1.0) {
+        warnings.push("The pulses point downwards: the trace was turned around.".to_owned());
+        for v in &mut values {
+            *v = -*v;
+        }
+    }
+    let heights: Vec<f64> = all
+        .iter()
+        .map(|b| values.get(b.clone()).unwrap_or_default().iter().copied().fold(0.0, f64::max))
+        .collect();
+    let least = (options.threshold * median(&heights)).max(level.reach);
+    let before = all.len();
+    let mut high = heights.iter().map(|h| *h > least);
+    all.retain(|_| high.next() == Some(true));
+    let low = before - all.len();
+    if low > 0 {
+        warnings.push(format!(
+            "{low} burst{} lower than {least:.3e} {} left out (noise between impacts has a standard deviation of {:.3e}).",
+            if low == 1 { "" } else { "s" },
+            if low == 1 { "was" } else { "were" },
+            level.sigma
+        ));
+    }
+    if let Some(sentence) = clipped(&trace.values, &all) {
+        warnings.push(sentence);
+    }
+    let (found, timing) = onsets(&values, &all, level, options.shape.as_ref());
+    let cut = found.iter().filter(|o| o.is_none()).count();
+    if cut > 0 {
+        warnings.push(format!(
+            "{cut} pulse{} cut by an end of the record or without a flank: not counted.",
+            if cut == 1 { " is" } else { "s are" }
+        ));
+    }
+    Found { onsets: found.into_iter().flatten().collect(), timing, hum, warnings }
+}
+
+/// Says where pulses have flat tops at the largest or smallest value.
+fn clipped(values: &[f64], bursts: &[Range<usize>]) -> Option<String> {
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let flat = |b: &&Range<usize>| {
+        values
+            .get((*b).clone())
+            .unwrap_or_default()
+            .windows(3)
+            .any(|w| w.iter().all(|v| *v == high) || w.iter().all(|v| *v == low))
+    };
+    let n = bursts.iter().filter(flat).count();
+    (n > 0).then(|| {
+        format!("{n} of {} pulses are clipped: their heights are too low, and half of that height is passed a little early.", bursts.len())
+    })
+}
+
+fn deviation(values: &[f64]) -> Option<f64> {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    (values.len() >= 2).then(|| (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt())
+}
+
+fn described(found: &Interval, n: usize, timing: Timing) -> String {
+    let onsets = match timing {
+        Timing::Flank => "onsets at half height of the rising flanks",
+        Timing::Average => "onsets by matching each pulse to the average pulse",
+        Timing::Known => "onsets by matching each pulse to its known shape",
+    };
+    if n < 3 {
+        return format!("difference of two onsets; {onsets}");
+    }
+    let line = match (found.onset > 0.0, found.jitter > 0.0) {
+        (_, false) => "straight line through index and time (onset noise alone)",
+        (false, true) => "mean (t_last − t_first)/(n − 1) (jitter alone)",
+        (true, true) => "generalised least squares of the intervals",
+    };
+    let correlation = if found.correlation.is_finite() {
+        format!(", serial correlation of intervals {:.2}", found.correlation)
+    } else {
+        String::new()
+    };
+    format!(
+        "{line}: onset noise {:.2e} s, cycle-to-cycle jitter {:.2e} s{correlation}; {onsets}",
+        found.onset, found.jitter
+    )
+}
+
+/// Times of impacts in excitation cycles.
+struct Cycles {
+    frequency: f64,
+    at: Vec<f64>,
+}
+
+fn cycles(times: &[f64], start: f64, rate: f64, options: &ImpactsOptions) -> Result<Option<Cycles>> {
+    if let Some(reference) = &options.reference {
+        let edges = cycle::edges(reference)?;
+        let at = times.iter().map(|t| cycle::counted((t - start) * rate, &edges)).collect();
+        return Ok(Some(Cycles { frequency: rate / cycle::mean_cycle(&edges), at }));
+    }
+    Ok(options
+        .excitation
+        .map(|frequency| Cycles { frequency, at: times.iter().map(|t| t * frequency).collect() }))
+}
+
+fn doubts(found: &Impacts, warnings: &mut Vec<String>) {
+    if found.missed > 0 {
+        warnings.push(format!(
+            "{} impact{} missed: intervals that are a multiple of the median are counted as such in the mean.",
+            found.missed,
+            if found.missed == 1 { " is" } else { "s are" }
+        ));
+    }
+    if found.doubled > 0 {
+        warnings.push(format!(
+            "{} impact{} another within half an interval: left out of the mean interval.",
+            found.doubled,
+            if found.doubled == 1 { " follows" } else { "s follow" }
+        ));
+    }
+    if let Some(spread) = found.spread.filter(|_| !found.regular && found.excitation.is_none()) {
+        warnings.push(format!(
+            "Intervals spread by {:.0} % of their median: impacts are irregular, and their mean says little.",
+            100.0 * spread / found.median_interval
+        ));
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests;

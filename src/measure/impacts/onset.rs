@@ -1,0 +1,137 @@
+//! When each burst begins: below a sample.
+
+use super::burst::{Background, median};
+use super::shape::{Matched, Shape};
+use std::ops::Range;
+
+/// One impact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Onset {
+    /// Time at which the rising flank passes half its height, in samples.
+    pub time: f64,
+    /// Its standard uncertainty from the noise, in samples; NaN where it is not known.
+    pub std: f64,
+    /// Height over the background.
+    pub height: f64,
+}
+
+/// How the onsets were found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Timing {
+    /// Each rising flank interpolated at half its height.
+    Flank,
+    /// Each pulse matched to the average pulse of the record.
+    Average,
+    /// Each pulse matched to a shape that was given.
+    Known,
+}
+
+/// Fewer impacts than this are not averaged.
+const ENOUGH: usize = 8;
+
+/// A burst as its flanks show it, in samples.
+struct Lobe {
+    onset: f64,
+    std: f64,
+    height: f64,
+    width: f64,
+    peak: usize,
+}
+
+/// Onsets of the bursts of `values`, whose background level is 0, by the best method that the record allows; `None` stands for a
+/// burst whose rising flank lies before the record.
+pub fn onsets(
+    values: &[f64],
+    bursts: &[Range<usize>],
+    background: Background,
+    known: Option<&Shape>,
+) -> (Vec<Option<Onset>>, Timing) {
+    let lobes: Vec<Lobe> = bursts.iter().filter_map(|b| lobe(values, b, background.sigma)).collect();
+    let flanks = || {
+        lobes
+            .iter()
+            .map(|l| l.onset.is_finite().then_some(Onset { time: l.onset, std: l.std, height: l.height }))
+            .collect::<Vec<_>>()
+    };
+    let sigma2 = background.sigma.powi(2);
+    if let Some(shape) = known {
+        let start = |l: &Lobe| if l.onset.is_finite() { l.onset } else { l.peak as f64 - 1.0 };
+        let matched: Vec<Option<Matched>> =
+            lobes.iter().map(|l| shape.matched(values, start(l), l.height)).collect();
+        return (matched.iter().map(|m| Some(timed((*m)?, &matched, sigma2))).collect(), Timing::Known);
+    }
+    let widths: Vec<f64> = lobes.iter().map(|l| l.width).filter(|w| w.is_finite()).collect();
+    let whole = lobes.iter().filter(|l| l.onset.is_finite()).count();
+    if whole < ENOUGH || widths.is_empty() {
+        return (flanks(), Timing::Flank);
+    }
+    let width = median(&widths).max(1.0);
+    let span = -2.0 * width.max(1.5)..1.5 * width.max(1.5);
+    // A flank before the record is looked for where the others have theirs.
+    let before = median(
+        &lobes.iter().map(|l| l.peak as f64 - l.onset).filter(|d| d.is_finite()).collect::<Vec<f64>>(),
+    );
+    let times: Vec<f64> =
+        lobes.iter().map(|l| if l.onset.is_finite() { l.onset } else { l.peak as f64 - before }).collect();
+    let heights: Vec<f64> = lobes.iter().map(|l| l.height).collect();
+    let Some((_, matched)) = Shape::averaged(values, &times, &heights, &span) else {
+        return (flanks(), Timing::Flank);
+    };
+    // Pulses are alike where what is left of them is noise, or little beside their height.
+    let left = |m: &Matched| {
+        (m.variance.sqrt() / (2.0 * background.sigma)).min(m.variance.sqrt() / (0.1 * m.height))
+    };
+    let misfit: Vec<f64> = matched
+        .iter()
+        .zip(&times)
+        .map(|(m, t)| m.filter(|m| (m.time - t).abs() < width).map_or(f64::INFINITY, |m| left(&m)))
+        .collect();
+    if median(&misfit) > 1.0 {
+        return (flanks(), Timing::Flank);
+    }
+    let rest = flanks().into_iter().zip(misfit).zip(lobes.iter().zip(&times));
+    let chosen = matched.iter().zip(rest).map(|(m, ((flank, misfit), (lobe, t)))| match m {
+        Some(m) if misfit.is_finite() => Some(timed(*m, &matched, sigma2)),
+        // A cut pulse that cannot be matched stands where its highest sample says, half a sample more or less; where the record
+        // begins with that sample it may be the ringing of an impact before.
+        _ => flank.or_else(|| (lobe.peak > 0).then_some(Onset { time: *t, std: 0.5, height: lobe.height })),
+    });
+    (chosen.collect(), Timing::Average)
+}
+
+/// An onset with the uncertainty that follows from what the match leaves of all pulses, but for a few that fit badly.
+fn timed(m: Matched, all: &[Option<Matched>], sigma2: f64) -> Onset {
+    let mut left: Vec<f64> = all.iter().flatten().map(|m| m.variance).collect();
+    let most = 4.0 * median(&left);
+    left.retain(|v| *v <= most);
+    let left = if left.is_empty() { sigma2 } else { left.iter().sum::<f64>() / left.len() as f64 };
+    Onset { time: m.time, std: (m.cofactor * left).sqrt(), height: m.height }
+}
+
+/// First lobe of a burst: the first maximum that reaches half of the largest value.
+fn lobe(values: &[f64], burst: &Range<usize>, sigma: f64) -> Option<Lobe> {
+    let height = values.get(burst.clone())?.iter().copied().fold(0.0, f64::max);
+    let mut peak = burst.clone().find(|i| values[*i] >= 0.5 * height)?;
+    while peak + 1 < burst.end && values[peak + 1] > values[peak] {
+        peak += 1;
+    }
+    let height = values[peak];
+    let level = 0.5 * height;
+    let under = |i: &usize| values[*i] < level;
+    let (mut onset, mut std) = (f64::NAN, f64::NAN);
+    let whole = peak + 1 < values.len();
+    if let Some(below) = (0..peak).rev().find(under).filter(|_| whole) {
+        let slope = values[below + 1] - values[below];
+        let part = (level - values[below]) / slope;
+        onset = below as f64 + part;
+        // Noise of both neighbours and of the level; and what the place of the samples on a flank of p samples does: for half a
+        // sine the chord is off by (π/2p)² sin 30°/8 over a slope of 1.36/p, the highest sample by as much: 0.05/p, root mean square.
+        let noise = sigma * (part.powi(2) + (1.0 - part).powi(2) + 0.25).sqrt() / slope;
+        std = noise.hypot(0.05 / (peak as f64 - onset).max(0.5));
+    }
+    let falls = (peak + 1..values.len()).find(under).map_or(f64::NAN, |above| {
+        let slope = values[above - 1] - values[above];
+        above as f64 - (level - values[above]) / slope
+    });
+    Some(Lobe { onset, std, height, width: falls - onset, peak })
+}

@@ -1,0 +1,207 @@
+//! Restitution from a drop: R = (Δt/2)√(g/2h), the flight between first and second impact against the fall before.
+
+use super::{Measured, Train, Way, above_zero, not_negative};
+use crate::error::{Error, Result};
+use crate::measure::Estimate;
+use crate::measure::impacts::{Impacts, ImpactsOptions, impacts};
+use crate::record::Trace;
+
+/// Standard acceleration of free fall in m/s² (CGPM 1901).
+pub const GRAVITY: f64 = 9.806_65;
+
+/// Drops from one height.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drop {
+    /// Height of the fall in m.
+    pub height: f64,
+    /// Its standard uncertainty in m.
+    pub height_std: Option<f64>,
+    /// Time from the first to the second impact of each drop, in s.
+    pub intervals: Vec<f64>,
+    /// Standard uncertainty of one of them, in s.
+    pub interval_std: Option<f64>,
+    /// Acceleration of free fall in m/s².
+    pub gravity: f64,
+    /// Its standard uncertainty in m/s².
+    pub gravity_std: Option<f64>,
+    /// Masses of the falling and of the struck body in kg, where the latter is free to move.
+    pub masses: Option<(f64, f64)>,
+}
+
+impl Default for Drop {
+    fn default() -> Drop {
+        Drop {
+            height: f64::NAN,
+            height_std: None,
+            intervals: Vec::new(),
+            interval_std: None,
+            gravity: GRAVITY,
+            gravity_std: None,
+            masses: None,
+        }
+    }
+}
+
+impl Drop {
+    /// R of one interval.
+    pub fn restitution(&self, interval: f64) -> f64 {
+        0.5 * interval * (self.gravity / (2.0 * self.height)).sqrt()
+    }
+
+    fn check(&self) -> Result<()> {
+        above_zero("a height", self.height)?;
+        above_zero("an acceleration of free fall", self.gravity)?;
+        not_negative("an uncertainty of the height", self.height_std)?;
+        not_negative("an uncertainty of the interval", self.interval_std)?;
+        not_negative("an uncertainty of the acceleration of free fall", self.gravity_std)?;
+        let fall = (2.0 * self.height / self.gravity).sqrt();
+        for interval in &self.intervals {
+            above_zero("an interval", *interval)?;
+            if self.restitution(*interval) > 1.0 {
+                return Err(Error::refused(format!(
+                    "an interval of {interval} s gives R = {:.3}: after a fall of {} m, which takes {fall:.4} s, the second impact comes after {:.4} s at most",
+                    self.restitution(*interval),
+                    self.height,
+                    2.0 * fall
+                ))
+                .hint("is the height in metres and the interval in seconds, and is the first impact the first?"));
+            }
+        }
+        Ok(())
+    }
+
+    /// `(u_R/R)² = (u_Δt/Δt)² + (u_h/2h)² + (u_g/2g)²`; the interval's part is the scatter of several drops where that is larger than what is stated.
+    pub(super) fn answer(&self, warnings: &mut Vec<String>) -> Result<Way> {
+        self.check()?;
+        let n = self.intervals.len();
+        if n == 0 {
+            return Err(Error::usage("a height without an interval", "--interval S, or records of drops"));
+        }
+        let mean = self.intervals.iter().sum::<f64>() / n as f64;
+        let scatter = (n > 1).then(|| {
+            let s2 = self.intervals.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / (n - 1) as f64;
+            (s2 / n as f64).sqrt()
+        });
+        let stated = self.interval_std.map(|s| s / (n as f64).sqrt());
+        let timing = match (scatter, stated) {
+            (Some(a), Some(b)) => Some(a.max(b)),
+            (a, b) => a.or(b),
+        };
+        let value = self.restitution(mean);
+        let known = self.height_std.is_some() || timing.is_some();
+        let part = |u: Option<f64>, x: f64| u.map_or(0.0, |u| (u / x).powi(2));
+        let variance = part(timing, mean)
+            + part(self.height_std, 2.0 * self.height)
+            + part(self.gravity_std, 2.0 * self.gravity);
+        let left_out: Vec<&str> = [("the interval", timing), ("the height", self.height_std)]
+            .iter()
+            .filter(|(_, u)| u.is_none())
+            .map(|(name, _)| *name)
+            .collect();
+        if known && !left_out.is_empty() {
+            warnings.push(format!(
+                "The uncertainty leaves out that of {}, which is not known.",
+                left_out.join(" and ")
+            ));
+        }
+        let scattered = scatter.is_some() && timing == scatter;
+        let method = match (n, scattered) {
+            (1, _) => "(Δt/2)√(g/2h) of one drop; uncertainty by propagation".to_owned(),
+            (_, true) => format!(
+                "(Δt/2)√(g/2h) of the mean of {n} drops; uncertainty from their scatter and by propagation"
+            ),
+            (_, false) => format!("(Δt/2)√(g/2h) of the mean of {n} drops; uncertainty by propagation"),
+        };
+        self.notes(value, warnings)?;
+        Ok(Way {
+            method: "drop",
+            restitution: Estimate::new(value, known.then(|| value * variance.sqrt()), "", n, method),
+        })
+    }
+
+    /// What biases a drop, with its size where that follows from what is known.
+    fn notes(&self, value: f64, warnings: &mut Vec<String>) -> Result<()> {
+        match self.masses {
+            // Free mass at rest: v₁⁺/v₁⁻ = (m₁ − R m₂)/(m₁ + m₂).
+            Some((m1, m2)) => {
+                above_zero("a mass", m1)?;
+                above_zero("a mass", m2)?;
+                warnings.push(format!(
+                    "A drop shows the rebound speed alone. If the struck mass moves freely during the impact, R is {:.4}, by a factor {:.4} larger.",
+                    value + m1 / m2 * (1.0 + value),
+                    1.0 + m1 / m2 * (1.0 + 1.0 / value)
+                ));
+            }
+            None => warnings.push(
+                "The struck mass is taken to stay at rest; if it moves, R is too low: by (m₁/m₂)(1 + R) if it is free.".to_owned(),
+            ),
+        }
+        warnings.push(
+            "Drag of the air and friction in the tube make R too low; a tilt by α from the vertical makes it too high, by 1/√cos α with the height along the tube and by 1/cos α with the vertical height (0.06 % and 0.1 % at 2.5°).".to_owned(),
+        );
+        Ok(())
+    }
+}
+
+/// Drops and trains of bounces as traces show them.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Bounces {
+    trains: Vec<Train>,
+}
+
+impl Bounces {
+    /// Bounces lower than this part of the median one are not looked for.
+    pub const THRESHOLD: f64 = 0.02;
+
+    /// Adds the impacts of a falling body, and gives them; what precedes the first large one is handling, not an impact.
+    ///
+    /// # Errors
+    /// As [`impacts`]; also where fewer than two impacts are left.
+    pub fn add(&mut self, trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
+        let mut found = impacts(trace, options)?;
+        let largest = found.heights.iter().copied().fold(0.0, f64::max);
+        // A body strikes first as hard as it ever does; half of that leaves room for coarse samples.
+        let first = found.heights.iter().position(|h| *h >= 0.5 * largest).unwrap_or(0);
+        // What a steady train would mean does not concern bounces.
+        found.warnings.retain(|w| {
+            !w.contains("irregular") && !w.contains("within half an interval") && !w.contains("missed:")
+        });
+        if first > 0 {
+            found.warnings.push(format!(
+                "{first} burst{} before the first large one {} left out: handling, not an impact.",
+                if first == 1 { "" } else { "s" },
+                if first == 1 { "was" } else { "were" }
+            ));
+            found.times.drain(..first);
+            found.heights.drain(..first);
+            found.n = found.times.len();
+        }
+        let (Some(last), true) = (found.times.last(), found.n > 1) else {
+            return Err(Error::refused("one impact was found: restitution from a drop needs two")
+                .hint("--threshold lower, or --refractory shorter, where there are more"));
+        };
+        let end = trace.axis.start() + trace.values.len() as f64 * trace.axis.step().unwrap_or(f64::NAN);
+        self.trains.push(Train {
+            intervals: found.times.windows(2).map(|w| w[1] - w[0]).collect(),
+            onset_std: found.onset_std,
+            after: Some(end - last),
+        });
+        Ok(found)
+    }
+
+    /// All that follows from these bounces: drops from the height of `drop` with `fell`, and trains where there are more than two impacts.
+    pub fn measured(self, mut drop: Drop, fell: bool) -> Measured {
+        drop.intervals.extend(self.trains.iter().filter_map(|t| t.intervals.first()));
+        // One interval has two onsets; of several traces, the root mean square.
+        let onsets: Option<Vec<f64>> = self.trains.iter().map(|t| t.onset_std).collect();
+        let onsets = onsets
+            .filter(|o| !o.is_empty())
+            .map(|o| (2.0 * o.iter().map(|s| s * s).sum::<f64>() / o.len() as f64).sqrt());
+        drop.interval_std = drop.interval_std.or(onsets);
+        Measured {
+            drop: (fell && !drop.intervals.is_empty()).then_some(drop),
+            trains: self.trains,
+            velocities: None,
+        }
+    }
+}

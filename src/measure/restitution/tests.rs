@@ -1,0 +1,152 @@
+use super::*;
+
+fn drop(height: f64, interval: f64) -> Drop {
+    Drop { height, intervals: vec![interval], ..Drop::default() }
+}
+
+fn of(measured: &Measured) -> Restitution {
+    restitution(measured).unwrap()
+}
+
+#[test]
+fn the_thesis_drop_and_its_uncertainty() {
+    let one = Drop {
+        height_std: Some(0.005),
+        interval_std: Some(0.004),
+        gravity_std: Some(0.01),
+        ..drop(0.57, 0.144)
+    };
+    let found = of(&Measured { drop: Some(one.clone()), ..Measured::default() });
+    // Printed as 0.2; 0.072·√(9.80665/1.14) = 0.211174.
+    assert!((found.restitution.value - 0.211_174).abs() < 1e-6, "{found:?}");
+    // Against the derivatives by differences.
+    let slope = |change: &dyn Fn(&mut Drop), step: f64| {
+        let mut other = one.clone();
+        change(&mut other);
+        (other.restitution(other.intervals[0]) - one.restitution(0.144)) / step
+    };
+    let by_height = slope(&|d| d.height += 1e-7, 1e-7) * 0.005;
+    let by_gravity = slope(&|d| d.gravity += 1e-7, 1e-7) * 0.01;
+    let by_interval = slope(&|d| d.intervals[0] += 1e-7, 1e-7) * 0.004;
+    let expected = (by_height.powi(2) + by_gravity.powi(2) + by_interval.powi(2)).sqrt();
+    // Differences over 1e-7 lose nine digits of sixteen.
+    assert!((found.restitution.std.unwrap() / expected - 1.0).abs() < 1e-5, "{found:?}");
+}
+
+#[test]
+fn impossible_drops_are_refused() {
+    let why = |d: Drop| restitution(&Measured { drop: Some(d), ..Measured::default() }).unwrap_err();
+    assert!(why(drop(0.0, 0.144)).to_string().contains("height of 0"));
+    assert!(why(drop(-1.0, 0.144)).to_string().contains("height"));
+    // The fall takes 0.341 s, so twice that is the longest flight.
+    assert!(why(drop(0.57, 0.70)).to_string().contains("at most"));
+    assert!(why(drop(0.57, 0.0)).to_string().contains("interval of 0"));
+    assert_eq!(why(drop(0.57, f64::NAN)).exit_code(), 1);
+    assert_eq!(restitution(&Measured::default()).unwrap_err().exit_code(), 2);
+}
+
+#[test]
+fn a_free_struck_mass_is_said_with_its_size() {
+    // m₁ = m₂ and R = 1: the falling mass stops, so R looks like 0; here 0.2 rebound and m₁/m₂ = 1/4.
+    let d = Drop { masses: Some((0.1, 0.4)), ..drop(0.57, 0.2 * 2.0 * (2.0 * 0.57 / GRAVITY).sqrt()) };
+    let found = of(&Measured { drop: Some(d), ..Measured::default() });
+    assert!((found.restitution.value - 0.2).abs() < 1e-12);
+    // v₁⁺ = (m₁ − R m₂)/(m₁ + m₂) v: (0.1 − 0.5·0.4)/0.5 = −0.2.
+    assert!(found.warnings.iter().any(|w| w.contains("R is 0.5000")), "{:?}", found.warnings);
+}
+
+#[test]
+fn a_train_of_bounces_and_one_that_does_not_fit() {
+    let mut intervals: Vec<f64> = (0..7).map(|k| 0.4 * 0.7f64.powi(k)).collect();
+    let clean = of(&Measured {
+        trains: vec![Train { intervals: intervals.clone(), ..Train::default() }],
+        ..Measured::default()
+    });
+    assert!((clean.restitution.value - 0.7).abs() < 1e-12, "{clean:?}");
+    assert!(clean.outliers.is_empty());
+    intervals[3] *= 1.3;
+    let found =
+        of(&Measured { trains: vec![Train { intervals, ..Train::default() }], ..Measured::default() });
+    assert_eq!(found.outliers.iter().map(|o| (o.train, o.flight)).collect::<Vec<_>>(), [(1, 4)]);
+    assert!((found.outliers[0].expected / (0.4 * 0.343) - 1.0).abs() < 1e-9);
+    assert!((found.restitution.value - 0.7).abs() < 1e-9, "{found:?}");
+}
+
+#[test]
+fn two_flights_give_their_ratio_without_an_uncertainty() {
+    let train = Train { intervals: vec![0.3, 0.18], ..Train::default() };
+    let found = of(&Measured { trains: vec![train.clone()], ..Measured::default() });
+    assert!((found.restitution.value - 0.6).abs() < 1e-14 && found.restitution.std.is_none(), "{found:?}");
+    let timed = Train { onset_std: Some(1e-4), ..train };
+    let found = of(&Measured { trains: vec![timed], ..Measured::default() });
+    // y = ln b − ln a over three onsets: derivatives 1/a, −(1/a + 1/b), 1/b.
+    let (a, b): (f64, f64) = (1.0 / 0.3, 1.0 / 0.18);
+    let expected = 0.6 * 1e-4 * (a * a + (a + b).powi(2) + b * b).sqrt();
+    assert!((found.restitution.std.unwrap() / expected - 1.0).abs() < 1e-9, "{found:?}");
+}
+
+#[test]
+fn growing_flights_are_refused_and_a_bend_is_said() {
+    let train = |intervals: Vec<f64>| Measured {
+        trains: vec![Train { intervals, ..Train::default() }],
+        ..Measured::default()
+    };
+    assert!(restitution(&train(vec![0.1, 0.2, 0.4])).unwrap_err().to_string().contains("grow"));
+    // R falls from 0.8 by 0.04 a bounce.
+    let mut flight = 0.5;
+    let bent: Vec<f64> = (0..8)
+        .map(|k| {
+            let now = flight;
+            flight *= 0.8 - 0.04 * f64::from(k);
+            now
+        })
+        .collect();
+    let found = of(&train(bent));
+    assert!(found.warnings.iter().any(|w| w.contains("R falls")), "{:?}", found.warnings);
+}
+
+#[test]
+fn velocities_of_both_masses_and_by_momentum() {
+    // 0.2 kg at 3 m/s on 0.5 kg at rest with R = 0.4.
+    let (m1, m2, v, r) = (0.2, 0.5, 3.0, 0.4);
+    let w1 = v * (m1 - r * m2) / (m1 + m2);
+    let w2 = v * m1 * (1.0 + r) / (m1 + m2);
+    let all = Velocities {
+        before: (v, 0.0),
+        after1: Some(w1),
+        after2: Some(w2),
+        masses: Some((m1, m2)),
+        std: Some(0.01),
+    };
+    let found = of(&Measured { velocities: Some(all.clone()), ..Measured::default() });
+    assert_eq!(found.by.len(), 3);
+    assert!(found.agree && found.by.iter().all(|w| (w.restitution.value - r).abs() < 1e-14), "{found:?}");
+    // Derivatives by differences for the method by momentum of mass 1.
+    let alone = |v1: f64, v2: f64, w: f64| {
+        let some = Velocities { before: (v1, v2), after1: Some(w), after2: None, ..all.clone() };
+        of(&Measured { velocities: Some(some), ..Measured::default() }).restitution
+    };
+    let (h, u) = (1e-6, 0.01);
+    let base = alone(v, 0.0, w1);
+    let d = [alone(v + h, 0.0, w1), alone(v, h, w1), alone(v, 0.0, w1 + h)]
+        .map(|x| (x.value - base.value) / h * u);
+    let expected = d.iter().map(|d| d * d).sum::<f64>().sqrt();
+    // Differences over 1e-6: truncation of that size.
+    assert!((base.std.unwrap() / expected - 1.0).abs() < 1e-5, "{base:?} {expected}");
+    let why = |before, after1| {
+        let v = Velocities { before, after1: Some(after1), masses: Some((m1, m2)), ..Velocities::default() };
+        restitution(&Measured { velocities: Some(v), ..Measured::default() }).unwrap_err().to_string()
+    };
+    assert!(why((1.0, 2.0), 0.0).contains("do not approach"));
+    assert!(why((3.0, 0.0), -3.0).contains("outside 0 to 1"));
+}
+
+#[test]
+fn methods_that_disagree_are_not_averaged() {
+    let d = Drop { height_std: Some(0.001), interval_std: Some(0.001), ..drop(0.57, 0.144) };
+    let train = Train { intervals: vec![0.144, 0.072, 0.036], onset_std: Some(1e-4), after: Some(0.005) };
+    let found = of(&Measured { drop: Some(d), trains: vec![train], ..Measured::default() });
+    assert!(!found.agree && found.restitution.value.is_nan() && found.by.len() == 2, "{found:?}");
+    assert!(found.warnings.iter().any(|w| w.contains("disagree")), "{:?}", found.warnings);
+    assert!(found.warnings.iter().any(|w| w.contains("last bounces")), "{:?}", found.warnings);
+}

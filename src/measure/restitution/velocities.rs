@@ -1,0 +1,103 @@
+//! Restitution from velocities before and after: R = (v₂⁺ − v₁⁺)/(v₁⁻ − v₂⁻), with the momentum balance where masses are known.
+
+use super::{Way, above_zero, not_negative};
+use crate::error::{Error, Result};
+use crate::measure::Estimate;
+
+/// Velocities of both masses along one axis, in m/s.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Velocities {
+    /// Before the impact: mass 1 and 2.
+    pub before: (f64, f64),
+    /// Of mass 1 after the impact.
+    pub after1: Option<f64>,
+    /// Of mass 2 after the impact.
+    pub after2: Option<f64>,
+    /// Masses in kg.
+    pub masses: Option<(f64, f64)>,
+    /// Standard uncertainty of each velocity.
+    pub std: Option<f64>,
+}
+
+impl Velocities {
+    pub(super) fn answers(&self, warnings: &mut Vec<String>) -> Result<Vec<Way>> {
+        let (v1, v2) = self.before;
+        not_negative("an uncertainty of the velocities", self.std)?;
+        let all = [Some(v1), Some(v2), self.after1, self.after2];
+        if let Some(bad) = all.into_iter().flatten().find(|v| !v.is_finite()) {
+            return Err(Error::usage(format!("a velocity of {bad} m/s"), "finite numbers"));
+        }
+        let approach = v1 - v2;
+        if approach <= 0.0 {
+            return Err(Error::refused(format!(
+                "before the impact mass 1 has {v1} m/s and mass 2 {v2} m/s: they do not approach"
+            ))
+            .hint("mass 1 is the one behind: velocities count positive from mass 1 to mass 2"));
+        }
+        let ratio = match self.masses {
+            Some((m1, m2)) => {
+                above_zero("a mass", m1)?;
+                above_zero("a mass", m2)?;
+                Some(m1 / m2)
+            }
+            None => None,
+        };
+        // R = s/(v₁ − v₂) with s = a·v₁⁺ + b·v₂⁺ + c·(v₁ or v₂): gradient by v₁, v₂ and what was measured after.
+        let way = |method: &'static str, separation: f64, by_before: (f64, f64), by_after: f64, how: &str| {
+            let r = separation / approach;
+            let variance = ((by_before.0 - r) / approach).powi(2)
+                + ((by_before.1 + r) / approach).powi(2)
+                + by_after / approach.powi(2);
+            if !(0.0..=1.0).contains(&r) {
+                return Err(Error::refused(format!("velocities give R = {r:.4} ({how}): outside 0 to 1"))
+                    .hint("are all velocities counted in one direction, and the masses in the order of the velocities?"));
+            }
+            let n = if self.after1.is_some() && self.after2.is_some() { 4 } else { 3 };
+            Ok(Way {
+                method,
+                restitution: Estimate::new(r, self.std.map(|u| u * variance.sqrt()), "", n, how),
+            })
+        };
+        let mut ways = Vec::new();
+        if let (Some(w1), Some(w2)) = (self.after1, self.after2) {
+            ways.push(way("velocities of both masses", w2 - w1, (0.0, 0.0), 2.0, "(v₂⁺ − v₁⁺)/(v₁⁻ − v₂⁻)")?);
+            if let Some((m1, m2)) = self.masses {
+                let lost = m1 * (v1 - w1) + m2 * (v2 - w2);
+                let u = self.std.map_or(f64::NAN, |u| u * (2.0 * (m1 * m1 + m2 * m2)).sqrt());
+                if lost.abs() > 2.0 * u {
+                    warnings.push(format!("Momentum changes by {lost:.3e} kg m/s, more than twice its uncertainty of {u:.1e}: velocities, masses or a third body."));
+                }
+            }
+        }
+        if let (Some(w1), Some(q)) = (self.after1, ratio) {
+            // v₂⁺ = v₂ + q(v₁ − v₁⁺).
+            ways.push(way(
+                "velocity of mass 1 and momentum",
+                v2 + q * (v1 - w1) - w1,
+                (q, 1.0),
+                (1.0 + q).powi(2),
+                "v₂⁺ from the momentum balance",
+            )?);
+        }
+        if let (Some(w2), Some(q)) = (self.after2, ratio) {
+            // v₁⁺ = v₁ + (v₂ − v₂⁺)/q.
+            ways.push(way(
+                "velocity of mass 2 and momentum",
+                w2 - v1 - (v2 - w2) / q,
+                (-1.0, -1.0 / q),
+                (1.0 + 1.0 / q).powi(2),
+                "v₁⁺ from the momentum balance",
+            )?);
+        }
+        if ways.is_empty() {
+            return Err(Error::usage(
+                "velocities of one mass without masses",
+                "both velocities after the impact, or --masses M1,M2",
+            ));
+        }
+        if ways.len() > 1 {
+            warnings.push("The methods by velocity share what they start from: they agree more closely than independent ones would.".to_owned());
+        }
+        Ok(ways)
+    }
+}

@@ -1,0 +1,127 @@
+//! Impacts and drops of a campaign.
+
+use super::{JobOptions, file_name, merge};
+use crate::campaign::{Campaign, RecordEntry};
+use crate::error::Result;
+use crate::measure::impacts::{Impacts, ImpactsOptions, impacts as find};
+use crate::measure::restitution::{Bounces, Drop, GRAVITY, Restitution, restitution};
+use crate::read::Recording;
+use crate::record::Trace;
+use crate::report::{Figure, pictures};
+use serde::Serialize;
+
+/// Impacts of one trace.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ImpactsResult {
+    /// Name in the campaign, else the file's.
+    pub name: String,
+    /// File.
+    pub file: String,
+    /// What was found.
+    #[serde(flatten)]
+    pub impacts: Impacts,
+}
+
+/// Restitution from one or several drops of one name.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DropResult {
+    /// Name in the campaign, else the file's.
+    pub name: String,
+    /// Files, one a drop.
+    pub files: Vec<String>,
+    /// What was found.
+    #[serde(flatten)]
+    pub restitution: Restitution,
+}
+
+/// A trace of an entry, with its name and file.
+fn read(
+    campaign: &Campaign,
+    entry: &RecordEntry,
+    options: JobOptions,
+    warnings: &mut Vec<String>,
+) -> Result<(String, String, Recording, Trace)> {
+    let path = campaign.record_path(entry, options.allow_outside)?;
+    let recording = entry.reader().rate_of_base_band().from_path(&path)?;
+    let file = file_name(&path);
+    merge(warnings, &file, &recording.doubts);
+    let trace = recording.trace(entry.channel.as_deref(), entry.calibration)?;
+    let name = entry.name.clone().unwrap_or_else(|| file.clone());
+    merge(warnings, &name, &trace.meta.doubts);
+    Ok((name, file, recording, trace))
+}
+
+pub(super) fn impacts(
+    campaign: &Campaign,
+    options: JobOptions,
+    figures: &mut Vec<(String, Figure)>,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<ImpactsResult>> {
+    let mut results = Vec::new();
+    for entry in &campaign.impacts {
+        let (name, file, recording, trace) = read(campaign, &entry.record(), options, warnings)?;
+        let reference = match &entry.reference {
+            Some(channel) => Some(recording.trace(Some(channel), None)?.values),
+            None => None,
+        };
+        let default = ImpactsOptions::default();
+        let how = ImpactsOptions {
+            threshold: entry.threshold.unwrap_or(default.threshold),
+            refractory: entry.refractory,
+            excitation: entry.excitation,
+            reference,
+            ..default
+        };
+        let found = find(&trace, &how).map_err(|e| e.of_record(&name))?;
+        merge(warnings, &name, &found.warnings);
+        figures.push((format!("impacts_{}", results.len() + 1), pictures::impacts(&name, &trace, &found)));
+        results.push(ImpactsResult { name, file, impacts: found });
+    }
+    Ok(results)
+}
+
+/// Entries of one name are drops of one series.
+pub(super) fn drops(
+    campaign: &Campaign,
+    options: JobOptions,
+    figures: &mut Vec<(String, Figure)>,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<DropResult>> {
+    let mut series: Vec<(String, Vec<String>, Drop, bool, Bounces)> = Vec::new();
+    for (i, entry) in campaign.drop.iter().enumerate() {
+        let (name, file, _, trace) = read(campaign, &entry.record(), options, warnings)?;
+        let how = ImpactsOptions {
+            threshold: entry.threshold.unwrap_or(Bounces::THRESHOLD),
+            refractory: entry.refractory,
+            ..ImpactsOptions::default()
+        };
+        let drop = Drop {
+            height: entry.height.unwrap_or(f64::NAN),
+            height_std: entry.height_std,
+            gravity: entry.gravity.unwrap_or(GRAVITY),
+            gravity_std: entry.gravity_std,
+            ..Drop::default()
+        };
+        let same = |s: &&mut (String, Vec<String>, Drop, bool, Bounces)| {
+            s.0 == name
+                && s.2.gravity == drop.gravity
+                && (s.2.height == drop.height || entry.height.is_none() && !s.3)
+        };
+        if series.iter_mut().find(same).is_none() {
+            series.push((name.clone(), Vec::new(), drop.clone(), entry.height.is_some(), Bounces::default()));
+        }
+        if let Some((_, files, _, _, bounces)) = series.iter_mut().find(same) {
+            let found = bounces.add(&trace, &how).map_err(|e| e.of_record(&name))?;
+            merge(warnings, &file, &found.warnings);
+            files.push(file);
+            figures.push((format!("drop_{}", i + 1), pictures::drop(&name, &trace, &found)));
+        }
+    }
+    let mut results = Vec::new();
+    for (name, files, drop, fell, bounces) in series {
+        let found = restitution(&bounces.measured(drop, fell)).map_err(|e| e.of_record(&name))?;
+        merge(warnings, &name, &found.warnings);
+        results.push(DropResult { name, files, restitution: found });
+    }
+    Ok(results)
+}

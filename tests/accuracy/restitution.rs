@@ -1,0 +1,100 @@
+//! Restitution: its stated uncertainty against what repeated measurements show, and against a bootstrap.
+
+use crate::noise::Noise;
+use vibroimpact::measure::restitution::{Drop, Measured, Train, restitution};
+
+const CASES: u64 = 1000;
+
+/// Quantile 0.975 of Student's t for 1 to 10 degrees of freedom.
+const STUDENT: [f64; 10] = [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228];
+
+fn of_drop(drop: Drop) -> (f64, f64) {
+    let found = restitution(&Measured { drop: Some(drop), ..Measured::default() }).unwrap().restitution;
+    (found.value, found.std.unwrap())
+}
+
+#[test]
+fn drops_are_covered() {
+    let (truth, h, g): (f64, f64, f64) = (0.2112, 0.57, 9.81);
+    let interval = 2.0 * truth * (2.0 * h / g).sqrt();
+    for (name, drops, scatter, height_std) in
+        [("one drop, height and interval uncertain", 1, 0.004, 0.01), ("eight drops", 8, 0.004, 1e-5)]
+    {
+        let mut inside = 0;
+        for seed in 0..CASES {
+            let mut noise = Noise::new(70_000 + seed);
+            let intervals: Vec<f64> = (0..drops).map(|_| interval + scatter * noise.normal()).collect();
+            let height = h + height_std * noise.normal();
+            let stated = (drops == 1).then_some(scatter);
+            let drop = Drop {
+                height,
+                height_std: Some(height_std),
+                intervals,
+                interval_std: stated,
+                gravity: g,
+                ..Drop::default()
+            };
+            let (r, u) = of_drop(drop);
+            // The scatter of eight drops has seven degrees of freedom.
+            let t = if drops == 1 { 1.96 } else { STUDENT[6] };
+            inside += usize::from((r - truth).abs() < t * u);
+        }
+        let coverage = inside as f64 / CASES as f64;
+        println!(
+            "restitution, {name}: {CASES} cases, seeds 70000.., 95 % coverage {:.1} %",
+            100.0 * coverage
+        );
+        assert!((0.92..=0.98).contains(&coverage), "{name}: {coverage}");
+    }
+}
+
+#[test]
+fn trains_of_bounces_are_covered_whether_impacts_or_clock_scatter() {
+    let truth: f64 = 0.6;
+    for (name, per_bounce, timing) in [("scatter of R", 0.02, 0.0), ("noise of the onsets", 0.0, 2e-4)] {
+        let (mut inside, mut n_out) = (0, 0);
+        for seed in 0..CASES {
+            let mut noise = Noise::new(90_000 + seed);
+            let (mut flight, mut at) = (0.4, 0.0);
+            let mut times = vec![timing * noise.normal()];
+            for _ in 0..6 {
+                at += flight;
+                times.push(at + timing * noise.normal());
+                flight *= truth * (per_bounce * noise.normal()).exp();
+            }
+            let intervals: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+            let train = Train { intervals, onset_std: (timing > 0.0).then_some(timing), after: None };
+            let found = restitution(&Measured { trains: vec![train], ..Measured::default() }).unwrap();
+            n_out += found.outliers.len();
+            // Five steps from bounce to bounce, or six flights less two parameters.
+            let t = if timing > 0.0 { 1.96 } else { STUDENT[3] };
+            inside +=
+                usize::from((found.restitution.value - truth).abs() < t * found.restitution.std.unwrap());
+        }
+        let coverage = inside as f64 / CASES as f64;
+        println!(
+            "restitution, train with {name}: {CASES} cases, seeds 90000.., 95 % coverage {:.1} %, {n_out} outliers",
+            100.0 * coverage
+        );
+        assert!((0.92..=0.98).contains(&coverage), "{name}: {coverage}");
+    }
+}
+
+#[test]
+fn propagation_agrees_with_a_bootstrap() {
+    let mut noise = Noise::new(4321);
+    let intervals: Vec<f64> = (0..40).map(|_| 0.144 + 0.003 * noise.normal()).collect();
+    let drop = |intervals| Drop { height: 0.57, intervals, ..Drop::default() };
+    let (_, stated) = of_drop(drop(intervals.clone()));
+    let values: Vec<f64> = (0..2000)
+        .map(|_| {
+            let drawn = intervals.iter().map(|_| intervals[(noise.uniform() * 40.0) as usize]).collect();
+            of_drop(drop(drawn)).0
+        })
+        .collect();
+    let mean = values.iter().sum::<f64>() / 2000.0;
+    let bootstrap = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / 1999.0).sqrt();
+    println!("restitution of 40 drops: propagated {stated:.6}, bootstrap {bootstrap:.6}, seed 4321");
+    // The bootstrap is √(39/40) too small and scatters by 1/√4000 = 1.6 %: four of these.
+    assert!((bootstrap / stated - (39f64 / 40.0).sqrt()).abs() < 0.065);
+}

@@ -1,0 +1,59 @@
+//! The example drop test: its data are what its generator makes, and its campaign gives back the truth.
+
+#[path = "../examples/drop_test/records.rs"]
+mod records;
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use vibroimpact::campaign::Campaign;
+use vibroimpact::report::Output;
+use vibroimpact::report::job::{self, JobOptions};
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/drop_test")
+}
+
+#[test]
+fn the_records_come_out_again() {
+    let all = records::all();
+    assert!(all.iter().map(|(_, text)| text.len()).sum::<usize>() < 300_000);
+    for (name, text) in all {
+        let committed = std::fs::read_to_string(folder().join(&name)).unwrap();
+        assert!(committed == text, "{name} differs from what the generator makes");
+    }
+}
+
+#[test]
+fn the_campaign_gives_back_the_truth() {
+    let campaign = Campaign::from_path(folder().join("campaign.toml")).unwrap();
+    let out = tempfile::tempdir().unwrap();
+    let mut output = Output::new(out.path()).unwrap();
+    let results = job::run(&campaign, JobOptions::default(), &mut output, &()).unwrap();
+    let drops = &results.drops[0].restitution;
+    assert_eq!(results.drops[0].files.len(), 5);
+    // Five drops that scatter by 2 %: within four standard uncertainties of the mean.
+    let (r, u) = (drops.restitution.value, drops.restitution.std.unwrap());
+    assert!((r - records::RESTITUTION).abs() < 4.0 * u && u < 0.02 * r, "{drops:?}");
+    let lively = &results.drops[1].restitution;
+    assert!(lively.agree && lively.by.len() == 2, "{lively:?}");
+    for way in &lively.by {
+        let u = way.restitution.std.unwrap();
+        assert!((way.restitution.value - records::LIVELY).abs() < 4.0 * u && u < 0.005, "{way:?}");
+    }
+    let contact = &results.impacts[0].impacts;
+    let truth = std::fs::read_to_string(folder().join("TRUTH.csv")).unwrap();
+    let count = truth.lines().find_map(|l| l.strip_prefix("impacts in the contact trace,")).unwrap();
+    assert_eq!(contact.n.to_string(), count.trim_end_matches(','));
+    assert_eq!(contact.per_cycle.map(|p| (p.impacts, p.cycles)), Some((1, 2)));
+    let off = contact.frequency.value - records::EXCITATION / 2.0;
+    assert!(off.abs() < 4.0 * contact.frequency.std.unwrap(), "{contact:?}");
+    assert!((contact.hum.as_ref().unwrap().frequency - 50.02).abs() < 0.01, "{:?}", contact.hum);
+    for file in ["drop_1.svg", "drop_6.png", "impacts_1.svg", "impacts_1.csv", "results.json", "report.html"]
+    {
+        assert!(out.path().join(file).is_file(), "{file}");
+    }
+    let json: Value =
+        serde_json::from_str(&std::fs::read_to_string(out.path().join("results.json")).unwrap()).unwrap();
+    assert_eq!(json["drops"][0]["name"], "ball on plate");
+    assert_eq!(json["impacts"][0]["per_cycle"]["cycles"], 2);
+}
