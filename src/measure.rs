@@ -11,6 +11,7 @@ pub mod resonance;
 pub mod response;
 #[cfg(test)]
 mod synthetic;
+pub mod top;
 pub mod waterfall;
 
 pub use estimate::Estimate;
