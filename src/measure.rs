@@ -2,6 +2,7 @@
 
 mod estimate;
 pub mod excitation;
+pub mod jump;
 pub mod legacy;
 pub mod limit;
 pub mod line;

@@ -125,7 +125,7 @@ fn sweeps(campaign: &Campaign, options: JobOptions, progress: &dyn Progress) -> 
             let (mass, direction) = (r.mass?, r.direction?);
             let mut curve = curve(r);
             curve.sort_by(|a, b| a.0.total_cmp(&b.0));
-            Some(NamedCurve { mass, direction, curve, jumps: r.jumps.clone(), resonances: &mut r.resonances })
+            Some(NamedCurve { mass, direction, curve, jumps: &mut r.jumps, resonances: &mut r.resonances })
         })
         .collect();
     name_modes(&mut curves);

@@ -55,7 +55,9 @@ pub fn response(response: &Response) -> Table {
     ];
     if let Some(first) = response.points.first() {
         let orders = first.harmonics.iter().chain(&first.subharmonics);
-        columns.extend(orders.map(|h| (format!("order {}", h.order), unit)));
+        columns.extend(orders.flat_map(|h| {
+            [(format!("order {}", h.order), unit), (format!("order {} upper limit", h.order), unit)]
+        }));
     }
     columns.push(("largest at".to_owned(), "Hz"));
     columns.push(("upper limit".to_owned(), unit));
@@ -68,7 +70,11 @@ pub fn response(response: &Response) -> Table {
             pair(p.frequency, p.frequency_std),
             Cell::from(&p.amplitude),
         ];
-        row.extend(p.harmonics.iter().chain(&p.subharmonics).map(|h| Cell::from(&h.amplitude)));
+        row.extend(p.harmonics.iter().chain(&p.subharmonics).flat_map(|h| match h.upper_limit {
+            // Noise is no amplitude.
+            Some(limit) => [Cell::Missing, Cell::Number(limit)],
+            None => [Cell::from(&h.amplitude), Cell::Missing],
+        }));
         row.push(if p.largest_elsewhere { Cell::Number(p.largest_at) } else { Cell::from("excitation") });
         row.push(Cell::from(p.upper_limit));
         table.push(row);
