@@ -2,6 +2,7 @@
 
 mod estimate;
 pub mod excitation;
+pub mod jump;
 pub mod legacy;
 pub mod limit;
 pub mod line;
@@ -11,6 +12,7 @@ pub mod resonance;
 pub mod response;
 #[cfg(test)]
 mod synthetic;
+pub mod top;
 pub mod waterfall;
 
 pub use estimate::Estimate;
