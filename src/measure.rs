@@ -5,6 +5,7 @@ mod estimate;
 pub mod excitation;
 pub mod exposure;
 pub mod impacts;
+pub mod jump;
 pub mod legacy;
 pub mod limit;
 pub mod line;
@@ -16,6 +17,7 @@ pub mod restitution;
 pub mod sine;
 #[cfg(test)]
 mod synthetic;
+pub mod top;
 pub mod waterfall;
 
 pub use estimate::Estimate;

@@ -254,7 +254,8 @@ fn peaks(sweep: &Swept<'_>, curve: &Prediction) -> Vec<PeakPair> {
         .filter(|m| impacting(m.at))
         .map(|m| top(curve, &closed, m.at))
         .collect();
-    let found = response.resonances.iter().filter(|r| r.kind != "antiresonance");
+    let found =
+        response.resonances.iter().filter(|r| !["antiresonance", "minimum"].contains(&r.kind.as_str()));
     found
         .map(|r: &Resonance| {
             let ratio = |f: f64| (f / r.frequency).max(r.frequency / f);
@@ -263,8 +264,11 @@ fn peaks(sweep: &Swept<'_>, curve: &Prediction) -> Vec<PeakPair> {
                 .filter(|p| ratio(p.0) < NEAR)
                 .min_by(|a, b| ratio(a.0).total_cmp(&ratio(b.0)))
                 .copied();
-            let method =
-                if r.at_jump { "highest point before a jump" } else { "parabola through three points" };
+            let method = if r.at_jump {
+                "highest point before a jump"
+            } else {
+                "local curve through up to five points"
+            };
             PeakPair {
                 sweep: response.name.clone(),
                 mass,

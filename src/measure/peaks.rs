@@ -48,8 +48,8 @@ pub fn local_maxima(values: &[f64], ratio: f64) -> Vec<Maximum> {
 ///
 /// Near a resonance of one mode 1/a² is a parabola in frequency, so that parabola gives the vertex. Its uncertainty is made of
 /// the propagated uncertainty of the heights; the distance to the vertex of a parabola through ln a, for the choice of
-/// curve; and h²/2f for points h apart, the size of what a resonance curve has beyond the parabola:
-/// (1 − r²)² = 4δ²(1 + δ + δ²/4) with δ = r − 1. Where a neighbour is below half of the middle point, the curve is not resolved: the
+/// curve; and h²/f for points h apart, the size of what a curve has beyond the parabola: a mode itself bends it by half of that,
+/// (1 − r²)² = 4δ²(1 + δ + δ²/4) with δ = r − 1, and a zero or a mode at a distance d adds h²/d. Where a neighbour is below half of the middle point, the curve is not resolved: the
 /// middle point is given with the uncertainty of its place, and no uncertainty (NaN) of its height.
 ///
 /// `None` where the middle point is not the highest.
@@ -74,8 +74,11 @@ pub fn vertex(f: [f64; 3], a: [f64; 3], std: [f64; 3]) -> Option<Vertex> {
     let Some((frequency, inverse)) = place(a) else { return Some(unresolved) };
     let height = 1.0 / inverse.sqrt();
     let (rival_f, rival_h) = parabola(f, a.map(f64::ln)).map_or((f[1], 1.0), |(f, h)| (f, h.exp()));
-    let beyond = spacing * spacing / (2.0 * frequency);
-    let mut variance = [(frequency - rival_f).powi(2) + beyond * beyond, (height - rival_h).powi(2)];
+    let beyond = spacing * spacing / frequency;
+    // The height moves by as much of the fall beside it.
+    let fall = (1.0 / a[0].min(a[2]) - 1.0) * beyond / spacing;
+    let mut variance =
+        [(frequency - rival_f).powi(2) + beyond * beyond, (height - rival_h).powi(2) + fall * fall];
     for i in 0..3 {
         let mut moved = a;
         moved[i] += std[i];

@@ -1,8 +1,11 @@
-//! Resonances, antiresonances and jumps of a response curve.
+//! Resonances and antiresonances of a response curve.
 
-use super::peaks::{local_maxima, vertex};
+use super::jump::{Jump, SIGMA, differ, echo, known};
+use super::peaks::{Maximum, Vertex, local_maxima};
+use super::top::top;
 use crate::record::Direction;
 use serde::Serialize;
+use std::ops::RangeInclusive;
 
 /// A maximum or minimum of a response curve.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -15,99 +18,163 @@ pub struct Resonance {
     pub amplitude: f64,
     /// Its standard uncertainty.
     pub amplitude_std: Option<f64>,
-    /// `resonance`, `antiresonance`; `grazing` or `clapping` where both masses were measured.
+    /// `resonance`, `antiresonance`, `minimum`; `grazing` or `clapping` where both masses were measured.
     pub kind: String,
     /// Whether the curve ends in a jump there, so that the true maximum may lie between the points.
     pub at_jump: bool,
 }
 
-/// A sudden change of amplitude from one step of a sweep to the next.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Jump {
-    /// Last excitation frequency before, in Hz.
-    pub from: f64,
-    /// First excitation frequency behind, in Hz.
-    pub to: f64,
-    /// Frequency of the jump in Hz: the middle of the two.
-    pub frequency: f64,
-    /// Its standard uncertainty in Hz: anywhere between the two with equal chance, their distance over √12.
-    pub frequency_std: f64,
-    /// Amplitude before.
-    pub amplitude_before: f64,
-    /// Its standard uncertainty.
-    pub amplitude_before_std: Option<f64>,
-    /// Amplitude behind.
-    pub amplitude_after: f64,
-    /// Its standard uncertainty.
-    pub amplitude_after_std: Option<f64>,
-    /// `rise` or `drop`.
-    pub change: &'static str,
-    /// Direction of the sweep.
-    pub direction: Direction,
-}
-
 /// A maximum must stand this factor above its valleys.
 const PROMINENCE: f64 = 1.2;
-/// A jump changes the amplitude by at least this factor …
-const JUMP: f64 = 1.5;
-/// … and in logarithm by this much more than the steps beside it.
-const JUMP_AGAINST_NEIGHBOURS: f64 = 2.5;
 
-/// Resonances and antiresonances of a curve with rising `frequency`, given amplitudes, their uncertainties, and
-/// jumps.
-pub fn resonances(frequency: &[f64], amplitude: &[f64], std: &[f64], jumps: &[Jump]) -> Vec<Resonance> {
+/// Resonances and minima of a curve with rising `frequency`, given amplitudes, their uncertainties, jumps, and the mass where it
+/// is known.
+///
+/// The excited mass (1) has an antiresonance between two resonances. The response of another point may pass between them without
+/// a zero: its minimum is called an antiresonance only where it is deep (see [`DEEP`]).
+pub fn resonances(
+    frequency: &[f64],
+    amplitude: &[f64],
+    std: &[f64],
+    jumps: &[Jump],
+    mass: Option<u8>,
+) -> Vec<Resonance> {
+    let curve = Curve { frequency, amplitude, std, jumps };
+    let rising = |m: &Maximum| m.valleys.iter().all(|k| differ(amplitude, std, m.at, *k));
+    let maxima = local_maxima(amplitude, PROMINENCE).into_iter().filter(rising);
+    let mut found: Vec<Resonance> = maxima.map(|m| curve.maximum(m.at)).collect();
     let inverse: Vec<f64> = amplitude.iter().map(|a| 1.0 / a).collect();
-    let mut found: Vec<Resonance> = Vec::new();
-    for (values, kind) in [(amplitude, "resonance"), (inverse.as_slice(), "antiresonance")] {
-        for maximum in local_maxima(values, PROMINENCE) {
-            let i = maximum.at;
-            if !maximum.valleys.iter().all(|k| differ(amplitude, std, i, *k)) {
-                continue;
-            }
-            let f = [frequency[i - 1], frequency[i], frequency[i + 1]];
-            let beside = |j: &Jump| {
-                let (low, high) = (j.from.min(j.to), j.from.max(j.to));
-                high >= f[0] && low <= f[2] && (low == f[1] || high == f[1])
-            };
-            let jump = jumps.iter().find(|j| beside(j));
-            if kind == "antiresonance" && jump.is_some() {
-                continue; // the foot of a jump
-            }
-            let interpolated = if jump.is_none() && f[0] < f[1] && f[1] < f[2] {
-                let a = [values[i - 1], values[i], values[i + 1]];
-                // Relative uncertainties are the same for a value and its inverse.
-                let s = [i - 1, i, i + 1].map(|k| values[k] * std[k] / amplitude[k]);
-                vertex(f, a, s)
-            } else {
-                None
-            };
-            found.push(match interpolated {
-                Some(v) => {
-                    let height = if kind == "resonance" { v.height } else { 1.0 / v.height };
-                    let relative = v.height_std / v.height;
-                    Resonance {
-                        frequency: v.frequency,
-                        frequency_std: Some(v.frequency_std),
-                        amplitude: height,
-                        amplitude_std: Some(height * relative).filter(|s| s.is_finite()),
-                        kind: kind.into(),
-                        at_jump: false,
-                    }
-                }
-                None => Resonance {
-                    frequency: f[1],
-                    // Anywhere between this point and its neighbours with equal chance.
-                    frequency_std: Some((f[1] - f[0]).max(f[2] - f[1]) / f64::sqrt(3.0)),
-                    amplitude: amplitude[i],
-                    amplitude_std: jump.and_then(|j| at_a_jump(frequency, amplitude, std, i, j)),
-                    kind: kind.into(),
-                    at_jump: jump.is_some(),
-                },
-            });
-        }
-    }
+    let minima = local_maxima(&inverse, PROMINENCE).into_iter().filter(rising);
+    found.extend(minima.filter_map(|m| {
+        let antiresonance = mass == Some(1) || curve.is_deep(&m);
+        curve.minimum(m.at, &inverse, if antiresonance { "antiresonance" } else { "minimum" })
+    }));
     found.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
     found
+}
+
+/// A minimum without a zero is less deep than this factor below the curve half-way (in f²) to the resonances beside it: where the
+/// tails A/(u − p) and B/(q − u) of two modes add, the sum there is (2r + 2/(2 + r))/(1 + r) < 2 times its minimum, with
+/// r² = A/B or its inverse. Where they cancel, it falls to what damping leaves.
+const DEEP: f64 = 2.0;
+
+/// A response curve of rising frequency.
+struct Curve<'a> {
+    frequency: &'a [f64],
+    amplitude: &'a [f64],
+    std: &'a [f64],
+    jumps: &'a [Jump],
+}
+
+impl Curve<'_> {
+    fn jump_between(&self, i: usize, k: usize) -> bool {
+        let (low, high) = (self.frequency[i.min(k)], self.frequency[i.max(k)]);
+        self.jumps.iter().any(|j| j.from.min(j.to) < high && j.from.max(j.to) > low)
+    }
+
+    /// Whether a jump ends or begins at point `i`.
+    fn jump_at(&self, i: usize) -> Option<&Jump> {
+        let f = &self.frequency[i - 1..=i + 1];
+        self.jumps.iter().find(|j| {
+            let (low, high) = (j.from.min(j.to), j.from.max(j.to));
+            high >= f[0] && low <= f[2] && (low == f[1] || high == f[1])
+        })
+    }
+
+    /// Points on both sides of `i` over which `values` fall without a jump, two at most.
+    fn flanks(&self, values: &[f64], i: usize) -> RangeInclusive<usize> {
+        let falls = |from: usize, to: usize| {
+            values[to] < values[from] && values[to] > 0.0 && !self.jump_between(from, to)
+        };
+        let low = if i >= 2 && falls(i - 1, i - 2) { i - 2 } else { i - 1 };
+        let high = if i + 2 < values.len() && falls(i + 1, i + 2) { i + 2 } else { i + 1 };
+        low..=high
+    }
+
+    /// Frequency, height and their uncertainties between the points around the highest, `i`; `None` where it cannot be told.
+    fn interpolated(&self, values: &[f64], i: usize) -> Option<Vertex> {
+        let range = self.flanks(values, i);
+        let stretch = self.frequency.get(range.clone())?;
+        if !stretch.windows(2).all(|f| f[0] < f[1]) {
+            return None;
+        }
+        // Relative uncertainties are the same for a value and its inverse.
+        let std: Vec<f64> =
+            values.iter().zip(self.std).zip(self.amplitude).map(|((v, s), a)| v * s / a).collect();
+        top(self.frequency, values, &std, i, range)
+    }
+
+    fn maximum(&self, i: usize) -> Resonance {
+        let jump = self.jump_at(i);
+        let found = jump.map_or_else(|| self.interpolated(self.amplitude, i), |_| None);
+        let kind = "resonance".to_owned();
+        match found {
+            Some(v) => Resonance {
+                frequency: v.frequency,
+                frequency_std: known(v.frequency_std),
+                amplitude: v.height,
+                amplitude_std: known(v.height_std),
+                kind,
+                at_jump: false,
+            },
+            None => Resonance {
+                frequency: self.frequency[i],
+                frequency_std: Some(anywhere(self.frequency, i, [i - 1, i + 1])),
+                amplitude: self.amplitude[i],
+                amplitude_std: jump.and_then(|j| at_a_jump(self.frequency, self.amplitude, self.std, i, j)),
+                kind,
+                at_jump: jump.is_some(),
+            },
+        }
+    }
+
+    /// `None` at the foot of a jump.
+    fn minimum(&self, i: usize, inverse: &[f64], kind: &str) -> Option<Resonance> {
+        let single = |sides: [usize; 2]| Resonance {
+            frequency: self.frequency[i],
+            frequency_std: Some(anywhere(self.frequency, i, sides)),
+            amplitude: self.amplitude[i],
+            amplitude_std: known(self.std[i]),
+            kind: kind.to_owned(),
+            at_jump: false,
+        };
+        if self.amplitude[i] < SIGMA * self.std[i] {
+            // In the noise its place is not known: between the points that stand out on both sides.
+            let out = |k: &usize| differ(self.amplitude, self.std, i, *k);
+            let sides = [(0..i).rev().find(out)?, (i + 1..self.amplitude.len()).find(out)?];
+            return (!self.jump_between(sides[0], sides[1])).then(|| single(sides));
+        }
+        if self.jump_at(i).is_some() {
+            return None;
+        }
+        Some(self.interpolated(inverse, i).map_or_else(
+            || Resonance { amplitude_std: None, ..single([i - 1, i + 1]) },
+            |v| Resonance {
+                frequency: v.frequency,
+                frequency_std: known(v.frequency_std),
+                amplitude: 1.0 / v.height,
+                amplitude_std: known(v.height_std / (v.height * v.height)),
+                ..single([i - 1, i + 1])
+            },
+        ))
+    }
+
+    /// Whether the curve stands [`DEEP`] above a minimum at the last point before half-way to its neighbours, on both sides.
+    fn is_deep(&self, minimum: &Maximum) -> bool {
+        let square = |k: usize| self.frequency[k].powi(2);
+        minimum.valleys.iter().all(|&end| {
+            let half_way = f64::midpoint(square(minimum.at), square(end));
+            let before = |k: &usize| (square(*k) - half_way) * (square(end) - half_way) <= 0.0;
+            let (low, high) = (minimum.at.min(end), minimum.at.max(end));
+            let highest = (low..=high).filter(before).map(|k| self.amplitude[k]).fold(0.0, f64::max);
+            highest > DEEP * self.amplitude[minimum.at]
+        })
+    }
+}
+
+/// Uncertainty of a place that lies anywhere from point `i` to those on its two sides with equal chance.
+fn anywhere(frequency: &[f64], i: usize, sides: [usize; 2]) -> f64 {
+    sides.map(|k| (frequency[k] - frequency[i]).abs()).into_iter().fold(0.0, f64::max) / f64::sqrt(3.0)
 }
 
 /// Uncertainty of the height of a branch that ends in a jump beside point `i`: the slope towards it, carried on over the
@@ -121,55 +188,6 @@ fn at_a_jump(frequency: &[f64], amplitude: &[f64], std: &[f64], i: usize, jump: 
     Some(reach.hypot(std[i])).filter(|s| s.is_finite())
 }
 
-fn known(std: f64) -> Option<f64> {
-    Some(std).filter(|s| s.is_finite())
-}
-
-/// Differences below this many standard deviations are noise.
-const SIGMA: f64 = 4.0;
-
-/// Whether two amplitudes differ by more than noise. Unknown uncertainties count as none.
-fn differ(amplitude: &[f64], std: &[f64], i: usize, k: usize) -> bool {
-    let noise = [std[i], std[k]].map(|s| if s.is_finite() { s } else { 0.0 });
-    (amplitude[i] - amplitude[k]).abs() > SIGMA * noise[0].hypot(noise[1])
-}
-
-/// Jumps between neighbouring steps, in the order in which the sweep was run.
-pub fn jumps(frequency: &[f64], amplitude: &[f64], std: &[f64], direction: Direction) -> Vec<Jump> {
-    let n = amplitude.len();
-    let step = |i: usize| (amplitude[i + 1] / amplitude[i]).ln();
-    let width = |i: usize| (frequency[i + 1] - frequency[i]).abs();
-    (0..n.saturating_sub(1))
-        .filter(|&i| {
-            // What the curve does on its own over this distance: the steepest of two steps on each side. Without a step on both sides,
-            // and where a sharp peak stands beside the step, a jump cannot be told from a flank.
-            let sides = [i.saturating_sub(2)..i, i + 1..(i + 3).min(n - 1)];
-            let usual = sides.map(|side| {
-                side.filter(|k| width(*k) > 1e-5 * frequency[*k])
-                    .map(|k| (step(k) * width(i) / width(k)).abs())
-                    .fold(f64::NAN, f64::max)
-            });
-            let s = step(i).abs();
-            s.is_finite()
-                && s > JUMP.ln()
-                && usual.iter().all(|u| s > JUMP_AGAINST_NEIGHBOURS * u)
-                && differ(amplitude, std, i, i + 1)
-        })
-        .map(|i| Jump {
-            from: frequency[i],
-            to: frequency[i + 1],
-            frequency: f64::midpoint(frequency[i], frequency[i + 1]),
-            frequency_std: width(i) / f64::sqrt(12.0),
-            amplitude_before: amplitude[i],
-            amplitude_before_std: known(std[i]),
-            amplitude_after: amplitude[i + 1],
-            amplitude_after_std: known(std[i + 1]),
-            change: if step(i) > 0.0 { "rise" } else { "drop" },
-            direction,
-        })
-        .collect()
-}
-
 /// A response curve whose resonances are to be named: excited (1) or passive (2) mass.
 #[derive(Debug)]
 pub struct NamedCurve<'a> {
@@ -180,7 +198,7 @@ pub struct NamedCurve<'a> {
     /// Excitation frequency in Hz, amplitude and its standard uncertainty, rising in frequency.
     pub curve: Vec<(f64, f64, f64)>,
     /// Its jumps.
-    pub jumps: Vec<Jump>,
+    pub jumps: &'a mut Vec<Jump>,
     /// Its resonances.
     pub resonances: &'a mut Vec<Resonance>,
 }
@@ -191,17 +209,25 @@ const TOGETHER: f64 = 0.1;
 /// Names the resonances in which both masses move: the largest maximum below the antiresonance of mass 1 is the grazing
 /// resonance (in phase), the largest above it the clapping one (out of phase).
 ///
-/// Where one mass jumps, the motion of both has changed: resonances are found again with the jumps of both.
+/// Where one mass jumps, the motion of both has changed: a change of the other there that its slopes do not predict is entered in
+/// its jumps, and resonances are found again with the jumps of both.
 /// A maximum at which the other mass of the same sweep rests keeps its kind, as do all where the other mass was not
 /// measured. A sweep without an antiresonance of mass 1 uses that of the other direction.
 pub fn name_modes(curves: &mut [NamedCurve<'_>]) {
     for i in 0..curves.len() {
         let other = curves.iter().find(|c| c.mass != curves[i].mass && c.direction == curves[i].direction);
         let Some(foreign) = other.map(|o| o.jumps.clone()).filter(|j| !j.is_empty()) else { continue };
-        let own = &curves[i];
-        let all: Vec<Jump> = own.jumps.iter().cloned().chain(foreign).collect();
+        let own = &mut curves[i];
+        for jump in &foreign {
+            let known = own.jumps.iter().any(|j| (j.frequency - jump.frequency).abs() < j.frequency_std);
+            if !known && let Some(found) = echo(&own.curve, jump) {
+                own.jumps.push(found);
+            }
+        }
+        let all = [own.jumps.as_slice(), &foreign].concat();
         let column = |of: fn(&(f64, f64, f64)) -> f64| own.curve.iter().map(of).collect::<Vec<f64>>();
-        *curves[i].resonances = resonances(&column(|p| p.0), &column(|p| p.1), &column(|p| p.2), &all);
+        *own.resonances =
+            resonances(&column(|p| p.0), &column(|p| p.1), &column(|p| p.2), &all, Some(own.mass));
     }
     let up = antiresonance(curves, Direction::Up);
     let down = antiresonance(curves, Direction::Down);

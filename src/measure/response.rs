@@ -1,13 +1,17 @@
 //! Response at the excitation, step by step (the job of the thesis' sinesw3).
 
+mod doubts;
+
 use super::excitation::{Excitation, excitations};
+use super::jump::{Jump, jumps};
 use super::limit::upper_limit;
-use super::line::{amplitude_at, interpolate, misfit, nearest};
-use super::resonance::{Jump, Resonance, jumps, resonances};
+use super::line::{amplitude_at, interpolate, nearest};
+use super::resonance::{Resonance, resonances};
 use super::{Estimate, noise};
 use crate::error::{Error, Result};
 use crate::record::{Direction, Step, Sweep, SweepPoint, Window};
 use crate::units::Quantity;
+use doubts::{direction, twice, wrong_window};
 use serde::Serialize;
 use std::f64::consts::PI;
 
@@ -45,8 +49,10 @@ pub struct Harmonic {
     pub order: String,
     /// Frequency in Hz.
     pub frequency: f64,
-    /// Amplitude; no value where the frequency lies outside the lines or below the cut-off.
+    /// Amplitude; no value where the frequency lies outside the lines or below the cut-off. In the noise the nearest line as it is.
     pub amplitude: Estimate,
+    /// What the true amplitude stays below with 95 % confidence, where it does not stand out of the noise.
+    pub upper_limit: Option<f64>,
 }
 
 /// One step of the response curve.
@@ -136,6 +142,7 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
     }
     let unit = quantity.symbol();
     warnings.extend(wrong_window(sweep, &excitations, df));
+    warnings.extend(twice(sweep));
     let taker = Taker { sweep, options, df, fmin, unit };
     let points: Vec<ResponsePoint> =
         sweep.points.iter().zip(&excitations).map(|(p, e)| taker.point(p, e)).collect();
@@ -161,7 +168,8 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
             let mut order: Vec<usize> = (0..points.len()).collect();
             order.sort_by(|a, b| frequency[*a].total_cmp(&frequency[*b]));
             let sorted = |v: &[f64]| -> Vec<f64> { order.iter().map(|i| v[*i]).collect() };
-            let found = resonances(&sorted(&frequency), &sorted(&amplitude), &sorted(&std), &jumps);
+            let found =
+                resonances(&sorted(&frequency), &sorted(&amplitude), &sorted(&std), &jumps, sweep.mass);
             (jumps, found)
         }
         _ => {
@@ -194,75 +202,6 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
     })
 }
 
-/// A sentence where the force lines, which hold one strong sine, have not the shape that the window gives them.
-fn wrong_window(sweep: &Sweep, excitations: &[Excitation], df: f64) -> Option<String> {
-    let window = sweep.points.first()?.response.window?;
-    let typical = |window: Window| {
-        let mut found: Vec<f64> = sweep
-            .points
-            .iter()
-            .zip(excitations)
-            .filter_map(|(p, e)| {
-                let k = ((e.frequency - sweep.axis.start()) / df).round().max(0.0) as usize;
-                misfit(&p.force, k, window)
-            })
-            .collect();
-        found.sort_by(f64::total_cmp);
-        found.get(found.len() / 2).copied()
-    };
-    let off = typical(window).filter(|off| *off > WRONG_SHAPE)?;
-    let better =
-        Window::ALL.into_iter().filter_map(|w| Some((typical(w)?, w))).min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let hint = if better.0 < off / 3.0 {
-        format!("; {} would fit to {:.1} %", better.1.name(), 100.0 * better.0)
-    } else {
-        String::new()
-    };
-    Some(format!(
-        "The lines of the force are off the shape of a {} window by {:.0} % of the largest{hint}: amplitudes and their uncertainties are not to be relied on.",
-        window.name(),
-        100.0 * off
-    ))
-}
-
-/// Direction of a sweep from its frequencies, with doubts where they are not in order.
-fn direction(frequency: &[f64], stated: Option<Direction>, warnings: &mut Vec<String>) -> Option<Direction> {
-    if frequency.len() == 1 {
-        warnings.push("The sweep has one point only.".to_owned());
-    }
-    let rising = frequency.windows(2).filter(|w| w[1] > w[0]).count();
-    let falling = frequency.windows(2).filter(|w| w[1] < w[0]).count();
-    // Equal to a hundred-thousandth: no stepped sweep is that fine.
-    let equal = frequency.windows(2).filter(|w| (w[1] - w[0]).abs() <= 1e-5 * w[0]).count();
-    if equal > 0 {
-        warnings.push(format!("{equal} step(s) repeat the excitation frequency of the step before."));
-    }
-    let found = match rising.cmp(&falling) {
-        std::cmp::Ordering::Greater => Some(Direction::Up),
-        std::cmp::Ordering::Less => Some(Direction::Down),
-        std::cmp::Ordering::Equal => None,
-    };
-    let against = rising.min(falling);
-    if against > 0 {
-        warnings.push(format!(
-            "The points are not in order of frequency: {against} of {} steps go the other way; jumps are judged in the order given.",
-            frequency.len() - 1
-        ));
-    }
-    if let (Some(stated), Some(found)) = (stated, found)
-        && stated != found
-    {
-        warnings.push(format!(
-            "The sweep is said to go {}, but its excitation frequencies go {}.",
-            stated.name(),
-            found.name()
-        ));
-    }
-    stated.or(found)
-}
-
-/// Force lines further than this from their window's shape are not under that window.
-const WRONG_SHAPE: f64 = 0.02;
 /// A response peak must stand this factor above the noise of a line; a fainter one is read at the excitation frequency, where
 /// noise cannot choose the line, and gets an upper limit.
 const PEAK_ABOVE: f64 = 5.0;
@@ -328,12 +267,10 @@ impl Taker<'_> {
             let std = peak.position_std.map(|s| s * self.df);
             (frequency, std, (peak.amplitude, peak.amplitude_std), method)
         } else {
-            // One line, because the distribution of its magnitude is known.
-            let (line, gain) = nearest(&measured, at, window).unwrap_or((f64::NAN, 1.0));
-            limit = window.and(floor).and_then(|f| upper_limit(line, f)).map(|l| l / gain);
-            let std = window.and(floor).map(|f| f / gain);
+            let (line, std, upper_limit) = faint(&measured, at, window, floor);
+            limit = upper_limit;
             let method = "line nearest to the excitation, no peak of its own, noise not taken out".to_owned();
-            (excitation.frequency, excitation.std, (line / gain, std), method)
+            (excitation.frequency, excitation.std, (line, std), method)
         };
         let divisor = self.divisor(frequency);
         let amplitude =
@@ -362,17 +299,18 @@ impl Taker<'_> {
     fn harmonic(&self, measured: &[f64], order: String, frequency: f64, window: Option<Window>) -> Harmonic {
         let at = self.position(frequency);
         let inside = frequency >= self.fmin && at >= 1.0 && at.round() < measured.len() as f64 - 1.0;
-        let found = inside
-            .then(|| amplitude_at(measured, at, window, noise::around(measured, at.round() as usize, window)))
-            .flatten();
-        let divisor = self.divisor(frequency);
-        let (value, std, method) = match found {
-            Some((value, std)) => {
-                (value / divisor, std.map(|s| s / divisor), "three lines at a known frequency")
+        let floor = noise::around(measured, at.round().max(0.0) as usize, window);
+        let found = inside.then(|| amplitude_at(measured, at, window, floor)).flatten();
+        let ((value, std, limit), method) = match (found, floor) {
+            (Some((value, _)), Some(floor)) if value < PEAK_ABOVE * floor => {
+                (faint(measured, at, window, Some(floor)), "nearest line, noise not taken out")
             }
-            None => (f64::NAN, None, "outside the lines or below the cut-off"),
+            (Some((value, std)), _) => ((value, std, None), "three lines at a known frequency"),
+            (None, _) => ((f64::NAN, None, None), "outside the lines or below the cut-off"),
         };
-        Harmonic { order, frequency, amplitude: Estimate::new(value, std, self.unit, 3, method) }
+        let divisor = self.divisor(frequency);
+        let amplitude = Estimate::new(value / divisor, std.map(|s| s / divisor), self.unit, 3, method);
+        Harmonic { order, frequency, amplitude, upper_limit: limit.map(|l| l / divisor) }
     }
 
     /// Index of the largest line of the wanted quantity, cut-off and above.
@@ -383,6 +321,18 @@ impl Taker<'_> {
         };
         (first..stored.len()).max_by(|a, b| wanted(*a).total_cmp(&wanted(*b))).unwrap_or(first)
     }
+}
+
+/// Amplitude in the noise, its uncertainty and its upper limit, from one line, because the distribution of its magnitude is known.
+fn faint(
+    measured: &[f64],
+    position: f64,
+    window: Option<Window>,
+    floor: Option<f64>,
+) -> (f64, Option<f64>, Option<f64>) {
+    let (line, gain) = nearest(measured, position, window).unwrap_or((f64::NAN, 1.0));
+    let floor = window.and(floor);
+    (line / gain, floor.map(|f| f / gain), floor.and_then(|f| upper_limit(line, f)).map(|l| l / gain))
 }
 
 #[cfg(test)]

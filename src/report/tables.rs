@@ -65,11 +65,17 @@ pub fn response(response: &Response) -> Table {
     let before = table.columns.len() - 2;
     let orders = |p: &ResponsePoint| p.harmonics.iter().chain(&p.subharmonics).cloned().collect::<Vec<_>>();
     let heads = response.points.first().map(orders).unwrap_or_default();
-    let unit = response.unit.to_owned();
-    let heads = heads.iter().map(|h| Column { name: format!("order {}", h.order), unit: unit.clone() });
+    let heads =
+        heads.iter().flat_map(|h| ["", " upper limit"].map(|what| format!("order {}{what}", h.order)));
+    let heads = heads.map(|name| Column { name, unit: response.unit.to_owned() });
     drop(table.columns.splice(before..before, heads));
     for (row, point) in table.rows.iter_mut().zip(&response.points) {
-        drop(row.splice(before..before, orders(point).iter().map(|h| Cell::from(&h.amplitude))));
+        let cells = orders(point).into_iter().flat_map(|h| match h.upper_limit {
+            // Noise is no amplitude.
+            Some(limit) => [Cell::Missing, Cell::Number(limit)],
+            None => [Cell::from(&h.amplitude), Cell::Missing],
+        });
+        drop(row.splice(before..before, cells));
     }
     table
 }

@@ -1,6 +1,8 @@
 //! Resonances, jumps and crossings of curves whose answer is known.
 
 use super::*;
+use crate::measure::jump::{jump, jumps};
+use num_complex::Complex64;
 
 #[test]
 fn a_mass_that_moves_alone_does_not_clap() {
@@ -24,12 +26,18 @@ fn a_mass_that_moves_alone_does_not_clap() {
         first[0].kind = "resonance".into();
         let direction = Direction::Up;
         name_modes(&mut [
-            NamedCurve { mass: 1, direction, curve: curve(1.0), jumps: Vec::new(), resonances: &mut first },
+            NamedCurve {
+                mass: 1,
+                direction,
+                curve: curve(1.0),
+                jumps: &mut Vec::new(),
+                resonances: &mut first,
+            },
             NamedCurve {
                 mass: 2,
                 direction,
                 curve: curve(above),
-                jumps: Vec::new(),
+                jumps: &mut Vec::new(),
                 resonances: &mut second,
             },
         ]);
@@ -96,7 +104,7 @@ fn a_hardening_peak_ends_in_a_drop() {
     let jumps = jumps(&f, &a, &[0.01; 12], Direction::Up);
     assert_eq!(jumps.len(), 1);
     assert_eq!((jumps[0].change, jumps[0].from), ("drop", f[8]));
-    let peaks = resonances(&f, &a, &[0.01; 12], &jumps);
+    let peaks = resonances(&f, &a, &[0.01; 12], &jumps, None);
     assert_eq!(peaks.len(), 1);
     assert!(peaks[0].at_jump && peaks[0].frequency == f[8]);
 }
@@ -123,7 +131,7 @@ fn a_smooth_resonance_is_no_jump() {
     let f: Vec<f64> = (0..40).map(|i| 4.0 + 0.1 * f64::from(i)).collect();
     let a: Vec<f64> = f.iter().map(|f| 1.0 / (1.0 - (f / 5.6f64).powi(2)).hypot(0.04 * f / 5.6)).collect();
     assert!(jumps(&f, &a, &[1e-3; 40], Direction::Up).is_empty());
-    let peaks = resonances(&f, &a, &[1e-3; 40], &[]);
+    let peaks = resonances(&f, &a, &[1e-3; 40], &[], None);
     assert_eq!(peaks.len(), 1);
     assert!((peaks[0].frequency - 5.6).abs() < 0.02, "{peaks:?}");
 }
@@ -133,13 +141,87 @@ fn noise_has_no_resonances_and_no_jumps() {
     // Alternating values whose differences are three standard deviations.
     let f: Vec<f64> = (0..20).map(f64::from).collect();
     let a: Vec<f64> = (0..20).map(|i| if i % 2 == 0 { 4.0 } else { 1.0 }).collect();
-    assert!(resonances(&f, &a, &[1.0; 20], &[]).is_empty());
+    assert!(resonances(&f, &a, &[1.0; 20], &[], None).is_empty());
     assert!(jumps(&f, &a, &[1.0; 20], Direction::Up).is_empty());
-    assert!(!resonances(&f, &a, &[0.1; 20], &[]).is_empty());
+    assert!(!resonances(&f, &a, &[0.1; 20], &[], None).is_empty());
+}
+
+/// Receptance of two modes at 5 and 9 Hz with 1 % damping; the second counts `weight` times.
+fn two_modes(f: f64, weight: f64) -> f64 {
+    let mode = |f0: f64| Complex64::new(f0 * f0 - f * f, 0.02 * f0 * f).inv();
+    (mode(5.0) + weight * mode(9.0)).norm()
+}
+
+#[test]
+fn a_zero_is_an_antiresonance_and_a_sum_of_tails_a_minimum() {
+    let f: Vec<f64> = (0..57).map(|i| 4.0 + 0.1 * f64::from(i)).collect();
+    for (size, mass, expected) in [
+        // Poles of the same sign: a zero between them, whichever the mass.
+        (1.0, None, "antiresonance"),
+        (0.2, Some(2), "antiresonance"),
+        (1.0, Some(1), "antiresonance"),
+        // Opposite signs: none.
+        (-0.2, None, "minimum"),
+        (-1.0, Some(2), "minimum"),
+        (-5.0, Some(2), "minimum"),
+    ] {
+        let a: Vec<f64> = f.iter().map(|f| two_modes(*f, size)).collect();
+        let std: Vec<f64> = a.iter().map(|a| 1e-4 * a).collect();
+        let found = resonances(&f, &a, &std, &[], mass);
+        let kinds: Vec<&str> = found.iter().map(|r| r.kind.as_str()).collect();
+        assert_eq!(kinds, ["resonance", expected, "resonance"], "{size} {mass:?}");
+    }
+}
+
+#[test]
+fn a_minimum_in_the_noise_lies_between_what_stands_out() {
+    let f: Vec<f64> = (0..11).map(f64::from).collect();
+    let a = [4.0, 9.0, 6.0, 3.0, 0.1, 0.02, 0.07, 2.0, 5.0, 8.0, 3.0];
+    let std = [0.1; 11];
+    let found = resonances(&f, &a, &std, &[], Some(1));
+    let minimum = found.iter().find(|r| r.kind == "antiresonance").unwrap();
+    // Point 5; points 3 and 7 stand out.
+    assert_eq!((minimum.frequency, minimum.frequency_std), (5.0, Some(2.0 / f64::sqrt(3.0))));
+    assert_eq!((minimum.amplitude, minimum.amplitude_std), (0.02, Some(0.1)));
+    // Faint points up to the edge of the curve, and behind a jump, are none.
+    assert!(resonances(&f[..7], &a[..7], &std[..7], &[], Some(1)).iter().all(|r| r.kind == "resonance"));
+    let jump = jump([(3.0, 3.0, 0.1), (4.0, 0.1, 0.1)], Direction::Up);
+    assert!(resonances(&f, &a, &std, &[jump], Some(1)).iter().all(|r| r.kind == "resonance"));
+}
+
+/// Going down, mass 2 begins to move at 5.5; mass 1 falls there by less than a jump that stands on its own, or goes on.
+#[test]
+fn where_one_mass_jumps_the_other_does_if_its_slopes_do_not_tell() {
+    let f: Vec<f64> = (0..11).map(f64::from).collect();
+    let second: Vec<_> = f.iter().map(|f| (*f, if *f < 5.5 { 9.0 } else { 1e-3 }, 1e-3)).collect();
+    let down = |c: &[(f64, f64, f64)]| {
+        let of = |g: fn(&(f64, f64, f64)) -> f64| c.iter().rev().map(g).collect::<Vec<f64>>();
+        jumps(&of(|p| p.0), &of(|p| p.1), &of(|p| p.2), Direction::Down)
+    };
+    for (fall, expected) in [(0.8, 1), (0.2, 1), (0.0, 0), (0.02, 0)] {
+        let noise = |f: f64| 0.005 * (7.0 * f).sin();
+        let first: Vec<_> = f
+            .iter()
+            .map(|f| (*f, 3.0 - 0.1 * f - if *f < 5.5 { fall } else { 0.0 } + noise(*f), 0.01))
+            .collect();
+        let mut found = [down(&first), down(&second)];
+        assert_eq!((found[0].len(), found[1].len()), (0, 1), "{fall}");
+        let (mut none, mut nor) = (Vec::new(), Vec::new());
+        let direction = Direction::Down;
+        let [own, other] = &mut found;
+        name_modes(&mut [
+            NamedCurve { mass: 1, direction, curve: first, jumps: own, resonances: &mut none },
+            NamedCurve { mass: 2, direction, curve: second.clone(), jumps: other, resonances: &mut nor },
+        ]);
+        assert_eq!((found[0].len(), found[1].len()), (expected, 1), "{fall}");
+        for jump in &found[0] {
+            assert_eq!((jump.from, jump.to, jump.change), (6.0, 5.0, "drop"));
+        }
+    }
 }
 
 #[test]
 fn nothing_in_short_curves() {
-    assert!(resonances(&[1.0], &[1.0], &[0.0], &[]).is_empty());
+    assert!(resonances(&[1.0], &[1.0], &[0.0], &[], None).is_empty());
     assert!(jumps(&[1.0], &[1.0], &[0.0], Direction::Up).is_empty());
 }

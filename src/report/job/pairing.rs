@@ -44,8 +44,8 @@ pub(super) fn name(responses: &mut [&mut Response]) {
                 let (mass, direction) = (r.mass?, r.direction?);
                 let mut curve = curve(r);
                 curve.sort_by(|a, b| a.0.total_cmp(&b.0));
-                let jumps = r.jumps.clone();
-                Some(NamedCurve { mass, direction, curve, jumps, resonances: &mut r.resonances })
+                let (jumps, resonances) = (&mut r.jumps, &mut r.resonances);
+                Some(NamedCurve { mass, direction, curve, jumps, resonances })
             })
             .collect();
         name_modes(&mut curves);
