@@ -5,7 +5,21 @@ mod overlay;
 mod response;
 mod waterfall;
 
+use crate::report::{Figure, Panel};
+
 pub use frf::frf;
 pub use overlay::overlay;
 pub use response::response;
 pub use waterfall::{map, waterfall};
+
+/// Letters (a), (b), … before the titles of the plots of a figure that has several.
+fn lettered(mut figure: Figure) -> Figure {
+    if figure.panels.len() > 1 {
+        for (letter, panel) in ('a'..='z').zip(&mut figure.panels) {
+            if let Panel::Plot(plot) = panel {
+                plot.title.insert_str(0, &format!("({letter}) "));
+            }
+        }
+    }
+    figure
+}
