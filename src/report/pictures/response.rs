@@ -1,7 +1,7 @@
 //! Response curves: every mass and direction, with uncertainties and named resonances.
 
 use super::lettered;
-use crate::measure::resonance::Jump;
+use crate::measure::jump::Jump;
 use crate::measure::response::Response;
 use crate::record::Direction;
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
