@@ -4,7 +4,9 @@ pub mod forcing;
 pub mod observable;
 pub mod overlay;
 pub mod prediction;
+pub mod score;
 
 pub use forcing::{Forcing, levels};
-pub use overlay::{Level, Overlay, Pair, PeakPair, Score, overlay};
-pub use prediction::{Kind, Prediction};
+pub use overlay::{Level, Overlay, Pair, PeakPair, overlay};
+pub use prediction::{Kind, Prediction, Verdict};
+pub use score::Score;

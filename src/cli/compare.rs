@@ -28,11 +28,7 @@ pub fn run(typed: &args::Compare, json: bool) -> Result<()> {
     let responses = job::responses(&campaign, options, &progress::bar(json))?;
     let force = campaign.excitation.and_then(|e| e.force);
     let mut overlay = overlay(&rig, force, &responses)?;
-    for response in &responses {
-        for warning in &response.warnings {
-            overlay.warnings.push(format!("{}: {warning}", response.name));
-        }
-    }
+    overlay.warnings.extend(job::common(&responses));
     let mut written = Vec::new();
     if let Some(folder) = &typed.out {
         let mut output = Output::new(folder)?;

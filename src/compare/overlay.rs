@@ -1,8 +1,9 @@
 //! Pairs of measured and predicted amplitudes, their peaks, and a score.
 
-use super::forcing::{Forcing, levels, median};
+use super::forcing::{Forcing, levels};
 use super::observable::Observable;
 use super::prediction::{Kind, Motion, Prediction};
+use super::score::{Score, far_off, score};
 use crate::error::{Error, Result};
 use crate::measure::Estimate;
 use crate::measure::peaks::{local_maxima, vertex};
@@ -27,6 +28,8 @@ pub struct Pair {
     pub force: f64,
     /// Measured amplitude in m.
     pub measured: Estimate,
+    /// What the true amplitude stays below with 95 % confidence, in m, where it does not stand out of the noise.
+    pub upper_limit: Option<f64>,
     /// Predicted amplitude in m; `None` where no motion of the closed form can be seen.
     pub predicted: Option<f64>,
     /// Kind of the predicted motion.
@@ -58,21 +61,6 @@ pub struct PeakPair {
     pub predicted_amplitude: Option<f64>,
     /// Measured over predicted amplitude, less one.
     pub amplitude_difference: Option<f64>,
-}
-
-/// How well one sweep is predicted.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Score {
-    /// Sweep.
-    pub sweep: String,
-    /// Points with a prediction.
-    pub n: usize,
-    /// Points without.
-    pub without: usize,
-    /// Median of |measured/predicted − 1|; `None` without points.
-    pub median_relative: Option<f64>,
-    /// Root mean square of measured − predicted, in m.
-    pub rms: Option<f64>,
 }
 
 /// Sweeps of about one force, and the prediction for them.
@@ -139,7 +127,8 @@ pub fn overlay(rig: &Rig, force: Option<f64>, responses: &[Response]) -> Result<
         return Err(Error::refused("no response can be overlaid on the model")
             .hint("give `mass = 1` or `2` for each sweep, and three or more points in one direction"));
     }
-    let margin = 0.02 * (high - low);
+    // Room for the markers of the outer points.
+    let margin = 0.03 * (high - low);
     let range = ((low - margin).max(low / 2.0), high + margin);
     let curve = |forcing: &Forcing| Prediction::over(rig, forcing, range, CURVE, Observable::Fundamental);
     let forcings = Forcing::of_all(force, &usable.iter().map(|u| u.0).collect::<Vec<_>>(), &mut warnings)?;
@@ -165,6 +154,7 @@ pub fn overlay(rig: &Rig, force: Option<f64>, responses: &[Response]) -> Result<
         for sweep in &members {
             let pairs = pairs(rig, sweep)?;
             overlay.scores.push(score(&sweep.response.name, &pairs));
+            overlay.warnings.extend(far_off(&sweep.response.name, &pairs));
             overlay.pairs.extend(pairs);
             let own = if sweep.forcing == mean { None } else { Some(curve(&sweep.forcing)?) };
             overlay.peaks.extend(peaks(sweep, own.as_ref().unwrap_or(&common)));
@@ -201,6 +191,7 @@ fn pairs(rig: &Rig, sweep: &Swept<'_>) -> Result<Vec<Pair>> {
                 frequency: point.excitation,
                 force: forcing.of(point),
                 measured: point.amplitude.clone(),
+                upper_limit: point.upper_limit,
                 predicted,
                 motion: motion.map(|m| m.kind),
                 residual: predicted.map(|p| point.amplitude.value - p).filter(|r| r.is_finite()),
@@ -211,28 +202,6 @@ fn pairs(rig: &Rig, sweep: &Swept<'_>) -> Result<Vec<Pair>> {
         pairs.reverse();
     }
     Ok(pairs)
-}
-
-fn score(sweep: &str, pairs: &[Pair]) -> Score {
-    let mut relative: Vec<f64> = Vec::new();
-    let mut squares = Vec::new();
-    for pair in pairs {
-        if let (Some(predicted), Some(residual)) = (pair.predicted, pair.residual) {
-            squares.push(residual * residual);
-            if predicted > 0.0 {
-                relative.push((residual / predicted).abs());
-            }
-        }
-    }
-    relative.sort_by(f64::total_cmp);
-    let n = squares.len();
-    Score {
-        sweep: sweep.to_owned(),
-        n,
-        without: pairs.len() - n,
-        median_relative: median(&relative),
-        rms: (n > 0).then(|| (squares.iter().sum::<f64>() / n as f64).sqrt()),
-    }
 }
 
 /// A predicted peak belongs to a measured one within this ratio of frequencies.
@@ -350,11 +319,35 @@ mod tests {
             let residual = pair.residual.unwrap();
             assert!(residual.abs() < 1e-12 * pair.measured.value, "{pair:?}");
         }
+        assert!(!own.warnings.iter().any(|w| w.contains("off the closed form")), "{:?}", own.warnings);
         // With one force for all, the points at another are off by the ratio of forces.
         let stated = overlay(&rig, Some(0.1), &responses[..1]).unwrap();
         assert_eq!(stated.force, Some(0.1));
         let worst = stated.pairs.iter().map(|p| p.measured.value / p.predicted.unwrap()).fold(1.0, f64::min);
         assert!((worst - 0.5).abs() < 1e-12, "{worst}");
+        assert!((stated.scores[0].max_relative.unwrap() - 0.5).abs() < 1e-12, "{:?}", stated.scores);
+        assert!(stated.warnings.iter().any(|w| w.starts_with("weak: 30 point(s)")), "{:?}", stated.warnings);
         assert!(stated.warnings.iter().any(|w| w.contains("strays by up to 50 %")), "{:?}", stated.warnings);
+    }
+    #[test]
+    fn one_wrong_point_is_named_and_a_faint_one_is_not_compared() {
+        let rig = Rig::thesis();
+        let mut sweep = free("m", &rig, 0.1);
+        sweep.points[7].amplitude.value *= 2.0;
+        // Within its uncertainty, and below its limit.
+        sweep.points[9].amplitude.value *= 1.2;
+        sweep.points[9].amplitude.std = Some(sweep.points[9].amplitude.value);
+        sweep.points[11].amplitude.value *= 0.5;
+        sweep.points[11].upper_limit = Some(1.0);
+        let overlay = overlay(&rig, None, &[sweep]).unwrap();
+        let score = &overlay.scores[0];
+        assert_eq!((score.n, score.faint, score.max_at), (30, 1, Some(23.5)));
+        assert!((score.max_relative.unwrap() - 0.5).abs() < 1e-12 && score.median_relative.unwrap() < 1e-12);
+        let said: Vec<&String> =
+            overlay.warnings.iter().filter(|w| w.contains("off the closed form")).collect();
+        assert!(
+            said.len() == 1 && said[0].contains("1 point(s)") && said[0].contains("at 23.50 Hz"),
+            "{said:?}"
+        );
     }
 }

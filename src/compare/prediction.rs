@@ -25,8 +25,28 @@ pub struct Motion {
     pub kind: Kind,
     /// Observed amplitudes of x₁ and x₂ in m.
     pub amplitude: [f64; 2],
-    /// Whether it can be seen: admissible and stable, or clear of the other mass.
-    pub seen: bool,
+    /// Whether it can be seen, and if not, why.
+    pub verdict: Verdict,
+}
+
+/// Whether a motion can be seen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Admissible and stable, or clear of the other mass.
+    Seen,
+    /// Admissible, but rounding cannot tell whether a disturbance dies away.
+    Neutral,
+    /// Admissible, but the least disturbance grows.
+    Unstable,
+    /// The masses would pass through each other.
+    Impossible,
+}
+
+impl Motion {
+    /// Whether it can be seen.
+    pub fn is_seen(&self) -> bool {
+        self.verdict == Verdict::Seen
+    }
 }
 
 /// Everything the closed form predicts over a grid of frequencies.
@@ -83,7 +103,7 @@ impl Prediction {
         for step in 0..n {
             let i = if direction == Direction::Up { step } else { n - 1 - step };
             let motions = &self.motions[i];
-            let seen = |kind: Kind| motions.iter().find(|m| m.seen && m.kind == kind).copied();
+            let seen = |kind: Kind| motions.iter().find(|m| m.is_seen() && m.kind == kind).copied();
             let goes_on = match kind {
                 Kind::Free => seen(Kind::Free).is_some(),
                 Kind::Impacting => motions.iter().any(|m| m.kind == Kind::Impacting),
@@ -106,13 +126,18 @@ fn motions(rig: &Rig, force: f64, frequency: f64, observable: Observable) -> Res
         .map(|o| Motion {
             kind: Kind::Impacting,
             amplitude: observable.of_orbit(o),
-            seen: o.validity.admissible && o.validity.stable == Some(true),
+            verdict: match (o.validity.admissible, o.validity.stable) {
+                (false, _) => Verdict::Impossible,
+                (true, Some(true)) => Verdict::Seen,
+                (true, Some(false)) => Verdict::Unstable,
+                (true, None) => Verdict::Neutral,
+            },
         })
         .collect();
     motions.push(Motion {
         kind: Kind::Free,
         amplitude: observable.of_no_impact(&found.no_impact),
-        seen: found.no_impact.possible,
+        verdict: if found.no_impact.possible { Verdict::Seen } else { Verdict::Impossible },
     });
     Ok(motions)
 }
@@ -140,7 +165,7 @@ mod tests {
         assert!(largest(&up).1 > 2.0 * largest(&down).1, "{:?} {:?}", largest(&up), largest(&down));
         for (i, motion) in up.iter().enumerate() {
             if let Some(motion) = motion {
-                assert!(motion.seen && p.motions[i].contains(motion));
+                assert!(motion.is_seen() && p.motions[i].contains(motion));
             }
         }
     }

@@ -185,6 +185,30 @@ impl Axis {
         matches!(self.scale, Scale::Linear)
     }
 
+    /// The axis with its lower end (where `lower`) and its upper one moved out to the next tick: to a named one where that
+    /// costs little room.
+    pub(super) fn rounded_out(mut self, lower: bool) -> Axis {
+        // As many ticks as an axis of a waterfall has room for.
+        let ticks = self.ticks(7);
+        let named: Vec<f64> = ticks.major.iter().map(|t| t.at).collect();
+        let [a, b, ..] = named[..] else { return self };
+        if matches!(self.scale, Scale::Log) {
+            return self;
+        }
+        let inner = ticks.minor.iter().filter(|u| (a..b).contains(*u)).count();
+        let (step, span) = (b - a, self.hi - self.lo);
+        let out = |end: f64, way: f64| {
+            // Never inwards, not even by rounding: the outermost data would be lost.
+            let next = |step: f64| way * (step * (way * end / step - 1e-9).ceil()).max(way * end);
+            if (next(step) - end).abs() <= 0.1 * span { next(step) } else { next(step / (inner + 1) as f64) }
+        };
+        self.hi = out(self.hi, 1.0);
+        if lower {
+            self.lo = out(self.lo, -1.0);
+        }
+        self
+    }
+
     /// Ticks, at most so many.
     pub(super) fn ticks(&self, most: usize) -> Ticks {
         match self.scale {
@@ -301,6 +325,17 @@ mod tests {
         assert_eq!(Axis::new(&spec, extent(&[1.0, 9.0]), Room::Above(0.06)).unwrap().lo, 0.0);
         assert!(Axis::new(&spec, extent(&[8.0, 9.0]), Room::Above(0.06)).unwrap().lo > 7.9);
         assert_eq!(Axis::new(&spec, extent(&[-9.0, -1.0]), Room::Above(0.06)).unwrap().hi, 0.0);
+    }
+
+    #[test]
+    fn an_axis_ends_with_a_tick() {
+        let axis =
+            |lo, hi| Axis::new(&AxisSpec::new("x", "Hz").limits(lo, hi), Extent::NONE, Room::Tight).unwrap();
+        let ends = |a: Axis| (a.lo, a.hi);
+        // Steps of 2, each in four.
+        assert_eq!(ends(axis(0.0, 13.9).rounded_out(false)), (0.0, 14.0));
+        assert_eq!(ends(axis(3.99, 12.84).rounded_out(true)), (3.5, 13.0));
+        assert_eq!(ends(axis(4.0, 12.0).rounded_out(true)), (4.0, 12.0));
     }
 
     proptest! {

@@ -7,8 +7,9 @@ use ndarray::{Array2, ArrayRef2};
 
 /// Values over a grid, row by row, such as magnitudes over excitation (rows) and frequency (columns).
 ///
-/// The cell of a value reaches half way to its neighbours, so that rows and columns may be uneven. A missing
-/// value (NaN) stays white.
+/// The cell of a value reaches half way to its neighbours, so that rows and columns may be uneven. Where a step is
+/// more than twice the median one, it reaches half a median step: what lies between was not measured and stays white, as does
+/// a missing value (NaN).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Heatmap {
     x: Vec<f64>,
@@ -72,12 +73,12 @@ impl Heatmap {
 
     /// Borders of all columns, to find the limits of the abscissa.
     pub(super) fn x_borders(&self, scale: Scale) -> Vec<f64> {
-        borders(&self.x.iter().map(|v| scale.of(*v)).collect::<Vec<_>>())
+        borders(&self.x, scale)
     }
 
     /// Borders of all rows, to find the limits of the ordinate.
     pub(super) fn y_borders(&self, scale: Scale) -> Vec<f64> {
-        borders(&self.y.iter().map(|v| scale.of(*v)).collect::<Vec<_>>())
+        borders(&self.y, scale)
     }
 
     /// Axis of the colour bar; `None` for classes, and where no value is finite.
@@ -136,25 +137,41 @@ pub(super) fn bar_palette() -> Vec<Rgb> {
     std::iter::once(colour::WHITE).chain((0..255).map(|i| colour::viridis(f64::from(i) / 254.0))).collect()
 }
 
-/// Borders half way between neighbours, and as far beyond the outer positions.
-fn borders(positions: &[f64]) -> Vec<f64> {
-    let (Some(&first), Some(&last)) = (positions.first(), positions.last()) else { return Vec::new() };
-    let halves: Vec<f64> = positions.windows(2).map(|w| w[0] / 2.0 + w[1] / 2.0).collect();
-    let (Some(&low), Some(&high)) = (halves.first(), halves.last()) else {
-        let half = if first == 0.0 { 0.5 } else { first.abs() * 0.05 };
-        return vec![first - half, first + half];
+fn borders(positions: &[f64], scale: Scale) -> Vec<f64> {
+    let spans = spans(&positions.iter().map(|v| scale.of(*v)).collect::<Vec<_>>());
+    spans.into_iter().flat_map(|(from, to)| [from, to]).collect()
+}
+
+/// From where to where each position has its cell: half way to its neighbours and as far beyond the outer ones, but half the
+/// median step where a step is more than twice as wide as that.
+fn spans(positions: &[f64]) -> Vec<(f64, f64)> {
+    // A step of more than two has room for another position between.
+    const WIDER: f64 = 2.0;
+    let steps: Vec<f64> = positions.windows(2).map(|w| w[1] - w[0]).collect();
+    let mut sorted = steps.clone();
+    sorted.sort_by(f64::total_cmp);
+    let (Some(low), Some(high)) =
+        (sorted.get(steps.len().div_ceil(2).max(1) - 1), sorted.get(steps.len() / 2))
+    else {
+        let half = |at: f64| if at == 0.0 { 0.5 } else { at.abs() * 0.05 };
+        return positions.iter().map(|at| (at - half(*at), at + half(*at))).collect();
     };
-    std::iter::once(2.0 * first - low).chain(halves).chain([2.0 * last - high]).collect()
+    let median = low / 2.0 + high / 2.0;
+    let reach = |step: f64| if step > WIDER * median { median / 2.0 } else { step / 2.0 };
+    let below = steps.first().into_iter().chain(&steps);
+    let above = steps.iter().chain(steps.last());
+    let around = below.zip(above).map(|(below, above)| (reach(*below), reach(*above)));
+    positions.iter().zip(around).map(|(at, (below, above))| (at - below, at + above)).collect()
 }
 
 /// For each of the cells along an axis, the positions it shows: one cell a position where these are even and
 /// fill the axis, else as many cells as are allowed.
 fn cover(positions: &[f64], axis: &Axis, most: usize) -> Vec<std::ops::Range<usize>> {
     let places: Vec<f64> = positions.iter().map(|p| axis.at(*p)).collect();
-    let edges = borders(&places);
+    let spans = spans(&places);
     let n = places.len();
-    let even =
-        n <= most && edges.iter().enumerate().all(|(i, e)| (e - i as f64 / n as f64).abs() < 0.02 / n as f64);
+    let close = |at: f64, i: usize| (at - i as f64 / n as f64).abs() < 0.02 / n as f64;
+    let even = n <= most && spans.iter().enumerate().all(|(i, s)| close(s.0, i) && close(s.1, i + 1));
     if even {
         return (0..n).map(|i| i..i + 1).collect();
     }
@@ -167,8 +184,9 @@ fn cover(positions: &[f64], axis: &Axis, most: usize) -> Vec<std::ops::Range<usi
                 return inside;
             }
             // Between two positions: the one whose cell has the middle.
-            let after = edges.partition_point(|e| *e <= f64::midpoint(from, to));
-            if (1..=n).contains(&after) { after - 1..after } else { 0..0 }
+            let middle = f64::midpoint(from, to);
+            let at = spans.partition_point(|s| s.1 <= middle);
+            if spans.get(at).is_some_and(|s| s.0 <= middle) { at..at + 1 } else { 0..0 }
         })
         .collect()
 }
@@ -190,11 +208,13 @@ mod tests {
     }
 
     #[test]
-    fn uneven_positions_meet_half_way() {
-        // Borders at 0.5, 1.5 and 5.5 (half way between 1, 2 and 9, continued); a hundred cells over 0 to 10.
-        let cells = cover(&[1.0, 2.0, 9.0], &axis(0.0, 10.0), 100);
-        let shown: Vec<_> = [2, 6, 14, 16, 54, 56, 99].iter().map(|&i| cells[i].clone()).collect();
-        assert_eq!(shown, [0..0, 0..1, 0..1, 1..2, 1..2, 2..3, 2..3]);
+    fn uneven_positions_meet_half_way_and_leave_wide_gaps_white() {
+        // The median of the steps 1, 2 and 5 is 2, so the cells of the last two end at 5, 8 and 10: borders at 0.5, 1.5, 3, a
+        // gap from 5 to 8, and 10; a hundred cells over 0 to 10.
+        let cells = cover(&[1.0, 2.0, 4.0, 9.0], &axis(0.0, 10.0), 100);
+        let shown: Vec<_> =
+            [2, 6, 14, 16, 29, 31, 49, 51, 79, 81, 99].iter().map(|&i| cells[i].clone()).collect();
+        assert_eq!(shown, [0..0, 0..1, 0..1, 1..2, 1..2, 2..3, 2..3, 0..0, 0..0, 3..4, 3..4]);
     }
 
     #[test]

@@ -209,8 +209,8 @@ pub fn run(
     Ok(results)
 }
 
-/// The sentences of all sweeps, once each, with the names of the sweeps that they hold for where these are not all.
-fn common(responses: &[Response]) -> Vec<String> {
+/// The warnings of all sweeps, once each, with the names of the sweeps that they hold for where these are not all.
+pub(crate) fn common(responses: &[Response]) -> Vec<String> {
     let mut found: Vec<(&str, Vec<&str>)> = Vec::new();
     for response in responses {
         for sentence in &response.warnings {

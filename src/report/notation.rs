@@ -135,15 +135,29 @@ pub fn scaled_unit(unit: &str, exponent: i32) -> String {
     if unit.is_empty() { power_of_ten(exponent) } else { format!("{} {unit}", power_of_ten(exponent)) }
 }
 
-/// Label of an axis or a column: `Displacement amplitude (mm)`; square brackets where the unit has round
-/// ones.
+/// Label of an axis or a column: `Displacement amplitude (mm)`. A quotient in a unit is written as a product, so that no brackets
+/// stand in brackets: `(m/s²)/N` as `m s⁻²/N`.
 pub fn labelled(label: &str, unit: &str) -> String {
     match (label.is_empty(), unit.is_empty() || unit == "1") {
         (_, true) => label.to_owned(),
         (true, false) => unit.to_owned(),
-        (false, false) if unit.contains('(') => format!("{label} [{unit}]"),
-        (false, false) => format!("{label} ({unit})"),
+        (false, false) => format!("{label} ({})", unbracketed(unit)),
     }
+}
+
+fn unbracketed(unit: &str) -> String {
+    let product = || {
+        let (before, rest) = unit.split_once('(')?;
+        let (quotient, after) = rest.split_once(')')?;
+        let (over, under) = quotient.split_once('/')?;
+        let (symbol, power) = match under.strip_suffix(['²', '³']) {
+            Some(symbol) => (symbol, &under[symbol.len()..]),
+            None => (under, "¹"),
+        };
+        let plain = symbol.chars().all(char::is_alphabetic);
+        plain.then(|| format!("{before}{over} {symbol}⁻{power}{after}"))
+    };
+    product().unwrap_or_else(|| unit.to_owned())
 }
 
 /// Rounds to `places` decimals, or to tens, hundreds, … where negative.
@@ -224,7 +238,9 @@ mod tests {
     #[test]
     fn labels_carry_their_unit() {
         assert_eq!(labelled("Frequency", "Hz"), "Frequency (Hz)");
-        assert_eq!(labelled("Accelerance", "(m/s²)/N"), "Accelerance [(m/s²)/N]");
+        assert_eq!(labelled("Accelerance", "(m/s²)/N"), "Accelerance (m s⁻²/N)");
+        assert_eq!(labelled("Mobility", "10⁻³ (m/s)/N"), "Mobility (10⁻³ m s⁻¹/N)");
+        assert_eq!(labelled("Ratio", "(m/(s A))/N"), "Ratio ((m/(s A))/N)");
         assert_eq!(labelled("Coherence", "1"), "Coherence");
     }
 

@@ -15,3 +15,17 @@ pub use overlay::overlay;
 pub use response::response;
 pub use spectrum::{spectrum, transfer};
 pub use waterfall::{map, waterfall};
+
+use crate::report::{Figure, Panel};
+
+/// Letters (a), (b), … before the titles of the plots of a figure that has several.
+fn lettered(mut figure: Figure) -> Figure {
+    if figure.panels.len() > 1 {
+        for (letter, panel) in ('a'..='z').zip(&mut figure.panels) {
+            if let Panel::Plot(plot) = panel {
+                plot.title.insert_str(0, &format!("({letter}) "));
+            }
+        }
+    }
+    figure
+}

@@ -212,10 +212,18 @@ impl Table {
     }
 
     fn formatted(&self) -> Vec<Formatted> {
-        self.columns
+        let columns: Vec<(&Column, Vec<&Cell>)> =
+            self.columns.iter().enumerate().map(|(i, c)| (c, self.cells(i).collect())).collect();
+        let powers: Vec<Option<i32>> = columns.iter().map(|(c, cells)| power(c, cells)).collect();
+        columns
             .iter()
-            .enumerate()
-            .map(|(i, c)| Formatted::new(c, &self.cells(i).collect::<Vec<_>>()))
+            .zip(&powers)
+            .map(|((column, cells), own)| {
+                // A column without a value has the prefix of its neighbours.
+                let mut alike = columns.iter().zip(&powers).filter(|((c, _), _)| c.unit == column.unit);
+                let power = own.or_else(|| alike.find_map(|(_, p)| *p)).unwrap_or(0);
+                Formatted::new(column, cells, power)
+            })
             .collect()
     }
 }
@@ -227,15 +235,18 @@ struct Formatted {
     numeric: bool,
 }
 
+/// The power of ten by which a column is scaled; `None` where it has no value to say so.
+fn power(column: &Column, cells: &[&Cell]) -> Option<i32> {
+    let values = cells.iter().filter_map(|c| c.value()).filter(|v| v.is_finite());
+    let largest = values.map(f64::abs).reduce(f64::max)?;
+    // A degree and a per cent are scaled already. Counts and other bare numbers are not rescaled, as no unit would say so; a
+    // power of ten stands with the number instead.
+    let bare = matches!(column.unit.as_str(), "°" | "%" | "" | "1");
+    Some(if bare { 0 } else { engineering(largest) })
+}
+
 impl Formatted {
-    fn new(column: &Column, cells: &[&Cell]) -> Formatted {
-        let values: Vec<f64> = cells.iter().filter_map(|c| c.value()).filter(|v| v.is_finite()).collect();
-        let largest = values.iter().fold(0.0f64, |a, v| a.max(v.abs()));
-        // A degree and a per cent are scaled already.
-        let power = if matches!(column.unit.as_str(), "°" | "%") { 0 } else { engineering(largest) };
-        // Counts and other bare numbers are not rescaled, as no unit would say so; a power of ten stands with
-        // the number instead.
-        let power = if column.unit.is_empty() || column.unit == "1" { 0 } else { power };
+    fn new(column: &Column, cells: &[&Cell], power: i32) -> Formatted {
         let scale = 10f64.powi(-power);
         let bare =
             cells.iter().filter(|c| c.std().is_none()).filter_map(|c| c.value()).filter(|v| v.is_finite());
@@ -358,6 +369,13 @@ none           7.49            0.35                 –
         assert_eq!(lines[3], "none,7.49,,3.5e-4,,".replace("3.5e-4", "0.00035"));
         let third = Table::new("").column("a", "m").row([(1.0f64 / 3.0).into()]).csv();
         assert_eq!(third.lines().nth(1).unwrap().parse::<f64>().unwrap(), 1.0 / 3.0);
+    }
+
+    #[test]
+    fn a_column_without_values_has_the_prefix_of_its_unit() {
+        let table = Table::new("").column("measured", "m").column("predicted", "m").column("off", "Hz");
+        let text = table.row([estimated(2e-3, 1e-5)]).text();
+        assert!(text.starts_with("measured (mm)  predicted (mm)  off (Hz)\n"), "{text}");
     }
 
     #[test]

@@ -126,7 +126,7 @@ pub fn pairs(overlay: &Overlay) -> Table {
             ("measured", "m", &|p| Cell::from(&p.measured)),
             ("predicted", "m", &|p| Cell::from(p.predicted)),
             ("residual", "m", &|p| Cell::from(p.residual)),
-            ("motion", "", &|p| {
+            ("predicted motion", "", &|p| {
                 Cell::from(match p.motion {
                     Some(Kind::Impacting) => "impacting",
                     Some(Kind::Free) => "free",
@@ -168,7 +168,10 @@ pub fn scores(overlay: &Overlay) -> Table {
             ("sweep", "", &|s| Cell::from(s.sweep.as_str())),
             ("points predicted", "", &|s| Cell::from(s.n)),
             ("not predicted", "", &|s| Cell::from(s.without)),
+            ("too faint", "", &|s| Cell::from(s.faint)),
             ("median deviation", "%", &|s| Cell::from(s.median_relative.map(|r| 100.0 * r))),
+            ("largest deviation", "%", &|s| Cell::from(s.max_relative.map(|r| 100.0 * r))),
+            ("at", "Hz", &|s| Cell::from(s.max_at)),
             ("RMS deviation", "m", &|s| Cell::from(s.rms)),
         ],
     )

@@ -105,7 +105,8 @@ impl Waterfall {
         };
         let x = Axis::new(&self.x, extent(&self.x, &mut self.frequency.iter().copied()), Room::Tight)?;
         let depths = extent(&self.depth, &mut self.rows.iter().map(|r| r.0));
-        let depth = Axis::new(&self.depth, depths, Room::Tight)?;
+        // The outer spectra stand between ticks, so that they can be read.
+        let depth = Axis::new(&self.depth, depths, Room::Tight)?.rounded_out(true);
         let inside = |at: &f64| (0.0..=1.0).contains(at);
         let columns: Vec<(usize, f64)> =
             self.frequency.iter().map(|f| x.at(*f)).enumerate().filter(|(_, at)| inside(at)).collect();
@@ -113,7 +114,7 @@ impl Waterfall {
             self.rows.iter().map(|(e, row)| (depth.at(*e), &row[..])).filter(|(at, _)| inside(at)).collect();
         let value = |row: &[f64], column: usize| row.get(column).copied().unwrap_or(f64::NAN);
         let mut heights = rows.iter().flat_map(|(_, row)| columns.iter().map(|(i, _)| value(row, *i)));
-        let up = Axis::new(&self.height, extent(&self.height, &mut heights), Room::Floor)?;
+        let up = Axis::new(&self.height, extent(&self.height, &mut heights), Room::Floor)?.rounded_out(false);
         // NaN stays NaN: a gap.
         let line =
             |row: &[f64]| columns.iter().map(|(i, x)| (*x, up.at(value(row, *i)).clamp(0.0, 1.0))).collect();

@@ -80,15 +80,24 @@ impl Form {
             }
             Form::Markers(points, _, size, _) => {
                 for point in points {
-                    clutter.add_box(Rect::around(*point, size + 0.5));
+                    clutter.add_box(Rect::around(*point, OPEN * size + 0.5));
                 }
             }
         }
     }
 }
 
+/// Whether a marker is white inside.
+pub(super) fn is_open(marker: Marker) -> bool {
+    matches!(marker, Marker::OpenCircle | Marker::Square | Marker::Diamond | Marker::Limit)
+}
+
+/// How much larger open circles and squares are than filled ones: at the same place both are seen.
+const OPEN: f64 = 1.3;
+
 /// Markers of one form, half width and colour. Open ones are white inside.
 pub(super) fn markers(canvas: &mut Canvas, points: &[Point], marker: Marker, size: f64, colour: Rgb) {
+    let size = if matches!(marker, Marker::OpenCircle | Marker::Square) { OPEN * size } else { size };
     let polygon = |corners: &[Point]| -> Vec<Vec<Point>> {
         let at = |p: &Point| corners.iter().map(|c| (p.0 + c.0 * size, p.1 + c.1 * size)).collect();
         points.iter().map(at).collect()

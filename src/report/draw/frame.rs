@@ -1,7 +1,7 @@
 //! The frame of a plot: axes, ticks, their numbers and names.
 
 use super::canvas::{Anchor, Canvas, Text};
-use super::style::{FRAME, GAP, LARGE, LEADING, SMALL, TICK, TICKS};
+use super::style::{DESCENT, FRAME, GAP, LARGE, LEADING, SMALL, TICK, TICKS};
 use crate::report::axis::Axis;
 use crate::report::colour::BLACK;
 use crate::report::font;
@@ -93,7 +93,7 @@ pub(super) fn insets(x: &Axis, y: &Axis, size: (f64, f64), named_x: bool) -> Ins
         at.map_or(0.0, |t| font::width(&t.label, SMALL) / 2.0 - (axis.at_scaled(t.at) - end).abs() * size.0)
     };
     let (first, last) = (half(tx.major.first(), 0.0, x), half(tx.major.last(), 1.0, x));
-    let name = if y.title.is_empty() { 0.0 } else { 1.15 * LARGE + GAP };
+    let name = if y.title.is_empty() { 0.0 } else { LARGE + DESCENT + GAP };
     let bottom = if !named_x {
         SMALL / 2.0
     } else if x.title.is_empty() {
@@ -138,7 +138,7 @@ pub(super) fn draw(canvas: &mut Canvas, place: &Place<'_>, named_x: bool, outsid
         let y = place.up(place.y.at_scaled(tick.at)) + font::DIGIT_HEIGHT * SMALL / 2.0;
         label(canvas, &tick.label, (frame.x - away, y), SMALL, Anchor::End);
     }
-    let beside = frame.x - away - widest(&ty) - GAP;
+    let beside = frame.x - away - widest(&ty) - GAP - DESCENT;
     along(canvas, &place.y.title, beside, frame, if named_x { 2.0 * LEADING } else { GAP });
     if named_x {
         for tick in &tx.major {

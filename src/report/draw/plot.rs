@@ -191,17 +191,18 @@ impl<'a> Sheet<'a> {
         self.plot.heatmap.as_ref().and_then(Heatmap::colour_axis)
     }
 
-    /// All series as shapes, areas under lines under markers.
+    /// All series as shapes, areas under lines under markers, open ones under filled ones, which are smaller.
     fn forms(&self, place: &Place<'_>) -> Vec<Form> {
-        let layer = |shape: &Shape| match shape {
+        let layer = |shape: &Shape, look: &Look| match shape {
             Shape::Band { .. } => 0,
             Shape::Bars { .. } => 1,
             Shape::Vertical { .. } | Shape::Horizontal { .. } => 2,
             Shape::Line { .. } => 3,
-            Shape::Points { .. } => 4,
+            Shape::Points { .. } if forms::is_open(look.marker) => 4,
+            Shape::Points { .. } => 5,
         };
         let mut order: Vec<_> = self.plot.series.iter().zip(&self.looks).collect();
-        order.sort_by_key(|(series, _)| layer(&series.shape));
+        order.sort_by_key(|(series, look)| layer(&series.shape, look));
         order.into_iter().flat_map(|(series, look)| forms::forms(series, *look, place)).collect()
     }
 

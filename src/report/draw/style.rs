@@ -14,6 +14,8 @@ pub(super) const LEADING: f64 = 11.0;
 pub(super) const TICK: f64 = 3.6;
 /// Least distance between things that must not touch.
 pub(super) const GAP: f64 = 3.0;
+/// What letters such as g and brackets reach below the baseline of a large text.
+pub(super) const DESCENT: f64 = 2.2;
 
 pub(super) const FRAME: Pen = Pen::solid(BLACK, 0.75);
 pub(super) const TICKS: Pen = Pen::solid(BLACK, 0.6);

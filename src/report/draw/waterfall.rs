@@ -2,7 +2,7 @@
 
 use super::canvas::{Anchor, Canvas, Pen, Text};
 use super::frame::{self, fitted, label};
-use super::style::{FLOOR, FRAME, GAP, LARGE, LEADING, SMALL, TICK, TICKS};
+use super::style::{DESCENT, FLOOR, FRAME, GAP, LARGE, LEADING, SMALL, TICK, TICKS};
 use crate::report::axis::Axis;
 use crate::report::colour::{self, BLACK};
 use crate::report::font;
@@ -32,7 +32,7 @@ pub(super) fn draw(canvas: &mut Canvas, waterfall: &Waterfall, cell: Rect) {
     // With the numbers known, the room beside them is too.
     let view = cube.view(rough.w, rough.h);
     let numbers = |axis: &Axis, length: f64| TICK + 2.0 + frame::widest(&frame::upward(axis, length));
-    let left = numbers(&cube.up, view.rise) + GAP + 1.15 * LARGE;
+    let left = numbers(&cube.up, view.rise) + GAP + DESCENT + LARGE;
     let beside = numbers(&cube.depth, view.back.1);
     let frame = framed(left, beside.max(Slope::of(view, beside).overhang(&cube.depth.title)));
     let sheet = Sheet { cube: &cube, view: cube.view(frame.w, frame.h), frame };
@@ -63,7 +63,7 @@ impl Slope {
         let (right, up) = (dx / length, dy / length);
         // The lower right corner of a number is what comes nearest to the name.
         let corner = numbers * up + font::DIGIT_HEIGHT * SMALL / 2.0 * right;
-        Slope { length, right, up, off: corner + GAP + 0.85 * LARGE }
+        Slope { length, right, up, off: corner + 2.0 * GAP + 0.75 * LARGE }
     }
 
     /// How far the name reaches to the right of the back end of the axis.
@@ -174,7 +174,7 @@ impl Sheet<'_> {
             lines.push(vec![(px, py), (px - TICK / 2.0, py)]);
         }
         canvas.lines(&lines, TICKS);
-        let x = self.frame.x - TICK - 2.0 - frame::widest(&ticks) - GAP;
+        let x = self.frame.x - TICK - 2.0 - frame::widest(&ticks) - GAP - DESCENT;
         // The name may be longer than its axis: it then goes on upwards.
         let name = font::width(&up.title, LARGE).clamp(view.rise, self.frame.h);
         let beside = Rect { y: self.frame.bottom() - name, h: name, ..self.frame };

@@ -1,8 +1,9 @@
 //! Measured responses over the predicted branches.
 
+use super::lettered;
 use super::response::{MARKS, log_limits, rank, series, shown};
-use crate::compare::prediction::{Kind, Prediction};
-use crate::compare::{Level, Overlay};
+use crate::compare::prediction::{Kind, Motion, Prediction};
+use crate::compare::{Level, Overlay, Verdict};
 use crate::measure::response::Response;
 use crate::report::notation::significant;
 use crate::report::{AxisSpec, Figure, Ink, Plot, Series, Stroke};
@@ -10,16 +11,17 @@ use crate::report::{AxisSpec, Figure, Ink, Plot, Series, Stroke};
 /// Height of a panel in mm.
 const PANEL: f64 = 85.0;
 
-/// One panel a mass and level of force: branches that can be seen solid, others dashed, the motion without impacts thin;
-/// measured points on top.
+/// One panel a mass and level of force: branches that can be seen solid, unstable ones dashed, neutral ones dash-dotted, the
+/// motion without impacts thin; measured points on top. Branches on which the masses would pass through each other are left
+/// out.
 pub fn overlay(title: &str, overlay: &Overlay, responses: &[Response]) -> Figure {
     let force = match overlay.force {
         Some(force) => format!("a force of {force:.4} N"),
         None => "the measured force".to_owned(),
     };
     let mut figure = Figure::double(title).shared_x().caption(format!(
-        "Fundamental of the displacement. Lines: closed form for {force}; solid: admissible and stable, dashed: not, \
-         thin: without impacts (mass 2 then rests and has no line). Points: measured. {MARKS}"
+        "Fundamental of the displacement. Lines: closed form for {force}; motions in which the masses would pass through each \
+         other are left out, and so is mass 2 at rest. Points: measured. {MARKS}"
     ));
     for level in &overlay.levels {
         for mass in [1, 2] {
@@ -29,14 +31,14 @@ pub fn overlay(title: &str, overlay: &Overlay, responses: &[Response]) -> Figure
                 .map(|(i, r)| (rank(responses, i), r))
                 .collect();
             if !measured.is_empty() {
+                let name = if overlay.levels.len() > 1 { level_name(level) } else { String::new() };
                 let plot = panel(mass, &level.curve, &measured);
-                let several = overlay.levels.len() > 1;
-                figure = figure.panel(if several { plot.title(level_name(level)) } else { plot });
+                figure = figure.panel(plot.title(name));
             }
         }
     }
     let panels = figure.panels.len().max(1) as f64;
-    figure.height(PANEL * panels)
+    lettered(figure.height(PANEL * panels))
 }
 
 fn level_name(level: &Level) -> String {
@@ -46,19 +48,22 @@ fn level_name(level: &Level) -> String {
 fn panel(mass: u8, curve: &Prediction, measured: &[(usize, &Response)]) -> Plot {
     let (factor, unit) = shown("m");
     let y = AxisSpec::new(format!("Displacement of mass {mass}"), unit).log();
-    // The dashed branches and the undisturbed resonance may run out of the picture: what is measured decides its size.
-    let y = match log_limits(measured.iter().map(|m| m.1)) {
-        Some((low, high)) => y.limits(factor * low, factor * high),
+    // The branches may run out of the picture: what is measured decides its size.
+    let limits = log_limits(measured.iter().map(|m| m.1)).map(|(low, high)| (factor * low, factor * high));
+    let y = match limits {
+        Some((low, high)) => y.limits(low, high),
         None => y,
     };
     let mut plot = Plot::new(AxisSpec::new("Excitation frequency", "Hz"), y);
-    for (solid, name) in [(true, "one impact a cycle"), (false, "not stable or not admissible")] {
+    for (verdict, name, stroke) in [
+        (Verdict::Seen, "one impact a cycle", Stroke::Solid),
+        (Verdict::Unstable, "unstable", Stroke::Dashed),
+        (Verdict::Neutral, "neutral", Stroke::DashDot),
+    ] {
+        // Both branches have one entry in the legend.
         for rank in 0..2 {
-            let y: Vec<f64> = branch(curve, mass, rank, solid).iter().map(|v| factor * v).collect();
+            let y: Vec<f64> = branch(curve, mass, rank, verdict).iter().map(|v| factor * v).collect();
             if y.iter().any(|v| v.is_finite()) {
-                let stroke = if solid { Stroke::Solid } else { Stroke::Dashed };
-                // One entry in the legend for both branches.
-                let name = if rank == 0 { name } else { "" };
                 plot =
                     plot.with(Series::line(name, curve.frequency.clone(), y).ink(Ink::Black).stroke(stroke));
             }
@@ -71,30 +76,26 @@ fn panel(mass: u8, curve: &Prediction, measured: &[(usize, &Response)]) -> Plot 
         );
     }
     for (rank, response) in measured {
-        let [points, limits] = series(response, *rank);
-        plot = plot.with(limits).with(points);
+        let [points, faint] = series(response, *rank, &[], limits);
+        plot = plot.with(faint).with(points);
     }
     plot
 }
 
-fn free(motions: &[crate::compare::prediction::Motion], mass: usize) -> f64 {
-    motions.iter().find(|m| m.kind == Kind::Free && m.seen).map_or(f64::NAN, |m| m.amplitude[mass])
+fn free(motions: &[Motion], mass: usize) -> f64 {
+    motions.iter().find(|m| m.kind == Kind::Free && m.is_seen()).map_or(f64::NAN, |m| m.amplitude[mass])
 }
 
-/// Amplitudes of the impacting motion of this rank where it is seen (`solid`) or not, and NaN elsewhere. The dashed
-/// parts reach one point into the solid ones, so that no gap opens between them.
-fn branch(curve: &Prediction, mass: u8, rank: usize, solid: bool) -> Vec<f64> {
+/// Amplitudes of the impacting motion of this rank where this is its verdict, and NaN elsewhere. Parts that cannot be seen
+/// reach one point into those that can, so that no gap opens between them.
+fn branch(curve: &Prediction, mass: u8, rank: usize, verdict: Verdict) -> Vec<f64> {
     let motion = |i: usize| curve.motions[i].iter().filter(|m| m.kind == Kind::Impacting).nth(rank);
-    let seen = |i: usize| motion(i).is_some_and(|m| m.seen);
-    let n = curve.frequency.len();
-    (0..n)
+    let is = |i: usize| i < curve.motions.len() && motion(i).is_some_and(|m| m.verdict == verdict);
+    let beside = |i: usize| verdict != Verdict::Seen && (is(i + 1) || i > 0 && is(i - 1));
+    (0..curve.frequency.len())
         .map(|i| {
-            let shown = if solid {
-                seen(i)
-            } else {
-                !seen(i) || (i > 0 && !seen(i - 1)) || (i + 1 < n && !seen(i + 1))
-            };
-            motion(i).filter(|_| shown).map_or(f64::NAN, |m| m.amplitude[usize::from(mass) - 1])
+            let shown = motion(i).filter(|m| is(i) || m.is_seen() && beside(i));
+            shown.map_or(f64::NAN, |m| m.amplitude[usize::from(mass) - 1])
         })
         .collect()
 }

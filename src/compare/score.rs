@@ -1,0 +1,92 @@
+//! How well a sweep is predicted, and where it is not.
+
+use super::forcing::median;
+use super::overlay::Pair;
+use serde::Serialize;
+
+/// How well one sweep is predicted.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Score {
+    /// Sweep.
+    pub sweep: String,
+    /// Points with a prediction.
+    pub n: usize,
+    /// Points without.
+    pub without: usize,
+    /// Predicted points with nothing to compare: neither amplitude stands out of the noise.
+    pub faint: usize,
+    /// Median of |measured − predicted| over the larger of both, at points that are not faint; `None` without such points.
+    pub median_relative: Option<f64>,
+    /// The largest of them.
+    pub max_relative: Option<f64>,
+    /// Excitation frequency of the largest in Hz.
+    pub max_at: Option<f64>,
+    /// Root mean square of measured − predicted, in m.
+    pub rms: Option<f64>,
+}
+
+impl Pair {
+    /// |measured − predicted| over the larger of both: twice or half as much as predicted is 50 %. `None` without a
+    /// prediction, and where both lie within the noise.
+    fn deviation(&self) -> Option<f64> {
+        let (predicted, residual) = (self.predicted?, self.residual?);
+        let larger = predicted.max(self.measured.value);
+        let faint = self.upper_limit.is_some_and(|limit| predicted <= limit);
+        (!faint && larger > 0.0).then_some(residual.abs() / larger)
+    }
+}
+
+pub(super) fn score(sweep: &str, pairs: &[Pair]) -> Score {
+    let squares: Vec<f64> = pairs.iter().filter_map(|p| p.residual).map(|r| r * r).collect();
+    let deviations = pairs.iter().filter_map(|p| Some((p.deviation()?, p.frequency)));
+    let largest = deviations.clone().max_by(|a, b| a.0.total_cmp(&b.0));
+    let mut relative: Vec<f64> = deviations.map(|d| d.0).collect();
+    relative.sort_by(f64::total_cmp);
+    let n = squares.len();
+    Score {
+        sweep: sweep.to_owned(),
+        n,
+        without: pairs.len() - n,
+        faint: n - relative.len(),
+        median_relative: median(&relative),
+        max_relative: largest.map(|l| l.0),
+        max_at: largest.map(|l| l.1),
+        rms: (n > 0).then(|| (squares.iter().sum::<f64>() / n as f64).sqrt()),
+    }
+}
+
+/// A point is far off beyond this part of the larger amplitude, where that is also beyond so many standard uncertainties.
+const FAR: f64 = 0.05;
+const SIGMAS: f64 = 5.0;
+/// So many of the points that are far off are named.
+const NAMED: usize = 3;
+
+/// A median hides single points, so those far off the prediction are said.
+pub(super) fn far_off(sweep: &str, pairs: &[Pair]) -> Option<String> {
+    let certain =
+        |p: &Pair| p.measured.std.is_none_or(|std| p.residual.is_some_and(|r| r.abs() > SIGMAS * std));
+    let far = pairs.iter().filter(|p| certain(p)).filter_map(|p| Some((p.deviation()?, p)));
+    let mut far: Vec<(f64, &Pair)> = far.filter(|f| f.0 > FAR).collect();
+    far.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let named: Vec<String> = far
+        .iter()
+        .take(NAMED)
+        .map(|(_, p)| {
+            let predicted = 1e3 * p.predicted.unwrap_or(f64::NAN);
+            format!(
+                "{:.2} Hz ({:.3} mm measured, {predicted:.3} mm predicted)",
+                p.frequency,
+                1e3 * p.measured.value
+            )
+        })
+        .collect();
+    let which = if far.len() > NAMED { "the worst at" } else { "at" };
+    (!far.is_empty()).then(|| {
+        format!(
+            "{sweep}: {} point(s) lie more than {:.0} % and {SIGMAS:.0} standard uncertainties off the closed form, {which} {}; the rig may move in another pattern there than with one impact a cycle, or with none.",
+            far.len(),
+            100.0 * FAR,
+            named.join(", ")
+        )
+    })
+}
