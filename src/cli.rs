@@ -6,8 +6,10 @@ mod complain;
 mod convert;
 mod excitation;
 mod info;
+mod modal;
 mod print;
 mod progress;
+mod pulse;
 mod response;
 mod run;
 mod settings;
@@ -39,6 +41,8 @@ fn dispatch(args: &Args) -> Result<u8> {
         Command::Waterfall(typed) => waterfall::run(typed, args.json),
         Command::Response(typed) => response::run(typed, args.json),
         Command::Compare(typed) => compare::run(typed, args.json),
+        Command::Modal(typed) => modal::run(typed, args.json),
+        Command::Pulse(typed) => pulse::run(typed, args.json),
         Command::Run(typed) => run::run(typed, args.json),
     };
     done.map(|()| 0)

@@ -4,6 +4,8 @@ mod compare;
 mod convert;
 mod excitation;
 mod info;
+mod modal;
+mod pulse;
 mod reading;
 mod response;
 mod run;
@@ -14,7 +16,8 @@ pub use compare::Compare;
 pub use convert::Convert;
 pub use excitation::Excitation;
 pub use info::Info;
-#[allow(unused_imports)]
+pub use modal::Modal;
+pub use pulse::Pulse;
 pub use reading::{Channel, Decimal, Reading};
 pub use response::Response;
 pub use run::Run;
@@ -46,6 +49,10 @@ pub enum Command {
     Waterfall(Waterfall),
     /// Take the response at the excitation, with resonances and jumps
     Response(Response),
+    /// Natural frequency, damping and modal constant of the modes of a frequency response function
+    Modal(Modal),
+    /// Damping ratio, frequency and restitution of a contact from its pulse
+    Pulse(Pulse),
     /// Overlay a campaign's measured responses on the model's prediction
     Compare(Compare),
     /// Do all that a campaign asks for: results, tables, figures, report

@@ -33,7 +33,6 @@ pub fn reader(typed: &Reading) -> Result<Reader> {
 ///
 /// # Errors
 /// As [`reader`]; if the file cannot be read or has no such trace.
-#[allow(dead_code)] // until the first command on a trace
 pub fn trace(file: &Path, reading: &Reading, chosen: &Channel) -> Result<(Trace, Vec<String>)> {
     let recording = reader(reading)?.from_path(file)?;
     let trace = recording.trace(chosen.channel.as_deref(), chosen.calibration)?;

@@ -1,11 +1,13 @@
 //! All that a campaign asks for: responses, waterfalls, overlay, frequency response functions, and their files.
 
 mod frf;
+mod pulse;
 
-pub use frf::{FrfPeak, FrfResult};
+pub use frf::FrfResult;
+pub use pulse::NamedPulse;
 
 use super::{Figure, Output, files, page, pictures, tables};
-use crate::campaign::{Campaign, DrillEntry, DropEntry, ImpactsEntry, PulseEntry};
+use crate::campaign::{Campaign, DrillEntry, DropEntry, ImpactsEntry};
 use crate::compare::{Overlay, overlay};
 use crate::error::{Error, Result};
 use crate::measure::resonance::{NamedCurve, crossings, deepest, name_modes};
@@ -83,6 +85,8 @@ pub struct Results {
     pub overlay: Option<Overlay>,
     /// Frequency response functions.
     pub frf: Vec<FrfResult>,
+    /// Contact pulses.
+    pub pulses: Vec<NamedPulse>,
     /// Files that are listed only.
     pub listed: Vec<Listed>,
     /// What a person must know, each sentence once.
@@ -172,8 +176,9 @@ pub fn run(
         }
     }
     let frf = frf::frfs(campaign, options, &mut figures, &mut warnings)?;
+    let pulses = pulse::pulses(campaign, options, &mut figures, &mut warnings)?;
     let listed = listed(campaign, options, &mut warnings)?;
-    if responses.is_empty() && frf.is_empty() && listed.is_empty() {
+    if responses.is_empty() && frf.is_empty() && pulses.is_empty() && listed.is_empty() {
         warnings.push("The campaign names no file: nothing was computed.".to_owned());
     }
     twice(&responses, &mut warnings);
@@ -190,6 +195,7 @@ pub fn run(
         rig: campaign.rig.filter(|_| overlay.is_some()),
         overlay,
         frf,
+        pulses,
         listed,
         warnings,
     };
@@ -284,7 +290,6 @@ fn listed(campaign: &Campaign, options: JobOptions, warnings: &mut Vec<String>) 
     let parts = [
         ("impacts", campaign.impacts.iter().map(ImpactsEntry::record).collect::<Vec<_>>()),
         ("drop", campaign.drop.iter().map(DropEntry::record).collect()),
-        ("pulse", campaign.pulse.iter().map(PulseEntry::record).collect()),
         ("drill", campaign.drill.iter().map(DrillEntry::record).collect()),
     ];
     let mut listed = Vec::new();

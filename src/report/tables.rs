@@ -1,5 +1,11 @@
 //! Results as tables: for the terminal, for CSV, for the report.
 
+mod modal;
+mod pulse;
+
+pub use modal::{modal_methods, modes};
+pub use pulse::{pulse, pulse_fits};
+
 use super::job::Results;
 use super::{Cell, Table};
 use crate::compare::Overlay;
@@ -189,22 +195,6 @@ pub fn scores(overlay: &Overlay) -> Table {
     table
 }
 
-fn frf_peaks(results: &Results) -> Table {
-    let columns = [("record", ""), ("quantity", ""), ("frequency", "Hz"), ("magnitude", "")];
-    let mut table = headed("Peaks of frequency response functions", &columns);
-    for frf in &results.frf {
-        for p in &frf.peaks {
-            table.push([
-                Cell::from(frf.name.as_str()),
-                Cell::from(format!("{} [{}]", frf.quantity, frf.unit)),
-                pair(p.frequency, Some(p.frequency_std)),
-                Cell::Number(p.magnitude),
-            ]);
-        }
-    }
-    table
-}
-
 /// The tables that a person wants first, empty ones left out.
 pub fn summary(results: &Results) -> Vec<Table> {
     let mut tables = vec![resonances(&results.responses), jumps(&results.responses)];
@@ -212,7 +202,11 @@ pub fn summary(results: &Results) -> Vec<Table> {
         tables.push(peaks(overlay));
         tables.push(scores(overlay));
     }
-    tables.push(frf_peaks(results));
+    tables.push(modes(results.frf.iter().map(|f| (f.name.as_str(), &f.modal))));
+    for found in &results.pulses {
+        tables.push(pulse(&found.name, &found.result));
+        tables.push(pulse_fits(&found.name, &found.result));
+    }
     tables.retain(|t| !t.rows.is_empty());
     tables
 }

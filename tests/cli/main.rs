@@ -2,6 +2,8 @@
 
 mod answers;
 mod complaints;
+mod contact;
+mod modes;
 mod rig;
 
 use serde_json::Value;
