@@ -8,8 +8,10 @@ mod drill;
 mod excitation;
 mod impacts;
 mod info;
+mod modal;
 mod print;
 mod progress;
+mod pulse;
 mod response;
 mod restitution;
 mod run;
@@ -47,6 +49,8 @@ fn dispatch(args: &Args) -> Result<u8> {
         Command::Impacts(typed) => impacts::run(typed, args.json),
         Command::Restitution(typed) => restitution::run(typed, args.json),
         Command::Compare(typed) => compare::run(typed, args.json),
+        Command::Modal(typed) => modal::run(typed, args.json),
+        Command::Pulse(typed) => pulse::run(typed, args.json),
         Command::Run(typed) => run::run(typed, args.json),
     };
     done.map(|()| 0)

@@ -31,7 +31,7 @@ fn results(campaign: &str) -> (Results, tempfile::TempDir) {
 }
 
 fn near(results: &Results, index: usize, frequency: f64, tolerance: f64) -> bool {
-    results.frf[index].peaks.iter().any(|p| (p.frequency - frequency).abs() <= tolerance)
+    results.frf[index].modal.modes.iter().any(|m| (m.frequency.value - frequency).abs() <= tolerance)
 }
 
 #[test]
@@ -42,7 +42,7 @@ fn resonances_of_a_hammer_test() {
         results(&format!("name = \"hammer test\"\n[[frf]]\nfile = {:?}\n", file.display().to_string()));
     // Lines are 0.5 Hz apart and the stated figures are lines: interpolated peaks lie within one line.
     for f in [41.0, 62.0, 81.5, 96.5, 125.0, 140.5, 175.0] {
-        assert!(near(&found, 0, f, 0.5), "{f}: {:?}", found.frf[0].peaks);
+        assert!(near(&found, 0, f, 0.5), "{f}: {:?}", found.frf[0].modal);
     }
     // Label and unit of that file contradict each other, and the report says so.
     assert!(found.warnings.iter().any(|w| w.contains("eceptance")), "{:?}", found.warnings);
@@ -64,6 +64,43 @@ fn resonances_of_measured_accelerances() {
     for f in [52.0, 142.0, 279.0, 460.0, 687.0, 959.0] {
         assert!((0..3).any(|i| near(&found, i, f, 1.0)), "{f}");
     }
+}
+
+/// Where a peak has enough lines, circle and half-power agree with the fit: the frequency within a line, the damping within a fifth.
+#[test]
+fn three_methods_agree_on_measured_modes() {
+    let Some(data) = data() else { return };
+    let file = data.join("uff/dataset58_FRF.unv").display().to_string();
+    let (found, _folder) = results(&format!("[[frf]]\nfile = {file:?}\n"));
+    let mut compared = 0;
+    // The named resonances below 200 Hz that stand alone; above it the modes overlap.
+    let named = [62.0, 81.5, 96.5, 125.0, 140.5, 175.0];
+    let modes = found.frf[0].modal.modes.iter();
+    for mode in modes.filter(|m| named.iter().any(|f| (m.frequency.value - f).abs() < 1.0)) {
+        let of = |method| {
+            mode.by
+                .iter()
+                .find(|b| b.method == method)
+                .filter(|b| b.frequency.value.is_finite() && b.note.is_empty())
+        };
+        for method in ["circle fit", "half power"] {
+            let (Some(by), Some(std)) = (of(method), mode.zeta.std) else { continue };
+            if std > 0.1 * mode.zeta.value {
+                continue;
+            }
+            println!(
+                "{method} {:.3} {:.3}, ζ {:.5} {:.5} ± {std:.5}",
+                mode.frequency.value,
+                by.frequency.value,
+                mode.zeta.value,
+                by.zeta.as_ref().unwrap().value
+            );
+            assert!((by.frequency.value - mode.frequency.value).abs() < 0.5, "{mode:?}");
+            assert!((by.zeta.as_ref().unwrap().value / mode.zeta.value - 1.0).abs() < 0.2, "{mode:?}");
+            compared += 1;
+        }
+    }
+    assert!(compared >= 8, "{compared}");
 }
 
 /// Every file is read or refused with a sentence, and a survey says of each record what reading it says.

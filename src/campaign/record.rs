@@ -62,7 +62,12 @@ macro_rules! record_entry {
 
 record_entry! {
     /// Frequency response functions.
-    FrfEntry {}
+    FrfEntry {
+        /// Band in Hz whose peaks are fitted together. Default: a band around each peak.
+        band: Option<(f64, f64)>,
+        /// Mass in kg for the stiffness.
+        mass: Option<f64>,
+    }
 }
 
 record_entry! {
@@ -99,7 +104,14 @@ record_entry! {
 
 record_entry! {
     /// A contact pulse.
-    PulseEntry {}
+    PulseEntry {
+        /// Mass in kg that is decelerated.
+        mass: Option<f64>,
+        /// Corner of the instrument's Butterworth low-pass in Hz. Default: none, with a warning.
+        low_pass: Option<f64>,
+        /// Its order.
+        order: Option<usize>,
+    }
 }
 
 record_entry! {

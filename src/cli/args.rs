@@ -6,6 +6,8 @@ mod drill;
 mod excitation;
 mod impacts;
 mod info;
+mod modal;
+mod pulse;
 mod reading;
 mod response;
 mod restitution;
@@ -20,6 +22,8 @@ pub use drill::{Drill, Edge, From};
 pub use excitation::Excitation;
 pub use impacts::{Finding, Impacts};
 pub use info::Info;
+pub use modal::Modal;
+pub use pulse::Pulse;
 pub use reading::{Channel, Decimal, Reading};
 pub use response::Response;
 pub use restitution::Restitution;
@@ -61,6 +65,10 @@ pub enum Command {
     Impacts(Impacts),
     /// Coefficient of restitution from drops, bounces or velocities, every method side by side
     Restitution(Restitution),
+    /// Natural frequency, damping and modal constant of the modes of a frequency response function
+    Modal(Modal),
+    /// Damping ratio, frequency and restitution of a contact from its pulse
+    Pulse(Pulse),
     /// Overlay a campaign's measured responses on the model's prediction
     Compare(Compare),
     /// Do all that a campaign asks for: results, tables, figures, report

@@ -1,7 +1,5 @@
 //! Local maxima of a curve, and their vertices between samples.
 
-use crate::record::Frf;
-
 /// A maximum of a curve over frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Vertex {
@@ -92,20 +90,6 @@ pub fn vertex(f: [f64; 3], a: [f64; 3], std: [f64; 3]) -> Option<Vertex> {
     }
     let [frequency_std, height_std] = variance.map(f64::sqrt);
     Some(Vertex { frequency, frequency_std, height: height * top, height_std: height_std * top })
-}
-
-/// Peaks of the magnitude of a frequency response function that stand at least the factor `ratio` above their valleys.
-///
-/// Vertices are interpolated between the lines (see [`vertex`]); they are peaks of a curve, not yet modes.
-pub fn frf_peaks(frf: &Frf, ratio: f64) -> Vec<Vertex> {
-    let magnitude: Vec<f64> = frf.values.iter().map(|v| v.norm()).collect();
-    local_maxima(&magnitude, ratio)
-        .into_iter()
-        .filter_map(|m| {
-            let at = [m.at - 1, m.at, m.at + 1];
-            vertex(at.map(|k| frf.axis.at(k)), at.map(|k| magnitude[k]), [0.0; 3])
-        })
-        .collect()
 }
 
 /// Extremum of the parabola through three points, inside their range.

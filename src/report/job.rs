@@ -4,20 +4,21 @@ mod drill;
 mod frf;
 mod impacts;
 mod pairing;
+mod pulse;
 
 pub use drill::DrillResult;
-pub use frf::{FrfPeak, FrfResult};
+pub use frf::FrfResult;
 pub use impacts::{DropResult, ImpactsResult};
 pub use pairing::Crossing;
+pub use pulse::NamedPulse;
 
 use super::{Figure, Output, files, page, pictures, tables};
-use crate::campaign::{Campaign, PulseEntry};
+use crate::campaign::Campaign;
 use crate::compare::{Overlay, overlay};
 use crate::error::{Error, Result};
 use crate::measure::response::{Response, ResponseOptions, response, to_displacement};
 use crate::measure::waterfall::{Waterfall, gathered};
 use crate::model::Rig;
-use crate::read::Header;
 use crate::record::Sweep;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -47,17 +48,6 @@ pub struct JobOptions {
     pub allow_outside: bool,
 }
 
-/// A file that a campaign names but that is only listed here.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Listed {
-    /// Part of the campaign: `drop`, `pulse`, …
-    pub part: &'static str,
-    /// File.
-    pub file: String,
-    /// Its records.
-    pub records: Vec<Header>,
-}
-
 /// Everything a job found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Results {
@@ -83,8 +73,8 @@ pub struct Results {
     pub impacts: Vec<ImpactsResult>,
     /// Restitution from drops.
     pub drops: Vec<DropResult>,
-    /// Files that are listed only.
-    pub listed: Vec<Listed>,
+    /// Contact pulses.
+    pub pulses: Vec<NamedPulse>,
     /// What a person must know, each sentence once.
     pub warnings: Vec<String>,
 }
@@ -163,8 +153,8 @@ pub fn run(
     let drilled = drill::drills(campaign, options, &mut figures, &mut warnings)?;
     let impacts = impacts::impacts(campaign, options, &mut figures, &mut warnings)?;
     let drops = impacts::drops(campaign, options, &mut figures, &mut warnings)?;
-    let listed = listed(campaign, options, &mut warnings)?;
-    if figures.is_empty() && listed.is_empty() {
+    let pulses = pulse::pulses(campaign, options, &mut figures, &mut warnings)?;
+    if figures.is_empty() {
         warnings.push("The campaign names no file: nothing was computed.".to_owned());
     }
     pairing::twice(&responses, &mut warnings);
@@ -183,7 +173,7 @@ pub fn run(
         drill: drilled,
         impacts,
         drops,
-        listed,
+        pulses,
         warnings,
     };
     progress.start("drawing figures", figures.len());
@@ -262,32 +252,6 @@ fn model(campaign: &Campaign, responses: &[Response], warnings: &mut Vec<String>
     let overlay = overlay(&rig, campaign.excitation.and_then(|e| e.force), responses)?;
     merge(warnings, "", &overlay.warnings);
     Ok(Some(overlay))
-}
-
-/// Parts of a campaign that have no analysis yet are listed, and that is said.
-fn listed(campaign: &Campaign, options: JobOptions, warnings: &mut Vec<String>) -> Result<Vec<Listed>> {
-    let parts = [("pulse", campaign.pulse.iter().map(PulseEntry::record).collect::<Vec<_>>())];
-    let mut listed = Vec::new();
-    for (part, entries) in parts {
-        for entry in &entries {
-            let path = campaign.record_path(entry, options.allow_outside)?;
-            let (_, records, doubts) = entry.reader().survey(&path)?;
-            merge(warnings, &file_name(&path), &doubts);
-            if entry.calibration.is_some() {
-                warnings.push(format!(
-                    "{}: the calibration is not applied to a file that is listed only.",
-                    file_name(&path)
-                ));
-            }
-            listed.push(Listed { part, file: file_name(&path), records });
-        }
-        if !entries.is_empty() {
-            warnings.push(format!(
-                "[[{part}]] files are listed, not analysed: this version has no analysis for them."
-            ));
-        }
-    }
-    Ok(listed)
 }
 
 fn file_name(path: &std::path::Path) -> String {

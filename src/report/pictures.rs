@@ -4,14 +4,16 @@ mod drill;
 mod frf;
 mod impacts;
 mod overlay;
+mod pulse;
 mod response;
 mod spectrum;
 mod waterfall;
 
 pub use drill::drill;
-pub use frf::frf;
+pub use frf::{frf, nyquist};
 pub use impacts::{drop, impacts};
 pub use overlay::overlay;
+pub use pulse::pulse;
 pub use response::response;
 pub use spectrum::{spectrum, transfer};
 pub use waterfall::{map, waterfall};

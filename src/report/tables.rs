@@ -2,15 +2,18 @@
 
 mod drill;
 mod impacts;
+mod modal;
+mod pulse;
 
 pub use drill::{drill, drill_average, drill_impacts};
 pub use impacts::{impact_times, impacts, restitution};
+pub use modal::{modal_methods, modes};
+pub use pulse::{pulse, pulse_fits};
 
-use super::job::{FrfResult, Results};
+use super::job::Results;
 use super::{Cell, Column, Table};
 use crate::compare::{Kind, Overlay};
 use crate::measure::response::{Response, ResponsePoint};
-use std::collections::BTreeSet;
 
 /// A column: name, unit, and what it shows of an item.
 type Shown<'a, T> = (&'a str, &'a str, &'a dyn Fn(&T) -> Cell);
@@ -177,20 +180,6 @@ pub fn scores(overlay: &Overlay) -> Table {
     )
 }
 
-/// Peaks of the functions of one quantity and unit.
-fn frf_peaks(frfs: &[FrfResult], (quantity, unit): (&str, &str)) -> Table {
-    let same = frfs.iter().filter(|f| (f.quantity, f.unit.as_str()) == (quantity, unit));
-    table(
-        format!("Peaks of frequency response functions, {quantity} (± of the interpolation alone)"),
-        same.flat_map(|f| f.peaks.iter().map(move |p| (f, p))),
-        &[
-            ("record", "", &|(f, _)| Cell::from(f.name.as_str())),
-            ("frequency", "Hz", &|(_, p)| pair(p.frequency, Some(p.frequency_std))),
-            ("magnitude", unit, &|(_, p)| pair(p.magnitude, p.magnitude_std)),
-        ],
-    )
-}
-
 /// The tables that a person wants first, empty ones left out.
 pub fn summary(results: &Results) -> Vec<Table> {
     let mut tables = vec![resonances(&results.responses), jumps(&results.responses)];
@@ -198,8 +187,11 @@ pub fn summary(results: &Results) -> Vec<Table> {
         tables.push(peaks(overlay));
         tables.push(scores(overlay));
     }
-    let kinds: BTreeSet<(&str, &str)> = results.frf.iter().map(|f| (f.quantity, f.unit.as_str())).collect();
-    tables.extend(kinds.into_iter().map(|kind| frf_peaks(&results.frf, kind)));
+    tables.push(modes(results.frf.iter().map(|f| (f.name.as_str(), &f.modal))));
+    for found in &results.pulses {
+        tables.push(pulse(&found.name, &found.result));
+        tables.push(pulse_fits(&found.name, &found.result));
+    }
     let drills: Vec<_> = results.drill.iter().map(|d| (d.name.as_str(), &d.drill)).collect();
     tables.push(drill(&drills));
     let trains: Vec<_> = results.impacts.iter().map(|r| (r.name.clone(), &r.impacts)).collect();

@@ -3,8 +3,10 @@
 
 mod drill;
 mod impacts;
+mod modal;
 mod noise;
-mod random;
+mod pulse;
 mod restitution;
+mod score;
 mod sine;
 mod transfer;

@@ -1,6 +1,6 @@
 //! Frequency and amplitude of a sine in white noise.
 
-use crate::random::Random;
+use crate::noise::Noise;
 use std::f64::consts::TAU;
 use vibroimpact::measure::sine::sine;
 use vibroimpact::record::{Axis, Meta, Trace};
@@ -19,16 +19,16 @@ struct Reached {
 
 /// Frequency and amplitude over random cases at this signal-to-noise ratio in dB; records without a visible line count apart.
 fn reached(decibel: f64) -> ([Reached; 2], usize) {
-    let mut random = Random(SEED);
+    let mut random = Noise::new(SEED);
     let eta = 10f64.powf(decibel / 10.0);
     let mut errors = [Vec::new(), Vec::new()];
     let mut inside = [0, 0];
     let mut refused = 0;
     for _ in 0..CASES {
-        let n = random.uniform(200.0, 600.0) as usize;
+        let n = random.between(200.0, 600.0) as usize;
         // Not nearer to zero and half the rate than four lines, where the sine's own image takes part in the bound.
-        let f = random.uniform(4.0, n as f64 / 2.0 - 4.0) * RATE / n as f64;
-        let (amplitude, phase) = (random.uniform(0.5, 2.0), random.uniform(0.0, TAU));
+        let f = random.between(4.0, n as f64 / 2.0 - 4.0) * RATE / n as f64;
+        let (amplitude, phase) = (random.between(0.5, 2.0), random.between(0.0, TAU));
         let sigma = amplitude / (2.0 * eta).sqrt();
         let values = (0..n)
             .map(|i| amplitude * (TAU * f * i as f64 / RATE + phase).cos() + 0.3 + sigma * random.normal())

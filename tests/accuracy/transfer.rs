@@ -1,6 +1,6 @@
 //! The band of a frequency response function.
 
-use crate::random::Random;
+use crate::noise::Noise;
 use vibroimpact::read::Traces;
 use vibroimpact::record::{Axis, Meta, Trace, Window};
 use vibroimpact::signal::segment::Segments;
@@ -13,7 +13,7 @@ const LENGTH: usize = 64;
 const GAIN: f64 = 2.0;
 
 /// Shares of lines whose 95 % interval of magnitude and of phase holds the truth. Noise of `noise` times the response's power.
-fn coverage(averages: usize, overlap: f64, noise: f64, random: &mut Random) -> (f64, f64, usize) {
+fn coverage(averages: usize, overlap: f64, noise: f64, random: &mut Noise) -> (f64, f64, usize) {
     let (mut magnitude, mut phase, mut lines) = (0usize, 0usize, 0usize);
     for _ in 0..200 {
         let segments = Segments::new(LENGTH, overlap).unwrap();
@@ -43,7 +43,7 @@ fn coverage(averages: usize, overlap: f64, noise: f64, random: &mut Random) -> (
 
 #[test]
 fn the_band_holds_the_truth() {
-    let mut random = Random(SEED);
+    let mut random = Noise::new(SEED);
     println!("seed {SEED:#x}, 200 records a line");
     for (averages, overlap, noise) in
         [(10, 0.0, 0.1), (10, 0.0, 1.0), (20, 0.5, 0.1), (20, 0.5, 0.5), (50, 0.5, 1.0), (100, 0.5, 0.01)]

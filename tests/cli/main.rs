@@ -2,7 +2,9 @@
 
 mod answers;
 mod complaints;
+mod contact;
 mod impacts;
+mod modes;
 mod rig;
 mod spectrum;
 

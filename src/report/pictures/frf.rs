@@ -1,30 +1,77 @@
-//! Frequency response functions: magnitude and phase.
+//! Frequency response functions: magnitude and phase with the fitted modes, and the Nyquist plane.
 
 use super::lettered;
 use super::response::capital;
-use crate::record::Frf;
-use crate::report::{AxisSpec, Figure, Plot, Series};
-use num_complex::Complex64;
+use crate::measure::modal::{Measured, Mode};
+use crate::record::Meta;
+use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
 
-/// Magnitude (logarithmic) over phase in degrees; `peaks` are marked. The line at 0 Hz is no response to a vibration, and
-/// neither is a zero: both are left out.
-pub fn frf(title: &str, frf: &Frf, peaks: &[(f64, f64)]) -> Figure {
-    let lines =
-        frf.axis.values().into_iter().zip(&frf.values).skip_while(|(f, v)| *f <= 0.0 || v.norm() == 0.0);
-    let of = |v: &Complex64, shown: f64| if v.norm() > 0.0 { shown } else { f64::NAN };
-    let (f, values): (Vec<f64>, Vec<Complex64>) = lines.unzip();
-    let magnitude: Vec<f64> = values.iter().map(|v| of(v, v.norm())).collect();
-    let phase: Vec<f64> = values.iter().map(|v| of(v, v.arg().to_degrees())).collect();
-    let y = AxisSpec::new(capital(frf.meta.quantity.name()), frf.meta.unit.symbol()).log();
-    let mut above = Plot::new(AxisSpec::frequency(), y).with(Series::line("", f.clone(), magnitude));
-    if !peaks.is_empty() {
-        let (x, y): (Vec<f64>, Vec<f64>) = peaks.iter().copied().unzip();
-        above = above.with(Series::points("peaks", x, y));
+/// Magnitude (logarithmic) over phase in degrees, with the fitted response over the lines of each mode.
+pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Figure {
+    let f = &measured.frequency;
+    let magnitude: Vec<f64> = measured.values.iter().map(|v| v.norm()).collect();
+    let y = AxisSpec::new(capital(meta.quantity.name()), meta.unit.symbol()).log();
+    let mut above = Plot::new(AxisSpec::frequency(), y)
+        .with(Series::line("measured", f.clone(), magnitude).ink(Ink::Grey).stroke(Stroke::Solid));
+    // Modes that were fitted together have one curve.
+    let (mut x, mut y) = (Vec::new(), Vec::new());
+    let mut last = None;
+    for mode in modes.iter().filter(|m| last.replace(m.lines) != Some(m.lines)) {
+        x.extend(mode.picture.fitted.iter().map(|p| p.0).chain([f64::NAN]));
+        y.extend(mode.picture.fitted.iter().map(|p| p.1.hypot(p.2)).chain([f64::NAN]));
     }
+    if !x.is_empty() {
+        above = above.with(Series::line("fitted modes", x, y).ink(Ink::Nth(0)).stroke(Stroke::Dashed));
+    }
+    for mode in modes {
+        above = above.with(Series::vertical("", mode.frequency.value));
+    }
+    let figure = Figure::double(title).caption(
+        "Frequency response function with the modes fitted to it; vertical lines are natural frequencies.",
+    );
+    if measured.magnitude_only {
+        return figure.panel(above);
+    }
+    let phase: Vec<f64> = measured.values.iter().map(|v| v.arg().to_degrees()).collect();
     let (phase, (low, high)) = fitted(&phase);
     let below = Plot::new(AxisSpec::frequency(), AxisSpec::new("Phase", "°").limits(low, high))
-        .with(Series::phase("", &f, &phase));
-    lettered(Figure::double(title).height(120.0).shared_x().panel(above).panel(below))
+        .with(Series::phase("", f, &phase).ink(Ink::Grey).stroke(Stroke::Solid));
+    lettered(figure.height(110.0).shared_x().panel(above).panel(below))
+}
+
+/// The Nyquist plane around the modes, at most four, with the circle where one was fitted; `None` without phases or modes.
+pub fn nyquist(title: &str, measured: &Measured, modes: &[Mode]) -> Option<Figure> {
+    let mut largest: Vec<&Mode> = modes.iter().filter(|m| m.picture.circle.is_some()).collect();
+    largest.sort_by(|a, b| b.modal_constant.value.total_cmp(&a.modal_constant.value));
+    largest.truncate(4);
+    largest.sort_by(|a, b| a.frequency.value.total_cmp(&b.frequency.value));
+    if measured.magnitude_only || largest.is_empty() {
+        return None;
+    }
+    let columns = largest.len().min(2);
+    let rows = largest.len().div_ceil(2);
+    let mut figure = if columns == 1 { Figure::single(title).height(80.0) } else { Figure::double(title).height(85.0 * rows as f64) }
+        .columns(columns)
+        .caption("Mobility in the Nyquist plane around each mode: lines that were fitted, and the circle through them.");
+    for mode in largest {
+        let Some(circle) = &mode.picture.circle else { continue };
+        let (re, im): (Vec<f64>, Vec<f64>) = circle.points.iter().map(|p| (p.1.re, p.1.im)).unzip();
+        let turn = (0..=180).map(|i| f64::from(i) * std::f64::consts::TAU / 180.0);
+        let (x, y): (Vec<f64>, Vec<f64>) = turn
+            .map(|a| (circle.centre.re + circle.radius * a.cos(), circle.centre.im + circle.radius * a.sin()))
+            .unzip();
+        let axis = |label: &str, centre: f64| {
+            let reach = 1.15 * circle.radius;
+            AxisSpec::new(label, "(m/s)/N").limits(centre - reach, centre + reach)
+        };
+        let plot = Plot::new(axis("Real part", circle.centre.re), axis("Imaginary part", circle.centre.im))
+            .title(format!("{:.2} Hz", mode.frequency.value))
+            .with(Series::line("circle", x, y).ink(Ink::Nth(0)).stroke(Stroke::Solid))
+            .with(Series::points("lines", re, im).ink(Ink::Black).marker(Marker::Circle))
+            .legend(Legend::Hidden);
+        figure = figure.panel(plot);
+    }
+    Some(lettered(figure))
 }
 
 /// A phase in degrees on the turn that breaks it least, and the limits of its axis: multiples of 45°, of 90° where it covers

@@ -1,0 +1,270 @@
+//! Modes of frequency response functions: natural frequency, damping ratio and modal constant.
+//!
+//! The answer is a rational fit in the complex plane, local to each peak: modes of viscous damping and two residual terms for what
+//! lies below and above, in the kind of the function itself (a receptance times iω for a mobility, −ω² for an accelerance).
+//! Beside it stand the largest line, the half-power bandwidth and the circle fit, to be compared.
+
+mod bands;
+mod graphic;
+mod rational;
+mod response;
+mod result;
+
+pub use graphic::Circle;
+pub use rational::Pole;
+pub use response::Measured;
+pub use result::{ByMethod, ModalOptions, ModalResult, Mode, ModePicture};
+
+use crate::error::{Error, Result};
+use crate::record::FrfKind;
+use bands::{Group, Peak, groups};
+use rational::{Rational, rational};
+
+/// Finds the modes of a frequency response function.
+///
+/// Each peak that stands a factor of two above its valleys is a candidate; peaks too near each other to be told apart are fitted
+/// together, and modes of other bands are taken away before the last fit of a band. In a band that is given, all its peaks are
+/// fitted together.
+///
+/// # Errors
+/// If the band is not one, holds no peak or fewer lines than parameters, or no line can be used.
+pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult> {
+    let mut warnings = Vec::new();
+    if let Some(mass) = options.mass.filter(|m| !(m.is_finite() && *m > 0.0)) {
+        return Err(Error::usage(format!("a mass of {mass} kg"), "a finite mass above 0"));
+    }
+    let least = options.least_coherence;
+    if !(0.0..1.0).contains(&least) {
+        return Err(Error::usage(format!("a least coherence of {least}"), "a number from 0 to below 1"));
+    }
+    let lines = measured.clone().usable(least, &mut warnings)?;
+    if lines.kind == FrfKind::Other {
+        warnings.push(
+            "The unit is not that of a response over a force: the function is fitted as a receptance, and the modal constants are in its unit times (rad/s)²."
+                .to_owned(),
+        );
+    }
+    if lines.magnitude_only {
+        warnings.push(
+            "Only magnitudes are known: modes are fitted to |H| with a constant residual term; a circle fit needs phases and is not made."
+                .to_owned(),
+        );
+    }
+    let mut groups = groups(&lines, options.band)?;
+    let mut unsupported = Vec::new();
+    let mut fits: Vec<Result<Rational>> =
+        groups.iter_mut().map(|group| chosen(&lines, group, &mut unsupported)).collect();
+    if let (Some(_), [Err(error)]) = (options.band, fits.as_slice()) {
+        return Err(Error::refused(error.to_string()));
+    }
+    for _ in 0..2 {
+        for at in 0..groups.len() {
+            let others: Vec<Pole> = fits
+                .iter()
+                .enumerate()
+                .filter(|(other, _)| *other != at)
+                .filter_map(|(_, fit)| fit.as_ref().ok())
+                .flat_map(|fit| fit.modes.iter().copied())
+                .collect();
+            if others.is_empty() {
+                continue;
+            }
+            if let Ok(fit) = &fits[at] {
+                let starts: Vec<(f64, f64)> = fit.modes.iter().map(|m| (m.frequency, m.zeta)).collect();
+                if starts.iter().all(|s| s.0 > 0.0 && s.1 > 0.0)
+                    && let Ok(better) = rational(&lines, groups[at].lines.clone(), &starts, &others)
+                {
+                    fits[at] = Ok(better);
+                }
+            }
+        }
+    }
+    let mut modes = Vec::new();
+    let mut reversed = 0;
+    for (group, fit) in groups.iter().zip(fits) {
+        match fit {
+            Ok(fit) => reversed += result::report(&lines, group, &fit, options, &mut modes, &mut warnings),
+            Err(error) => warnings.push(format!(
+                "The peak at {} Hz is not fitted: {error}.",
+                group.peaks.first().map_or(f64::NAN, |p| lines.frequency[p.at])
+            )),
+        }
+    }
+    if !unsupported.is_empty() {
+        unsupported.sort_by(f64::total_cmp);
+        let named: Vec<String> = unsupported.iter().take(8).map(f64::to_string).collect();
+        let more = if unsupported.len() > 8 { ", …" } else { "" };
+        warnings.push(format!(
+            "{} further peaks of the magnitude are not needed to explain the lines around them, and are taken for noise: {}{more} Hz.",
+            unsupported.len(),
+            named.join(", ")
+        ));
+    }
+    if 2 * reversed > modes.len() {
+        warnings.push(
+            "Most peaks have a phase that rises through the resonance: the sign of the phase is reversed (e^{−iωt}), or response and force are exchanged."
+                .to_owned(),
+        );
+    }
+    if modes.iter().all(|m| m.frequency.std.is_none()) {
+        return Err(Error::refused(format!("no peak is supported as a mode. {}", warnings.join(" "))));
+    }
+    modes.sort_by(|a, b| a.frequency.value.total_cmp(&b.frequency.value));
+    Ok(ModalResult { modes, warnings })
+}
+
+/// Modes of one group at most: beyond, parameters outgrow the lines.
+const TOGETHER: usize = 6;
+
+/// An additional mode must lower Akaike's criterion by this much (Burnham & Anderson 2002, 2.6).
+const NEEDED: f64 = 10.0;
+
+/// Fits the most prominent peak of a group, then adds the others in the order of their prominence as long as the lines need
+/// them. The group keeps the peaks that were.
+fn chosen(lines: &Measured, group: &mut Group, unsupported: &mut Vec<f64>) -> Result<Rational> {
+    let mut waiting = std::mem::take(&mut group.peaks);
+    waiting.sort_by(|a, b| b.rise.total_cmp(&a.rise));
+    let mut best: Result<Rational> = Err(Error::refused("there is no peak"));
+    let mut kept: Vec<Peak> = Vec::new();
+    for peak in waiting {
+        let mut with = kept.clone();
+        with.push(peak);
+        with.sort_by_key(|p| p.at);
+        let starts: Vec<(f64, f64)> = match &best {
+            Ok(fit) => fit.modes.iter().map(|m| (m.frequency, m.zeta)).chain([peak.start(lines)]).collect(),
+            Err(_) => vec![peak.start(lines)],
+        };
+        let possible = with.len() <= TOGETHER && starts.iter().all(|s| s.0 > 0.0 && s.1 > 0.0);
+        let fit = if possible { rational(lines, group.lines.clone(), &starts, &[]) } else { continue };
+        match (&best, fit) {
+            (Err(_), fit) if kept.is_empty() => {
+                best = fit;
+                kept = with;
+            }
+            (Ok(before), Ok(fit))
+                if fit.aicc < before.aicc - NEEDED && fit.sound(lines, &with).iter().all(|s| *s) =>
+            {
+                best = Ok(fit);
+                kept = with;
+            }
+            _ => unsupported.push(lines.frequency[peak.at]),
+        }
+    }
+    group.peaks = kept;
+    match best {
+        Ok(fit) if fit.whiteness.rejected() => Ok(narrowed(lines, group, fit)),
+        best => best,
+    }
+}
+
+/// Fewest lines on either side of the outer peaks of a band that is made narrower.
+const BESIDE: usize = 8;
+
+/// Makes the band of a fit whose residuals are not white narrower, as long as they are not: what else is in a band matters the
+/// less the narrower it is. Keeps the wide band where that does not help.
+fn narrowed(lines: &Measured, group: &mut Group, wide: Rational) -> Rational {
+    let (Some(first), Some(last)) = (group.peaks.first().map(|p| p.at), group.peaks.last().map(|p| p.at))
+    else {
+        return wide;
+    };
+    let starts: Vec<(f64, f64)> = group.peaks.iter().map(|p| p.start(lines)).collect();
+    let (mut below, mut above) = (first - group.lines.start, group.lines.end - last - 1);
+    while below.max(above) > BESIDE {
+        below = below.min((2 * below / 3).max(BESIDE));
+        above = above.min((2 * above / 3).max(BESIDE));
+        let part = first - below..last + above + 1;
+        match rational(lines, part.clone(), &starts, &[]) {
+            Ok(fit) if !fit.whiteness.rejected() => {
+                group.lines = part;
+                return fit;
+            }
+            _ => {}
+        }
+    }
+    wide
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use num_complex::Complex64;
+
+    /// Two modes as an accelerance, lines of 0.5 Hz.
+    fn two() -> Measured {
+        let poles = [(80.3, 0.01), (210.7, 0.004)];
+        let poles =
+            poles.map(|(frequency, zeta)| Pole { frequency, zeta, constant: Complex64::new(2.0, 0.0) });
+        let frequency: Vec<f64> = (0..600).map(|i| f64::from(i) * 0.5).collect();
+        let values = frequency.iter().map(|f| poles.iter().map(|p| p.at(*f, 2)).sum()).collect();
+        Measured { frequency, values, magnitude_only: false, kind: FrfKind::Accelerance, coherence: None }
+    }
+
+    fn found(measured: &Measured, options: &ModalOptions) -> ModalResult {
+        modal(measured, options).unwrap()
+    }
+
+    #[test]
+    fn modes_without_noise_are_exact() {
+        let result = found(&two(), &ModalOptions { mass: Some(0.125), ..ModalOptions::default() });
+        assert_eq!(result.modes.len(), 2, "{result:?}");
+        for (mode, (f, zeta)) in result.modes.iter().zip([(80.3, 0.01), (210.7, 0.004)]) {
+            // The other mode is taken away, up to what its own fit leaves: one part in 1e5 of a bandwidth.
+            assert!((mode.frequency.value - f).abs() < 1e-5 * f * zeta, "{mode:?}");
+            assert!((mode.zeta.value / zeta - 1.0).abs() < 1e-5, "{mode:?}");
+            assert!((mode.modal_constant.value / 2.0 - 1.0).abs() < 1e-4, "{mode:?}");
+            let k = mode.stiffness.as_ref().unwrap();
+            let expected = 0.125 * (std::f64::consts::TAU * mode.frequency.value).powi(2);
+            assert!((k.value / expected - 1.0).abs() < 1e-12);
+            let (of_k, of_f) = (k.std.unwrap() / k.value, mode.frequency.std.unwrap() / mode.frequency.value);
+            assert!((of_k / (2.0 * of_f) - 1.0).abs() < 1e-9);
+        }
+        // A mode of bandwidth 1.6 Hz has seven lines on 270° of its circle. That circle is exact but for the other mode's part.
+        let circle = result.modes[0].by.iter().find(|b| b.method == "circle fit").unwrap();
+        assert!((circle.frequency.value - 80.3).abs() < 0.02, "{circle:?}");
+        assert!((circle.zeta.as_ref().unwrap().value / 0.01 - 1.0).abs() < 0.02, "{circle:?}");
+    }
+
+    #[test]
+    fn magnitudes_alone_give_frequency_and_damping() {
+        let mut measured = two();
+        measured.values.iter_mut().for_each(|v| *v = Complex64::new(v.norm(), 0.0));
+        measured.magnitude_only = true;
+        let result = found(&measured, &ModalOptions { band: Some((76.0, 85.0)), ..ModalOptions::default() });
+        // The other mode is no constant over the band: it bends by (4.5/130)² of itself.
+        assert!((result.modes[0].frequency.value - 80.3).abs() < 0.02, "{result:?}");
+        assert!((result.modes[0].zeta.value / 0.01 - 1.0).abs() < 0.03, "{result:?}");
+        assert!(result.warnings.iter().any(|w| w.contains("phases")));
+        assert!(result.modes[0].by.iter().all(|b| b.method != "circle fit"));
+    }
+
+    #[test]
+    fn lines_of_impossible_coherence_are_left_out_and_named() {
+        let mut measured = two();
+        let mut coherence = vec![0.99; measured.frequency.len()];
+        (coherence[158], coherence[162], coherence[420]) = (1.2, 0.2, f64::NAN);
+        measured.values[158] *= 50.0;
+        measured.coherence = Some(coherence);
+        let result = found(&measured, &ModalOptions::default());
+        let said = result.warnings.join(" ");
+        assert!(said.contains("above 1") && said.contains("79 Hz"), "{said}");
+        assert!(said.contains("below 0.5") && said.contains("81 Hz"), "{said}");
+        assert!(said.contains("not a number") && said.contains("210 Hz"), "{said}");
+        assert!((result.modes[0].frequency.value - 80.3).abs() < 1e-3, "{result:?}");
+    }
+
+    #[test]
+    fn what_cannot_be_fitted_is_refused() {
+        let refusal = |measured: &Measured, band| {
+            modal(measured, &ModalOptions { band, ..ModalOptions::default() }).unwrap_err().to_string()
+        };
+        let measured = two();
+        assert!(refusal(&measured, Some((100.0, 130.0))).contains("no peak between"));
+        assert!(refusal(&measured, Some((79.5, 81.0))).contains("4 lines"));
+        assert!(refusal(&measured, Some((90.0, 80.0))).contains("LO below HI"));
+        let with = |value| Measured { values: vec![value; 600], ..two() };
+        assert!(refusal(&with(Complex64::new(1.0, 0.0)), None).contains("no peak"));
+        assert!(refusal(&with(Complex64::new(f64::NAN, 0.0)), None).contains("0 of 600 lines"));
+        let reversed = Measured { values: two().values.iter().map(Complex64::conj).collect(), ..two() };
+        assert!(refusal(&reversed, None).contains("sign of the phase is reversed"));
+    }
+}

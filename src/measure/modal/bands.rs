@@ -1,0 +1,115 @@
+//! Which lines belong to which peak.
+
+use super::Measured;
+use crate::error::{Error, Result};
+use crate::measure::peaks::local_maxima;
+use std::ops::Range;
+
+/// A peak: its line, its bandwidth in Hz as far as the lines show it, and its height above the higher of its valleys.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Peak {
+    pub at: usize,
+    pub width: f64,
+    pub rise: f64,
+}
+
+/// Peaks that are fitted together, and the lines to which they are.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Group {
+    pub peaks: Vec<Peak>,
+    pub lines: Range<usize>,
+}
+
+/// A peak must stand this factor above its valleys.
+const PROMINENCE: f64 = 2.0;
+
+/// Lines on either side of a peak that are at least fitted, and bandwidths on either side.
+const LINES: usize = 16;
+const BANDWIDTHS: f64 = 6.0;
+
+impl Peak {
+    /// First guess of frequency and damping ratio.
+    pub fn start(&self, measured: &Measured) -> (f64, f64) {
+        let f = measured.frequency[self.at];
+        (f, self.width / (2.0 * f))
+    }
+}
+
+pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Vec<Group>> {
+    let f = &measured.frequency;
+    let magnitude: Vec<f64> = measured.values.iter().map(|v| v.norm()).collect();
+    let mut peaks: Vec<Peak> = local_maxima(&magnitude, PROMINENCE)
+        .into_iter()
+        .map(|m| Peak {
+            at: m.at,
+            width: width(f, &magnitude, m.at, m.valleys),
+            rise: magnitude[m.at] - magnitude[m.valleys[0]].max(magnitude[m.valleys[1]]),
+        })
+        .collect();
+    if let Some((low, high)) = band {
+        if !(low >= 0.0 && high > low && high.is_finite()) {
+            return Err(Error::usage(format!("a band from {low} to {high} Hz"), "LO:HI in Hz, LO below HI"));
+        }
+        let lines = f.partition_point(|f| *f < low)..f.partition_point(|f| *f <= high);
+        peaks.retain(|p| lines.contains(&p.at));
+        if peaks.is_empty() {
+            return Err(Error::refused(format!(
+                "no peak between {low} and {high} Hz stands a factor of {PROMINENCE} above its valleys ({} lines)",
+                lines.len()
+            ))
+            .hint("a mode without a peak cannot be told from noise here; choose a band around a peak"));
+        }
+        return Ok(vec![Group { peaks, lines }]);
+    }
+    if peaks.is_empty() {
+        return Err(Error::refused(format!("no peak stands a factor of {PROMINENCE} above its valleys")));
+    }
+    let mut groups: Vec<Vec<Peak>> = Vec::new();
+    for peak in peaks {
+        match groups.last_mut() {
+            Some(group) if group.last().is_some_and(|last| near(f, last, &peak)) => group.push(peak),
+            _ => groups.push(vec![peak]),
+        }
+    }
+    let reach = |p: &Peak| {
+        let wide = BANDWIDTHS * p.width;
+        let low = f.partition_point(|v| *v < f[p.at] - wide).min(p.at.saturating_sub(LINES));
+        let high = f.partition_point(|v| *v <= f[p.at] + wide).max(p.at + LINES + 1).min(f.len());
+        low..high
+    };
+    let spans: Vec<(usize, usize)> = groups.iter().map(|g| (g[0].at, g[g.len() - 1].at)).collect();
+    Ok(groups
+        .into_iter()
+        .enumerate()
+        .map(|(i, peaks)| {
+            let mut low = peaks.iter().map(|p| reach(p).start).min().unwrap_or(0);
+            let mut high = peaks.iter().map(|p| reach(p).end).max().unwrap_or(f.len());
+            if let Some((_, before)) = i.checked_sub(1).and_then(|i| spans.get(i)) {
+                low = low.max(usize::midpoint(*before, spans[i].0));
+            }
+            if let Some((after, _)) = spans.get(i + 1) {
+                high = high.min(usize::midpoint(*after, spans[i].1) + 1);
+            }
+            Group { peaks, lines: low..high }
+        })
+        .collect())
+}
+
+/// Whether there are too few lines, or bandwidths, between two peaks to fit each alone.
+fn near(f: &[f64], a: &Peak, b: &Peak) -> bool {
+    b.at - a.at < 2 * LINES - 8 || f[b.at] - f[a.at] < 3.0 * (a.width + b.width)
+}
+
+/// Half-power bandwidth as the lines show it: at least half a line.
+fn width(f: &[f64], magnitude: &[f64], at: usize, valleys: [usize; 2]) -> f64 {
+    let half = magnitude[at] / f64::sqrt(2.0);
+    let cross = |a: usize, b: usize| {
+        let share = (magnitude[a] - half) / (magnitude[a] - magnitude[b]);
+        f[a] + share * (f[b] - f[a])
+    };
+    let left =
+        (valleys[0]..at).rev().find(|i| magnitude[*i] < half).map_or(f[valleys[0]], |i| cross(i + 1, i));
+    let right =
+        (at + 1..=valleys[1]).find(|i| magnitude[*i] < half).map_or(f[valleys[1]], |i| cross(i - 1, i));
+    (right - left).max((f[at + 1] - f[at - 1]) / 4.0)
+}

@@ -1,0 +1,204 @@
+//! The lines of a frequency response function that may be fitted.
+
+use crate::error::{Error, Result};
+use crate::read::Recording;
+use crate::record::{Frf, FrfKind, Meta, Record, Scaling, Spectrum, Values};
+use num_complex::Complex64;
+
+/// A frequency response function as the estimates of modes take it, complex or in magnitude only, with its coherence where known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// Frequencies of the lines in Hz, rising.
+    pub frequency: Vec<f64>,
+    /// Values in SI; real where only magnitudes are known.
+    pub values: Vec<Complex64>,
+    /// Whether phases are unknown.
+    pub magnitude_only: bool,
+    /// What the values are.
+    pub kind: FrfKind,
+    /// Coherence of each line.
+    pub coherence: Option<Vec<f64>>,
+}
+
+impl Measured {
+    /// All lines of a complex function.
+    pub fn complex(frf: &Frf) -> Measured {
+        Measured {
+            frequency: frf.axis.values(),
+            values: frf.values.clone(),
+            magnitude_only: false,
+            kind: frf.kind,
+            coherence: None,
+        }
+    }
+
+    /// All lines of a spectrum of magnitudes whose unit is that of a response over a force; `None` for any other spectrum.
+    pub fn magnitudes(spectrum: &Spectrum) -> Option<Measured> {
+        let kind = FrfKind::of(spectrum.meta.quantity);
+        match &spectrum.values {
+            Values::Real(values) if kind != FrfKind::Other => Some(Measured {
+                frequency: spectrum.axis.values(),
+                values: values.iter().map(|v| Complex64::new(v.abs(), 0.0)).collect(),
+                magnitude_only: true,
+                kind,
+                coherence: None,
+            }),
+            _ => None,
+        }
+    }
+
+    /// All functions of a recording, or those of one name, each with its record's meta data: complex ones, and magnitudes in the
+    /// unit of a response over a force. A coherence of the same lines in the recording is theirs where there is just one of each.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub fn all(recording: &Recording, channel: Option<&str>) -> Result<Vec<(Meta, Measured)>> {
+        let mut found: Vec<(Meta, Measured)> = Vec::new();
+        for record in &recording.records {
+            let measured = match record {
+                Record::Frf(frf) => Some(Measured::complex(frf)),
+                Record::Spectrum(s) => match &s.values {
+                    Values::Complex(values) => Some(Measured {
+                        frequency: s.axis.values(),
+                        values: values.clone(),
+                        magnitude_only: false,
+                        kind: FrfKind::of(s.meta.quantity),
+                        coherence: None,
+                    }),
+                    Values::Real(_) => Measured::magnitudes(s),
+                },
+                Record::Trace(_) => None,
+            };
+            found.extend(measured.map(|m| (record.meta().clone(), m)));
+        }
+        let names: Vec<String> = found.iter().map(|f| f.0.name.clone()).collect();
+        if let Some(name) = channel {
+            let number = name.parse::<usize>().ok().filter(|n| *n >= 1 && !names.iter().any(|n| n == name));
+            let mut at = 0;
+            found.retain(|f| {
+                at += 1;
+                number.map_or(f.0.name == name, |n| n == at)
+            });
+        }
+        if found.is_empty() {
+            let what = channel.map_or_else(String::new, |c| format!(" named {c:?}"));
+            let path = recording.path.display();
+            return Err(Error::refused(format!("{path}: no frequency response function{what}"))
+                .hint("`vibro info` lists what is in the file"));
+        }
+        if let [(_, only)] = found.as_mut_slice()
+            && recording.records.iter().filter(|r| is_coherence(r)).count() == 1
+        {
+            *only = only.clone().with_coherence_of(recording)?;
+        }
+        Ok(found)
+    }
+
+    /// Adds the coherence that a recording holds.
+    ///
+    /// # Errors
+    /// If it holds none or several, or one of other lines.
+    pub fn with_coherence_of(self, recording: &Recording) -> Result<Measured> {
+        let all: Vec<&Record> = recording.records.iter().filter(|r| is_coherence(r)).collect();
+        match all.as_slice() {
+            [Record::Spectrum(coherence)] => self.with_coherence(coherence),
+            _ => Err(Error::refused(format!(
+                "{}: {} coherences, not one",
+                recording.path.display(),
+                all.len()
+            ))),
+        }
+    }
+
+    /// Adds the coherence of the same lines.
+    ///
+    /// # Errors
+    /// If it has another number of lines, or lines elsewhere.
+    pub fn with_coherence(mut self, coherence: &Spectrum) -> Result<Measured> {
+        let Values::Real(values) = &coherence.values else {
+            return Err(Error::refused("the coherence is complex: it is no coherence"));
+        };
+        let width = self.frequency.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
+        let same = values.len() == self.frequency.len()
+            && self
+                .frequency
+                .iter()
+                .enumerate()
+                .all(|(i, f)| (coherence.axis.at(i) - f).abs() <= 1e-3 * width);
+        if !same {
+            return Err(Error::refused(format!(
+                "the coherence has other lines ({}) than the function ({})",
+                values.len(),
+                self.frequency.len()
+            )));
+        }
+        self.coherence = Some(values.clone());
+        Ok(self)
+    }
+
+    /// How often iω multiplies a receptance to give the values.
+    pub(super) fn power(&self) -> i32 {
+        match self.kind {
+            FrfKind::Mobility => 1,
+            FrfKind::Accelerance => 2,
+            FrfKind::Receptance | FrfKind::Other => 0,
+        }
+    }
+
+    /// Without the lines that cannot be used; those are named in `warnings`.
+    pub(super) fn usable(mut self, least: f64, warnings: &mut Vec<String>) -> Result<Measured> {
+        let coherence = self.coherence.take();
+        let n = self.frequency.len();
+        let of = |i: usize| coherence.as_ref().and_then(|c| c.get(i)).copied();
+        let missing: Vec<usize> = (0..n)
+            .filter(|i| {
+                let c = of(*i);
+                !(self.values[*i].re.is_finite() && self.values[*i].im.is_finite())
+                    || c.is_some_and(f64::is_nan)
+            })
+            .collect();
+        // Rounding takes a coherence of 1 a little beyond.
+        let impossible: Vec<usize> = (0..n)
+            .filter(|i| of(*i).is_some_and(|c| !c.is_nan() && !(-1e-6..=1.0 + 1e-6).contains(&c)))
+            .collect();
+        let low: Vec<usize> =
+            (0..n).filter(|i| of(*i).is_some_and(|c| (-1e-6..least).contains(&c))).collect();
+        for (which, why) in [
+            (&missing, "missing (not a number)".to_owned()),
+            (&impossible, "of a coherence above 1 or below 0, which no measurement has".to_owned()),
+            (&low, format!("of a coherence below {least}")),
+        ] {
+            if !which.is_empty() {
+                let named: Vec<String> =
+                    which.iter().take(6).map(|i| self.frequency[*i].to_string()).collect();
+                let more = if which.len() > 6 { ", …" } else { "" };
+                warnings.push(format!(
+                    "{} lines are left out, {why}: {}{more} Hz.",
+                    which.len(),
+                    named.join(", ")
+                ));
+            }
+        }
+        let kept: Vec<usize> = (0..n)
+            .filter(|i| !(missing.contains(i) || impossible.contains(i) || low.contains(i)))
+            .filter(|i| self.frequency[*i] > 0.0)
+            .collect();
+        if kept.len() < 5 {
+            return Err(Error::refused(format!(
+                "{} of {n} lines can be used: there is nothing to fit",
+                kept.len()
+            )));
+        }
+        let take = |all: &[f64]| kept.iter().map(|i| all[*i]).collect::<Vec<f64>>();
+        Ok(Measured {
+            frequency: take(&self.frequency),
+            values: kept.iter().map(|i| self.values[*i]).collect(),
+            coherence: coherence.as_deref().map(take),
+            ..self
+        })
+    }
+}
+
+fn is_coherence(record: &Record) -> bool {
+    matches!(record, Record::Spectrum(s) if s.scaling == Scaling::Coherence)
+}

@@ -1,0 +1,248 @@
+//! What is known of each mode.
+
+use super::bands::Group;
+use super::graphic::{Circle, POINTS, circle, half_power};
+use super::rational::Rational;
+use super::{Measured, Pole};
+use crate::measure::Estimate;
+use serde::Serialize;
+use std::f64::consts::TAU;
+
+/// How modes are looked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModalOptions {
+    /// Band in Hz whose peaks are fitted together. Default: a band around each peak.
+    pub band: Option<(f64, f64)>,
+    /// Mass in kg for the stiffness k = m(2πf)², taken as exact. Default: none.
+    pub mass: Option<f64>,
+    /// Lines of a coherence below this are left out. Default 0.5.
+    pub least_coherence: f64,
+}
+
+impl Default for ModalOptions {
+    fn default() -> ModalOptions {
+        ModalOptions { band: None, mass: None, least_coherence: 0.5 }
+    }
+}
+
+/// The modes of a frequency response function.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModalResult {
+    /// Modes by frequency.
+    pub modes: Vec<Mode>,
+    /// What a person must know.
+    pub warnings: Vec<String>,
+}
+
+/// One mode.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Mode {
+    /// Undamped natural frequency in Hz.
+    pub frequency: Estimate,
+    /// Damping ratio.
+    pub zeta: Estimate,
+    /// Magnitude of the modal constant A of the receptance A/(ωᵣ² − ω² + 2iζωᵣω), 1/kg.
+    pub modal_constant: Estimate,
+    /// How these were found.
+    pub method: String,
+    /// k = m(2πf)² in N/m; `None` without a mass.
+    pub stiffness: Option<Estimate>,
+    /// First and last line in Hz, and the number of lines, that were fitted.
+    pub lines: (f64, f64, usize),
+    /// What every method gives.
+    pub by: Vec<ByMethod>,
+    /// Curves for a figure.
+    #[serde(skip)]
+    pub picture: ModePicture,
+}
+
+/// What one method gives.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ByMethod {
+    /// `rational fit`, `circle fit`, `half power` or `peak`.
+    pub method: &'static str,
+    /// Natural frequency in Hz.
+    pub frequency: Estimate,
+    /// Damping ratio.
+    pub zeta: Option<Estimate>,
+    /// Magnitude of the modal constant.
+    pub modal_constant: Option<Estimate>,
+    /// What limits it; empty for nothing.
+    pub note: String,
+}
+
+/// A mode, to be drawn.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ModePicture {
+    /// Frequency and fitted response of the lines that were used, real and imaginary.
+    pub fitted: Vec<(f64, f64, f64)>,
+    /// The circle, where one was fitted.
+    pub circle: Option<Circle>,
+}
+
+/// What a fit leaves, by root mean square, must be less than this part of the highest line; else these are no modes as modelled.
+const EXPLAINED: f64 = 0.1;
+
+fn stiffness(frequency: &Estimate, mass: Option<f64>) -> Option<Estimate> {
+    let k = mass? * (TAU * frequency.value).powi(2);
+    let std = frequency.std.map(|u| 2.0 * k * u / frequency.value);
+    Some(Estimate::new(k, std, "N/m", frequency.n, "k = m(2πf)²"))
+}
+
+/// Adds the modes of a fitted group; returns how many of them have a phase that runs the wrong way.
+pub(super) fn report(
+    measured: &Measured,
+    group: &Group,
+    fit: &Rational,
+    options: &ModalOptions,
+    modes: &mut Vec<Mode>,
+    warnings: &mut Vec<String>,
+) -> usize {
+    let mut reversed = 0;
+    let sound = fit.sound(measured, &group.peaks);
+    for (((pole, std), peak), sound) in fit.modes.iter().zip(&fit.std).zip(&group.peaks).zip(sound) {
+        let at = measured.frequency[peak.at];
+        if !(sound && fit.unexplained < EXPLAINED) {
+            if pole.zeta < 0.0 && std[1] < -pole.zeta / 2.0 {
+                reversed += 1;
+            }
+            warnings.push(format!(
+                "The peak at {at} Hz is not supported as a mode: the fit gives ζ = {:.2e} ± {:.1e} at {:.3} Hz and leaves {:.0} % of the highest line.",
+                pole.zeta,
+                std[1],
+                pole.frequency,
+                100.0 * fit.unexplained
+            ));
+            modes.push(only_a_peak(measured, group, peak.at, options));
+            continue;
+        }
+        if fit.whiteness.rejected() {
+            warnings.push(format!(
+                "Around {:.6} Hz the residuals are not white: neighbouring modes, leakage or a damping that is not viscous; the uncertainties are enlarged by {:.1}.",
+                pole.frequency, fit.whiteness.inflation
+            ));
+        }
+        modes.push(mode(measured, group, peak.at, fit, (pole, std), options));
+    }
+    reversed
+}
+
+fn mode(
+    measured: &Measured,
+    group: &Group,
+    at: usize,
+    fit: &Rational,
+    (pole, std): (&Pole, &[f64; 3]),
+    options: &ModalOptions,
+) -> Mode {
+    let lines = group.lines.clone();
+    let n = lines.len();
+    let f = &measured.frequency[lines.clone()];
+    let together = match group.peaks.len() {
+        1 => String::new(),
+        many => format!(", {many} modes together"),
+    };
+    let method = format!("rational fit{together}, {}", fit.noise);
+    let estimate = |value, std, unit| Estimate::new(value, std, unit, n, method.clone());
+    let frequency = estimate(pole.frequency, Some(std[0]), "Hz");
+    let zeta = estimate(pole.zeta, Some(std[1]), "1");
+    let modal_constant = estimate(pole.constant.norm(), Some(std[2]), "1/kg");
+    let mut by = vec![ByMethod {
+        method: "rational fit",
+        frequency: frequency.clone(),
+        zeta: Some(zeta.clone()),
+        modal_constant: Some(modal_constant.clone()),
+        note: String::new(),
+    }];
+    let mut drawn = None;
+    if !measured.magnitude_only {
+        let blank = |note: String| ByMethod {
+            method: "circle fit",
+            frequency: Estimate::new(f64::NAN, None, "Hz", 0, "circle fit"),
+            zeta: None,
+            modal_constant: None,
+            note,
+        };
+        by.push(match circle(measured, pole, &lines) {
+            Ok(circle) => {
+                let n = circle.points.len();
+                let plain = |value, unit| Estimate::new(value, None, unit, n, "circle fit");
+                let found = ByMethod {
+                    method: "circle fit",
+                    frequency: plain(circle.pole.frequency, "Hz"),
+                    zeta: Some(plain(circle.pole.zeta, "1")),
+                    modal_constant: Some(plain(circle.pole.constant.norm(), "1/kg")),
+                    note: String::new(),
+                };
+                drawn = Some(circle);
+                found
+            }
+            Err(n) if n < POINTS => {
+                blank(format!("a circle needs {POINTS} lines around the mode, and there are {n}"))
+            }
+            Err(_) => blank("the lines lie on no circle".to_owned()),
+        });
+    }
+    by.extend(graphic(measured, group, at));
+    let fitted = f.iter().zip(&fit.fitted).map(|(f, v)| (*f, v.re, v.im)).collect();
+    Mode {
+        stiffness: stiffness(&frequency, options.mass),
+        frequency,
+        zeta,
+        modal_constant,
+        method,
+        lines: (f[0], f[n - 1], n),
+        by,
+        picture: ModePicture { fitted, circle: drawn },
+    }
+}
+
+/// The methods that read the magnitudes.
+fn graphic(measured: &Measured, group: &Group, at: usize) -> Vec<ByMethod> {
+    let f = &measured.frequency;
+    let line = (f[at + 1] - f[at - 1]) / 2.0;
+    let near = |f: f64, method| Estimate::new(f, None, "Hz", 1, method);
+    let mut by = Vec::new();
+    if let Some((frequency, zeta)) = half_power(measured, at, &group.lines) {
+        let lines = 2.0 * zeta * frequency / line;
+        let note = if lines < 8.0 {
+            format!(
+                "bound to the lines: the bandwidth is {lines:.1} lines, and ζ is too large by up to tens of per cent"
+            )
+        } else {
+            String::new()
+        };
+        by.push(ByMethod {
+            method: "half power",
+            frequency: near(frequency, "half power"),
+            zeta: Some(Estimate::new(zeta, None, "1", 4, "half power")),
+            modal_constant: None,
+            note,
+        });
+    }
+    by.push(ByMethod {
+        method: "peak",
+        frequency: near(f[at], "largest line"),
+        zeta: None,
+        modal_constant: None,
+        note: format!("bound to the lines: within {:.6} Hz", line / 2.0),
+    });
+    by
+}
+
+/// A peak that no fit supports: its line, without uncertainty.
+fn only_a_peak(measured: &Measured, group: &Group, at: usize, options: &ModalOptions) -> Mode {
+    let f = measured.frequency[at];
+    let unknown = |unit| Estimate::new(f64::NAN, None, unit, 0, "peak");
+    let frequency = Estimate::new(f, None, "Hz", 1, "largest line");
+    Mode {
+        stiffness: stiffness(&frequency, options.mass),
+        frequency,
+        zeta: unknown("1"),
+        modal_constant: unknown("1/kg"),
+        method: "peak".to_owned(),
+        lines: (f, f, 1),
+        by: graphic(measured, group, at),
+        picture: ModePicture::default(),
+    }
+}

@@ -1,0 +1,232 @@
+//! Contact pulses: damping ratio and contact frequency from two instants, or from fits to the whole pulse.
+//!
+//! The model of spring and damper (Kelvin–Voigt) gives the answer; those of Hertz and of Hunt and Crossley are fitted beside it,
+//! to see whether the record prefers them. What the instrument's low-pass does to a pulse is done to the models, in closed form.
+
+mod doubts;
+mod fit;
+mod hunt_crossley;
+mod kelvin_voigt;
+mod locate;
+mod low_pass;
+mod result;
+mod two_times;
+mod view;
+
+pub use hunt_crossley::HuntCrossley;
+pub use kelvin_voigt::KelvinVoigt;
+pub use low_pass::LowPass;
+pub use result::{PulseCurve, PulseFit, PulsePicture, PulseResult};
+pub use two_times::two_times;
+
+use super::Estimate;
+use super::residuals::{Whiteness, student};
+use crate::error::{Error, Result};
+use crate::record::Trace;
+use doubts::doubts;
+use fit::Model;
+use locate::locate;
+use result::contact_estimates;
+use view::View;
+
+/// What is known of a pulse beside its record.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct PulseOptions {
+    /// Low-pass of the instrument. Default: none, with a warning.
+    pub low_pass: Option<LowPass>,
+    /// Mass in kg that is decelerated, taken as exact. Default: unknown, and no stiffness and damping.
+    pub mass: Option<f64>,
+}
+
+/// Fits the largest pulse of a record of acceleration (or of force).
+///
+/// Residuals are taken for noise of one variance. Where they are correlated, which is tested, uncertainties are enlarged by the
+/// correlation and that is said.
+///
+/// # Errors
+/// If the record is not evenly sampled in time, holds no whole pulse, or too few samples of it, or does not determine the
+/// parameters; if the mass is not above 0.
+pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
+    let Some(rate) = trace.rate().filter(|r| r.is_finite() && *r > 0.0) else {
+        return Err(Error::refused("a pulse needs evenly spaced samples over time")
+            .hint("state the sampling rate with --rate"));
+    };
+    if let Some(mass) = options.mass.filter(|m| !(m.is_finite() && *m > 0.0)) {
+        return Err(Error::usage(format!("a mass of {mass} kg"), "a finite mass above 0"));
+    }
+    let found = locate(&trace.values)?;
+    let seen = found.flanks.1 - found.flanks.0;
+    if seen < 3.0 {
+        return Err(Error::refused(format!(
+            "the pulse has {seen:.1} samples above half its height, and at least 3 are needed"
+        ))
+        .hint("sample faster"));
+    }
+    let mut warnings = Vec::new();
+    let view = View::new(trace, rate, &found, options.low_pass.as_ref())?;
+    let (samples, used) = view.window(&mut warnings)?;
+    let main = samples.fit(Model::KelvinVoigt)?;
+    let whiteness = Whiteness::of(&[&main.fit.residuals]);
+    let n = samples.times.len();
+    let method = match &options.low_pass {
+        Some(filter) => format!(
+            "least squares, spring and damper through a Butterworth low-pass of order {} at {} Hz",
+            filter.order(),
+            filter.corner()
+        ),
+        None => "least squares, spring and damper".to_owned(),
+    };
+    let unit = [1.0, 1.0 / view.length];
+    let shape = [main.fit.parameters[3], main.fit.parameters[4] * unit[1]];
+    let widened = whiteness.inflation * student(main.fit.degrees_of_freedom());
+    let covariance =
+        |i: usize, j: usize| widened.powi(2) * unit[i] * unit[j] * main.fit.covariance(3 + i, 3 + j);
+    let contact = |p: &[f64]| KelvinVoigt::new(p[0], p[1]);
+    let mut result = contact_estimates((&shape, &unit), covariance, contact, options.mass, n, &method)
+        .ok_or_else(|| {
+            Error::refused("the fitted contact lies at the border of what is possible (ξ near 1)")
+        })?;
+    match view.to_velocity(options.mass) {
+        Ok(factor) => {
+            let std = factor * main.fit.std(2) * widened;
+            let value = factor * main.fit.parameters[2].abs();
+            result.initial_velocity = Some(Estimate::new(value, Some(std), "m/s", n, method));
+        }
+        Err(why) => warnings.push(why),
+    }
+    let mut fits = vec![(main, whiteness)];
+    for rival in [Model::Hertz, Model::HuntCrossley] {
+        match samples.fit(rival) {
+            Ok(fitted) => {
+                let whiteness = Whiteness::of(&[&fitted.fit.residuals]);
+                fits.push((fitted, whiteness));
+            }
+            Err(error) => warnings.push(format!("The model {} could not be fitted: {error}.", rival.name())),
+        }
+    }
+    result.fits = fits.iter().map(|(f, w)| view.report(f, w, options.mass)).collect();
+    warnings.extend(doubts(&fits[0].0, &fits[0].1, &result.fits, &result, options));
+    result.warnings = warnings;
+    result.picture = Some(view.picture(&samples, &used, fits.iter().map(|f| &f.0)));
+    Ok(result)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::{Axis, Meta};
+    use crate::units::Unit;
+
+    const DT: f64 = 1e-6;
+
+    /// A record of 200 samples, a contact of ξ 0.2, 10 kHz and 3 m/s at 80.4 µs on it, and a ripple of 0.1 % for noise.
+    fn record() -> Vec<f64> {
+        let contact = KelvinVoigt::new(0.2, 10e3).unwrap();
+        (0..200)
+            .map(|i| {
+                let t = f64::from(i) * DT - 80.4e-6;
+                let pulse = if t >= 0.0 && t <= contact.duration() { contact.unbounded(t) } else { 0.0 };
+                3.0 * pulse + 200.0 * (f64::from(i * i) * 0.7).sin()
+            })
+            .collect()
+    }
+
+    fn trace(values: Vec<f64>, unit: &str) -> Trace {
+        let axis = Axis::time(0.5, DT, values.len());
+        Trace { meta: Meta::new("bit", Unit::parse(unit).unwrap()), axis, values }
+    }
+
+    fn found(values: Vec<f64>) -> PulseResult {
+        let result =
+            pulse(&trace(values, "m/s²"), &PulseOptions { mass: Some(0.4), ..PulseOptions::default() })
+                .unwrap();
+        // Five of the uncertainties that are stated, and those within a hundredth of the value.
+        for (estimate, truth) in [(&result.xi, 0.2), (&result.frequency, 10e3)] {
+            let std = estimate.std.unwrap();
+            assert!((estimate.value - truth).abs() < 5.0 * std && std < 0.02 * truth, "{result:?}");
+        }
+        result
+    }
+
+    fn says(result: &PulseResult, words: &str) -> bool {
+        result.warnings.iter().any(|w| w.contains(words))
+    }
+
+    #[test]
+    fn all_that_follows_from_a_pulse() {
+        let result = found(record());
+        let velocity = result.initial_velocity.as_ref().unwrap();
+        assert!((velocity.value - 3.0).abs() < 5.0 * velocity.std.unwrap(), "{result:?}");
+        let onset = &result.fits[0].parameters["onset"];
+        assert!((onset.value - 0.5 - 80.4e-6).abs() < 5.0 * onset.std.unwrap(), "{onset:?}");
+        let k = result.stiffness.as_ref().unwrap().value;
+        assert!((k / (0.4 * (std::f64::consts::TAU * result.frequency.value).powi(2)) - 1.0).abs() < 1e-12);
+        assert!(says(&result, "No low-pass"));
+        let models: Vec<&str> = result.fits.iter().map(|f| f.model).collect();
+        assert_eq!(models, ["kelvin-voigt", "hertz", "hunt-crossley"]);
+        assert!(result.fits[1..].iter().all(|f| f.aicc > result.fits[0].aicc + 10.0), "{:?}", result.fits);
+    }
+
+    #[test]
+    fn polarity_and_baseline_do_not_matter() {
+        found(record().iter().map(|v| 5e4 - v).collect());
+    }
+
+    #[test]
+    fn a_clipped_top_is_left_out() {
+        let result = found(record().iter().map(|v| v.min(1.2e5)).collect());
+        assert!(says(&result, "clipped"), "{:?}", result.warnings);
+    }
+
+    #[test]
+    fn ringing_after_the_pulse_is_not_fitted() {
+        let end = 80.4e-6 + KelvinVoigt::new(0.2, 10e3).unwrap().duration();
+        let ringing = record().into_iter().enumerate().map(|(i, v)| {
+            let t = i as f64 * DT - end;
+            v + if t > 0.0 { 4e4 * (-t / 30e-6).exp() * (t * 2e5).sin() } else { 0.0 }
+        });
+        let result = found(ringing.collect());
+        assert!(says(&result, "does not rest"), "{:?}", result.warnings);
+    }
+
+    #[test]
+    fn the_contact_of_hunt_and_crossley_is_preferred_where_it_is_one() {
+        let contact = HuntCrossley::new(0.3).unwrap();
+        let times: Vec<f64> = (0..200).map(|i| f64::from(i) * DT - 80.4e-6).collect();
+        let shape = contact.decelerations(45e-6, None, &times);
+        let values = shape
+            .iter()
+            .zip(record())
+            .enumerate()
+            .map(|(i, (v, _))| 3.0 * v + 200.0 * ((i * i) as f64 * 0.7).sin());
+        let result = pulse(&trace(values.collect(), "m/s²"), &PulseOptions::default()).unwrap();
+        assert!(says(&result, "prefers the model hunt-crossley"), "{:?}", result.warnings);
+        let alpha = &result.fits[2].parameters["alpha"];
+        assert!((alpha.value - 0.3).abs() < 5.0 * alpha.std.unwrap(), "{alpha:?}");
+    }
+
+    #[test]
+    fn a_force_needs_the_mass_and_a_voltage_has_no_velocity() {
+        let options = PulseOptions { mass: Some(0.5), ..PulseOptions::default() };
+        let force = pulse(&trace(record(), "N"), &options).unwrap();
+        // F = ma: half the mass, twice the acceleration.
+        assert!((force.initial_velocity.unwrap().value / 6.0 - 1.0).abs() < 0.02);
+        let bare = pulse(&trace(record(), "N"), &PulseOptions::default()).unwrap();
+        assert!(bare.initial_velocity.is_none() && says(&bare, "needs the mass"));
+        let volts = pulse(&trace(record(), "V"), &PulseOptions::default()).unwrap();
+        assert!(volts.initial_velocity.is_none() && says(&volts, "no acceleration"));
+    }
+
+    #[test]
+    fn what_is_no_pulse_is_refused() {
+        let refusal = |values| pulse(&trace(values, "m/s²"), &PulseOptions::default()).unwrap_err();
+        assert!(refusal(vec![1.0; 80]).to_string().contains("all samples are 1"));
+        let mut spike = vec![0.0; 80];
+        spike[40] = 1.0;
+        assert!(refusal(spike).to_string().contains("sample faster"));
+        let uneven = Trace { axis: Axis::index(200), ..trace(record(), "m/s²") };
+        assert!(pulse(&uneven, &PulseOptions::default()).unwrap_err().to_string().contains("--rate"));
+        let options = PulseOptions { mass: Some(0.0), ..PulseOptions::default() };
+        assert_eq!(pulse(&trace(record(), "m/s²"), &options).unwrap_err().exit_code(), 2);
+    }
+}

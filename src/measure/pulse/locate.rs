@@ -1,0 +1,143 @@
+//! Where in a record the pulse is.
+
+use crate::error::{Error, Result};
+
+/// The largest pulse of a record.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Located {
+    /// Value without a pulse.
+    pub baseline: f64,
+    /// Largest excursion from it, with its sign.
+    pub height: f64,
+    /// Standard deviation of the noise, from neighbours: too small where the noise is not white.
+    pub noise: f64,
+    /// Places, in samples, where the flanks cross half the height.
+    pub flanks: (f64, f64),
+    /// Place, in samples, where the falling flank has come down to a fifth of the height.
+    pub low: usize,
+    /// Samples of a flat top.
+    pub clipped: Vec<usize>,
+}
+
+/// Equal samples in a row at the largest value from which on a top is taken for clipped.
+const FLAT: usize = 3;
+
+/// Noise deviations that a pulse must stand above the baseline.
+const LEAST: f64 = 6.0;
+
+pub(super) fn locate(values: &[f64]) -> Result<Located> {
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    let (Some(least), Some(most)) = (sorted.first(), sorted.last()) else {
+        return Err(Error::refused("the record holds no value"));
+    };
+    if least == most {
+        return Err(Error::refused(format!("all samples are {least}: there is no pulse"))
+            .hint("check the channel: `vibro info` lists all"));
+    }
+    let baseline = mode(&sorted);
+    let noise = {
+        let mut steps: Vec<f64> =
+            values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|d| d.is_finite()).collect();
+        steps.sort_by(f64::total_cmp);
+        // Median to standard deviation of a normal distribution, and of a difference to that of a value.
+        1.4826 * steps.get(steps.len() / 2).copied().unwrap_or(0.0) / f64::sqrt(2.0)
+    };
+    let far = |v: &f64| if v.is_finite() { (v - baseline).abs() } else { -1.0 };
+    let peak = (0..values.len()).max_by(|a, b| far(&values[*a]).total_cmp(&far(&values[*b]))).unwrap_or(0);
+    let height = values[peak] - baseline;
+    if height.abs() < LEAST * noise {
+        return Err(Error::refused(format!(
+            "no pulse stands out: the largest excursion is {:.1} times the noise between neighbours, {LEAST} are needed",
+            height.abs() / noise
+        )));
+    }
+    let part = |i: usize| (values[i] - baseline) / height;
+    let before = (0..peak).rev().find(|i| part(*i) < 0.5);
+    let after = (peak + 1..values.len()).find(|i| part(*i) < 0.5);
+    let missing = |which: &str, end: &str| {
+        Error::refused(format!("the record {which} inside the pulse: its {end} is missing"))
+            .hint("record with a pre-trigger, and long enough")
+    };
+    let Some(before) = before else { return Err(missing("begins", "onset")) };
+    let Some(after) = after else { return Err(missing("stops", "end")) };
+    let cross = |a: usize, b: usize| a as f64 + (0.5 - part(a)) / (part(b) - part(a)) * (b as f64 - a as f64);
+    let low = (after..values.len()).find(|i| part(*i) < 0.2).unwrap_or(after);
+    let top = values[peak];
+    let mut clipped = Vec::new();
+    let mut i = before;
+    while i < after {
+        let run = values[i..after].iter().take_while(|v| **v == top).count();
+        if run >= FLAT {
+            clipped.extend(i..i + run);
+        }
+        i += run.max(1);
+    }
+    Ok(Located {
+        baseline,
+        height,
+        noise,
+        flanks: (cross(before, before + 1), cross(after - 1, after)),
+        low,
+        clipped,
+    })
+}
+
+/// Middle of the shortest interval that holds a quarter of the values: where most of them are, unlike the median of a record
+/// that is mostly pulse.
+fn mode(sorted: &[f64]) -> f64 {
+    let quarter = (sorted.len() / 4).clamp(1, sorted.len().max(2) - 1);
+    sorted
+        .windows(quarter + 1)
+        .min_by(|a, b| (a[quarter] - a[0]).total_cmp(&(b[quarter] - b[0])))
+        .map_or(f64::NAN, |w| w[w.len() / 2])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A half sine of 40 samples after 60 of nothing and before 30, over 2, of height `h`.
+    fn record(h: f64) -> Vec<f64> {
+        let half = |i: i32| {
+            if (0..=40).contains(&i) { (f64::from(i) * std::f64::consts::PI / 40.0).sin() } else { 0.0 }
+        };
+        (-60..70).map(|i| 2.0 + h * half(i) + 1e-4 * f64::from(i % 3)).collect()
+    }
+
+    #[test]
+    fn a_pulse_of_either_sign_over_a_baseline() {
+        for h in [5.0, -5.0] {
+            let found = locate(&record(h)).unwrap();
+            assert!(
+                (found.baseline - 2.0).abs() < 1e-3 && (found.height / h - 1.0).abs() < 1e-3,
+                "{found:?}"
+            );
+            // A half sine is above half its height from 1/6 to 5/6 of its length.
+            let (rise, fall) = found.flanks;
+            assert!(
+                (rise - 60.0 - 40.0 / 6.0).abs() < 0.1 && (fall - 60.0 - 200.0 / 6.0).abs() < 0.1,
+                "{found:?}"
+            );
+            assert!(found.clipped.is_empty());
+        }
+    }
+
+    #[test]
+    fn a_flat_top_is_seen() {
+        let clipped: Vec<f64> = record(5.0).iter().map(|v| v.min(6.0)).collect();
+        let found = locate(&clipped).unwrap();
+        // sin > 0.8 from 0.295 to 0.705 of 40 samples.
+        assert!((16..=18).contains(&found.clipped.len()), "{found:?}");
+    }
+
+    #[test]
+    fn records_without_a_whole_pulse_are_refused() {
+        assert!(locate(&[3.0; 50]).unwrap_err().to_string().contains("all samples are 3"));
+        assert!(locate(&[f64::NAN; 5]).is_err() && locate(&[]).is_err());
+        assert!(locate(&record(5.0)[80..]).unwrap_err().to_string().contains("onset"));
+        assert!(locate(&record(5.0)[..80]).unwrap_err().to_string().contains("end is missing"));
+        let noise: Vec<f64> = (0..200).map(|i| f64::from(i * 7919 % 201)).collect();
+        assert!(locate(&noise).unwrap_err().to_string().contains("stands out"));
+    }
+}

@@ -1,0 +1,148 @@
+//! Modes of frequency response functions in noise. The functions are written here as sums of modes.
+
+use crate::noise::Noise;
+use crate::score::{Score, bounds};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+use vibroimpact::measure::modal::{Measured, ModalOptions, modal};
+use vibroimpact::record::FrfKind;
+
+const CASES: u64 = 250;
+
+/// One mode with a constant and a mass-like residual term, times (iω)^power; `p` is frequency, ζ, and the real and imaginary
+/// parts of the modal constant and of the two residual terms.
+fn one(p: &[f64], f: f64, power: i32) -> Complex64 {
+    let (omega, own) = (TAU * f, TAU * p[0]);
+    let constant = Complex64::new(p[2], p[3]);
+    let mode = constant / Complex64::new(own * own - omega * omega, 2.0 * p[1] * own * omega);
+    let rest = Complex64::new(p[4], p[5]) + Complex64::new(p[6], p[7]) / (omega * omega);
+    Complex64::new(0.0, omega).powi(power) * (mode + rest)
+}
+
+fn kinds(seed: u64) -> (FrfKind, i32) {
+    [(FrfKind::Receptance, 0), (FrfKind::Mobility, 1), (FrfKind::Accelerance, 2)][(seed % 3) as usize]
+}
+
+fn noisy(clean: &[Complex64], sigma: &[f64], noise: &mut Noise) -> Vec<Complex64> {
+    let mut add = |(v, s): (&Complex64, &f64)| v + Complex64::new(s * noise.normal(), s * noise.normal());
+    clean.iter().zip(sigma).map(&mut add).collect()
+}
+
+fn measured(frequency: Vec<f64>, values: Vec<Complex64>, kind: FrfKind) -> Measured {
+    Measured { frequency, values, magnitude_only: false, kind, coherence: None }
+}
+
+/// A bandwidth 2ζf of one line, the mode anywhere between two lines; noise equal on all lines, or proportional to the response.
+fn a_mode_one_line_wide(proportional: bool, from: u64) {
+    let (mut frequency, mut zeta, mut constant) = <(Score, Score, Score)>::default();
+    println!("seeds {from} to {}", from + CASES);
+    for seed in from..from + CASES {
+        let mut noise = Noise::new(seed);
+        let (kind, power) = kinds(seed);
+        let df = 0.5;
+        let f0 = noise.between(60.0, 250.0);
+        let damping = df / (2.0 * f0);
+        let stiffness = (TAU * f0).powi(2);
+        let (a, b) = (noise.between(0.5, 3.0), noise.between(-0.2, 0.2));
+        let rest = noise.between(-3.0, 3.0) / stiffness;
+        let p = [f0, damping, a, b, rest, 0.1 * rest, noise.between(-1.0, 1.0), 0.0];
+        let lines: Vec<f64> = (2..(2.0 * f0 / df) as usize).map(|k| k as f64 * df).collect();
+        let clean: Vec<Complex64> = lines.iter().map(|f| one(&p, *f, power)).collect();
+        let level = noise.between(0.002, 0.02);
+        let near = |f: &f64| (f - f0).abs() < 40.0 * df;
+        let top =
+            lines.iter().zip(&clean).filter(|(f, _)| near(f)).map(|(_, v)| v.norm()).fold(0.0, f64::max);
+        let sigma: Vec<f64> =
+            clean.iter().map(|v| if proportional { level * v.norm() } else { level * top }).collect();
+        // The bound is that of the forty lines on either side, real and imaginary parts, beyond which other modes would be.
+        let part: Vec<(f64, f64)> =
+            lines.iter().zip(&sigma).filter(|(f, _)| near(f)).map(|(f, s)| (*f, *s)).collect();
+        let spread: Vec<f64> = part.iter().flat_map(|(_, s)| [*s, *s]).collect();
+        let steps = [1e-4 * df, 1e-4 * damping, 1e-4, 1e-4, 1e-4 / stiffness, 1e-4 / stiffness, 1e-4, 1e-4];
+        let bound = bounds(&p, &steps, &spread, |p| {
+            part.iter()
+                .flat_map(|(f, _)| {
+                    let v = one(p, *f, power);
+                    [v.re, v.im]
+                })
+                .collect()
+        });
+        let values = noisy(&clean, &sigma, &mut noise);
+        let options =
+            ModalOptions { band: Some((f0 - 20.0 * df, f0 + 20.0 * df)), ..ModalOptions::default() };
+        let found =
+            modal(&measured(lines, values, kind), &options).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
+        let mode = found
+            .modes
+            .iter()
+            .min_by(|a, b| (a.frequency.value - f0).abs().total_cmp(&(b.frequency.value - f0).abs()))
+            .unwrap_or_else(|| panic!("seed {seed}: no mode"));
+        assert!(mode.frequency.std.is_some(), "seed {seed}: {:?}", found.warnings);
+        frequency.add(&mode.frequency, f0, bound[0]);
+        zeta.add(&mode.zeta, damping, bound[1]);
+        // |A| moves with its real part by cos of its phase; the imaginary part's share is left to the coverage.
+        constant.add(&mode.modal_constant, a.hypot(b), bound[2].hypot(bound[3]));
+    }
+    let what = if proportional { "noise proportional" } else { "noise equal on all lines" };
+    frequency.judge(&format!("mode one line wide, {what}, frequency"), 1.3);
+    zeta.judge(&format!("mode one line wide, {what}, ζ"), 1.3);
+    constant.judge(&format!("mode one line wide, {what}, modal constant"), 1.3);
+}
+
+#[test]
+fn a_mode_one_line_wide_in_equal_noise() {
+    a_mode_one_line_wide(false, 0);
+}
+
+#[test]
+fn a_mode_one_line_wide_in_proportional_noise() {
+    a_mode_one_line_wide(true, 5000);
+}
+
+/// Several modes found without a band, bandwidths of half a line to some lines: what is printed as uncertainty covers the error, of
+/// noise and of the modes beside.
+#[test]
+fn modes_beside_each_other() {
+    let (mut frequency, mut zeta) = <(Score, Score)>::default();
+    println!("seeds 9000 to 9100");
+    let mut missed = 0;
+    for seed in 9000..9100 {
+        let mut noise = Noise::new(seed);
+        let (kind, power) = kinds(seed);
+        let df = 0.5;
+        let truth: Vec<[f64; 2]> = (0..4)
+            .map(|k| {
+                let f = 45.0 + 60.0 * f64::from(k) + noise.between(-12.0, 12.0);
+                [f, noise.between(0.5, 4.0) * df / (2.0 * f)]
+            })
+            .collect();
+        let lines: Vec<f64> = (2..600).map(|k| f64::from(k) * df).collect();
+        let clean: Vec<Complex64> = lines
+            .iter()
+            .map(|f| truth.iter().map(|t| one(&[t[0], t[1], 1.0, 0.0, 0.0, 0.0, 0.0, 0.0], *f, power)).sum())
+            .collect();
+        let sigma: Vec<f64> = clean.iter().map(|v| 0.002 * v.norm()).collect();
+        let values = noisy(&clean, &sigma, &mut noise);
+        let found = modal(&measured(lines, values, kind), &ModalOptions::default())
+            .unwrap_or_else(|e| panic!("seed {seed}: {e}"));
+        for t in &truth {
+            let mode = found
+                .modes
+                .iter()
+                .filter(|m| m.frequency.std.is_some())
+                .min_by(|a, b| (a.frequency.value - t[0]).abs().total_cmp(&(b.frequency.value - t[0]).abs()))
+                .filter(|m| (m.frequency.value - t[0]).abs() < 2.0);
+            match mode {
+                Some(mode) => {
+                    frequency.add(&mode.frequency, t[0], mode.frequency.std.unwrap_or(f64::NAN));
+                    zeta.add(&mode.zeta, t[1], mode.zeta.std.unwrap_or(f64::NAN));
+                }
+                None => missed += 1,
+            }
+        }
+    }
+    println!("{missed} of 400 modes not found");
+    assert!(missed <= 8, "{missed}");
+    frequency.judge("modes beside each other, frequency against its own uncertainty", 1.3);
+    zeta.judge("modes beside each other, ζ against its own uncertainty", 1.3);
+}

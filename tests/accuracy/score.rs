@@ -1,0 +1,83 @@
+//! What is counted over many cases.
+
+use vibroimpact::measure::Estimate;
+
+/// Errors of one estimate over many cases, each in units of its bound and of its stated uncertainty.
+#[derive(Default)]
+pub struct Score {
+    squares: f64,
+    sum: f64,
+    covered: usize,
+    n: usize,
+}
+
+impl Score {
+    /// Adds a case whose bound is this standard deviation.
+    pub fn add(&mut self, estimate: &Estimate, truth: f64, bound: f64) {
+        let error = estimate.value - truth;
+        if (error / bound).abs() > 4.0 {
+            println!("case {}: {} for {truth}, bound {bound}", self.n, estimate.value);
+        }
+        self.squares += (error / bound).powi(2);
+        self.sum += error / bound;
+        let std = estimate.std.expect("an estimate with its uncertainty");
+        self.covered += usize::from(error.abs() <= 1.96 * std);
+        self.n += 1;
+    }
+
+    /// Prints what was reached; fails beyond `ratio` of the bound, a bias of 0.1 of it (three times what chance gives, where that is
+    /// more), or a coverage outside 92…98 %.
+    pub fn judge(&self, what: &str, ratio: f64) {
+        let n = self.n as f64;
+        let (reached, bias, coverage) =
+            ((self.squares / n).sqrt(), self.sum / n, 100.0 * self.covered as f64 / n);
+        println!(
+            "{what}: {} cases, error {reached:.3} of the bound, bias {bias:+.3}, coverage {coverage:.1} %",
+            self.n
+        );
+        assert!(self.n >= 200, "{what}: {} cases", self.n);
+        assert!(reached <= ratio, "{what}: {reached} times the bound");
+        assert!(bias.abs() <= 0.1_f64.max(3.0 / n.sqrt()), "{what}: bias {bias} of the bound");
+        assert!((92.0..=98.0).contains(&coverage), "{what}: coverage {coverage} %");
+    }
+}
+
+/// Standard deviations of unbiased estimates of the parameters `p` from values with independent noise of this standard deviation:
+/// the diagonal of the inverse of Fisher's information, whose slopes are central differences.
+pub fn bounds(p: &[f64], steps: &[f64], noise: &[f64], model: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
+    let k = p.len();
+    let slopes: Vec<Vec<f64>> = (0..k)
+        .map(|i| {
+            let at = |by: f64| {
+                let mut moved = p.to_vec();
+                moved[i] += by;
+                model(&moved)
+            };
+            let (above, below) = (at(steps[i]), at(-steps[i]));
+            above.iter().zip(below).zip(noise).map(|((a, b), s)| (a - b) / (2.0 * steps[i] * s)).collect()
+        })
+        .collect();
+    // Scaled to a unit diagonal, so that units do not spoil the elimination.
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let size: Vec<f64> = slopes.iter().map(|s| dot(s, s).sqrt()).collect();
+    let mut m: Vec<Vec<f64>> = (0..k)
+        .map(|i| {
+            let mut row: Vec<f64> =
+                (0..k).map(|j| dot(&slopes[i], &slopes[j]) / (size[i] * size[j])).collect();
+            row.extend((0..k).map(|j| f64::from(u8::from(i == j))));
+            row
+        })
+        .collect();
+    for i in 0..k {
+        let pivot = m[i][i];
+        m[i].iter_mut().for_each(|v| *v /= pivot);
+        for r in 0..k {
+            if r != i {
+                let factor = m[r][i];
+                let row = m[i].clone();
+                m[r].iter_mut().zip(row).for_each(|(v, p)| *v -= factor * p);
+            }
+        }
+    }
+    (0..k).map(|i| m[i][k + i].sqrt() / size[i]).collect()
+}

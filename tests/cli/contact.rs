@@ -1,0 +1,63 @@
+//! `vibro pulse`.
+
+use super::{complaint, json, text};
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::fs;
+
+#[test]
+fn two_times() {
+    let answer = json(&[
+        "pulse",
+        "--time-to-peak",
+        "6.25e-6",
+        "--duration",
+        "18e-6",
+        "--mass",
+        "0.43",
+        "--std",
+        "1e-8",
+    ]);
+    assert!((answer["xi"]["value"].as_f64().unwrap() - 0.20668).abs() < 0.5e-5, "{answer}");
+    assert!(answer["xi"]["std"].as_f64().unwrap() > 0.0 && answer["initial_velocity"].is_null());
+    assert!(answer["stiffness"]["unit"] == "N/m" && answer["fits"].as_array().unwrap().is_empty());
+    let swapped = complaint(&["pulse", "--time-to-peak", "18e-6", "--duration", "6.25e-6"], 1);
+    assert!(swapped.contains("swapped"), "{swapped}");
+    complaint(&["pulse", "--time-to-peak", "18e-6"], 2);
+    complaint(&["pulse"], 2);
+}
+
+#[test]
+fn a_record_with_its_figure() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bit.csv");
+    // x = e^{-ht} sin(Ωt)/Ω with ξ 0.2 and 10 kHz, 3 m/s: minus its second derivative, until that vanishes.
+    let (xi, omega) = (0.2_f64, TAU * 10e3);
+    let (h, turn) = (xi * omega, omega * f64::sqrt(1.0 - xi * xi));
+    let end = (2.0 * h * turn).atan2(h * h - turn * turn) / turn;
+    let mut rows = String::from("time [s],acceleration [m/s²]\n");
+    for i in 0..200 {
+        let t = f64::from(i) * 1e-6 - 80.4e-6;
+        let (sin, cos) = (turn * t).sin_cos();
+        let inside = (0.0..=end).contains(&t);
+        let a = (-h * t).exp() * ((turn * turn - h * h) * sin + 2.0 * h * turn * cos) / turn;
+        let noise = 200.0 * (f64::from(i * i) * 0.7).sin();
+        let _ =
+            writeln!(rows, "{:.6e},{:.6e}", f64::from(i) * 1e-6, if inside { 3.0 * a } else { 0.0 } + noise);
+    }
+    fs::write(&path, rows).unwrap();
+    let out = folder.path().join("figures");
+    let answer = json(&["pulse", text(&path), "--mass", "0.4", "--out", text(&out)]);
+    assert!((answer["xi"]["value"].as_f64().unwrap() - 0.2).abs() < 0.01, "{answer}");
+    for key in ["frequency", "restitution", "stiffness", "damping", "initial_velocity"] {
+        assert!(answer[key]["value"].is_f64() && answer[key]["std"].is_f64(), "{key}: {answer}");
+    }
+    for fit in answer["fits"].as_array().unwrap() {
+        assert!(fit["model"].is_string() && fit["residual"].is_f64() && fit["aicc"].is_f64(), "{fit}");
+    }
+    assert!(out.join("pulse.svg").is_file() && out.join("pulse_fits.csv").is_file());
+    let campaign = folder.path().join("campaign.toml");
+    fs::write(&campaign, "[[pulse]]\nfile = \"bit.csv\"\nmass = 0.4\nlow_pass = 1e6\norder = 2\n").unwrap();
+    let whole = json(&["run", text(&campaign)]);
+    assert!(whole["results"]["pulses"][0]["xi"]["value"].is_f64(), "{whole}");
+}
