@@ -13,8 +13,8 @@ use nalgebra::{Matrix4, Vector4};
 use serde::Serialize;
 use std::f64::consts::TAU;
 
-/// A line must stand this many standard deviations of the noise above nothing.
-const VISIBLE: f64 = 5.0;
+/// How often the largest line of pure noise may pass for a sine.
+const BY_CHANCE: f64 = 1e-4;
 /// Gauss–Newton steps; four suffice from a line's interpolated frequency.
 const STEPS: usize = 20;
 const METHOD: &str = "least-squares sine fit";
@@ -60,8 +60,10 @@ pub fn sine(trace: &Trace, near: Option<f64>) -> Result<Sine> {
         .filter(within)
         .max_by(|a, b| magnitudes[*a].total_cmp(&magnitudes[*b]))
         .ok_or_else(|| Error::refused("no line of the spectrum lies there"))?;
+    // Rayleigh: one of n lines of noise passes t standard deviations with a chance of n e^(−t²/2).
+    let visible = (2.0 * (magnitudes.len() as f64 / BY_CHANCE).ln()).sqrt();
     if let Some(floor) =
-        noise::around(&magnitudes, largest, Some(Window::Hann)).filter(|n| magnitudes[largest] < VISIBLE * n)
+        noise::around(&magnitudes, largest, Some(Window::Hann)).filter(|n| magnitudes[largest] < visible * n)
     {
         return Err(Error::refused(format!(
             "no sine stands out of the noise: the largest line, {:.6} Hz, has {:.3e}, the noise of a line is {floor:.3e}",
@@ -181,7 +183,6 @@ mod tests {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (state >> 40) as f64
         };
-        // 500 lines of noise pass five standard deviations once in five hundred such records.
         let error = sine(&trace((0..1000).map(&mut noise).collect()), None).err().unwrap().to_string();
         assert!(error.contains("stands out"), "{error}");
         assert!(sine(&trace(vec![1.0; 100]), None).is_err());

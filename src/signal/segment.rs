@@ -1,6 +1,7 @@
 //! Records cut into overlapping segments, a batch of them at a time.
 
 use crate::error::{Error, Result};
+use crate::math::lanes;
 use crate::read::Traces;
 
 /// Samples of each channel in one batch: several segments for several cores, and yet no more than a cache holds.
@@ -127,13 +128,9 @@ impl<'a> Batches<'a> {
     /// Range of the block; missing samples are refused, for a transform would spread them over all lines.
     fn look(&mut self) -> Result<()> {
         for (channel, (values, range)) in self.block.iter().zip(&mut self.ranges).enumerate() {
-            let mut sum = 0.0;
-            for v in values {
-                range.low = range.low.min(*v);
-                range.high = range.high.max(*v);
-                sum += v * 0.0;
-            }
-            if sum != 0.0 {
+            let (low, high) = lanes::range(values);
+            (range.low, range.high) = (range.low.min(low), range.high.max(high));
+            if !lanes::all_finite(values) {
                 let at = values.iter().position(|v| !v.is_finite()).unwrap_or(0);
                 let name = self.traces.channels().get(channel).map_or("", |m| m.name.as_str());
                 return Err(Error::refused(format!(

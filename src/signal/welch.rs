@@ -7,6 +7,7 @@ use super::fft::{Transform, Workspace};
 use super::segment::{Batches, Segments};
 use super::window;
 use crate::error::{Error, Result};
+use crate::math::lanes;
 use crate::read::Traces;
 use crate::record::Window;
 use num_complex::Complex64;
@@ -194,7 +195,7 @@ impl Kernel<'_> {
     }
 
     fn one(&self, segment: &[f64], work: &mut Workspace) {
-        let mean = if self.detrend { segment.iter().sum::<f64>() / segment.len().max(1) as f64 } else { 0.0 };
+        let mean = if self.detrend { lanes::sum(segment) / segment.len().max(1) as f64 } else { 0.0 };
         for ((to, v), w) in work.input.iter_mut().zip(segment).zip(self.weights) {
             *to = (v - mean) * w;
         }

@@ -2,6 +2,7 @@
 
 use super::{WavStream, beyond_full_scale, describe, dress, gaps, open};
 use crate::error::Result;
+use crate::math::lanes;
 use crate::read::reader::Options;
 use crate::read::{Source, Summary};
 use crate::record::{Meta, Trace};
@@ -71,14 +72,9 @@ impl Calibrated {
     pub fn next_block(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize> {
         let frames = self.stream.next_block_of(&self.kept, block)?;
         for ((channel, values), largest) in self.kept.iter().zip(&mut *block).zip(&mut self.largest) {
-            // One pass that a compiler makes wide; what is found wrong is looked for again below.
-            let (mut most, mut sum) = (*largest, 0.0f64);
-            for v in &*values {
-                most = most.max(v.abs());
-                sum += v * 0.0;
-            }
-            *largest = most;
-            if sum != 0.0 {
+            let (low, high) = lanes::range(values);
+            *largest = largest.max(high).max(-low);
+            if !lanes::all_finite(values) {
                 let places: Vec<usize> = (0..values.len()).filter(|i| !values[*i].is_finite()).collect();
                 if !self.allow_missing {
                     let listed = places.iter().map(|i| (self.at + i, *channel));
