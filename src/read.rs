@@ -14,6 +14,7 @@ mod ascii;
 mod choose;
 mod csv;
 mod cut_off;
+mod decibel;
 mod footer;
 mod format;
 mod header;
