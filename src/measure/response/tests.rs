@@ -61,8 +61,8 @@ fn upper_limits_are_passed_by_no_more_than_one_in_twenty_and_by_no_fewer_than_th
             missed += usize::from(limit < *truth);
         }
         println!("{window:?}: of {draws} {limited} limits, {missed} missed");
-        // At most 5 % of 1000, and twice the binomial standard deviation of 6.9. At least 2 %: a limit that is wider than noise asks
-        // for is not passed at all, since already P(M ≤ m)'s tail at 3 is 5 % of 1 − exp(−m²/2) with m = 1.2.
+        // At most 5 % of 1000, and twice the binomial standard deviation of 6.9. At least 2 %: a reading below 1.38 gives a limit
+        // below 3, and one of 3 reads so in 3 % of all cases. Limits that are much too wide are never passed.
         assert!((20..=63).contains(&missed), "{window:?}: {missed} of {limited}");
         // A peak that noise pushes further than a line away counts as another one.
         let hidden = found.warnings.iter().flat_map(|w| w.matches("hides the response")).count();
