@@ -133,14 +133,9 @@ impl Campaign {
     }
 
     fn check(&self) -> Result<()> {
-        if let Some(rig) = &self.rig {
-            rig.check().map_err(|e| {
-                let told = e.to_string();
-                let key =
-                    RIG.into_iter().find(|key| told.starts_with(&format!("{key} is"))).unwrap_or("[rig]");
-                let span = locate::find(&self.text, key, self.text.find("[rig]"));
-                e.in_file(&self.path).excerpt(&self.text, span)
-            })?;
+        if let Some((key, error)) = self.rig.as_ref().and_then(Rig::fault) {
+            let span = locate::find(&self.text, key, self.text.find("[rig]"));
+            return Err(error.in_file(&self.path).excerpt(&self.text, span));
         }
         let out = self.out.as_deref().unwrap_or(Path::new(RESULTS));
         inside(self.folder(), out, false).map_err(|_| {

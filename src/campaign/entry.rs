@@ -178,15 +178,14 @@ impl SweepEntry {
     pub fn reader(&self) -> SweepReader {
         let quantity = self.quantity.as_ref().and_then(|q| Quantity::from_name(q.get_ref()));
         let unit = self.unit.as_ref().map(|u| Unit::parse_or_opaque(u.get_ref()));
-        let factor = |f: &Option<Spanned<f64>>| f.as_ref().map_or(1.0, |f| *f.get_ref());
         SweepReader {
             name: self.name.get_ref().clone(),
             direction: self.direction,
             mass: self.mass.as_ref().map(|m| *m.get_ref()),
             unit,
             quantity,
-            calibration: factor(&self.calibration),
-            force_calibration: factor(&self.force_calibration),
+            calibration: self.calibration.as_ref().map(|f| *f.get_ref()),
+            force_calibration: self.force_calibration.as_ref().map(|f| *f.get_ref()),
             window: self.window.as_ref().map(|w| Window::from_name(w.get_ref())),
             scaling: self.scaling,
             analyser_integrated: self.analyser_integrated.as_ref().map(|n| *n.get_ref()),

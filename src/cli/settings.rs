@@ -151,7 +151,7 @@ pub fn sweep(typed: &Sweep) -> Result<(SweepList, SweepReader)> {
     }
     if let Some(factor) = typed.calibration {
         above_zero("--calibration", Some(factor))?;
-        how.calibration = factor;
+        how.calibration = Some(factor);
     }
     if let Some(name) = &typed.window {
         how.window = Some(window(name)?);

@@ -12,7 +12,7 @@ pub enum Forcing {
     Measured(Vec<(f64, f64)>),
 }
 
-/// Forces within this ratio are one level: a shaker's force drops by less at a resonance, and levels that are chosen differ by
+/// Neighbouring forces within this ratio are one level: a shaker's force drops by less at a resonance, and levels that are chosen differ by
 /// more.
 const LEVEL: f64 = 1.2;
 /// A stated force that the measured one leaves by more than this is doubted.
@@ -135,24 +135,33 @@ pub(super) fn median(sorted: &[f64]) -> Option<f64> {
     Some(if sorted.len().is_multiple_of(2) { f64::midpoint(sorted[middle - 1], upper) } else { upper })
 }
 
-/// Levels of force in order of their first sweep: indices into `forces`, the median of each sweep where known. A sweep of
-/// unknown force belongs to the first level.
+/// Levels of force in order of their first sweep: indices into `forces`, the median of each sweep where known.
+///
+/// Forces in order of size are split where one is more than 1.2 times that before it, so the order of the sweeps
+/// does not matter. A sweep of unknown force belongs to the first level.
 pub fn levels(forces: &[Option<f64>]) -> Vec<Vec<usize>> {
-    let mut levels: Vec<(Option<f64>, Vec<usize>)> = Vec::new();
-    for (i, force) in forces.iter().enumerate() {
-        let near = |level: Option<f64>| match (level, *force) {
-            (Some(a), Some(b)) => (a / b).max(b / a) < LEVEL,
-            _ => true,
-        };
-        match levels.iter_mut().find(|level| near(level.0)) {
-            Some(level) => {
-                level.0 = level.0.or(*force);
-                level.1.push(i);
-            }
-            None => levels.push((*force, vec![i])),
+    let mut known: Vec<(f64, usize)> =
+        forces.iter().enumerate().filter_map(|(i, force)| Some(((*force)?, i))).collect();
+    known.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut levels: Vec<Vec<usize>> = known
+        .chunk_by(|a, b| b.0 <= LEVEL * a.0)
+        .map(|level| {
+            let mut members: Vec<usize> = level.iter().map(|(_, i)| *i).collect();
+            members.sort_unstable();
+            members
+        })
+        .collect();
+    levels.sort_unstable();
+    let unknown = (0..forces.len()).filter(|i| forces[*i].is_none());
+    match levels.first_mut() {
+        Some(first) => {
+            first.extend(unknown);
+            first.sort_unstable();
         }
+        None if forces.is_empty() => {}
+        None => levels.push(unknown.collect()),
     }
-    levels.into_iter().map(|level| level.1).collect()
+    levels
 }
 
 #[cfg(test)]
@@ -177,5 +186,18 @@ mod tests {
         assert_eq!(levels(&forces), [vec![0, 2, 3], vec![1, 4]]);
         assert_eq!(levels(&[None, Some(2.0), Some(3.0)]), [vec![0, 1], vec![2]]);
         assert!(levels(&[]).is_empty());
+        assert_eq!(levels(&[None, None]), [vec![0, 1]]);
+    }
+
+    #[test]
+    fn levels_do_not_depend_on_the_order_of_sweeps() {
+        for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+            let forces = |all: [f64; 3]| order.map(|i: usize| Some(all[i]));
+            assert_eq!(levels(&forces([1.0, 1.15, 1.3])).len(), 1, "{order:?}");
+            let split = levels(&forces([1.0, 1.15, 1.5]));
+            let alone = order.iter().position(|i| *i == 2).unwrap();
+            assert_eq!(split.len(), 2, "{order:?}");
+            assert!(split.contains(&vec![alone]), "{order:?}: {split:?}");
+        }
     }
 }

@@ -8,7 +8,10 @@ const MISSED: f64 = 0.05;
 /// The magnitude is Rice distributed (S. O. Rice, Bell Syst. Tech. J. 24 (1945) 46). The limit ν solves
 /// P(M ≤ m | ν) = 0.05 P(M ≤ m | 0) (A. L. Read, J. Phys. G 28 (2002) 2693): the division keeps it from falling to nothing where
 /// noise happens to be small, so it is never below 2.45 `noise`, and the true amplitude lies above it in less than 5 % of
-/// all cases. `None` where one of the two is not a number or there is no noise.
+/// all cases.
+///
+/// All cases are faint and strong readings together. Where only faint readings are given a limit, no more than 5 % of all
+/// readings lie above theirs; but a strong sine that noise made faint lies above its limit more often than that. `None` where one of the two is not a number or there is no noise.
 pub fn upper_limit(magnitude: f64, noise: f64) -> Option<f64> {
     let m = magnitude / noise;
     // Far above the noise there is nothing to limit, and the series below would be long.
@@ -33,7 +36,7 @@ pub fn upper_limit(magnitude: f64, noise: f64) -> Option<f64> {
 
 /// P(M ≤ m) of a Rice distributed magnitude of height ν in noise of one unit a component: a sum of gamma distributions
 /// with Poisson weights, since M² is noncentral χ² of two degrees of freedom.
-fn below(m: f64, nu: f64) -> f64 {
+pub(super) fn below(m: f64, nu: f64) -> f64 {
     let (y, lambda) = (m * m / 2.0, nu * nu / 2.0);
     // Poisson probability of j at λ and of j at y, and what is left of the latter above j.
     let (mut weight, mut term, mut tail) = ((-lambda).exp(), (-y).exp(), -(-y).exp_m1());

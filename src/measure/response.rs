@@ -10,8 +10,9 @@ use super::resonance::{Resonance, resonances};
 use super::{Estimate, noise};
 use crate::error::{Error, Result};
 use crate::record::{Direction, Step, Sweep, SweepPoint, Window};
+use crate::signal::window::line_shape;
 use crate::units::Quantity;
-use doubts::{direction, twice, wrong_window};
+use doubts::{direction, hidden, twice, wrong_window};
 use serde::Serialize;
 use std::f64::consts::PI;
 
@@ -51,7 +52,7 @@ pub struct Harmonic {
     pub frequency: f64,
     /// Amplitude; no value where the frequency lies outside the lines or below the cut-off. In the noise the nearest line as it is.
     pub amplitude: Estimate,
-    /// What the true amplitude stays below with 95 % confidence, where it does not stand out of the noise.
+    /// 95 % upper limit of the true amplitude, where it does not stand out of the noise or leakage: see [`upper_limit`].
     pub upper_limit: Option<f64>,
 }
 
@@ -71,7 +72,7 @@ pub struct ResponsePoint {
     /// Peak amplitude at the excitation. Where the response does not stand out of the noise, the line nearest to the excitation
     /// as it is: noise lifts it, so a faint amplitude is more likely too large than too small.
     pub amplitude: Estimate,
-    /// What the true amplitude stays below with 95 % confidence, where it does not stand out of the noise.
+    /// 95 % upper limit of the true amplitude, where it does not stand out of the noise or leakage: see [`upper_limit`].
     pub upper_limit: Option<f64>,
     /// Orders 2 to 5.
     pub harmonics: Vec<Harmonic>,
@@ -144,19 +145,20 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
     warnings.extend(wrong_window(sweep, &excitations, df));
     warnings.extend(twice(sweep));
     let taker = Taker { sweep, options, df, fmin, unit };
-    let points: Vec<ResponsePoint> =
-        sweep.points.iter().zip(&excitations).map(|(p, e)| taker.point(p, e)).collect();
+    let (points, hiders): (Vec<ResponsePoint>, Vec<Option<f64>>) =
+        sweep.points.iter().zip(&excitations).map(|(p, e)| taker.point(p, e)).unzip();
 
     let frequency: Vec<f64> = excitations.iter().map(|e| e.frequency).collect();
     let direction = direction(&frequency, sweep.direction, &mut warnings);
     let amplitude: Vec<f64> = points.iter().map(|p| p.amplitude.value).collect();
     let std: Vec<f64> = points.iter().map(|p| p.amplitude.std.unwrap_or(f64::NAN)).collect();
-    let faint = points.iter().filter(|p| p.upper_limit.is_some()).count();
+    let faint = points.iter().zip(&hiders).filter(|(p, h)| p.upper_limit.is_some() && h.is_none()).count();
     if faint > 0 {
         warnings.push(format!(
-            "{faint} amplitude(s) do not stand out of the noise, which lifts them: the true ones stay below their upper limits with 95 % confidence."
+            "{faint} amplitude(s) do not stand out of the noise, which lifts them: of all points of a sweep no more than one in twenty is expected to lie above its upper limit."
         ));
     }
+    warnings.extend(hidden(&frequency, &hiders));
     if points.iter().any(|p| p.amplitude.value.is_nan()) {
         warnings.push(format!(
             "Points whose excitation lies below the cut-off of {fmin:.3} Hz have no amplitude."
@@ -232,7 +234,8 @@ impl Taker<'_> {
             .powi(i32::from(self.sweep.analyser_integrated) + i32::from(self.options.integrate))
     }
 
-    fn point(&self, point: &SweepPoint, excitation: &Excitation) -> ResponsePoint {
+    /// The point, and the frequency of another line where that hides its response.
+    fn point(&self, point: &SweepPoint, excitation: &Excitation) -> (ResponsePoint, Option<f64>) {
         let stored = point.response.values.magnitudes();
         let undo = i32::from(self.sweep.analyser_integrated);
         let measured: Vec<f64> = stored
@@ -249,13 +252,16 @@ impl Taker<'_> {
             .filter(|&k| measured[k] >= measured[k - 1] && measured[k] >= measured[k + 1])
             .max_by(|a, b| measured[*a].total_cmp(&measured[*b]));
         let floor = noise::around(&measured, top.unwrap_or(centre), window);
+        let other = window.zip(floor).and_then(|(w, f)| intruder(&measured, at, w, f));
+        let leakage = other.map_or(0.0, |o| o.1);
         let peak = top
             .and_then(|k| interpolate(&measured, k, window, floor))
-            // A hump of noise, or another line beside the excitation, is not the response.
+            // A hump of noise or leakage, or another line beside the excitation, is not the response.
             .filter(|p| {
-                floor.is_none_or(|f| p.amplitude >= PEAK_ABOVE * f) && (p.position - at).abs() <= NEAR
+                floor.is_none_or(|f| p.amplitude >= PEAK_ABOVE * f.hypot(leakage))
+                    && (p.position - at).abs() <= NEAR
             });
-        let mut limit = None;
+        let (mut limit, mut hider) = (None, None);
         let (frequency, frequency_std, amplitude, method) = if excitation.frequency < self.fmin {
             (excitation.frequency, None, (f64::NAN, None), "below the cut-off".to_owned())
         } else if let Some(peak) = peak {
@@ -264,11 +270,14 @@ impl Taker<'_> {
                 None => "parabola through log magnitudes, window unknown".to_owned(),
             };
             let frequency = self.frequency(peak.position);
-            let std = peak.position_std.map(|s| s * self.df);
-            (frequency, std, (peak.amplitude, peak.amplitude_std), method)
+            // Leakage tilts the three lines and lifts them by its part of their height, about.
+            let std = peak.position_std.map(|s| s.hypot(leakage / peak.amplitude) * self.df);
+            let amplitude_std = peak.amplitude_std.map(|s| s.hypot(leakage));
+            (frequency, std, (peak.amplitude, amplitude_std), method)
         } else {
-            let (line, std, upper_limit) = faint(&measured, at, window, floor);
+            let (line, std, upper_limit) = faint(&measured, at, window, floor, leakage);
             limit = upper_limit;
+            hider = other.filter(|_| limit.is_some()).map(|o| self.frequency(o.0));
             let method = "line nearest to the excitation, no peak of its own, noise not taken out".to_owned();
             (excitation.frequency, excitation.std, (line, std), method)
         };
@@ -281,7 +290,7 @@ impl Taker<'_> {
             self.harmonic(&measured, order, f, window)
         };
         let largest = self.largest(&stored);
-        ResponsePoint {
+        let point = ResponsePoint {
             excitation: excitation.frequency,
             excitation_std: excitation.std,
             force: excitation.force,
@@ -293,7 +302,8 @@ impl Taker<'_> {
             subharmonics: (2..=4).map(|n| harmonic(1, n)).collect(),
             largest_elsewhere: largest.abs_diff(centre) > self.options.band,
             largest_at: self.frequency(largest as f64),
-        }
+        };
+        (point, hider)
     }
 
     fn harmonic(&self, measured: &[f64], order: String, frequency: f64, window: Option<Window>) -> Harmonic {
@@ -303,7 +313,7 @@ impl Taker<'_> {
         let found = inside.then(|| amplitude_at(measured, at, window, floor)).flatten();
         let ((value, std, limit), method) = match (found, floor) {
             (Some((value, _)), Some(floor)) if value < PEAK_ABOVE * floor => {
-                (faint(measured, at, window, Some(floor)), "nearest line, noise not taken out")
+                (faint(measured, at, window, Some(floor), 0.0), "nearest line, noise not taken out")
             }
             (Some((value, std)), _) => ((value, std, None), "three lines at a known frequency"),
             (None, _) => ((f64::NAN, None, None), "outside the lines or below the cut-off"),
@@ -323,16 +333,50 @@ impl Taker<'_> {
     }
 }
 
+/// Lines on either side in which another line is looked for that may hide a response.
+const REACH: usize = 40;
+
+/// The line further than [`NEAR`] from `position` that reaches highest there: its own position, and its height at the line nearest
+/// to `position`. `None` where that is within the noise.
+fn intruder(measured: &[f64], position: f64, window: Window, floor: f64) -> Option<(f64, f64)> {
+    let centre = position.round().max(0.0) as usize;
+    let high = centre.saturating_add(REACH).min(measured.len().saturating_sub(2));
+    (centre.saturating_sub(REACH).max(1)..=high)
+        .filter(|&k| measured[k] >= measured[k - 1] && measured[k] >= measured[k + 1])
+        // Half a line off, a line is 2/π of the amplitude or more.
+        .filter(|&k| measured[k] >= 0.5 * PEAK_ABOVE * floor)
+        .filter_map(|k| interpolate(measured, k, Some(window), None))
+        .filter(|p| p.amplitude >= PEAK_ABOVE * floor && (p.position - position).abs() > NEAR)
+        .map(|p| (p.position, p.amplitude * line_shape(window, centre as f64 - p.position).abs()))
+        .filter(|p| p.1 > floor)
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// The normal distribution leaves 5 % above this many standard deviations.
+const ONE_IN_TWENTY: f64 = 1.645;
+
 /// Amplitude in the noise, its uncertainty and its upper limit, from one line, because the distribution of its magnitude is known.
+///
+/// `leakage` of another line adds to the response or takes away from it, as their phases, which are not known, will have it: at the
+/// worst all of the line is missing what the other took. So it adds to the limit as a whole; a line far above both has none.
 fn faint(
     measured: &[f64],
     position: f64,
     window: Option<Window>,
     floor: Option<f64>,
+    leakage: f64,
 ) -> (f64, Option<f64>, Option<f64>) {
     let (line, gain) = nearest(measured, position, window).unwrap_or((f64::NAN, 1.0));
     let floor = window.and(floor);
-    (line / gain, floor.map(|f| f / gain), floor.and_then(|f| upper_limit(line, f)).map(|l| l / gain))
+    let std = floor.map(|f| f.hypot(leakage));
+    let limit = floor.and_then(|f| {
+        let in_noise = upper_limit(line, f);
+        if leakage == 0.0 || line >= PEAK_ABOVE * f.hypot(leakage) {
+            return in_noise;
+        }
+        Some(in_noise.unwrap_or(line + ONE_IN_TWENTY * f) + leakage).filter(|l| l.is_finite())
+    });
+    (line / gain, std.map(|s| s / gain), limit.map(|l| l / gain))
 }
 
 #[cfg(test)]

@@ -50,31 +50,37 @@ impl Rig {
     /// If a mass or stiffness is not above 0, a damping is negative, the restitution is outside 0 to 1, or a value is
     /// not finite.
     pub fn check(&self) -> Result<()> {
+        self.fault().map_or(Ok(()), |(_, error)| Err(error))
+    }
+
+    /// The first value that no rig can have: its key, and the complaint.
+    pub(crate) fn fault(&self) -> Option<(&'static str, Error)> {
         let above_zero =
             [("m1", self.m1, "kg"), ("m2", self.m2, "kg"), ("k1", self.k1, "N/m"), ("k2", self.k2, "N/m")];
         for (name, value, unit) in above_zero {
             if !(value.is_finite() && value > 0.0) {
-                return Err(Error::usage(format!("{name} is {value} {unit}"), "a finite value above 0"));
+                return Some((
+                    name,
+                    Error::usage(format!("{name} is {value} {unit}"), "a finite value above 0"),
+                ));
             }
         }
         for (name, value) in [("c1", self.c1), ("c2", self.c2)] {
             if !(value.is_finite() && value >= 0.0) {
-                return Err(Error::usage(
-                    format!("{name} is {value} N s/m"),
-                    "a finite value of 0 or more: a damper that feeds energy in has no steady motion",
-                ));
+                let expected =
+                    "a finite value of 0 or more: a damper that feeds energy in has no steady motion";
+                return Some((name, Error::usage(format!("{name} is {value} N s/m"), expected)));
             }
         }
         if !self.gap.is_finite() {
-            return Err(Error::usage(format!("gap is {} m", self.gap), "a finite value"));
+            return Some(("gap", Error::usage(format!("gap is {} m", self.gap), "a finite value")));
         }
         if !(0.0..=1.0).contains(&self.restitution) {
-            return Err(Error::usage(
-                format!("restitution is {}", self.restitution),
-                "a value from 0 (no rebound) to 1 (no loss)",
-            ));
+            let expected = "a value from 0 (no rebound) to 1 (no loss)";
+            let found = format!("restitution is {}", self.restitution);
+            return Some(("restitution", Error::usage(found, expected)));
         }
-        Ok(())
+        None
     }
 
     /// Reduced mass M = m₁m₂/(m₁ + m₂) in kg.

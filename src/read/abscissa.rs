@@ -6,6 +6,11 @@ use crate::error::{Error, Place, Result};
 use crate::record::{Axis, AxisKind, Grid, Values};
 use std::path::Path;
 
+/// Relative difference that no statement means: six digits are the least that a person states.
+const SURE: f64 = 1e-6;
+/// Relative difference of a statement that was rounded to fewer digits than the column has.
+const ROUNDED: f64 = 1e-4;
+
 /// An abscissa that stands in the file as a column.
 pub(super) struct Printed {
     pub axis: Axis,
@@ -19,42 +24,60 @@ pub(super) struct Printed {
     pub doubts: Vec<String>,
 }
 
-/// The axis of `n` values: what a person states, then the printed one, then what the header states.
+/// The axis of `n` values: what a person states, then the printed one, then what the header states. Words behind the values
+/// (a `footer`) make the number of lines doubtful.
 ///
 /// # Errors
 /// If a person's statement contradicts a whole printed column.
 pub(super) fn choose(
     path: &Path,
     printed: Option<Printed>,
-    n: usize,
+    (n, footer): (usize, bool),
     stated: &Stated,
     options: &Options,
     doubts: &mut Vec<String>,
 ) -> Result<Axis> {
+    let half_open =
+        printed.as_ref().is_some_and(|p| options.base_band.is_some_and(|band| p.stops_before(band)));
     let given = match (options.rate, options.base_band) {
-        (Some(rate), _) => Axis::time(0.0, 1.0 / rate, n),
-        (None, Some(band)) => Axis::frequency(0.0, band / stated.lines_of(n), n),
-        (None, None) => {
-            return Ok(match printed {
-                Some(printed) => trusted(printed, stated, doubts),
-                None => headed(n, stated, doubts),
-            });
+        (Some(rate), _) => Some(Axis::time(0.0, 1.0 / rate, n)),
+        (None, Some(band)) if half_open => Some(Axis::frequency(0.0, band / n as f64, n)),
+        (None, Some(band)) => Some(Axis::frequency(0.0, band / stated.lines_of(n), n)),
+        (None, None) => None,
+    };
+    let (printed, given) = match (printed, given) {
+        (Some(printed), None) => return Ok(trusted(printed, stated, doubts)),
+        (Some(printed), Some(given)) => (printed, given),
+        (None, given) => {
+            if let Some(given) = &given {
+                contradicted(stated, options, given.step().unwrap_or(f64::NAN), doubts);
+            }
+            let axis = given.unwrap_or_else(|| headed(n, stated, doubts));
+            let counted = stated.lines.is_none_or(|lines| lines != n as f64 && lines + 1.0 != n as f64);
+            if footer && counted && axis.kind == AxisKind::Frequency {
+                doubts.push(format!(
+                    "Whether {n} values are all lines is not stated: if the words behind them stand for values, all frequencies are wrong (a header line such as `lines: 400` settles it)."
+                ));
+            }
+            return Ok(axis);
         }
     };
     let step = given.step().unwrap_or(f64::NAN);
     contradicted(stated, options, step, doubts);
-    let Some(printed) = printed else { return Ok(given) };
     let Printed { axis, label, .. } = &printed;
     if !matches!(axis.kind, AxisKind::Time | AxisKind::Frequency) {
         doubts.push(format!("{label} is no axis for what was stated, and is passed over."));
         return Ok(given);
     }
-    if printed.goes_with(&given, options.base_band) {
+    if printed.goes_with(&given, options.base_band, SURE) {
         if axis.step().is_none() {
             doubts.push(format!("{label} is uneven; a step of {} was stated and is used.", short(step)));
         } else if given.kind == AxisKind::Frequency {
             return Ok(printed.axis);
         }
+    } else if axis.step().is_some() && printed.goes_with(&given, options.base_band, ROUNDED) {
+        doubts.push(printed.nearly(options));
+        return Ok(printed.axis);
     } else if printed.assumed && printed.counts() {
         doubts.push(format!("{label} counts the values; a step of {} was stated and is used.", short(step)));
         return Ok(given);
@@ -67,20 +90,52 @@ pub(super) fn choose(
 impl Printed {
     /// Whether what was stated can be meant by the digits of the column: a time may begin anywhere, lines that do not begin
     /// at 0 Hz must end at the base band.
-    fn goes_with(&self, given: &Axis, base_band: Option<f64>) -> bool {
+    fn goes_with(&self, given: &Axis, base_band: Option<f64>, relative: f64) -> bool {
         let axis = &self.axis;
         let (Some(last), true) = (axis.len().checked_sub(1), axis.kind == given.kind) else { return false };
-        // Six digits are the least that a person states.
-        let close = |a: f64, b: f64, resolution: f64| (a - b).abs() <= resolution + 1e-6 * b.abs();
+        let close = |a: f64, b: f64, resolution: f64| (a - b).abs() <= resolution + relative * b.abs();
         let (from, to) = (axis.start(), axis.at(last));
         // Both ends are rounded; a lost sample makes a whole step, an unsteady clock less than half of one.
         let tolerance = axis.step().map_or(0.5 * given.step().unwrap_or(0.0), |_| 2.0 * self.resolution);
         let span = close(to - from, given.at(last) - given.start(), tolerance);
         let ends = base_band.is_some_and(|band| close(to, band, self.resolution)) && axis.step().is_some();
         match given.kind {
-            AxisKind::Frequency => ends || (span && from.abs() <= self.resolution + 1e-6 * to.abs()),
+            AxisKind::Frequency => ends || (span && self.begins_at_zero()),
             _ => span,
         }
+    }
+
+    fn begins_at_zero(&self) -> bool {
+        let last = self.axis.at(self.axis.len().saturating_sub(1));
+        self.axis.start().abs() <= self.resolution + SURE * last.abs()
+    }
+
+    /// Whether lines from 0 Hz on end one step below the base band, as those of a plain transform do.
+    fn stops_before(&self, base_band: f64) -> bool {
+        let n = self.axis.len();
+        let Some(step) = self.axis.step().filter(|_| n > 1 && self.axis.kind == AxisKind::Frequency) else {
+            return false;
+        };
+        let next = self.axis.at(n - 1) + step;
+        // Half a step tells this from lines that end at the base band.
+        let tolerance = (self.resolution * 2.0 + ROUNDED * base_band).min(0.5 * step);
+        self.begins_at_zero() && (next - base_band).abs() <= tolerance
+    }
+
+    /// What is said where the statement is a rounded number of what the column holds.
+    fn nearly(&self, options: &Options) -> String {
+        let (step, last) = (self.axis.step().unwrap_or(f64::NAN), self.axis.len().saturating_sub(1));
+        let (what, holds, said) = match (options.rate, options.base_band) {
+            (Some(rate), _) => ("a sampling rate", 1.0 / step, rate),
+            (None, band) => {
+                let band = band.unwrap_or(f64::NAN);
+                let beyond = if self.stops_before(band) { step } else { 0.0 };
+                ("a base band", self.axis.at(last) + beyond, band)
+            }
+        };
+        let digits = apart(holds, said);
+        let (holds, said) = (rounded(holds, digits), rounded(said, digits));
+        format!("{} holds {what} of {holds} Hz; {said} Hz was stated: the column is used.", self.label)
     }
 
     /// Whether the column counts 0, 1, 2, … or 1, 2, 3, …
@@ -89,8 +144,11 @@ impl Printed {
     }
 
     fn contradiction(&self, path: &Path, given: &Axis, options: &Options) -> Error {
+        let step = |axis: &Axis| axis.step().unwrap_or(f64::NAN);
+        let digits = apart(step(&self.axis), step(given));
         let runs = |axis: &Axis| {
             let (what, unit) = if axis.kind == AxisKind::Time { ("time", "s") } else { ("frequency", "Hz") };
+            let short = |value: f64| rounded(value, digits);
             let (from, to) = (short(axis.start()), short(axis.at(axis.len().saturating_sub(1))));
             let steps =
                 axis.step().map_or("uneven steps".to_owned(), |s| format!("steps of {} {unit}", short(s)));
@@ -276,7 +334,16 @@ fn is_rounding(steps: &[f64], middle: f64) -> bool {
 
 /// Six digits are enough for a sentence.
 pub(super) fn short(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(value)
+    rounded(value, 6)
+}
+
+fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
+}
+
+/// How many digits show that two numbers differ: six at least, and no more where twelve do not.
+fn apart(a: f64, b: f64) -> usize {
+    (6..=12).find(|digits| rounded(a, *digits) != rounded(b, *digits)).unwrap_or(6)
 }
 
 #[cfg(test)]
@@ -306,6 +373,16 @@ mod tests {
         assert!(doubt.unwrap().contains("does not always rise: steps from -1 to 2 s,"));
         assert_eq!(of(&[1.0], 0.0).1, None);
         assert_eq!(of(&[], 0.0).1, None);
+    }
+
+    #[test]
+    fn numbers_are_printed_until_they_differ() {
+        for (a, b, digits) in
+            [(1.0, 2.0, 6), (2_730.67, 2_730.666_667, 7), (1.0, 1.000_000_01, 9), (1.0, 1.0, 6)]
+        {
+            assert_eq!(apart(a, b), digits, "{a} {b}");
+        }
+        assert_ne!(rounded(2_730.67, 7), rounded(2_730.666_667, 7));
     }
 
     #[test]

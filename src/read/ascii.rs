@@ -20,7 +20,7 @@ pub(super) mod stated;
 
 use super::abscissa::{self, Printed, to_si};
 use super::csv::name::{Name, Part};
-use super::ending;
+use super::cut_off;
 use super::format::Format;
 use super::missing;
 use super::reader::{Options, Recording};
@@ -46,6 +46,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
     let layout = layout::detect(source.path(), &head, source.len() > head.len() as u64, options)?;
     let stated = stated::read(&layout.header);
     let mut doubts: Vec<String> = cut_off(source, &layout)?.into_iter().collect();
+    let mut footer = false;
     let columns = if let Some(values) = fast(source, &layout)? {
         deal(values, layout.columns).into_iter().map(Values::Real).collect()
     } else {
@@ -53,10 +54,16 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         let bytes = if lone_cr(&bytes, false) { with_lf(bytes) } else { bytes };
         let rows = rows::read(source.path(), &bytes, &layout, options.allow_missing)?;
         drop(bytes);
-        if rows.footer.is_some() && SweepList::of(source).is_some() {
-            return Err(Error::input(Place::file(source.path()), "names behind numbers", "numbers"));
+        if let Some(words) = &rows.footer {
+            if words.ends_list(rows.values.iter().map(|v| v.re)) || SweepList::of(source).is_some() {
+                let place = Place::file(source.path());
+                return Err(Error::input(place, "names of files behind numbers", "numbers and nothing else").hint(
+                    "if this is the list of a sweep, its numbers do not go with its names: correct it and give it to `vibro response`",
+                ));
+            }
+            doubts.push(words.doubt());
+            footer = true;
         }
-        doubts.extend(rows.footer);
         doubts.extend(missing::kept(rows.missing));
         if !rows.comments.is_empty() {
             doubts.push(format!(
@@ -77,7 +84,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         columns
     };
     let n = columns.first().map_or(0, Values::len);
-    let mut records = assemble(source, columns, n, &layout, &stated, options)?;
+    let mut records = assemble(source, columns, (n, footer), &layout, &stated, options)?;
     for record in &mut records {
         text::read_as(record.meta_mut(), &raw, layout.decimal);
     }
@@ -96,7 +103,7 @@ pub(super) fn survey(source: &Source, options: &Options) -> Result<(Vec<Header>,
         if clean.is_some() {
             let stated = stated::read(&layout.header);
             let empty = vec![Values::Real(Vec::new())];
-            let mut records = assemble(&text, empty, summary.n, &layout, &stated, options)?;
+            let mut records = assemble(&text, empty, (summary.n, false), &layout, &stated, options)?;
             if let Some(mut record) = records.pop() {
                 text::read_as(record.meta_mut(), &source.head()?, layout.decimal);
                 let said = names::of(&layout).and_then(|mut names| names.pop()?.unit).or(stated.unit);
@@ -117,7 +124,7 @@ pub(super) fn survey(source: &Source, options: &Options) -> Result<(Vec<Header>,
 /// A doubt about the last number.
 fn cut_off(source: &Source, layout: &Layout) -> Result<Option<String>> {
     let separator = if let Separator::Char(mark) = layout.separator { mark } else { b' ' };
-    ending::doubt_of(source, separator, layout.decimal)
+    cut_off::doubt_of(source, separator, layout.decimal)
 }
 
 /// UTF-16 and lone CRs in the head are turned into UTF-8 with LF; everything else stays on disk.
@@ -172,11 +179,11 @@ fn deal<T: Copy>(values: Vec<T>, columns: usize) -> Vec<Vec<T>> {
     (0..columns).map(|c| values.iter().skip(c).step_by(columns).copied().collect()).collect()
 }
 
-/// Records of `n` rows.
+/// Records of `n` rows, with a `footer` behind them or without.
 fn assemble(
     source: &Source,
     mut columns: Vec<Values>,
-    n: usize,
+    (n, footer): (usize, bool),
     layout: &Layout,
     stated: &Stated,
     options: &Options,
@@ -194,7 +201,7 @@ fn assemble(
         None
     };
     let has_axis = printed.is_some();
-    let axis = abscissa::choose(source.path(), printed, n, stated, options, &mut doubts)?;
+    let axis = abscissa::choose(source.path(), printed, (n, footer), stated, options, &mut doubts)?;
     let mut meta = Meta::new(stated.name.clone().unwrap_or_default(), crate::units::Unit::opaque(""));
     meta.notes.clone_from(&stated.notes);
     meta.step("read", &[("file", &source.name()), ("format", &"ascii")]);

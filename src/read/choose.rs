@@ -2,7 +2,7 @@
 
 use super::Recording;
 use crate::error::{Error, Place, Result};
-use crate::record::{Frf, FrfKind, Record, Trace, Values};
+use crate::record::{Frf, FrfKind, Record, Scaling, Trace, Values};
 
 impl Recording {
     /// The trace that `channel` names, or by its number among the traces from 1; the only one where it is `None`. A
@@ -40,15 +40,30 @@ impl Recording {
         Ok(trace)
     }
 
-    /// The frequency response function that `channel` names, as [`Recording::trace`] does. A complex spectrum is taken for
-    /// one.
+    /// The frequency response function that `channel` names, as [`Recording::trace`] does. A complex spectrum whose scaling
+    /// is not stated is taken for one, with a doubt.
     ///
     /// # Errors
-    /// If there is no such function, or several and none was named.
+    /// If there is no such function, or several and none was named; if it is a spectrum of amplitudes or powers.
     pub fn frf(&self, channel: Option<&str>) -> Result<Frf> {
-        let frfs: Vec<Frf> = self.records.iter().filter_map(as_frf).collect();
-        let names: Vec<&str> = frfs.iter().map(|f| f.meta.name.as_str()).collect();
-        Ok(frfs[self.choose("frequency response function", &names, channel)?].clone())
+        let frfs: Vec<(Frf, Option<Scaling>)> = self.records.iter().filter_map(as_frf).collect();
+        let names: Vec<&str> = frfs.iter().map(|(f, _)| f.meta.name.as_str()).collect();
+        let (mut frf, scaling) = frfs[self.choose("frequency response function", &names, channel)?].clone();
+        match scaling {
+            None => {}
+            Some(Scaling::Unknown) => frf.meta.doubt(
+                "The file does not say that this complex spectrum is a frequency response function: it is taken for one.",
+            ),
+            Some(scaling) => {
+                return Err(Error::input(
+                    Place::file(&self.path),
+                    format!("{:?} is a complex spectrum scaled as {}", frf.meta.name, scaling.name()),
+                    "a frequency response function: response per force",
+                )
+                .hint("export the frequency response function (H1 or H2), not the spectrum of one channel"));
+            }
+        }
+        Ok(frf)
     }
 
     fn choose(&self, kind: &str, names: &[&str], channel: Option<&str>) -> Result<usize> {
@@ -81,18 +96,37 @@ impl Recording {
     }
 }
 
-fn as_frf(record: &Record) -> Option<Frf> {
+/// A function, and the scaling of the spectrum that it is made of, if it is.
+fn as_frf(record: &Record) -> Option<(Frf, Option<Scaling>)> {
     match record {
-        Record::Frf(frf) => Some(frf.clone()),
+        Record::Frf(frf) => Some((frf.clone(), None)),
         Record::Spectrum(s) => match &s.values {
-            Values::Complex(values) => Some(Frf {
-                meta: s.meta.clone(),
-                axis: s.axis.clone(),
-                values: values.clone(),
-                kind: FrfKind::of(s.meta.quantity),
-            }),
+            Values::Complex(values) => {
+                let kind = FrfKind::of(s.meta.quantity);
+                let (meta, axis, values) = (s.meta.clone(), s.axis.clone(), values.clone());
+                Some((Frf { meta, axis, values, kind }, Some(s.scaling)))
+            }
             Values::Real(_) => None,
         },
         Record::Trace(_) => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::read::Reader;
+
+    #[test]
+    fn a_complex_spectrum_is_taken_for_a_function_only_where_nothing_says_otherwise() {
+        let of = |preamble: &str| {
+            let text = format!("{preamble}f [Hz],X_re [m/s],X_im [m/s]\n0,1,2\n1,3,4\n2,5,6\n");
+            Reader::new().from_reader("x.csv", text.as_bytes()).unwrap().frf(None)
+        };
+        let frf = of("").unwrap();
+        assert!(frf.meta.doubts.iter().any(|d| d.contains("is taken for one")), "{:?}", frf.meta.doubts);
+        for scaling in ["peak", "rms", "psd"] {
+            let error = of(&format!("# scaling: {scaling}\n")).unwrap_err().to_string();
+            assert!(error.contains("\"X\" is a complex spectrum scaled as"), "{scaling}: {error}");
+        }
     }
 }

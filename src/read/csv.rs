@@ -19,7 +19,7 @@ mod rows;
 use super::format::{Format, Survey};
 use super::reader::{Options, Recording};
 use super::source::HEAD;
-use super::{Header, Source, ending, text};
+use super::{Header, Source, cut_off, text};
 use crate::error::{Error, Place, Result};
 
 pub(super) fn sniff(head: &[u8], source: &Source) -> bool {
@@ -60,9 +60,8 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
     let axis = records::axis_column(&layout.names);
     let at = axis.as_ref().map(|(at, _)| *at);
     let columns = columns::read(source.path(), &text, &layout, options, at)?;
-    let tail = &text.as_bytes()[text.len().saturating_sub(ending::LOOK)..];
     let decimal = if columns.comma { b',' } else { b'.' };
-    let cut_off = ending::doubt(tail, layout.separator as u8, decimal);
+    let cut_off = cut_off::doubt(text.as_bytes(), layout.separator as u8, decimal);
     let (mut records, mut doubts) = records::build(source, layout, columns, axis, options)?;
     doubts.extend(cut_off);
     for record in &mut records {

@@ -254,20 +254,9 @@ fn listed<P: AsRef<Path>>(paths: &[&P]) -> String {
 
 /// What to say where reading failed with `error`: a list of a sweep is a likely thing to be taken for a measurement.
 fn no_list(source: &Source, error: Error) -> Error {
-    // A list of ten thousand points is smaller.
-    let small = source.len() < 1 << 20;
-    match Some(source).filter(|_| small).and_then(SweepList::of) {
-        Some(list) => Error::input(
-            Place::file(source.path()),
-            format!(
-                "this is the list of a sweep: {} points, {} lines to {} Hz",
-                list.len(),
-                list.lines,
-                list.base_band
-            ),
-            "a measurement file",
-        )
-        .hint("give the list to `vibro response`, or name the files that stand in it"),
-        None => error,
-    }
+    let Some(list) = SweepList::of(source) else { return error };
+    let (points, lines, band) = (list.len(), list.lines, list.base_band);
+    error
+        .aside(format!("this reads as the list of a sweep: {points} points, {lines} lines to {band} Hz"))
+        .hint("give the list to `vibro response`, or name the files that stand in it")
 }

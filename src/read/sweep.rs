@@ -1,9 +1,11 @@
 //! The spectra of a sweep, read together.
 
+use super::decibel::Decibel;
 use super::{Format, Reader, Recording, SweepList};
 use crate::error::{Error, Place, Result};
 use crate::record::{Axis, Direction, Meta, Record, Scaling, Spectrum, Sweep, SweepPoint, Values, Window};
 use crate::units::{Quantity, Unit};
+use std::path::Path;
 
 /// What the analyser stored. What its files state themselves is believed where nothing is stated here; where both are and
 /// differ, the statement here is used, with a doubt.
@@ -20,10 +22,10 @@ pub struct SweepReader {
     pub unit: Option<Unit>,
     /// What was stored, if stated; else what the unit says, else a displacement is assumed.
     pub quantity: Option<Quantity>,
-    /// Factor on stored responses: unit per stored number.
-    pub calibration: f64,
-    /// Factor on stored forces: newtons per stored number.
-    pub force_calibration: f64,
+    /// Factor on stored responses, if stated: unit per stored number, even where the files say volts.
+    pub calibration: Option<f64>,
+    /// Factor on stored forces, if stated: newtons per stored number, even where the files say volts.
+    pub force_calibration: Option<f64>,
     /// Window, if stated: `Some(None)` says that it is unknown. Else that of the files, else Hann is assumed.
     pub window: Option<Option<Window>>,
     /// Peak or RMS, if stated; else that of the files, else peak is assumed.
@@ -32,6 +34,14 @@ pub struct SweepReader {
     pub analyser_integrated: Option<u8>,
     /// Format of the files, found out if `None`.
     pub format: Option<Format>,
+}
+
+/// What is stated of one kind of files: forces or responses.
+struct Said<'a> {
+    force: bool,
+    unit: Option<&'a Unit>,
+    quantity: Option<Quantity>,
+    calibration: Option<f64>,
 }
 
 /// What is used for one file.
@@ -43,7 +53,7 @@ struct Settled {
 }
 
 impl Default for SweepReader {
-    /// Nothing stated, factors 1.
+    /// Nothing stated.
     fn default() -> Self {
         SweepReader {
             name: String::new(),
@@ -51,8 +61,8 @@ impl Default for SweepReader {
             mass: None,
             unit: None,
             quantity: None,
-            calibration: 1.0,
-            force_calibration: 1.0,
+            calibration: None,
+            force_calibration: None,
             window: None,
             scaling: None,
             analyser_integrated: None,
@@ -76,18 +86,28 @@ impl SweepReader {
         let mut doubts = Vec::new();
         let mut points = Vec::with_capacity(list.len());
         let mut unit: Option<Unit> = None;
+        let newton = Unit::of(Quantity::Force);
         for (i, response) in recordings.into_iter().enumerate() {
             let force = match forces.get(i) {
                 Some(recording) => {
-                    let newton = Unit::of(Quantity::Force);
-                    let force = (Some(&newton), Some(Quantity::Force));
-                    let settled = self.settle(recording, force, self.force_calibration, &mut doubts)?;
+                    let said = Said {
+                        force: true,
+                        unit: Some(&newton),
+                        quantity: None,
+                        calibration: self.force_calibration,
+                    };
+                    let settled = self.settle(recording, &said, &mut doubts)?;
                     magnitudes(recording, list, &axis, settled.factor)?
                 }
                 None => Vec::new(),
             };
-            let stored = (self.unit.as_ref(), self.quantity);
-            let settled = self.settle(&response, stored, self.calibration, &mut doubts)?;
+            let said = Said {
+                force: false,
+                unit: self.unit.as_ref(),
+                quantity: self.quantity,
+                calibration: self.calibration,
+            };
+            let settled = self.settle(&response, &said, &mut doubts)?;
             let values = magnitudes(&response, list, &axis, settled.factor)?;
             match &unit {
                 Some(first) if *first != settled.unit => {
@@ -143,25 +163,16 @@ impl SweepReader {
     }
 
     /// Brings together what a file states and what was stated for it.
-    fn settle(
-        &self,
-        recording: &Recording,
-        (stated, quantity): (Option<&Unit>, Option<Quantity>),
-        calibration: f64,
-        doubts: &mut Vec<String>,
-    ) -> Result<Settled> {
+    fn settle(&self, recording: &Recording, said: &Said, doubts: &mut Vec<String>) -> Result<Settled> {
+        let Some(Record::Spectrum(spectrum)) = recording.records.first() else {
+            return Err(no_spectrum(recording));
+        };
+        linear(&recording.path, &spectrum.meta, said, doubts)?;
         let mut doubt = |sentence: String| {
             if !doubts.contains(&sentence) {
                 doubts.push(sentence);
             }
         };
-        let Some(Record::Spectrum(spectrum)) = recording.records.first() else {
-            return Err(no_spectrum(recording));
-        };
-        if let Some(said) = decibels(&spectrum.meta) {
-            let found = format!("the file says that its values are decibels: {said:?}");
-            return Err(Error::input(Place::file(&recording.path), found, "linear amplitudes").hint(LINEAR));
-        }
         let scaling = match (self.scaling, spectrum.scaling) {
             (Some(stated), _) => stated,
             (None, Scaling::Unknown) => {
@@ -188,21 +199,20 @@ impl SweepReader {
         };
         // The reader has taken a unit that the file states to SI already.
         let written = Some(&spectrum.meta.unit).filter(|u| u.is_known());
-        if let (Some(meant), Some(written)) = (stated.map(Unit::quantity).or(quantity), written)
-            && meant != written.quantity()
-        {
-            return Err(Error::input(
-                Place::file(&recording.path),
-                format!("the file says its values are in {written}, {}", written.quantity()),
-                format!("{meant}, as was stated"),
-            )
-            .hint("leave quantity and unit out, and the file is believed; or check that this is the channel you mean"));
-        }
-        let (factor, unit) = match (written, stated) {
-            (Some(written), _) => (1.0, written.clone()),
+        let (factor, unit) = match (written, said.unit) {
+            (Some(written), stated) => match stated.map(Unit::quantity).or(said.quantity) {
+                Some(meant) if meant != written.quantity() => match (stated, said.calibration) {
+                    // What one stored number stands for is stated in full.
+                    (Some(stated), Some(_)) if is_raw(written) => {
+                        (stated.factor() / taken(&spectrum.meta), stated.si())
+                    }
+                    _ => return Err(other_quantity(&recording.path, written, meant, said)),
+                },
+                _ => (1.0, written.clone()),
+            },
             (None, Some(stated)) => (stated.factor(), stated.si()),
             (None, None) => {
-                let unit = Unit::of(quantity.unwrap_or(Quantity::Displacement));
+                let unit = Unit::of(said.quantity.unwrap_or(Quantity::Displacement));
                 doubt(format!(
                     "Neither the files nor what was stated name the unit of the responses: {unit} is assumed."
                 ));
@@ -210,36 +220,64 @@ impl SweepReader {
             }
         };
         let peak = if scaling == Scaling::Rms { std::f64::consts::SQRT_2 } else { 1.0 };
-        Ok(Settled { factor: factor * calibration * peak, unit, window })
+        Ok(Settled { factor: factor * said.calibration.unwrap_or(1.0) * peak, unit, window })
     }
 }
 
 /// What to try where values are levels.
 const LINEAR: &str = "export linear amplitudes; levels in decibels are not read";
 
-/// What a file says where its values are decibels: its unit, its name, or a header line with the word.
-fn decibels(meta: &Meta) -> Option<String> {
-    let unit = meta.unit.symbol();
-    if !meta.unit.is_known() && unit.to_lowercase().starts_with("db") {
-        return Some(unit.to_owned());
+/// Refuses levels in decibels, unless a linear unit is stated by a person.
+fn linear(path: &Path, meta: &Meta, said: &Said, doubts: &mut Vec<String>) -> Result<()> {
+    const MENTIONED: &str = "The files speak of decibels";
+    let unit = said.unit.filter(|unit| !said.force && unit.is_known());
+    let sentence = match (Decibel::of(meta), unit) {
+        (Some(Decibel::Stated(words)), None) => {
+            let found = format!("the file says that its values are decibels: {words:?}");
+            return Err(Error::input(Place::file(path), found, "linear amplitudes").hint(LINEAR));
+        }
+        (Some(Decibel::Stated(words)), Some(unit)) => {
+            format!("The file says that its values are decibels ({words:?}); {unit} was stated and is used.")
+        }
+        (Some(Decibel::Mentioned(words)), _) => {
+            format!("{MENTIONED} ({words:?}): their values are taken as linear amplitudes.")
+        }
+        (None, _) => return Ok(()),
+    };
+    let again = |d: &String| *d == sentence || (d.starts_with(MENTIONED) && sentence.starts_with(MENTIONED));
+    if !doubts.iter().any(again) {
+        doubts.push(sentence);
     }
-    let lines = meta.notes.iter().map(|(key, value)| match key.as_str() {
-        "" => value.clone(),
-        key => format!("{key}: {value}"),
-    });
-    std::iter::once(meta.name.clone()).chain(lines).find(|line| says_decibels(line))
+    Ok(())
 }
 
-/// Whether a line holds the word dB and no number before or behind it, as `gain: 20 dB` and `gain [dB]: 20` have.
-fn says_decibels(line: &str) -> bool {
-    let words: Vec<&str> = line
-        .split(|c: char| c.is_whitespace() || "[](){}:=,;/\"".contains(c))
-        .filter(|w| !w.is_empty())
-        .collect();
-    let number =
-        |at: Option<usize>| at.and_then(|at| words.get(at)).is_some_and(|w| w.parse::<f64>().is_ok());
-    let level = |word: &str| matches!(word.to_lowercase().as_str(), "db" | "decibel" | "decibels");
-    (0..words.len()).any(|i| level(words[i]) && !number(i.checked_sub(1)) && !number(Some(i + 1)))
+/// Volts, or parts of full scale: what a sensor gave, and no quantity of the rig.
+fn is_raw(unit: &Unit) -> bool {
+    matches!(unit.quantity(), Quantity::Voltage | Quantity::Ratio)
+}
+
+/// The factor by which the reader took stored numbers to SI.
+fn taken(meta: &Meta) -> f64 {
+    let steps = meta.history.iter().filter(|step| step.name == "to_si").flat_map(|step| &step.arguments);
+    steps.filter(|(key, _)| key == "factor").filter_map(|(_, factor)| factor.parse::<f64>().ok()).product()
+}
+
+fn other_quantity(path: &Path, written: &Unit, meant: Quantity, said: &Said) -> Error {
+    let hint = match (is_raw(written), said.force) {
+        (true, true) => "give force_calibration in the campaign: newtons per stored number",
+        (true, false) => "give unit and calibration: what one stored number stands for",
+        (false, true) => "check that these are the force files, and not the response files",
+        (false, false) => {
+            "leave quantity and unit out, and the file is believed; or check that this is the channel you mean"
+        }
+    };
+    let found = format!("the file says its values are in {written}, {}", written.quantity());
+    Error::input(
+        Place::file(path),
+        found,
+        if said.force { "a force, in N".to_owned() } else { format!("{meant}, as was stated") },
+    )
+    .hint(hint)
 }
 
 fn no_spectrum(recording: &Recording) -> Error {
@@ -306,22 +344,6 @@ fn gather(recording: &Recording, doubts: &mut Vec<String>) {
         let settled = SETTLED.iter().any(|part| doubt.contains(part));
         if !settled && doubts.len() < 50 && !doubts.contains(&doubt) {
             doubts.push(doubt);
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::says_decibels;
-
-    #[test]
-    fn levels_are_told_from_settings_in_decibels() {
-        for line in ["Level (dB)", "Y axis: dB", "amplitude [dB re 1 m/s]", "scale: log dB", "Decibels"] {
-            assert!(says_decibels(line), "{line}");
-        }
-        for line in ["gain: 20 dB", "gain [dB]: 20", "Window: flat top (-93 dB)", "v", "adb", "range dB = 10"]
-        {
-            assert!(!says_decibels(line), "{line}");
         }
     }
 }

@@ -10,7 +10,7 @@
 //! …
 //! ```
 
-use super::{Reader, Source, ending, number, text};
+use super::{Reader, Source, number, text};
 use crate::error::{Error, Place, Result};
 use std::path::{Component, Path, PathBuf};
 
@@ -56,8 +56,11 @@ impl SweepList {
         Ok(list)
     }
 
-    /// The list that a source holds; `None` where it is anything else.
+    /// The list that a source holds; `None` where it is anything else, or larger than a list of ten thousand points.
     pub(super) fn of(source: &Source) -> Option<SweepList> {
+        if source.len() >= 1 << 20 {
+            return None;
+        }
         let bytes = source.all().ok()?;
         parse(source.path(), &text::decode(&bytes)).ok()
     }
@@ -149,7 +152,7 @@ const HOLDS: &str = "number of points, lines, base band in Hz, force names, resp
 /// What to say where a list could not be read with `error`: a measurement is a likely thing to be taken for a list.
 fn no_measurement(path: &Path, text: &str, error: Error) -> Error {
     let words =
-        text.lines().map(str::trim).rfind(|l| !l.is_empty()).is_none_or(|l| ending::is_words(l.as_bytes()));
+        text.lines().rfind(|l| !l.trim().is_empty()).is_none_or(|l| l.split_whitespace().all(is_name));
     match Reader::new().survey(path) {
         Ok((format, _, _)) if !words => error.hint(format!(
             "this looks like a measurement file ({}), not a list: `vibro info` says what is in it; a list holds: {HOLDS}",
@@ -219,11 +222,25 @@ fn parse(path: &Path, text: &str) -> Result<SweepList> {
             )
             .hint("correct the number of points in the first line, or add the missing names"));
         }
+        named(path, rest.iter().copied())?;
         list.places = rest.iter().map(|(line, _)| Place::line(path, *line)).collect();
         list.force = rest[..points].iter().map(|(_, name)| PathBuf::from(name)).collect();
         list.response = rest[points..].iter().map(|(_, name)| PathBuf::from(name)).collect();
     }
     Ok(list)
+}
+
+/// Refuses what cannot be the name of a file.
+fn named<'a>(path: &Path, mut names: impl Iterator<Item = (u64, &'a str)>) -> Result<()> {
+    names.find(|(_, name)| !is_name(name)).map_or(Ok(()), |(line, name)| {
+        Err(Error::input(Place::line(path, line), format!("found {name:?}"), "the name of a file"))
+    })
+}
+
+/// Whether a word may be the name of a file: it holds a letter, and is neither a number nor stands for one that is missing.
+fn is_name(word: &str) -> bool {
+    let bytes = word.as_bytes();
+    word.contains(char::is_alphabetic) && number::parse(bytes).is_none() && !number::is_missing(bytes)
 }
 
 fn hand_over(
@@ -259,6 +276,7 @@ fn hand_over(
             format!("{points} names of {NAME} characters, or separated by blanks or lines"),
         ));
     }
+    named(path, names.iter().map(|(line, name)| (*line, name.as_str())))?;
     for (line, name) in names {
         list.places.push(Place::line(path, line));
         list.response.push(PathBuf::from(name));
@@ -295,6 +313,8 @@ mod tests {
             ("1e12\n400\n20\na", "line 1", "whole"),
             ("3\n400\n20\n5\n6\nA B C", "line 5", "2 excitation"),
             ("2\n400\n20\n5\n6\nA B C", "line 6", "3 response"),
+            ("1\n2\n3\n4\nNaN", "line 5", "found \"NaN\"; expected the name of a file"),
+            ("1\n2\n3\nF1.DAT\n--", "line 5", "found \"--\"; expected the name of a file"),
             ("", "line 1", "number of points"),
             ("2\n400\n", "line 2", "the list ends here; expected the base band"),
         ] {

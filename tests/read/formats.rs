@@ -182,6 +182,10 @@ fn csv_quoted_names_and_numbers() {
     let recording = read("csv/quoted.csv");
     assert_eq!(values(&recording, "speed \"laser\""), [1.5 * 1e-3, 2.5 * 1e-3]);
     assert_eq!(recording.records[0].axis(), &Axis::time(0.0, 0.1, 2));
+    let recording = read("csv/quoted_scientific.csv");
+    assert!(recording.doubts.is_empty(), "{:?}", recording.doubts);
+    let expected: Vec<f64> = (0..24).map(|k| -f64::from(k) / 4.0 * 1e-3).collect();
+    assert_eq!(values(&recording, "v"), expected);
 }
 
 /// What other people's analysers export as plain numbers is not taken for named columns.

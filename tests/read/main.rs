@@ -3,6 +3,8 @@
 mod ascii_rows;
 mod ascii_statements;
 mod formats;
+mod stated_axes;
+mod sweep_units;
 mod traces;
 mod uff_binary;
 mod uff_damage;

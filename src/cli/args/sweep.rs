@@ -12,7 +12,7 @@ pub struct Sweep {
     /// Allow names in the list that lead outside its folder
     #[arg(long)]
     pub allow_outside: bool,
-    /// Unit of the stored responses [default: m]
+    /// Unit of the stored responses [default: what the files say, else the SI unit of the quantity, m where none is stated]
     #[arg(long)]
     pub unit: Option<String>,
     /// Factor on the stored responses

@@ -98,6 +98,35 @@ fn a_crossing_at_a_jump_is_as_uncertain_as_the_jump() {
 }
 
 #[test]
+fn a_crossing_beside_a_jump_keeps_its_place_however_the_frequencies_of_the_masses_differ() {
+    // Steps of half a Hz. The second curve jumps from the point at 6.515 + offset to the next; the first goes on.
+    let grid = |offset: f64| (0..8).map(move |i| 4.515 + 0.5 * f64::from(i) + offset);
+    for offset in [0.0, 1e-9, -1e-9, 0.25, 0.25 + 1e-9, 0.25 - 1e-9, -0.25, -0.1] {
+        // They cross at 6.05 on straight lines in the logarithm; behind the jump the second lies above, or below.
+        for (behind, expected) in [(2.0, vec![6.05]), (-2.0, vec![6.05, 6.765 + offset])] {
+            let first: Vec<_> = grid(0.0).map(|f| (f, (6.05 - f).exp(), 1e-3)).collect();
+            let height = |f: f64| f - 6.05 + if f > 6.6 + offset { 2.0 * behind } else { 0.0 };
+            let second: Vec<_> = grid(offset).map(|f| (f, height(f).exp(), 1e-3)).collect();
+            let jump = jump([second[4], second[5]], Direction::Up);
+            let found = crossings(first, second, &[jump]);
+            let frequencies: Vec<f64> = found.iter().map(|c| c.frequency).collect();
+            // Behind a fall by four the curves meet again at 8.05, where both reach that far.
+            let frequencies: Vec<f64> = frequencies.into_iter().filter(|f| *f < 7.6).collect();
+            assert_eq!(frequencies.len(), expected.len(), "{offset} {behind}: {found:?}");
+            for (found, expected) in frequencies.iter().zip(&expected) {
+                // Rounding over a nanohertz: 1e-16/1e-9 of it at worst.
+                assert!((found - expected).abs() < 1e-9, "{offset} {behind}: {frequencies:?}");
+            }
+            if let Some(at_jump) = found.get(1).filter(|c| c.frequency < 7.6) {
+                let std = 0.5 / f64::sqrt(12.0);
+                assert!((at_jump.frequency_std.unwrap() - std).abs() < 1e-12, "{offset}: {at_jump:?}");
+            }
+            assert!(found[0].frequency_std.unwrap() < 0.01, "{offset}: {found:?}");
+        }
+    }
+}
+
+#[test]
 fn a_hardening_peak_ends_in_a_drop() {
     let f: Vec<f64> = (0..12).map(|i| 8.0 + 0.3 * f64::from(i)).collect();
     let a: Vec<f64> = f.iter().map(|f| if *f < 10.6 { 1.0 + (f - 8.0) } else { 0.8 }).collect();

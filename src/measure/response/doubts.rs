@@ -59,6 +59,22 @@ pub fn twice(sweep: &Sweep) -> Option<String> {
     })
 }
 
+/// A sentence where lines at the frequencies of `hiders` hide the responses at `excitation`, both in Hz.
+pub fn hidden(excitation: &[f64], hiders: &[Option<f64>]) -> Option<String> {
+    let pairs: Vec<String> = excitation
+        .iter()
+        .zip(hiders)
+        .filter_map(|(at, hider)| {
+            hider.map(|h| format!("another line at {h:.4} Hz hides the response at {at:.4} Hz"))
+        })
+        .collect();
+    let shown = pairs.get(..5).unwrap_or(&pairs).join("; ");
+    let more = if pairs.len() > 5 { format!("; and {} more", pairs.len() - 5) } else { String::new() };
+    (!pairs.is_empty()).then(|| {
+        format!("Amplitudes that are mostly leakage, with upper limits that allow for it: {shown}{more}.")
+    })
+}
+
 /// Direction of a sweep from its frequencies, with doubts where they are not in order.
 pub fn direction(
     frequency: &[f64],

@@ -3,7 +3,8 @@
 use super::grouping::GROUPED;
 use super::layout::{Cell, Layout, comment, complex, cut_row, lines, shorten};
 use crate::error::{Error, Place, Result};
-use crate::read::ending::{self, CUT_OFF};
+use crate::read::cut_off::CUT_OFF;
+use crate::read::footer::{Footer, again};
 use crate::read::missing::Missing;
 use crate::read::number;
 use num_complex::Complex64;
@@ -18,8 +19,8 @@ pub struct Rows {
     pub missing: usize,
     /// Comment lines between or behind the rows.
     pub comments: Vec<String>,
-    /// What is to be said of words behind the rows.
-    pub footer: Option<String>,
+    /// Words behind the rows.
+    pub footer: Option<Footer>,
 }
 
 /// Reads all rows from the first one on.
@@ -44,9 +45,11 @@ pub fn read(path: &Path, bytes: &[u8], layout: &Layout, allow_missing: bool) -> 
             rows.comments.push(String::from_utf8_lossy(text).into_owned());
             continue;
         }
-        if ending::is_words(line.trim_ascii()) {
+        cut(line, layout, &mut cells);
+        let words = layout.columns == 1 && cells.first().is_some_and(|c| c.1.contains(&b' '));
+        if cells.len() != layout.columns || words {
             let (whole, rest) = (rows.values.len() / layout.columns, lines(&bytes_of_rows[at..]));
-            rows.footer = ending::footer(whole, rest.map(|(_, _, line)| line));
+            rows.footer = Footer::of(whole, layout.columns, rest.map(|(_, _, line)| texts(line, layout)));
             if rows.footer.is_some() {
                 break;
             }
@@ -66,13 +69,6 @@ pub fn read(path: &Path, bytes: &[u8], layout: &Layout, allow_missing: bool) -> 
                 rows.values.extend(std::iter::repeat_n(Complex64::new(f64::NAN, 0.0), wanted));
             }
         }
-        if layout.columns == 1 && layout.cell == Cell::Complex {
-            let text = line.trim_ascii();
-            cells.clear();
-            cells.push((text.as_ptr() as usize - line.as_ptr() as usize, text));
-        } else {
-            cut_row(line, layout.separator, &mut cells);
-        }
         let mut gaps = 0;
         for &(offset, cell) in &cells {
             let value = match layout.cell {
@@ -87,7 +83,13 @@ pub fn read(path: &Path, bytes: &[u8], layout: &Layout, allow_missing: bool) -> 
                 }
                 None => {
                     let error = not_a_number(path, number, offset, cell, layout);
-                    return Err(if is_last(line, bytes) { error.hint(CUT_OFF) } else { error });
+                    let behind = lines(&bytes_of_rows[at..]).skip(1);
+                    let behind = behind.map(|(i, _, other)| (number + i - 1, String::from_utf8_lossy(other)));
+                    return Err(match again(&String::from_utf8_lossy(cell), behind) {
+                        Some(others) => error.aside(others),
+                        None if is_last(line, bytes) => error.hint(CUT_OFF),
+                        None => error,
+                    });
                 }
             };
             rows.values.push(value);
@@ -107,6 +109,25 @@ pub fn read(path: &Path, bytes: &[u8], layout: &Layout, allow_missing: bool) -> 
     missing.check(path, allow_missing)?;
     rows.missing = missing.count;
     Ok(rows)
+}
+
+/// Cuts a line into cells; a complex number may have blanks in it.
+fn cut<'a>(line: &'a [u8], layout: &Layout, cells: &mut Vec<(usize, &'a [u8])>) {
+    if layout.columns == 1 && layout.cell == Cell::Complex {
+        let text = line.trim_ascii();
+        cells.clear();
+        cells.push((text.as_ptr() as usize - line.as_ptr() as usize, text));
+    } else {
+        cut_row(line, layout.separator, cells);
+    }
+}
+
+/// A line and its cells.
+fn texts(line: &[u8], layout: &Layout) -> (String, Vec<String>) {
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let mut cells = Vec::new();
+    cut(line, layout, &mut cells);
+    (text(line), cells.into_iter().map(|(_, cell)| text(cell)).collect())
 }
 
 /// Whether a line ends with the file and not with a line end.
@@ -146,7 +167,7 @@ fn not_a_number(path: &Path, line: u64, offset: usize, cell: &[u8], layout: &Lay
     } else if cell.contains(&b'.') && cell.contains(&b',') {
         GROUPED
     } else {
-        "remove the line, or put # before it if it is a remark"
+        "write NaN in the place of a bad value and give --allow-missing; put # before the line if it is a remark"
     };
     Error::input(
         Place::line(path, line).column(offset as u64 + 1),

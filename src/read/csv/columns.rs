@@ -3,7 +3,8 @@
 use super::layout::Layout;
 use super::rows::{Line, Lines, cut};
 use crate::error::{Error, Place, Result};
-use crate::read::ending::{self, CUT_OFF};
+use crate::read::cut_off::CUT_OFF;
+use crate::read::footer::{Footer, again};
 use crate::read::missing::Missing;
 use crate::read::number;
 use crate::read::reader::Options;
@@ -27,8 +28,8 @@ pub struct Columns {
     pub comments: usize,
     /// The first of them with their lines.
     pub kept: Vec<(u64, String)>,
-    /// What is to be said of words behind the rows.
-    pub footer: Option<String>,
+    /// Words behind the rows.
+    pub footer: Option<Footer>,
 }
 
 /// Reads all rows; `axis` is the column whose digits count.
@@ -58,19 +59,21 @@ pub fn read(
         if line.is_blank() || line.text == "\u{1a}" {
             continue;
         }
-        if ending::is_words(line.text.trim().as_bytes()) {
-            let rest = Lines::from(text, line.at, line.number).map(|line| line.text.as_bytes());
-            columns.footer = ending::footer(columns.values.first().map_or(0, Vec::len), rest);
-            if columns.footer.is_some() {
-                break;
-            }
-        }
         cut(line.text, layout.separator, &mut fields).map_err(|at| {
             fault(path, &line, at, "text behind a closing quote", "a separator or the end of the line")
         })?;
         let last = line.at + line.text.len() == text.len();
         let blank_end = fields.last().is_some_and(|(_, f)| f.is_empty());
-        if fields.len() != n && !(fields.len() == n + 1 && blank_end) {
+        let fits = fields.len() == n || (fields.len() == n + 1 && blank_end);
+        if !fits || (n == 1 && fields.iter().any(|(_, f)| f.contains(' '))) {
+            let rest = Lines::from(text, line.at, line.number);
+            let whole = columns.values.first().map_or(0, Vec::len);
+            columns.footer = Footer::of(whole, n, rest.map(|l| texts(&l, layout.separator)));
+            if columns.footer.is_some() {
+                break;
+            }
+        }
+        if !fits {
             let at = fields.get(n).map_or(line.text.len(), |(at, _)| *at);
             let found = format!("{} field(s) in this row", fields.len());
             let expected = format!("{n}, as many as line {} names", layout.named_in);
@@ -95,7 +98,12 @@ pub fn read(
                 }
                 None => {
                     let error = not_a_number(path, &line, *at, field, decimal);
-                    return Err(if last { error.hint(CUT_OFF) } else { error });
+                    let behind = Lines::from(text, line.at, line.number).skip(1);
+                    return Err(match again(field, behind.map(|l| (l.number, l.text))) {
+                        Some(others) => error.aside(others),
+                        None if last => error.hint(CUT_OFF),
+                        None => error,
+                    });
                 }
             };
             if axis == Some(i) {
@@ -110,6 +118,15 @@ pub fn read(
     Ok(columns)
 }
 
+/// A line and its fields; itself where it cannot be cut.
+fn texts(line: &Line, separator: char) -> (String, Vec<String>) {
+    let mut fields = Vec::new();
+    let cut = cut(line.text, separator, &mut fields);
+    let whole = || vec![line.text.to_owned()];
+    let fields = cut.map_or_else(|_| whole(), |()| fields.into_iter().map(|(_, f)| f.into_owned()).collect());
+    (line.text.to_owned(), fields)
+}
+
 fn fault(path: &Path, line: &Line, at: usize, found: &str, expected: &str) -> Error {
     Error::input(Place::line(path, line.number).column(line.column(at)), found, expected)
 }
@@ -120,7 +137,7 @@ fn not_a_number(path: &Path, line: &Line, at: usize, field: &str, decimal: u8) -
     let hint = if number::parse_with(field.as_bytes(), other).is_some() {
         "if the decimal mark is a comma, give --decimal comma; if it is a point, --decimal point"
     } else {
-        "remove the line or column, or put # before the line if it is a remark"
+        "write NaN in the place of a bad value and give --allow-missing; put # before the line if it is a remark"
     };
     let shown: String = field.chars().take(40).collect();
     fault(path, line, at, &format!("found {shown:?}"), expected).hint(hint)

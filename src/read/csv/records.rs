@@ -7,6 +7,7 @@ use crate::error::{Error, Place, Result};
 use crate::read::abscissa::{Printed, choose, from_values, to_si};
 use crate::read::ascii::SCALING_UNSAID;
 use crate::read::ascii::stated::{self, Stated};
+use crate::read::footer::Footer;
 use crate::read::reader::Options;
 use crate::read::{Source, missing, number};
 use crate::record::{
@@ -36,7 +37,7 @@ pub fn build(
         let kept = columns.kept.len();
         doubts.push(format!("Of {} remarks between the rows the first {kept} are kept.", columns.comments));
     }
-    doubts.extend(columns.footer);
+    doubts.extend(columns.footer.iter().map(Footer::doubt));
     doubts.extend(missing::kept(columns.missing));
     if columns.comma && layout.names.len() == 1 {
         doubts.push("There is one column, so the comma is taken as the decimal mark.".to_owned());
@@ -58,7 +59,8 @@ pub fn build(
         Some((kind, column)) => Some(printed_axis(source, kind, &column, columns.resolution)?),
         None => None,
     };
-    let mut axis = choose(source.path(), axis, rows, &stated, options, &mut doubts)?;
+    let mut axis =
+        choose(source.path(), axis, (rows, columns.footer.is_some()), &stated, options, &mut doubts)?;
     if let (AxisKind::Index, Some(first), Grid::Even { start, .. }) = (&axis.kind, first, &mut axis.grid) {
         *start = first;
     }

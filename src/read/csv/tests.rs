@@ -94,6 +94,10 @@ fn a_base_band_must_go_with_the_frequency_column() {
     // Lines without 0 Hz end at the base band; a zoomed spectrum does not begin at 0 Hz, nor end there.
     assert_eq!(step(&spectrum(&[12.5, 25.0, 37.5, 50.0]), 50.0).unwrap(), Axis::frequency(12.5, 12.5, 4));
     assert!(step(&spectrum(&[100.0, 112.5, 125.0, 137.5, 150.0]), 50.0).is_err());
+    // A transform of n samples ends one line below: the column is believed.
+    let half_open = spectrum(&[0.0, 12.5, 25.0, 37.5]);
+    assert_eq!(step(&half_open, 50.0).unwrap(), Axis::frequency(0.0, 12.5, 4));
+    assert!(step(&half_open, 62.5).is_err() && step(&half_open, 44.0).is_err());
     // A kilohertz column says so.
     let kilo = "f [kHz],v [m/s]\n0,1\n0.025,1\n0.05,1\n";
     assert_eq!(step(kilo, 50.0).unwrap(), Axis::frequency(0.0, 25.0, 3));
@@ -104,8 +108,20 @@ fn words_behind_the_rows_are_passed_over_and_quoted() {
     let rows = "t [s],v [m/s]\n0,1\n1,2\n2,3\n3,4\n";
     let recording = of(format!("{rows}End of data\n\nbye\n"));
     assert_eq!(values(&recording.records[0]), [1.0, 2.0, 3.0, 4.0]);
-    assert!(says(&recording.doubts, "2 line(s) without any, passed over: \"End of data\", \"bye\""));
-    for end in ["End of data\n4,5\n", "4,5x\n", "x,5\n"] {
+    assert!(says(&recording.doubts, "2 line(s) that are no rows, passed over: \"End of data\", \"bye\""));
+    // Numbers among words are no row where there are too many fields.
+    let counted = of(format!("{rows}End, of, data, 4 rows, 2 columns\n"));
+    assert_eq!(values(&counted.records[0]).len(), 4);
+    for end in [
+        "End of data\n4,5\n",
+        "4,5x\n",
+        "x,5\n",
+        "\"NaN\",\"NaN\"\n",
+        "\"4\",\"nan\"\n",
+        "Overload,Overload\n",
+        "Overload\nOverload\n",
+        "Overload,\n",
+    ] {
         assert!(read_with(&Reader::new(), format!("{rows}{end}")).is_err(), "{end}");
     }
 }

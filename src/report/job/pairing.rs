@@ -87,9 +87,19 @@ pub(super) fn all_crossings(responses: &[Response]) -> Vec<Crossing> {
     found
 }
 
-/// Sweeps of one mass, direction and level of force: naming and crossings know only the first.
+/// Doubts about levels of force: sweeps of one mass, direction and level, of which naming and crossings know only the first, and
+/// sweeps whose level is not known.
 pub(super) fn twice(responses: &[Response], warnings: &mut Vec<String>) {
-    for level in by_level(responses.iter()) {
+    let levels = by_level(responses.iter());
+    if levels.len() > 1 {
+        warnings.extend(responses.iter().filter(|r| forced(r).is_none()).map(|r| {
+            format!(
+                "\"{}\" has no measured force: of several levels it is taken to belong to that of the first sweep.",
+                r.name
+            )
+        }));
+    }
+    for level in levels {
         let members: Vec<&Response> = level.iter().filter_map(|i| responses.get(*i)).collect();
         for (i, r) in members.iter().enumerate() {
             let Some((mass, direction)) = r.mass.zip(r.direction) else { continue };

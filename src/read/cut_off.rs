@@ -1,11 +1,11 @@
-//! How a text of numbers ends: with a whole row, with words, or in the middle of its last number.
+//! Whether a text of numbers ends in the middle of its last number.
 
 use super::Source;
 use crate::error::{Error, Result};
 use std::io::{Read, SeekFrom};
 
 /// Bytes at the end that are looked at.
-pub(super) const LOOK: usize = 4096;
+const LOOK: usize = 4096;
 /// Rows above the last one that must agree before it can be called short.
 const ROWS: usize = 3;
 
@@ -18,20 +18,28 @@ pub(super) fn doubt_of(source: &Source, separator: u8, decimal: u8) -> Result<Op
     let failed = |e| Error::io("read", source.path(), e);
     let mut tail = Vec::new();
     let mut input = source.open()?;
-    input.seek(SeekFrom::Start(source.len().saturating_sub(LOOK as u64))).map_err(failed)?;
-    input.take(LOOK as u64).read_to_end(&mut tail).map_err(failed)?;
+    // One byte more than is looked at tells whether the tail begins in the middle of a row.
+    let look = LOOK as u64 + 1;
+    input.seek(SeekFrom::Start(source.len().saturating_sub(look))).map_err(failed)?;
+    input.take(look).read_to_end(&mut tail).map_err(failed)?;
     Ok(doubt(&tail, separator, decimal))
 }
 
-/// A doubt where `tail`, the end of a file, lacks its line end and its last number has fewer digits than the same column
-/// has in all rows above.
-pub(super) fn doubt(tail: &[u8], separator: u8, decimal: u8) -> Option<String> {
-    let ended = tail.last().is_none_or(|b| matches!(b, b'\n' | b'\r' | 0x1a));
+/// A doubt where `text` lacks its line end and its last number has fewer digits than the same column has in all rows above
+/// that are looked at.
+pub(super) fn doubt(text: &[u8], separator: u8, decimal: u8) -> Option<String> {
+    let line_end = |b: &u8| matches!(b, b'\n' | b'\r');
+    let ended = text.last().is_none_or(|b| line_end(b) || *b == 0x1a);
     if ended {
         return None;
     }
+    let tail = match text.len().checked_sub(LOOK) {
+        None | Some(0) => text,
+        // Half a row has fewer digits, too.
+        Some(from) => &text[from + text[from..].iter().position(line_end)?..],
+    };
     let mut rows = tail
-        .rsplit(|b| matches!(b, b'\n' | b'\r'))
+        .rsplit(line_end)
         .map(<[u8]>::trim_ascii)
         .filter(|row| !row.is_empty())
         .map(|row| row.rsplit(|b| *b == separator || b.is_ascii_whitespace()).next().unwrap_or(row));
@@ -48,41 +56,6 @@ pub(super) fn doubt(tail: &[u8], separator: u8, decimal: u8) -> Option<String> {
             String::from_utf8_lossy(last)
         )
     })
-}
-
-/// Fewer rows may be the head of a list of files.
-const FEW: usize = 4;
-/// How many lines may stand behind the values.
-const FOOTER: usize = 16;
-
-/// A doubt that quotes `rest`, the last lines of a file with `rows` rows of numbers, where they are nothing but words;
-/// `None` where they may hold values.
-pub(super) fn footer<'a>(rows: usize, rest: impl Iterator<Item = &'a [u8]>) -> Option<String> {
-    let mut lines = Vec::new();
-    for line in rest.map(<[u8]>::trim_ascii).filter(|l| !matches!(l, [] | [0x1a])) {
-        if lines.len() == FOOTER || !is_words(line) {
-            return None;
-        }
-        lines.push(format!("{:?}", super::ascii::shorten(&String::from_utf8_lossy(line))));
-    }
-    (rows >= FEW && !lines.is_empty()).then(|| {
-        format!(
-            "Behind the values stand {} line(s) without any, passed over: {}.",
-            lines.len(),
-            lines.join(", ")
-        )
-    })
-}
-
-/// Whether a line begins with a word: what begins like a number may be one that is cut off, and a word beside numbers may
-/// stand for a value.
-pub(super) fn is_words(line: &[u8]) -> bool {
-    let begin = line.iter().find(|b| !b"+-.,( ".contains(b));
-    let mut fields = line.split(|b| b" \t,;".contains(b)).filter(|f| !f.is_empty());
-    begin.is_some_and(|b| !b.is_ascii_digit())
-        && line.iter().filter(|b| b.is_ascii_alphabetic() || !b.is_ascii()).count() > 2
-        && fields.next().is_some_and(|first| !super::number::is_missing(first))
-        && !fields.any(|field| super::number::parse_with(field, b'.').is_some())
 }
 
 /// Digits behind the decimal mark and digits of the exponent; `None` for what is no number.
@@ -120,31 +93,18 @@ mod tests {
     }
 
     #[test]
-    fn a_footer_is_words_and_nothing_else() {
-        let of = |rows, text: &str| footer(rows, text.lines().map(str::as_bytes));
-        let doubt = of(4, "End of data\n\n-- SPS390 --\n\u{1a}").unwrap();
-        assert!(
-            doubt.contains("2 line(s)") && doubt.contains("\"End of data\", \"-- SPS390 --\""),
-            "{doubt}"
-        );
-        for text in [
-            "1.096639e",
-            "-1.2x",
-            ".5x",
-            "(-1.5e-2+j",
-            "x",
-            "End\n1.5",
-            "sum 12",
-            "NaN x",
-            "---",
-            "",
-            "a;1,5;2",
-        ] {
-            assert_eq!(of(9, text), None, "{text:?}");
+    fn a_long_file_is_judged_wherever_its_tail_begins() {
+        for end in ["\n", "\r\n", "\r"] {
+            let rows = format!("1.234567E-03{end}").repeat(2 * LOOK / 12);
+            // A first line of every length moves the start of the tail through all bytes of a row.
+            for phase in 0..=15 {
+                let text = format!("{}{end}{rows}1.234", "x".repeat(phase));
+                assert!(said(&text), "phase {phase}, {end:?}");
+                let source = Source::memory("x.txt", text.as_bytes()).unwrap();
+                assert!(doubt_of(&source, b' ', b'.').unwrap().is_some(), "phase {phase}, {end:?}");
+                assert!(!said(&format!("{text}567E-03")), "phase {phase}, {end:?}");
+            }
         }
-        // Three numbers and a name are a list of files.
-        assert_eq!(of(3, "F1.DAT"), None);
-        assert_eq!(of(99, &"end\n".repeat(17)), None);
     }
 
     #[test]
