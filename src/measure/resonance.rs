@@ -31,7 +31,7 @@ const PROMINENCE: f64 = 1.2;
 /// is known.
 ///
 /// The excited mass (1) has an antiresonance between two resonances. The response of another point may pass between them without
-/// a zero: its minimum is called an antiresonance only where it is deep (see [`DEEP`]).
+/// a zero: its minimum is called an antiresonance only where it is deep (less than half of the curve half-way to its neighbours).
 pub fn resonances(
     frequency: &[f64],
     amplitude: &[f64],
