@@ -299,6 +299,7 @@ mod tests {
             ("[[sweep]]\nname = \"a\"", "line 2", "neither a list"),
             (&format!("{SWEEP}{SWEEP}"), "line 5", "two sweeps"),
             (&format!("{SWEEP}mass = 3"), "line 4", "mass"),
+            (&format!("{SWEEP}base_band = 50.0"), "line 3", "beside a list"),
             (&format!("{SWEEP}quantity = \"speed\""), "line 4", "speed"),
             (&format!("{SWEEP}unit = \"mm\"\nquantity = \"velocity\""), "line 4", "displacement"),
             (&format!("{SWEEP}window = \"kaiser\""), "line 4", "kaiser"),

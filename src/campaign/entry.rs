@@ -89,6 +89,10 @@ impl SweepEntry {
                 "give list = \"…\", or force, response, lines and base_band",
             ));
         }
+        if let (Some(list), true) = (&self.list, self.lines.is_some() || self.base_band.is_some()) {
+            let found = "lines or base_band beside a list, which says both itself";
+            return Err(complaint(list.span(), found, "correct the list, or leave the keys out"));
+        }
         if written {
             let band = self.base_band.is_some_and(|b| b.is_finite() && b > 0.0);
             if !band || self.lines.is_none_or(|l| l == 0) || self.force.len() != self.response.len() {

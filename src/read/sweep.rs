@@ -208,7 +208,18 @@ impl SweepReader {
                     }
                     _ => return Err(other_quantity(&recording.path, written, meant, said)),
                 },
-                _ => (1.0, written.clone()),
+                _ => {
+                    // A factor that a person states holds for what is stored.
+                    let other = stated.filter(|s| !said.force && s.factor() != taken(&spectrum.meta));
+                    let factor = other.map_or(1.0, |s| s.factor() / taken(&spectrum.meta));
+                    if let Some(stated) = other {
+                        doubt(format!(
+                            "The files say another unit than {stated} (one stored unit is {} {written}); {stated} was stated and is used.",
+                            taken(&spectrum.meta)
+                        ));
+                    }
+                    (factor, written.clone())
+                }
             },
             (None, Some(stated)) => (stated.factor(), stated.si()),
             (None, None) => {

@@ -84,3 +84,16 @@ fn only_what_states_the_values_makes_them_decibels() {
     assert!(speaks("Database: DB rig") && speaks("Level (dB)"));
     assert!(!speaks("File: /data/db/run1.dat") && !speaks("Filter slope: dB/octave, 12"));
 }
+
+#[test]
+fn a_stated_unit_wins_over_the_files_and_that_is_said() {
+    let how = |unit: &str| SweepReader { unit: Unit::parse(unit), ..SweepReader::default() };
+    let sweep = read("Unit: kN", "Unit: mm/s", &how("m/s")).unwrap();
+    assert!(close(response(&sweep), 2.0), "{}", response(&sweep));
+    assert!(sweep.doubts.iter().any(|d| d.contains("m/s was stated and is used")), "{:?}", sweep.doubts);
+    // Nobody stated the unit of the force.
+    assert!(close(sweep.points[0].force[2], 2000.0));
+    let sweep = read("Unit: N", "Unit: mm/s", &how("mm/s")).unwrap();
+    assert!(close(response(&sweep), 2e-3));
+    assert!(!sweep.doubts.iter().any(|d| d.contains("was stated")), "{:?}", sweep.doubts);
+}
