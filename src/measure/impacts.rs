@@ -325,9 +325,11 @@ fn described(found: &Interval, n: usize, timing: Timing) -> String {
         return format!("difference of two onsets; {onsets}");
     }
     let line = match (found.onset > 0.0, found.jitter > 0.0) {
-        (_, false) => "straight line through index and time (onset noise alone)",
-        (false, true) => "mean (t_last − t_first)/(n − 1) (jitter alone)",
-        (true, true) => "generalised least squares of the intervals",
+        (_, false) => {
+            "generalised least squares, nearest the straight line through index and time (onset noise alone)"
+        }
+        (false, true) => "generalised least squares, nearest (t_last − t_first)/(n − 1) (jitter alone)",
+        (true, true) => "generalised least squares of the intervals (onset noise and jitter)",
     };
     let correlation = if found.correlation.is_finite() {
         format!(", serial correlation of intervals {:.2}", found.correlation)

@@ -1,7 +1,7 @@
 //! Restitution: its stated uncertainty against what repeated measurements show, and against a bootstrap.
 
 use crate::noise::Noise;
-use vibroimpact::measure::restitution::{Drop, Measured, Train, restitution};
+use vibroimpact::measure::restitution::{Drop, Measured, Train, Velocities, restitution};
 
 const CASES: u64 = 1000;
 
@@ -97,4 +97,40 @@ fn propagation_agrees_with_a_bootstrap() {
     println!("restitution of 40 drops: propagated {stated:.6}, bootstrap {bootstrap:.6}, seed 4321");
     // The bootstrap is √(39/40) too small and scatters by 1/√4000 = 1.6 %: four of these.
     assert!((bootstrap / stated - (39f64 / 40.0).sqrt()).abs() < 0.065);
+}
+
+#[test]
+fn velocities_are_covered_by_every_method() {
+    // Momentum is kept: v₁⁺ and v₂⁺ follow from R.
+    let (truth, m1, m2, v1, v2, std) = (0.6, 0.14, 0.28, 7.5, -0.5, 0.05);
+    let common = (m1 * v1 + m2 * v2) / (m1 + m2);
+    let part = truth * (v1 - v2) / (m1 + m2);
+    let (w1, w2) = (common - m2 * part, common + m1 * part);
+    let mut inside = std::collections::BTreeMap::new();
+    for seed in 0..CASES {
+        let mut noise = Noise::new(110_000 + seed);
+        let mut read = |v: f64| v + std * noise.normal();
+        let velocities = Velocities {
+            before: (read(v1), read(v2)),
+            after1: Some(read(w1)),
+            after2: Some(read(w2)),
+            masses: Some((m1, m2)),
+            std: Some(std),
+        };
+        let found = restitution(&Measured { velocities: Some(velocities), ..Measured::default() }).unwrap();
+        for way in found.by {
+            let off = (way.restitution.value - truth).abs();
+            *inside.entry(way.method).or_insert(0) += usize::from(off < 1.96 * way.restitution.std.unwrap());
+        }
+    }
+    assert_eq!(inside.len(), 3, "{inside:?}");
+    for (method, inside) in inside {
+        let coverage = inside as f64 / CASES as f64;
+        println!(
+            "restitution, {method}: {CASES} cases, seeds 110000.., 95 % coverage {:.1} %",
+            100.0 * coverage
+        );
+        // 1000 cases scatter the coverage by 0.7 %.
+        assert!((0.92..=0.98).contains(&coverage), "{method}: {coverage}");
+    }
 }

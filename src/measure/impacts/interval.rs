@@ -3,11 +3,27 @@
 //! Let the k-th impact be at `t₀ + kT + w_k + e_k` with e white (onset noise, σ) and w a random walk (cycle-to-cycle jitter, s).
 //! Differences d of times `m_j` indices apart then have the covariance Σ with `m_j s² + 2σ²` on the diagonal and −σ² beside it, and
 //! T̂ = mᵀΣ⁻¹d/mᵀΣ⁻¹m with variance 1/mᵀΣ⁻¹m (Aitken 1935). s = 0 gives the straight line through (index, time), σ = 0 the telescoping
-//! mean `(t_last − t_first)/(n − 1)`. The restricted likelihood (Patterson and Thompson 1971) decides between the two, or averages over the
-//! ratios between them. Jitter of a tenth of the onset noise or less hides in some fifty intervals: the stated uncertainty is then up to a
-//! third too small.
+//! mean `(t_last − t_first)/(n − 1)`.
+//!
+//! The ratio r = s/σ is not known, and few intervals say little about it: T̂ and its variance are averaged over it, weighted with the
+//! restricted likelihood (Patterson and Thompson 1971) and a prior: jitter alone with a probability of 3/4, otherwise r half-Cauchy
+//! with scale 1/2 (Gelman 2006). The variance is the mean of the variances and the variance of the means; each is that of a Student
+//! distribution of n − 2 degrees of freedom, as the scale of Σ is estimated too.
+//!
+//! Of intervals ±1.96 u, these parts in per cent hold T (2000 simulated records each, standard error 0.6 or less):
+//!
+//! | n  | r = 0 | 0.1 | 0.3 | 1 | 3 | ∞ |
+//! |----|-------|-----|-----|---|---|---|
+//! | 8  | 100 | 99.9 | 99.9 | 98.6 | 94.0 | 92.5 |
+//! | 20 | 100 | 100 | 99.9 | 97.6 | 95.0 | 93.5 |
+//! | 60 | 100 | 99.2 | 93.2 | 94.6 | 96.4 | 94.8 |
+//!
+//! Where no jitter is there, u is some three times what a straight line would state, at any n: jitter of r = 7/n, which n impacts hardly
+//! show, more than doubles the uncertainty of a straight line. Where the onsets alone are known to scatter, that line is surer.
 
 use super::burst::median;
+use crate::measure::residuals::student;
+use std::f64::consts::FRAC_PI_2;
 
 /// Interval and what disturbs it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,43 +59,100 @@ pub fn interval(times: &[f64], indices: &[usize]) -> Option<Interval> {
             correlation: f64::NAN,
         });
     }
-    // Ratios s/σ from nothing to everything; below 0.3/n the jitter does not show in the mean.
-    let n = times.len() as f64;
-    let steps = 36;
-    let grid = (0..=steps).map(|i| 0.3 / n * (100.0 * n).powf(f64::from(i) / f64::from(steps)));
-    let ratios: Vec<f64> = std::iter::once(0.0).chain(grid).chain([f64::INFINITY]).collect();
-    let fits: Vec<Gls> = ratios.iter().map(|r| gls(&d, &m, r.atan())).collect();
-    let best = (0..fits.len()).max_by(|i, j| fits[*i].likelihood.total_cmp(&fits[*j].likelihood))?;
-    let last = fits.len() - 1;
-    let (chosen, mean, variance) = if best == 0 {
-        (0, fits[0].mean, fits[0].of_mean())
-    } else if fits[last].likelihood > fits[best].likelihood - JITTER {
-        (last, fits[last].mean, fits[last].of_mean())
+    let nodes = nodes(&d, &m);
+    let highest = nodes.iter().map(|n| n.weight).fold(f64::NEG_INFINITY, f64::max);
+    let parts: Vec<f64> = nodes.iter().map(|n| (n.weight - highest).exp()).collect();
+    let total: f64 = parts.iter().sum();
+    let over =
+        |f: &dyn Fn(&Gls) -> f64| nodes.iter().zip(&parts).map(|(n, p)| p * f(&n.fit)).sum::<f64>() / total;
+    let mean = over(&|g| g.mean);
+    let widened = widened(d.len() - 1).powi(2);
+    let variance = over(&|g| widened * g.variance * g.cofactor + (g.mean - mean).powi(2));
+    // Jitter alone is named where it is likelier than all else together, otherwise the likeliest ratio.
+    let jitter_alone = parts.last().is_some_and(|p| *p > 0.5 * total);
+    let named = if jitter_alone {
+        nodes.last()
     } else {
-        let (mean, variance) = averaged(&fits, fits[best].likelihood);
-        (best, mean, variance)
-    };
-    let scale = fits[chosen].variance.sqrt();
+        nodes.iter().rev().skip(1).max_by(|a, b| a.fit.likelihood.total_cmp(&b.fit.likelihood))
+    }?;
+    let scale = named.fit.variance.sqrt();
     Some(Interval {
         mean,
         std: variance.sqrt(),
-        onset: if chosen < last { scale * ratios[chosen].atan().cos() } else { 0.0 },
-        jitter: scale * ratios[chosen].atan().sin(),
+        onset: if jitter_alone { 0.0 } else { scale * named.ratio.atan().cos() },
+        jitter: scale * named.ratio.atan().sin(),
         correlation: correlation(&d, &m),
     })
 }
 
-/// Jitter alone is believed where its log-likelihood is this close to the best: it errs to the safe side.
-const JITTER: f64 = 2.0;
+/// Prior probability that intervals jitter and onsets carry no noise.
+const JITTER_ALONE: f64 = 0.75;
+/// Median of the ratio of jitter to onset noise where both may be.
+const SCALE: f64 = 0.5;
+/// Ratios between the least and the largest.
+const RATIOS: usize = 23;
+/// Beyond it onset noise does not show in the mean.
+const LARGEST: f64 = 30.0;
+/// Ratios whose weight is below e to this beside the largest are left out.
+const NEGLIGIBLE: f64 = -9.0;
 
-/// Mean and variance over all ratios, each with its likelihood as weight.
-fn averaged(fits: &[Gls], best: f64) -> (f64, f64) {
-    let weights: Vec<f64> = fits.iter().map(|f| (f.likelihood - best).exp()).collect();
-    let total: f64 = weights.iter().sum();
-    let over =
-        |f: &dyn Fn(&Gls) -> f64| fits.iter().zip(&weights).map(|(g, w)| w * f(g)).sum::<f64>() / total;
-    let mean = over(&|g| g.mean);
-    (mean, over(&|g| g.of_mean() + (g.mean - mean).powi(2)))
+/// Steps of the logarithm of the ratio that no record needs finer.
+const FINEST: f64 = 0.005;
+
+/// One ratio of jitter to onset noise.
+struct Node {
+    ratio: f64,
+    fit: Gls,
+    /// Logarithm of prior probability times likelihood.
+    weight: f64,
+}
+
+impl Node {
+    fn new(d: &[f64], m: &[f64], ratio: f64, prior: f64) -> Node {
+        let fit = gls(d, m, ratio.atan());
+        Node { ratio, fit, weight: prior.ln() + fit.likelihood }
+    }
+}
+
+/// Ratios from 0 to ∞, those between evenly spaced in the logarithm where the likelihood is.
+fn nodes(d: &[f64], m: &[f64]) -> Vec<Node> {
+    // Below it the jitter does not show in the mean.
+    let least = 0.3 / (m.iter().sum::<f64>() + 1.0);
+    let below = |ratio: f64| (1.0 - JITTER_ALONE) * (ratio / SCALE).atan() / FRAC_PI_2;
+    let (mut from, mut to) = (least.ln(), LARGEST.ln());
+    let between = loop {
+        let step = (to - from) / (RATIOS - 1) as f64;
+        let at = |i: f64| (from + i * step).exp();
+        let between: Vec<Node> = (0..RATIOS)
+            .map(|i| {
+                let (low, high) = ((i as f64 - 0.5).max(0.0), (i as f64 + 0.5).min((RATIOS - 1) as f64));
+                Node::new(d, m, at(i as f64), below(at(high)) - below(at(low)))
+            })
+            .collect();
+        let highest = between.iter().map(|n| n.weight).fold(f64::NEG_INFINITY, f64::max);
+        let counts = |n: &Node| n.weight > highest + NEGLIGIBLE;
+        let first = between.iter().position(counts).unwrap_or(0).saturating_sub(1);
+        let last = (between.iter().rposition(counts).unwrap_or(RATIOS) + 1).min(RATIOS - 1);
+        // A long record knows its ratio well: it is looked at more closely.
+        if last - first > RATIOS / 2 || step < FINEST {
+            break between;
+        }
+        (from, to) = (from + first as f64 * step, from + last as f64 * step);
+    };
+    let mut all = vec![Node::new(d, m, 0.0, below(least))];
+    all.extend(between);
+    all.push(Node::new(d, m, f64::INFINITY, 1.0 - below(LARGEST)));
+    all
+}
+
+/// What a standard uncertainty of `free` degrees of freedom is multiplied by: the standard deviation of Student's distribution where it has
+/// one, otherwise its quantile of 97.5 % over that of the normal one.
+fn widened(free: usize) -> f64 {
+    match free {
+        1 => 12.706 / 1.960,
+        2 => 4.303 / 1.960,
+        _ => student(free),
+    }
 }
 
 /// Correlation of intervals that follow each other, of those without missed impacts.
@@ -102,13 +175,6 @@ struct Gls {
     likelihood: f64,
 }
 
-impl Gls {
-    /// Variance of the mean.
-    fn of_mean(&self) -> f64 {
-        self.variance * self.cofactor
-    }
-}
-
 /// Generalised least squares at one ratio of jitter to onset noise, in one pass down the bidiagonal factor of `Σ = LDLᵀ`.
 fn gls(d: &[f64], m: &[f64], angle: f64) -> Gls {
     let (s2, sigma2) = (angle.sin().powi(2), angle.cos().powi(2));
@@ -128,13 +194,17 @@ fn gls(d: &[f64], m: &[f64], angle: f64) -> Gls {
     }
     let free = d.len() as f64 - 1.0;
     let variance = ((dd - md * md / mm) / free).max(0.0);
-    let likelihood = -0.5 * (free * variance.max(f64::MIN_POSITIVE).ln() + log_det + mm.ln());
+    // Below the rounding of the interval the variance says nothing of the ratio.
+    let least = (f64::EPSILON * near).powi(2).max(f64::MIN_POSITIVE);
+    let likelihood = -0.5 * (free * variance.max(least).ln() + log_det + mm.ln());
     Gls { mean: near + md / mm, cofactor: 1.0 / mm, variance, likelihood }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::tests::Noise;
     use super::*;
+    use nalgebra::{DMatrix, DVector};
 
     const TIMES: [f64; 6] = [0.1, 1.2, 1.9, 3.05, 3.9, 5.2];
 
@@ -145,7 +215,7 @@ mod tests {
     #[test]
     fn jitter_alone_gives_the_telescoping_mean() {
         let (d, m) = parts();
-        let fit = gls(&d, &m, std::f64::consts::FRAC_PI_2);
+        let fit = gls(&d, &m, FRAC_PI_2);
         // A few roundings of numbers of size 5.
         assert!((fit.mean - 5.1 / 5.0).abs() < 1e-14, "{fit:?}");
         let s2 = d.iter().map(|d| (d - 1.02).powi(2)).sum::<f64>() / 4.0;
@@ -172,5 +242,77 @@ mod tests {
         let found = interval(&times, &[0, 1, 3, 4, 6]).unwrap();
         assert!((found.mean - 0.5).abs() < 1e-15 && found.std < 1e-15, "{found:?}");
         assert_eq!(interval(&[1.0], &[0]), None);
+    }
+
+    #[test]
+    fn one_pass_is_aitken_by_whole_matrices() {
+        let d = DVector::from_vec(TIMES.windows(2).map(|w| w[1] - w[0]).collect());
+        // Two impacts are missed.
+        let m = DVector::from_vec(vec![1.0, 2.0, 1.0, 1.0, 2.0]);
+        for ratio in [0.0, 0.2, 1.0, 4.0, f64::INFINITY] {
+            let (s2, sigma2) = (ratio.atan().sin().powi(2), ratio.atan().cos().powi(2));
+            let sigma = DMatrix::from_fn(5, 5, |i, j| match i.abs_diff(j) {
+                0 => m[i] * s2 + 2.0 * sigma2,
+                1 => -sigma2,
+                _ => 0.0,
+            });
+            let inverse = sigma.clone().try_inverse().unwrap();
+            let mm = (m.transpose() * &inverse * &m)[0];
+            let mean = (m.transpose() * &inverse * &d)[0] / mm;
+            let rest = &d - &m * mean;
+            let variance = (rest.transpose() * &inverse * &rest)[0] / 4.0;
+            let likelihood = -0.5 * (4.0 * variance.ln() + sigma.determinant().ln() + mm.ln());
+            let found = gls(d.as_slice(), m.as_slice(), ratio.atan());
+            // Condition numbers are below 20.
+            for (a, b) in [
+                (found.mean, mean),
+                (found.cofactor, 1.0 / mm),
+                (found.variance, variance),
+                (found.likelihood, likelihood),
+            ] {
+                assert!((a - b).abs() < 1e-13 * (1.0 + b.abs()), "{ratio}: {a} {b}");
+            }
+        }
+    }
+
+    /// Mean and standard uncertainty over even steps of the prior probability, ratios from 0 to ∞.
+    fn plain(d: &[f64], m: &[f64], steps: usize) -> (f64, f64) {
+        let mut fits = vec![(0.75, gls(d, m, FRAC_PI_2))];
+        for i in 0..steps {
+            let share = (i as f64 + 0.5) / steps as f64;
+            let ratio = 0.5 * (FRAC_PI_2 * share).tan();
+            fits.push((0.25 / steps as f64, gls(d, m, ratio.atan())));
+        }
+        let most = fits.iter().map(|f| f.1.likelihood).fold(f64::NEG_INFINITY, f64::max);
+        let parts: Vec<f64> = fits.iter().map(|(p, f)| p * (f.likelihood - most).exp()).collect();
+        let total: f64 = parts.iter().sum();
+        let free = d.len() as f64 - 1.0;
+        let mean = fits.iter().zip(&parts).map(|(f, p)| p * f.1.mean).sum::<f64>() / total;
+        let each = |f: &Gls| f.variance * f.cofactor * free / (free - 2.0) + (f.mean - mean).powi(2);
+        let variance = fits.iter().zip(&parts).map(|(f, p)| p * each(&f.1)).sum::<f64>() / total;
+        (mean, variance.sqrt())
+    }
+
+    #[test]
+    fn few_ratios_average_as_many_do() {
+        for (n, seed) in [(8, 1), (20, 2), (60, 3), (2000, 4)] {
+            for (onset, jitter) in [(0.02, 0.0), (0.02, 0.004), (0.02, 0.02), (0.0, 0.02)] {
+                let mut noise = Noise::new(seed);
+                let mut walk = 0.0;
+                let times: Vec<f64> = (0..n)
+                    .map(|_| {
+                        walk += 1.0 + jitter * noise.normal();
+                        walk + onset * noise.normal()
+                    })
+                    .collect();
+                let d: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+                let (mean, std) = plain(&d, &vec![1.0; n - 1], 4000);
+                let found = interval(&times, &(0..n).collect::<Vec<_>>()).unwrap();
+                // Half steps of the logarithm of the ratio, 0.2 or less, squared and over 24, and what lies at the ends.
+                let case = format!("n {n}, seed {seed}, {onset} {jitter}: {found:?}, plain {mean} {std}");
+                assert!((found.mean - mean).abs() < 0.01 * std, "{case}");
+                assert!((found.std / std - 1.0).abs() < 0.01, "{case}");
+            }
+        }
     }
 }
