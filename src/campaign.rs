@@ -165,7 +165,7 @@ impl Campaign {
     }
 
     /// The common keys of all entries of files.
-    fn records(&self) -> impl Iterator<Item = RecordEntry> {
+    pub fn records(&self) -> impl Iterator<Item = RecordEntry> {
         let frf = self.frf.iter().map(FrfEntry::record);
         let impacts = self.impacts.iter().map(ImpactsEntry::record);
         let drop = self.drop.iter().map(DropEntry::record);
@@ -252,13 +252,21 @@ impl Campaign {
         entry.reader().from_path(self.record_path(entry, allow_outside)?)
     }
 
+    /// Path of a further file that a record entry names.
+    ///
+    /// # Errors
+    /// If it leads outside the folder.
+    pub fn beside(&self, entry: &RecordEntry, file: &Path, allow_outside: bool) -> Result<PathBuf> {
+        inside(self.folder(), file, allow_outside)
+            .map_err(|e| e.in_file(&self.path).excerpt(&self.text, entry.file.span()))
+    }
+
     /// Path of a record entry.
     ///
     /// # Errors
     /// If it leads outside the folder or does not exist.
     pub fn record_path(&self, entry: &RecordEntry, allow_outside: bool) -> Result<PathBuf> {
-        let path = inside(self.folder(), entry.file.get_ref(), allow_outside)
-            .map_err(|e| e.in_file(&self.path).excerpt(&self.text, entry.file.span()))?;
+        let path = self.beside(entry, entry.file.get_ref(), allow_outside)?;
         if !path.exists() {
             return Err(self
                 .at(entry.file.span(), format!("the file {} does not exist", path.display()))

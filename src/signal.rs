@@ -1,5 +1,6 @@
 //! Windows, filters, spectra, integration and frequency response functions.
 
+pub mod differentiate;
 pub mod fft;
 pub mod filter;
 pub mod impact;

@@ -16,6 +16,7 @@ use std::process::{Command, Output};
 use vibroimpact::record::{Axis, Meta, Record, Trace};
 use vibroimpact::units::Unit;
 use vibroimpact::write::wav::{Sample, write};
+use vibroimpact::write::{Precision, Storage, Target};
 
 const PLAIN: [&str; 12] = [
     "--velocity",
@@ -200,4 +201,82 @@ fn what_allows_no_answer_says_why() {
     assert_eq!((smooth["impacts"].as_array().unwrap().len(), smooth["cycles"].as_u64()), (0, Some(28)));
     let warnings = smooth["warnings"].to_string();
     assert!(warnings.contains("No impact was found") && warnings.contains("500.0 Hz"), "{warnings}");
+}
+
+#[test]
+fn channels_of_different_rates_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = record::record(0.3);
+    let striker = volts("striker", made.striker);
+    let Record::Trace(mut pulse) = volts("pulse", made.pulse) else { unreachable!() };
+    pulse.axis = Axis::time(0.0, 2.0 / record::RATE, pulse.values.len());
+    let path = folder.path().join("rates.uff");
+    let mut bytes = Vec::new();
+    let storage = Storage { binary: true, precision: Precision::Double };
+    Target::Uff.write(&[striker, Record::Trace(pulse)], storage, &mut bytes).unwrap();
+    std::fs::write(&path, bytes).unwrap();
+    let output = with(&path, &[]);
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(2) && text.contains("rate"), "{text}");
+}
+
+#[test]
+fn missing_samples_of_the_reference_are_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let wave = |i: usize| (i as f64 * 0.03).sin();
+    let pulse = |i: usize| f64::from(u8::from(i % 200 < 20));
+    let path = csv(folder.path(), "gap.csv", |i| (wave(i), pulse(i)));
+    let text = std::fs::read_to_string(&path).unwrap();
+    // Seven samples between two pulses; line 1 is the header.
+    let gap = text.lines().enumerate().map(|(n, line)| match n {
+        2101..=2107 => format!("{},\n", line.rsplit_once(',').unwrap().0),
+        _ => format!("{line}\n"),
+    });
+    std::fs::write(&path, gap.collect::<String>()).unwrap();
+    let found = json(&with(&path, &[]));
+    let warnings = found["warnings"].to_string();
+    assert!(warnings.contains("7 samples of the reference are missing."), "{warnings}");
+    // 30 pulses of which the first begins before the record: 29 edges, none lost.
+    assert_eq!(found["cycles"].as_u64(), Some(28));
+}
+
+#[test]
+fn each_impact_and_the_handle() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = record::record(2.0);
+    // 10 m/s² at 100 Hz and half of it across, in volts of 100 m/s².
+    let wave = |amplitude: f64| {
+        let turn = std::f64::consts::TAU * 100.0 / record::RATE;
+        (0..made.striker.len()).map(|i| 0.01 * amplitude * (turn * i as f64).sin()).collect()
+    };
+    let channels = [
+        volts("striker", made.striker.clone()),
+        volts("pulse", made.pulse.clone()),
+        volts("along", wave(10.0)),
+        volts("across", wave(5.0)),
+    ];
+    let file = wav(folder.path(), "drill.wav", &channels);
+    let table = folder.path().join("cycles.csv");
+    let handle =
+        ["--handle", "along", "--handle", "across", "--handle-sensitivity", "100", "--exposure", "2"];
+    let each = ["--each-cycle", table.to_str().unwrap()];
+    let found = json(&with(&file, &[&handle[..], &each].concat()));
+    // ISO 5349-1, table A.2: 0.160 at 100 Hz, to three digits; the start of the filter adds a part in 1000.
+    let truth = 0.160 * (100f64 + 25.0).sqrt() / 2f64.sqrt();
+    let number = |key: &str| found["exposure"][key]["value"].as_f64().unwrap();
+    assert!((number("a_hv") / truth - 1.0).abs() < 0.005, "{} {truth}", number("a_hv"));
+    assert!((number("a8") / number("a_hv") - 0.5).abs() < 1e-12);
+    // Sines of 32-bit samples: crests between samples and roundings.
+    assert!((found["exposure"]["unweighted_peak"].as_f64().unwrap() / 10.0 - 1.0).abs() < 1e-3);
+    let text = std::fs::read_to_string(&table).unwrap();
+    let impacts = found["impacts"].as_array().unwrap();
+    assert!(text.starts_with("cycle,time") || text.starts_with("cycle,\"time"), "{}", &text[..40]);
+    assert_eq!(text.lines().count(), impacts.len() + 1);
+    for (row, impact) in text.lines().skip(1).zip(impacts) {
+        let cells: Vec<f64> = row.split(',').take(2).map(|c| c.parse().unwrap()).collect();
+        assert_eq!(cells[0] as u64, impact["cycle"].as_u64().unwrap());
+        assert!((cells[1] - impact["time"].as_f64().unwrap()).abs() < 1e-5, "{row}");
+    }
+    let refused = with(&file, &["--handle", "along"]);
+    assert_eq!(refused.status.code(), Some(2), "a handle in volts without its sensitivity");
 }

@@ -3,8 +3,6 @@
 use super::{Campaign, DrillEntry};
 use crate::error::Result;
 use crate::measure::drill::{Beam, DrillFile, DrillOptions, Smoothing};
-use crate::read::inside;
-use std::path::Path;
 
 impl Campaign {
     /// The file of a drill's record and how it is measured.
@@ -30,10 +28,7 @@ impl Campaign {
             (Some(_), Some(_)) => return Err(wrong("both low_pass and smoothing".to_owned())),
             (corner, time) => corner.map(Smoothing::LowPass).or(time.map(Smoothing::Exponential)),
         };
-        let noise = entry.noise.as_ref().map(|file| {
-            let error = |e: crate::Error| e.in_file(self.path()).excerpt(&self.text, record.file.span());
-            inside(self.folder(), Path::new(file), allow_outside).map_err(error)
-        });
+        let noise = entry.noise.as_ref().map(|file| self.beside(&record, file, allow_outside));
         let beam = Beam::new(angle, from).map_err(|e| e.in_file(self.path()))?;
         let plain = DrillOptions::new(entry.sensitivity.unwrap_or(f64::NAN), beam, pulses, edge);
         let options = DrillOptions {

@@ -67,6 +67,8 @@ record_entry! {
         band: Option<(f64, f64)>,
         /// Mass in kg for the stiffness.
         mass: Option<f64>,
+        /// File with the coherence of the same lines. Default: a coherence in the file.
+        coherence: Option<PathBuf>,
     }
 }
 

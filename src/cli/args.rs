@@ -17,7 +17,7 @@ mod sweep;
 mod waterfall;
 
 pub use compare::Compare;
-pub use convert::Convert;
+pub use convert::{Change, Convert};
 pub use drill::{Drill, Edge, From};
 pub use excitation::Excitation;
 pub use impacts::{Finding, Impacts};

@@ -1,8 +1,11 @@
-//! `vibro convert`: any readable file to UFF-58, CSV, WAV or NPY.
+//! `vibro convert`: any readable file to UFF-58, CSV, WAV or NPY, on the way filtered and integrated.
+
+mod change;
 
 use super::target::{apart, write_beside};
 use super::{args, complain, print, settings};
 use crate::error::{Error, Result};
+use crate::record::Record;
 use crate::write::{Precision, Storage, Target};
 use serde::Serialize;
 
@@ -23,11 +26,20 @@ pub fn run(typed: &args::Convert, json: bool) -> Result<()> {
             "a .uff or .wav file with them",
         ));
     }
-    let recording = settings::reader(&typed.reading)?.from_path(&typed.input)?;
+    let one = typed.channel.channel.is_some() || typed.channel.calibration.is_some();
+    let reader =
+        if one || typed.change.wanted() { settings::time_reader } else { settings::reader }(&typed.reading)?;
+    let mut recording = reader.from_path(&typed.input)?;
+    if one {
+        let trace = recording.trace(typed.channel.channel.as_deref(), typed.channel.calibration)?;
+        recording.records = vec![Record::Trace(trace)];
+    }
+    let changes = typed.change.apply(&mut recording.records)?;
     let mut bytes = Vec::new();
     let precision = if typed.single { Precision::Single } else { Precision::Double };
     target.write(&recording.records, Storage { binary: typed.binary, precision }, &mut bytes)?;
     let mut warnings = recording.all_doubts();
+    warnings.extend(changes);
     if target == Target::Npy {
         warnings.push("An array file holds values only: axis and unit are not in it.".to_owned());
     }

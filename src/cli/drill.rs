@@ -28,7 +28,10 @@ pub fn run(typed: &args::Drill, json: bool) -> Result<()> {
     };
     let bar = progress::bar(json);
     bar.set_message("samples, three passes");
-    let found = file.measure(&options, &|n| bar.inc(n as u64));
+    let found = file.measure(&options, &|done, all| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+    });
     bar.finish_and_clear();
     let drill = found?;
     let mut written = Vec::new();

@@ -43,7 +43,7 @@ pub use channels::{Channels, Slices};
 pub use edges::{Edge, Edges, Found};
 pub use faults::{FaultCount, Faults, State};
 pub use file::DrillFile;
-pub use floor::{NoiseFloor, Spectrum};
+pub use floor::NoiseFloor;
 pub use jumps::{Impact, Jumps};
 pub use motion::{Bandwidth, Motion, displacement};
 pub use options::{DrillOptions, Smoothing};
@@ -54,6 +54,7 @@ pub use turns::{Turn, Turns};
 
 use super::exposure::{Handle, exposure};
 use crate::error::{Error, Result};
+use crate::signal::welch::Stream;
 use passing::Pass;
 
 /// Samples of the end and the middle of a part of the record that are kept to be drawn.
@@ -64,7 +65,7 @@ const EXCERPT: usize = 1 << 16;
 /// # Errors
 /// If the parameters cannot be; if the velocity is constant or missing; if velocity and reference are the same; if the
 /// reference has not two levels, or no whole turn between its edges; if a channel cannot be read.
-pub fn drill(channels: &mut dyn Channels, options: &DrillOptions, still: Option<&Spectrum>) -> Result<Drill> {
+pub fn drill(channels: &mut dyn Channels, options: &DrillOptions, still: Option<&Stream>) -> Result<Drill> {
     options.check()?;
     let rate = channels.rate();
     let factor = options.sensitivity * options.beam.factor();
@@ -119,13 +120,13 @@ pub fn drill(channels: &mut dyn Channels, options: &DrillOptions, still: Option<
     }))
 }
 
-/// The spectrum of a record without motion, from the blocks of its velocity channel alone.
+/// The averaged spectrum of a record without motion, from the blocks of its velocity channel alone.
 ///
 /// # Errors
 /// If it cannot be read.
-pub fn still(channels: &mut dyn Channels, options: &DrillOptions) -> Result<Spectrum> {
+pub fn still(channels: &mut dyn Channels, options: &DrillOptions) -> Result<Stream> {
     let factor = options.sensitivity * options.beam.factor();
-    let (mut spectrum, mut scaled) = (Spectrum::default(), Vec::new());
+    let (mut spectrum, mut scaled) = (floor::averages(), Vec::new());
     channels.play(&mut |block| {
         scale(block.first().copied().unwrap_or_default(), factor, &mut scaled);
         scaled.retain(|v| v.is_finite());

@@ -150,12 +150,14 @@ pub fn run(
         }
     }
     let frf = frf::frfs(campaign, options, &mut figures, &mut warnings)?;
-    let drilled = drill::drills(campaign, options, &mut figures, &mut warnings)?;
+    let drilled = drill::drills(campaign, options, progress, &mut figures, &mut warnings)?;
     let impacts = impacts::impacts(campaign, options, &mut figures, &mut warnings)?;
     let drops = impacts::drops(campaign, options, &mut figures, &mut warnings)?;
     let pulses = pulse::pulses(campaign, options, &mut figures, &mut warnings)?;
     if figures.is_empty() {
-        warnings.push("The campaign names no file: nothing was computed.".to_owned());
+        let none = campaign.records().next().is_none();
+        let why = if none { "The campaign names no file" } else { "No file allows an answer" };
+        warnings.push(format!("{why}: nothing was computed."));
     }
     pairing::twice(&responses, &mut warnings);
     if overlay.is_some() {
@@ -227,6 +229,18 @@ fn merge(all: &mut Vec<String>, name: &str, sentences: &[String]) {
         if !all.contains(&text) {
             all.push(text);
         }
+    }
+}
+
+/// What a record gave. One that allows no answer is no reason to give up the rest of a campaign: it becomes a warning.
+fn or_left_out<T>(found: Result<T>, name: &str, warnings: &mut Vec<String>) -> Result<Option<T>> {
+    match found {
+        Err(error) if error.exit_code() == 1 => {
+            let why = error.to_string().replace("\n  try: ", "; try: ");
+            merge(warnings, name, &[format!("Left out: {why}.")]);
+            Ok(None)
+        }
+        found => found.map(Some),
     }
 }
 

@@ -136,7 +136,13 @@ pub fn in_time(trace: &Trace, how: &InTime) -> Result<Integrated> {
     meta.quantity = meta.unit.quantity();
     meta.step(
         "integrate",
-        &[("times", &how.times), ("rule", &"trapezoid"), ("filter", &filter), ("passes", &2)],
+        &[
+            ("times", &how.times),
+            ("rule", &"trapezoid"),
+            ("filter", &filter),
+            ("passes", &2),
+            ("drift", &format!("{drift:.2e}")),
+        ],
     );
     Ok(Integrated { trace: Trace { meta, axis: trace.axis.clone(), values }, band, edge, drift })
 }

@@ -3,6 +3,10 @@
 //! Segments are read, transformed on all cores and averaged as they come, so that memory does not grow with the record. Sums
 //! are formed in a fixed order: the same record gives the same digits on any number of cores.
 
+mod stream;
+
+pub use stream::Stream;
+
 use super::fft::{Transform, Workspace};
 use super::segment::{Batches, Segments};
 use super::window;
@@ -76,8 +80,7 @@ impl Welch {
             .hint(format!("give segments of at most {frames} samples")));
         }
         let names: Vec<String> = traces.channels().iter().map(|m| m.name.clone()).collect();
-        let weights = window::samples(self.window, length);
-        let kernel = Kernel { transform: Transform::new(length), weights: &weights, detrend: self.detrend };
+        let kernel = Kernel::new(*self);
         let mut total = Sums::new(names.len(), products, kernel.transform.lines());
         let mut batches = Batches::new(traces, self.segments);
         let (mut batch, mut next) = (Vec::new(), Vec::new());
@@ -101,11 +104,12 @@ impl Welch {
                 .hint("check the sensor, its cable and the range of the input"));
             }
         }
-        Ok(total.mean(&weights, self.segments, rate))
+        Ok(total.mean(&kernel.weights, self.segments, rate))
     }
 }
 
 /// Sums over segments.
+#[derive(Clone)]
 pub(super) struct Sums {
     count: usize,
     auto: Vec<Vec<f64>>,
@@ -166,13 +170,22 @@ impl Sums {
 }
 
 /// What is done to each segment.
-struct Kernel<'a> {
+struct Kernel {
     transform: Transform,
-    weights: &'a [f64],
+    weights: Vec<f64>,
     detrend: bool,
 }
 
-impl Kernel<'_> {
+impl Kernel {
+    fn new(welch: Welch) -> Kernel {
+        let length = welch.segments.length;
+        Kernel {
+            transform: Transform::new(length),
+            weights: window::samples(welch.window, length),
+            detrend: welch.detrend,
+        }
+    }
+
     /// Sums of the segments of a batch, a few a core, in their order.
     fn batch(&self, batch: &[Vec<f64>], count: usize, hop: usize, products: bool) -> Vec<Sums> {
         let n = self.weights.len();
@@ -196,7 +209,7 @@ impl Kernel<'_> {
 
     fn one(&self, segment: &[f64], work: &mut Workspace) {
         let mean = if self.detrend { lanes::sum(segment) / segment.len().max(1) as f64 } else { 0.0 };
-        for ((to, v), w) in work.input.iter_mut().zip(segment).zip(self.weights) {
+        for ((to, v), w) in work.input.iter_mut().zip(segment).zip(&self.weights) {
             *to = (v - mean) * w;
         }
         self.transform.run(work);

@@ -61,3 +61,44 @@ fn a_record_with_its_figure() {
     let whole = json(&["run", text(&campaign)]);
     assert!(whole["results"]["pulses"][0]["xi"]["value"].is_f64(), "{whole}");
 }
+
+#[test]
+fn a_record_that_allows_no_answer_does_not_end_a_campaign() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let rows = |unit: &str, value: &dyn Fn(u32) -> f64| {
+        (0..400).fold(format!("time [s],a [{unit}],b [V]\n"), |mut rows, i| {
+            let _ = writeln!(rows, "{:.6e},{},0", f64::from(i) * 1e-5, value(i));
+            rows
+        })
+    };
+    fs::write(at("flat.csv"), rows("m/s²", &|_| 0.0)).unwrap();
+    // A half sine of 1 ms.
+    let half = |i: u32| if i < 100 { 300.0 * (TAU * f64::from(i) / 200.0).sin() } else { 0.0 };
+    fs::write(at("good.csv"), rows("m/s²", &|i| half(i.wrapping_sub(150)))).unwrap();
+    let entries = "[[pulse]]\nname = \"P\"\nfile = \"flat.csv\"\nchannel = \"a\"\n\
+        [[impacts]]\nname = \"I\"\nfile = \"flat.csv\"\nchannel = \"a\"\n\
+        [[drop]]\nname = \"D\"\nfile = \"flat.csv\"\nchannel = \"a\"\n\
+        [[drill]]\nname = \"M\"\nfile = \"flat.csv\"\nvelocity = \"a\"\nreference = \"b\"\nsensitivity = 1.0\n\
+        beam_angle = 0\nfrom = \"axis\"\npulses_per_turn = 1\nedge = \"rising\"\n";
+    let campaign = at("campaign.toml");
+    let good = "[[pulse]]\nname = \"good\"\nfile = \"good.csv\"\nchannel = \"a\"\n";
+    fs::write(&campaign, format!("{entries}{good}")).unwrap();
+    let found = json(&["run", text(&campaign)]);
+    let results = &found["results"];
+    assert_eq!(results["pulses"].as_array().map(Vec::len), Some(1), "{found}");
+    assert_eq!(results["pulses"][0]["name"], "good");
+    for key in ["impacts", "drops", "drill"] {
+        assert!(results[key].as_array().unwrap().is_empty(), "{key}");
+    }
+    let said = found["warnings"].to_string();
+    for name in ["P", "I", "M", "flat.csv"] {
+        assert!(said.contains(&format!("{name}: Left out: ")), "{name}: {said}");
+    }
+    fs::write(&campaign, entries).unwrap();
+    let none = json(&["run", text(&campaign)]);
+    assert!(none["warnings"].to_string().contains("No file allows an answer: nothing was computed."));
+    // What cannot be read still ends it.
+    fs::write(at("flat.csv"), "no numbers here\n").unwrap();
+    complaint(&["run", text(&campaign)], 2);
+}

@@ -3,6 +3,7 @@
 mod answers;
 mod complaints;
 mod contact;
+mod convert;
 mod impacts;
 mod modes;
 mod rig;

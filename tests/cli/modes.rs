@@ -4,6 +4,9 @@ use super::{complaint, json, text};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::fs;
+use vibroimpact::record::{Axis, Meta, Record, Scaling, Spectrum, Values};
+use vibroimpact::units::Unit;
+use vibroimpact::write::{Precision, Storage, Target};
 
 /// An accelerance of a mode at 80.3 Hz with ζ 0.01 and A = 2/kg, by its formula.
 fn accelerance() -> String {
@@ -40,4 +43,45 @@ fn modes_of_a_file() {
     let none = complaint(&["modal", text(&path), "--complex", "--band", "120:150"], 1);
     assert!(none.contains("no peak between"), "{none}");
     complaint(&["modal", text(&path), "--complex", "--band", "120"], 2);
+}
+
+#[test]
+fn a_campaign_takes_a_coherence_of_another_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("plate.csv"), accelerance()).unwrap();
+    json(&["convert", text(&at("plate.csv")), text(&at("plate.uff")), "--complex"]);
+    let coherence = |name: &str, n: usize| {
+        let mut values = vec![0.99; n];
+        values[158] = 1.2; // impossible: left out and named
+        let lines = Spectrum {
+            meta: Meta::new("coherence", Unit::parse_or_opaque("1")),
+            axis: Axis::frequency(0.0, 0.5, n),
+            values: Values::Real(values),
+            scaling: Scaling::Coherence,
+            window: None,
+            enbw: None,
+        };
+        let mut bytes = Vec::new();
+        let storage = Storage { binary: false, precision: Precision::Double };
+        Target::Uff.write(&[Record::Spectrum(lines)], storage, &mut bytes).unwrap();
+        fs::write(at(name), bytes).unwrap();
+    };
+    coherence("good.uff", 400);
+    coherence("short.uff", 300);
+    let entry = |name: &str| {
+        format!("[[frf]]\nname = \"{name}\"\nfile = \"plate.uff\"\ncoherence = \"{name}.uff\"\n")
+    };
+    fs::write(at("campaign.toml"), entry("short") + &entry("good")).unwrap();
+    let found = json(&["run", text(&at("campaign.toml"))]);
+    let all = found["results"]["frf"].as_array().unwrap();
+    assert_eq!((all.len(), &all[0]["name"]), (1, &"good".into()), "{found}");
+    assert!((all[0]["modes"][0]["frequency"]["value"].as_f64().unwrap() - 80.3).abs() < 1e-3, "{found}");
+    assert!(all[0]["warnings"].to_string().contains("coherence"), "{found}");
+    assert!(
+        found["warnings"].to_string().contains("short: Left out: the coherence has other lines"),
+        "{found}"
+    );
+    fs::write(at("campaign.toml"), entry("absent")).unwrap();
+    complaint(&["run", text(&at("campaign.toml"))], 2);
 }

@@ -1,6 +1,6 @@
 //! `vibro convert`, as typed.
 
-use super::Reading;
+use super::{Channel, Reading};
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
@@ -16,5 +16,29 @@ pub struct Convert {
     #[arg(long)]
     pub single: bool,
     #[command(flatten)]
+    pub change: Change,
+    #[command(flatten)]
+    pub channel: Channel,
+    #[command(flatten)]
     pub reading: Reading,
+}
+
+/// What is done to time traces on the way.
+#[derive(Debug, clap::Args)]
+pub struct Change {
+    /// Corner in Hz of a zero-phase Butterworth low-pass of order 4
+    #[arg(long, value_name = "HZ")]
+    pub low_pass: Option<f64>,
+    /// Corner in Hz of a zero-phase Butterworth high-pass of order 4
+    #[arg(long, value_name = "HZ")]
+    pub high_pass: Option<f64>,
+    /// Integrations in time: 1 takes velocity to displacement, −1 to acceleration
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = clap::value_parser!(i8).range(-2..=2))]
+    pub integrate: i8,
+    /// Cut-off in Hz: corner of the zero-phase high-pass of order 4 after each integration, or before a differentiation
+    #[arg(long, value_name = "HZ", requires = "integrate")]
+    pub fmin: Option<f64>,
+    /// Frequency of the excitation in Hz: the mean is taken over whole periods before it is taken out
+    #[arg(long, value_name = "HZ", requires = "integrate")]
+    pub excitation: Option<f64>,
 }

@@ -35,18 +35,24 @@ struct Played<'a> {
     doubts: Vec<String>,
     rate: f64,
     factors: Vec<f64>,
-    progress: &'a dyn Fn(usize),
+    /// Samples gone over, of as many as there are in all passes.
+    progress: &'a dyn Fn(usize, usize),
+    done: usize,
+    all: usize,
 }
+
+/// Times that [`drill`] goes over a record.
+const PASSES: usize = 3;
 
 impl DrillFile {
     /// Opens the file once to learn its rate, and measures. `sensitivity` may stay NaN in the options where the velocity
-    /// channel is a velocity already. `progress` is told of every block: its number of samples; each sample comes three
-    /// times.
+    /// channel is a velocity already. `progress` is told after every block how many samples were gone over, of how many: each
+    /// comes three times.
     ///
     /// # Errors
     /// As [`drill`]; if a file cannot be read, a channel does not exist or is named twice, or has another rate; if a channel
     /// that is no acceleration is given as a handle's without its sensitivity.
-    pub fn measure(&self, options: &DrillOptions, progress: &dyn Fn(usize)) -> Result<Drill> {
+    pub fn measure(&self, options: &DrillOptions, progress: &dyn Fn(usize, usize)) -> Result<Drill> {
         let mut names = vec![self.velocity.as_str(), self.reference.as_str()];
         names.extend(self.handle.iter().map(String::as_str));
         let mut doubts = Vec::new();
@@ -81,7 +87,7 @@ impl DrillFile {
         let noise = match &self.noise {
             None => None,
             Some(path) => {
-                let mut silent = self.open(path, vec![self.velocity.as_str()], &|_| ())?;
+                let mut silent = self.open(path, vec![self.velocity.as_str()], &|_, _| ())?;
                 if (silent.rate - channels.rate).abs() > 1e-9 * channels.rate {
                     let found =
                         format!("{} Hz, but the motion was sampled at {} Hz", silent.rate, channels.rate);
@@ -102,7 +108,7 @@ impl DrillFile {
         &self,
         path: &'a Path,
         names: Vec<&'a str>,
-        progress: &'a dyn Fn(usize),
+        progress: &'a dyn Fn(usize, usize),
     ) -> Result<Played<'a>> {
         for (i, name) in names.iter().enumerate() {
             if names[..i].contains(name) {
@@ -116,8 +122,8 @@ impl DrillFile {
             return Err(Error::refused(format!("two of the channels {} are one", names.join(", "))));
         }
         let (rate, factors) = (traces.rate(), vec![1.0; names.len()]);
-        let metas = traces.channels().to_vec();
-        Ok(Played { reader, path, names, metas, doubts: Vec::new(), rate, factors, progress })
+        let (metas, all) = (traces.channels().to_vec(), PASSES * traces.frames());
+        Ok(Played { reader, path, names, metas, doubts: Vec::new(), rate, factors, progress, done: 0, all })
     }
 }
 
@@ -141,7 +147,8 @@ impl Channels for Played<'_> {
             }
             let slices: Vec<&[f64]> = block.iter().map(Vec::as_slice).collect();
             each(&slices)?;
-            (self.progress)(n);
+            self.done += n;
+            (self.progress)(self.done, self.all);
         }
         // What only the values show is known now.
         self.doubts = traces.doubts();

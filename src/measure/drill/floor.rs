@@ -1,20 +1,26 @@
 //! Motion against the noise of the instrument: averaged spectra of both, in dB.
 
-use crate::units::decibel;
-use realfft::{RealFftPlanner, RealToComplex};
-use std::sync::Arc;
+use crate::record::{Meta, Scaling, Window};
+use crate::signal::segment::Segments;
+use crate::signal::spectrum;
+use crate::signal::welch::{Stream, Welch};
+use crate::units::{Unit, decibel};
 
 /// Samples of a segment.
 const SEGMENT: usize = 8192;
 
-/// Averaged power spectrum of a signal that comes in blocks: Hann window, half overlap (P. Welch, IEEE Trans. Audio
-/// Electroacoust. 15 (1967) 70).
-pub struct Spectrum {
-    plan: Arc<dyn RealToComplex<f64>>,
-    window: Vec<f64>,
-    waiting: Vec<f64>,
-    power: Vec<f64>,
-    segments: usize,
+/// Averages of a velocity that comes in blocks: Hann window, half overlap.
+pub(super) fn averages() -> Stream {
+    let segments = Segments { length: SEGMENT, hop: SEGMENT / 2 };
+    Welch { segments, window: Window::Hann, detrend: true }.stream()
+}
+
+/// RMS value of each line, from the line after 0 Hz on, and their equivalent noise bandwidth in lines; `None` if the signal was
+/// shorter than a segment.
+fn lines(stream: &Stream, rate: f64) -> Option<(Vec<f64>, f64)> {
+    let meta = Meta::new("velocity", Unit::parse_or_opaque("m/s"));
+    let found = spectrum::averaged(&stream.averages(rate)?, 0, &meta, Window::Hann, Scaling::Rms).ok()?;
+    Some((found.values.magnitudes().split_off(1), found.enbw?))
 }
 
 /// Motion and noise over frequency.
@@ -34,50 +40,13 @@ pub struct NoiseFloor {
     pub line_width: f64,
 }
 
-impl Default for Spectrum {
-    fn default() -> Spectrum {
-        let plan = RealFftPlanner::new().plan_fft_forward(SEGMENT);
-        let turn = |k: usize| (std::f64::consts::TAU * k as f64 / SEGMENT as f64).cos();
-        let window = (0..SEGMENT).map(|k| 0.5 - 0.5 * turn(k)).collect();
-        Spectrum { plan, window, waiting: Vec::new(), power: vec![0.0; SEGMENT / 2 + 1], segments: 0 }
-    }
-}
-
-impl Spectrum {
-    /// Takes the next samples.
-    pub fn push(&mut self, block: &[f64]) {
-        self.waiting.extend(block);
-        let mut at = 0;
-        let (mut input, mut output) = (self.plan.make_input_vec(), self.plan.make_output_vec());
-        let mut scratch = self.plan.make_scratch_vec();
-        while let Some(part) = self.waiting.get(at..at + SEGMENT) {
-            let mean = part.iter().sum::<f64>() / SEGMENT as f64;
-            input.iter_mut().zip(part.iter().zip(&self.window)).for_each(|(i, (v, w))| *i = (v - mean) * w);
-            // Lengths are those of the plan; a transform that fails anyway leaves its segment out.
-            if self.plan.process_with_scratch(&mut input, &mut output, &mut scratch).is_ok() {
-                self.power.iter_mut().zip(&output).for_each(|(p, o)| *p += o.norm_sqr());
-                self.segments += 1;
-            }
-            at += SEGMENT / 2;
-        }
-        self.waiting.drain(..at);
-    }
-
-    /// RMS value of each line, from the line after 0 Hz on; `None` if the signal was shorter than a segment.
-    fn lines(&self) -> Option<Vec<f64>> {
-        // A sine of amplitude A has a line of A/2 times the sum of the window, n/2.
-        let scale = 8f64.sqrt() / SEGMENT as f64 / (self.segments.max(1) as f64).sqrt();
-        (self.segments > 0).then(|| self.power.iter().skip(1).map(|p| scale * p.sqrt()).collect())
-    }
-}
-
 /// Lines over which levels are averaged to tell the bands, on both sides.
 const SMOOTH: usize = 8;
 
 impl NoiseFloor {
     /// Motion against noise at `rate` samples a second. `None` if one of them is shorter than a segment.
-    pub fn new(motion: &Spectrum, noise: &Spectrum, rate: f64, margin: f64) -> Option<NoiseFloor> {
-        let (motion, noise) = (motion.lines()?, noise.lines()?);
+    pub fn new(motion: &Stream, noise: &Stream, rate: f64, margin: f64) -> Option<NoiseFloor> {
+        let ((motion, width), (noise, _)) = (lines(motion, rate)?, lines(noise, rate)?);
         let step = rate / SEGMENT as f64;
         let frequency: Vec<f64> = (1..=motion.len()).map(|k| k as f64 * step).collect();
         // Single lines scatter, and between the harmonics of the speed there is no motion: means over some lines decide.
@@ -103,7 +72,7 @@ impl NoiseFloor {
             noise: level(noise),
             margin,
             bands,
-            line_width: 1.5 * step,
+            line_width: width * step,
         })
     }
 }
@@ -127,7 +96,7 @@ mod tests {
             .map(|(i, n)| n + 2.0 * (std::f64::consts::TAU * 500.0 * i as f64 / rate).sin())
             .collect();
         let spectrum = |v: &[f64], block| {
-            let mut s = Spectrum::default();
+            let mut s = averages();
             v.chunks(block).for_each(|b| s.push(b));
             s
         };

@@ -2,9 +2,10 @@
 
 use super::faults::{FaultCount, Faults, State};
 use super::turns::Turn;
-use super::{Average, DrillOptions, Jumps, Motion, Running, Smoothing, Spectrum, Survey};
+use super::{Average, DrillOptions, Jumps, Motion, Running, Smoothing, Survey, floor};
 use crate::error::Result;
 use crate::signal::filter::Filter;
+use crate::signal::welch::Stream;
 
 /// Longest turn in samples; a turn that takes longer is passed over.
 const LONGEST: f64 = 4e6;
@@ -26,7 +27,7 @@ pub(super) struct Pass<'a> {
     pub jumps: Jumps,
     pub average: Average,
     pub motion: Motion,
-    pub spectrum: Option<Spectrum>,
+    pub spectrum: Option<Stream>,
     /// Turns in the average.
     pub averaged: usize,
     /// Turns with a part of the velocity lost, or too long.
@@ -61,7 +62,7 @@ impl<'a> Pass<'a> {
             jumps: Jumps::new(options.contact * rate, options.fit * rate),
             average: Average::new(options.points),
             motion: Motion::default(),
-            spectrum: spectrum.then(Spectrum::default),
+            spectrum: spectrum.then(floor::averages),
             averaged: 0,
             left_out: 0,
             speed: Running::default(),

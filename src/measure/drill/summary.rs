@@ -2,11 +2,10 @@
 
 use super::passing::Pass;
 use super::result::{BeamResult, Corner, Displacement, Drill, Phases, Pulses};
-use super::{
-    DrillOptions, FaultCount, Found, Impact, NoiseFloor, Running, Smoothing, Spectrum, Survey, Turns,
-};
+use super::{DrillOptions, FaultCount, Found, Impact, NoiseFloor, Running, Smoothing, Survey, Turns};
 use crate::measure::Estimate;
 use crate::measure::exposure::Exposure;
+use crate::signal::welch::Stream;
 use std::f64::consts::TAU;
 
 /// Everything that the passes leave behind.
@@ -19,7 +18,7 @@ pub(super) struct Measured<'a> {
     pub edge: f64,
     pub turns: &'a Turns,
     pub pass: Pass<'a>,
-    pub still: Option<&'a Spectrum>,
+    pub still: Option<&'a Stream>,
     pub exposure: Option<Exposure>,
     pub excerpt: (usize, Vec<f64>, Vec<f64>),
 }

@@ -1,11 +1,15 @@
 //! Hammer drills of a campaign.
 
-use super::{JobOptions, file_name, merge, slugs};
+use super::{JobOptions, Progress, file_name, merge, or_left_out, slugs};
 use crate::campaign::Campaign;
 use crate::error::Result;
 use crate::measure::drill::Drill;
 use crate::report::{Figure, Output, pictures, tables};
 use serde::Serialize;
+use std::cell::Cell;
+
+/// Steps of progress through a drill's record.
+const PARTS: usize = 100;
 
 /// What a drill's record gave.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -22,14 +26,21 @@ pub struct DrillResult {
 pub(super) fn drills(
     campaign: &Campaign,
     options: JobOptions,
+    progress: &dyn Progress,
     figures: &mut Vec<(String, Figure)>,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<DrillResult>> {
     let mut results = Vec::new();
     for entry in &campaign.drill {
         let (file, how) = campaign.drill(entry, options.allow_outside)?;
-        let drill = file.measure(&how, &|_| ())?;
         let name = entry.record().name.unwrap_or_else(|| file_name(&file.path));
+        progress.start(&format!("drill {name}"), PARTS);
+        let told = Cell::new(0);
+        let drill = file.measure(&how, &|done, all| {
+            let parts = (PARTS * done).checked_div(all).unwrap_or(0);
+            (told.replace(parts)..parts).for_each(|_| progress.step());
+        });
+        let Some(drill) = or_left_out(drill, &name, warnings)? else { continue };
         merge(warnings, &name, &drill.warnings);
         results.push(DrillResult { name, file: file_name(&file.path), drill });
     }

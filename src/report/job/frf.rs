@@ -1,6 +1,6 @@
 //! Frequency response functions of a campaign: figures and modes.
 
-use super::{JobOptions, file_name, merge};
+use super::{JobOptions, file_name, merge, or_left_out};
 use crate::campaign::Campaign;
 use crate::error::Result;
 use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal};
@@ -35,12 +35,23 @@ pub(super) fn frfs(
         let recording = campaign.recording(&entry, options.allow_outside)?;
         let path = &recording.path;
         merge(warnings, &file_name(path), &recording.doubts);
-        for (mut meta, mut measured) in Measured::all(&recording, entry.channel.as_deref())? {
+        let name = entry.name.clone().unwrap_or_else(|| file_name(path));
+        let coherence = match &own.coherence {
+            Some(file) => {
+                Some(entry.reader().from_path(campaign.beside(&entry, file, options.allow_outside)?)?)
+            }
+            None => None,
+        };
+        for (mut meta, measured) in Measured::all(&recording, entry.channel.as_deref())? {
+            let measured = match &coherence {
+                Some(recording) => measured.with_coherence_of(recording),
+                None => Ok(measured),
+            };
+            let Some(mut measured) = or_left_out(measured, &name, warnings)? else { continue };
             if let Some(factor) = entry.calibration {
                 meta.step("calibrate", &[("factor", &factor)]);
                 measured.values.iter_mut().for_each(|v| *v *= factor);
             }
-            let name = entry.name.clone().unwrap_or_else(|| file_name(path));
             let number = results.len() + 1;
             let wanted = ModalOptions { band: own.band, mass: own.mass, ..ModalOptions::default() };
             // A function without a mode is no reason to give up the rest of a campaign.
@@ -57,7 +68,7 @@ pub(super) fn frfs(
             found.warnings.splice(0..0, meta.doubts.iter().cloned());
             merge(warnings, &name, &found.warnings);
             results.push(FrfResult {
-                name,
+                name: name.clone(),
                 file: file_name(path),
                 quantity: meta.quantity.name(),
                 unit: meta.unit.symbol().to_owned(),

@@ -1,6 +1,6 @@
 //! Impacts and drops of a campaign.
 
-use super::{JobOptions, file_name, merge};
+use super::{JobOptions, file_name, merge, or_left_out};
 use crate::campaign::{Campaign, RecordEntry};
 use crate::error::Result;
 use crate::measure::impacts::{Impacts, ImpactsOptions, impacts as find};
@@ -72,7 +72,7 @@ pub(super) fn impacts(
             reference,
             ..default
         };
-        let found = find(&trace, &how).map_err(|e| e.of_record(&name))?;
+        let Some(found) = or_left_out(find(&trace, &how), &name, warnings)? else { continue };
         merge(warnings, &name, &found.warnings);
         figures.push((format!("impacts_{}", results.len() + 1), pictures::impacts(&name, &trace, &found)));
         results.push(ImpactsResult { name, file, impacts: found });
@@ -111,15 +111,16 @@ pub(super) fn drops(
             series.push((name.clone(), Vec::new(), drop.clone(), entry.height.is_some(), Bounces::default()));
         }
         if let Some((_, files, _, _, bounces)) = series.iter_mut().find(same) {
-            let found = bounces.add(&trace, &how).map_err(|e| e.of_record(&name))?;
+            let Some(found) = or_left_out(bounces.add(&trace, &how), &file, warnings)? else { continue };
             merge(warnings, &file, &found.warnings);
             files.push(file);
             figures.push((format!("drop_{}", i + 1), pictures::drop(&name, &trace, &found)));
         }
     }
     let mut results = Vec::new();
-    for (name, files, drop, fell, bounces) in series {
-        let found = restitution(&bounces.measured(drop, fell)).map_err(|e| e.of_record(&name))?;
+    for (name, files, drop, fell, bounces) in series.into_iter().filter(|s| !s.1.is_empty()) {
+        let found = restitution(&bounces.measured(drop, fell));
+        let Some(found) = or_left_out(found, &name, warnings)? else { continue };
         merge(warnings, &name, &found.warnings);
         results.push(DropResult { name, files, restitution: found });
     }

@@ -1,6 +1,6 @@
 //! Contact pulses of a campaign.
 
-use super::{JobOptions, file_name, merge};
+use super::{JobOptions, file_name, merge, or_left_out};
 use crate::campaign::Campaign;
 use crate::error::{Error, Result};
 use crate::measure::pulse::{LowPass, PulseOptions, PulseResult, pulse};
@@ -38,7 +38,8 @@ pub(super) fn pulses(
             return Err(Error::usage(found, "both, or none"));
         }
         let low_pass = own.low_pass.zip(own.order).map(|(hz, n)| LowPass::new(hz, n)).transpose()?;
-        let mut result = pulse(&trace, &PulseOptions { low_pass, mass: own.mass })?;
+        let result = pulse(&trace, &PulseOptions { low_pass, mass: own.mass });
+        let Some(mut result) = or_left_out(result, &name, warnings)? else { continue };
         result.warnings.splice(0..0, trace.meta.doubts.iter().cloned());
         if let Some(figure) = pictures::pulse(&name, &result) {
             figures.push((format!("pulse_{}", found.len() + 1), figure));

@@ -1,0 +1,109 @@
+//! Time traces filtered, integrated and differentiated, and the sentences that say how.
+
+use super::super::args::Change;
+use super::super::settings::above_zero;
+use crate::error::{Error, Result};
+use crate::record::{Record, Trace};
+use crate::signal::filter::Filter;
+use crate::signal::{differentiate, integrate};
+
+/// Order of one pass of every filter here.
+const ORDER: usize = 4;
+
+impl Change {
+    /// Whether anything is to be done.
+    pub fn wanted(&self) -> bool {
+        self.integrate != 0 || self.low_pass.is_some() || self.high_pass.is_some()
+    }
+
+    /// Does it to all records; gives what was done, a sentence a step.
+    ///
+    /// # Errors
+    /// If options contradict each other, a record is no time trace, or it cannot be filtered or integrated.
+    pub fn apply(&self, records: &mut [Record]) -> Result<Vec<String>> {
+        let corners = [("--low-pass", self.low_pass), ("--high-pass", self.high_pass), ("--fmin", self.fmin)];
+        for (name, value) in corners.into_iter().chain([("--excitation", self.excitation)]) {
+            above_zero(name, value)?;
+        }
+        if self.integrate > 0 && self.fmin.is_none() {
+            return Err(Error::usage(
+                "--integrate in time without a cut-off",
+                "--fmin HZ: below it noise and drift would be all that is seen",
+            )
+            .hint(
+                "half the lowest frequency that matters; the answer says from where on amplitudes are right",
+            ));
+        }
+        let alone = [
+            ("--fmin", self.fmin, self.integrate == 0),
+            ("--excitation", self.excitation, self.integrate < 1),
+        ];
+        if let Some((name, ..)) = alone.iter().find(|(_, value, idle)| value.is_some() && *idle) {
+            let found = format!("{name} with --integrate {}", self.integrate);
+            return Err(Error::usage(found, "an integration"));
+        }
+        let mut said = Vec::new();
+        if self.wanted() {
+            for record in records {
+                let (kind, name) = (record.kind(), record.meta().name.clone());
+                let Record::Trace(trace) = record else {
+                    return Err(Error::refused(format!("{name:?} is a {kind}, no time trace"))
+                        .hint("choose a trace with --channel; `vibro spectrum` integrates in frequency"));
+                };
+                self.trace(trace, &mut said).map_err(|e| e.of_record(&name))?;
+            }
+        }
+        Ok(said)
+    }
+
+    fn trace(&self, trace: &mut Trace, said: &mut Vec<String>) -> Result<()> {
+        let rate = trace
+            .rate()
+            .ok_or_else(|| Error::refused("the sampling rate is not known").hint("state it with --rate"))?;
+        let name = trace.meta.name.clone();
+        let mut filters = Vec::new();
+        if let Some(corner) = self.low_pass {
+            filters.push(Filter::low_pass(corner, ORDER, rate)?);
+        }
+        for corner in self.high_pass.into_iter().chain(self.fmin.filter(|_| self.integrate < 0)) {
+            filters.push(Filter::high_pass(corner, ORDER, rate)?);
+        }
+        for filter in filters {
+            trace.values = filter.zero_phase(&trace.values)?;
+            trace.meta.step("filter", &[("filter", &filter), ("passes", &2)]);
+            said.push(format!(
+                "{name}: {filter}, forwards and backwards: no delay, half the amplitude at the corner."
+            ));
+        }
+        if let (1.., Some(corner)) = (self.integrate, self.fmin) {
+            let how = integrate::InTime {
+                times: self.integrate,
+                corner,
+                order: ORDER,
+                period: self.excitation.map(f64::recip),
+            };
+            let found = integrate::in_time(trace, &how)?;
+            let [low, high] = found.band;
+            let unit = found.trace.meta.unit.symbol();
+            said.push(format!(
+                "{name}: integrated {} in time, each time with a Butterworth high-pass of order {ORDER}, corner {corner} Hz, forwards and backwards. Amplitudes are right within 1 % from {low:.4} to {high:.4} Hz, but for the first and the last {:.3} s. Drift left: {:.2e} {unit}.",
+                often(self.integrate), found.edge, found.drift
+            ));
+            *trace = found.trace;
+        }
+        if self.integrate < 0 {
+            let found = differentiate::in_time(trace, self.integrate.unsigned_abs())?;
+            said.push(format!(
+                "{name}: differentiated {} in time. Amplitudes are right within 1 % up to {:.4} Hz.",
+                often(self.integrate),
+                found.highest
+            ));
+            *trace = found.trace;
+        }
+        Ok(())
+    }
+}
+
+fn often(times: i8) -> &'static str {
+    if times.abs() == 1 { "once" } else { "twice" }
+}

@@ -1,0 +1,104 @@
+//! `vibro convert` with filters, integration and differentiation in time.
+
+use super::{complaint, json, text};
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use vibroimpact::read::Reader;
+use vibroimpact::record::Trace;
+
+const RATE: f64 = 2000.0;
+const OMEGA: f64 = TAU * 20.0;
+
+/// 4 s of a velocity of 20 Hz and 1 mm amplitude of displacement, with a mean of half its amplitude and, at 200 Hz, a tenth
+/// of it, beside a pulse.
+fn bench(folder: &Path) -> PathBuf {
+    let mut rows = String::from("time [s],velocity [m/s],pulse [V]\n");
+    for i in 0..8000 {
+        let t = f64::from(i) / RATE;
+        let v = 1e-3 * OMEGA * ((OMEGA * t).cos() + 0.1 * (10.0 * OMEGA * t).cos() + 0.5);
+        let _ = writeln!(rows, "{t},{v},{}", i % 100);
+    }
+    let path = folder.join("bench.csv");
+    fs::write(&path, rows).unwrap();
+    path
+}
+
+/// Amplitude at a multiple of 20 Hz, by projection on the middle two seconds.
+fn amplitude(trace: &Trace, multiple: f64) -> f64 {
+    let (mut re, mut im) = (0.0, 0.0);
+    for i in 2000..6000 {
+        let (sin, cos) = (multiple * OMEGA * i as f64 / RATE).sin_cos();
+        (re, im) = (re + trace.values[i] * cos, im + trace.values[i] * sin);
+    }
+    f64::hypot(re, im) / 2000.0
+}
+
+fn converted(input: &Path, options: &[&str]) -> (Trace, String) {
+    let out = input.with_file_name("out.uff");
+    let answer = json(&[&["convert", text(input), text(&out), "--channel", "velocity"], options].concat());
+    assert_eq!(answer["records"], 1);
+    let trace = Reader::new().from_path(&out).unwrap().trace(None, None).unwrap();
+    (trace, answer["warnings"].to_string())
+}
+
+#[test]
+fn velocity_to_displacement_and_acceleration() {
+    let folder = tempfile::tempdir().unwrap();
+    let input = bench(folder.path());
+    let (x, said) = converted(&input, &["--integrate", "1", "--fmin", "5", "--excitation", "20"]);
+    assert_eq!(x.meta.unit.symbol(), "m");
+    // The band from 9.7 to 78 Hz is stated to 1 %.
+    assert!((amplitude(&x, 1.0) / 1e-3 - 1.0).abs() < 0.01, "{}", amplitude(&x, 1.0));
+    for sentence in ["integrated once", "order 4, corner 5 Hz", "within 1 % from 9.", "Drift left: "] {
+        assert!(said.contains(sentence), "{sentence}: {said}");
+    }
+    let (a, said) = converted(&input, &["--integrate", "-1"]);
+    assert_eq!(a.meta.unit.symbol(), "m/s²");
+    for (multiple, part) in [(1.0, 1.0), (10.0, 1.0)] {
+        // The tenth of the velocity at ten times the frequency is as large an acceleration; 200 Hz lie within the 235 Hz stated.
+        let found = amplitude(&a, multiple) / (1e-3 * OMEGA * OMEGA);
+        assert!((found / part - 1.0).abs() < 0.01, "{multiple}: {found}");
+    }
+    assert!(said.contains("differentiated once") && said.contains("up to 235"), "{said}");
+    let (same, said) = converted(&input, &["--calibration", "2"]);
+    assert!((amplitude(&same, 1.0) / (2e-3 * OMEGA) - 1.0).abs() < 1e-6 && !said.contains("corner"));
+}
+
+#[test]
+fn filters_pass_twice() {
+    let folder = tempfile::tempdir().unwrap();
+    let input = bench(folder.path());
+    let velocity = 1e-3 * OMEGA;
+    let (low, said) = converted(&input, &["--low-pass", "20"]);
+    // Half at the corner; at ten times the corner, 1/(1 + 10⁸) of a tenth.
+    assert!((amplitude(&low, 1.0) / velocity - 0.5).abs() < 1e-3, "{}", amplitude(&low, 1.0));
+    assert!(amplitude(&low, 10.0) < 1e-6 * velocity);
+    assert!(said.contains("low-pass of order 4, corner 20 Hz, forwards and backwards"), "{said}");
+    let (high, _) = converted(&input, &["--high-pass", "200"]);
+    assert!((amplitude(&high, 10.0) / velocity - 0.05).abs() < 1e-4);
+    assert!(amplitude(&high, 1.0) < 1e-6 * velocity);
+}
+
+#[test]
+fn what_cannot_be_integrated_writes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let input = bench(folder.path());
+    let out = folder.path().join("out.csv");
+    let why = |options: &[&str], code| {
+        complaint(&[&["convert", text(&input), text(&out), "--channel", "velocity"], options].concat(), code)
+    };
+    assert!(why(&["--integrate", "1"], 2).contains("--fmin HZ"));
+    assert!(why(&["--fmin", "5"], 2).contains("--integrate"));
+    assert!(why(&["--integrate", "-1", "--excitation", "20"], 2).contains("--excitation"));
+    assert!(why(&["--integrate", "1", "--fmin=-5"], 2).contains("--fmin is -5"));
+    assert!(why(&["--integrate", "1", "--fmin", "500"], 1).contains("no band"));
+    why(&["--low-pass", "1000"], 2);
+    why(&["--integrate", "3", "--fmin", "5"], 2);
+    let lines = folder.path().join("lines.csv");
+    fs::write(&lines, "frequency [Hz],velocity [m/s]\n0,1\n1,2\n2,3\n3,4\n").unwrap();
+    let spectrum = complaint(&["convert", text(&lines), text(&out), "--integrate", "1", "--fmin", "1"], 1);
+    assert!(spectrum.contains("no time trace") && spectrum.contains("vibro spectrum"), "{spectrum}");
+    assert!(!out.exists());
+}
