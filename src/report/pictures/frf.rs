@@ -40,7 +40,9 @@ pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Fig
         .with(Series::phase("", f, &phase).ink(Ink::Grey).stroke(Stroke::Solid));
     if !x.is_empty() {
         // On the same turn as the measured phase, as far as the axis goes.
-        angle.iter_mut().for_each(|a| *a = low + (*a - low).rem_euclid(360.0));
+        for a in &mut angle {
+            *a = low + (*a - low).rem_euclid(360.0);
+        }
         below = below.with(Series::phase("", &x, &angle).ink(Ink::Nth(0)).stroke(Stroke::Dashed));
     }
     lettered(figure.height(110.0).shared_x().panel(above).panel(below))
