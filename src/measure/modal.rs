@@ -86,13 +86,13 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
             Ok(fit) => reversed += result::report(&lines, group, &fit, options, &mut modes, &mut warnings),
             Err(error) => warnings.push(format!(
                 "The peak at {} Hz is not fitted: {error}.",
-                group.peaks.first().map_or(f64::NAN, |p| lines.frequency[p.at])
+                group.peaks.first().map_or_else(String::new, |p| response::hertz(lines.frequency[p.at]))
             )),
         }
     }
     if !unsupported.is_empty() {
         unsupported.sort_by(f64::total_cmp);
-        let named: Vec<String> = unsupported.iter().take(8).map(f64::to_string).collect();
+        let named: Vec<String> = unsupported.iter().take(8).map(|f| response::hertz(*f)).collect();
         let more = if unsupported.len() > 8 { ", …" } else { "" };
         warnings.push(format!(
             "{} further peaks of the magnitude are not needed to explain the lines around them, and are taken for noise: {}{more} Hz.",
@@ -100,13 +100,13 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
             named.join(", ")
         ));
     }
-    if 2 * reversed > modes.len() {
+    if 2 * reversed > groups.iter().map(|g| g.peaks.len()).sum() {
         warnings.push(
             "Most peaks have a phase that rises through the resonance: the sign of the phase is reversed (e^{−iωt}), or response and force are exchanged."
                 .to_owned(),
         );
     }
-    if modes.iter().all(|m| m.frequency.std.is_none()) {
+    if modes.is_empty() {
         return Err(Error::refused(format!("no peak is supported as a mode. {}", warnings.join(" "))));
     }
     modes.sort_by(|a, b| a.frequency.value.total_cmp(&b.frequency.value));

@@ -20,7 +20,7 @@ pub use result::{PulseCurve, PulseFit, PulsePicture, PulseResult};
 pub use two_times::two_times;
 
 use super::Estimate;
-use super::residuals::{Whiteness, student};
+use super::residuals::Whiteness;
 use crate::error::{Error, Result};
 use crate::record::Trace;
 use doubts::doubts;
@@ -41,7 +41,8 @@ pub struct PulseOptions {
 /// Fits the largest pulse of a record of acceleration (or of force).
 ///
 /// Residuals are taken for noise of one variance. Where they are correlated, which is tested, uncertainties are enlarged by the
-/// correlation and that is said.
+/// correlation and that is said; where the pulse begins otherwise than the model can, none are stated. A low-pass at half the
+/// sampling rate or above is taken for none.
 ///
 /// # Errors
 /// If the record is not evenly sampled in time, holds no whole pulse, or too few samples of it, or does not determine the
@@ -63,9 +64,30 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
         .hint("sample faster"));
     }
     let mut warnings = Vec::new();
+    let low_pass = options.low_pass.clone().filter(|f| f.corner() < rate / 2.0);
+    if let (Some(stated), None) = (&options.low_pass, &low_pass) {
+        warnings.push(format!(
+            "The low-pass at {} Hz is not below half the sampling rate of {rate} Hz: its rise is not seen, and none is applied.",
+            stated.corner()
+        ));
+    }
+    let options = &PulseOptions { low_pass, mass: options.mass };
+    let unlike = |error: Error| {
+        match &options.low_pass {
+        Some(filter) => Error::refused(format!(
+            "no contact behind a low-pass of order {} at {} Hz looks like the pulse, which lasts about {:.3} ms ({error})",
+            filter.order(),
+            filter.corner(),
+            1.5e3 * seen / rate
+        ))
+        .hint("check corner and order: a low-pass lengthens a pulse to about 1/corner at least; try without, or with a higher corner"),
+        None => Error::refused(format!("no contact of spring and damper looks like the pulse ({error})"))
+            .hint("choose a record with one clean pulse and its baseline"),
+    }
+    };
     let view = View::new(trace, rate, &found, options.low_pass.as_ref())?;
-    let (samples, used) = view.window(&mut warnings)?;
-    let main = samples.fit(Model::KelvinVoigt)?;
+    let (samples, used) = view.window(&mut warnings, unlike)?;
+    let main = samples.fit(Model::KelvinVoigt).map_err(unlike)?;
     let whiteness = Whiteness::of(&[&main.fit.residuals]);
     let n = samples.times.len();
     let method = match &options.low_pass {
@@ -78,7 +100,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     };
     let unit = [1.0, 1.0 / view.length];
     let shape = [main.fit.parameters[3], main.fit.parameters[4] * unit[1]];
-    let widened = whiteness.inflation * student(main.fit.degrees_of_freedom());
+    let widened = samples.widening(&main, &whiteness);
     let covariance =
         |i: usize, j: usize| widened.powi(2) * unit[i] * unit[j] * main.fit.covariance(3 + i, 3 + j);
     let contact = |p: &[f64]| KelvinVoigt::new(p[0], p[1]);
@@ -104,8 +126,8 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
             Err(error) => warnings.push(format!("The model {} could not be fitted: {error}.", rival.name())),
         }
     }
-    result.fits = fits.iter().map(|(f, w)| view.report(f, w, options.mass)).collect();
-    warnings.extend(doubts(&fits[0].0, &fits[0].1, &result.fits, &result, options));
+    result.fits = fits.iter().map(|(f, w)| view.report(&samples, f, w, options.mass)).collect();
+    warnings.extend(doubts(&fits[0].0, widened, &fits[0].1, &result.fits, &result, options));
     result.warnings = warnings;
     result.picture = Some(view.picture(&samples, &used, fits.iter().map(|f| &f.0)));
     Ok(result)
@@ -203,6 +225,34 @@ mod tests {
         assert!(says(&result, "prefers the model hunt-crossley"), "{:?}", result.warnings);
         let alpha = &result.fits[2].parameters["alpha"];
         assert!((alpha.value - 0.3).abs() < 5.0 * alpha.std.unwrap(), "{alpha:?}");
+    }
+
+    /// A contact through a low-pass of 30 kHz, fitted without.
+    #[test]
+    fn without_the_low_pass_that_is_there_no_uncertainty_is_stated() {
+        let contact = KelvinVoigt::new(0.15, 6e3).unwrap();
+        let filter = LowPass::new(30e3, 2).unwrap();
+        let values: Vec<f64> = (0..400)
+            .map(|i| {
+                let noise = 100.0 * (f64::from(i * i) * 0.7).sin();
+                contact.filtered(&filter, f64::from(i) * DT - 150.4e-6) + noise
+            })
+            .collect();
+        let fitted = |corner: Option<f64>| {
+            let low_pass = corner.map(|hz| LowPass::new(hz, 2).unwrap());
+            pulse(&trace(values.clone(), "m/s²"), &PulseOptions { low_pass, mass: None })
+        };
+        let with = fitted(Some(30e3)).unwrap().xi;
+        assert!((with.value - 0.15).abs() < 5.0 * with.std.unwrap(), "{with:?}");
+        let without = fitted(None).unwrap();
+        assert!(without.xi.std.is_none() && without.fits[0].parameters["xi"].std.is_none(), "{without:?}");
+        assert!(says(&without, "low-pass of the instrument is needed"), "{:?}", without.warnings);
+        // Beyond half the sampling rate there is none; just below, the answer is nearly that without.
+        let beyond = fitted(Some(600e3)).unwrap();
+        assert!(says(&beyond, "half the sampling rate") && beyond.xi == without.xi, "{:?}", beyond.warnings);
+        let high = fitted(Some(450e3)).unwrap().xi;
+        assert!((high.value - without.xi.value).abs() < 0.03, "{high:?} {:?}", without.xi);
+        assert!(fitted(Some(1e3)).unwrap_err().to_string().contains("low-pass"));
     }
 
     #[test]

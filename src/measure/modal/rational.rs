@@ -165,12 +165,11 @@ impl Scaled<'_> {
         Ok(fit)
     }
 
-    /// Parameters that the values can determine: without phases no phase of the modes and no term from below.
+    /// Parameters that the values can determine: without phases no phase of the modes, no term from below, and no part of the
+    /// residual term a quarter of a turn ahead, which changes |H| as the modal constant does.
     fn free(&self) -> Vec<usize> {
         let modes = 4 * self.starts.len();
-        (0..modes + 4)
-            .filter(|i| !self.magnitude_only || (*i < modes && i % 4 != 3) || (modes..modes + 2).contains(i))
-            .collect()
+        (0..modes + 4).filter(|i| !self.magnitude_only || (*i < modes && i % 4 != 3) || *i == modes).collect()
     }
 }
 
@@ -187,7 +186,7 @@ pub(super) fn rational(
 ) -> Result<Rational> {
     let power = measured.power();
     let lines = part.len();
-    let parameters = 4 * starts.len() + 4 - if measured.magnitude_only { starts.len() + 2 } else { 0 };
+    let parameters = 4 * starts.len() + 4 - if measured.magnitude_only { starts.len() + 3 } else { 0 };
     let numbers = if measured.magnitude_only { lines } else { 2 * lines };
     if numbers < parameters + 3 {
         return Err(Error::refused(format!(

@@ -1,9 +1,14 @@
 //! The lines of a frequency response function that may be fitted.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Place, Result};
 use crate::read::Recording;
 use crate::record::{Frf, FrfKind, Meta, Record, Scaling, Spectrum, Values};
 use num_complex::Complex64;
+
+/// A frequency to six digits, as in a sentence.
+pub(super) fn hertz(f: f64) -> String {
+    format!("{f:.5e}").parse::<f64>().unwrap_or(f).to_string()
+}
 
 /// A frequency response function as the estimates of modes take it, complex or in magnitude only, with its coherence where known.
 #[derive(Debug, Clone, PartialEq)]
@@ -102,11 +107,12 @@ impl Measured {
         let all: Vec<&Record> = recording.records.iter().filter(|r| is_coherence(r)).collect();
         match all.as_slice() {
             [Record::Spectrum(coherence)] => self.with_coherence(coherence),
-            _ => Err(Error::refused(format!(
-                "{}: {} coherences, not one",
-                recording.path.display(),
-                all.len()
-            ))),
+            _ => Err(Error::input(
+                Place::file(&recording.path),
+                format!("{} coherences", all.len()),
+                "one: a column `coherence` of real values between 0 and 1 over frequency",
+            )
+            .hint("name the column coherence, without a unit")),
         }
     }
 
@@ -169,8 +175,7 @@ impl Measured {
             (&low, format!("of a coherence below {least}")),
         ] {
             if !which.is_empty() {
-                let named: Vec<String> =
-                    which.iter().take(6).map(|i| self.frequency[*i].to_string()).collect();
+                let named: Vec<String> = which.iter().take(6).map(|i| hertz(self.frequency[*i])).collect();
                 let more = if which.len() > 6 { ", …" } else { "" };
                 warnings.push(format!(
                     "{} lines are left out, {why}: {}{more} Hz.",
@@ -199,6 +204,17 @@ impl Measured {
     }
 }
 
+/// Whether a record says that it is a coherence, or is named so and has the values of one, but for some that are impossible.
 fn is_coherence(record: &Record) -> bool {
-    matches!(record, Record::Spectrum(s) if s.scaling == Scaling::Coherence)
+    let Record::Spectrum(s) = record else { return false };
+    let named = || {
+        let unit = s.meta.unit.symbol();
+        let Values::Real(values) = &s.values else { return false };
+        let like = values.iter().filter(|v| v.is_nan() || (-1e-6..=1.0 + 1e-6).contains(*v)).count();
+        s.scaling == Scaling::Unknown
+            && s.meta.name.to_lowercase().contains("coherence")
+            && matches!(unit, "" | "1")
+            && 2 * like > values.len()
+    };
+    s.scaling == Scaling::Coherence || named()
 }

@@ -3,6 +3,7 @@
 use super::bands::Group;
 use super::graphic::{Circle, POINTS, circle, half_power};
 use super::rational::Rational;
+use super::response::hertz;
 use super::{Measured, Pole};
 use crate::measure::Estimate;
 use serde::Serialize;
@@ -101,7 +102,7 @@ pub(super) fn report(
     let mut reversed = 0;
     let sound = fit.sound(measured, &group.peaks);
     for (((pole, std), peak), sound) in fit.modes.iter().zip(&fit.std).zip(&group.peaks).zip(sound) {
-        let at = measured.frequency[peak.at];
+        let at = hertz(measured.frequency[peak.at]);
         if !(sound && fit.unexplained < EXPLAINED) {
             if pole.zeta < 0.0 && std[1] < -pole.zeta / 2.0 {
                 reversed += 1;
@@ -113,13 +114,25 @@ pub(super) fn report(
                 pole.frequency,
                 100.0 * fit.unexplained
             ));
-            modes.push(only_a_peak(measured, group, peak.at, options));
             continue;
         }
         if fit.whiteness.rejected() {
             warnings.push(format!(
                 "Around {:.6} Hz the residuals are not white: neighbouring modes, leakage or a damping that is not viscous; the uncertainties are enlarged by {:.1}.",
                 pole.frequency, fit.whiteness.inflation
+            ));
+        }
+        // Averaging segments multiplies the impulse response by the window's autocorrelation, 1 − 2π²t²/3T² for a Hann
+        // window; the pole that fits 1/s − 2κ/s³ best has a decay larger by 2κ/a of a.
+        let bandwidths = 2.0 * pole.zeta * pole.frequency * (group.lines.len() - 1) as f64;
+        let span = measured.frequency[group.lines.end - 1] - measured.frequency[group.lines.start];
+        let leakage = 4.0 / 3.0 * (span / bandwidths).powi(2);
+        if measured.coherence.is_some() && leakage * pole.zeta > std[1] {
+            warnings.push(format!(
+                "At {:.6} Hz the bandwidth is {:.1} lines: if segments of a lasting excitation were averaged (Hann window), leakage makes ζ too large by up to {:.2} %, which is not in its uncertainty. Longer segments show.",
+                pole.frequency,
+                bandwidths / span,
+                100.0 * leakage
             ));
         }
         modes.push(mode(measured, group, peak.at, fit, (pole, std), options));
@@ -228,21 +241,4 @@ fn graphic(measured: &Measured, group: &Group, at: usize) -> Vec<ByMethod> {
         note: format!("bound to the lines: within {:.6} Hz", line / 2.0),
     });
     by
-}
-
-/// A peak that no fit supports: its line, without uncertainty.
-fn only_a_peak(measured: &Measured, group: &Group, at: usize, options: &ModalOptions) -> Mode {
-    let f = measured.frequency[at];
-    let unknown = |unit| Estimate::new(f64::NAN, None, unit, 0, "peak");
-    let frequency = Estimate::new(f, None, "Hz", 1, "largest line");
-    Mode {
-        stiffness: stiffness(&frequency, options.mass),
-        frequency,
-        zeta: unknown("1"),
-        modal_constant: unknown("1/kg"),
-        method: "peak".to_owned(),
-        lines: (f, f, 1),
-        by: graphic(measured, group, at),
-        picture: ModePicture::default(),
-    }
 }

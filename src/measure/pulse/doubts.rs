@@ -10,6 +10,7 @@ const NAMES: [&str; 5] = ["onset", "baseline", "initial velocity", "ξ", "freque
 /// Sentences on a fitted pulse, the first of `fits` being that of spring and damper.
 pub(super) fn doubts(
     main: &Fitted,
+    widening: f64,
     whiteness: &Whiteness,
     fits: &[PulseFit],
     result: &PulseResult,
@@ -42,7 +43,15 @@ pub(super) fn doubts(
             }
         }
     }
-    if whiteness.rejected() {
+    if widening.is_nan() {
+        let low_pass = match &options.low_pass {
+            None => "the low-pass of the instrument is needed (--low-pass, --order)",
+            Some(_) => "the low-pass is another than stated, or the contact another than modelled",
+        };
+        said.push(format!(
+            "The pulse does not begin as the contact of spring and damper must, and its residuals are not white noise: {low_pass}. ξ and all that follows may be far off, and no uncertainty is stated."
+        ));
+    } else if whiteness.rejected() {
         said.push(format!(
             "The residuals of the contact of spring and damper are not white noise: a wrong model, a wrong low-pass or coloured noise. Its uncertainties are enlarged by {:.1}, which covers noise but not a wrong model.",
             whiteness.inflation

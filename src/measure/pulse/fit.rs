@@ -3,6 +3,7 @@
 use super::{HuntCrossley, KelvinVoigt, LowPass};
 use crate::error::{Error, Result};
 use crate::math::{Fit, least_squares};
+use crate::measure::residuals::{Whiteness, student};
 
 /// What a pulse may be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,6 +46,12 @@ pub(super) struct Fitted {
 /// Samples that the search for a first guess looks at.
 const GLANCE: usize = 48;
 
+/// Corner of a low-pass over the sampling rate from which on its rise takes fewer than about four samples.
+const FAST: f64 = 0.1;
+
+/// Part of the pulse's length around the onset in which a wrong low-pass shows.
+const AROUND: f64 = 0.1;
+
 impl Samples {
     pub fn new(times: Vec<f64>, values: Vec<f64>, step: f64, filter: Option<LowPass>) -> Result<Samples> {
         let hertz = HuntCrossley::new(0.0).ok_or_else(|| Error::refused("no shape of a Hertzian contact"))?;
@@ -83,7 +90,8 @@ impl Samples {
     pub fn fit(&self, model: Model) -> Result<Fitted> {
         let starts = self.starts(model)?;
         if model != Model::KelvinVoigt || self.filter.is_some() {
-            return best(starts.iter().take(3).map(|p| self.from(model, p, None)));
+            let guesses = starts.iter().take(3).cloned().chain(self.stepped(model, &starts));
+            return best(guesses.map(|p| self.from(model, &p, None)));
         }
         // The jump of the force at the onset makes the sum of squares jump where the onset passes a sample. So the onset is
         // fitted between each two samples near the guess, the contact going on smoothly beyond them, and the best is taken.
@@ -109,6 +117,44 @@ impl Samples {
         }
         // A jump that is lost in the noise does not tell where it is: then any of them will do.
         best(inside.into_iter()).or_else(|_| best(outside.into_iter()))
+    }
+
+    /// More guesses for a contact through a low-pass so fast that its rise, like a jump, falls between a few samples: each of
+    /// them then holds a minimum of its own.
+    fn stepped(&self, model: Model, starts: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let fast = self.filter.as_ref().is_some_and(|f| f.corner() * self.step > FAST);
+        if model != Model::KelvinVoigt || !fast {
+            return Vec::new();
+        }
+        let near = self.nearer(&starts[0]);
+        let moved = |by: i32| {
+            let mut p = near.clone();
+            p[0] += f64::from(by) * self.step;
+            p
+        };
+        (-3..=3).map(moved).collect()
+    }
+
+    /// How much the uncertainties of a fit are to be enlarged; not a number where the pulse begins otherwise than the model
+    /// can, which no enlarging covers.
+    pub fn widening(&self, fitted: &Fitted, whiteness: &Whiteness) -> f64 {
+        if whiteness.rejected() && self.misses_onset(fitted) {
+            return f64::NAN;
+        }
+        whiteness.inflation * student(fitted.fit.degrees_of_freedom())
+    }
+
+    /// Whether the residuals around the onset have more than twice the variance of the others.
+    fn misses_onset(&self, fitted: &Fitted) -> bool {
+        let onset = fitted.fit.parameters[0];
+        let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
+        let around = onset - AROUND..=onset + AROUND + delay;
+        let (mut near, mut far) = ((0.0, 0.0), (0.0, 0.0));
+        for (t, r) in self.times.iter().zip(&fitted.fit.residuals) {
+            let part = if around.contains(t) { &mut near } else { &mut far };
+            *part = (part.0 + r * r, part.1 + 1.0);
+        }
+        near.0 * far.1 > 2.0 * far.0 * near.1
     }
 
     fn from(&self, model: Model, start: &[f64], first: Option<usize>) -> Result<Fitted> {

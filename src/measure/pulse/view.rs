@@ -6,7 +6,7 @@ use super::result::{PulseCurve, PulseFit, PulsePicture};
 use super::{HuntCrossley, LowPass};
 use crate::error::{Error, Result};
 use crate::measure::Estimate;
-use crate::measure::residuals::{Whiteness, aicc, student};
+use crate::measure::residuals::{Whiteness, aicc};
 use crate::record::Trace;
 use crate::units::Quantity;
 use std::collections::BTreeMap;
@@ -65,12 +65,16 @@ impl<'a> View<'a> {
     }
 
     /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record rings after it.
-    pub fn window(&self, warnings: &mut Vec<String>) -> Result<(Samples, Vec<usize>)> {
+    pub fn window(
+        &self,
+        warnings: &mut Vec<String>,
+        unlike: impl Fn(Error) -> Error,
+    ) -> Result<(Samples, Vec<usize>)> {
         let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
         let from = self.index(-BESIDE - delay);
         let (first, used) = self.samples(from..self.found.low)?;
         self.count(&used, from..self.found.low, warnings)?;
-        let fitted = first.fit(Model::KelvinVoigt)?;
+        let fitted = first.fit(Model::KelvinVoigt).map_err(unlike)?;
         let settled = self.index(fitted.end() + 3.0 * delay);
         let far = self.index(fitted.end() + 3.0 * delay + BESIDE);
         let (after, _) = self.samples(settled..far)?;
@@ -146,10 +150,16 @@ impl<'a> View<'a> {
     }
 
     /// A fit in SI units.
-    pub fn report(&self, fitted: &Fitted, whiteness: &Whiteness, mass: Option<f64>) -> PulseFit {
+    pub fn report(
+        &self,
+        samples: &Samples,
+        fitted: &Fitted,
+        whiteness: &Whiteness,
+        mass: Option<f64>,
+    ) -> PulseFit {
         let n = fitted.fit.residuals.len();
         let method = "least squares";
-        let widened = whiteness.inflation * student(fitted.fit.degrees_of_freedom());
+        let widened = samples.widening(fitted, whiteness);
         let mut parameters = BTreeMap::new();
         let mut put = |name, i: usize, factor: f64, shift: f64, unit| {
             let value = shift + factor * fitted.fit.parameters[i];

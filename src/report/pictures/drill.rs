@@ -6,6 +6,9 @@ use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 /// Most points of a line: more are not seen in print.
 const POINTS: usize = 4000;
 
+/// Most markers over a line: more hide it.
+const MARKERS: usize = 60;
+
 /// All figures of a record, by file name.
 pub fn drill(name: &str, drill: &Drill) -> Vec<(String, Figure)> {
     let mut figures = vec![
@@ -25,7 +28,7 @@ fn average(name: &str, drill: &Drill) -> Figure {
     let at: Vec<f64> = drill.impacts.iter().map(|i| 360.0 * i.phase).collect();
     let points = |name: &str, of: fn(&crate::measure::drill::Impact) -> f64, nth, marker| {
         let values: Vec<f64> = drill.impacts.iter().map(of).collect();
-        let (x, y) = (thin(&at), thin(&values));
+        let (x, y) = (thin(&at, MARKERS), thin(&values, MARKERS));
         Series::points(name, x, y).ink(Ink::Nth(nth)).marker(marker)
     };
     let mut above = Plot::new(x(), AxisSpec::new("Velocity", "m/s"))
@@ -43,8 +46,8 @@ fn average(name: &str, drill: &Drill) -> Figure {
         Series::line("", degrees, drill.displacement.value.clone()).ink(Ink::Nth(0)).stroke(Stroke::Solid),
     );
     Figure::double(format!("Average turn, {name}")).height(130.0).shared_x().panel(above).panel(below).caption(format!(
-        "Mean of {} turns at {:.2} Hz with the scatter from turn to turn; displacement by integration over whole turns.",
-        drill.averaged, drill.speed.value
+        "Mean of {} turns at {:.2} Hz with the scatter from turn to turn; displacement by integration over whole turns. Impacts of {} turns are marked.",
+        drill.averaged, drill.speed.value, thin(&at, MARKERS).len()
     ))
 }
 
@@ -66,12 +69,12 @@ fn trace(name: &str, drill: &Drill) -> Figure {
             .with(Series::points("after impact", t, after).ink(Ink::Nth(2)).marker(Marker::Square));
     }
     let reference = drill.excerpt_reference.clone();
-    let mut below = Plot::new(x(), AxisSpec::new("Reference", ""))
+    let mut below = Plot::new(x(), AxisSpec::new("Reference, as recorded", ""))
         .with(Series::line("", time(reference.len()), reference).ink(Ink::Black).stroke(Stroke::Thin));
     for edge in drill.times.iter().filter(|t| **t >= start - step && **t <= end) {
         below = below.with(Series::vertical("", *edge));
     }
-    let caption = "A few turns in the middle of the record, as measured: drop-outs are not bridged here.";
+    let caption = "A few turns in the middle of the record, as measured: drop-outs are not bridged here. Vertical lines are the edges of the reference that begin a turn.";
     Figure::double(format!("Trace, {name}"))
         .height(110.0)
         .shared_x()
@@ -82,7 +85,10 @@ fn trace(name: &str, drill: &Drill) -> Figure {
 
 fn speed(name: &str, drill: &Drill) -> Figure {
     let plot = Plot::new(AxisSpec::new("Time", "s"), AxisSpec::new("Speed", "Hz"))
-        .with(Series::line("each turn", thin(&drill.times), thin(&drill.speeds)).stroke(Stroke::Thin))
+        .with(
+            Series::line("each turn", thin(&drill.times, POINTS), thin(&drill.speeds, POINTS))
+                .stroke(Stroke::Thin),
+        )
         .with(Series::horizontal("mean", drill.speed.value));
     Figure::double(format!("Speed, {name}"))
         .height(70.0)
@@ -94,7 +100,8 @@ fn floor(name: &str, drill: &Drill) -> Option<Figure> {
     let floor = drill.noise_floor.as_ref()?;
     let lowest = floor.noise.iter().copied().fold(f64::INFINITY, f64::min).max(-400.0);
     let highest = floor.motion.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let y = AxisSpec::new("Level re 1 m/s", "dB").limits(lowest - 10.0, highest + 5.0);
+    let y = AxisSpec::new(format!("RMS of {:.1} Hz lines, re 1 m/s", floor.line_width), "dB")
+        .limits(lowest - 10.0, highest + 5.0);
     let x = AxisSpec::frequency().log();
     let mut plot = Plot::new(x, y)
         .with(Series::line("motion", floor.frequency.clone(), floor.motion.clone()).stroke(Stroke::Thin))
@@ -118,7 +125,7 @@ fn floor(name: &str, drill: &Drill) -> Option<Figure> {
     )))
 }
 
-/// Every so many points.
-fn thin(values: &[f64]) -> Vec<f64> {
-    values.iter().step_by(values.len().div_ceil(POINTS).max(1)).copied().collect()
+/// Every so many points, at most `most`.
+fn thin(values: &[f64], most: usize) -> Vec<f64> {
+    values.iter().step_by(values.len().div_ceil(most).max(1)).copied().collect()
 }

@@ -14,17 +14,19 @@ pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Fig
     let mut above = Plot::new(AxisSpec::frequency(), y)
         .with(Series::line("measured", f.clone(), magnitude).ink(Ink::Grey).stroke(Stroke::Solid));
     // Modes that were fitted together have one curve.
-    let (mut x, mut y) = (Vec::new(), Vec::new());
+    let (mut x, mut y, mut angle) = (Vec::new(), Vec::new(), Vec::new());
     let mut last = None;
     for mode in modes.iter().filter(|m| last.replace(m.lines) != Some(m.lines)) {
         x.extend(mode.picture.fitted.iter().map(|p| p.0).chain([f64::NAN]));
         y.extend(mode.picture.fitted.iter().map(|p| p.1.hypot(p.2)).chain([f64::NAN]));
+        angle.extend(mode.picture.fitted.iter().map(|p| p.2.atan2(p.1).to_degrees()).chain([f64::NAN]));
     }
     if !x.is_empty() {
-        above = above.with(Series::line("fitted modes", x, y).ink(Ink::Nth(0)).stroke(Stroke::Dashed));
+        above =
+            above.with(Series::line("fitted modes", x.clone(), y).ink(Ink::Nth(0)).stroke(Stroke::Dashed));
     }
     for mode in modes {
-        above = above.with(Series::vertical("", mode.frequency.value));
+        above = above.with(Series::vertical(format!("{:.2} Hz", mode.frequency.value), mode.frequency.value));
     }
     let figure = Figure::double(title).caption(
         "Frequency response function with the modes fitted to it; vertical lines are natural frequencies.",
@@ -34,8 +36,15 @@ pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Fig
     }
     let phase: Vec<f64> = measured.values.iter().map(|v| v.arg().to_degrees()).collect();
     let (phase, (low, high)) = fitted(&phase);
-    let below = Plot::new(AxisSpec::frequency(), AxisSpec::new("Phase", "°").limits(low, high))
+    let mut below = Plot::new(AxisSpec::frequency(), AxisSpec::new("Phase", "°").limits(low, high))
         .with(Series::phase("", f, &phase).ink(Ink::Grey).stroke(Stroke::Solid));
+    if !x.is_empty() {
+        // On the same turn as the measured phase, as far as the axis goes.
+        for a in &mut angle {
+            *a = low + (*a - low).rem_euclid(360.0);
+        }
+        below = below.with(Series::phase("", &x, &angle).ink(Ink::Nth(0)).stroke(Stroke::Dashed));
+    }
     lettered(figure.height(110.0).shared_x().panel(above).panel(below))
 }
 
@@ -52,7 +61,7 @@ pub fn nyquist(title: &str, measured: &Measured, modes: &[Mode]) -> Option<Figur
     let rows = largest.len().div_ceil(2);
     let mut figure = if columns == 1 { Figure::single(title).height(80.0) } else { Figure::double(title).height(85.0 * rows as f64) }
         .columns(columns)
-        .caption("Mobility in the Nyquist plane around each mode: lines that were fitted, and the circle through them.");
+        .caption("Mobility in the Nyquist plane around each mode: lines that were fitted, the circle through them, and the resonance (diamond). Whatever the kind of the function, the mobility is shown, which runs on a circle.");
     for mode in largest {
         let Some(circle) = &mode.picture.circle else { continue };
         let (re, im): (Vec<f64>, Vec<f64>) = circle.points.iter().map(|p| (p.1.re, p.1.im)).unzip();
@@ -60,15 +69,22 @@ pub fn nyquist(title: &str, measured: &Measured, modes: &[Mode]) -> Option<Figur
         let (x, y): (Vec<f64>, Vec<f64>) = turn
             .map(|a| (circle.centre.re + circle.radius * a.cos(), circle.centre.im + circle.radius * a.sin()))
             .unzip();
+        // At the resonance the mobility stands a diameter A/(2ζωᵣ) from the origin of the mode, along A.
+        let at =
+            circle.centre + num_complex::Complex64::from_polar(circle.radius, circle.pole.constant.arg());
         let axis = |label: &str, centre: f64| {
             let reach = 1.15 * circle.radius;
             AxisSpec::new(label, "(m/s)/N").limits(centre - reach, centre + reach)
         };
-        let plot = Plot::new(axis("Real part", circle.centre.re), axis("Imaginary part", circle.centre.im))
-            .title(format!("{:.2} Hz", mode.frequency.value))
-            .with(Series::line("circle", x, y).ink(Ink::Nth(0)).stroke(Stroke::Solid))
-            .with(Series::points("lines", re, im).ink(Ink::Black).marker(Marker::Circle))
-            .legend(Legend::Hidden);
+        let plot = Plot::new(
+            axis("Mobility, real part", circle.centre.re),
+            axis("Mobility, imaginary part", circle.centre.im),
+        )
+        .title(format!("{:.2} Hz", mode.frequency.value))
+        .with(Series::line("circle", x, y).ink(Ink::Nth(0)).stroke(Stroke::Solid))
+        .with(Series::points("lines", re, im).ink(Ink::Black).marker(Marker::Circle))
+        .with(Series::points("resonance", [at.re], [at.im]).ink(Ink::Nth(1)).marker(Marker::Diamond))
+        .legend(Legend::Hidden);
         figure = figure.panel(plot);
     }
     Some(lettered(figure))

@@ -1,5 +1,6 @@
 //! Impacts: the trace with its impacts marked, a histogram of the intervals, and each interval over the one before.
 
+use super::lettered;
 use crate::measure::impacts::Impacts;
 use crate::record::Trace;
 use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
@@ -11,12 +12,22 @@ const SHOWN: usize = 4000;
 pub fn impacts(title: &str, trace: &Trace, found: &Impacts) -> Figure {
     let intervals: Vec<f64> = found.times.windows(2).map(|w| 1e3 * (w[1] - w[0])).collect();
     let axis = |name: &str| AxisSpec::new(name, "ms");
-    let mut histogram = Plot::new(axis("Interval"), AxisSpec::new("Intervals", ""))
-        .with(Series::histogram("", &intervals).ink(Ink::Nth(0)))
-        .legend(Legend::Hidden);
-    histogram = histogram.with(Series::vertical("mean", 1e3 * found.interval.value));
-    let (before, after): (Vec<f64>, Vec<f64>) = intervals.windows(2).map(|w| (w[0], w[1])).unzip();
     let (low, high) = limits(&intervals);
+    let inside: Vec<f64> = intervals.iter().copied().filter(|v| (low..=high).contains(v)).collect();
+    let beyond = intervals.len() - inside.len();
+    let mut histogram = Plot::new(axis("Interval").limits(low, high), AxisSpec::new("Intervals", ""))
+        .with(Series::histogram("", &inside).ink(Ink::Nth(0)))
+        .legend(Legend::Hidden);
+    let mean = 1e3 * found.interval.value;
+    if (low..=high).contains(&mean) {
+        histogram = histogram.with(Series::vertical("mean", mean));
+    }
+    if beyond > 0 {
+        histogram = histogram.title(format!("{beyond} of {} intervals outside", intervals.len()));
+    }
+    let both = |w: &&[f64]| w.iter().all(|v| (low..=high).contains(v));
+    let (before, after): (Vec<f64>, Vec<f64>) =
+        intervals.windows(2).filter(both).map(|w| (w[0], w[1])).unzip();
     let map = Plot::new(axis("Interval").limits(low, high), axis("Interval after it").limits(low, high))
         .with(Series::line("", [low, high], [low, high]).ink(Ink::Grey).stroke(Stroke::Thin))
         .with(Series::points("", before, after).marker(Marker::Circle).ink(Ink::Nth(0)))
@@ -29,14 +40,15 @@ pub fn impacts(title: &str, trace: &Trace, found: &Impacts) -> Figure {
     let middle = found.times.get(found.times.len() / 2).copied().unwrap_or(all.0);
     let reach = 5.5 * found.median_interval;
     let near = ((middle - reach).max(all.0), (middle + reach).min(all.1));
-    Figure::double(title)
+    let figure = Figure::double(title)
         .height(130.0)
         .columns(2)
         .panel(marked(trace, found, all))
         .panel(marked(trace, found, near))
         .panel(histogram)
         .panel(map)
-        .caption("Above: the trace with the impacts that were found, and ten intervals of it. Below: intervals between successive impacts, and each over the one before; a periodic motion is a point there, or a few.")
+        .caption("(a) The trace with the impacts that were found, (b) about ten intervals of it. (c) Intervals between successive impacts, (d) each over the one before; a periodic motion is a point there, or a few. Intervals far outside the others, as a missed impact makes them, are counted and not shown.");
+    lettered(figure)
 }
 
 /// The trace of a drop with its impacts.
@@ -44,7 +56,9 @@ pub fn drop(title: &str, trace: &Trace, found: &Impacts) -> Figure {
     let first = found.times.first().copied().unwrap_or(0.0);
     let last = found.times.last().copied().unwrap_or(first);
     let margin = 0.15 * (last - first);
-    let mut plot = marked(trace, found, (first - margin, last + 2.0 * margin));
+    let end = trace.axis.at(trace.values.len().saturating_sub(1));
+    let (from, to) = ((first - margin).max(trace.axis.start()), (last + 2.0 * margin).min(end));
+    let mut plot = marked(trace, found, (from, to));
     if let Some(second) = found.times.get(1) {
         plot = plot.title(format!("first flight {:.2} ms", 1e3 * (second - first)));
     }
@@ -88,10 +102,19 @@ fn outline(trace: &Trace, from: f64, to: f64) -> (Vec<f64>, Vec<f64>) {
     kept.into_iter().map(|i| (trace.axis.at(i), trace.values[i])).unzip()
 }
 
-/// Both axes of the return map from the same to the same.
+/// Both axes of the return map from the same to the same: all values but those further than five interquartile ranges from the
+/// quartiles, where these are a few, so that one missed impact does not squeeze the others into a point.
 fn limits(values: &[f64]) -> (f64, f64) {
-    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    let at = |part: usize| sorted.get(sorted.len() * part / 4).copied().unwrap_or(f64::NAN);
+    let (lower, upper) = (at(1), at(3));
+    let reach = 5.0 * (upper - lower);
+    let central: Vec<f64> =
+        sorted.iter().copied().filter(|v| (lower - reach..=upper + reach).contains(v)).collect();
+    // More than one in ten are no outliers but another kind of interval.
+    let shown = if 10 * (sorted.len() - central.len()) <= sorted.len() { &central } else { &sorted };
+    let (low, high) = (shown.first().copied().unwrap_or(0.0), shown.last().copied().unwrap_or(1.0));
     let margin = (0.1 * (high - low)).max(0.01 * high.abs());
     (low - margin, high + margin)
 }

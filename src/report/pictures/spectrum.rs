@@ -4,20 +4,27 @@ use super::response::capital;
 use crate::record::{Scaling, Spectrum};
 use crate::report::{AxisSpec, Figure, Ink, Legend, Plot, Series};
 use crate::signal::transfer::Transfer;
+use crate::units::Quantity;
 use num_complex::Complex64;
 
 /// Lines of a spectrum over a logarithmic axis.
 pub fn spectrum(title: &str, spectrum: &Spectrum) -> Figure {
-    let quantity = capital(spectrum.meta.quantity.name());
-    let label = match spectrum.scaling {
-        Scaling::Peak => format!("{quantity} amplitude"),
-        Scaling::Rms => format!("{quantity}, RMS"),
-        Scaling::Psd => format!("{quantity} density"),
-        _ => format!("{quantity} {}", spectrum.scaling.name()),
+    // A quantity of no name goes without.
+    let quantity = match spectrum.meta.quantity {
+        Quantity::Other => String::new(),
+        quantity => format!("{} ", quantity.name()),
     };
-    let y = AxisSpec::new(label, spectrum.meta.unit.symbol()).log();
-    let values = spectrum.values.magnitudes();
-    let plot = Plot::new(AxisSpec::frequency(), y).with(Series::line("", spectrum.axis.values(), values));
+    let label = match spectrum.scaling {
+        Scaling::Peak => format!("{quantity}amplitude"),
+        Scaling::Rms => format!("{quantity}RMS"),
+        Scaling::Psd => format!("{quantity}density"),
+        _ => format!("{quantity}{}", spectrum.scaling.name()),
+    };
+    let y = AxisSpec::new(capital(&label), spectrum.meta.unit.symbol().replace("^2", "²")).log();
+    // The line at 0 Hz is a mean, often lost or huge: it would stretch a logarithmic axis.
+    let lines = spectrum.axis.values().into_iter().zip(spectrum.values.magnitudes());
+    let (f, values): (Vec<f64>, Vec<f64>) = lines.filter(|line| line.0 > 0.0).unzip();
+    let plot = Plot::new(AxisSpec::frequency(), y).with(Series::line("", f, values));
     Figure::double(title).panel(plot)
 }
 

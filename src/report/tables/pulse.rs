@@ -3,6 +3,7 @@
 use super::headed;
 use crate::measure::pulse::PulseResult;
 use crate::report::{Cell, Table};
+use std::collections::BTreeMap;
 
 /// What a pulse says, one row a quantity, in SI units.
 pub fn pulse(title: &str, result: &PulseResult) -> Table {
@@ -33,40 +34,30 @@ pub fn pulse(title: &str, result: &PulseResult) -> Table {
 /// The models that were fitted to the pulse.
 pub fn pulse_fits(title: &str, result: &PulseResult) -> Table {
     let named = if title.is_empty() { "Models".to_owned() } else { format!("Models, {title}") };
-    let columns = [
-        ("model", ""),
-        ("RMS residual", ""),
-        ("AICc", ""),
-        ("whiteness p", ""),
-        ("samples", ""),
-        ("parameters", ""),
-    ];
+    let columns = [("model", ""), ("RMS residual", ""), ("AICc", ""), ("whiteness p", ""), ("samples", "")];
+    let parameters: BTreeMap<&str, (String, &str)> = result
+        .fits
+        .iter()
+        .flat_map(|f| &f.parameters)
+        .map(|(name, e)| (*name, (name.replace('_', " "), e.unit)))
+        .collect();
+    let more = parameters.values().map(|(heading, unit)| (heading.as_str(), *unit));
+    let columns: Vec<(&str, &str)> = columns.into_iter().chain(more).collect();
     let mut table = headed(named, &columns);
     for fit in &result.fits {
-        let parameters: Vec<String> = fit
-            .parameters
-            .iter()
-            .map(|(name, e)| match e.std {
-                Some(std) => {
-                    format!(
-                        "{name} {:.5e} ± {:.1e} {}",
-                        e.value,
-                        std,
-                        if e.unit == "1" { "" } else { e.unit }
-                    )
-                }
-                None => format!("{name} {:.5e}", e.value),
-            })
-            .map(|text| text.trim_end().to_owned())
-            .collect();
-        table.push([
+        let whiteness = match fit.whiteness {
+            Some(p) if p < 1e-6 => Cell::from("< 1e-6"),
+            p => Cell::from(p),
+        };
+        let known = [
             Cell::from(fit.model),
             Cell::Number(fit.residual),
             Cell::Number(fit.aicc),
-            Cell::from(fit.whiteness),
+            whiteness,
             Cell::from(fit.n),
-            Cell::from(parameters.join(", ")),
-        ]);
+        ];
+        let own = parameters.keys().map(|name| fit.parameters.get(name).map_or(Cell::Missing, Cell::from));
+        table.push(known.into_iter().chain(own));
     }
     table
 }
