@@ -130,7 +130,7 @@ pub fn from_blows(
         sums.add(&work);
     }
     let apart = Segments { length: how.length, hop: how.length };
-    let averages = sums.mean(&vec![1.0; how.length], apart, rate);
+    let averages = sums.mean(&vec![1.0; how.length], apart, rate, true);
     let metas: [Meta; 2] = [force.meta.clone(), response.meta.clone()];
     let mut transfer = transfer(&averages, 1, &metas, estimator)?;
     let left_out = blows.len() - kept.len();
