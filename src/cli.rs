@@ -29,7 +29,11 @@ use clap::Parser;
 pub fn main() -> u8 {
     let args = match Args::try_parse() {
         Ok(args) => args,
-        Err(error) => return complain::usage(&error),
+        // What could not be parsed may have asked for JSON all the same.
+        Err(error) => {
+            let json = std::env::args_os().take_while(|a| a != "--").any(|a| a == "--json");
+            return complain::usage(&error, json);
+        }
     };
     match dispatch(&args) {
         Ok(code) => code,

@@ -28,7 +28,7 @@ pub use reading::{Channel, Decimal, Reading};
 pub use response::Response;
 pub use restitution::Restitution;
 pub use run::Run;
-pub use spectrum::{Estimator, Method, Spectrum};
+pub use spectrum::{Detrend, Estimator, Method, Spectrum};
 pub use sweep::{Sweep, Taking};
 pub use waterfall::Waterfall;
 

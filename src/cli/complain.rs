@@ -16,18 +16,29 @@ struct Failure {
 pub fn error(error: &Error, json: bool) -> u8 {
     line(&format!("vibro: {error}"));
     if json {
-        let failure = Failure { error: error.to_string(), exit_code: error.exit_code(), warnings: [] };
-        // There is nobody left to tell of a failure to print a failure.
-        let _ = super::print::json(&failure);
+        object(error.to_string(), error.exit_code());
     }
     error.exit_code()
 }
 
-/// Prints what clap has to say: help and version are no error, anything else is wrong usage.
-pub fn usage(error: &clap::Error) -> u8 {
+/// Prints what clap has to say: help and version are no error, anything else is wrong usage, with `json` as an object on standard
+/// output as well.
+pub fn usage(error: &clap::Error, json: bool) -> u8 {
     // A closed pipe behind --help is no reason to complain.
     let _ = error.print();
-    u8::from(error.use_stderr()) * 2
+    if !error.use_stderr() {
+        return 0;
+    }
+    if json {
+        let text = error.to_string();
+        object(text.trim().trim_start_matches("error: ").to_owned(), 2);
+    }
+    2
+}
+
+fn object(error: String, exit_code: u8) {
+    // There is nobody left to tell of a failure to print a failure.
+    let _ = super::print::json(&Failure { error, exit_code, warnings: [] });
 }
 
 /// Prints a warning for a person; JSON carries warnings itself.

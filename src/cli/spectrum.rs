@@ -3,7 +3,7 @@
 mod answer;
 mod samples;
 
-use super::args::{self, Method};
+use super::args::{self, Detrend, Method};
 use super::{complain, print, settings};
 use crate::error::{Error, Result};
 use crate::read::Traces;
@@ -21,6 +21,19 @@ pub fn run(typed: &args::Spectrum, json: bool) -> Result<()> {
         .ok_or_else(|| Error::usage("--window unknown", "the window that is to be applied"))?;
     let scaling = scaling(&typed.scaling)?;
     settings::above_zero("--fmin", typed.fmin)?;
+    if typed.method == Method::Fft {
+        let ignored = [
+            (typed.segment.is_some(), "--segment"),
+            (typed.overlap.is_some(), "--overlap"),
+            (typed.reference.is_some(), "--reference"),
+        ];
+        if let Some((_, option)) = ignored.iter().find(|(given, _)| *given) {
+            return Err(Error::usage(
+                format!("{option} with --method fft"),
+                "--method welch, or the whole record of one channel",
+            ));
+        }
+    }
     let mut traces =
         settings::traces(&typed.file, &typed.reading, &typed.channel, typed.reference.as_deref())?;
     let answer = match &typed.reference {
@@ -41,20 +54,23 @@ fn lines(
     scaling: Scaling,
     json: bool,
 ) -> Result<Answer> {
-    let (spectrum, averages) = if typed.method == Method::Welch {
-        let averages = samples::averages(typed, traces, window, json)?;
+    let detrend = detrend(typed);
+    let (spectrum, averages, mut scatter) = if typed.method == Method::Welch {
+        let averages = samples::averages(typed, traces, window, detrend, json)?;
         let meta = traces.channels().first().cloned().unwrap_or_else(|| Meta::new("", Unit::opaque("")));
-        (spectrum::averaged(&averages, 0, &meta, window, scaling)?, averages.count)
+        let scatter = spectrum::scatter(&averages, scaling);
+        (spectrum::averaged(&averages, 0, &meta, window, scaling)?, averages.count, scatter)
     } else {
-        if typed.segment.is_some() {
-            return Err(Error::usage("--segment with --method fft", "--method welch, or the whole record"));
-        }
         let [trace] = samples::whole(traces)?;
-        (spectrum::plain(&trace, window, scaling, typed.integrate > 0)?, 1)
+        let spectrum = spectrum::plain(&trace, window, scaling, detrend)?;
+        let unknown = vec![f64::NAN; spectrum.axis.len()];
+        (spectrum, 1, unknown)
     };
     let fmin = fmin(typed, spectrum.axis.step().unwrap_or(0.0));
     let spectrum = in_frequency(&spectrum, typed.integrate, fmin)?;
-    let mut answer = Answer::lines(&spectrum, averages, traces.doubts());
+    scatter.drain(..scatter.len() - spectrum.axis.len());
+    let detrend = if detrend { "mean" } else { "none" };
+    let mut answer = Answer::lines(&spectrum, averages, &scatter, detrend, traces.doubts());
     answer.left_out(typed.integrate, fmin);
     if let Some(folder) = &typed.out {
         let figure = pictures::spectrum(&spectrum.meta.name, &spectrum);
@@ -69,7 +85,7 @@ fn response(typed: &args::Spectrum, traces: &mut Traces, window: Window, json: b
         args::Estimator::H2 => Estimator::H2,
         args::Estimator::Hv => Estimator::Hv,
     };
-    let (found, step, window, blows) = if typed.hammer {
+    let (found, step, window, detrend, blows) = if typed.hammer {
         let length = typed.segment.unwrap_or(samples::SEGMENT);
         let how = Blows {
             length,
@@ -79,15 +95,18 @@ fn response(typed: &args::Spectrum, traces: &mut Traces, window: Window, json: b
         };
         let [force, response] = samples::whole(traces)?;
         let found = from_blows(&force, &response, &how, estimator)?;
-        (found.transfer, traces.rate() / length as f64, ("force and exponential", 1.0), found.blows)
+        let window = (found.window, found.enbw);
+        (found.transfer, traces.rate() / length as f64, window, "level before the blow", found.blows)
     } else {
-        let averages = samples::averages(typed, traces, window, json)?;
+        let detrend = detrend(typed);
+        let averages = samples::averages(typed, traces, window, detrend, json)?;
         let found = transfer(&averages, 1, traces.channels(), estimator)?;
-        (found, averages.step(), (window.name(), window.enbw()), Vec::new())
+        let detrend = if detrend { "mean" } else { "none" };
+        (found, averages.step(), (window.name(), window.enbw()), detrend, Vec::new())
     };
     let fmin = fmin(typed, step);
     let found = found.integrated(typed.integrate, fmin)?;
-    let mut answer = Answer::response(&found, estimator, window, &blows, traces.doubts());
+    let mut answer = Answer::response(&found, estimator, window, detrend, &blows, traces.doubts());
     answer.left_out(typed.integrate, fmin);
     if let Some(folder) = &typed.out {
         let figure = pictures::transfer(&found.frf.meta.name, &found);
@@ -102,6 +121,11 @@ fn response(typed: &args::Spectrum, traces: &mut Traces, window: Window, json: b
         answer.write(folder, "frf", figure, &[Record::Frf(found.frf), Record::Spectrum(coherence)])?;
     }
     Ok(answer)
+}
+
+/// Whether the mean is taken out: that of segments, and what would be divided by nothing, unless told otherwise.
+fn detrend(typed: &args::Spectrum) -> bool {
+    typed.detrend.map_or(typed.method == Method::Welch || typed.integrate > 0, |d| d == Detrend::Mean)
 }
 
 fn scaling(name: &str) -> Result<Scaling> {

@@ -12,10 +12,19 @@ use crate::record::{Meta, Trace};
 use serde::Serialize;
 use std::f64::consts::PI;
 
-/// Part of the largest force at which a blow is noticed, and of a blow's own peak at which a second one is.
+/// Part of the largest force, above the level before it, at which a blow is noticed, and of a blow's own peak at which a second one is.
 const TRIGGER: f64 = 0.2;
+/// A blow has ended below this part of its peak, or below so many standard deviations of the noise before it.
+const ENDED: f64 = 0.05;
+const SIGMAS: f64 = 3.0;
 /// So many samples in a row at the very extreme are a clipped signal.
 const CLIPPED: usize = 3;
+/// An extreme nearer the quiet level than this part of the other one is no rail: a force does not go below zero.
+const RAIL: f64 = 0.1;
+/// Steps of the converter by which a round top of three equal samples or more may fall to the next: (5/3)² for three, and noise.
+const ROUNDED: f64 = 8.0;
+/// Steps in a record of which only few different values are known: at least so many up to its extreme.
+const COARSEST: f64 = 250.0;
 
 /// How blows are taken out of a long record.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,6 +59,10 @@ pub struct BlowTransfer {
     pub blows: Vec<Blow>,
     /// Decay in 1/s that the exponential window adds: a mode of f Hz seems to have a damping ratio that is this over 2πf larger.
     pub added_decay: f64,
+    /// The windows that were applied: `rectangular` for none, `force`, `exponential`, or `force and exponential`.
+    pub window: &'static str,
+    /// Equivalent noise bandwidth in lines of the response's window, NΣw²/(Σw)².
+    pub enbw: f64,
 }
 
 /// Finds the blows in a force, averages those that are clean, and relates the response to the force.
@@ -117,7 +130,7 @@ pub fn from_blows(
         sums.add(&work);
     }
     let apart = Segments { length: how.length, hop: how.length };
-    let averages = sums.mean(&vec![1.0; how.length], apart, rate);
+    let averages = sums.mean(&vec![1.0; how.length], apart, rate, true);
     let metas: [Meta; 2] = [force.meta.clone(), response.meta.clone()];
     let mut transfer = transfer(&averages, 1, &metas, estimator)?;
     let left_out = blows.len() - kept.len();
@@ -131,56 +144,109 @@ pub fn from_blows(
         ));
         transfer.frf.meta.step("exponential_window", &[("decay", &decay)]);
     }
-    Ok(BlowTransfer { transfer, blows: blows.into_iter().map(|(_, b)| b).collect(), added_decay: decay })
+    let [sum, squares] = weights[1].iter().fold([0.0, 0.0], |[s, q], w| [s + w, q + w * w]);
+    Ok(BlowTransfer {
+        transfer,
+        blows: blows.into_iter().map(|(_, b)| b).collect(),
+        added_decay: decay,
+        window: match (how.force_window.is_some(), how.left_at_end.is_some()) {
+            (false, false) => "rectangular",
+            (true, false) => "force",
+            (false, true) => "exponential",
+            (true, true) => "force and exponential",
+        },
+        enbw: how.length as f64 * squares / (sum * sum),
+    })
 }
 
 /// First sample of each record, and its blow.
 fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<(usize, Blow)> {
     let values = &force.values;
-    let extreme = values.iter().copied().fold(0.0f64, |m, v| if v.abs() > m.abs() { v } else { m });
+    // Blows are short: what the force is most of the time is its zero, whatever the amplifier adds.
+    let Quiet { level: zero, .. } = Quiet::of(values);
+    let extreme = values.iter().map(|v| v - zero).fold(0.0f64, |m, v| if v.abs() > m.abs() { v } else { m });
     let sign = if extreme < 0.0 { -1.0 } else { 1.0 };
-    let up = |i: usize, level: f64| sign * values[i] > level;
-    let level = TRIGGER * extreme.abs();
+    let trigger_level = TRIGGER * extreme.abs();
     let (mut found, mut i) = (Vec::new(), 0);
-    let clipping = [clip(values), clip(&response.values)];
     while i < values.len() {
-        if !up(i, level) {
+        if sign * (values[i] - zero) <= trigger_level {
             i += 1;
             continue;
         }
         let (trigger, end) = (i, (i + how.length - how.before).min(values.len()));
-        let first_end = (trigger..end).find(|j| !up(*j, 0.0)).unwrap_or(end);
-        let peak = (trigger..first_end).map(|j| sign * values[j]).fold(0.0, f64::max);
-        let second = (first_end..end).any(|j| up(j, TRIGGER * peak));
-        let start = trigger.checked_sub(how.before);
-        let part = |at: &Option<f64>, v: &[f64]| {
-            at.is_some_and(|limit| overloaded(&v[start.unwrap_or(0)..end], limit))
-        };
-        let rejected = if start.is_none() || end - trigger < how.length - how.before {
+        let start = trigger.saturating_sub(how.before);
+        // The zero may wander from blow to blow.
+        let quiet = if trigger > start { Quiet::of(&values[start..trigger]) } else { Quiet::of(values) };
+        let push = |j: usize| sign * (values[j] - quiet.level);
+        let (mut peak, mut first_end) = (0.0f64, end);
+        for j in trigger..end {
+            peak = peak.max(push(j));
+            // Noise must not prolong a blow, nor may much of it hide that there was one.
+            if push(j) <= (SIGMAS * quiet.sigma).clamp(ENDED * peak, TRIGGER * peak) {
+                first_end = j;
+                break;
+            }
+        }
+        let second = (first_end..end).any(|j| push(j) > TRIGGER * peak);
+        let clipped = [values, &response.values].iter().any(|v| overloaded(&v[start..end], trigger - start));
+        let rejected = if trigger < how.before || end - trigger < how.length - how.before {
             Some("the record cuts it off")
         } else if second {
             Some("double hit")
-        } else if part(&clipping[0], values) || part(&clipping[1], &response.values) {
+        } else if clipped {
             Some("overload")
         } else {
             None
         };
         let time = force.axis.start() + trigger as f64 / rate;
-        found.push((start.unwrap_or(0), Blow { time, peak: sign * peak, rejected }));
+        found.push((start, Blow { time, peak: sign * peak, rejected }));
         i = end.max(trigger + 1);
     }
     found
 }
 
-/// The level at which a signal is clipped, where it is.
-fn clip(values: &[f64]) -> Option<f64> {
-    let most = values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-    (most > 0.0 && overloaded(values, most)).then_some(most)
+/// Level and noise of samples of which most are quiet.
+struct Quiet {
+    level: f64,
+    sigma: f64,
 }
 
-fn overloaded(values: &[f64], limit: f64) -> bool {
-    let run = |w: &[f64]| w.iter().all(|v| *v == w[0] && v.abs() >= limit);
-    values.windows(CLIPPED).any(run)
+impl Quiet {
+    /// Median, and the standard deviation of the normal distribution that has the same median deviation.
+    fn of(values: &[f64]) -> Quiet {
+        let level = median(values.to_vec());
+        Quiet { level, sigma: 1.4826 * median(values.iter().map(|v| (v - level).abs()).collect()) }
+    }
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    let middle = values.len() / 2;
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
+}
+
+/// Whether a record, quiet in its first `before` samples, stays at its highest or its lowest value: each rail on its own, since
+/// an offset takes a signal to one of them first.
+///
+/// A slow vibration in coarse steps stays at its extreme, too, but leaves it by a few steps; a clipped one leaves it as steeply
+/// as it came.
+fn overloaded(values: &[f64], before: usize) -> bool {
+    let level = Quiet::of(if before > 0 { &values[..before] } else { values }).level;
+    let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let reach = (highest - level).max(level - lowest);
+    let step =
+        values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|d| *d > 0.0).fold(reach / COARSEST, f64::min);
+    [highest, lowest].into_iter().filter(|rail| (rail - level).abs() > RAIL * reach).any(|rail| {
+        let mut at = 0;
+        values.chunk_by(|a, b| a == b).any(|run| {
+            let (first, next) = (at, at + run.len());
+            at = next;
+            let beside = [first.checked_sub(1).and_then(|i| values.get(i)), values.get(next)];
+            run.len() >= CLIPPED
+                && run[0] == rail
+                && beside.into_iter().flatten().any(|v| (v - rail).abs() > ROUNDED * step)
+        })
+    })
 }
 
 /// Decay in 1/s, and the weights of force and response.

@@ -11,10 +11,12 @@ use super::window;
 use crate::error::{Error, Result};
 use crate::record::{Axis, Meta, Scaling, Spectrum, Trace, Values, Window};
 use crate::units::Unit;
+use num_complex::Complex64;
 
 /// The spectrum of a whole trace, lines complex where the scaling keeps their phase (peak and RMS).
 ///
-/// The phase is that of A cos(ωt + φ) at the first sample. With `detrend` the mean is taken out first.
+/// The phase is that of A cos(ωt + φ) at the first sample. With `detrend` the mean is taken out first, and the line at 0 Hz, which
+/// would be what a window leaves of nothing, is NaN.
 ///
 /// ```
 /// use vibroimpact::record::{Axis, Meta, Scaling, Trace, Window};
@@ -64,23 +66,26 @@ pub fn plain(trace: &Trace, window: Window, scaling: Scaling, detrend: bool) -> 
     }
     transform.run(&mut work);
     let (sum, squares) = (weights.iter().sum::<f64>(), weights.iter().map(|w| w * w).sum::<f64>());
-    let values = match scaling {
+    let mut values = match scaling {
         Scaling::Peak | Scaling::Rms => {
             let lines = work.output.iter().enumerate();
             let c = |k| if scaling == Scaling::Peak { sides(k, n) } else { sides(k, n).sqrt() };
             Values::Complex(lines.map(|(k, x)| x * (c(k) / sum)).collect())
         }
         _ => {
-            let squared: Vec<f64> = work.output.iter().map(num_complex::Complex::norm_sqr).collect();
+            let squared: Vec<f64> = work.output.iter().map(Complex64::norm_sqr).collect();
             Values::Real(scaled(&squared, n, scaling, rate, sum, squares)?)
         }
     };
+    if detrend {
+        without_mean(&mut values);
+    }
     let (mut meta, enbw) = (trace.meta.clone(), n as f64 * squares / (sum * sum));
     meta.step("spectrum", &[("window", &window.name()), ("scaling", &scaling.name()), ("detrend", &detrend)]);
     finished(meta, rate / n as f64, values, scaling, window, enbw)
 }
 
-/// The spectrum of one channel from averaged squares.
+/// The spectrum of one channel from averaged squares. The line at 0 Hz is NaN where segments lost their mean.
 ///
 /// # Errors
 /// If there is no such channel, or the scaling is not one that a transform gives.
@@ -98,7 +103,10 @@ pub fn averaged(
         ));
     };
     let Averages { length, rate, sum, squares, .. } = *averages;
-    let values = Values::Real(scaled(squared, length, scaling, rate, sum, squares)?);
+    let mut values = Values::Real(scaled(squared, length, scaling, rate, sum, squares)?);
+    if averages.detrended {
+        without_mean(&mut values);
+    }
     let mut meta = meta.clone();
     meta.step(
         "welch",
@@ -107,9 +115,28 @@ pub fn averaged(
             ("averages", &averages.count),
             ("window", &window.name()),
             ("scaling", &scaling.name()),
+            ("detrend", &averages.detrended),
         ],
     );
     finished(meta, averages.step(), values, scaling, window, length as f64 * squares / (sum * sum))
+}
+
+/// Standard deviation of each averaged line over its value, for noise: 1/√n for powers of n independent segments, half of that
+/// for amplitudes, and √2 times as much for the two lines that are real (Bendat & Piersol, Random Data, 4th ed. 2010, eq. 8.158).
+/// A sine that stands out of the noise scatters less. NaN for fewer than two independent segments.
+pub fn scatter(averages: &Averages, scaling: Scaling) -> Vec<f64> {
+    let n = if averages.effective < 2.0 - 1e-9 { f64::NAN } else { averages.effective };
+    let order = if matches!(scaling, Scaling::Peak | Scaling::Rms) { 0.5 } else { 1.0 };
+    let lines = averages.auto.first().map_or(0, Vec::len);
+    (0..lines).map(|k| order * (2.0 / sides(k, averages.length) / n).sqrt()).collect()
+}
+
+/// The line at 0 Hz of a record whose mean was taken out says nothing.
+fn without_mean(values: &mut Values) {
+    match values {
+        Values::Real(v) => v.iter_mut().take(1).for_each(|v| *v = f64::NAN),
+        Values::Complex(v) => v.iter_mut().take(1).for_each(|v| *v = Complex64::new(f64::NAN, f64::NAN)),
+    }
 }
 
 fn finished(

@@ -16,8 +16,14 @@ use std::f64::consts::TAU;
 /// Below this share of the largest line there is no excitation, only rounding.
 const NOTHING: f64 = 1e-28;
 
-/// From so many independent averages on, two standard deviations of the band hold the truth in 92 to 98 % of all cases.
+/// From so many independent averages on, 1.96 standard deviations of the band hold the truth in 92 to 98 % of all cases. The
+/// deviation is an estimate of 2(n − 1) degrees of freedom: Student's t gives 81 % for two averages, 88 % for three.
 const ENOUGH: f64 = 7.0;
+/// With fewer independent averages the coherence is near 1 whatever was measured.
+const LEAST: f64 = 2.0;
+
+/// What cannot be told.
+const NOWHERE: Complex64 = Complex64::new(f64::NAN, f64::NAN);
 
 /// Which noise a frequency response function does not mind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -45,9 +51,9 @@ impl Estimator {
 /// A frequency response function and how far it can be trusted, line by line from the first above 0 Hz.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transfer {
-    /// The function.
+    /// The function; NaN where excitation or response is empty.
     pub frf: Frf,
-    /// Coherence γ².
+    /// Coherence γ²; NaN where there is no function.
     pub coherence: Vec<f64>,
     /// Standard deviation of the magnitude, in its unit; NaN where the coherence is too low for one.
     pub magnitude_std: Vec<f64>,
@@ -95,21 +101,24 @@ impl Transfer {
 /// The function from the first channel of `averages` to another.
 ///
 /// Random errors as in Bendat & Piersol, Random Data (4th ed. 2010), table 9.6: ε(|H|) = √(1−γ²)/(|γ|√(2n)), and the phase's
-/// arcsin ε. One of the n averages is spent on H itself; n counts independent segments.
+/// arcsin ε. The magnitude of Hv is a root of B/A without C, and with the variances of A and B (1/n) and their covariance (γ²/n)
+/// from the same table ε(|Hv|) = √(1−γ²)/√(2n). One of the n averages is spent on H itself; n counts independent segments. Few
+/// averages (below 7) keep their standard deviations, with a warning: they are right, but are themselves known poorly.
 ///
 /// # Errors
-/// For fewer than two averages (the coherence of one is always 1), and if there are no products with that channel or the
-/// excitation is empty.
+/// For fewer than two independent averages (the coherence of one is always 1; segments that overlap count for less), and if there
+/// are no products with that channel or the excitation is empty.
 pub fn transfer(
     averages: &Averages,
     channel: usize,
     metas: &[Meta],
     estimator: Estimator,
 ) -> Result<Transfer> {
-    if averages.count < 2 {
+    // Sums of squares may take two segments that do not overlap a hair below.
+    if averages.effective < LEAST - 1e-9 {
         return Err(Error::refused(format!(
-            "{} average: the coherence of one is 1 whatever was measured, and says nothing",
-            averages.count
+            "{} averages are as good as {:.2} independent ones, two are needed at least: the coherence of one is 1 whatever was measured, and says nothing",
+            averages.count, averages.effective
         ))
         .hint("a longer record or shorter segments: ten averages or more"));
     }
@@ -124,7 +133,7 @@ pub fn transfer(
     if most == 0.0 {
         return Err(Error::refused(format!("the excitation {:?} is empty", reference.name)));
     }
-    let degrees = (averages.effective - 1.0).max(0.5);
+    let degrees = averages.effective - 1.0;
     let lines = xx.len().saturating_sub(1);
     let mut result = Transfer {
         frf: Frf {
@@ -144,7 +153,7 @@ pub fn transfer(
     for ((xx, yy), xy) in xx.iter().zip(yy).zip(xy).skip(1) {
         let (h, coherence) = if *xx <= NOTHING * most || *yy <= NOTHING * loudest {
             silent += 1;
-            (Complex64::ZERO, 0.0)
+            (NOWHERE, f64::NAN)
         } else {
             // Rounding may take it a hair above 1.
             let coherence = (xy.norm_sqr() / (xx * yy)).min(1.0);
@@ -153,23 +162,24 @@ pub fn transfer(
                 Estimator::H2 => yy / xy.conj(),
                 Estimator::Hv => xy / xy.norm() * (yy / xx).sqrt(),
             };
-            if h.is_finite() { (h, coherence) } else { (Complex64::ZERO, 0.0) }
+            if h.is_finite() { (h, coherence) } else { (NOWHERE, f64::NAN) }
         };
         let error = ((1.0 - coherence) / (2.0 * degrees * coherence)).sqrt();
         let error = if error < 1.0 { error } else { f64::NAN };
+        let of_magnitude = if estimator == Estimator::Hv { error * coherence.sqrt() } else { error };
         result.frf.values.push(h);
         result.coherence.push(coherence);
-        result.magnitude_std.push(h.norm() * error);
+        result.magnitude_std.push(h.norm() * of_magnitude);
         result.phase_std.push(error.asin());
     }
     if silent > 0 {
         result.warnings.push(format!(
-            "On {silent} of {lines} lines excitation or response is empty: the function is given as 0 with coherence 0 there."
+            "On {silent} of {lines} lines excitation or response is empty: there is no function there."
         ));
     }
     if averages.effective < ENOUGH {
         result.warnings.push(format!(
-            "{} averages (as good as {:.1} independent ones) are few: the coherence is too high and the band too narrow.",
+            "{} averages (as good as {:.1} independent ones) are few: the coherence is too high, and the standard deviations are themselves uncertain.",
             averages.count, averages.effective
         ));
     }

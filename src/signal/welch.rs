@@ -42,6 +42,8 @@ pub struct Averages {
     pub length: usize,
     /// Sampling rate in Hz.
     pub rate: f64,
+    /// Whether each segment lost its mean: then the line at 0 Hz holds none of it.
+    pub detrended: bool,
     /// Sum of the window's samples.
     pub sum: f64,
     /// Sum of their squares.
@@ -104,7 +106,7 @@ impl Welch {
                 .hint("check the sensor, its cable and the range of the input"));
             }
         }
-        Ok(total.mean(&kernel.weights, self.segments, rate))
+        Ok(total.mean(&kernel.weights, self.segments, rate, self.detrend))
     }
 }
 
@@ -152,7 +154,13 @@ impl Sums {
     }
 
     /// The means, of segments with these weights.
-    pub(super) fn mean(mut self, weights: &[f64], segments: Segments, rate: f64) -> Averages {
+    pub(super) fn mean(
+        mut self,
+        weights: &[f64],
+        segments: Segments,
+        rate: f64,
+        detrended: bool,
+    ) -> Averages {
         let factor = 1.0 / self.count.max(1) as f64;
         self.auto.iter_mut().flatten().for_each(|v| *v *= factor);
         self.cross.iter_mut().flatten().for_each(|v| *v *= factor);
@@ -161,6 +169,7 @@ impl Sums {
             effective: effective(weights, segments.hop, self.count),
             length: segments.length,
             rate,
+            detrended,
             sum: weights.iter().sum(),
             squares: weights.iter().map(|w| w * w).sum(),
             auto: self.auto,

@@ -9,4 +9,5 @@ mod pulse;
 mod restitution;
 mod score;
 mod sine;
+mod spectrum;
 mod transfer;

@@ -12,14 +12,24 @@ const SEED: u64 = 0xf2f;
 const LENGTH: usize = 64;
 const GAIN: f64 = 2.0;
 
-/// Shares of lines whose 95 % interval of magnitude and of phase holds the truth. Noise of `noise` times the response's power.
-fn coverage(averages: usize, overlap: f64, noise: f64, random: &mut Noise) -> (f64, f64, usize) {
+/// Shares of lines whose 95 % interval of magnitude and of phase holds the truth. Noise of `noise` times the signal's power, where
+/// the estimator expects it: in the response, in the excitation, or in both.
+fn coverage(
+    estimator: Estimator,
+    (averages, overlap, noise): (usize, f64, f64),
+    random: &mut Noise,
+) -> (f64, f64, usize) {
     let (mut magnitude, mut phase, mut lines) = (0usize, 0usize, 0usize);
     for _ in 0..200 {
         let segments = Segments::new(LENGTH, overlap).unwrap();
         let n = LENGTH + (averages - 1) * segments.hop;
-        let force: Vec<f64> = (0..n).map(|_| random.normal()).collect();
-        let response = force.iter().map(|v| GAIN * (v + noise.sqrt() * random.normal())).collect();
+        let signal: Vec<f64> = (0..n).map(|_| random.normal()).collect();
+        let mut with = |gain: f64, noisy: bool| -> Vec<f64> {
+            let noise = if noisy { noise.sqrt() } else { 0.0 };
+            signal.iter().map(|v| gain * (v + noise * random.normal())).collect()
+        };
+        let (force, response) =
+            (with(1.0, estimator != Estimator::H1), with(GAIN, estimator != Estimator::H2));
         let traces = [("N", force), ("m", response)].map(|(unit, values)| Trace {
             meta: Meta::new(unit, Unit::parse(unit).unwrap()),
             axis: Axis::time(0.0, 1e-3, n),
@@ -29,7 +39,7 @@ fn coverage(averages: usize, overlap: f64, noise: f64, random: &mut Noise) -> (f
         let mut traces = Traces::from_memory(traces.to_vec()).unwrap();
         let welch = Welch { segments, window: Window::Hann, detrend: true };
         let found =
-            transfer(&welch.average(&mut traces, true, |_| ()).unwrap(), 1, &metas, Estimator::H1).unwrap();
+            transfer(&welch.average(&mut traces, true, |_| ()).unwrap(), 1, &metas, estimator).unwrap();
         // Lines next to each other are not independent under a window, but each counts; the outermost are half real.
         for k in (3..LENGTH / 2 - 3).filter(|k| found.magnitude_std[*k].is_finite()) {
             let h = found.frf.values[k];
@@ -45,12 +55,17 @@ fn coverage(averages: usize, overlap: f64, noise: f64, random: &mut Noise) -> (f
 fn the_band_holds_the_truth() {
     let mut random = Noise::new(SEED);
     println!("seed {SEED:#x}, 200 records a line");
-    for (averages, overlap, noise) in
-        [(10, 0.0, 0.1), (10, 0.0, 1.0), (20, 0.5, 0.1), (20, 0.5, 0.5), (50, 0.5, 1.0), (100, 0.5, 0.01)]
-    {
-        let (magnitude, phase, lines) = coverage(averages, overlap, noise, &mut random);
+    let many = [(20, 0.5, 0.1), (50, 0.5, 1.0), (100, 0.5, 0.01)];
+    let h1 = [(10, 0.0, 0.1), (10, 0.0, 1.0), (20, 0.5, 0.5)].into_iter().chain(many);
+    let cases = h1
+        .map(|case| (Estimator::H1, case))
+        .chain(many.map(|case| (Estimator::H2, case)))
+        .chain(many.map(|case| (Estimator::Hv, case)));
+    for (estimator, case) in cases {
+        let (averages, overlap, noise) = case;
+        let (magnitude, phase, lines) = coverage(estimator, case, &mut random);
         println!(
-            "{averages} averages, overlap {overlap}, noise {noise}: magnitude {:.1} %, phase {:.1} % of {lines} lines",
+            "{estimator:?}, {averages} averages, overlap {overlap}, noise {noise}: magnitude {:.1} %, phase {:.1} % of {lines} lines",
             100.0 * magnitude,
             100.0 * phase
         );

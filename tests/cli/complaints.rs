@@ -1,7 +1,7 @@
 //! Every failure names the place, what was found, what was expected and what to try; nothing is half-written.
 
 use super::rig::{frequencies, spectrum, sweep};
-use super::{complaint, json, text};
+use super::{complaint, json, text, vibro};
 use std::fs;
 
 fn has(complaint: &str, words: &[&str]) {
@@ -50,6 +50,25 @@ fn wrong_usage() {
     ] {
         complaint(arguments, 2);
     }
+}
+
+#[test]
+fn wrong_usage_is_an_object_where_one_was_asked_for() {
+    for (arguments, word) in [
+        (&["spectrum", "--json"][..], "<FILE>"),
+        (&["--json", "info", "a.csv", "--rate", "x"], "--rate"),
+        (&["nonsense", "--json"], "nonsense"),
+        (&["info", "absent.csv", "--json"], "no such file"),
+    ] {
+        let output = vibro(arguments);
+        assert_eq!(output.status.code(), Some(2));
+        let value: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one object");
+        assert!(value["error"].as_str().unwrap().contains(word), "{value}");
+        assert_eq!((value["exit_code"].as_u64(), &value["warnings"]), (Some(2), &serde_json::json!([])));
+        assert!(!output.stderr.is_empty());
+    }
+    // Help is an answer, not an error.
+    assert_eq!(vibro(&["spectrum", "--help", "--json"]).status.code(), Some(0));
 }
 
 #[test]

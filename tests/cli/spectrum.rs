@@ -127,3 +127,137 @@ fn what_has_no_answer_is_said() {
     let missing = ["spectrum", text(&plain), "--rate", "100", "--allow-missing"];
     assert!(complaint(&missing, 1).contains("is missing"));
 }
+
+#[test]
+fn a_mean_is_a_line_or_null() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mean.csv");
+    let mut table = String::from("time [s],signal [V]\n");
+    for i in 0..4096 {
+        let t = f64::from(i) / 1024.0;
+        let _ = writeln!(table, "{t},{}", 5.0 + (TAU * 100.3 * t).cos());
+    }
+    fs::write(&path, table).unwrap();
+    let ask = |more: &[&str]| {
+        let mut arguments = vec!["spectrum", text(&path), "--segment", "1024"];
+        if more.contains(&"fft") {
+            arguments.truncate(2);
+        }
+        arguments.extend(more);
+        let value = json(&arguments);
+        (
+            value["detrend"].as_str().unwrap().to_owned(),
+            value["value"][0].clone(),
+            value["frequency"][0].as_f64(),
+        )
+    };
+    let null = serde_json::Value::Null;
+    assert_eq!(ask(&[]), ("mean".to_owned(), null.clone(), Some(0.0)));
+    assert_eq!(ask(&["--method", "fft", "--detrend", "mean"]), ("mean".to_owned(), null, Some(0.0)));
+    for more in [&["--detrend", "none"][..], &["--method", "fft"]] {
+        let (detrend, value, _) = ask(more);
+        assert_eq!(detrend, "none");
+        // The sine is 100 lines away under a Hann window: (0.3)·10⁻⁶ of it leaks there.
+        assert!((value.as_f64().unwrap() - 5.0).abs() < 1e-5, "{value}");
+    }
+    // Files leave the line out.
+    let out = folder.path().join("out");
+    json(&["spectrum", text(&path), "--segment", "1024", "--out", text(&out)]);
+    let read = json(&["info", text(&out.join("spectrum.csv"))]);
+    let record = &read["files"][0]["records"][0];
+    assert_eq!((record["n"].as_u64(), record["x0"].as_f64()), (Some(512), Some(1.0)));
+}
+
+#[test]
+fn lines_without_excitation_are_null_and_not_in_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, out) = (folder.path().join("multisine.csv"), folder.path().join("out"));
+    let mut table = String::from("time [s],force [N],position [m]\n");
+    for i in 0..1280 {
+        let x: f64 = [10, 30].iter().map(|k| (TAU * f64::from(k * (i % 128)) / 128.0).cos()).sum();
+        let _ = writeln!(table, "{},{x},{}", f64::from(i) / 1024.0, 3.0 * x);
+    }
+    fs::write(&path, table).unwrap();
+    let value =
+        json(&["spectrum", text(&path), "--reference", "force", "--segment", "128", "--out", text(&out)]);
+    for (i, h) in value["value"].as_array().unwrap().iter().enumerate() {
+        // A sine on a line has three under a Hann window.
+        let excited = [10, 30].iter().any(|k| (i + 1).abs_diff(*k) <= 1);
+        assert_eq!(h.as_f64().is_some_and(|h| (h - 3.0).abs() < 1e-9), excited, "line {}: {h}", i + 1);
+        assert_eq!(h.is_null(), !excited);
+        assert_eq!(value["coherence"][i].is_null(), !excited);
+    }
+    for name in ["frf.csv", "frf.uff"] {
+        let read = json(&["info", text(&out.join(name))]);
+        for record in read["files"][0]["records"].as_array().unwrap() {
+            assert_eq!((record["n"].as_u64(), record["x0"].as_f64()), (Some(6), Some(72.0)), "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_hammer_names_the_windows_applied() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("hammer.csv");
+    let mut table = String::from("time [s],force [N],velocity [m/s]\n");
+    for i in 0..9000 {
+        let since = f64::from((i - 500) % 3000);
+        let force = [30.0, 100.0, 30.0].get(since as usize).filter(|_| i >= 500).map_or(0.5, |f| f + 0.5);
+        let velocity = if i < 500 { 0.0 } else { (-0.003 * since).exp() * (0.3 * since).sin() };
+        let _ = writeln!(table, "{},{force},{velocity}", f64::from(i) / 1024.0);
+    }
+    fs::write(&path, table).unwrap();
+    let hammer = ["spectrum", text(&path), "--reference", "force", "--hammer", "--segment", "1000"];
+    let ask = |more: &[&str]| {
+        let value = json(&[&hammer[..], more].concat());
+        assert_eq!(
+            (value["averages"].as_u64(), value["detrend"].as_str()),
+            (Some(3), Some("level before the blow"))
+        );
+        (value["window"].as_str().unwrap().to_owned(), value["enbw"].as_f64().unwrap())
+    };
+    assert_eq!(ask(&[]), ("rectangular".to_owned(), 1.0));
+    assert_eq!(ask(&["--force-window", "0.05"]), ("force".to_owned(), 1.0));
+    let (window, enbw) = ask(&["--left-at-end", "0.01"]);
+    // One for a fiftieth of the record, then down to 0.01.
+    let weights = (0..1000).map(|i| 0.01f64.powf(f64::from((i - 20).max(0)) / 980.0));
+    let (sum, squares) = weights.fold((0.0, 0.0), |(s, q), w| (s + w, q + w * w));
+    assert_eq!(window, "exponential");
+    assert!((enbw / (1000.0 * squares / (sum * sum)) - 1.0).abs() < 1e-12, "{enbw}");
+    for (option, value) in [
+        ("--window", "hann"),
+        ("--overlap", "0.5"),
+        ("--method", "welch"),
+        ("--scaling", "psd"),
+        ("--detrend", "mean"),
+    ] {
+        let found = complaint(&[&hammer[..], &[option, value]].concat(), 2);
+        assert!(found.contains("cannot be used with") && found.contains(option), "{found}");
+    }
+    let reference = ["spectrum", text(&path), "--reference", "force"];
+    assert!(complaint(&[&reference[..], &["--scaling", "psd"]].concat(), 2).contains("cannot be used with"));
+    let found = complaint(&[&reference[..], &["--method", "fft"]].concat(), 2);
+    assert!(found.contains("--reference with --method fft"), "{found}");
+    let whole = ["spectrum", text(&path), "--channel", "1", "--method", "fft", "--overlap", "0.2"];
+    assert!(complaint(&whole, 2).contains("--overlap with --method fft"));
+}
+
+#[test]
+fn lines_carry_their_scatter() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = bench(folder.path());
+    let ask = |more: &[&str]| {
+        let value = json(&[&["spectrum", text(&path), "--channel", "1"], more].concat());
+        (numbers(&value, "value"), numbers(&value, "value_std"))
+    };
+    // 19980 samples in 19 segments that share nothing: 1/√19, and half of it for amplitudes.
+    let apart = ["--segment", "1024", "--overlap", "0"];
+    let (value, std) = ask(&[&apart[..], &["--scaling", "psd"]].concat());
+    assert!((std[100] / value[100] * 19f64.sqrt() - 1.0).abs() < 1e-12);
+    assert!((std[512] / value[512] * 9.5f64.sqrt() - 1.0).abs() < 1e-12);
+    let (value, std) = ask(&apart);
+    assert!((std[100] / value[100] * 19f64.sqrt() - 0.5).abs() < 1e-12);
+    // One transform does not know its scatter.
+    let (value, std) = ask(&["--method", "fft"]);
+    assert!(value.len() == std.len() && std.iter().all(|s| s.is_nan()));
+}

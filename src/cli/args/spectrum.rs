@@ -16,14 +16,17 @@ pub struct Spectrum {
     /// Samples of a segment [default: 8192, or the whole of a shorter record]
     #[arg(long, value_name = "SAMPLES")]
     pub segment: Option<usize>,
-    /// Part of a segment that it shares with the next
-    #[arg(long, value_name = "PART", default_value_t = 0.5, allow_negative_numbers = true)]
-    pub overlap: f64,
+    /// Part of a segment that it shares with the next [default: 0.5]
+    #[arg(long, value_name = "PART", allow_negative_numbers = true)]
+    pub overlap: Option<f64>,
+    /// What is taken out before the window; the line at 0 Hz goes with the mean [default: mean with welch or --integrate, else none]
+    #[arg(long, value_name = "WHAT")]
+    pub detrend: Option<Detrend>,
     /// Window: hann, rectangular, hamming, blackman, blackman-harris, flat-top
     #[arg(long, value_name = "NAME", default_value = "hann")]
     pub window: String,
     /// What a line means: peak, rms, power or psd
-    #[arg(long, value_name = "NAME", default_value = "peak")]
+    #[arg(long, value_name = "NAME", default_value = "peak", conflicts_with = "reference")]
     pub scaling: String,
     /// Integrations in frequency: 1 takes velocity to displacement, −1 to acceleration
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = clap::value_parser!(i8).range(-2..=2))]
@@ -37,8 +40,8 @@ pub struct Spectrum {
     /// Which noise the function does not mind: h1 that of the response, h2 that of the excitation, hv both alike
     #[arg(long, value_name = "NAME", default_value = "h1", requires = "reference")]
     pub estimator: Estimator,
-    /// The excitation is a hammer: one record a blow, of --segment samples
-    #[arg(long, requires = "reference")]
+    /// The excitation is a hammer: one record a blow, of --segment samples, from the level before it
+    #[arg(long, requires = "reference", conflicts_with_all = ["window", "overlap", "method", "detrend"])]
     pub hammer: bool,
     /// Width of the force window in s
     #[arg(long, value_name = "S", requires = "hammer")]
@@ -57,6 +60,12 @@ pub struct Spectrum {
 pub enum Method {
     Fft,
     Welch,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Detrend {
+    None,
+    Mean,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

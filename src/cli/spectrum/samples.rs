@@ -13,16 +13,22 @@ pub const SEGMENT: usize = 8192;
 pub const BEFORE: usize = 50;
 
 /// Averages over segments, with products where there is a reference.
-pub fn averages(typed: &args::Spectrum, traces: &mut Traces, window: Window, json: bool) -> Result<Averages> {
+pub fn averages(
+    typed: &args::Spectrum,
+    traces: &mut Traces,
+    window: Window,
+    detrend: bool,
+    json: bool,
+) -> Result<Averages> {
     let bar = progress::bar(json);
     bar.set_length(traces.frames() as u64);
     bar.set_message("samples");
     let length = typed.segment.unwrap_or(SEGMENT.min(traces.frames()));
-    let welch = Welch { segments: Segments::new(length, typed.overlap)?, window, detrend: true };
-    let averages =
-        welch.average(traces, typed.reference.is_some(), |frames| bar.set_position(frames as u64))?;
+    let welch = Welch { segments: Segments::new(length, typed.overlap.unwrap_or(0.5))?, window, detrend };
+    let averages = welch.average(traces, typed.reference.is_some(), |frames| bar.set_position(frames as u64));
+    // Before a complaint, too.
     bar.finish_and_clear();
-    Ok(averages)
+    averages
 }
 
 /// All samples of all channels.

@@ -112,3 +112,99 @@ fn impossible_windows_are_refused() {
     let short = trace("m", vec![0.0; 10]);
     assert!(from_blows(&force, &short, &how, Estimator::H1).err().unwrap().to_string().contains("10 at"));
 }
+
+/// Eight blows of 80 to 115 N, every other one with a second hit of 40 N after 50 ms.
+fn half_double() -> [Trace; 2] {
+    let mut blows = Vec::new();
+    for i in 0..8 {
+        blows.push((500 + 5000 * i, 80.0 + 5.0 * i as f64));
+        if i % 2 == 1 {
+            blows.push((700 + 5000 * i, 40.0));
+        }
+    }
+    bench(&blows, 41_000)
+}
+
+#[test]
+fn double_hits_are_found_whatever_the_offset_and_the_sign() {
+    let how = Blows { length: 4096, before: 100, force_window: None, left_at_end: None };
+    for offset in [0.0, 0.5, -0.5, 5.0, -30.0, 200.0] {
+        for sign in [1.0, -1.0] {
+            let [mut force, response] = half_double();
+            let mut state = 11u64;
+            for v in &mut force.values {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                // Noise of 0.2 N, uniform.
+                *v = sign * *v + offset + 0.4 * ((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5);
+            }
+            let found = from_blows(&force, &response, &how, Estimator::H1).unwrap();
+            let rejected: Vec<Option<&str>> = found.blows.iter().map(|b| b.rejected).collect();
+            let expected = [None, Some("double hit")].repeat(4);
+            assert_eq!(rejected, expected, "offset {offset} N, sign {sign}");
+            for (i, blow) in found.blows.iter().enumerate() {
+                // The noise of one sample and of the level.
+                assert!((sign * blow.peak - (80.0 + 5.0 * i as f64)).abs() < 0.4, "{offset}: {blow:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn each_rail_of_the_response_is_watched_on_its_own() {
+    let how = Blows { length: 4096, before: 100, force_window: None, left_at_end: None };
+    let blows = [(500, 100.0), (8000, 40.0), (15_500, 100.0), (23_000, 40.0)];
+    let [force, clean] = bench(&blows, 31_000);
+    let largest = clean.values.iter().copied().fold(0.0, f64::max);
+    let rejected = |response: &Trace| {
+        from_blows(&force, response, &how, Estimator::H1)
+            .unwrap()
+            .blows
+            .iter()
+            .map(|b| b.rejected)
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(rejected(&clean), [None; 4]);
+    // Only the strong blows pass 60 % of the largest value; the other side goes further than the rail.
+    for (low, high) in [(-1e9, 0.6 * largest), (-0.6 * largest, 1e9), (-0.6 * largest, 0.6 * largest)] {
+        for offset in [0.0, 0.3 * largest] {
+            let mut response = clean.clone();
+            response.values.iter_mut().for_each(|v| *v = v.clamp(low, high) + offset);
+            let strong = Some("overload");
+            assert_eq!(rejected(&response), [strong, None, strong, None], "{low} to {high} + {offset}");
+        }
+    }
+}
+
+/// 60 Hz at 4096 Hz in steps of 1/100 of the peak stays up to five samples at its extreme, but nothing is clipped.
+#[test]
+fn coarse_steps_are_no_overload() {
+    let [force, mut response] = bench(&[(500, 100.0), (8000, 100.0), (15_500, 100.0)], 23_000);
+    let step = response.values.iter().copied().fold(0.0, f64::max) / 100.0;
+    response.values.iter_mut().for_each(|v| *v = (*v / step).round() * step);
+    let how = Blows { length: 4096, before: 100, force_window: None, left_at_end: None };
+    let found = from_blows(&force, &response, &how, Estimator::H1).unwrap();
+    let extreme = response.values[..4596].iter().copied().fold(0.0, f64::max);
+    let longest = response.values.chunk_by(|a, b| a == b).filter(|r| r[0] == extreme).map(<[f64]>::len).max();
+    assert!(longest >= Some(3), "{longest:?} equal samples: the case shows nothing");
+    assert!(found.blows.iter().all(|b| b.rejected.is_none()), "{:?}", found.blows);
+}
+
+#[test]
+fn the_windows_applied_are_named() {
+    let [force, response] = bench(&[(500, 100.0), (8000, 80.0)], 15_000);
+    let how = Blows { length: 4096, before: 0, force_window: None, left_at_end: None };
+    let with = |force_window, left_at_end| {
+        let how = Blows { force_window, left_at_end, ..how };
+        let found = from_blows(&force, &response, &how, Estimator::H1).unwrap();
+        (found.window, found.enbw)
+    };
+    assert_eq!(with(None, None), ("rectangular", 1.0));
+    assert_eq!(with(Some(0.01), None), ("force", 1.0));
+    // e^(−at) to L = e^(−aT) at the end: T∫e^(−2at)/(∫e^(−at))² = ln(1/L)/2 · (1 + L)/(1 − L); sampled, a/N² less.
+    let closed = 0.5 * 100f64.ln() * 1.01 / 0.99;
+    for (force_window, name) in [(None, "exponential"), (Some(0.01), "force and exponential")] {
+        let (found, enbw) = with(force_window, Some(0.01));
+        assert_eq!(found, name);
+        assert!((enbw / closed - 1.0).abs() < 1e-6, "{enbw} {closed}");
+    }
+}

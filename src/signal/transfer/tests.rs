@@ -107,6 +107,11 @@ fn one_average_and_an_empty_excitation_are_refused() {
     let error = transfer(&averages, 1, &metas, Estimator::H1).unwrap_err().to_string();
     assert!(error.contains("coherence of one"), "{error}");
     assert!(measured([("N", vec![0.0; 400]), ("m", vec![1.0; 400])], 64).is_err());
+    // Two segments that share half of their samples are not two.
+    let (averages, metas) = measured([("N", x.clone()), ("m", x.clone())], 66).unwrap();
+    assert_eq!(averages.count, 2);
+    let error = transfer(&averages, 1, &metas, Estimator::H1).unwrap_err().to_string();
+    assert!(error.contains("2 averages are as good as 1.9"), "{error}");
     let (averages, metas) = measured([("N", x.clone()), ("m", x)], 32).unwrap();
     assert!(transfer(&averages, 2, &metas, Estimator::H1).is_err());
     assert!(transfer(&averages, 0, &metas, Estimator::H1).is_err());
@@ -135,4 +140,34 @@ fn mobility_becomes_receptance_only_when_asked() {
     let expected = mobility.frf.values[gone] / Complex64::new(0.0, TAU * f);
     assert!((receptance.frf.values[0] / expected - 1.0).norm() < 1e-14);
     assert_eq!(receptance.coherence[0], mobility.coherence[gone]);
+}
+
+/// A multisine: only its own lines are excited, and only there is a function.
+#[test]
+fn lines_without_excitation_have_no_function() {
+    let sines = |scale: f64| -> Vec<f64> {
+        let value = |i: usize| -> f64 {
+            [10, 30, 47].iter().map(|k| (TAU * f64::from(*k) * i as f64 / 100.0).cos()).sum()
+        };
+        (0..1000).map(|i| scale * value(i)).collect()
+    };
+    let columns = [("N", sines(1.0)), ("m", sines(3.0))];
+    let (mut averages, metas) = measured(columns, 100).unwrap();
+    // Without rounding.
+    for (k, x) in averages.auto[0].iter_mut().enumerate() {
+        if ![9, 10, 11, 29, 30, 31, 46, 47, 48].contains(&k) {
+            *x = 0.0;
+        }
+    }
+    let found = transfer(&averages, 1, &metas, Estimator::H1).unwrap();
+    for (i, (h, coherence)) in found.frf.values.iter().zip(&found.coherence).enumerate() {
+        let k = i + 1;
+        if [10, 30, 47].iter().any(|sine| k.abs_diff(*sine) <= 1) {
+            assert!((h - 3.0).norm() < 1e-9, "line {k}: {h}");
+        } else {
+            assert!(h.re.is_nan() && h.im.is_nan() && coherence.is_nan(), "line {k}: {h} {coherence}");
+            assert!(found.magnitude_std[i].is_nan() && found.phase_std[i].is_nan());
+        }
+    }
+    assert!(found.warnings.iter().any(|w| w.contains("On 41 of 50 lines")), "{:?}", found.warnings);
 }

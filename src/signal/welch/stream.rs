@@ -53,6 +53,8 @@ impl Stream {
     /// The averages so far of samples at `rate` Hz; `None` if not one segment has come.
     pub fn averages(&self, rate: f64) -> Option<Averages> {
         let whole = self.sums.count > 0;
-        whole.then(|| self.sums.clone().mean(&self.kernel.weights, self.welch.segments, rate))
+        whole.then(|| {
+            self.sums.clone().mean(&self.kernel.weights, self.welch.segments, rate, self.welch.detrend)
+        })
     }
 }
