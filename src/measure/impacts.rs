@@ -9,6 +9,7 @@ mod cycle;
 mod hum;
 mod interval;
 mod onset;
+mod ringing;
 mod shape;
 
 pub use cycle::{PerCycle, Phase};
@@ -20,9 +21,10 @@ pub use shape::{Matched, Shape};
 use super::Estimate;
 use crate::error::{Error, Result};
 use crate::record::Trace;
-use burst::{Background, background, bursts, median};
+use burst::{Background, background, median};
 use count::count;
 use onset::{Onset, onsets};
+use ringing::bursts;
 use serde::Serialize;
 use std::ops::Range;
 
@@ -99,6 +101,11 @@ pub struct Impacts {
 
 /// Intervals that spread by less than this part of their median are regular.
 pub const REGULAR: f64 = 0.05;
+
+/// The number of impacts must not change while the assumed decay of their ringing does by this factor.
+const STEADY: f64 = 2.0;
+/// Impacts of typically less than this many times the reach of the noise are hardly told from it.
+const CLEAR: f64 = 2.0;
 
 /// Finds the impacts of `trace` and what they repeat.
 ///
@@ -249,7 +256,8 @@ fn find(trace: &Trace, rate: f64, options: &ImpactsOptions) -> Found {
         *v -= found.level;
     }
     let level = Background { level: 0.0, ..found };
-    let mut all = bursts(&values, level.reach, quiet);
+    let bursts = bursts(&values, level.reach, quiet);
+    let mut all = bursts.each;
     let extreme = |b: &Range<usize>, sign: f64| {
         values.get(b.clone()).unwrap_or_default().iter().map(|v| sign * v).fold(0.0, f64::max)
     };
@@ -276,6 +284,18 @@ fn find(trace: &Trace, rate: f64, options: &ImpactsOptions) -> Found {
             if low == 1 { "" } else { "s" },
             if low == 1 { "was" } else { "were" },
             level.sigma
+        ));
+    }
+    if let Some(steady) = bursts.steady.filter(|s| *s < STEADY && all.len() > 1) {
+        warnings.push(format!(
+            "The number of impacts depends on how long ringing is taken to last: it stays the same over a factor of {steady:.1} alone. State the pause that parts impacts: --refractory S."
+        ));
+    }
+    let typical = median(&heights.iter().copied().filter(|h| *h > least).collect::<Vec<f64>>());
+    if typical < CLEAR * level.reach {
+        warnings.push(format!(
+            "Impacts rise to only {:.1} times the level that noise reaches: either they drown in it, or ringing fills the pauses, and impacts may be missing.",
+            typical / level.reach
         ));
     }
     if let Some(sentence) = clipped(&trace.values, &all) {
@@ -366,6 +386,11 @@ fn doubts(found: &Impacts, warnings: &mut Vec<String>) {
             found.missed,
             if found.missed == 1 { " is" } else { "s are" }
         ));
+    }
+    if found.missed > found.n {
+        warnings.push(
+            "More impacts are missed than were found: either the record rests for long, or what was found is no impacts but their ringing. State the pause that parts impacts: --refractory S.".to_owned(),
+        );
     }
     if found.doubled > 0 {
         warnings.push(format!(

@@ -7,6 +7,7 @@ mod modal;
 mod noise;
 mod pulse;
 mod restitution;
+mod ringing;
 mod score;
 mod sine;
 mod spectrum;

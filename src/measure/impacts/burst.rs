@@ -1,6 +1,4 @@
-//! Where a trace rises out of its background: one burst an impact, ringing included.
-
-use std::ops::Range;
+//! Level and noise of what lies between the impacts of a trace.
 
 /// What a trace does between impacts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,53 +67,6 @@ pub fn median(values: &[f64]) -> f64 {
     quantile(&mut values.to_vec(), 0.5)
 }
 
-/// Bursts of samples further than `reach` from 0, joined over pauses of up to `quiet` samples; without `quiet`, over the
-/// pauses that are short beside those between impacts.
-pub fn bursts(values: &[f64], reach: f64, quiet: Option<usize>) -> Vec<Range<usize>> {
-    let active: Vec<usize> = (0..values.len()).filter(|i| values[*i].abs() > reach).collect();
-    let quiet = quiet.unwrap_or_else(|| quiet_time(&active));
-    let mut bursts: Vec<Range<usize>> = Vec::new();
-    for i in active {
-        match bursts.last_mut() {
-            Some(last) if i - last.end < quiet => last.end = i + 1,
-            _ => bursts.push(i..i + 1),
-        }
-    }
-    bursts
-}
-
-/// The pause that parts impacts from ringing: the widest jump (in ratio) of the sorted pauses between active samples.
-///
-/// Pauses of ringing are not much longer than what is active between them, so that a long rest in a record does not make one impact of a
-/// whole series before it; nor does a rest that is rare among many pauses.
-fn quiet_time(active: &[usize]) -> usize {
-    let mut pauses = Vec::new();
-    let mut runs = vec![1.0];
-    for w in active.windows(2) {
-        match (w[1] - w[0], runs.last_mut()) {
-            (1, Some(run)) => *run += 1.0,
-            (pause, _) => {
-                pauses.push(pause);
-                runs.push(1.0);
-            }
-        }
-    }
-    pauses.sort_unstable();
-    let ringing = 4.0 * quantile(&mut runs, 0.75) + 2.0;
-    let least = (0.1 * (pauses.len() as f64).sqrt()).ceil() as usize;
-    // Two samples of either pause are chance, and a pause of one sample is none.
-    let ratio = |a: usize, b: usize| (b as f64 + 2.0) / (a as f64 + 2.0);
-    let mut best = (1.0, 2);
-    let mut below = 1;
-    for (i, pause) in pauses.iter().enumerate() {
-        if pauses.len() - i >= least && below as f64 <= ringing && ratio(below, *pause) > best.0 {
-            best = (ratio(below, *pause), ((below as f64 * *pause as f64).sqrt().ceil() as usize).max(2));
-        }
-        below = *pause;
-    }
-    best.1
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -137,15 +88,5 @@ mod tests {
         assert_eq!(quantile(&mut [4.0, 1.0, 3.0, 2.0], 0.5), 2.5);
         assert_eq!(quantile(&mut [4.0, 1.0, 3.0], 1.0), 4.0);
         assert!(quantile(&mut [], 0.5).is_nan());
-    }
-
-    #[test]
-    fn a_long_rest_does_not_join_the_impacts_beside_it() {
-        let mut values = vec![0.0; 20_000];
-        for i in 0..50 {
-            values[100 + i * 20] = 1.0;
-            values[15_000 + i * 20] = 1.0;
-        }
-        assert_eq!(bursts(&values, 0.5, None).len(), 100);
     }
 }

@@ -164,7 +164,10 @@ impl Bounces {
         let first = found.heights.iter().position(|h| *h >= 0.5 * largest).unwrap_or(0);
         // What a steady train would mean does not concern bounces.
         found.warnings.retain(|w| {
-            !w.contains("irregular") && !w.contains("within half an interval") && !w.contains("missed:")
+            !w.contains("irregular")
+                && !w.contains("within half an interval")
+                && !w.contains("missed:")
+                && !w.contains("missed than")
         });
         if first > 0 {
             found.warnings.push(format!(

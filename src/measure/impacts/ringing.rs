@@ -1,0 +1,137 @@
+//! Bursts of a trace, with the ringing that each impact leaves behind.
+
+use std::ops::Range;
+
+/// Bursts, one an impact.
+pub struct Bursts {
+    /// The samples of each, from its first beyond the noise to its last.
+    pub each: Vec<Range<usize>>,
+    /// Factor by which the decay that is assumed of the ringing may change without another number of bursts; `None` where a pause was
+    /// given instead.
+    pub steady: Option<f64>,
+}
+
+/// An impact rises above what is left of the ringing before it by this factor.
+const RISE: f64 = 2.0;
+/// Ratio of the decay times that are tried.
+const STEP: f64 = 1.25;
+/// Numbers of bursts that differ by less than this part are the same.
+const SAME: f64 = 0.02;
+
+/// Bursts of samples further than `reach` from 0, joined over pauses of up to `quiet` samples; without `quiet`, a burst goes on until
+/// something rises above the envelope of its ringing.
+pub fn bursts(values: &[f64], reach: f64, quiet: Option<usize>) -> Bursts {
+    let runs = runs(values, reach);
+    let (firsts, steady) = match quiet {
+        Some(quiet) => {
+            let apart = |j: &usize| *j == 0 || runs[*j].samples.start + 1 - runs[j - 1].samples.end >= quiet;
+            ((0..runs.len()).filter(apart).collect(), None)
+        }
+        None => settled(values, &runs),
+    };
+    let ends = firsts.iter().skip(1).copied().chain([runs.len()]);
+    let each = firsts
+        .iter()
+        .zip(ends)
+        .map(|(first, next)| runs[*first].samples.start..runs[next - 1].samples.end)
+        .collect();
+    Bursts { each, steady }
+}
+
+/// Neighbouring samples beyond the noise.
+struct Run {
+    samples: Range<usize>,
+    height: f64,
+}
+
+fn runs(values: &[f64], reach: f64) -> Vec<Run> {
+    let mut runs: Vec<Run> = Vec::new();
+    for (i, v) in values.iter().map(|v| v.abs()).enumerate().filter(|(_, v)| *v > reach) {
+        match runs.last_mut() {
+            Some(last) if last.samples.end == i => {
+                last.samples.end = i + 1;
+                last.height = last.height.max(v);
+            }
+            _ => runs.push(Run { samples: i..i + 1, height: v }),
+        }
+    }
+    runs
+}
+
+/// Runs that begin an impact if ringing decays by e in `decay` samples at least: those that rise above an envelope which follows every
+/// peak and falls with that time. What follows within the same time is the impact's own rise.
+fn firsts(values: &[f64], runs: &[Run], decay: f64) -> Vec<usize> {
+    let keep = (-1.0 / decay).exp();
+    let (mut envelope, mut at) = (0.0f64, 0);
+    let mut found: Vec<usize> = Vec::new();
+    for (j, run) in runs.iter().enumerate() {
+        for v in &values[at..run.samples.start] {
+            envelope = (envelope * keep).max(v.abs());
+        }
+        at = run.samples.start;
+        let own = found.last().is_some_and(|f| (at - runs[*f].samples.start) as f64 <= decay);
+        if !own && run.height > RISE * envelope {
+            found.push(j);
+        }
+    }
+    found
+}
+
+/// Impacts for the decay whose choice matters least, and the factor over which it does not matter.
+///
+/// The envelope follows each peak of the ringing, so that it need not fall as slowly as the ringing does: from a few half waves on, and up
+/// to the pause between impacts, the number of bursts stays the same. A decay that first parts bursts as it should far beyond the half waves
+/// belongs to a rest in the record.
+fn settled(values: &[f64], runs: &[Run]) -> (Vec<usize>, Option<f64>) {
+    // Length of a half wave, or of a pulse: half of all samples beyond the noise lie in runs no longer.
+    let mut lengths: Vec<usize> = runs.iter().map(|r| r.samples.len()).collect();
+    lengths.sort_unstable();
+    let total: usize = lengths.iter().sum();
+    let mut sum = 0;
+    let typical = lengths.into_iter().find(|n| {
+        sum += n;
+        2 * sum >= total
+    });
+    let Some(length) = typical.map(|n| n as f64) else { return (Vec::new(), Some(1.0)) };
+    let tried: Vec<(f64, usize)> =
+        std::iter::successors(Some((0.5 * length).max(1.0)), |decay| Some(decay * STEP))
+            .take_while(|decay| *decay < 0.5 * values.len() as f64)
+            .map(|decay| (decay, firsts(values, runs, decay).len()))
+            .take_while(|(_, n)| *n > 1)
+            .collect();
+    let mut best = (0.0, 0.5 * length.max(2.0));
+    for (i, (from, n)) in tried.iter().enumerate().take_while(|(_, (from, _))| *from <= 8.0 * length + 4.0) {
+        let same = |m: &usize| m.abs_diff(*n) as f64 <= SAME * *n as f64;
+        let to = tried[i..].iter().take_while(|(_, m)| same(m)).last().map_or(*from, |t| t.0);
+        if to / from > best.0 {
+            best = (to / from, (from * to).sqrt());
+        }
+    }
+    (firsts(values, runs, best.1), Some(best.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_rest_does_not_join_the_impacts_beside_it() {
+        let mut values = vec![0.0; 20_000];
+        for i in 0..50 {
+            values[100 + i * 20] = 1.0;
+            values[15_000 + i * 20] = 1.0;
+        }
+        assert_eq!(bursts(&values, 0.5, None).each.len(), 100);
+    }
+
+    #[test]
+    fn a_given_pause_parts_bursts_and_nothing_else_does() {
+        let mut values = vec![0.0; 100];
+        for i in [10, 13, 20, 21, 60] {
+            values[i] = 1.0;
+        }
+        assert_eq!(bursts(&values, 0.5, Some(5)).each, [10..14, 20..22, 60..61]);
+        assert_eq!(bursts(&values, 0.5, Some(20)).each, [10..22, 60..61]);
+        assert!(bursts(&values, 2.0, None).each.is_empty());
+    }
+}

@@ -1,0 +1,120 @@
+//! Impacts and bounces that ring: each is found once, or a doubt is said.
+
+use crate::noise::Noise;
+use std::f64::consts::TAU;
+use vibroimpact::measure::impacts::{Impacts, ImpactsOptions, impacts};
+use vibroimpact::measure::restitution::{Bounces, GRAVITY};
+use vibroimpact::record::{Axis, Meta, Trace};
+use vibroimpact::units::Unit;
+
+const CASES: u64 = 200;
+
+/// A ring of a natural frequency in Hz and a damping ratio in noise, sampled at a rate in Hz.
+struct Ring {
+    frequency: f64,
+    damping: f64,
+    noise: f64,
+    rate: f64,
+}
+
+impl Ring {
+    /// From 0.01 to 0.2 of critical damping and 0.3 to 3 % of noise, evenly in their logarithms.
+    fn random(noise: &mut Noise, frequency: (f64, f64), rate: f64) -> Ring {
+        Ring {
+            frequency: noise.between(frequency.0, frequency.1),
+            damping: 0.01 * 20f64.powf(noise.uniform()),
+            noise: 0.003 * 10f64.powf(noise.uniform()),
+            rate,
+        }
+    }
+
+    /// Time in s in which it decays by e.
+    fn decay(&self) -> f64 {
+        1.0 / (TAU * self.frequency * self.damping)
+    }
+
+    fn trace(&self, noise: &mut Noise, times: &[f64], heights: &[f64], duration: f64) -> Trace {
+        let n = (duration * self.rate) as usize;
+        let mut values: Vec<f64> = (0..n).map(|_| self.noise * noise.normal()).collect();
+        for (t, h) in times.iter().zip(heights) {
+            let first = (t * self.rate).ceil() as usize;
+            // After 12 decay times 6e-6 of the height is left.
+            let last = first + (12.0 * self.decay() * self.rate) as usize;
+            for (i, v) in values.iter_mut().enumerate().take(last).skip(first) {
+                let x = i as f64 / self.rate - t;
+                *v += h * (-x / self.decay()).exp() * (TAU * self.frequency * x).cos();
+            }
+        }
+        let axis = Axis::time(0.0, 1.0 / self.rate, n);
+        Trace { meta: Meta::new("ring", Unit::parse("V").unwrap()), axis, values }
+    }
+
+    /// Whether each of `found` stands within one and a half cycles of the ring behind its impact.
+    fn fits(&self, found: &[f64], times: &[f64]) -> bool {
+        found.iter().zip(times).all(|(a, b)| (a - b).abs() < 1.5 / self.frequency)
+    }
+}
+
+/// Whether a person is told that the number of impacts is not to be trusted.
+fn doubted(found: &Impacts) -> bool {
+    found.missed > 0
+        || found.warnings.iter().any(|w| w.contains("--refractory") || w.contains("fills the pauses"))
+}
+
+#[test]
+fn ringing_impacts_are_counted_once() {
+    let (mut right, mut told, mut clear, mut cried) = (0, 0, 0, 0);
+    for seed in 0..CASES {
+        let mut noise = Noise::new(130_000 + seed);
+        let ring = Ring::random(&mut noise, (500.0, 5000.0), 20_000.0);
+        let times: Vec<f64> = (0..30).map(|k| 0.02 + f64::from(k) / 30.0 + 1e-4 * noise.normal()).collect();
+        let heights: Vec<f64> = times.iter().map(|_| (1.0 + 0.2 * noise.normal()).max(0.3)).collect();
+        let trace = ring.trace(&mut noise, &times, &heights, 1.02);
+        let options = ImpactsOptions { hum: false, ..ImpactsOptions::default() };
+        let found = impacts(&trace, &options);
+        let good = found.as_ref().is_ok_and(|f| f.n == times.len() && ring.fits(&f.times, &times));
+        let doubt = found.as_ref().map_or(true, doubted);
+        // A ring that decays by less than e⁴ from impact to impact has no pauses.
+        let apart = ring.decay() < 0.25 / 30.0;
+        assert!(good || doubt, "seed {seed}: {:?}", found.map(|f| (f.n, f.warnings)));
+        clear += usize::from(apart);
+        right += usize::from(good && apart);
+        told += usize::from(!good);
+        cried += usize::from(good && doubt);
+    }
+    println!(
+        "ringing impacts: {CASES} trains, seeds 130000.., {right} right of {clear} with pauses, {told} doubted or refused, {cried} right but doubted"
+    );
+    assert!(clear > 150 && right as f64 >= 0.98 * clear as f64, "{right} of {clear}");
+    assert!((cried as f64) < 0.05 * CASES as f64, "{cried}");
+}
+
+#[test]
+fn ringing_bounces_are_counted_once() {
+    let (mut right, mut told) = (0, 0);
+    for seed in 0..CASES {
+        let mut noise = Noise::new(140_000 + seed);
+        let r = noise.between(0.3, 0.9);
+        let height = 0.05 * 10f64.powf(noise.uniform());
+        let ring = Ring::random(&mut noise, (1000.0, 8000.0), 50_000.0);
+        let mut flight = 2.0 * r * (2.0 * height / GRAVITY).sqrt();
+        let (mut times, mut heights) = (vec![0.05 + 1e-3 * noise.uniform()], vec![1.0]);
+        for _ in 0..6 {
+            times.push(times[times.len() - 1] + flight);
+            heights.push(heights[heights.len() - 1] * r);
+            flight *= r;
+        }
+        let trace = ring.trace(&mut noise, &times, &heights, times[6] + 0.1);
+        let options =
+            ImpactsOptions { hum: false, threshold: Bounces::THRESHOLD, ..ImpactsOptions::default() };
+        let found = Bounces::default().add(&trace, &options);
+        // Bounces that are lost are the last.
+        let good = found.as_ref().is_ok_and(|f| f.n <= times.len() && ring.fits(&f.times, &times));
+        let doubt = found.as_ref().map_or(true, |f| f.warnings.iter().any(|w| w.contains("--refractory")));
+        assert!(good || doubt, "seed {seed}, R {r}: {:?}", found.map(|f| (f.times, f.warnings)));
+        right += usize::from(good);
+        told += usize::from(!good);
+    }
+    println!("ringing bounces: {CASES} drops, seeds 140000.., {right} right, {told} doubted or refused");
+    assert!(right as f64 >= 0.98 * CASES as f64, "{right}");
+}
