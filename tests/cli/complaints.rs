@@ -334,12 +334,12 @@ fn frequency_limits_that_leave_nothing() {
 #[test]
 fn failures_are_objects_where_json_was_asked_for() {
     for arguments in [&["response", "absent.txt", "--json"][..], &["run", "absent.toml", "--json"]] {
-        let output = super::vibro(arguments);
+        let output = vibro(arguments);
         assert_eq!(output.status.code(), Some(2));
         let value: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one object");
         assert!(value["error"].as_str().unwrap().contains("absent") && value["warnings"].is_array());
     }
-    let output = super::vibro(&["info", "absent.txt", "--json"]);
+    let output = vibro(&["info", "absent.txt", "--json"]);
     let value: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one object");
     assert_eq!(value["errors"].as_array().unwrap().len(), 1);
 }
