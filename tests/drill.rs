@@ -280,3 +280,23 @@ fn each_impact_and_the_handle() {
     let refused = with(&file, &["--handle", "along"]);
     assert_eq!(refused.status.code(), Some(2), "a handle in volts without its sensitivity");
 }
+
+#[test]
+fn times_and_pulses_that_no_turn_can_hold_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let pulse = |i: usize| f64::from(u8::from(i % 200 < 20));
+    let good = csv(folder.path(), "good.csv", |i| ((i as f64 * 0.03).sin(), pulse(i)));
+    for bad in [["--fit", "1e9"], ["--fit", "1e300"], ["--contact", "1e300"], ["--fit", "0.0101"]] {
+        let output = with(&good, &bad);
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{bad:?}: {text}");
+        assert!(text.contains("longer than half a turn"), "{bad:?}: {text}");
+    }
+    let at = PLAIN.iter().position(|a| *a == "--pulses-per-turn").unwrap() + 1;
+    for (pulses, code) in [("18446744073709551615", 2), ("10001", 2), ("10000", 1)] {
+        let mut typed = PLAIN;
+        typed[at] = pulses;
+        let output = drill(&good, &[&typed[..], &["--from", "normal"]].concat());
+        assert_eq!(output.status.code(), Some(code), "{pulses}: {}", String::from_utf8_lossy(&output.stderr));
+    }
+}

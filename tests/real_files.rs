@@ -41,9 +41,13 @@ fn resonances_of_a_hammer_test() {
     let (found, _folder) =
         results(&format!("name = \"hammer test\"\n[[frf]]\nfile = {:?}\n", file.display().to_string()));
     // Lines are 0.5 Hz apart and the stated figures are lines: interpolated peaks lie within one line.
-    for f in [41.0, 62.0, 81.5, 96.5, 125.0, 140.5, 175.0] {
-        assert!(near(&found, 0, f, 0.5), "{f}: {:?}", found.frf[0].modal);
+    for f in [62.0, 81.5, 96.5, 125.0, 140.5, 175.0] {
+        assert!(near(&found, 0, f, 0.5), "{f}: {:?}", found.frf[0].modal.warnings);
     }
+    // Beside the peak at 41 Hz lies a dip that no single mode explains: it is named, and no mode is made of it.
+    let unexplained =
+        found.warnings.iter().any(|w| w.contains("The peak at 41 Hz is not supported as a mode"));
+    assert!(unexplained && !near(&found, 0, 41.0, 3.0), "{:?}", found.warnings);
     // Label and unit of that file contradict each other, and the report says so.
     assert!(found.warnings.iter().any(|w| w.contains("eceptance")), "{:?}", found.warnings);
 }

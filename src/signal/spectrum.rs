@@ -121,11 +121,15 @@ pub fn averaged(
     finished(meta, averages.step(), values, scaling, window, length as f64 * squares / (sum * sum))
 }
 
+/// So many independent segments are needed before the scatter of a line is stated.
+const FEWEST: f64 = 30.0;
+
 /// Standard deviation of each averaged line over its value, for noise: 1/√n for powers of n independent segments, half of that
 /// for amplitudes, and √2 times as much for the two lines that are real (Bendat & Piersol, Random Data, 4th ed. 2010, eq. 8.158).
-/// A sine that stands out of the noise scatters less. NaN for fewer than two independent segments.
+/// A sine that stands out of the noise scatters less. NaN for fewer than 30 independent segments, whose powers are too skew for an
+/// interval of ± two standard deviations around what was found.
 pub fn scatter(averages: &Averages, scaling: Scaling) -> Vec<f64> {
-    let n = if averages.effective < 2.0 - 1e-9 { f64::NAN } else { averages.effective };
+    let n = if averages.effective < FEWEST { f64::NAN } else { averages.effective };
     let order = if matches!(scaling, Scaling::Peak | Scaling::Rms) { 0.5 } else { 1.0 };
     let lines = averages.auto.first().map_or(0, Vec::len);
     (0..lines).map(|k| order * (2.0 / sides(k, averages.length) / n).sqrt()).collect()

@@ -52,13 +52,13 @@ fn coverage(averages: usize, scaling: Scaling, random: &mut Noise) -> f64 {
 fn the_scatter_of_lines_holds_the_truth() {
     let mut random = Noise::new(SEED);
     println!("seed {SEED:#x}, 200 records a line");
-    for averages in [20, 50, 100] {
+    for averages in [40, 100] {
         for scaling in [Scaling::Power, Scaling::Psd, Scaling::Peak, Scaling::Rms] {
             let found = coverage(averages, scaling, &mut random);
             println!("{averages} averages, {scaling:?}: {:.1} %", 100.0 * found);
-            // A sum of squares is no normal number: its gamma distribution gives 92.5 % for powers of 19 segments and 94.5 %
+            // A sum of squares is no normal number: its gamma distribution gives 93.7 % for powers of 38 segments and 94.5 %
             // of 95, amplitudes lie between; two thirds of 6000 lines scatter by 0.4 %.
-            assert!((0.912..=0.962).contains(&found), "{averages} {scaling:?}: {found}");
+            assert!((0.92..=0.98).contains(&found), "{averages} {scaling:?}: {found}");
         }
     }
 }

@@ -3,6 +3,9 @@
 use super::{Beam, Edge};
 use crate::error::{Error, Result};
 
+/// More pulses in a turn than any encoder on a crank gives.
+const MOST_PULSES: usize = 10_000;
+
 /// How the velocity is smoothed before it is averaged and integrated. Impacts are always taken from the velocity as it was
 /// measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -85,8 +88,9 @@ impl DrillOptions {
         if self.sensitivity == 0.0 || !self.sensitivity.is_finite() {
             return Err(Error::usage(format!("a sensitivity of {}", self.sensitivity), "m/s a unit, not 0"));
         }
-        if self.pulses_per_turn == 0 {
-            return Err(Error::usage("0 pulses a turn", "1 or more"));
+        if self.pulses_per_turn == 0 || self.pulses_per_turn > MOST_PULSES {
+            let expected = format!("1 to {MOST_PULSES}");
+            return Err(Error::usage(format!("{} pulses a turn", self.pulses_per_turn), expected));
         }
         if self.points < 2 || self.points > 100_000 {
             return Err(Error::usage(format!("an average at {} phases", self.points), "2 to 100000"));
@@ -110,6 +114,19 @@ impl DrillOptions {
         }
         if self.struck_mass.is_some() && self.mass.is_none() {
             return Err(Error::usage("a struck mass without the mass that strikes it", "both masses"));
+        }
+        Ok(())
+    }
+
+    /// Checks the times that must fit into a turn of `turn` seconds.
+    pub(super) fn check_turn(&self, turn: f64) -> Result<()> {
+        for (name, time) in [("contact", self.contact), ("fit", self.fit)] {
+            if time > 0.5 * turn {
+                let why =
+                    format!("a {name} time of {time} s is longer than half a turn, {:.3e} s", 0.5 * turn);
+                return Err(Error::refused(why)
+                    .hint(format!("state --{name} in seconds; if it is right, check --pulses-per-turn")));
+            }
         }
         Ok(())
     }

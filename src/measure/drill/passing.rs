@@ -1,6 +1,7 @@
 //! One pass over the velocity: repaired, cut into turns, and each turn handed to what measures it.
 
 use super::faults::{FaultCount, Faults, State};
+use super::survey::median;
 use super::turns::Turn;
 use super::{Average, DrillOptions, Jumps, Motion, Running, Smoothing, Survey, floor};
 use crate::error::Result;
@@ -44,6 +45,8 @@ impl<'a> Pass<'a> {
         survey: &Survey,
         spectrum: bool,
     ) -> Result<Pass<'a>> {
+        let durations = turns.iter().map(|t| (t.end - t.start) / rate);
+        options.check_turn(median(durations))?;
         let filter = match options.smoothing {
             Some(Smoothing::LowPass(corner)) => Some(Filter::low_pass(corner, 2, rate)?),
             Some(s @ Smoothing::Exponential(_)) => Some(Filter::smoothing(s.corner(), rate)?),

@@ -97,7 +97,7 @@ pub(super) fn summary(m: Measured<'_>) -> Drill {
         options,
         count,
         (m.velocity, m.reference, m.found),
-        m.pass.left_out,
+        (m.pass.left_out, m.turns.apart),
         m.still.is_some(),
     );
     result
@@ -161,7 +161,7 @@ fn warnings(
     options: &DrillOptions,
     count: FaultCount,
     channels: (&Survey, &Survey, &Found),
-    left_out: usize,
+    (left_out, apart): (usize, usize),
     still: bool,
 ) -> Vec<String> {
     let (velocity, reference, found) = channels;
@@ -175,6 +175,13 @@ fn warnings(
     say(r.missing > 0, format!("{} reference edges are missing; their turns are left out.", r.missing));
     say(r.extra > 0, format!("{} reference edges too many are passed over.", r.extra));
     say(r.pauses > 0, format!("The reference pauses {} times.", r.pauses));
+    say(
+        apart > 0,
+        format!(
+            "With {} pulses a turn the phase is lost in a pause: only the longest stretch between pauses is used, {apart} turns are left out.",
+            options.pulses_per_turn
+        ),
+    );
     say(
         found.sharp,
         format!("The reference rises within one sample: edges are known to {:.1e} s only.", r.std),

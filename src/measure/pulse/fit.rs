@@ -144,7 +144,8 @@ impl Samples {
         whiteness.inflation * student(fitted.fit.degrees_of_freedom())
     }
 
-    /// Whether the residuals around the onset have more than twice the variance of the others.
+    /// Whether the residuals around the onset have more than twice the variance of the others, and more than chance gives: the variance
+    /// of n samples of noise scatters by √(2/n).
     fn misses_onset(&self, fitted: &Fitted) -> bool {
         let onset = fitted.fit.parameters[0];
         let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
@@ -154,7 +155,8 @@ impl Samples {
             let part = if around.contains(t) { &mut near } else { &mut far };
             *part = (part.0 + r * r, part.1 + 1.0);
         }
-        near.0 * far.1 > 2.0 * far.0 * near.1
+        let limit = (1.0 + 4.0 * (2.0_f64 / near.1).sqrt()).max(2.0);
+        near.0 * far.1 > limit * far.0 * near.1
     }
 
     fn from(&self, model: Model, start: &[f64], first: Option<usize>) -> Result<Fitted> {
