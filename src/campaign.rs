@@ -186,7 +186,7 @@ impl Campaign {
     }
 
     /// An error that points into this file.
-    fn at(&self, span: std::ops::Range<usize>, found: String) -> Error {
+    pub(crate) fn at(&self, span: std::ops::Range<usize>, found: String) -> Error {
         Error::input(Place::file(&self.path), found, "").excerpt(&self.text, span)
     }
 

@@ -35,7 +35,7 @@ fn the_campaign_gives_back_the_truth() {
     let (r, u) = (drops.restitution.value, drops.restitution.std.unwrap());
     assert!((r - records::RESTITUTION).abs() < 4.0 * u && u < 0.02 * r, "{drops:?}");
     let lively = &results.drops[1].restitution;
-    assert!(lively.agree && lively.by.len() == 2, "{lively:?}");
+    assert!(lively.agree == Some(true) && lively.by.len() == 2, "{lively:?}");
     for way in &lively.by {
         let u = way.restitution.std.unwrap();
         assert!((way.restitution.value - records::LIVELY).abs() < 4.0 * u && u < 0.005, "{way:?}");
@@ -56,4 +56,29 @@ fn the_campaign_gives_back_the_truth() {
         serde_json::from_str(&std::fs::read_to_string(out.path().join("results.json")).unwrap()).unwrap();
     assert_eq!(json["drops"][0]["name"], "ball on plate");
     assert_eq!(json["impacts"][0]["per_cycle"]["cycles"], 2);
+}
+
+#[test]
+fn drops_of_one_name_with_other_heights_are_refused_with_their_line() {
+    let out = tempfile::tempdir().unwrap();
+    let run = |names: [&str; 2], height_std: f64| {
+        for file in ["DROP01.CSV", "DROP02.CSV"] {
+            std::fs::copy(folder().join(file), out.path().join(file)).unwrap();
+        }
+        let text = format!(
+            "[[drop]]\n{}file = \"DROP01.CSV\"\nheight = 0.57\nheight_std = 0.001\n\n[[drop]]\n{}file = \"DROP02.CSV\"\nheight = 0.57\nheight_std = {height_std}\n",
+            names[0], names[1]
+        );
+        std::fs::write(out.path().join("campaign.toml"), text).unwrap();
+        let campaign = Campaign::from_path(out.path().join("campaign.toml")).unwrap();
+        let mut output = Output::new(out.path().join("out")).unwrap();
+        job::run(&campaign, JobOptions::default(), &mut output, &())
+    };
+    let name = "name = \"a\"\n";
+    assert_eq!(run([name, name], 0.001).unwrap().drops.len(), 1);
+    assert_eq!(run(["", ""], 0.001).unwrap().drops.len(), 2);
+    let error = run([name, name], 0.01).err().unwrap();
+    assert_eq!(error.exit_code(), 2);
+    let text = error.to_string();
+    assert!(text.contains("another height_std") && text.contains("DROP02.CSV"), "{text}");
 }

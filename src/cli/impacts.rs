@@ -49,8 +49,12 @@ pub fn run(typed: &args::Impacts, json: bool) -> Result<()> {
         Some(name) => Some(recording.trace(Some(name), None)?.values),
         None => None,
     };
-    let options =
-        ImpactsOptions { excitation: typed.excitation, reference, ..settings::finding(&typed.finding, None) };
+    let options = ImpactsOptions {
+        excitation: typed.excitation,
+        excitation_std: typed.excitation_std,
+        reference,
+        ..settings::finding(&typed.finding, None)
+    };
     let mut found = impacts(&trace, &options)?;
     found.warnings.extend(recording.doubts.iter().chain(&trace.meta.doubts).cloned());
     let mut written = Vec::new();

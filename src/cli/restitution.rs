@@ -66,7 +66,15 @@ pub fn run(typed: &args::Restitution, json: bool) -> Result<()> {
     complain::warn(&found.warnings);
     let mut text = tables::restitution(&[(String::new(), &found)]).text();
     if found.by.len() > 1 {
-        let _ = writeln!(text, "\nthe methods {}", if found.agree { "agree" } else { "disagree" });
+        let said = match found.agree {
+            Some(true) => "agree",
+            Some(false) => "disagree",
+            None => "cannot be compared: one has no uncertainty",
+        };
+        let _ = writeln!(text, "\nthe methods {said}");
+    }
+    if let Some(u) = found.bootstrap_std {
+        let _ = writeln!(text, "standard uncertainty from the scatter of the drops by a bootstrap: {u:.1e}");
     }
     for file in written {
         let _ = writeln!(text, "wrote {file}");
@@ -76,22 +84,24 @@ pub fn run(typed: &args::Restitution, json: bool) -> Result<()> {
 
 fn velocities(typed: &args::Restitution, masses: Option<(f64, f64)>) -> Result<Option<Velocities>> {
     let Some(before) = pair("--before", &typed.before)? else {
-        return match typed.after.len() {
-            0 => Ok(None),
-            _ => Err(Error::usage("--after without --before", "both")),
+        return if typed.after.is_empty() && typed.after2.is_none() {
+            Ok(None)
+        } else {
+            Err(Error::usage("--after or --after2 without --before", "both"))
         };
     };
-    let (after1, after2) = match typed.after.as_slice() {
-        [one] => (*one, None),
-        [one, two] => (*one, Some(*two)),
-        other => {
+    let (after1, after2) = match (typed.after.as_slice(), typed.after2) {
+        ([one], two) => (Some(*one), two),
+        ([one, two], None) => (Some(*one), Some(*two)),
+        ([], Some(two)) => (None, Some(two)),
+        (other, _) => {
             return Err(Error::usage(
                 format!("--after has {} velocities", other.len()),
-                "V1,V2, or V1 with --masses",
+                "V1,V2, or V1 with --masses, or --after2 V2 with --masses",
             ));
         }
     };
-    Ok(Some(Velocities { before, after1: Some(after1), after2, masses, std: typed.velocity_std }))
+    Ok(Some(Velocities { before, after1, after2, masses, std: typed.velocity_std }))
 }
 
 fn pair(name: &str, values: &[f64]) -> Result<Option<(f64, f64)>> {

@@ -50,6 +50,7 @@ pub use options::{DrillOptions, Smoothing};
 pub use result::{BeamResult, Corner, Displacement, Drill, Phases, Pulses};
 pub use running::Running;
 pub use survey::Survey;
+pub(crate) use turns::Numbered;
 pub use turns::{Turn, Turns};
 
 use super::exposure::{Handle, exposure};

@@ -23,6 +23,7 @@ use crate::error::{Error, Result};
 use crate::record::Trace;
 use burst::{Background, background, median};
 use count::count;
+use cycle::{Locking, Reference};
 use onset::{Onset, onsets};
 use ringing::bursts;
 use serde::Serialize;
@@ -39,6 +40,8 @@ pub struct ImpactsOptions {
     pub hum: bool,
     /// Frequency of the excitation in Hz, for impacts per cycle.
     pub excitation: Option<f64>,
+    /// Its standard uncertainty in Hz. Default: that of the digits it is written with.
+    pub excitation_std: Option<f64>,
     /// Samples of a channel that rises once a cycle of the excitation, taken together with the trace.
     pub reference: Option<Vec<f64>>,
     /// Shape of the pulses over time in samples, where it is known; its origin is the time of the impact.
@@ -52,6 +55,7 @@ impl Default for ImpactsOptions {
             refractory: None,
             hum: true,
             excitation: None,
+            excitation_std: None,
             reference: None,
             shape: None,
         }
@@ -117,7 +121,14 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     check(trace, options)?;
     let Found { onsets, timing, hum, mut warnings } = find(trace, rate, options);
     if onsets.len() < 2 {
-        return Err(too_few(onsets.len()));
+        let error = too_few(onsets.len());
+        return Err(match &hum {
+            Some(h) => error.hint(format!(
+                "--keep-hum if what comes at {:.2} Hz is the impacts: it was taken away as mains hum",
+                h.frequency
+            )),
+            None => error,
+        });
     }
     let start = trace.axis.start();
     let times: Vec<f64> = onsets.iter().map(|o| start + o.time / rate).collect();
@@ -163,22 +174,29 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
         times,
         warnings: Vec::new(),
     };
-    if let Some(cycles) = cycles(&answer.times, start, rate, options)? {
-        let per_cycle = cycle::per_cycle(
-            &cycles.at,
-            found.mean.recip() / cycles.frequency,
-            found.std / found.mean.powi(2) / cycles.frequency,
-        );
+    if let Some(cycles) = cycles(&answer.times, start, rate, options, &mut warnings)? {
+        let kept: Vec<f64> = counted.kept.iter().filter_map(|i| cycles.at.get(*i)).copied().collect();
+        let locking = cycle::locking(&kept, &counted.index, cycles.std / cycles.frequency);
+        let per_cycle = if let Locking::Locked(fraction) = locking { Some(fraction) } else { None };
         regular = per_cycle.is_some();
         answer.phases = per_cycle.map_or_else(Vec::new, |p| cycle::phases(&cycles.at, p));
         answer.phase = cycles.at.iter().map(|c| c.rem_euclid(1.0)).collect();
         (answer.excitation, answer.per_cycle, answer.regular) = (Some(cycles.frequency), per_cycle, regular);
-        if per_cycle.is_none() {
-            warnings.push(format!(
+        match locking {
+            Locking::Locked(_) => {}
+            Locking::Drifting(near, slip) => warnings.push(format!(
+                "The train drifts: beat {:.3e} Hz between the impacts and {}/{} of the excitation of {} Hz (standard uncertainty {:.1e} Hz): they do not keep their phase, or the excitation has another frequency.",
+                (slip * cycles.frequency).abs(),
+                near.impacts,
+                near.cycles,
+                cycles.frequency,
+                cycles.std
+            )),
+            Locking::Irregular => warnings.push(format!(
                 "No fraction of up to 8 impacts in 8 cycles fits within {} % of the rate and {} of a cycle: irregular.",
                 100.0 * cycle::FITS,
                 cycle::REPEATS
-            ));
+            )),
         }
     }
     doubts(&answer, &mut warnings);
@@ -212,7 +230,11 @@ fn check(trace: &Trace, options: &ImpactsOptions) -> Result<()> {
             "0 to 1, of the median height",
         ));
     }
-    for (what, value) in [("a refractory time", options.refractory), ("an excitation", options.excitation)] {
+    for (what, value) in [
+        ("a refractory time", options.refractory),
+        ("an excitation", options.excitation),
+        ("an uncertainty of the excitation", options.excitation_std),
+    ] {
         if let Some(v) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
             return Err(Error::usage(format!("{what} of {v}"), "a finite number above 0"));
         }
@@ -229,6 +251,12 @@ fn check(trace: &Trace, options: &ImpactsOptions) -> Result<()> {
     if options.reference.as_ref().is_some_and(|r| r.len() != trace.values.len()) {
         return Err(Error::refused("the reference channel has another number of samples than the trace"));
     }
+    let lost = options.reference.iter().flatten().filter(|v| !v.is_finite()).count();
+    if lost > 0 {
+        return Err(Error::refused(format!(
+            "{lost} values of the reference channel are missing or infinite: a cycle may begin in any of them"
+        )));
+    }
     Ok(())
 }
 
@@ -243,7 +271,7 @@ fn too_few(n: usize) -> Error {
 fn find(trace: &Trace, rate: f64, options: &ImpactsOptions) -> Found {
     let mut values = trace.values.clone();
     let mut warnings = Vec::new();
-    let hum = if options.hum { hum::remove(&mut values, rate) } else { None };
+    let hum = if options.hum { hum::remove(&mut values, rate, &mut warnings) } else { None };
     if let Some(h) = &hum {
         warnings.push(format!(
             "Mains hum of {:.2} Hz, amplitude {:.3e}, with {} harmonics was fitted and taken away.",
@@ -365,18 +393,34 @@ fn described(found: &Interval, n: usize, timing: Timing) -> String {
 /// Times of impacts in excitation cycles.
 struct Cycles {
     frequency: f64,
+    /// Standard uncertainty of the frequency that `at` does not show.
+    std: f64,
     at: Vec<f64>,
 }
 
-fn cycles(times: &[f64], start: f64, rate: f64, options: &ImpactsOptions) -> Result<Option<Cycles>> {
-    if let Some(reference) = &options.reference {
-        let edges = cycle::edges(reference)?;
-        let at = times.iter().map(|t| cycle::counted((t - start) * rate, &edges)).collect();
-        return Ok(Some(Cycles { frequency: rate / cycle::mean_cycle(&edges), at }));
+fn cycles(
+    times: &[f64],
+    start: f64,
+    rate: f64,
+    options: &ImpactsOptions,
+    warnings: &mut Vec<String>,
+) -> Result<Option<Cycles>> {
+    if let Some(channel) = &options.reference {
+        let reference = Reference::new(channel)?;
+        if reference.missing + reference.extra > 0 {
+            warnings.push(format!(
+                "Edges of the reference channel: {} missing, {} too many; cycles were counted as if they were right.",
+                reference.missing, reference.extra
+            ));
+        }
+        let at = times.iter().map(|t| reference.counted((t - start) * rate)).collect();
+        return Ok(Some(Cycles { frequency: rate / reference.mean_cycle(), std: 0.0, at }));
     }
-    Ok(options
-        .excitation
-        .map(|frequency| Cycles { frequency, at: times.iter().map(|t| t * frequency).collect() }))
+    Ok(options.excitation.map(|frequency| Cycles {
+        frequency,
+        std: options.excitation_std.unwrap_or_else(|| cycle::of_digits(frequency)),
+        at: times.iter().map(|t| t * frequency).collect(),
+    }))
 }
 
 fn doubts(found: &Impacts, warnings: &mut Vec<String>) {

@@ -22,6 +22,17 @@ pub struct Way {
     pub method: &'static str,
     /// Its answer.
     pub restitution: Estimate,
+    #[serde(skip)]
+    shares: Shares,
+}
+
+/// What an answer has in common with others.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Shares {
+    /// Flight times.
+    Flights,
+    /// Velocities v₁, v₂, v₁⁺, v₂⁺: its derivatives by them, times their standard uncertainties.
+    Velocities([f64; 4]),
 }
 
 /// The coefficient of restitution by every method that the data allow.
@@ -31,8 +42,12 @@ pub struct Restitution {
     pub restitution: Estimate,
     /// All answers.
     pub by: Vec<Way>,
-    /// Whether the answers agree within their uncertainties.
-    pub agree: bool,
+    /// Whether the answers agree within the uncertainties of their differences; null where one that has none leaves that open. A single
+    /// answer agrees.
+    pub agree: Option<bool>,
+    /// Standard deviation of `restitution` by drops over 2000 drawings of as many drops with replacement (Efron 1979), from a fixed seed:
+    /// the scatter of the drops alone. Null for fewer than five drops.
+    pub bootstrap_std: Option<f64>,
     /// Intervals between impacts in s, one list a drop or train.
     pub intervals: Vec<Vec<f64>>,
     /// Flight times that do not fit the train.
@@ -88,43 +103,65 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
         .hint("--height M --interval S, or --intervals A,B,C, or --before V1,V2 --after V1,V2"));
     };
     let agree = agreement(&by, &mut warnings);
-    let restitution = if agree {
-        surest.restitution.clone()
+    let restitution = if agree == Some(false) {
+        Estimate::new(f64::NAN, None, "1", by.len(), "methods disagree: see `by`")
     } else {
-        Estimate::new(f64::NAN, None, "", by.len(), "methods disagree: see `by`")
+        surest.restitution.clone()
     };
-    Ok(Restitution { restitution, by, agree, intervals, outliers, warnings })
+    let bootstrap_std = measured.drop.as_ref().and_then(Drop::bootstrap);
+    Ok(Restitution { restitution, by, agree, bootstrap_std, intervals, outliers, warnings })
 }
 
 fn uncertainty(way: &Way) -> f64 {
     way.restitution.std.unwrap_or(f64::INFINITY)
 }
 
-/// Quantiles of χ² at 95 % for 1 to 5 degrees of freedom.
-const CHI_SQUARE: [f64; 5] = [3.841, 5.991, 7.815, 9.488, 11.070];
+/// Two-sided 95 % limits of a normal deviate for the largest of 1 to 10 comparisons (Bonferroni); five methods have ten pairs.
+const LIMITS: [f64; 10] = [1.960, 2.241, 2.394, 2.498, 2.576, 2.638, 2.690, 2.734, 2.773, 2.807];
 
-/// Whether Σ((Rᵢ − R̄)/uᵢ)² about the weighted mean stays below the 95 % point of χ².
-fn agreement(by: &[Way], warnings: &mut Vec<String>) -> bool {
-    let known: Vec<(f64, f64)> = by
-        .iter()
-        .filter_map(|w| Some((w.restitution.value, w.restitution.std.filter(|s| *s > 0.0)?)))
-        .collect();
-    if by.len() > 1 && known.len() < by.len() {
+/// Standard uncertainty of the difference of two answers, `None` where one has none.
+///
+/// Methods by velocity share all their numbers: their difference has the covariance of these. A drop and a train may share the first
+/// flight, with a correlation that depends on what scatters: the largest possible one is taken.
+fn of_difference(a: &Way, b: &Way) -> Option<f64> {
+    let (u, v) = (a.restitution.std?, b.restitution.std?);
+    Some(match (a.shares, b.shares) {
+        (Shares::Velocities(x), Shares::Velocities(y)) => {
+            x.iter().zip(y).map(|(x, y)| (x - y).powi(2)).sum::<f64>().sqrt()
+        }
+        (Shares::Flights, Shares::Flights) => u + v,
+        _ => u.hypot(v),
+    })
+}
+
+/// Whether every pair of answers agrees at 95 % together; `None` where one has no uncertainty and the others agree.
+fn agreement(by: &[Way], warnings: &mut Vec<String>) -> Option<bool> {
+    let pairs: Vec<(&Way, &Way)> =
+        by.iter().enumerate().flat_map(|(i, a)| by.iter().skip(i + 1).map(move |b| (a, b))).collect();
+    let tested: Vec<(&Way, &Way, f64)> =
+        pairs.iter().filter_map(|(a, b)| Some((*a, *b, of_difference(a, b)?))).collect();
+    if tested.len() < pairs.len() {
         warnings.push("A method without an uncertainty was not compared with the others.".to_owned());
     }
-    let Some(limit) = known.len().checked_sub(2).map(|i| CHI_SQUARE[i.min(4)]) else { return true };
-    let weight: f64 = known.iter().map(|(_, u)| u.powi(-2)).sum();
-    let mean = known.iter().map(|(r, u)| r * u.powi(-2)).sum::<f64>() / weight;
-    let chi: f64 = known.iter().map(|(r, u)| ((r - mean) / u).powi(2)).sum();
-    if chi > limit {
-        let all: Vec<String> =
-            by.iter().map(|w| format!("{} {:.4}", w.method, w.restitution.value)).collect();
-        warnings.push(format!(
-            "The methods disagree by more than their uncertainties (χ² {chi:.1}, 95 % limit {limit:.1}): {}.",
-            all.join(", ")
-        ));
+    // Methods are five at most.
+    let limit = tested.len().checked_sub(1).and_then(|i| LIMITS.get(i)).copied().unwrap_or(f64::INFINITY);
+    let mut agree = true;
+    for (a, b, u) in &tested {
+        let difference = a.restitution.value - b.restitution.value;
+        // Equal numbers may differ by roundings.
+        if difference.abs() > limit * u + 1e-12 {
+            agree = false;
+            warnings.push(format!(
+                "The methods disagree by more than their uncertainties: {} {:.4}, {} {:.4}; the difference of {:.4} has a standard uncertainty of {u:.1e}.",
+                a.method,
+                a.restitution.value,
+                b.method,
+                b.restitution.value,
+                difference.abs()
+            ));
+        }
     }
-    chi <= limit
+    if agree && tested.len() < pairs.len() { None } else { Some(agree) }
 }
 
 /// Checks a number that must be finite and above 0.

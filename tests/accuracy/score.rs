@@ -9,32 +9,38 @@ pub struct Score {
     sum: f64,
     covered: usize,
     n: usize,
+    /// Estimates without an uncertainty.
+    unstated: usize,
 }
 
 impl Score {
     /// Adds a case whose bound is this standard deviation.
     pub fn add(&mut self, estimate: &Estimate, truth: f64, bound: f64) {
+        let Some(std) = estimate.std else {
+            self.unstated += 1;
+            return;
+        };
         let error = estimate.value - truth;
         if (error / bound).abs() > 4.0 {
             println!("case {}: {} for {truth}, bound {bound}", self.n, estimate.value);
         }
         self.squares += (error / bound).powi(2);
         self.sum += error / bound;
-        let std = estimate.std.expect("an estimate with its uncertainty");
         self.covered += usize::from(error.abs() <= 1.96 * std);
         self.n += 1;
     }
 
     /// Prints what was reached; fails beyond `ratio` of the bound, a bias of 0.1 of it (three times what chance gives, where that is
-    /// more), or a coverage outside 92…98 %.
+    /// more), a coverage outside 92…98 %, or where more than two in a hundred state no uncertainty.
     pub fn judge(&self, what: &str, ratio: f64) {
         let n = self.n as f64;
         let (reached, bias, coverage) =
             ((self.squares / n).sqrt(), self.sum / n, 100.0 * self.covered as f64 / n);
         println!(
-            "{what}: {} cases, error {reached:.3} of the bound, bias {bias:+.3}, coverage {coverage:.1} %",
-            self.n
+            "{what}: {} cases, error {reached:.3} of the bound, bias {bias:+.3}, coverage {coverage:.1} %, {} without an uncertainty",
+            self.n, self.unstated
         );
+        assert!(50 * self.unstated <= self.n, "{what}: {} without an uncertainty", self.unstated);
         assert!(self.n >= 200, "{what}: {} cases", self.n);
         assert!(reached <= ratio, "{what}: {reached} times the bound");
         assert!(bias.abs() <= 0.1_f64.max(3.0 / n.sqrt()), "{what}: bias {bias} of the bound");

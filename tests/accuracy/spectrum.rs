@@ -39,8 +39,8 @@ fn coverage(averages: usize, scaling: Scaling, random: &mut Noise) -> f64 {
         let found = welch.average(&mut Traces::from_memory(vec![record]).unwrap(), false, |_| ()).unwrap();
         let values = averaged(&found, 0, &meta, Window::Hann, scaling).unwrap().values.magnitudes();
         let part = scatter(&found, scaling);
-        // Removing the mean takes from the lines beside 0 Hz; the one at half the rate counts, with its own scatter.
-        for k in 3..=LENGTH / 2 {
+        // Removing the mean takes from the lines beside 0 Hz; the one at half the rate has half the level.
+        for k in 3..LENGTH / 2 {
             inside += usize::from((values[k] - truth).abs() < 1.96 * part[k] * values[k]);
             lines += 1;
         }
@@ -52,13 +52,13 @@ fn coverage(averages: usize, scaling: Scaling, random: &mut Noise) -> f64 {
 fn the_scatter_of_lines_holds_the_truth() {
     let mut random = Noise::new(SEED);
     println!("seed {SEED:#x}, 200 records a line");
-    for averages in [40, 100] {
+    for averages in [20, 50, 100] {
         for scaling in [Scaling::Power, Scaling::Psd, Scaling::Peak, Scaling::Rms] {
             let found = coverage(averages, scaling, &mut random);
             println!("{averages} averages, {scaling:?}: {:.1} %", 100.0 * found);
-            // A sum of squares is no normal number: its gamma distribution gives 93.7 % for powers of 38 segments and 94.5 %
+            // A sum of squares is no normal number: its gamma distribution gives 92.4 % for powers of 19 segments and 94.5 %
             // of 95, amplitudes lie between; two thirds of 6000 lines scatter by 0.4 %.
-            assert!((0.92..=0.98).contains(&found), "{averages} {scaling:?}: {found}");
+            assert!((0.912..=0.98).contains(&found), "{averages} {scaling:?}: {found}");
         }
     }
 }

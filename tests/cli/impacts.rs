@@ -100,6 +100,9 @@ fn restitution_of_numbers_and_of_records() {
         "0.2,0.18,0.16",
     ]);
     assert!(torn["agree"] == false && torn["restitution"]["value"].is_null(), "{torn}");
+    // (0.14·7.5 − 0.28·4)/0.14 = −0.5, and (4 + 0.5)/7.5 = 0.6.
+    let struck = json(&["restitution", "--before", "7.5,0", "--after2", "4", "--masses", "0.14,0.28"]);
+    assert!((struck["restitution"]["value"].as_f64().unwrap() - 0.6).abs() < 1e-12, "{struck}");
 }
 
 #[test]

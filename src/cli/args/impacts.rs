@@ -13,6 +13,9 @@ pub struct Impacts {
     /// Frequency of the excitation in Hz
     #[arg(long, value_name = "HZ", conflicts_with = "reference")]
     pub excitation: Option<f64>,
+    /// Its standard uncertainty in Hz [default: that of the digits typed]
+    #[arg(long, value_name = "HZ", requires = "excitation")]
+    pub excitation_std: Option<f64>,
     /// Record of the same file that rises once a cycle of the excitation, by name or by number from 1
     #[arg(long, value_name = "NAME")]
     pub reference: Option<String>,

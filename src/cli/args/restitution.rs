@@ -44,6 +44,9 @@ pub struct Restitution {
     /// Velocities of both masses after it, in m/s; of mass 1 alone where masses are given
     #[arg(long, value_name = "V1,V2", value_delimiter = ',', allow_negative_numbers = true)]
     pub after: Vec<f64>,
+    /// Velocity of mass 2 after it, in m/s, where that of mass 1 is not known and masses are given
+    #[arg(long, value_name = "V2", allow_negative_numbers = true)]
+    pub after2: Option<f64>,
     /// Standard uncertainty of each velocity, in m/s
     #[arg(long, value_name = "M/S")]
     pub velocity_std: Option<f64>,

@@ -36,6 +36,45 @@ pub struct Turns {
     pub apart: usize,
 }
 
+/// Edges with their places in an even series.
+pub(crate) struct Numbered {
+    /// Place and time of each edge; a pause begins a new run.
+    pub(crate) runs: Vec<Vec<(usize, f64)>>,
+    /// Edges that are not there.
+    pub(crate) missing: usize,
+    /// Edges that should not be there; they are passed over.
+    pub(crate) extra: usize,
+    /// Stretches without an edge.
+    pub(crate) pauses: usize,
+}
+
+impl Numbered {
+    /// Numbers edges, each by the median interval around it.
+    pub(crate) fn new(edges: &[f64]) -> Numbered {
+        let intervals: Vec<f64> = edges.windows(2).map(|e| e[1] - e[0]).collect();
+        let (mut missing, mut extra, mut pauses) = (0, 0, 0);
+        let mut runs: Vec<Vec<(usize, f64)>> = vec![edges.iter().take(1).map(|e| (0, *e)).collect()];
+        for (i, &edge) in edges.iter().enumerate().skip(1) {
+            let near =
+                intervals[(i - 1).saturating_sub(AROUND)..(i + AROUND).min(intervals.len())].iter().copied();
+            let (Some(run), expected) = (runs.last_mut(), median(near)) else { continue };
+            let Some(&(place, last)) = run.last() else { continue };
+            let ratio = (edge - last) / expected;
+            if ratio < SHORT {
+                extra += 1;
+            } else if ratio > PAUSE {
+                pauses += 1;
+                runs.push(vec![(0, edge)]);
+            } else {
+                let steps = if ratio > LONG { ratio.round() as usize } else { 1 };
+                missing += steps - 1;
+                run.push((place + steps, edge));
+            }
+        }
+        Numbered { runs, missing, extra, pauses }
+    }
+}
+
 impl Turns {
     /// Turns of `pulses` edges each. With several pulses nobody knows behind a pause which of them comes first: then the
     /// longest stretch between pauses is all that is taken.
@@ -57,27 +96,7 @@ impl Turns {
             }
             _ => {}
         }
-        let intervals: Vec<f64> = edges.windows(2).map(|e| e[1] - e[0]).collect();
-        let (mut missing, mut extra, mut pauses) = (0, 0, 0);
-        // Places of the edges in the run of one turn; a pause begins a new run.
-        let mut runs: Vec<Vec<(usize, f64)>> = vec![vec![(0, edges[0])]];
-        for (i, &edge) in edges.iter().enumerate().skip(1) {
-            let near =
-                intervals[(i - 1).saturating_sub(AROUND)..(i + AROUND).min(intervals.len())].iter().copied();
-            let (Some(run), expected) = (runs.last_mut(), median(near)) else { continue };
-            let Some(&(place, last)) = run.last() else { continue };
-            let ratio = (edge - last) / expected;
-            if ratio < SHORT {
-                extra += 1;
-            } else if ratio > PAUSE {
-                pauses += 1;
-                runs.push(vec![(0, edge)]);
-            } else {
-                let steps = if ratio > LONG { ratio.round() as usize } else { 1 };
-                missing += steps - 1;
-                run.push((place + steps, edge));
-            }
-        }
+        let Numbered { runs, missing, extra, pauses } = Numbered::new(edges);
         let whole = |run: &Vec<(usize, f64)>| -> Vec<Turn> {
             run.windows(pulses + 1)
                 .filter(|w| w[0].0 % pulses == 0 && w[pulses].0 - w[0].0 == pulses)

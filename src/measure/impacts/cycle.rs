@@ -1,7 +1,9 @@
 //! Impacts against the cycle of the excitation: phase, and impacts per cycle.
 
 use super::burst::median;
+use super::interval::interval;
 use crate::error::{Error, Result};
+use crate::measure::drill::{Edge, Edges, Numbered, Survey};
 use serde::Serialize;
 use std::f64::consts::TAU;
 
@@ -29,29 +31,60 @@ pub struct Phase {
 const LARGEST: usize = 8;
 /// A pattern repeats where n impacts take m cycles within this part of a cycle (root mean square).
 pub const REPEATS: f64 = 0.1;
-/// The rate of impacts must agree with a fraction within this part of it, and twice its uncertainty.
+/// Fractions further than this part of them from the rate are not looked at.
 pub const FITS: f64 = 0.02;
 
-/// The simplest fraction n/m of impacts per cycle that the impacts repeat, `None` where none up to 8/8 does: irregular.
+/// How impacts go with the excitation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Locking {
+    /// They repeat with it.
+    Locked(PerCycle),
+    /// They come close to a fraction, but slip by this many impacts a cycle of the excitation (negative: too few).
+    Drifting(PerCycle, f64),
+    /// No fraction fits.
+    Irregular,
+}
+
+/// Whether impacts repeat the simplest fraction n/m of impacts per cycle, up to 8/8, that is near their rate.
 ///
-/// `cycles` are the times of the impacts counted in excitation cycles, `rate` impacts a cycle with its standard uncertainty.
-pub fn per_cycle(cycles: &[f64], rate: f64, std: f64) -> Option<PerCycle> {
+/// `cycles` are the times of the impacts counted in excitation cycles, `index` their places in the series without missed ones, and
+/// `std` is the relative standard uncertainty of the frequency of the excitation. A fraction holds where the slope of `cycles` over
+/// `index` is m/n within three standard uncertainties and every place of the pattern keeps its phase within [`REPEATS`]: what is
+/// merely near a fraction wanders through all phases.
+pub fn locking(cycles: &[f64], index: &[usize], std: f64) -> Locking {
+    let Some(step) = interval(cycles, index).filter(|s| s.mean > 0.0) else { return Locking::Irregular };
+    let rate = step.mean.recip();
+    let own = if step.std.is_finite() { rate * step.std / step.mean } else { 0.0 };
+    let std = own.hypot(rate * std);
     let mut fractions: Vec<PerCycle> = (1..=LARGEST)
         .flat_map(|cycles| (1..=LARGEST).map(move |impacts| PerCycle { impacts, cycles }))
         .filter(|f| (2..=f.impacts.min(f.cycles)).all(|d| f.impacts % d != 0 || f.cycles % d != 0))
         .collect();
     fractions.sort_by_key(|f| (f.impacts + f.cycles, f.cycles));
-    let std = if std.is_finite() { std } else { 0.0 };
-    fractions.into_iter().find(|f| {
-        let fraction = f.impacts as f64 / f.cycles as f64;
+    let slip = |f: &PerCycle| rate - f.impacts as f64 / f.cycles as f64;
+    fractions.retain(|f| {
         let spans: Vec<f64> = cycles.windows(f.impacts + 1).map(|w| w[f.impacts] - w[0]).collect();
-        if spans.len() < 2 || (rate - fraction).abs() > FITS * fraction + 2.0 * std {
-            return false;
-        }
         let off: Vec<f64> = spans.iter().map(|s| (s - f.cycles as f64).powi(2)).collect();
         // Spans over a missed impact are the few that are far off; the median knows them not. √(median of χ²₁) = 0.6745.
-        (median(&off) / 0.454_936).sqrt() <= REPEATS
-    })
+        spans.len() >= 2
+            && slip(f).abs() <= FITS * (rate - slip(f)) + 2.0 * own
+            && (median(&off) / 0.454_936).sqrt() <= REPEATS
+    });
+    // Of cycles that were counted, roundings alone are left.
+    let holds = |f: &&PerCycle| {
+        slip(f).abs() <= 3.0 * std + 1e-9 && phases(cycles, **f).iter().all(|p| p.spread <= REPEATS)
+    };
+    match (fractions.iter().find(holds), fractions.first()) {
+        (Some(f), _) => Locking::Locked(*f),
+        (None, Some(f)) => Locking::Drifting(*f, slip(f)),
+        (None, None) => Locking::Irregular,
+    }
+}
+
+/// Standard uncertainty of a number that was typed: half a unit of its last digit, evenly spread (JCGM 100:2008, 4.3.7).
+pub fn of_digits(value: f64) -> f64 {
+    let digits = value.to_string().split_once('.').map_or(0, |(_, d)| d.len());
+    0.5 * 10f64.powi(-i32::try_from(digits).unwrap_or(i32::MAX)) / 3f64.sqrt()
 }
 
 /// Phases of the impacts in a pattern of `pattern.cycles` cycles, one a place of the pattern.
@@ -91,55 +124,69 @@ fn circular(values: &[f64], length: f64) -> Phase {
     Phase { mean: (s.atan2(c) / TAU * length).rem_euclid(length), spread, n: values.len() }
 }
 
-/// Rising edges of a reference channel, in samples: where it passes the middle of its range, with a quarter of the range as hysteresis.
-///
-/// # Errors
-/// Where there are fewer than two.
-pub fn edges(reference: &[f64]) -> Result<Vec<f64>> {
-    let (low, high) =
-        reference.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
-    let (middle, arm) = (f64::midpoint(low, high), 0.125 * (high - low));
-    let mut edges = Vec::new();
-    let (mut armed, mut crossing) = (false, None);
-    for (i, pair) in reference.windows(2).enumerate() {
-        if pair[0] < middle - arm {
-            armed = true;
-        }
-        if armed && pair[0] < middle && pair[1] >= middle {
-            crossing = Some(i as f64 + (middle - pair[0]) / (pair[1] - pair[0]));
-        }
-        if armed && pair[1] > middle + arm {
-            edges.extend(crossing.take());
-            armed = false;
-        }
-    }
-    if edges.len() < 2 {
-        return Err(Error::refused(format!(
-            "the reference channel has {} rising edge{}: a cycle needs two",
-            edges.len(),
-            if edges.len() == 1 { "" } else { "s" }
-        ))
-        .hint("choose another --reference, or give --excitation in Hz"));
-    }
-    Ok(edges)
+/// Cycles of the excitation as a reference channel shows them.
+pub struct Reference {
+    /// Cycle that each rising edge begins, and its place in samples; at least two.
+    edges: Vec<(usize, f64)>,
+    /// Edges that are not there.
+    pub missing: usize,
+    /// Edges that should not be there; they are passed over.
+    pub extra: usize,
 }
 
-/// Position `t` counted in cycles between `edges`; beyond the first and last by the mean cycle.
-pub fn counted(t: f64, edges: &[f64]) -> f64 {
-    let after = edges.partition_point(|e| *e <= t);
-    match (after.checked_sub(1).and_then(|i| edges.get(i)), edges.get(after)) {
-        (Some(a), Some(b)) => (after - 1) as f64 + (t - a) / (b - a),
-        (None, Some(first)) => (t - first) / mean_cycle(edges),
-        (Some(last), None) => (edges.len() - 1) as f64 + (t - last) / mean_cycle(edges),
-        (None, None) => f64::NAN,
+impl Reference {
+    /// Rising edges of a channel, numbered in cycles.
+    ///
+    /// # Errors
+    /// Where there are fewer than two, or where they pause, so that cycles cannot be counted.
+    pub fn new(channel: &[f64]) -> Result<Reference> {
+        let mut survey = Survey::default();
+        survey.push(channel);
+        let hint = "choose another --reference, or give --excitation in Hz";
+        let Some((low, high)) = survey.levels() else {
+            return Err(
+                Error::refused("the reference channel has one level only: it shows no cycle").hint(hint)
+            );
+        };
+        let mut edges = Edges::new(low, high, Edge::Rising);
+        edges.push(channel);
+        let Numbered { mut runs, missing, extra, pauses } = Numbered::new(&edges.finish().edges);
+        let edges = runs.pop().unwrap_or_default();
+        if pauses > 0 {
+            return Err(Error::refused(format!(
+                "the reference channel has {pauses} stretch{} in which more than three edges are missing: cycles cannot be counted across",
+                if pauses == 1 { "" } else { "es" }
+            ))
+            .hint(hint));
+        }
+        if edges.len() < 2 {
+            return Err(Error::refused(format!(
+                "the reference channel has {} rising edge{}: a cycle needs two",
+                edges.len(),
+                if edges.len() == 1 { "" } else { "s" }
+            ))
+            .hint(hint));
+        }
+        Ok(Reference { edges, missing, extra })
     }
-}
 
-/// Mean distance of edges.
-pub fn mean_cycle(edges: &[f64]) -> f64 {
-    match edges {
-        [first, .., last] => (last - first) / (edges.len() - 1) as f64,
-        _ => f64::NAN,
+    /// Position `t` in samples, counted in cycles; beyond the first and last edge by the mean cycle.
+    pub fn counted(&self, t: f64) -> f64 {
+        let after = self.edges.partition_point(|e| e.1 <= t);
+        let before = after.checked_sub(1).and_then(|i| self.edges.get(i));
+        match (before, self.edges.get(after)) {
+            (Some(a), Some(b)) => a.0 as f64 + (b.0 - a.0) as f64 * (t - a.1) / (b.1 - a.1),
+            (Some(e), None) | (None, Some(e)) => e.0 as f64 + (t - e.1) / self.mean_cycle(),
+            (None, None) => f64::NAN,
+        }
+    }
+
+    /// Mean length of a cycle in samples.
+    pub fn mean_cycle(&self) -> f64 {
+        match self.edges.as_slice() {
+            [first, .., last] => (last.1 - first.1) / (last.0 - first.0) as f64,
+            _ => f64::NAN,
+        }
     }
 }
 
@@ -151,8 +198,9 @@ mod tests {
     fn a_pattern_of_two_impacts_in_three_cycles() {
         let cycles: Vec<f64> =
             (0..40).map(|k| f64::from(k / 2) * 3.0 + if k % 2 == 0 { 0.3 } else { 1.9 }).collect();
-        let found = per_cycle(&cycles, 2.0 / 3.0, 1e-3).unwrap();
-        assert_eq!(found, PerCycle { impacts: 2, cycles: 3 });
+        let index: Vec<usize> = (0..40).collect();
+        let found = PerCycle { impacts: 2, cycles: 3 };
+        assert_eq!(locking(&cycles, &index, 1e-4), Locking::Locked(found));
         let places = phases(&cycles, found);
         assert_eq!(places.len(), 2);
         // Means of equal numbers, a few roundings.
@@ -164,7 +212,7 @@ mod tests {
     fn impacts_that_repeat_nothing_are_irregular() {
         // Golden-ratio steps never repeat within eight impacts, at a rate of one a cycle.
         let cycles: Vec<f64> = (0..60).map(|k| f64::from(k) + 0.8 * (f64::from(k) * 0.618).fract()).collect();
-        assert_eq!(per_cycle(&cycles, 1.0, 0.0), None);
+        assert_eq!(locking(&cycles, &(0..60).collect::<Vec<_>>(), 0.0), Locking::Irregular);
     }
 
     #[test]
@@ -172,11 +220,53 @@ mod tests {
         let sine: Vec<f64> = (0..1000)
             .map(|i| (TAU * f64::from(i) / 100.0 - 1.0).sin() + 0.05 * (f64::from(i) * 2.7).sin())
             .collect();
-        let found = edges(&sine).unwrap();
-        assert_eq!(found.len(), 10);
+        let found = Reference::new(&sine).unwrap();
+        assert_eq!((found.edges.len(), found.missing, found.extra), (10, 0, 0));
         // The ripple moves a crossing of slope 0.063 a sample by 0.05/0.063 = 0.8 samples at most; ten of them 1.6/9.
-        assert!((mean_cycle(&found) - 100.0).abs() < 0.18, "{found:?}");
-        assert!((counted(found[3] + 50.0, &found) - 3.5).abs() < 0.02);
-        assert!(edges(&[0.0; 9]).is_err());
+        assert!((found.mean_cycle() - 100.0).abs() < 0.18, "{:?}", found.edges);
+        assert!((found.counted(found.edges[3].1 + 50.0) - 3.5).abs() < 0.02);
+        assert!(Reference::new(&[0.0; 9]).is_err());
+    }
+
+    #[test]
+    fn a_lost_pulse_and_a_glitch_leave_the_cycles_as_they_are() {
+        let mut pulses: Vec<f64> = (0..15_000).map(|i| if i % 100 < 20 { 1.0 } else { 0.0 }).collect();
+        pulses[5_000..5_020].fill(0.0);
+        pulses[7_350] = 9.0;
+        let found = Reference::new(&pulses).unwrap();
+        assert_eq!((found.missing, found.extra), (1, 1));
+        // All edges are between samples 99 and 100: equal but for roundings of the bisection (1e-6 of a sample).
+        assert!((found.mean_cycle() - 100.0).abs() < 1e-5, "{}", found.mean_cycle());
+        // The record begins high, so the first edge is at 99.5.
+        assert!((found.counted(12_049.5) - 119.5).abs() < 1e-5, "{}", found.counted(12_049.5));
+        pulses[5_000..6_000].fill(0.0);
+        let why = Reference::new(&pulses).err().map(|e| e.to_string()).unwrap_or_default();
+        assert!(why.contains("cannot be counted"), "{why}");
+    }
+
+    #[test]
+    fn a_train_that_slips_through_all_phases_is_not_locked() {
+        let index: Vec<usize> = (0..150).collect();
+        let one = PerCycle { impacts: 1, cycles: 1 };
+        for frequency in [14.75, 14.85, 15.15] {
+            let cycles: Vec<f64> = (0..150).map(|k| 0.2 + 15.0 / frequency * f64::from(k)).collect();
+            for std in [1e-6, of_digits(15.0) / 15.0] {
+                let Locking::Drifting(near, slip) = locking(&cycles, &index, std) else {
+                    panic!("{frequency} Hz is not seen to drift")
+                };
+                assert_eq!(near, one);
+                assert!((15.0 * slip - (frequency - 15.0)).abs() < 1e-9, "{slip}");
+            }
+        }
+        // A slip of 0.1 cycle in all is within a tenth of a cycle, but not within 1e-6 of the rate.
+        let slow: Vec<f64> = (0..150).map(|k| 1.0007 * f64::from(k)).collect();
+        assert!(matches!(locking(&slow, &index, 1e-6), Locking::Drifting(..)));
+        assert_eq!(locking(&slow, &index, 1e-3), Locking::Locked(one));
+    }
+
+    #[test]
+    fn typed_numbers_are_as_sure_as_their_digits() {
+        // Half a unit of the last digit over √3.
+        assert!((of_digits(15.0) - 0.288_675).abs() < 1e-6 && (of_digits(11.25) - 0.002_886_75).abs() < 1e-8);
     }
 }

@@ -1,6 +1,7 @@
 //! Mains hum: a sine of 50 or 60 Hz with its harmonics, fitted to what lies between the impacts and taken away.
 
 use super::burst::{background, median};
+use super::ringing::bursts;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -29,7 +30,10 @@ const WORTH: f64 = 0.8;
 ///
 /// Each piece of at least five cycles is fitted by least squares with bisquare weights (Beaton and Tukey 1974), so impacts do not
 /// count; nothing is taken where that does not lower the noise between impacts by a fifth.
-pub fn remove(values: &mut [f64], rate: f64) -> Option<Hum> {
+///
+/// Nothing is taken, and that is said in `warnings`, where what is left comes as often as the hum or every second time: a sine with its
+/// harmonics fits such a train as well, so that the two cannot be told apart.
+pub fn remove(values: &mut [f64], rate: f64, warnings: &mut Vec<String>) -> Option<Hum> {
     let piece = (PIECE * rate).min(values.len() as f64) as usize;
     if (piece as f64) < 0.1 * rate || piece < 32 {
         return None;
@@ -53,13 +57,34 @@ pub fn remove(values: &mut [f64], rate: f64) -> Option<Hum> {
     if hums.is_empty() {
         return None;
     }
-    values.copy_from_slice(&cleaned);
     let mean = |f: &dyn Fn(&Hum) -> f64| hums.iter().map(f).sum::<f64>() / hums.len() as f64;
+    let frequency = mean(&|h| h.frequency);
+    if let Some(left) = left(&cleaned, rate).filter(|left| alike(*left, frequency)) {
+        warnings.push(format!(
+            "What comes at {frequency:.2} Hz may be mains hum, but the impacts come about as often ({left:.1} Hz), or half as often: the two cannot be told apart, and nothing was taken away."
+        ));
+        return None;
+    }
+    values.copy_from_slice(&cleaned);
     Some(Hum {
-        frequency: mean(&|h| h.frequency),
+        frequency,
         amplitude: mean(&|h| h.amplitude),
         harmonics: hums.iter().map(|h| h.harmonics).max().unwrap_or(1),
     })
+}
+
+/// Bursts a second that stand out of what is left, from the median of their distances.
+fn left(cleaned: &[f64], rate: f64) -> Option<f64> {
+    let found = background(cleaned);
+    let centred: Vec<f64> = cleaned.iter().map(|v| v - found.level).collect();
+    let starts: Vec<f64> = bursts(&centred, found.reach, None).each.iter().map(|b| b.start as f64).collect();
+    let steps: Vec<f64> = starts.windows(2).map(|w| w[1] - w[0]).collect();
+    (steps.len() > 1).then(|| rate / median(&steps))
+}
+
+/// Whether a train of `left` a second has lines where the hum has its own.
+fn alike(left: f64, hum: f64) -> bool {
+    left > 0.9 * hum || (left / hum - 0.5).abs() < 0.01
 }
 
 /// The sine that lowers the noise most, and its samples without the offset.
@@ -172,7 +197,7 @@ mod tests {
             1.5 * (x + 0.4).sin() + 0.3 * (3.0 * x).cos()
         };
         let mut values: Vec<f64> = clean.iter().enumerate().map(|(i, v)| v + hum(i)).collect();
-        let found = remove(&mut values, rate).unwrap();
+        let found = remove(&mut values, rate, &mut Vec::new()).unwrap();
         // A sine of amplitude A in N samples of noise σ: u(f) = √6 σ/(π A T √N) = 2e-5 Hz, u(A) = σ√(2/N) = 2.2e-4.
         // Bisquare weights cost 5 %, impacts in the tails of the weights more: five times as much.
         assert!((found.frequency - 50.07).abs() < 1e-4, "{found:?}");
@@ -188,7 +213,20 @@ mod tests {
         let values: Vec<f64> =
             (0..4000).map(|i| 0.01 * noise.normal() + if i % 125 < 4 { 1.0 } else { 0.0 }).collect();
         let mut after = values.clone();
-        assert_eq!(remove(&mut after, 1000.0), None);
+        assert_eq!(remove(&mut after, 1000.0, &mut Vec::new()), None);
         assert_eq!(values, after);
+    }
+
+    #[test]
+    fn a_train_at_the_frequency_of_the_mains_is_no_hum() {
+        // Decaying pulses of 20 ms, one every 20 ms: there is no quiet background.
+        let rate = 5000.0;
+        let mut noise = Noise::new(6);
+        let values: Vec<f64> =
+            (0..10_000).map(|i| 0.01 * noise.normal() + (-f64::from(i % 100) / 20.0).exp()).collect();
+        let (mut after, mut warnings) = (values.clone(), Vec::new());
+        assert_eq!(remove(&mut after, rate, &mut warnings), None);
+        assert_eq!(values, after);
+        assert!(warnings.iter().any(|w| w.contains("cannot be told apart")), "{warnings:?}");
     }
 }

@@ -144,8 +144,8 @@ impl Samples {
         whiteness.inflation * student(fitted.fit.degrees_of_freedom())
     }
 
-    /// Whether the residuals around the onset have more than twice the variance of the others, and more than chance gives: the variance
-    /// of n samples of noise scatters by √(2/n).
+    /// Whether the residuals around the onset have more than twice the variance of the others, and more than chance gives: the
+    /// variance of n samples of noise scatters by √(2/n).
     fn misses_onset(&self, fitted: &Fitted) -> bool {
         let onset = fitted.fit.parameters[0];
         let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);

@@ -1,9 +1,10 @@
 //! Restitution from a drop: R = (Δt/2)√(g/2h), the flight between first and second impact against the fall before.
 
-use super::{Measured, Train, Way, above_zero, not_negative};
+use super::{Measured, Shares, Train, Way, above_zero, not_negative};
 use crate::error::{Error, Result};
 use crate::measure::Estimate;
 use crate::measure::impacts::{Impacts, ImpactsOptions, impacts};
+use crate::measure::residuals::student;
 use crate::record::Trace;
 
 /// Standard acceleration of free fall in m/s² (CGPM 1901).
@@ -71,6 +72,8 @@ impl Drop {
     }
 
     /// `(u_R/R)² = (u_Δt/Δt)² + (u_h/2h)² + (u_g/2g)²`; the interval's part is the scatter of several drops where that is larger than what is stated.
+    /// The scatter of n drops has n − 1 degrees of freedom: its standard uncertainty is that of Student's distribution, which up to n = 3 has
+    /// none.
     pub(super) fn answer(&self, warnings: &mut Vec<String>) -> Result<Way> {
         self.check()?;
         let n = self.intervals.len();
@@ -78,9 +81,9 @@ impl Drop {
             return Err(Error::usage("a height without an interval", "--interval S, or records of drops"));
         }
         let mean = self.intervals.iter().sum::<f64>() / n as f64;
-        let scatter = (n > 1).then(|| {
+        let scatter = (n > 3).then(|| {
             let s2 = self.intervals.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / (n - 1) as f64;
-            (s2 / n as f64).sqrt()
+            student(n - 1) * (s2 / n as f64).sqrt()
         });
         let stated = self.interval_std.map(|s| s / (n as f64).sqrt());
         let timing = match (scatter, stated) {
@@ -88,16 +91,27 @@ impl Drop {
             (a, b) => a.or(b),
         };
         let value = self.restitution(mean);
-        let known = self.height_std.is_some() || timing.is_some();
+        // That of the height is no substitute for a scatter that two or three drops do not show.
+        let known = timing.is_some() || n == 1 && self.height_std.is_some();
         let part = |u: Option<f64>, x: f64| u.map_or(0.0, |u| (u / x).powi(2));
         let variance = part(timing, mean)
             + part(self.height_std, 2.0 * self.height)
             + part(self.gravity_std, 2.0 * self.gravity);
-        let left_out: Vec<&str> = [("the interval", timing), ("the height", self.height_std)]
-            .iter()
-            .filter(|(_, u)| u.is_none())
-            .map(|(name, _)| *name)
-            .collect();
+        let left_out: Vec<&str> = [
+            ("the interval", timing),
+            ("the height", self.height_std),
+            ("the acceleration of free fall g", self.gravity_std),
+        ]
+        .iter()
+        .filter(|(_, u)| u.is_none())
+        .map(|(name, _)| *name)
+        .collect();
+        if !known && n > 1 {
+            warnings.push(format!(
+                "The scatter of {n} drops has {} of freedom, too few for a standard uncertainty: four drops have one, or state that of an interval.",
+                if n == 2 { "one degree" } else { "two degrees" }
+            ));
+        }
         if known && !left_out.is_empty() {
             warnings.push(format!(
                 "The uncertainty leaves out that of {}, which is not known.",
@@ -108,15 +122,37 @@ impl Drop {
         let method = match (n, scattered) {
             (1, _) => "(Δt/2)√(g/2h) of one drop; uncertainty by propagation".to_owned(),
             (_, true) => format!(
-                "(Δt/2)√(g/2h) of the mean of {n} drops; uncertainty from their scatter and by propagation"
+                "(Δt/2)√(g/2h) of the mean of {n} drops; uncertainty from their scatter (Student, {} degrees of freedom) and by propagation",
+                n - 1
             ),
             (_, false) => format!("(Δt/2)√(g/2h) of the mean of {n} drops; uncertainty by propagation"),
         };
         self.notes(value, warnings)?;
         Ok(Way {
             method: "drop",
-            restitution: Estimate::new(value, known.then(|| value * variance.sqrt()), "", n, method),
+            restitution: Estimate::new(value, known.then(|| value * variance.sqrt()), "1", n, method),
+            shares: Shares::Flights,
         })
+    }
+
+    /// Standard deviation of R over drawings of as many drops with replacement; `None` for fewer than five.
+    pub(super) fn bootstrap(&self) -> Option<f64> {
+        const DRAWINGS: usize = 2000;
+        let n = self.intervals.len();
+        if n < 5 {
+            return None;
+        }
+        // Knuth's generator for MMIX, whose upper bits are the better ones.
+        let mut state = 1979u64;
+        let mut draw = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            self.intervals.get((state >> 33) as usize % n).copied().unwrap_or(f64::NAN)
+        };
+        let values: Vec<f64> =
+            (0..DRAWINGS).map(|_| self.restitution((0..n).map(|_| draw()).sum::<f64>() / n as f64)).collect();
+        let mean = values.iter().sum::<f64>() / DRAWINGS as f64;
+        let sum: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
+        Some((sum / (DRAWINGS - 1) as f64).sqrt())
     }
 
     /// What biases a drop, with its size where that follows from what is known.

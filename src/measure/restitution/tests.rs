@@ -120,7 +120,10 @@ fn velocities_of_both_masses_and_by_momentum() {
     };
     let found = of(&Measured { velocities: Some(all.clone()), ..Measured::default() });
     assert_eq!(found.by.len(), 3);
-    assert!(found.agree && found.by.iter().all(|w| (w.restitution.value - r).abs() < 1e-14), "{found:?}");
+    assert!(
+        found.agree == Some(true) && found.by.iter().all(|w| (w.restitution.value - r).abs() < 1e-14),
+        "{found:?}"
+    );
     // Derivatives by differences for the method by momentum of mass 1.
     let alone = |v1: f64, v2: f64, w: f64| {
         let some = Velocities { before: (v1, v2), after1: Some(w), after2: None, ..all.clone() };
@@ -146,7 +149,60 @@ fn methods_that_disagree_are_not_averaged() {
     let d = Drop { height_std: Some(0.001), interval_std: Some(0.001), ..drop(0.57, 0.144) };
     let train = Train { intervals: vec![0.144, 0.072, 0.036], onset_std: Some(1e-4), after: Some(0.005) };
     let found = of(&Measured { drop: Some(d), trains: vec![train], ..Measured::default() });
-    assert!(!found.agree && found.restitution.value.is_nan() && found.by.len() == 2, "{found:?}");
+    assert!(
+        found.agree == Some(false) && found.restitution.value.is_nan() && found.by.len() == 2,
+        "{found:?}"
+    );
     assert!(found.warnings.iter().any(|w| w.contains("disagree")), "{:?}", found.warnings);
     assert!(found.warnings.iter().any(|w| w.contains("last bounces")), "{:?}", found.warnings);
+}
+
+#[test]
+fn methods_by_velocity_are_compared_with_what_they_share() {
+    // As above, with mass 2 off by δ: only the balance of momentum tests that, with u = σ√(2(m₁² + m₂²)) against m₂δ.
+    let (m1, m2, u) = (0.2f64, 0.5f64, 0.01);
+    let off = |deviates: f64| {
+        let delta = deviates * u * (2.0 * (m1 * m1 + m2 * m2)).sqrt() / m2;
+        let all = Velocities {
+            before: (3.0, 0.0),
+            after1: Some(0.0),
+            after2: Some(1.2 + delta),
+            masses: Some((m1, m2)),
+            std: Some(u),
+        };
+        of(&Measured { velocities: Some(all), ..Measured::default() })
+    };
+    // Three pairs, each at 1 − 0.05/3: 2.394.
+    assert_eq!(off(2.3).agree, Some(true));
+    assert_eq!(off(2.5).agree, Some(false));
+    assert!(off(0.0).by.iter().all(|w| w.restitution.unit == "1"));
+}
+
+#[test]
+fn what_cannot_be_compared_is_left_open() {
+    let train = Train { intervals: vec![0.144, 0.03], ..Train::default() };
+    let d = Drop { interval_std: Some(0.001), ..drop(0.57, 0.144) };
+    let found = of(&Measured { drop: Some(d), trains: vec![train], ..Measured::default() });
+    assert!(found.agree.is_none() && found.restitution.value.is_finite(), "{found:?}");
+    assert!(found.warnings.iter().any(|w| w.contains("free fall g")), "{:?}", found.warnings);
+}
+
+#[test]
+fn few_drops_have_no_uncertainty_and_five_a_bootstrap() {
+    let drops = |intervals: &[f64]| {
+        let d =
+            Drop { height: 0.57, height_std: Some(1e-3), intervals: intervals.to_vec(), ..Drop::default() };
+        of(&Measured { drop: Some(d), ..Measured::default() })
+    };
+    let all = [0.140, 0.142, 0.144, 0.146, 0.148];
+    for n in 2..=3 {
+        let found = drops(&all[..n]);
+        assert!(found.restitution.std.is_none() && found.bootstrap_std.is_none(), "{found:?}");
+        assert!(found.warnings.iter().any(|w| w.contains("too few")), "{:?}", found.warnings);
+    }
+    assert!(drops(&all[..4]).restitution.std.is_some());
+    let found = drops(&all);
+    // Variance of the drawn mean: Σd²/n² = 40e-6/25; 2000 drawings scatter by 1/√4000 = 1.6 %, four times that.
+    let expected = (40e-6f64 / 25.0).sqrt() / 0.144 * found.restitution.value;
+    assert!((found.bootstrap_std.unwrap() / expected - 1.0).abs() < 0.064, "{found:?}");
 }

@@ -5,9 +5,10 @@
 //! the covariance `s²·(b − a) + σ²AAᵀ` with A the derivative of y by the onsets; ln R follows by generalised least squares, the restricted likelihood
 //! (Patterson and Thompson 1971) says what of both is at work. For s = 0 that is the weighted straight line through `(n, ln Δt_n)`.
 
-use super::{Way, above_zero, not_negative};
+use super::{Shares, Way, above_zero, not_negative};
 use crate::error::{Error, Result};
 use crate::measure::Estimate;
+use crate::measure::residuals::student;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
@@ -104,7 +105,10 @@ pub(super) fn answer(
     }
     let std = Some(value * fit.std).filter(|s| s.is_finite());
     let method = match std {
-        None => "ratio of two flight times".to_owned(),
+        None if flights.len() == 2 => "ratio of two flight times".to_owned(),
+        None => {
+            format!("log-linear fit of {} flight times, too few for a standard uncertainty", flights.len())
+        }
         Some(_) => format!(
             "log-linear fit of {} flight times: ln R scatters by {:.1e} from bounce to bounce, onsets by {:.1e} s",
             flights.len(),
@@ -117,7 +121,8 @@ pub(super) fn answer(
     warnings.push("Flight times need neither height nor g; they assume that each impact is short beside its flight and that R is the same at every speed. Drag of the air makes R too low.".to_owned());
     Ok(Some(Way {
         method: "flight times",
-        restitution: Estimate::new(value, std, "", flights.len(), method),
+        restitution: Estimate::new(value, std, "1", flights.len(), method),
+        shares: Shares::Flights,
     }))
 }
 
@@ -210,7 +215,10 @@ fn fit(flights: &[Flight], trains: &[Train]) -> Option<Fitted> {
             return ratios.gls(1.0, 0.0, false).map(|f| Fitted { std: f64::NAN, ..f });
         }
         let (scatter, onsets) = (ratios.gls(1.0, 0.0, true)?, ratios.gls(0.0, unit.recip(), true)?);
-        return Some(if onsets.likelihood > scatter.likelihood + SCATTER { onsets } else { scatter });
+        let best = if onsets.likelihood > scatter.likelihood + SCATTER { onsets } else { scatter };
+        // The residuals give the scale: Student's distribution, which has no variance up to two degrees of freedom.
+        let factor = if free > 2 { student(free) } else { f64::NAN };
+        return Some(Fitted { std: factor * best.std, ..best });
     };
     let sigma2 = stated.iter().map(|s| s * s).sum::<f64>() / stated.len() as f64;
     let alone = ratios.gls(0.0, sigma2, false)?;

@@ -1,6 +1,6 @@
 //! Restitution from velocities before and after: R = (v₂⁺ − v₁⁺)/(v₁⁻ − v₂⁻), with the momentum balance where masses are known.
 
-use super::{Way, above_zero, not_negative};
+use super::{Shares, Way, above_zero, not_negative};
 use crate::error::{Error, Result};
 use crate::measure::Estimate;
 
@@ -42,12 +42,12 @@ impl Velocities {
             }
             None => None,
         };
-        // R = s/(v₁ − v₂) with s = a·v₁⁺ + b·v₂⁺ + c·(v₁ or v₂): gradient by v₁, v₂ and what was measured after.
-        let way = |method: &'static str, separation: f64, by_before: (f64, f64), by_after: f64, how: &str| {
-            let r = separation / approach;
-            let variance = ((by_before.0 - r) / approach).powi(2)
-                + ((by_before.1 + r) / approach).powi(2)
-                + by_after / approach.powi(2);
+        // R = s/(v₁ − v₂) with s linear in v₁, v₂, v₁⁺, v₂⁺, whose coefficients are given.
+        let way = |method: &'static str, by: [f64; 4], how: &str| {
+            let known = [v1, v2, self.after1.unwrap_or(0.0), self.after2.unwrap_or(0.0)];
+            let r = by.iter().zip(known).map(|(b, v)| b * v).sum::<f64>() / approach;
+            let slopes = [by[0] - r, by[1] + r, by[2], by[3]].map(|d| d / approach);
+            let factor = slopes.iter().map(|d| d * d).sum::<f64>().sqrt();
             if !(0.0..=1.0).contains(&r) {
                 return Err(Error::refused(format!("velocities give R = {r:.4} ({how}): outside 0 to 1"))
                     .hint("are all velocities counted in one direction, and the masses in the order of the velocities?"));
@@ -55,12 +55,13 @@ impl Velocities {
             let n = if self.after1.is_some() && self.after2.is_some() { 4 } else { 3 };
             Ok(Way {
                 method,
-                restitution: Estimate::new(r, self.std.map(|u| u * variance.sqrt()), "", n, how),
+                restitution: Estimate::new(r, self.std.map(|u| u * factor), "1", n, how),
+                shares: Shares::Velocities(slopes.map(|d| d * self.std.unwrap_or(f64::NAN))),
             })
         };
         let mut ways = Vec::new();
         if let (Some(w1), Some(w2)) = (self.after1, self.after2) {
-            ways.push(way("velocities of both masses", w2 - w1, (0.0, 0.0), 2.0, "(v₂⁺ − v₁⁺)/(v₁⁻ − v₂⁻)")?);
+            ways.push(way("velocities of both masses", [0.0, 0.0, -1.0, 1.0], "(v₂⁺ − v₁⁺)/(v₁⁻ − v₂⁻)")?);
             if let Some((m1, m2)) = self.masses {
                 let lost = m1 * (v1 - w1) + m2 * (v2 - w2);
                 let u = self.std.map_or(f64::NAN, |u| u * (2.0 * (m1 * m1 + m2 * m2)).sqrt());
@@ -69,23 +70,19 @@ impl Velocities {
                 }
             }
         }
-        if let (Some(w1), Some(q)) = (self.after1, ratio) {
+        if let (Some(_), Some(q)) = (self.after1, ratio) {
             // v₂⁺ = v₂ + q(v₁ − v₁⁺).
             ways.push(way(
                 "velocity of mass 1 and momentum",
-                v2 + q * (v1 - w1) - w1,
-                (q, 1.0),
-                (1.0 + q).powi(2),
+                [q, 1.0, -1.0 - q, 0.0],
                 "v₂⁺ from the momentum balance",
             )?);
         }
-        if let (Some(w2), Some(q)) = (self.after2, ratio) {
+        if let (Some(_), Some(q)) = (self.after2, ratio) {
             // v₁⁺ = v₁ + (v₂ − v₂⁺)/q.
             ways.push(way(
                 "velocity of mass 2 and momentum",
-                w2 - v1 - (v2 - w2) / q,
-                (-1.0, -1.0 / q),
-                (1.0 + 1.0 / q).powi(2),
+                [-1.0, -1.0 / q, 0.0, 1.0 + 1.0 / q],
                 "v₁⁺ from the momentum balance",
             )?);
         }
@@ -94,9 +91,6 @@ impl Velocities {
                 "velocities of one mass without masses",
                 "both velocities after the impact, or --masses M1,M2",
             ));
-        }
-        if ways.len() > 1 {
-            warnings.push("The methods by velocity share what they start from: they agree more closely than independent ones would.".to_owned());
         }
         Ok(ways)
     }

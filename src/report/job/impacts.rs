@@ -1,7 +1,7 @@
 //! Impacts and drops of a campaign.
 
 use super::{JobOptions, file_name, merge, or_left_out};
-use crate::campaign::{Campaign, RecordEntry};
+use crate::campaign::{Campaign, DropEntry, RecordEntry};
 use crate::error::Result;
 use crate::measure::impacts::{Impacts, ImpactsOptions, impacts as find};
 use crate::measure::restitution::{Bounces, Drop, GRAVITY, Restitution, restitution};
@@ -80,6 +80,21 @@ pub(super) fn impacts(
     Ok(results)
 }
 
+/// The first key of which two drops of one series have different values.
+fn differing(a: &DropEntry, b: &DropEntry) -> Option<&'static str> {
+    let keys = |e: &DropEntry| {
+        [
+            ("height", e.height),
+            ("height_std", e.height_std),
+            ("gravity", e.gravity),
+            ("gravity_std", e.gravity_std),
+            ("threshold", e.threshold),
+            ("refractory", e.refractory),
+        ]
+    };
+    keys(a).iter().zip(keys(b)).find(|(a, b)| a.1 != b.1).map(|(a, _)| a.0)
+}
+
 /// Entries of one name are drops of one series.
 pub(super) fn drops(
     campaign: &Campaign,
@@ -87,30 +102,37 @@ pub(super) fn drops(
     figures: &mut Vec<(String, Figure)>,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<DropResult>> {
-    let mut series: Vec<(String, Vec<String>, Drop, bool, Bounces)> = Vec::new();
+    let mut series: Vec<(&DropEntry, String, Vec<String>, Drop, Bounces)> = Vec::new();
     for (i, entry) in campaign.drop.iter().enumerate() {
+        let of = |e: &DropEntry| e.record().name;
+        // Files without a name are no series, even where one folder has the same file name as another.
+        let place = series.iter().position(|s| of(entry).is_some() && of(s.0) == of(entry));
+        if let Some((first, name, ..)) = place.and_then(|p| series.get(p))
+            && let Some(key) = differing(first, entry)
+        {
+            let found = format!("this drop of {name:?} has another {key} than the first of that name");
+            return Err(campaign
+                .at(entry.record().file.span(), found)
+                .hint("drops of one series have equal keys: give this one another name, or the same value"));
+        }
         let (name, file, _, trace) = read(campaign, &entry.record(), options, warnings)?;
         let how = ImpactsOptions {
             threshold: entry.threshold.unwrap_or(Bounces::THRESHOLD),
             refractory: entry.refractory,
             ..ImpactsOptions::default()
         };
-        let drop = Drop {
-            height: entry.height.unwrap_or(f64::NAN),
-            height_std: entry.height_std,
-            gravity: entry.gravity.unwrap_or(GRAVITY),
-            gravity_std: entry.gravity_std,
-            ..Drop::default()
-        };
-        let same = |s: &&mut (String, Vec<String>, Drop, bool, Bounces)| {
-            s.0 == name
-                && s.2.gravity == drop.gravity
-                && (s.2.height == drop.height || entry.height.is_none() && !s.3)
-        };
-        if series.iter_mut().find(same).is_none() {
-            series.push((name.clone(), Vec::new(), drop.clone(), entry.height.is_some(), Bounces::default()));
-        }
-        if let Some((_, files, _, _, bounces)) = series.iter_mut().find(same) {
+        let place = place.unwrap_or_else(|| {
+            let drop = Drop {
+                height: entry.height.unwrap_or(f64::NAN),
+                height_std: entry.height_std,
+                gravity: entry.gravity.unwrap_or(GRAVITY),
+                gravity_std: entry.gravity_std,
+                ..Drop::default()
+            };
+            series.push((entry, name.clone(), Vec::new(), drop, Bounces::default()));
+            series.len() - 1
+        });
+        if let Some((_, _, files, _, bounces)) = series.get_mut(place) {
             let Some(found) = or_left_out(bounces.add(&trace, &how), &file, warnings)? else { continue };
             merge(warnings, &file, &found.warnings);
             files.push(file);
@@ -118,8 +140,8 @@ pub(super) fn drops(
         }
     }
     let mut results = Vec::new();
-    for (name, files, drop, fell, bounces) in series.into_iter().filter(|s| !s.1.is_empty()) {
-        let found = restitution(&bounces.measured(drop, fell));
+    for (entry, name, files, drop, bounces) in series.into_iter().filter(|s| !s.2.is_empty()) {
+        let found = restitution(&bounces.measured(drop, entry.height.is_some()));
         let Some(found) = or_left_out(found, &name, warnings)? else { continue };
         merge(warnings, &name, &found.warnings);
         results.push(DropResult { name, files, restitution: found });

@@ -67,7 +67,7 @@ pub fn restitution(all: &[(String, &Restitution)]) -> Table {
                 Cell::from(way.restitution.method.as_str()),
             ]);
         }
-        if !found.agree {
+        if found.agree == Some(false) {
             table.push([
                 Cell::from(name.as_str()),
                 Cell::from("together"),
