@@ -3,7 +3,7 @@
 use super::faults::{FaultCount, Faults, State};
 use super::survey::median;
 use super::turns::Turn;
-use super::{Average, DrillOptions, Jumps, Motion, Running, Smoothing, Survey, floor};
+use super::{Average, DrillOptions, Jumps, Motion, Smoothing, Survey, floor};
 use crate::error::Result;
 use crate::signal::filter::Filter;
 use crate::signal::welch::Stream;
@@ -33,7 +33,6 @@ pub(super) struct Pass<'a> {
     pub averaged: usize,
     /// Turns with a part of the velocity lost, or too long.
     pub left_out: usize,
-    pub speed: Running,
     pub count: FaultCount,
 }
 
@@ -68,7 +67,6 @@ impl<'a> Pass<'a> {
             spectrum: spectrum.then(floor::averages),
             averaged: 0,
             left_out: 0,
-            speed: Running::default(),
             count: FaultCount::default(),
         })
     }
@@ -150,7 +148,6 @@ impl<'a> Pass<'a> {
         let values = smooth.as_deref().unwrap_or(values);
         self.average.push(values, states, start, end);
         self.motion.push(values, states, start, end, self.rate);
-        self.speed.push(self.rate / (end - start));
         self.averaged += 1;
         Ok(())
     }
