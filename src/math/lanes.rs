@@ -15,32 +15,35 @@ pub fn sum(values: &[f64]) -> f64 {
     lanes.iter().sum::<f64>() + rest.iter().sum::<f64>()
 }
 
-/// Smallest and largest value, missing ones (NaN) left out: ∞ and −∞ where there are none.
-pub fn range(values: &[f64]) -> (f64, f64) {
+/// What one pass over values shows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Survey {
+    /// Smallest value, missing ones (NaN) left out; ∞ where there is none.
+    pub low: f64,
+    /// Largest value; −∞ where there is none.
+    pub high: f64,
+    /// Whether every value is a number: neither missing nor infinite.
+    pub finite: bool,
+}
+
+/// Looks at all values once.
+pub fn survey(values: &[f64]) -> Survey {
     let (chunks, rest) = values.as_chunks::<LANES>();
     let (mut low, mut high) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+    let mut lanes = [0.0; LANES];
     for chunk in chunks {
         for (i, v) in chunk.iter().enumerate() {
             low[i] = if *v < low[i] { *v } else { low[i] };
             high[i] = if *v > high[i] { *v } else { high[i] };
-        }
-    }
-    let low = low.iter().chain(rest).copied().fold(f64::INFINITY, f64::min);
-    let high = high.iter().chain(rest).copied().fold(f64::NEG_INFINITY, f64::max);
-    (low, high)
-}
-
-/// Whether every value is a number: neither missing nor infinite.
-pub fn all_finite(values: &[f64]) -> bool {
-    let (chunks, rest) = values.as_chunks::<LANES>();
-    let mut lanes = [0.0; LANES];
-    for chunk in chunks {
-        for (lane, v) in lanes.iter_mut().zip(chunk) {
             // 0 for a number, NaN for anything else.
-            *lane += v * 0.0;
+            lanes[i] += v * 0.0;
         }
     }
-    lanes.iter().all(|v| *v == 0.0) && rest.iter().all(|v| v.is_finite())
+    Survey {
+        low: low.iter().chain(rest).copied().fold(f64::INFINITY, f64::min),
+        high: high.iter().chain(rest).copied().fold(f64::NEG_INFINITY, f64::max),
+        finite: lanes.iter().all(|v| *v == 0.0) && rest.iter().all(|v| v.is_finite()),
+    }
 }
 
 #[cfg(test)]
@@ -55,18 +58,17 @@ mod tests {
             assert_eq!(sum(&values), values.iter().sum::<f64>());
             let low = values.iter().copied().fold(f64::INFINITY, f64::min);
             let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            assert_eq!(range(&values), (low, high));
-            assert!(all_finite(&values));
+            assert_eq!(survey(&values), Survey { low, high, finite: true });
             for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
                 for at in [0, n as usize / 2, n as usize - usize::from(n > 0)] {
                     let mut values = values.clone();
                     if let Some(v) = values.get_mut(at) {
                         *v = bad;
-                        assert!(!all_finite(&values));
+                        assert!(!survey(&values).finite);
                     }
                 }
             }
         }
-        assert_eq!(range(&[1.0, f64::NAN, 3.0]), (1.0, 3.0));
+        assert_eq!(survey(&[1.0, f64::NAN, 3.0]), Survey { low: 1.0, high: 3.0, finite: false });
     }
 }

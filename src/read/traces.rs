@@ -171,9 +171,18 @@ impl Traces {
     /// # Errors
     /// If the file cannot be read, or a sample is missing (or beyond all numbers in its unit) and that is not allowed.
     pub fn next_block(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize> {
+        block.iter_mut().for_each(Vec::clear);
+        self.append(block)
+    }
+
+    /// As [`Traces::next_block`], but adds the samples behind what `block` holds, which saves those a copy who collect them.
+    ///
+    /// # Errors
+    /// As [`Traces::next_block`].
+    pub fn append(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize> {
         let frames = match &mut self.origin {
             Origin::Wav(stream) => {
-                let frames = stream.next_block(block)?;
+                let frames = stream.append(block)?;
                 if frames == 0 {
                     stream.doubt(&mut self.channels);
                 }
@@ -183,7 +192,6 @@ impl Traces {
                 let end = at.saturating_add(BLOCK).min(self.frames);
                 block.resize_with(values.len(), Vec::new);
                 for (out, column) in block.iter_mut().zip(values) {
-                    out.clear();
                     out.extend_from_slice(column.get(*at..end).unwrap_or_default());
                 }
                 let frames = end - *at;
@@ -191,8 +199,9 @@ impl Traces {
                 frames
             }
         };
-        for (values, factor) in block.iter_mut().zip(&self.factors).filter(|(_, factor)| **factor != 1.0) {
-            units::scale(values, *factor)?;
+        for (column, factor) in block.iter_mut().zip(&self.factors).filter(|(_, factor)| **factor != 1.0) {
+            let from = column.len() - frames;
+            units::scale(&mut column[from..], *factor)?;
         }
         Ok(frames)
     }

@@ -60,9 +60,6 @@ pub struct Range {
 pub struct Batches<'a> {
     traces: &'a mut Traces,
     segments: Segments,
-    block: Vec<Vec<f64>>,
-    /// Read but not handed out yet: the rest of a block.
-    used: usize,
     frames: usize,
     ranges: Vec<Range>,
 }
@@ -71,37 +68,23 @@ impl<'a> Batches<'a> {
     /// All channels from the place at which `traces` stands.
     pub fn new(traces: &'a mut Traces, segments: Segments) -> Batches<'a> {
         let ranges = vec![Range { low: f64::INFINITY, high: f64::NEG_INFINITY }; traces.channels().len()];
-        Batches { traces, segments, block: Vec::new(), used: 0, frames: 0, ranges }
+        Batches { traces, segments, frames: 0, ranges }
     }
 
-    /// Adds samples to `batch` (one `Vec` a channel, which hold what [`Batches::carry`] left there) up to a full batch or
-    /// the end; returns the number of whole segments in it.
+    /// Adds samples to `batch` (one `Vec` a channel, which hold what [`Batches::carry`] left there) up to a full batch (more
+    /// by less than a block of the file) or the end; returns the number of whole segments in it.
     ///
     /// # Errors
     /// If the file cannot be read, or a sample is missing.
     pub fn fill(&mut self, batch: &mut Vec<Vec<f64>>) -> Result<usize> {
         batch.resize_with(self.ranges.len(), Vec::new);
         let wanted = BATCH.max(self.segments.length + self.segments.hop);
-        loop {
-            let present = batch.first().map_or(0, Vec::len);
-            let ready = self.block.first().map_or(0, Vec::len);
-            if present >= wanted {
+        while batch.first().map_or(0, Vec::len) < wanted {
+            let new = self.traces.append(batch)?;
+            if new == 0 {
                 break;
             }
-            if self.used >= ready {
-                self.used = 0;
-                if self.traces.next_block(&mut self.block)? == 0 {
-                    self.block.clear();
-                    break;
-                }
-                self.look()?;
-                continue;
-            }
-            let end = ready.min(self.used + wanted - present);
-            for (column, values) in batch.iter_mut().zip(&self.block) {
-                column.extend_from_slice(values.get(self.used..end).unwrap_or_default());
-            }
-            self.used = end;
+            self.look(batch, new)?;
         }
         Ok(self.segments.count(batch.first().map_or(0, Vec::len)))
     }
@@ -125,12 +108,13 @@ impl<'a> Batches<'a> {
         &self.ranges
     }
 
-    /// Range of the block; missing samples are refused, for a transform would spread them over all lines.
-    fn look(&mut self) -> Result<()> {
-        for (channel, (values, range)) in self.block.iter().zip(&mut self.ranges).enumerate() {
-            let (low, high) = lanes::range(values);
-            (range.low, range.high) = (range.low.min(low), range.high.max(high));
-            if !lanes::all_finite(values) {
+    /// Range of the `new` samples at the end; missing ones are refused, for a transform would spread them over all lines.
+    fn look(&mut self, batch: &[Vec<f64>], new: usize) -> Result<()> {
+        for (channel, (column, range)) in batch.iter().zip(&mut self.ranges).enumerate() {
+            let values = &column[column.len() - new..];
+            let seen = lanes::survey(values);
+            (range.low, range.high) = (range.low.min(seen.low), range.high.max(seen.high));
+            if !seen.finite {
                 let at = values.iter().position(|v| !v.is_finite()).unwrap_or(0);
                 let name = self.traces.channels().get(channel).map_or("", |m| m.name.as_str());
                 return Err(Error::refused(format!(
@@ -140,7 +124,7 @@ impl<'a> Batches<'a> {
                 .hint("cut the record before the gap, or bridge it"));
             }
         }
-        self.frames += self.block.first().map_or(0, Vec::len);
+        self.frames += new;
         Ok(())
     }
 }

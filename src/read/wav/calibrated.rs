@@ -69,12 +69,15 @@ impl Calibrated {
         self.kept.iter().filter_map(|i| self.all.get(*i).cloned()).collect()
     }
 
-    pub fn next_block(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize> {
-        let frames = self.stream.next_block_of(&self.kept, block)?;
-        for ((channel, values), largest) in self.kept.iter().zip(&mut *block).zip(&mut self.largest) {
-            let (low, high) = lanes::range(values);
-            *largest = largest.max(high).max(-low);
-            if !lanes::all_finite(values) {
+    /// Adds the next samples behind what `block` holds.
+    pub fn append(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize> {
+        let frames = self.stream.append(&self.kept, block)?;
+        for ((channel, column), largest) in self.kept.iter().zip(&mut *block).zip(&mut self.largest) {
+            let from = column.len() - frames;
+            let values = &mut column[from..];
+            let seen = lanes::survey(values);
+            *largest = largest.max(seen.high).max(-seen.low);
+            if !seen.finite {
                 let places: Vec<usize> = (0..values.len()).filter(|i| !values[*i].is_finite()).collect();
                 if !self.allow_missing {
                     let listed = places.iter().map(|i| (self.at + i, *channel));

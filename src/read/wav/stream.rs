@@ -88,11 +88,12 @@ impl WavStream {
     /// If the file cannot be read.
     pub fn next_block(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize> {
         let all: Vec<usize> = (0..self.layout.channels).collect();
-        self.next_block_of(&all, block)
+        block.iter_mut().for_each(Vec::clear);
+        self.append(&all, block)
     }
 
-    /// As [`WavStream::next_block`] for these channels only, each below [`WavStream::channels`].
-    pub(super) fn next_block_of(&mut self, channels: &[usize], block: &mut Vec<Vec<f64>>) -> Result<usize> {
+    /// As [`WavStream::next_block`] for these channels only, each below [`WavStream::channels`], behind what `block` holds.
+    pub(super) fn append(&mut self, channels: &[usize], block: &mut Vec<Vec<f64>>) -> Result<usize> {
         let sample = self.layout.sample;
         let frame = sample.bytes() * self.layout.channels;
         let frames = ((BLOCK / frame).max(1) as u64).min(self.left);
@@ -106,7 +107,6 @@ impl WavStream {
         self.left = if frames == 0 { 0 } else { self.left - frames as u64 };
         block.resize_with(channels.len(), Vec::new);
         for (channel, values) in channels.iter().zip(&mut *block) {
-            values.clear();
             let samples = self.bytes.chunks_exact(frame).map(|f| &f[channel * sample.bytes()..]);
             values.extend(samples.map(|s| sample.value(&s[..sample.bytes()])));
         }
