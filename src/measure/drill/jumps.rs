@@ -95,7 +95,7 @@ impl Jumps {
 
     /// Samples that must be there before and after a turn.
     pub fn margin(&self) -> usize {
-        self.gap + self.length + 2
+        self.gap.saturating_add(self.length).saturating_add(2)
     }
 
     /// Takes turn number `cycle`, which lies at `turn` in the record; `values` begins at sample `base` of it.
