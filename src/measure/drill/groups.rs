@@ -286,7 +286,8 @@ mod tests {
     #[test]
     fn a_ratio_of_sums_and_its_propagated_uncertainty() {
         // R = 0.2 in every impact whatever the speed: nothing scatters. Then a speed of approach that is not known.
-        let of: Vec<_> = (0..12).map(|k| (0.5, 5.0 + f64::from(k), -0.2 * (5.0 + f64::from(k)))).collect();
+        let of: Vec<_> =
+            (0..12).map(|k| (0.5, 10.0 + 0.2 * f64::from(k), -0.2 * (10.0 + 0.2 * f64::from(k)))).collect();
         let found = groups(&mut impacts(&of), 12, &options(None));
         let r = found[0].restitution.as_ref().unwrap();
         assert!((r.value - 0.2).abs() < 1e-12 && r.std.unwrap() < 1e-12, "{r:?}");
