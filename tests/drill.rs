@@ -300,3 +300,89 @@ fn times_and_pulses_that_no_turn_can_hold_are_refused() {
         assert_eq!(output.status.code(), Some(code), "{pulses}: {}", String::from_utf8_lossy(&output.stderr));
     }
 }
+
+#[test]
+fn a_front_impact_and_a_rear_catch_are_two_groups() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut noise = noise::Noise::new(5);
+    // 50 turns of 1024 samples. In front, at phase 0.3, from 6.5 to −1.5 m/s; behind, at 0.8, from −6 to 1 m/s; all vary by 2 %.
+    let turn = record::RATE / 50.0;
+    let mut vary = |v: f64| v * (1.0 + 0.02 * noise.normal());
+    let speeds: Vec<[f64; 4]> = (0..52).map(|_| [6.5, -1.5, -6.0, 1.0].map(&mut vary)).collect();
+    let value = |i: usize| {
+        let at = i as f64 / turn;
+        let (k, p) = (at as usize, at.fract());
+        let rest = if k == 0 { 1.0 } else { speeds[k - 1][3] };
+        let [front, back, rear, caught] = speeds[k];
+        let before = |p: f64| if p < 0.3 { rest + (front - rest) * (p + 0.2) / 0.5 } else { back };
+        let between = |p: f64| back + (rear - back) * (p - 0.3) / 0.5;
+        let behind = |p: f64| caught + (speeds[k + 1][0] - caught) * (p - 0.8) / 0.5;
+        // Contacts of 0.2 ms, 0.01 turn.
+        let mix =
+            |p: f64, at: f64| 0.5 + 0.5 * (std::f64::consts::PI * ((p - at) / 0.01).clamp(-0.5, 0.5)).sin();
+        if p < 0.295 {
+            before(p)
+        } else if p < 0.305 {
+            let far = rest + (front - rest) * (p + 0.2) / 0.5;
+            far + mix(p, 0.3) * (between(p) - far)
+        } else if p < 0.795 {
+            between(p)
+        } else if p < 0.805 {
+            between(p) + mix(p, 0.8) * (behind(p) - between(p))
+        } else {
+            behind(p)
+        }
+    };
+    let count = (50.6 * turn) as usize;
+    let velocity: Vec<f64> = (0..count).map(|i| 0.25 * value(i) + 0.001 * noise.normal()).collect();
+    let pulse = |i: usize| {
+        let s = ((i as f64 / turn + 0.5).fract() - 0.5) * turn;
+        2.5 * (s / 3.0).tanh() - 2.5 * ((s - 100.0) / 3.0).tanh()
+    };
+    let pulses = (0..count).map(|i| pulse(i) + 0.02 * noise.normal()).collect();
+    let file = wav(folder.path(), "drill.wav", &[volts("striker", velocity), volts("pulse", pulses)]);
+    let out = folder.path().join("out");
+    let masses = ["--mass", "0.14", "--struck-mass", "0.28", "--out", out.to_str().unwrap()];
+    let found = json(&with(&file, &masses));
+    let groups = found["groups"].as_array().unwrap();
+    assert_eq!(groups.len(), 2, "{}", found["warnings"]);
+    // The rear catch rebounds by 1/6, what catches it taken not to move; in front ½(1 + 1.5/6.5) + 1.5/6.5.
+    let front = 0.5 * (1.0 + 1.5 / 6.5) + 1.5 / 6.5;
+    let truths = [[0.3, 6.5, -1.5, front], [0.8, -6.0, 1.0, 1.0 / 6.0]];
+    for (group, truth) in groups.iter().zip(truths) {
+        assert_eq!(group["n"].as_u64().unwrap(), 49, "{group}");
+        for (key, truth) in ["phase", "before", "after", "restitution"].into_iter().zip(truth) {
+            let part = |what: &str| group[key][what].as_f64().unwrap();
+            // Five standard uncertainties of six degrees of freedom; a velocity that the half sine of a contact and a phase that
+            // samples hold to a part in 500.
+            assert!((part("value") - truth).abs() < 5.0 * part("std") + 0.002 * truth.abs(), "{key} {group}");
+        }
+        let energy = 0.5 * 0.14 * truth[1].powi(2);
+        assert!((group["energy"]["value"].as_f64().unwrap() / energy - 1.0).abs() < 0.03, "{group}");
+        assert!((group["share"].as_f64().unwrap() - 1.0).abs() < 0.05);
+    }
+    assert_eq!(found["before"], groups[0]["before"]);
+    for impact in found["impacts"].as_array().unwrap() {
+        assert_eq!(impact["group"].as_u64() == Some(1), impact["phase"].as_f64().unwrap() > 0.5);
+    }
+    assert!(found["warnings"].to_string().contains("of 2 groups"), "{}", found["warnings"]);
+    let table = std::fs::read_to_string(out.join("impacts.csv")).unwrap();
+    assert!(table.lines().next().is_some_and(|l| l.contains("group")), "{table}");
+    let svg = std::fs::read_to_string(out.join("drill_average.svg")).unwrap();
+    assert!(
+        svg.contains("before impact, group 0") && svg.contains("after impact, group 1"),
+        "a legend with both groups"
+    );
+}
+
+#[test]
+fn swapped_channels_are_suspected() {
+    let folder = tempfile::tempdir().unwrap();
+    let pulse = |i: usize| f64::from(u8::from(i % 200 < 20));
+    let file = csv(folder.path(), "swapped.csv", |i| (pulse(i), (i as f64 * 0.03).sin()));
+    let swapped = json(&with(&file, &[]))["warnings"].to_string();
+    assert!(swapped.contains("are the two channels swapped?"), "{swapped}");
+    let file = csv(folder.path(), "right.csv", |i| ((i as f64 * 0.03).sin(), pulse(i)));
+    let right = json(&with(&file, &[]))["warnings"].to_string();
+    assert!(!right.contains("swapped"), "{right}");
+}

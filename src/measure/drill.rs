@@ -27,7 +27,9 @@ mod edges;
 mod faults;
 mod file;
 mod floor;
+mod groups;
 mod jumps;
+mod mean;
 mod motion;
 mod options;
 mod passing;
@@ -37,19 +39,23 @@ mod summary;
 mod survey;
 mod turns;
 
-pub use average::Average;
+use average::Average;
 pub use beam::{Beam, From};
 pub use channels::{Channels, Slices};
-pub use edges::{Edge, Edges, Found};
-pub use faults::{FaultCount, Faults, State};
+pub use edges::Edge;
+pub(crate) use edges::{Edges, Found};
+pub use faults::FaultCount;
 pub use file::DrillFile;
 pub use floor::NoiseFloor;
-pub use jumps::{Impact, Jumps};
-pub use motion::{Bandwidth, Motion, displacement};
+pub use groups::Group;
+pub use jumps::Impact;
+use jumps::Jumps;
+pub use motion::Bandwidth;
+use motion::{Motion, displacement};
 pub use options::{DrillOptions, Smoothing};
 pub use result::{BeamResult, Corner, Displacement, Drill, Phases, Pulses};
-pub use running::Running;
-pub use survey::Survey;
+pub(crate) use running::Running;
+pub(crate) use survey::Survey;
 pub(crate) use turns::Numbered;
 pub use turns::{Turn, Turns};
 
@@ -69,6 +75,9 @@ const EXCERPT: usize = 1 << 16;
 pub fn drill(channels: &mut dyn Channels, options: &DrillOptions, still: Option<&Stream>) -> Result<Drill> {
     options.check()?;
     let rate = channels.rate();
+    if !(rate.is_finite() && rate > 0.0) {
+        return Err(Error::usage(format!("a sampling rate of {rate} Hz"), "a finite number above 0"));
+    }
     let factor = options.sensitivity * options.beam.factor();
     let (mut velocity, mut reference) = (Survey::default(), Survey::default());
     let mut handles: Vec<Handle> = Vec::new();

@@ -61,9 +61,10 @@ fn chi_squared_above(x: f64, even: usize) -> f64 {
 }
 
 /// Standard deviation of Student's distribution of `free` degrees of freedom, √(ν/(ν − 2)): what a standard uncertainty from a
-/// variance that was itself estimated is to be multiplied by (JCGM 101:2008, 6.4.9.2). 1 where it has none.
-pub fn student(free: usize) -> f64 {
-    if free > 2 { (free as f64 / (free as f64 - 2.0)).sqrt() } else { 1.0 }
+/// variance that was itself estimated is to be multiplied by (JCGM 101:2008, 6.4.9.2). `None` up to two degrees of freedom, where it
+/// has none.
+pub fn student(free: usize) -> Option<f64> {
+    (free > 2).then(|| (free as f64 / (free as f64 - 2.0)).sqrt())
 }
 
 /// Akaike's criterion for a fit of `parameters` (the variance of the noise is one more) to `n` values, corrected for their
@@ -99,6 +100,13 @@ mod tests {
         // Abramowitz & Stegun, table 26.8: the quantiles are given to 5 or 6 digits.
         assert!((chi_squared_above(18.3070, 10) - 0.05).abs() < 1e-5);
         assert!((chi_squared_above(13.2767, 4) - 0.01).abs() < 1e-6);
+    }
+
+    #[test]
+    fn student_has_a_standard_deviation_from_three_degrees_of_freedom_on() {
+        assert_eq!([0, 1, 2].map(student), [None; 3]);
+        // Variance 3 at ν = 3 and 2 at ν = 4.
+        assert_eq!([3, 4].map(student), [Some(3f64.sqrt()), Some(2f64.sqrt())]);
     }
 
     #[test]

@@ -25,6 +25,8 @@ const LAGS: usize = 6;
 pub struct Impact {
     /// Turn, counted from 0 among the whole turns.
     pub cycle: usize,
+    /// Its place among the groups of the result, the strongest 0.
+    pub group: usize,
     /// Time from the first sample, in s.
     pub time: f64,
     /// Part of the turn after its first edge, 0 to 1.
@@ -93,7 +95,7 @@ impl Jumps {
 
     /// Samples that must be there before and after a turn.
     pub fn margin(&self) -> usize {
-        self.gap + self.length + 2
+        self.gap.saturating_add(self.length).saturating_add(2)
     }
 
     /// Takes turn number `cycle`, which lies at `turn` in the record; `values` begins at sample `base` of it.
@@ -256,6 +258,7 @@ impl Jumps {
                 let edges = edge * edge * ((1.0 - phase).powi(2) + phase * phase);
                 Impact {
                     cycle: j.cycle,
+                    group: 0,
                     time: j.at / rate,
                     phase,
                     phase_std: (time + edges).sqrt() / length,

@@ -2,7 +2,6 @@
 
 use super::crossing;
 use super::faults::State;
-use super::running::Running;
 use super::survey::median;
 
 /// Largest speed, acceleration and jerk, and displacement over whole turns.
@@ -11,8 +10,8 @@ pub struct Motion {
     speed: Vec<f64>,
     acceleration: Vec<f64>,
     jerk: Vec<f64>,
-    stroke: Running,
-    drift: Running,
+    stroke: Vec<f64>,
+    drift: Vec<f64>,
 }
 
 /// How fast a motion changes, and whether the sampling can follow.
@@ -80,14 +79,14 @@ impl Motion {
         self.stroke.push(high - low);
     }
 
-    /// Peak-to-peak displacement of a turn, in m.
-    pub fn stroke(&self) -> Running {
-        self.stroke
+    /// Peak-to-peak displacement of each turn, in m.
+    pub fn stroke(&self) -> &[f64] {
+        &self.stroke
     }
 
-    /// Displacement left over at the end of a turn, in m; it was taken away evenly before the stroke was taken.
-    pub fn drift(&self) -> Running {
-        self.drift
+    /// Displacement left over at the end of each turn, in m; it was taken away evenly before the stroke was taken.
+    pub fn drift(&self) -> &[f64] {
+        &self.drift
     }
 
     /// What bandwidth the motion needs, sampled at `rate`.
@@ -145,8 +144,8 @@ mod tests {
         }
         // Trapezoids of a sine fall short by (2πf/rate)²/12 = 7e-5; the top lies between samples, by (2πf/rate)²/8.
         let stroke = 2.0 * amplitude / (TAU * f);
-        assert!((motion.stroke().mean() / stroke - 1.0).abs() < 2e-4, "{}", motion.stroke().mean() / stroke);
-        assert!((motion.drift().mean() * f / 0.02 - 1.0).abs() < 1e-3);
+        assert!(motion.stroke().iter().all(|s| (s / stroke - 1.0).abs() < 2e-4), "{:?}", motion.stroke());
+        assert!(motion.drift().iter().all(|d| (d * f / 0.02 - 1.0).abs() < 1e-3), "{:?}", motion.drift());
         let bandwidth = motion.bandwidth(rate);
         // An offset of 0.02 in 3, and the differences short by (2πf/rate)²/6.
         assert!(

@@ -1,6 +1,6 @@
 //! What a drill's record gave.
 
-use super::{Bandwidth, FaultCount, Impact, NoiseFloor};
+use super::{Bandwidth, FaultCount, Group, Impact, NoiseFloor};
 use crate::measure::Estimate;
 use crate::measure::exposure::Exposure;
 use serde::Serialize;
@@ -20,7 +20,9 @@ pub struct Drill {
     pub reference: Pulses,
     /// Every impact.
     pub impacts: Vec<Impact>,
-    /// Mean velocity before the impacts.
+    /// Impacts by direction and phase, the strongest group first.
+    pub groups: Vec<Group>,
+    /// Mean velocity before the impacts of the strongest group; so are all means down to the restitution.
     pub before: Option<Estimate>,
     /// Mean velocity after the impacts.
     pub after: Option<Estimate>,

@@ -1,12 +1,18 @@
 //! From what the passes found to estimates and sentences.
 
+use super::groups;
+use super::mean::Mean;
 use super::passing::Pass;
 use super::result::{BeamResult, Corner, Displacement, Drill, Phases, Pulses};
-use super::{DrillOptions, FaultCount, Found, Impact, NoiseFloor, Running, Smoothing, Survey, Turns};
+use super::{DrillOptions, FaultCount, Found, NoiseFloor, Running, Smoothing, Survey, Turns};
 use crate::measure::Estimate;
 use crate::measure::exposure::Exposure;
 use crate::signal::welch::Stream;
-use std::f64::consts::TAU;
+
+/// A pulse stands on its two levels for more than this part of the time; edges and noise are the rest.
+const PULSED: f64 = 0.8;
+/// A motion is near two levels for less than this part of the time: a sine near the medians of its halves for a quarter.
+const MOVING: f64 = 0.5;
 
 /// Everything that the passes leave behind.
 pub(super) struct Measured<'a> {
@@ -25,16 +31,18 @@ pub(super) struct Measured<'a> {
 
 pub(super) fn summary(m: Measured<'_>) -> Drill {
     let (rate, options) = (m.rate, m.options);
-    let (impacts, hidden) = m.pass.jumps.clone().finish(rate, m.edge);
+    let (mut impacts, hidden) = m.pass.jumps.clone().finish(rate, m.edge);
+    let groups = groups::groups(&mut impacts, m.pass.averaged, options);
+    let strongest = groups.first();
     let mean = m.pass.average.mean();
     let period =
         m.turns.turns.iter().map(|t| t.end - t.start).sum::<f64>() / m.turns.turns.len() as f64 / rate;
     let value = super::displacement(&mean, period);
     let mut spread = Running::default();
     m.turns.speeds(rate).for_each(|s| spread.push(s));
-    let over = |running: Running, method: &str| {
-        let std = running.std() / (running.n() as f64).sqrt();
-        Estimate::new(running.mean(), Some(std), "m", running.n(), method)
+    let over = |values: &[f64], method: &str| {
+        let mean = Mean::of(values);
+        Estimate::new(mean.value, mean.std, "m", mean.n, method)
     };
     let still =
         m.still.and_then(|still| NoiseFloor::new(m.pass.spectrum.as_ref()?, still, rate, options.margin));
@@ -51,18 +59,14 @@ pub(super) fn summary(m: Measured<'_>) -> Drill {
             pauses: m.turns.pauses,
             std: m.edge / rate,
         },
-        before: mean_of(&impacts, "m/s", "parabola up to the contact, mean over impacts", |i| i.before),
-        after: mean_of(&impacts, "m/s", "parabola from the contact on, mean over impacts", |i| i.after),
-        phase: phase(&impacts),
-        phase_variation: phase_scatter(&impacts),
-        energy: options.mass.and_then(|m| {
-            mean_of(&impacts, "J", "½ m v² before, mean over impacts", |i| 0.5 * m * i.before * i.before)
-        }),
-        energy_given: options.mass.and_then(|m| {
-            let taken = |i: &Impact| 0.5 * m * (i.before * i.before - i.after * i.after);
-            mean_of(&impacts, "J", "½ m (v² before − v² after), mean over impacts", taken)
-        }),
-        restitution: restitution(&impacts, options),
+        before: strongest.map(|g| g.before.clone()),
+        after: strongest.map(|g| g.after.clone()),
+        phase: strongest.map(|g| g.phase.clone()),
+        phase_variation: strongest.and_then(|g| g.phase_variation),
+        energy: strongest.and_then(|g| g.energy.clone()),
+        energy_given: strongest.and_then(|g| g.energy_given.clone()),
+        restitution: strongest.and_then(|g| g.restitution.clone()),
+        groups,
         impacts,
         hidden,
         average: Phases { phase: m.pass.average.phase(), mean, std: m.pass.average.std() },
@@ -103,59 +107,6 @@ pub(super) fn summary(m: Measured<'_>) -> Drill {
     result
 }
 
-/// Mean over impacts, its standard uncertainty from their scatter.
-fn mean_of(
-    impacts: &[Impact],
-    unit: &'static str,
-    method: &str,
-    of: impl Fn(&Impact) -> f64,
-) -> Option<Estimate> {
-    let values: Vec<f64> = impacts.iter().map(of).collect();
-    if values.is_empty() {
-        return None;
-    }
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    let std = (values.len() >= 4).then(|| super::turns::mean_variance(&values, mean).sqrt());
-    Some(Estimate::new(mean, std, unit, values.len(), method))
-}
-
-/// Phases run round the circle: differences from the direction of the mean do not.
-fn circle(impacts: &[Impact]) -> Option<(f64, Vec<f64>)> {
-    let (s, c) = impacts.iter().fold((0.0, 0.0), |(s, c), i| {
-        let (sin, cos) = (TAU * i.phase).sin_cos();
-        (s + sin, c + cos)
-    });
-    let centre = f64::atan2(s, c) / TAU;
-    let off = impacts.iter().map(|i| i.phase - centre).map(|d| d - d.round()).collect();
-    (!impacts.is_empty()).then_some((centre, off))
-}
-
-fn phase(impacts: &[Impact]) -> Option<Estimate> {
-    let (centre, off) = circle(impacts)?;
-    let shift = off.iter().sum::<f64>() / off.len() as f64;
-    let std = (off.len() >= 4).then(|| super::turns::mean_variance(&off, shift).sqrt());
-    let method = "turns after the edge, mean over impacts on the circle";
-    Some(Estimate::new((centre + shift).rem_euclid(1.0), std, "1", off.len(), method))
-}
-
-fn phase_scatter(impacts: &[Impact]) -> Option<f64> {
-    let mut running = Running::default();
-    circle(impacts)?.1.into_iter().for_each(|d| running.push(d));
-    Some(running.std()).filter(|s| s.is_finite())
-}
-
-/// R = (v₂⁺ − v₁⁺)/v₁⁻ with v₂⁺ = m₁(v₁⁻ − v₁⁺)/m₂ from the balance of momentum, the struck mass at rest before.
-fn restitution(impacts: &[Impact], options: &DrillOptions) -> Option<Estimate> {
-    let ratio = options.mass.zip(options.struck_mass).map(|(m, struck)| m / struck);
-    let method = if ratio.is_some() {
-        "balance of momentum, the struck mass at rest before"
-    } else {
-        "−after/before, which assumes that the struck mass does not move"
-    };
-    let ratio = ratio.unwrap_or(0.0);
-    mean_of(impacts, "1", method, |i| (ratio * (i.before - i.after) - i.after) / i.before)
-}
-
 fn warnings(
     result: &Drill,
     options: &DrillOptions,
@@ -185,6 +136,11 @@ fn warnings(
     say(
         found.sharp,
         format!("The reference rises within one sample: edges are known to {:.1e} s only.", r.std),
+    );
+    say(
+        velocity.two_levels() > PULSED && reference.two_levels() < MOVING,
+        "The velocity has two levels as a pulse has, and the reference moves between its levels: are the two channels swapped?"
+            .to_owned(),
     );
     say(reference.missing() > 0, format!("{} samples of the reference are missing.", reference.missing()));
     say(
@@ -234,13 +190,7 @@ fn warnings(
         ),
     );
     bandwidth(result, options, &mut say);
-    let unmoved = result.restitution.is_some() && options.struck_mass.is_none();
-    say(unmoved, "The restitution assumes that the struck mass does not move.".to_owned());
-    say(
-        result.restitution.as_ref().is_some_and(|e| !(0.0..=1.0).contains(&e.value)),
-        "The restitution lies outside 0 to 1: check masses, direction of the beam, and what is struck."
-            .to_owned(),
-    );
+    means(result, options, &mut say);
     if let Some(floor) = &result.noise_floor {
         say(
             floor.bands.is_empty(),
@@ -253,6 +203,25 @@ fn warnings(
     );
     all.extend(result.exposure.iter().flat_map(|e| e.warnings.clone()));
     all
+}
+
+fn means(result: &Drill, options: &DrillOptions, say: &mut impl FnMut(bool, String)) {
+    let means = [&result.speed, &result.displacement.stroke];
+    let few =
+        means.into_iter().chain(result.groups.iter().map(|g| &g.before)).map(|e| e.n).filter(|n| *n < 4);
+    if let Some(n) = few.max() {
+        say(true, format!("A mean over {n} turns or impacts has no standard uncertainty: it needs four."));
+    }
+    for sentence in groups::doubts(&result.groups) {
+        say(true, sentence);
+    }
+    let unmoved = result.restitution.is_some() && options.struck_mass.is_none();
+    say(unmoved, "The restitution assumes that the struck mass does not move.".to_owned());
+    say(
+        result.restitution.as_ref().is_some_and(|e| !(0.0..=1.0).contains(&e.value)),
+        "The restitution lies outside 0 to 1: check masses, direction of the beam, and what is struck."
+            .to_owned(),
+    );
 }
 
 fn bandwidth(result: &Drill, options: &DrillOptions, say: &mut impl FnMut(bool, String)) {

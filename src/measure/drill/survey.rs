@@ -144,6 +144,14 @@ impl Survey {
         Some((self.level(low, |v| v <= threshold), self.level(high, |v| v > threshold)))
     }
 
+    /// Part of the values that lie within a tenth of the height of a pulse from one of its two levels; 0 where there is only one.
+    pub fn two_levels(&self) -> f64 {
+        let Some((low, high)) = self.levels() else { return 0.0 };
+        let near = |v: f64| (v - low).abs().min((v - high).abs()) < 0.1 * (high - low);
+        let kept = &self.differences.kept;
+        kept.iter().filter(|d| near(d.value)).count() as f64 / kept.len().max(1) as f64
+    }
+
     /// Median of the values kept on one side, or of the extremes there where too few values are.
     fn level(&self, extremes: &[f64], side: impl Fn(f64) -> bool) -> f64 {
         let kept: Vec<f64> = self.differences.kept.iter().map(|d| d.value).filter(|v| side(*v)).collect();
@@ -217,6 +225,7 @@ mod tests {
             survey.push(&[0.25, 40.0, f64::NAN]);
             let (low, high) = survey.levels().unwrap();
             assert_eq!((low, high), (0.25, 4.75), "{turns}");
+            assert!(survey.two_levels() > 0.99);
             assert_eq!((survey.samples(), survey.missing()), (turns * 500 + 3, 1));
             assert_eq!(survey.range(), Some((0.25, 40.0)));
         }
@@ -241,6 +250,8 @@ mod tests {
             })
             .collect();
         survey.push(&block);
+        // Medians of the halves of a sine, ±1/√2, and a tenth of their distance: (asin 0.849 − asin 0.566)·2/π = 0.26, less with noise.
+        assert!((survey.two_levels() - 0.26).abs() < 0.03, "{}", survey.two_levels());
         // A median of 8000 absolute values or more scatters by 1.17/√8000 = 1.3 %; four times that.
         assert!((survey.noise() / 0.05 - 1.0).abs() < 0.052, "{}", survey.noise());
         assert!((survey.quantum() - 0.001).abs() < 1e-9);

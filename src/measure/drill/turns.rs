@@ -1,5 +1,6 @@
 //! From reference edges to turns: which are whole, how fast, how evenly.
 
+use super::mean::Mean;
 use super::survey::median;
 use crate::error::{Error, Result};
 use crate::measure::Estimate;
@@ -80,9 +81,12 @@ impl Turns {
     /// longest stretch between pauses is all that is taken.
     ///
     /// # Errors
-    /// If there is no whole turn.
+    /// If there is no whole turn, or no pulse in a turn.
     pub fn new(edges: &[f64], pulses: usize) -> Result<Turns> {
-        let needed = format!("a turn needs {}", pulses + 1);
+        let Some(ends) = pulses.checked_add(1).filter(|n| *n > 1) else {
+            return Err(Error::usage(format!("{pulses} pulses a turn"), "at least 1"));
+        };
+        let needed = format!("a turn needs {ends}");
         let hint = "check --reference, --edge, --pulses-per-turn and --level, the level of the edge";
         match edges.len() {
             0 => return Err(Error::refused("no edge in the reference channel").hint(hint)),
@@ -98,7 +102,7 @@ impl Turns {
         }
         let Numbered { runs, missing, extra, pauses } = Numbered::new(edges);
         let whole = |run: &Vec<(usize, f64)>| -> Vec<Turn> {
-            run.windows(pulses + 1)
+            run.windows(ends)
                 .filter(|w| w[0].0 % pulses == 0 && w[pulses].0 - w[0].0 == pulses)
                 .map(|w| Turn { start: w[0].1, end: w[pulses].1 })
                 .collect()
@@ -118,17 +122,17 @@ impl Turns {
 
     /// Turns a second at `rate` samples a second: the inverse of the mean duration of a turn.
     ///
-    /// The standard uncertainty is that of the mean of durations that depend on each other: their long-run variance with
-    /// Bartlett's weights up to the cube root of their number (W. Newey & K. West, Econometrica 55 (1987) 703), and at least
-    /// what the uncertainty `edge` of the first and the last edge, in samples, leaves open.
+    /// The standard uncertainty is that of the mean of durations that may depend on each other (U. Müller, J. Econometrics 141
+    /// (2007) 1331), and at least what the uncertainty `edge` of an edge, in samples, leaves open: durations that follow each other
+    /// share their edges, so only the first and the last edge of each stretch without a gap count. `None` for fewer than four turns.
     pub fn speed(&self, rate: f64, edge: f64) -> Estimate {
         let durations: Vec<f64> = self.turns.iter().map(|t| t.end - t.start).collect();
-        let n = durations.len() as f64;
-        let mean = durations.iter().sum::<f64>() / n;
+        let mean = Mean::of(&durations);
         let method = "inverse mean duration of whole turns; serial correlation accounted for";
-        let variance = if durations.len() < 4 { f64::NAN } else { mean_variance(&durations, mean) };
-        let variance = variance.max(2.0 * edge * edge / (n * n)) + 0.0 * variance;
-        Estimate::new(rate / mean, Some(rate / mean * variance.sqrt() / mean), "Hz", durations.len(), method)
+        let gaps = self.turns.windows(2).filter(|t| t[0].end != t[1].start).count();
+        let edges = edge * (2.0 * (gaps + 1) as f64).sqrt() / mean.n as f64;
+        let std = mean.std.map(|s| rate / mean.value * s.max(edges) / mean.value);
+        Estimate::new(rate / mean.value, std, "Hz", mean.n, method)
     }
 
     /// Speed of each turn in Hz.
@@ -137,24 +141,10 @@ impl Turns {
     }
 }
 
-/// Variance of the mean of values that may depend on their neighbours.
-pub(super) fn mean_variance(values: &[f64], mean: f64) -> f64 {
-    let n = values.len() as f64;
-    let reach = n.cbrt().floor() as usize;
-    let covariance =
-        |lag: usize| values.iter().zip(&values[lag..]).map(|(a, b)| (a - mean) * (b - mean)).sum::<f64>() / n;
-    // Where no neighbour is seen to matter, sums over neighbours would add nothing but their own scatter.
-    let independent = (1..=reach).all(|k| covariance(k).abs() < 3.0 / n.sqrt() * covariance(0));
-    let reach = if independent { 0 } else { reach };
-    let weighted = |k: usize| 2.0 * (1.0 - k as f64 / (reach + 1) as f64) * covariance(k);
-    let long_run = covariance(0) + (1..=reach).map(weighted).sum::<f64>();
-    // Deviations from the mean of the sample are smaller than those from the true one.
-    long_run.max(0.0) / n / (1.0 - (reach + 1) as f64 / n)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
 
     #[test]
     fn missing_and_extra_edges_and_pauses() {
@@ -168,7 +158,9 @@ mod tests {
         assert_eq!(turns.turns.len(), 37 + 4);
         assert!(turns.turns.iter().all(|t| t.end - t.start == 100.0));
         let speed = turns.speed(5000.0, 0.1);
-        assert_eq!((speed.value, speed.std), (50.0, Some(50.0 * 2f64.sqrt() * 0.1 / 41.0 / 100.0)));
+        // Three stretches without a gap, each with two edges.
+        let std = 50.0 * 6f64.sqrt() * 0.1 / 41.0 / 100.0;
+        assert!(speed.value == 50.0 && (speed.std.unwrap() / std - 1.0).abs() < 1e-12, "{speed:?}");
         // Two pulses a turn: the turns at the missing edge are lost, the pairs stay as they were, and behind the pause nobody
         // knows which pulse is the first of a turn.
         let pairs = Turns::new(&edges, 2).unwrap();
@@ -183,23 +175,53 @@ mod tests {
         assert!(why(&[], 1).starts_with("no edge"));
         assert!(why(&[5.0], 1).starts_with("one edge"));
         assert!(why(&[5.0, 6.0], 2).starts_with("2 edges"));
+        assert!(why(&[5.0, 6.0], usize::MAX - 1).starts_with("2 edges"));
+        assert!(Turns::new(&[5.0, 6.0], 0).is_err() && Turns::new(&[5.0, 6.0], usize::MAX).is_err());
     }
 
     #[test]
-    fn jitter_of_edges_telescopes_and_scatter_of_durations_does_not() {
+    fn jitter_of_edges_telescopes() {
         let mut state = 11u64;
         let mut uniform = || {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
             (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
         };
-        let jitter: Vec<f64> = (0..=1000).map(|k| f64::from(k) * 100.0 + uniform()).collect();
-        let steps: Vec<f64> = (0..1000).map(|_| 100.0 + uniform()).collect();
-        let differences: Vec<f64> = jitter.windows(2).map(|w| w[1] - w[0]).collect();
-        let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
-        let independent = mean_variance(&steps, mean(&steps)) * 1000.0;
-        // 1/12 for uniform steps; Bartlett's sum over 10 lags would scatter by √(4·10/3/1000) = 12 %; three times that.
-        assert!((independent * 12.0 - 1.0).abs() < 0.36, "{independent}");
-        // Edges that jitter: 1/6 a step if they were independent, a tenth of it or less as they are.
-        assert!(mean_variance(&differences, mean(&differences)) * 1000.0 < 0.1 / 6.0 * 1.5);
+        // Edges of n turns that jitter by σ = 1/√12: the mean duration by √2 σ/n. Each of K cosines sees the jitter of the first and of
+        // the last edge whole and that between by πj/n: E c_j² = (2/n) σ² (2 + π²j²/(2n)), which is 2 (1 + π²(K + 1)(2K + 1)/(24 n)) times the
+        // true variance, and K/(K − 2) of Student's distribution; K = 6 at 60 and 19 at 1000. Sums of independent durations would be √n, 8 and 32 times the truth.
+        for (n, cosines) in [(60, 6.0), (1000, 19.0)] {
+            let truth = (2.0f64 / 12.0).sqrt() / f64::from(n);
+            let share = 1.0 + PI * PI * (cosines + 1.0) * (2.0 * cosines + 1.0) / (24.0 * f64::from(n));
+            let expected = (2.0 * share * cosines / (cosines - 2.0)).sqrt();
+            let squares: f64 = (0..200)
+                .map(|_| {
+                    let edges: Vec<f64> = (0..=n).map(|k| f64::from(k) * 100.0 + uniform()).collect();
+                    let speed = Turns::new(&edges, 1).unwrap().speed(1e4, 0.0);
+                    (speed.std.unwrap() / truth / (1e4 / 100.0 / 100.0)).powi(2)
+                })
+                .sum();
+            let found = (squares / 200.0).sqrt();
+            println!("{n} turns with edges that jitter: {found:.2} times the truth, {expected:.2} expected");
+            // Two edges, the same for all cosines, make the variance of each case scatter by 1; 200 cases: 7 % and half of it in the root;
+            // three times that.
+            assert!((found / expected - 1.0).abs() < 0.11 && found < 2.4, "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn scatter_of_durations_counts_whole() {
+        let mut noise = 7u64;
+        let mut at = 0.0;
+        let edges: Vec<f64> = (0..=1000)
+            .map(|_| {
+                noise = noise.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                at += 100.0 + (noise >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
+                at
+            })
+            .collect();
+        let speed = Turns::new(&edges, 1).unwrap().speed(1e4, 0.0);
+        let expected = (1.0f64 / 12.0 / 1000.0).sqrt() / 100.0 * 100.0 * (19.0f64 / 17.0).sqrt();
+        // 19 squares scatter by √(2/19), half of it in the root; three times that.
+        assert!((speed.std.unwrap() / expected - 1.0).abs() < 0.49, "{speed:?} {expected}");
     }
 }

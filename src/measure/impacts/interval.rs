@@ -148,11 +148,7 @@ fn nodes(d: &[f64], m: &[f64]) -> Vec<Node> {
 /// What a standard uncertainty of `free` degrees of freedom is multiplied by: the standard deviation of Student's distribution where it has
 /// one, otherwise its quantile of 97.5 % over that of the normal one.
 fn widened(free: usize) -> f64 {
-    match free {
-        1 => 12.706 / 1.960,
-        2 => 4.303 / 1.960,
-        _ => student(free),
-    }
+    student(free).unwrap_or(if free == 2 { 4.303 / 1.960 } else { 12.706 / 1.960 })
 }
 
 /// Correlation of intervals that follow each other, of those without missed impacts.

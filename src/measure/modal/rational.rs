@@ -310,13 +310,15 @@ impl Scaled<'_> {
                     + sin * sin * fit.covariance(im, im)
                     + 2.0 * sin * cos * fit.covariance(re, im)
             };
+            // Fits of fewer than three degrees of freedom were refused.
+            let widened = whiteness.inflation * student(fit.degrees_of_freedom()).unwrap_or(f64::NAN);
             std.push(
                 [
                     f * zeta * fit.std(place(4 * m)),
                     zeta * fit.std(place(4 * m + 1)),
                     to_constant * variance.sqrt(),
                 ]
-                .map(|s| s * whiteness.inflation * student(fit.degrees_of_freedom())),
+                .map(|s| s * widened),
             );
         }
         let mut order: Vec<usize> = (0..modes.len()).collect();

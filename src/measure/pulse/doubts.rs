@@ -2,7 +2,7 @@
 
 use super::fit::Fitted;
 use super::{LowPass, PulseFit, PulseOptions, PulseResult};
-use crate::measure::residuals::Whiteness;
+use crate::measure::residuals::{Whiteness, student};
 
 /// Names of the parameters of the contact of spring and damper, in the order of the fit.
 const NAMES: [&str; 5] = ["onset", "baseline", "initial velocity", "ξ", "frequency"];
@@ -43,7 +43,12 @@ pub(super) fn doubts(
             }
         }
     }
-    if widening.is_nan() {
+    let free = main.fit.degrees_of_freedom();
+    if student(free).is_none() {
+        said.push(format!(
+            "The fit leaves {free} degrees of freedom, too few for a standard uncertainty: it needs three. Sample faster."
+        ));
+    } else if widening.is_nan() {
         let low_pass = match &options.low_pass {
             None => "the low-pass of the instrument is needed (--low-pass, --order)",
             Some(_) => "the low-pass is another than stated, or the contact another than modelled",

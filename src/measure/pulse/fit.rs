@@ -136,12 +136,12 @@ impl Samples {
     }
 
     /// How much the uncertainties of a fit are to be enlarged; not a number where the pulse begins otherwise than the model
-    /// can, which no enlarging covers.
+    /// can, which no enlarging covers, or where too few samples are left to know their scatter.
     pub fn widening(&self, fitted: &Fitted, whiteness: &Whiteness) -> f64 {
         if whiteness.rejected() && self.misses_onset(fitted) {
             return f64::NAN;
         }
-        whiteness.inflation * student(fitted.fit.degrees_of_freedom())
+        whiteness.inflation * student(fitted.fit.degrees_of_freedom()).unwrap_or(f64::NAN)
     }
 
     /// Whether the residuals around the onset have more than twice the variance of the others, and more than chance gives: the

@@ -81,9 +81,9 @@ impl Drop {
             return Err(Error::usage("a height without an interval", "--interval S, or records of drops"));
         }
         let mean = self.intervals.iter().sum::<f64>() / n as f64;
-        let scatter = (n > 3).then(|| {
+        let scatter = student(n - 1).map(|factor| {
             let s2 = self.intervals.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / (n - 1) as f64;
-            student(n - 1) * (s2 / n as f64).sqrt()
+            factor * (s2 / n as f64).sqrt()
         });
         let stated = self.interval_std.map(|s| s / (n as f64).sqrt());
         let timing = match (scatter, stated) {

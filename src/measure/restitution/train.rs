@@ -217,7 +217,7 @@ fn fit(flights: &[Flight], trains: &[Train]) -> Option<Fitted> {
         let (scatter, onsets) = (ratios.gls(1.0, 0.0, true)?, ratios.gls(0.0, unit.recip(), true)?);
         let best = if onsets.likelihood > scatter.likelihood + SCATTER { onsets } else { scatter };
         // The residuals give the scale: Student's distribution, which has no variance up to two degrees of freedom.
-        let factor = if free > 2 { student(free) } else { f64::NAN };
+        let factor = student(free).unwrap_or(f64::NAN);
         return Some(Fitted { std: factor * best.std, ..best });
     };
     let sigma2 = stated.iter().map(|s| s * s).sum::<f64>() / stated.len() as f64;

@@ -1,6 +1,6 @@
 //! Hammer drills: the average turn, a few turns as measured, motion against noise, speed over time.
 
-use crate::measure::drill::Drill;
+use crate::measure::drill::{Drill, Impact};
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 
 /// Most points of a line: more are not seen in print.
@@ -8,6 +8,13 @@ const POINTS: usize = 4000;
 
 /// Most markers over a line: more hide it.
 const MARKERS: usize = 60;
+
+/// Colour and marker of the velocities before and after the impacts of each group; the last are for all further groups.
+const FORMS: [[(Ink, Marker); 2]; 3] = [
+    [(Ink::Nth(1), Marker::Circle), (Ink::Nth(2), Marker::Square)],
+    [(Ink::Nth(3), Marker::Triangle), (Ink::Nth(4), Marker::Diamond)],
+    [(Ink::Grey, Marker::OpenCircle), (Ink::Grey, Marker::Cross)],
+];
 
 /// All figures of a record, by file name.
 pub fn drill(name: &str, drill: &Drill) -> Vec<(String, Figure)> {
@@ -25,30 +32,64 @@ fn average(name: &str, drill: &Drill) -> Figure {
     let degrees: Vec<f64> = a.phase.iter().map(|p| 360.0 * p).collect();
     let edge = |sign: f64| -> Vec<f64> { a.mean.iter().zip(&a.std).map(|(m, s)| m + sign * s).collect() };
     let x = || AxisSpec::new("Crank angle after the pulse", "°").limits(0.0, 360.0);
-    let at: Vec<f64> = drill.impacts.iter().map(|i| 360.0 * i.phase).collect();
-    let points = |name: &str, of: fn(&crate::measure::drill::Impact) -> f64, nth, marker| {
-        let values: Vec<f64> = drill.impacts.iter().map(of).collect();
-        let (x, y) = (thin(&at, MARKERS), thin(&values, MARKERS));
-        Series::points(name, x, y).ink(Ink::Nth(nth)).marker(marker)
-    };
-    let mut above = Plot::new(x(), AxisSpec::new("Velocity", "m/s"))
+    let above = Plot::new(x(), AxisSpec::new("Velocity", "m/s"))
         .with(Series::band("± 1 standard deviation", degrees.clone(), edge(-1.0), edge(1.0)).ink(Ink::Nth(0)))
         .with(Series::line("mean", degrees.clone(), a.mean.clone()).ink(Ink::Nth(0)).stroke(Stroke::Solid));
-    if !drill.impacts.is_empty() {
-        above = above.with(points("before impact", |i| i.before, 1, Marker::Circle)).with(points(
-            "after impact",
-            |i| i.after,
-            2,
-            Marker::Square,
-        ));
-    }
+    let (above, marked) = marks(above, drill, |i| 360.0 * i.phase, |_| true);
     let below = Plot::new(x(), AxisSpec::new("Displacement", "m")).with(
         Series::line("", degrees, drill.displacement.value.clone()).ink(Ink::Nth(0)).stroke(Stroke::Solid),
     );
     Figure::double(format!("Average turn, {name}")).height(130.0).shared_x().panel(above).panel(below).caption(format!(
-        "Mean of {} turns at {:.2} Hz with the scatter from turn to turn; displacement by integration over whole turns. Impacts of {} turns are marked.",
-        drill.averaged, drill.speed.value, thin(&at, MARKERS).len()
+        "Mean of {} turns at {:.2} Hz with the scatter from turn to turn; displacement by integration over whole turns. {marked} of {} impacts are marked.{}",
+        drill.averaged,
+        drill.speed.value,
+        drill.impacts.len(),
+        if drill.groups.len() > 1 { " Group 0 is the strongest, of which means are given." } else { "" }
     ))
+}
+
+/// Velocities before and after the impacts over `x`, each group with its own markers; and the number of impacts marked.
+fn marks(
+    mut plot: Plot,
+    drill: &Drill,
+    x: impl Fn(&Impact) -> f64,
+    shown: impl Fn(&Impact) -> bool,
+) -> (Plot, usize) {
+    let mut marked = 0;
+    for (number, forms) in FORMS.iter().enumerate() {
+        let last = number + 1 == FORMS.len();
+        let own: Vec<Impact> = drill
+            .impacts
+            .iter()
+            .filter(|i| shown(i) && (i.group == number || last && i.group > number))
+            .copied()
+            .collect();
+        if own.is_empty() {
+            continue;
+        }
+        let of = match drill.groups.len() {
+            0 | 1 => String::new(),
+            n if last && n > FORMS.len() => ", other groups".to_owned(),
+            _ => format!(", group {number}"),
+        };
+        let own = thin(&own, MARKERS);
+        marked += own.len();
+        let at: Vec<f64> = own.iter().map(&x).collect();
+        let [before, after] = *forms;
+        let values = |of: fn(&Impact) -> f64| own.iter().map(of).collect::<Vec<f64>>();
+        plot = plot
+            .with(
+                Series::points(format!("before impact{of}"), at.clone(), values(|i| i.before))
+                    .ink(before.0)
+                    .marker(before.1),
+            )
+            .with(
+                Series::points(format!("after impact{of}"), at, values(|i| i.after))
+                    .ink(after.0)
+                    .marker(after.1),
+            );
+    }
+    (plot, marked)
 }
 
 fn trace(name: &str, drill: &Drill) -> Figure {
@@ -57,17 +98,9 @@ fn trace(name: &str, drill: &Drill) -> Figure {
     let n = drill.excerpt.len();
     let end = start + n as f64 * step;
     let x = || AxisSpec::new("Time", "s").limits(start, end);
-    let mut above = Plot::new(x(), AxisSpec::new("Velocity", "m/s"))
+    let above = Plot::new(x(), AxisSpec::new("Velocity", "m/s"))
         .with(Series::line("measured", time(n), drill.excerpt.clone()).ink(Ink::Grey).stroke(Stroke::Thin));
-    let shown: Vec<_> = drill.impacts.iter().filter(|i| i.time >= start && i.time <= end).collect();
-    let t: Vec<f64> = shown.iter().map(|i| i.time).collect();
-    if !shown.is_empty() {
-        let before: Vec<f64> = shown.iter().map(|i| i.before).collect();
-        let after: Vec<f64> = shown.iter().map(|i| i.after).collect();
-        above = above
-            .with(Series::points("before impact", t.clone(), before).ink(Ink::Nth(1)).marker(Marker::Circle))
-            .with(Series::points("after impact", t, after).ink(Ink::Nth(2)).marker(Marker::Square));
-    }
+    let (above, _) = marks(above, drill, |i| i.time, |i| i.time >= start && i.time <= end);
     let reference = drill.excerpt_reference.clone();
     let mut below = Plot::new(x(), AxisSpec::new("Reference, as recorded", ""))
         .with(Series::line("", time(reference.len()), reference).ink(Ink::Black).stroke(Stroke::Thin));
@@ -126,6 +159,6 @@ fn floor(name: &str, drill: &Drill) -> Option<Figure> {
 }
 
 /// Every so many points, at most `most`.
-fn thin(values: &[f64], most: usize) -> Vec<f64> {
+fn thin<T: Copy>(values: &[T], most: usize) -> Vec<T> {
     values.iter().step_by(values.len().div_ceil(most).max(1)).copied().collect()
 }

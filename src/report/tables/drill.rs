@@ -27,6 +27,20 @@ pub fn drill(drills: &[(&str, &Drill)]) -> Table {
             let unit = if what.starts_with("phase") { "turn" } else { estimate.unit };
             row(what, Cell::from(estimate), unit, estimate.n);
         }
+        for (number, g) in d.groups.iter().enumerate().skip(1) {
+            let all = [
+                ("phase of impact", Some(&g.phase)),
+                ("velocity before impact", Some(&g.before)),
+                ("velocity after impact", Some(&g.after)),
+                ("energy before impact", g.energy.as_ref()),
+                ("energy given at impact", g.energy_given.as_ref()),
+                ("restitution", g.restitution.as_ref()),
+            ];
+            for (what, estimate) in all.into_iter().filter_map(|(w, e)| Some((w, e?))) {
+                let unit = if what.starts_with("phase") { "turn" } else { estimate.unit };
+                row(&format!("group {number}: {what}"), Cell::from(estimate), unit, estimate.n);
+            }
+        }
         row("speed variation", Cell::Number(d.speed_variation), "Hz", d.cycles);
         row("drift of a turn", Cell::from(&d.displacement.drift), "m", d.displacement.drift.n);
         row("largest acceleration", Cell::Number(d.bandwidth.acceleration), "m/s²", d.averaged);
@@ -59,8 +73,15 @@ pub fn drill_average(drill: &Drill) -> Table {
 
 /// Every impact.
 pub fn drill_impacts(drill: &Drill) -> Table {
-    let columns =
-        [("cycle", ""), ("time", "s"), ("speed", "Hz"), ("phase", "1"), ("before", "m/s"), ("after", "m/s")];
+    let columns = [
+        ("cycle", ""),
+        ("time", "s"),
+        ("speed", "Hz"),
+        ("phase", "1"),
+        ("before", "m/s"),
+        ("after", "m/s"),
+        ("group", ""),
+    ];
     let mut table = headed("Impacts", &columns);
     for i in &drill.impacts {
         let estimate = |value, std| Cell::Estimate { value, std: Some(std) };
@@ -71,6 +92,7 @@ pub fn drill_impacts(drill: &Drill) -> Table {
             estimate(i.phase, i.phase_std),
             estimate(i.before, i.before_std),
             estimate(i.after, i.after_std),
+            Cell::from(i.group),
         ]);
     }
     table
