@@ -23,6 +23,7 @@ mod average;
 mod beam;
 mod channels;
 mod crossing;
+mod cycle;
 mod edges;
 mod faults;
 mod file;
@@ -31,8 +32,10 @@ mod jumps;
 mod motion;
 mod options;
 mod passing;
+mod rebound;
 mod result;
 mod running;
+mod smoothing;
 mod summary;
 mod survey;
 mod turns;
@@ -40,15 +43,17 @@ mod turns;
 pub use average::Average;
 pub use beam::{Beam, From};
 pub use channels::{Channels, Slices};
+pub use cycle::Cycle;
 pub use edges::{Edge, Edges, Found};
 pub use faults::{FaultCount, Faults, State};
 pub use file::DrillFile;
 pub use floor::NoiseFloor;
 pub use jumps::{Impact, Jumps};
 pub use motion::{Bandwidth, Motion, displacement};
-pub use options::{DrillOptions, Smoothing};
+pub use options::DrillOptions;
 pub use result::{BeamResult, Corner, Displacement, Drill, Phases, Pulses};
 pub use running::Running;
+pub use smoothing::Smoothing;
 pub use survey::Survey;
 pub(crate) use turns::Numbered;
 pub use turns::{Turn, Turns};
@@ -67,6 +72,19 @@ const EXCERPT: usize = 1 << 16;
 /// If the parameters cannot be; if the velocity is constant or missing; if velocity and reference are the same; if the
 /// reference has not two levels, or no whole turn between its edges; if a channel cannot be read.
 pub fn drill(channels: &mut dyn Channels, options: &DrillOptions, still: Option<&Stream>) -> Result<Drill> {
+    drill_each(channels, options, still, &mut |_| Ok(()))
+}
+
+/// As [`drill`], and hands out each turn of the average, resampled, as it comes.
+///
+/// # Errors
+/// As [`drill`], and if `each` fails.
+pub fn drill_each(
+    channels: &mut dyn Channels,
+    options: &DrillOptions,
+    still: Option<&Stream>,
+    each: &mut dyn FnMut(&Cycle<'_>) -> Result<()>,
+) -> Result<Drill> {
     options.check()?;
     let rate = channels.rate();
     let factor = options.sensitivity * options.beam.factor();
@@ -101,9 +119,9 @@ pub fn drill(channels: &mut dyn Channels, options: &DrillOptions, still: Option<
     channels.play(&mut |block| {
         scale(block.first().copied().unwrap_or_default(), factor, &mut scaled);
         excerpt.push(&scaled, block.get(1).copied().unwrap_or_default());
-        pass.push(&scaled)
+        pass.push(&scaled, each)
     })?;
-    let pass = pass.finish()?;
+    let pass = pass.finish(each)?;
     let exposure = if handles.is_empty() { None } else { Some(exposure(&handles, options.hours)?) };
     let edge = found.std(reference.noise());
     Ok(summary::summary(summary::Measured {

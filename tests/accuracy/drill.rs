@@ -1,7 +1,7 @@
 //! Drill records made up from a machine that is known.
 
 #[path = "../../examples/hammer_drill/noise.rs"]
-mod noise;
+pub mod noise;
 #[allow(dead_code)]
 #[path = "../../examples/hammer_drill/stroke.rs"]
 mod stroke;

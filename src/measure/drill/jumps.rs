@@ -39,6 +39,9 @@ pub struct Impact {
     pub after: f64,
     /// Its standard uncertainty.
     pub after_std: f64,
+    /// Whether samples of the fits or of the contact stand at the end of the range: then the speeds are too small, and the
+    /// impact is in no mean.
+    pub clipped: bool,
 }
 
 /// What is kept of a jump until all are known.
@@ -53,6 +56,7 @@ struct Jump {
     slope: f64,
     weight: f64,
     sharp: bool,
+    clipped: bool,
 }
 
 /// Finds the jumps of one turn after the other.
@@ -159,7 +163,7 @@ impl Jumps {
 
     fn disturbed(&self, states: &[State], at: usize) -> bool {
         let near = states.get(at.saturating_sub(self.gap)..(at + self.gap + 1).min(states.len()));
-        near.is_some_and(|s| s.iter().any(|s| *s != State::Good))
+        near.is_some_and(|s| s.iter().any(|s| !s.measured()))
     }
 
     /// The jump near sample `near`: fits and crossing, twice, so that the fits stand around the crossing.
@@ -189,6 +193,11 @@ impl Jumps {
                 slope: step,
                 weight: (1.0 - share).powi(2) + share * share,
                 sharp: step.abs() > 0.8 * jump.abs(),
+                clipped: over_range(
+                    states,
+                    left - self.length as isize + 1,
+                    right + self.length as isize - 1,
+                ),
             };
             result = Some((found, [before, after]));
         }
@@ -205,7 +214,7 @@ impl Jumps {
         let scale = 1.0 / self.length as f64;
         let all = part.iter().zip(known).enumerate();
         let good: Vec<(f64, f64)> = all
-            .filter(|(_, (v, s))| **s == State::Good && v.is_finite())
+            .filter(|(_, (v, s))| s.measured() && v.is_finite())
             .map(|(k, (v, _))| (((from + k) as f64 - at) * scale, *v))
             .collect();
         if good.len() < FEWEST || 3 * good.len() < 2 * part.len() {
@@ -263,12 +272,19 @@ impl Jumps {
                     before_std: fitted[0].sqrt(),
                     after: j.after,
                     after_std: fitted[1].sqrt(),
+                    clipped: j.clipped,
                 }
             })
             .collect();
         impacts.sort_by(|a, b| a.time.total_cmp(&b.time));
         (impacts, self.hidden)
     }
+}
+
+/// Whether a sample from `from` to `to` stands at the end of the range.
+fn over_range(states: &[State], from: isize, to: isize) -> bool {
+    let [from, to] = [from, to].map(|i| i.max(0) as usize);
+    states.get(from..=to).is_some_and(|s| s.contains(&State::Clipped))
 }
 
 impl Side {

@@ -1,8 +1,10 @@
 //! From what the passes found to estimates and sentences.
 
 use super::passing::Pass;
-use super::result::{BeamResult, Corner, Displacement, Drill, Phases, Pulses};
-use super::{DrillOptions, FaultCount, Found, Impact, NoiseFloor, Running, Smoothing, Survey, Turns};
+use super::result::{BeamResult, Displacement, Drill, Phases, Pulses};
+use super::{
+    DrillOptions, FaultCount, Found, Impact, NoiseFloor, Running, Smoothing, Survey, Turns, rebound,
+};
 use crate::measure::Estimate;
 use crate::measure::exposure::Exposure;
 use crate::signal::welch::Stream;
@@ -39,6 +41,11 @@ pub(super) fn summary(m: Measured<'_>) -> Drill {
     let still =
         m.still.and_then(|still| NoiseFloor::new(m.pass.spectrum.as_ref()?, still, rate, options.margin));
     let count = m.pass.count;
+    let (taken, clipped) = within_range(&impacts);
+    let (restitution, no_restitution) = match rebound::restitution(&taken, options) {
+        Ok(found) => (found, None),
+        Err(why) => (None, Some(why)),
+    };
     let mut result = Drill {
         speed: m.turns.speed(rate, m.edge),
         speed_variation: spread.std(),
@@ -51,20 +58,21 @@ pub(super) fn summary(m: Measured<'_>) -> Drill {
             pauses: m.turns.pauses,
             std: m.edge / rate,
         },
-        before: mean_of(&impacts, "m/s", "parabola up to the contact, mean over impacts", |i| i.before),
-        after: mean_of(&impacts, "m/s", "parabola from the contact on, mean over impacts", |i| i.after),
-        phase: phase(&impacts),
-        phase_variation: phase_scatter(&impacts),
+        before: mean_of(&taken, "m/s", "parabola up to the contact, mean over impacts", |i| i.before),
+        after: mean_of(&taken, "m/s", "parabola from the contact on, mean over impacts", |i| i.after),
+        phase: phase(&taken),
+        phase_variation: phase_scatter(&taken),
         energy: options.mass.and_then(|m| {
-            mean_of(&impacts, "J", "½ m v² before, mean over impacts", |i| 0.5 * m * i.before * i.before)
+            mean_of(&taken, "J", "½ m v² before, mean over impacts", |i| 0.5 * m * i.before * i.before)
         }),
         energy_given: options.mass.and_then(|m| {
-            let taken = |i: &Impact| 0.5 * m * (i.before * i.before - i.after * i.after);
-            mean_of(&impacts, "J", "½ m (v² before − v² after), mean over impacts", taken)
+            let lost = |i: &Impact| 0.5 * m * (i.before * i.before - i.after * i.after);
+            mean_of(&taken, "J", "½ m (v² before − v² after), mean over impacts", lost)
         }),
-        restitution: restitution(&impacts, options),
+        restitution,
         impacts,
         hidden,
+        clipped,
         average: Phases { phase: m.pass.average.phase(), mean, std: m.pass.average.std() },
         displacement: Displacement {
             value,
@@ -78,13 +86,7 @@ pub(super) fn summary(m: Measured<'_>) -> Drill {
         noise_floor: still,
         exposure: m.exposure,
         beam: BeamResult { factor: options.beam.factor(), per_degree: options.beam.per_degree() },
-        smoothing: options.smoothing.map(|s| Corner {
-            kind: match s {
-                Smoothing::LowPass(_) => "zero-phase low-pass of second order, twice",
-                Smoothing::Exponential(_) => "exponential",
-            },
-            corner: s.corner(),
-        }),
+        smoothing: m.pass.corner.map(|corner| options.smoothing.stated(corner, rate)),
         speeds: m.turns.speeds(rate).collect(),
         times: m.turns.turns.iter().map(|t| t.start / rate).collect(),
         excerpt: m.excerpt.1,
@@ -92,6 +94,16 @@ pub(super) fn summary(m: Measured<'_>) -> Drill {
         excerpt_time: (m.excerpt.0 as f64 / rate, 1.0 / rate),
         warnings: Vec::new(),
     };
+    if one_sided(clipped, result.impacts.len()) {
+        let means = [
+            &mut result.before,
+            &mut result.after,
+            &mut result.energy,
+            &mut result.energy_given,
+            &mut result.restitution,
+        ];
+        means.into_iter().flatten().for_each(|e| e.std = None);
+    }
     result.warnings = warnings(
         &result,
         options,
@@ -100,11 +112,12 @@ pub(super) fn summary(m: Measured<'_>) -> Drill {
         (m.pass.left_out, m.turns.apart),
         m.still.is_some(),
     );
+    result.warnings.extend(no_restitution);
     result
 }
 
 /// Mean over impacts, its standard uncertainty from their scatter.
-fn mean_of(
+pub(super) fn mean_of(
     impacts: &[Impact],
     unit: &'static str,
     method: &str,
@@ -144,16 +157,27 @@ fn phase_scatter(impacts: &[Impact]) -> Option<f64> {
     Some(running.std()).filter(|s| s.is_finite())
 }
 
-/// R = (v₂⁺ − v₁⁺)/v₁⁻ with v₂⁺ = m₁(v₁⁻ − v₁⁺)/m₂ from the balance of momentum, the struck mass at rest before.
-fn restitution(impacts: &[Impact], options: &DrillOptions) -> Option<Estimate> {
-    let ratio = options.mass.zip(options.struck_mass).map(|(m, struck)| m / struck);
-    let method = if ratio.is_some() {
-        "balance of momentum, the struck mass at rest before"
-    } else {
-        "−after/before, which assumes that the struck mass does not move"
-    };
-    let ratio = ratio.unwrap_or(0.0);
-    mean_of(impacts, "1", method, |i| (ratio * (i.before - i.after) - i.after) / i.before)
+/// Impacts of the means: those that the instrument could follow, unless it could follow none.
+fn within_range(impacts: &[Impact]) -> (Vec<Impact>, usize) {
+    let kept: Vec<Impact> = impacts.iter().filter(|i| !i.clipped).copied().collect();
+    let clipped = impacts.len() - kept.len();
+    (if kept.is_empty() { impacts.to_vec() } else { kept }, clipped)
+}
+
+/// Whether leaving out `clipped` of `all` impacts may move a mean by more than its uncertainty. The impacts left out are likely
+/// the fastest; without a share p of its fastest, the mean of a normal distribution lies about 2pσ lower, and its standard
+/// uncertainty is σ/√n.
+fn one_sided(clipped: usize, all: usize) -> bool {
+    clipped > 0 && 2.0 * clipped as f64 > (all as f64).sqrt()
+}
+
+fn are(n: usize) -> &'static str {
+    if n == 1 { "is" } else { "are" }
+}
+
+/// A number with its noun.
+fn several(n: usize, noun: &str) -> String {
+    format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
 }
 
 fn warnings(
@@ -172,21 +196,35 @@ fn warnings(
         }
     };
     let r = &result.reference;
-    say(r.missing > 0, format!("{} reference edges are missing; their turns are left out.", r.missing));
-    say(r.extra > 0, format!("{} reference edges too many are passed over.", r.extra));
-    say(r.pauses > 0, format!("The reference pauses {} times.", r.pauses));
+    say(
+        r.missing > 0,
+        format!(
+            "{} missing; what turns they begin or end is left out.",
+            several(r.missing, "reference edge")
+        ),
+    );
+    say(r.extra > 0, format!("{} too many: passed over.", several(r.extra, "reference edge")));
+    say(r.pauses > 0, format!("The reference has {}.", several(r.pauses, "pause")));
     say(
         apart > 0,
         format!(
-            "With {} pulses a turn the phase is lost in a pause: only the longest stretch between pauses is used, {apart} turns are left out.",
-            options.pulses_per_turn
+            "With {} pulses a turn the phase is lost in a pause: only the longest stretch between pauses is used, without {}.",
+            options.pulses_per_turn,
+            several(apart, "turn")
         ),
     );
     say(
         found.sharp,
         format!("The reference rises within one sample: edges are known to {:.1e} s only.", r.std),
     );
-    say(reference.missing() > 0, format!("{} samples of the reference are missing.", reference.missing()));
+    say(
+        reference.missing() > 0,
+        format!(
+            "{} of the reference {} missing.",
+            several(reference.missing() as usize, "sample"),
+            are(reference.missing() as usize)
+        ),
+    );
     say(
         options.pulses_per_turn > 1,
         format!(
@@ -199,32 +237,45 @@ fn warnings(
     say(
         faults > 0,
         format!(
-            "{} drop-outs and {} spikes of the velocity were found, {share:.2} % of the samples; {} samples were bridged by straight lines.",
-            count.dropouts, count.spikes, count.bridged
+            "{} and {} of the velocity found, {share:.2} % of the samples; {} bridged by straight lines.",
+            several(count.dropouts, "drop-out"),
+            several(count.spikes, "spike"),
+            several(count.bridged, "sample")
         ),
     );
     say(
         count.lost > 0,
         format!(
-            "{} samples lie in drop-outs too long to be bridged; {left_out} turns are left out.",
-            count.lost
+            "{} in drop-outs too long to be bridged; {} left out.",
+            several(count.lost, "sample"),
+            several(left_out, "turn")
         ),
     );
     say(
         left_out > 0 && count.lost == 0,
         format!(
-            "{left_out} turns are left out: they are longer than can be kept, or cut off by the end of the record."
+            "{} left out: longer than can be kept, or cut off by the end of the record.",
+            several(left_out, "turn")
         ),
     );
     let limits = velocity.range().unwrap_or((0.0, 0.0));
     say(
         count.clipped > 0,
         format!(
-            "{} samples stand at the end of the range, {:.3} or {:.3} m/s: the instrument was over-range, and speeds near there are too small.",
-            count.clipped, limits.0, limits.1
+            "{} at the end of the range, {:.3} or {:.3} m/s: the instrument was over-range, and speeds near there are too small.",
+            several(count.clipped, "sample"),
+            limits.0,
+            limits.1
         ),
     );
-    say(result.hidden > 0, format!("{} impacts are hidden by faults of the velocity.", result.hidden));
+    say(result.hidden > 0, format!("{} hidden by faults of the velocity.", several(result.hidden, "impact")));
+    let (clipped, found) = (result.clipped, result.impacts.len());
+    let taken = match (clipped == found, one_sided(clipped, found)) {
+        (true, _) => "there are no others, so the means are too small and have no uncertainty",
+        (_, true) => "left out of the means, which lean to the slower ones and have no uncertainty",
+        _ => "left out of the means",
+    };
+    say(clipped > 0, format!("{} of {found} over-range: {taken}.", several(clipped, "impact")));
     say(result.impacts.is_empty(), "No impact was found: no jump of the velocity stands out.".to_owned());
     let per_degree = 100.0 * result.beam.per_degree;
     say(
@@ -267,15 +318,16 @@ fn bandwidth(result: &Drill, options: &DrillOptions, say: &mut impl FnMut(bool, 
     if let Some(limit) = options.instrument {
         say(b.f2 > limit, format!("f2 = {:.0} Hz lies beyond the instrument's {limit:.0} Hz.", b.f2));
     }
-    if let Some(Smoothing::Exponential(time)) = options.smoothing {
+    if let Smoothing::Exponential(time) = options.smoothing {
         say(true, format!("Exponential smoothing delays average and displacement by up to {time} s."));
     }
-    if let Some(smoothing) = options.smoothing {
-        let corner = smoothing.corner();
+    // The one chosen from the data stands in the result; one that was stated acts on what was asked for.
+    if let Some(corner) = result.smoothing.as_ref().filter(|_| options.smoothing != Smoothing::Phases) {
+        let corner = corner.corner;
         say(
             true,
             format!(
-                "Average, displacement and bandwidth are smoothed with a corner of {corner:.1} Hz; impacts are not."
+                "Average and displacement are smoothed with a corner of {corner:.1} Hz; impacts and bandwidth are not."
             ),
         );
     }

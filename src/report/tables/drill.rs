@@ -32,6 +32,12 @@ pub fn drill(drills: &[(&str, &Drill)]) -> Table {
         row("largest acceleration", Cell::Number(d.bandwidth.acceleration), "m/s²", d.averaged);
         row("f1", Cell::Number(d.bandwidth.f1), "Hz", d.averaged);
         row("f2", Cell::Number(d.bandwidth.f2), "Hz", d.averaged);
+        if let Some(s) = &d.smoothing {
+            row("low-pass of the average", Cell::Number(s.corner), "Hz", d.averaged);
+        }
+        if d.clipped > 0 {
+            row("impacts over-range", Cell::from(d.clipped), "", d.impacts.len());
+        }
         row("drop-outs", Cell::from(d.dropouts), "", d.faults.bridged + d.faults.lost);
         row("spikes", Cell::from(d.spikes), "", d.spikes);
         if let Some(e) = &d.exposure {
