@@ -396,6 +396,19 @@ mod tests {
     }
 
     #[test]
+    fn an_impact_whose_fits_reach_the_end_of_the_range_is_said() {
+        let values = trace(700.0);
+        let mut states = vec![State::Good; values.len()];
+        states[685..688].fill(State::Clipped);
+        let (impacts, hidden) = one(&values, &states);
+        assert!(impacts.len() == 1 && impacts[0].clipped && hidden == 0);
+        // Before the fits, which reach 60 samples back.
+        states.fill(State::Good);
+        states[500..600].fill(State::Clipped);
+        assert!(!one(&values, &states).0[0].clipped);
+    }
+
+    #[test]
     fn a_smooth_motion_has_no_impact() {
         let values: Vec<f64> = (0..2000).map(|i| 5.0 * (f64::from(i) * 0.004).sin()).collect();
         let mut noise = 3u64;

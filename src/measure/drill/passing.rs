@@ -16,7 +16,6 @@ const SETTLED: f64 = 8.0;
 
 /// What the turns are handed to.
 pub(super) struct Pass<'a> {
-    options: &'a DrillOptions,
     rate: f64,
     turns: &'a [Turn],
     next: usize,
@@ -42,7 +41,7 @@ pub(super) struct Pass<'a> {
 
 impl<'a> Pass<'a> {
     pub fn new(
-        options: &'a DrillOptions,
+        options: &DrillOptions,
         rate: f64,
         turns: &'a [Turn],
         survey: &Survey,
@@ -54,7 +53,6 @@ impl<'a> Pass<'a> {
         let corner = options.smoothing.corner(options.points, typical, rate);
         let filter = corner.map(|c| options.smoothing.filter(c, rate)).transpose()?;
         Ok(Pass {
-            options,
             rate,
             turns,
             next: 0,

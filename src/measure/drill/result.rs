@@ -101,6 +101,9 @@ pub struct Phases {
     pub mean: Vec<f64>,
     /// Standard deviation from turn to turn, in m/s.
     pub std: Vec<f64>,
+    /// Lowest and highest velocity of all turns, in m/s, for the picture of it.
+    #[serde(skip)]
+    pub range: Vec<(f64, f64)>,
 }
 
 /// Displacement by integration over whole turns.

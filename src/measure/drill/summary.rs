@@ -73,7 +73,12 @@ pub(super) fn summary(m: Measured<'_>) -> Drill {
         impacts,
         hidden,
         clipped,
-        average: Phases { phase: m.pass.average.phase(), mean, std: m.pass.average.std() },
+        average: Phases {
+            phase: m.pass.average.phase(),
+            mean,
+            std: m.pass.average.std(),
+            range: m.pass.average.range(),
+        },
         displacement: Displacement {
             value,
             stroke: over(m.pass.motion.stroke(), "peak to peak of the integrated velocity, mean over turns"),
@@ -198,10 +203,7 @@ fn warnings(
     let r = &result.reference;
     say(
         r.missing > 0,
-        format!(
-            "{} missing; what turns they begin or end is left out.",
-            several(r.missing, "reference edge")
-        ),
+        format!("{} missing: the turns there are left out.", several(r.missing, "reference edge")),
     );
     say(r.extra > 0, format!("{} too many: passed over.", several(r.extra, "reference edge")));
     say(r.pauses > 0, format!("The reference has {}.", several(r.pauses, "pause")));

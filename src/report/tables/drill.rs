@@ -36,10 +36,10 @@ pub fn drill(drills: &[(&str, &Drill)]) -> Table {
             row("low-pass of the average", Cell::Number(s.corner), "Hz", d.averaged);
         }
         if d.clipped > 0 {
-            row("impacts over-range", Cell::from(d.clipped), "", d.impacts.len());
+            row("impacts over-range", Cell::from(d.clipped.to_string().as_str()), "", d.impacts.len());
         }
-        row("drop-outs", Cell::from(d.dropouts), "", d.faults.bridged + d.faults.lost);
-        row("spikes", Cell::from(d.spikes), "", d.spikes);
+        row("drop-outs", Cell::from(d.dropouts.to_string().as_str()), "", d.faults.bridged + d.faults.lost);
+        row("spikes", Cell::from(d.spikes.to_string().as_str()), "", d.spikes);
         if let Some(e) = &d.exposure {
             row("a_hv", Cell::from(&e.a_hv), "m/s²", e.a_hv.n);
             if let Some(a8) = &e.a8 {
