@@ -280,7 +280,7 @@ fn each_impact_and_the_handle() {
         ["--handle", "along", "--handle", "across", "--handle-sensitivity", "100", "--exposure", "2"];
     let each = ["--each-cycle", table.to_str().unwrap()];
     let found = json(&with(&file, &[&handle[..], &each].concat()));
-    // ISO 5349-1, table A.2: 0.160 at 100 Hz, to three digits; the start of the filter adds a part in 1000.
+    // ISO 5349-1, table A.2: 0.160 at 100 Hz, to three digits.
     let truth = 0.160 * (100f64 + 25.0).sqrt() / 2f64.sqrt();
     let number = |key: &str| found["exposure"][key]["value"].as_f64().unwrap();
     assert!((number("a_hv") / truth - 1.0).abs() < 0.005, "{} {truth}", number("a_hv"));

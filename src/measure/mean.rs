@@ -69,7 +69,8 @@ mod tests {
     #[test]
     fn few_values_and_constants() {
         assert_eq!(serial_mean_std(&[1.0, 2.0, 3.0]), None);
-        assert_eq!(serial_mean_std(&[0.1; 50]), Some(0.0));
+        // The mean of fifty times 0.1 has a rounding of 1e-17.
+        assert!(serial_mean_std(&[0.1; 50]).unwrap() < 1e-17);
         assert_eq!(serial_mean_std(&[1.0, f64::NAN, 1.0, 2.0]), None);
     }
 }
