@@ -97,13 +97,12 @@ impl Cycles {
     }
 
     fn push(&mut self, cycle: &Cycle<'_>) -> Result<()> {
-        let mut file = match self.file.take() {
-            Some(file) => file,
-            None => {
-                let mut file = self.output.growing(&self.name)?;
-                file.push(&tables::drill_cycles_head(cycle.velocity.len()))?;
-                file
-            }
+        let mut file = if let Some(file) = self.file.take() {
+            file
+        } else {
+            let mut file = self.output.growing(&self.name)?;
+            file.push(&tables::drill_cycles_head(cycle.velocity.len()))?;
+            file
         };
         file.push(&tables::drill_cycles_row(cycle))?;
         self.file = Some(file);

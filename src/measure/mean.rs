@@ -56,7 +56,7 @@ mod tests {
                             7.0 + x
                         })
                         .collect();
-                    let mean = values.iter().sum::<f64>() / n as f64;
+                    let mean = values.iter().sum::<f64>() / f64::from(n);
                     (mean - 7.0).abs() < 1.96 * serial_mean_std(&values).unwrap()
                 })
                 .count();

@@ -75,7 +75,7 @@ pub struct Drill {
     /// Hours a day of that exposure: A(8)
     #[arg(long, value_name = "HOURS", requires = "handle")]
     pub exposure: Option<f64>,
-    /// Write every impact with the speed of its turn, and the velocity of every turn over the phase as NAME_velocity.csv
+    /// Write every impact with the speed of its turn, and beside it the velocity of every turn over the phase
     #[arg(long, value_name = "CSV")]
     pub each_cycle: Option<PathBuf>,
     /// Folder for figures as SVG and PNG and tables as CSV

@@ -16,7 +16,9 @@ const BEYOND: f64 = 2.0;
 /// cannot be told from 0, or more comes back than arrived.
 pub(super) fn restitution(impacts: &[Impact], options: &DrillOptions) -> Result<Option<Estimate>, String> {
     let mut approach = Running::default();
-    impacts.iter().for_each(|i| approach.push(i.before));
+    for impact in impacts {
+        approach.push(impact.before);
+    }
     let unclear = impacts.iter().filter(|i| i.before.abs() < CLEAR * i.before_std).count();
     if !impacts.is_empty() && (2 * unclear > impacts.len() || approach.mean().abs() < STEADY * approach.std())
     {

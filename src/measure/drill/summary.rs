@@ -200,40 +200,7 @@ fn warnings(
             all.push(sentence);
         }
     };
-    let r = &result.reference;
-    say(
-        r.missing > 0,
-        format!("{} missing: the turns there are left out.", several(r.missing, "reference edge")),
-    );
-    say(r.extra > 0, format!("{} too many: passed over.", several(r.extra, "reference edge")));
-    say(r.pauses > 0, format!("The reference has {}.", several(r.pauses, "pause")));
-    say(
-        apart > 0,
-        format!(
-            "With {} pulses a turn the phase is lost in a pause: only the longest stretch between pauses is used, without {}.",
-            options.pulses_per_turn,
-            several(apart, "turn")
-        ),
-    );
-    say(
-        found.sharp,
-        format!("The reference rises within one sample: edges are known to {:.1e} s only.", r.std),
-    );
-    say(
-        reference.missing() > 0,
-        format!(
-            "{} of the reference {} missing.",
-            several(reference.missing() as usize, "sample"),
-            are(reference.missing() as usize)
-        ),
-    );
-    say(
-        options.pulses_per_turn > 1,
-        format!(
-            "With {} pulses a turn the phase counts from the first pulse of the record, whichever that is.",
-            options.pulses_per_turn
-        ),
-    );
+    pulses(result, options, (reference, found), apart, &mut say);
     let faults = count.dropouts + count.spikes;
     let share = 100.0 * (count.bridged + count.lost) as f64 / velocity.samples().max(1) as f64;
     say(
@@ -306,6 +273,50 @@ fn warnings(
     );
     all.extend(result.exposure.iter().flat_map(|e| e.warnings.clone()));
     all
+}
+
+/// What is to be said of the reference.
+fn pulses(
+    result: &Drill,
+    options: &DrillOptions,
+    (reference, found): (&Survey, &Found),
+    apart: usize,
+    say: &mut impl FnMut(bool, String),
+) {
+    let r = &result.reference;
+    say(
+        r.missing > 0,
+        format!("{} missing: the turns there are left out.", several(r.missing, "reference edge")),
+    );
+    say(r.extra > 0, format!("{} too many: passed over.", several(r.extra, "reference edge")));
+    say(r.pauses > 0, format!("The reference has {}.", several(r.pauses, "pause")));
+    say(
+        apart > 0,
+        format!(
+            "With {} pulses a turn the phase is lost in a pause: only the longest stretch between pauses is used, without {}.",
+            options.pulses_per_turn,
+            several(apart, "turn")
+        ),
+    );
+    say(
+        found.sharp,
+        format!("The reference rises within one sample: edges are known to {:.1e} s only.", r.std),
+    );
+    say(
+        reference.missing() > 0,
+        format!(
+            "{} of the reference {} missing.",
+            several(reference.missing() as usize, "sample"),
+            are(reference.missing() as usize)
+        ),
+    );
+    say(
+        options.pulses_per_turn > 1,
+        format!(
+            "With {} pulses a turn the phase counts from the first pulse of the record, whichever that is.",
+            options.pulses_per_turn
+        ),
+    );
 }
 
 fn bandwidth(result: &Drill, options: &DrillOptions, say: &mut impl FnMut(bool, String)) {

@@ -33,7 +33,12 @@ pub fn drill(drills: &[(&str, &Drill)]) -> Table {
         row("f1", Cell::Number(d.bandwidth.f1), "Hz", d.averaged);
         row("f2", Cell::Number(d.bandwidth.f2), "Hz", d.averaged);
         if let Some(s) = &d.smoothing {
-            row("low-pass of the average", Cell::Number(s.corner), "Hz", d.averaged);
+            row(
+                if s.kind == "exponential" { "smoothing of the average" } else { "low-pass of the average" },
+                Cell::Number(s.corner),
+                "Hz",
+                d.averaged,
+            );
         }
         if d.clipped > 0 {
             row("impacts over-range", Cell::from(d.clipped.to_string().as_str()), "", d.impacts.len());
