@@ -30,9 +30,11 @@
 mod drill;
 mod entry;
 mod locate;
+mod low_pass;
 mod record;
 
 pub use entry::{Compute, Drive, SweepEntry};
+pub use low_pass::{LowPass, Word};
 pub use record::{DrillEntry, DropEntry, FrfEntry, ImpactsEntry, PulseEntry, RecordEntry};
 
 use crate::error::{Error, Place, Result};

@@ -9,6 +9,7 @@ pub mod jump;
 pub mod legacy;
 pub mod limit;
 pub mod line;
+mod mean;
 pub mod modal;
 pub mod noise;
 pub mod peaks;

@@ -147,6 +147,9 @@ fn a_campaign_measures_both_channels() {
     // The bit gains (1 + R) m/(m + M) of 7.5 m/s from rest.
     let gained = drills[1]["after"]["value"].as_f64().unwrap();
     assert!((gained - 7.5 * 1.45 * 0.14 / 0.57).abs() < 0.15, "{gained}");
+    // The bit strikes nothing: what it moves before the impacts cannot be told from rest.
+    assert!(drills[1]["restitution"].is_null() && drills[0]["restitution"]["value"].as_f64().unwrap() < 1.0);
+    assert!(found["warnings"].to_string().contains("bit: No restitution"), "{}", found["warnings"]);
     assert!(folder.path().join("results/drill_average_striker.svg").exists());
     // A key without a default that is left out is named.
     std::fs::write(&campaign, text.replace("from = \"normal\"", "")).unwrap();
@@ -198,6 +201,22 @@ fn what_allows_no_answer_says_why() {
         assert_eq!(with(&good, &bad).status.code(), Some(2), "{bad:?}");
     }
     let smooth = json(&with(&good, &["--low-pass", "500"]));
+    // Half the phases of the average times 50 turns a second is more than a quarter of 10 kHz.
+    let plain = json(&with(&good, &[]));
+    assert_eq!(plain["smoothing"]["corner"].as_f64(), Some(2500.0));
+    assert!(plain["smoothing"]["reason"].as_str().unwrap().contains("sampling rate"));
+    let off = json(&with(&good, &["--low-pass", "none"]));
+    assert!(off["smoothing"].is_null());
+    // Impacts and bandwidth are those of the velocity as it was measured, whatever the low-pass.
+    for found in [&plain, &smooth] {
+        assert_eq!((&found["bandwidth"], &found["impacts"]), (&off["bandwidth"], &off["impacts"]));
+    }
+    // A low-pass at 500 Hz takes (47.7/500)⁴ = 8e-5 of a sine of 47.7 Hz; where 200 samples cut its 209.4, the ends of turns
+    // are no turning points, and smoothing there is of the whole record, not of the turn.
+    let stroke = |d: &Value| d["displacement"]["stroke"]["value"].as_f64().unwrap();
+    for found in [&plain, &smooth] {
+        assert!((stroke(found) / stroke(&off) - 1.0).abs() < 2e-3, "{} {}", stroke(found), stroke(&off));
+    }
     assert_eq!((smooth["impacts"].as_array().unwrap().len(), smooth["cycles"].as_u64()), (0, Some(28)));
     let warnings = smooth["warnings"].to_string();
     assert!(warnings.contains("No impact was found") && warnings.contains("500.0 Hz"), "{warnings}");
@@ -261,13 +280,32 @@ fn each_impact_and_the_handle() {
         ["--handle", "along", "--handle", "across", "--handle-sensitivity", "100", "--exposure", "2"];
     let each = ["--each-cycle", table.to_str().unwrap()];
     let found = json(&with(&file, &[&handle[..], &each].concat()));
-    // ISO 5349-1, table A.2: 0.160 at 100 Hz, to three digits; the start of the filter adds a part in 1000.
+    // ISO 5349-1, table A.2: 0.160 at 100 Hz, to three digits.
     let truth = 0.160 * (100f64 + 25.0).sqrt() / 2f64.sqrt();
     let number = |key: &str| found["exposure"][key]["value"].as_f64().unwrap();
     assert!((number("a_hv") / truth - 1.0).abs() < 0.005, "{} {truth}", number("a_hv"));
     assert!((number("a8") / number("a_hv") - 0.5).abs() < 1e-12);
     // Sines of 32-bit samples: crests between samples and roundings.
     assert!((found["exposure"]["unweighted_peak"].as_f64().unwrap() / 10.0 - 1.0).abs() < 1e-3);
+    // Every turn over the phase: its columns have the means of the average.
+    let velocity = folder.path().join("cycles_velocity.csv");
+    let files: Vec<&str> = found["files"].as_array().unwrap().iter().map(|f| f.as_str().unwrap()).collect();
+    assert!(files.contains(&velocity.to_str().unwrap()), "{files:?}");
+    let rows = std::fs::read_to_string(&velocity).unwrap();
+    let head = rows.lines().next().unwrap();
+    assert!(head.starts_with("cycle,time (s),speed (Hz),velocity at phase 0.000000 (m/s)"), "{head}");
+    assert_eq!(head.split(',').count(), 723);
+    assert_eq!(rows.lines().count() as u64, 1 + found["averaged"].as_u64().unwrap());
+    let mut sums = vec![(0.0, 0.0); 720];
+    for row in rows.lines().skip(1) {
+        for (sum, cell) in sums.iter_mut().zip(row.split(',').skip(3)).filter(|(_, c)| !c.is_empty()) {
+            *sum = (sum.0 + cell.parse::<f64>().unwrap(), sum.1 + 1.0);
+        }
+    }
+    for ((sum, n), mean) in sums.iter().zip(found["average"]["mean"].as_array().unwrap()) {
+        // Seven digits of at most 10 m/s.
+        assert!((sum / n - mean.as_f64().unwrap()).abs() < 1e-5);
+    }
     let text = std::fs::read_to_string(&table).unwrap();
     let impacts = found["impacts"].as_array().unwrap();
     assert!(text.starts_with("cycle,time") || text.starts_with("cycle,\"time"), "{}", &text[..40]);
@@ -385,4 +423,45 @@ fn swapped_channels_are_suspected() {
     let file = csv(folder.path(), "right.csv", |i| ((i as f64 * 0.03).sin(), pulse(i)));
     let right = json(&with(&file, &[]))["warnings"].to_string();
     assert!(!right.contains("swapped"), "{right}");
+}
+
+#[test]
+fn impacts_beyond_the_range_are_in_no_mean() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = record::record(1.0);
+    let limited = |limit: f64| {
+        let striker = made.striker.iter().map(|v| v.min(0.25 * limit)).collect();
+        let channels = [volts("striker", striker), volts("pulse", made.pulse.clone())];
+        json(&with(
+            &wav(folder.path(), "limited.wav", &channels),
+            &["--mass", "0.14", "--struck-mass", "0.43"],
+        ))
+    };
+    // Speeds of 7.5 ± 0.15 m/s: a quarter of them is above 7.6 m/s, the standard uncertainty of the mean is a seventh of 0.15.
+    let some = limited(7.6);
+    let impacts = some["impacts"].as_array().unwrap();
+    let clipped = |i: &&Value| i["clipped"].as_bool().unwrap();
+    let count = impacts.iter().filter(clipped).count();
+    assert!(count > 4 && count < impacts.len() / 2, "{count}");
+    assert_eq!(some["clipped"].as_u64(), Some(count as u64));
+    for impact in impacts {
+        let number = |key: &str| impact[key].as_f64().unwrap();
+        let truth = made.impacts.iter().find(|t| (t.time - number("time")).abs() < 5e-5).unwrap();
+        // The speed rises by 0.012 m/s a sample up to the contact, which takes three samples before its middle, and two samples
+        // at the limit are needed: 0.046 m/s, and four times 12 mm/s of noise.
+        if truth.before > 7.7 {
+            assert!(clipped(&impact), "{impact} {}", truth.before);
+        } else if truth.before < 7.55 {
+            assert!(!clipped(&impact), "{impact} {}", truth.before);
+            assert!((number("before") - truth.before).abs() < 6.0 * number("before_std"), "{impact}");
+        }
+    }
+    assert_eq!(some["before"]["n"].as_u64(), Some((impacts.len() - count) as u64));
+    for key in ["before", "after", "energy", "energy_given", "restitution"] {
+        assert!(some[key]["value"].is_f64() && some[key]["std"].is_null(), "{key}: {}", some[key]);
+    }
+    assert!(some["warnings"].to_string().contains("lean to the slower ones"), "{}", some["warnings"]);
+    let all = limited(5.0);
+    assert_eq!(all["clipped"].as_u64(), Some(all["impacts"].as_array().unwrap().len() as u64));
+    assert!(all["before"]["std"].is_null() && all["warnings"].to_string().contains("there are no others"));
 }

@@ -14,8 +14,8 @@ fn no_option_of_the_library_ends_in_a_panic() {
         all[0].contact = x;
         all[1].fit = x;
         all[2].longest_dropout = x;
-        all[3].smoothing = Some(Smoothing::LowPass(x));
-        all[4].smoothing = Some(Smoothing::Exponential(x));
+        all[3].smoothing = Smoothing::LowPass(x);
+        all[4].smoothing = Smoothing::Exponential(x);
         all[5].level = Some(x);
         all[6].sensitivity = x;
         (all[7].mass, all[7].struck_mass) = (Some(x), Some(x));

@@ -1,6 +1,6 @@
 //! Hammer drills of a campaign: from keys to a file and options.
 
-use super::{Campaign, DrillEntry};
+use super::{Campaign, DrillEntry, LowPass};
 use crate::error::Result;
 use crate::measure::drill::{Beam, DrillFile, DrillOptions, Smoothing};
 
@@ -26,7 +26,10 @@ impl Campaign {
         }
         let smoothing = match (entry.low_pass, entry.smoothing) {
             (Some(_), Some(_)) => return Err(wrong("both low_pass and smoothing".to_owned())),
-            (corner, time) => corner.map(Smoothing::LowPass).or(time.map(Smoothing::Exponential)),
+            (Some(LowPass::Corner(corner)), None) => Smoothing::LowPass(corner),
+            (Some(LowPass::Off(_)), None) => Smoothing::Off,
+            (None, Some(time)) => Smoothing::Exponential(time),
+            (None, None) => Smoothing::default(),
         };
         let noise = entry.noise.as_ref().map(|file| self.beside(&record, file, allow_outside));
         let beam = Beam::new(angle, from).map_err(|e| e.in_file(self.path()))?;

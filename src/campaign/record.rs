@@ -1,5 +1,6 @@
 //! Entries that name a file of records: what the file does not say, and what an analysis needs to know.
 
+use super::LowPass;
 use crate::measure::drill::{Edge, From};
 use crate::read::Reader;
 use crate::units::Unit;
@@ -143,8 +144,8 @@ record_entry! {
         contact: Option<f64>,
         /// Duration of the fits, s.
         fit: Option<f64>,
-        /// Corner of a zero-phase low-pass, Hz.
-        low_pass: Option<f64>,
+        /// Corner of the zero-phase low-pass, Hz, or `none`.
+        low_pass: Option<LowPass>,
         /// Time constant of exponential smoothing, s.
         smoothing: Option<f64>,
         /// Highest frequency that the instrument passes, Hz.

@@ -18,7 +18,7 @@ mod waterfall;
 
 pub use compare::Compare;
 pub use convert::{Change, Convert};
-pub use drill::{Drill, Edge, From};
+pub use drill::{Drill, Edge, From, LowPass};
 pub use excitation::Excitation;
 pub use impacts::{Finding, Impacts};
 pub use info::Info;

@@ -2,8 +2,8 @@
 
 use super::{args, complain, print, progress, settings};
 use crate::error::{Error, Result};
-use crate::measure::drill::{Beam, Drill, DrillFile, DrillOptions, Edge, From, Smoothing};
-use crate::report::{Output, files, pictures, tables};
+use crate::measure::drill::{Beam, Cycle, Drill, DrillFile, DrillOptions, Edge, From, Smoothing};
+use crate::report::{Growing, Output, files, pictures, tables};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -28,10 +28,15 @@ pub fn run(typed: &args::Drill, json: bool) -> Result<()> {
     };
     let bar = progress::bar(json);
     bar.set_message("samples, three passes");
-    let found = file.measure(&options, &|done, all| {
-        bar.set_length(all as u64);
-        bar.set_position(done as u64);
-    });
+    let mut cycles = typed.each_cycle.as_deref().map(|path| Cycles::new(path, typed)).transpose()?;
+    let found = file.measure_each(
+        &options,
+        &|done, all| {
+            bar.set_length(all as u64);
+            bar.set_position(done as u64);
+        },
+        &mut |cycle| cycles.as_mut().map_or(Ok(()), |c| c.push(cycle)),
+    );
     bar.finish_and_clear();
     let drill = found?;
     let mut written = Vec::new();
@@ -43,13 +48,11 @@ pub fn run(typed: &args::Drill, json: bool) -> Result<()> {
         output.write("impacts.csv", tables::drill_impacts(&drill).csv())?;
         written = output.written().to_vec();
     }
-    if let Some(path) = &typed.each_cycle {
-        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let name = path.file_name().map(|n| n.to_string_lossy().into_owned());
-        let name =
-            name.ok_or_else(|| Error::usage("--each-cycle without a file name", "a file, NAME.csv"))?;
+    if let Some((path, cycles)) = typed.each_cycle.as_ref().zip(cycles) {
+        let (folder, name) = apart(path)?;
         Output::new(folder)?.write(&name, tables::drill_impacts(&drill).csv())?;
         written.push(path.display().to_string());
+        written.extend(cycles.finish()?);
     }
     if json {
         return print::json(&Answer { drill, files: written });
@@ -61,6 +64,57 @@ pub fn run(typed: &args::Drill, json: bool) -> Result<()> {
         let _ = writeln!(text, "wrote {file}");
     }
     print::text(&text)
+}
+
+/// Folder and name of a file.
+fn apart(path: &Path) -> Result<(&Path, String)> {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let name = path.file_name().map(|n| n.to_string_lossy().into_owned());
+    Ok((folder, name.ok_or_else(|| Error::usage("--each-cycle without a file name", "a file, NAME.csv"))?))
+}
+
+/// The table of turns over the phase, written as they come: in the folder of results, or beside the table of impacts.
+struct Cycles {
+    output: Output,
+    /// Made with the first turn, so that a record that allows no answer leaves nothing.
+    file: Option<Growing>,
+    name: String,
+    in_results: bool,
+}
+
+impl Cycles {
+    fn new(path: &Path, typed: &args::Drill) -> Result<Cycles> {
+        let (beside, name) = apart(path)?;
+        let stem =
+            Path::new(&name).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        let output = Output::new(typed.out.as_deref().unwrap_or(beside))?;
+        Ok(Cycles {
+            output,
+            file: None,
+            name: format!("{stem}_velocity.csv"),
+            in_results: typed.out.is_some(),
+        })
+    }
+
+    fn push(&mut self, cycle: &Cycle<'_>) -> Result<()> {
+        let mut file = if let Some(file) = self.file.take() {
+            file
+        } else {
+            let mut file = self.output.growing(&self.name)?;
+            file.push(&tables::drill_cycles_head(cycle.velocity.len()))?;
+            file
+        };
+        file.push(&tables::drill_cycles_row(cycle))?;
+        self.file = Some(file);
+        Ok(())
+    }
+
+    /// Name of the file, as the others of its folder are named; `None` where there was no turn.
+    fn finish(mut self) -> Result<Option<String>> {
+        let Some(file) = self.file else { return Ok(None) };
+        let path = self.output.finish(file)?;
+        Ok(Some(if self.in_results { self.name } else { path.display().to_string() }))
+    }
 }
 
 fn options(typed: &args::Drill) -> Result<DrillOptions> {
@@ -78,7 +132,12 @@ fn options(typed: &args::Drill) -> Result<DrillOptions> {
     let beam = Beam::new(typed.beam_angle, from)?;
     // Without a number the file must say that the channel is a velocity.
     let sensitivity = typed.sensitivity.unwrap_or(f64::NAN);
-    let low_pass = typed.low_pass.map(Smoothing::LowPass);
+    let smoothing = match (typed.low_pass, typed.smoothing) {
+        (Some(args::LowPass::Off), _) => Smoothing::Off,
+        (Some(args::LowPass::Corner(corner)), _) => Smoothing::LowPass(corner),
+        (None, Some(time)) => Smoothing::Exponential(time),
+        (None, None) => Smoothing::default(),
+    };
     Ok(DrillOptions {
         level: typed.level,
         mass: typed.mass,
@@ -87,7 +146,7 @@ fn options(typed: &args::Drill) -> Result<DrillOptions> {
         fit: typed.fit,
         longest_dropout: typed.longest_dropout,
         points: typed.points,
-        smoothing: low_pass.or(typed.smoothing.map(Smoothing::Exponential)),
+        smoothing,
         instrument: typed.instrument,
         margin: typed.margin,
         hours: typed.exposure,

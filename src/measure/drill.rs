@@ -23,18 +23,20 @@ mod average;
 mod beam;
 mod channels;
 mod crossing;
+mod cycle;
 mod edges;
 mod faults;
 mod file;
 mod floor;
 mod groups;
 mod jumps;
-mod mean;
 mod motion;
 mod options;
 mod passing;
+mod rebound;
 mod result;
 mod running;
+mod smoothing;
 mod summary;
 mod survey;
 mod turns;
@@ -42,6 +44,7 @@ mod turns;
 use average::Average;
 pub use beam::{Beam, From};
 pub use channels::{Channels, Slices};
+pub use cycle::Cycle;
 pub use edges::Edge;
 pub(crate) use edges::{Edges, Found};
 pub use faults::FaultCount;
@@ -52,9 +55,10 @@ pub use jumps::Impact;
 use jumps::Jumps;
 pub use motion::Bandwidth;
 use motion::{Motion, displacement};
-pub use options::{DrillOptions, Smoothing};
+pub use options::DrillOptions;
 pub use result::{BeamResult, Corner, Displacement, Drill, Phases, Pulses};
 pub(crate) use running::Running;
+pub use smoothing::Smoothing;
 pub(crate) use survey::Survey;
 pub(crate) use turns::Numbered;
 pub use turns::{Turn, Turns};
@@ -73,6 +77,19 @@ const EXCERPT: usize = 1 << 16;
 /// If the parameters cannot be; if the velocity is constant or missing; if velocity and reference are the same; if the
 /// reference has not two levels, or no whole turn between its edges; if a channel cannot be read.
 pub fn drill(channels: &mut dyn Channels, options: &DrillOptions, still: Option<&Stream>) -> Result<Drill> {
+    drill_each(channels, options, still, &mut |_| Ok(()))
+}
+
+/// As [`drill`], and hands out each turn of the average, resampled, as it comes.
+///
+/// # Errors
+/// As [`drill`], and if `each` fails.
+pub fn drill_each(
+    channels: &mut dyn Channels,
+    options: &DrillOptions,
+    still: Option<&Stream>,
+    each: &mut dyn FnMut(&Cycle<'_>) -> Result<()>,
+) -> Result<Drill> {
     options.check()?;
     let rate = channels.rate();
     if !(rate.is_finite() && rate > 0.0) {
@@ -110,9 +127,9 @@ pub fn drill(channels: &mut dyn Channels, options: &DrillOptions, still: Option<
     channels.play(&mut |block| {
         scale(block.first().copied().unwrap_or_default(), factor, &mut scaled);
         excerpt.push(&scaled, block.get(1).copied().unwrap_or_default());
-        pass.push(&scaled)
+        pass.push(&scaled, each)
     })?;
-    let pass = pass.finish()?;
+    let pass = pass.finish(each)?;
     let exposure = if handles.is_empty() { None } else { Some(exposure(&handles, options.hours)?) };
     let edge = found.std(reference.noise());
     Ok(summary::summary(summary::Measured {

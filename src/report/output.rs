@@ -1,5 +1,6 @@
 //! A folder of results, each file of which appears whole or not at all.
 
+use super::Growing;
 use crate::error::{Error, Place, Result};
 use std::fs;
 use std::io::Write;
@@ -46,13 +47,7 @@ impl Output {
     /// If `name` is empty, absolute, or leads outside the folder, be it by `..` or over a link; if the system
     /// refuses. In either case a file that had this name stays as it was, and no temporary file is left.
     pub fn write(&mut self, name: &str, bytes: impl AsRef<[u8]>) -> Result<PathBuf> {
-        let path = self.folder.join(checked(name)?);
-        fs::create_dir_all(&self.folder).map_err(|e| Error::io("make the folder", &self.folder, e))?;
-        let parent = path.parent().unwrap_or(&self.folder).to_owned();
-        self.make_inside(&parent, name)?;
-        if path.is_dir() {
-            return Err(outside(name, "names a folder").hint("remove that folder or choose another name"));
-        }
+        let path = self.place(name)?;
         let temporary = temporary_beside(&path);
         let replaced = fill(&temporary, bytes.as_ref()).and_then(|()| fs::rename(&temporary, &path));
         if let Err(error) = replaced {
@@ -61,8 +56,43 @@ impl Output {
             let _ = fs::remove_file(&temporary);
             return Err(Error::io("write", &path, error));
         }
+        self.list(name);
+        Ok(path)
+    }
+
+    /// A file that is written part by part, and appears when it is finished.
+    ///
+    /// # Errors
+    /// As [`Output::write`].
+    pub fn growing(&self, name: &str) -> Result<Growing> {
+        let path = self.place(name)?;
+        Growing::new(name, temporary_beside(&path), path)
+    }
+
+    /// Gives such a file its name.
+    ///
+    /// # Errors
+    /// If the system refuses; then a file that had this name stays as it was.
+    pub fn finish(&mut self, file: Growing) -> Result<PathBuf> {
+        let (name, path) = file.finish()?;
+        self.list(&name);
+        Ok(path)
+    }
+
+    fn list(&mut self, name: &str) {
         if !self.written.iter().any(|w| w == name) {
             self.written.push(name.to_owned());
+        }
+    }
+
+    /// Path of a file in this folder, whose folders are made.
+    fn place(&self, name: &str) -> Result<PathBuf> {
+        let path = self.folder.join(checked(name)?);
+        fs::create_dir_all(&self.folder).map_err(|e| Error::io("make the folder", &self.folder, e))?;
+        let parent = path.parent().unwrap_or(&self.folder).to_owned();
+        self.make_inside(&parent, name)?;
+        if path.is_dir() {
+            return Err(outside(name, "names a folder").hint("remove that folder or choose another name"));
         }
         Ok(path)
     }
@@ -121,6 +151,23 @@ mod tests {
             fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
         names.sort();
         names
+    }
+
+    #[test]
+    fn a_growing_file_appears_when_it_is_finished() {
+        let home = tempfile::tempdir().unwrap();
+        let mut output = Output::new(home.path()).unwrap();
+        let mut file = output.growing("rows.csv").unwrap();
+        file.push("a\n").unwrap();
+        file.push("b\n").unwrap();
+        assert!(!home.path().join("rows.csv").exists());
+        output.finish(file).unwrap();
+        assert_eq!(fs::read_to_string(home.path().join("rows.csv")).unwrap(), "a\nb\n");
+        drop(output.growing("given_up.csv").unwrap());
+        assert_eq!(
+            (names(home.path()), output.written()),
+            (vec!["rows.csv".to_owned()], &["rows.csv".to_owned()][..])
+        );
     }
 
     #[test]

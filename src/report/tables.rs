@@ -1,10 +1,12 @@
 //! Results as tables: for the terminal, for CSV, for the report.
 
+mod cycles;
 mod drill;
 mod impacts;
 mod modal;
 mod pulse;
 
+pub use cycles::{drill_cycles_head, drill_cycles_row};
 pub use drill::{drill, drill_average, drill_impacts};
 pub use impacts::{impact_times, impacts, restitution};
 pub use modal::{modal_methods, modes};

@@ -25,6 +25,18 @@ enum Kind {
     HighPass(f64),
     BandPass(f64, f64),
     Smoothing(f64),
+    Analogue,
+}
+
+/// A section of a filter in the analogue plane, (b₀ + b₁s + b₂s²)/(a₀ + a₁s + a₂s²), s in rad/s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Analogue {
+    /// Numerator in rising powers of s.
+    pub b: [f64; 3],
+    /// Denominator in rising powers of s.
+    pub a: [f64; 3],
+    /// Frequency in Hz at which the digital section shall be exact.
+    pub exact: f64,
 }
 
 /// A filter for one sampling rate.
@@ -123,6 +135,21 @@ impl Filter {
         Ok(Filter { kind: Kind::Smoothing(corner), order: 1, rate, sections })
     }
 
+    /// Sections of second order one behind the other, each transformed bilinearly such that it is exact at one frequency:
+    /// s = c(1 − z⁻¹)/(1 + z⁻¹) with c = 2πf/tan(πf/rate).
+    ///
+    /// # Errors
+    /// If one of these frequencies does not lie between 0 and half the sampling rate.
+    pub fn analogue(sections: &[Analogue], rate: f64) -> Result<Filter> {
+        let digital = |part: &Analogue| {
+            let c = 2.0 * PI * part.exact / warped(part.exact, rate)?;
+            let scaled = |p: [f64; 3]| [p[0], p[1] * c, p[2] * c * c];
+            Ok(section(scaled(part.b), scaled(part.a)))
+        };
+        let sections = sections.iter().map(digital).collect::<Result<Vec<Section>>>()?;
+        Ok(Filter { kind: Kind::Analogue, order: 2 * sections.len(), rate, sections })
+    }
+
     /// The factor α of exponential smoothing; `None` for any other filter.
     pub fn alpha(&self) -> Option<f64> {
         match (self.kind, self.sections.as_slice()) {
@@ -210,11 +237,12 @@ impl Filter {
         3 * (2 * self.sections.len() + 1 - spare)
     }
 
-    /// Corners in Hz.
+    /// Corners in Hz; none for [`Filter::analogue`].
     pub fn corners(&self) -> Vec<f64> {
         match self.kind {
             Kind::LowPass(f) | Kind::HighPass(f) | Kind::Smoothing(f) => vec![f],
             Kind::BandPass(low, high) => vec![low, high],
+            Kind::Analogue => Vec::new(),
         }
     }
 
@@ -234,6 +262,7 @@ impl std::fmt::Display for Filter {
                 write!(f, "Butterworth band-pass of order {order}, corners {low} and {high} Hz")
             }
             Kind::Smoothing(corner) => write!(f, "exponential smoothing, corner {corner} Hz"),
+            Kind::Analogue => write!(f, "filter of order {order} from analogue sections"),
         }
     }
 }

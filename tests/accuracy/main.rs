@@ -2,6 +2,7 @@
 //! Many random cases with fixed seeds; run with `--nocapture` to see the figures.
 
 mod drill;
+mod exposure;
 mod impacts;
 mod modal;
 mod noise;

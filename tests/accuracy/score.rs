@@ -46,6 +46,14 @@ impl Score {
         assert!(bias.abs() <= 0.1_f64.max(3.0 / n.sqrt()), "{what}: bias {bias} of the bound");
         assert!((92.0..=98.0).contains(&coverage), "{what}: coverage {coverage} %");
     }
+
+    /// Prints the coverage; fails where it lies outside 92…98 %, or an uncertainty is not stated.
+    pub fn covers(&self, what: &str) {
+        let coverage = 100.0 * self.covered as f64 / self.n as f64;
+        println!("{what}: {} cases, coverage {coverage:.1} %", self.n);
+        assert!(self.unstated == 0 && self.n >= 200, "{what}: {} cases, {} without", self.n, self.unstated);
+        assert!((92.0..=98.0).contains(&coverage), "{what}: coverage {coverage} %");
+    }
 }
 
 /// Standard deviations of unbiased estimates of the parameters `p` from values with independent noise of this standard deviation:

@@ -50,9 +50,10 @@ pub struct Drill {
     /// Phases of the average
     #[arg(long, value_name = "N", default_value_t = 720)]
     pub points: usize,
-    /// Corner in Hz of a zero-phase low-pass for average and displacement
-    #[arg(long, value_name = "HZ", conflicts_with = "smoothing")]
-    pub low_pass: Option<f64>,
+    /// Corner in Hz of the zero-phase low-pass for average and displacement, or `none` [default: what the phases of the
+    /// average can show]
+    #[arg(long, value_name = "HZ", conflicts_with = "smoothing", value_parser = low_pass)]
+    pub low_pass: Option<LowPass>,
     /// Time constant in s of exponential smoothing instead of the low-pass
     #[arg(long, value_name = "TIME")]
     pub smoothing: Option<f64>,
@@ -74,7 +75,7 @@ pub struct Drill {
     /// Hours a day of that exposure: A(8)
     #[arg(long, value_name = "HOURS", requires = "handle")]
     pub exposure: Option<f64>,
-    /// Write every impact with the speed of its turn
+    /// Write every impact with the speed of its turn, and beside it the velocity of every turn over the phase
     #[arg(long, value_name = "CSV")]
     pub each_cycle: Option<PathBuf>,
     /// Folder for figures as SVG and PNG and tables as CSV
@@ -82,6 +83,19 @@ pub struct Drill {
     pub out: Option<PathBuf>,
     #[command(flatten)]
     pub reading: Reading,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LowPass {
+    Corner(f64),
+    Off,
+}
+
+fn low_pass(text: &str) -> Result<LowPass, String> {
+    match text {
+        "none" => Ok(LowPass::Off),
+        _ => text.parse().map(LowPass::Corner).map_err(|_| "a corner in Hz, or none".to_owned()),
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

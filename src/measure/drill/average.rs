@@ -8,26 +8,38 @@ use super::running::Running;
 #[derive(Debug, Clone)]
 pub struct Average {
     points: Vec<Running>,
+    /// Lowest and highest value at each phase.
+    range: Vec<(f64, f64)>,
+    row: Vec<f64>,
 }
 
 impl Average {
     /// An average at `points` phases, the first at the edge that begins the turn.
     pub fn new(points: usize) -> Average {
-        Average { points: vec![Running::default(); points] }
+        Average {
+            points: vec![Running::default(); points],
+            range: vec![(f64::INFINITY, f64::NEG_INFINITY); points],
+            row: Vec::new(),
+        }
     }
 
     /// Takes the turn from `start` to `end`, in samples of `values`. Phases beside a sample that was not measured are left
-    /// out.
-    pub fn push(&mut self, values: &[f64], states: &[State], start: f64, end: f64) {
+    /// out. Gives the velocity at each phase, NaN where it is left out.
+    pub fn push(&mut self, values: &[f64], states: &[State], start: f64, end: f64) -> &[f64] {
+        self.row.clear();
         let step = (end - start) / self.points.len().max(1) as f64;
-        for (k, point) in self.points.iter_mut().enumerate() {
+        for (k, (point, range)) in self.points.iter_mut().zip(&mut self.range).enumerate() {
             let at = start + k as f64 * step;
             let i = at as usize;
-            let good = states.get(i..i + 2).is_some_and(|s| s.iter().all(|s| *s == State::Good));
-            if let Some(v) = crossing::value(values, at).filter(|v| good && v.is_finite()) {
+            let good = states.get(i..i + 2).is_some_and(|s| s.iter().all(|s| s.measured()));
+            let value = crossing::value(values, at).filter(|v| good && v.is_finite());
+            self.row.push(value.unwrap_or(f64::NAN));
+            if let Some(v) = value {
                 point.push(v);
+                *range = (range.0.min(v), range.1.max(v));
             }
         }
+        &self.row
     }
 
     /// Phases in turns, from 0 on.
@@ -38,6 +50,11 @@ impl Average {
     /// Mean at each phase.
     pub fn mean(&self) -> Vec<f64> {
         self.points.iter().map(Running::mean).collect()
+    }
+
+    /// Lowest and highest value at each phase; the first is above the second where there is none.
+    pub fn range(&self) -> Vec<(f64, f64)> {
+        self.range.clone()
     }
 
     /// Standard deviation from turn to turn at each phase.

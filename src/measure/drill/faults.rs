@@ -7,10 +7,19 @@ use super::survey::Survey;
 pub enum State {
     /// As it was measured.
     Good,
+    /// As it was measured, but at the end of the range: over-range.
+    Clipped,
     /// A straight line over a fault.
     Bridged,
     /// In a fault too long to be bridged.
     Lost,
+}
+
+impl State {
+    /// Whether the value is the instrument's and not a bridge.
+    pub fn measured(self) -> bool {
+        matches!(self, State::Good | State::Clipped)
+    }
 }
 
 /// Number of faults found, and of the samples they cover.
@@ -60,6 +69,8 @@ pub struct Faults {
     raw: Vec<f64>,
     done: usize,
     endless: bool,
+    /// Whether the sample before was over-range.
+    over: bool,
     count: FaultCount,
 }
 
@@ -81,6 +92,7 @@ impl Faults {
             raw: Vec::new(),
             done: 0,
             endless: false,
+            over: false,
             count: FaultCount::default(),
         }
     }
@@ -105,9 +117,11 @@ impl Faults {
         let certain = if last { self.raw.len() } else { self.raw.len().saturating_sub(2 * AROUND) };
         while at < certain {
             let Some((kind, mut end)) = self.fault(at) else {
-                self.clip(at);
+                let clipped = self.clipped(at);
+                self.over = clipped;
+                self.count.clipped += usize::from(clipped);
                 values.push(self.raw[at]);
-                states.push(State::Good);
+                states.push(if clipped { State::Clipped } else { State::Good });
                 at += 1;
                 self.endless = false;
                 continue;
@@ -125,6 +139,7 @@ impl Faults {
             }
             self.bridge(at, end, &kind, values, states);
             self.endless = open;
+            self.over = false;
             at = end;
         }
         let keep = at.saturating_sub(AROUND + SPIKE);
@@ -212,23 +227,24 @@ impl Faults {
         })
     }
 
-    /// Counts a sample at the end of the range that equals a neighbour and that the signal did not reach by resolution.
-    fn clip(&mut self, i: usize) {
+    /// Whether a sample stands at the end of the range, equals a neighbour, and was not reached by resolution.
+    fn clipped(&self, i: usize) -> bool {
         let v = self.raw[i];
         if v > self.limits.0 && v < self.limits.1 {
-            return;
+            return false;
         }
         let same = |k: Option<usize>| k.and_then(|k| self.raw.get(k)) == Some(&v);
         if !(same(i.checked_sub(1)) || same(Some(i + 1))) {
-            return;
+            return false;
+        }
+        if self.over && same(i.checked_sub(1)) {
+            return true;
         }
         let outside = |mut values: Box<dyn Iterator<Item = &f64> + '_>| {
             values.find(|x| **x != v).is_some_and(|x| (x - v).abs() > 1.5 * self.quantum)
         };
         let near = (i + 1 + 2 * AROUND).min(self.raw.len());
-        if outside(Box::new(self.raw[..i].iter().rev())) || outside(Box::new(self.raw[i + 1..near].iter())) {
-            self.count.clipped += 1;
-        }
+        outside(Box::new(self.raw[..i].iter().rev())) || outside(Box::new(self.raw[i + 1..near].iter()))
     }
 }
 
@@ -278,7 +294,7 @@ mod tests {
         assert_eq!(states.iter().filter(|s| **s == State::Bridged).count(), 173);
         for (i, ((v, c), s)) in values.iter().zip(&clean).zip(&states).enumerate() {
             match s {
-                State::Good => assert_eq!(v, c),
+                State::Good | State::Clipped => assert_eq!(v, c),
                 // The noise of both ends, and the sagitta 5·0.003²·100²/8 = 0.056 of the longest bridge.
                 State::Bridged => assert!((v - c).abs() < 0.1 + 0.1 + 0.057, "{i}: {v} {c}"),
                 State::Lost => assert!((40_000..40_900).contains(&i)),

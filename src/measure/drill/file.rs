@@ -1,6 +1,6 @@
 //! Channels of a file, read block by block.
 
-use super::{Channels, Drill, DrillOptions, drill, still};
+use super::{Channels, Cycle, Drill, DrillOptions, drill_each, still};
 use crate::error::{Error, Place, Result};
 use crate::read::Reader;
 use crate::record::{Meta, Trace};
@@ -41,7 +41,7 @@ struct Played<'a> {
     all: usize,
 }
 
-/// Times that [`drill`] goes over a record.
+/// Times that [`super::drill`] goes over a record.
 const PASSES: usize = 3;
 
 impl DrillFile {
@@ -50,9 +50,22 @@ impl DrillFile {
     /// comes three times.
     ///
     /// # Errors
-    /// As [`drill`]; if a file cannot be read, a channel does not exist or is named twice, or has another rate; if a channel
+    /// As [`super::drill`]; if a file cannot be read, a channel does not exist or is named twice, or has another rate; if a channel
     /// that is no acceleration is given as a handle's without its sensitivity.
     pub fn measure(&self, options: &DrillOptions, progress: &dyn Fn(usize, usize)) -> Result<Drill> {
+        self.measure_each(options, progress, &mut |_| Ok(()))
+    }
+
+    /// As [`DrillFile::measure`], and hands out each turn of the average, resampled, as it comes.
+    ///
+    /// # Errors
+    /// As [`DrillFile::measure`], and if `each` fails.
+    pub fn measure_each(
+        &self,
+        options: &DrillOptions,
+        progress: &dyn Fn(usize, usize),
+        each: &mut dyn FnMut(&Cycle<'_>) -> Result<()>,
+    ) -> Result<Drill> {
         let mut names = vec![self.velocity.as_str(), self.reference.as_str()];
         names.extend(self.handle.iter().map(String::as_str));
         let mut doubts = Vec::new();
@@ -96,7 +109,7 @@ impl DrillFile {
                 Some(still(&mut silent, &options)?)
             }
         };
-        let mut found = drill(&mut channels, &options, noise.as_ref())?;
+        let mut found = drill_each(&mut channels, &options, noise.as_ref(), each)?;
         // Sensitivities were given: that a file knows none is no doubt.
         doubts.extend(channels.doubts.into_iter().filter(|d| !d.ends_with(Trace::UNCALIBRATED)));
         doubts.append(&mut found.warnings);

@@ -1,16 +1,13 @@
 //! Impacts that belong together: of one direction, at like phases of the turn.
 
-use super::mean::Mean;
-use super::{DrillOptions, Impact};
+use super::{DrillOptions, Impact, rebound};
 use crate::measure::Estimate;
+use crate::measure::mean::Mean;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
 /// Neighbours in phase that are farther apart than this part of a turn belong to two groups.
 const GAP: f64 = 0.1;
-/// Relative uncertainty of the mean approach speed up to which a ratio has a standard uncertainty: 1.96² times its square is
-/// Fieller's g, 0.04, and what propagation neglects is of that order (E. Fieller, J. R. Stat. Soc. B 16 (1954) 175).
-const KNOWN: f64 = 0.1;
 
 /// Impacts of one direction at like phases, and their means.
 ///
@@ -22,6 +19,8 @@ const KNOWN: f64 = 0.1;
 pub struct Group {
     /// Impacts.
     pub n: usize,
+    /// Those of them that went over the range of the instrument: they are in no mean, unless there are no others.
+    pub clipped: usize,
     /// Impacts for one turn measured: 1 where there is one in each.
     pub share: f64,
     /// Mean phase in turns after the edge, on the circle; no uncertainty where impacts come all round the turn.
@@ -38,6 +37,9 @@ pub struct Group {
     pub energy_given: Option<Estimate>,
     /// Sum of the speeds of separation over sum of the speeds of approach.
     pub restitution: Option<Estimate>,
+    /// Why there is no restitution.
+    #[serde(skip)]
+    pub(crate) unknown: Option<String>,
 }
 
 /// Impacts in the order of time, by number, of phases without a gap.
@@ -95,11 +97,14 @@ fn arcs(impacts: &[Impact], mut members: Vec<usize>) -> Vec<(Option<f64>, Vec<us
 impl Group {
     /// Means over `own` impacts; `front` tells that they go the way of the strongest group, towards the struck mass.
     fn new(own: &[Impact], start: Option<f64>, turns: usize, front: bool, options: &DrillOptions) -> Group {
+        let (all, own) = (own, within_range(own));
+        let clipped = all.iter().filter(|i| i.clipped).count();
+        let leaning = one_sided(clipped, all.len());
         let estimate = |unit, method: &str, of: &dyn Fn(&Impact) -> f64| {
             let mean = Mean::of(&own.iter().map(of).collect::<Vec<f64>>());
-            Estimate::new(mean.value, mean.std, unit, mean.n, method)
+            Estimate::new(mean.value, mean.std.filter(|_| !leaning), unit, mean.n, method)
         };
-        let (phase, phase_variation) = phase(own, start);
+        let (phase, phase_variation) = phase(&own, start);
         let energy = |m: f64| {
             estimate("J", "½ m v² before, mean over impacts", &move |i| 0.5 * m * i.before * i.before)
         };
@@ -107,18 +112,45 @@ impl Group {
             let taken = move |i: &Impact| 0.5 * m * (i.before * i.before - i.after * i.after);
             estimate("J", "½ m (v² before − v² after), mean over impacts", &taken)
         };
+        let (mut restitution, unknown) = match rebound::restitution(&own, front, options) {
+            Ok(found) => (found, None),
+            Err(why) => (None, Some(why)),
+        };
+        if let Some(found) = restitution.as_mut().filter(|_| leaning) {
+            found.std = None;
+        }
         Group {
-            n: own.len(),
-            share: own.len() as f64 / turns as f64,
+            n: all.len(),
+            clipped,
+            share: all.len() as f64 / turns as f64,
             phase,
             phase_variation,
             before: estimate("m/s", "parabola up to the contact, mean over impacts", &|i| i.before),
             after: estimate("m/s", "parabola from the contact on, mean over impacts", &|i| i.after),
             energy: options.mass.map(energy),
             energy_given: options.mass.map(given),
-            restitution: restitution(own, front, options),
+            restitution,
+            unknown,
         }
     }
+
+    /// Whether so many impacts were left out that the means lean to the slower ones, and have no uncertainty for it.
+    pub(super) fn leans(&self) -> bool {
+        one_sided(self.clipped, self.n)
+    }
+}
+
+/// Impacts of the means: those that the instrument could follow, unless it could follow none.
+fn within_range(impacts: &[Impact]) -> Vec<Impact> {
+    let kept: Vec<Impact> = impacts.iter().filter(|i| !i.clipped).copied().collect();
+    if kept.is_empty() { impacts.to_vec() } else { kept }
+}
+
+/// Whether leaving out `clipped` of `all` impacts may move a mean by more than its uncertainty. The impacts left out are likely
+/// the fastest; without a share p of its fastest, the mean of a normal distribution lies about 2pσ lower, and its standard
+/// uncertainty is σ/√n.
+fn one_sided(clipped: usize, all: usize) -> bool {
+    clipped > 0 && 2.0 * clipped as f64 > (all as f64).sqrt()
 }
 
 /// Phases run round the circle: their mean is taken along the arc on which they lie, or, where they lie all round, in the
@@ -141,31 +173,6 @@ fn phase(own: &[Impact], start: Option<f64>) -> (Estimate, Option<f64>) {
 
 fn add(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
     (a.0 + b.0, a.1 + b.1)
-}
-
-/// R = Σ(v₂⁺ − v₁⁺)/Σv₁⁻ with v₂⁺ = m₁(v₁⁻ − v₁⁺)/m₂ from the balance of momentum, the struck mass at rest before. The mean of
-/// the quotients would weigh slow impacts most. The uncertainty is that of the mean of (v₂⁺ − v₁⁺ − R v₁⁻)/mean(v₁⁻), which is
-/// the propagated one (delta method).
-fn restitution(own: &[Impact], front: bool, options: &DrillOptions) -> Option<Estimate> {
-    let known = options.mass.zip(options.struck_mass).map(|(m, struck)| m / struck);
-    let mut method = match known {
-        Some(_) if front => "balance of momentum, the struck mass at rest before",
-        Some(_) => "−after/before: away from the struck mass, what is struck is taken not to move",
-        None => "−after/before, which assumes that the struck mass does not move",
-    }
-    .to_owned();
-    method.push_str("; ratio of the sums over impacts");
-    let ratio = known.filter(|_| front).unwrap_or(0.0);
-    let separation: Vec<f64> = own.iter().map(|i| ratio * (i.before - i.after) - i.after).collect();
-    let approach = Mean::of(&own.iter().map(|i| i.before).collect::<Vec<f64>>());
-    let value = Mean::of(&separation).value / approach.value;
-    let off = own.iter().zip(&separation).map(|(i, s)| (s - value * i.before) / approach.value);
-    let std = Mean::of(&off.collect::<Vec<f64>>()).std;
-    let clear = approach.std.is_some_and(|s| s < KNOWN * approach.value.abs());
-    if !clear && approach.std.is_some() {
-        method.push_str("; no uncertainty: the mean speed of approach is not known within a tenth");
-    }
-    value.is_finite().then(|| Estimate::new(value, std.filter(|_| clear), "1", own.len(), method))
 }
 
 /// Sentences on groups.
@@ -199,7 +206,13 @@ pub(super) fn doubts(groups: &[Group]) -> Vec<String> {
         if group.phase.method.ends_with("no uncertainty") {
             said.push(format!("Impacts{of} come at all phases of the turn: their mean phase means little."));
         }
-        if group.restitution.as_ref().is_some_and(|r| r.std.is_none()) && group.n >= 4 {
+        said.extend(
+            group
+                .unknown
+                .as_ref()
+                .map(|why| why.replacen("No restitution", &format!("No restitution{of}"), 1)),
+        );
+        if group.restitution.as_ref().is_some_and(|r| r.method.ends_with("within a tenth")) {
             said.push(format!(
                 "The mean speed of approach of the impacts{of} is not known within a tenth: the restitution has no uncertainty."
             ));
@@ -231,6 +244,7 @@ mod tests {
             before_std: 0.0,
             after: *after,
             after_std: 0.0,
+            clipped: false,
         };
         of.iter().enumerate().map(one).collect()
     }
@@ -294,7 +308,7 @@ mod tests {
         let of: Vec<_> =
             (0..12).map(|k| (0.5, if k % 5 < 2 { 1.0 } else { -0.8 }, -3.0 - f64::from(k % 3))).collect();
         let found = groups(&mut impacts(&of), 12, &options(None));
-        assert_eq!(found[0].restitution.as_ref().and_then(|r| r.std), None);
-        assert!(doubts(&found)[0].contains("not known within a tenth"));
+        assert_eq!(found[0].restitution, None);
+        assert!(doubts(&found)[0].contains("cannot be told from 0"), "{:?}", doubts(&found));
     }
 }

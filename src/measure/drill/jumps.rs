@@ -41,6 +41,9 @@ pub struct Impact {
     pub after: f64,
     /// Its standard uncertainty.
     pub after_std: f64,
+    /// Whether samples of the fits or of the contact stand at the end of the range: then the speeds are too small, and the
+    /// impact is in no mean.
+    pub clipped: bool,
 }
 
 /// What is kept of a jump until all are known.
@@ -55,6 +58,7 @@ struct Jump {
     slope: f64,
     weight: f64,
     sharp: bool,
+    clipped: bool,
 }
 
 /// Finds the jumps of one turn after the other.
@@ -161,7 +165,7 @@ impl Jumps {
 
     fn disturbed(&self, states: &[State], at: usize) -> bool {
         let near = states.get(at.saturating_sub(self.gap)..(at + self.gap + 1).min(states.len()));
-        near.is_some_and(|s| s.iter().any(|s| *s != State::Good))
+        near.is_some_and(|s| s.iter().any(|s| !s.measured()))
     }
 
     /// The jump near sample `near`: fits and crossing, twice, so that the fits stand around the crossing.
@@ -191,6 +195,11 @@ impl Jumps {
                 slope: step,
                 weight: (1.0 - share).powi(2) + share * share,
                 sharp: step.abs() > 0.8 * jump.abs(),
+                clipped: over_range(
+                    states,
+                    left - self.length as isize + 1,
+                    right + self.length as isize - 1,
+                ),
             };
             result = Some((found, [before, after]));
         }
@@ -207,7 +216,7 @@ impl Jumps {
         let scale = 1.0 / self.length as f64;
         let all = part.iter().zip(known).enumerate();
         let good: Vec<(f64, f64)> = all
-            .filter(|(_, (v, s))| **s == State::Good && v.is_finite())
+            .filter(|(_, (v, s))| s.measured() && v.is_finite())
             .map(|(k, (v, _))| (((from + k) as f64 - at) * scale, *v))
             .collect();
         if good.len() < FEWEST || 3 * good.len() < 2 * part.len() {
@@ -266,12 +275,19 @@ impl Jumps {
                     before_std: fitted[0].sqrt(),
                     after: j.after,
                     after_std: fitted[1].sqrt(),
+                    clipped: j.clipped,
                 }
             })
             .collect();
         impacts.sort_by(|a, b| a.time.total_cmp(&b.time));
         (impacts, self.hidden)
     }
+}
+
+/// Whether a sample from `from` to `to` stands at the end of the range.
+fn over_range(states: &[State], from: isize, to: isize) -> bool {
+    let [from, to] = [from, to].map(|i| i.max(0) as usize);
+    states.get(from..=to).is_some_and(|s| s.contains(&State::Clipped))
 }
 
 impl Side {
@@ -380,6 +396,19 @@ mod tests {
         states[720..730].fill(State::Bridged);
         let (impacts, hidden) = one(&values, &states);
         assert!((impacts[0].after + 1.5).abs() < 1e-3 && hidden == 0);
+    }
+
+    #[test]
+    fn an_impact_whose_fits_reach_the_end_of_the_range_is_said() {
+        let values = trace(700.0);
+        let mut states = vec![State::Good; values.len()];
+        states[685..688].fill(State::Clipped);
+        let (impacts, hidden) = one(&values, &states);
+        assert!(impacts.len() == 1 && impacts[0].clipped && hidden == 0);
+        // Before the fits, which reach 60 samples back.
+        states.fill(State::Good);
+        states[500..600].fill(State::Clipped);
+        assert!(!one(&values, &states).0[0].clipped);
     }
 
     #[test]

@@ -38,13 +38,13 @@ pub struct Bandwidth {
 }
 
 impl Motion {
-    /// Takes the turn from `start` to `end`, in samples of `values` at `rate` samples a second.
+    /// Takes the turn from `start` to `end`, in samples of `values` at `rate` samples a second: how fast the motion changes.
     pub fn push(&mut self, values: &[f64], states: &[State], start: f64, end: f64, rate: f64) {
         let (from, to) = (start.ceil() as usize, end.ceil() as usize);
         let mut top = [0.0f64; 3];
         for i in from.max(1)..to {
             let (Some(v), Some(s)) = (values.get(i - 1..i + 2), states.get(i - 1..i + 2)) else { break };
-            if s.iter().all(|s| *s == State::Good) {
+            if s.iter().all(|s| s.measured()) {
                 top[0] = top[0].max(v[1].abs());
                 top[1] = top[1].max((0.5 * (v[2] - v[0])).abs());
                 top[2] = top[2].max((v[2] - 2.0 * v[1] + v[0]).abs());
@@ -53,11 +53,11 @@ impl Motion {
         self.speed.push(top[0]);
         self.acceleration.push(top[1] * rate);
         self.jerk.push(top[2] * rate * rate);
-        self.displace(values, start, end, rate);
     }
 
-    /// Trapezoids from edge to edge; the mean velocity of the turn is what drifts.
-    fn displace(&mut self, values: &[f64], start: f64, end: f64, rate: f64) {
+    /// Integrates the same turn, which may be smoothed here: trapezoids from edge to edge; the mean velocity of the turn is
+    /// what drifts.
+    pub fn displace(&mut self, values: &[f64], start: f64, end: f64, rate: f64) {
         let (Some(first), Some(last)) = (crossing::value(values, start), crossing::value(values, end)) else {
             return;
         };
@@ -141,6 +141,7 @@ mod tests {
         for k in 0..8 {
             let start = 3.7 + f64::from(k) * period;
             motion.push(&values, &vec![State::Good; 2000], start, start + period, rate);
+            motion.displace(&values, start, start + period, rate);
         }
         // Trapezoids of a sine fall short by (2πf/rate)²/12 = 7e-5; the top lies between samples, by (2πf/rate)²/8.
         let stroke = 2.0 * amplitude / (TAU * f);

@@ -1,30 +1,10 @@
 //! What must be known of a drill's record, and how it is taken.
 
-use super::{Beam, Edge};
+use super::{Beam, Edge, Smoothing};
 use crate::error::{Error, Result};
 
 /// More pulses in a turn than any encoder on a crank gives.
 const MOST_PULSES: usize = 10_000;
-
-/// How the velocity is smoothed before it is averaged and integrated. Impacts are always taken from the velocity as it was
-/// measured.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Smoothing {
-    /// Butterworth low-pass of second order, forward and backward: no delay. Corner in Hz, at half the amplitude.
-    LowPass(f64),
-    /// Exponential smoothing with this time constant in s: delays by it.
-    Exponential(f64),
-}
-
-impl Smoothing {
-    /// Corner in Hz.
-    pub fn corner(self) -> f64 {
-        match self {
-            Smoothing::LowPass(corner) => corner,
-            Smoothing::Exponential(time) => 1.0 / (std::f64::consts::TAU * time),
-        }
-    }
-}
 
 /// Parameters of [`super::drill`]. There is no default for those of which a wrong guess gives a plausible wrong answer.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,8 +31,8 @@ pub struct DrillOptions {
     pub longest_dropout: f64,
     /// Phases of the average. Default 720.
     pub points: usize,
-    /// Default none.
-    pub smoothing: Option<Smoothing>,
+    /// Of average and displacement. Default a zero-phase low-pass, see [`Smoothing::Phases`].
+    pub smoothing: Smoothing,
     /// Highest frequency in Hz that the instrument passes.
     pub instrument: Option<f64>,
     /// Margin in dB by which motion must stand above the noise floor. Default 10 dB.
@@ -76,7 +56,7 @@ impl DrillOptions {
             fit: 0.5e-3,
             longest_dropout: 2e-3,
             points: 720,
-            smoothing: None,
+            smoothing: Smoothing::default(),
             instrument: None,
             margin: 10.0,
             hours: None,
@@ -95,9 +75,10 @@ impl DrillOptions {
         if self.points < 2 || self.points > 100_000 {
             return Err(Error::usage(format!("an average at {} phases", self.points), "2 to 100000"));
         }
-        let smoothing = self.smoothing.map(|s| match s {
-            Smoothing::LowPass(v) | Smoothing::Exponential(v) => v,
-        });
+        let smoothing = match self.smoothing {
+            Smoothing::LowPass(v) | Smoothing::Exponential(v) => Some(v),
+            Smoothing::Phases | Smoothing::Off => None,
+        };
         let numbers = [
             ("mass", self.mass),
             ("struck mass", self.struck_mass),

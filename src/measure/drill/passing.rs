@@ -1,9 +1,10 @@
 //! One pass over the velocity: repaired, cut into turns, and each turn handed to what measures it.
 
+use super::cycle::{Cycle, Each};
 use super::faults::{FaultCount, Faults, State};
 use super::survey::median;
 use super::turns::Turn;
-use super::{Average, DrillOptions, Jumps, Motion, Smoothing, Survey, floor};
+use super::{Average, DrillOptions, Jumps, Motion, Survey, floor};
 use crate::error::Result;
 use crate::signal::filter::Filter;
 use crate::signal::welch::Stream;
@@ -15,12 +16,14 @@ const SETTLED: f64 = 8.0;
 
 /// What the turns are handed to.
 pub(super) struct Pass<'a> {
-    options: &'a DrillOptions,
     rate: f64,
     turns: &'a [Turn],
     next: usize,
     faults: Faults,
-    filter: Option<Filter>,
+    /// Of average and displacement, and whether it runs forward and backward.
+    filter: Option<(Filter, bool)>,
+    /// Its corner in Hz.
+    pub corner: Option<f64>,
     /// Repaired velocity from sample `base` on.
     values: Vec<f64>,
     states: Vec<State>,
@@ -38,26 +41,24 @@ pub(super) struct Pass<'a> {
 
 impl<'a> Pass<'a> {
     pub fn new(
-        options: &'a DrillOptions,
+        options: &DrillOptions,
         rate: f64,
         turns: &'a [Turn],
         survey: &Survey,
         spectrum: bool,
     ) -> Result<Pass<'a>> {
         let durations = turns.iter().map(|t| (t.end - t.start) / rate);
-        options.check_turn(median(durations))?;
-        let filter = match options.smoothing {
-            Some(Smoothing::LowPass(corner)) => Some(Filter::low_pass(corner, 2, rate)?),
-            Some(s @ Smoothing::Exponential(_)) => Some(Filter::smoothing(s.corner(), rate)?),
-            None => None,
-        };
+        let typical = median(durations);
+        options.check_turn(typical)?;
+        let corner = options.smoothing.corner(options.points, typical, rate);
+        let filter = corner.map(|c| options.smoothing.filter(c, rate)).transpose()?;
         Ok(Pass {
-            options,
             rate,
             turns,
             next: 0,
             faults: Faults::new(survey, (options.longest_dropout * rate) as usize),
             filter,
+            corner,
             values: Vec::new(),
             states: Vec::new(),
             base: 0,
@@ -72,39 +73,39 @@ impl<'a> Pass<'a> {
     }
 
     /// Takes the next samples of the velocity channel, multiplied by `factor` to m/s.
-    pub fn push(&mut self, block: &[f64]) -> Result<()> {
+    pub fn push(&mut self, block: &[f64], each: &mut Each<'_>) -> Result<()> {
         let known = self.values.len();
         self.faults.push(block, &mut self.values, &mut self.states);
         if let Some(spectrum) = &mut self.spectrum {
             spectrum.push(&self.values[known..]);
         }
-        self.measure(false)
+        self.measure(false, each)
     }
 
-    pub fn finish(mut self) -> Result<Pass<'a>> {
+    pub fn finish(mut self, each: &mut Each<'_>) -> Result<Pass<'a>> {
         let known = self.values.len();
         self.count = self.faults.clone().finish(&mut self.values, &mut self.states);
         if let Some(spectrum) = &mut self.spectrum {
             spectrum.push(&self.values[known..]);
         }
-        self.measure(true)?;
+        self.measure(true, each)?;
         Ok(self)
     }
 
     /// Samples that must be known before and after a turn.
     fn margin(&self) -> usize {
-        let settle = self.options.smoothing.map_or(0.0, |s| SETTLED * self.rate / s.corner());
+        let settle = self.corner.map_or(0.0, |corner| SETTLED * self.rate / corner);
         self.jumps.margin().max(settle.min(LONGEST) as usize) + 4
     }
 
-    fn measure(&mut self, last: bool) -> Result<()> {
+    fn measure(&mut self, last: bool, each: &mut Each<'_>) -> Result<()> {
         let margin = self.margin();
         while let Some(&turn) = self.turns.get(self.next) {
             let known = self.base + self.values.len();
             if turn.end + margin as f64 > known as f64 && !last {
                 break;
             }
-            self.turn(turn, margin)?;
+            self.turn(turn, margin, each)?;
             self.next += 1;
         }
         // What the next turn does not need goes; without turns ahead nothing is needed.
@@ -120,7 +121,7 @@ impl<'a> Pass<'a> {
         Ok(())
     }
 
-    fn turn(&mut self, turn: Turn, margin: usize) -> Result<()> {
+    fn turn(&mut self, turn: Turn, margin: usize, each: &mut Each<'_>) -> Result<()> {
         let from = (turn.start as usize).saturating_sub(margin + self.base);
         let to = ((turn.end.ceil() as usize + margin).saturating_sub(self.base)).min(self.values.len());
         let base = (self.base + from) as f64;
@@ -136,19 +137,25 @@ impl<'a> Pass<'a> {
             return Ok(());
         }
         self.jumps.push(self.next, turn, values, states, base);
-        let smooth = match (&self.filter, self.options.smoothing) {
-            (Some(filter), Some(Smoothing::LowPass(_))) => Some(filter.zero_phase(values)?),
-            (Some(filter), _) => {
+        self.motion.push(values, states, start, end, self.rate);
+        // Nothing is missing here: faults are bridged, and only whole turns come so far.
+        let smooth = match &self.filter {
+            Some((filter, true)) => Some(filter.zero_phase(values)?),
+            Some((filter, false)) => {
                 let mut out = values.to_vec();
                 filter.settled_at(values.first().copied().unwrap_or(0.0)).apply(&mut out);
                 Some(out)
             }
-            _ => None,
+            None => None,
         };
         let values = smooth.as_deref().unwrap_or(values);
-        self.average.push(values, states, start, end);
-        self.motion.push(values, states, start, end, self.rate);
+        self.motion.displace(values, start, end, self.rate);
         self.averaged += 1;
-        Ok(())
+        each(&Cycle {
+            number: self.next,
+            time: turn.start / self.rate,
+            speed: self.rate / (end - start),
+            velocity: self.average.push(values, states, start, end),
+        })
     }
 }

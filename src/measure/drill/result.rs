@@ -38,6 +38,8 @@ pub struct Drill {
     pub restitution: Option<Estimate>,
     /// Impacts that lie in a drop-out.
     pub hidden: usize,
+    /// Impacts whose fits reach the end of the range; they are in no mean unless there are no others.
+    pub clipped: usize,
     /// Velocity over the phase.
     pub average: Phases,
     /// Displacement over the phase.
@@ -56,7 +58,7 @@ pub struct Drill {
     pub exposure: Option<Exposure>,
     /// Factor of the beam.
     pub beam: BeamResult,
-    /// Smoothing of average and displacement.
+    /// Smoothing of average and displacement; `None` where it was switched off.
     pub smoothing: Option<Corner>,
     /// Speed of each turn in Hz, for the picture of it.
     #[serde(skip)]
@@ -101,6 +103,9 @@ pub struct Phases {
     pub mean: Vec<f64>,
     /// Standard deviation from turn to turn, in m/s.
     pub std: Vec<f64>,
+    /// Lowest and highest velocity of all turns, in m/s, for the picture of it.
+    #[serde(skip)]
+    pub range: Vec<(f64, f64)>,
 }
 
 /// Displacement by integration over whole turns.
@@ -128,6 +133,8 @@ pub struct BeamResult {
 pub struct Corner {
     /// Kind of smoothing.
     pub kind: &'static str,
-    /// Corner in Hz.
+    /// Corner in Hz: half the amplitude of the zero-phase low-pass, 1/√2 of exponential smoothing.
     pub corner: f64,
+    /// Why there.
+    pub reason: &'static str,
 }

@@ -17,11 +17,6 @@ impl Running {
         self.squares += step * (value - self.mean);
     }
 
-    /// Number of values.
-    pub fn n(&self) -> usize {
-        self.n
-    }
-
     /// Mean; NaN where there is no value.
     pub fn mean(&self) -> f64 {
         if self.n == 0 { f64::NAN } else { self.mean }

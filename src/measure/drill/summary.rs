@@ -1,12 +1,12 @@
 //! From what the passes found to estimates and sentences.
 
 use super::groups;
-use super::mean::Mean;
 use super::passing::Pass;
-use super::result::{BeamResult, Corner, Displacement, Drill, Phases, Pulses};
+use super::result::{BeamResult, Displacement, Drill, Phases, Pulses};
 use super::{DrillOptions, FaultCount, Found, NoiseFloor, Running, Smoothing, Survey, Turns};
 use crate::measure::Estimate;
 use crate::measure::exposure::Exposure;
+use crate::measure::mean::Mean;
 use crate::signal::welch::Stream;
 
 /// A pulse stands on its two levels for more than this part of the time; edges and noise are the rest.
@@ -47,6 +47,7 @@ pub(super) fn summary(m: Measured<'_>) -> Drill {
     let still =
         m.still.and_then(|still| NoiseFloor::new(m.pass.spectrum.as_ref()?, still, rate, options.margin));
     let count = m.pass.count;
+    let clipped = impacts.iter().filter(|i| i.clipped).count();
     let mut result = Drill {
         speed: m.turns.speed(rate, m.edge),
         speed_variation: spread.std(),
@@ -69,7 +70,13 @@ pub(super) fn summary(m: Measured<'_>) -> Drill {
         groups,
         impacts,
         hidden,
-        average: Phases { phase: m.pass.average.phase(), mean, std: m.pass.average.std() },
+        clipped,
+        average: Phases {
+            phase: m.pass.average.phase(),
+            mean,
+            std: m.pass.average.std(),
+            range: m.pass.average.range(),
+        },
         displacement: Displacement {
             value,
             stroke: over(m.pass.motion.stroke(), "peak to peak of the integrated velocity, mean over turns"),
@@ -82,13 +89,7 @@ pub(super) fn summary(m: Measured<'_>) -> Drill {
         noise_floor: still,
         exposure: m.exposure,
         beam: BeamResult { factor: options.beam.factor(), per_degree: options.beam.per_degree() },
-        smoothing: options.smoothing.map(|s| Corner {
-            kind: match s {
-                Smoothing::LowPass(_) => "zero-phase low-pass of second order, twice",
-                Smoothing::Exponential(_) => "exponential",
-            },
-            corner: s.corner(),
-        }),
+        smoothing: m.pass.corner.map(|corner| options.smoothing.stated(corner, rate)),
         speeds: m.turns.speeds(rate).collect(),
         times: m.turns.turns.iter().map(|t| t.start / rate).collect(),
         excerpt: m.excerpt.1,
@@ -107,6 +108,15 @@ pub(super) fn summary(m: Measured<'_>) -> Drill {
     result
 }
 
+fn are(n: usize) -> &'static str {
+    if n == 1 { "is" } else { "are" }
+}
+
+/// A number with its noun.
+fn several(n: usize, noun: &str) -> String {
+    format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
+}
+
 fn warnings(
     result: &Drill,
     options: &DrillOptions,
@@ -122,65 +132,56 @@ fn warnings(
             all.push(sentence);
         }
     };
-    let r = &result.reference;
-    say(r.missing > 0, format!("{} reference edges are missing; their turns are left out.", r.missing));
-    say(r.extra > 0, format!("{} reference edges too many are passed over.", r.extra));
-    say(r.pauses > 0, format!("The reference pauses {} times.", r.pauses));
-    say(
-        apart > 0,
-        format!(
-            "With {} pulses a turn the phase is lost in a pause: only the longest stretch between pauses is used, {apart} turns are left out.",
-            options.pulses_per_turn
-        ),
-    );
-    say(
-        found.sharp,
-        format!("The reference rises within one sample: edges are known to {:.1e} s only.", r.std),
-    );
+    pulses(result, options, (reference, found), apart, &mut say);
     say(
         velocity.two_levels() > PULSED && reference.two_levels() < MOVING,
         "The velocity has two levels as a pulse has, and the reference moves between its levels: are the two channels swapped?"
             .to_owned(),
-    );
-    say(reference.missing() > 0, format!("{} samples of the reference are missing.", reference.missing()));
-    say(
-        options.pulses_per_turn > 1,
-        format!(
-            "With {} pulses a turn the phase counts from the first pulse of the record, whichever that is.",
-            options.pulses_per_turn
-        ),
     );
     let faults = count.dropouts + count.spikes;
     let share = 100.0 * (count.bridged + count.lost) as f64 / velocity.samples().max(1) as f64;
     say(
         faults > 0,
         format!(
-            "{} drop-outs and {} spikes of the velocity were found, {share:.2} % of the samples; {} samples were bridged by straight lines.",
-            count.dropouts, count.spikes, count.bridged
+            "{} and {} of the velocity found, {share:.2} % of the samples; {} bridged by straight lines.",
+            several(count.dropouts, "drop-out"),
+            several(count.spikes, "spike"),
+            several(count.bridged, "sample")
         ),
     );
     say(
         count.lost > 0,
         format!(
-            "{} samples lie in drop-outs too long to be bridged; {left_out} turns are left out.",
-            count.lost
+            "{} in drop-outs too long to be bridged; {} left out.",
+            several(count.lost, "sample"),
+            several(left_out, "turn")
         ),
     );
     say(
         left_out > 0 && count.lost == 0,
         format!(
-            "{left_out} turns are left out: they are longer than can be kept, or cut off by the end of the record."
+            "{} left out: longer than can be kept, or cut off by the end of the record.",
+            several(left_out, "turn")
         ),
     );
     let limits = velocity.range().unwrap_or((0.0, 0.0));
     say(
         count.clipped > 0,
         format!(
-            "{} samples stand at the end of the range, {:.3} or {:.3} m/s: the instrument was over-range, and speeds near there are too small.",
-            count.clipped, limits.0, limits.1
+            "{} at the end of the range, {:.3} or {:.3} m/s: the instrument was over-range, and speeds near there are too small.",
+            several(count.clipped, "sample"),
+            limits.0,
+            limits.1
         ),
     );
-    say(result.hidden > 0, format!("{} impacts are hidden by faults of the velocity.", result.hidden));
+    say(result.hidden > 0, format!("{} hidden by faults of the velocity.", several(result.hidden, "impact")));
+    let (clipped, found) = (result.clipped, result.impacts.len());
+    let taken = match (clipped == found, result.groups.first().is_some_and(|g| g.leans())) {
+        (true, _) => "there are no others, so the means are too small and have no uncertainty",
+        (_, true) => "left out of the means, which lean to the slower ones and have no uncertainty",
+        _ => "left out of the means",
+    };
+    say(clipped > 0, format!("{} of {found} over-range: {taken}.", several(clipped, "impact")));
     say(result.impacts.is_empty(), "No impact was found: no jump of the velocity stands out.".to_owned());
     let per_degree = 100.0 * result.beam.per_degree;
     say(
@@ -203,6 +204,50 @@ fn warnings(
     );
     all.extend(result.exposure.iter().flat_map(|e| e.warnings.clone()));
     all
+}
+
+/// What is to be said of the reference.
+fn pulses(
+    result: &Drill,
+    options: &DrillOptions,
+    (reference, found): (&Survey, &Found),
+    apart: usize,
+    say: &mut impl FnMut(bool, String),
+) {
+    let r = &result.reference;
+    say(
+        r.missing > 0,
+        format!("{} missing: the turns there are left out.", several(r.missing, "reference edge")),
+    );
+    say(r.extra > 0, format!("{} too many: passed over.", several(r.extra, "reference edge")));
+    say(r.pauses > 0, format!("The reference has {}.", several(r.pauses, "pause")));
+    say(
+        apart > 0,
+        format!(
+            "With {} pulses a turn the phase is lost in a pause: only the longest stretch between pauses is used, without {}.",
+            options.pulses_per_turn,
+            several(apart, "turn")
+        ),
+    );
+    say(
+        found.sharp,
+        format!("The reference rises within one sample: edges are known to {:.1e} s only.", r.std),
+    );
+    say(
+        reference.missing() > 0,
+        format!(
+            "{} of the reference {} missing.",
+            several(reference.missing() as usize, "sample"),
+            are(reference.missing() as usize)
+        ),
+    );
+    say(
+        options.pulses_per_turn > 1,
+        format!(
+            "With {} pulses a turn the phase counts from the first pulse of the record, whichever that is.",
+            options.pulses_per_turn
+        ),
+    );
 }
 
 fn means(result: &Drill, options: &DrillOptions, say: &mut impl FnMut(bool, String)) {
@@ -236,15 +281,16 @@ fn bandwidth(result: &Drill, options: &DrillOptions, say: &mut impl FnMut(bool, 
     if let Some(limit) = options.instrument {
         say(b.f2 > limit, format!("f2 = {:.0} Hz lies beyond the instrument's {limit:.0} Hz.", b.f2));
     }
-    if let Some(Smoothing::Exponential(time)) = options.smoothing {
+    if let Smoothing::Exponential(time) = options.smoothing {
         say(true, format!("Exponential smoothing delays average and displacement by up to {time} s."));
     }
-    if let Some(smoothing) = options.smoothing {
-        let corner = smoothing.corner();
+    // The one chosen from the data stands in the result; one that was stated acts on what was asked for.
+    if let Some(corner) = result.smoothing.as_ref().filter(|_| options.smoothing != Smoothing::Phases) {
+        let corner = corner.corner;
         say(
             true,
             format!(
-                "Average, displacement and bandwidth are smoothed with a corner of {corner:.1} Hz; impacts are not."
+                "Average and displacement are smoothed with a corner of {corner:.1} Hz; impacts and bandwidth are not."
             ),
         );
     }

@@ -1,9 +1,9 @@
 //! From reference edges to turns: which are whole, how fast, how evenly.
 
-use super::mean::Mean;
 use super::survey::median;
 use crate::error::{Error, Result};
 use crate::measure::Estimate;
+use crate::measure::mean::Mean;
 
 /// Neighbours on each side whose median is the interval to be expected.
 const AROUND: usize = 15;

@@ -7,7 +7,7 @@ use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 const POINTS: usize = 4000;
 
 /// Most markers over a line: more hide it.
-const MARKERS: usize = 60;
+const MARKERS: usize = 20;
 
 /// Colour and marker of the velocities before and after the impacts of each group; the last are for all further groups.
 const FORMS: [[(Ink, Marker); 2]; 3] = [
@@ -29,18 +29,39 @@ pub fn drill(name: &str, drill: &Drill) -> Vec<(String, Figure)> {
 
 fn average(name: &str, drill: &Drill) -> Figure {
     let a = &drill.average;
-    let degrees: Vec<f64> = a.phase.iter().map(|p| 360.0 * p).collect();
-    let edge = |sign: f64| -> Vec<f64> { a.mean.iter().zip(&a.std).map(|(m, s)| m + sign * s).collect() };
+    // The turn ends where it begins: so does the curve.
+    let closed = |values: Vec<f64>| -> Vec<f64> {
+        let first = values.first().copied();
+        values.into_iter().chain(first).collect()
+    };
+    let degrees: Vec<f64> = a.phase.iter().map(|p| 360.0 * p).chain([360.0]).collect();
+    // Where the impact comes earlier in one turn and later in another, two courses are averaged: mean ± standard deviation
+    // would reach beyond both, to speeds that no turn had.
+    let edge = |sign: f64| -> Vec<f64> {
+        let within =
+            |(v, (low, high)): (f64, &(f64, f64))| if low <= high { v.clamp(*low, *high) } else { v };
+        closed(a.mean.iter().zip(&a.std).map(|(m, s)| m + sign * s).zip(&a.range).map(within).collect())
+    };
     let x = || AxisSpec::new("Crank angle after the pulse", "°").limits(0.0, 360.0);
     let above = Plot::new(x(), AxisSpec::new("Velocity", "m/s"))
         .with(Series::band("± 1 standard deviation", degrees.clone(), edge(-1.0), edge(1.0)).ink(Ink::Nth(0)))
-        .with(Series::line("mean", degrees.clone(), a.mean.clone()).ink(Ink::Nth(0)).stroke(Stroke::Solid));
+        .with(
+            Series::line("mean", degrees.clone(), closed(a.mean.clone()))
+                .ink(Ink::Nth(0))
+                .stroke(Stroke::Solid),
+        );
     let (above, marked) = marks(above, drill, |i| 360.0 * i.phase, |_| true);
     let below = Plot::new(x(), AxisSpec::new("Displacement", "m")).with(
-        Series::line("", degrees, drill.displacement.value.clone()).ink(Ink::Nth(0)).stroke(Stroke::Solid),
+        Series::line("", degrees, closed(drill.displacement.value.clone()))
+            .ink(Ink::Nth(0))
+            .stroke(Stroke::Solid),
     );
+    let smoothed = match &drill.smoothing {
+        Some(s) => format!("{}, corner {:.0} Hz", s.kind, s.corner),
+        None => "not smoothed".to_owned(),
+    };
     Figure::double(format!("Average turn, {name}")).height(130.0).shared_x().panel(above).panel(below).caption(format!(
-        "Mean of {} turns at {:.2} Hz with the scatter from turn to turn; displacement by integration over whole turns. {marked} of {} impacts are marked.{}",
+        "Mean of {} turns at {:.2} Hz with the scatter from turn to turn, which ends where no turn went further; {smoothed}. Displacement by integration over whole turns. {marked} of {} impacts are marked.{}",
         drill.averaged,
         drill.speed.value,
         drill.impacts.len(),

@@ -46,8 +46,19 @@ pub fn drill(drills: &[(&str, &Drill)]) -> Table {
         row("largest acceleration", Cell::Number(d.bandwidth.acceleration), "m/s²", d.averaged);
         row("f1", Cell::Number(d.bandwidth.f1), "Hz", d.averaged);
         row("f2", Cell::Number(d.bandwidth.f2), "Hz", d.averaged);
-        row("drop-outs", Cell::from(d.dropouts), "", d.faults.bridged + d.faults.lost);
-        row("spikes", Cell::from(d.spikes), "", d.spikes);
+        if let Some(s) = &d.smoothing {
+            row(
+                if s.kind == "exponential" { "smoothing of the average" } else { "low-pass of the average" },
+                Cell::Number(s.corner),
+                "Hz",
+                d.averaged,
+            );
+        }
+        if d.clipped > 0 {
+            row("impacts over-range", Cell::from(d.clipped.to_string().as_str()), "", d.impacts.len());
+        }
+        row("drop-outs", Cell::from(d.dropouts.to_string().as_str()), "", d.faults.bridged + d.faults.lost);
+        row("spikes", Cell::from(d.spikes.to_string().as_str()), "", d.spikes);
         if let Some(e) = &d.exposure {
             row("a_hv", Cell::from(&e.a_hv), "m/s²", e.a_hv.n);
             if let Some(a8) = &e.a8 {

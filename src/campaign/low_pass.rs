@@ -1,0 +1,21 @@
+//! A low-pass in a campaign: a corner, or none.
+
+use serde::Deserialize;
+
+/// Low-pass of average and displacement of a drill.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "expected a corner in Hz, or \"none\"")]
+pub enum LowPass {
+    /// Corner in Hz.
+    Corner(f64),
+    /// `none`.
+    Off(Word),
+}
+
+/// The word for no low-pass.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Word {
+    /// `none`.
+    None,
+}

@@ -1,0 +1,77 @@
+//! Hand-arm exposure of handles whose vibration is known.
+
+use super::drill::noise::Noise;
+use super::score::Score;
+use vibroimpact::measure::exposure::{Handle, exposure, weighting};
+
+const CASES: u64 = 240;
+const RATE: f64 = 6_400.0;
+/// Frequency of the vibration in Hz.
+const TONE: f64 = 100.0;
+/// Time between two knots of the amplitude in s.
+const KNOT: f64 = 0.5;
+
+/// Amplitudes 1 + m of a vibration that waxes and wanes: m is straight between knots of variance `scatter`² that depend on the
+/// one before by `rho`.
+fn knots(count: usize, scatter: f64, rho: f64, noise: &mut Noise) -> Vec<f64> {
+    let mut m = scatter * noise.normal();
+    (0..count)
+        .map(|_| {
+            m = rho * m + scatter * (1.0 - rho * rho).sqrt() * noise.normal();
+            m
+        })
+        .collect()
+}
+
+#[test]
+fn uncertainties_of_an_exposure_are_true() {
+    let mut axis = [Score::default(), Score::default(), Score::default()];
+    let (mut total, mut daily) = (Score::default(), Score::default());
+    for seed in 1..=CASES {
+        let mut noise = Noise::new(seed);
+        let seconds = 20.0 + 40.0 * noise.uniform();
+        // From axes that know nothing of each other to axes that rise and fall as one.
+        let (common, rho) = (noise.uniform(), 0.5 * noise.uniform());
+        let scatter = 0.1 + 0.1 * noise.uniform();
+        let count = (seconds / KNOT) as usize + 2;
+        let shared = knots(count, scatter, rho, &mut noise);
+        // Mean square of 1 + m: at a share s between two knots m has the variance (1 − s)² + s² + 2s(1 − s)ρ, on average
+        // 2/3 + ρ/3, times scatter².
+        let square = 1.0 + scatter * scatter * (2.0 + rho) / 3.0;
+        let mut handles = Vec::new();
+        let mut truths = Vec::new();
+        for _ in 0..3 {
+            let amplitude = 5.0 + 20.0 * noise.uniform();
+            let own = knots(count, scatter, rho, &mut noise);
+            let offset = 100.0 * noise.normal();
+            let values: Vec<f64> = (0..(seconds * RATE) as usize)
+                .map(|i| {
+                    let at = i as f64 / RATE / KNOT;
+                    let (k, s) = (at as usize, at.fract());
+                    let part = |m: &[f64]| (1.0 - s) * m[k] + s * m[k + 1];
+                    let m = common.sqrt() * part(&shared) + (1.0 - common).sqrt() * part(&own);
+                    // A period is 64 samples: the phase is exact.
+                    let angle = std::f64::consts::TAU * (i % 64) as f64 / 64.0;
+                    offset + amplitude * (1.0 + m) * angle.sin()
+                })
+                .collect();
+            let mut handle = Handle::new(RATE).unwrap();
+            values.chunks(4096).for_each(|b| handle.push(b));
+            handles.push(handle);
+            // The digital weighting at 100 Hz is off the formula by at most (π·100/6400)²/3 = 0.08 %, a tenth of the smallest
+            // uncertainty here.
+            truths.push(0.5 * amplitude * amplitude * square * weighting(TONE).norm_sqr());
+        }
+        let found = exposure(&handles, Some(2.0)).unwrap();
+        let truth = truths.iter().sum::<f64>().sqrt();
+        for ((score, estimate), truth) in axis.iter_mut().zip(&found.axes).zip(&truths) {
+            score.add(estimate, truth.sqrt(), 1.0);
+        }
+        total.add(&found.a_hv, truth, 1.0);
+        daily.add(found.a8.as_ref().unwrap(), 0.5 * truth, 1.0);
+    }
+    println!("{CASES} cases, seeds 1 to {CASES}");
+    axis.iter().zip(["axis 1", "axis 2", "axis 3"]).for_each(|(score, name)| score.covers(name));
+    total.covers("a_hv");
+    daily.covers("A(8)");
+}
