@@ -3,6 +3,8 @@
 use super::{Drawing, Figure, Output};
 use crate::error::Result;
 use crate::measure::waterfall::Waterfall;
+use crate::record::Record;
+use crate::write::{Storage, Target};
 use rayon::prelude::*;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -57,6 +59,29 @@ pub fn matrix_csv(matrix: &Waterfall) -> String {
         text.push('\n');
     }
     text
+}
+
+/// Writes records as CSV and UFF: binary where the text of data set 58 has too few digits for the abscissa. Gives the sentence that
+/// says why there is no UFF where that has too few, too.
+///
+/// # Errors
+/// If a file cannot be written, or there is nothing to write.
+pub fn records(output: &mut Output, name: &str, records: &[Record]) -> Result<Option<String>> {
+    let text = |target: Target, storage: Storage| -> Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        target.write(records, storage, &mut bytes)?;
+        Ok(bytes)
+    };
+    output.write(&format!("{name}.csv"), text(Target::Csv, Storage::default())?)?;
+    let binary = Storage { binary: true, ..Storage::default() };
+    match text(Target::Uff, Storage::default()).or_else(|_| text(Target::Uff, binary)) {
+        Ok(bytes) => output.write(&format!("{name}.uff"), bytes).map(|_| None),
+        Err(error) if error.exit_code() == 1 => {
+            let why = error.to_string().lines().next().unwrap_or_default().to_owned();
+            Ok(Some(format!("{name}.uff is not written: {why}. All lines are in {name}.csv.")))
+        }
+        Err(error) => Err(error),
+    }
 }
 
 /// Endings of the files that results are written in.

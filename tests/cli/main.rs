@@ -1,6 +1,7 @@
 //! The command as a person or a program meets it: exit codes, JSON keys, complaints.
 
 mod answers;
+mod campaign;
 mod complaints;
 mod contact;
 mod convert;

@@ -11,8 +11,16 @@ pub struct Spectrum {
     #[command(flatten)]
     pub channel: Channel,
     /// One transform of the whole record, or the average over segments
-    #[arg(long, value_name = "METHOD", default_value = "welch")]
+    #[arg(
+        long,
+        value_name = "METHOD",
+        default_value = "welch",
+        default_value_if("tones", clap::builder::ArgPredicate::IsPresent, "fft")
+    )]
     pub method: Method,
+    /// Fit the N strongest sines of the whole record, 1 to 10: frequency, amplitude and phase with their uncertainties
+    #[arg(long, value_name = "N", conflicts_with_all = ["reference", "segment", "overlap"], value_parser = clap::value_parser!(u8).range(1..=10))]
+    pub tones: Option<u8>,
     /// Samples of a segment [default: 8192, or the whole of a shorter record]
     #[arg(long, value_name = "SAMPLES")]
     pub segment: Option<usize>,

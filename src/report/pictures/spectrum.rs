@@ -1,11 +1,20 @@
 //! Spectra, and frequency response functions with their band and coherence.
 
 use super::response::capital;
+use crate::measure::spectral::{Lines, SpectralResult};
 use crate::record::{Scaling, Spectrum};
 use crate::report::{AxisSpec, Figure, Ink, Legend, Plot, Series};
 use crate::signal::transfer::Transfer;
 use crate::units::Quantity;
 use num_complex::Complex64;
+
+/// A spectrum, or a frequency response function.
+pub fn lines(title: &str, result: &SpectralResult) -> Figure {
+    match &result.found {
+        Lines::Spectrum(found) => spectrum(title, found),
+        Lines::Transfer(found) => transfer(title, found),
+    }
+}
 
 /// Lines of a spectrum over a logarithmic axis.
 pub fn spectrum(title: &str, spectrum: &Spectrum) -> Figure {
