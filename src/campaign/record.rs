@@ -155,6 +155,8 @@ record_entry! {
         force_window: Option<f64>,
         /// What an exponential window leaves at the end of a record.
         left_at_end: Option<f64>,
+        /// Time in s by which the channel was recorded late.
+        delay: Option<f64>,
     }
 }
 
@@ -177,6 +179,8 @@ record_entry! {
         integrate: Option<i8>,
         /// Lowest frequency in Hz.
         fmin: Option<f64>,
+        /// Reference of levels in decibels.
+        decibel: Option<f64>,
         /// Sines fitted to the whole record.
         tones: Option<usize>,
         /// Channel of the excitation.
@@ -189,6 +193,8 @@ record_entry! {
         force_window: Option<f64>,
         /// What an exponential window leaves at the end of a record.
         left_at_end: Option<f64>,
+        /// Time in s by which the channel was recorded late.
+        delay: Option<f64>,
     }
 }
 
@@ -227,6 +233,8 @@ impl SpectrumEntry {
             hammer: self.hammer,
             force_window: self.force_window,
             left_at_end: self.left_at_end,
+            delay: self.delay,
+            decibel: self.decibel,
             tones: self.tones,
         };
         options.check().map_err(|e| e.to_string())?;
@@ -252,6 +260,7 @@ impl FrfEntry {
                 ("hammer", self.hammer),
                 ("force_window", self.force_window.is_some()),
                 ("left_at_end", self.left_at_end.is_some()),
+                ("delay", self.delay.is_some()),
             ];
             return match given.iter().find(|(_, given)| *given) {
                 Some((key, _)) => Err(format!(
@@ -274,6 +283,7 @@ impl FrfEntry {
             hammer: self.hammer,
             force_window: self.force_window,
             left_at_end: self.left_at_end,
+            delay: self.delay,
             ..SpectralOptions::default()
         };
         options.check().map_err(|e| e.to_string())?;
@@ -384,6 +394,8 @@ record_entry! {
         fit: Option<f64>,
         /// Longest drop-out that is bridged, s.
         longest_dropout: Option<f64>,
+        /// Time in s by which the velocity was recorded later than the reference.
+        delay: Option<f64>,
         /// Phases of the average.
         points: Option<usize>,
         /// Margin in dB by which motion must stand above the noise.

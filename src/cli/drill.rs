@@ -86,6 +86,7 @@ fn options(typed: &args::Drill) -> Result<DrillOptions> {
         contact: typed.contact,
         fit: typed.fit,
         longest_dropout: typed.longest_dropout,
+        delay: typed.delay,
         points: typed.points,
         smoothing: low_pass.or(typed.smoothing.map(Smoothing::Exponential)),
         instrument: typed.instrument,

@@ -56,6 +56,8 @@ pub fn run(typed: &args::Spectrum, json: bool) -> Result<()> {
         hammer: typed.hammer,
         force_window: typed.force_window,
         left_at_end: typed.left_at_end,
+        delay: typed.delay,
+        decibel: typed.decibel,
         tones: typed.tones.map(usize::from),
     };
     let mut traces =

@@ -17,6 +17,8 @@ use crate::signal::spectrum;
 use crate::signal::transfer::{Estimator, transfer};
 use crate::signal::welch::{Averages, Welch};
 use crate::units::Unit;
+use num_complex::Complex64;
+use std::f64::consts::TAU;
 
 /// Samples of a segment where none is stated.
 pub const SEGMENT: usize = 8192;
@@ -48,10 +50,14 @@ pub fn spectral(
     progress: impl FnMut(usize) + Send,
 ) -> Result<SpectralResult> {
     options.check()?;
-    match options.estimator {
+    let mut found = match options.estimator {
         None => lines(traces, options, progress),
         Some(estimator) => response(traces, options, estimator, progress),
+    }?;
+    if let Some(reference) = options.decibel {
+        found.over(reference);
     }
+    Ok(found)
 }
 
 fn lines(
@@ -120,7 +126,14 @@ fn response(
         (found, averages.step(), (window.name(), window.enbw()), detrend, Vec::new())
     };
     let fmin = options.lowest(step);
-    let found = found.integrated(options.integrate, fmin)?;
+    let mut found = found.integrated(options.integrate, fmin)?;
+    if let Some(delay) = options.delay {
+        // What comes late by τ has the factor e^(−iωτ).
+        for (k, value) in found.frf.values.iter_mut().enumerate() {
+            *value *= Complex64::cis(TAU * found.frf.axis.at(k) * delay);
+        }
+        found.frf.meta.step("delay", &[("seconds", &delay)]);
+    }
     let mut result = SpectralResult::response(found, estimator, window, detrend, blows, traces.doubts());
     result.left_out(options.integrate, fmin);
     Ok(result)

@@ -154,6 +154,35 @@ mod tests {
     }
 
     #[test]
+    fn a_function_with_gaps_is_written_as_far_as_the_format_goes() {
+        use crate::record::{Axis, AxisKind, Frf, FrfKind, Grid, Meta};
+        use crate::units::Unit;
+        use num_complex::Complex64;
+        let gaps = |step: f64| {
+            let lines: Vec<f64> = [0.0, 1.0, 2.0, 5.0, 6.0].map(|k| 10_000.0 + step * k).to_vec();
+            let values = vec![Complex64::new(1.0, -1.0); lines.len()];
+            let axis = Axis { kind: AxisKind::Frequency, grid: Grid::Uneven(lines) };
+            let meta = Meta::new("gaps", Unit::parse("m/N").unwrap());
+            [Record::Frf(Frf { meta, axis, values, kind: FrfKind::Receptance })]
+        };
+        let dir = tempfile::tempdir().unwrap();
+        let mut output = Output::new(dir.path()).unwrap();
+        let lines = || {
+            let found = crate::read::Reader::new().from_path(dir.path().join("x.uff")).unwrap();
+            found.records[0].axis().values()
+        };
+        // Text of six digits, then single precision (half a unit in the last place is 4.9e-4 there).
+        for (step, off) in [(10.0, 0.05), (0.01, 5e-4)] {
+            assert_eq!(records(&mut output, "x", &gaps(step)).unwrap(), None);
+            let wanted = gaps(step)[0].axis().values();
+            assert!(lines().iter().zip(&wanted).all(|(a, b)| (a - b).abs() <= off), "{:?}", lines());
+        }
+        let why = records(&mut output, "y", &gaps(1e-4)).unwrap().unwrap();
+        assert!(why.contains("y.uff is not written") && why.contains("too few digits"), "{why}");
+        assert!(dir.path().join("y.csv").is_file() && !dir.path().join("y.uff").exists());
+    }
+
+    #[test]
     fn names_become_file_names() {
         assert_eq!(slug("Mass 1, up!"), "mass_1_up");
         assert_eq!(slug("../../x"), "x");

@@ -35,6 +35,12 @@ fn bench(folder: &Path) {
         }
     }
     fs::write(folder.join("bench.csv"), table).unwrap();
+    let mut table = String::from("time [s],voltage [V]\n");
+    for i in 0..2000 {
+        let t = f64::from(i) * 1e-3;
+        let _ = writeln!(table, "{t:.3},{:.6}", 2.0 * (TAU * 50.0 * t).cos() + (TAU * 55.0 * t + 1.0).cos());
+    }
+    fs::write(folder.join("tones.csv"), table).unwrap();
 }
 
 #[test]
@@ -45,11 +51,28 @@ fn spectra_and_functions_from_two_channels() {
         folder.path(),
         "[[spectrum]]\nname = \"speed\"\nfile = \"bench.csv\"\nchannel = \"velocity\"\nsegment = 1024\nscaling = \"psd\"\nintegrate = 1\n\
          [[spectrum]]\nname = \"function\"\nfile = \"bench.csv\"\nreference = \"force\"\nestimator = \"hv\"\nsegment = 2048\n\
-         [[spectrum]]\nname = \"tone\"\nfile = \"bench.csv\"\nchannel = \"velocity\"\ntones = 1\n\
+         [[spectrum]]\nname = \"tone\"\nfile = \"tones.csv\"\ntones = 2\ndecibel = 1e-6\n\
          [[frf]]\nname = \"modes\"\nfile = \"bench.csv\"\nreference = \"force\"\nsegment = 4096\nband = [40.0, 80.0]\n",
     );
     let results = &answer["results"];
     assert_eq!(code, 0, "{answer}");
+    // 50 Hz of 2 V and 55 Hz of 1 V over steps of rounding to 1e-6 V, which scatter by 3e-7.
+    for (tone, (f, a)) in
+        results["spectra"][2]["tones"].as_array().unwrap().iter().zip([(50.0, 2.0), (55.0, 1.0)])
+    {
+        let of = |key: &str, part: &str| tone[key][part].as_f64().unwrap();
+        assert!(
+            (of("frequency", "value") - f).abs() < 1e-6 && (of("amplitude", "value") - a).abs() < 1e-6,
+            "{tone}"
+        );
+        assert!(of("frequency", "std") < 1e-6 && of("phase", "std") < 1e-6, "{tone}");
+    }
+    let (value, level) = (&results["spectra"][2]["value"], &results["spectra"][2]["level"]);
+    for (v, l) in value.as_array().unwrap().iter().zip(level.as_array().unwrap()) {
+        let expected = 20.0 * (v.as_f64().unwrap() / 1e-6).log10();
+        assert!((l.as_f64().unwrap() - expected).abs() < 1e-9);
+    }
+    assert_eq!(results["spectra"][2]["level_unit"], "dB re 0.000001 V");
     let bench = folder.path().join("bench.csv");
     let same = ["spectrum", text(&bench), "--channel", "velocity", "--segment", "1024", "--scaling", "psd"];
     let alone = json(&[&same[..], &["--integrate", "1"]].concat());

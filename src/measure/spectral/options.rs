@@ -43,6 +43,10 @@ pub struct SpectralOptions {
     pub force_window: Option<f64>,
     /// What an exponential window leaves of the response at the end of a record.
     pub left_at_end: Option<f64>,
+    /// Time in s by which the response was recorded late, as the decoder of a vibrometer does: its phase is corrected.
+    pub delay: Option<f64>,
+    /// Reference of levels in decibels, in the unit of the trace (of the function, with a reference channel).
+    pub decibel: Option<f64>,
     /// Sines to be fitted to the whole record, 1 to 10.
     pub tones: Option<usize>,
 }
@@ -124,6 +128,17 @@ impl SpectralOptions {
             if let Some(name) = name.filter(|_| holds) {
                 return Err(Error::usage(format!("{name} {with}"), expected));
             }
+        }
+        if let Some(delay) = self.delay {
+            if self.estimator.is_none() {
+                return Err(Error::usage("delay without a reference", "two channels that are compared"));
+            }
+            if !delay.is_finite() {
+                return Err(Error::usage(format!("delay = {delay}"), "seconds"));
+            }
+        }
+        if let Some(re) = self.decibel.filter(|r| !(r.is_finite() && *r > 0.0)) {
+            return Err(Error::usage(format!("decibel = {re}"), "a reference above 0, such as 1e-6"));
         }
         if !(-2..=2).contains(&self.integrate) {
             return Err(Error::usage(format!("integrate = {}", self.integrate), "-2 to 2"));

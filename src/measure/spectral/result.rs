@@ -2,7 +2,7 @@
 
 use super::coherence;
 use crate::measure::tones::Tone;
-use crate::record::{Axis, Frf, Grid, Record, Spectrum, Values, Window};
+use crate::record::{Axis, Frf, Grid, Record, Scaling, Spectrum, Values, Window};
 use crate::signal::impact::Blow;
 use crate::signal::transfer::{Estimator, Transfer};
 use serde::Serialize;
@@ -24,6 +24,10 @@ pub struct SpectralResult {
     pub unit: String,
     /// Quantity.
     pub quantity: &'static str,
+    /// Levels in `level_unit`; empty where no reference was given.
+    pub level: Vec<f64>,
+    /// `dB re` the reference.
+    pub level_unit: Option<String>,
     /// Window.
     pub window: &'static str,
     /// Equivalent noise bandwidth in lines.
@@ -86,6 +90,8 @@ impl SpectralResult {
             scaling: spectrum.scaling.name(),
             unit: spectrum.meta.unit.symbol().to_owned(),
             quantity: spectrum.meta.quantity.name(),
+            level: Vec::new(),
+            level_unit: None,
             window: spectrum.window.map_or("unknown", Window::name),
             enbw: spectrum.enbw.unwrap_or(f64::NAN),
             detrend,
@@ -115,6 +121,8 @@ impl SpectralResult {
             scaling: "frf",
             unit: found.frf.meta.unit.symbol().to_owned(),
             quantity: found.frf.meta.quantity.name(),
+            level: Vec::new(),
+            level_unit: None,
             window: window.0,
             enbw: window.1,
             detrend,
@@ -130,6 +138,32 @@ impl SpectralResult {
             warnings,
             found: Lines::Transfer(found),
         }
+    }
+
+    /// Adds levels over a reference: 20 lg of amplitudes, 10 lg of powers over its square (ISO 1683).
+    pub(super) fn over(&mut self, reference: f64) {
+        let power = match &self.found {
+            Lines::Spectrum(spectrum) => matches!(spectrum.scaling, Scaling::Power | Scaling::Psd),
+            Lines::Transfer(_) => false,
+        };
+        let level = |v: &f64| {
+            let level = if power {
+                10.0 * (v / (reference * reference)).log10()
+            } else {
+                20.0 * (v / reference).log10()
+            };
+            if level.is_finite() { level } else { f64::NAN }
+        };
+        self.level = self.value.iter().map(level).collect();
+        let unit = match self.unit.strip_prefix('(').and_then(|u| u.split_once(")²")) {
+            Some((base, rest)) if power => format!("({reference} {base})²{rest}"),
+            _ if power => match self.unit.split_once('²') {
+                Some((base, rest)) => format!("({reference} {base})²{rest}"),
+                None => format!("{reference}² {}", self.unit),
+            },
+            _ => format!("{reference} {}", self.unit),
+        };
+        self.level_unit = Some(format!("dB re {unit}"));
     }
 
     /// Says which lines an integration leaves out.
