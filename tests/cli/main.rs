@@ -5,6 +5,7 @@ mod campaign;
 mod complaints;
 mod contact;
 mod convert;
+mod documents;
 mod impacts;
 mod modes;
 mod rig;
