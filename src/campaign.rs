@@ -31,6 +31,7 @@ mod drill;
 mod entry;
 mod locate;
 mod record;
+mod spectral;
 
 pub use entry::{Compute, Drive, SweepEntry};
 pub use record::{

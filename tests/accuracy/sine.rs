@@ -90,7 +90,7 @@ fn frequency_and_amplitude_reach_the_bound() {
 fn two_sines_are_parted_with_uncertainties_that_cover() {
     const PAIRS: usize = 400;
     let mut random = Noise::new(0x2_70e5);
-    let (mut inside, mut count, mut fewer) = ([0usize; 3], 0, 0);
+    let (mut inside, mut count, mut fewer) = ([0usize; 3], 0usize, 0usize);
     for _ in 0..PAIRS {
         let n = random.between(300.0, 600.0) as usize;
         let line = RATE / n as f64;

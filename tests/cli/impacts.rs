@@ -2,6 +2,7 @@
 
 use super::{complaint, json, text};
 use serde_json::Value;
+use std::fmt::Write as _;
 
 fn trace(case: &str) -> String {
     format!("{}/fixtures/reference/scripts/timeav_{case}/TRACE01.DAT", env!("CARGO_MANIFEST_DIR"))
@@ -127,7 +128,7 @@ fn impacts_are_matched_to_a_shape_that_is_known() {
         let noise = 2e-3 * ((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5);
         let t = f64::from(i) * 1e-4;
         let value = 3.0 * times.iter().map(|at| pulse(t - at)).sum::<f64>() + 3.0 * noise;
-        trace.push_str(&format!("{t:.4},{value:.6}\n"));
+        let _ = writeln!(trace, "{t:.4},{value:.6}");
     }
     let shape: String = (0..150).fold("time [s],pulse [V]\n".to_owned(), |text, i| {
         let t = f64::from(i) * 2e-5;

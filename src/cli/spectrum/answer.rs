@@ -30,11 +30,17 @@ impl Answer {
             found.detrend,
             found.averages
         );
+        if let Some(unit) = &found.level_unit {
+            let _ = writeln!(text, "levels in {unit}");
+        }
         text.push_str("largest peaks (all lines: --json or --out):\n");
         for k in found.peaks(SHOWN) {
             let _ = write!(text, "{:>14.6} Hz {:>14.6e}", found.frequency[k], found.value[k]);
             if found.value_std[k].is_finite() {
                 let _ = write!(text, " ± {:<10.2e}", found.value_std[k]);
+            }
+            if let Some(level) = found.level.get(k) {
+                let _ = write!(text, " {level:>8.2} dB");
             }
             if let Some(r) = &found.response {
                 let _ = write!(text, " {:>8.2}° γ² {:.4}", r.phase[k], r.coherence[k]);
