@@ -32,10 +32,13 @@ mod entry;
 mod locate;
 mod low_pass;
 mod record;
+mod spectral;
 
 pub use entry::{Compute, Drive, SweepEntry};
 pub use low_pass::{LowPass, Word};
-pub use record::{DrillEntry, DropEntry, FrfEntry, ImpactsEntry, PulseEntry, RecordEntry};
+pub use record::{
+    Decimal, Detrend, DrillEntry, DropEntry, FrfEntry, ImpactsEntry, PulseEntry, RecordEntry, SpectrumEntry,
+};
 
 use crate::error::{Error, Place, Result};
 use crate::model::Rig;
@@ -63,6 +66,8 @@ pub struct Campaign {
     pub excitation: Option<Drive>,
     /// Stepped-sine sweeps.
     pub sweep: Vec<SweepEntry>,
+    /// Spectra of time records.
+    pub spectrum: Vec<SpectrumEntry>,
     /// Frequency response functions.
     pub frf: Vec<FrfEntry>,
     /// Impact traces.
@@ -154,6 +159,11 @@ impl Campaign {
         for entry in self.records() {
             entry.check().map_err(|why| self.at(entry.file.span(), why))?;
         }
+        let spectra = self.spectrum.iter().map(|e| (e.record().file.span(), e.options().map(drop)));
+        let functions = self.frf.iter().map(|e| (e.record().file.span(), e.options().map(drop)));
+        for (span, checked) in spectra.chain(functions) {
+            checked.map_err(|why| self.at(span, why))?;
+        }
         let mut seen: Vec<&str> = Vec::new();
         for entry in &self.sweep {
             let name = entry.name.get_ref();
@@ -166,14 +176,23 @@ impl Campaign {
         Ok(())
     }
 
+    /// Whether no entry asks for anything.
+    pub fn is_empty(&self) -> bool {
+        self.sweep.is_empty()
+            && self.drop.is_empty()
+            && self.pulse.is_empty()
+            && self.records().next().is_none()
+    }
+
     /// The common keys of all entries of files.
     pub fn records(&self) -> impl Iterator<Item = RecordEntry> {
         let frf = self.frf.iter().map(FrfEntry::record);
         let impacts = self.impacts.iter().map(ImpactsEntry::record);
-        let drop = self.drop.iter().map(DropEntry::record);
-        let pulse = self.pulse.iter().map(PulseEntry::record);
+        let drop = self.drop.iter().filter_map(DropEntry::record);
+        let pulse = self.pulse.iter().filter_map(PulseEntry::record);
         let drill = self.drill.iter().map(DrillEntry::record);
-        frf.chain(impacts).chain(drop).chain(pulse).chain(drill)
+        let spectrum = self.spectrum.iter().map(SpectrumEntry::record);
+        spectrum.chain(frf).chain(impacts).chain(drop).chain(pulse).chain(drill)
     }
 
     /// A sentence that names the keys of the rig that are not given and were taken from the thesis' rig; `None` where

@@ -55,7 +55,7 @@ fn dispatch(args: &Args) -> Result<u8> {
         Command::Compare(typed) => compare::run(typed, args.json),
         Command::Modal(typed) => modal::run(typed, args.json),
         Command::Pulse(typed) => pulse::run(typed, args.json),
-        Command::Run(typed) => run::run(typed, args.json),
+        Command::Run(typed) => return run::run(typed, args.json),
     };
     done.map(|()| 0)
 }

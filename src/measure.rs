@@ -19,8 +19,10 @@ pub mod resonance;
 pub mod response;
 pub mod restitution;
 pub mod sine;
+pub mod spectral;
 #[cfg(test)]
 mod synthetic;
+pub mod tones;
 pub mod top;
 pub mod waterfall;
 

@@ -41,6 +41,10 @@ impl Campaign {
             contact: entry.contact.unwrap_or(plain.contact),
             fit: entry.fit.unwrap_or(plain.fit),
             smoothing,
+            longest_dropout: entry.longest_dropout.unwrap_or(plain.longest_dropout),
+            delay: entry.delay.unwrap_or(plain.delay),
+            points: entry.points.unwrap_or(plain.points),
+            margin: entry.margin.unwrap_or(plain.margin),
             instrument: entry.instrument,
             hours: entry.exposure,
             ..plain

@@ -145,6 +145,7 @@ fn options(typed: &args::Drill) -> Result<DrillOptions> {
         contact: typed.contact,
         fit: typed.fit,
         longest_dropout: typed.longest_dropout,
+        delay: typed.delay,
         points: typed.points,
         smoothing,
         instrument: typed.instrument,

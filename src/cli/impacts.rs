@@ -2,7 +2,7 @@
 
 use super::{args, complain, print, settings};
 use crate::error::{Error, Result};
-use crate::measure::impacts::{Impacts, ImpactsOptions, impacts};
+use crate::measure::impacts::{Impacts, ImpactsOptions, Shape, impacts};
 use crate::measure::{Estimate, legacy};
 use crate::record::Trace;
 use crate::report::{Output, files, pictures, tables};
@@ -49,10 +49,18 @@ pub fn run(typed: &args::Impacts, json: bool) -> Result<()> {
         Some(name) => Some(recording.trace(Some(name), None)?.values),
         None => None,
     };
+    let shape = match &typed.shape {
+        Some(file) => {
+            let pulse = settings::time_reader(&typed.reading)?.from_path(file)?.trace(None, None)?;
+            Some(Shape::of(&pulse, &trace)?)
+        }
+        None => None,
+    };
     let options = ImpactsOptions {
         excitation: typed.excitation,
         excitation_std: typed.excitation_std,
         reference,
+        shape,
         ..settings::finding(&typed.finding, None)
     };
     let mut found = impacts(&trace, &options)?;

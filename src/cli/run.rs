@@ -17,7 +17,8 @@ struct Answer {
     warnings: Vec<String>,
 }
 
-pub fn run(typed: &args::Run, json: bool) -> Result<()> {
+/// Gives the exit code: 1 where nothing that was asked for could be answered.
+pub fn run(typed: &args::Run, json: bool) -> Result<u8> {
     let campaign = Campaign::from_path(&typed.campaign)?;
     let folder = typed.out.clone().unwrap_or_else(|| campaign.out());
     let options = JobOptions { allow_outside: typed.allow_outside };
@@ -25,8 +26,10 @@ pub fn run(typed: &args::Run, json: bool) -> Result<()> {
     let results = job::run(&campaign, options, &mut output, &progress::bar(json))?;
     let files = output.written().to_vec();
     let warnings = results.warnings.clone();
+    let code = u8::from(results.is_empty() && !campaign.is_empty());
     if json {
-        return print::json(&Answer { results, files, folder: folder.display().to_string(), warnings });
+        print::json(&Answer { results, files, folder: folder.display().to_string(), warnings })?;
+        return Ok(code);
     }
     complain::warn(&warnings);
     let mut text = String::new();
@@ -34,5 +37,6 @@ pub fn run(typed: &args::Run, json: bool) -> Result<()> {
         let _ = writeln!(text, "{}", table.text());
     }
     let _ = writeln!(text, "{} files in {}; open report.html there", files.len(), folder.display());
-    print::text(&text)
+    print::text(&text)?;
+    Ok(code)
 }

@@ -2,7 +2,7 @@
 
 use super::args::{Channel, Decimal, Finding, Reading, Sweep, Taking};
 use crate::campaign::Campaign;
-use crate::error::{Error, Place, Result};
+use crate::error::{Error, Result};
 use crate::measure::impacts::ImpactsOptions;
 use crate::measure::response::{ResponseOptions, to_displacement};
 use crate::read::{Format, Reader, SweepList, SweepReader, Traces};
@@ -66,27 +66,7 @@ pub fn trace(file: &Path, reading: &Reading, chosen: &Channel) -> Result<(Trace,
 /// # Errors
 /// As [`reader`]; if there is no such channel, or several and none was chosen.
 pub fn traces(file: &Path, reading: &Reading, chosen: &Channel, reference: Option<&str>) -> Result<Traces> {
-    let reader = time_reader(reading)?;
-    let named: Vec<&str> = reference.into_iter().chain(chosen.channel.as_deref()).collect();
-    let mut traces = if chosen.channel.is_some() {
-        reader.stream_channels(file, &named)?
-    } else {
-        let mut all = reader.stream(file)?;
-        let reference = reference.map(|name| all.channel(name)).transpose()?;
-        let others: Vec<usize> = (0..all.channels().len()).filter(|i| Some(*i) != reference).collect();
-        if others.len() != 1 {
-            let names: Vec<&str> = all.channels().iter().map(|m| m.name.as_str()).collect();
-            let found = format!("{} channels to choose from, and none was chosen", others.len());
-            return Err(Error::input(Place::file(file), found, names.join(", "))
-                .hint("name one with --channel, by its name or its number from 1"));
-        }
-        all.keep(&reference.into_iter().chain(others).collect::<Vec<usize>>());
-        all
-    };
-    if let Some(factor) = chosen.calibration {
-        traces.calibrate(usize::from(reference.is_some()), factor)?;
-    }
-    Ok(traces)
+    time_reader(reading)?.stream_chosen(file, reference, chosen.channel.as_deref(), chosen.calibration)
 }
 
 fn format(name: &str) -> Result<Format> {

@@ -1,19 +1,14 @@
 //! `vibro spectrum`: lines of a channel, or the response of one channel to another.
 
 mod answer;
-mod samples;
 
 use super::args::{self, Detrend, Method};
-use super::{complain, print, settings};
+use super::{complain, print, progress, settings};
 use crate::error::{Error, Result};
-use crate::read::Traces;
-use crate::record::{Meta, Record, Scaling, Spectrum, Values, Window};
-use crate::report::pictures;
-use crate::signal::impact::{Blows, from_blows};
-use crate::signal::integrate::in_frequency;
-use crate::signal::spectrum;
-use crate::signal::transfer::{Estimator, transfer};
-use crate::units::Unit;
+use crate::measure::spectral::{self, SpectralOptions};
+use crate::record::Scaling;
+use crate::report::{Output, files, pictures};
+use crate::signal::transfer::Estimator;
 use answer::Answer;
 
 pub fn run(typed: &args::Spectrum, json: bool) -> Result<()> {
@@ -34,98 +29,59 @@ pub fn run(typed: &args::Spectrum, json: bool) -> Result<()> {
             ));
         }
     }
+    if typed.tones.is_some() && (typed.method == Method::Welch || typed.integrate != 0) {
+        let with = if typed.integrate == 0 { "--method welch" } else { "--integrate" };
+        return Err(Error::usage(
+            format!("--tones with {with}"),
+            "tones of the whole record of one channel as it is",
+        ));
+    }
+    let options = SpectralOptions {
+        method: (!typed.hammer).then_some(match typed.method {
+            Method::Fft => spectral::Method::Fft,
+            Method::Welch => spectral::Method::Welch,
+        }),
+        segment: typed.segment,
+        overlap: typed.overlap,
+        detrend: typed.detrend.map(|d| d == Detrend::Mean),
+        window: (!typed.hammer).then_some(window),
+        scaling: typed.reference.is_none().then_some(scaling),
+        integrate: typed.integrate,
+        fmin: typed.fmin,
+        estimator: typed.reference.as_ref().map(|_| match typed.estimator {
+            args::Estimator::H1 => Estimator::H1,
+            args::Estimator::H2 => Estimator::H2,
+            args::Estimator::Hv => Estimator::Hv,
+        }),
+        hammer: typed.hammer,
+        force_window: typed.force_window,
+        left_at_end: typed.left_at_end,
+        delay: typed.delay,
+        decibel: typed.decibel,
+        tones: typed.tones.map(usize::from),
+    };
     let mut traces =
         settings::traces(&typed.file, &typed.reading, &typed.channel, typed.reference.as_deref())?;
-    let answer = match &typed.reference {
-        None => lines(typed, &mut traces, window, scaling, json)?,
-        Some(_) => response(typed, &mut traces, window, json)?,
-    };
+    let bar = progress::bar(json);
+    bar.set_length(traces.frames() as u64);
+    bar.set_message("samples");
+    let found = spectral::spectral(&mut traces, &options, |frames| bar.set_position(frames as u64));
+    // Before a complaint, too.
+    bar.finish_and_clear();
+    let mut answer = Answer { result: found?, files: Vec::new() };
+    if let Some(folder) = &typed.out {
+        let name = if typed.reference.is_some() { "frf" } else { "spectrum" };
+        let mut output = Output::new(folder)?;
+        let figure = pictures::lines(&answer.result.name, &answer.result);
+        files::figures(&mut output, &[(name.to_owned(), figure)], &|| ())?;
+        answer.result.warnings.extend(files::records(&mut output, name, &answer.result.records())?);
+        answer.files = output.written().to_vec();
+    }
     if json {
         return print::json(&answer);
     }
-    complain::warn(&answer.warnings);
+    complain::warn(&answer.result.warnings);
     print::text(&answer.text())
-}
-
-fn lines(
-    typed: &args::Spectrum,
-    traces: &mut Traces,
-    window: Window,
-    scaling: Scaling,
-    json: bool,
-) -> Result<Answer> {
-    let detrend = detrend(typed);
-    let (spectrum, averages, mut scatter) = if typed.method == Method::Welch {
-        let averages = samples::averages(typed, traces, window, detrend, json)?;
-        let meta = traces.channels().first().cloned().unwrap_or_else(|| Meta::new("", Unit::opaque("")));
-        let scatter = spectrum::scatter(&averages, scaling);
-        (spectrum::averaged(&averages, 0, &meta, window, scaling)?, averages.count, scatter)
-    } else {
-        let [trace] = samples::whole(traces)?;
-        let spectrum = spectrum::plain(&trace, window, scaling, detrend)?;
-        let unknown = vec![f64::NAN; spectrum.axis.len()];
-        (spectrum, 1, unknown)
-    };
-    let fmin = fmin(typed, spectrum.axis.step().unwrap_or(0.0));
-    let spectrum = in_frequency(&spectrum, typed.integrate, fmin)?;
-    scatter.drain(..scatter.len() - spectrum.axis.len());
-    let detrend = if detrend { "mean" } else { "none" };
-    let mut answer = Answer::lines(&spectrum, averages, &scatter, detrend, traces.doubts());
-    answer.left_out(typed.integrate, fmin);
-    if let Some(folder) = &typed.out {
-        let figure = pictures::spectrum(&spectrum.meta.name, &spectrum);
-        answer.write(folder, "spectrum", figure, &[Record::Spectrum(spectrum)])?;
-    }
-    Ok(answer)
-}
-
-fn response(typed: &args::Spectrum, traces: &mut Traces, window: Window, json: bool) -> Result<Answer> {
-    let estimator = match typed.estimator {
-        args::Estimator::H1 => Estimator::H1,
-        args::Estimator::H2 => Estimator::H2,
-        args::Estimator::Hv => Estimator::Hv,
-    };
-    let (found, step, window, detrend, blows) = if typed.hammer {
-        let length = typed.segment.unwrap_or(samples::SEGMENT);
-        let how = Blows {
-            length,
-            before: length / samples::BEFORE,
-            force_window: typed.force_window,
-            left_at_end: typed.left_at_end,
-        };
-        let [force, response] = samples::whole(traces)?;
-        let found = from_blows(&force, &response, &how, estimator)?;
-        let window = (found.window, found.enbw);
-        (found.transfer, traces.rate() / length as f64, window, "level before the blow", found.blows)
-    } else {
-        let detrend = detrend(typed);
-        let averages = samples::averages(typed, traces, window, detrend, json)?;
-        let found = transfer(&averages, 1, traces.channels(), estimator)?;
-        let detrend = if detrend { "mean" } else { "none" };
-        (found, averages.step(), (window.name(), window.enbw()), detrend, Vec::new())
-    };
-    let fmin = fmin(typed, step);
-    let found = found.integrated(typed.integrate, fmin)?;
-    let mut answer = Answer::response(&found, estimator, window, detrend, &blows, traces.doubts());
-    answer.left_out(typed.integrate, fmin);
-    if let Some(folder) = &typed.out {
-        let figure = pictures::transfer(&found.frf.meta.name, &found);
-        let coherence = Spectrum {
-            meta: Meta::new("coherence", Unit::parse_or_opaque("1")),
-            axis: found.frf.axis.clone(),
-            values: Values::Real(found.coherence),
-            scaling: Scaling::Coherence,
-            window: None,
-            enbw: None,
-        };
-        answer.write(folder, "frf", figure, &[Record::Frf(found.frf), Record::Spectrum(coherence)])?;
-    }
-    Ok(answer)
-}
-
-/// Whether the mean is taken out: that of segments, and what would be divided by nothing, unless told otherwise.
-fn detrend(typed: &args::Spectrum) -> bool {
-    typed.detrend.map_or(typed.method == Method::Welch || typed.integrate > 0, |d| d == Detrend::Mean)
 }
 
 fn scaling(name: &str) -> Result<Scaling> {
@@ -133,9 +89,4 @@ fn scaling(name: &str) -> Result<Scaling> {
     all.into_iter()
         .find(|s| s.name().eq_ignore_ascii_case(name))
         .ok_or_else(|| Error::usage(format!("--scaling {name:?} is not known"), "peak, rms, power or psd"))
-}
-
-/// The lowest frequency: two lines where an integral divides noise by the frequency.
-fn fmin(typed: &args::Spectrum, step: f64) -> f64 {
-    typed.fmin.unwrap_or(if typed.integrate > 0 { 2.0 * step } else { 0.0 })
 }

@@ -98,7 +98,7 @@ pub fn drill_each(
     let factor = options.sensitivity * options.beam.factor();
     let (mut velocity, mut reference) = (Survey::default(), Survey::default());
     let mut handles: Vec<Handle> = Vec::new();
-    let mut same = true;
+    let (mut same, mut frames) = (true, 0);
     let mut scaled: Vec<f64> = Vec::new();
     channels.play(&mut |block| {
         let [v, r, axes @ ..] = block else {
@@ -106,6 +106,7 @@ pub fn drill_each(
         };
         same = same && v.iter().zip(*r).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()));
         scale(v, factor, &mut scaled);
+        frames += scaled.len();
         velocity.push(&scaled);
         reference.push(r);
         while handles.len() < axes.len() {
@@ -120,7 +121,12 @@ pub fn drill_each(
         edges.push(block.get(1).copied().unwrap_or_default());
         Ok(())
     })?;
-    let found = edges.finish();
+    let mut found = edges.finish();
+    if options.delay != 0.0 {
+        // Turns are counted in the clock of the velocity.
+        found.edges.iter_mut().for_each(|edge| *edge += options.delay * rate);
+        found.edges.retain(|edge| *edge >= 0.0 && *edge <= frames.saturating_sub(1) as f64);
+    }
     let turns = Turns::new(&found.edges, options.pulses_per_turn)?;
     let mut pass = Pass::new(options, rate, &turns.turns, &velocity, still.is_some())?;
     let mut excerpt = Excerpt::new(&turns.turns);
@@ -224,5 +230,30 @@ impl Excerpt {
         self.velocity.extend(&velocity[part.clone()]);
         self.reference.extend(reference.get(part).unwrap_or_default());
         self.at += velocity.len();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_velocity_that_comes_late_keeps_its_phase_where_the_delay_is_stated() {
+        let turn = |i: i32| f64::from(i) / 400.0;
+        let volts = |late: i32| -> Vec<f64> {
+            (0..20_000).map(|i| 0.5 * (-1.0 + 7.0 * (turn(i - late) + 0.4).rem_euclid(1.0))).collect()
+        };
+        let pulse: Vec<f64> = (0..20_000).map(|i| if turn(i).fract() < 0.1 { 5.0 } else { 0.0 }).collect();
+        let found = |late: i32, delay: f64| {
+            let values = volts(late);
+            let beam = Beam::new(0.0, From::Axis).unwrap();
+            let options = DrillOptions { delay, ..DrillOptions::new(2.0, beam, 1, Edge::Rising) };
+            let mut channels = Slices { rate: 20_000.0, channels: vec![&values, &pulse] };
+            drill(&mut channels, &options, None).unwrap().impacts[5].phase
+        };
+        // Five of 400 samples a turn.
+        let (right, late) = (found(0, 0.0), found(5, 0.0));
+        assert!((late - right - 0.0125).abs() < 1e-9, "{right} {late}");
+        assert!((found(5, 5.0 / 20_000.0) - right).abs() < 1e-9);
     }
 }

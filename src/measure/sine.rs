@@ -5,7 +5,7 @@
 //! var(f) ≥ 12/((2πΔt)² η N(N²−1)), η = A²/(2σ²) (S. M. Kay, Fundamentals of Statistical Signal Processing: Estimation
 //! Theory, 1993, eq. 3.41), where the lines of a windowed spectrum lie a third above it.
 
-use super::{Estimate, line, noise};
+use super::{Estimate, noise};
 use crate::error::{Error, Result};
 use crate::record::{Scaling, Trace, Window};
 use crate::signal::spectrum;
@@ -52,6 +52,18 @@ pub struct Sine {
 /// If the trace has no spectrum ([`spectrum::plain`]), no line stands out of the noise, or fewer than one and a half periods
 /// are there.
 pub fn sine(trace: &Trace, near: Option<f64>) -> Result<Sine> {
+    fit(trace, line(trace, near)?)
+}
+
+/// The frequency of the strongest line that stands out of the noise, interpolated between lines.
+///
+/// # Errors
+/// As [`sine`].
+pub(super) fn strongest(trace: &Trace) -> Result<f64> {
+    line(trace, None)
+}
+
+fn line(trace: &Trace, near: Option<f64>) -> Result<f64> {
     let lines = spectrum::plain(trace, Window::Hann, Scaling::Peak, true)?;
     let step = lines.axis.step().unwrap_or(0.0);
     let magnitudes = lines.values.magnitudes();
@@ -72,7 +84,7 @@ pub fn sine(trace: &Trace, near: Option<f64>) -> Result<Sine> {
         ))
         .hint("a longer record, or state the frequency"));
     }
-    let position = line::interpolate(&magnitudes, largest, Some(Window::Hann), None)
+    let position = super::line::interpolate(&magnitudes, largest, Some(Window::Hann), None)
         .map_or(largest as f64, |l| l.position);
     if position < 1.5 {
         return Err(Error::refused(format!(
@@ -80,7 +92,7 @@ pub fn sine(trace: &Trace, near: Option<f64>) -> Result<Sine> {
         ))
         .hint("a longer record"));
     }
-    fit(trace, step * position)
+    Ok(step * position)
 }
 
 /// Gauss–Newton from a frequency within half a line.

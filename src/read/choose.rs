@@ -1,8 +1,46 @@
 //! One record of a recording, as a person names it.
 
-use super::Recording;
+use super::{Reader, Recording, Traces};
 use crate::error::{Error, Place, Result};
 use crate::record::{Frf, FrfKind, Record, Scaling, Trace, Values};
+use std::path::Path;
+
+impl Reader {
+    /// One channel to be read block by block, behind the channel `reference` where there is one; a `calibration` multiplies it. Where
+    /// none is named it is the only one, or the only other one.
+    ///
+    /// # Errors
+    /// As [`Reader::stream_channels`]; if there are several channels and none was named.
+    pub fn stream_chosen(
+        &self,
+        file: impl AsRef<Path>,
+        reference: Option<&str>,
+        channel: Option<&str>,
+        calibration: Option<f64>,
+    ) -> Result<Traces> {
+        let file = file.as_ref();
+        let mut traces = if let Some(channel) = channel {
+            let named: Vec<&str> = reference.into_iter().chain([channel]).collect();
+            self.stream_channels(file, &named)?
+        } else {
+            let mut all = self.stream(file)?;
+            let reference = reference.map(|name| all.channel(name)).transpose()?;
+            let others: Vec<usize> = (0..all.channels().len()).filter(|i| Some(*i) != reference).collect();
+            if others.len() != 1 {
+                let names: Vec<&str> = all.channels().iter().map(|m| m.name.as_str()).collect();
+                let found = format!("{} channels to choose from, and none was chosen", others.len());
+                return Err(Error::input(Place::file(file), found, names.join(", "))
+                    .hint("name one with --channel, by its name or its number from 1"));
+            }
+            all.keep(&reference.into_iter().chain(others).collect::<Vec<usize>>());
+            all
+        };
+        if let Some(factor) = calibration {
+            traces.calibrate(usize::from(reference.is_some()), factor)?;
+        }
+        Ok(traces)
+    }
+}
 
 impl Recording {
     /// The trace that `channel` names, or by its number among the traces from 1; the only one where it is `None`. A

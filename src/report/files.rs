@@ -3,6 +3,8 @@
 use super::{Drawing, Figure, Output};
 use crate::error::Result;
 use crate::measure::waterfall::Waterfall;
+use crate::record::Record;
+use crate::write::{Storage, Target};
 use rayon::prelude::*;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -57,6 +59,29 @@ pub fn matrix_csv(matrix: &Waterfall) -> String {
         text.push('\n');
     }
     text
+}
+
+/// Writes records as CSV and UFF: binary where the text of data set 58 has too few digits for the abscissa. Gives the sentence that
+/// says why there is no UFF where that has too few, too.
+///
+/// # Errors
+/// If a file cannot be written, or there is nothing to write.
+pub fn records(output: &mut Output, name: &str, records: &[Record]) -> Result<Option<String>> {
+    let text = |target: Target, storage: Storage| -> Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        target.write(records, storage, &mut bytes)?;
+        Ok(bytes)
+    };
+    output.write(&format!("{name}.csv"), text(Target::Csv, Storage::default())?)?;
+    let binary = Storage { binary: true, ..Storage::default() };
+    match text(Target::Uff, Storage::default()).or_else(|_| text(Target::Uff, binary)) {
+        Ok(bytes) => output.write(&format!("{name}.uff"), bytes).map(|_| None),
+        Err(error) if error.exit_code() == 1 => {
+            let why = error.to_string().lines().next().unwrap_or_default().to_owned();
+            Ok(Some(format!("{name}.uff is not written: {why}. All lines are in {name}.csv.")))
+        }
+        Err(error) => Err(error),
+    }
 }
 
 /// Endings of the files that results are written in.
@@ -126,6 +151,35 @@ mod tests {
         );
         assert!(dir.path().join("map_0.png").exists());
         assert_eq!(left_over(&Output::new(dir.path().join("none")).unwrap(), &[]), None);
+    }
+
+    #[test]
+    fn a_function_with_gaps_is_written_as_far_as_the_format_goes() {
+        use crate::record::{Axis, AxisKind, Frf, FrfKind, Grid, Meta};
+        use crate::units::Unit;
+        use num_complex::Complex64;
+        let gaps = |step: f64| {
+            let lines: Vec<f64> = [0.0, 1.0, 2.0, 5.0, 6.0].map(|k| 10_000.0 + step * k).to_vec();
+            let values = vec![Complex64::new(1.0, -1.0); lines.len()];
+            let axis = Axis { kind: AxisKind::Frequency, grid: Grid::Uneven(lines) };
+            let meta = Meta::new("gaps", Unit::parse("m/N").unwrap());
+            [Record::Frf(Frf { meta, axis, values, kind: FrfKind::Receptance })]
+        };
+        let dir = tempfile::tempdir().unwrap();
+        let mut output = Output::new(dir.path()).unwrap();
+        let lines = || {
+            let found = crate::read::Reader::new().from_path(dir.path().join("x.uff")).unwrap();
+            found.records[0].axis().values()
+        };
+        // Text of six digits, then single precision (half a unit in the last place is 4.9e-4 there).
+        for (step, off) in [(10.0, 0.05), (0.01, 5e-4)] {
+            assert_eq!(records(&mut output, "x", &gaps(step)).unwrap(), None);
+            let wanted = gaps(step)[0].axis().values();
+            assert!(lines().iter().zip(&wanted).all(|(a, b)| (a - b).abs() <= off), "{:?}", lines());
+        }
+        let why = records(&mut output, "y", &gaps(1e-4)).unwrap().unwrap();
+        assert!(why.contains("y.uff is not written") && why.contains("too few digits"), "{why}");
+        assert!(dir.path().join("y.csv").is_file() && !dir.path().join("y.uff").exists());
     }
 
     #[test]

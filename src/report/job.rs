@@ -1,16 +1,20 @@
 //! All that a campaign asks for: responses, waterfalls, overlay, frequency response functions, and their files.
 
 mod drill;
+mod drops;
 mod frf;
 mod impacts;
 mod pairing;
 mod pulse;
+mod spectral;
 
 pub use drill::DrillResult;
+pub use drops::DropResult;
 pub use frf::FrfResult;
-pub use impacts::{DropResult, ImpactsResult};
+pub use impacts::ImpactsResult;
 pub use pairing::Crossing;
 pub use pulse::NamedPulse;
+pub use spectral::SpectrumResult;
 
 use super::{Figure, Output, files, page, pictures, tables};
 use crate::campaign::Campaign;
@@ -48,6 +52,22 @@ pub struct JobOptions {
     pub allow_outside: bool,
 }
 
+impl Results {
+    /// Whether a campaign that asks for something got no answer at all.
+    pub fn is_empty(&self) -> bool {
+        let lengths = [
+            self.responses.len(),
+            self.spectra.len(),
+            self.frf.len(),
+            self.drill.len(),
+            self.impacts.len(),
+            self.drops.len(),
+            self.pulses.len(),
+        ];
+        lengths.iter().all(|n| *n == 0)
+    }
+}
+
 /// Everything a job found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Results {
@@ -65,6 +85,8 @@ pub struct Results {
     pub rig: Option<Rig>,
     /// Comparison with the model.
     pub overlay: Option<Overlay>,
+    /// Spectra of time records.
+    pub spectra: Vec<SpectrumResult>,
     /// Frequency response functions.
     pub frf: Vec<FrfResult>,
     /// Hammer drills.
@@ -149,14 +171,16 @@ pub fn run(
             figures.push((format!("map_{slug}"), pictures::map(matrix, fmax)?));
         }
     }
+    let spectra = spectral::spectra(campaign, options, &mut figures, &mut warnings)?;
     let frf = frf::frfs(campaign, options, &mut figures, &mut warnings)?;
     let drilled = drill::drills(campaign, options, progress, &mut figures, &mut warnings)?;
     let impacts = impacts::impacts(campaign, options, &mut figures, &mut warnings)?;
-    let drops = impacts::drops(campaign, options, &mut figures, &mut warnings)?;
+    let drops = drops::drops(campaign, options, &mut figures, &mut warnings)?;
     let pulses = pulse::pulses(campaign, options, &mut figures, &mut warnings)?;
-    if figures.is_empty() {
-        let none = campaign.records().next().is_none();
-        let why = if none { "The campaign names no file" } else { "No file allows an answer" };
+    let mut nothing = figures.is_empty();
+    nothing = nothing && drops.is_empty() && pulses.is_empty();
+    if nothing {
+        let why = if campaign.is_empty() { "The campaign names no file" } else { "No file allows an answer" };
         warnings.push(format!("{why}: nothing was computed."));
     }
     pairing::twice(&responses, &mut warnings);
@@ -171,6 +195,7 @@ pub fn run(
         responses,
         rig: campaign.rig.filter(|_| overlay.is_some()),
         overlay,
+        spectra,
         frf,
         drill: drilled,
         impacts,
@@ -188,6 +213,7 @@ pub fn run(
         output.write("pairs.csv", tables::pairs(overlay).csv())?;
         output.write("peaks.csv", tables::peaks(overlay).csv())?;
     }
+    spectral::tables(&results.spectra, output, &mut results.warnings)?;
     drill::tables(&results.drill, output)?;
     for (i, result) in results.impacts.iter().enumerate() {
         output.write(&format!("impacts_{}.csv", i + 1), tables::impact_times(&result.impacts).csv())?;

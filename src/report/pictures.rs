@@ -15,7 +15,7 @@ pub use impacts::{drop, impacts};
 pub use overlay::overlay;
 pub use pulse::pulse;
 pub use response::response;
-pub use spectrum::{spectrum, transfer};
+pub use spectrum::{lines, spectrum, transfer};
 pub use waterfall::{map, waterfall};
 
 use crate::report::{Figure, Panel};

@@ -5,12 +5,14 @@ mod drill;
 mod impacts;
 mod modal;
 mod pulse;
+mod spectral;
 
 pub use cycles::{drill_cycles_head, drill_cycles_row};
 pub use drill::{drill, drill_average, drill_impacts};
 pub use impacts::{impact_times, impacts, restitution};
 pub use modal::{modal_methods, modes};
 pub use pulse::{pulse, pulse_fits};
+pub use spectral::{spectra, tones};
 
 use super::job::Results;
 use super::{Cell, Column, Table};
@@ -189,6 +191,9 @@ pub fn summary(results: &Results) -> Vec<Table> {
         tables.push(peaks(overlay));
         tables.push(scores(overlay));
     }
+    let records: Vec<_> = results.spectra.iter().map(|s| (s.name.as_str(), &s.result)).collect();
+    tables.push(spectra(&records));
+    tables.push(tones(&records));
     tables.push(modes(results.frf.iter().map(|f| (f.name.as_str(), &f.modal))));
     for found in &results.pulses {
         tables.push(pulse(&found.name, &found.result));

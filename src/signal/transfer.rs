@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::record::{Axis, Frf, FrfKind, Meta, Scaling, Spectrum, Values};
 use crate::units::Unit;
 use num_complex::Complex64;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Below this share of the largest line there is no excitation, only rounding.
@@ -26,7 +26,7 @@ const LEAST: f64 = 2.0;
 const NOWHERE: Complex64 = Complex64::new(f64::NAN, f64::NAN);
 
 /// Which noise a frequency response function does not mind.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Estimator {
     /// Noise in the response averages out.

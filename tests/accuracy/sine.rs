@@ -3,6 +3,7 @@
 use crate::noise::Noise;
 use std::f64::consts::TAU;
 use vibroimpact::measure::sine::sine;
+use vibroimpact::measure::tones::tones;
 use vibroimpact::record::{Axis, Meta, Trace};
 use vibroimpact::units::Unit;
 
@@ -83,4 +84,56 @@ fn frequency_and_amplitude_reach_the_bound() {
             }
         }
     }
+}
+
+#[test]
+fn two_sines_are_parted_with_uncertainties_that_cover() {
+    const PAIRS: usize = 400;
+    let mut random = Noise::new(0x2_70e5);
+    let (mut inside, mut count, mut fewer) = ([0usize; 3], 0usize, 0usize);
+    for _ in 0..PAIRS {
+        let n = random.between(300.0, 600.0) as usize;
+        let line = RATE / n as f64;
+        let f1 = random.between(8.0, n as f64 / 2.0 - 20.0) * line;
+        let f2 = f1 + random.between(2.0, 10.0) * line;
+        let truth = [
+            (f1, random.between(0.5, 2.0), random.between(-3.0, 3.0)),
+            (f2, random.between(0.5, 2.0), random.between(-3.0, 3.0)),
+        ];
+        let sigma = random.between(0.02, 0.2);
+        let values = (0..n)
+            .map(|i| {
+                let t = i as f64 / RATE;
+                let sines: f64 = truth.iter().map(|(f, a, p)| a * (TAU * f * t + p).cos()).sum();
+                sines - 0.7 + sigma * random.normal()
+            })
+            .collect();
+        let meta = Meta::new("sines", Unit::parse("m/s").unwrap());
+        let found = tones(&Trace { meta, axis: Axis::time(0.0, 1.0 / RATE, n), values }, 2).unwrap();
+        if found.tones.len() < 2 {
+            fewer += 1;
+            continue;
+        }
+        for (f, a, p) in truth {
+            let off = |tone: &&vibroimpact::measure::tones::Tone| (tone.frequency.value - f).abs();
+            let tone = found.tones.iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
+            let turn = (tone.phase.value - p + 3.0 * TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
+            let errors = [
+                (tone.frequency.value - f, &tone.frequency),
+                (tone.amplitude.value - a, &tone.amplitude),
+                (turn, &tone.phase),
+            ];
+            count += 1;
+            for (k, (error, estimate)) in errors.into_iter().enumerate() {
+                inside[k] += usize::from(error.abs() < 1.96 * estimate.std.unwrap());
+            }
+        }
+    }
+    let covered = inside.map(|n| n as f64 / count as f64);
+    println!(
+        "two sines 2 to 10 lines apart: coverage {covered:?} of {count}, {fewer} of {PAIRS} pairs not parted"
+    );
+    // A share of 800 scatters by 0.008.
+    assert!(covered.iter().all(|c| (0.92..=0.98).contains(c)), "{covered:?}");
+    assert!(fewer * 100 <= PAIRS, "{fewer}");
 }

@@ -1,6 +1,6 @@
 //! `vibro pulse`.
 
-use super::{complaint, json, text};
+use super::{complaint, json, text, vibro};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::fs;
@@ -96,7 +96,10 @@ fn a_record_that_allows_no_answer_does_not_end_a_campaign() {
         assert!(said.contains(&format!("{name}: Left out: ")), "{name}: {said}");
     }
     fs::write(&campaign, entries).unwrap();
-    let none = json(&["run", text(&campaign)]);
+    // The report is written; the exit code says that there is no answer in it.
+    let output = vibro(&["run", text(&campaign), "--json"]);
+    assert_eq!(output.status.code(), Some(1));
+    let none: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert!(none["warnings"].to_string().contains("No file allows an answer: nothing was computed."));
     // What cannot be read still ends it.
     fs::write(at("flat.csv"), "no numbers here\n").unwrap();

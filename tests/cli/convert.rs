@@ -102,3 +102,20 @@ fn what_cannot_be_integrated_writes_nothing() {
     assert!(spectrum.contains("no time trace") && spectrum.contains("vibro spectrum"), "{spectrum}");
     assert!(!out.exists());
 }
+
+#[test]
+fn exponential_smoothing_is_late_by_its_time_constant() {
+    let folder = tempfile::tempdir().unwrap();
+    let input = folder.path().join("ramp.csv");
+    let rows = (0..2000).fold("time [s],velocity [m/s]\n".to_owned(), |text, i| {
+        text + &format!("{t:.4},{t:.4}\n", t = f64::from(i) / RATE)
+    });
+    fs::write(&input, rows).unwrap();
+    let (slow, said) = converted(&input, &["--smoothing", "0.01"]);
+    let late = 0.75 - slow.values[1500];
+    // A ramp comes (1 − α)/α samples late, which is the time constant but for half a sample.
+    assert!((late - 0.01).abs() < 0.5 / RATE, "{late}");
+    assert!(said.contains("exponential smoothing") && said.contains("15.915494 Hz"), "{said}");
+    let both = ["convert", text(&input), "x.csv", "--smoothing", "0.01", "--low-pass", "5"];
+    complaint(&both, 2);
+}

@@ -1,9 +1,11 @@
 //! The command as a person or a program meets it: exit codes, JSON keys, complaints.
 
 mod answers;
+mod campaign;
 mod complaints;
 mod contact;
 mod convert;
+mod documents;
 mod impacts;
 mod modes;
 mod rig;

@@ -29,6 +29,9 @@ pub struct Change {
     /// Corner in Hz of a zero-phase Butterworth low-pass of order 4
     #[arg(long, value_name = "HZ")]
     pub low_pass: Option<f64>,
+    /// Time constant in s of exponential smoothing, which is late, instead of a zero-phase low-pass
+    #[arg(long, value_name = "TIME", conflicts_with = "low_pass")]
+    pub smoothing: Option<f64>,
     /// Corner in Hz of a zero-phase Butterworth high-pass of order 4
     #[arg(long, value_name = "HZ")]
     pub high_pass: Option<f64>,

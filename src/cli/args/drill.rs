@@ -47,6 +47,9 @@ pub struct Drill {
     /// Longest drop-out in s that is bridged
     #[arg(long, value_name = "TIME", default_value_t = 2e-3)]
     pub longest_dropout: f64,
+    /// Time in s by which the velocity was recorded later than the reference, as the decoder of a vibrometer does: it is taken off
+    #[arg(long, value_name = "TIME", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub delay: f64,
     /// Phases of the average
     #[arg(long, value_name = "N", default_value_t = 720)]
     pub points: usize,

@@ -19,6 +19,9 @@ pub struct Impacts {
     /// Record of the same file that rises once a cycle of the excitation, by name or by number from 1
     #[arg(long, value_name = "NAME")]
     pub reference: Option<String>,
+    /// Record of one pulse of the shape that all have: each impact is matched to it
+    #[arg(long, value_name = "FILE", conflicts_with = "legacy")]
+    pub shape: Option<PathBuf>,
     #[command(flatten)]
     pub finding: Finding,
     /// Folder for figures as SVG and PNG, and the times as CSV

@@ -11,8 +11,16 @@ pub struct Spectrum {
     #[command(flatten)]
     pub channel: Channel,
     /// One transform of the whole record, or the average over segments
-    #[arg(long, value_name = "METHOD", default_value = "welch")]
+    #[arg(
+        long,
+        value_name = "METHOD",
+        default_value = "welch",
+        default_value_if("tones", clap::builder::ArgPredicate::IsPresent, "fft")
+    )]
     pub method: Method,
+    /// Fit the N strongest sines of the whole record, 1 to 10: frequency, amplitude and phase with their uncertainties
+    #[arg(long, value_name = "N", conflicts_with_all = ["reference", "segment", "overlap"], value_parser = clap::value_parser!(u8).range(1..=10))]
+    pub tones: Option<u8>,
     /// Samples of a segment [default: 8192, or the whole of a shorter record]
     #[arg(long, value_name = "SAMPLES")]
     pub segment: Option<usize>,
@@ -49,6 +57,12 @@ pub struct Spectrum {
     /// What an exponential window leaves of the response at the end of a record, e.g. 0.01
     #[arg(long, value_name = "PART", requires = "hammer")]
     pub left_at_end: Option<f64>,
+    /// Time in s by which the channel was recorded later than the reference, as the decoder of a vibrometer does: it is taken off
+    #[arg(long, value_name = "S", requires = "reference", allow_negative_numbers = true)]
+    pub delay: Option<f64>,
+    /// Give levels in decibels over this reference, in SI units of the channel: 1, or 1e-6 for 1 µm/s²
+    #[arg(long, value_name = "REF")]
+    pub decibel: Option<f64>,
     /// Folder for the figure as SVG and PNG, and the lines as CSV and UFF
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

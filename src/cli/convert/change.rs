@@ -13,7 +13,7 @@ const ORDER: usize = 4;
 impl Change {
     /// Whether anything is to be done.
     pub fn wanted(&self) -> bool {
-        self.integrate != 0 || self.low_pass.is_some() || self.high_pass.is_some()
+        self.integrate != 0 || self.smoothing.is_some() || self.low_pass.is_some() || self.high_pass.is_some()
     }
 
     /// Does it to all records; gives what was done, a sentence a step.
@@ -22,7 +22,9 @@ impl Change {
     /// If options contradict each other, a record is no time trace, or it cannot be filtered or integrated.
     pub fn apply(&self, records: &mut [Record]) -> Result<Vec<String>> {
         let corners = [("--low-pass", self.low_pass), ("--high-pass", self.high_pass), ("--fmin", self.fmin)];
-        for (name, value) in corners.into_iter().chain([("--excitation", self.excitation)]) {
+        for (name, value) in
+            corners.into_iter().chain([("--excitation", self.excitation), ("--smoothing", self.smoothing)])
+        {
             above_zero(name, value)?;
         }
         if self.integrate > 0 && self.fmin.is_none() {
@@ -61,6 +63,23 @@ impl Change {
             .rate()
             .ok_or_else(|| Error::refused("the sampling rate is not known").hint("state it with --rate"))?;
         let name = trace.meta.name.clone();
+        if let Some(time) = self.smoothing {
+            let corner = 1.0 / (std::f64::consts::TAU * time);
+            let filter = Filter::smoothing(corner, rate)?;
+            if let Some(i) = trace.values.iter().position(|v| !v.is_finite()) {
+                return Err(Error::refused(format!(
+                    "sample {i} is missing: smoothing would lose all behind it"
+                ))
+                .hint("cut the record before the gap"));
+            }
+            if let Some(first) = trace.values.first().copied() {
+                filter.settled_at(first).apply(&mut trace.values);
+            }
+            trace.meta.step("filter", &[("filter", &filter), ("passes", &1)]);
+            said.push(format!(
+                "{name}: exponential smoothing with a time constant of {time} s, corner {corner:.6} Hz: slow changes come {time} s late. A low-pass of zero phase (--low-pass) does not delay."
+            ));
+        }
         let mut filters = Vec::new();
         if let Some(corner) = self.low_pass {
             filters.push(Filter::low_pass(corner, ORDER, rate)?);

@@ -29,6 +29,8 @@ pub struct DrillOptions {
     pub fit: f64,
     /// Longest drop-out in s that is bridged. Default 2 ms.
     pub longest_dropout: f64,
+    /// Time in s by which the velocity was recorded later than the reference, as the decoder of a vibrometer does. Default 0.
+    pub delay: f64,
     /// Phases of the average. Default 720.
     pub points: usize,
     /// Of average and displacement. Default a zero-phase low-pass, see [`Smoothing::Phases`].
@@ -55,6 +57,7 @@ impl DrillOptions {
             contact: 0.2e-3,
             fit: 0.5e-3,
             longest_dropout: 2e-3,
+            delay: 0.0,
             points: 720,
             smoothing: Smoothing::default(),
             instrument: None,
@@ -71,6 +74,9 @@ impl DrillOptions {
         if self.pulses_per_turn == 0 || self.pulses_per_turn > MOST_PULSES {
             let expected = format!("1 to {MOST_PULSES}");
             return Err(Error::usage(format!("{} pulses a turn", self.pulses_per_turn), expected));
+        }
+        if !self.delay.is_finite() {
+            return Err(Error::usage(format!("a delay of {} s", self.delay), "a finite number"));
         }
         if self.points < 2 || self.points > 100_000 {
             return Err(Error::usage(format!("an average at {} phases", self.points), "2 to 100000"));

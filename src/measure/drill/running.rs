@@ -17,6 +17,12 @@ impl Running {
         self.squares += step * (value - self.mean);
     }
 
+    /// Number of values.
+    #[cfg(test)]
+    pub fn n(&self) -> usize {
+        self.n
+    }
+
     /// Mean; NaN where there is no value.
     pub fn mean(&self) -> f64 {
         if self.n == 0 { f64::NAN } else { self.mean }

@@ -1,6 +1,8 @@
 //! The shape of a pulse, known or averaged from a record, and the time of a pulse matched to it.
 
 use super::burst::median;
+use crate::error::{Error, Result};
+use crate::record::Trace;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
@@ -50,6 +52,48 @@ impl Shape {
         let points: Vec<(f64, f64)> =
             (0..=2 * knots).map(|i| span.start + 0.5 * step * i as f64).map(|x| (x, pulse(x))).collect();
         Shape::through(&points, span.start, step, knots)
+    }
+
+    /// The spline of a recorded pulse, for matching in `trace`.
+    ///
+    /// # Errors
+    /// If either has no sampling rate, or the pulse is too short, too long (10 000 samples), constant, or has gaps.
+    pub fn of(pulse: &Trace, trace: &Trace) -> Result<Shape> {
+        let unknown = || Error::refused("the sampling rate is not known").hint("state it with --rate");
+        let (own, rate) = (pulse.rate().ok_or_else(unknown)?, trace.rate().ok_or_else(unknown)?);
+        Shape::recorded(&pulse.values, rate / own).ok_or_else(|| {
+            Error::refused(format!(
+                "{:?} is no shape of a pulse: {} samples, missing or equal values",
+                pulse.meta.name,
+                pulse.values.len()
+            ))
+            .hint("cut a record to one pulse, 5 to 10000 samples without gaps")
+        })
+    }
+
+    /// The spline of a recorded pulse whose samples are `spacing` samples of the trace apart. It is scaled to unit height, and its origin
+    /// is where the first flank passes half of that, as with impacts of which no shape is known.
+    ///
+    /// `None` where it has fewer than five samples or more than ten thousand, missing or equal ones.
+    pub fn recorded(values: &[f64], spacing: f64) -> Option<Shape> {
+        let n = values.len();
+        let sampled = (5..=10_000).contains(&n) && spacing.is_finite() && spacing > 0.0;
+        if !sampled || values.iter().any(|v| !v.is_finite()) {
+            return None;
+        }
+        let peak = values.iter().copied().fold(0.0, |m: f64, v| if v.abs() > m.abs() { v } else { m });
+        let unit: Vec<f64> = values.iter().map(|v| v / peak).collect();
+        let above = unit.iter().position(|v| *v >= 0.5)?;
+        let origin = match above.checked_sub(1) {
+            Some(before) => above as f64 - (unit[above] - 0.5) / (unit[above] - unit[before]),
+            None => 0.0,
+        };
+        if unit.iter().all(|v| *v == unit[0]) {
+            return None;
+        }
+        let at = |i: usize| (i as f64 - origin) * spacing;
+        let points: Vec<(f64, f64)> = unit.iter().enumerate().map(|(i, v)| (at(i), *v)).collect();
+        Shape::through(&points, at(0), spacing, n - 1)
     }
 
     /// The spline nearest to points (time in samples, value) over `span`, with knots no closer than samples: a shape that may bend from

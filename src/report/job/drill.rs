@@ -32,8 +32,9 @@ pub(super) fn drills(
 ) -> Result<Vec<DrillResult>> {
     let mut results = Vec::new();
     for entry in &campaign.drill {
-        let (file, how) = campaign.drill(entry, options.allow_outside)?;
-        let name = entry.record().name.unwrap_or_else(|| file_name(&file.path));
+        let name = entry.name.clone().unwrap_or_else(|| file_name(entry.record().file.get_ref()));
+        let asked = or_left_out(campaign.drill(entry, options.allow_outside), &name, warnings)?;
+        let Some((file, how)) = asked else { continue };
         progress.start(&format!("drill {name}"), PARTS);
         let told = Cell::new(0);
         let drill = file.measure(&how, &|done, all| {

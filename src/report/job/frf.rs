@@ -1,9 +1,10 @@
 //! Frequency response functions of a campaign: figures and modes.
 
-use super::{JobOptions, file_name, merge, or_left_out};
-use crate::campaign::Campaign;
+use super::{JobOptions, file_name, merge, or_left_out, spectral};
+use crate::campaign::{Campaign, FrfEntry};
 use crate::error::Result;
 use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal};
+use crate::record::{Meta, Record};
 use crate::report::{Figure, pictures};
 use serde::Serialize;
 
@@ -32,28 +33,17 @@ pub(super) fn frfs(
     let mut results = Vec::new();
     for own in &campaign.frf {
         let entry = own.record();
-        let recording = campaign.recording(&entry, options.allow_outside)?;
-        let path = &recording.path;
-        merge(warnings, &file_name(path), &recording.doubts);
-        let name = entry.name.clone().unwrap_or_else(|| file_name(path));
-        let coherence = match &own.coherence {
-            Some(file) => {
-                Some(entry.reader().from_path(campaign.beside(&entry, file, options.allow_outside)?)?)
-            }
-            None => None,
-        };
-        for (mut meta, measured) in Measured::all(&recording, entry.channel.as_deref())? {
-            let measured = match &coherence {
-                Some(recording) => measured.with_coherence_of(recording),
-                None => Ok(measured),
-            };
-            let Some(mut measured) = or_left_out(measured, &name, warnings)? else { continue };
-            if let Some(factor) = entry.calibration {
+        for (name, file, mut meta, mut measured) in functions(campaign, own, options, warnings)? {
+            if let Some(factor) = entry.calibration.filter(|_| own.reference.is_none()) {
                 meta.step("calibrate", &[("factor", &factor)]);
                 measured.values.iter_mut().for_each(|v| *v *= factor);
             }
             let number = results.len() + 1;
-            let wanted = ModalOptions { band: own.band, mass: own.mass, ..ModalOptions::default() };
+            let wanted = ModalOptions {
+                band: own.band,
+                mass: own.mass,
+                least_coherence: own.least_coherence.unwrap_or(ModalOptions::default().least_coherence),
+            };
             // A function without a mode is no reason to give up the rest of a campaign.
             let mut found = match modal(&measured, &wanted) {
                 Err(error) if error.exit_code() == 1 => {
@@ -69,7 +59,7 @@ pub(super) fn frfs(
             merge(warnings, &name, &found.warnings);
             results.push(FrfResult {
                 name: name.clone(),
-                file: file_name(path),
+                file,
                 quantity: meta.quantity.name(),
                 unit: meta.unit.symbol().to_owned(),
                 modal: found,
@@ -77,4 +67,50 @@ pub(super) fn frfs(
         }
     }
     Ok(results)
+}
+
+/// Name, file, meta data and lines of a function.
+type Function = (String, String, Meta, Measured);
+
+/// The functions of an entry: those of its file, or the one that is taken from two of its channels.
+fn functions(
+    campaign: &Campaign,
+    own: &FrfEntry,
+    options: JobOptions,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<Function>> {
+    let entry = own.record();
+    if let Some(how) = own.options().map_err(|why| campaign.at(entry.file.span(), why))? {
+        let (file, found) = spectral::lines(campaign, &entry, own.reference.as_deref(), &how, options)?;
+        let name = entry.name.clone().unwrap_or_else(|| file.clone());
+        let Some(found) = or_left_out(found, &name, warnings)? else { return Ok(Vec::new()) };
+        merge(warnings, &name, &found.warnings);
+        let records = found.records();
+        let [Record::Frf(frf), Record::Spectrum(coherence)] = records.as_slice() else {
+            return Ok(Vec::new());
+        };
+        let measured = Measured::complex(frf).with_coherence(coherence)?;
+        return Ok(vec![(name, file, frf.meta.clone(), measured)]);
+    }
+    let recording = campaign.recording(&entry, options.allow_outside)?;
+    let file = file_name(&recording.path);
+    merge(warnings, &file, &recording.doubts);
+    let name = entry.name.clone().unwrap_or_else(|| file.clone());
+    let coherence = match &own.coherence {
+        Some(file) => {
+            Some(entry.reader().from_path(campaign.beside(&entry, file, options.allow_outside)?)?)
+        }
+        None => None,
+    };
+    let mut found = Vec::new();
+    for (meta, measured) in Measured::all(&recording, entry.channel.as_deref())? {
+        let measured = match &coherence {
+            Some(recording) => measured.with_coherence_of(recording),
+            None => Ok(measured),
+        };
+        if let Some(measured) = or_left_out(measured, &name, warnings)? {
+            found.push((name.clone(), file.clone(), meta, measured));
+        }
+    }
+    Ok(found)
 }

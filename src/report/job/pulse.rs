@@ -3,7 +3,7 @@
 use super::{JobOptions, file_name, merge, or_left_out};
 use crate::campaign::Campaign;
 use crate::error::{Error, Result};
-use crate::measure::pulse::{LowPass, PulseOptions, PulseResult, pulse};
+use crate::measure::pulse::{LowPass, PulseOptions, PulseResult, pulse, two_times};
 use crate::report::{Figure, pictures};
 use serde::Serialize;
 
@@ -12,7 +12,7 @@ use serde::Serialize;
 pub struct NamedPulse {
     /// Name of the record.
     pub name: String,
-    /// File.
+    /// File; empty for two times.
     pub file: String,
     /// What it says.
     #[serde(flatten)]
@@ -26,21 +26,50 @@ pub(super) fn pulses(
     warnings: &mut Vec<String>,
 ) -> Result<Vec<NamedPulse>> {
     let mut found = Vec::new();
-    for own in &campaign.pulse {
-        let entry = own.record();
-        let recording = campaign.recording(&entry, options.allow_outside)?;
-        let file = file_name(&recording.path);
-        merge(warnings, &file, &recording.doubts);
-        let trace = recording.trace(entry.channel.as_deref(), entry.calibration)?;
-        let name = entry.name.clone().unwrap_or_else(|| file.clone());
-        if own.low_pass.is_some() != own.order.is_some() {
-            let found = format!("only one of low_pass and order is given for the pulse {name:?}");
-            return Err(Error::usage(found, "both, or none"));
+    for (i, own) in campaign.pulse.iter().enumerate() {
+        let number = i + 1;
+        let called = own.name.clone().unwrap_or_else(|| format!("pulse {number}"));
+        let wrong = |found: String, expected: &str| Err(Error::usage(found, expected));
+        let times = own.time_to_peak.zip(own.duration);
+        if own.time_to_peak.is_some() != own.duration.is_some() {
+            return wrong(
+                format!("only one of time_to_peak and duration is given for {called:?}"),
+                "both, or none",
+            );
         }
-        let low_pass = own.low_pass.zip(own.order).map(|(hz, n)| LowPass::new(hz, n)).transpose()?;
-        let result = pulse(&trace, &PulseOptions { low_pass, mass: own.mass });
-        let Some(mut result) = or_left_out(result, &name, warnings)? else { continue };
-        result.warnings.splice(0..0, trace.meta.doubts.iter().cloned());
+        if own.low_pass.is_some() != own.order.is_some() {
+            return wrong(
+                format!("only one of low_pass and order is given for the pulse {called:?}"),
+                "both, or none",
+            );
+        }
+        let (name, file, result) = match (own.record(), times) {
+            (Some(_), Some(_)) => return wrong(format!("file and two times for {called:?}"), "one of them"),
+            (None, None) => {
+                return wrong(
+                    format!("neither a file nor two times for {called:?}"),
+                    "file, or time_to_peak and duration",
+                );
+            }
+            (None, Some((peak, duration))) => {
+                (called, String::new(), two_times(peak, duration, own.std, own.mass))
+            }
+            (Some(_), None) if own.std.is_some() => {
+                return wrong(format!("std without time_to_peak and duration for {called:?}"), "both times");
+            }
+            (Some(entry), None) => {
+                let path = campaign.record_path(&entry, options.allow_outside)?;
+                let recording = entry.reader().rate_of_base_band().from_path(path)?;
+                let file = file_name(&recording.path);
+                merge(warnings, &file, &recording.doubts);
+                let trace = recording.trace(entry.channel.as_deref(), entry.calibration)?;
+                let name = entry.name.unwrap_or_else(|| file.clone());
+                let low_pass = own.low_pass.zip(own.order).map(|(hz, n)| LowPass::new(hz, n)).transpose()?;
+                merge(warnings, &name, &trace.meta.doubts);
+                (name, file, pulse(&trace, &PulseOptions { low_pass, mass: own.mass }))
+            }
+        };
+        let Some(result) = or_left_out(result, &name, warnings)? else { continue };
         if let Some(figure) = pictures::pulse(&name, &result) {
             figures.push((format!("pulse_{}", found.len() + 1), figure));
         }

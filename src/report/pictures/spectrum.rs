@@ -1,11 +1,26 @@
 //! Spectra, and frequency response functions with their band and coherence.
 
 use super::response::capital;
+use crate::measure::spectral::{Lines, SpectralResult};
 use crate::record::{Scaling, Spectrum};
 use crate::report::{AxisSpec, Figure, Ink, Legend, Plot, Series};
 use crate::signal::transfer::Transfer;
 use crate::units::Quantity;
 use num_complex::Complex64;
+
+/// A spectrum, or a frequency response function.
+pub fn lines(title: &str, result: &SpectralResult) -> Figure {
+    if let Some(unit) = &result.level_unit {
+        let (f, level): (Vec<f64>, Vec<f64>) =
+            result.frequency.iter().zip(&result.level).filter(|line| *line.0 > 0.0).unzip();
+        let plot = Plot::new(AxisSpec::frequency(), AxisSpec::new("Level", unit.clone()));
+        return Figure::double(title).panel(plot.with(Series::line("", f, level)));
+    }
+    match &result.found {
+        Lines::Spectrum(found) => spectrum(title, found),
+        Lines::Transfer(found) => transfer(title, found),
+    }
+}
 
 /// Lines of a spectrum over a logarithmic axis.
 pub fn spectrum(title: &str, spectrum: &Spectrum) -> Figure {

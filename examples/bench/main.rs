@@ -1,0 +1,87 @@
+//! Makes the records of the example bench: a mass on a spring, shaken at random, and one contact pulse.
+//!
+//! `cargo run --release --example bench [FOLDER]` writes into FOLDER, by default into this example's own. The same bytes come out every
+//! time: the noise has a fixed seed.
+//!
+//! - `BENCH.CSV`: force and velocity of 0.125 kg on a spring and a damper (60 Hz, ζ = 0.02), 4 s at 1024 Hz;
+//! - `PULSE.CSV`: deceleration in a contact of spring and damper (500 Hz, ζ = 0.2), 4 ms at 50 kHz;
+//! - `TRUTH.csv`: what a perfect instrument would have found.
+
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use vibroimpact::{Error, Result};
+
+const MASS: f64 = 0.125;
+const FREQUENCY: f64 = 60.0;
+const ZETA: f64 = 0.02;
+const CONTACT: f64 = 500.0;
+const XI: f64 = 0.2;
+/// Steps of the motion in a sample of the bench.
+const STEPS: u32 = 64;
+
+/// Numbers between −1 and 1.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+fn bench(noise: &mut Noise) -> String {
+    let (w, step) = (TAU * FREQUENCY, 1.0 / 1024.0 / f64::from(STEPS));
+    let (mut x, mut v, mut force, mut before) = (0.0, 0.0, 0.0, 0.0);
+    let mut text = String::from("time [s],force [N],velocity [m/s]\n");
+    for i in 0..4096 {
+        let shown = v + 1e-4 * noise.next();
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{:.10},{force:.6},{shown:.7}", f64::from(i) / 1024.0);
+        // The mean of two: noise mostly below a quarter of the rate, so that little of it lies between the samples.
+        let raw = 2.0 * noise.next();
+        let next = 0.5 * (raw + before);
+        before = raw;
+        for k in 0..STEPS {
+            let f = force + (next - force) * f64::from(k) / f64::from(STEPS);
+            v += step * (f / MASS - 2.0 * ZETA * w * v - w * w * x);
+            x += step * v;
+        }
+        force = next;
+    }
+    text
+}
+
+fn pulse(noise: &mut Noise) -> String {
+    let w = TAU * CONTACT;
+    let damped = w * (1.0 - XI * XI).sqrt();
+    let mut text = String::from("time [s],acceleration [m/s²]\n");
+    for i in 0..200 {
+        let t = (f64::from(i) - 50.3) / 50_000.0;
+        let x = (-XI * w * t).exp() * (damped * t).sin() / damped;
+        let v = (-XI * w * t).exp() * (damped * t).cos() - XI * w * x;
+        let force = if t > 0.0 { w * w * x + 2.0 * XI * w * v } else { 0.0 };
+        let inside = t > 0.0 && t < 0.5 * TAU / w && force > 0.0;
+        let shown = if inside { force } else { 0.0 } + 3.0 * noise.next();
+        let _ = writeln!(text, "{:.6},{shown:.3}", f64::from(i) / 50_000.0);
+    }
+    text
+}
+
+fn main() -> Result<()> {
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/bench");
+    let folder = std::env::args_os().nth(1).map_or(own, PathBuf::from);
+    std::fs::create_dir_all(&folder).map_err(|e| Error::io("create", &folder, e))?;
+    let mut noise = Noise(20);
+    let truth = format!(
+        "what,value,unit\nfrequency of the mass,{FREQUENCY},Hz\nits damping ratio,{ZETA},1\nits mass,{MASS},kg\n\
+         frequency of the contact,{CONTACT},Hz\nits damping ratio,{XI},1\n"
+    );
+    for (name, text) in
+        [("BENCH.CSV", bench(&mut noise)), ("PULSE.CSV", pulse(&mut noise)), ("TRUTH.csv", truth)]
+    {
+        let path = folder.join(name);
+        std::fs::write(&path, text).map_err(|e| Error::io("write", &path, e))?;
+    }
+    Ok(())
+}

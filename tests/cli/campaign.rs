@@ -1,0 +1,245 @@
+//! What commands do, asked for in a campaign.
+
+use super::{complaint, json, text, vibro};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+/// Runs a campaign of this text in a folder; gives exit code and results.
+fn run(folder: &Path, campaign: &str) -> (i32, Value) {
+    let path = folder.join("campaign.toml");
+    fs::write(&path, campaign).unwrap();
+    let output = vibro(&["run", text(&path), "--json"]);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    let code = output.status.code().unwrap();
+    let value: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{e}: {stderr}"));
+    (code, value)
+}
+
+/// Force (noise) and the velocity of an oscillator of 60 Hz and ζ = 0.02 that it drives, 1024 Hz.
+fn bench(folder: &Path) {
+    let (mut state, mut table) = (7u64, String::from("time [s],force [N],velocity [m/s]\n"));
+    let (w, zeta, dt) = (TAU * 60.0, 0.02, 1.0 / 1024.0);
+    // x' = v, v' = f − 2ζω v − ω² x with a force that is constant over sixteen steps of a sample.
+    let (mut x, mut v) = (0.0, 0.0);
+    for i in 0..30_000 {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let force = (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
+        let _ = writeln!(table, "{:.9},{force:.9},{v:.9e}", f64::from(i) * dt);
+        for _ in 0..16 {
+            v += dt / 16.0 * (force - 2.0 * zeta * w * v - w * w * x);
+            x += dt / 16.0 * v;
+        }
+    }
+    fs::write(folder.join("bench.csv"), table).unwrap();
+    let mut table = String::from("time [s],voltage [V]\n");
+    for i in 0..2000 {
+        let t = f64::from(i) * 1e-3;
+        let _ = writeln!(table, "{t:.3},{:.6}", 2.0 * (TAU * 50.0 * t).cos() + (TAU * 55.0 * t + 1.0).cos());
+    }
+    fs::write(folder.join("tones.csv"), table).unwrap();
+}
+
+#[test]
+fn spectra_and_functions_from_two_channels() {
+    let folder = tempfile::tempdir().unwrap();
+    bench(folder.path());
+    let (code, answer) = run(
+        folder.path(),
+        "[[spectrum]]\nname = \"speed\"\nfile = \"bench.csv\"\nchannel = \"velocity\"\nsegment = 1024\nscaling = \"psd\"\nintegrate = 1\n\
+         [[spectrum]]\nname = \"function\"\nfile = \"bench.csv\"\nreference = \"force\"\nestimator = \"hv\"\nsegment = 2048\n\
+         [[spectrum]]\nname = \"tone\"\nfile = \"tones.csv\"\ntones = 2\ndecibel = 1e-6\n\
+         [[frf]]\nname = \"modes\"\nfile = \"bench.csv\"\nreference = \"force\"\nsegment = 4096\nband = [40.0, 80.0]\n",
+    );
+    let results = &answer["results"];
+    assert_eq!(code, 0, "{answer}");
+    // 50 Hz of 2 V and 55 Hz of 1 V over steps of rounding to 1e-6 V, which scatter by 3e-7.
+    for (tone, (f, a)) in
+        results["spectra"][2]["tones"].as_array().unwrap().iter().zip([(50.0, 2.0), (55.0, 1.0)])
+    {
+        let of = |key: &str, part: &str| tone[key][part].as_f64().unwrap();
+        assert!(
+            (of("frequency", "value") - f).abs() < 1e-6 && (of("amplitude", "value") - a).abs() < 1e-6,
+            "{tone}"
+        );
+        assert!(of("frequency", "std") < 1e-6 && of("phase", "std") < 1e-6, "{tone}");
+    }
+    let (value, level) = (&results["spectra"][2]["value"], &results["spectra"][2]["level"]);
+    for (v, l) in value.as_array().unwrap().iter().zip(level.as_array().unwrap()) {
+        let expected = 20.0 * (v.as_f64().unwrap() / 1e-6).log10();
+        assert!((l.as_f64().unwrap() - expected).abs() < 1e-9);
+    }
+    assert_eq!(results["spectra"][2]["level_unit"], "dB re 0.000001 V");
+    let bench = folder.path().join("bench.csv");
+    let same = ["spectrum", text(&bench), "--channel", "velocity", "--segment", "1024", "--scaling", "psd"];
+    let alone = json(&[&same[..], &["--integrate", "1"]].concat());
+    for key in ["frequency", "value", "value_std", "unit", "window", "averages", "detrend"] {
+        assert_eq!(results["spectra"][0][key], alone[key], "{key}");
+    }
+    let function =
+        ["spectrum", text(&bench), "--reference", "force", "--segment", "2048", "--estimator", "hv"];
+    let alone = json(&function);
+    for key in ["value", "phase", "coherence", "estimator"] {
+        assert_eq!(results["spectra"][1][key], alone[key], "{key}");
+    }
+    let mode = &results["frf"][0]["modes"][0];
+    assert!((mode["frequency"]["value"].as_f64().unwrap() - 60.0).abs() < 0.5, "{mode}");
+    assert!((mode["zeta"]["value"].as_f64().unwrap() - 0.02).abs() < 0.01, "{mode}");
+    for file in ["spectrum_speed.csv", "spectrum_function.uff", "spectrum_tone.svg", "frf_1.png"] {
+        assert!(folder.path().join("results").join(file).is_file(), "{file}");
+    }
+    let report = fs::read_to_string(folder.path().join("results/report.html")).unwrap();
+    assert!(report.contains("Largest peaks of spectra"));
+}
+
+#[test]
+fn keys_that_contradict_each_other_point_at_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    bench(folder.path());
+    for (keys, words) in [
+        ("[[spectrum]]\nfile = \"bench.csv\"\nmethod = \"fft\"\nsegment = 8", "segment with method fft"),
+        ("[[spectrum]]\nfile = \"bench.csv\"\nestimator = \"h2\"", "estimator without a reference"),
+        ("[[spectrum]]\nfile = \"bench.csv\"\nwindow = \"kaiser\"", "kaiser"),
+        ("[[spectrum]]\nfile = \"bench.csv\"\ntones = 2\nmethod = \"welch\"", "with tones"),
+        (
+            "[[spectrum]]\nfile = \"bench.csv\"\nreference = \"force\"\nscaling = \"rms\"",
+            "scaling with a reference",
+        ),
+        ("[[frf]]\nfile = \"bench.csv\"\nsegment = 1024", "segment without a reference"),
+    ] {
+        let path = folder.path().join("campaign.toml");
+        fs::write(&path, keys).unwrap();
+        let found = complaint(&["run", text(&path)], 2);
+        assert!(found.contains(words) && found.contains("line 2"), "{keys}\n{found}");
+    }
+}
+
+#[test]
+fn drops_and_pulses_of_numbers_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let (code, answer) = run(
+        folder.path(),
+        "[[drop]]\nname = \"struck\"\nmasses = [0.14, 0.28]\nbefore = [7.5, 0.0]\nafter = [-0.5]\nvelocity_std = 0.05\n\
+         [[drop]]\nname = \"fall\"\nheight = 0.57\nheight_std = 0.001\ninterval = 0.144\ninterval_std = 0.002\n\
+         [[drop]]\nname = \"train\"\nintervals = [0.300, 0.181, 0.109, 0.066]\n\
+         [[pulse]]\nname = \"bit\"\ntime_to_peak = 6.64e-6\nduration = 18.0e-6\nstd = 0.05e-6\nmass = 0.43\n",
+    );
+    assert_eq!(code, 0, "{answer}");
+    let alone = [
+        json(&[
+            "restitution",
+            "--before",
+            "7.5,0",
+            "--after=-0.5",
+            "--masses",
+            "0.14,0.28",
+            "--velocity-std",
+            "0.05",
+        ]),
+        json(&[
+            "restitution",
+            "--height",
+            "0.57",
+            "--interval",
+            "0.144",
+            "--height-std",
+            "0.001",
+            "--interval-std",
+            "0.002",
+        ]),
+        json(&["restitution", "--intervals", "0.300,0.181,0.109,0.066"]),
+    ];
+    for (found, alone) in answer["results"]["drops"].as_array().unwrap().iter().zip(&alone) {
+        assert_eq!(found["restitution"], alone["restitution"]);
+        assert_eq!(found["by"], alone["by"]);
+    }
+    let alone = json(&[
+        "pulse",
+        "--time-to-peak",
+        "6.64e-6",
+        "--duration",
+        "18.0e-6",
+        "--std",
+        "0.05e-6",
+        "--mass",
+        "0.43",
+    ]);
+    assert_eq!(answer["results"]["pulses"][0]["xi"], alone["xi"]);
+    assert_eq!(answer["results"]["pulses"][0]["stiffness"], alone["stiffness"]);
+    for (keys, words) in [
+        ("[[drop]]\nheight = 1.0", "nothing that was measured"),
+        ("[[drop]]\ninterval = 1.0", "interval without a height"),
+        ("[[drop]]\nafter = [1.0]\nintervals = [0.1, 0.05]", "without before"),
+        ("[[pulse]]\nmass = 1.0", "neither a file nor two times"),
+        ("[[pulse]]\nduration = 1.0", "only one of"),
+    ] {
+        let path = folder.path().join("campaign.toml");
+        fs::write(&path, keys).unwrap();
+        let found = complaint(&["run", text(&path)], 2);
+        assert!(found.contains(words), "{keys}\n{found}");
+    }
+}
+
+#[test]
+fn a_record_that_is_impossible_leaves_the_rest_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    bench(folder.path());
+    let drill = "[[drill]]\nname = \"square\"\nfile = \"bench.csv\"\nvelocity = \"velocity\"\nreference = \"force\"\n\
+                 beam_angle = 90.0\nfrom = \"axis\"\npulses_per_turn = 1\nedge = \"rising\"\nsensitivity = 1.0\n";
+    let (code, answer) =
+        run(folder.path(), &format!("{drill}[[spectrum]]\nfile = \"bench.csv\"\nchannel = \"velocity\"\n"));
+    assert_eq!((code, answer["results"]["spectra"].as_array().unwrap().len()), (0, 1));
+    let said = |answer: &Value, word: &str| {
+        answer["warnings"].as_array().unwrap().iter().any(|w| w.as_str().unwrap().contains(word))
+    };
+    assert!(said(&answer, "square: Left out"), "{answer}");
+    // Nothing at all: the report is written with the reason, and the exit code says so.
+    let (code, answer) = run(folder.path(), drill);
+    assert_eq!(code, 1);
+    assert!(said(&answer, "square: Left out") && said(&answer, "nothing was computed"), "{answer}");
+    let report = fs::read_to_string(folder.path().join("results/report.html")).unwrap();
+    assert!(report.contains("square: Left out"));
+}
+
+/// Long options of a command, as keys.
+fn options(command: &str) -> BTreeSet<String> {
+    let help = String::from_utf8(vibro(&[command, "--help"]).stdout).unwrap();
+    let names = help
+        .lines()
+        .filter_map(|l| l.trim_start().split("--").nth(1).filter(|_| l.trim_start().starts_with('-')));
+    names.map(|n| n.split([' ', '=', ',']).next().unwrap().replace('-', "_")).collect()
+}
+
+/// Keys of a section, from the complaint about one that does not exist.
+fn keys(folder: &Path, section: &str) -> BTreeSet<String> {
+    let path = folder.join("campaign.toml");
+    fs::write(&path, format!("[[{section}]]\nxqzxqzxqzxqz = 1\n")).unwrap();
+    let found = complaint(&["run", text(&path)], 2);
+    let list =
+        found.split("keys known here: ").nth(1).unwrap_or_else(|| panic!("{found}")).lines().next().unwrap();
+    list.split(", ").map(|k| k.trim().to_owned()).collect()
+}
+
+#[test]
+fn every_option_of_a_command_is_a_key_of_its_section() {
+    let folder = tempfile::tempdir().unwrap();
+    // Of the terminal, or of single files that a campaign writes in any case.
+    let general = ["json", "help", "out", "legacy", "each_cycle"];
+    for (command, section) in [
+        ("spectrum", "spectrum"),
+        ("drill", "drill"),
+        ("impacts", "impacts"),
+        ("restitution", "drop"),
+        ("modal", "frf"),
+        ("pulse", "pulse"),
+    ] {
+        let (options, keys) = (options(command), keys(folder.path(), section));
+        assert!(options.len() > 10, "{options:?}");
+        let missing: Vec<&String> =
+            options.iter().filter(|o| !general.contains(&o.as_str()) && !keys.contains(*o)).collect();
+        assert!(missing.is_empty(), "[[{section}]] lacks {missing:?} of `vibro {command}`");
+    }
+}

@@ -1,0 +1,72 @@
+//! The examples of docs/commands.md run, in their order, in a folder that has the repository's examples.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::Command;
+
+/// Section and command of each line of the blocks of `sh` that begins with `vibro`; lines that end in a backslash go on.
+fn commands(text: &str) -> Vec<(String, String)> {
+    let (mut section, mut shell, mut found) = (String::new(), false, Vec::new());
+    let joined = text.replace("\\\n", " ");
+    for line in joined.lines() {
+        if let Some(name) = line.strip_prefix("## ") {
+            name.clone_into(&mut section);
+        } else if line.starts_with("```") {
+            shell = line == "```sh";
+        } else if shell && line.starts_with("vibro ") {
+            found.push((section.clone(), line.to_owned()));
+        }
+    }
+    found
+}
+
+#[cfg(unix)]
+#[test]
+fn every_section_has_an_example_that_runs() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = tempfile::tempdir().unwrap();
+    std::os::unix::fs::symlink(root.join("examples"), folder.path().join("examples")).unwrap();
+    let text = std::fs::read_to_string(root.join("docs/commands.md")).unwrap();
+    let program = Path::new(env!("CARGO_BIN_EXE_vibro")).parent().unwrap();
+    let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());
+    let mut ran: BTreeMap<String, usize> = BTreeMap::new();
+    for (section, line) in commands(&text) {
+        // Its record is made by a program of twenty seconds; tests/drill.rs runs that command.
+        if section == "vibro drill" {
+            continue;
+        }
+        let output = Command::new("sh")
+            .args(["-c", &line])
+            .current_dir(folder.path())
+            .env("PATH", &path)
+            .output()
+            .expect("a shell");
+        assert!(output.status.success(), "{line}\n{}", String::from_utf8_lossy(&output.stderr));
+        *ran.entry(section).or_default() += 1;
+    }
+    let sections = text.lines().filter_map(|l| l.strip_prefix("## ")).filter(|s| *s != "vibro drill");
+    for section in sections {
+        assert!(ran.contains_key(section), "{section} has no example");
+    }
+}
+
+#[test]
+fn the_example_bench_gives_back_the_truth() {
+    let campaign = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/bench/campaign.toml");
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let answer = super::json(&["run", super::text(&campaign), "--out", super::text(&out)]);
+    let results = &answer["results"];
+    let value = |estimate: &serde_json::Value| {
+        (estimate["value"].as_f64().unwrap(), estimate["std"].as_f64().unwrap_or(f64::NAN))
+    };
+    // The true values of TRUTH.csv.
+    let mode = &results["frf"][0]["modes"][0];
+    let (f, f_std) = value(&mode["frequency"]);
+    assert!((f - 60.0).abs() < 4.0 * f_std && f_std < 0.5, "{mode}");
+    let (xi, _) = value(&results["pulses"][0]["xi"]);
+    assert!((xi - 0.2).abs() < 0.01, "{}", results["pulses"][0]["xi"]);
+    assert_eq!(results["spectra"][0]["level_unit"], "dB re 0.000000001 m/s");
+    assert_eq!(results["drops"][0]["name"], "striker on piston");
+    assert_eq!(results["pulses"][1]["name"], "screen");
+}
