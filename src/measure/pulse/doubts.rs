@@ -1,6 +1,6 @@
 //! What a record of a pulse cannot tell, as sentences.
 
-use super::fit::Fitted;
+use super::fit::{Fitted, Trust};
 use super::{LowPass, PulseFit, PulseOptions, PulseResult};
 use crate::measure::residuals::Whiteness;
 
@@ -10,7 +10,7 @@ const NAMES: [&str; 5] = ["onset", "baseline", "initial velocity", "ξ", "freque
 /// Sentences on a fitted pulse, the first of `fits` being that of spring and damper.
 pub(super) fn doubts(
     main: &Fitted,
-    widening: f64,
+    trust: Trust,
     whiteness: &Whiteness,
     fits: &[PulseFit],
     result: &PulseResult,
@@ -43,14 +43,19 @@ pub(super) fn doubts(
             }
         }
     }
-    if widening.is_nan() {
+    if trust == Trust::Refused {
         let low_pass = match &options.low_pass {
             None => "the low-pass of the instrument is needed (--low-pass, --order)",
             Some(_) => "the low-pass is another than stated, or the contact another than modelled",
         };
         said.push(format!(
-            "The pulse does not begin as the contact of spring and damper must, and its residuals are not white noise: {low_pass}. ξ and all that follows may be far off, and no uncertainty is stated."
+            "The pulse does not begin as the contact of spring and damper must, and its residuals are not white noise: {low_pass}. ξ and all that follows would be far off, and are refused."
         ));
+    } else if trust == Trust::Unstated {
+        said.push(
+            "The residuals of the contact of spring and damper are not white noise, and larger in the contact than outside it: a wrong model or a wrong low-pass. What is printed is the contact most like the record; no uncertainty is stated, because none would cover that."
+                .to_owned(),
+        );
     } else if whiteness.rejected() {
         said.push(format!(
             "The residuals of the contact of spring and damper are not white noise: a wrong model, a wrong low-pass or coloured noise. Its uncertainties are enlarged by {:.1}, which covers noise but not a wrong model.",

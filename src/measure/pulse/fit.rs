@@ -43,6 +43,29 @@ pub(super) struct Fitted {
     first: Option<usize>,
 }
 
+/// How far the numbers of a fit may be trusted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Trust {
+    /// Uncertainties by the fit's covariance are to be enlarged by this factor.
+    Widened(f64),
+    /// More is left in the contact than outside: the model is not what was measured, and no enlarging covers that.
+    Unstated,
+    /// The contact begins otherwise than the model can: its parameters may be anything.
+    Refused,
+}
+
+impl Trust {
+    /// A value, where it may be given at all.
+    pub fn value(self, value: f64) -> f64 {
+        if self == Trust::Refused { f64::NAN } else { value }
+    }
+
+    /// The factor for uncertainties; not a number where none may be stated.
+    pub fn factor(self) -> f64 {
+        if let Trust::Widened(factor) = self { factor } else { f64::NAN }
+    }
+}
+
 /// Samples that the search for a first guess looks at.
 const GLANCE: usize = 48;
 
@@ -135,24 +158,29 @@ impl Samples {
         (-3..=3).map(moved).collect()
     }
 
-    /// How much the uncertainties of a fit are to be enlarged; not a number where the pulse begins otherwise than the model
-    /// can, which no enlarging covers.
-    pub fn widening(&self, fitted: &Fitted, whiteness: &Whiteness) -> f64 {
-        if whiteness.rejected() && self.misses_onset(fitted) {
-            return f64::NAN;
-        }
-        whiteness.inflation * student(fitted.fit.degrees_of_freedom())
-    }
-
-    /// Whether the residuals around the onset have more than twice the variance of the others, and more than chance gives: the
-    /// variance of n samples of noise scatters by √(2/n).
-    fn misses_onset(&self, fitted: &Fitted) -> bool {
+    /// How far a fit may be trusted: its residuals must be white noise, or no larger in the contact than outside it.
+    pub fn trust(&self, fitted: &Fitted, whiteness: &Whiteness) -> Trust {
         let onset = fitted.fit.parameters[0];
         let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
-        let around = onset - AROUND..=onset + AROUND + delay;
+        if whiteness.rejected() {
+            let around = onset - AROUND..=onset + AROUND + delay;
+            if self.more_left(fitted, |t| around.contains(&t)) {
+                return Trust::Refused;
+            }
+            let inside = onset..=fitted.end() + delay;
+            if self.more_left(fitted, |t| inside.contains(&t)) {
+                return Trust::Unstated;
+            }
+        }
+        Trust::Widened(whiteness.inflation * student(fitted.fit.degrees_of_freedom()))
+    }
+
+    /// Whether the residuals at some times have more than twice the variance of the others, and more than chance gives: the
+    /// variance of n samples of noise scatters by √(2/n).
+    fn more_left(&self, fitted: &Fitted, there: impl Fn(f64) -> bool) -> bool {
         let (mut near, mut far) = ((0.0, 0.0), (0.0, 0.0));
         for (t, r) in self.times.iter().zip(&fitted.fit.residuals) {
-            let part = if around.contains(t) { &mut near } else { &mut far };
+            let part = if there(*t) { &mut near } else { &mut far };
             *part = (part.0 + r * r, part.1 + 1.0);
         }
         let limit = (1.0 + 4.0 * (2.0_f64 / near.1).sqrt()).max(2.0);

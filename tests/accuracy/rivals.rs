@@ -1,0 +1,266 @@
+//! Coverage of all that a pulse prints beside ξ and frequency: stiffness, damping, velocity from a force, and the parameters of
+//! the contacts of Hertz and of Hunt and Crossley, integrated here.
+
+use crate::noise::Noise;
+use crate::pulse::{Case, trace};
+use crate::score::Score;
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+use vibroimpact::measure::pulse::{LowPass, PulseOptions, PulseResult, pulse};
+use vibroimpact::record::{Meta, Trace};
+use vibroimpact::units::Unit;
+
+const CASES: u64 = 300;
+
+/// What is beside ξ, frequency and velocity; each error in units of its own uncertainty.
+fn add(scores: &mut BTreeMap<&'static str, Score>, found: &PulseResult, case: &Case, mass: f64) {
+    let omega = TAU * case.frequency;
+    let velocity = found.initial_velocity.as_ref().expect("an acceleration or a force and a mass");
+    for (name, estimate, truth) in [
+        ("stiffness", found.stiffness.as_ref().expect("a mass"), mass * omega * omega),
+        ("damping", found.damping.as_ref().expect("a mass"), 2.0 * case.xi * mass * omega),
+        ("initial velocity", velocity, case.velocity.abs()),
+        ("onset", &found.fits[0].parameters["onset"], case.onset),
+    ] {
+        scores.entry(name).or_default().own(estimate, truth);
+    }
+    let force = found.fits[0].parameters["initial_velocity"].value;
+    assert!((force.abs() - velocity.value).abs() <= 1e-12 * velocity.value);
+}
+
+fn judge(what: &str, scores: &BTreeMap<&'static str, Score>) {
+    for (name, score) in scores {
+        score.judge(&format!("{what}, {name} (against its own uncertainty)"), 1.3);
+    }
+}
+
+/// The record as a force on a mass.
+fn force(values: &[f64], dt: f64, mass: f64) -> Trace {
+    let meta = Meta::new("force", Unit::parse("N").expect("a unit"));
+    Trace { meta, ..trace(values.iter().map(|v| mass * v).collect(), dt) }
+}
+
+#[test]
+fn what_follows_from_a_pulse_and_a_mass() {
+    let mut scores = BTreeMap::new();
+    println!("seeds 3000 to {}", 3000 + CASES);
+    for seed in 3000..3000 + CASES {
+        let mut noise = Noise::new(seed);
+        let (case, mass) = (Case::within(&mut noise, (0.08, 0.4)), noise.between(0.05, 5.0));
+        let first = (case.onset / case.dt).ceil() as usize;
+        let clean = case.plain(&case.parameters(), first);
+        let values: Vec<f64> = clean.iter().map(|v| v + case.sigma * noise.normal()).collect();
+        let options = PulseOptions { low_pass: None, mass: Some(mass) };
+        let found =
+            pulse(&force(&values, case.dt, mass), &options).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
+        add(&mut scores, &found, &case, mass);
+    }
+    judge("pulse with a mass", &scores);
+}
+
+#[test]
+fn what_follows_from_a_pulse_behind_a_low_pass() {
+    let mut scores = BTreeMap::new();
+    println!("seeds 4000 to {}", 4000 + CASES);
+    for seed in 4000..4000 + CASES {
+        let mut noise = Noise::new(seed);
+        let (case, mass) = (Case::within(&mut noise, (0.08, 0.35)), noise.between(0.05, 5.0));
+        // Corners that leave the jump to be seen; lower ones are judged with their bounds in `pulse`.
+        let (corner, order) = (case.frequency * noise.between(3.0, 6.0), 1 + (seed % 3) as usize);
+        let clean = case.filtered(&case.parameters(), corner, order);
+        let values: Vec<f64> = clean.iter().map(|v| v + case.sigma * noise.normal()).collect();
+        let options = PulseOptions { low_pass: LowPass::new(corner, order).ok(), mass: Some(mass) };
+        let found =
+            pulse(&force(&values, case.dt, mass), &options).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
+        add(&mut scores, &found, &case, mass);
+    }
+    judge("pulse with a mass behind a low-pass", &scores);
+}
+
+/// −z″ of z″ = −z^{3/2}(1 + α z′), z(0) = 0, z′(0) = 1, at every step up to where z is 0 again, by Runge and Kutta; its end,
+/// and −z′ there.
+fn losses(alpha: f64, step: f64) -> (Vec<f64>, f64, f64) {
+    let force = |z: f64, v: f64| z.max(0.0).powf(1.5) * (1.0 + alpha * v);
+    let (mut z, mut v) = (0.0, 1.0);
+    let mut all = vec![0.0];
+    loop {
+        let (a, b) = (v, -force(z, v));
+        let (c, d) = (v + step / 2.0 * b, -force(z + step / 2.0 * a, v + step / 2.0 * b));
+        let (e, f) = (v + step / 2.0 * d, -force(z + step / 2.0 * c, v + step / 2.0 * d));
+        let (g, h) = (v + step * f, -force(z + step * e, v + step * f));
+        let next = z + step / 6.0 * (a + 2.0 * c + 2.0 * e + g);
+        if next <= 0.0 {
+            let end = (all.len() - 1) as f64 * step + z / -v;
+            all.push(0.0);
+            return (all, end, -v);
+        }
+        v += step / 6.0 * (b + 2.0 * d + 2.0 * f + h);
+        z = next;
+        all.push(force(z, v));
+    }
+}
+
+/// The parameters of the contact that a rival is, losses α of 0 for that of Hertz.
+fn rival(model: usize, from: u64, alphas: (f64, f64)) {
+    const STEP: f64 = 1.0 / 512.0;
+    let mut scores: BTreeMap<&str, Score> = BTreeMap::new();
+    println!("seeds {from} to {}", from + CASES);
+    for seed in from..from + CASES {
+        let mut noise = Noise::new(seed);
+        let alpha = if model == 1 { 0.0 } else { noise.between(alphas.0, alphas.1) };
+        let (shape, end, restitution) = losses(alpha, STEP);
+        let duration = noise.between(2e-5, 5e-4);
+        let dt = duration / noise.between(16.0, 60.0);
+        let velocity = noise.between(0.5, 8.0) * if noise.between(0.0, 1.0) < 0.5 { -1.0 } else { 1.0 };
+        let onset = 2.3 * duration + noise.between(0.0, dt);
+        let scale = duration / end;
+        let height = velocity.abs() / scale;
+        let (base, sigma) = (noise.between(-0.3, 0.3) * height, height * noise.between(0.003, 0.02));
+        let values: Vec<f64> = (0..(5.8 * duration / dt) as usize)
+            .map(|i| {
+                let place = (i as f64 * dt - onset) / scale / STEP;
+                let at = place.max(0.0) as usize;
+                let inside = place >= 0.0 && at + 1 < shape.len();
+                let v = if inside { shape[at] + (place - at as f64) * (shape[at + 1] - shape[at]) } else { 0.0 };
+                base + velocity / scale * v + sigma * noise.normal()
+            })
+            .collect();
+        let found = pulse(&trace(values, dt), &PulseOptions::default())
+            .unwrap_or_else(|e| panic!("seed {seed}, alpha {alpha}: {e}"));
+        let Some(fit) = found.fits.iter().find(|f| f.model == ["", "hertz", "hunt-crossley"][model]) else {
+            panic!("seed {seed}: {:?}", found.warnings);
+        };
+        let truths = [
+            ("onset", onset),
+            ("baseline", base),
+            ("initial_velocity", velocity.abs()),
+            ("duration", duration),
+            ("alpha", alpha),
+            ("restitution", restitution),
+        ];
+        for (name, truth) in truths.iter().take(if model == 1 { 4 } else { 6 }) {
+            scores.entry(name).or_default().own(&fit.parameters[name], *truth);
+        }
+    }
+    judge(["", "contact of Hertz", "contact of Hunt and Crossley"][model], &scores);
+}
+
+#[test]
+fn the_contact_of_hertz() {
+    rival(1, 6000, (0.0, 0.0));
+}
+
+#[test]
+fn the_contact_of_hunt_and_crossley() {
+    rival(2, 7000, (0.05, 1.0));
+}
+
+/// EXPERIMENT
+#[test]
+fn experiment_near_the_limit() {
+    for filtered in [false, true] {
+        for part in 0..6 {
+            let from = 0.44;
+            let (mut sum, mut n, mut none, mut big, mut bound_sum, mut over) = (0.0, 0, 0, 0, 0.0, 0);
+            for seed in 0..100u64 {
+                let mut noise = Noise::new(8000 + seed);
+                let mut case = Case::within(&mut noise, (from, from + 0.03));
+                match part {
+                    0 => case.sigma *= 5.0,
+                    1 => case.sigma *= 0.1,
+                    2 => {
+                        case.n = (case.n as f64 * 10.0 * case.dt * case.frequency) as usize;
+                        case.dt = 0.1 / case.frequency;
+                    }
+                    _ => {}
+                }
+                let first = (case.onset / case.dt).ceil() as usize;
+                let corner = case.frequency * noise.between(1.2, 5.0);
+                let order = if part == 4 { 4 + (seed % 2) as usize } else { 1 + (seed % 3) as usize };
+                let corner = if part == 5 { case.frequency * (8.0 + 8.0 * noise.uniform()) } else if part == 3 { 0.7 * case.frequency } else { corner };
+                let clean = if filtered {
+                    case.filtered(&case.parameters(), corner, order)
+                } else {
+                    case.plain(&case.parameters(), first)
+                };
+                let values: Vec<f64> = clean.iter().map(|v| v + case.sigma * noise.normal()).collect();
+                let low_pass = if filtered { LowPass::new(corner, order).ok() } else { None };
+                let found = match pulse(&trace(values, case.dt), &PulseOptions { low_pass, mass: None }) {
+                    Ok(f) => f,
+                    Err(_) => {
+                        none += 1;
+                        continue;
+                    }
+                };
+                let Some(std) = found.xi.std else {
+                    none += 1;
+                    continue;
+                };
+                let z = (found.xi.value - case.xi) / std;
+                if found.xi.value + 2.0 * std >= 0.5 {
+                    over += 1;
+                }
+                if z.abs() > 3.0 {
+                    big += 1;
+                    println!(
+                        "f {filtered} seed {} xi {:.4} found {:.4} std {std:.4} z {z:.2} corner/f {:.2} order {order} per dt {:.1} sigma {:.4} onset {:.3} first? {:.3}",
+                        8000 + seed,
+                        case.xi,
+                        found.xi.value,
+                        corner / case.frequency,
+                        1.0 / case.dt / case.frequency,
+                        case.sigma / case.velocity.abs() / TAU / case.frequency,
+                        found.fits[0].parameters["onset"].value / case.dt,
+                        case.onset / case.dt
+                    );
+                }
+                sum += z * z;
+                bound_sum += std;
+                n += 1;
+            }
+            println!(
+                "filtered {filtered} part {part}: z rms {:.3} of {n}, none {none}, >3 {big}, mean std {:.4}, over {over}",
+                (sum / f64::from(n)).sqrt(),
+                bound_sum / f64::from(n)
+            );
+        }
+    }
+}
+
+/// EXPERIMENT
+#[test]
+fn experiment_without() {
+    for (low, high) in [(0.7, 1.5), (1.5, 3.0), (3.0, 6.0), (6.0, 12.0), (12.0, 25.0)] {
+        let (mut null, mut bare, mut good, mut bad, mut failed, mut worst) = (0, 0, 0, 0, 0, 0.0_f64);
+        let mut list = Vec::new();
+        for seed in 0..60u64 {
+            let mut noise = Noise::new(9000 + seed);
+            let case = Case::within(&mut noise, (0.08, 0.4));
+            let corner = case.frequency * noise.between(low, high);
+            let order = 1 + (seed % 4) as usize;
+            let clean = case.filtered(&case.parameters(), corner, order);
+            let values: Vec<f64> = clean.iter().map(|v| v + case.sigma * noise.normal()).collect();
+            let Ok(found) = pulse(&trace(values, case.dt), &PulseOptions::default()) else {
+                failed += 1;
+                continue;
+            };
+            let error = found.xi.value - case.xi;
+            let w = found.fits[0].whiteness.unwrap();
+            match (found.xi.value.is_nan(), found.xi.std) {
+                (true, _) => null += 1,
+                (_, None) => {
+                    bare += 1;
+                    worst = worst.max(error.abs());
+                }
+                (_, Some(std)) if error.abs() < 3.0 * std => good += 1,
+                (_, Some(std)) => {
+                    bad += 1;
+                    let ahead = found.fits.iter().skip(1).map(|f| found.fits[0].aicc - f.aicc).fold(-9e9, f64::max);
+                    list.push(format!("{:.2}/{order}: {:.3} {error:+.3} std {std:.3} p {w:.1e} ahead {ahead:.0}", corner / case.frequency, case.xi));
+                }
+            }
+        }
+        println!("part without {low}-{high}: null {null}, bare {bare} worst {worst:.3}, covered {good}, bad {bad}, failed {failed}");
+        for l in list { println!("part    {l}"); }
+    }
+}
