@@ -19,6 +19,9 @@ pub struct Impacts {
     /// Record of the same file that rises once a cycle of the excitation, by name or by number from 1
     #[arg(long, value_name = "NAME")]
     pub reference: Option<String>,
+    /// What is known to scatter: the onsets about even times, or the intervals, each on its own
+    #[arg(long, value_enum, default_value = "unknown")]
+    pub scatter: Scatter,
     #[command(flatten)]
     pub finding: Finding,
     /// Folder for figures as SVG and PNG, and the times as CSV
@@ -28,6 +31,17 @@ pub struct Impacts {
     pub channel: Channel,
     #[command(flatten)]
     pub reading: Reading,
+}
+
+/// What is known to scatter.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+pub enum Scatter {
+    /// Onsets
+    Onsets,
+    /// Intervals
+    Intervals,
+    /// Either, or both
+    Unknown,
 }
 
 /// How impacts are found in a trace.

@@ -49,11 +49,11 @@ pub(super) fn doubts(
             Some(_) => "the low-pass is another than stated, or the contact another than modelled",
         };
         said.push(format!(
-            "The pulse does not begin as the contact of spring and damper must, and its residuals are not white noise: {low_pass}. ξ and all that follows would be far off, and are refused."
+            "What the contact of spring and damper leaves is not noise but a part of the pulse: {low_pass}. ξ and all that follows would be far off, and are refused."
         ));
     } else if trust == Trust::Unstated {
         said.push(
-            "The residuals of the contact of spring and damper are not white noise, and larger in the contact than outside it: a wrong model or a wrong low-pass. What is printed is the contact most like the record; no uncertainty is stated, because none would cover that."
+            "The residuals of the contact of spring and damper are not noise but a part of the pulse: a wrong model or a wrong low-pass. What is printed is the contact most like the record; no uncertainty is stated, because none would cover that."
                 .to_owned(),
         );
     } else if whiteness.rejected() {
@@ -67,8 +67,12 @@ pub(super) fn doubts(
         let ahead = main.aicc - best.aicc;
         // A difference of 10 leaves no support for the worse model (Burnham & Anderson 2002, 2.6).
         if ahead > 10.0 {
+            let below = match trust {
+                Trust::Refused => "its parameters stand in `fits`",
+                _ => "ξ, frequency and restitution below are those of a model that does not hold",
+            };
             said.push(format!(
-                "The record prefers the model {} to the contact of spring and damper (AICc smaller by {ahead:.0}): ξ, frequency and restitution below are those of a model that does not hold.",
+                "The record prefers the model {} to the contact of spring and damper (AICc smaller by {ahead:.0}): {below}.",
                 best.model
             ));
         } else if fits.iter().any(|f| f.model != main.model && f.aicc < main.aicc + 2.0) {

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 /// Damping and frequency of a contact, what follows from them, and the models that were fitted.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PulseResult {
-    /// Damping ratio of a contact of spring and damper; it and all that follows null where the record begins as no such contact can.
+    /// Damping ratio of a contact of spring and damper; it and all that follows null where the record is no such contact.
     pub xi: Estimate,
     /// Its undamped natural frequency in Hz.
     pub frequency: Estimate,

@@ -183,7 +183,8 @@ impl<'a> View<'a> {
                 put("alpha", 4, 1.0, 0.0, "1");
                 let restitution = |p: &[f64]| HuntCrossley::new(p[0]).map(|c| c.restitution());
                 let variance = |_, _| (fitted.fit.std(4) * trust.factor()).powi(2);
-                if let Some((r, std)) = propagated(&fitted.fit.parameters[4..], &[1e3], variance, restitution) {
+                if let Some((r, std)) = propagated(&fitted.fit.parameters[4..], &[1e3], variance, restitution)
+                {
                     let e = Estimate::new(trust.value(r), Some(std), "1", n, method);
                     parameters.insert("restitution", e);
                 }

@@ -53,7 +53,12 @@ pub(super) fn frfs(
                 measured.values.iter_mut().for_each(|v| *v *= factor);
             }
             let number = results.len() + 1;
-            let wanted = ModalOptions { band: own.band, mass: own.mass, ..ModalOptions::default() };
+            let wanted = ModalOptions {
+                band: own.band,
+                mass: own.mass,
+                decay: meta.added_decay(),
+                ..ModalOptions::default()
+            };
             // A function without a mode is no reason to give up the rest of a campaign.
             let mut found = match modal(&measured, &wanted) {
                 Err(error) if error.exit_code() == 1 => {
