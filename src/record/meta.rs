@@ -80,8 +80,8 @@ impl Meta {
         let line = self.notes.iter().find(|(key, _)| key == "id line 5").map(|(_, line)| line.as_str());
         let line = line.and_then(|line| line.strip_prefix(ADDED_DECAY));
         let own = format!(" of {}", self.name);
-        let remark = self.notes.iter().filter(|(key, _)| key == "added decay");
-        let remark = remark.filter_map(|(_, text)| text.strip_suffix(own.as_str())).next();
+        let mut remark = self.notes.iter().filter(|(key, _)| key == "added decay");
+        let remark = remark.find_map(|(_, text)| text.strip_suffix(own.as_str()));
         let text = made.map(|(_, value)| value.as_str()).or(line).or(remark)?;
         text.trim().parse().ok().filter(|decay: &f64| decay.is_finite() && *decay > 0.0)
     }

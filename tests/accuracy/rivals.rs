@@ -25,7 +25,7 @@ fn add(scores: &mut BTreeMap<&'static str, Score>, found: &PulseResult, case: &C
         scores.entry(name).or_default().own(estimate, truth);
     }
     let force = found.fits[0].parameters["initial_velocity"].value;
-    assert!((force.abs() - velocity.value).abs() <= 1e-12 * velocity.value);
+    assert!(velocity.value.is_nan() || (force.abs() - velocity.value).abs() <= 1e-12 * velocity.value);
 }
 
 fn judge(what: &str, scores: &BTreeMap<&'static str, Score>) {
@@ -177,65 +177,5 @@ fn damping_near_the_limit() {
         }
         let how = if filtered { "behind a low-pass" } else { "as sampled" };
         xi.judge(&format!("ξ of 0.4 to 0.5, {how} (against its own uncertainty)"), 1.3);
-    }
-}
-
-/// EXPERIMENT
-#[test]
-fn experiment_without() {
-    for (low, high) in [(0.7, 1.5), (1.5, 3.0), (3.0, 6.0), (6.0, 12.0), (12.0, 25.0)] {
-        let (mut null, mut bare, mut good, mut bad, mut failed, mut worst) = (0, 0, 0, 0, 0, 0.0_f64);
-        let mut list = Vec::new();
-        for seed in 0..60u64 {
-            let mut noise = Noise::new(9000 + seed);
-            let case = Case::within(&mut noise, (0.08, 0.4));
-            let corner = case.frequency * noise.between(low, high);
-            let order = 1 + (seed % 4) as usize;
-            let clean = case.filtered(&case.parameters(), corner, order);
-            let values: Vec<f64> = clean.iter().map(|v| v + case.sigma * noise.normal()).collect();
-            let Ok(found) = pulse(&trace(values, case.dt), &PulseOptions::default()) else {
-                failed += 1;
-                continue;
-            };
-            let error = found.xi.value - case.xi;
-            let w = found.fits[0].whiteness.unwrap();
-            let onset = found.fits[0].parameters["onset"].value;
-            let length = found.duration.value;
-            let (mut near, mut far, mut most) = ((0.0, 0), (0.0, 0), 0.0_f64);
-            for (t, r) in &found.picture.as_ref().unwrap().curves[0].residuals {
-                let x = (t - onset) / length;
-                if x.abs() < 0.1 {
-                    near.0 += r * r;
-                    near.1 += 1;
-                } else {
-                    far.0 += r * r;
-                    far.1 += 1;
-                }
-                if ((t - onset) / case.dt).abs() < 2.0 {
-                    most = most.max(r.abs());
-                }
-            }
-            let s = (far.0 / f64::from(far.1)).sqrt();
-            match (found.xi.value.is_nan(), found.xi.std) {
-                (true, _) => null += 1,
-                (_, None) => {
-                    bare += 1;
-                    worst = worst.max(error.abs());
-                }
-                (_, Some(std)) if error.abs() < 3.0 * std => good += 1,
-                (_, Some(std)) => {
-                    bad += 1;
-                    let ahead =
-                        found.fits.iter().skip(1).map(|f| found.fits[0].aicc - f.aicc).fold(-9e9, f64::max);
-                    list.push(format!("{:.2}/{order}: {:.3} {error:+.3} std {std:.3} p {w:.1e} ahead {ahead:.0} near {:.1} of {} most {:.1} far/sigma {:.2} corner dt {:.2}", corner / case.frequency, case.xi, near.0/s/s, near.1, most/s, s/case.sigma, corner * case.dt));
-                }
-            }
-        }
-        println!(
-            "part without {low}-{high}: null {null}, bare {bare} worst {worst:.3}, covered {good}, bad {bad}, failed {failed}"
-        );
-        for l in list {
-            println!("part    {l}");
-        }
     }
 }

@@ -75,6 +75,9 @@ const FAST: f64 = 0.1;
 /// Part of the pulse's length around the onset in which a wrong low-pass shows.
 const AROUND: f64 = 0.1;
 
+/// Difference of −2 log-likelihoods that leaves no support for the worse fit (Burnham & Anderson 2002, 2.6).
+const DECISIVE: f64 = 10.0;
+
 /// Probability of white residuals below which chance is no explanation.
 const BEYOND_DOUBT: f64 = 1e-4;
 
@@ -154,8 +157,17 @@ impl Samples {
                 outside.push(fitted);
             }
         }
-        // A jump that is lost in the noise does not tell where it is: then any of them will do.
-        best(inside.into_iter()).or_else(|_| best(outside.into_iter()))
+        // A jump that is lost in the noise does not tell where it is: then any of them will do. One that is seen is missed by
+        // the others, though the shape alone, of many samples, may put the onset further beyond the two than it is.
+        let (near, far) = (best(inside.into_iter()), best(outside.into_iter()));
+        match (&near, &far) {
+            (Ok(a), Ok(b)) => {
+                let ratio = a.fit.sum_of_squares() / b.fit.sum_of_squares();
+                if self.times.len() as f64 * ratio.ln() > DECISIVE { far } else { near }
+            }
+            (Ok(_), _) => near,
+            _ => far,
+        }
     }
 
     /// More guesses for a contact through a low-pass so fast that its rise, like a jump, falls between a few samples: each of
