@@ -41,9 +41,8 @@ pub struct PulseOptions {
 /// Fits the largest pulse of a record of acceleration (or of force).
 ///
 /// Residuals are taken for noise of one variance. Where they are correlated, which is tested, uncertainties are enlarged by the
-/// correlation and that is said. Where they are a part of the pulse, none are stated; and where that part is above 3 % of its
-/// height, or the pulse begins otherwise than the model can, as behind an unstated low-pass, ξ and all that follows are null. A
-/// low-pass at half the sampling rate or above is taken for none.
+/// correlation and that is said; where the pulse begins otherwise than the model can, as behind an unstated low-pass, ξ and all
+/// that follows are null. A low-pass at half the sampling rate or above is taken for none.
 ///
 /// # Errors
 /// If the record is not evenly sampled in time, holds no whole pulse, or too few samples of it, or does not determine the

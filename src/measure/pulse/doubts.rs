@@ -49,13 +49,8 @@ pub(super) fn doubts(
             Some(_) => "the low-pass is another than stated, or the contact another than modelled",
         };
         said.push(format!(
-            "What the contact of spring and damper leaves is not noise but a part of the pulse: {low_pass}. ξ and all that follows would be far off, and are refused."
+            "The pulse does not begin as the contact of spring and damper must, and its residuals are not white noise: {low_pass}. ξ and all that follows would be far off, and are refused."
         ));
-    } else if trust == Trust::Unstated {
-        said.push(
-            "The residuals of the contact of spring and damper are not noise but a part of the pulse: a wrong model or a wrong low-pass. What is printed is the contact most like the record; no uncertainty is stated, because none would cover that."
-                .to_owned(),
-        );
     } else if whiteness.rejected() {
         said.push(format!(
             "The residuals of the contact of spring and damper are not white noise: a wrong model, a wrong low-pass or coloured noise. Its uncertainties are enlarged by {:.1}, which covers noise but not a wrong model.",

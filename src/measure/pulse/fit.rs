@@ -48,9 +48,7 @@ pub(super) struct Fitted {
 pub(super) enum Trust {
     /// Uncertainties by the fit's covariance are to be enlarged by this factor.
     Widened(f64),
-    /// What is left is part of the pulse, not noise: no enlarging covers that.
-    Unstated,
-    /// So much of the pulse is left, or it begins so differently, that the parameters may be anything.
+    /// The pulse begins otherwise than the model can: the parameters may be anything.
     Refused,
 }
 
@@ -74,25 +72,6 @@ const FAST: f64 = 0.1;
 
 /// Part of the pulse's length around the onset in which a wrong low-pass shows.
 const AROUND: f64 = 0.1;
-
-/// Difference of −2 log-likelihoods that leaves no support for the worse fit (Burnham & Anderson 2002, 2.6).
-const DECISIVE: f64 = 10.0;
-
-/// Probability of white residuals below which chance is no explanation.
-const BEYOND_DOUBT: f64 = 1e-4;
-
-/// Robust standard deviations that none of a few hundred samples of noise reaches.
-const SPIKE: f64 = 6.0;
-
-/// Part of the pulse's height: a model that leaves less somewhere is near enough for its values to be printed.
-const MATERIAL: f64 = 0.03;
-
-/// Standard deviation of residuals of which most are noise, from the median of their magnitudes.
-fn typical(residuals: &[f64]) -> f64 {
-    let mut sizes: Vec<f64> = residuals.iter().map(|r| r.abs()).collect();
-    sizes.sort_by(f64::total_cmp);
-    1.4826 * sizes.get(sizes.len() / 2).copied().unwrap_or(f64::NAN)
-}
 
 impl Samples {
     pub fn new(times: Vec<f64>, values: Vec<f64>, step: f64, filter: Option<LowPass>) -> Result<Samples> {
@@ -157,17 +136,8 @@ impl Samples {
                 outside.push(fitted);
             }
         }
-        // A jump that is lost in the noise does not tell where it is: then any of them will do. One that is seen is missed by
-        // the others, though the shape alone, of many samples, may put the onset further beyond the two than it is.
-        let (near, far) = (best(inside.into_iter()), best(outside.into_iter()));
-        match (&near, &far) {
-            (Ok(a), Ok(b)) => {
-                let ratio = a.fit.sum_of_squares() / b.fit.sum_of_squares();
-                if self.times.len() as f64 * ratio.ln() > DECISIVE { far } else { near }
-            }
-            (Ok(_), _) => near,
-            _ => far,
-        }
+        // A jump that is lost in the noise does not tell where it is: then any of them will do.
+        best(inside.into_iter()).or_else(|_| best(outside.into_iter()))
     }
 
     /// More guesses for a contact through a low-pass so fast that its rise, like a jump, falls between a few samples: each of
@@ -186,24 +156,13 @@ impl Samples {
         (-3..=3).map(moved).collect()
     }
 
-    /// How far a fit may be trusted. Coloured noise is there before the contact, too: residuals that are correlated although
-    /// those before it are not are part of the pulse, and so is a sample of the contact that noise does not reach.
+    /// How far a fit may be trusted: not at all where more is left around the onset than elsewhere, and is not white noise.
     pub fn trust(&self, fitted: &Fitted, whiteness: &Whiteness) -> Trust {
         let onset = fitted.fit.parameters[0];
         let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
         let around = onset - AROUND..=onset + AROUND + delay;
         if whiteness.rejected() && self.more_left(fitted, |t| around.contains(&t)) {
             return Trust::Refused;
-        }
-        let residuals = &fitted.fit.residuals;
-        let contact = onset - AROUND..=fitted.end() + AROUND + delay;
-        let inside = self.times.iter().zip(residuals).filter(|(t, _)| contact.contains(t));
-        let largest = inside.map(|(_, r)| r.abs()).fold(0.0, f64::max);
-        let before = self.times.partition_point(|t| *t < onset - AROUND);
-        let white_before = || residuals.get(..before).is_some_and(|r| !Whiteness::of(&[r]).rejected());
-        let beyond_doubt = whiteness.p_value.is_some_and(|p| p < BEYOND_DOUBT);
-        if largest > SPIKE * typical(residuals) || beyond_doubt && white_before() {
-            return if largest > MATERIAL { Trust::Refused } else { Trust::Unstated };
         }
         Trust::Widened(whiteness.inflation * student(fitted.fit.degrees_of_freedom()))
     }
