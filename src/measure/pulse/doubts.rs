@@ -64,7 +64,9 @@ pub(super) fn doubts(
         if ahead > 10.0 {
             let below = match trust {
                 Trust::Refused => "its parameters stand in `fits`",
-                _ => "ξ, frequency and restitution below are those of a model that does not hold",
+                Trust::Widened(_) => {
+                    "ξ, frequency and restitution below are those of a model that does not hold"
+                }
             };
             said.push(format!(
                 "The record prefers the model {} to the contact of spring and damper (AICc smaller by {ahead:.0}): {below}.",
