@@ -155,21 +155,3 @@ fn the_contact_of_hertz() {
 fn the_contact_of_hunt_and_crossley() {
     rival(2, 7000, (0.05, 1.0));
 }
-
-/// ξ up to 1/2, where the force is largest at the onset, behind low-passes of order 1 to 3.
-#[test]
-fn damping_near_the_limit() {
-    let mut xi = Score::default();
-    println!("seeds 8000 to 8220");
-    for seed in 8000..8220 {
-        let mut noise = Noise::new(seed);
-        let case = Case::within(&mut noise, (0.4, 0.5));
-        let (corner, order) = (case.frequency * noise.between(1.2, 8.0), 1 + (seed % 3) as usize);
-        let clean = case.filtered(&case.parameters(), corner, order);
-        let values = clean.iter().map(|v| v + case.sigma * noise.normal()).collect();
-        let options = PulseOptions { low_pass: LowPass::new(corner, order).ok(), mass: None };
-        let found = pulse(&trace(values, case.dt), &options).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
-        xi.own(&found.xi, case.xi);
-    }
-    xi.judge("ξ of 0.4 to 0.5 behind a low-pass (against its own uncertainty)", 1.3);
-}
