@@ -2,6 +2,7 @@
 
 use super::LowPass;
 use crate::measure::drill::{Edge, From};
+use crate::measure::impacts::Scatter;
 use crate::measure::spectral::Method;
 use crate::read::{Format, Reader};
 use crate::record::Scaling;
@@ -216,6 +217,8 @@ record_entry! {
         keep_hum: bool,
         /// Record of one pulse of the shape that all have.
         shape: Option<PathBuf>,
+        /// What is known to scatter: onsets, intervals, or (default) unknown.
+        scatter: Scatter,
     }
 }
 

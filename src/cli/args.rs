@@ -20,7 +20,7 @@ pub use compare::Compare;
 pub use convert::{Change, Convert};
 pub use drill::{Drill, Edge, From, LowPass};
 pub use excitation::Excitation;
-pub use impacts::{Finding, Impacts};
+pub use impacts::{Finding, Impacts, Scatter};
 pub use info::Info;
 pub use modal::Modal;
 pub use pulse::Pulse;

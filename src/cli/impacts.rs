@@ -2,7 +2,7 @@
 
 use super::{args, complain, print, settings};
 use crate::error::{Error, Result};
-use crate::measure::impacts::{Impacts, ImpactsOptions, Shape, impacts};
+use crate::measure::impacts::{Impacts, ImpactsOptions, Scatter, Shape, impacts};
 use crate::measure::{Estimate, legacy};
 use crate::record::Trace;
 use crate::report::{Output, files, pictures, tables};
@@ -61,6 +61,11 @@ pub fn run(typed: &args::Impacts, json: bool) -> Result<()> {
         excitation_std: typed.excitation_std,
         reference,
         shape,
+        scatter: match typed.scatter {
+            args::Scatter::Onsets => Scatter::Onsets,
+            args::Scatter::Intervals => Scatter::Intervals,
+            args::Scatter::Unknown => Scatter::Unknown,
+        },
         ..settings::finding(&typed.finding, None)
     };
     let mut found = impacts(&trace, &options)?;

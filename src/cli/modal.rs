@@ -35,7 +35,12 @@ pub fn run(typed: &args::Modal, json: bool) -> Result<()> {
         let coherence = settings::reader(&typed.reading)?.from_path(path)?;
         measured = measured.with_coherence_of(&coherence)?;
     }
-    let options = ModalOptions { band: typed.band, mass: typed.mass, least_coherence: typed.least_coherence };
+    let options = ModalOptions {
+        band: typed.band,
+        mass: typed.mass,
+        least_coherence: typed.least_coherence,
+        decay: meta.added_decay(),
+    };
     let mut result = modal(&measured, &options)?;
     let doubts: Vec<String> = recording.doubts.iter().chain(&meta.doubts).cloned().collect();
     result.warnings.splice(0..0, doubts);

@@ -14,7 +14,7 @@ mod shape;
 
 pub use cycle::{PerCycle, Phase};
 pub use hum::Hum;
-pub use interval::{Interval, interval};
+pub use interval::{Interval, Scatter, interval};
 pub use onset::Timing;
 pub use shape::{Matched, Shape};
 
@@ -46,6 +46,8 @@ pub struct ImpactsOptions {
     pub reference: Option<Vec<f64>>,
     /// Shape of the pulses over time in samples, where it is known; its origin is the time of the impact.
     pub shape: Option<Shape>,
+    /// Whether onsets or intervals are known to scatter. Default: unknown.
+    pub scatter: Scatter,
 }
 
 impl Default for ImpactsOptions {
@@ -58,6 +60,7 @@ impl Default for ImpactsOptions {
             excitation_std: None,
             reference: None,
             shape: None,
+            scatter: Scatter::Unknown,
         }
     }
 }
@@ -135,7 +138,7 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
     let counted = count(&times, &steps);
     let kept: Vec<f64> = counted.kept.iter().map(|i| times[*i]).collect();
-    let found = interval(&kept, &counted.index).ok_or_else(|| too_few(kept.len()))?;
+    let found = interval(&kept, &counted.index, options.scatter).ok_or_else(|| too_few(kept.len()))?;
     let std = Some(found.std).filter(|s| s.is_finite());
     let single: Vec<f64> = kept
         .windows(2)

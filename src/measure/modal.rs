@@ -33,6 +33,15 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
     if let Some(mass) = options.mass.filter(|m| !(m.is_finite() && *m > 0.0)) {
         return Err(Error::usage(format!("a mass of {mass} kg"), "a finite mass above 0"));
     }
+    if let Some(decay) = options.decay {
+        if !(decay.is_finite() && decay > 0.0) {
+            return Err(Error::usage(format!("an added decay of {decay} 1/s"), "a finite decay above 0"));
+        }
+        warnings.push(format!(
+            "An exponential window added a decay of {decay:.4} 1/s, which is taken off: ζ of a mode at f Hz is smaller by {:.4}/f than the peak shows.",
+            decay / std::f64::consts::TAU
+        ));
+    }
     let least = options.least_coherence;
     if !(0.0..1.0).contains(&least) {
         return Err(Error::usage(format!("a least coherence of {least}"), "a number from 0 to below 1"));
@@ -222,6 +231,29 @@ mod tests {
         let circle = result.modes[0].by.iter().find(|b| b.method == "circle fit").unwrap();
         assert!((circle.frequency.value - 80.3).abs() < 0.02, "{circle:?}");
         assert!((circle.zeta.as_ref().unwrap().value / 0.01 - 1.0).abs() < 0.02, "{circle:?}");
+    }
+
+    /// An exponential window shifts all poles: the function is taken at iω + σ, and so are the modes that are made here.
+    #[test]
+    fn the_decay_of_an_exponential_window_is_taken_off() {
+        let (own, zeta, decay, measured) = (500.0, 0.01, 3.0, two());
+        let values = measured.frequency.iter().map(|f| {
+            let s = Complex64::new(decay, std::f64::consts::TAU * f);
+            2.0 / (own * own + s * s + 2.0 * zeta * own * s)
+        });
+        let measured = Measured { values: values.collect(), kind: FrfKind::Receptance, ..measured.clone() };
+        let result = found(&measured, &ModalOptions { decay: Some(decay), ..ModalOptions::default() });
+        let mode = &result.modes[0];
+        // Without noise the receptance is a mode exactly; the fit ends within 1e-5 of a bandwidth.
+        assert!((mode.zeta.value / zeta - 1.0).abs() < 1e-4, "{mode:?}");
+        assert!((mode.frequency.value * std::f64::consts::TAU / own - 1.0).abs() < 1e-6, "{mode:?}");
+        assert!((mode.modal_constant.value / 2.0 - 1.0).abs() < 1e-4, "{mode:?}");
+        let circle = mode.by.iter().find(|b| b.method == "circle fit").unwrap();
+        assert!((circle.zeta.as_ref().unwrap().value / zeta - 1.0).abs() < 0.02, "{circle:?}");
+        assert!(result.warnings.iter().any(|w| w.contains("taken off")), "{:?}", result.warnings);
+        let without = found(&measured, &ModalOptions::default());
+        // ζ + σ/ωᵣ, to the square of that.
+        assert!((without.modes[0].zeta.value / (zeta + decay / own) - 1.0).abs() < 1e-3);
     }
 
     #[test]

@@ -24,7 +24,7 @@ use super::residuals::Whiteness;
 use crate::error::{Error, Result};
 use crate::record::Trace;
 use doubts::doubts;
-use fit::Model;
+use fit::{Model, Trust};
 use locate::locate;
 use result::contact_estimates;
 use view::View;
@@ -41,8 +41,8 @@ pub struct PulseOptions {
 /// Fits the largest pulse of a record of acceleration (or of force).
 ///
 /// Residuals are taken for noise of one variance. Where they are correlated, which is tested, uncertainties are enlarged by the
-/// correlation and that is said; where the pulse begins otherwise than the model can, none are stated. A low-pass at half the
-/// sampling rate or above is taken for none.
+/// correlation and that is said; where the pulse begins otherwise than the model can, as behind an unstated low-pass, ξ and all
+/// that follows are null. A low-pass at half the sampling rate or above is taken for none.
 ///
 /// # Errors
 /// If the record is not evenly sampled in time, holds no whole pulse, or too few samples of it, or does not determine the
@@ -100,7 +100,8 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     };
     let unit = [1.0, 1.0 / view.length];
     let shape = [main.fit.parameters[3], main.fit.parameters[4] * unit[1]];
-    let widened = samples.widening(&main, &whiteness);
+    let trust = samples.trust(&main, &whiteness);
+    let widened = trust.factor();
     let covariance =
         |i: usize, j: usize| widened.powi(2) * unit[i] * unit[j] * main.fit.covariance(3 + i, 3 + j);
     let contact = |p: &[f64]| KelvinVoigt::new(p[0], p[1]);
@@ -126,8 +127,11 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
             Err(error) => warnings.push(format!("The model {} could not be fitted: {error}.", rival.name())),
         }
     }
+    if trust == Trust::Refused {
+        result = result.refused();
+    }
     result.fits = fits.iter().map(|(f, w)| view.report(&samples, f, w, options.mass)).collect();
-    warnings.extend(doubts(&fits[0].0, widened, &fits[0].1, &result.fits, &result, options));
+    warnings.extend(doubts(&fits[0].0, trust, &fits[0].1, &result.fits, &result, options));
     result.warnings = warnings;
     result.picture = Some(view.picture(&samples, &used, fits.iter().map(|f| &f.0)));
     Ok(result)
@@ -229,7 +233,7 @@ mod tests {
 
     /// A contact through a low-pass of 30 kHz, fitted without.
     #[test]
-    fn without_the_low_pass_that_is_there_no_uncertainty_is_stated() {
+    fn without_the_low_pass_that_is_there_nothing_is_stated() {
         let contact = KelvinVoigt::new(0.15, 6e3).unwrap();
         let filter = LowPass::new(30e3, 2).unwrap();
         let values: Vec<f64> = (0..400)
@@ -244,14 +248,20 @@ mod tests {
         };
         let with = fitted(Some(30e3)).unwrap().xi;
         assert!((with.value - 0.15).abs() < 5.0 * with.std.unwrap(), "{with:?}");
+        let nothing = |found: &PulseResult| {
+            let own = &found.fits[0].parameters["xi"];
+            [&found.xi, &found.frequency, &found.restitution, &found.duration, own]
+                .iter()
+                .all(|e| e.value.is_nan() && e.std.is_none())
+        };
         let without = fitted(None).unwrap();
-        assert!(without.xi.std.is_none() && without.fits[0].parameters["xi"].std.is_none(), "{without:?}");
+        assert!(nothing(&without), "{without:?}");
         assert!(says(&without, "low-pass of the instrument is needed"), "{:?}", without.warnings);
-        // Beyond half the sampling rate there is none; just below, no uncertainty is stated either.
+        // Beyond half the sampling rate there is none; just below, nothing is stated either.
         let beyond = fitted(Some(600e3)).unwrap();
-        assert!(says(&beyond, "half the sampling rate") && beyond.xi == without.xi, "{:?}", beyond.warnings);
-        let high = fitted(Some(450e3)).unwrap().xi;
-        assert!(high.std.is_none(), "{high:?} {:?}", without.xi);
+        assert!(says(&beyond, "half the sampling rate") && nothing(&beyond), "{:?}", beyond.warnings);
+        let high = fitted(Some(450e3)).unwrap();
+        assert!(nothing(&high), "{:?} {:?}", high.xi, without.xi);
         assert!(fitted(Some(1e3)).unwrap_err().to_string().contains("low-pass"));
     }
 

@@ -24,6 +24,9 @@ impl Step {
     }
 }
 
+/// How an identification line of UFF-58 begins that states the decay of an exponential window in 1/s.
+pub const ADDED_DECAY: &str = "exponential window; decay in 1/s ";
+
 /// Channel, quantity, unit, history and doubts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Meta {
@@ -68,6 +71,19 @@ impl Meta {
     /// Adds a step to the history.
     pub fn step(&mut self, name: &str, arguments: &[(&str, &dyn std::fmt::Display)]) {
         self.history.push(Step::new(name, arguments));
+    }
+
+    /// Decay in 1/s that an exponential window added to the response: from the history, or as the writers of this crate state it.
+    pub fn added_decay(&self) -> Option<f64> {
+        let made = self.history.iter().rev().find(|step| step.name == "exponential_window");
+        let made = made.and_then(|step| step.arguments.iter().find(|(key, _)| key == "decay"));
+        let line = self.notes.iter().find(|(key, _)| key == "id line 5").map(|(_, line)| line.as_str());
+        let line = line.and_then(|line| line.strip_prefix(ADDED_DECAY));
+        let own = format!(" of {}", self.name);
+        let mut remark = self.notes.iter().filter(|(key, _)| key == "added decay");
+        let remark = remark.find_map(|(_, text)| text.strip_suffix(own.as_str()));
+        let text = made.map(|(_, value)| value.as_str()).or(line).or(remark)?;
+        text.trim().parse().ok().filter(|decay: &f64| decay.is_finite() && *decay > 0.0)
     }
 
     /// Takes the unit an instrument wrote: stores its SI unit and quantity, notes the conversion, and returns the factor

@@ -89,7 +89,12 @@ impl Column<'_> {
         };
         match self.record {
             Record::Trace(_) => {}
-            Record::Frf(_) => remark("kind", "frf"),
+            Record::Frf(frf) => {
+                remark("kind", "frf");
+                if let Some(decay) = frf.meta.added_decay() {
+                    remark("added decay", &decay.to_string());
+                }
+            }
             Record::Spectrum(spectrum) => {
                 let complex = matches!(spectrum.values, Values::Complex(_));
                 // A complex one must say that it is no frequency response.

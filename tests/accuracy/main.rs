@@ -9,6 +9,7 @@ mod noise;
 mod pulse;
 mod restitution;
 mod ringing;
+mod rivals;
 mod score;
 mod sine;
 mod spectrum;

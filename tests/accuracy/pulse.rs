@@ -14,32 +14,37 @@ const CASES: u64 = 300;
 const FILTERED: u64 = 220;
 
 /// Deceleration of a contact of spring and damper at time t: −ẍ of x = e^{−ht} sin(Ωt)/Ω, differentiated twice.
-fn contact(xi: f64, omega: f64, t: f64) -> f64 {
+pub fn contact(xi: f64, omega: f64, t: f64) -> f64 {
     let (h, turn) = (xi * omega, omega * (1.0 - xi * xi).sqrt());
     let (sin, cos) = (turn * t).sin_cos();
     (-h * t).exp() * ((turn * turn - h * h) * sin + 2.0 * h * turn * cos) / turn
 }
 
 /// Its end: where the above vanishes, tan Ωt = −2hΩ/(Ω² − h²) in the second quadrant.
-fn end(xi: f64, omega: f64) -> f64 {
+pub fn end(xi: f64, omega: f64) -> f64 {
     let turn = (1.0 - xi * xi).sqrt();
     (2.0 * xi * turn).atan2(xi * xi - turn * turn) / (omega * turn)
 }
 
-struct Case {
-    onset: f64,
-    base: f64,
-    velocity: f64,
-    xi: f64,
-    frequency: f64,
-    dt: f64,
-    n: usize,
-    sigma: f64,
+pub struct Case {
+    pub onset: f64,
+    pub base: f64,
+    pub velocity: f64,
+    pub xi: f64,
+    pub frequency: f64,
+    pub dt: f64,
+    pub n: usize,
+    pub sigma: f64,
 }
 
 impl Case {
     fn new(noise: &mut Noise) -> Case {
-        let (xi, frequency) = (noise.between(0.08, 0.4), noise.between(1e3, 25e3));
+        Case::within(noise, (0.08, 0.4))
+    }
+
+    /// A case of ξ between these.
+    pub fn within(noise: &mut Noise, (least, most): (f64, f64)) -> Case {
+        let (xi, frequency) = (noise.between(least, most), noise.between(1e3, 25e3));
         let length = end(xi, TAU * frequency);
         let dt = length / noise.between(16.0, 60.0);
         let velocity = noise.between(0.5, 8.0) * if noise.between(0.0, 1.0) < 0.5 { -1.0 } else { 1.0 };
@@ -56,7 +61,7 @@ impl Case {
         }
     }
 
-    fn parameters(&self) -> [f64; 5] {
+    pub fn parameters(&self) -> [f64; 5] {
         [self.onset, self.base, self.velocity, self.xi, self.frequency]
     }
 
@@ -66,7 +71,7 @@ impl Case {
     }
 
     /// Samples without noise; the first inside the contact is given, so that the bound's slopes know no jump.
-    fn plain(&self, p: &[f64], first: usize) -> Vec<f64> {
+    pub fn plain(&self, p: &[f64], first: usize) -> Vec<f64> {
         let omega = TAU * p[4];
         let last = end(p[3], omega);
         (0..self.n)
@@ -78,7 +83,7 @@ impl Case {
     }
 
     /// The same behind a Butterworth low-pass: a chain of parts of first and second order, by Runge and Kutta.
-    fn filtered(&self, p: &[f64], corner: f64, order: usize) -> Vec<f64> {
+    pub fn filtered(&self, p: &[f64], corner: f64, order: usize) -> Vec<f64> {
         let (omega, corner) = (TAU * p[4], TAU * corner);
         let last = end(p[3], omega);
         let input = |t: f64| if t <= last { contact(p[3], omega, t) } else { 0.0 };
@@ -133,7 +138,7 @@ impl Case {
     }
 }
 
-fn trace(values: Vec<f64>, dt: f64) -> Trace {
+pub fn trace(values: Vec<f64>, dt: f64) -> Trace {
     let axis = Axis::time(0.0, dt, values.len());
     Trace { meta: Meta::new("bit", Unit::parse("m/s²").expect("a unit")), axis, values }
 }

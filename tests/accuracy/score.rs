@@ -14,6 +14,11 @@ pub struct Score {
 }
 
 impl Score {
+    /// Adds a case of which nothing but its own uncertainty is asked.
+    pub fn own(&mut self, estimate: &Estimate, truth: f64) {
+        self.add(estimate, truth, estimate.std.unwrap_or(1.0));
+    }
+
     /// Adds a case whose bound is this standard deviation.
     pub fn add(&mut self, estimate: &Estimate, truth: f64, bound: f64) {
         let Some(std) = estimate.std else {

@@ -22,6 +22,9 @@ pub struct Impacts {
     /// Record of one pulse of the shape that all have: each impact is matched to it
     #[arg(long, value_name = "FILE", conflicts_with = "legacy")]
     pub shape: Option<PathBuf>,
+    /// What is known to scatter: the onsets about even times, or the intervals, each on its own
+    #[arg(long, value_enum, default_value = "unknown")]
+    pub scatter: Scatter,
     #[command(flatten)]
     pub finding: Finding,
     /// Folder for figures as SVG and PNG, and the times as CSV
@@ -31,6 +34,17 @@ pub struct Impacts {
     pub channel: Channel,
     #[command(flatten)]
     pub reading: Reading,
+}
+
+/// What is known to scatter.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+pub enum Scatter {
+    /// Onsets
+    Onsets,
+    /// Intervals
+    Intervals,
+    /// Either, or both
+    Unknown,
 }
 
 /// How impacts are found in a trace.

@@ -1,7 +1,7 @@
 //! Impacts against the cycle of the excitation: phase, and impacts per cycle.
 
 use super::burst::median;
-use super::interval::interval;
+use super::interval::{Scatter, interval};
 use crate::error::{Error, Result};
 use crate::measure::drill::{Edge, Edges, Numbered, Survey};
 use serde::Serialize;
@@ -52,7 +52,9 @@ pub enum Locking {
 /// `index` is m/n within three standard uncertainties and every place of the pattern keeps its phase within [`REPEATS`]: what is
 /// merely near a fraction wanders through all phases.
 pub fn locking(cycles: &[f64], index: &[usize], std: f64) -> Locking {
-    let Some(step) = interval(cycles, index).filter(|s| s.mean > 0.0) else { return Locking::Irregular };
+    let Some(step) = interval(cycles, index, Scatter::Unknown).filter(|s| s.mean > 0.0) else {
+        return Locking::Irregular;
+    };
     let rate = step.mean.recip();
     let own = if step.std.is_finite() { rate * step.std / step.mean } else { 0.0 };
     let std = own.hypot(rate * std);

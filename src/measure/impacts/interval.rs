@@ -19,11 +19,26 @@
 //! | 60 | 100 | 99.2 | 93.2 | 94.6 | 96.4 | 94.8 |
 //!
 //! Where no jitter is there, u is some three times what a straight line would state, at any n: jitter of r = 7/n, which n impacts hardly
-//! show, more than doubles the uncertainty of a straight line. Where the onsets alone are known to scatter, that line is surer.
+//! show, more than doubles the uncertainty of a straight line. Where the onsets alone are known to scatter, that line is surer: see
+//! [`Scatter`].
 
 use super::burst::median;
 use crate::measure::residuals::student;
+use serde::Deserialize;
 use std::f64::consts::FRAC_PI_2;
+
+/// What is known to scatter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Scatter {
+    /// Onsets about even times: the straight line through (index, time).
+    Onsets,
+    /// Intervals, each on its own: the mean of the intervals.
+    Intervals,
+    /// Both may: averaged over what the record says.
+    #[default]
+    Unknown,
+}
 
 /// Interval and what disturbs it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,7 +58,7 @@ pub struct Interval {
 /// The mean interval of `times` in s at increasing `indices`, of which those of missed impacts are left out.
 ///
 /// `None` for fewer than two.
-pub fn interval(times: &[f64], indices: &[usize]) -> Option<Interval> {
+pub fn interval(times: &[f64], indices: &[usize], scatter: Scatter) -> Option<Interval> {
     let d: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
     let m: Vec<f64> = indices.windows(2).map(|w| (w[1] - w[0]) as f64).collect();
     if d.is_empty() || m.len() != d.len() {
@@ -59,7 +74,11 @@ pub fn interval(times: &[f64], indices: &[usize]) -> Option<Interval> {
             correlation: f64::NAN,
         });
     }
-    let nodes = nodes(&d, &m);
+    let nodes = match scatter {
+        Scatter::Onsets => vec![Node::new(&d, &m, 0.0, 1.0)],
+        Scatter::Intervals => vec![Node::new(&d, &m, f64::INFINITY, 1.0)],
+        Scatter::Unknown => nodes(&d, &m),
+    };
     let highest = nodes.iter().map(|n| n.weight).fold(f64::NEG_INFINITY, f64::max);
     let parts: Vec<f64> = nodes.iter().map(|n| (n.weight - highest).exp()).collect();
     let total: f64 = parts.iter().sum();
@@ -69,11 +88,16 @@ pub fn interval(times: &[f64], indices: &[usize]) -> Option<Interval> {
     let widened = widened(d.len() - 1).powi(2);
     let variance = over(&|g| widened * g.variance * g.cofactor + (g.mean - mean).powi(2));
     // Jitter alone is named where it is likelier than all else together, otherwise the likeliest ratio.
-    let jitter_alone = parts.last().is_some_and(|p| *p > 0.5 * total);
+    let jitter = nodes.iter().zip(&parts).find(|(n, _)| n.ratio.is_infinite());
+    let jitter_alone = jitter.is_some_and(|(_, p)| *p > 0.5 * total);
     let named = if jitter_alone {
         nodes.last()
     } else {
-        nodes.iter().rev().skip(1).max_by(|a, b| a.fit.likelihood.total_cmp(&b.fit.likelihood))
+        nodes
+            .iter()
+            .rev()
+            .filter(|n| n.ratio.is_finite())
+            .max_by(|a, b| a.fit.likelihood.total_cmp(&b.fit.likelihood))
     }?;
     let scale = named.fit.variance.sqrt();
     Some(Interval {
@@ -235,9 +259,24 @@ mod tests {
     #[test]
     fn a_missed_impact_counts_in_the_index() {
         let times: Vec<f64> = [0.0, 1.0, 3.0, 4.0, 6.0].iter().map(|k| 2.0 + 0.5 * k).collect();
-        let found = interval(&times, &[0, 1, 3, 4, 6]).unwrap();
+        let found = interval(&times, &[0, 1, 3, 4, 6], Scatter::Unknown).unwrap();
         assert!((found.mean - 0.5).abs() < 1e-15 && found.std < 1e-15, "{found:?}");
-        assert_eq!(interval(&[1.0], &[0]), None);
+        assert_eq!(interval(&[1.0], &[0], Scatter::Unknown), None);
+    }
+
+    #[test]
+    fn what_is_known_to_scatter_is_believed() {
+        let indices: Vec<usize> = (0..6).collect();
+        let (d, m) = parts();
+        for (scatter, angle, onset) in [(Scatter::Onsets, 0.0, true), (Scatter::Intervals, FRAC_PI_2, false)]
+        {
+            let found = interval(&TIMES, &indices, scatter).unwrap();
+            let fit = gls(&d, &m, angle);
+            // Four degrees of freedom: √(4/2).
+            let std = (2.0 * fit.variance * fit.cofactor).sqrt();
+            assert!((found.mean - fit.mean).abs() < 1e-14 && (found.std / std - 1.0).abs() < 1e-12);
+            assert!((found.onset > 0.0) == onset && (found.jitter > 0.0) == !onset, "{found:?}");
+        }
     }
 
     #[test]
@@ -303,7 +342,7 @@ mod tests {
                     .collect();
                 let d: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
                 let (mean, std) = plain(&d, &vec![1.0; n - 1], 4000);
-                let found = interval(&times, &(0..n).collect::<Vec<_>>()).unwrap();
+                let found = interval(&times, &(0..n).collect::<Vec<_>>(), Scatter::Unknown).unwrap();
                 // Half steps of the logarithm of the ratio, 0.2 or less, squared and over 24, and what lies at the ends.
                 let case = format!("n {n}, seed {seed}, {onset} {jitter}: {found:?}, plain {mean} {std}");
                 assert!((found.mean - mean).abs() < 0.01 * std, "{case}");

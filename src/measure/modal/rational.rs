@@ -29,6 +29,21 @@ impl Pole {
     }
 }
 
+impl Pole {
+    /// The mode without a decay σ in 1/s that an exponential window added to a response of (iω)^`power` times the receptance.
+    ///
+    /// The window moves the pole s = −ζωᵣ ± iωᵣ√(1 − ζ²) by −σ and leaves its residue, which is `s^power` A/(2iωᵣ√(1 − ζ²)).
+    /// `None` where it decays by less than σ.
+    pub fn without_decay(&self, decay: f64, power: i32) -> Option<Pole> {
+        let own = TAU * self.frequency;
+        let with = Complex64::new(-self.zeta * own, own * (1.0 - self.zeta * self.zeta).sqrt());
+        let pole = with + decay;
+        let zeta = -pole.re / pole.norm();
+        let constant = self.constant * (with / pole).powi(power);
+        (zeta > 0.0).then(|| Pole { frequency: pole.norm() / TAU, zeta, constant })
+    }
+}
+
 /// Modes fitted together.
 pub(super) struct Rational {
     /// By frequency.

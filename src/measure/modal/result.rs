@@ -18,11 +18,13 @@ pub struct ModalOptions {
     pub mass: Option<f64>,
     /// Lines of a coherence below this are left out. Default 0.5.
     pub least_coherence: f64,
+    /// Decay in 1/s that an exponential window added to the response, which is taken off ζ. Default: none.
+    pub decay: Option<f64>,
 }
 
 impl Default for ModalOptions {
     fn default() -> ModalOptions {
-        ModalOptions { band: None, mass: None, least_coherence: 0.5 }
+        ModalOptions { band: None, mass: None, least_coherence: 0.5, decay: None }
     }
 }
 
@@ -129,13 +131,21 @@ pub(super) fn report(
         let leakage = 4.0 / 3.0 * (span / bandwidths).powi(2);
         if measured.coherence.is_some() && leakage * pole.zeta > std[1] {
             warnings.push(format!(
-                "At {:.6} Hz the bandwidth is {:.1} lines: if segments of a lasting excitation were averaged (Hann window), leakage makes ζ too large by up to {:.2} %, which is not in its uncertainty. Longer segments show.",
+                "At {:.6} Hz the bandwidth is {:.1} lines: if segments of a lasting excitation were averaged (Hann window), leakage makes ζ too large, by the order of {:.2} %, which is not in its uncertainty. Longer segments show.",
                 pole.frequency,
                 bandwidths / span,
                 100.0 * leakage
             ));
         }
-        modes.push(mode(measured, group, peak.at, fit, (pole, std), options));
+        let Some(own) = pole.without_decay(options.decay.unwrap_or(0.0), measured.power()) else {
+            warnings.push(format!(
+                "The peak at {at} Hz decays by less than the exponential window added: it is no mode, or the window another than stated."
+            ));
+            continue;
+        };
+        // ζωᵣ is known as before.
+        let std = &[std[0], std[1] * pole.frequency / own.frequency, std[2]];
+        modes.push(mode(measured, group, peak.at, fit, (&own, std), options));
     }
     reversed
 }
@@ -176,7 +186,14 @@ fn mode(
             modal_constant: None,
             note,
         };
-        by.push(match circle(measured, pole, &lines) {
+        let decay = options.decay.unwrap_or(0.0);
+        // The circle is that of the response as measured, with the decay of the window.
+        let seen = pole.without_decay(-decay, measured.power()).unwrap_or(*pole);
+        let found = circle(measured, &seen, &lines).and_then(|circle| {
+            let own = circle.pole.without_decay(decay, measured.power()).ok_or(circle.points.len())?;
+            Ok(Circle { pole: own, ..circle })
+        });
+        by.push(match found {
             Ok(circle) => {
                 let n = circle.points.len();
                 let plain = |value, unit| Estimate::new(value, None, unit, n, "circle fit");
@@ -196,7 +213,7 @@ fn mode(
             Err(_) => blank("the lines lie on no circle".to_owned()),
         });
     }
-    by.extend(graphic(measured, group, at));
+    by.extend(graphic(measured, group, at, options.decay.unwrap_or(0.0)));
     let fitted = f.iter().zip(&fit.fitted).map(|(f, v)| (*f, v.re, v.im)).collect();
     Mode {
         stiffness: stiffness(&frequency, options.mass),
@@ -211,7 +228,7 @@ fn mode(
 }
 
 /// The methods that read the magnitudes.
-fn graphic(measured: &Measured, group: &Group, at: usize) -> Vec<ByMethod> {
+fn graphic(measured: &Measured, group: &Group, at: usize, decay: f64) -> Vec<ByMethod> {
     let f = &measured.frequency;
     let line = (f[at + 1] - f[at - 1]) / 2.0;
     let near = |f: f64, method| Estimate::new(f, None, "Hz", 1, method);
@@ -228,7 +245,7 @@ fn graphic(measured: &Measured, group: &Group, at: usize) -> Vec<ByMethod> {
         by.push(ByMethod {
             method: "half power",
             frequency: near(frequency, "half power"),
-            zeta: Some(Estimate::new(zeta, None, "1", 4, "half power")),
+            zeta: Some(Estimate::new(zeta - decay / (TAU * frequency), None, "1", 4, "half power")),
             modal_constant: None,
             note,
         });

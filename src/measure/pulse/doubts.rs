@@ -1,6 +1,6 @@
 //! What a record of a pulse cannot tell, as sentences.
 
-use super::fit::Fitted;
+use super::fit::{Fitted, Trust};
 use super::{LowPass, PulseFit, PulseOptions, PulseResult};
 use crate::measure::residuals::{Whiteness, student};
 
@@ -10,7 +10,7 @@ const NAMES: [&str; 5] = ["onset", "baseline", "initial velocity", "ξ", "freque
 /// Sentences on a fitted pulse, the first of `fits` being that of spring and damper.
 pub(super) fn doubts(
     main: &Fitted,
-    widening: f64,
+    trust: Trust,
     whiteness: &Whiteness,
     fits: &[PulseFit],
     result: &PulseResult,
@@ -48,13 +48,14 @@ pub(super) fn doubts(
         said.push(format!(
             "The fit leaves {free} degrees of freedom, too few for a standard uncertainty: it needs three. Sample faster."
         ));
-    } else if widening.is_nan() {
+    }
+    if trust == Trust::Refused {
         let low_pass = match &options.low_pass {
             None => "the low-pass of the instrument is needed (--low-pass, --order)",
             Some(_) => "the low-pass is another than stated, or the contact another than modelled",
         };
         said.push(format!(
-            "The pulse does not begin as the contact of spring and damper must, and its residuals are not white noise: {low_pass}. ξ and all that follows may be far off, and no uncertainty is stated."
+            "The pulse does not begin as the contact of spring and damper must, and its residuals are not white noise: {low_pass}. ξ and all that follows would be far off, and are refused."
         ));
     } else if whiteness.rejected() {
         said.push(format!(
@@ -67,8 +68,14 @@ pub(super) fn doubts(
         let ahead = main.aicc - best.aicc;
         // A difference of 10 leaves no support for the worse model (Burnham & Anderson 2002, 2.6).
         if ahead > 10.0 {
+            let below = match trust {
+                Trust::Refused => "its parameters stand in `fits`",
+                Trust::Widened(_) => {
+                    "ξ, frequency and restitution below are those of a model that does not hold"
+                }
+            };
             said.push(format!(
-                "The record prefers the model {} to the contact of spring and damper (AICc smaller by {ahead:.0}): ξ, frequency and restitution below are those of a model that does not hold.",
+                "The record prefers the model {} to the contact of spring and damper (AICc smaller by {ahead:.0}): {below}.",
                 best.model
             ));
         } else if fits.iter().any(|f| f.model != main.model && f.aicc < main.aicc + 2.0) {

@@ -43,6 +43,28 @@ pub(super) struct Fitted {
     first: Option<usize>,
 }
 
+/// How far the numbers of a fit may be trusted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Trust {
+    /// Uncertainties by the fit's covariance are to be enlarged by this factor; not a number where too few samples are left
+    /// to know their scatter.
+    Widened(f64),
+    /// The pulse begins otherwise than the model can: the parameters may be anything.
+    Refused,
+}
+
+impl Trust {
+    /// A value, where it may be given at all.
+    pub fn value(self, value: f64) -> f64 {
+        if self == Trust::Refused { f64::NAN } else { value }
+    }
+
+    /// The factor for uncertainties; not a number where none may be stated.
+    pub fn factor(self) -> f64 {
+        if let Trust::Widened(factor) = self { factor } else { f64::NAN }
+    }
+}
+
 /// Samples that the search for a first guess looks at.
 const GLANCE: usize = 48;
 
@@ -135,24 +157,23 @@ impl Samples {
         (-3..=3).map(moved).collect()
     }
 
-    /// How much the uncertainties of a fit are to be enlarged; not a number where the pulse begins otherwise than the model
-    /// can, which no enlarging covers, or where too few samples are left to know their scatter.
-    pub fn widening(&self, fitted: &Fitted, whiteness: &Whiteness) -> f64 {
-        if whiteness.rejected() && self.misses_onset(fitted) {
-            return f64::NAN;
-        }
-        whiteness.inflation * student(fitted.fit.degrees_of_freedom()).unwrap_or(f64::NAN)
-    }
-
-    /// Whether the residuals around the onset have more than twice the variance of the others, and more than chance gives: the
-    /// variance of n samples of noise scatters by √(2/n).
-    fn misses_onset(&self, fitted: &Fitted) -> bool {
+    /// How far a fit may be trusted: not at all where more is left around the onset than elsewhere, and is not white noise.
+    pub fn trust(&self, fitted: &Fitted, whiteness: &Whiteness) -> Trust {
         let onset = fitted.fit.parameters[0];
         let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
         let around = onset - AROUND..=onset + AROUND + delay;
+        if whiteness.rejected() && self.more_left(fitted, |t| around.contains(&t)) {
+            return Trust::Refused;
+        }
+        Trust::Widened(whiteness.inflation * student(fitted.fit.degrees_of_freedom()).unwrap_or(f64::NAN))
+    }
+
+    /// Whether the residuals at some times have more than twice the variance of the others, and more than chance gives: the
+    /// variance of n samples of noise scatters by √(2/n).
+    fn more_left(&self, fitted: &Fitted, there: impl Fn(f64) -> bool) -> bool {
         let (mut near, mut far) = ((0.0, 0.0), (0.0, 0.0));
         for (t, r) in self.times.iter().zip(&fitted.fit.residuals) {
-            let part = if around.contains(t) { &mut near } else { &mut far };
+            let part = if there(*t) { &mut near } else { &mut far };
             *part = (part.0 + r * r, part.1 + 1.0);
         }
         let limit = (1.0 + 4.0 * (2.0_f64 / near.1).sqrt()).max(2.0);

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 /// Damping and frequency of a contact, what follows from them, and the models that were fitted.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PulseResult {
-    /// Damping ratio of a contact of spring and damper.
+    /// Damping ratio of a contact of spring and damper; it and all that follows null where the record is no such contact.
     pub xi: Estimate,
     /// Its undamped natural frequency in Hz.
     pub frequency: Estimate,
@@ -29,6 +29,19 @@ pub struct PulseResult {
     /// Curves for a figure.
     #[serde(skip)]
     pub picture: Option<PulsePicture>,
+}
+
+impl PulseResult {
+    /// The same without the numbers of a contact that was not the one measured.
+    pub(super) fn refused(mut self) -> PulseResult {
+        let contact = [&mut self.xi, &mut self.frequency, &mut self.restitution, &mut self.duration];
+        let more = [&mut self.stiffness, &mut self.damping, &mut self.initial_velocity];
+        for estimate in contact.into_iter().chain(more.into_iter().flatten()) {
+            (estimate.value, estimate.std) = (f64::NAN, None);
+            estimate.method.push_str(", refused: see the warnings");
+        }
+        self
+    }
 }
 
 /// A model fitted to a pulse.

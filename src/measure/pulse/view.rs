@@ -2,7 +2,7 @@
 
 use super::fit::{Fitted, Model, Samples};
 use super::locate::Located;
-use super::result::{PulseCurve, PulseFit, PulsePicture};
+use super::result::{PulseCurve, PulseFit, PulsePicture, propagated};
 use super::{HuntCrossley, LowPass};
 use crate::error::{Error, Result};
 use crate::measure::Estimate;
@@ -159,12 +159,12 @@ impl<'a> View<'a> {
     ) -> PulseFit {
         let n = fitted.fit.residuals.len();
         let method = "least squares";
-        let widened = samples.widening(fitted, whiteness);
+        let trust = samples.trust(fitted, whiteness);
         let mut parameters = BTreeMap::new();
         let mut put = |name, i: usize, factor: f64, shift: f64, unit| {
             let value = shift + factor * fitted.fit.parameters[i];
-            let std = factor.abs() * fitted.fit.std(i) * widened;
-            parameters.insert(name, Estimate::new(value, Some(std), unit, n, method));
+            let std = factor.abs() * fitted.fit.std(i) * trust.factor();
+            parameters.insert(name, Estimate::new(trust.value(value), Some(std), unit, n, method));
         };
         put("onset", 0, self.length, self.seconds(0.0), "s");
         let unit = self.trace.meta.quantity.symbol();
@@ -181,8 +181,11 @@ impl<'a> View<'a> {
             Model::HuntCrossley => {
                 put("duration", 3, self.length, 0.0, "s");
                 put("alpha", 4, 1.0, 0.0, "1");
-                if let Some(contact) = HuntCrossley::new(fitted.fit.parameters[4]) {
-                    let e = Estimate::new(contact.restitution(), None, "1", n, method);
+                let restitution = |p: &[f64]| HuntCrossley::new(p[0]).map(|c| c.restitution());
+                let variance = |_, _| (fitted.fit.std(4) * trust.factor()).powi(2);
+                if let Some((r, std)) = propagated(&fitted.fit.parameters[4..], &[1e3], variance, restitution)
+                {
+                    let e = Estimate::new(trust.value(r), Some(std), "1", n, method);
                     parameters.insert("restitution", e);
                 }
             }

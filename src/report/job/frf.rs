@@ -43,6 +43,7 @@ pub(super) fn frfs(
                 band: own.band,
                 mass: own.mass,
                 least_coherence: own.least_coherence.unwrap_or(ModalOptions::default().least_coherence),
+                decay: meta.added_decay(),
             };
             // A function without a mode is no reason to give up the rest of a campaign.
             let mut found = match modal(&measured, &wanted) {

@@ -69,6 +69,7 @@ pub(super) fn impacts(
             hum: !entry.keep_hum,
             reference,
             shape,
+            scatter: entry.scatter,
         };
         let Some(found) = or_left_out(find(&trace, &how), &name, warnings)? else { continue };
         merge(warnings, &name, &found.warnings);
