@@ -264,7 +264,7 @@ record_entry! {
         /// Mass in kg that is decelerated.
         mass: Option<f64>,
         /// Corner of the instrument's Butterworth low-pass in Hz. Default: none, with a warning.
-        low_pass: Option<f64>,
+        low_pass: Option<LowPass>,
         /// Its order.
         order: Option<usize>,
         /// Time from the onset to the largest force in s, instead of a file.

@@ -32,17 +32,38 @@ use view::View;
 /// What is known of a pulse beside its record.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PulseOptions {
-    /// Low-pass of the instrument. Default: none, with a warning.
-    pub low_pass: Option<LowPass>,
+    /// What the instrument did to the pulse. Default: unknown, and no uncertainty.
+    pub instrument: Instrument,
     /// Mass in kg that is decelerated, taken as exact. Default: unknown, and no stiffness and damping.
     pub mass: Option<f64>,
+}
+
+/// What an instrument does to the shape of a pulse.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub enum Instrument {
+    /// Not known. A low-pass that is not taken into account moves ξ by 0.1 and more, and fits may look right all the same: there
+    /// are no uncertainties.
+    #[default]
+    Unknown,
+    /// Nothing.
+    Flat,
+    /// A Butterworth low-pass.
+    LowPass(LowPass),
+}
+
+impl Instrument {
+    /// The low-pass, if there is one.
+    pub fn low_pass(&self) -> Option<&LowPass> {
+        if let Instrument::LowPass(filter) = self { Some(filter) } else { None }
+    }
 }
 
 /// Fits the largest pulse of a record of acceleration (or of force).
 ///
 /// Residuals are taken for noise of one variance. Where they are correlated, which is tested, uncertainties are enlarged by the
 /// correlation and that is said; where the pulse begins otherwise than the model can, as behind an unstated low-pass, ξ and all
-/// that follows are null. A low-pass at half the sampling rate or above is taken for none.
+/// that follows are null. Where it is not known whether the instrument has a low-pass no uncertainty is stated: such a pulse may
+/// pass for one without a low-pass and another ξ. A low-pass at half the sampling rate or above is taken for none.
 ///
 /// # Errors
 /// If the record is not evenly sampled in time, holds no whole pulse, or too few samples of it, or does not determine the
@@ -64,16 +85,19 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
         .hint("sample faster"));
     }
     let mut warnings = Vec::new();
-    let low_pass = options.low_pass.clone().filter(|f| f.corner() < rate / 2.0);
-    if let (Some(stated), None) = (&options.low_pass, &low_pass) {
-        warnings.push(format!(
-            "The low-pass at {} Hz is not below half the sampling rate of {rate} Hz: its rise is not seen, and none is applied.",
-            stated.corner()
-        ));
-    }
-    let options = &PulseOptions { low_pass, mass: options.mass };
+    let instrument = match &options.instrument {
+        Instrument::LowPass(stated) if stated.corner() >= rate / 2.0 => {
+            warnings.push(format!(
+                "The low-pass at {} Hz is not below half the sampling rate of {rate} Hz: its rise is not seen, and none is applied.",
+                stated.corner()
+            ));
+            Instrument::Flat
+        }
+        stated => stated.clone(),
+    };
+    let options = &PulseOptions { instrument, mass: options.mass };
     let unlike = |error: Error| {
-        match &options.low_pass {
+        match options.instrument.low_pass() {
         Some(filter) => Error::refused(format!(
             "no contact behind a low-pass of order {} at {} Hz looks like the pulse, which lasts about {:.3} ms ({error})",
             filter.order(),
@@ -85,12 +109,12 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
             .hint("choose a record with one clean pulse and its baseline"),
     }
     };
-    let view = View::new(trace, rate, &found, options.low_pass.as_ref())?;
+    let view = View::new(trace, rate, &found, options.instrument.low_pass())?;
     let (samples, used) = view.window(&mut warnings, unlike)?;
     let main = samples.fit(Model::KelvinVoigt).map_err(unlike)?;
     let whiteness = Whiteness::of(&[&main.fit.residuals]);
     let n = samples.times.len();
-    let method = match &options.low_pass {
+    let method = match options.instrument.low_pass() {
         Some(filter) => format!(
             "least squares, spring and damper through a Butterworth low-pass of order {} at {} Hz",
             filter.order(),
@@ -101,7 +125,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let unit = [1.0, 1.0 / view.length];
     let shape = [main.fit.parameters[3], main.fit.parameters[4] * unit[1]];
     let trust = samples.trust(&main, &whiteness);
-    let widened = trust.factor();
+    let widened = if options.instrument == Instrument::Unknown { f64::NAN } else { trust.factor() };
     let covariance =
         |i: usize, j: usize| widened.powi(2) * unit[i] * unit[j] * main.fit.covariance(3 + i, 3 + j);
     let contact = |p: &[f64]| KelvinVoigt::new(p[0], p[1]);
@@ -130,7 +154,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     if trust == Trust::Refused {
         result = result.refused();
     }
-    result.fits = fits.iter().map(|(f, w)| view.report(&samples, f, w, options.mass)).collect();
+    result.fits = fits.iter().map(|(f, w)| view.report(&samples, f, w, options)).collect();
     warnings.extend(doubts(&fits[0].0, trust, &fits[0].1, &result.fits, &result, options));
     result.warnings = warnings;
     result.picture = Some(view.picture(&samples, &used, fits.iter().map(|f| &f.0)));
@@ -164,7 +188,7 @@ mod tests {
 
     fn found(values: Vec<f64>) -> PulseResult {
         let result =
-            pulse(&trace(values, "m/s²"), &PulseOptions { mass: Some(0.4), ..PulseOptions::default() })
+            pulse(&trace(values, "m/s²"), &PulseOptions { mass: Some(0.4), instrument: Instrument::Flat })
                 .unwrap();
         // Five of the uncertainties that are stated, and those within a hundredth of the value.
         for (estimate, truth) in [(&result.xi, 0.2), (&result.frequency, 10e3)] {
@@ -187,10 +211,21 @@ mod tests {
         assert!((onset.value - 0.5 - 80.4e-6).abs() < 5.0 * onset.std.unwrap(), "{onset:?}");
         let k = result.stiffness.as_ref().unwrap().value;
         assert!((k / (0.4 * (std::f64::consts::TAU * result.frequency.value).powi(2)) - 1.0).abs() < 1e-12);
-        assert!(says(&result, "No low-pass"));
         let models: Vec<&str> = result.fits.iter().map(|f| f.model).collect();
         assert_eq!(models, ["kelvin-voigt", "hertz", "hunt-crossley"]);
         assert!(result.fits[1..].iter().all(|f| f.aicc > result.fits[0].aicc + 10.0), "{:?}", result.fits);
+    }
+
+    #[test]
+    fn an_unknown_instrument_leaves_no_uncertainty() {
+        let result =
+            pulse(&trace(record(), "m/s²"), &PulseOptions { mass: Some(0.4), ..PulseOptions::default() });
+        let result = result.unwrap();
+        assert!(says(&result, "not known whether") && result.xi.value.is_finite(), "{:?}", result.warnings);
+        let all = [&result.xi, &result.frequency, &result.restitution, &result.duration];
+        assert!(all.iter().all(|e| e.std.is_none()) && result.stiffness.unwrap().std.is_none());
+        assert!(result.initial_velocity.unwrap().std.is_none());
+        assert!(result.fits.iter().flat_map(|f| f.parameters.values()).all(|e| e.std.is_none()));
     }
 
     #[test]
@@ -225,7 +260,8 @@ mod tests {
             .zip(record())
             .enumerate()
             .map(|(i, (v, _))| 3.0 * v + 200.0 * ((i * i) as f64 * 0.7).sin());
-        let result = pulse(&trace(values.collect(), "m/s²"), &PulseOptions::default()).unwrap();
+        let options = PulseOptions { instrument: Instrument::Flat, mass: None };
+        let result = pulse(&trace(values.collect(), "m/s²"), &options).unwrap();
         assert!(says(&result, "prefers the model hunt-crossley"), "{:?}", result.warnings);
         let alpha = &result.fits[2].parameters["alpha"];
         assert!((alpha.value - 0.3).abs() < 5.0 * alpha.std.unwrap(), "{alpha:?}");
@@ -243,8 +279,9 @@ mod tests {
             })
             .collect();
         let fitted = |corner: Option<f64>| {
-            let low_pass = corner.map(|hz| LowPass::new(hz, 2).unwrap());
-            pulse(&trace(values.clone(), "m/s²"), &PulseOptions { low_pass, mass: None })
+            let instrument =
+                corner.map_or(Instrument::Flat, |hz| Instrument::LowPass(LowPass::new(hz, 2).unwrap()));
+            pulse(&trace(values.clone(), "m/s²"), &PulseOptions { instrument, mass: None })
         };
         let with = fitted(Some(30e3)).unwrap().xi;
         assert!((with.value - 0.15).abs() < 5.0 * with.std.unwrap(), "{with:?}");

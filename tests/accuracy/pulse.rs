@@ -4,7 +4,7 @@
 use crate::noise::Noise;
 use crate::score::{Score, bounds};
 use std::f64::consts::{PI, TAU};
-use vibroimpact::measure::pulse::{LowPass, PulseOptions, pulse, two_times};
+use vibroimpact::measure::pulse::{Instrument, LowPass, PulseOptions, pulse, two_times};
 use vibroimpact::record::{Axis, Meta, Trace};
 use vibroimpact::units::Unit;
 
@@ -156,8 +156,9 @@ fn a_sampled_pulse() {
         let clean = case.plain(&p, first);
         let bound = bounds(&p, &case.steps(), &vec![case.sigma; case.n], |p| case.plain(p, first));
         let values = clean.iter().map(|v| v + case.sigma * noise.normal()).collect();
-        let found = pulse(&trace(values, case.dt), &PulseOptions::default())
-            .unwrap_or_else(|e| panic!("seed {seed}: {e}"));
+        let found =
+            pulse(&trace(values, case.dt), &PulseOptions { instrument: Instrument::Flat, mass: None })
+                .unwrap_or_else(|e| panic!("seed {seed}: {e}"));
         xi.add(&found.xi, case.xi, bound[3]);
         frequency.add(&found.frequency, case.frequency, bound[4]);
         velocity.add(&found.initial_velocity.expect("an acceleration"), case.velocity.abs(), bound[2]);
@@ -197,7 +198,8 @@ fn a_sampled_pulse_behind_a_low_pass() {
             continue;
         }
         let values = clean.iter().map(|v| v + case.sigma * noise.normal()).collect();
-        let options = PulseOptions { low_pass: LowPass::new(corner, order).ok(), mass: None };
+        let instrument = Instrument::LowPass(LowPass::new(corner, order).unwrap());
+        let options = PulseOptions { instrument, mass: None };
         let found = pulse(&trace(values, case.dt), &options).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
         xi.add(&found.xi, case.xi, bound[3]);
         frequency.add(&found.frequency, case.frequency, bound[4]);

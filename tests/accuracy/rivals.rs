@@ -6,7 +6,7 @@ use crate::pulse::{Case, trace};
 use crate::score::Score;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-use vibroimpact::measure::pulse::{LowPass, PulseOptions, PulseResult, pulse};
+use vibroimpact::measure::pulse::{Instrument, LowPass, PulseOptions, PulseResult, pulse};
 use vibroimpact::record::{Meta, Trace};
 use vibroimpact::units::Unit;
 
@@ -50,7 +50,7 @@ fn what_follows_from_a_pulse_and_a_mass() {
         let first = (case.onset / case.dt).ceil() as usize;
         let clean = case.plain(&case.parameters(), first);
         let values: Vec<f64> = clean.iter().map(|v| v + case.sigma * noise.normal()).collect();
-        let options = PulseOptions { low_pass: None, mass: Some(mass) };
+        let options = PulseOptions { instrument: Instrument::Flat, mass: Some(mass) };
         let found =
             pulse(&force(&values, case.dt, mass), &options).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
         add(&mut scores, &found, &case, mass);
@@ -69,7 +69,8 @@ fn what_follows_from_a_pulse_behind_a_low_pass() {
         let (corner, order) = (case.frequency * noise.between(3.0, 6.0), 1 + (seed % 3) as usize);
         let clean = case.filtered(&case.parameters(), corner, order);
         let values: Vec<f64> = clean.iter().map(|v| v + case.sigma * noise.normal()).collect();
-        let options = PulseOptions { low_pass: LowPass::new(corner, order).ok(), mass: Some(mass) };
+        let instrument = Instrument::LowPass(LowPass::new(corner, order).unwrap());
+        let options = PulseOptions { instrument, mass: Some(mass) };
         let found =
             pulse(&force(&values, case.dt, mass), &options).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
         add(&mut scores, &found, &case, mass);
@@ -126,7 +127,7 @@ fn rival(model: usize, from: u64, alphas: (f64, f64)) {
                 base + velocity / scale * v + sigma * noise.normal()
             })
             .collect();
-        let found = pulse(&trace(values, dt), &PulseOptions::default())
+        let found = pulse(&trace(values, dt), &PulseOptions { instrument: Instrument::Flat, mass: None })
             .unwrap_or_else(|e| panic!("seed {seed}, alpha {alpha}: {e}"));
         let Some(fit) = found.fits.iter().find(|f| f.model == ["", "hertz", "hunt-crossley"][model]) else {
             panic!("seed {seed}: {:?}", found.warnings);

@@ -229,8 +229,7 @@ fn a_hammer_names_the_windows_applied() {
     let options = ["--estimator", "h1", "--left-at-end", "0.01", "--out", text(&out)];
     json(&[&hammer[..], &options].concat());
     let written = fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().path());
-    let of_numbers =
-        |p: &std::path::PathBuf| p.extension().is_some_and(|e| e == "csv" || e == "unv" || e == "uff");
+    let of_numbers = |p: &PathBuf| p.extension().is_some_and(|e| e == "csv" || e == "unv" || e == "uff");
     let files: Vec<_> = written.filter(of_numbers).collect();
     assert_eq!(files.len(), 2, "{files:?}");
     for file in files {

@@ -1,6 +1,6 @@
 //! `vibro drill`, as typed.
 
-use super::Reading;
+use super::{LowPass, Reading};
 use clap::ValueEnum;
 use std::path::PathBuf;
 
@@ -55,7 +55,7 @@ pub struct Drill {
     pub points: usize,
     /// Corner in Hz of the zero-phase low-pass for average and displacement, or `none` [default: what the phases of the
     /// average can show]
-    #[arg(long, value_name = "HZ", conflicts_with = "smoothing", value_parser = low_pass)]
+    #[arg(long, value_name = "HZ", conflicts_with = "smoothing", value_parser = super::low_pass)]
     pub low_pass: Option<LowPass>,
     /// Time constant in s of exponential smoothing instead of the low-pass
     #[arg(long, value_name = "TIME")]
@@ -86,19 +86,6 @@ pub struct Drill {
     pub out: Option<PathBuf>,
     #[command(flatten)]
     pub reading: Reading,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum LowPass {
-    Corner(f64),
-    Off,
-}
-
-fn low_pass(text: &str) -> Result<LowPass, String> {
-    match text {
-        "none" => Ok(LowPass::Off),
-        _ => text.parse().map(LowPass::Corner).map_err(|_| "a corner in Hz, or none".to_owned()),
-    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -1,6 +1,6 @@
 //! `vibro pulse`, as typed.
 
-use super::{Channel, Reading};
+use super::{Channel, LowPass, Reading};
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
@@ -20,9 +20,9 @@ pub struct Pulse {
     /// Mass that is decelerated, in kg, for stiffness and damping
     #[arg(long, value_name = "KG", allow_negative_numbers = true)]
     pub mass: Option<f64>,
-    /// Corner (-3 dB) of the instrument's Butterworth low-pass, in Hz [default: none, with a warning]
-    #[arg(long, value_name = "HZ", requires = "order", allow_negative_numbers = true)]
-    pub low_pass: Option<f64>,
+    /// Corner (-3 dB) of the instrument's Butterworth low-pass, in Hz, or none [default: not known, and no uncertainty]
+    #[arg(long, value_name = "HZ", value_parser = super::low_pass, allow_negative_numbers = true)]
+    pub low_pass: Option<LowPass>,
     /// Order of that low-pass, 1 to 10
     #[arg(long, value_name = "N", requires = "low_pass")]
     pub order: Option<usize>,

@@ -176,7 +176,7 @@ fn warnings(
     );
     say(result.hidden > 0, format!("{} hidden by faults of the velocity.", several(result.hidden, "impact")));
     let (clipped, found) = (result.clipped, result.impacts.len());
-    let taken = match (clipped == found, result.groups.first().is_some_and(|g| g.leans())) {
+    let taken = match (clipped == found, result.groups.first().is_some_and(groups::Group::leans)) {
         (true, _) => "there are no others, so the means are too small and have no uncertainty",
         (_, true) => "left out of the means, which lean to the slower ones and have no uncertainty",
         _ => "left out of the means",

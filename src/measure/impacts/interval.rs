@@ -275,7 +275,7 @@ mod tests {
             // Four degrees of freedom: √(4/2).
             let std = (2.0 * fit.variance * fit.cofactor).sqrt();
             assert!((found.mean - fit.mean).abs() < 1e-14 && (found.std / std - 1.0).abs() < 1e-12);
-            assert!((found.onset > 0.0) == onset && (found.jitter > 0.0) == !onset, "{found:?}");
+            assert!((found.onset > 0.0) == onset && (found.jitter > 0.0) != onset, "{found:?}");
         }
     }
 

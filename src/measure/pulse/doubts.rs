@@ -1,7 +1,7 @@
 //! What a record of a pulse cannot tell, as sentences.
 
 use super::fit::{Fitted, Trust};
-use super::{LowPass, PulseFit, PulseOptions, PulseResult};
+use super::{Instrument, LowPass, PulseFit, PulseOptions, PulseResult};
 use crate::measure::residuals::{Whiteness, student};
 
 /// Names of the parameters of the contact of spring and damper, in the order of the fit.
@@ -28,12 +28,13 @@ pub(super) fn doubts(
     if xi.value - spread < 0.0 {
         said.push("ξ is not above 0 by more than its uncertainty: no damping is seen.".to_owned());
     }
-    match &options.low_pass {
-        None => said.push(
-            "No low-pass is known: the models are fitted as if the instrument had none, which takes its rise time for the contact's. Give --low-pass HZ and --order N."
+    match &options.instrument {
+        Instrument::Flat => {}
+        Instrument::Unknown => said.push(
+            "It is not known whether the instrument has a low-pass. The models are fitted as if it had none; if it has one, ξ may be off by 0.1 and more though the fit looks right, so there is no uncertainty. Give --low-pass HZ and --order N, or --low-pass none."
                 .to_owned(),
         ),
-        Some(filter) => said.extend(near_corner(result.duration.value, filter)),
+        Instrument::LowPass(filter) => said.extend(near_corner(result.duration.value, filter)),
     }
     for (i, one) in NAMES.iter().enumerate() {
         for (j, other) in NAMES.iter().enumerate().skip(i + 1) {
@@ -50,8 +51,8 @@ pub(super) fn doubts(
         ));
     }
     if trust == Trust::Refused {
-        let low_pass = match &options.low_pass {
-            None => "the low-pass of the instrument is needed (--low-pass, --order)",
+        let low_pass = match options.instrument.low_pass() {
+            None => "the low-pass of the instrument is needed (--low-pass HZ, --order N)",
             Some(_) => "the low-pass is another than stated, or the contact another than modelled",
         };
         said.push(format!(

@@ -3,7 +3,7 @@
 use super::fit::{Fitted, Model, Samples};
 use super::locate::Located;
 use super::result::{PulseCurve, PulseFit, PulsePicture, propagated};
-use super::{HuntCrossley, LowPass};
+use super::{HuntCrossley, Instrument, LowPass, PulseOptions};
 use crate::error::{Error, Result};
 use crate::measure::Estimate;
 use crate::measure::residuals::{Whiteness, aicc};
@@ -155,21 +155,22 @@ impl<'a> View<'a> {
         samples: &Samples,
         fitted: &Fitted,
         whiteness: &Whiteness,
-        mass: Option<f64>,
+        options: &PulseOptions,
     ) -> PulseFit {
         let n = fitted.fit.residuals.len();
         let method = "least squares";
         let trust = samples.trust(fitted, whiteness);
+        let widened = if options.instrument == Instrument::Unknown { f64::NAN } else { trust.factor() };
         let mut parameters = BTreeMap::new();
         let mut put = |name, i: usize, factor: f64, shift: f64, unit| {
             let value = shift + factor * fitted.fit.parameters[i];
-            let std = factor.abs() * fitted.fit.std(i) * trust.factor();
+            let std = factor.abs() * fitted.fit.std(i) * widened;
             parameters.insert(name, Estimate::new(trust.value(value), Some(std), unit, n, method));
         };
         put("onset", 0, self.length, self.seconds(0.0), "s");
         let unit = self.trace.meta.quantity.symbol();
         put("baseline", 1, self.height, 0.0, unit);
-        if let Ok(factor) = self.to_velocity(mass) {
+        if let Ok(factor) = self.to_velocity(options.mass) {
             put("initial_velocity", 2, factor * self.found.height.signum(), 0.0, "m/s");
         }
         match fitted.model {
@@ -182,7 +183,7 @@ impl<'a> View<'a> {
                 put("duration", 3, self.length, 0.0, "s");
                 put("alpha", 4, 1.0, 0.0, "1");
                 let restitution = |p: &[f64]| HuntCrossley::new(p[0]).map(|c| c.restitution());
-                let variance = |_, _| (fitted.fit.std(4) * trust.factor()).powi(2);
+                let variance = |_, _| (fitted.fit.std(4) * widened).powi(2);
                 if let Some((r, std)) = propagated(&fitted.fit.parameters[4..], &[1e3], variance, restitution)
                 {
                     let e = Estimate::new(trust.value(r), Some(std), "1", n, method);

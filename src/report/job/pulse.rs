@@ -1,9 +1,9 @@
 //! Contact pulses of a campaign.
 
 use super::{JobOptions, file_name, merge, or_left_out};
-use crate::campaign::Campaign;
+use crate::campaign::{Campaign, LowPass as Stated};
 use crate::error::{Error, Result};
-use crate::measure::pulse::{LowPass, PulseOptions, PulseResult, pulse, two_times};
+use crate::measure::pulse::{Instrument, LowPass, PulseOptions, PulseResult, pulse, two_times};
 use crate::report::{Figure, pictures};
 use serde::Serialize;
 
@@ -37,9 +37,9 @@ pub(super) fn pulses(
                 "both, or none",
             );
         }
-        if own.low_pass.is_some() != own.order.is_some() {
+        if matches!(own.low_pass, Some(Stated::Corner(_))) != own.order.is_some() {
             return wrong(
-                format!("only one of low_pass and order is given for the pulse {called:?}"),
+                format!("only one of low_pass (in Hz) and order is given for the pulse {called:?}"),
                 "both, or none",
             );
         }
@@ -64,9 +64,13 @@ pub(super) fn pulses(
                 merge(warnings, &file, &recording.doubts);
                 let trace = recording.trace(entry.channel.as_deref(), entry.calibration)?;
                 let name = entry.name.unwrap_or_else(|| file.clone());
-                let low_pass = own.low_pass.zip(own.order).map(|(hz, n)| LowPass::new(hz, n)).transpose()?;
+                let instrument = match (own.low_pass, own.order) {
+                    (Some(Stated::Corner(hz)), Some(order)) => Instrument::LowPass(LowPass::new(hz, order)?),
+                    (Some(_), _) => Instrument::Flat,
+                    (None, _) => Instrument::Unknown,
+                };
                 merge(warnings, &name, &trace.meta.doubts);
-                (name, file, pulse(&trace, &PulseOptions { low_pass, mass: own.mass }))
+                (name, file, pulse(&trace, &PulseOptions { instrument, mass: own.mass }))
             }
         };
         let Some(result) = or_left_out(result, &name, warnings)? else { continue };
