@@ -7,7 +7,6 @@
 pub mod colour;
 pub mod files;
 pub mod job;
-pub mod notation;
 pub mod page;
 pub mod pictures;
 pub mod tables;

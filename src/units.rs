@@ -6,6 +6,7 @@
 //!
 //! In this field `g` is the standard acceleration of gravity, never the gram.
 
+pub mod notation;
 mod parse;
 mod quantity;
 

@@ -4,6 +4,7 @@ use super::{args, complain, print, settings};
 use crate::error::{Error, Result};
 use crate::measure::restitution::{Bounces, Drop, GRAVITY, Restitution, Train, Velocities, restitution};
 use crate::report::{Output, files, pictures, tables};
+use crate::units::notation::quantity;
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -74,7 +75,11 @@ pub fn run(typed: &args::Restitution, json: bool) -> Result<()> {
         let _ = writeln!(text, "\nthe methods {said}");
     }
     if let Some(u) = found.bootstrap_std {
-        let _ = writeln!(text, "standard uncertainty from the scatter of the drops by a bootstrap: {u:.1e}");
+        let _ = writeln!(
+            text,
+            "standard uncertainty from the scatter of the drops by a bootstrap: {}",
+            quantity(u, "1", 2)
+        );
     }
     for file in written {
         let _ = writeln!(text, "wrote {file}");

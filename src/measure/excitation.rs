@@ -4,6 +4,7 @@ use super::line::{SubLine, interpolate};
 use super::noise;
 use crate::error::{Error, Place, Result};
 use crate::record::{Sweep, SweepPoint, Window};
+use crate::units::notation::quantity;
 use serde::Serialize;
 
 /// Excitation of one step.
@@ -97,7 +98,10 @@ fn largest(force: &[f64], window: Option<Window>, first: usize) -> std::result::
     if let Some(floor) = floor
         && force[k] < ABOVE_FLOOR * floor
     {
-        return Err(format!("no line of the force stands above its noise (largest {:.3e} N)", force[k]));
+        return Err(format!(
+            "no line of the force stands above its noise (largest {})",
+            quantity(force[k], "N", 3)
+        ));
     }
     interpolate(force, k, window, floor).ok_or_else(|| "the lines beside the largest are missing".to_owned())
 }

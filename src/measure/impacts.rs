@@ -21,6 +21,7 @@ pub use shape::{Matched, Shape};
 use super::Estimate;
 use crate::error::{Error, Result};
 use crate::record::Trace;
+use crate::units::notation::quantity;
 use burst::{Background, background, median};
 use count::count;
 use cycle::{Locking, Reference};
@@ -188,12 +189,12 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
         match locking {
             Locking::Locked(_) => {}
             Locking::Drifting(near, slip) => warnings.push(format!(
-                "The train drifts: beat {:.3e} Hz between the impacts and {}/{} of the excitation of {} Hz (standard uncertainty {:.1e} Hz): they do not keep their phase, or the excitation has another frequency.",
-                (slip * cycles.frequency).abs(),
+                "The train drifts: beat {} between the impacts and {}/{} of the excitation of {} Hz (standard uncertainty {}): they do not keep their phase, or the excitation has another frequency.",
+                quantity((slip * cycles.frequency).abs(), "Hz", 3),
                 near.impacts,
                 near.cycles,
                 cycles.frequency,
-                cycles.std
+                quantity(cycles.std, "Hz", 2)
             )),
             Locking::Irregular => warnings.push(format!(
                 "No fraction of up to 8 impacts in 8 cycles fits within {} % of the rate and {} of a cycle: irregular.",
@@ -277,8 +278,10 @@ fn find(trace: &Trace, rate: f64, options: &ImpactsOptions) -> Found {
     let hum = if options.hum { hum::remove(&mut values, rate, &mut warnings) } else { None };
     if let Some(h) = &hum {
         warnings.push(format!(
-            "Mains hum of {:.2} Hz, amplitude {:.3e}, with {} harmonics was fitted and taken away.",
-            h.frequency, h.amplitude, h.harmonics
+            "Mains hum of {:.2} Hz, amplitude {}, with {} was fitted and taken away.",
+            h.frequency,
+            quantity(h.amplitude, trace.meta.unit.symbol(), 3),
+            if h.harmonics == 1 { "one harmonic".to_owned() } else { format!("{} harmonics", h.harmonics) }
         ));
     }
     let quiet = options.refractory.map(|s| ((s * rate) as usize).max(1));
@@ -310,11 +313,13 @@ fn find(trace: &Trace, rate: f64, options: &ImpactsOptions) -> Found {
     all.retain(|_| high.next() == Some(true));
     let low = before - all.len();
     if low > 0 {
+        let unit = trace.meta.unit.symbol();
         warnings.push(format!(
-            "{low} burst{} lower than {least:.3e} {} left out (noise between impacts has a standard deviation of {:.3e}).",
+            "{low} burst{} lower than {} {} left out (noise between impacts has a standard deviation of {}).",
             if low == 1 { "" } else { "s" },
+            quantity(least, unit, 3),
             if low == 1 { "was" } else { "were" },
-            level.sigma
+            quantity(level.sigma, unit, 3)
         ));
     }
     if let Some(steady) = bursts.steady.filter(|s| *s < STEADY && all.len() > 1) {
@@ -388,8 +393,9 @@ fn described(found: &Interval, n: usize, timing: Timing) -> String {
         String::new()
     };
     format!(
-        "{line}: onset noise {:.2e} s, cycle-to-cycle jitter {:.2e} s{correlation}; {onsets}",
-        found.onset, found.jitter
+        "{line}: onset noise {}, cycle-to-cycle jitter {}{correlation}; {onsets}",
+        quantity(found.onset, "s", 3),
+        quantity(found.jitter, "s", 3)
     )
 }
 

@@ -13,6 +13,7 @@ pub use velocities::Velocities;
 
 use super::Estimate;
 use crate::error::{Error, Result};
+use crate::units::notation::quantity;
 use serde::Serialize;
 
 /// One method's answer.
@@ -152,12 +153,13 @@ fn agreement(by: &[Way], warnings: &mut Vec<String>) -> Option<bool> {
         if difference.abs() > limit * u + 1e-12 {
             agree = false;
             warnings.push(format!(
-                "The methods disagree by more than their uncertainties: {} {:.4}, {} {:.4}; the difference of {:.4} has a standard uncertainty of {u:.1e}.",
+                "The methods disagree by more than their uncertainties: {} {:.4}, {} {:.4}; the difference of {:.4} has a standard uncertainty of {}.",
                 a.method,
                 a.restitution.value,
                 b.method,
                 b.restitution.value,
-                difference.abs()
+                difference.abs(),
+                quantity(*u, "1", 2)
             ));
         }
     }

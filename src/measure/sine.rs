@@ -9,6 +9,7 @@ use super::{Estimate, noise};
 use crate::error::{Error, Result};
 use crate::record::{Scaling, Trace, Window};
 use crate::signal::spectrum;
+use crate::units::notation::quantity;
 use nalgebra::{Matrix4, Vector4};
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -78,9 +79,10 @@ fn line(trace: &Trace, near: Option<f64>) -> Result<f64> {
         noise::around(&magnitudes, largest, Some(Window::Hann)).filter(|n| magnitudes[largest] < visible * n)
     {
         return Err(Error::refused(format!(
-            "no sine stands out of the noise: the largest line, {:.6} Hz, has {:.3e}, the noise of a line is {floor:.3e}",
+            "no sine stands out of the noise: the largest line, {:.6} Hz, has {}, the noise of a line is {}",
             largest as f64 * step,
-            magnitudes[largest]
+            quantity(magnitudes[largest], "1", 3),
+            quantity(floor, "1", 3)
         ))
         .hint("a longer record, or state the frequency"));
     }

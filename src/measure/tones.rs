@@ -8,6 +8,7 @@
 use super::{Estimate, sine};
 use crate::error::{Error, Result};
 use crate::record::Trace;
+use crate::units::notation::quantity;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
@@ -108,10 +109,12 @@ pub fn tones(trace: &Trace, count: usize) -> Result<Tones> {
             let apart = (a.frequency.value - b.frequency.value).abs();
             if apart < spacing {
                 warnings.push(format!(
-                    "The tones at {:.6} and {:.6} Hz are {apart:.3e} Hz apart; a record of {:.4} s parts what is {spacing:.3e} Hz apart: both hold only if there are two steady sines and white noise.",
+                    "The tones at {:.6} and {:.6} Hz are {} apart; a record of {:.4} s parts what is {} apart: both hold only if there are two steady sines and white noise.",
                     b.frequency.value,
                     a.frequency.value,
-                    1.0 / spacing
+                    quantity(apart, "Hz", 3),
+                    1.0 / spacing,
+                    quantity(spacing, "Hz", 3)
                 ));
             }
         }

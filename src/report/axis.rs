@@ -1,7 +1,7 @@
 //! Axes: what a caller asks for, and what it becomes once the data are known.
 
-use super::notation::{decimals_needed, engineering, fixed, labelled, scaled_unit};
 use super::ticks::{self, Ticks};
+use crate::units::notation::{decimals_needed, engineering, fixed, labelled, scaled_unit};
 
 /// How values are laid out along an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -1,10 +1,10 @@
 //! The report of a campaign as one page.
 
 use super::job::{Crossing, Results};
-use super::notation::{shortest, significant};
 use super::{Drawing, Figure, Page, tables};
 use crate::model::Rig;
 use crate::record::Step;
+use crate::units::notation::{shortest, significant};
 use std::fmt::Write as _;
 
 /// Lays out results, tables and drawings; `figures` and `drawings` belong together one by one.

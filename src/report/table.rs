@@ -1,8 +1,10 @@
 //! Tables of results: one content for the terminal, for other programs and for the page.
 
 use super::draw::escaped;
-use super::notation::{decimals_needed, engineering, estimate, fixed, labelled, scaled_unit, significant};
 use crate::measure::Estimate;
+use crate::units::notation::{
+    decimals_needed, engineering, estimate, fixed, labelled, scaled_unit, significant,
+};
 use std::fmt::Write;
 
 /// Rows of results under named columns.

@@ -1,6 +1,6 @@
 //! Where an axis has its ticks, and what they say.
 
-use super::notation::{engineering, fixed, power_of_ten};
+use crate::units::notation::{engineering, fixed, power_of_ten};
 
 /// A labelled tick at `at` in the axis' own scale (log₁₀ of the value on a logarithmic axis).
 #[derive(Debug, Clone, PartialEq)]

@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::record::{Record, Trace};
 use crate::signal::filter::Filter;
 use crate::signal::{differentiate, integrate};
+use crate::units::notation::quantity;
 
 /// Order of one pass of every filter here.
 const ORDER: usize = 4;
@@ -105,8 +106,10 @@ impl Change {
             let [low, high] = found.band;
             let unit = found.trace.meta.unit.symbol();
             said.push(format!(
-                "{name}: integrated {} in time, each time with a Butterworth high-pass of order {ORDER}, corner {corner} Hz, forwards and backwards. Amplitudes are right within 1 % from {low:.4} to {high:.4} Hz, but for the first and the last {:.3} s. Drift left: {:.2e} {unit}.",
-                often(self.integrate), found.edge, found.drift
+                "{name}: integrated {} in time, each time with a Butterworth high-pass of order {ORDER}, corner {corner} Hz, forwards and backwards. Amplitudes are right within 1 % from {low:.4} to {high:.4} Hz, but for the first and the last {:.3} s. Drift left: {}.",
+                often(self.integrate),
+                found.edge,
+                quantity(found.drift, unit, 2)
             ));
             *trace = found.trace;
         }

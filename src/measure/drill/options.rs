@@ -2,6 +2,7 @@
 
 use super::{Beam, Edge, Smoothing};
 use crate::error::{Error, Result};
+use crate::units::notation::quantity;
 
 /// More pulses in a turn than any encoder on a crank gives.
 const MOST_PULSES: usize = 10_000;
@@ -109,8 +110,10 @@ impl DrillOptions {
     pub(super) fn check_turn(&self, turn: f64) -> Result<()> {
         for (name, time) in [("contact", self.contact), ("fit", self.fit)] {
             if time > 0.5 * turn {
-                let why =
-                    format!("a {name} time of {time} s is longer than half a turn, {:.3e} s", 0.5 * turn);
+                let why = format!(
+                    "a {name} time of {time} s is longer than half a turn, {}",
+                    quantity(0.5 * turn, "s", 3)
+                );
                 return Err(Error::refused(why)
                     .hint(format!("state --{name} in seconds; if it is right, check --pulses-per-turn")));
             }

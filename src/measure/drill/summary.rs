@@ -8,6 +8,7 @@ use crate::measure::Estimate;
 use crate::measure::exposure::Exposure;
 use crate::measure::mean::Mean;
 use crate::signal::welch::Stream;
+use crate::units::notation::quantity;
 
 /// A pulse stands on its two levels for more than this part of the time; edges and noise are the rest.
 const PULSED: f64 = 0.8;
@@ -231,7 +232,10 @@ fn pulses(
     );
     say(
         found.sharp,
-        format!("The reference rises within one sample: edges are known to {:.1e} s only.", r.std),
+        format!(
+            "The reference rises within one sample: edges are known to {} only.",
+            quantity(r.std, "s", 2)
+        ),
     );
     say(
         reference.missing() > 0,

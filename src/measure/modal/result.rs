@@ -6,6 +6,7 @@ use super::rational::Rational;
 use super::response::hertz;
 use super::{Measured, Pole};
 use crate::measure::Estimate;
+use crate::units::notation::estimate;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
@@ -110,9 +111,8 @@ pub(super) fn report(
                 reversed += 1;
             }
             warnings.push(format!(
-                "The peak at {at} Hz is not supported as a mode: the fit gives ζ = {:.2e} ± {:.1e} at {:.3} Hz and leaves {:.0} % of the highest line.",
-                pole.zeta,
-                std[1],
+                "The peak at {at} Hz is not supported as a mode: the fit gives ζ = {} at {:.3} Hz and leaves {:.0} % of the highest line.",
+                estimate(pole.zeta, Some(std[1])),
                 pole.frequency,
                 100.0 * fit.unexplained
             ));

@@ -9,6 +9,7 @@ use super::{Shares, Way, above_zero, not_negative};
 use crate::error::{Error, Result};
 use crate::measure::Estimate;
 use crate::measure::residuals::student;
+use crate::units::notation::quantity;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
@@ -89,8 +90,11 @@ pub(super) fn answer(
     outliers.sort_by_key(|o| (o.train, o.flight));
     for o in outliers.iter() {
         warnings.push(format!(
-            "Flight {} of train {}, {:.4e} s, does not fit the others, which expect {:.4e} s: it was left out.",
-            o.flight, o.train, o.interval, o.expected
+            "Flight {} of train {}, {}, does not fit the others, which expect {}: it was left out.",
+            o.flight,
+            o.train,
+            quantity(o.interval, "s", 4),
+            quantity(o.expected, "s", 4)
         ));
     }
     let Some(fit) = fit(&flights, trains) else {
@@ -110,10 +114,10 @@ pub(super) fn answer(
             format!("log-linear fit of {} flight times, too few for a standard uncertainty", flights.len())
         }
         Some(_) => format!(
-            "log-linear fit of {} flight times: ln R scatters by {:.1e} from bounce to bounce, onsets by {:.1e} s",
+            "log-linear fit of {} flight times: ln R scatters by {} from bounce to bounce, onsets by {}",
             flights.len(),
-            fit.scatter,
-            fit.onset
+            quantity(fit.scatter, "1", 2),
+            quantity(fit.onset, "s", 2)
         ),
     };
     bend(&flights, warnings);
@@ -321,14 +325,16 @@ fn ends(trains: &[Train], value: f64, warnings: &mut Vec<String>) {
     for (i, train) in trains.iter().enumerate() {
         let (Some(after), Some(last)) = (train.after, train.intervals.last()) else { continue };
         let (next, still) = (last * value, last * value / (1.0 - value));
-        warnings.push(if after < next {
+        let missing = after < next;
+        let [after, next, still] = [after, next, still].map(|t| quantity(t, "s", 3));
+        warnings.push(if missing {
             format!(
-                "Train {}: the record ends {after:.2e} s after the last impact, before the next is due at {next:.2e} s: the last bounces are not in it. The body would come to rest {still:.2e} s after that impact.",
+                "Train {}: the record ends {after} after the last impact, before the next is due at {next}: the last bounces are not in it. The body would come to rest {still} after that impact.",
                 i + 1
             )
         } else {
             format!(
-                "Train {}: the bounce due {next:.2e} s after the last impact is not in the record, which goes on for {after:.2e} s: the last bounces are lost in noise or in the ringing of the one before.",
+                "Train {}: the bounce due {next} after the last impact is not in the record, which goes on for {after}: the last bounces are lost in noise or in the ringing of the one before.",
                 i + 1
             )
         });

@@ -3,6 +3,7 @@
 use super::{Shares, Way, above_zero, not_negative};
 use crate::error::{Error, Result};
 use crate::measure::Estimate;
+use crate::units::notation::quantity;
 
 /// Velocities of both masses along one axis, in m/s.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -66,7 +67,7 @@ impl Velocities {
                 let lost = m1 * (v1 - w1) + m2 * (v2 - w2);
                 let u = self.std.map_or(f64::NAN, |u| u * (2.0 * (m1 * m1 + m2 * m2)).sqrt());
                 if lost.abs() > 2.0 * u {
-                    warnings.push(format!("Momentum changes by {lost:.3e} kg m/s, more than twice its uncertainty of {u:.1e}: velocities, masses or a third body."));
+                    warnings.push(format!("Momentum changes by {}, more than twice its uncertainty of {}: velocities, masses or a third body.", quantity(lost, "N s", 3), quantity(u, "N s", 2)));
                 }
             }
         }

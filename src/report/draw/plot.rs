@@ -10,9 +10,9 @@ use super::{map, notes};
 use crate::report::axis::{Axis, Extent, Room, Scale};
 use crate::report::figure::{Legend, Plot};
 use crate::report::heatmap::Heatmap;
-use crate::report::notation::labelled;
 use crate::report::path::Rect;
 use crate::report::series::Shape;
+use crate::units::notation::labelled;
 
 /// Where the legend has been put.
 #[derive(Debug, Clone, Copy, PartialEq)]

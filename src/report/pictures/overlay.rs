@@ -5,8 +5,8 @@ use super::response::{MARKS, log_limits, rank, series, shown};
 use crate::compare::prediction::{Kind, Motion, Prediction};
 use crate::compare::{Level, Overlay, Verdict};
 use crate::measure::response::Response;
-use crate::report::notation::significant;
 use crate::report::{AxisSpec, Figure, Ink, Plot, Series, Stroke};
+use crate::units::notation::significant;
 
 /// Height of a panel in mm.
 const PANEL: f64 = 85.0;

@@ -63,7 +63,7 @@ pub fn shortest(value: f64) -> String {
 /// Without a usable uncertainty the value is given to five significant digits.
 ///
 /// ```
-/// use vibroimpact::report::notation::estimate;
+/// use vibroimpact::units::notation::estimate;
 /// assert_eq!(estimate(7.489_51, Some(0.012_34)), "7.490 ± 0.012");
 /// assert_eq!(estimate(-3.2e-9, Some(1.1e-10)), "(−3.20 ± 0.11)×10⁻⁹");
 /// assert_eq!(estimate(7.489_51, None), "7.4895");
@@ -88,7 +88,7 @@ pub fn estimate(value: f64, std: Option<f64>) -> String {
 }
 
 /// Decimals that show `value` to `digits` significant digits, none of them a trailing zero.
-pub(super) fn decimals_needed(value: f64, digits: usize) -> usize {
+pub(crate) fn decimals_needed(value: f64, digits: usize) -> usize {
     let (mantissa, exponent) = scientific(value, digits);
     let kept = mantissa.trim_start_matches('-').trim_end_matches('0').len().saturating_sub(2) as i32;
     usize::try_from(kept - exponent).unwrap_or(0)
@@ -102,6 +102,23 @@ pub fn engineering(largest: f64) -> i32 {
     }
     // Ten digits, so that 999.999 999 999 9 counts as 1000.
     decade(largest, 10).div_euclid(3) * 3
+}
+
+/// A quantity in a sentence, with an SI prefix where one fits.
+///
+/// ```
+/// use vibroimpact::units::notation::quantity;
+/// assert_eq!(quantity(0.018_34, "s", 3), "18.3 ms");
+/// assert_eq!(quantity(-0.25, "m/s", 2), "−0.25 m/s");
+/// assert_eq!(quantity(3e-6, "1", 2), "3.0×10⁻⁶");
+/// ```
+pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
+    let exponent = engineering(value);
+    let unit = if unit == "1" { "" } else { unit };
+    if exponent == 0 || unit.is_empty() || !value.is_finite() {
+        return format!("{} {unit}", significant(value, digits)).trim_end().to_owned();
+    }
+    format!("{} {}", significant(value / 10f64.powi(exponent), digits), scaled_unit(unit, exponent))
 }
 
 /// A unit multiplied by a power of ten, with an SI prefix where one fits (`m` and −3 give `mm`).
