@@ -3,6 +3,7 @@
 use super::{DrillOptions, Impact, Running};
 use crate::measure::Estimate;
 use crate::measure::mean::Mean;
+use crate::units::notation::quantity;
 
 /// The approach of most impacts must be this many times its uncertainty,
 const CLEAR: f64 = 6.0;
@@ -31,9 +32,9 @@ pub(super) fn restitution(
     if !impacts.is_empty() && (2 * unclear > impacts.len() || approach.mean().abs() < STEADY * approach.std())
     {
         return Err(format!(
-            "No restitution: the speed before the impacts, {:.3} m/s with a scatter of {:.3} m/s, cannot be told from 0; what is measured here does not strike but is struck.",
-            approach.mean(),
-            approach.std()
+            "No restitution: the speed before the impacts, {} with a scatter of {}, cannot be told from 0; what is measured here does not strike but is struck.",
+            quantity(approach.mean(), "m/s", 2),
+            quantity(approach.std(), "m/s", 2)
         ));
     }
     let known = options.mass.zip(options.struck_mass).map(|(m, struck)| m / struck);

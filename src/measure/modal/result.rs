@@ -6,7 +6,7 @@ use super::rational::Rational;
 use super::response::hertz;
 use super::{Measured, Pole};
 use crate::measure::Estimate;
-use crate::units::notation::estimate;
+use crate::units::notation::{estimate, significant};
 use serde::Serialize;
 use std::f64::consts::TAU;
 
@@ -131,10 +131,9 @@ pub(super) fn report(
         let leakage = 4.0 / 3.0 * (span / bandwidths).powi(2);
         if measured.coherence.is_some() && leakage * pole.zeta > std[1] {
             warnings.push(format!(
-                "At {:.6} Hz the bandwidth is {:.1} lines: if segments of a lasting excitation were averaged (Hann window), leakage makes ζ too large, by the order of {:.2} %, which is not in its uncertainty. Longer segments show.",
-                pole.frequency,
+                "At {at} Hz the bandwidth is {:.1} lines: if segments of a lasting excitation were averaged (Hann window), leakage makes ζ too large, by about {} % where the fit rests on the top of the peak and less where it rests on the flanks, which is not in its uncertainty. Longer segments show.",
                 bandwidths / span,
-                100.0 * leakage
+                significant(100.0 * leakage, 1)
             ));
         }
         let Some(own) = pole.without_decay(options.decay.unwrap_or(0.0), measured.power()) else {
