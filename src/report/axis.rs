@@ -1,7 +1,7 @@
 //! Axes: what a caller asks for, and what it becomes once the data are known.
 
 use super::ticks::{self, Ticks};
-use crate::units::notation::{decimals_needed, engineering, fixed, labelled, scaled_unit};
+use crate::units::notation::{self, engineering, labelled, scaled_unit};
 
 /// How values are laid out along an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -266,12 +266,7 @@ fn level_unit(unit: &str, reference: f64) -> String {
     if unit.is_empty() || unit == "1" {
         return "dB".to_owned();
     }
-    // Unlike an axis, a reference of 0.1 is better said as 100 of the smaller unit.
-    let power =
-        if reference > 0.0 && reference.is_finite() { (reference.log10() + 1e-9).floor() as i32 } else { 0 };
-    let power = power.div_euclid(3) * 3;
-    let number = reference / 10f64.powi(power);
-    format!("dB re {} {}", fixed(number, decimals_needed(number, 3)), scaled_unit(unit, power))
+    format!("dB re {}", notation::reference(reference, unit))
 }
 
 #[cfg(test)]

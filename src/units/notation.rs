@@ -121,6 +121,20 @@ pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
     format!("{} {}", significant(value / 10f64.powi(exponent), digits), scaled_unit(unit, exponent))
 }
 
+/// The reference of a level: a number from 1 to below 1000 in a unit with a prefix, as `1 µm/s`; 0.1 is 100 of the smaller unit.
+///
+/// ```
+/// use vibroimpact::units::notation::reference;
+/// assert_eq!(reference(1e-9, "m/s"), "1 nm/s");
+/// assert_eq!(reference(0.1, "V"), "100 mV");
+/// ```
+pub fn reference(value: f64, unit: &str) -> String {
+    let power = if value > 0.0 && value.is_finite() { (value.log10() + 1e-9).floor() as i32 } else { 0 };
+    let power = power.div_euclid(3) * 3;
+    let number = value / 10f64.powi(power);
+    format!("{} {}", fixed(number, decimals_needed(number, 3)), scaled_unit(unit, power))
+}
+
 /// A unit multiplied by a power of ten, with an SI prefix where one fits (`m` and −3 give `mm`).
 ///
 /// Only coherent units take a prefix, in first place and to the first power, and metres and seconds only that

@@ -72,7 +72,7 @@ fn spectra_and_functions_from_two_channels() {
         let expected = 20.0 * (v.as_f64().unwrap() / 1e-6).log10();
         assert!((l.as_f64().unwrap() - expected).abs() < 1e-9);
     }
-    assert_eq!(results["spectra"][2]["level_unit"], "dB re 0.000001 V");
+    assert_eq!(results["spectra"][2]["level_unit"], "dB re 1 µV");
     let bench = folder.path().join("bench.csv");
     let same = ["spectrum", text(&bench), "--channel", "velocity", "--segment", "1024", "--scaling", "psd"];
     let alone = json(&[&same[..], &["--integrate", "1"]].concat());

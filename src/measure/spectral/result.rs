@@ -5,6 +5,7 @@ use crate::measure::tones::Tone;
 use crate::record::{Axis, Frf, Grid, Record, Scaling, Spectrum, Values, Window};
 use crate::signal::impact::Blow;
 use crate::signal::transfer::{Estimator, Transfer};
+use crate::units::notation;
 use serde::Serialize;
 
 /// Lines, and what they mean. Magnitudes of a frequency response function where there is a reference.
@@ -156,12 +157,12 @@ impl SpectralResult {
         };
         self.level = self.value.iter().map(level).collect();
         let unit = match self.unit.strip_prefix('(').and_then(|u| u.split_once(")²")) {
-            Some((base, rest)) if power => format!("({reference} {base})²{rest}"),
+            Some((base, rest)) if power => format!("({})²{rest}", notation::reference(reference, base)),
             _ if power => match self.unit.split_once('²') {
-                Some((base, rest)) => format!("({reference} {base})²{rest}"),
+                Some((base, rest)) => format!("({})²{rest}", notation::reference(reference, base)),
                 None => format!("{reference}² {}", self.unit),
             },
-            _ => format!("{reference} {}", self.unit),
+            _ => notation::reference(reference, &self.unit),
         };
         self.level_unit = Some(format!("dB re {unit}"));
     }
