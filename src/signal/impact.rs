@@ -68,7 +68,8 @@ pub struct BlowTransfer {
 /// Finds the blows in a force, averages those that are clean, and relates the response to the force.
 ///
 /// # Errors
-/// If the traces are of different rate or length, samples are missing, or fewer than two blows are clean.
+/// If the traces are of different rate or length or shorter than one record of a blow, samples are missing, or fewer than two
+/// blows are clean.
 pub fn from_blows(
     force: &Trace,
     response: &Trace,
@@ -95,6 +96,13 @@ pub fn from_blows(
             format!("records of {} samples, {} of them before the blow", how.length, how.before),
             "at least 8 samples, and the blow among them",
         ));
+    }
+    if how.length > n {
+        return Err(Error::refused(format!(
+            "blows of {} samples each in a record of {n} samples",
+            how.length
+        ))
+        .hint("take shorter records, or measure longer"));
     }
     let blows = find(force, response, how, rate);
     let kept: Vec<usize> =
@@ -173,7 +181,7 @@ fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<(usize, 
             i += 1;
             continue;
         }
-        let (trigger, end) = (i, (i + how.length - how.before).min(values.len()));
+        let (trigger, end) = (i, i.saturating_add(how.length - how.before).min(values.len()));
         let start = trigger.saturating_sub(how.before);
         // The zero may wander from blow to blow.
         let quiet = if trigger > start { Quiet::of(&values[start..trigger]) } else { Quiet::of(values) };

@@ -41,8 +41,15 @@ pub(super) fn summary(m: Measured<'_>) -> Drill {
     let value = super::displacement(&mean, period);
     let mut spread = Running::default();
     m.turns.speeds(rate).for_each(|s| spread.push(s));
-    let over = |values: &[f64], method: &str| {
+    let mut wander = Vec::new();
+    if m.turns.wander(m.edge) {
+        wander.push("speed");
+    }
+    let mut over = |values: &[f64], name: &'static str, method: &str| {
         let mean = Mean::of(values);
+        if mean.wanders {
+            wander.push(name);
+        }
         Estimate::new(mean.value, mean.std, "m", mean.n, method)
     };
     let still =
@@ -80,8 +87,16 @@ pub(super) fn summary(m: Measured<'_>) -> Drill {
         },
         displacement: Displacement {
             value,
-            stroke: over(m.pass.motion.stroke(), "peak to peak of the integrated velocity, mean over turns"),
-            drift: over(m.pass.motion.drift(), "integral of the velocity over a turn, mean over turns"),
+            stroke: over(
+                m.pass.motion.stroke(),
+                "stroke",
+                "peak to peak of the integrated velocity, mean over turns",
+            ),
+            drift: over(
+                m.pass.motion.drift(),
+                "drift",
+                "integral of the velocity over a turn, mean over turns",
+            ),
         },
         dropouts: count.dropouts,
         spikes: count.spikes,
@@ -98,6 +113,9 @@ pub(super) fn summary(m: Measured<'_>) -> Drill {
         excerpt_time: (m.excerpt.0 as f64 / rate, 1.0 / rate),
         warnings: Vec::new(),
     };
+    if result.groups.first().is_some_and(|g| g.wanders) {
+        wander.push("impacts");
+    }
     result.warnings = warnings(
         &result,
         options,
@@ -106,6 +124,12 @@ pub(super) fn summary(m: Measured<'_>) -> Drill {
         (m.pass.left_out, m.turns.apart),
         m.still.is_some(),
     );
+    if !wander.is_empty() {
+        result.warnings.push(format!(
+            "Slow changes along the record ({}): the uncertainties of these means may be too small; measure longer.",
+            wander.join(", ")
+        ));
+    }
     result
 }
 

@@ -97,6 +97,18 @@ fn double_hits_and_overload_are_left_out_by_name() {
 }
 
 #[test]
+fn records_longer_than_the_record_are_refused() {
+    let [force, response] = bench(&[(500, 100.0), (2000, 80.0)], 4000);
+    for (length, before) in
+        [(usize::MAX, 100), (usize::MAX, usize::MAX - 1), (usize::MAX - 100, 0), (4001, 0)]
+    {
+        let how = Blows { length, before, force_window: None, left_at_end: None };
+        let why = from_blows(&force, &response, &how, Estimator::H1).unwrap_err();
+        assert!(why.exit_code() == 1 && why.to_string().contains("of 4000 samples"), "{why}");
+    }
+}
+
+#[test]
 fn impossible_windows_are_refused() {
     let [force, response] = bench(&[(500, 100.0), (5000, 80.0)], 20_000);
     let how = Blows { length: 1024, before: 100, force_window: None, left_at_end: None };
