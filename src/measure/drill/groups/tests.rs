@@ -104,8 +104,9 @@ fn chance_makes_no_groups() {
         let normal = parts(n, |_| 0.08 * noise.next());
         println!("{n} impacts about one phase, scatter 0.08 turn: {normal:?}");
         // A lone impact 0.1 turn from the rest, 1.25 standard deviations, is rare but no chance of even phases: n(n − 1)/2 pairs do
-        // not tell how likely. Where chance leaves less than that gap no more than a few in a hundred may be parted.
-        assert!(normal.0 < 0.07 && normal.1 < 0.02, "{n}: {normal:?}");
+        // not tell how likely. Where chance leaves less than that gap no more than a few in a hundred may be parted. Ten
+        // impacts are enough to show that they prefer a phase.
+        assert!(normal.0 < 0.07 && (n < 10 || normal.1 < 0.02), "{n}: {normal:?}");
     }
 }
 
@@ -144,9 +145,10 @@ fn means_without_the_fastest_are_covered_up_to_the_limit() {
 
 #[test]
 fn a_ratio_of_sums_and_its_propagated_uncertainty() {
-    // R = 0.2 in every impact whatever the speed: nothing scatters. Then a speed of approach that is not known.
-    let of: Vec<_> =
-        (0..12).map(|k| (0.5, 10.0 + 0.2 * f64::from(k), -0.2 * (10.0 + 0.2 * f64::from(k)))).collect();
+    // R = 0.2 in every impact whatever the speed, which varies in no order: nothing scatters. Then a speed of approach that is not known.
+    let of: Vec<_> = (0..12)
+        .map(|k| (0.5, 10.0 + 0.2 * f64::from(7 * k % 12), -0.2 * (10.0 + 0.2 * f64::from(7 * k % 12))))
+        .collect();
     let found = groups(&mut impacts(&of), 12, &options(None));
     let r = found[0].restitution.as_ref().unwrap();
     assert!((r.value - 0.2).abs() < 1e-12 && r.std.unwrap() < 1e-12, "{r:?}");
