@@ -233,7 +233,7 @@ impl Excerpt {
         let (from, to) = (self.from.saturating_sub(self.at), self.to.saturating_sub(self.at));
         self.velocity.extend(&velocity[from.min(velocity.len())..to.min(velocity.len())]);
         // Sample i of the reference belongs to sample i + delay of the velocity.
-        let first = self.from.saturating_sub_signed(self.delay).max(self.at);
+        let first = self.from.saturating_add_signed(self.delay.saturating_neg()).max(self.at);
         for (i, v) in (self.at..).zip(reference).skip(first - self.at) {
             let place = i.checked_add_signed(self.delay).and_then(|k| k.checked_sub(self.from));
             match place.map(|k| self.reference.get_mut(k)) {

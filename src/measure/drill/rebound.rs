@@ -173,7 +173,9 @@ mod tests {
         assert!((found.as_ref().unwrap().value - 0.3).abs() < 1e-12, "{found:?} {why:?}");
         assert!(matches!(why, None | Some(Doubt::Loose)), "{why:?}");
         // About 0 the sum says nothing, however well each speed is known.
-        all.iter_mut().for_each(|i| i.before -= 5.0);
+        for impact in &mut all {
+            impact.before -= 5.0;
+        }
         let (found, why) = restitution(&all, true, &options(None));
         assert!(found.is_none() && matches!(why, Some(Doubt::Mean(..))), "{why:?}");
         assert!(!why.unwrap().sentence("").contains("is struck"));
