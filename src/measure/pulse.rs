@@ -72,6 +72,16 @@ impl Instrument {
         }
     }
 
+    /// Whether what it does can be told at this sampling rate: not where it is not known, nor where the rise of its low-pass falls between
+    /// two samples.
+    fn told(&self, rate: f64) -> bool {
+        match self {
+            Instrument::Unknown => false,
+            Instrument::Flat => true,
+            Instrument::LowPass(filter) => filter.corner() < 0.5 * rate,
+        }
+    }
+
     /// The low-pass, if there is one.
     pub fn low_pass(&self) -> Option<&LowPass> {
         if let Instrument::LowPass(filter) = self { Some(filter) } else { None }
@@ -83,8 +93,8 @@ impl Instrument {
 /// Residuals are taken for noise of one variance. Where they are correlated, which is tested, uncertainties are enlarged by the
 /// correlation and that is said; where the pulse begins otherwise than the model can, as behind an unstated low-pass, ξ and all
 /// that follows are null. Where it is not known whether the instrument has a low-pass no uncertainty is stated: such a pulse may
-/// pass for one without a low-pass and another ξ. A low-pass is applied whatever its corner: its response is a closed form at the times
-/// of the samples, to which half the sampling rate means nothing.
+/// pass for one without a low-pass and another ξ. A low-pass is applied whatever its corner, but from half the sampling rate on no uncertainty
+/// is stated: its rise falls between two samples, and more than one onset fits.
 ///
 /// # Errors
 /// If the record is not evenly sampled in time, holds no whole pulse, or too few samples of it, or does not determine the
@@ -106,6 +116,12 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
         .hint("sample faster"));
     }
     let mut warnings = Vec::new();
+    if let Some(filter) = options.instrument.low_pass().filter(|f| f.corner() >= 0.5 * rate) {
+        warnings.push(format!(
+            "The low-pass at {} Hz is not below half the sampling rate of {rate} Hz: its rise falls between two samples, more than one onset fits, and there is no uncertainty. Where it does not matter, --low-pass none states that.",
+            filter.corner()
+        ));
+    }
     let unlike = |error: Error| {
         match options.instrument.low_pass() {
         Some(filter) => Error::refused(format!(
@@ -135,7 +151,8 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let unit = [1.0, 1.0 / view.length];
     let shape = [main.fit.parameters[3], main.fit.parameters[4] * unit[1]];
     let trust = samples.trust(&main, &whiteness);
-    let widened = if options.instrument == Instrument::Unknown { f64::NAN } else { trust.factor() };
+    let told = options.instrument.told(rate);
+    let widened = if told { trust.factor() } else { f64::NAN };
     let covariance =
         |i: usize, j: usize| widened.powi(2) * unit[i] * unit[j] * main.fit.covariance(3 + i, 3 + j);
     let contact = |p: &[f64]| KelvinVoigt::new(p[0], p[1]);
@@ -164,7 +181,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     if trust == Trust::Refused {
         result = result.refused();
     }
-    result.fits = fits.iter().map(|(f, w)| view.report(&samples, f, w, options)).collect();
+    result.fits = fits.iter().map(|(f, w)| view.report(&samples, f, w, options.mass, told)).collect();
     warnings.extend(doubts(&fits[0].0, trust, &fits[0].1, &result.fits, &result, options));
     result.warnings = warnings;
     result.picture = Some(view.picture(&samples, &used, fits.iter().map(|f| &f.0)));

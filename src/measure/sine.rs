@@ -119,6 +119,7 @@ fn fit(trace: &Trace, start: f64) -> Result<Sine> {
     let half = 0.5 * n as f64 / rate;
     let time = |i: usize| (i as f64 + 0.5 - 0.5 * n as f64) / rate / half;
     let (mut omega, mut p) = (TAU * start * half, Vector4::<f64>::zeros());
+    let all: f64 = trace.values.iter().map(|v| v * v).sum();
     for step in 0..STEPS {
         let (mut normal, mut right) = (Matrix4::<f64>::zeros(), Vector4::zeros());
         for (i, v) in trace.values.iter().enumerate() {
@@ -137,8 +138,10 @@ fn fit(trace: &Trace, start: f64) -> Result<Sine> {
         p = inverse * right;
         let change = if step == 0 { 0.0 } else { p[3] };
         omega += change;
-        // Far below what any noise leaves; rounding of ω itself lies at 1e-16.
-        if step > 0 && change.abs() <= 1e-13 * omega {
+        // Far below what the noise lets be known; large residuals, as coloured noise leaves, slow the steps down.
+        let left = (all - p.dot(&right)).max(0.0) / (n as f64 - 4.0).max(1.0);
+        let std = (left * inverse[(3, 3)]).sqrt();
+        if step > 0 && change.abs() <= (1e-4 * std).max(1e-13 * omega) {
             return Ok(stated(trace, omega / half, &p, &inverse, half));
         }
     }

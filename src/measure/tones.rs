@@ -21,6 +21,10 @@ pub const MOST: usize = 10;
 const NEAREST: f64 = 0.5;
 /// Gauss–Newton steps.
 const STEPS: usize = 40;
+
+/// Part of the standard uncertainty of a frequency below which a step ends the fit: large residuals, as coloured noise leaves, slow
+/// the steps down.
+const SETTLED: f64 = 1e-4;
 const METHOD: &str = "least-squares fit of all sines together";
 
 /// One sine A cos(2πft + φ).
@@ -155,6 +159,7 @@ fn fit(trace: &Trace, start: &[f64]) -> Result<Fit> {
     let mut omega: Vec<f64> = start.iter().map(|f| TAU * f * half).collect();
     let mut linear = vec![0.0; 2 * count + 1];
     let mut row = vec![0.0; size];
+    let all: f64 = trace.values.iter().map(|v| v * v).sum();
     for step in 0..STEPS {
         let (mut normal, mut right) = (DMatrix::<f64>::zeros(size, size), DVector::<f64>::zeros(size));
         for (i, v) in trace.values.iter().enumerate() {
@@ -180,7 +185,9 @@ fn fit(trace: &Trace, start: &[f64]) -> Result<Fit> {
         }
         let unclear = || Error::refused("the samples do not determine these sines");
         let inverse = normal.cholesky().ok_or_else(unclear)?.inverse();
-        let p = &inverse * right;
+        let p = &inverse * &right;
+        // Variance of what is left, to first order: the steps end far below what it lets be known.
+        let left = (all - p.dot(&right)).max(0.0) / (n - size) as f64;
         let mut settled = step > 0;
         for (k, w) in omega.iter_mut().enumerate() {
             let (a, b) = (p[3 * k], p[3 * k + 1]);
@@ -188,7 +195,8 @@ fn fit(trace: &Trace, start: &[f64]) -> Result<Fit> {
             let change = if step == 0 { 0.0 } else { p[3 * k + 2] / a.hypot(b) };
             // A sine may not leave its line in one step.
             *w += change.clamp(-0.5, 0.5);
-            settled = settled && change.abs() <= 1e-12 * *w;
+            let std = (left * inverse[(3 * k + 2, 3 * k + 2)]).sqrt() / a.hypot(b);
+            settled = settled && change.abs() <= (SETTLED * std).max(1e-12 * *w);
         }
         linear[2 * count] = p[size - 1];
         if omega.iter().any(|w| !w.is_finite()) {

@@ -211,30 +211,22 @@ fn a_sampled_pulse_behind_a_low_pass() {
     velocity.judge("pulse behind a low-pass, initial velocity", 1.3);
 }
 
-/// Corners from just above half the sampling rate up: their rise lies between two samples, and is there all the same.
+/// Corners from just above half the sampling rate up: the rise lies between two samples, and several onsets fit.
 #[test]
-fn a_sampled_pulse_behind_a_low_pass_above_half_the_sampling_rate() {
-    const HIGH: u64 = 200;
-    let (mut xi, mut frequency) = <(Score, Score)>::default();
-    println!("seeds 5000 to {}", 5000 + HIGH);
-    for seed in 5000..5000 + HIGH {
+fn a_low_pass_above_half_the_sampling_rate_leaves_no_uncertainty() {
+    println!("seeds 5000 to 5020");
+    for seed in 5000..5020 {
         let mut noise = Noise::new(seed);
         let case = Case::new(&mut noise);
         let (corner, order) = (noise.between(0.51, 2.0) / case.dt, 1 + (seed % 4) as usize);
-        let p = case.parameters();
-        let bound = bounds(&p, &case.steps().map(|s| 1e2 * s), &vec![case.sigma; case.n], |p| {
-            case.filtered(p, corner, order)
-        });
-        let values =
-            case.filtered(&p, corner, order).iter().map(|v| v + case.sigma * noise.normal()).collect();
+        let filtered = case.filtered(&case.parameters(), corner, order);
+        let values = filtered.iter().map(|v| v + case.sigma * noise.normal()).collect();
         let instrument = Instrument::LowPass(LowPass::new(corner, order).unwrap());
-        let options = PulseOptions { instrument, mass: None };
-        let found = pulse(&trace(values, case.dt), &options).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
-        xi.add(&found.xi, case.xi, bound[3]);
-        frequency.add(&found.frequency, case.frequency, bound[4]);
+        let found = pulse(&trace(values, case.dt), &PulseOptions { instrument, mass: None })
+            .unwrap_or_else(|e| panic!("seed {seed}: {e}"));
+        assert!(found.xi.std.is_none() && found.frequency.std.is_none(), "seed {seed}: {found:?}");
+        assert!(found.warnings.iter().any(|w| w.contains("half the sampling rate")), "seed {seed}");
     }
-    xi.judge("pulse behind a fast low-pass, ξ", 1.3);
-    frequency.judge("pulse behind a fast low-pass, frequency", 1.3);
 }
 
 #[test]
