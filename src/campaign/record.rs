@@ -63,12 +63,16 @@ pub enum Detrend {
 trait Filed {
     type Record;
     fn record(&self, of: impl FnOnce(Spanned<PathBuf>) -> RecordEntry) -> Self::Record;
+    fn named(&self) -> bool;
 }
 
 impl Filed for Spanned<PathBuf> {
     type Record = RecordEntry;
     fn record(&self, of: impl FnOnce(Spanned<PathBuf>) -> RecordEntry) -> RecordEntry {
         of(self.clone())
+    }
+    fn named(&self) -> bool {
+        true
     }
 }
 
@@ -77,6 +81,15 @@ impl Filed for Option<Spanned<PathBuf>> {
     fn record(&self, of: impl FnOnce(Spanned<PathBuf>) -> RecordEntry) -> Option<RecordEntry> {
         self.clone().map(of)
     }
+    fn named(&self) -> bool {
+        self.is_some()
+    }
+}
+
+/// What all entries can be asked.
+pub(super) trait Common {
+    /// A key that says how a file is read, where there is no file.
+    fn without_file(&self) -> Option<&'static str>;
 }
 
 /// An entry of a campaign: the common keys and its own.
@@ -101,6 +114,23 @@ macro_rules! record_entry {
             #[serde(default)]
             complex: bool,
             $($(#[$own])* #[serde(default)] pub $field: $kind,)*
+        }
+
+        impl Common for $entry {
+            fn without_file(&self) -> Option<&'static str> {
+                let given = [
+                    ("channel", self.channel.is_some()),
+                    ("unit", self.unit.is_some()),
+                    ("calibration", self.calibration.is_some()),
+                    ("rate", self.rate.is_some()),
+                    ("base_band", self.base_band.is_some()),
+                    ("format", self.format.is_some()),
+                    ("allow_missing", self.allow_missing),
+                    ("decimal", self.decimal.is_some()),
+                    ("complex", self.complex),
+                ];
+                given.into_iter().find(|(_, given)| *given && !self.file.named()).map(|(key, _)| key)
+            }
         }
 
         impl $entry {
@@ -217,6 +247,8 @@ record_entry! {
         keep_hum: bool,
         /// Record of one pulse of the shape that all have.
         shape: Option<PathBuf>,
+        /// Its sampling rate in Hz, where its file does not say.
+        shape_rate: Option<f64>,
         /// What is known to scatter: onsets, intervals, or (default) unknown.
         scatter: Scatter,
     }
@@ -263,7 +295,7 @@ record_entry! {
     PulseEntry(Option<Spanned<PathBuf>>) -> Option<RecordEntry> {
         /// Mass in kg that is decelerated.
         mass: Option<f64>,
-        /// Corner of the instrument's Butterworth low-pass in Hz. Default: none, with a warning.
+        /// Corner of the instrument's Butterworth low-pass in Hz, or `none`. Default: not known, and no uncertainty.
         low_pass: Option<LowPass>,
         /// Its order.
         order: Option<usize>,

@@ -254,6 +254,20 @@ mod tests {
         let without = found(&measured, &ModalOptions::default());
         // ζ + σ/ωᵣ, to the square of that.
         assert!((without.modes[0].zeta.value / (zeta + decay / own) - 1.0).abs() < 1e-3);
+        // As an accelerance, whose constant the correction changes by 2e-4, and its uncertainty by as much.
+        let s = |f: &f64| Complex64::new(decay, std::f64::consts::TAU * f);
+        let values = measured.values.iter().zip(&measured.frequency).map(|(v, f)| v * s(f) * s(f));
+        let measured = Measured { values: values.collect(), kind: FrfKind::Accelerance, ..measured.clone() };
+        let of = |decay| {
+            let result = found(&measured, &ModalOptions { decay, ..ModalOptions::default() });
+            let constant = &result.modes[0].modal_constant;
+            (constant.value, constant.std.unwrap() / constant.value)
+        };
+        let (with, without) = (of(Some(3.0)), of(None));
+        assert!(
+            (with.0 / 2.0 - 1.0).abs() < 1e-4 && (with.1 / without.1 - 1.0).abs() < 1e-9,
+            "{with:?} {without:?}"
+        );
     }
 
     #[test]

@@ -33,8 +33,11 @@ impl Pole {
     /// The mode without a decay σ in 1/s that an exponential window added to a response of (iω)^`power` times the receptance.
     ///
     /// The window moves the pole s = −ζωᵣ ± iωᵣ√(1 − ζ²) by −σ and leaves its residue, which is `s^power` A/(2iωᵣ√(1 − ζ²)).
-    /// `None` where it decays by less than σ.
+    /// `None` where it decays by less than σ, or does not oscillate (ζ of 1 and more).
     pub fn without_decay(&self, decay: f64, power: i32) -> Option<Pole> {
+        if self.zeta.is_nan() || self.zeta.abs() >= 1.0 {
+            return None;
+        }
         let own = TAU * self.frequency;
         let with = Complex64::new(-self.zeta * own, own * (1.0 - self.zeta * self.zeta).sqrt());
         let pole = with + decay;
@@ -356,5 +359,22 @@ impl Scaled<'_> {
             whiteness,
             noise,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_decay_is_taken_off_what_oscillates_and_decays_by_more() {
+        let pole = |zeta| Pole { frequency: 100.0 / TAU, zeta, constant: Complex64::new(1.0, 0.0) };
+        // s = −10 ± 100i√0.99 without 4 is −6 ± 100i√0.99.
+        let own = pole(0.1).without_decay(4.0, 0).unwrap();
+        let expected = 36f64 + 9900.0;
+        assert!((TAU * own.frequency / expected.sqrt() - 1.0).abs() < 1e-12);
+        assert!((own.zeta / (6.0 / expected.sqrt()) - 1.0).abs() < 1e-12);
+        assert!(pole(0.1).without_decay(11.0, 0).is_none());
+        assert!([1.0, 1.5, f64::NAN].iter().all(|zeta| pole(*zeta).without_decay(0.0, 2).is_none()));
     }
 }

@@ -137,13 +137,21 @@ pub(super) fn report(
             ));
         }
         let Some(own) = pole.without_decay(options.decay.unwrap_or(0.0), measured.power()) else {
-            warnings.push(format!(
-                "The peak at {at} Hz decays by less than the exponential window added: it is no mode, or the window another than stated."
-            ));
+            warnings.push(if pole.zeta >= 1.0 {
+                format!(
+                    "The peak at {at} Hz is no mode that oscillates: the fit gives ζ = {}.",
+                    estimate(pole.zeta, Some(std[1]))
+                )
+            } else {
+                format!(
+                    "The peak at {at} Hz decays by less than the exponential window added: it is no mode, or the window another than stated."
+                )
+            });
             continue;
         };
-        // ζωᵣ is known as before.
-        let std = &[std[0], std[1] * pole.frequency / own.frequency, std[2]];
+        // ζωᵣ is known as before, and the constant has the factor that its uncertainty has.
+        let factor = own.constant.norm() / pole.constant.norm();
+        let std = &[std[0], std[1] * pole.frequency / own.frequency, std[2] * factor];
         modes.push(mode(measured, group, peak.at, fit, (&own, std), options));
     }
     reversed

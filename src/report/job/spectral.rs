@@ -1,6 +1,6 @@
 //! Spectra of a campaign.
 
-use super::{JobOptions, file_name, merge, or_left_out, slugs};
+use super::{JobOptions, PARTS, Progress, file_name, merge, or_left_out, slugs};
 use crate::campaign::{Campaign, RecordEntry};
 use crate::error::Result;
 use crate::measure::spectral::{SpectralOptions, SpectralResult, spectral};
@@ -39,15 +39,24 @@ pub(super) fn lines(
     reference: Option<&str>,
     how: &SpectralOptions,
     options: JobOptions,
+    progress: &dyn Progress,
 ) -> Result<(String, Result<SpectralResult>)> {
     let mut traces = channels(campaign, entry, reference, options)?;
     let file = file_name(traces.path());
-    Ok((file, spectral(&mut traces, how, |_| ())))
+    progress.start(&format!("spectrum {}", entry.name.as_ref().unwrap_or(&file)), PARTS);
+    let (all, mut told) = (traces.frames(), 0);
+    let found = spectral(&mut traces, how, |done| {
+        let parts = (PARTS * done).checked_div(all).unwrap_or(0).min(PARTS);
+        (told..parts).for_each(|_| progress.step());
+        told = told.max(parts);
+    });
+    Ok((file, found))
 }
 
 pub(super) fn spectra(
     campaign: &Campaign,
     options: JobOptions,
+    progress: &dyn Progress,
     figures: &mut Vec<(String, Figure)>,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<SpectrumResult>> {
@@ -55,7 +64,7 @@ pub(super) fn spectra(
     for own in &campaign.spectrum {
         let entry = own.record();
         let how = own.options().map_err(|why| campaign.at(entry.file.span(), why))?;
-        let (file, found) = lines(campaign, &entry, own.reference.as_deref(), &how, options)?;
+        let (file, found) = lines(campaign, &entry, own.reference.as_deref(), &how, options, progress)?;
         let name = entry.name.clone().unwrap_or_else(|| file.clone());
         let Some(result) = or_left_out(found, &name, warnings)? else { continue };
         merge(warnings, &name, &result.warnings);
