@@ -251,10 +251,13 @@ fn a_shape_that_is_none_leaves_its_impacts_out_and_one_may_have_a_rate_of_its_ow
     let pulse = |x: f64| (-0.5 * (x / 3.0).powi(2)).exp();
     let row = |i: i32| (0..10).map(|k| pulse(f64::from(i - 100 * k) - 50.3)).sum::<f64>();
     let ripple = |i: i32| 1e-4 * (f64::from(i * i) * 0.7).sin();
-    let trace: String =
-        (0..1000).map(|i| format!("{:.3},{:.6}\n", f64::from(i) * 1e-3, row(i) + ripple(i))).collect();
+    let trace: String = (0..1000)
+        .map(|i| format!("{:.3},{:.6}\n", f64::from(i) * 1e-3, row(i) + ripple(i)))
+        .collect::<Vec<_>>()
+        .concat();
     fs::write(folder.path().join("trace.csv"), format!("time [s],contact [V]\n{trace}")).unwrap();
-    let shape: String = (0..200).map(|i| format!("{:.6}\n", pulse(f64::from(i) / 5.0 - 20.0))).collect();
+    let shape: String =
+        (0..200).map(|i| format!("{:.6}\n", pulse(f64::from(i) / 5.0 - 20.0))).collect::<Vec<_>>().concat();
     fs::write(folder.path().join("shape.csv"), format!("pulse [V]\n{shape}")).unwrap();
     fs::write(folder.path().join("flat.csv"), "time [s],a [V]\n0,1\n0.1,1\n0.2,1\n0.3,1\n0.4,1\n0.5,1\n")
         .unwrap();

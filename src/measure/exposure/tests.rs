@@ -149,7 +149,7 @@ fn gaps_of_two_axes_leave_the_seconds_of_both_in_step() {
     let axis = |lost: usize| {
         let mut handle = Handle::new(rate).unwrap();
         let mut values: Vec<f64> = (0..120_000)
-            .map(|i| (30.0 + (i / 6000) as f64) * (TAU * 100.0 * f64::from(i) / rate).sin())
+            .map(|i| (30.0 + f64::from(i / 6000)) * (TAU * 100.0 * f64::from(i) / rate).sin())
             .collect();
         values[lost..lost + 600].fill(f64::NAN);
         handle.push(&values);
