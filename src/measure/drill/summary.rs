@@ -15,6 +15,9 @@ const PULSED: f64 = 0.8;
 /// A motion is near two levels for less than this part of the time: a sine near the medians of its halves for a quarter.
 const MOVING: f64 = 0.5;
 
+/// A displacement that drifts by more than this part of the stroke in a turn is no steady motion.
+const DRIFTING: f64 = 0.1;
+
 /// Everything that the passes leave behind.
 pub(super) struct Measured<'a> {
     pub options: &'a DrillOptions,
@@ -98,6 +101,11 @@ pub(super) fn summary(m: Measured<'_>) -> Drill {
         excerpt_time: (m.excerpt.0 as f64 / rate, 1.0 / rate),
         warnings: Vec::new(),
     };
+    if count.clipped > 0 {
+        // Where speeds are too small, so is what they add up to.
+        result.displacement.stroke.std = None;
+        result.displacement.drift.std = None;
+    }
     result.warnings = warnings(
         &result,
         options,
@@ -182,6 +190,15 @@ fn warnings(
         (_, true) => "left out of the means, which lean to the slower ones and have no uncertainty",
         _ => "left out of the means",
     };
+    let [stroke, drift] = [&result.displacement.stroke, &result.displacement.drift].map(|e| e.value);
+    say(
+        drift.abs() > DRIFTING * stroke,
+        format!(
+            "The displacement drifts by {} a turn beside a stroke of {}: the velocity has an offset, or the machine moves. A straight line a turn is taken out of stroke and displacement.",
+            quantity(drift, "m", 2),
+            quantity(stroke, "m", 2)
+        ),
+    );
     say(clipped > 0, format!("{} of {found} over-range: {taken}.", several(clipped, "impact")));
     say(result.impacts.is_empty(), "No impact was found: no jump of the velocity stands out.".to_owned());
     let per_degree = 100.0 * result.beam.per_degree;
