@@ -8,8 +8,7 @@ use std::f64::consts::TAU;
 const PARTS: usize = 4;
 /// Fewest samples of a part.
 const FEWEST: usize = 16;
-/// So many times the scatter of a mean power is no noise: of hundreds of lines one in a thousand records has one further off, and the
-/// noise is itself an estimate.
+/// So many times the scatter of a mean power is no noise: in white noise less than one record in a hundred is then said to ring on.
 const BEYOND: f64 = 6.0;
 /// Lines with less than this part of the highest power are not those of the response.
 const STRONG: f64 = 0.01;
