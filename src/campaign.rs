@@ -27,6 +27,7 @@
 //! ```
 //! An unknown key is an error that points at its line.
 
+mod channel;
 mod contact;
 mod drill;
 mod drop;

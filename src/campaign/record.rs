@@ -102,6 +102,7 @@ macro_rules! record_entry {
             /// Name in the report. Default: that of the file.
             pub name: Option<String>,
             file: $file,
+            #[serde(default, deserialize_with = "super::channel::one")]
             channel: Option<String>,
             unit: Option<String>,
             calibration: Option<f64>,
@@ -166,6 +167,7 @@ record_entry! {
         /// Lines of a lower coherence are left out. Default 0.5.
         least_coherence: Option<f64>,
         /// Channel of the excitation: the function is computed from it to the channel.
+        #[serde(deserialize_with = "super::channel::one")]
         reference: Option<String>,
         /// Which noise the function does not mind. Default `h1`.
         estimator: Option<Estimator>,
@@ -216,6 +218,7 @@ record_entry! {
         /// Sines fitted to the whole record.
         tones: Option<usize>,
         /// Channel of the excitation.
+        #[serde(deserialize_with = "super::channel::one")]
         reference: Option<String>,
         /// Which noise the function does not mind. Default `h1`.
         estimator: Option<Estimator>,
@@ -238,6 +241,7 @@ record_entry! {
         /// Its standard uncertainty in Hz. Default: that of its digits.
         excitation_std: Option<f64>,
         /// Channel of the same file that rises once a cycle of the excitation.
+        #[serde(deserialize_with = "super::channel::one")]
         reference: Option<String>,
         /// Lowest impact, as part of the median one. Default 1/8.
         threshold: Option<f64>,
@@ -312,8 +316,10 @@ record_entry! {
     /// A hammer-drill trace.
     DrillEntry(Spanned<PathBuf>) -> RecordEntry {
         /// Velocity channel.
+        #[serde(deserialize_with = "super::channel::one")]
         velocity: Option<String>,
         /// Channel with the pulses of the crank.
+        #[serde(deserialize_with = "super::channel::one")]
         reference: Option<String>,
         /// Velocity along the beam in m/s for one unit of the channel.
         sensitivity: Option<f64>,
@@ -352,6 +358,7 @@ record_entry! {
         /// Record without motion.
         noise: Option<PathBuf>,
         /// Acceleration channels of a handle.
+        #[serde(deserialize_with = "super::channel::several")]
         handle: Vec<String>,
         /// Acceleration in m/s² for one unit of these.
         handle_sensitivity: Option<f64>,

@@ -22,8 +22,8 @@ use std::f64::consts::TAU;
 
 /// Samples of a segment where none is stated.
 pub const SEGMENT: usize = 8192;
-/// This part of a hammer record stands before the blow.
-const BEFORE: usize = 50;
+/// One part in so many of a hammer record stands before the blow.
+pub(in crate::measure) const BEFORE: usize = 50;
 
 /// The spectrum of the only channel, or with an estimator the frequency response function from the first channel to the second.
 /// `progress` is told how many samples were gone over.

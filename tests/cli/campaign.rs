@@ -43,6 +43,76 @@ fn bench(folder: &Path) {
     fs::write(folder.join("tones.csv"), table).unwrap();
 }
 
+/// JSON of which no object has a key twice.
+struct Unique;
+
+impl<'de> serde::Deserialize<'de> for Unique {
+    fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Unique, D::Error> {
+        struct Each;
+        impl<'de> serde::de::Visitor<'de> for Each {
+            type Value = Unique;
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("JSON")
+            }
+            fn visit_bool<E>(self, _: bool) -> Result<Unique, E> {
+                Ok(Unique)
+            }
+            fn visit_i64<E>(self, _: i64) -> Result<Unique, E> {
+                Ok(Unique)
+            }
+            fn visit_u64<E>(self, _: u64) -> Result<Unique, E> {
+                Ok(Unique)
+            }
+            fn visit_f64<E>(self, _: f64) -> Result<Unique, E> {
+                Ok(Unique)
+            }
+            fn visit_str<E>(self, _: &str) -> Result<Unique, E> {
+                Ok(Unique)
+            }
+            fn visit_unit<E>(self) -> Result<Unique, E> {
+                Ok(Unique)
+            }
+            fn visit_seq<A: serde::de::SeqAccess<'de>>(self, mut all: A) -> Result<Unique, A::Error> {
+                while all.next_element::<Unique>()?.is_some() {}
+                Ok(Unique)
+            }
+            fn visit_map<A: serde::de::MapAccess<'de>>(self, mut all: A) -> Result<Unique, A::Error> {
+                let mut keys = BTreeSet::new();
+                while let Some(key) = all.next_key::<String>()? {
+                    all.next_value::<Unique>()?;
+                    if !keys.insert(key.clone()) {
+                        return Err(serde::de::Error::custom(format!("{key} stands twice")));
+                    }
+                }
+                Ok(Unique)
+            }
+        }
+        from.deserialize_any(Each)
+    }
+}
+
+#[test]
+fn no_key_stands_twice_and_channels_may_be_numbers() {
+    let folder = tempfile::tempdir().unwrap();
+    bench(folder.path());
+    let path = folder.path().join("campaign.toml");
+    fs::write(
+        &path,
+        "[[spectrum]]\nname = \"speed\"\nfile = \"bench.csv\"\nchannel = 2\nsegment = 1024\n\
+         [[frf]]\nname = \"modes\"\nfile = \"bench.csv\"\nreference = 1\nsegment = 4096\nband = [40.0, 80.0]\n",
+    )
+    .unwrap();
+    let output = vibro(&["run", text(&path), "--json"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice::<Unique>(&output.stdout).unwrap();
+    let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let spectrum = &answer["results"]["spectra"][0];
+    assert_eq!((&spectrum["name"], &spectrum["channel"]), (&"speed".into(), &"velocity".into()));
+    let wrong = "[[spectrum]]\nfile = \"bench.csv\"\nchannel = 1.5\n";
+    fs::write(&path, wrong).unwrap();
+    assert!(complaint(&["run", text(&path)], 2).contains("number from 1"));
+}
+
 #[test]
 fn spectra_and_functions_from_two_channels() {
     let folder = tempfile::tempdir().unwrap();

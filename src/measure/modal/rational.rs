@@ -51,8 +51,9 @@ impl Pole {
 pub(super) struct Rational {
     /// By frequency.
     pub modes: Vec<Pole>,
-    /// Standard uncertainties of frequency, damping ratio and magnitude of the modal constant.
-    pub std: Vec<[f64; 3]>,
+    /// Standard uncertainties of frequency, damping ratio, magnitude and phase in rad of the modal constant; the last is NaN without
+    /// phases.
+    pub std: Vec<[f64; 4]>,
     /// The fitted response at its lines.
     pub fitted: Vec<Complex64>,
     pub whiteness: Whiteness,
@@ -274,7 +275,7 @@ const KNOWN: f64 = 0.5;
 impl Rational {
     /// Which modes stand: damped, known, and where their peaks, in the same order, are.
     pub fn sound(&self, measured: &Measured, peaks: &[Peak]) -> Vec<bool> {
-        let stands = |((mode, std), peak): ((&Pole, &[f64; 3]), &Peak)| {
+        let stands = |((mode, std), peak): ((&Pole, &[f64; 4]), &Peak)| {
             let f = &measured.frequency;
             let lines = f[peak.at + 1] - f[peak.at - 1];
             mode.zeta > 0.0
@@ -313,7 +314,7 @@ impl Scaled<'_> {
         let place = |i: usize| free.iter().position(|f| *f == i).unwrap_or(0);
         let p = &fit.parameters;
         let to_constant = self.height * (TAU * self.unit).powi(2 - self.power);
-        let (mut modes, mut std): (Vec<Pole>, Vec<[f64; 3]>) = (Vec::new(), Vec::new());
+        let (mut modes, mut std): (Vec<Pole>, Vec<[f64; 4]>) = (Vec::new(), Vec::new());
         for (m, (f, zeta)) in self.starts.iter().enumerate() {
             let (own, damping) = self.shape(p, m);
             let a = Complex64::new(p[4 * m + 2], if self.magnitude_only { 0.0 } else { p[4 * m + 3] });
@@ -321,12 +322,16 @@ impl Scaled<'_> {
             // |a| moves with its real part by cos and with its imaginary part by sin of its phase.
             let (cos, sin) = (a.re / a.norm(), a.im / a.norm());
             let (re, im) = (place(4 * m + 2), place(4 * m + 3));
-            let variance = if self.magnitude_only {
-                fit.covariance(re, re)
+            // The phase, times |a|, moves with its real part by −sin and with its imaginary part by cos.
+            let along = |re_part: f64, im_part: f64| {
+                re_part * re_part * fit.covariance(re, re)
+                    + im_part * im_part * fit.covariance(im, im)
+                    + 2.0 * re_part * im_part * fit.covariance(re, im)
+            };
+            let (variance, across) = if self.magnitude_only {
+                (fit.covariance(re, re), f64::NAN)
             } else {
-                cos * cos * fit.covariance(re, re)
-                    + sin * sin * fit.covariance(im, im)
-                    + 2.0 * sin * cos * fit.covariance(re, im)
+                (along(cos, sin), along(-sin, cos))
             };
             // Fits of fewer than three degrees of freedom were refused.
             let widened = whiteness.inflation * student(fit.degrees_of_freedom()).unwrap_or(f64::NAN);
@@ -335,6 +340,7 @@ impl Scaled<'_> {
                     f * zeta * fit.std(place(4 * m)),
                     zeta * fit.std(place(4 * m + 1)),
                     to_constant * variance.sqrt(),
+                    across.sqrt() / a.norm(),
                 ]
                 .map(|s| s * widened),
             );

@@ -54,6 +54,7 @@ pub(super) fn frfs(
                 mass: own.mass,
                 least_coherence: own.least_coherence.unwrap_or(ModalOptions::default().least_coherence),
                 decay: meta.added_decay(),
+                from_blows: meta.from_blows(),
             };
             // A function without a mode is no reason to give up the rest of a campaign.
             let mut found = match modal(&measured, &wanted) {

@@ -11,11 +11,11 @@ use serde::Serialize;
 /// A spectrum of a campaign, or a frequency response function that was taken from two channels.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SpectrumResult {
-    /// Name in the campaign, else the file's.
-    pub name: String,
+    /// Channel, or both of a frequency response function.
+    pub channel: String,
     /// File.
     pub file: String,
-    /// Its lines.
+    /// Its lines; their name is that in the campaign, else the file's.
     #[serde(flatten)]
     pub result: SpectralResult,
 }
@@ -68,10 +68,11 @@ pub(super) fn spectra(
         let name = entry.name.clone().unwrap_or_else(|| file.clone());
         let Some(result) = or_left_out(found, &name, warnings)? else { continue };
         merge(warnings, &name, &result.warnings);
-        results.push(SpectrumResult { name, file, result });
+        let channel = result.name.clone();
+        results.push(SpectrumResult { channel, file, result: SpectralResult { name, ..result } });
     }
-    for (slug, found) in slugs(results.iter().map(|r| r.name.as_str())).iter().zip(&results) {
-        figures.push((format!("spectrum_{slug}"), pictures::lines(&found.name, &found.result)));
+    for (slug, found) in slugs(results.iter().map(|r| r.result.name.as_str())).iter().zip(&results) {
+        figures.push((format!("spectrum_{slug}"), pictures::lines(&found.result.name, &found.result)));
     }
     Ok(results)
 }
@@ -82,7 +83,7 @@ pub(super) fn tables(
     output: &mut Output,
     warnings: &mut Vec<String>,
 ) -> Result<()> {
-    for (slug, found) in slugs(results.iter().map(|r| r.name.as_str())).iter().zip(results) {
+    for (slug, found) in slugs(results.iter().map(|r| r.result.name.as_str())).iter().zip(results) {
         warnings.extend(files::records(output, &format!("spectrum_{slug}"), &found.result.records())?);
     }
     Ok(())
