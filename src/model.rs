@@ -26,6 +26,7 @@ pub mod receptance;
 pub mod regime;
 pub mod rig;
 pub mod simulate;
+pub mod sweep;
 pub mod validity;
 
 pub use excitation::{Excitation, Sine};
