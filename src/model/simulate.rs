@@ -4,7 +4,7 @@
 //! changes the velocities; the next flight starts from the state found there, so errors do not grow with a flight's
 //! length. The force's phase is kept within 2π and runs on when the frequency is changed.
 
-use super::{Flight, Rig, Sine, State, Steady};
+use super::{Event, Flight, Motion, Path, Piece, Rig, Sine, State, Steady};
 use crate::error::{Error, Result};
 use crate::math::Oscillator;
 use serde::Serialize;
@@ -233,6 +233,41 @@ impl Simulation {
             recorded.impacts.extend(leg.impact);
         })?;
         Ok(recorded)
+    }
+}
+
+impl Path for Flight {
+    fn state(&self, t: f64) -> State {
+        Flight::state(self, t)
+    }
+}
+
+impl Motion for Simulation {
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn state(&self) -> State {
+        self.state
+    }
+
+    fn phase(&self) -> f64 {
+        self.phase
+    }
+
+    fn frequency(&self) -> f64 {
+        self.sine.frequency
+    }
+
+    fn set_frequency(&mut self, hz: f64) -> Result<()> {
+        Simulation::set_frequency(self, hz)
+    }
+
+    fn advance(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<()> {
+        self.run(until, |leg| {
+            let event = leg.impact.map_or(Event::Reached, Event::Impact);
+            visit(Piece { start: leg.start, duration: leg.duration, path: &leg.flight, event });
+        })
     }
 }
 
