@@ -16,6 +16,7 @@
 //! # Ok::<(), vibroimpact::Error>(())
 //! ```
 
+pub mod continuation;
 pub mod excitation;
 pub mod floquet;
 pub mod flow;
@@ -30,6 +31,7 @@ pub mod simulate;
 pub mod sweep;
 pub mod validity;
 
+pub use continuation::{Branch, follow};
 pub use excitation::{Excitation, Sine};
 pub use flow::{Flight, State};
 pub use green::Green;
