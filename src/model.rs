@@ -21,6 +21,7 @@ pub mod excitation;
 pub mod floquet;
 pub mod flow;
 pub mod green;
+pub mod map;
 pub mod motion;
 pub mod orbit;
 pub mod periodic;

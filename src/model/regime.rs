@@ -10,6 +10,7 @@ use serde::ser::{SerializeStruct, Serializer};
 use std::collections::VecDeque;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
+use std::ops::Range;
 
 /// Longest pattern looked for, in impacts and in cycles.
 pub const LONGEST: u32 = 32;
@@ -158,6 +159,14 @@ impl Watch {
         }
     }
 
+    /// Forgets what was watched and watches `motion` from now on.
+    pub fn restart(&mut self, motion: &impl Motion) {
+        self.frequency = motion.frequency();
+        (self.start, self.now, self.phase) = (motion.time(), motion.time(), motion.phase());
+        self.strikes.clear();
+        self.sticks.clear();
+    }
+
     /// Takes the next piece of the motion.
     pub fn take(&mut self, piece: &Piece<'_>) {
         self.now = piece.start + piece.duration;
@@ -223,32 +232,65 @@ impl Watch {
 
     /// The shortest pattern that repeats.
     fn repeated(&self, strikes: &VecDeque<Strike>) -> Option<Repeated> {
-        let omega = TAU * self.frequency;
-        let speed =
-            strikes.iter().fold(0.0_f64, |v, s| v.max(s.before.v1.abs()).max(s.before.v2.abs())).max(1e-300);
+        let compared = Compared::new(strikes, self.frequency);
         let n = strikes.len();
-        let far = |i: usize, p: usize| strikes[i].distance(&strikes[i - p], omega, speed);
         (1..=(LONGEST as usize).min(n / 2)).find_map(|p| {
-            let cycles = ((strikes[n - 1].time - strikes[n - 1 - p].time) * self.frequency).round();
-            if !(1.0..=f64::from(LONGEST)).contains(&cycles) {
-                return None;
-            }
-            let largest = |range: std::ops::Range<usize>| range.map(|i| far(i, p)).fold(0.0_f64, f64::max);
-            let distance = largest(n - p..n);
-            let found = Repeated { impacts: p, cycles: cycles as u32, distance };
-            if distance <= SAME {
+            let found = compared.last(p)?;
+            if found.distance <= SAME {
                 return Some(found);
             }
-            let third = (n - p) / 3;
-            if distance > NEAR || third < p.max(3) {
+            if found.distance > NEAR || !compared.falls(p) {
                 return None;
             }
-            // The envelope of the differences, so that complex multipliers do no harm.
-            let thirds = [0, 1, 2].map(|k| largest(n - (3 - k) * third..n - (2 - k) * third));
-            let falls =
-                thirds[2] <= NEAR && thirds[1] <= FALLING * thirds[0] && thirds[2] <= FALLING * thirds[1];
-            falls.then_some(found)
+            // Impacts that take turns about a single one draw near each other in pairs before they do one by one.
+            let shorter = (1..p).filter(|d| p % d == 0).find(|d| compared.falls(*d));
+            shorter.and_then(|d| compared.last(d)).or(Some(found))
         })
+    }
+}
+
+/// Impacts to be compared.
+struct Compared<'a> {
+    strikes: &'a VecDeque<Strike>,
+    frequency: f64,
+    speed: f64,
+}
+
+impl Compared<'_> {
+    fn new(strikes: &VecDeque<Strike>, frequency: f64) -> Compared<'_> {
+        let fastest = |v: f64, s: &Strike| v.max(s.before.v1.abs()).max(s.before.v2.abs());
+        Compared { strikes, frequency, speed: strikes.iter().fold(f64::MIN_POSITIVE, fastest) }
+    }
+
+    /// Largest distance of the impacts in `range` to those `p` before.
+    fn largest(&self, range: Range<usize>, p: usize) -> f64 {
+        let omega = TAU * self.frequency;
+        let far = |i: usize| self.strikes[i].distance(&self.strikes[i - p], omega, self.speed);
+        range.map(far).fold(0.0, f64::max)
+    }
+
+    /// The last `p` impacts against those before; `None` where they do not take whole cycles, or too many.
+    fn last(&self, p: usize) -> Option<Repeated> {
+        let n = self.strikes.len();
+        let cycles = ((self.strikes[n - 1].time - self.strikes[n - 1 - p].time) * self.frequency).round();
+        (1.0..=f64::from(LONGEST)).contains(&cycles).then(|| Repeated {
+            impacts: p,
+            cycles: cycles as u32,
+            distance: self.largest(n - p..n, p),
+        })
+    }
+
+    /// Whether the differences over `p` impacts fall from third to third of what was watched: the largest in each, so that complex
+    /// multipliers do no harm.
+    fn falls(&self, p: usize) -> bool {
+        let n = self.strikes.len();
+        let third = (n - p) / 3;
+        let thirds = [3, 2, 1].map(|k| n - k * third);
+        if third < p.max(3) {
+            return false;
+        }
+        let [a, b, c] = thirds.map(|from| self.largest(from..from + third, p));
+        b <= FALLING * a && c <= FALLING * b
     }
 }
 

@@ -1,0 +1,316 @@
+//! Regime and stability over two parameters.
+
+mod rows;
+
+pub use rows::Rows;
+
+use super::flow::Flight;
+use super::regime::{Strike, Watch};
+use super::{Motion, PeriodicOrbit, Regime, Rig, Simulation, Sine, State, Steady, floquet};
+use crate::error::{Error, Result};
+use nalgebra::Matrix4;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// Cycles of all cells together beyond which a map is refused: some minutes of work.
+pub const MOST_CYCLES: f64 = 5e8;
+
+/// A parameter that can be varied.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Key {
+    /// m₁ in kg.
+    M1,
+    /// m₂ in kg.
+    M2,
+    /// k₁ in N/m.
+    K1,
+    /// k₂ in N/m.
+    K2,
+    /// c₁ in N s/m.
+    C1,
+    /// c₂ in N s/m.
+    C2,
+    /// Gap in m.
+    Gap,
+    /// Coefficient of restitution.
+    Restitution,
+    /// Frequency in Hz.
+    Frequency,
+    /// Force amplitude in N.
+    Force,
+}
+
+impl Key {
+    /// All keys with their names and units.
+    pub const ALL: [(Key, &'static str, &'static str); 10] = [
+        (Key::M1, "m1", "kg"),
+        (Key::M2, "m2", "kg"),
+        (Key::K1, "k1", "N/m"),
+        (Key::K2, "k2", "N/m"),
+        (Key::C1, "c1", "N s/m"),
+        (Key::C2, "c2", "N s/m"),
+        (Key::Gap, "gap", "m"),
+        (Key::Restitution, "restitution", ""),
+        (Key::Frequency, "frequency", "Hz"),
+        (Key::Force, "force", "N"),
+    ];
+
+    /// Name and unit.
+    pub fn label(self) -> (&'static str, &'static str) {
+        let (_, name, unit) = Key::ALL[self as usize];
+        (name, unit)
+    }
+
+    /// The key of this name.
+    pub fn named(name: &str) -> Option<Key> {
+        Key::ALL.iter().find(|k| k.1 == name).map(|k| k.0)
+    }
+
+    fn set(self, rig: &mut Rig, sine: &mut Sine, value: f64) {
+        *match self {
+            Key::M1 => &mut rig.m1,
+            Key::M2 => &mut rig.m2,
+            Key::K1 => &mut rig.k1,
+            Key::K2 => &mut rig.k2,
+            Key::C1 => &mut rig.c1,
+            Key::C2 => &mut rig.c2,
+            Key::Gap => &mut rig.gap,
+            Key::Restitution => &mut rig.restitution,
+            Key::Frequency => &mut sine.frequency,
+            Key::Force => &mut sine.force,
+        } = value;
+    }
+}
+
+/// Values of one parameter with equal distances.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Axis {
+    /// The parameter.
+    pub key: Key,
+    /// First value.
+    pub low: f64,
+    /// Last value.
+    pub high: f64,
+    /// Number of values.
+    pub n: usize,
+}
+
+impl Axis {
+    /// The `i`-th value.
+    pub fn value(&self, i: usize) -> f64 {
+        if i == 0 { self.low } else { self.low + (self.high - self.low) * (i as f64 / (self.n - 1) as f64) }
+    }
+
+    /// All values.
+    pub fn values(&self) -> Vec<f64> {
+        (0..self.n).map(|i| self.value(i)).collect()
+    }
+}
+
+impl std::str::FromStr for Axis {
+    type Err = Error;
+
+    /// `name:low:high:n`.
+    fn from_str(text: &str) -> Result<Axis> {
+        let parse = || {
+            let mut parts = text.split(':');
+            let key = Key::named(parts.next()?)?;
+            let mut number = || parts.next()?.trim().parse::<f64>().ok().filter(|v| v.is_finite());
+            let (low, high) = (number()?, number()?);
+            let n = parts.next()?.trim().parse().ok()?;
+            (parts.next().is_none() && low < high && n >= 2).then_some(Axis { key, low, high, n })
+        };
+        parse().ok_or_else(|| {
+            let names: Vec<_> = Key::ALL.iter().map(|k| k.1).collect();
+            Error::usage(format!("axis {text:?}"), "NAME:LOW:HIGH:N with LOW below HIGH and N of 2 or more")
+                .hint(format!("NAME is one of {}", names.join(", ")))
+        })
+    }
+}
+
+/// A map to be computed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Plan {
+    /// The rig; what an axis names is overwritten.
+    pub rig: Rig,
+    /// The force.
+    pub sine: Sine,
+    /// Parameter across.
+    pub x: Axis,
+    /// Parameter upwards.
+    pub y: Axis,
+    /// Cycles a cell, from rest. A cell that repeats within 1e-6 before that, and is stable, ends there.
+    pub cycles: u32,
+}
+
+/// What one cell of a map holds.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Cell {
+    /// The regime; `None` where the rig cannot be computed there (an undamped mass at its resonance).
+    pub regime: Option<Regime>,
+    /// Largest modulus of the Floquet multipliers over the period of the pattern (of one cycle without impacts); `None` without one.
+    pub spectral_radius: Option<f64>,
+}
+
+/// Share of the cycles that pass before a motion that has not settled is judged.
+const SETTLING: f64 = 0.6;
+/// Cycles between two looks whether a motion has settled.
+const LOOK: u32 = 16;
+
+impl Plan {
+    /// Checks the plan.
+    ///
+    /// # Errors
+    /// If both axes vary the same parameter, a corner of the map is impossible, or there is more work than [`MOST_CYCLES`].
+    pub fn check(&self) -> Result<()> {
+        if self.x.key == self.y.key {
+            return Err(Error::usage(format!("both axes vary {}", self.x.key.label().0), "two parameters"));
+        }
+        for axis in [&self.x, &self.y] {
+            if axis.n < 2 || !(axis.low.is_finite() && axis.high.is_finite() && axis.low < axis.high) {
+                let found =
+                    format!("{} from {} to {} in {} values", axis.key.label().0, axis.low, axis.high, axis.n);
+                return Err(Error::usage(found, "finite ends, the lower one first, and at least 2 values"));
+            }
+        }
+        if self.cycles < 4 {
+            return Err(Error::usage(format!("{} cycles a cell", self.cycles), "at least 4"));
+        }
+        let work = self.x.n as f64 * self.y.n as f64 * f64::from(self.cycles);
+        if work > MOST_CYCLES {
+            return Err(Error::refused(format!(
+                "the map has {work:.3e} cycles, more than {MOST_CYCLES:.0e}"
+            ))
+            .hint("take fewer cells or fewer cycles a cell"));
+        }
+        for (column, row) in [(0, 0), (self.x.n - 1, 0), (0, self.y.n - 1), (self.x.n - 1, self.y.n - 1)] {
+            let (rig, sine) = self.at(column, row);
+            rig.check()?;
+            sine.check()?;
+            // Rest must be a state in which the masses are apart, and the damping enough.
+            if rig.gap < 0.0 {
+                return Err(Error::usage(
+                    format!("gap is {} m", rig.gap),
+                    "0 or more: cells start with both masses at their own rest",
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// Rig and force of a cell.
+    pub fn at(&self, column: usize, row: usize) -> (Rig, Sine) {
+        let (mut rig, mut sine) = (self.rig, self.sine);
+        self.x.key.set(&mut rig, &mut sine, self.x.value(column));
+        self.y.key.set(&mut rig, &mut sine, self.y.value(row));
+        (rig, sine)
+    }
+
+    /// Computes the rows that `rows` does not hold yet, cells in parallel, and shows each with its number as soon as it stands.
+    ///
+    /// # Errors
+    /// As [`Plan::check`], and those of `show`, which end the work.
+    pub fn run(&self, rows: &mut Rows, mut show: impl FnMut(usize, &[Cell]) -> Result<()>) -> Result<()> {
+        self.check()?;
+        for row in 0..self.y.n {
+            if rows.get(row).is_some() {
+                continue;
+            }
+            let cells: Vec<Cell> = (0..self.x.n)
+                .into_par_iter()
+                .map(|column| {
+                    let (rig, sine) = self.at(column, row);
+                    cell(&rig, &sine, self.cycles)
+                })
+                .collect();
+            show(row, &cells)?;
+            rows.set(row, cells);
+        }
+        Ok(())
+    }
+}
+
+/// Regime and spectral radius of the motion from rest.
+pub fn cell(rig: &Rig, sine: &Sine, cycles: u32) -> Cell {
+    judged(rig, sine, cycles).unwrap_or(Cell { regime: None, spectral_radius: None })
+}
+
+fn judged(rig: &Rig, sine: &Sine, cycles: u32) -> Result<Cell> {
+    let mut motion = Simulation::new(rig, sine)?;
+    let settling = (SETTLING * f64::from(cycles)) as u32;
+    let mut passed = 0;
+    let mut watch = Watch::new(&motion);
+    while passed < settling {
+        let look = LOOK.min(settling - passed);
+        watch.restart(&motion);
+        motion.advance(motion.time() + f64::from(look) / sine.frequency, &mut |piece| watch.take(&piece))?;
+        passed += look;
+        let found = watch.pattern();
+        if let Regime::Periodic { impacts, cycles } = found.regime
+            && found.settled
+            // Seen at least three times.
+            && watch.strikes().len() >= 3 * impacts as usize
+            && 3 * cycles <= look
+        {
+            let spectral_radius = radius(rig, sine, cycles, &found.strikes);
+            if spectral_radius.is_some_and(|r| r < 1.0) {
+                return Ok(Cell { regime: Some(found.regime), spectral_radius });
+            }
+        }
+    }
+    watch.restart(&motion);
+    let rest = f64::from(cycles - passed) / sine.frequency;
+    motion.advance(motion.time() + rest, &mut |piece| watch.take(&piece))?;
+    let found = watch.pattern();
+    Ok(match found.regime {
+        Regime::Periodic { cycles, .. } if found.settled => {
+            Cell { regime: Some(found.regime), spectral_radius: radius(rig, sine, cycles, &found.strikes) }
+        }
+        Regime::Periodic { cycles, .. } => {
+            // Where it still settles, the motion that it settles on must be there.
+            match PeriodicOrbit::from_strikes(rig, sine, cycles, &found.strikes) {
+                Ok(orbit) if orbit.validity.stable != Some(false) && orbit.validity.admissible => {
+                    Cell { regime: Some(found.regime), spectral_radius: orbit.spectral_radius() }
+                }
+                _ => Cell { regime: Some(Regime::Irregular), spectral_radius: None },
+            }
+        }
+        Regime::NoImpact => {
+            Cell { regime: Some(found.regime), spectral_radius: Some(free_radius(rig, sine)) }
+        }
+        other => Cell { regime: Some(other), spectral_radius: None },
+    })
+}
+
+/// Spectral radius along a pattern of impacts.
+fn radius(rig: &Rig, sine: &Sine, cycles: u32, strikes: &[Strike]) -> Option<f64> {
+    let steady = Steady::new(rig, sine).ok()?;
+    let share = rig.reduced_mass() * (1.0 + rig.restitution);
+    let rate =
+        |state: &State, phase: f64| Flight::new(rig.oscillators(), &steady, rig.gap, state, phase).rate(0.0);
+    let mut whole = Matrix4::identity();
+    for (i, strike) in strikes.iter().enumerate() {
+        let impulse = share * strike.approach_velocity;
+        let before = strike.before;
+        let after = State { v1: before.v1 - impulse / rig.m1, v2: before.v2 + impulse / rig.m2, ..before };
+        let end = strikes
+            .get(i + 1)
+            .map_or_else(|| strikes[0].time + f64::from(cycles) / sine.frequency, |next| next.time);
+        let (f, g) = (rate(&before, strike.phase), rate(&after, strike.phase));
+        whole = floquet::monodromy(rig, end - strike.time, &f, &g) * whole;
+    }
+    floquet::multipliers(&whole).ok().map(|m| m[0].norm())
+}
+
+/// Spectral radius of a cycle without impacts: e^{−bT}, or that of the slower decay above critical damping.
+fn free_radius(rig: &Rig, sine: &Sine) -> f64 {
+    let decay = rig.oscillators().map(|o| {
+        let (b, inside) = (o.decay(), o.decay().powi(2) - o.omega2());
+        if inside > 0.0 { o.omega2() / (b + inside.sqrt()) } else { b }
+    });
+    (-decay[0].min(decay[1]) / sine.frequency).exp()
+}
+
+#[cfg(test)]
+mod tests;
