@@ -26,6 +26,7 @@ pub mod receptance;
 pub mod rig;
 pub mod simulate;
 pub mod validity;
+mod waves;
 
 pub use excitation::{Excitation, Sine};
 pub use flow::{Flight, State};
