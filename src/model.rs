@@ -16,6 +16,7 @@
 //! # Ok::<(), vibroimpact::Error>(())
 //! ```
 
+mod drive;
 pub mod excitation;
 pub mod floquet;
 pub mod flow;
@@ -25,15 +26,17 @@ pub mod orbit;
 pub mod receptance;
 pub mod rig;
 pub mod simulate;
+pub mod stick;
 pub mod validity;
 mod waves;
 
-pub use excitation::{Excitation, Sine};
+pub use excitation::{Excitation, Impulses, Part, Pulses, Sine, Sines};
 pub use flow::{Flight, State};
 pub use green::Green;
 pub use motion::{Event, Motion, Path, Piece};
 pub use orbit::{Orbit, Orbits, orbits};
 pub use receptance::{NoImpact, Steady};
 pub use rig::Rig;
-pub use simulate::{Impact, Leg, Simulation};
+pub use simulate::{Counts, Course, Impact, Leg, Simulation};
+pub use stick::Pair;
 pub use validity::Validity;

@@ -165,6 +165,11 @@ impl Flight {
         self
     }
 
+    /// Whether `t` lies in the beginning of a parting, where the gap is known to be open.
+    pub(super) fn is_open(&self, t: f64) -> bool {
+        t < self.open
+    }
+
     /// Both displacements with their first three derivatives.
     #[inline]
     pub(super) fn series(&self, t: f64) -> [[f64; 4]; 2] {
