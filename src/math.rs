@@ -1,5 +1,6 @@
 //! Numerical kernels, each with its source and its error bound.
 
+pub mod cis;
 pub mod lanes;
 mod least_squares;
 pub mod oscillator;

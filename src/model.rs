@@ -17,6 +17,7 @@
 //! ```
 
 pub mod continuation;
+mod drive;
 pub mod excitation;
 pub mod floquet;
 pub mod flow;
@@ -29,11 +30,13 @@ pub mod receptance;
 pub mod regime;
 pub mod rig;
 pub mod simulate;
+pub mod stick;
 pub mod sweep;
 pub mod validity;
+mod waves;
 
 pub use continuation::{Branch, follow};
-pub use excitation::{Excitation, Sine};
+pub use excitation::{Excitation, Impulses, Part, Pulses, Sine, Sines};
 pub use flow::{Flight, State};
 pub use green::Green;
 pub use motion::{Event, Motion, Path, Piece};
@@ -42,5 +45,6 @@ pub use periodic::{Beat, PeriodicOrbit};
 pub use receptance::{NoImpact, Steady};
 pub use regime::{Pattern, Regime, regime};
 pub use rig::Rig;
-pub use simulate::{Impact, Leg, Simulation};
+pub use simulate::{Counts, Course, Impact, Leg, Simulation};
+pub use stick::Pair;
 pub use validity::Validity;

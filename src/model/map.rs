@@ -4,13 +4,13 @@ mod rows;
 
 pub use rows::Rows;
 
-use super::flow::Flight;
 use super::regime::{Strike, Watch};
-use super::{Motion, PeriodicOrbit, Regime, Rig, Simulation, Sine, State, Steady, floquet};
+use super::{Excitation, Motion, PeriodicOrbit, Regime, Rig, Simulation, State, floquet};
 use crate::error::{Error, Result};
 use nalgebra::Matrix4;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 
 /// Cycles of all cells together beyond which a map is refused: some minutes of work.
 pub const MOST_CYCLES: f64 = 5e8;
@@ -37,13 +37,17 @@ pub enum Key {
     Restitution,
     /// Frequency in Hz.
     Frequency,
-    /// Force amplitude in N.
+    /// Force amplitude of a sine, or force of a pulse, in N.
     Force,
+    /// Impulse of impulses in N s.
+    Impulse,
+    /// Width of pulses in s.
+    Width,
 }
 
 impl Key {
     /// All keys with their names and units.
-    pub const ALL: [(Key, &'static str, &'static str); 10] = [
+    pub const ALL: [(Key, &'static str, &'static str); 12] = [
         (Key::M1, "m1", "kg"),
         (Key::M2, "m2", "kg"),
         (Key::K1, "k1", "N/m"),
@@ -54,6 +58,8 @@ impl Key {
         (Key::Restitution, "restitution", ""),
         (Key::Frequency, "frequency", "Hz"),
         (Key::Force, "force", "N"),
+        (Key::Impulse, "impulse", "N s"),
+        (Key::Width, "width", "s"),
     ];
 
     /// Name and unit.
@@ -67,7 +73,8 @@ impl Key {
         Key::ALL.iter().find(|k| k.1 == name).map(|k| k.0)
     }
 
-    fn set(self, rig: &mut Rig, sine: &mut Sine, value: f64) {
+    /// Enters a value; `None` where the excitation has no such number.
+    fn set(self, rig: &mut Rig, excitation: &mut Excitation, value: f64) -> Option<()> {
         *match self {
             Key::M1 => &mut rig.m1,
             Key::M2 => &mut rig.m2,
@@ -77,9 +84,25 @@ impl Key {
             Key::C2 => &mut rig.c2,
             Key::Gap => &mut rig.gap,
             Key::Restitution => &mut rig.restitution,
-            Key::Frequency => &mut sine.frequency,
-            Key::Force => &mut sine.force,
+            Key::Frequency => {
+                *excitation = excitation.at_frequency(value);
+                return Some(());
+            }
+            Key::Force => match excitation {
+                Excitation::Sine(sine) => &mut sine.force,
+                Excitation::Pulse(pulses) => &mut pulses.force,
+                _ => return None,
+            },
+            Key::Impulse => match excitation {
+                Excitation::Impulse(impulses) => &mut impulses.impulse,
+                _ => return None,
+            },
+            Key::Width => match excitation {
+                Excitation::Pulse(pulses) => &mut pulses.width,
+                _ => return None,
+            },
         } = value;
+        Some(())
     }
 }
 
@@ -134,8 +157,8 @@ impl std::str::FromStr for Axis {
 pub struct Plan {
     /// The rig; what an axis names is overwritten.
     pub rig: Rig,
-    /// The force.
-    pub sine: Sine,
+    /// What drives mass 1.
+    pub excitation: Excitation,
     /// Parameter across.
     pub x: Axis,
     /// Parameter upwards.
@@ -168,6 +191,13 @@ impl Plan {
             return Err(Error::usage(format!("both axes vary {}", self.x.key.label().0), "two parameters"));
         }
         for axis in [&self.x, &self.y] {
+            if axis.key.set(&mut self.rig.clone(), &mut self.excitation.clone(), axis.low).is_none() {
+                let (found, kind) = (axis.key.label().0, self.excitation.kind());
+                return Err(Error::usage(
+                    format!("an axis of {found} under an excitation of kind {kind}"),
+                    "a parameter that this excitation has",
+                ));
+            }
             if axis.n < 2 || !(axis.low.is_finite() && axis.high.is_finite() && axis.low < axis.high) {
                 let found =
                     format!("{} from {} to {} in {} values", axis.key.label().0, axis.low, axis.high, axis.n);
@@ -185,10 +215,9 @@ impl Plan {
             .hint("take fewer cells or fewer cycles a cell"));
         }
         for (column, row) in [(0, 0), (self.x.n - 1, 0), (0, self.y.n - 1), (self.x.n - 1, self.y.n - 1)] {
-            let (rig, sine) = self.at(column, row);
+            let (rig, excitation) = self.at(column, row);
             rig.check()?;
-            sine.check()?;
-            // Rest must be a state in which the masses are apart, and the damping enough.
+            excitation.check()?;
             if rig.gap < 0.0 {
                 return Err(Error::usage(
                     format!("gap is {} m", rig.gap),
@@ -199,12 +228,13 @@ impl Plan {
         Ok(())
     }
 
-    /// Rig and force of a cell.
-    pub fn at(&self, column: usize, row: usize) -> (Rig, Sine) {
-        let (mut rig, mut sine) = (self.rig, self.sine);
-        self.x.key.set(&mut rig, &mut sine, self.x.value(column));
-        self.y.key.set(&mut rig, &mut sine, self.y.value(row));
-        (rig, sine)
+    /// Rig and excitation of a cell.
+    pub fn at(&self, column: usize, row: usize) -> (Rig, Excitation) {
+        let (mut rig, mut excitation) = (self.rig, self.excitation.clone());
+        // What an excitation does not have has been refused.
+        let _ = self.x.key.set(&mut rig, &mut excitation, self.x.value(column));
+        let _ = self.y.key.set(&mut rig, &mut excitation, self.y.value(row));
+        (rig, excitation)
     }
 
     /// Computes the rows that `rows` does not hold yet, cells in parallel, and shows each with its number as soon as it stands.
@@ -220,8 +250,8 @@ impl Plan {
             let cells: Vec<Cell> = (0..self.x.n)
                 .into_par_iter()
                 .map(|column| {
-                    let (rig, sine) = self.at(column, row);
-                    cell(&rig, &sine, self.cycles)
+                    let (rig, excitation) = self.at(column, row);
+                    cell(&rig, &excitation, self.cycles)
                 })
                 .collect();
             show(row, &cells)?;
@@ -232,19 +262,20 @@ impl Plan {
 }
 
 /// Regime and spectral radius of the motion from rest.
-pub fn cell(rig: &Rig, sine: &Sine, cycles: u32) -> Cell {
-    judged(rig, sine, cycles).unwrap_or(Cell { regime: None, spectral_radius: None })
+pub fn cell(rig: &Rig, excitation: &Excitation, cycles: u32) -> Cell {
+    judged(rig, excitation, cycles).unwrap_or(Cell { regime: None, spectral_radius: None })
 }
 
-fn judged(rig: &Rig, sine: &Sine, cycles: u32) -> Result<Cell> {
-    let mut motion = Simulation::new(rig, sine)?;
+fn judged(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Cell> {
+    let mut motion = Simulation::new(rig, excitation)?;
+    let frequency = excitation.frequency();
     let settling = (SETTLING * f64::from(cycles)) as u32;
     let mut passed = 0;
     let mut watch = Watch::new(&motion);
     while passed < settling {
         let look = LOOK.min(settling - passed);
         watch.restart(&motion);
-        motion.advance(motion.time() + f64::from(look) / sine.frequency, &mut |piece| watch.take(&piece))?;
+        motion.advance(motion.time() + f64::from(look) / frequency, &mut |piece| watch.take(&piece))?;
         passed += look;
         let found = watch.pattern();
         if let Regime::Periodic { impacts, cycles } = found.regime
@@ -253,22 +284,27 @@ fn judged(rig: &Rig, sine: &Sine, cycles: u32) -> Result<Cell> {
             && watch.strikes().len() >= 3 * impacts as usize
             && 3 * cycles <= look
         {
-            let spectral_radius = radius(rig, sine, cycles, &found.strikes);
+            let spectral_radius = radius(rig, excitation, cycles, &found.strikes);
             if spectral_radius.is_some_and(|r| r < 1.0) {
                 return Ok(Cell { regime: Some(found.regime), spectral_radius });
             }
         }
     }
     watch.restart(&motion);
-    let rest = f64::from(cycles - passed) / sine.frequency;
+    let rest = f64::from(cycles - passed) / frequency;
     motion.advance(motion.time() + rest, &mut |piece| watch.take(&piece))?;
     let found = watch.pattern();
     Ok(match found.regime {
-        Regime::Periodic { cycles, .. } if found.settled => {
-            Cell { regime: Some(found.regime), spectral_radius: radius(rig, sine, cycles, &found.strikes) }
-        }
+        Regime::Periodic { cycles, .. } if found.settled => Cell {
+            regime: Some(found.regime),
+            spectral_radius: radius(rig, excitation, cycles, &found.strikes),
+        },
         Regime::Periodic { cycles, .. } => {
-            // Where it still settles, the motion that it settles on must be there.
+            // Where it still settles, the motion that it settles on must be there, as far as that can be computed.
+            let Excitation::Sine(sine) = excitation else {
+                let spectral_radius = radius(rig, excitation, cycles, &found.strikes);
+                return Ok(Cell { regime: Some(found.regime), spectral_radius });
+            };
             match PeriodicOrbit::from_strikes(rig, sine, cycles, &found.strikes) {
                 Ok(orbit) if orbit.validity.stable != Some(false) && orbit.validity.admissible => {
                     Cell { regime: Some(found.regime), spectral_radius: orbit.spectral_radius() }
@@ -277,18 +313,29 @@ fn judged(rig: &Rig, sine: &Sine, cycles: u32) -> Result<Cell> {
             }
         }
         Regime::NoImpact => {
-            Cell { regime: Some(found.regime), spectral_radius: Some(free_radius(rig, sine)) }
+            Cell { regime: Some(found.regime), spectral_radius: Some(free_radius(rig, excitation)) }
         }
         other => Cell { regime: Some(other), spectral_radius: None },
     })
 }
 
-/// Spectral radius along a pattern of impacts.
-fn radius(rig: &Rig, sine: &Sine, cycles: u32, strikes: &[Strike]) -> Option<f64> {
-    let steady = Steady::new(rig, sine).ok()?;
+/// Spectral radius along a pattern of impacts; `None` under several sines, whose force is not told by the phase of one.
+fn radius(rig: &Rig, excitation: &Excitation, cycles: u32, strikes: &[Strike]) -> Option<f64> {
     let share = rig.reduced_mass() * (1.0 + rig.restitution);
-    let rate =
-        |state: &State, phase: f64| Flight::new(rig.oscillators(), &steady, rig.gap, state, phase).rate(0.0);
+    let force = |phase: f64| match excitation {
+        Excitation::Sine(sine) => Some(sine.force * phase.cos()),
+        Excitation::Impulse(_) => Some(0.0),
+        Excitation::Pulse(p) => Some(if phase < TAU * p.width * p.frequency { p.force } else { 0.0 }),
+        _ => None,
+    };
+    let rate = |s: &State, force: f64| {
+        [
+            s.v1,
+            (force - rig.c1 * s.v1 - rig.k1 * s.x1) / rig.m1,
+            s.v2,
+            (-rig.c2 * s.v2 - rig.k2 * s.x2) / rig.m2,
+        ]
+    };
     let mut whole = Matrix4::identity();
     for (i, strike) in strikes.iter().enumerate() {
         let impulse = share * strike.approach_velocity;
@@ -296,20 +343,21 @@ fn radius(rig: &Rig, sine: &Sine, cycles: u32, strikes: &[Strike]) -> Option<f64
         let after = State { v1: before.v1 - impulse / rig.m1, v2: before.v2 + impulse / rig.m2, ..before };
         let end = strikes
             .get(i + 1)
-            .map_or_else(|| strikes[0].time + f64::from(cycles) / sine.frequency, |next| next.time);
-        let (f, g) = (rate(&before, strike.phase), rate(&after, strike.phase));
-        whole = floquet::monodromy(rig, end - strike.time, &f, &g) * whole;
+            .map_or_else(|| strikes[0].time + f64::from(cycles) / excitation.frequency(), |next| next.time);
+        let force = force(strike.phase)?;
+        whole =
+            floquet::monodromy(rig, end - strike.time, &rate(&before, force), &rate(&after, force)) * whole;
     }
     floquet::multipliers(&whole).ok().map(|m| m[0].norm())
 }
 
 /// Spectral radius of a cycle without impacts: e^{−bT}, or that of the slower decay above critical damping.
-fn free_radius(rig: &Rig, sine: &Sine) -> f64 {
+fn free_radius(rig: &Rig, excitation: &Excitation) -> f64 {
     let decay = rig.oscillators().map(|o| {
         let (b, inside) = (o.decay(), o.decay().powi(2) - o.omega2());
         if inside > 0.0 { o.omega2() / (b + inside.sqrt()) } else { b }
     });
-    (-decay[0].min(decay[1]) / sine.frequency).exp()
+    (-decay[0].min(decay[1]) / excitation.frequency()).exp()
 }
 
 #[cfg(test)]

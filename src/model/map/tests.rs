@@ -1,11 +1,11 @@
 use super::*;
-use crate::model::{PeriodicOrbit, orbits, regime};
+use crate::model::{PeriodicOrbit, Sine, orbits, regime};
 use std::time::Instant;
 
 fn plan(n: usize) -> Plan {
     Plan {
         rig: Rig::thesis(),
-        sine: Sine { force: 0.5, frequency: 11.0 },
+        excitation: Sine { force: 0.5, frequency: 11.0 }.into(),
         x: Axis { key: Key::Frequency, low: 4.0, high: 14.0, n },
         y: Axis { key: Key::Restitution, low: 0.3, high: 0.95, n },
         cycles: 200,
@@ -19,7 +19,8 @@ fn cells_are_the_simulation_and_the_orbit() {
     plan.run(&mut rows, |_, _| Ok(())).unwrap();
     let mut settled = 0;
     for (row, column) in (0..7).flat_map(|row| (0..7).map(move |column| (row, column))) {
-        let (rig, sine) = plan.at(column, row);
+        let (rig, excitation) = plan.at(column, row);
+        let Excitation::Sine(sine) = excitation else { panic!("{excitation:?}") };
         let cell = rows.get(row).unwrap()[column];
         let mut motion = Simulation::new(&rig, &sine).unwrap();
         let Ok(long) = regime(&mut motion, 4000, 200) else { continue };
@@ -41,13 +42,13 @@ fn cells_are_the_simulation_and_the_orbit() {
 #[test]
 fn one_settled_cell_has_the_radius_of_the_closed_form() {
     let (rig, sine) = (Rig { restitution: 0.5, ..Rig::thesis() }, Sine { force: 0.5, frequency: 10.0 });
-    let cell = cell(&rig, &sine, 400);
+    let cell = cell(&rig, &sine.into(), 400);
     let orbit = orbits(&rig, sine.force, sine.frequency).unwrap().orbits[0];
     assert_eq!(cell.regime, Some(Regime::Periodic { impacts: 1, cycles: 1 }));
     // Within 1e-6 of the orbit, and a radius below 1 by a tenth.
     assert!((cell.spectral_radius.unwrap() - orbit.spectral_radius().unwrap()).abs() < 1e-4);
     // Without impacts: e^{−bT} of the more lightly damped mass.
-    let quiet = super::cell(&rig, &Sine { force: 0.001, frequency: 12.0 }, 40);
+    let quiet = super::cell(&rig, &Sine { force: 0.001, frequency: 12.0 }.into(), 40);
     assert_eq!(quiet.regime, Some(Regime::NoImpact));
     assert!((quiet.spectral_radius.unwrap() - (-0.1_f64 / 0.25 / 12.0).exp()).abs() < 1e-15);
 }
@@ -98,6 +99,7 @@ fn impossible_maps_are_refused() {
         (Plan { y: axis("gap:-1:1:3"), ..good.clone() }, "gap is -1"),
         (Plan { y: axis("m1:-1:1:3"), ..good.clone() }, "m1 is -1"),
         (Plan { cycles: 1_000_000_000, ..good.clone() }, "more than"),
+        (Plan { y: axis("impulse:0.1:1:3"), ..good.clone() }, "kind sine"),
         (Plan { cycles: 0, ..good.clone() }, "0 cycles"),
     ] {
         let text = plan.check().unwrap_err().to_string();
