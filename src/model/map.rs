@@ -5,9 +5,10 @@ mod rows;
 pub use rows::Rows;
 
 use super::regime::{Strike, Watch};
-use super::{Excitation, Motion, PeriodicOrbit, Regime, Rig, Simulation, State, floquet};
+use super::{Excitation, Motion, Pattern, PeriodicOrbit, Regime, Rig, Simulation, State, Steady, floquet};
 use crate::error::{Error, Result};
 use nalgebra::Matrix4;
+use num_complex::Complex64;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -163,7 +164,8 @@ pub struct Plan {
     pub x: Axis,
     /// Parameter upwards.
     pub y: Axis,
-    /// Cycles a cell, from rest. A cell that repeats within 1e-6 before that, and is stable, ends there.
+    /// Cycles a cell, from rest. A cell ends before that where it repeats within 1e-6, where it is within 1e-3 of a stable motion and
+    /// draws nearer, or where the masses cannot meet any more.
     pub cycles: u32,
 }
 
@@ -178,6 +180,8 @@ pub struct Cell {
 
 /// Share of the cycles that pass before a motion that has not settled is judged.
 const SETTLING: f64 = 0.6;
+/// Differences below this that still fall towards a stable motion end a cell.
+const SOON: f64 = 1e-3;
 /// Cycles between two looks whether a motion has settled.
 const LOOK: u32 = 16;
 
@@ -278,16 +282,11 @@ fn judged(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Cell> {
         motion.advance(motion.time() + f64::from(look) / frequency, &mut |piece| watch.take(&piece))?;
         passed += look;
         let found = watch.pattern();
-        if let Regime::Periodic { impacts, cycles } = found.regime
-            && found.settled
-            // Seen at least three times.
-            && watch.strikes().len() >= 3 * impacts as usize
-            && 3 * cycles <= look
-        {
-            let spectral_radius = radius(rig, excitation, cycles, &found.strikes);
-            if spectral_radius.is_some_and(|r| r < 1.0) {
-                return Ok(Cell { regime: Some(found.regime), spectral_radius });
-            }
+        if let Some(cell) = early(rig, excitation, &watch, &found, look) {
+            return Ok(cell);
+        }
+        if found.regime == Regime::NoImpact && found.settled && clear(rig, excitation, &motion) {
+            break;
         }
     }
     watch.restart(&motion);
@@ -295,28 +294,56 @@ fn judged(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Cell> {
     motion.advance(motion.time() + rest, &mut |piece| watch.take(&piece))?;
     let found = watch.pattern();
     Ok(match found.regime {
-        Regime::Periodic { cycles, .. } if found.settled => Cell {
-            regime: Some(found.regime),
-            spectral_radius: radius(rig, excitation, cycles, &found.strikes),
-        },
-        Regime::Periodic { cycles, .. } => {
-            // Where it still settles, the motion that it settles on must be there, as far as that can be computed.
-            let Excitation::Sine(sine) = excitation else {
-                let spectral_radius = radius(rig, excitation, cycles, &found.strikes);
-                return Ok(Cell { regime: Some(found.regime), spectral_radius });
-            };
-            match PeriodicOrbit::from_strikes(rig, sine, cycles, &found.strikes) {
-                Ok(orbit) if orbit.validity.stable != Some(false) && orbit.validity.admissible => {
-                    Cell { regime: Some(found.regime), spectral_radius: orbit.spectral_radius() }
-                }
-                _ => Cell { regime: Some(Regime::Irregular), spectral_radius: None },
-            }
-        }
+        Regime::Periodic { .. } => periodic(rig, excitation, &found)
+            .unwrap_or(Cell { regime: Some(Regime::Irregular), spectral_radius: None }),
         Regime::NoImpact => {
             Cell { regime: Some(found.regime), spectral_radius: Some(free_radius(rig, excitation)) }
         }
         other => Cell { regime: Some(other), spectral_radius: None },
     })
+}
+
+/// The cell of a pattern. Under a sine the motion that the pattern is, or settles on, must be there, must not be unstable, and says
+/// what its shortest period is.
+fn periodic(rig: &Rig, excitation: &Excitation, found: &Pattern) -> Option<Cell> {
+    let Regime::Periodic { cycles, .. } = found.regime else { return None };
+    let as_seen = || Cell {
+        regime: Some(found.regime),
+        spectral_radius: radius(rig, excitation, cycles, &found.strikes),
+    };
+    let Excitation::Sine(sine) = excitation else { return Some(as_seen()) };
+    let orbit =
+        PeriodicOrbit::from_strikes(rig, sine, cycles, &found.strikes).and_then(PeriodicOrbit::shortest);
+    match orbit {
+        Ok(orbit) if orbit.validity.admissible && orbit.validity.stable != Some(false) => Some(Cell {
+            regime: Some(Regime::Periodic { impacts: orbit.impacts(), cycles: orbit.cycles }),
+            spectral_radius: orbit.spectral_radius(),
+        }),
+        _ => found.settled.then(as_seen),
+    }
+}
+
+/// The cell of a pattern that has settled, or draws near a stable motion, before all cycles have passed.
+fn early(rig: &Rig, excitation: &Excitation, watch: &Watch, found: &Pattern, look: u32) -> Option<Cell> {
+    let Regime::Periodic { impacts, cycles } = found.regime else { return None };
+    // Seen at least three times.
+    if watch.strikes().len() < 3 * impacts as usize || 3 * cycles > look {
+        return None;
+    }
+    let near = found.settled || (matches!(excitation, Excitation::Sine(_)) && found.distance? < SOON);
+    let cell = if near { periodic(rig, excitation, found)? } else { return None };
+    cell.spectral_radius.is_some_and(|r| r < 1.0).then_some(cell)
+}
+
+/// Whether a motion under a sine cannot meet the other mass any more: forced and free parts together stay below the gap.
+fn clear(rig: &Rig, excitation: &Excitation, motion: &Simulation) -> bool {
+    let Excitation::Sine(sine) = excitation else { return false };
+    let Ok(steady) = Steady::new(rig, sine) else { return false };
+    let (state, forced) = (motion.state(), steady.response * Complex64::cis(motion.phase()));
+    let [first, second] = rig.oscillators();
+    let free = first.bound(state.x1 - forced.re, state.v1 + steady.omega * forced.im)
+        + second.bound(state.x2, state.v2);
+    forced.norm() + free < rig.gap
 }
 
 /// Spectral radius along a pattern of impacts; `None` under several sines, whose force is not told by the phase of one.

@@ -57,6 +57,8 @@ pub struct PeriodicOrbit {
 const STEPS: usize = 40;
 /// Newton has settled when its step (rad and shares of an impulse) is below this.
 const SETTLED: f64 = 1e-11;
+/// Impacts of one motion whose phases (rad) and impulses (relatively) differ by less are the same impact.
+const REPEATED: f64 = 1e-7;
 
 impl PeriodicOrbit {
     /// The motion near `impacts`, pairs of phase (rad, over all `cycles`) and impulse (N s).
@@ -92,6 +94,29 @@ impl PeriodicOrbit {
         let phase = |s: &Strike| strikes[0].phase + sine.omega() * (s.time - strikes[0].time);
         let impacts: Vec<_> = strikes.iter().map(|s| (phase(s), s.impulse)).collect();
         PeriodicOrbit::near(rig, sine, cycles, &impacts)
+    }
+
+    /// The same motion over its shortest period: impacts that repeat within the period count once.
+    ///
+    /// # Errors
+    /// As [`PeriodicOrbit::near`].
+    pub fn shortest(self) -> Result<PeriodicOrbit> {
+        let p = self.beats.len();
+        let cycles =
+            |d: usize| (self.cycles as usize * d).is_multiple_of(p).then(|| self.cycles as usize * d / p);
+        let repeats = |d: usize, q: usize| {
+            (0..p - d).all(|i| {
+                let (a, b) = (self.beats[i], self.beats[i + d]);
+                (b.phase - a.phase - TAU * q as f64).abs() < REPEATED
+                    && (b.impulse - a.impulse).abs() < REPEATED * a.impulse
+            })
+        };
+        let shorter = (1..p)
+            .filter(|d| p % d == 0)
+            .find_map(|d| Some((d, cycles(d)?)).filter(|(d, q)| repeats(*d, *q)));
+        let Some((d, q)) = shorter else { return Ok(self) };
+        let impacts: Vec<_> = self.beats[..d].iter().map(|b| (b.phase, b.impulse)).collect();
+        PeriodicOrbit::near(&self.rig, &self.sine, q as u32, &impacts)
     }
 
     /// Impacts p in a period.

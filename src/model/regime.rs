@@ -20,6 +20,8 @@ pub const SAME: f64 = 1e-6;
 const NEAR: f64 = 1e-2;
 /// From one third of what was watched to the next the differences must fall to this fraction or less.
 const FALLING: f64 = 0.95;
+/// A pattern is clearly off where its differences are larger than those of a longer one by this factor.
+const OFF: f64 = 100.0;
 /// Impacts kept: nine blocks of the longest pattern and more.
 const KEPT: usize = 320;
 
@@ -233,18 +235,16 @@ impl Watch {
     /// The shortest pattern that repeats.
     fn repeated(&self, strikes: &VecDeque<Strike>) -> Option<Repeated> {
         let compared = Compared::new(strikes, self.frequency);
-        let n = strikes.len();
-        (1..=(LONGEST as usize).min(n / 2)).find_map(|p| {
+        (1..=(LONGEST as usize).min(strikes.len() / 2)).find_map(|p| {
             let found = compared.last(p)?;
-            if found.distance <= SAME {
-                return Some(found);
-            }
-            if found.distance > NEAR || !compared.falls(p) {
+            if found.distance > SAME && !compared.falls(p) {
                 return None;
             }
-            // Impacts that take turns about a single one draw near each other in pairs before they do one by one.
-            let shorter = (1..p).filter(|d| p % d == 0).find(|d| compared.falls(*d));
-            shorter.and_then(|d| compared.last(d)).or(Some(found))
+            // Impacts that take turns about a single one draw near each other in pairs before they do one by one: a longer pattern
+            // counts only where the shorter one is clearly off, and stays so.
+            let draws = |d: &usize| compared.near(*d, OFF * found.distance) || compared.vanishes(*d, p);
+            let shorter = (1..p).filter(|d| p % d == 0).find(draws);
+            shorter.and_then(|d| compared.counted(d)).or(Some(found))
         })
     }
 }
@@ -269,8 +269,21 @@ impl Compared<'_> {
         range.map(far).fold(0.0, f64::max)
     }
 
-    /// The last `p` impacts against those before; `None` where they do not take whole cycles, or too many.
+    /// The last `p` impacts against those before; `None` where they differ by more than [`NEAR`], or as [`Compared::counted`].
     fn last(&self, p: usize) -> Option<Repeated> {
+        let n = self.strikes.len();
+        // Most patterns are turned down by the last impact alone.
+        (self.largest(n - 1..n, p) <= NEAR).then(|| self.counted(p)).flatten().filter(|r| r.distance <= NEAR)
+    }
+
+    /// Whether the last `p` impacts are within `distance` of those before.
+    fn near(&self, p: usize, distance: f64) -> bool {
+        let n = self.strikes.len();
+        distance < NEAR && self.largest(n - p..n, p) <= distance
+    }
+
+    /// The last `p` impacts against those before; `None` where they do not take whole cycles, or too many.
+    fn counted(&self, p: usize) -> Option<Repeated> {
         let n = self.strikes.len();
         let cycles = ((self.strikes[n - 1].time - self.strikes[n - 1 - p].time) * self.frequency).round();
         (1.0..=f64::from(LONGEST)).contains(&cycles).then(|| Repeated {
@@ -280,17 +293,27 @@ impl Compared<'_> {
         })
     }
 
-    /// Whether the differences over `p` impacts fall from third to third of what was watched: the largest in each, so that complex
-    /// multipliers do no harm.
-    fn falls(&self, p: usize) -> bool {
+    /// The largest differences over `p` impacts in each third of what was watched, so that complex multipliers do no harm; `None`
+    /// where that is too short.
+    fn thirds(&self, p: usize, reach: usize) -> Option<[f64; 3]> {
         let n = self.strikes.len();
-        let third = (n - p) / 3;
-        let thirds = [3, 2, 1].map(|k| n - k * third);
-        if third < p.max(3) {
-            return false;
-        }
-        let [a, b, c] = thirds.map(|from| self.largest(from..from + third, p));
-        b <= FALLING * a && c <= FALLING * b
+        let third = (n - reach) / 3;
+        (third >= reach.max(3))
+            .then(|| [3, 2, 1].map(|k| self.largest(n - k * third..n - (k - 1) * third, p)))
+    }
+
+    /// Whether the differences over `p` impacts fall.
+    fn falls(&self, p: usize) -> bool {
+        self.thirds(p, p).is_some_and(|[a, b, c]| b <= FALLING * a && c <= FALLING * b)
+    }
+
+    /// Whether differences over `short` impacts tend to nothing at the rate at which those over `long` fall: a geometric sequence
+    /// that falls from b to c with the ratio ρ ends at c − (b − c)ρ/(1 − ρ).
+    fn vanishes(&self, short: usize, long: usize) -> bool {
+        let thirds = [short, long].map(|p| self.thirds(p, long));
+        let [Some([_, b, c]), Some([_, slow, slower])] = thirds else { return false };
+        let ratio = (slower / slow).clamp(0.0, 0.9999);
+        c - (b - c) * ratio / (1.0 - ratio) <= 0.3 * c
     }
 }
 

@@ -74,6 +74,20 @@ fn patterns_that_simulations_settle_on_are_found() {
 }
 
 #[test]
+fn a_motion_over_several_periods_is_brought_to_one() {
+    let (rig, sine) = (Rig { restitution: 0.5, ..Rig::thesis() }, Sine { force: 0.5, frequency: 10.0 });
+    let orbit = orbits(&rig, 0.5, 10.0).unwrap().orbits[0];
+    let thrice: Vec<_> =
+        (0..3).map(|i| (orbit.force_phase + TAU * f64::from(i), orbit.impulse * 1.001)).collect();
+    let found = PeriodicOrbit::near(&rig, &sine, 3, &thrice).unwrap();
+    assert_eq!((found.impacts(), found.cycles), (3, 3));
+    let cubed = found.spectral_radius().unwrap();
+    let found = found.shortest().unwrap();
+    assert_eq!((found.impacts(), found.cycles), (1, 1));
+    assert!((found.spectral_radius().unwrap().powi(3) / cubed - 1.0).abs() < 1e-9);
+}
+
+#[test]
 fn what_is_not_there_is_refused() {
     let (rig, sine) = (Rig::thesis(), Sine { force: 0.01, frequency: 20.0 });
     assert!(PeriodicOrbit::near(&rig, &sine, 1, &[(0.0, 1e-3)]).is_err());
