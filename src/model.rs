@@ -23,14 +23,16 @@ pub mod green;
 pub mod orbit;
 pub mod receptance;
 pub mod rig;
+pub mod scene;
 pub mod simulate;
 pub mod validity;
 
-pub use excitation::{Excitation, Sine};
+pub use excitation::{Excitation, Impulses, Part, Pulses, Sine, Sines};
 pub use flow::{Flight, State};
 pub use green::Green;
 pub use orbit::{Orbit, Orbits, orbits};
 pub use receptance::{NoImpact, Steady};
 pub use rig::Rig;
+pub use scene::{Buffer, ContactKeys, Draft, Scene};
 pub use simulate::{Impact, Leg, Simulation};
 pub use validity::Validity;
