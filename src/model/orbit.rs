@@ -1,5 +1,7 @@
 //! Periodic motions with one impact a period, in closed form.
 
+mod told;
+
 use super::flow::Signal;
 use super::{Flight, Green, NoImpact, Rig, Sine, State, Steady, Validity, floquet};
 use crate::error::{Error, Result};
