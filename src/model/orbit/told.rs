@@ -2,6 +2,7 @@
 
 use super::{Orbit, Orbits};
 use crate::model::NoImpact;
+use crate::model::validity::Loss;
 use serde::ser::{Serialize, Serializer};
 
 #[derive(serde::Serialize)]
@@ -21,6 +22,8 @@ struct Told {
     admissible: bool,
     stable: bool,
     stability: &'static str,
+    instability: Option<Loss>,
+    energy_rule: bool,
     grazing_distance: f64,
     peak_to_peak: [f64; 2],
     fundamental: [f64; 2],
@@ -35,7 +38,7 @@ impl Serialize for Orbit {
             cycles: self.cycles,
             impulse: self.impulse,
             timing: self.timing,
-            timing_unit: "rad",
+            timing_unit: self.timing_unit(),
             force_phase: self.force_phase,
             approach_velocity: self.approach_velocity,
             min_gap: v.min_gap,
@@ -47,6 +50,8 @@ impl Serialize for Orbit {
             // Neutral is not stable.
             stable: v.stable == Some(true),
             stability: v.stability,
+            instability: v.instability,
+            energy_rule: v.energy_rule,
             grazing_distance: v.grazing_distance,
             peak_to_peak: self.peak_to_peak,
             fundamental: self.fundamental.map(|z| z.norm()),
