@@ -1,6 +1,7 @@
 //! Numerical kernels, each with its source and its error bound.
 
 pub mod bracket;
+pub mod cis;
 pub mod lanes;
 mod least_squares;
 pub mod oscillator;

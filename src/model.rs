@@ -16,23 +16,29 @@
 //! # Ok::<(), vibroimpact::Error>(())
 //! ```
 
+mod drive;
 pub mod excitation;
 pub mod floquet;
 pub mod flow;
 pub mod green;
+pub mod motion;
 pub mod orbit;
 pub mod receptance;
 pub mod rig;
 pub mod scene;
 pub mod simulate;
+pub mod stick;
 pub mod validity;
+mod waves;
 
 pub use excitation::{Excitation, Impulses, Part, Pulses, Sine, Sines};
 pub use flow::{Flight, State};
 pub use green::Green;
+pub use motion::{Event, Motion, Path, Piece};
 pub use orbit::{Orbit, Orbits, orbits, orbits_of, orbits_over};
 pub use receptance::{NoImpact, Steady};
 pub use rig::Rig;
 pub use scene::{Buffer, ContactKeys, Draft, Scene};
-pub use simulate::{Impact, Leg, Simulation};
+pub use simulate::{Counts, Course, Impact, Leg, Simulation};
+pub use stick::Pair;
 pub use validity::{Loss, Validity};

@@ -56,7 +56,7 @@ impl Oscillator {
             (e * (1.0 - z / 2.0 + z * z / 24.0), e * t * (1.0 - z / 6.0 + z * z / 120.0))
         } else if z > 0.0 {
             let e = (-self.b * t).exp();
-            let (sin, cos) = (self.lambda * t).sin_cos();
+            let (sin, cos) = super::cis::sin_cos(self.lambda * t);
             (e * cos, e * sin / self.lambda)
         } else {
             let e = (-self.slow * t).exp();

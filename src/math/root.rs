@@ -31,6 +31,128 @@ impl Bounded {
     }
 }
 
+/// Value, slope and bend of a function.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bent {
+    /// f(t).
+    pub value: f64,
+    /// df/dt.
+    pub slope: f64,
+    /// d²f/dt².
+    pub bend: f64,
+}
+
+/// Bounds on a function from an argument on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// f stays above this.
+    pub least: f64,
+    /// A bound on |d²f/dt²|.
+    pub curvature: f64,
+    /// A bound on |d³f/dt³|.
+    pub jerk: f64,
+}
+
+impl Bent {
+    /// A step that cannot pass a root.
+    ///
+    /// f bends down by no more than K = min(M₂, M₃H − f̈) over the next H, so the parabola with K in place of M₂ is below f over H.
+    /// Near a simple root K is nearly −f̈ and the steps converge with the third order.
+    #[inline]
+    fn step(self, limits: Limits) -> f64 {
+        let value = self.value.max(0.0);
+        let safe = fall(value, self.slope, limits.curvature);
+        let mut reach = 2.0 * safe;
+        let mut step = safe;
+        for _ in 0..3 {
+            let bend = limits.jerk * reach - self.bend;
+            if bend >= limits.curvature {
+                break;
+            }
+            let further = fall(value, self.slope, bend);
+            step = step.max(further.min(reach));
+            if further < reach {
+                break;
+            }
+            reach *= 1.5;
+        }
+        step
+    }
+
+    /// The first root of f + ḟh + f̈h²/2 for ḟ < 0; ∞ if there is none.
+    #[inline]
+    fn parabola(self) -> f64 {
+        fall(self.value.max(0.0), self.slope, -self.bend)
+    }
+}
+
+/// The first root of f + ḟh − Kh²/2 behind 0, for f ≥ 0; ∞ if there is none.
+#[inline]
+fn fall(value: f64, slope: f64, bend: f64) -> f64 {
+    let square = slope * slope + 2.0 * bend * value;
+    if slope < 0.0 {
+        // Not a number, where the parabola has no root, becomes no limit.
+        if square >= 0.0 { 2.0 * value / (square.sqrt() - slope) } else { f64::INFINITY }
+    } else if bend > 0.0 {
+        (slope + square.sqrt()) / bend
+    } else {
+        f64::INFINITY
+    }
+}
+
+/// As [`first_fall`], for a function whose second derivative is known as well: fewer calls, and none for the last step.
+///
+/// Returns the last argument called for and the step from there to the root. Over this step the parabola through value, slope and
+/// bend errs by less than `rounding`, the rounding error of f's values. `limits` gives bounds from an argument on.
+#[inline]
+pub fn first_landing(
+    from: f64,
+    to: f64,
+    rounding: f64,
+    mut f: impl FnMut(f64) -> Bent,
+    mut limits: impl FnMut(f64) -> Limits,
+) -> Option<(f64, f64)> {
+    /// Calls after which the bounds are taken anew: they fall as free motions die away.
+    const FRESH: u32 = 6;
+    let mut bounds = limits(from);
+    let mut t = from;
+    let mut calls = 0;
+    loop {
+        let here = f(t);
+        if here.slope < 0.0 && here.value <= 0.0 {
+            return Some((t, 0.0));
+        }
+        calls += 1;
+        if calls % FRESH == 0 {
+            bounds = limits(t);
+            if bounds.least > 0.0 {
+                return None;
+            }
+        }
+        let step = here.step(bounds);
+        if here.slope < 0.0 && bounds.jerk * step * step * step <= rounding {
+            let last = here.parabola();
+            if last <= 2.0 * step {
+                return (t + last <= to).then_some((t, last));
+            }
+        }
+        let next = t + step;
+        if next <= t {
+            if here.slope < 0.0 {
+                return Some((t, 0.0));
+            }
+            // At rest on zero to the last digit: one digit on, where the curvature has shown its sign.
+            t += f64::EPSILON * t.abs().max(to - from);
+        } else {
+            t = next;
+        }
+        // The last also where f is not a number.
+        if t > to || t.is_nan() {
+            return None;
+        }
+    }
+}
+
 /// The first argument in `from..=to` at which `f`, not negative at `from`, falls to zero.
 ///
 /// `noise` is the rounding error of f's values: a value below it counts as zero. A touch from above that does not
