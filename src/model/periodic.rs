@@ -4,6 +4,7 @@
 //! form. Each motion comes with the verdicts of those with one impact ([`Validity`]).
 
 mod system;
+mod verdict;
 
 pub(super) use system::System;
 
@@ -176,7 +177,9 @@ impl PeriodicOrbit {
         let flights: Vec<Flight> = (0..p)
             .map(|i| {
                 let forced = system.response * Complex64::cis(u[i]);
-                Flight::from_parts(rig.oscillators(), forced, omega, rig.gap, system.free_after(u, i))
+                let [(x1, v1), (x2, v2)] = system.free_after(u, i);
+                let state = State { x1: x1 + forced.re, v1: v1 - omega * forced.im, x2, v2 };
+                Flight::new(rig.oscillators(), &system.steady, rig.gap, &state, u[i])
             })
             .collect();
         let sensitivity = sensitivity(system, u);
@@ -194,12 +197,13 @@ impl PeriodicOrbit {
                 multipliers.as_ref().map_or(stable, |m| floquet::inside(&whole, m, amplified * rounding));
             monodromy = Some(whole);
         }
-        let verdicts = flights.iter().zip(&beats).zip(&sensitivity).map(|((flight, beat), s)| {
-            Validity::judge(beat.impulse, s.abs(), flight, beat.interval.max(0.0), stable)
-        });
-        let mut validity = verdicts.reduce(together).expect("at least one impact");
-        validity.exists &= exists;
-        validity.admissible &= exists;
+        let own = beats
+            .iter()
+            .zip(&sensitivity)
+            .map(|(beat, s)| beat.impulse.abs() / s.abs())
+            .fold(f64::INFINITY, f64::min);
+        let validity =
+            verdict::judge(&flights, &beats, own, stable, multipliers.as_ref(), monodromy.as_ref());
         let spread = |signal| {
             let ranges = flights.iter().zip(&beats).map(|(f, b)| f.range(signal, b.interval.max(0.0)));
             let (low, high) =
@@ -278,22 +282,6 @@ fn product(rig: &Rig, flights: &[Flight], beats: &[Beat]) -> (Matrix4<f64>, f64)
         whole = part * whole;
     }
     (whole, norms * relative)
-}
-
-/// Verdicts on two flights as one.
-fn together(a: Validity, b: Validity) -> Validity {
-    let nearer = |a: Option<f64>, b: Option<f64>| match (a, b) {
-        (Some(a), Some(b)) => Some(a.min(b)),
-        (one, other) => one.or(other),
-    };
-    Validity {
-        exists: a.exists && b.exists,
-        admissible: a.admissible && b.admissible,
-        min_gap: a.min_gap.min(b.min_gap),
-        clearance: nearer(a.clearance, b.clearance),
-        grazing_distance: a.grazing_distance.min(b.grazing_distance),
-        ..a
-    }
 }
 
 #[cfg(test)]

@@ -18,6 +18,7 @@ pub(in crate::model) struct System {
     pub omega: f64,
     pub period: f64,
     pub response: Complex64,
+    pub steady: Steady,
     pub greens: [Green; 2],
     oscillators: [Oscillator; 2],
     /// 1/M(1 + R) in 1/kg.
@@ -37,6 +38,7 @@ impl System {
             omega: steady.omega,
             period,
             response: steady.response,
+            steady,
             greens: [Green::new(rig.m1, first, period)?, Green::new(rig.m2, second, period)?],
             oscillators,
             contact: 1.0 / (rig.reduced_mass() * (1.0 + rig.restitution)),
