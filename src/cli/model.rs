@@ -1,6 +1,8 @@
 //! `vibro model`: what the motion of a rig should be.
 
+mod map;
 mod orbit;
+mod sweep;
 
 use super::args::{self, ModelCommand};
 use crate::error::{Error, Result};
@@ -9,6 +11,8 @@ use crate::model::{Draft, Scene};
 pub fn run(typed: &args::Model, json: bool) -> Result<()> {
     match &typed.command {
         ModelCommand::Orbit(typed) => orbit::run(typed, json),
+        ModelCommand::Sweep(typed) => sweep::run(typed, json),
+        ModelCommand::Map(typed) => map::run(typed, json),
     }
 }
 

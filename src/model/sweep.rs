@@ -2,9 +2,11 @@
 
 mod gauge;
 mod named;
+mod size;
 
 pub use gauge::{LOW_PASS, Observable};
 pub use named::{Named, named};
+pub use size::{at_size, size};
 
 use super::Motion;
 use crate::error::{Error, Result};

@@ -5,8 +5,10 @@ mod frf;
 mod impacts;
 mod overlay;
 mod pulse;
+mod regimes;
 mod response;
 mod spectrum;
+mod sweep;
 mod waterfall;
 
 pub use drill::drill;
@@ -14,8 +16,10 @@ pub use frf::{frf, nyquist};
 pub use impacts::{drop, impacts};
 pub use overlay::overlay;
 pub use pulse::pulse;
+pub use regimes::regimes;
 pub use response::response;
 pub use spectrum::{lines, spectrum, transfer};
+pub use sweep::sweep;
 pub use waterfall::{map, waterfall};
 
 use crate::report::{Figure, Panel};

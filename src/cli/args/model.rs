@@ -1,10 +1,14 @@
 //! `vibro model`, as typed.
 
+mod map;
 mod orbit;
 mod scene;
+mod sweep;
 
+pub use map::Map as ModelMap;
 pub use orbit::Orbit;
 pub use scene::Scene;
+pub use sweep::{Observable, Over, Sweep as ModelSweep, Way};
 
 use clap::Subcommand;
 
@@ -18,4 +22,8 @@ pub struct Model {
 pub enum ModelCommand {
     /// All motions with one impact a period at one frequency, each with its verdicts
     Orbit(Orbit),
+    /// Sweep frequency or force up and down, the motion carried on from step to step
+    Sweep(Box<ModelSweep>),
+    /// Map regime and stability over two parameters
+    Map(ModelMap),
 }
