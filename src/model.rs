@@ -16,6 +16,7 @@
 //! # Ok::<(), vibroimpact::Error>(())
 //! ```
 
+pub mod chirp;
 mod drive;
 pub mod excitation;
 pub mod floquet;
@@ -30,6 +31,7 @@ pub mod stick;
 pub mod validity;
 mod waves;
 
+pub use chirp::Chirp;
 pub use excitation::{Excitation, Impulses, Part, Pulses, Sine, Sines};
 pub use flow::{Flight, State};
 pub use green::Green;

@@ -3,6 +3,8 @@ use crate::model::Sine;
 use crate::model::orbits;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+mod energy;
+
 fn scene_b() -> Simulation {
     let rig = Rig::thesis();
     let frequency = 2.1 * (rig.k1 / rig.m1).sqrt() / TAU;
