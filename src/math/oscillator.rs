@@ -55,6 +55,11 @@ impl Oscillator {
         self.gain
     }
 
+    /// λ² = Ω² − b² in 1/s², negative above critical damping.
+    pub fn lambda2(&self) -> f64 {
+        self.lambda2
+    }
+
     /// C(t) = e^{−bt} cos λt and S(t) = e^{−bt} sin(λt)/λ (in s), `t` ≥ 0 in s.
     #[inline]
     pub fn kernels(&self, t: f64) -> (f64, f64) {

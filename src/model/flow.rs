@@ -137,20 +137,6 @@ impl Flight {
         }
     }
 
-    /// Flight with forced part `forced` at its start and free parts that start with `free` (displacement, velocity).
-    pub(super) fn from_parts(
-        oscillators: [Oscillator; 2],
-        forced: Complex64,
-        omega: f64,
-        gap: f64,
-        free: [(f64, f64); 2],
-    ) -> Flight {
-        let mut waves = Waves::default();
-        waves.add(forced, omega, forced.norm());
-        let part = |i: usize| Free { oscillator: oscillators[i], x: free[i].0, v: free[i].1 };
-        Flight { waves, rest: 0.0, gap, free: [part(0), part(1)], open: 0.0 }
-    }
-
     /// The same flight of masses that part from rest against each other: no contact is sought where the gap can but open.
     ///
     /// With g = ġ = 0 at the start, g ≥ g̈t²/2 + g⃛t³/6 − M₄t⁴/24, which is above 0 up to its root. After a release g̈ is 0 as well,

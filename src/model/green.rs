@@ -56,6 +56,11 @@ impl Green {
         self.oscillator.free(self.start, self.slope_after, t)
     }
 
+    /// The oscillator.
+    pub fn oscillator(&self) -> &Oscillator {
+        &self.oscillator
+    }
+
     /// T in s.
     pub fn period(&self) -> f64 {
         self.period

@@ -56,17 +56,19 @@ impl Steady {
 /// Motion without impacts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct NoImpact {
-    /// Whether it stays clear of the other mass: A below the gap.
+    /// Whether it stays clear of the other mass: the largest x₁ is below the gap.
     pub possible: bool,
-    /// Amplitude A of x₁ in m.
+    /// Amplitude A of x₁ in m: half its peak-to-peak value.
     pub amplitude: f64,
+    /// Largest x₁ in m, counted from its rest; under a sine force the amplitude.
+    pub largest: f64,
 }
 
 impl NoImpact {
     /// Motion without impacts on a rig with this `gap` in m.
     pub fn new(steady: &Steady, gap: f64) -> NoImpact {
         let amplitude = steady.amplitude();
-        NoImpact { possible: amplitude < gap, amplitude }
+        NoImpact { possible: amplitude < gap, amplitude, largest: amplitude }
     }
 }
 

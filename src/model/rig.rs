@@ -88,6 +88,11 @@ impl Rig {
         self.m1 * self.m2 / (self.m1 + self.m2)
     }
 
+    /// Impulse of an impact over its approach speed, M(1 + R) in kg.
+    pub fn exchange(&self) -> f64 {
+        self.reduced_mass() * (1.0 + self.restitution)
+    }
+
     /// Natural frequencies in Hz of each mass alone, without its damper.
     pub fn natural_frequencies(&self) -> [f64; 2] {
         [(self.k1 / self.m1).sqrt(), (self.k2 / self.m2).sqrt()].map(|omega| omega / std::f64::consts::TAU)
