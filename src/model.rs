@@ -17,28 +17,36 @@
 //! ```
 
 pub mod chirp;
+pub mod continuation;
 mod drive;
 pub mod excitation;
 pub mod floquet;
 pub mod flow;
 pub mod green;
+pub mod map;
 pub mod motion;
 pub mod orbit;
+pub mod periodic;
 pub mod receptance;
+pub mod regime;
 pub mod rig;
 pub mod scene;
 pub mod simulate;
 pub mod stick;
+pub mod sweep;
 pub mod validity;
 mod waves;
 
 pub use chirp::Chirp;
+pub use continuation::{Branch, follow};
 pub use excitation::{Excitation, Impulses, Part, Pulses, Sine, Sines};
 pub use flow::{Flight, State};
 pub use green::Green;
 pub use motion::{Event, Motion, Path, Piece};
 pub use orbit::{Orbit, Orbits, orbits, orbits_of, orbits_over};
+pub use periodic::{Beat, PeriodicOrbit};
 pub use receptance::{NoImpact, Steady};
+pub use regime::{Pattern, Regime, regime};
 pub use rig::Rig;
 pub use scene::{Buffer, ContactKeys, Draft, Scene};
 pub use simulate::{Counts, Course, Impact, Leg, Simulation};

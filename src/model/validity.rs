@@ -61,7 +61,7 @@ impl Loss {
     }
 
     /// The loss that the largest of these multipliers shows.
-    fn of(multipliers: Option<&[Complex64; 4]>) -> Loss {
+    pub(super) fn of(multipliers: Option<&[Complex64; 4]>) -> Loss {
         match multipliers.map(|m| m[0]) {
             None => Loss::Grazing,
             Some(z) if z.im != 0.0 => Loss::NeimarkSacker,
