@@ -16,6 +16,7 @@
 //! # Ok::<(), vibroimpact::Error>(())
 //! ```
 
+pub mod chirp;
 pub mod continuation;
 mod drive;
 pub mod excitation;
@@ -36,6 +37,7 @@ pub mod sweep;
 pub mod validity;
 mod waves;
 
+pub use chirp::Chirp;
 pub use continuation::{Branch, follow};
 pub use excitation::{Excitation, Impulses, Part, Pulses, Sine, Sines};
 pub use flow::{Flight, State};

@@ -30,26 +30,26 @@ fn reduced(x: f64) -> (f64, f64) {
     let y = left - rest;
     let tail = (left - y) - rest;
     let z = y * y;
-    let high = 8.333_333_333_322_49e-3
-        + z * (-1.984_126_982_985_795e-4
-            + z * (2.755_731_370_707_006_8e-6
-                + z * (-2.505_076_025_340_686_3e-8 + z * 1.589_690_995_211_55e-10)));
+    // Both polynomials in pairs of terms, which a processor works on at once.
+    let z2 = z * z;
+    let high = (8.333_333_333_322_49e-3 + z * -1.984_126_982_985_795e-4)
+        + z2 * ((2.755_731_370_707_006_8e-6 + z * -2.505_076_025_340_686_3e-8)
+            + z2 * 1.589_690_995_211_55e-10);
     let v = z * y;
     let sin = y - ((z * (0.5 * tail - v * high) - tail) - v * -1.666_666_666_666_663_2e-1);
     let low = z
-        * (4.166_666_666_666_66e-2
-            + z * (-1.388_888_888_887_411e-3
-                + z * (2.480_158_728_947_673e-5
-                    + z * (-2.755_731_435_139_066_3e-7
-                        + z * (2.087_572_321_298_175e-9 + z * -1.135_964_755_778_819_5e-11)))));
+        * ((4.166_666_666_666_66e-2 + z * -1.388_888_888_887_411e-3)
+            + z2 * ((2.480_158_728_947_673e-5 + z * -2.755_731_435_139_066_3e-7)
+                + z2 * (2.087_572_321_298_175e-9 + z * -1.135_964_755_778_819_5e-11)));
     let half = 0.5 * z;
     let w = 1.0 - half;
     let cos = w + (((1.0 - w) - half) + (z * low - y * tail));
-    // The last two bits of the whole number tell the quarter.
+    // The last two bits of the whole number tell the quarter; bits are chosen and signs set without a branch.
     let quarter = shifted.to_bits();
-    let (s, c) = if quarter & 1 == 0 { (sin, cos) } else { (cos, sin) };
-    let sign = |value: f64, negative: u64| f64::from_bits(value.to_bits() ^ (negative << 63));
-    (sign(s, (quarter >> 1) & 1), sign(c, ((quarter.wrapping_add(1)) >> 1) & 1))
+    let (sin, cos) = (sin.to_bits(), cos.to_bits());
+    let swap = (sin ^ cos) & 0_u64.wrapping_sub(quarter & 1);
+    let sign = |negative: u64| (negative & 2) << 62;
+    (f64::from_bits(sin ^ swap ^ sign(quarter)), f64::from_bits(cos ^ swap ^ sign(quarter.wrapping_add(1))))
 }
 
 #[cfg(test)]

@@ -31,7 +31,7 @@ impl Bounded {
     }
 }
 
-/// Value, slope and bend of a function.
+/// A function with its first three derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bent {
     /// f(t).
@@ -40,32 +40,38 @@ pub struct Bent {
     pub slope: f64,
     /// d²f/dt².
     pub bend: f64,
+    /// d³f/dt³.
+    pub jerk: f64,
 }
 
-/// Bounds on a function from an argument on.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Bounds on derivatives of a function from an argument on.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Limits {
-    /// f stays above this.
-    pub least: f64,
     /// A bound on |d²f/dt²|.
     pub curvature: f64,
-    /// A bound on |d³f/dt³|.
+    /// On |d³f/dt³|.
     pub jerk: f64,
+    /// On |d⁴f/dt⁴|.
+    pub snap: f64,
+    /// On |d⁶f/dt⁶|.
+    pub sixth: f64,
 }
 
 impl Bent {
     /// A step that cannot pass a root.
     ///
-    /// f bends down by no more than K = min(M₂, M₃H − f̈) over the next H, so the parabola with K in place of M₂ is below f over H.
-    /// Near a simple root K is nearly −f̈ and the steps converge with the third order.
+    /// Over the next H, f bends down by no more than K, the least of M₂, M₃H − f̈ and M₄H²/2 − f⃛H − f̈ (or −f̈), so the parabola with K in
+    /// place of M₂ is below f over H. Near a simple root K is nearly −f̈ and the steps converge with the third order.
     #[inline]
     fn step(self, limits: Limits) -> f64 {
         let value = self.value.max(0.0);
         let safe = fall(value, self.slope, limits.curvature);
-        let mut reach = 2.0 * safe;
+        // Near a root Newton's step is known before the safe one.
+        let mut reach = if self.slope < 0.0 { -2.0 * value / self.slope } else { 2.0 * safe };
         let mut step = safe;
         for _ in 0..3 {
-            let bend = limits.jerk * reach - self.bend;
+            let lost = (0.5 * limits.snap * reach - self.jerk).max(0.0).min(limits.jerk) * reach;
+            let bend = lost - self.bend;
             if bend >= limits.curvature {
                 break;
             }
@@ -79,10 +85,11 @@ impl Bent {
         step
     }
 
-    /// The first root of f + ḟh + f̈h²/2 for ḟ < 0; ∞ if there is none.
+    /// The root of f + ḟh + f̈h²/2 for ḟ < 0, where it is a clear one: at half the slope or more.
     #[inline]
-    fn parabola(self) -> f64 {
-        fall(self.value.max(0.0), self.slope, -self.bend)
+    fn clear_root(self) -> Option<f64> {
+        let root = fall(self.value, self.slope, -self.bend);
+        (self.slope + self.bend * root <= 0.5 * self.slope).then_some(root)
     }
 }
 
@@ -100,21 +107,23 @@ fn fall(value: f64, slope: f64, bend: f64) -> f64 {
     }
 }
 
-/// As [`first_fall`], for a function whose second derivative is known as well: fewer calls, and none for the last step.
+/// As [`first_fall`], for a function whose derivatives are known: fewer calls, and none for the last step.
 ///
-/// Returns the last argument called for and the step from there to the root. Over this step the parabola through value, slope and
-/// bend errs by less than `rounding`, the rounding error of f's values. `limits` gives bounds from an argument on.
+/// Returns the last argument called for and the step from there to the root. Over twice this step a Taylor series with five derivatives
+/// errs in f's slope by less than `rounding` (that of f's values) times M₃/M₂, and in f by less than `rounding`; the step is the root of
+/// the parabola through value, slope and bend, for the caller to refine. `limits` gives bounds from an argument on, and nothing where f
+/// stays above 0 for ever.
 #[inline]
 pub fn first_landing(
     from: f64,
     to: f64,
     rounding: f64,
     mut f: impl FnMut(f64) -> Bent,
-    mut limits: impl FnMut(f64) -> Limits,
+    mut limits: impl FnMut(f64) -> Option<Limits>,
 ) -> Option<(f64, f64)> {
     /// Calls after which the bounds are taken anew: they fall as free motions die away.
     const FRESH: u32 = 6;
-    let mut bounds = limits(from);
+    let mut bounds = limits(from)?;
     let mut t = from;
     let mut calls = 0;
     loop {
@@ -124,18 +133,20 @@ pub fn first_landing(
         }
         calls += 1;
         if calls % FRESH == 0 {
-            bounds = limits(t);
-            if bounds.least > 0.0 {
-                return None;
-            }
+            bounds = limits(t)?;
         }
-        let step = here.step(bounds);
-        if here.slope < 0.0 && bounds.jerk * step * step * step <= rounding {
-            let last = here.parabola();
-            if last <= 2.0 * step {
+        if here.slope < 0.0 {
+            // M₆(2h)⁵/5! of the slope, at twice Newton's step h.
+            let newton = here.value / here.slope;
+            let square = newton * newton;
+            let error = bounds.sixth * bounds.curvature * square * square * -newton * (32.0 / 120.0);
+            if error <= rounding * bounds.jerk
+                && let Some(last) = here.clear_root()
+            {
                 return (t + last <= to).then_some((t, last));
             }
         }
+        let step = here.step(bounds);
         let next = t + step;
         if next <= t {
             if here.slope < 0.0 {

@@ -62,21 +62,23 @@ impl Free {
         (x, v, self.oscillator.bound(a, jerk))
     }
 
-    /// Displacement and its three derivatives at `t`.
+    /// Displacement and its first five derivatives at `t`.
     #[inline]
-    fn series(&self, t: f64) -> [f64; 4] {
+    fn series(&self, t: f64) -> [f64; 6] {
         let (x, v) = if t == 0.0 { (self.x, self.v) } else { self.oscillator.free(self.x, self.v, t) };
         let a = self.oscillator.acceleration(x, v);
-        [x, v, a, self.oscillator.acceleration(v, a)]
+        let jerk = self.oscillator.acceleration(v, a);
+        let snap = self.oscillator.acceleration(a, jerk);
+        [x, v, a, jerk, snap, self.oscillator.acceleration(jerk, snap)]
     }
+}
 
-    /// Bounds on displacement, acceleration and its rate for all times after `t`.
-    #[inline]
-    fn bounds(&self, t: f64) -> [f64; 3] {
-        let [x, v, a, jerk] = self.series(t);
-        let bound = |x: f64, v: f64| self.oscillator.bound(x, v);
-        [bound(x, v), bound(a, jerk), bound(jerk, self.oscillator.acceleration(a, jerk))]
-    }
+/// Change of a displacement in a step `h`, and the velocity after it, by Taylor's series.
+#[inline]
+fn ahead_of(terms: &[f64; 6], h: f64) -> (f64, f64) {
+    let [_, v, a, jerk, snap, fifth] = *terms;
+    let x = h * (v + h / 2.0 * (a + h / 3.0 * (jerk + h / 4.0 * (snap + h / 5.0 * fifth))));
+    (x, v + h * (a + h / 2.0 * (jerk + h / 3.0 * (snap + h / 4.0 * fifth))))
 }
 
 /// Where a flight meets the other mass.
@@ -140,7 +142,7 @@ impl Flight {
     /// With g = ġ = 0 at the start, g ≥ g̈t²/2 + g⃛t³/6 − M₄t⁴/24, which is above 0 up to its root. After a release g̈ is 0 as well,
     /// the gap opens like t³, and is long smaller than its rounding.
     pub(super) fn parting(mut self) -> Flight {
-        let [[_, _, a1, j1], [_, _, a2, j2]] = self.series(0.0);
+        let [[_, _, a1, j1, ..], [_, _, a2, j2, ..]] = self.series(0.0);
         let fourth = self.bounded(Signal::Gap, 2, 0.0).curvature;
         let (bend, jerk) = ((a2 - a1).max(0.0), j2 - j1);
         let root = (jerk / 6.0 + (jerk * jerk / 36.0 + fourth * bend / 12.0).sqrt()) / (fourth / 12.0);
@@ -156,9 +158,9 @@ impl Flight {
         t < self.open
     }
 
-    /// Both displacements with their first three derivatives.
+    /// Both displacements with their first five derivatives.
     #[inline]
-    pub(super) fn series(&self, t: f64) -> [[f64; 4]; 2] {
+    pub(super) fn series(&self, t: f64) -> [[f64; 6]; 2] {
         let mut first = self.free[0].series(t);
         let forced = if t == 0.0 { self.waves.start() } else { self.waves.at(t) };
         for (sum, term) in first.iter_mut().zip(forced) {
@@ -183,7 +185,7 @@ impl Flight {
 
     /// Rate of change of the state at `t`.
     pub fn rate(&self, t: f64) -> [f64; 4] {
-        let [[_, v1, a1, _], [_, v2, a2, _]] = self.series(t);
+        let [[_, v1, a1, ..], [_, v2, a2, ..]] = self.series(t);
         [v1, a1, v2, a2]
     }
 
@@ -229,34 +231,55 @@ impl Flight {
         if self.open > duration {
             return None;
         }
-        let mut last = [[0.0; 4]; 2];
-        let height = self.gap - self.rest;
+        let mut last = [[0.0; 6]; 2];
         // A quarter ε of the terms that are summed.
         let rounding = 0.25
             * f64::EPSILON
             * (self.gap.abs() + self.waves.amplitude() + self.free[0].x.abs() + self.free[1].x.abs());
-        let (at, ahead) = first_landing(
+        let (at, mut ahead) = first_landing(
             self.open,
             duration,
             rounding,
             |t| {
                 last = self.series(t);
-                let [[x1, v1, a1, _], [x2, v2, a2, _]] = last;
-                Bent { value: self.gap + x2 - x1, slope: v2 - v1, bend: a2 - a1 }
-            },
-            |t| {
-                let (forced, [first, second]) = (self.waves.bounds(), self.free.map(|part| part.bounds(t)));
-                Limits {
-                    least: height - forced[0] - first[0] - second[0],
-                    curvature: forced[1] + first[1] + second[1],
-                    jerk: forced[2] + first[2] + second[2],
+                let [first, second] = &last;
+                Bent {
+                    value: self.gap + second[0] - first[0],
+                    slope: second[1] - first[1],
+                    bend: second[2] - first[2],
+                    jerk: second[3] - first[3],
                 }
             },
+            |t| {
+                let mut limits = self.waves.limits();
+                let mut reach = self.waves.amplitude();
+                for part in &self.free {
+                    let [x, v, a, jerk, ..] = part.series(t);
+                    let (curvature, gain) = (part.oscillator.bound(a, jerk), part.oscillator.gain());
+                    let snap = curvature * gain * gain;
+                    limits.curvature += curvature;
+                    limits.jerk += curvature * gain;
+                    limits.snap += snap;
+                    limits.sixth += snap * gain * gain;
+                    // At the beginning most flights end in contact.
+                    if t > self.open {
+                        reach += part.oscillator.bound(x, v);
+                    }
+                }
+                (t == self.open || self.gap - self.rest <= reach).then_some(limits)
+            },
         )?;
-        let [(x1, v1), (x2, v2)] = last.map(|[x, v, a, j]| {
-            (x + ahead * (v + ahead * (a / 2.0 + ahead * j / 6.0)), v + ahead * (a + ahead * j / 2.0))
-        });
-        Some(Landing { time: at + ahead, state: State { x1, v1, x2, v2 } })
+        // Newton's method on the series: a parabola's root is left by the cube of the step.
+        let start = self.gap + (last[1][0] - last[0][0]);
+        for _ in 0..2 {
+            if ahead > 0.0 {
+                let [(x1, v1), (x2, v2)] = last.map(|terms| ahead_of(&terms, ahead));
+                ahead += (start + (x2 - x1)) / (v1 - v2);
+            }
+        }
+        let [(x1, v1), (x2, v2)] = last.map(|terms| ahead_of(&terms, ahead));
+        let state = State { x1: last[0][0] + x1, v1, x2: last[1][0] + x2, v2 };
+        Some(Landing { time: at + ahead, state })
     }
 
     /// A bound on |x₁ − x₂| for the whole flight, in m, about the rest positions.

@@ -97,7 +97,7 @@ pub(super) struct Press {
 impl Press {
     /// What `flight` does at its start.
     pub fn of(flight: &Flight) -> Press {
-        let [[_, _, a1, j1], [_, _, a2, j2]] = flight.series(0.0);
+        let [[_, _, a1, j1, ..], [_, _, a2, j2, ..]] = flight.series(0.0);
         Press { acceleration: a1 - a2, jerk: j2 - j1, noise: flight.noise() }
     }
 

@@ -2,6 +2,7 @@
 
 use super::excitation::MOST_SINES;
 use crate::math::cis::sin_cos;
+use crate::math::root::Limits;
 use num_complex::Complex64;
 
 /// One term Re(Xe^{iωt}).
@@ -20,8 +21,10 @@ struct Wave {
 pub(super) struct Waves {
     terms: [Wave; MOST_SINES],
     count: usize,
-    /// Σ|X|, Σω²|X| and Σω³|X|.
-    bounds: [f64; 3],
+    /// Σ|X| in m.
+    amplitude: f64,
+    /// Σωⁿ|X|.
+    limits: Limits,
 }
 
 impl Waves {
@@ -32,38 +35,41 @@ impl Waves {
         *free = Wave { re: start.re, im: start.im, omega };
         self.count += 1;
         let square = omega * omega;
-        self.bounds[0] += amplitude;
-        self.bounds[1] += amplitude * square;
-        self.bounds[2] += amplitude * square * omega;
+        self.amplitude += amplitude;
+        let (curvature, snap) = (amplitude * square, amplitude * square * square);
+        self.limits.curvature += curvature;
+        self.limits.jerk += curvature * omega;
+        self.limits.snap += snap;
+        self.limits.sixth += snap * square;
     }
 
-    /// Bounds on |x|, |ẍ| and |x⃛|.
+    /// Bounds on derivatives.
     #[inline]
-    pub fn bounds(&self) -> [f64; 3] {
-        self.bounds
+    pub fn limits(&self) -> Limits {
+        self.limits
     }
 
     /// Bound on |x| in m.
     #[inline]
     pub fn amplitude(&self) -> f64 {
-        self.bounds[0]
+        self.amplitude
     }
 
-    /// x and its three derivatives at time 0.
+    /// x and its first five derivatives at time 0.
     #[inline]
-    pub fn start(&self) -> [f64; 4] {
+    pub fn start(&self) -> [f64; 6] {
         self.sum(|wave| (wave.re, wave.im))
     }
 
-    /// x and its three derivatives at `t`.
+    /// x and its first five derivatives at `t`.
     #[inline]
-    pub fn at(&self, t: f64) -> [f64; 4] {
+    pub fn at(&self, t: f64) -> [f64; 6] {
         self.sum(|wave| turned(wave, t))
     }
 
     #[inline]
-    fn sum(&self, turn: impl Fn(&Wave) -> (f64, f64)) -> [f64; 4] {
-        let mut sum = [0.0; 4];
+    fn sum(&self, turn: impl Fn(&Wave) -> (f64, f64)) -> [f64; 6] {
+        let mut sum = [0.0; 6];
         for wave in self.terms.iter().take(self.count) {
             let (re, im) = turn(wave);
             let omega = wave.omega;
@@ -71,7 +77,10 @@ impl Waves {
             sum[0] += re;
             sum[1] -= v;
             sum[2] -= a;
-            sum[3] += omega * (omega * v);
+            let square = omega * omega;
+            sum[3] += square * v;
+            sum[4] += square * a;
+            sum[5] -= square * (square * v);
         }
         sum
     }

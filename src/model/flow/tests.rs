@@ -1,5 +1,6 @@
 use super::*;
 use crate::model::{Rig, Sine};
+use std::f64::consts::TAU;
 
 /// splitmix64, uniform in 0..1.
 fn uniform(seed: &mut u64) -> f64 {
@@ -67,41 +68,151 @@ fn the_curvature_bound_is_never_exceeded() {
     }
 }
 
-#[test]
-fn no_contact_is_missed_in_random_flights() {
-    // Dense sampling as the oracle: 20 µs apart, where the gap's frequencies are below 16 Hz.
-    let (mut seed, duration, dt) = (2_024, 0.5, 2e-5);
-    let (mut hits, mut free) = (0, 0);
-    for run in 0..400 {
-        let flight = random(&mut seed);
-        let found = flight.first_contact(duration);
-        // A start at contact belongs to the impact before if the masses part.
-        let from = u32::from(
-            flight.gap(0.0).abs() < flight.noise() && flight.bounded(Signal::Gap, 0, 0.0).slope > 0.0,
-        );
-        let sampled = (from..=25_000_u32).map(|i| f64::from(i) * dt).find(|t| flight.gap(*t) <= 0.0);
-        match (found, sampled) {
-            (Some(t), Some(s)) => {
-                // Never later than the first sample in contact; earlier by more than one sample only if the gap
-                // opened again in between.
-                assert!(t <= s, "flight {run}: {t} {s}");
-                let dipped = (0..=25_000).map(|i| f64::from(i) * dt).find(|s| *s >= t).map(|s| flight.gap(s));
-                assert!(s - t <= dt || dipped.is_some_and(|g| g > 0.0), "flight {run}: {t} {s}");
-                hits += 1;
+/// Plain oracle: the gap as a sum of complex exponentials with the roots of each oscillator's characteristic equation.
+struct Exponentials {
+    gap: f64,
+    terms: Vec<(Complex64, Complex64)>,
+}
+
+impl Exponentials {
+    fn of(rig: &Rig, sine: &Sine, start: &State, phase: f64) -> Exponentials {
+        let omega = TAU * sine.frequency;
+        let i = Complex64::i();
+        let forced =
+            Complex64::from_polar(sine.force, phase) / (rig.k1 - rig.m1 * omega * omega + i * rig.c1 * omega);
+        let mut terms = vec![(-forced, i * omega)];
+        let mut free = |sign: f64, m: f64, c: f64, k: f64, x: f64, v: f64| {
+            let root = Complex64::new(c * c - 4.0 * m * k, 0.0).sqrt();
+            let (p, q) = ((-c + root) / (2.0 * m), (-c - root) / (2.0 * m));
+            // x = A e^{pt} + B e^{qt} with A + B = x, pA + qB = v.
+            let a = (v - q * x) / (p - q);
+            terms.extend([(sign * a, p), (sign * (x - a), q)]);
+        };
+        let (x, v) = (forced.re, (i * omega * forced).re);
+        free(-1.0, rig.m1, rig.c1, rig.k1, start.x1 - x, start.v1 - v);
+        free(1.0, rig.m2, rig.c2, rig.k2, start.x2, start.v2);
+        Exponentials { gap: rig.gap, terms }
+    }
+
+    /// Gap, its rate and its acceleration.
+    fn at(&self, t: f64) -> [f64; 3] {
+        let mut sum = [self.gap, 0.0, 0.0];
+        for (amplitude, rate) in &self.terms {
+            let mut z = amplitude * (rate * t).exp();
+            for term in &mut sum {
+                *term += z.re;
+                z *= rate;
             }
-            (None, None) => free += 1,
-            // Sampling may miss a dip between two samples, the search may not miss a sampled contact.
-            (Some(_), None) => hits += 1,
-            (None, Some(s)) => panic!("flight {run}: contact at {s} was missed"),
         }
+        sum
+    }
+
+    /// Rounding error of a gap up to time `t`: that of each term, with some ε of its exponent.
+    fn noise(&self, t: f64) -> f64 {
+        let term = |(a, rate): &(Complex64, Complex64)| a.norm() * (4.0 + (rate * t).norm());
+        f64::EPSILON * (self.gap + self.terms.iter().map(term).sum::<f64>())
+    }
+
+    /// The first of the samples 0, dt, 2dt, … up to `last`·dt, from `from` on, at which the gap is not open.
+    fn first_closed(&self, dt: f64, from: usize, last: usize) -> Option<usize> {
+        // Each term is turned from sample to sample.
+        let mut terms: Vec<_> = self.terms.iter().map(|(a, rate)| (*a, (rate * dt).exp())).collect();
+        (0..=last).find(|i| {
+            let gap = self.gap + terms.iter().map(|(z, _)| z.re).sum::<f64>();
+            for (z, turn) in &mut terms {
+                *z *= *turn;
+            }
+            *i >= from && gap <= 0.0
+        })
+    }
+}
+
+#[test]
+fn no_contact_is_missed_or_invented_in_ten_thousand_flights() {
+    // Dense sampling as the oracle: 50 µs apart, where the gap's frequencies are below 16 Hz.
+    let (mut seed, duration, dt) = (2_024, 0.5, 5e-5);
+    println!("seed {seed}");
+    let (mut hits, mut misses, mut between) = (0, 0, 0);
+    for run in 0..10_000 {
+        let c = [0.0, 0.1, 1.0, 8.3, 30.0][(uniform(&mut seed) * 5.0) as usize];
+        let rig = Rig { c1: c, c2: uniform(&mut seed), gap: 8e-3 * uniform(&mut seed), ..Rig::thesis() };
+        let sine = Sine { force: 0.5 * uniform(&mut seed), frequency: 2.0 + 14.0 * uniform(&mut seed) };
+        let mut signed = |scale: f64| scale * (2.0 * uniform(&mut seed) - 1.0);
+        let (x1, v1, v2, phase) = (signed(3e-3), signed(0.2), signed(0.2), signed(3.1));
+        // One in two starts at contact.
+        let start = State { x1, v1, x2: x1 - rig.gap + signed(1e-3).max(0.0), v2 };
+        let steady = Steady::new(&rig, &sine).unwrap();
+        let flight = Flight::new(rig.oscillators(), &steady, rig.gap, &start, phase);
+        let oracle = Exponentials::of(&rig, &sine, &start, phase);
+        let noise = oracle.noise(duration);
+        // A start at contact belongs to the impact before if the masses part.
+        let from = usize::from(oracle.at(0.0)[0].abs() < noise && start.approach() < 0.0);
+        let found = flight.first_contact(duration);
+        let sampled = oracle.first_closed(dt, from, 10_000).map(|i| i as f64 * dt);
         if let Some(t) = found {
-            let slope = flight.bounded(Signal::Gap, 0, t).slope;
-            // Rounding of the gap, and of the time times the speed.
-            let tolerance = 4.0 * flight.noise() + f64::EPSILON * duration * slope.abs();
-            assert!(flight.gap(t).abs() <= tolerance, "flight {run}: gap {} at {t}", flight.gap(t));
+            // A contact it is: the gap vanishes there, falling.
+            let [gap, rate, acceleration] = oracle.at(t);
+            assert!(gap.abs() < noise && rate < 1e-12 * acceleration.abs(), "flight {run}: {gap:e} at {t}");
+            // And the first one: no sample before it is closed.
+            assert!(sampled.is_none_or(|s| s >= t - 1e-13), "flight {run}: {t} {sampled:?}");
+            hits += 1;
+            // A dip between two samples.
+            between += u32::from(sampled.is_none_or(|s| s > t + dt));
+        } else {
+            assert_eq!(sampled, None, "flight {run}: a contact was missed");
+            misses += 1;
         }
     }
-    assert!(hits > 100 && free > 20, "{hits} contacts, {free} free flights: both kinds must occur");
+    println!("{hits} contacts, {misses} flights without, {between} between two samples");
+    assert!(hits > 3000 && misses > 500, "{hits} contacts, {misses} without: both kinds must occur");
+}
+
+#[test]
+fn hairbreadth_misses_and_touches_are_told_apart() {
+    // Flights whose smallest gap is moved to a given distance, by the oracle and Newton's method on its rate.
+    let mut seed = 77;
+    println!("seed {seed}");
+    let mut count = 0;
+    while count < 300 {
+        let rig = Rig { c1: 0.3 * uniform(&mut seed), c2: uniform(&mut seed), gap: 0.05, ..Rig::thesis() };
+        let sine = Sine { force: 0.5 * uniform(&mut seed), frequency: 2.0 + 14.0 * uniform(&mut seed) };
+        let mut signed = |scale: f64| scale * (2.0 * uniform(&mut seed) - 1.0);
+        let start = State { x1: signed(3e-3), v1: signed(0.2), x2: signed(3e-3), v2: signed(0.2) };
+        let phase = signed(3.1);
+        let oracle = Exponentials::of(&rig, &sine, &start, phase);
+        let (dt, last) = (1e-4, 5000_u32);
+        let gap = |i: u32| oracle.at(f64::from(i) * dt)[0];
+        let lowest = (0..=last).min_by(|a, b| gap(*a).total_cmp(&gap(*b))).unwrap();
+        if lowest < 10 || lowest > last - 10 {
+            continue;
+        }
+        let mut t = f64::from(lowest) * dt;
+        for _ in 0..8 {
+            let [_, rate, acceleration] = oracle.at(t);
+            t -= rate / acceleration;
+        }
+        let [smallest, ..] = oracle.at(t);
+        // A start that is no overlap.
+        if oracle.at(0.0)[0] - smallest < 2e-4 {
+            continue;
+        }
+        let steady = Steady::new(&rig, &sine).unwrap();
+        for exponent in 4..=12 {
+            let distance = 10_f64.powi(-exponent);
+            for sign in [1.0, -1.0] {
+                let moved = rig.gap - smallest + sign * distance;
+                let flight = Flight::new(rig.oscillators(), &steady, moved, &start, phase);
+                // The last sample's flight would be cut short of the smallest gap otherwise.
+                let found = flight.first_contact(f64::from(last) * dt);
+                assert_eq!(found.is_some(), sign < 0.0, "{sign}·1e-{exponent} m: {found:?}");
+                if let Some(found) = found {
+                    let gap = oracle.at(found)[0] + (moved - rig.gap);
+                    assert!(gap.abs() < oracle.noise(found) && found <= t, "{gap:e} at {found}, {t}");
+                }
+            }
+        }
+        count += 1;
+    }
 }
 
 #[test]
