@@ -26,7 +26,9 @@ pub use impacts::{Finding, Impacts, Scatter};
 pub use info::Info;
 pub use low_pass::{LowPass, low_pass};
 pub use modal::Modal;
-pub use model::{Model, ModelCommand, ModelMap, ModelSweep, Observable, Orbit, Over, Scene, Way};
+pub use model::{
+    Model, ModelCommand, ModelMap, ModelResponse, ModelSweep, Observable, Orbit, Over, Scene, Way,
+};
 pub use pulse::Pulse;
 pub use reading::{Channel, Decimal, Reading};
 pub use response::Response;

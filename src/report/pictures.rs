@@ -1,8 +1,10 @@
 //! The figures of this toolkit: results in, [`super::Figure`] out.
 
+mod branches;
 mod drill;
 mod frf;
 mod impacts;
+mod orbit;
 mod overlay;
 mod pulse;
 mod regimes;
@@ -11,9 +13,11 @@ mod spectrum;
 mod sweep;
 mod waterfall;
 
+pub use branches::branches;
 pub use drill::drill;
 pub use frf::{frf, nyquist};
 pub use impacts::{drop, impacts};
+pub use orbit::orbit;
 pub use overlay::overlay;
 pub use pulse::pulse;
 pub use regimes::regimes;

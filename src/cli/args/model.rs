@@ -2,11 +2,13 @@
 
 mod map;
 mod orbit;
+mod response;
 mod scene;
 mod sweep;
 
 pub use map::Map as ModelMap;
 pub use orbit::Orbit;
+pub use response::ModelResponse;
 pub use scene::Scene;
 pub use sweep::{Observable, Over, Sweep as ModelSweep, Way};
 
@@ -22,6 +24,8 @@ pub struct Model {
 pub enum ModelCommand {
     /// All motions with one impact a period at one frequency, each with its verdicts
     Orbit(Orbit),
+    /// The same over a range of frequencies, with the places where motions appear, vanish and change
+    Response(ModelResponse),
     /// Sweep frequency or force up and down, the motion carried on from step to step
     Sweep(Box<ModelSweep>),
     /// Map regime and stability over two parameters

@@ -52,7 +52,7 @@ pub fn run(typed: &args::ModelSweep, json: bool) -> Result<()> {
         files::figures(&mut output, &[("sweep".to_owned(), figure)], &|| ())?;
         output.write("sweep.csv", tables::sweep(&swept).csv())?;
         if typed.branches {
-            output.write("branches.csv", tables::branches(&branches, plan.observable).csv())?;
+            output.write("branches.csv", tables::branch_points(&branches, plan.observable).csv())?;
         }
         written = output.written().to_vec();
     }

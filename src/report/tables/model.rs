@@ -1,159 +1,135 @@
-//! Tables of models: sweeps, branches, maps.
+//! Motions of a rig as tables.
 
-use super::{headed, pair};
-use crate::measure::jump::Jump;
-use crate::measure::resonance::Resonance;
-use crate::model::continuation::{Branch, MarkKind};
-use crate::model::sweep::{Named, Observable, Swept};
+use super::table;
+use crate::model::{NoImpact, Orbit, Response, Softened};
 use crate::report::{Cell, Table};
-use serde::Serialize;
 
-/// Point by point, up and then down.
-pub fn sweep(swept: &Swept) -> Table {
-    let head = [
-        ("direction", ""),
-        ("frequency", "Hz"),
-        ("force", "N"),
-        ("x1", "m"),
-        ("x2", "m"),
-        ("x1 scatter", "m"),
-        ("x2 scatter", "m"),
-    ];
-    let sides = [("up", &swept.up), ("down", &swept.down)];
-    sides.into_iter().flat_map(|(name, points)| points.iter().map(move |p| (name, p))).fold(
-        headed("Sweep", &head),
-        |table, (name, p)| {
-            let numbers = [p.frequency, p.force, p.x1, p.x2, p.x1_scatter, p.x2_scatter];
-            table.row(std::iter::once(Cell::from(name)).chain(numbers.map(Cell::from)))
-        },
+fn word(yes: bool) -> Cell {
+    Cell::from(if yes { "yes" } else { "no" })
+}
+
+/// What each motion does.
+pub fn orbits(orbits: &[Orbit]) -> Table {
+    let unit = orbits.first().map_or("rad", Orbit::timing_unit);
+    table(
+        "Motions with one impact a period",
+        orbits.iter().enumerate(),
+        &[
+            ("no.", "", &|(i, _)| Cell::from(i + 1)),
+            ("impulse", "N s", &|(_, o)| Cell::from(o.impulse)),
+            ("approach speed", "m/s", &|(_, o)| Cell::from(o.approach_velocity)),
+            ("timing", unit, &|(_, o)| Cell::from(o.timing)),
+            ("x1 peak to peak", "m", &|(_, o)| Cell::from(o.peak_to_peak[0])),
+            ("x2 peak to peak", "m", &|(_, o)| Cell::from(o.peak_to_peak[1])),
+            ("x1 fundamental", "m", &|(_, o)| Cell::from(o.fundamental[0].norm())),
+            ("x2 fundamental", "m", &|(_, o)| Cell::from(o.fundamental[1].norm())),
+        ],
     )
 }
 
-/// Resonances and jumps of both masses.
-pub fn sweep_named(resonances: &[Named<Resonance>], jumps: &[Named<Jump>]) -> Table {
-    let head = [("mass", ""), ("direction", ""), ("kind", ""), ("frequency", "Hz"), ("amplitude", "m")];
-    let mut table = headed("Resonances and jumps", &head);
-    for r in resonances {
-        table.push([
-            usize::from(r.mass).into(),
-            r.direction.name().into(),
-            r.found.kind.as_str().into(),
-            pair(r.found.frequency, r.found.frequency_std),
-            r.found.amplitude.into(),
-        ]);
-    }
-    for j in jumps {
-        table.push([
-            usize::from(j.mass).into(),
-            j.direction.name().into(),
-            format!("jump, {}", j.found.change).into(),
-            pair(j.found.frequency, Some(j.found.frequency_std)),
-            j.found.amplitude_after.into(),
-        ]);
-    }
-    table
+/// What each motion is worth; `gap_std` is the standard uncertainty of the gap in m.
+pub fn verdicts(orbits: &[Orbit], gap_std: Option<f64>) -> Table {
+    table(
+        "Verdicts",
+        orbits.iter().enumerate(),
+        &[
+            ("no.", "", &|(i, _)| Cell::from(i + 1)),
+            ("exists", "", &|(_, o)| word(o.validity.exists)),
+            ("admissible", "", &|(_, o)| word(o.validity.admissible)),
+            ("stability", "", &|(_, o)| match o.validity.instability {
+                Some(loss) => Cell::from(format!("{}: {}", o.validity.stability, loss.name())),
+                None if o.validity.exists => Cell::from(o.validity.stability),
+                None => Cell::Missing,
+            }),
+            ("robust", "", &|(_, o)| gap_std.map_or(Cell::Missing, |std| word(o.validity.robust(std)))),
+            ("largest multiplier", "", &|(_, o)| Cell::from(o.spectral_radius())),
+            ("least gap", "m", &|(_, o)| Cell::from(o.validity.min_gap)),
+            ("closest approach", "m", &|(_, o)| Cell::from(o.validity.clearance)),
+            ("grazing distance", "m", &|(_, o)| Cell::from(o.validity.grazing_distance)),
+            ("energy rule", "", &|(_, o)| word(o.validity.energy_rule)),
+        ],
+    )
 }
 
-/// A branch as it is printed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Followed {
-    /// Impacts in a period.
-    pub impacts: u32,
-    /// Cycles in a period.
-    pub cycles: u32,
-    /// Points in the order of the branch.
-    pub points: Vec<FollowedPoint>,
-    /// Borders of stability and folds.
-    pub marks: Vec<FollowedMark>,
+/// The motion without impacts.
+pub fn no_impact(motion: &NoImpact) -> Table {
+    Table::new("Motion without impacts")
+        .column("possible", "")
+        .column("amplitude", "m")
+        .column("largest x1", "m")
+        .row([word(motion.possible), motion.amplitude.into(), motion.largest.into()])
 }
 
-/// A point of a branch.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct FollowedPoint {
-    /// Frequency in Hz.
-    pub frequency: f64,
-    /// Force in N.
-    pub force: f64,
-    /// x₁ in m.
-    pub x1: f64,
-    /// x₂ in m.
-    pub x2: f64,
-    /// As the verdict of the same name.
-    pub admissible: bool,
-    /// As the verdict of the same name.
-    pub stable: Option<bool>,
-    /// Largest modulus of the multipliers.
-    pub spectral_radius: Option<f64>,
-}
-
-/// A mark of a branch.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct FollowedMark {
-    /// What happens.
-    pub kind: MarkKind,
-    /// Frequency in Hz.
-    pub frequency: f64,
-    /// Force in N.
-    pub force: f64,
-}
-
-/// A branch with the observable of a sweep.
-pub fn followed(branch: &Branch, observable: Observable) -> Followed {
-    let points = branch.points.iter().map(|o| {
-        let [x1, x2] = match observable {
-            Observable::Peak => o.peak_to_peak.map(|x| x / 2.0),
-            _ => o.fundamental.map(|x| x.norm()),
-        };
-        FollowedPoint {
-            frequency: o.sine.frequency,
-            force: o.sine.force,
-            x1,
-            x2,
-            admissible: o.validity.admissible,
-            stable: o.validity.stable,
-            spectral_radius: o.spectral_radius(),
-        }
+/// The course of a motion over two periods, from an impact on.
+pub fn course(orbit: &Orbit, gap: f64, points: usize) -> Table {
+    let rows = (0..=2 * points).map(|i| {
+        let t = orbit.period() * i as f64 / points as f64;
+        (t, orbit.state(t))
     });
-    let mark = |m: &crate::model::continuation::Mark| FollowedMark {
-        kind: m.kind,
-        frequency: m.orbit.sine.frequency,
-        force: m.orbit.sine.force,
-    };
-    Followed {
-        impacts: branch.points.first().map_or(0, |o| o.impacts()),
-        cycles: branch.points.first().map_or(0, |o| o.cycles),
-        points: points.collect(),
-        marks: branch.marks.iter().map(mark).collect(),
-    }
+    table(
+        "Course",
+        rows,
+        &[
+            ("time", "s", &|(t, _)| Cell::from(*t)),
+            ("x1", "m", &|(_, s)| Cell::from(s.x1)),
+            ("v1", "m/s", &|(_, s)| Cell::from(s.v1)),
+            ("x2", "m", &|(_, s)| Cell::from(s.x2)),
+            ("v2", "m/s", &|(_, s)| Cell::from(s.v2)),
+            ("gap", "m", &move |(_, s)| Cell::from(gap + s.x2 - s.x1)),
+        ],
+    )
 }
 
-/// Branches, point by point.
-pub fn branches(branches: &[Branch], observable: Observable) -> Table {
-    let head = [
-        ("branch", ""),
-        ("frequency", "Hz"),
-        ("force", "N"),
-        ("x1", "m"),
-        ("x2", "m"),
-        ("admissible", ""),
-        ("stable", ""),
-        ("spectral radius", ""),
-    ];
-    let word = |yes: bool| if yes { "yes" } else { "no" };
-    let mut table = headed("Branches", &head);
-    for (k, branch) in branches.iter().enumerate() {
-        for p in followed(branch, observable).points {
-            table.push([
-                (k + 1).into(),
-                p.frequency.into(),
-                p.force.into(),
-                p.x1.into(),
-                p.x2.into(),
-                word(p.admissible).into(),
-                p.stable.map_or("neutral", word).into(),
-                p.spectral_radius.into(),
-            ]);
-        }
-    }
-    table
+/// Every motion at every frequency.
+pub fn branches(response: &Response) -> Table {
+    let rows = response.points.iter().flat_map(|p| p.orbits.iter().filter(|o| o.validity.exists));
+    table(
+        "Motions with one impact a period",
+        rows,
+        &[
+            ("frequency", "Hz", &|o| Cell::from(o.frequency)),
+            ("impulse", "N s", &|o| Cell::from(o.impulse)),
+            ("approach speed", "m/s", &|o| Cell::from(o.approach_velocity)),
+            ("x1 peak to peak", "m", &|o| Cell::from(o.peak_to_peak[0])),
+            ("x2 peak to peak", "m", &|o| Cell::from(o.peak_to_peak[1])),
+            ("x1 fundamental", "m", &|o| Cell::from(o.fundamental[0].norm())),
+            ("x2 fundamental", "m", &|o| Cell::from(o.fundamental[1].norm())),
+            ("admissible", "", &|o| word(o.validity.admissible)),
+            ("stability", "", &|o| Cell::from(o.validity.stability)),
+            ("largest multiplier", "", &|o| Cell::from(o.spectral_radius())),
+            ("least gap", "m", &|o| Cell::from(o.validity.min_gap)),
+            ("grazing distance", "m", &|o| Cell::from(o.validity.grazing_distance)),
+        ],
+    )
+}
+
+/// Where motions change.
+pub fn changes(response: &Response) -> Table {
+    table(
+        "Changes",
+        &response.changes,
+        &[
+            ("frequency", "Hz", &|c| Cell::from(c.frequency)),
+            ("change", "", &|c| Cell::from(c.kind)),
+            ("x1 amplitude", "m", &|c| Cell::from(c.amplitude[0])),
+            ("x2 amplitude", "m", &|c| Cell::from(c.amplitude[1])),
+        ],
+    )
+}
+
+/// What the duration of the contact changes in each motion.
+pub fn soft(all: &[Option<Softened>]) -> Table {
+    table(
+        "With the contact's duration",
+        all.iter().enumerate().filter_map(|(i, soft)| soft.map(|s| (i, s))),
+        &[
+            ("no.", "", &|(i, _)| Cell::from(i + 1)),
+            ("impulse", "N s", &|(_, s)| Cell::from(s.impulse)),
+            ("approach speed", "m/s", &|(_, s)| Cell::from(s.approach_velocity)),
+            ("change of impulse", "1", &|(_, s)| Cell::from(s.change)),
+            ("in contact", "1", &|(_, s)| Cell::from(s.share)),
+            ("x1 peak to peak", "m", &|(_, s)| Cell::from(s.peak_to_peak[0])),
+            ("x2 peak to peak", "m", &|(_, s)| Cell::from(s.peak_to_peak[1])),
+        ],
+    )
 }
