@@ -10,6 +10,7 @@ mod impacts;
 mod modes;
 mod rig;
 mod spectrum;
+mod sweeps;
 
 use serde_json::Value;
 use std::path::Path;
