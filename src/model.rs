@@ -27,6 +27,7 @@ pub mod map;
 pub mod motion;
 pub mod orbit;
 pub mod periodic;
+pub mod portrait;
 pub mod receptance;
 pub mod regime;
 pub mod rig;

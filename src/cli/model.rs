@@ -1,6 +1,7 @@
 //! `vibro model`: what the motion of a rig should be.
 
 mod orbit;
+mod simulate;
 
 use super::args::{self, ModelCommand};
 use crate::error::{Error, Result};
@@ -9,6 +10,7 @@ use crate::model::{Draft, Scene};
 pub fn run(typed: &args::Model, json: bool) -> Result<()> {
     match &typed.command {
         ModelCommand::Orbit(typed) => orbit::run(typed, json),
+        ModelCommand::Simulate(typed) => simulate::run(typed, json),
     }
 }
 

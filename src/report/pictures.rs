@@ -3,6 +3,7 @@
 mod drill;
 mod frf;
 mod impacts;
+mod motion;
 mod overlay;
 mod pulse;
 mod response;
@@ -12,6 +13,7 @@ mod waterfall;
 pub use drill::drill;
 pub use frf::{frf, nyquist};
 pub use impacts::{drop, impacts};
+pub use motion::{phase_plane, poincare, traces};
 pub use overlay::overlay;
 pub use pulse::pulse;
 pub use response::response;

@@ -2,9 +2,11 @@
 
 mod orbit;
 mod scene;
+mod simulate;
 
 pub use orbit::Orbit;
 pub use scene::Scene;
+pub use simulate::{Law, Simulate};
 
 use clap::Subcommand;
 
@@ -18,4 +20,6 @@ pub struct Model {
 pub enum ModelCommand {
     /// All motions with one impact a period at one frequency, each with its verdicts
     Orbit(Orbit),
+    /// A motion from impact to impact, its regime, traces and Poincaré section
+    Simulate(Simulate),
 }
