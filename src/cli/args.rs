@@ -26,7 +26,7 @@ pub use impacts::{Finding, Impacts, Scatter};
 pub use info::Info;
 pub use low_pass::{LowPass, low_pass};
 pub use modal::Modal;
-pub use model::{Law, Model, ModelCommand, Orbit, Scene, Simulate};
+pub use model::{Law, Model, ModelCommand, ModelResponse, Orbit, Scene, Simulate};
 pub use pulse::Pulse;
 pub use reading::{Channel, Decimal, Reading};
 pub use response::Response;

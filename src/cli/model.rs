@@ -2,15 +2,18 @@
 
 mod orbit;
 mod simulate;
+mod response;
 
 use super::args::{self, ModelCommand};
 use crate::error::{Error, Result};
-use crate::model::{Draft, Scene};
+use crate::model::{Draft, Orbit, Scene};
+use serde::Serialize;
 
 pub fn run(typed: &args::Model, json: bool) -> Result<()> {
     match &typed.command {
         ModelCommand::Orbit(typed) => orbit::run(typed, json),
         ModelCommand::Simulate(typed) => simulate::run(typed, json),
+        ModelCommand::Response(typed) => response::run(typed, json),
     }
 }
 
@@ -65,4 +68,38 @@ pub fn excitation(scene: &Scene) -> Result<&crate::model::Excitation> {
         Error::usage("nothing drives the rig", "an excitation")
             .hint("give --force N (a sine), --impulse NS, --force N --width S, or [excitation] in the file")
     })
+}
+
+/// An orbit with what the uncertainty of the gap leaves of it.
+#[derive(Serialize)]
+struct Judged<'a> {
+    #[serde(flatten)]
+    orbit: &'a Orbit,
+    /// Amplitudes of x1 and x2 at the first multiples of 1/T.
+    lines: Vec<[f64; 2]>,
+    robust: Option<bool>,
+    near_grazing: Option<bool>,
+}
+
+/// Lines that are listed of each motion.
+const LINES: u32 = 8;
+
+fn judged(orbit: &Orbit, gap_std: Option<f64>) -> Judged<'_> {
+    let v = &orbit.validity;
+    Judged {
+        orbit,
+        lines: (1..=LINES).map(|n| orbit.line(n).map(|z| z.norm())).collect(),
+        robust: gap_std.map(|std| v.robust(std)),
+        near_grazing: gap_std.filter(|_| v.exists).map(|std| v.grazing_distance <= std),
+    }
+}
+
+/// Checks an uncertainty of the gap.
+fn gap_std(typed: Option<f64>) -> Result<Option<f64>> {
+    match typed {
+        Some(v) if !(v.is_finite() && v >= 0.0) => {
+            Err(Error::usage(format!("--gap-std is {v} m"), "a finite value of 0 or more"))
+        }
+        typed => Ok(typed),
+    }
 }

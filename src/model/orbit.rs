@@ -1,13 +1,18 @@
 //! Periodic motions with one impact a period, in closed form.
 
+mod backbone;
 mod conditions;
 mod course;
 mod drive;
 mod response;
 mod sine;
+mod soft;
 mod stretch;
 mod told;
 mod train;
+
+pub use backbone::backbone;
+pub use soft::{Compliance, LONGEST_CONTACT, Softened, softened};
 
 pub(super) use conditions::Root;
 pub(super) use course::Course;
@@ -45,6 +50,7 @@ pub struct Orbit {
     pub multipliers: Option<[Complex64; 4]>,
     /// Is it real?
     pub validity: Validity,
+    upper: bool,
     rig: Rig,
     drive: Drive,
     course: Course,
@@ -83,6 +89,28 @@ impl Orbit {
         [(force - train) * l1, l2 * train]
     }
 
+    /// The orbit among `others`, of the same excitation at a frequency (or with a contact) nearby, that this one goes over into: on the
+    /// same side of the fold, and within a sixth of a cycle in timing.
+    pub fn continued<'a>(&self, others: &'a [Orbit]) -> Option<&'a Orbit> {
+        let same = others.iter().filter(|other| other.upper == self.upper);
+        match self.course {
+            // One on each side of the fold.
+            Course::Smooth { .. } => same.min_by(|a, b| a.impulse.total_cmp(&b.impulse)),
+            Course::Broken { .. } => {
+                let apart = |other: &Orbit| {
+                    let way = (other.force_phase - self.force_phase).rem_euclid(TAU);
+                    way.min(TAU - way)
+                };
+                same.filter(|other| apart(other) < TAU / 6.0).min_by(|a, b| apart(a).total_cmp(&apart(b)))
+            }
+        }
+    }
+
+    /// Whether the orbit lies on that side of the fold where a larger impulse would take more energy than the force then gives.
+    pub fn is_upper(&self) -> bool {
+        self.upper
+    }
+
     /// Unit of [`Orbit::timing`]: `rad` or `s`.
     pub fn timing_unit(&self) -> &'static str {
         match self.course {
@@ -119,9 +147,13 @@ pub fn orbits(rig: &Rig, force: f64, frequency: f64) -> Result<Orbits> {
 /// # Errors
 /// As [`orbits`], and if `cycles` is 0 or the force is 0.
 pub fn orbits_over(rig: &Rig, sine: &Sine, cycles: u32) -> Result<Orbits> {
+    under_sine(rig, sine, cycles, 0.0)
+}
+
+fn under_sine(rig: &Rig, sine: &Sine, cycles: u32, delay: f64) -> Result<Orbits> {
     let steady = Steady::new(rig, sine)?;
     driven(sine.force)?;
-    let conditions = Conditions::new(rig, sine.frequency, cycles)?;
+    let conditions = Conditions::new(rig, sine.frequency, cycles)?.delayed(delay);
     Ok(Orbits {
         orbits: sine::orbits(&conditions, &steady, sine.force).collect(),
         no_impact: NoImpact::new(&steady, rig.gap),
@@ -136,12 +168,17 @@ pub fn orbits_over(rig: &Rig, sine: &Sine, cycles: u32) -> Result<Orbits> {
 /// If a parameter is impossible, an undamped mass is driven at resonance, there is no excitation to speak of, or it is a sum of several
 /// sines, for which there is no closed form.
 pub fn orbits_of(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Orbits> {
+    solve(rig, excitation, cycles, 0.0)
+}
+
+/// As [`orbits_of`], the impact following the first touch by `delay` (s).
+fn solve(rig: &Rig, excitation: &Excitation, cycles: u32, delay: f64) -> Result<Orbits> {
     rig.check()?;
     excitation.check()?;
     let oscillator = rig.oscillators()[0];
     let cycle = 1.0 / excitation.frequency();
     let (response, drive) = match *excitation {
-        Excitation::Sine(sine) => return orbits_over(rig, &sine, cycles),
+        Excitation::Sine(sine) => return under_sine(rig, &sine, cycles, delay),
         Excitation::Impulse(train) => {
             driven(train.impulse)?;
             (Response::impulse(rig.m1, oscillator, cycle, train.impulse)?, Drive::Impulse(train.impulse))
@@ -156,7 +193,7 @@ pub fn orbits_of(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Orbi
                 .hint("`vibro model simulate` follows the motion"));
         }
     };
-    let conditions = Conditions::new(rig, excitation.frequency(), cycles)?;
+    let conditions = Conditions::new(rig, excitation.frequency(), cycles)?.delayed(delay);
     let (low, high) = response.range();
     Ok(Orbits {
         orbits: train::orbits(&conditions, &response, drive),
@@ -177,3 +214,6 @@ fn driven(size: f64) -> Result<()> {
 
 #[cfg(test)]
 mod tests;
+
+#[cfg(test)]
+mod limits_tests;

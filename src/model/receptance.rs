@@ -13,7 +13,9 @@ pub fn receptance(m: f64, c: f64, k: f64, omega: f64) -> Complex64 {
 impl Rig {
     /// Receptances L₁(iω), L₂(iω) of the masses, each alone, in m/N.
     pub fn receptances(&self, omega: f64) -> [Complex64; 2] {
-        [receptance(self.m1, self.c1, self.k1, omega), receptance(self.m2, self.c2, self.k2, omega)]
+        let second =
+            if self.has_wall() { Complex64::ZERO } else { receptance(self.m2, self.c2, self.k2, omega) };
+        [receptance(self.m1, self.c1, self.k1, omega), second]
     }
 }
 

@@ -99,7 +99,7 @@ impl Validity {
                 None => "neutral",
             },
             instability: (exists && stable == Some(false)).then(|| Loss::of(multipliers)),
-            energy_rule: root.energy_rule,
+            energy_rule: exists && root.upper,
             min_gap,
             clearance,
             grazing_distance: clearance.map_or(own, |c| own.min(c.max(0.0))),

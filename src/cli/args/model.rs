@@ -1,10 +1,12 @@
 //! `vibro model`, as typed.
 
 mod orbit;
+mod response;
 mod scene;
 mod simulate;
 
 pub use orbit::Orbit;
+pub use response::ModelResponse;
 pub use scene::Scene;
 pub use simulate::{Law, Simulate};
 
@@ -22,4 +24,6 @@ pub enum ModelCommand {
     Orbit(Orbit),
     /// A motion from impact to impact, its regime, traces and Poincaré section
     Simulate(Simulate),
+    /// The same over a range of frequencies, with the places where motions appear, vanish and change
+    Response(ModelResponse),
 }

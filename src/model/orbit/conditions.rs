@@ -38,8 +38,8 @@ pub struct Root {
     pub sensitivity: f64,
     /// Size of the terms of y = Δ + JC, in m.
     pub size: f64,
-    /// Whether a larger impulse takes more energy than the force then gives.
-    pub energy_rule: bool,
+    /// Whether a larger impulse would take more energy than the force then gives: the side of the fold.
+    pub upper: bool,
 }
 
 impl<'a> Conditions<'a> {
@@ -75,6 +75,12 @@ impl<'a> Conditions<'a> {
         })
     }
 
+    /// The same conditions for impacts that follow the first touch by `delay` (s): the ways then overlap by vᵣ times it.
+    pub fn delayed(mut self, delay: f64) -> Conditions<'a> {
+        self.c += delay / self.rig.exchange();
+        self
+    }
+
     /// T in s.
     pub fn period(&self) -> f64 {
         self.greens[0].period()
@@ -104,6 +110,7 @@ impl<'a> Conditions<'a> {
             peak_to_peak: course.spread(),
             validity: Validity::judge(root, &course, stable, multipliers.as_ref()),
             multipliers,
+            upper: root.upper,
             rig: *rig,
             drive,
             course,

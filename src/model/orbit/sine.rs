@@ -41,7 +41,7 @@ pub fn orbits<'a>(
             // From the quadratic: (aJ + ΔC) dJ = −(CJ + Δ) dΔ.
             sensitivity: (c * impulse + gap).abs() / discriminant.max(0.0).sqrt(),
             size: gap.abs() + amplitude,
-            energy_rule: upper && impulse > 0.0,
+            upper,
         };
         let [chi1, chi2] = &conditions.greens;
         let stretch = Stretch {

@@ -32,7 +32,7 @@ pub fn orbits(conditions: &Conditions<'_>, response: &Response, drive: Drive) ->
             sensitivity: a.abs() / slope.abs(),
             size: rig.gap.abs() + y.abs(),
             // With τ from y = Δ + JC, d(JP − ẏ)/dJ = (Pẏ − Cÿ)/ẏ.
-            energy_rule: impulse > 0.0 && slope > 0.0,
+            upper: slope > 0.0,
         };
         let course = Course::Broken {
             response: *response,

@@ -442,6 +442,8 @@ mod tests {
             assert_eq!(error.exit_code(), 2, "{wrong}: {error}");
         }
         draft.set("m2 = inf").unwrap();
+        assert!(draft.scene().unwrap().rig.has_wall());
+        draft.set("m1 = inf").unwrap();
         assert!(draft.scene().is_err());
     }
 }

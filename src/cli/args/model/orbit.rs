@@ -1,6 +1,7 @@
 //! `vibro model orbit`, as typed.
 
 use super::Scene;
+use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
 pub struct Orbit {
@@ -15,4 +16,7 @@ pub struct Orbit {
     /// Standard uncertainty of the gap in m: a motion nearer to grazing is not relied on
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub gap_std: Option<f64>,
+    /// Folder for a figure of each motion as SVG and PNG, and its course as CSV
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
