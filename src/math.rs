@@ -3,7 +3,10 @@
 pub mod lanes;
 mod least_squares;
 pub mod oscillator;
+mod polynomial;
 pub mod root;
+pub mod runge_kutta;
 
 pub use least_squares::{Fit, least_squares};
 pub use oscillator::Oscillator;
+pub use polynomial::Polynomial;

@@ -16,19 +16,25 @@
 //! # Ok::<(), vibroimpact::Error>(())
 //! ```
 
+pub mod contact;
+mod drive;
 pub mod excitation;
 pub mod floquet;
 pub mod flow;
 pub mod green;
+pub mod linear;
+pub mod motion;
 pub mod orbit;
 pub mod receptance;
 pub mod rig;
 pub mod simulate;
 pub mod validity;
 
-pub use excitation::{Excitation, Sine};
+pub use contact::{Compliant, Law};
+pub use excitation::{Excitation, Impulses, Part, Pulses, Sine, Sines};
 pub use flow::{Flight, State};
 pub use green::Green;
+pub use motion::{Event, Motion, Path, Piece};
 pub use orbit::{Orbit, Orbits, orbits};
 pub use receptance::{NoImpact, Steady};
 pub use rig::Rig;
