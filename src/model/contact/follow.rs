@@ -10,8 +10,11 @@ use crate::model::motion::{Event, Path, Piece};
 use crate::model::simulate::{Impact, REST_SPEED};
 use crate::model::{Excitation, Rig, State};
 
-/// Pieces that one call computes at most: some minutes of work.
-const MOST_PIECES: f64 = 2e9;
+/// Work of one call at most, a linear piece being 1 and an integrated one [`INTEGRATED`]: some minutes.
+const MOST_WORK: f64 = 1e9;
+
+/// Work of an integrated step.
+const INTEGRATED: f64 = 10.0;
 
 /// Events in a row without time passing after which a motion is given up.
 const MOST_AT_ONCE: u32 = 1000;
@@ -199,15 +202,20 @@ impl Follow {
             ));
         }
         let rate = self.modes.mode(Between::Apart, true).rate().max(self.drive.fastest());
-        if span * rate.max(self.drive.frequency()) > MOST_PIECES {
-            return Err(Error::refused(format!(
-                "{span} s of motion at {} Hz are more than one call computes",
-                self.drive.frequency()
-            ))
-            .hint("ask for less time at once"));
+        let too_much = |from: f64, drive: &Drive| {
+            let (seconds, hz) = (until - from, drive.frequency());
+            Error::refused(format!("{seconds} s of motion at {hz} Hz are more than one call computes"))
+                .hint("ask for less time at once, or for a softer contact")
+        };
+        if span * rate.max(self.drive.frequency()) > MOST_WORK {
+            return Err(too_much(self.time, &self.drive));
         }
-        let (mut at_once, mut last) = (0, f64::NAN);
+        let (mut at_once, mut last, mut work) = (0, f64::NAN, 0.0);
         loop {
+            work += if self.stage == Stage::Touching && self.within.integrates() { INTEGRATED } else { 1.0 };
+            if work > MOST_WORK {
+                return Err(too_much(self.time, &self.drive));
+            }
             let reached = self.piece(until, visit)?;
             if reached {
                 return Ok(());

@@ -42,17 +42,34 @@ impl Within {
 
     /// A contact begins with an approach at `speed`.
     pub fn begin(&mut self, speed: f64) {
-        let (stiffness, exponent) = match self.law {
-            Some(Law::Hertz { stiffness }) => (stiffness, 1.5),
-            Some(Law::HuntCrossley { stiffness, exponent, .. }) => (stiffness, exponent),
-            _ => return,
-        };
+        let (stiffness, exponent) = self.spring();
         // Below 1 nm/s only the size of errors is meant.
         self.speed = speed.max(1e-9);
         // T with V² = k(VT)^{n+1}/M.
         self.scale = (self.reduced_mass / stiffness).powf(1.0 / (exponent + 1.0))
             * self.speed.powf((1.0 - exponent) / (exponent + 1.0));
         self.next = 1e-3 * self.scale;
+    }
+
+    /// Stiffness k and exponent n.
+    fn spring(&self) -> (f64, f64) {
+        match self.law {
+            Some(Law::Hertz { stiffness }) => (stiffness, 1.5),
+            Some(Law::HuntCrossley { stiffness, exponent, .. }) => (stiffness, exponent),
+            _ => (0.0, 1.0),
+        }
+    }
+
+    /// Sizes below which errors need not fall: indentation and speed of the contact, and what roundings of the displacements
+    /// allow. An indentation is known to εX, X = |x₁| + |x₂| + |Δ|, so with ω the contact's frequency a speed is known to εωX;
+    /// a fiftieth of X and ωX, times the relative error, is nine times that.
+    fn floor(&self, state: &State) -> [f64; SIZE] {
+        let (stiffness, exponent) = self.spring();
+        let depth = (state.x1 - state.x2 - self.gap).max(self.speed * self.scale);
+        let omega = (exponent * stiffness * depth.powf(exponent - 1.0) / self.reduced_mass).sqrt();
+        let size = (state.x1.abs() + state.x2.abs() + self.gap.abs()) / 50.0;
+        let (way, speed) = (depth.max(size), self.speed.max(omega * size));
+        [way, speed, way, speed, speed * self.reduced_mass]
     }
 
     /// One step of at most `span` seconds from `state`; `mode` holds what acts beside the contact.
@@ -66,8 +83,7 @@ impl Within {
             let [a1, a2] = mode.accelerations(&state, drive.force(t));
             [y[1], a1 - push * inverse1, y[3], a2 + push * inverse2, push]
         };
-        let (depth, speed) = (self.speed * self.scale, self.speed);
-        let floor = [depth, speed, depth, speed, speed * self.reduced_mass];
+        let floor = self.floor(state);
         let tolerance = Tolerance { relative: RELATIVE, floor };
         let start = [state.x1, state.v1, state.x2, state.v2, 0.0];
         if span <= 0.0 {
