@@ -1,8 +1,9 @@
 //! `vibro model`: what the motion of a rig should be.
 
+mod contact;
 mod orbit;
-mod simulate;
 mod response;
+mod simulate;
 
 use super::args::{self, ModelCommand};
 use crate::error::{Error, Result};
