@@ -5,8 +5,11 @@ pub mod cis;
 pub mod lanes;
 mod least_squares;
 pub mod oscillator;
+mod polynomial;
 pub mod root;
+pub mod runge_kutta;
 pub mod swing;
 
 pub use least_squares::{Fit, least_squares};
 pub use oscillator::Oscillator;
+pub use polynomial::Polynomial;

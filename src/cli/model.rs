@@ -1,8 +1,10 @@
 //! `vibro model`: what the motion of a rig should be.
 
+mod contact;
 mod map;
 mod orbit;
 mod response;
+mod simulate;
 mod sweep;
 
 use super::args::{self, ModelCommand};
@@ -13,6 +15,7 @@ use serde::Serialize;
 pub fn run(typed: &args::Model, json: bool) -> Result<()> {
     match &typed.command {
         ModelCommand::Orbit(typed) => orbit::run(typed, json),
+        ModelCommand::Simulate(typed) => simulate::run(typed, json),
         ModelCommand::Response(typed) => response::run(typed, json),
         ModelCommand::Sweep(typed) => sweep::run(typed, json),
         ModelCommand::Map(typed) => map::run(typed, json),

@@ -18,7 +18,7 @@ pub struct Bounded {
 impl Bounded {
     /// The longest step that cannot pass a root, for a value that is not negative (or negative by rounding only).
     #[inline]
-    fn step(self) -> f64 {
+    pub(super) fn step(self) -> f64 {
         let value = self.value.max(0.0);
         let root = (self.slope * self.slope + 2.0 * self.curvature * value).sqrt();
         if self.slope < 0.0 {

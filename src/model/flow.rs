@@ -3,7 +3,7 @@
 use super::receptance::Steady;
 use super::waves::Waves;
 use crate::math::Oscillator;
-use crate::math::root::{Bent, Bounded, Limits, each_root, first_landing};
+use crate::math::root::{Bent, Bounded, each_root, first_landing};
 use num_complex::Complex64;
 use serde::Serialize;
 

@@ -6,104 +6,23 @@
 //! closed form, up to the first root of the force between them. The phase is kept within 2π and runs on when the frequency is
 //! changed.
 
-use super::drive::{Drive, Tick};
-use super::stick::{Pair, Press};
-use super::{Event, Excitation, Flight, Motion, Path, Piece, Rig, State};
+mod leg;
+mod meet;
+
+pub use leg::{Counts, Course, Impact, Leg, Recorded};
+
+use super::drive::Drive;
+use super::stick::Pair;
+use super::{Event, Excitation, Flight, Motion, Piece, Rig, State};
 use crate::error::{Error, Result};
 use crate::math::Oscillator;
-use serde::Serialize;
 
 /// Approach speed in m/s below which an impact after which the masses part by themselves is counted as grazing, unless
 /// [`Simulation::grazing_below`] says otherwise.
 pub const GRAZING_SPEED: f64 = 1e-3;
 
-/// Approach speed in m/s below which the end of a chatter is looked for; above it, impacts do not yet accumulate closely enough.
-const SLOW: f64 = 1e-3;
-
 /// The most cycles of the excitation, and pieces, that one call follows: some ten seconds of work.
 const MOST_CYCLES: f64 = 2e7;
-
-/// One impact.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Impact {
-    /// Time in s.
-    pub time: f64,
-    /// Phase in 0..2π of the excitation's cycle; a sine force is F₀ cos(phase).
-    pub phase: f64,
-    /// Approach speed v₁ − v₂ in m/s.
-    pub approach_velocity: f64,
-    /// Impulse in N s.
-    pub impulse: f64,
-}
-
-/// How both masses move in a leg.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Course {
-    /// Each on its own.
-    Apart(Flight),
-    /// In contact.
-    Together(Pair),
-}
-
-impl Path for Course {
-    fn state(&self, t: f64) -> State {
-        match self {
-            Course::Apart(flight) => flight.state(t),
-            Course::Together(pair) => pair.state(t),
-        }
-    }
-}
-
-/// A stretch of a simulated motion and the event that ended it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Leg {
-    /// Time in s of its start.
-    pub start: f64,
-    /// Duration in s.
-    pub duration: f64,
-    /// The motion.
-    pub course: Course,
-    /// What ended it.
-    pub event: Event,
-}
-
-impl Leg {
-    /// State at `t` seconds from the leg's start.
-    pub fn state(&self, t: f64) -> State {
-        self.course.state(t)
-    }
-
-    /// The impact at its end, if one ended it.
-    pub fn impact(&self) -> Option<Impact> {
-        match self.event {
-            Event::Impact(impact) => Some(impact),
-            _ => None,
-        }
-    }
-}
-
-/// What a motion has met so far.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-pub struct Counts {
-    /// Stretches of motion in closed form.
-    pub flights: u64,
-    /// Impacts, those below the end of a chatter left out.
-    pub impacts: u64,
-    /// Impacts below the grazing speed after which the masses part by themselves: a little more gap and there is none. What
-    /// follows depends on them more than on anything else.
-    pub grazing: u64,
-    /// Times the masses came to rest against each other.
-    pub sticks: u64,
-}
-
-/// Displacements, velocities and impacts over an interval of time.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Recorded {
-    /// State at each sampling time; at an impact, the state after it.
-    pub states: Vec<State>,
-    /// Impacts in order.
-    pub impacts: Vec<Impact>,
-}
 
 /// How the masses are to each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -150,12 +69,16 @@ impl Simulation {
     /// # Errors
     /// If a parameter is impossible, there are more than four sines, or mass 1 is undamped and driven at resonance.
     pub fn new(rig: &Rig, excitation: impl Into<Excitation>) -> Result<Simulation> {
-        let mut state = State::REST;
-        if rig.gap < 0.0 {
-            state.x1 = rig.k2 * rig.gap / (rig.k1 + rig.k2);
-            state.x2 = state.x1 - rig.gap;
+        Simulation::from_state(rig, excitation, Simulation::at_rest(rig), 0.0)
+    }
+
+    /// Both masses at rest without a force: pressed together where the gap is negative.
+    pub fn at_rest(rig: &Rig) -> State {
+        if rig.gap >= 0.0 {
+            return State::REST;
         }
-        Simulation::from_state(rig, excitation, state, 0.0)
+        let x1 = rig.k2 * rig.gap / (rig.k1 + rig.k2);
+        State { x1, x2: x1 - rig.gap, ..State::REST }
     }
 
     /// A motion that starts from `state` at time 0 and at `phase` (rad) of the excitation's cycle: a sine force is F₀ cos(ωt + phase),
@@ -169,6 +92,7 @@ impl Simulation {
         state: State,
         phase: f64,
     ) -> Result<Simulation> {
+        rig.check()?;
         let State { x1, v1, x2, v2 } = state;
         if ![x1, v1, x2, v2, phase].iter().all(|v| v.is_finite()) {
             return Err(Error::usage(
@@ -203,6 +127,7 @@ impl Simulation {
             if motion.hold != Hold::Parting {
                 motion.hold = Hold::Together;
             }
+            motion.counts = Counts::default();
         }
         Ok(motion)
     }
@@ -356,81 +281,6 @@ impl Simulation {
             self.time
         ))
         .hint("give c1 or c2 a value above 0, or move the frequency"))
-    }
-
-    /// Exchanges momentum in the present state, which is at contact.
-    #[inline]
-    fn collide(&mut self) -> Result<Impact> {
-        let approach = self.state.approach();
-        let impulse = self.exchange * approach;
-        self.state.v1 -= impulse / self.rig.m1;
-        self.state.v2 += impulse / self.rig.m2;
-        self.hold = Hold::Apart;
-        self.counts.impacts += 1;
-        if approach < SLOW.max(self.grazing_speed) || self.rig.restitution == 0.0 {
-            self.settle(approach)?;
-        }
-        Ok(Impact { time: self.time, phase: self.drive.phase(), approach_velocity: approach, impulse })
-    }
-
-    /// Looks after an impact whether the masses come to rest against each other, at once or after a chatter.
-    fn settle(&mut self, approach: f64) -> Result<()> {
-        let press = Press::of(&self.flight());
-        if press.acceleration <= 0.0 && approach < self.grazing_speed {
-            self.counts.grazing += 1;
-        }
-        let separation = self.rig.restitution * approach;
-        if separation == 0.0 || press.acceleration > 0.0 && press.is_rest(separation) {
-            return self.rest();
-        }
-        if press.acceleration > 0.0
-            && let Some(left) = press.accumulation(&self.rig, separation)
-        {
-            let pair = self.pair()?;
-            // The masses must be pressed together all the time.
-            if pair.force(0.0).value > 0.0 && pair.release(left).is_none() {
-                self.state = pair.state(0.0);
-                self.hold = Hold::Settling(left);
-                self.counts.sticks += 1;
-            }
-        }
-        Ok(())
-    }
-
-    /// Decides, for masses at contact without relative motion, whether they stay together.
-    fn rest(&mut self) -> Result<()> {
-        let pair = self.pair()?;
-        let (force, noise) = (pair.force(0.0), pair.noise());
-        self.state = pair.state(0.0);
-        if force.value > noise || force.value >= -noise && force.slope > 0.0 {
-            self.hold = Hold::Settling(0.0);
-            self.counts.sticks += 1;
-        } else {
-            self.hold = Hold::Parting;
-        }
-        Ok(())
-    }
-
-    /// Does what the excitation does now.
-    fn tick(&mut self, tick: Tick) -> Result<Event> {
-        self.drive.tick(tick);
-        if let Tick::Kick(impulse) = tick {
-            self.state.v1 += impulse / self.rig.m1;
-            if impulse != 0.0 {
-                self.hold = Hold::Apart;
-            }
-            return Ok(Event::Kick);
-        }
-        if self.hold == Hold::Parting {
-            // The new force may press again what has only begun to part.
-            let flight = self.flight();
-            if flight.gap(0.0) > 16.0 * flight.noise() {
-                self.hold = Hold::Apart;
-            } else {
-                self.rest()?;
-            }
-        }
-        Ok(Event::Switch)
     }
 
     /// Follows the motion to the time `until`, showing each leg, the last with [`Event::Reached`].

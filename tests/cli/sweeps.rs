@@ -11,7 +11,9 @@ fn words(line: &str) -> Vec<&str> {
 fn a_sweep_has_its_keys_and_files() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    let line = format!("model sweep --force 0.5 --from 9 --to 11 --steps 9 --settle 20 --measure 2 --branches --out {out}");
+    let line = format!(
+        "model sweep --force 0.5 --from 9 --to 11 --steps 9 --settle 20 --measure 2 --branches --out {out}"
+    );
     let answer = json(&words(&line));
     for side in ["up", "down"] {
         let points = answer[side].as_array().unwrap();
@@ -34,7 +36,8 @@ fn a_sweep_of_the_force_keeps_its_frequency() {
     let answer = json(&words(
         "model sweep --over force --force 0.1 --frequency 10 --from 0.1 --to 0.5 --steps 3 --settle 5 --measure 1 --direction up",
     ));
-    let forces: Vec<f64> = answer["up"].as_array().unwrap().iter().map(|p| p["force"].as_f64().unwrap()).collect();
+    let forces: Vec<f64> =
+        answer["up"].as_array().unwrap().iter().map(|p| p["force"].as_f64().unwrap()).collect();
     assert_eq!(forces, [0.1, 0.3, 0.5]);
     assert_eq!(answer["up"][2]["frequency"], 10.0);
     assert!(answer["down"].as_array().unwrap().is_empty());
@@ -44,7 +47,9 @@ fn a_sweep_of_the_force_keeps_its_frequency() {
 fn a_map_has_its_keys_and_is_taken_up_again() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    let line = format!("model map --force 0.5 --x frequency:9:11:3 --y restitution:0.4:0.6:4 --cycles 60 --out {out}");
+    let line = format!(
+        "model map --force 0.5 --x frequency:9:11:3 --y restitution:0.4:0.6:4 --cycles 60 --out {out}"
+    );
     let first = json(&words(&line));
     assert_eq!(first["x"].as_array().unwrap().len(), 3);
     assert_eq!(first["regime"].as_array().unwrap().len(), 4);

@@ -4,12 +4,14 @@ mod map;
 mod orbit;
 mod response;
 mod scene;
+mod simulate;
 mod sweep;
 
 pub use map::Map as ModelMap;
 pub use orbit::Orbit;
 pub use response::ModelResponse;
 pub use scene::Scene;
+pub use simulate::{Law, Simulate};
 pub use sweep::{Observable, Over, Sweep as ModelSweep, Way};
 
 use clap::Subcommand;
@@ -24,6 +26,8 @@ pub struct Model {
 pub enum ModelCommand {
     /// All motions with one impact a period at one frequency, each with its verdicts
     Orbit(Orbit),
+    /// A motion from impact to impact, its regime, traces and Poincaré section
+    Simulate(Simulate),
     /// The same over a range of frequencies, with the places where motions appear, vanish and change
     Response(ModelResponse),
     /// Sweep frequency or force up and down, the motion carried on from step to step

@@ -1,13 +1,16 @@
 //! `vibro model sweep`: up and down with the state carried on.
 
-use crate::cli::args::{self, Over, Way};
+use super::contact;
+use crate::cli::args::{self, Law, Over, Way};
 use crate::cli::{complain, print};
 use crate::error::{Error, Result};
 use crate::measure::jump::Jump;
 use crate::measure::resonance::Resonance;
 use crate::model::continuation::{Branch, Parameter, follow};
 use crate::model::sweep::{Named, Observable, Pace, Plan, Point, Swept, apart, at_size, named, size};
-use crate::model::{Excitation, Motion, PeriodicOrbit, Rig, Scene, Simulation, orbits};
+use crate::model::{
+    Compliant, Excitation, Loose, Motion, PeriodicOrbit, Rig, Scene, Simulation, State, orbits,
+};
 use crate::record::Direction;
 use crate::report::{Output, files, pictures, tables};
 use serde::Serialize;
@@ -41,7 +44,7 @@ pub fn run(typed: &args::ModelSweep, json: bool) -> Result<()> {
     }
     let plan = plan(typed);
     plan.check()?;
-    let swept = sweep(&scene.rig, &excitation, &plan, over_force, typed.direction)?;
+    let swept = sweep(&scene, &excitation, &plan, typed)?;
     let (resonances, jumps) = if over_force { (Vec::new(), Vec::new()) } else { named(&swept) };
     warnings.extend(scattered(&swept));
     let branches = if typed.branches { branches(&scene.rig, &excitation, &plan)? } else { Vec::new() };
@@ -95,27 +98,59 @@ fn plan(typed: &args::ModelSweep) -> Plan {
     Plan { from: typed.from, to: typed.to, pace, observable }
 }
 
-fn sweep(rig: &Rig, excitation: &Excitation, plan: &Plan, over_force: bool, way: Way) -> Result<Swept> {
-    let directions: &[Direction] = match way {
+/// The sweep, on the contact law that is meant.
+fn sweep(scene: &Scene, excitation: &Excitation, plan: &Plan, typed: &args::ModelSweep) -> Result<Swept> {
+    let rig = &scene.rig;
+    match typed.model {
+        Law::Restitution => {
+            over(|e, state, phase| Simulation::from_state(rig, e, state, phase), rig, excitation, plan, typed)
+        }
+        Law::KelvinVoigt | Law::Hertz | Law::HuntCrossley => {
+            let law = contact::law(scene, typed.model)?;
+            over(|e, state, phase| Compliant::new(rig, e, law, state, phase), rig, excitation, plan, typed)
+        }
+        Law::LooseMass => {
+            let gap = scene.buffer.map_or(0.0, |b| b.gap);
+            if scene.contact.is_none() {
+                return over(
+                    |e, state, phase| Loose::new(rig, e, gap, state, phase),
+                    rig,
+                    excitation,
+                    plan,
+                    typed,
+                );
+            }
+            let law = contact::law(scene, Law::KelvinVoigt)?;
+            let make = |e: &Excitation, state, phase| Loose::with_law(rig, e, gap, law, state, phase);
+            over(make, rig, excitation, plan, typed)
+        }
+    }
+}
+
+/// The sweep of the motions that `make` makes of an excitation, a state and a phase.
+fn over<M: Motion>(
+    make: impl Fn(&Excitation, State, f64) -> Result<M> + Sync,
+    rig: &Rig,
+    excitation: &Excitation,
+    plan: &Plan,
+    typed: &args::ModelSweep,
+) -> Result<Swept> {
+    let directions: &[Direction] = match typed.direction {
         Way::Up => &[Direction::Up],
         Way::Down => &[Direction::Down],
         Way::Both => &[Direction::Up, Direction::Down],
     };
+    let rest = Simulation::at_rest(rig);
     apart(directions, |direction| {
         let start = if direction == Direction::Up { plan.from } else { plan.to };
-        if !over_force {
-            let mut motion = Simulation::new(rig, excitation.at_frequency(start))?;
+        if typed.over == Over::Frequency {
+            let mut motion = make(&excitation.at_frequency(start), rest, 0.0)?;
             return plan.frequency(&mut motion, size(excitation), direction);
         }
-        let mut motion = Simulation::new(rig, at_size(excitation, start))?;
+        let mut motion = make(&at_size(excitation, start), rest, 0.0)?;
         let frequency = excitation.frequency();
         plan.steps(&mut motion, direction, |motion, value| {
-            *motion = Simulation::from_state(
-                rig,
-                at_size(excitation, value),
-                motion.state(),
-                Motion::phase(motion),
-            )?;
+            *motion = make(&at_size(excitation, value), motion.state(), motion.phase())?;
             Ok((frequency, value))
         })
     })

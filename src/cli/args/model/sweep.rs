@@ -1,6 +1,6 @@
 //! `vibro model sweep`, as typed.
 
-use super::Scene;
+use super::{Law, Scene};
 use clap::ValueEnum;
 use std::path::PathBuf;
 
@@ -20,6 +20,9 @@ pub struct Sweep {
     /// Excitation frequency in Hz of a sweep of the force
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     pub frequency: Option<f64>,
+    /// Law of the contact
+    #[arg(long, value_enum, value_name = "LAW", default_value_t = Law::Restitution)]
+    pub model: Law,
     /// Direction
     #[arg(long, value_enum, value_name = "WAY", default_value = "both")]
     pub direction: Way,
