@@ -78,7 +78,6 @@ fn bad_requests_are_complaints() {
         ("model sweep --force 0.1 --from 1 --to 3 --settle 1000000000", "more than"),
         ("model sweep --force 0.1 --from 1 --to 3 --rate 1e-9", "more than"),
         ("model sweep --force 0.1 --from 1 --to 3 --set m1=-1", "m1"),
-        ("model sweep --force 0.1 --from 1 --to 3 --set gap=-1", "overlap"),
         ("model map --force 0.1 --x frequency:3:9:4 --y mass:1:2:3", "mass:1:2:3"),
         ("model map --force 0.1 --x frequency:0:9:4 --y gap:0:1e-3:3", "frequency is 0"),
         ("model map --force 0.1 --x frequency:3:9:4 --y restitution:0:2:3", "restitution is 2"),

@@ -32,7 +32,7 @@ pub fn regimes(plan: &Plan, rows: &Rows) -> Result<Figure> {
         AxisSpec::new(label(name), unit)
     };
     let plot = |title: &str| Plot::new(axis(&plan.x), axis(&plan.y)).title(title);
-    let scale = AxisSpec::new("Spectral radius", "").limits(0.0, 1.0);
+    let scale = AxisSpec::new("Spectral radius", "").limits(f64::NAN, 1.0);
     let figure = Figure::double("Regimes")
         .columns(2)
         .panel(
