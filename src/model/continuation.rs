@@ -323,7 +323,7 @@ impl Walk<'_> {
         let of = |test: fn(&PeriodicOrbit) -> Option<f64>| {
             move |spot: &Spot| self.orbit(&spot.z).ok().and_then(|o| test(&o)).unwrap_or(f64::NAN)
         };
-        let tests: [(MarkKind, fn(&PeriodicOrbit) -> Option<f64>); 3] =
+        let tests: [(MarkKind, Test); 3] =
             [(MarkKind::Flip, flip), (MarkKind::NeimarkSacker, pair), (MarkKind::Grazing, clearance)];
         for (kind, test) in tests {
             let (Some(a), Some(b)) = (test(last), test(orbit)) else { continue };
@@ -374,6 +374,9 @@ impl Walk<'_> {
         best
     }
 }
+
+/// A value that changes its sign where something happens.
+type Test = fn(&PeriodicOrbit) -> Option<f64>;
 
 /// det(M + I): changes its sign where a multiplier passes −1.
 fn flip(orbit: &PeriodicOrbit) -> Option<f64> {

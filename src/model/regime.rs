@@ -243,7 +243,7 @@ impl Watch {
             // Impacts that take turns about a single one draw near each other in pairs before they do one by one: a longer pattern
             // counts only where the shorter one is clearly off, and stays so.
             let draws = |d: &usize| compared.near(*d, OFF * found.distance) || compared.vanishes(*d, p);
-            let shorter = (1..p).filter(|d| p % d == 0).find(draws);
+            let shorter = (1..p).filter(|d| p.is_multiple_of(*d)).find(draws);
             shorter.and_then(|d| compared.counted(d)).or(Some(found))
         })
     }

@@ -47,7 +47,7 @@ pub fn run(typed: &args::ModelSweep, json: bool) -> Result<()> {
     let swept = sweep(&scene, &excitation, &plan, typed)?;
     let (resonances, jumps) = if over_force { (Vec::new(), Vec::new()) } else { named(&swept) };
     warnings.extend(scattered(&swept));
-    let branches = if typed.branches { branches(&scene.rig, &excitation, &plan)? } else { Vec::new() };
+    let branches = if typed.branches { branches(&scene.rig, &excitation, &plan) } else { Vec::new() };
     let mut written = Vec::new();
     if let Some(folder) = &typed.out {
         let mut output = Output::new(folder)?;
@@ -172,9 +172,9 @@ fn scattered(swept: &Swept) -> Option<String> {
 }
 
 /// Every branch of motions with one impact a cycle that crosses one of some frequencies in the range.
-fn branches(rig: &Rig, excitation: &Excitation, plan: &Plan) -> Result<Vec<Branch>> {
+fn branches(rig: &Rig, excitation: &Excitation, plan: &Plan) -> Vec<Branch> {
     const STARTS: u32 = 24;
-    let Excitation::Sine(sine) = excitation else { return Ok(Vec::new()) };
+    let Excitation::Sine(sine) = excitation else { return Vec::new() };
     let mut found: Vec<Branch> = Vec::new();
     for k in 0..STARTS {
         let share = (f64::from(k) + 0.5) / f64::from(STARTS);
@@ -191,7 +191,7 @@ fn branches(rig: &Rig, excitation: &Excitation, plan: &Plan) -> Result<Vec<Branc
             found.extend(branch);
         }
     }
-    Ok(found)
+    found
 }
 
 /// Whether a branch passes through this impulse (N s) at this frequency (Hz), within its own distance of points.

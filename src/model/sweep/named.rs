@@ -64,14 +64,18 @@ impl Found {
             _ => (p.frequency, p.x2, p.x2_scatter),
         };
         let mut curve: Vec<_> = points.iter().map(read).collect();
-        let column = |curve: &[(f64, f64, f64)], of: fn(&(f64, f64, f64)) -> f64| -> Vec<f64> {
-            curve.iter().map(of).collect()
+        let columns = |curve: &[(f64, f64, f64)]| -> [Vec<f64>; 3] {
+            [
+                curve.iter().map(|p| p.0).collect(),
+                curve.iter().map(|p| p.1).collect(),
+                curve.iter().map(|p| p.2).collect(),
+            ]
         };
-        let [f, a, s]: [fn(&(f64, f64, f64)) -> f64; 3] = [|p| p.0, |p| p.1, |p| p.2];
-        let jumps = jumps(&column(&curve, f), &column(&curve, a), &column(&curve, s), direction);
+        let [f, a, std] = columns(&curve);
+        let jumps = jumps(&f, &a, &std, direction);
         curve.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let resonances =
-            resonances(&column(&curve, f), &column(&curve, a), &column(&curve, s), &jumps, Some(mass));
+        let [f, a, std] = columns(&curve);
+        let resonances = resonances(&f, &a, &std, &jumps, Some(mass));
         Found { mass, direction, curve, jumps, resonances }
     }
 }

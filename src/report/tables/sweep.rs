@@ -3,9 +3,11 @@
 use super::{headed, pair};
 use crate::measure::jump::Jump;
 use crate::measure::resonance::Resonance;
+use crate::model::PeriodicOrbit;
 use crate::model::continuation::{Branch, MarkKind};
 use crate::model::sweep::{Named, Observable, Swept};
 use crate::report::{Cell, Table};
+use num_complex::Complex64;
 use serde::Serialize;
 
 /// Point by point, up and then down.
@@ -102,7 +104,7 @@ pub fn followed(branch: &Branch, observable: Observable) -> Followed {
     let points = branch.points.iter().map(|o| {
         let [x1, x2] = match observable {
             Observable::Peak => o.peak_to_peak.map(|x| x / 2.0),
-            _ => o.fundamental.map(|x| x.norm()),
+            _ => o.fundamental.map(Complex64::norm),
         };
         FollowedPoint {
             frequency: o.sine.frequency,
@@ -120,7 +122,7 @@ pub fn followed(branch: &Branch, observable: Observable) -> Followed {
         force: m.orbit.sine.force,
     };
     Followed {
-        impacts: branch.points.first().map_or(0, |o| o.impacts()),
+        impacts: branch.points.first().map_or(0, PeriodicOrbit::impacts),
         cycles: branch.points.first().map_or(0, |o| o.cycles),
         points: points.collect(),
         marks: branch.marks.iter().map(mark).collect(),
