@@ -98,8 +98,8 @@ fn the_table_says_what_the_motion_does() {
 
 #[test]
 fn impossible_requests_are_refused() {
-    for (more, code, expected) in [
-        (&["--cycles", "0"][..], 2, "0 cycles"),
+    let cases: [(&[&str], i32, &str); 11] = [
+        (&["--cycles", "0"], 2, "0 cycles"),
         (&["--cycles", "1000000000"], 2, "1000000000 cycles"),
         (&["--settle", "1000000000"], 2, "1000000000 cycles"),
         (&["--initial", "1,2,3"], 2, "3 numbers"),
@@ -110,7 +110,8 @@ fn impossible_requests_are_refused() {
         (&["--set", "m1=-1"], 2, "m1 is -1 kg"),
         (&["--set", "restitution=2"], 2, "restitution is 2"),
         (&["--set", "gap=nan"], 2, "gap"),
-    ] {
+    ];
+    for (more, code, expected) in cases {
         let said = complaint(&with(more), code);
         assert!(said.contains(expected), "{more:?}: {said}");
     }
