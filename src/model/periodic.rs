@@ -113,7 +113,7 @@ impl PeriodicOrbit {
             })
         };
         let shorter = (1..p)
-            .filter(|d| p % d == 0)
+            .filter(|d| p.is_multiple_of(*d))
             .find_map(|d| Some((d, cycles(d)?)).filter(|(d, q)| repeats(*d, *q)));
         let Some((d, q)) = shorter else { return Ok(self) };
         let impacts: Vec<_> = self.beats[..d].iter().map(|b| (b.phase, b.impulse)).collect();

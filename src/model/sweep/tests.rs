@@ -91,7 +91,7 @@ fn a_settled_step_is_the_closed_form() {
             let orbit = orbits(&rig, 0.5, point.frequency).unwrap().orbits[0];
             assert_eq!(orbit.validity.stable, Some(true));
             let expected = match read {
-                0 => orbit.fundamental.map(|x| x.norm()),
+                0 => orbit.fundamental.map(num_complex::Complex64::norm),
                 _ => orbit.peak_to_peak.map(|x| x / 2.0),
             };
             // 32 samples a cycle: 3e-6 and 4e-6 of the amplitude in its leading term, some harmonics on top.
