@@ -1,21 +1,31 @@
 //! The figures of this toolkit: results in, [`super::Figure`] out.
 
+mod branches;
 mod drill;
 mod frf;
 mod impacts;
+mod motion;
+mod orbit;
 mod overlay;
 mod pulse;
+mod regimes;
 mod response;
 mod spectrum;
+mod sweep;
 mod waterfall;
 
+pub use branches::branches;
 pub use drill::drill;
 pub use frf::{frf, nyquist};
 pub use impacts::{drop, impacts};
+pub use motion::{phase_plane, poincare, traces};
+pub use orbit::orbit;
 pub use overlay::overlay;
 pub use pulse::pulse;
+pub use regimes::regimes;
 pub use response::response;
 pub use spectrum::{lines, spectrum, transfer};
+pub use sweep::sweep;
 pub use waterfall::{map, waterfall};
 
 use crate::report::{Figure, Panel};

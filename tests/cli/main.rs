@@ -9,7 +9,9 @@ mod documents;
 mod impacts;
 mod modes;
 mod rig;
+mod simulate;
 mod spectrum;
+mod sweeps;
 
 use serde_json::Value;
 use std::path::Path;

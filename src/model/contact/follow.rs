@@ -1,0 +1,527 @@
+//! Follows a rig from event to event through its linear modes, and through integrated contacts between them.
+
+use super::Law;
+use super::modes::{Between, Modes};
+use super::within::Within;
+use crate::error::{Error, Result};
+use crate::model::forcing::Drive;
+use crate::model::linear::{Course, Linear, Quantity};
+use crate::model::motion::{Event, Path, Piece};
+use crate::model::simulate::Impact;
+use crate::model::{Excitation, Rig, State};
+
+/// Approach speed in m/s below which a chattering pair of masses counts as stuck together.
+const REST_SPEED: f64 = 1e-9;
+
+/// Work of one call at most, a linear piece being 1 and an integrated one [`INTEGRATED`]: some minutes.
+const MOST_WORK: f64 = 1e9;
+
+/// Work of an integrated step.
+const INTEGRATED: f64 = 10.0;
+
+/// Events in a row without time passing after which a motion is given up.
+const MOST_AT_ONCE: u32 = 1000;
+
+/// How the masses meet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Contact {
+    /// At once, with the rig's restitution.
+    Rebound,
+    /// By a force.
+    Law(Law),
+}
+
+/// Where a contact is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Stage {
+    /// Apart.
+    Apart,
+    /// Pushing each other.
+    Touching,
+    /// The force has come to zero with the surfaces not yet back at their rest.
+    Released,
+    /// Moving together (without rebound).
+    Together,
+}
+
+/// What a root of a watched quantity means.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Mark {
+    Meets,
+    ForceEnds,
+    ForceReturns,
+    Separates,
+    LetsGo,
+    SpringActs,
+    SpringFree,
+}
+
+/// The beginning of a contact.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Beginning {
+    time: f64,
+    phase: f64,
+    approach: f64,
+    impulse: f64,
+}
+
+/// A motion of a rig and where it is now.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Follow {
+    rig: Rig,
+    contact: Contact,
+    loose: bool,
+    modes: Modes,
+    drive: Drive,
+    within: Within,
+    time: f64,
+    state: State,
+    stage: Stage,
+    spring_acts: bool,
+    beginning: Beginning,
+    /// Overlap in m, of the size of roundings, that is not yet a meeting: masses that leave each other from rest.
+    slack: f64,
+}
+
+impl Follow {
+    /// A motion from `state` at time 0, at `phase` of the excitation's cycle; the spring of mass 1 acts for x₁ < −`buffer`, or
+    /// always.
+    pub fn new(
+        rig: &Rig,
+        excitation: &Excitation,
+        contact: Contact,
+        buffer: Option<f64>,
+        state: State,
+        phase: f64,
+    ) -> Result<Follow> {
+        // A wall is a mass 2 that nothing moves.
+        if rig.m2 == f64::INFINITY {
+            Rig { m2: 1.0, ..*rig }.check()?;
+            if state.x2 != 0.0 || state.v2 != 0.0 {
+                return Err(Error::usage(
+                    format!(
+                        "mass 2 is a wall (m2 is infinite) and starts at {} m with {} m/s",
+                        state.x2, state.v2
+                    ),
+                    "0 m and 0 m/s",
+                ));
+            }
+        } else {
+            rig.check()?;
+        }
+        let law = match contact {
+            Contact::Rebound => None,
+            Contact::Law(law) => law.check().map(|()| Some(law))?,
+        };
+        if let Some(gap) = buffer
+            && !(gap.is_finite() && gap >= 0.0)
+        {
+            return Err(Error::usage(format!("buffer gap is {gap} m"), "a finite value of 0 or more"));
+        }
+        let State { x1, v1, x2, v2 } = state;
+        if ![x1, v1, x2, v2, phase].iter().all(|v| v.is_finite()) {
+            return Err(Error::usage(
+                format!("initial state {x1}, {v1}, {x2}, {v2} with phase {phase}"),
+                "finite values",
+            ));
+        }
+        let modes = Modes::new(rig, law, buffer.unwrap_or(0.0));
+        let drive = Drive::new(excitation, phase)?;
+        let mut motion = Follow {
+            rig: *rig,
+            contact,
+            loose: buffer.is_some(),
+            within: Within::new(rig, law, modes.reduced_mass),
+            drive,
+            time: 0.0,
+            state,
+            stage: Stage::Apart,
+            spring_acts: buffer.is_none() || modes.compression.value(&state, 0.0) > 0.0,
+            beginning: Beginning::default(),
+            slack: 0.0,
+            modes,
+        };
+        let overlap = motion.indentation();
+        if overlap > 4.0 * f64::EPSILON * (x1.abs() + x2.abs() + rig.gap.abs()) {
+            if law.is_none() {
+                return Err(Error::usage(
+                    format!("the masses overlap by {overlap} m at the start"),
+                    "x1 − x2 of at most the gap; give an initial state in which they are apart",
+                ));
+            }
+            motion.touch();
+            motion.settle();
+        }
+        Ok(motion)
+    }
+
+    /// The rig.
+    pub fn rig(&self) -> &Rig {
+        &self.rig
+    }
+
+    /// Time in s.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// State now.
+    pub fn state(&self) -> State {
+        self.state
+    }
+
+    /// Phase of the excitation's cycle.
+    pub fn phase(&self) -> f64 {
+        self.drive.phase()
+    }
+
+    /// Frequency of the excitation in Hz.
+    pub fn frequency(&self) -> f64 {
+        self.drive.frequency()
+    }
+
+    /// Changes the frequency in Hz.
+    pub fn set_frequency(&mut self, hz: f64) -> Result<()> {
+        self.drive.set_frequency(hz)
+    }
+
+    fn indentation(&self) -> f64 {
+        self.modes.indentation.value(&self.state, 0.0)
+    }
+
+    /// Rounding of the indentation in m.
+    fn rounding(&self) -> f64 {
+        8.0 * f64::EPSILON * (self.state.x1.abs() + self.state.x2.abs() + self.rig.gap.abs())
+    }
+
+    fn mode(&self) -> &Linear {
+        let between = match self.stage {
+            Stage::Apart | Stage::Released => Between::Apart,
+            Stage::Touching => Between::Pushing,
+            Stage::Together => Between::Together,
+        };
+        self.modes.mode(between, self.spring_acts)
+    }
+
+    /// See [`crate::model::Motion::advance`].
+    pub fn advance(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<()> {
+        let span = until - self.time;
+        if !(span.is_finite() && span >= 0.0) {
+            return Err(Error::usage(
+                format!("a motion until {until} s from {} s", self.time),
+                "a finite time that is not in the past",
+            ));
+        }
+        let rate = self.modes.mode(Between::Apart, true).rate().max(self.drive.fastest());
+        let too_much = |from: f64, drive: &Drive| {
+            let (seconds, hz) = (until - from, drive.frequency());
+            Error::refused(format!("{seconds} s of motion at {hz} Hz are more than one call computes"))
+                .hint("ask for less time at once, or for a softer contact")
+        };
+        if span * rate.max(self.drive.frequency()) > MOST_WORK {
+            return Err(too_much(self.time, &self.drive));
+        }
+        let (mut at_once, mut last, mut work) = (0, f64::NAN, 0.0);
+        loop {
+            work += if self.stage == Stage::Touching && self.within.integrates() { INTEGRATED } else { 1.0 };
+            if work > MOST_WORK {
+                return Err(too_much(self.time, &self.drive));
+            }
+            let reached = self.piece(until, visit)?;
+            if reached {
+                return Ok(());
+            }
+            at_once = if self.time == last { at_once + 1 } else { 0 };
+            last = self.time;
+            if at_once > MOST_AT_ONCE {
+                return Err(Error::refused(format!(
+                    "at {} s the motion changes its mode again and again without moving on",
+                    self.time
+                ))
+                .hint("change the initial state or a parameter a little"));
+            }
+        }
+    }
+
+    /// Computes one piece; whether it reached `until`.
+    fn piece(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<bool> {
+        if self.stage == Stage::Touching && self.within.integrates() {
+            return self.integrated(until, visit);
+        }
+        let remaining = until - self.time;
+        let jump = self.drive.next_jump();
+        let mode = self.mode();
+        let longest = 1.0 / mode.rate().max(self.drive.fastest());
+        let span = remaining.min(jump).min(longest);
+        let force = self.drive.terms(span);
+        let taylor = mode.fly(&self.state, &force, span);
+        let mut first: Option<(f64, Mark)> = None;
+        let mut watch = |course: &Course, mark: Mark| {
+            if let Some(t) = course.first_fall()
+                && first.is_none_or(|(earlier, _)| t < earlier)
+            {
+                first = Some((t, mark));
+            }
+        };
+        let read = |quantity: &Quantity| taylor.read(quantity, &force);
+        match self.stage {
+            Stage::Apart => {
+                let mut gap = self.modes.indentation.reversed();
+                gap.offset += self.slack;
+                watch(&read(&gap), Mark::Meets);
+            }
+            Stage::Touching => watch(&read(&self.modes.contact_force), Mark::ForceEnds),
+            Stage::Released => {
+                watch(&read(&self.modes.indentation), Mark::Separates);
+                watch(&read(&self.modes.contact_force.reversed()), Mark::ForceReturns);
+            }
+            Stage::Together => watch(&read(&self.modes.pressing(self.spring_acts)), Mark::LetsGo),
+        }
+        if self.loose {
+            if self.spring_acts {
+                watch(&read(&self.modes.compression), Mark::SpringFree);
+            } else {
+                watch(&read(&self.modes.compression.reversed()), Mark::SpringActs);
+            }
+        }
+        let start = self.time;
+        let duration = first.map_or(span, |(t, _)| t);
+        if self.stage == Stage::Touching {
+            self.beginning.impulse += read(&self.modes.contact_force).integral(duration);
+        }
+        self.state = taylor.state(duration);
+        self.drive.pass(duration);
+        let whole = first.is_none() && span == remaining;
+        self.time = if whole { until } else { start + duration };
+        let event = match first {
+            Some((_, mark)) => self.mark(mark),
+            None if span == jump => self.jump(),
+            None => Event::Reached,
+        };
+        visit(Piece { start, duration, path: &taylor, event });
+        if self.stage == Stage::Apart && matches!(event, Event::Impact(_)) {
+            self.come_to_rest(visit);
+        }
+        Ok(whole && event == Event::Reached)
+    }
+
+    /// What a root changes, and what it is called.
+    fn mark(&mut self, mark: Mark) -> Event {
+        match mark {
+            Mark::Meets => match self.contact {
+                Contact::Rebound => self.rebound(),
+                Contact::Law(_) => {
+                    self.touch();
+                    Event::Touch
+                }
+            },
+            Mark::ForceEnds => {
+                // Without a damper the force ends where the surfaces are back at their rest.
+                if self.indentation() <= 0.0 || self.modes.contact_force.weights[1] == 0.0 {
+                    self.separate()
+                } else {
+                    self.stage = Stage::Released;
+                    Event::Part
+                }
+            }
+            Mark::ForceReturns => {
+                self.stage = Stage::Touching;
+                Event::Touch
+            }
+            Mark::Separates => self.separate(),
+            Mark::LetsGo => {
+                self.stage = Stage::Apart;
+                self.slack = self.rounding();
+                Event::Release
+            }
+            Mark::SpringActs => {
+                self.spring_acts = true;
+                Event::Switch
+            }
+            Mark::SpringFree => {
+                self.spring_acts = false;
+                Event::Switch
+            }
+        }
+    }
+
+    fn touch(&mut self) {
+        self.stage = Stage::Touching;
+        self.beginning = Beginning {
+            time: self.time,
+            phase: self.drive.phase(),
+            approach: self.state.approach(),
+            impulse: 0.0,
+        };
+        self.within.begin(self.state.approach().abs());
+    }
+
+    fn separate(&mut self) -> Event {
+        self.stage = Stage::Apart;
+        let Beginning { time, phase, approach, impulse } = self.beginning;
+        Event::Impact(Impact { time, phase, approach_velocity: approach, impulse })
+    }
+
+    fn rebound(&mut self) -> Event {
+        let approach = self.state.approach();
+        let impulse = self.modes.reduced_mass * (1.0 + self.rig.restitution) * approach;
+        self.slack = 0.0;
+        self.state.v1 -= impulse / self.rig.m1;
+        self.state.v2 += impulse / self.rig.m2;
+        Event::Impact(Impact {
+            time: self.time,
+            phase: self.drive.phase(),
+            approach_velocity: approach,
+            impulse,
+        })
+    }
+
+    /// After a rebound too slow to part the masses against the force that presses them together, they move together.
+    fn come_to_rest(&mut self, visit: &mut dyn FnMut(Piece<'_>)) {
+        if self.contact != Contact::Rebound || -self.state.approach() >= REST_SPEED {
+            return;
+        }
+        let pressing = self.modes.pressing(self.spring_acts);
+        let force = self.drive.force(0.0);
+        let w = pressing.weights;
+        let s = &self.state;
+        let size = (w[0] * s.x1).abs() + (w[2] * s.x2).abs() + (pressing.force * force).abs();
+        if pressing.value(s, force) <= 64.0 * f64::EPSILON * size {
+            self.slack = self.rounding();
+            return;
+        }
+        let common = if self.rig.m2.is_infinite() {
+            0.0
+        } else {
+            (self.rig.m1 * s.v1 + self.rig.m2 * s.v2) / (self.rig.m1 + self.rig.m2)
+        };
+        self.state.v1 = common;
+        self.state.v2 = common;
+        self.stage = Stage::Together;
+        let end = Still(self.state);
+        visit(Piece { start: self.time, duration: 0.0, path: &end, event: Event::Stick });
+    }
+
+    /// Makes the excitation's jump.
+    fn jump(&mut self) -> Event {
+        let (impulse, event) = self.drive.jump();
+        self.state.v1 += impulse / self.rig.m1;
+        self.settle();
+        event
+    }
+
+    /// Finds the stage of a contact whose force has jumped.
+    fn settle(&mut self) {
+        let pulls = self.modes.contact_force.value(&self.state, 0.0) < 0.0;
+        match self.stage {
+            Stage::Touching if pulls && !self.within.integrates() => self.stage = Stage::Released,
+            Stage::Released if !pulls => self.stage = Stage::Touching,
+            Stage::Together => {
+                let force = self.drive.force(0.0);
+                let pressed = self.modes.pressing(self.spring_acts).value(&self.state, force) > 0.0;
+                if !pressed || self.state.approach() != 0.0 {
+                    self.stage = Stage::Apart;
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// One step within a contact that is not linear.
+    fn integrated(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<bool> {
+        let remaining = until - self.time;
+        let jump = self.drive.next_jump();
+        let span = remaining.min(jump);
+        let start = self.time;
+        let mode = self.modes.mode(Between::Apart, self.spring_acts);
+        let step = self.within.step(mode, &self.drive, &self.state, span)?;
+        let fall = step.first_fall();
+        let duration = fall.unwrap_or(step.duration());
+        let ended = fall.is_none() && duration == span;
+        self.beginning.impulse += step.impulse(duration);
+        self.state = step.state(duration);
+        self.drive.pass(duration);
+        let whole = ended && span == remaining;
+        self.time = if whole { until } else { start + duration };
+        let event = if fall.is_some() {
+            self.separate()
+        } else if ended && span == jump {
+            self.jump()
+        } else {
+            Event::Reached
+        };
+        visit(Piece { start, duration, path: &step, event });
+        Ok(whole && event == Event::Reached)
+    }
+}
+
+/// A state that lasts no time.
+struct Still(State);
+
+impl Path for Still {
+    fn state(&self, _: f64) -> State {
+        self.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Sine;
+
+    #[test]
+    fn sticking_and_release_come_when_they_should() {
+        // Scene C: gap −0.5 mm, force 0.35 N sin ωt at ν 0.45, x₁ −2 mm at the start. Independent numbers.
+        let rig = Rig { gap: -5e-4, ..Rig::thesis() };
+        let frequency = 0.45 * (rig.k1 / rig.m1).sqrt() / std::f64::consts::TAU;
+        let sine = Excitation::Sine(Sine { force: 0.35, frequency });
+        let start = State { x1: -2e-3, ..State::REST };
+        let phase = -std::f64::consts::FRAC_PI_2;
+        let mut motion = Follow::new(&rig, &sine, Contact::Rebound, None, start, phase).unwrap();
+        let mut found = Vec::new();
+        motion
+            .advance(0.65, &mut |piece| {
+                if matches!(piece.event, Event::Stick | Event::Release) {
+                    found.push((piece.event, piece.start + piece.duration));
+                }
+            })
+            .unwrap();
+        let expected = [
+            (Event::Stick, 0.152_721_089_353_360_45),
+            (Event::Release, 0.220_247_418_265_660_51),
+            (Event::Stick, 0.574_521_373_816_090_68),
+        ];
+        assert_eq!(found.len(), 3, "{found:?}");
+        for ((event, time), (kind, golden)) in found.iter().zip(expected) {
+            assert_eq!(*event, kind);
+            // The last rebounds, below 1e-9 m/s, are left out: 2·1e-9/(a(1 − R)) s.
+            assert!((time - golden).abs() < 2e-8, "{event:?} {time}");
+        }
+        assert!((found[1].1 - expected[1].1).abs() < 1e-9, "{found:?}");
+    }
+
+    #[test]
+    fn rebounds_are_those_of_the_closed_form_flights() {
+        use crate::model::Simulation;
+        let rig = Rig::thesis();
+        let sine = Sine { force: 0.5, frequency: 11.0 };
+        let mut plain = Vec::new();
+        Simulation::new(&rig, &sine).unwrap().run(2.0, |leg| plain.extend(leg.impact())).unwrap();
+        let mut found = Vec::new();
+        let mut motion =
+            Follow::new(&rig, &Excitation::Sine(sine), Contact::Rebound, None, State::REST, 0.0).unwrap();
+        motion
+            .advance(2.0, &mut |piece| {
+                if let Event::Impact(impact) = piece.event {
+                    found.push(impact);
+                }
+            })
+            .unwrap();
+        assert_eq!(found.len(), plain.len());
+        for (a, b) in found.iter().zip(&plain) {
+            // Roundings of times up to 2 s and of displacements of 10 mm, over 20 impacts.
+            assert!((a.time - b.time).abs() < 1e-13, "{a:?} {b:?}");
+            assert!((a.impulse / b.impulse - 1.0).abs() < 1e-11, "{a:?} {b:?}");
+        }
+    }
+}

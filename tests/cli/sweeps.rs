@@ -1,0 +1,92 @@
+//! `vibro model sweep` and `vibro model map`.
+
+use super::{json, vibro};
+use std::fs;
+
+fn words(line: &str) -> Vec<&str> {
+    line.split(' ').collect()
+}
+
+#[test]
+fn a_sweep_has_its_keys_and_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let line = format!(
+        "model sweep --force 0.5 --from 9 --to 11 --steps 9 --settle 20 --measure 2 --branches --out {out}"
+    );
+    let answer = json(&words(&line));
+    for side in ["up", "down"] {
+        let points = answer[side].as_array().unwrap();
+        assert_eq!(points.len(), 9);
+        for key in ["frequency", "x1", "x2", "force"] {
+            assert!(points[0][key].is_f64(), "{side} {key}");
+        }
+    }
+    assert_eq!(answer["up"][0]["frequency"], 9.0);
+    assert_eq!(answer["down"][0]["frequency"], 11.0);
+    assert!(answer["resonances"].is_array() && answer["jumps"].is_array());
+    assert!(!answer["branches"].as_array().unwrap().is_empty());
+    for name in ["sweep.svg", "sweep.png", "sweep.csv", "branches.csv"] {
+        assert!(folder.path().join(name).exists(), "{name}");
+    }
+}
+
+#[test]
+fn a_sweep_of_the_force_keeps_its_frequency() {
+    let answer = json(&words(
+        "model sweep --over force --force 0.1 --frequency 10 --from 0.1 --to 0.5 --steps 3 --settle 5 --measure 1 --direction up",
+    ));
+    let forces: Vec<f64> =
+        answer["up"].as_array().unwrap().iter().map(|p| p["force"].as_f64().unwrap()).collect();
+    assert_eq!(forces, [0.1, 0.3, 0.5]);
+    assert_eq!(answer["up"][2]["frequency"], 10.0);
+    assert!(answer["down"].as_array().unwrap().is_empty());
+}
+
+#[test]
+fn a_map_has_its_keys_and_is_taken_up_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let line = format!(
+        "model map --force 0.5 --x frequency:9:11:3 --y restitution:0.4:0.6:4 --cycles 60 --out {out}"
+    );
+    let first = json(&words(&line));
+    assert_eq!(first["x"].as_array().unwrap().len(), 3);
+    assert_eq!(first["regime"].as_array().unwrap().len(), 4);
+    assert_eq!(first["spectral_radius"][3].as_array().unwrap().len(), 3);
+    // Cut within the last row.
+    let whole = fs::read_to_string(folder.path().join("map.csv")).unwrap();
+    fs::remove_file(folder.path().join("map.csv")).unwrap();
+    fs::write(folder.path().join("map.part.csv"), &whole[..whole.len() - 10]).unwrap();
+    let again = json(&words(&line));
+    assert_eq!(again["regime"], first["regime"]);
+    assert!(again["warnings"][0].as_str().unwrap().starts_with("3 of 4 rows"), "{}", again["warnings"]);
+    assert_eq!(fs::read_to_string(folder.path().join("map.csv")).unwrap(), whole);
+    assert!(!folder.path().join("map.part.csv").exists());
+    // A part of another map is not mixed in.
+    fs::write(folder.path().join("map.part.csv"), whole.replace("\"cycles\":60", "\"cycles\":61")).unwrap();
+    assert_eq!(vibro(&words(&line)).status.code(), Some(1));
+}
+
+#[test]
+fn bad_requests_are_complaints() {
+    for (line, word) in [
+        ("model sweep --force 0.1 --from 14 --to 3", "between 14 and 3"),
+        ("model sweep --force 0.1 --from 0 --to 3", "frequency is 0"),
+        ("model sweep --force NaN --from 1 --to 3", "NaN"),
+        ("model sweep --from 1 --to 3", "nothing drives"),
+        ("model sweep --force 0.1 --from 1 --to 3 --settle 1000000000", "more than"),
+        ("model sweep --force 0.1 --from 1 --to 3 --rate 1e-9", "more than"),
+        ("model sweep --force 0.1 --from 1 --to 3 --set m1=-1", "m1"),
+        ("model map --force 0.1 --x frequency:3:9:4 --y mass:1:2:3", "mass:1:2:3"),
+        ("model map --force 0.1 --x frequency:0:9:4 --y gap:0:1e-3:3", "frequency is 0"),
+        ("model map --force 0.1 --x frequency:3:9:4 --y restitution:0:2:3", "restitution is 2"),
+        ("model map --force 0.1 --x frequency:3:9:4 --y gap:-1:1e-3:3", "gap is -1"),
+        ("model map --force 0.1 --x frequency:3:9:4000 --y gap:0:1e-3:4000 --cycles 1000000000", "more than"),
+    ] {
+        let output = vibro(&words(line));
+        let text = String::from_utf8_lossy(&output.stderr);
+        assert!(matches!(output.status.code(), Some(1 | 2)), "{line}: {text}");
+        assert!(text.contains(word), "{line}: {text}");
+    }
+}
