@@ -486,7 +486,7 @@ mod tests {
         let expected = [
             (Event::Stick, 0.152_721_089_353_360_45),
             (Event::Release, 0.220_247_418_265_660_51),
-            (Event::Stick, 0.574_521_373_816_090_68),
+            (Event::Stick, 0.574_521_373_816_090_7),
         ];
         assert_eq!(found.len(), 3, "{found:?}");
         for ((event, time), (kind, golden)) in found.iter().zip(expected) {
