@@ -9,6 +9,7 @@ mod excitation;
 mod impacts;
 mod info;
 mod modal;
+mod model;
 mod print;
 mod progress;
 mod pulse;
@@ -55,6 +56,7 @@ fn dispatch(args: &Args) -> Result<u8> {
         Command::Compare(typed) => compare::run(typed, args.json),
         Command::Modal(typed) => modal::run(typed, args.json),
         Command::Pulse(typed) => pulse::run(typed, args.json),
+        Command::Model(typed) => model::run(typed, args.json),
         Command::Run(typed) => return run::run(typed, args.json),
     };
     done.map(|()| 0)

@@ -1,11 +1,14 @@
 //! Numerical kernels, each with its source and its error bound.
 
+pub mod bracket;
+pub mod cis;
 pub mod lanes;
 mod least_squares;
 pub mod oscillator;
 mod polynomial;
 pub mod root;
 pub mod runge_kutta;
+pub mod swing;
 
 pub use least_squares::{Fit, least_squares};
 pub use oscillator::Oscillator;

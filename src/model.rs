@@ -16,29 +16,48 @@
 //! # Ok::<(), vibroimpact::Error>(())
 //! ```
 
+pub mod chirp;
 pub mod contact;
+pub mod continuation;
 mod drive;
 pub mod excitation;
 pub mod floquet;
 pub mod flow;
+mod forcing;
 pub mod green;
 pub mod linear;
 pub mod loose;
+pub mod map;
 pub mod motion;
 pub mod orbit;
+pub mod periodic;
+pub mod portrait;
 pub mod receptance;
+pub mod regime;
+pub mod response;
 pub mod rig;
+pub mod scene;
 pub mod simulate;
+pub mod stick;
+pub mod sweep;
 pub mod validity;
+mod waves;
 
+pub use chirp::Chirp;
 pub use contact::{Compliant, Law};
+pub use continuation::{Branch, follow};
 pub use excitation::{Excitation, Impulses, Part, Pulses, Sine, Sines};
 pub use flow::{Flight, State};
 pub use green::Green;
 pub use loose::Loose;
 pub use motion::{Event, Motion, Path, Piece};
-pub use orbit::{Orbit, Orbits, orbits};
+pub use orbit::{Compliance, Orbit, Orbits, Softened, backbone, orbits, orbits_of, orbits_over, softened};
+pub use periodic::{Beat, PeriodicOrbit};
 pub use receptance::{NoImpact, Steady};
+pub use regime::{Pattern, Regime, regime};
+pub use response::{Change, Response, ResponsePoint, response};
 pub use rig::Rig;
-pub use simulate::{Impact, Leg, Simulation};
-pub use validity::Validity;
+pub use scene::{Buffer, ContactKeys, Draft, Scene};
+pub use simulate::{Counts, Course, Impact, Leg, Simulation};
+pub use stick::Pair;
+pub use validity::{Loss, Validity};

@@ -1,8 +1,8 @@
-//! Closed-form orbits against an independent implementation: every root on four frequency grids.
+//! Closed-form orbits against an independent implementation: every root on seven frequency grids.
 
 use std::f64::consts::TAU;
 use std::path::Path;
-use vibroimpact::model::{Orbit, Rig, orbits};
+use vibroimpact::model::{Excitation, Impulses, Orbit, Rig, Sine, orbits_of};
 
 /// One row of a reference file.
 struct Row {
@@ -41,44 +41,52 @@ fn rows(text: &str) -> Vec<Row> {
     text.lines().skip(1).map(row).collect()
 }
 
-/// How the quadratic amplifies roundings of its coefficients: the size of its roots over their distance, large at a fold.
-fn condition(pair: &[Orbit]) -> f64 {
-    let [first, second] = pair else { return 1.0 };
-    1.0 + first.impulse.abs().max(second.impulse.abs()) / (first.impulse - second.impulse).abs()
+/// How the equation amplifies roundings of its coefficients, large at a fold: size of its roots over the distance of the nearest other.
+fn condition(all: &[Orbit], orbit: &Orbit) -> f64 {
+    let nearest = all
+        .iter()
+        .filter(|other| other.timing != orbit.timing)
+        .map(|other| (other.impulse - orbit.impulse).abs())
+        .fold(f64::INFINITY, f64::min);
+    let largest = all.iter().map(|o| o.impulse.abs()).fold(0.0, f64::max);
+    1.0 + largest / nearest
 }
 
-fn check_file(name: &str, force: f64, rig: &Rig) {
+fn check_file(name: &str, excitation: &Excitation, rig: &Rig) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/reference/orbits").join(name);
     let text = std::fs::read_to_string(&path).unwrap();
     let rows = rows(&text);
-    assert!(rows.len() > 400, "{name} holds {} rows", rows.len());
+    assert!(rows.len() > 250, "{name} holds {} rows", rows.len());
     let (mut worst, mut borders) = (0.0_f64, 0);
+    let sine = matches!(excitation, Excitation::Sine(_));
+    let find = |omega: f64| orbits_of(rig, &excitation.at_frequency(omega / TAU), 1).unwrap().orbits;
     for row in &rows {
-        let found = orbits(rig, force, row.omega / TAU).unwrap().orbits;
-        let place = format!("{name} ν {} J {}", row.nu, row.impulse);
+        let found = find(row.omega);
+        let place = format!("{name} ν {} J {} timing {}", row.nu, row.impulse, row.timing);
+        // φ counts modulo 2π, τ modulo the period.
+        let cycle = if sine { TAU } else { TAU / row.omega };
+        let apart = |orbit: &Orbit| {
+            let turn = (orbit.timing - row.timing).rem_euclid(cycle);
+            turn.min(cycle - turn) / cycle
+        };
         let orbit = found
             .iter()
-            .min_by(|a, b| (a.impulse - row.impulse).abs().total_cmp(&(b.impulse - row.impulse).abs()))
+            .min_by(|a, b| apart(a).total_cmp(&apart(b)))
             .unwrap_or_else(|| panic!("{place}: no root found"));
-        let amplify = condition(&found);
+        let amplify = condition(&found, orbit);
         let tolerance = 1e-10 * amplify;
         let error = (orbit.impulse / row.impulse - 1.0).abs();
         worst = worst.max(error / amplify);
         assert!(error < tolerance, "{place}: {} ({error:e})", orbit.impulse);
-        let turn = (orbit.timing - row.timing).rem_euclid(TAU);
-        assert!(turn.min(TAU - turn) < tolerance, "{place}: φ {} for {}", orbit.timing, row.timing);
+        assert!(apart(orbit) < tolerance, "{place}: timing {}", orbit.timing);
         assert!((orbit.approach_velocity / row.approach - 1.0).abs() < tolerance, "{place}");
         borders += check_verdicts(row, orbit, &place);
         check_samples(row, orbit, &place);
     }
     // Each row has its own root: as many roots as rows at each frequency.
     for pair in rows.chunk_by(|a, b| a.omega == b.omega) {
-        assert_eq!(
-            orbits(rig, force, pair[0].omega / TAU).unwrap().orbits.len(),
-            pair.len(),
-            "ν {}",
-            pair[0].nu
-        );
+        let count = find(pair[0].omega).len();
+        assert_eq!(count, pair.len(), "ν {}", pair[0].nu);
     }
     println!("{name}: {} rows, worst J {worst:e}, {borders} on a border", rows.len());
     assert!(borders * 50 < rows.len(), "{name}: {borders} verdicts on a border");
@@ -117,9 +125,12 @@ fn check_verdicts(row: &Row, orbit: &Orbit, place: &str) -> usize {
 /// Sampled quantities: exact ones here reach at least as far, and no further than a sample's distance allows.
 fn check_samples(row: &Row, orbit: &Orbit, place: &str) {
     let step = orbit.period() / SAMPLES;
-    let (before, after) = (orbit.before_impact(), orbit.state(0.0));
-    // Slopes at the impact's kink, and curvature elsewhere (harmonics of no more than ω and the natural frequencies).
-    let slope = [before.v1.abs().max(after.v1.abs()), before.v2.abs().max(after.v2.abs())];
+    // Slopes at the kinks of impact and impulse, and curvature elsewhere (harmonics of no more than ω and the natural frequencies).
+    let mut slope = [0.0_f64; 2];
+    for i in 0..=2000 {
+        let state = orbit.state(orbit.period() * f64::from(i) / 2000.0);
+        slope = [slope[0].max(state.v1.abs() * 1.01), slope[1].max(state.v2.abs() * 1.01)];
+    }
     for (i, (exact, sampled)) in orbit.peak_to_peak.iter().zip(row.peak_to_peak).enumerate() {
         let top = row.omega.max(40.0).powi(2) * exact;
         let missed = slope[i] * step + top * step * step;
@@ -141,22 +152,43 @@ fn check_samples(row: &Row, orbit: &Orbit, place: &str) {
     );
 }
 
+fn sine(force: f64) -> Excitation {
+    Excitation::Sine(Sine { force, frequency: 1.0 })
+}
+
+const IMPULSE: Excitation = Excitation::Impulse(Impulses { impulse: 0.009, frequency: 1.0 });
+
 #[test]
 fn light_force_elastic_impacts() {
-    check_file("sine_F0.1_R1_c0.1.csv", 0.1, &Rig { restitution: 1.0, ..Rig::thesis() });
+    check_file("sine_F0.1_R1_c0.1.csv", &sine(0.1), &Rig { restitution: 1.0, ..Rig::thesis() });
 }
 
 #[test]
 fn medium_force() {
-    check_file("sine_F0.5_R0.7_c0.1.csv", 0.5, &Rig::thesis());
+    check_file("sine_F0.5_R0.7_c0.1.csv", &sine(0.5), &Rig::thesis());
 }
 
 #[test]
 fn medium_force_without_dampers() {
-    check_file("sine_F0.5_R0.7_c0.csv", 0.5, &Rig { c1: 0.0, c2: 0.0, ..Rig::thesis() });
+    check_file("sine_F0.5_R0.7_c0.csv", &sine(0.5), &Rig { c1: 0.0, c2: 0.0, ..Rig::thesis() });
 }
 
 #[test]
 fn large_force_elastic_impacts() {
-    check_file("sine_F0.9_R1_c0.1.csv", 0.9, &Rig { restitution: 1.0, ..Rig::thesis() });
+    check_file("sine_F0.9_R1_c0.1.csv", &sine(0.9), &Rig { restitution: 1.0, ..Rig::thesis() });
+}
+
+#[test]
+fn impulses() {
+    check_file("impulse_F0.009_R0.7_c0.1.csv", &IMPULSE, &Rig::thesis());
+}
+
+#[test]
+fn impulses_on_a_damped_mass() {
+    check_file("impulse_F0.009_R0.7_c1_0_c2_0.1.csv", &IMPULSE, &Rig { c1: 0.0, ..Rig::thesis() });
+}
+
+#[test]
+fn impulses_elastic_impacts() {
+    check_file("impulse_F0.009_R1_c0.1.csv", &IMPULSE, &Rig { restitution: 1.0, ..Rig::thesis() });
 }

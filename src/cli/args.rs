@@ -8,6 +8,7 @@ mod impacts;
 mod info;
 mod low_pass;
 mod modal;
+mod model;
 mod pulse;
 mod reading;
 mod response;
@@ -25,6 +26,7 @@ pub use impacts::{Finding, Impacts, Scatter};
 pub use info::Info;
 pub use low_pass::{LowPass, low_pass};
 pub use modal::Modal;
+pub use model::{Law, Model, ModelCommand, ModelResponse, Orbit, Scene, Simulate};
 pub use pulse::Pulse;
 pub use reading::{Channel, Decimal, Reading};
 pub use response::Response;
@@ -71,6 +73,8 @@ pub enum Command {
     Modal(Modal),
     /// Damping ratio, frequency and restitution of a contact from its pulse
     Pulse(Pulse),
+    /// What the motion of a rig should be: orbits with their verdicts, simulations, sweeps
+    Model(Box<Model>),
     /// Overlay a campaign's measured responses on the model's prediction
     Compare(Compare),
     /// Do all that a campaign asks for: results, tables, figures, report

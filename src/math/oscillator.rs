@@ -15,6 +15,10 @@ pub struct Oscillator {
     lambda2: f64,
     /// |λ| in 1/s.
     lambda: f64,
+    /// b + √(b² + Ω²) in 1/s.
+    gain: f64,
+    /// 1/Ω² in s².
+    compliance: f64,
     /// Slower decay b − |λ| in 1/s of an overdamped oscillator, as Ω²/(b + |λ|), which does not cancel.
     slow: f64,
 }
@@ -29,7 +33,8 @@ impl Oscillator {
         let lambda2 = omega2 - b * b;
         let lambda = lambda2.abs().sqrt();
         let slow = if lambda2 < 0.0 { omega2 / (b + lambda) } else { b };
-        Oscillator { b, omega2, lambda2, lambda, slow }
+        let gain = b + (b * b + omega2).sqrt();
+        Oscillator { b, omega2, lambda2, lambda, gain, compliance: 1.0 / omega2, slow }
     }
 
     /// b = c/2m in 1/s.
@@ -42,6 +47,19 @@ impl Oscillator {
         self.omega2
     }
 
+    /// The most by which a bound of [`Oscillator::bound`] grows from a motion to its derivative, b + √(b² + Ω²) in 1/s.
+    ///
+    /// In the norm √(v² + Ω²x²) the derivative is the matrix [[0, Ω], [−Ω, −2b]], whose singular values are √(b² + Ω²) ± b.
+    #[inline]
+    pub fn gain(&self) -> f64 {
+        self.gain
+    }
+
+    /// λ² = Ω² − b² in 1/s², negative above critical damping.
+    pub fn lambda2(&self) -> f64 {
+        self.lambda2
+    }
+
     /// C(t) = e^{−bt} cos λt and S(t) = e^{−bt} sin(λt)/λ (in s), `t` ≥ 0 in s.
     #[inline]
     pub fn kernels(&self, t: f64) -> (f64, f64) {
@@ -51,7 +69,7 @@ impl Oscillator {
             (e * (1.0 - z / 2.0 + z * z / 24.0), e * t * (1.0 - z / 6.0 + z * z / 120.0))
         } else if z > 0.0 {
             let e = (-self.b * t).exp();
-            let (sin, cos) = (self.lambda * t).sin_cos();
+            let (sin, cos) = super::cis::sin_cos(self.lambda * t);
             (e * cos, e * sin / self.lambda)
         } else {
             let e = (-self.slow * t).exp();
@@ -80,7 +98,7 @@ impl Oscillator {
     /// spring, where the displacement has no such bound.
     #[inline]
     pub fn bound(&self, x: f64, v: f64) -> f64 {
-        if v == 0.0 { x.abs() } else { (x * x + v * v / self.omega2).sqrt() }
+        if v == 0.0 { x.abs() } else { (x * x + v * v * self.compliance).sqrt() }
     }
 
     /// 1 − C(T) and det(I − Φ(T)) = (1 − C)² + λ²S², both without cancellation at small damping.

@@ -31,6 +31,139 @@ impl Bounded {
     }
 }
 
+/// A function with its first three derivatives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bent {
+    /// f(t).
+    pub value: f64,
+    /// df/dt.
+    pub slope: f64,
+    /// d²f/dt².
+    pub bend: f64,
+    /// d³f/dt³.
+    pub jerk: f64,
+}
+
+/// Bounds on derivatives of a function from an argument on.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Limits {
+    /// A bound on |d²f/dt²|.
+    pub curvature: f64,
+    /// On |d³f/dt³|.
+    pub jerk: f64,
+    /// On |d⁴f/dt⁴|.
+    pub snap: f64,
+    /// On |d⁶f/dt⁶|.
+    pub sixth: f64,
+}
+
+impl Bent {
+    /// A step that cannot pass a root.
+    ///
+    /// Over the next H, f bends down by no more than K, the least of M₂, M₃H − f̈ and M₄H²/2 − f⃛H − f̈ (or −f̈), so the parabola with K in
+    /// place of M₂ is below f over H. Near a simple root K is nearly −f̈ and the steps converge with the third order.
+    #[inline]
+    fn step(self, limits: Limits) -> f64 {
+        let value = self.value.max(0.0);
+        let safe = fall(value, self.slope, limits.curvature);
+        // Near a root Newton's step is known before the safe one.
+        let mut reach = if self.slope < 0.0 { -2.0 * value / self.slope } else { 2.0 * safe };
+        let mut step = safe;
+        for _ in 0..3 {
+            let lost = (0.5 * limits.snap * reach - self.jerk).max(0.0).min(limits.jerk) * reach;
+            let bend = lost - self.bend;
+            if bend >= limits.curvature {
+                break;
+            }
+            let further = fall(value, self.slope, bend);
+            step = step.max(further.min(reach));
+            if further < reach {
+                break;
+            }
+            reach *= 1.5;
+        }
+        step
+    }
+
+    /// The root of f + ḟh + f̈h²/2 for ḟ < 0, where it is a clear one: at half the slope or more.
+    #[inline]
+    fn clear_root(self) -> Option<f64> {
+        let root = fall(self.value, self.slope, -self.bend);
+        (self.slope + self.bend * root <= 0.5 * self.slope).then_some(root)
+    }
+}
+
+/// The first root of f + ḟh − Kh²/2 behind 0, for f ≥ 0; ∞ if there is none.
+#[inline]
+fn fall(value: f64, slope: f64, bend: f64) -> f64 {
+    let square = slope * slope + 2.0 * bend * value;
+    if slope < 0.0 {
+        // Not a number, where the parabola has no root, becomes no limit.
+        if square >= 0.0 { 2.0 * value / (square.sqrt() - slope) } else { f64::INFINITY }
+    } else if bend > 0.0 {
+        (slope + square.sqrt()) / bend
+    } else {
+        f64::INFINITY
+    }
+}
+
+/// As [`first_fall`], for a function whose derivatives are known: fewer calls, and none for the last step.
+///
+/// Returns the last argument called for and the step from there to the root. Over twice this step a Taylor series with five derivatives
+/// errs in f's slope by less than `rounding` (that of f's values) times M₃/M₂, and in f by less than `rounding`; the step is the root of
+/// the parabola through value, slope and bend, for the caller to refine. `limits` gives bounds from an argument on, and nothing where f
+/// stays above 0 for ever.
+#[inline]
+pub fn first_landing(
+    from: f64,
+    to: f64,
+    rounding: f64,
+    mut f: impl FnMut(f64) -> Bent,
+    mut limits: impl FnMut(f64) -> Option<Limits>,
+) -> Option<(f64, f64)> {
+    /// Calls after which the bounds are taken anew: they fall as free motions die away.
+    const FRESH: u32 = 6;
+    let mut bounds = limits(from)?;
+    let mut t = from;
+    let mut calls = 0;
+    loop {
+        let here = f(t);
+        if here.slope < 0.0 && here.value <= 0.0 {
+            return Some((t, 0.0));
+        }
+        calls += 1;
+        if calls % FRESH == 0 {
+            bounds = limits(t)?;
+        }
+        if here.slope < 0.0 {
+            // M₆(2h)⁵/5! of the slope, at twice Newton's step h.
+            let newton = here.value / here.slope;
+            let square = newton * newton;
+            let error = bounds.sixth * bounds.curvature * square * square * -newton * (32.0 / 120.0);
+            if error <= rounding * bounds.jerk
+                && let Some(last) = here.clear_root()
+            {
+                return (t + last <= to).then_some((t, last));
+            }
+        }
+        let step = here.step(bounds);
+        let next = t + step;
+        if next <= t {
+            if here.slope < 0.0 {
+                return Some((t, 0.0));
+            }
+            // At rest on zero to the last digit: one digit on, where the curvature has shown its sign.
+            t += f64::EPSILON * t.abs().max(to - from);
+        } else {
+            t = next;
+        }
+        // The last also where f is not a number.
+        if t > to || t.is_nan() {
+            return None;
+        }
+    }
+}
+
 /// The first argument in `from..=to` at which `f`, not negative at `from`, falls to zero.
 ///
 /// `noise` is the rounding error of f's values: a value below it counts as zero. A touch from above that does not

@@ -1,70 +1,109 @@
-//! The exciting force as a motion meets it: series in time, and the times at which it jumps.
+//! Excitation under way: the phases of its sines, and when its next impulse or step of force is due.
 
-use super::linear::{ORDER, Terms};
-use super::motion::Event;
-use super::{Excitation, Part};
+use super::excitation::MOST_SINES;
+use super::receptance::receptance;
+use super::waves::Waves;
+use super::{Excitation, Rig, Sine, Steady};
 use crate::error::{Error, Result};
+use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// One sine force, with its phase now.
+/// 2π less [`TAU`].
+const TAU_REST: f64 = 2.449_293_598_294_706_4e-16;
+
+/// What an excitation does at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Tone {
+pub(super) enum Tick {
+    /// An impulse in N s.
+    Kick(f64),
+    /// A pulse begins.
+    On,
+    /// A pulse ends.
+    Off,
+}
+
+/// What is repeated once a cycle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Train {
+    /// One sine, whose phase is that of the cycle.
+    Sine,
+    /// Several sines, each with its own phase.
+    Sines,
+    /// An impulse in N s.
+    Impulses(f64),
+    /// A force in N for a time in s.
+    Pulses { force: f64, width: f64 },
+}
+
+/// A sine under way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Line {
     force: f64,
+    frequency: f64,
     omega: f64,
     phase: f64,
+    /// F L₁(iω), of mass 1 alone, in m, and its modulus.
+    alone: Complex64,
+    amplitude: f64,
+    /// F L(iω) of both masses together, in m; not finite where they are driven at their undamped resonance.
+    together: Complex64,
 }
 
-/// What happens once a cycle.
+/// An excitation under way.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Jumps {
-    None,
-    /// An impulse in N s; `due` where it falls on the very start.
-    Kick {
-        impulse: f64,
-        due: bool,
-    },
-    /// A force in N for a width in s from the cycle's beginning; `on` while it acts.
-    Pulse {
-        force: f64,
-        width: f64,
-        on: bool,
-    },
-}
-
-/// The exciting force from now on.
-#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Drive {
-    excitation: Excitation,
-    tones: Vec<Tone>,
-    jumps: Jumps,
-    omega: f64,
+    lines: [Option<Line>; MOST_SINES],
+    train: Train,
+    /// Cycles a second.
+    frequency: f64,
     phase: f64,
+    /// Rest of the pulse under way in s; 0 where there is none.
+    left: f64,
+    /// Whether the cycle's beginning is still to come at phase 0.
+    due: bool,
 }
 
 impl Drive {
-    /// The excitation in a cycle of which `phase` rad are past: a sine is F₀ cos(phase), an impulse falls on phase 0, a
-    /// pulse begins there, and of several sines each is ahead by its own part of the time that the phase stands for.
-    pub fn new(excitation: &Excitation, phase: f64) -> Result<Drive> {
+    /// Excitation of `rig` at `phase` of its cycle; each of several sines has its own phase at phase 0 and has gone on since.
+    pub fn new(rig: &Rig, excitation: &Excitation, phase: f64) -> Result<Drive> {
+        rig.check()?;
         excitation.check()?;
-        if !phase.is_finite() {
-            return Err(Error::usage(format!("phase is {phase} rad"), "a finite value"));
-        }
-        let omega = TAU * excitation.frequency();
+        let frequency = excitation.frequency();
         let phase = phase.rem_euclid(TAU);
-        let tone = |p: &Part| {
-            let own = TAU * p.frequency;
-            Tone { force: p.force, omega: own, phase: (p.phase + phase * (own / omega)).rem_euclid(TAU) }
+        // The remainder of a tiny negative phase rounds to 2π.
+        let phase = if phase < TAU { phase } else { 0.0 };
+        let mut drive = Drive {
+            lines: [None; MOST_SINES],
+            train: Train::Sine,
+            frequency,
+            phase,
+            left: 0.0,
+            due: phase == 0.0,
         };
-        let (tones, jumps) = match excitation {
-            Excitation::Sine(sine) => (vec![Tone { force: sine.force, omega, phase }], Jumps::None),
-            Excitation::Sines(sines) => (sines.parts.iter().map(tone).collect(), Jumps::None),
-            Excitation::Impulse(i) => (Vec::new(), Jumps::Kick { impulse: i.impulse, due: phase == 0.0 }),
-            Excitation::Pulse(p) => {
-                let on = phase < p.width * omega;
-                (Vec::new(), Jumps::Pulse { force: p.force, width: p.width, on })
+        match excitation {
+            Excitation::Sine(sine) => drive.lines[0] = Some(Line::new(rig, sine, phase)?),
+            Excitation::Sines(sines) => {
+                if sines.parts.len() > MOST_SINES {
+                    let found = format!("{} sines", sines.parts.len());
+                    return Err(Error::usage(found, format!("no more than {MOST_SINES}")));
+                }
+                drive.train = Train::Sines;
+                for (line, part) in drive.lines.iter_mut().zip(&sines.parts) {
+                    let sine = Sine { force: part.force, frequency: part.frequency };
+                    let start = part.phase + phase * part.frequency / frequency;
+                    *line = Some(Line::new(rig, &sine, start.rem_euclid(TAU))?);
+                }
             }
-        };
-        Ok(Drive { excitation: excitation.clone(), tones, jumps, omega, phase })
+            Excitation::Impulse(impulses) => drive.train = Train::Impulses(impulses.impulse),
+            Excitation::Pulse(pulses) => {
+                let (force, width) = (pulses.force, pulses.width);
+                drive.train = Train::Pulses { force, width };
+                if !drive.due {
+                    drive.left = (width - phase / (TAU * frequency)).max(0.0);
+                }
+            }
+        }
+        Ok(drive)
     }
 
     /// Phase of the cycle in 0..2π.
@@ -72,172 +111,142 @@ impl Drive {
         self.phase
     }
 
-    /// Frequency of the cycle in Hz.
+    /// Cycles a second in Hz.
     pub fn frequency(&self) -> f64 {
-        self.excitation.frequency()
+        self.frequency
     }
 
-    /// Changes the frequency from now on; every phase goes on.
-    pub fn set_frequency(&mut self, hz: f64) -> Result<()> {
-        let excitation = self.excitation.at_frequency(hz);
-        excitation.check()?;
-        let ratio = hz / self.frequency();
-        for tone in &mut self.tones {
-            tone.omega *= ratio;
+    /// Goes on at another frequency of the cycle in Hz; several sines keep the ratios of theirs.
+    pub fn set_frequency(&mut self, rig: &Rig, frequency: f64) -> Result<()> {
+        Sine { force: 0.0, frequency }.check()?;
+        if let Train::Pulses { width, .. } = self.train
+            && width * frequency >= 1.0
+        {
+            let found = format!("pulses of {width} s at {frequency} Hz");
+            return Err(Error::usage(found, "a width below the cycle"));
         }
-        self.omega = TAU * hz;
-        self.excitation = excitation;
+        let ratio = frequency / self.frequency;
+        let mut lines = self.lines;
+        for line in lines.iter_mut().flatten() {
+            // The first sine counts the cycles: no rounding of its frequency.
+            let own = if line.frequency == self.frequency { frequency } else { line.frequency * ratio };
+            *line = Line::new(rig, &Sine { force: line.force, frequency: own }, line.phase)?;
+        }
+        (self.lines, self.frequency) = (lines, frequency);
         Ok(())
     }
 
-    /// Largest angular frequency in rad/s within a smooth stretch of the force.
-    pub fn fastest(&self) -> f64 {
-        self.tones.iter().map(|t| t.omega).fold(0.0, f64::max)
-    }
-
-    /// The force in N at `t` seconds from now, before its next jump.
-    pub fn force(&self, t: f64) -> f64 {
-        self.tones.iter().map(|tone| tone.force * (tone.phase + tone.omega * t).cos()).sum::<f64>()
-            + self.steady()
-    }
-
-    /// Terms of the force in powers of time over `duration` seconds.
-    #[inline]
-    pub fn terms(&self, duration: f64) -> Terms {
-        let mut terms = [0.0; ORDER + 1];
-        for tone in &self.tones {
-            let (sin, cos) = tone.phase.sin_cos();
-            let (mut re, mut im) = (tone.force * cos, tone.force * sin);
-            let turn = tone.omega * duration;
-            for (k, term) in terms.iter_mut().enumerate() {
-                *term += re;
-                let step = turn / (k + 1) as f64;
-                (re, im) = (-step * im, step * re);
-            }
-        }
-        terms[0] += self.steady();
-        terms
-    }
-
-    fn steady(&self) -> f64 {
-        match self.jumps {
-            Jumps::Pulse { force, on: true, .. } => force,
+    /// Force in N that is constant up to the next tick.
+    pub fn constant(&self) -> f64 {
+        match self.train {
+            Train::Pulses { force, .. } if self.left > 0.0 => force,
             _ => 0.0,
         }
     }
 
-    /// Seconds to the next jump.
-    pub fn next_jump(&self) -> f64 {
-        let rest = || ((TAU - self.phase) / self.omega).max(0.0);
-        match self.jumps {
-            Jumps::None => f64::INFINITY,
-            Jumps::Kick { due: true, .. } => 0.0,
-            Jumps::Kick { .. } | Jumps::Pulse { on: false, .. } => rest(),
-            Jumps::Pulse { width, on: true, .. } => (width - self.phase / self.omega).max(0.0),
+    /// Forced motion of mass 1 alone from now on.
+    #[inline]
+    pub fn alone(&self) -> Waves {
+        let mut waves = Waves::default();
+        for line in self.lines.iter().flatten() {
+            waves.add(line.alone * turn(line.phase), line.omega, line.amplitude);
         }
+        waves
     }
 
-    /// Lets `t` seconds pass, at most up to the next jump.
-    pub fn pass(&mut self, t: f64) {
-        let turn = |phase: f64, omega: f64| {
-            let phase = phase + omega * t;
-            // A jump at the end of the cycle is taken before the next cycle begins.
-            if phase < TAU { phase } else { phase.rem_euclid(TAU) }
-        };
-        for tone in &mut self.tones {
-            tone.phase = turn(tone.phase, tone.omega);
+    /// Forced motion of both masses together from now on.
+    pub fn together(&self) -> Waves {
+        let mut waves = Waves::default();
+        for line in self.lines.iter().flatten() {
+            waves.add(line.together * turn(line.phase), line.omega, line.together.norm());
         }
-        self.phase = match self.jumps {
-            Jumps::None => turn(self.phase, self.omega),
-            // Stays below 2π until the jump has been made.
-            _ => (self.phase + self.omega * t).min(TAU),
-        };
+        waves
     }
 
-    /// Makes the jump that is due now: its impulse in N s and what to call it.
-    pub fn jump(&mut self) -> (f64, Event) {
-        match &mut self.jumps {
-            Jumps::None => (0.0, Event::Switch),
-            Jumps::Kick { impulse, due } => {
-                *due = false;
-                self.phase = 0.0;
-                (*impulse, Event::Kick)
+    /// Seconds to the next tick, and what it does; infinite where there is none.
+    #[inline]
+    pub fn next(&self) -> (f64, Option<Tick>) {
+        let (whole, begin) = match self.train {
+            Train::Sine | Train::Sines => return (f64::INFINITY, None),
+            Train::Impulses(impulse) => (self.whole(), Tick::Kick(impulse)),
+            Train::Pulses { .. } => (self.whole(), Tick::On),
+        };
+        if self.left > 0.0 && self.left < whole { (self.left, Some(Tick::Off)) } else { (whole, Some(begin)) }
+    }
+
+    /// Seconds to the beginning of the next cycle.
+    fn whole(&self) -> f64 {
+        if self.due { 0.0 } else { (TAU - self.phase) / (TAU * self.frequency) }
+    }
+
+    /// Goes on by `dt` seconds, no further than to the next tick.
+    #[inline]
+    pub fn advance(&mut self, dt: f64) {
+        for line in self.lines.iter_mut().flatten() {
+            line.phase = within(line.phase + line.omega * dt);
+        }
+        match (&self.train, &self.lines[0]) {
+            (Train::Sine, Some(line)) => {
+                self.phase = line.phase;
+                return;
             }
-            Jumps::Pulse { on, .. } => {
-                if !*on {
-                    self.phase = 0.0;
-                }
-                *on = !*on;
-                (0.0, Event::Switch)
+            (Train::Sine | Train::Sines, _) => {
+                self.phase = within(self.phase + TAU * self.frequency * dt);
+                return;
             }
+            _ => {}
+        }
+        // The cycle ends by its tick.
+        self.phase = (self.phase + TAU * self.frequency * dt).min(TAU.next_down());
+        if dt > 0.0 {
+            self.due = false;
+        }
+        self.left = (self.left - dt).max(0.0);
+    }
+
+    /// Does what is due now.
+    pub fn tick(&mut self, tick: Tick) {
+        if tick == Tick::Off {
+            self.left = 0.0;
+            return;
+        }
+        (self.phase, self.due) = (0.0, false);
+        if let Train::Pulses { width, .. } = self.train {
+            self.left = width;
         }
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::model::{Impulses, Pulses, Sine, Sines};
-
-    #[test]
-    fn the_series_is_the_force() {
-        let parts = vec![
-            Part { force: 0.3, frequency: 5.0, phase: 0.4 },
-            Part { force: 0.2, frequency: 7.5, phase: -2.0 },
-        ];
-        let drive = Drive::new(&Excitation::Sines(Sines { parts }), 1.0).unwrap();
-        let duration = 1.0 / drive.fastest();
-        let terms = drive.terms(duration);
-        for part in [0.0, 0.3, 1.0] {
-            let sum = terms.iter().rev().fold(0.0, |sum, term| sum * part + term);
-            let t = part * duration;
-            // Phase 1 of the first sine's cycle is 1/ω₁ seconds.
-            let past = t + 1.0 / (TAU * 5.0);
-            let plain = 0.3 * (TAU * 5.0 * past + 0.4).cos() + 0.2 * (TAU * 7.5 * past - 2.0).cos();
-            // Truncation 1/19!, rounding of angles below 10 rad.
-            assert!((sum - plain).abs() < 0.5 * 16.0 * f64::EPSILON, "{sum} {plain}");
-            assert!((drive.force(t) - plain).abs() < 0.5 * 16.0 * f64::EPSILON);
-        }
+impl Line {
+    fn new(rig: &Rig, sine: &Sine, phase: f64) -> Result<Line> {
+        let steady = Steady::new(rig, sine)?;
+        let (m, c, k) = (rig.m1 + rig.m2, rig.c1 + rig.c2, rig.k1 + rig.k2);
+        Ok(Line {
+            force: sine.force,
+            frequency: sine.frequency,
+            omega: steady.omega,
+            phase,
+            alone: steady.response,
+            amplitude: steady.amplitude(),
+            together: receptance(m, c, k, steady.omega) * sine.force,
+        })
     }
+}
 
-    #[test]
-    fn jumps_come_once_a_cycle() {
-        let pulses = Pulses { force: 0.5, width: 0.01, frequency: 5.0 };
-        let mut drive = Drive::new(&Excitation::Pulse(pulses), 0.0).unwrap();
-        let mut times = Vec::new();
-        let mut time = 0.0;
-        for _ in 0..4 {
-            let wait = drive.next_jump();
-            time += wait;
-            times.push(time);
-            drive.pass(wait);
-            assert_eq!(drive.jump(), (0.0, Event::Switch));
-        }
-        for (found, expected) in times.iter().zip([0.01, 0.2, 0.21, 0.4]) {
-            assert!((found - expected).abs() < 1e-15, "{times:?}");
-        }
-        let impulses = Impulses { impulse: 0.009, frequency: 5.0 };
-        let mut drive = Drive::new(&Excitation::Impulse(impulses), 0.0).unwrap();
-        assert_eq!(drive.next_jump(), 0.0);
-        assert_eq!(drive.jump(), (0.009, Event::Kick));
-        assert!((drive.next_jump() - 0.2).abs() < 1e-16);
-        drive.pass(0.05);
-        drive.set_frequency(10.0).unwrap();
-        // Three quarters of a cycle are left.
-        assert!((drive.next_jump() - 0.075).abs() < 1e-16);
-    }
+/// e^{iφ}.
+#[inline]
+fn turn(phase: f64) -> Complex64 {
+    let (sin, cos) = crate::math::cis::sin_cos(phase);
+    Complex64::new(cos, sin)
+}
 
-    #[test]
-    fn a_change_of_frequency_makes_no_step_and_impossible_ones_are_refused() {
-        let mut drive = Drive::new(&Excitation::Sine(Sine { force: 0.5, frequency: 5.0 }), 0.3).unwrap();
-        drive.pass(0.123);
-        let (force, phase) = (drive.force(0.0), drive.phase());
-        drive.set_frequency(9.0).unwrap();
-        assert_eq!((drive.force(0.0), drive.phase(), drive.frequency()), (force, phase, 9.0));
-        for hz in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(drive.set_frequency(hz).is_err(), "{hz}");
-        }
-        assert_eq!(drive.frequency(), 9.0);
-        assert!(Drive::new(&Excitation::Sine(Sine { force: 0.5, frequency: 5.0 }), f64::NAN).is_err());
+/// A phase of 0 or more within 0..2π.
+#[inline]
+fn within(phase: f64) -> f64 {
+    if phase < TAU {
+        return phase;
     }
+    let turns = (phase / TAU).floor();
+    let rest = (phase - turns * TAU) - turns * TAU_REST;
+    if (0.0..TAU).contains(&rest) { rest } else { phase.rem_euclid(TAU) }
 }

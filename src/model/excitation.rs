@@ -4,6 +4,9 @@ use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
+/// The most sines that can act at once.
+pub const MOST_SINES: usize = 4;
+
 /// Excitation of mass 1, told apart by its `kind`.
 ///
 /// ```
@@ -125,6 +128,24 @@ impl Excitation {
             Excitation::Pulse(_) => "pulse",
             Excitation::Sines(_) => "sines",
         }
+    }
+}
+
+impl From<Sine> for Excitation {
+    fn from(sine: Sine) -> Excitation {
+        Excitation::Sine(sine)
+    }
+}
+
+impl From<&Sine> for Excitation {
+    fn from(sine: &Sine) -> Excitation {
+        Excitation::Sine(*sine)
+    }
+}
+
+impl From<&Excitation> for Excitation {
+    fn from(excitation: &Excitation) -> Excitation {
+        excitation.clone()
     }
 }
 

@@ -5,10 +5,12 @@ use crate::error::{Error, Result};
 use nalgebra::{Matrix2, Matrix4, RowVector4, SVD, Schur, Vector4};
 use num_complex::Complex64;
 
-/// Free flow Φ(t) of both masses in (x₁, v₁, x₂, v₂); the force moves every neighbour alike and does not enter.
+/// Free flow Φ(t) of both masses in (x₁, v₁, x₂, v₂); the force moves every neighbour alike and does not enter. A wall has no
+/// neighbouring motions: its part is 0.
 fn flow(rig: &Rig, t: f64) -> Matrix4<f64> {
     let mut phi = Matrix4::zeros();
-    for (i, oscillator) in rig.oscillators().iter().enumerate() {
+    let moving = if rig.has_wall() { 1 } else { 2 };
+    for (i, oscillator) in rig.oscillators().iter().enumerate().take(moving) {
         let ((a, b), (c, d)) = (oscillator.free(1.0, 0.0, t), oscillator.free(0.0, 1.0, t));
         phi.fixed_view_mut::<2, 2>(2 * i, 2 * i).copy_from(&Matrix2::new(a, c, b, d));
     }

@@ -1,8 +1,9 @@
 //! Exact flight between impacts, and the first contact at its end.
 
 use super::receptance::Steady;
+use super::waves::Waves;
 use crate::math::Oscillator;
-use crate::math::root::{Bounded, each_root, first_fall};
+use crate::math::root::{Bent, Bounded, each_root, first_landing};
 use num_complex::Complex64;
 use serde::Serialize;
 
@@ -42,16 +43,16 @@ pub enum Signal {
 
 /// Free part of one mass' motion, by its start.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Free {
-    oscillator: Oscillator,
-    x: f64,
-    v: f64,
+pub(super) struct Free {
+    pub oscillator: Oscillator,
+    pub x: f64,
+    pub v: f64,
 }
 
 impl Free {
     /// The `order`-th derivative at `t`, the next one, and a bound on the one after for all later times.
     #[inline]
-    fn derivative(&self, order: u32, t: f64) -> (f64, f64, f64) {
+    pub(super) fn derivative(&self, order: u32, t: f64) -> (f64, f64, f64) {
         let (mut x, mut v) = self.oscillator.free(self.x, self.v, t);
         for _ in 0..order {
             (x, v) = (v, self.oscillator.acceleration(x, v));
@@ -60,73 +61,137 @@ impl Free {
         let jerk = self.oscillator.acceleration(v, a);
         (x, v, self.oscillator.bound(a, jerk))
     }
+
+    /// Displacement and its first five derivatives at `t`.
+    #[inline]
+    fn series(&self, t: f64) -> [f64; 6] {
+        let (x, v) = if t == 0.0 { (self.x, self.v) } else { self.oscillator.free(self.x, self.v, t) };
+        let a = self.oscillator.acceleration(x, v);
+        let jerk = self.oscillator.acceleration(v, a);
+        let snap = self.oscillator.acceleration(a, jerk);
+        [x, v, a, jerk, snap, self.oscillator.acceleration(jerk, snap)]
+    }
 }
 
-/// Motion of both masses without contact under a sine force, in closed form; time counts from the flight's start.
+/// Change of a displacement in a step `h`, and the velocity after it, by Taylor's series.
+#[inline]
+fn ahead_of(terms: &[f64; 6], h: f64) -> (f64, f64) {
+    let [_, v, a, jerk, snap, fifth] = *terms;
+    let x = h * (v + h / 2.0 * (a + h / 3.0 * (jerk + h / 4.0 * (snap + h / 5.0 * fifth))));
+    (x, v + h * (a + h / 2.0 * (jerk + h / 3.0 * (snap + h / 4.0 * fifth))))
+}
+
+/// Where a flight meets the other mass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Landing {
+    /// Time in s from the flight's start.
+    pub time: f64,
+    /// State just before the impact.
+    pub state: State,
+}
+
+/// Motion of both masses without contact, in closed form; time counts from the flight's start.
 ///
-/// x₁ = Re(Xe^{iωt}) + free motion, x₂ = free motion. No step size: any time is evaluated at once.
+/// x₁ = P/k₁ + Σ Re(Xe^{iωt}) + free motion, x₂ = free motion, under a constant force P and sine forces. No step size: any time is
+/// evaluated at once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flight {
-    /// Complex forced displacement of mass 1 at the start, in m.
-    forced: Complex64,
-    omega: f64,
+    /// Forced displacement of mass 1.
+    waves: Waves,
+    /// Where mass 1 would rest under the constant force, in m.
+    rest: f64,
     gap: f64,
     free: [Free; 2],
+    /// Time before which the gap is known to be open.
+    open: f64,
 }
 
 impl Flight {
     /// Flight from `state`, the force being F₀ cos(ωt + `phase`), across a rest gap `gap` in m.
     pub fn new(oscillators: [Oscillator; 2], steady: &Steady, gap: f64, state: &State, phase: f64) -> Flight {
-        let forced = steady.response * Complex64::cis(phase);
+        let mut waves = Waves::default();
+        waves.add(steady.response * Complex64::cis(phase), steady.omega, steady.amplitude());
+        Flight::with(oscillators, waves, 0.0, gap, state)
+    }
+
+    /// Flight from `state` with forced motion `waves` about `rest` (m) of mass 1.
+    #[inline]
+    pub(super) fn with(
+        oscillators: [Oscillator; 2],
+        waves: Waves,
+        rest: f64,
+        gap: f64,
+        state: &State,
+    ) -> Flight {
         let [first, second] = oscillators;
+        let [x, v, ..] = waves.start();
         Flight {
-            forced,
-            omega: steady.omega,
+            waves,
+            rest,
             gap,
             free: [
-                Free { oscillator: first, x: state.x1 - forced.re, v: state.v1 + steady.omega * forced.im },
+                Free { oscillator: first, x: state.x1 - x - rest, v: state.v1 - v },
                 Free { oscillator: second, x: state.x2, v: state.v2 },
             ],
+            open: 0.0,
         }
     }
 
-    /// Flight with forced part `forced` at its start and free parts that start with `free` (displacement, velocity).
-    pub(super) fn from_parts(
-        oscillators: [Oscillator; 2],
-        forced: Complex64,
-        omega: f64,
-        gap: f64,
-        free: [(f64, f64); 2],
-    ) -> Flight {
-        let part = |i: usize| Free { oscillator: oscillators[i], x: free[i].0, v: free[i].1 };
-        Flight { forced, omega, gap, free: [part(0), part(1)] }
+    /// The same flight of masses that part from rest against each other: no contact is sought where the gap can but open.
+    ///
+    /// With g = ġ = 0 at the start, g ≥ g̈t²/2 + g⃛t³/6 − M₄t⁴/24, which is above 0 up to its root. After a release g̈ is 0 as well,
+    /// the gap opens like t³, and is long smaller than its rounding.
+    pub(super) fn parting(mut self) -> Flight {
+        let [[_, _, a1, j1, ..], [_, _, a2, j2, ..]] = self.series(0.0);
+        let fourth = self.bounded(Signal::Gap, 2, 0.0).curvature;
+        let (bend, jerk) = ((a2 - a1).max(0.0), j2 - j1);
+        let root = (jerk / 6.0 + (jerk * jerk / 36.0 + fourth * bend / 12.0).sqrt()) / (fourth / 12.0);
+        // Half of it, where more than an eighth of the leading term is left.
+        if root.is_finite() {
+            self.open = root / 2.0;
+        }
+        self
+    }
+
+    /// Whether `t` lies in the beginning of a parting, where the gap is known to be open.
+    pub(super) fn is_open(&self, t: f64) -> bool {
+        t < self.open
+    }
+
+    /// Both displacements with their first five derivatives.
+    #[inline]
+    pub(super) fn series(&self, t: f64) -> [[f64; 6]; 2] {
+        let mut first = self.free[0].series(t);
+        let forced = if t == 0.0 { self.waves.start() } else { self.waves.at(t) };
+        for (sum, term) in first.iter_mut().zip(forced) {
+            *sum += term;
+        }
+        first[0] += self.rest;
+        [first, self.free[1].series(t)]
     }
 
     /// State at `t` ≥ 0.
     #[inline]
     pub fn state(&self, t: f64) -> State {
-        let forced = self.forced * Complex64::cis(self.omega * t);
-        let [first, second] = &self.free;
-        let (x1, v1) = first.oscillator.free(first.x, first.v, t);
-        let (x2, v2) = second.oscillator.free(second.x, second.v, t);
-        State { x1: x1 + forced.re, v1: v1 - self.omega * forced.im, x2, v2 }
+        let [[x1, v1, ..], [x2, v2, ..]] = self.series(t);
+        State { x1, v1, x2, v2 }
     }
 
     /// Gap in m at `t`; negative where nothing stops the masses from passing through each other.
     pub fn gap(&self, t: f64) -> f64 {
-        self.bounded(Signal::Gap, 0, t).value
+        let [[x1, ..], [x2, ..]] = self.series(t);
+        self.gap + x2 - x1
     }
 
     /// Rate of change of the state at `t`.
     pub fn rate(&self, t: f64) -> [f64; 4] {
-        let accelerate = |signal| self.bounded(signal, 1, t);
-        let (first, second) = (accelerate(Signal::X1), accelerate(Signal::X2));
-        [first.value, first.slope, second.value, second.slope]
+        let [[_, v1, a1, ..], [_, v2, a2, ..]] = self.series(t);
+        [v1, a1, v2, a2]
     }
 
     /// The `order`-th derivative of a signal with its slope and a bound on its curvature for all later times.
     ///
-    /// The bound sums the forced amplitude and the energy bounds of the free parts, so it falls as these die out.
+    /// The bound sums the forced amplitudes and the energy bounds of the free parts, so it falls as these die out.
     #[inline]
     pub fn bounded(&self, signal: Signal, order: u32, t: f64) -> Bounded {
         let mut sum = Bounded { value: 0.0, slope: 0.0, curvature: 0.0 };
@@ -135,20 +200,16 @@ impl Flight {
             sum.slope += sign * slope;
             sum.curvature += curvature;
         };
-        if signal == Signal::Gap && order == 0 {
-            add(1.0, (self.gap, 0.0, 0.0));
+        let sign = if signal == Signal::Gap { -1.0 } else { 1.0 };
+        if order == 0 {
+            add(1.0, (if signal == Signal::Gap { self.gap } else { 0.0 }, 0.0, 0.0));
+            add(sign, (if signal == Signal::X2 { 0.0 } else { self.rest }, 0.0, 0.0));
         }
         if signal != Signal::X1 {
             add(1.0, self.free[1].derivative(order, t));
         }
         if signal != Signal::X2 {
-            let sign = if signal == Signal::Gap { -1.0 } else { 1.0 };
-            let mut forced = self.forced * Complex64::cis(self.omega * t);
-            for _ in 0..order {
-                forced = Complex64::new(-self.omega * forced.im, self.omega * forced.re);
-            }
-            let bound = self.forced.norm() * self.omega.powi(order as i32 + 2);
-            add(sign, (forced.re, -self.omega * forced.im, bound));
+            add(sign, self.waves.derivative(order, t));
             add(sign, self.free[0].derivative(order, t));
         }
         sum
@@ -156,21 +217,75 @@ impl Flight {
 
     /// Rounding error of a computed gap in m: a few ε of the largest term.
     pub fn noise(&self) -> f64 {
-        2.0 * f64::EPSILON * (self.gap.abs() + self.reach())
+        2.0 * f64::EPSILON * (self.gap.abs() + self.rest.abs() + self.reach())
     }
 
     /// First contact in `0..=duration`: the gap falls to zero. No contact can be missed (see [`crate::math::root`]).
     pub fn first_contact(&self, duration: f64) -> Option<f64> {
-        if self.gap > self.reach() {
-            return None;
-        }
-        first_fall(0.0, duration, 0.0, |t| self.bounded(Signal::Gap, 0, t))
+        self.land(duration).map(|landing| landing.time)
     }
 
-    /// A bound on |x₁ − x₂| for the whole flight, in m.
+    /// As [`Flight::first_contact`], with the state there.
+    #[inline]
+    pub(super) fn land(&self, duration: f64) -> Option<Landing> {
+        if self.open > duration {
+            return None;
+        }
+        let mut last = [[0.0; 6]; 2];
+        // A quarter ε of the terms that are summed.
+        let rounding = 0.25
+            * f64::EPSILON
+            * (self.gap.abs() + self.waves.amplitude() + self.free[0].x.abs() + self.free[1].x.abs());
+        let (at, mut ahead) = first_landing(
+            self.open,
+            duration,
+            rounding,
+            |t| {
+                last = self.series(t);
+                let [first, second] = &last;
+                Bent {
+                    value: self.gap + second[0] - first[0],
+                    slope: second[1] - first[1],
+                    bend: second[2] - first[2],
+                    jerk: second[3] - first[3],
+                }
+            },
+            |t| {
+                let mut limits = self.waves.limits();
+                let mut reach = self.waves.amplitude();
+                for part in &self.free {
+                    let [x, v, a, jerk, ..] = part.series(t);
+                    let (curvature, gain) = (part.oscillator.bound(a, jerk), part.oscillator.gain());
+                    let snap = curvature * gain * gain;
+                    limits.curvature += curvature;
+                    limits.jerk += curvature * gain;
+                    limits.snap += snap;
+                    limits.sixth += snap * gain * gain;
+                    // At the beginning most flights end in contact.
+                    if t > self.open {
+                        reach += part.oscillator.bound(x, v);
+                    }
+                }
+                (t == self.open || self.gap - self.rest <= reach).then_some(limits)
+            },
+        )?;
+        // Newton's method on the series: a parabola's root is left by the cube of the step.
+        let start = self.gap + (last[1][0] - last[0][0]);
+        for _ in 0..2 {
+            if ahead > 0.0 {
+                let [(x1, v1), (x2, v2)] = last.map(|terms| ahead_of(&terms, ahead));
+                ahead += (start + (x2 - x1)) / (v1 - v2);
+            }
+        }
+        let [(x1, v1), (x2, v2)] = last.map(|terms| ahead_of(&terms, ahead));
+        let state = State { x1: last[0][0] + x1, v1, x2: last[1][0] + x2, v2 };
+        Some(Landing { time: at + ahead, state })
+    }
+
+    /// A bound on |x₁ − x₂| for the whole flight, in m, about the rest positions.
     fn reach(&self) -> f64 {
         let free: f64 = self.free.iter().map(|part| part.oscillator.bound(part.x, part.v)).sum();
-        self.forced.norm() + free
+        self.waves.amplitude() + free
     }
 
     /// Smallest and largest value of a signal in `0..=duration`, found from every stationary point.
@@ -194,134 +309,4 @@ impl Flight {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::model::{Rig, Sine};
-
-    /// splitmix64, uniform in 0..1.
-    fn uniform(seed: &mut u64) -> f64 {
-        *seed = seed.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = *seed;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 * f64::powi(2.0, -53)
-    }
-
-    fn random(seed: &mut u64) -> Flight {
-        let c = [0.0, 0.1, 1.0, 8.3, 30.0][(uniform(seed) * 5.0) as usize];
-        let rig = Rig { c1: c, c2: uniform(seed), gap: 8e-3 * uniform(seed), ..Rig::thesis() };
-        let sine = Sine { force: 0.5 * uniform(seed), frequency: 2.0 + 14.0 * uniform(seed) };
-        let mut signed = |scale: f64| scale * (2.0 * uniform(seed) - 1.0);
-        let (x1, v1, v2, phase) = (signed(3e-3), signed(0.2), signed(0.2), signed(3.1));
-        // Start at contact or a little apart.
-        let x2 = x1 - rig.gap + signed(1e-3).max(0.0);
-        let steady = Steady::new(&rig, &sine).unwrap();
-        Flight::new(rig.oscillators(), &steady, rig.gap, &State { x1, v1, x2, v2 }, phase)
-    }
-
-    #[test]
-    fn a_flight_obeys_its_equation_of_motion() {
-        // Central differences of the state against the forces: m ẍ + c ẋ + k x = F₀ cos(ωt + θ).
-        let rig = Rig { c1: 0.8, ..Rig::thesis() };
-        let sine = Sine { force: 0.5, frequency: 9.0 };
-        let steady = Steady::new(&rig, &sine).unwrap();
-        let start = State { x1: 1e-3, v1: -0.1, x2: 2e-3, v2: 0.3 };
-        let flight = Flight::new(rig.oscillators(), &steady, rig.gap, &start, 0.7);
-        let again = flight.state(0.0);
-        assert!((again.x1 - start.x1).abs() < 1e-17 && (again.v1 - start.v1).abs() < 1e-16);
-        assert_eq!((again.x2, again.v2), (start.x2, start.v2));
-        let h = 1e-5;
-        for t in [0.01, 0.05, 0.2, 1.0] {
-            let (before, here, after) = (flight.state(t - h), flight.state(t), flight.state(t + h));
-            let [_, a1, _, a2] = flight.rate(t);
-            // Truncation h²/6 · ω³v (ω up to 57 rad/s, v up to 0.5 m/s), rounding ε v/h.
-            let tolerance = h * h / 6.0 * 57_f64.powi(3) * 0.5 + f64::EPSILON * 0.5 / h;
-            assert!(((after.v1 - before.v1) / (2.0 * h) - a1).abs() < tolerance);
-            assert!(((after.x2 - before.x2) / (2.0 * h) - here.v2).abs() < tolerance);
-            let force = 0.5 * (sine.omega() * t + 0.7).cos();
-            // Rounding of terms up to 0.5 N.
-            assert!((rig.m1 * a1 + rig.c1 * here.v1 + rig.k1 * here.x1 - force).abs() < 1e-14);
-            assert!((rig.m2 * a2 + rig.c2 * here.v2 + rig.k2 * here.x2).abs() < 1e-14);
-        }
-    }
-
-    #[test]
-    fn the_curvature_bound_is_never_exceeded() {
-        let mut seed = 11;
-        for _ in 0..50 {
-            let flight = random(&mut seed);
-            for order in 0..2 {
-                let bound = flight.bounded(Signal::Gap, order, 0.0).curvature;
-                for i in 0..500 {
-                    let next = flight.bounded(Signal::Gap, order + 1, f64::from(i) * 1e-3);
-                    assert!(next.slope.abs() <= bound * (1.0 + 1e-12));
-                    assert!(
-                        flight.bounded(Signal::Gap, order, f64::from(i) * 1e-3).curvature
-                            <= bound * (1.0 + 1e-12)
-                    );
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn no_contact_is_missed_in_random_flights() {
-        // Dense sampling as the oracle: 20 µs apart, where the gap's frequencies are below 16 Hz.
-        let (mut seed, duration, dt) = (2_024, 0.5, 2e-5);
-        let (mut hits, mut free) = (0, 0);
-        for run in 0..400 {
-            let flight = random(&mut seed);
-            let found = flight.first_contact(duration);
-            // A start at contact belongs to the impact before if the masses part.
-            let from = u32::from(
-                flight.gap(0.0).abs() < flight.noise() && flight.bounded(Signal::Gap, 0, 0.0).slope > 0.0,
-            );
-            let sampled = (from..=25_000_u32).map(|i| f64::from(i) * dt).find(|t| flight.gap(*t) <= 0.0);
-            match (found, sampled) {
-                (Some(t), Some(s)) => {
-                    // Never later than the first sample in contact; earlier by more than one sample only if the gap
-                    // opened again in between.
-                    assert!(t <= s, "flight {run}: {t} {s}");
-                    let dipped =
-                        (0..=25_000).map(|i| f64::from(i) * dt).find(|s| *s >= t).map(|s| flight.gap(s));
-                    assert!(s - t <= dt || dipped.is_some_and(|g| g > 0.0), "flight {run}: {t} {s}");
-                    hits += 1;
-                }
-                (None, None) => free += 1,
-                // Sampling may miss a dip between two samples, the search may not miss a sampled contact.
-                (Some(_), None) => hits += 1,
-                (None, Some(s)) => panic!("flight {run}: contact at {s} was missed"),
-            }
-            if let Some(t) = found {
-                let slope = flight.bounded(Signal::Gap, 0, t).slope;
-                // Rounding of the gap, and of the time times the speed.
-                let tolerance = 4.0 * flight.noise() + f64::EPSILON * duration * slope.abs();
-                assert!(flight.gap(t).abs() <= tolerance, "flight {run}: gap {} at {t}", flight.gap(t));
-            }
-        }
-        assert!(hits > 100 && free > 20, "{hits} contacts, {free} free flights: both kinds must occur");
-    }
-
-    #[test]
-    fn ranges_hold_every_sample_and_no_more() {
-        let mut seed = 5;
-        for _ in 0..100 {
-            let flight = random(&mut seed);
-            for signal in [Signal::Gap, Signal::X1, Signal::X2] {
-                let (low, high) = flight.range(signal, 0.3);
-                let samples = (0..=30_000).map(|i| flight.bounded(signal, 0, f64::from(i) * 1e-5).value);
-                let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-                for value in samples {
-                    least = least.min(value);
-                    most = most.max(value);
-                }
-                // A crest between two samples is missed by at most M(5 µs)²/2.
-                let missed =
-                    flight.bounded(signal, 0, 0.0).curvature * 5e-6_f64.powi(2) / 2.0 + flight.noise();
-                let rounding = 2.0 * flight.noise();
-                assert!(low <= least + rounding && least - low <= missed, "{low} {least}");
-                assert!(high >= most - rounding && high - most <= missed, "{high} {most}");
-            }
-        }
-    }
-}
+mod tests;

@@ -21,11 +21,14 @@ pub struct Green {
 }
 
 impl Green {
-    /// Periodic response of the oscillator of mass `m` to a unit impulse every `period` seconds.
+    /// Periodic response of the oscillator of mass `m` (none where it is infinite) to a unit impulse every `period` seconds.
     ///
     /// # Errors
     /// If the oscillator is undamped and a harmonic of the impulses meets its natural frequency.
     pub fn new(m: f64, oscillator: Oscillator, period: f64) -> Result<Green> {
+        if m == f64::INFINITY {
+            return Ok(Green { oscillator, period, start: 0.0, slope_after: 0.0, slope_before: 0.0 });
+        }
         let (_, sine) = oscillator.kernels(period);
         let (less, determinant) = oscillator.closing(period);
         let turn = oscillator.omega2().sqrt() * period;
@@ -54,6 +57,11 @@ impl Green {
     /// χ(t) and χ̇(t) for 0 ≤ t ≤ T, χ̇(0) being the slope just after the impulse.
     pub fn at(&self, t: f64) -> (f64, f64) {
         self.oscillator.free(self.start, self.slope_after, t)
+    }
+
+    /// The oscillator.
+    pub fn oscillator(&self) -> &Oscillator {
+        &self.oscillator
     }
 
     /// T in s.

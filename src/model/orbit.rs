@@ -1,9 +1,28 @@
 //! Periodic motions with one impact a period, in closed form.
 
-use super::flow::Signal;
-use super::{Flight, Green, NoImpact, Rig, Sine, State, Steady, Validity, floquet};
+mod backbone;
+mod conditions;
+mod course;
+mod drive;
+mod response;
+mod sine;
+mod soft;
+mod stretch;
+mod told;
+mod train;
+
+pub use backbone::backbone;
+pub use soft::{Compliance, LONGEST_CONTACT, Softened, softened};
+
+pub(super) use conditions::Root;
+pub(super) use course::Course;
+
+use super::{Excitation, NoImpact, Rig, Sine, State, Steady, Validity};
 use crate::error::{Error, Result};
+use conditions::Conditions;
+use drive::Drive;
 use num_complex::Complex64;
+use response::Response;
 use std::f64::consts::TAU;
 
 /// One periodic motion with one impact a period; its time counts from the impact.
@@ -15,9 +34,10 @@ pub struct Orbit {
     pub cycles: u32,
     /// Impulse J in N s.
     pub impulse: f64,
-    /// φ in 0..2π of the forced part A cos(ωt + φ) of x₁.
+    /// Under a sine force φ in 0..2π of the forced part A cos(ωt + φ) of x₁; under impulses or pulses the time τ in s from the
+    /// beginning of the last one to the impact.
     pub timing: f64,
-    /// Phase in 0..2π of the force F₀ cos(ωt + θ) at the impact.
+    /// Phase in 0..2π of the excitation's cycle at the impact: of the force F₀ cos(ωt + θ), or 2πτ/T.
     pub force_phase: f64,
     /// Approach speed vᵣ in m/s.
     pub approach_velocity: f64,
@@ -30,7 +50,10 @@ pub struct Orbit {
     pub multipliers: Option<[Complex64; 4]>,
     /// Is it real?
     pub validity: Validity,
-    motion: Flight,
+    upper: bool,
+    rig: Rig,
+    drive: Drive,
+    course: Course,
 }
 
 impl Orbit {
@@ -41,12 +64,59 @@ impl Orbit {
 
     /// State at `t` seconds after an impact, any `t`; at the impact itself, the state after it.
     pub fn state(&self, t: f64) -> State {
-        self.motion.state(t.rem_euclid(self.period()))
+        self.course.state(t.rem_euclid(self.course.period()))
     }
 
     /// State just before the impact.
     pub fn before_impact(&self) -> State {
-        self.motion.state(self.period())
+        self.course.state(self.course.period())
+    }
+
+    /// Complex amplitudes X₁, X₂ in m of the line at `n`/T, n ≥ 1, T being the time from impact to impact: the line n = `cycles` lies
+    /// at the excitation frequency.
+    ///
+    /// X₁ = (F − 2J/T)L₁(iω), X₂ = (2J/T)L₂(iω), F the force's own line.
+    pub fn line(&self, n: u32) -> [Complex64; 2] {
+        let period = self.period();
+        let [l1, l2] = self.rig.receptances(TAU * f64::from(n) / period);
+        // Every line of a train of impulses J is 2J/T high.
+        let train = 2.0 * self.impulse / period;
+        let force = if n % self.cycles == 0 {
+            self.drive.harmonic(n / self.cycles, self.frequency, self.force_phase)
+        } else {
+            Complex64::ZERO
+        };
+        [(force - train) * l1, l2 * train]
+    }
+
+    /// The orbit among `others`, of the same excitation at a frequency (or with a contact) nearby, that this one goes over into: on the
+    /// same side of the fold, and within a sixth of a cycle in timing.
+    pub fn continued<'a>(&self, others: &'a [Orbit]) -> Option<&'a Orbit> {
+        let same = others.iter().filter(|other| other.upper == self.upper);
+        match self.course {
+            // One on each side of the fold.
+            Course::Smooth { .. } => same.min_by(|a, b| a.impulse.total_cmp(&b.impulse)),
+            Course::Broken { .. } => {
+                let apart = |other: &Orbit| {
+                    let way = (other.force_phase - self.force_phase).rem_euclid(TAU);
+                    way.min(TAU - way)
+                };
+                same.filter(|other| apart(other) < TAU / 6.0).min_by(|a, b| apart(a).total_cmp(&apart(b)))
+            }
+        }
+    }
+
+    /// Whether the orbit lies on that side of the fold where a larger impulse would take more energy than the force then gives.
+    pub fn is_upper(&self) -> bool {
+        self.upper
+    }
+
+    /// Unit of [`Orbit::timing`]: `rad` or `s`.
+    pub fn timing_unit(&self) -> &'static str {
+        match self.course {
+            Course::Smooth { .. } => "rad",
+            Course::Broken { .. } => "s",
+        }
     }
 
     /// Largest modulus of the multipliers.
@@ -77,118 +147,73 @@ pub fn orbits(rig: &Rig, force: f64, frequency: f64) -> Result<Orbits> {
 /// # Errors
 /// As [`orbits`], and if `cycles` is 0 or the force is 0.
 pub fn orbits_over(rig: &Rig, sine: &Sine, cycles: u32) -> Result<Orbits> {
+    under_sine(rig, sine, cycles, 0.0)
+}
+
+fn under_sine(rig: &Rig, sine: &Sine, cycles: u32, delay: f64) -> Result<Orbits> {
     let steady = Steady::new(rig, sine)?;
-    if cycles == 0 || sine.force == 0.0 {
+    driven(sine.force)?;
+    let conditions = Conditions::new(rig, sine.frequency, cycles)?.delayed(delay);
+    Ok(Orbits {
+        orbits: sine::orbits(&conditions, &steady, sine.force).collect(),
+        no_impact: NoImpact::new(&steady, rig.gap),
+    })
+}
+
+/// All motions with one impact in `cycles` cycles of the excitation, and the one without impacts.
+///
+/// Under a sine force the larger impulse comes first, under impulses and pulses the earlier impact.
+///
+/// # Errors
+/// If a parameter is impossible, an undamped mass is driven at resonance, there is no excitation to speak of, or it is a sum of several
+/// sines, for which there is no closed form.
+pub fn orbits_of(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Orbits> {
+    solve(rig, excitation, cycles, 0.0)
+}
+
+/// As [`orbits_of`], the impact following the first touch by `delay` (s).
+fn solve(rig: &Rig, excitation: &Excitation, cycles: u32, delay: f64) -> Result<Orbits> {
+    rig.check()?;
+    excitation.check()?;
+    let oscillator = rig.oscillators()[0];
+    let cycle = 1.0 / excitation.frequency();
+    let (response, drive) = match *excitation {
+        Excitation::Sine(sine) => return under_sine(rig, &sine, cycles, delay),
+        Excitation::Impulse(train) => {
+            driven(train.impulse)?;
+            (Response::impulse(rig.m1, oscillator, cycle, train.impulse)?, Drive::Impulse(train.impulse))
+        }
+        Excitation::Pulse(train) => {
+            driven(train.force)?;
+            let response = Response::pulse(rig.m1, oscillator, cycle, train.force, train.width)?;
+            (response, Drive::Pulse(train.force, train.width))
+        }
+        Excitation::Sines(_) => {
+            return Err(Error::refused("several sines at once have no closed form")
+                .hint("`vibro model simulate` follows the motion"));
+        }
+    };
+    let conditions = Conditions::new(rig, excitation.frequency(), cycles)?.delayed(delay);
+    let (low, high) = response.range();
+    Ok(Orbits {
+        orbits: train::orbits(&conditions, &response, drive),
+        no_impact: NoImpact { possible: high < rig.gap, amplitude: (high - low) / 2.0, largest: high },
+    })
+}
+
+/// An excitation that drives.
+fn driven(size: f64) -> Result<()> {
+    if size == 0.0 {
         return Err(Error::usage(
-            format!("{cycles} cycles between impacts under a force of {} N", sine.force),
-            "at least one cycle and a force above 0",
+            "a force or impulse of 0",
+            "a value other than 0: nothing moves the masses",
         ));
     }
-    let solver = Solver::new(rig, &steady, cycles)?;
-    let orbits = solver.roots().map(|impulse| solver.orbit(impulse)).collect();
-    Ok(Orbits { orbits, no_impact: NoImpact::new(&steady, rig.gap) })
-}
-
-/// What both roots share. Babitsky, *Theory of Vibro-Impact Systems* (1998), periodic Green's functions.
-struct Solver<'a> {
-    rig: &'a Rig,
-    steady: &'a Steady,
-    cycles: u32,
-    period: f64,
-    greens: [Green; 2],
-    /// A in m.
-    amplitude: f64,
-    /// C = χ₁(0) + χ₂(0): gap at the impact is Δ + JC − A cos φ.
-    c: f64,
-    /// P/ω with P = 1/(M(1+R)) + χ̇₁(T⁻) + χ̇₂(T⁻): velocities meet where JP = −Aω sin φ.
-    p: f64,
-}
-
-impl<'a> Solver<'a> {
-    fn new(rig: &'a Rig, steady: &'a Steady, cycles: u32) -> Result<Solver<'a>> {
-        let period = f64::from(cycles) * TAU / steady.omega;
-        let [first, second] = rig.oscillators();
-        let greens = [Green::new(rig.m1, first, period)?, Green::new(rig.m2, second, period)?];
-        let [chi1, chi2] = &greens;
-        let contact = 1.0 / (rig.reduced_mass() * (1.0 + rig.restitution));
-        Ok(Solver {
-            rig,
-            steady,
-            cycles,
-            period,
-            amplitude: steady.amplitude(),
-            c: chi1.start + chi2.start,
-            p: (contact + chi1.slope_before + chi2.slope_before) / steady.omega,
-            greens,
-        })
-    }
-
-    /// Square of the half distance of the roots times a = C² + (P/ω)², written so that it does not cancel.
-    fn discriminant(&self) -> f64 {
-        self.amplitude.powi(2) * (self.c * self.c + self.p * self.p) - (self.rig.gap * self.p).powi(2)
-    }
-
-    /// Real roots of (C² + (P/ω)²)J² + 2ΔCJ + Δ² − A² = 0, larger first.
-    fn roots(&self) -> impl Iterator<Item = f64> + use<> {
-        let a = self.c * self.c + self.p * self.p;
-        let half = self.rig.gap * self.c;
-        let product = (self.rig.gap - self.amplitude) * (self.rig.gap + self.amplitude) / a;
-        let discriminant = self.discriminant();
-        let pair = (a > 0.0 && discriminant >= 0.0).then(|| {
-            // The root in which the terms add up first, the other from their product.
-            let first = -(half + discriminant.sqrt().copysign(half)) / a;
-            let second = if first == 0.0 { 0.0 } else { product / first };
-            [first.max(second), first.min(second)]
-        });
-        pair.into_iter().flatten()
-    }
-
-    fn orbit(&self, impulse: f64) -> Orbit {
-        let (rig, omega) = (self.rig, self.steady.omega);
-        let [chi1, chi2] = &self.greens;
-        let cosine = (rig.gap + impulse * self.c) / self.amplitude;
-        let sine = -impulse * self.p / self.amplitude;
-        let timing = f64::atan2(sine, cosine).rem_euclid(TAU);
-        let forced = Complex64::from_polar(self.amplitude, timing);
-        let free = [
-            (-impulse * chi1.start, -impulse * chi1.slope_after),
-            (impulse * chi2.start, impulse * chi2.slope_after),
-        ];
-        let motion = Flight::from_parts(rig.oscillators(), forced, omega, rig.gap, free);
-        // Every harmonic of a train of impulses J has the amplitude 2J/T.
-        let train = 2.0 * impulse / self.period;
-        let [l1, l2] = rig.receptances(omega);
-        let spread = |signal| {
-            let (low, high) = motion.range(signal, self.period);
-            high - low
-        };
-        // From the quadratic: (aJ + ΔC) dJ = −(CJ + Δ) dΔ.
-        let sensitivity = (self.c * impulse + rig.gap).abs() / self.discriminant().max(0.0).sqrt();
-        let (mut multipliers, mut stable) = (None, Some(false));
-        if impulse > 0.0 {
-            let (before, after) = (motion.rate(self.period), motion.rate(0.0));
-            let monodromy = floquet::monodromy(rig, self.period, &before, &after);
-            multipliers = floquet::multipliers(&monodromy).ok();
-            // Roundings of gap and amplitude reach the impulse through its sensitivity.
-            let amplified = 1.0 + (rig.gap.abs() + self.amplitude) * sensitivity / impulse;
-            let rounding = amplified * floquet::rounding(rig, self.period, &before, &after);
-            stable = multipliers.as_ref().map_or(stable, |m| floquet::inside(&monodromy, m, rounding));
-        }
-        Orbit {
-            frequency: omega / TAU,
-            cycles: self.cycles,
-            impulse,
-            timing,
-            force_phase: (timing - self.steady.response.arg()).rem_euclid(TAU),
-            approach_velocity: impulse / (rig.reduced_mass() * (1.0 + rig.restitution)),
-            fundamental: [forced - l1 * train, l2 * train],
-            peak_to_peak: [spread(Signal::X1), spread(Signal::X2)],
-            validity: Validity::judge(impulse, sensitivity, &motion, self.period, stable),
-            multipliers,
-            motion,
-        }
-    }
+    Ok(())
 }
 
 #[cfg(test)]
 mod tests;
+
+#[cfg(test)]
+mod limits_tests;

@@ -13,7 +13,9 @@ pub fn receptance(m: f64, c: f64, k: f64, omega: f64) -> Complex64 {
 impl Rig {
     /// Receptances L₁(iω), L₂(iω) of the masses, each alone, in m/N.
     pub fn receptances(&self, omega: f64) -> [Complex64; 2] {
-        [receptance(self.m1, self.c1, self.k1, omega), receptance(self.m2, self.c2, self.k2, omega)]
+        let second =
+            if self.has_wall() { Complex64::ZERO } else { receptance(self.m2, self.c2, self.k2, omega) };
+        [receptance(self.m1, self.c1, self.k1, omega), second]
     }
 }
 
@@ -56,17 +58,19 @@ impl Steady {
 /// Motion without impacts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct NoImpact {
-    /// Whether it stays clear of the other mass: A below the gap.
+    /// Whether it stays clear of the other mass: the largest x₁ is below the gap.
     pub possible: bool,
-    /// Amplitude A of x₁ in m.
+    /// Amplitude A of x₁ in m: half its peak-to-peak value.
     pub amplitude: f64,
+    /// Largest x₁ in m, counted from its rest; under a sine force the amplitude.
+    pub largest: f64,
 }
 
 impl NoImpact {
     /// Motion without impacts on a rig with this `gap` in m.
     pub fn new(steady: &Steady, gap: f64) -> NoImpact {
         let amplitude = steady.amplitude();
-        NoImpact { possible: amplitude < gap, amplitude }
+        NoImpact { possible: amplitude < gap, amplitude, largest: amplitude }
     }
 }
 

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 pub struct Rig {
     /// Excited mass in kg.
     pub m1: f64,
-    /// Passive mass in kg.
+    /// Passive mass in kg. Infinite for a wall: the rig is then an impact oscillator, and `k2` and `c2` do not count.
     pub m2: f64,
     /// Stiffness of the excited mass' spring in N/m.
     pub k1: f64,
@@ -48,7 +48,7 @@ impl Rig {
     ///
     /// # Errors
     /// If a mass or stiffness is not above 0, a damping is negative, the restitution is outside 0 to 1, or a value is
-    /// not finite.
+    /// not finite; `m2` may be infinite.
     pub fn check(&self) -> Result<()> {
         self.fault().map_or(Ok(()), |(_, error)| Err(error))
     }
@@ -58,6 +58,9 @@ impl Rig {
         let above_zero =
             [("m1", self.m1, "kg"), ("m2", self.m2, "kg"), ("k1", self.k1, "N/m"), ("k2", self.k2, "N/m")];
         for (name, value, unit) in above_zero {
+            if self.has_wall() && matches!(name, "m2" | "k2") {
+                continue;
+            }
             if !(value.is_finite() && value > 0.0) {
                 return Some((
                     name,
@@ -66,6 +69,9 @@ impl Rig {
             }
         }
         for (name, value) in [("c1", self.c1), ("c2", self.c2)] {
+            if self.has_wall() && name == "c2" {
+                continue;
+            }
             if !(value.is_finite() && value >= 0.0) {
                 let expected =
                     "a finite value of 0 or more: a damper that feeds energy in has no steady motion";
@@ -83,9 +89,22 @@ impl Rig {
         None
     }
 
+    /// Whether the passive mass is infinite: a wall.
+    pub fn has_wall(&self) -> bool {
+        self.m2 == f64::INFINITY
+    }
+
     /// Reduced mass M = m₁m₂/(m₁ + m₂) in kg.
     pub fn reduced_mass(&self) -> f64 {
+        if self.has_wall() {
+            return self.m1;
+        }
         self.m1 * self.m2 / (self.m1 + self.m2)
+    }
+
+    /// Impulse of an impact over its approach speed, M(1 + R) in kg.
+    pub fn exchange(&self) -> f64 {
+        self.reduced_mass() * (1.0 + self.restitution)
     }
 
     /// Natural frequencies in Hz of each mass alone, without its damper.
@@ -93,9 +112,14 @@ impl Rig {
         [(self.k1 / self.m1).sqrt(), (self.k2 / self.m2).sqrt()].map(|omega| omega / std::f64::consts::TAU)
     }
 
-    /// Free motion of each mass.
+    /// Free motion of each mass; a wall is free and rests.
     pub fn oscillators(&self) -> [Oscillator; 2] {
-        [Oscillator::new(self.m1, self.c1, self.k1), Oscillator::new(self.m2, self.c2, self.k2)]
+        let second = if self.has_wall() {
+            Oscillator::new(1.0, 0.0, 0.0)
+        } else {
+            Oscillator::new(self.m2, self.c2, self.k2)
+        };
+        [Oscillator::new(self.m1, self.c1, self.k1), second]
     }
 }
 
@@ -111,6 +135,8 @@ mod tests {
             (Rig { m2: 0.0, ..t }, "m2 is 0 kg"),
             (Rig { k1: f64::NAN, ..t }, "k1 is NaN N/m"),
             (Rig { k2: f64::INFINITY, ..t }, "k2 is inf N/m"),
+            (Rig { m1: f64::INFINITY, ..t }, "m1 is inf kg"),
+            (Rig { m2: f64::NEG_INFINITY, ..t }, "m2 is -inf kg"),
             (Rig { c1: -1e-9, ..t }, "c1 is -0.000000001 N s/m"),
             (Rig { c2: f64::NAN, ..t }, "c2 is NaN N s/m"),
             (Rig { gap: f64::NAN, ..t }, "gap is NaN m"),
@@ -122,6 +148,7 @@ mod tests {
             assert!(text.starts_with(start), "{text}");
         }
         assert!(t.check().is_ok());
+        assert!(Rig { m2: f64::INFINITY, k2: 0.0, c2: f64::NAN, ..t }.check().is_ok());
         assert!(Rig { c1: 0.0, c2: 0.0, gap: -5e-4, restitution: 0.0, ..t }.check().is_ok());
     }
 

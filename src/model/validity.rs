@@ -1,6 +1,7 @@
 //! Is a computed orbit real? Four verdicts, each on its own.
 
-use super::flow::{Flight, Signal};
+use super::orbit::{Course, Root};
+use num_complex::Complex64;
 use serde::Serialize;
 
 /// Verdicts on an orbit. A motion that can be measured needs `exists`, `admissible` and `stable`; how far it is from
@@ -17,6 +18,12 @@ pub struct Validity {
     /// The same in a word: `stable`, `unstable` or `neutral`. A neutral motion neither dies away after a disturbance nor is left: that of a
     /// rig without losses, or one at the border of stability.
     pub stability: &'static str,
+    /// How an unstable motion has lost its stability; `None` for any other.
+    pub instability: Option<Loss>,
+    /// The energy rule: a larger impulse would take more energy than the force then gives. "The positive root is stable" is this rule for
+    /// a sine force. It sees only the loss through a multiplier +1, so a motion that breaks it is unstable, and one that keeps it need
+    /// not be stable.
+    pub energy_rule: bool,
     /// Smallest gap over the period in m: 0, that of the impact itself, or the depth by which the masses would pass
     /// through each other, as a negative number.
     pub min_gap: f64,
@@ -28,43 +35,71 @@ pub struct Validity {
     pub grazing_distance: f64,
 }
 
+/// How a periodic motion loses its stability, by the multiplier farthest outside the unit circle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Loss {
+    /// A real one beyond +1: the motion meets another one and both vanish.
+    Fold,
+    /// A real one beyond −1: the period doubles.
+    Flip,
+    /// A pair: a slow beat grows.
+    NeimarkSacker,
+    /// None can be computed: the impact grazes.
+    Grazing,
+}
+
+impl Loss {
+    /// Name as it is printed.
+    pub fn name(self) -> &'static str {
+        match self {
+            Loss::Fold => "fold",
+            Loss::Flip => "flip",
+            Loss::NeimarkSacker => "Neimark–Sacker",
+            Loss::Grazing => "grazing",
+        }
+    }
+
+    /// The loss that the largest of these multipliers shows.
+    pub(super) fn of(multipliers: Option<&[Complex64; 4]>) -> Loss {
+        match multipliers.map(|m| m[0]) {
+            None => Loss::Grazing,
+            Some(z) if z.im != 0.0 => Loss::NeimarkSacker,
+            Some(z) if z.re > 0.0 => Loss::Fold,
+            Some(_) => Loss::Flip,
+        }
+    }
+}
+
 impl Validity {
-    /// Judges the orbit that flies `motion` for one `period`.
-    ///
-    /// `sensitivity` is |dJ/dΔ| in N s/m, infinite at a fold; `stable` the verdict of the multipliers.
+    /// Judges the orbit `root` that follows `course`; `stable` is the verdict of the `multipliers`.
     pub(super) fn judge(
-        impulse: f64,
-        sensitivity: f64,
-        motion: &Flight,
-        period: f64,
+        root: &Root,
+        course: &Course,
         stable: Option<bool>,
+        multipliers: Option<&[Complex64; 4]>,
     ) -> Validity {
-        // What lies nearer to the impact than this is the impact itself (without rebound the gap starts at zero rate).
-        let (noise, margin) = (8.0 * motion.noise(), 1e-9 * period);
+        let noise = 8.0 * course.noise();
         let (mut lowest, mut clearance) = (0.0_f64, None::<f64>);
-        motion.each_stationary(Signal::Gap, period, |t| {
-            let here = motion.bounded(Signal::Gap, 1, t);
-            // Rate rising through zero: a smallest gap.
-            if here.slope > 0.0 && t > margin && t < period - margin {
-                let gap = motion.gap(t);
-                clearance = Some(clearance.map_or(gap, |c| c.min(gap)));
-                lowest = lowest.min(gap);
-            }
+        course.each_closest(|_, gap| {
+            clearance = Some(clearance.map_or(gap, |c| c.min(gap)));
+            lowest = lowest.min(gap);
         });
         // The gap is zero at both ends, so wherever it is negative it has a smallest value inside.
         let min_gap = if lowest < -noise { lowest } else { 0.0 };
-        let exists = impulse > 0.0;
-        let admissible = exists && min_gap == 0.0;
-        let own = impulse.abs() / sensitivity;
+        let exists = root.impulse > 0.0;
+        let own = root.impulse.abs() / root.sensitivity;
         Validity {
             exists,
-            admissible,
+            admissible: exists && min_gap == 0.0,
             stable,
             stability: match stable {
                 Some(true) => "stable",
                 Some(false) => "unstable",
                 None => "neutral",
             },
+            instability: (exists && stable == Some(false)).then(|| Loss::of(multipliers)),
+            energy_rule: exists && root.upper,
             min_gap,
             clearance,
             grazing_distance: clearance.map_or(own, |c| own.min(c.max(0.0))),

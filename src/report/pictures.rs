@@ -1,17 +1,23 @@
 //! The figures of this toolkit: results in, [`super::Figure`] out.
 
+mod branches;
 mod drill;
 mod frf;
 mod impacts;
+mod motion;
+mod orbit;
 mod overlay;
 mod pulse;
 mod response;
 mod spectrum;
 mod waterfall;
 
+pub use branches::branches;
 pub use drill::drill;
 pub use frf::{frf, nyquist};
 pub use impacts::{drop, impacts};
+pub use motion::{phase_plane, poincare, traces};
+pub use orbit::orbit;
 pub use overlay::overlay;
 pub use pulse::pulse;
 pub use response::response;

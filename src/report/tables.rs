@@ -4,6 +4,7 @@ mod cycles;
 mod drill;
 mod impacts;
 mod modal;
+mod model;
 mod pulse;
 mod spectral;
 
@@ -11,6 +12,7 @@ pub use cycles::{drill_cycles_head, drill_cycles_row};
 pub use drill::{drill, drill_average, drill_impacts};
 pub use impacts::{impact_times, impacts, restitution};
 pub use modal::{modal_methods, modes};
+pub use model::{branches, changes, course, no_impact, orbits, soft, verdicts};
 pub use pulse::{pulse, pulse_fits};
 pub use spectral::{spectra, tones};
 

@@ -9,6 +9,7 @@ mod documents;
 mod impacts;
 mod modes;
 mod rig;
+mod simulate;
 mod spectrum;
 
 use serde_json::Value;

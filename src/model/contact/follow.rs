@@ -4,10 +4,10 @@ use super::Law;
 use super::modes::{Between, Modes};
 use super::within::Within;
 use crate::error::{Error, Result};
-use crate::model::drive::Drive;
+use crate::model::forcing::Forcing;
 use crate::model::linear::{Course, Linear, Quantity};
 use crate::model::motion::{Event, Path, Piece};
-use crate::model::simulate::{Impact, REST_SPEED};
+use crate::model::simulate::Impact;
 use crate::model::{Excitation, Rig, State};
 
 /// Work of one call at most, a linear piece being 1 and an integrated one [`INTEGRATED`]: some minutes.
@@ -18,6 +18,9 @@ const INTEGRATED: f64 = 10.0;
 
 /// Events in a row without time passing after which a motion is given up.
 const MOST_AT_ONCE: u32 = 1000;
+
+/// Separation speed in m/s below which a rebound does not part masses that are pressed together.
+const REST_SPEED: f64 = 1e-9;
 
 /// How the masses meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,7 +72,7 @@ pub(crate) struct Follow {
     contact: Contact,
     loose: bool,
     modes: Modes,
-    drive: Drive,
+    drive: Forcing,
     within: Within,
     time: f64,
     state: State,
@@ -91,20 +94,15 @@ impl Follow {
         state: State,
         phase: f64,
     ) -> Result<Follow> {
-        // A wall is a mass 2 that nothing moves.
-        if rig.m2 == f64::INFINITY {
-            Rig { m2: 1.0, ..*rig }.check()?;
-            if state.x2 != 0.0 || state.v2 != 0.0 {
-                return Err(Error::usage(
-                    format!(
-                        "mass 2 is a wall (m2 is infinite) and starts at {} m with {} m/s",
-                        state.x2, state.v2
-                    ),
-                    "0 m and 0 m/s",
-                ));
-            }
-        } else {
-            rig.check()?;
+        rig.check()?;
+        if rig.has_wall() && (state.x2 != 0.0 || state.v2 != 0.0) {
+            return Err(Error::usage(
+                format!(
+                    "mass 2 is a wall (m2 is infinite) and starts at {} m with {} m/s",
+                    state.x2, state.v2
+                ),
+                "0 m and 0 m/s",
+            ));
         }
         let law = match contact {
             Contact::Rebound => None,
@@ -123,7 +121,7 @@ impl Follow {
             ));
         }
         let modes = Modes::new(rig, law, buffer.unwrap_or(0.0));
-        let drive = Drive::new(excitation, phase)?;
+        let drive = Forcing::new(excitation, phase)?;
         let mut motion = Follow {
             rig: *rig,
             contact,
@@ -210,7 +208,7 @@ impl Follow {
             ));
         }
         let rate = self.modes.mode(Between::Apart, true).rate().max(self.drive.fastest());
-        let too_much = |from: f64, drive: &Drive| {
+        let too_much = |from: f64, drive: &Forcing| {
             let (seconds, hz) = (until - from, drive.frequency());
             Error::refused(format!("{seconds} s of motion at {hz} Hz are more than one call computes"))
                 .hint("ask for less time at once, or for a softer contact")
@@ -387,7 +385,7 @@ impl Follow {
             self.slack = self.rounding();
             return;
         }
-        let common = if self.rig.m2.is_infinite() {
+        let common = if self.rig.has_wall() {
             0.0
         } else {
             (self.rig.m1 * s.v1 + self.rig.m2 * s.v2) / (self.rig.m1 + self.rig.m2)

@@ -1,0 +1,199 @@
+//! `vibro model simulate`: a motion, event by event.
+
+use crate::cli::args::{self, Law};
+use crate::cli::{complain, print, settings};
+use crate::error::{Error, Result};
+use crate::model::portrait::{Portrait, Sitting};
+use crate::model::regime::Regime;
+use crate::model::{Impact, Motion, Scene, Simulation, State};
+use crate::report::{Output, Table, files, pictures};
+use serde::Serialize;
+use std::fmt::Write as _;
+
+/// Cycles that the traces show, and samples of each.
+const SHOWN: u32 = 12;
+const SAMPLES: u32 = 400;
+
+#[derive(Serialize)]
+struct Answer<'a> {
+    scene: &'a Scene,
+    impacts: &'a [Impact],
+    regime: Regime,
+    grazing: Option<u64>,
+    chatter: u64,
+    final_state: Final,
+    flights: Option<u64>,
+    warnings: &'a [String],
+    files: &'a [String],
+}
+
+/// The end of a simulation.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct Final {
+    time: f64,
+    phase: f64,
+    #[serde(flatten)]
+    state: State,
+}
+
+/// What a motion did in the cycles that were looked at.
+struct Seen {
+    portrait: Portrait,
+    end: Final,
+    /// Grazing impacts, where they are counted.
+    grazing: Option<u64>,
+    /// Stretches in closed form, with those before.
+    flights: Option<u64>,
+}
+
+pub fn run(typed: &args::Simulate, json: bool) -> Result<()> {
+    let (scene, mut warnings) = super::scene(&typed.scene, typed.frequency)?;
+    let seen = match typed.model {
+        Law::Restitution => {
+            let mut motion = restitution(&scene, typed)?;
+            settle(&mut motion, typed)?;
+            let before = motion.counts();
+            let (portrait, end) = look(&mut motion, typed)?;
+            let after = motion.counts();
+            let grazing = Some(after.grazing - before.grazing);
+            Seen { portrait, end, grazing, flights: Some(after.flights) }
+        }
+        // The contacts that give way.
+        Law::KelvinVoigt | Law::Hertz | Law::HuntCrossley | Law::LooseMass => {
+            return Err(Error::usage("a contact that gives way", "--model restitution"));
+        }
+    };
+    warnings.extend(doubts(&seen, typed));
+    let mut written = Vec::new();
+    if let Some(folder) = &typed.out {
+        let mut output = Output::new(folder)?;
+        write(&mut output, &seen.portrait, scene.rig.gap)?;
+        written = output.written().to_vec();
+    }
+    if json {
+        return print::json(&Answer {
+            scene: &scene,
+            impacts: &seen.portrait.impacts,
+            regime: seen.portrait.pattern.regime,
+            grazing: seen.grazing,
+            chatter: seen.portrait.sticks,
+            final_state: seen.end,
+            flights: seen.flights,
+            warnings: &warnings,
+            files: &written,
+        });
+    }
+    complain::warn(&warnings);
+    let mut text = summary(&seen).text();
+    for file in written {
+        let _ = writeln!(text, "wrote {file}");
+    }
+    print::text(&text)
+}
+
+/// The motion with instantaneous impacts.
+fn restitution(scene: &Scene, typed: &args::Simulate) -> Result<Simulation> {
+    settings::above_zero("--grazing", Some(typed.grazing))?;
+    let excitation = super::excitation(scene)?;
+    let start = match typed.initial[..] {
+        [] => Simulation::at_rest(&scene.rig),
+        [x1, v1, x2, v2] => State { x1, v1, x2, v2 },
+        _ => {
+            let found = format!("--initial with {} numbers", typed.initial.len());
+            return Err(Error::usage(found, "four: x1,v1,x2,v2 in m and m/s"));
+        }
+    };
+    let motion = Simulation::from_state(&scene.rig, excitation, start, typed.phase)?;
+    Ok(motion.grazing_below(typed.grazing))
+}
+
+fn settle(motion: &mut impl Motion, typed: &args::Simulate) -> Result<()> {
+    let end = motion.time() + f64::from(typed.settle) / motion.frequency();
+    motion.advance(end, &mut |_| {})
+}
+
+fn look(motion: &mut impl Motion, typed: &args::Simulate) -> Result<(Portrait, Final)> {
+    let sitting = Sitting { cycles: typed.cycles, samples: SAMPLES, shown: SHOWN };
+    let portrait = Portrait::take(motion, &sitting)?;
+    Ok((portrait, Final { time: motion.time(), phase: motion.phase(), state: motion.state() }))
+}
+
+/// Sentences on what is not to be relied on.
+fn doubts(seen: &Seen, typed: &args::Simulate) -> Vec<String> {
+    let mut doubts = Vec::new();
+    let pattern = &seen.portrait.pattern;
+    if let Some(grazing) = seen.grazing.filter(|n| *n > 0) {
+        doubts.push(format!(
+            "{grazing} of {} impacts graze, with less than {} m/s: a little more gap and there are none. What follows an impact depends on \
+             such differences like their root.",
+            seen.portrait.impacts.len(),
+            typed.grazing
+        ));
+    }
+    match pattern.regime {
+        Regime::Irregular => doubts.push(
+            "No pattern repeats: of an irregular motion only statistics can be compared, not single impacts."
+                .to_owned(),
+        ),
+        _ if !pattern.settled => doubts.push(format!(
+            "The motion has not settled{}: give it more cycles with --settle.",
+            pattern.distance.map_or_else(String::new, |d| format!(" (repetitions still differ by {d:.1e})"))
+        )),
+        _ => {}
+    }
+    doubts
+}
+
+fn summary(seen: &Seen) -> Table {
+    let Portrait { impacts, pattern, sticks, .. } = &seen.portrait;
+    let regime = match pattern.regime {
+        Regime::Periodic { impacts, cycles } => {
+            let many = |n: u32, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+            format!("{} in {}", many(impacts, "impact"), many(cycles, "cycle"))
+        }
+        other => other.to_string(),
+    };
+    let last = impacts.last();
+    let mut table = Table::new("Motion")
+        .column("regime", "")
+        .column("impacts", "")
+        .column("grazing", "")
+        .column("chatter", "")
+        .column("last impulse", "N s")
+        .column("approach speed", "m/s")
+        .column("phase", "rad");
+    table.push([
+        regime.into(),
+        impacts.len().into(),
+        seen.grazing.map(|n| n as f64).into(),
+        (*sticks as usize).into(),
+        last.map(|i| i.impulse).into(),
+        last.map(|i| i.approach_velocity).into(),
+        last.map(|i| i.phase).into(),
+    ]);
+    table
+}
+
+fn write(output: &mut Output, portrait: &Portrait, gap: f64) -> Result<()> {
+    let figures = [
+        ("traces".to_owned(), pictures::traces("Traces of both masses", portrait, gap)),
+        ("phase_plane".to_owned(), pictures::phase_plane("Phase plane", portrait)),
+        ("poincare".to_owned(), pictures::poincare("Poincaré sections", portrait)),
+    ];
+    files::figures(output, &figures, &|| ())?;
+    let states = |times: &[f64], states: &[State]| {
+        let mut text = String::from("time [s],x1 [m],v1 [m/s],x2 [m],v2 [m/s]\n");
+        for (t, s) in times.iter().zip(states) {
+            let _ = writeln!(text, "{t:e},{:e},{:e},{:e},{:e}", s.x1, s.v1, s.x2, s.v2);
+        }
+        text
+    };
+    output.write("traces.csv", states(&portrait.time, &portrait.states))?;
+    output.write("poincare.csv", states(&portrait.beginnings, &portrait.section))?;
+    let mut text = String::from("time [s],phase [rad],approach speed [m/s],impulse [N s]\n");
+    for i in &portrait.impacts {
+        let _ = writeln!(text, "{:e},{:e},{:e},{:e}", i.time, i.phase, i.approach_velocity, i.impulse);
+    }
+    output.write("impacts.csv", text)?;
+    Ok(())
+}

@@ -1,0 +1,79 @@
+//! A scene: the rig, what drives it, and how its contact is made.
+
+mod draft;
+
+pub use draft::Draft;
+
+use super::{Excitation, Rig};
+use crate::error::Result;
+use serde::Serialize;
+use std::path::Path;
+
+/// All that a computation of the rig's motion starts from.
+///
+/// As a TOML file: the keys of [`Rig`] at the top, `[excitation]` with `kind` and the keys of that kind, `[contact]` with `stiffness`,
+/// `damping`, `exponent`, and `[buffer]` with `gap`. Keys of the rig that are left out take the values of [`Rig::thesis`].
+///
+/// ```
+/// use vibroimpact::model::{Excitation, Scene, Sine};
+/// let scene = Scene::from_toml("gap = 2e-3\n[excitation]\nkind = \"sine\"\nforce = 0.5\nfrequency = 11")?;
+/// assert_eq!(scene.rig.gap, 2e-3);
+/// assert_eq!(scene.excitation, Some(Excitation::Sine(Sine { force: 0.5, frequency: 11.0 })));
+/// # Ok::<(), vibroimpact::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Scene {
+    /// The rig.
+    #[serde(flatten)]
+    pub rig: Rig,
+    /// What drives mass 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub excitation: Option<Excitation>,
+    /// A contact that gives way.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact: Option<ContactKeys>,
+    /// The spring of mass 1 acts beyond a gap of its own: a loose mass.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub buffer: Option<Buffer>,
+}
+
+/// Numbers of a contact that gives way; which are needed depends on its law.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct ContactKeys {
+    /// Stiffness k of the force kδⁿ, in N/mⁿ.
+    pub stiffness: Option<f64>,
+    /// Damping: c in N s/m beside a spring, α in s/m in Hunt and Crossley's law.
+    pub damping: Option<f64>,
+    /// Exponent n.
+    pub exponent: Option<f64>,
+}
+
+/// Stop behind the loose mass 1.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Buffer {
+    /// Way in m that mass 1 can go freely before its spring acts.
+    pub gap: f64,
+}
+
+impl Scene {
+    /// The thesis' rig, driven by nothing.
+    pub fn thesis() -> Scene {
+        Scene { rig: Rig::thesis(), excitation: None, contact: None, buffer: None }
+    }
+
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// As [`Draft::from_path`] and [`Draft::scene`].
+    pub fn from_path(path: impl AsRef<Path>) -> Result<Scene> {
+        Draft::from_path(path)?.scene()
+    }
+
+    /// Reads the text of a file.
+    ///
+    /// # Errors
+    /// As [`Draft::from_toml`] and [`Draft::scene`].
+    pub fn from_toml(text: &str) -> Result<Scene> {
+        Draft::from_toml(text)?.scene()
+    }
+}

@@ -1,0 +1,106 @@
+//! `vibro model simulate`.
+
+use super::{complaint, json, text, vibro};
+use serde_json::Value;
+
+const CLAPPING: [&str; 7] =
+    ["model", "simulate", "--force", "0.5", "--frequency", "11", "--set=restitution=0.7"];
+
+fn with<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    [&CLAPPING[..], more].concat()
+}
+
+#[test]
+fn it_settles_on_the_orbit() {
+    let answer = json(&with(&["--settle", "2000", "--cycles", "80"]));
+    assert_eq!(answer["regime"], serde_json::json!({"impacts": 1, "cycles": 1}));
+    let impacts = answer["impacts"].as_array().unwrap();
+    assert!((79..=81).contains(&impacts.len()));
+    let last = impacts.last().unwrap();
+    for key in ["time", "phase", "impulse", "approach_velocity"] {
+        assert!(last[key].is_number(), "{key}");
+    }
+    let orbit = json(&["model", "orbit", "--force", "0.5", "--frequency", "11"]);
+    let expected = orbit["orbits"][0]["impulse"].as_f64().unwrap();
+    assert!((last["impulse"].as_f64().unwrap() / expected - 1.0).abs() < 1e-9);
+    assert_eq!((&answer["grazing"], &answer["chatter"]), (&0.into(), &0.into()));
+    assert!(answer["flights"].as_u64().unwrap() >= 2080);
+    let end = &answer["final_state"];
+    assert!((end["time"].as_f64().unwrap() - 2080.0 / 11.0).abs() < 1e-9);
+    for key in ["phase", "x1", "v1", "x2", "v2"] {
+        assert!(end[key].is_number(), "{key}");
+    }
+}
+
+#[test]
+fn chatter_and_starts_are_told() {
+    let answer = json(&[
+        "model",
+        "simulate",
+        "--set",
+        "gap=-5e-4",
+        "--force",
+        "0.35",
+        "--frequency",
+        "2.354",
+        "--initial=-2e-3,0,0,0",
+        "--phase=-1.5707963267948966",
+        "--settle",
+        "0",
+        "--cycles",
+        "40",
+    ]);
+    assert!(answer["chatter"].as_u64().unwrap() > 10, "{}", answer["regime"]);
+    assert!(answer["regime"].as_str().unwrap().starts_with("chatter"), "{}", answer["regime"]);
+}
+
+#[test]
+fn pictures_and_tables_are_written() {
+    let dir = tempfile::tempdir().unwrap();
+    let answer = json(&with(&["--cycles", "20", "--out", text(dir.path())]));
+    let files: Vec<&str> = answer["files"].as_array().unwrap().iter().filter_map(Value::as_str).collect();
+    let mut expected = vec!["traces.csv", "poincare.csv", "impacts.csv"];
+    for name in ["traces", "phase_plane", "poincare"] {
+        for ending in ["svg", "png"] {
+            assert!(files.contains(&format!("{name}.{ending}").as_str()), "{files:?}");
+        }
+    }
+    expected.retain(|name| !files.contains(name));
+    assert!(expected.is_empty(), "{expected:?} missing");
+    let rows = |name: &str| std::fs::read_to_string(dir.path().join(name)).unwrap().lines().count();
+    assert_eq!((rows("traces.csv"), rows("poincare.csv")), (12 * 400 + 1, 20 + 1));
+}
+
+#[test]
+fn the_table_says_what_the_motion_does() {
+    let output = vibro(&with(&["--settle", "2000"]));
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(printed.contains("1 impact in 1 cycle "), "{printed}");
+}
+
+#[test]
+fn impossible_requests_are_refused() {
+    for (more, code, expected) in [
+        (&["--cycles", "0"][..], 2, "0 cycles"),
+        (&["--cycles", "1000000000"], 2, "1000000000 cycles"),
+        (&["--settle", "1000000000"], 2, "1000000000 cycles"),
+        (&["--initial", "1,2,3"], 2, "3 numbers"),
+        (&["--initial", "0.1,0,0,0"], 2, "overlap"),
+        (&["--initial", "nan,0,0,0"], 2, "finite"),
+        (&["--phase", "inf"], 2, "finite"),
+        (&["--grazing", "-1"], 2, "--grazing"),
+        (&["--set", "m1=-1"], 2, "m1 is -1 kg"),
+        (&["--set", "restitution=2"], 2, "restitution is 2"),
+        (&["--set", "gap=nan"], 2, "gap"),
+    ] {
+        let said = complaint(&with(more), code);
+        assert!(said.contains(expected), "{more:?}: {said}");
+    }
+    let said = complaint(&["model", "simulate", "--force", "0.5", "--frequency", "0"], 2);
+    assert!(said.contains("frequency is 0 Hz"), "{said}");
+    let said = complaint(&["model", "simulate"], 2);
+    assert!(said.contains("nothing drives the rig"), "{said}");
+    // A gap of −1 m and a restitution of 1 are a rig: an answer in bounded time.
+    json(&with(&["--set", "gap=-1", "--cycles", "5", "--settle", "5"]));
+    json(&with(&["--set", "gap=0", "--set", "restitution=1"]));
+}
