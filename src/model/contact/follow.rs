@@ -501,7 +501,7 @@ mod tests {
         let rig = Rig::thesis();
         let sine = Sine { force: 0.5, frequency: 11.0 };
         let mut plain = Vec::new();
-        Simulation::new(&rig, &sine).unwrap().run(2.0, |leg| plain.extend(leg.impact)).unwrap();
+        Simulation::new(&rig, &sine).unwrap().run(2.0, |leg| plain.extend(leg.impact())).unwrap();
         let mut found = Vec::new();
         let mut motion =
             Follow::new(&rig, &Excitation::Sine(sine), Contact::Rebound, None, State::REST, 0.0).unwrap();

@@ -134,7 +134,7 @@ fn a_stiff_contact_approaches_the_rebound() {
     let drive = Sine { force: 0.5, frequency: 11.0 };
     let mut simulation = Simulation::new(&rig, &drive).unwrap();
     let mut hard = Vec::new();
-    simulation.run(1.0, |leg| hard.extend(leg.impact)).unwrap();
+    simulation.run(1.0, |leg| hard.extend(leg.impact())).unwrap();
     let mut before = f64::INFINITY;
     for stiffness in [1e6, 1e8, 1e10, 1e12] {
         let law = Law::kelvin_voigt(stiffness, rig.restitution, rig.reduced_mass()).unwrap();
