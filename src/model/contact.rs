@@ -19,6 +19,7 @@
 mod compliant;
 pub mod conversion;
 mod follow;
+mod keys;
 mod law;
 mod modes;
 mod within;
