@@ -19,7 +19,6 @@
 mod compliant;
 pub mod conversion;
 mod follow;
-mod keys;
 mod law;
 mod modes;
 mod within;
