@@ -37,7 +37,7 @@ fn flight(c: &mut Criterion) {
     c.bench_function("impulses, 100 s", |b| b.iter(|| follow(&motion, 100.0)));
     let part = |force, frequency| Part { force, frequency, phase: 0.3 };
     let parts = vec![part(0.3, 11.0), part(0.1, 7.0), part(0.1, 3.0), part(0.05, 1.0)];
-    let motion = Simulation::new(&rig, Excitation::Sines(Sines { parts })).unwrap();
+    let motion = Simulation::new(&rig, &Excitation::Sines(Sines { parts })).unwrap();
     c.bench_function("four sines, 100 s", |b| b.iter(|| follow(&motion, 100.0)));
     let motion = Simulation::new(&rig, &Sine { force: 0.1, frequency: 3.0 }).unwrap();
     c.bench_function("sweep from 3 to 5 Hz at 0.02 Hz/s", |b| {

@@ -1,5 +1,6 @@
 //! `vibro model`: what the motion of a rig should be.
 
+mod contact;
 mod orbit;
 mod response;
 mod simulate;

@@ -55,6 +55,7 @@ fn reduced(x: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
     #[test]
     fn it_is_the_systems_sine_and_cosine() {
@@ -69,8 +70,7 @@ mod tests {
             check(f64::from(i) * 1e-4);
             check(f64::from(i) * 4.999);
         }
-        for x in [0.0, -0.0, 1e-300, 0.785_398_163_397_448_3, -1.570_796_326_794_896_6, 999_999.9, 1e7, -3e15]
-        {
+        for x in [0.0, -0.0, 1e-300, FRAC_PI_4, -FRAC_PI_2, 999_999.9, 1e7, -3e15] {
             check(x);
         }
     }

@@ -58,8 +58,7 @@ impl Chirp {
         }
         let (start, first) = (motion.time(), motion.frequency());
         let count = ((until - start) / self.step()).ceil().max(1.0);
-        // Not a number neither.
-        if !(count <= MOST_STEPS) {
+        if count.is_nan() || count > MOST_STEPS {
             return Err(Error::usage(
                 format!("a sweep of {count:.0} steps until {until} s"),
                 format!(

@@ -137,18 +137,6 @@ impl From<Sine> for Excitation {
     }
 }
 
-impl From<&Sine> for Excitation {
-    fn from(sine: &Sine) -> Excitation {
-        Excitation::Sine(*sine)
-    }
-}
-
-impl From<&Excitation> for Excitation {
-    fn from(excitation: &Excitation) -> Excitation {
-        excitation.clone()
-    }
-}
-
 /// A frequency that is finite and above 0.
 fn rising(frequency: f64) -> Result<()> {
     if frequency.is_finite() && frequency > 0.0 {

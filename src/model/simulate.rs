@@ -68,7 +68,7 @@ impl Simulation {
     ///
     /// # Errors
     /// If a parameter is impossible, there are more than four sines, or mass 1 is undamped and driven at resonance.
-    pub fn new(rig: &Rig, excitation: impl Into<Excitation>) -> Result<Simulation> {
+    pub fn new(rig: &Rig, excitation: &(impl Clone + Into<Excitation>)) -> Result<Simulation> {
         Simulation::from_state(rig, excitation, Simulation::at_rest(rig), 0.0)
     }
 
@@ -88,7 +88,7 @@ impl Simulation {
     /// As [`Simulation::new`], and if the state is not finite or the masses overlap in it.
     pub fn from_state(
         rig: &Rig,
-        excitation: impl Into<Excitation>,
+        excitation: &(impl Clone + Into<Excitation>),
         state: State,
         phase: f64,
     ) -> Result<Simulation> {
@@ -100,7 +100,7 @@ impl Simulation {
                 "finite values",
             ));
         }
-        let drive = Drive::new(rig, &excitation.into(), phase)?;
+        let drive = Drive::new(rig, &excitation.clone().into(), phase)?;
         let overlap = x1 - x2 - rig.gap;
         // A state left behind by an impact overlaps by its rounding.
         let rounding = 4.0 * f64::EPSILON * (x1.abs() + x2.abs() + rig.gap.abs());

@@ -55,6 +55,24 @@ fn chatter_and_starts_are_told() {
 }
 
 #[test]
+fn contacts_that_give_way_are_followed() {
+    let stiff = ["--set", "contact.stiffness=1e7", "--settle", "300", "--cycles", "70"];
+    let answer = json(&with(&[&["--model", "kelvin-voigt"], &stiff[..]].concat()));
+    assert_eq!(answer["regime"], serde_json::json!({"impacts": 1, "cycles": 1}), "{}", answer["warnings"]);
+    // So stiff a contact is nearly an impact at once.
+    let hard = json(&with(&["--settle", "300"]));
+    let last =
+        |answer: &Value| answer["impacts"].as_array().unwrap().last().unwrap()["impulse"].as_f64().unwrap();
+    assert!((last(&answer) / last(&hard) - 1.0).abs() < 0.05, "{} {}", last(&answer), last(&hard));
+    assert!(answer["grazing"].is_null() && answer["flights"].is_null());
+    let said = complaint(&with(&["--model", "hertz"]), 2);
+    assert!(said.contains("a contact without stiffness"), "{said}");
+    let said = complaint(&with(&["--model", "hunt-crossley", "--set", "contact.stiffness=1e7"]), 2);
+    assert!(said.contains("a contact without damping"), "{said}");
+    json(&with(&["--model", "loose-mass", "--set", "buffer.gap=1e-3", "--cycles", "5", "--settle", "5"]));
+}
+
+#[test]
 fn pictures_and_tables_are_written() {
     let dir = tempfile::tempdir().unwrap();
     let answer = json(&with(&["--cycles", "20", "--out", text(dir.path())]));
@@ -80,8 +98,8 @@ fn the_table_says_what_the_motion_does() {
 
 #[test]
 fn impossible_requests_are_refused() {
-    for (more, code, expected) in [
-        (&["--cycles", "0"][..], 2, "0 cycles"),
+    let cases: [(&[&str], i32, &str); 11] = [
+        (&["--cycles", "0"], 2, "0 cycles"),
         (&["--cycles", "1000000000"], 2, "1000000000 cycles"),
         (&["--settle", "1000000000"], 2, "1000000000 cycles"),
         (&["--initial", "1,2,3"], 2, "3 numbers"),
@@ -92,7 +110,8 @@ fn impossible_requests_are_refused() {
         (&["--set", "m1=-1"], 2, "m1 is -1 kg"),
         (&["--set", "restitution=2"], 2, "restitution is 2"),
         (&["--set", "gap=nan"], 2, "gap"),
-    ] {
+    ];
+    for (more, code, expected) in cases {
         let said = complaint(&with(more), code);
         assert!(said.contains(expected), "{more:?}: {said}");
     }

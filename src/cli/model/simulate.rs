@@ -1,11 +1,12 @@
 //! `vibro model simulate`: a motion, event by event.
 
+use super::contact;
 use crate::cli::args::{self, Law};
 use crate::cli::{complain, print, settings};
 use crate::error::{Error, Result};
 use crate::model::portrait::{Portrait, Sitting};
 use crate::model::regime::Regime;
-use crate::model::{Impact, Motion, Scene, Simulation, State};
+use crate::model::{Compliant, Impact, Loose, Motion, Scene, Simulation, State};
 use crate::report::{Output, Table, files, pictures};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -58,9 +59,22 @@ pub fn run(typed: &args::Simulate, json: bool) -> Result<()> {
             let grazing = Some(after.grazing - before.grazing);
             Seen { portrait, end, grazing, flights: Some(after.flights) }
         }
-        // The contacts that give way.
-        Law::KelvinVoigt | Law::Hertz | Law::HuntCrossley | Law::LooseMass => {
-            return Err(Error::usage("a contact that gives way", "--model restitution"));
+        Law::KelvinVoigt | Law::Hertz | Law::HuntCrossley => {
+            let law = contact::law(&scene, typed.model)?;
+            let start = start(&scene, typed)?;
+            let excitation = super::excitation(&scene)?;
+            whole(Compliant::new(&scene.rig, excitation, law, start, typed.phase)?, typed)?
+        }
+        Law::LooseMass => {
+            let (excitation, start) = (super::excitation(&scene)?, start(&scene, typed)?);
+            let gap = scene.buffer.map_or(0.0, |b| b.gap);
+            let motion = if scene.contact.is_some() {
+                let law = contact::law(&scene, Law::KelvinVoigt)?;
+                Loose::with_law(&scene.rig, excitation, gap, law, start, typed.phase)?
+            } else {
+                Loose::new(&scene.rig, excitation, gap, start, typed.phase)?
+            };
+            whole(motion, typed)?
         }
     };
     warnings.extend(doubts(&seen, typed));
@@ -91,20 +105,31 @@ pub fn run(typed: &args::Simulate, json: bool) -> Result<()> {
     print::text(&text)
 }
 
+/// The state at the start.
+fn start(scene: &Scene, typed: &args::Simulate) -> Result<State> {
+    match typed.initial[..] {
+        [] => Ok(Simulation::at_rest(&scene.rig)),
+        [x1, v1, x2, v2] => Ok(State { x1, v1, x2, v2 }),
+        _ => {
+            let found = format!("--initial with {} numbers", typed.initial.len());
+            Err(Error::usage(found, "four: x1,v1,x2,v2 in m and m/s"))
+        }
+    }
+}
+
 /// The motion with instantaneous impacts.
 fn restitution(scene: &Scene, typed: &args::Simulate) -> Result<Simulation> {
     settings::above_zero("--grazing", Some(typed.grazing))?;
-    let excitation = super::excitation(scene)?;
-    let start = match typed.initial[..] {
-        [] => Simulation::at_rest(&scene.rig),
-        [x1, v1, x2, v2] => State { x1, v1, x2, v2 },
-        _ => {
-            let found = format!("--initial with {} numbers", typed.initial.len());
-            return Err(Error::usage(found, "four: x1,v1,x2,v2 in m and m/s"));
-        }
-    };
-    let motion = Simulation::from_state(&scene.rig, excitation, start, typed.phase)?;
+    let start = start(scene, typed)?;
+    let motion = Simulation::from_state(&scene.rig, super::excitation(scene)?, start, typed.phase)?;
     Ok(motion.grazing_below(typed.grazing))
+}
+
+/// What a motion does whose grazing impacts are not counted.
+fn whole(mut motion: impl Motion, typed: &args::Simulate) -> Result<Seen> {
+    settle(&mut motion, typed)?;
+    let (portrait, end) = look(&mut motion, typed)?;
+    Ok(Seen { portrait, end, grazing: None, flights: None })
 }
 
 fn settle(motion: &mut impl Motion, typed: &args::Simulate) -> Result<()> {

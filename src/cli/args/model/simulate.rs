@@ -27,7 +27,7 @@ pub struct Simulate {
     #[arg(long, value_name = "RAD", default_value_t = 0.0, allow_negative_numbers = true)]
     pub phase: f64,
     /// Approach speed in m/s below which an impact counts as grazing
-    #[arg(long, value_name = "M/S", default_value_t = crate::model::simulate::GRAZING_SPEED)]
+    #[arg(long, value_name = "M/S", allow_negative_numbers = true, default_value_t = crate::model::simulate::GRAZING_SPEED)]
     pub grazing: f64,
     /// Folder for traces, phase plane and Poincaré section as SVG, PNG and CSV
     #[arg(long, value_name = "DIR")]

@@ -1,0 +1,32 @@
+//! The contact law of a scene.
+
+use crate::cli::args;
+use crate::error::{Error, Result};
+use crate::model::{Law, Scene};
+
+/// The law that `[contact]` of the scene describes. A spring and a damper without a stated damping rebound with the rig's restitution.
+///
+/// # Errors
+/// If a number is missing that nothing else gives, or is impossible.
+pub fn law(scene: &Scene, wanted: args::Law) -> Result<Law> {
+    let keys = scene.contact.unwrap_or_default();
+    let missing = |key: &str, unit: &str| {
+        Error::usage(format!("a contact without {key}"), format!("contact.{key} in {unit}"))
+            .hint(format!("give --set contact.{key}=…: no value fits all contacts, and results depend on it"))
+    };
+    let stiffness = keys.stiffness.ok_or_else(|| missing("stiffness", "N/m, or N/mⁿ"))?;
+    let law = match wanted {
+        args::Law::Hertz => Law::Hertz { stiffness },
+        args::Law::HuntCrossley => Law::HuntCrossley {
+            stiffness,
+            exponent: keys.exponent.unwrap_or(1.5),
+            damping: keys.damping.ok_or_else(|| missing("damping", "s/m"))?,
+        },
+        _ => match keys.damping {
+            Some(damping) => Law::KelvinVoigt { stiffness, damping },
+            None => Law::kelvin_voigt(stiffness, scene.rig.restitution, scene.rig.reduced_mass())?,
+        },
+    };
+    law.check()?;
+    Ok(law)
+}
