@@ -33,7 +33,7 @@ enum Jumps {
 
 /// The exciting force from now on.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Drive {
+pub(super) struct Forcing {
     excitation: Excitation,
     tones: Vec<Tone>,
     jumps: Jumps,
@@ -41,10 +41,10 @@ pub(super) struct Drive {
     phase: f64,
 }
 
-impl Drive {
+impl Forcing {
     /// The excitation in a cycle of which `phase` rad are past: a sine is F₀ cos(phase), an impulse falls on phase 0, a
     /// pulse begins there, and of several sines each is ahead by its own part of the time that the phase stands for.
-    pub fn new(excitation: &Excitation, phase: f64) -> Result<Drive> {
+    pub fn new(excitation: &Excitation, phase: f64) -> Result<Forcing> {
         excitation.check()?;
         if !phase.is_finite() {
             return Err(Error::usage(format!("phase is {phase} rad"), "a finite value"));
@@ -64,7 +64,7 @@ impl Drive {
                 (Vec::new(), Jumps::Pulse { force: p.force, width: p.width, on })
             }
         };
-        Ok(Drive { excitation: excitation.clone(), tones, jumps, omega, phase })
+        Ok(Forcing { excitation: excitation.clone(), tones, jumps, omega, phase })
     }
 
     /// Phase of the cycle in 0..2π.
@@ -185,7 +185,7 @@ mod tests {
             Part { force: 0.3, frequency: 5.0, phase: 0.4 },
             Part { force: 0.2, frequency: 7.5, phase: -2.0 },
         ];
-        let drive = Drive::new(&Excitation::Sines(Sines { parts }), 1.0).unwrap();
+        let drive = Forcing::new(&Excitation::Sines(Sines { parts }), 1.0).unwrap();
         let duration = 1.0 / drive.fastest();
         let terms = drive.terms(duration);
         for part in [0.0, 0.3, 1.0] {
@@ -203,7 +203,7 @@ mod tests {
     #[test]
     fn jumps_come_once_a_cycle() {
         let pulses = Pulses { force: 0.5, width: 0.01, frequency: 5.0 };
-        let mut drive = Drive::new(&Excitation::Pulse(pulses), 0.0).unwrap();
+        let mut drive = Forcing::new(&Excitation::Pulse(pulses), 0.0).unwrap();
         let mut times = Vec::new();
         let mut time = 0.0;
         for _ in 0..4 {
@@ -217,7 +217,7 @@ mod tests {
             assert!((found - expected).abs() < 1e-15, "{times:?}");
         }
         let impulses = Impulses { impulse: 0.009, frequency: 5.0 };
-        let mut drive = Drive::new(&Excitation::Impulse(impulses), 0.0).unwrap();
+        let mut drive = Forcing::new(&Excitation::Impulse(impulses), 0.0).unwrap();
         assert_eq!(drive.next_jump(), 0.0);
         assert_eq!(drive.jump(), (0.009, Event::Kick));
         assert!((drive.next_jump() - 0.2).abs() < 1e-16);
@@ -229,7 +229,7 @@ mod tests {
 
     #[test]
     fn a_change_of_frequency_makes_no_step_and_impossible_ones_are_refused() {
-        let mut drive = Drive::new(&Excitation::Sine(Sine { force: 0.5, frequency: 5.0 }), 0.3).unwrap();
+        let mut drive = Forcing::new(&Excitation::Sine(Sine { force: 0.5, frequency: 5.0 }), 0.3).unwrap();
         drive.pass(0.123);
         let (force, phase) = (drive.force(0.0), drive.phase());
         drive.set_frequency(9.0).unwrap();
@@ -238,6 +238,6 @@ mod tests {
             assert!(drive.set_frequency(hz).is_err(), "{hz}");
         }
         assert_eq!(drive.frequency(), 9.0);
-        assert!(Drive::new(&Excitation::Sine(Sine { force: 0.5, frequency: 5.0 }), f64::NAN).is_err());
+        assert!(Forcing::new(&Excitation::Sine(Sine { force: 0.5, frequency: 5.0 }), f64::NAN).is_err());
     }
 }

@@ -35,7 +35,7 @@ impl Linear {
     pub fn new(matrix: [[f64; 4]; 2], constant: [f64; 2], gain: [f64; 2]) -> Linear {
         let row_sum = |i: usize| matrix.iter().map(|row| row[i].abs() + row[i + 2].abs()).fold(0.0, f64::max);
         let (stiffness, damping) = (row_sum(0), row_sum(1));
-        let rate = (damping + (damping * damping + 4.0 * stiffness).sqrt()) / 2.0;
+        let rate = f64::midpoint(damping, (damping * damping + 4.0 * stiffness).sqrt());
         Linear { matrix, constant, gain, rate }
     }
 

@@ -24,7 +24,7 @@ pub(super) const ERROR5: [f64; 12] = [
 
 /// Weights of order 3, by stage.
 pub(super) const THIRD: [(usize, f64); 3] =
-    [(0, 0.244_094_488_188_976_38), (8, 0.733_846_688_281_611_9), (11, 0.022_058_823_529_411_766)];
+    [(0, 0.244_094_488_188_976_4), (8, 0.733_846_688_281_611_9), (11, 0.022_058_823_529_411_766)];
 
 /// Weights of all stages in the last four terms of the dense output.
 pub(super) const DENSE: [[f64; 16]; 4] = [

@@ -8,7 +8,7 @@
 //! Hunt–Crossley F = kδⁿ(1 + αδ̇) loses the same at any k, n and mass (Hunt & Crossley 1975; exact, by integrating
 //! v dv/(1 + αv) over the contact): αv(1 + R) = ln((1 + αv)/(1 − Rαv)).
 //!
-//! Hertz F = kδ^{3/2} (Johnson 1985, 11.22 to 11.24): δ_max = (5Mv²/4k)^{2/5}, t_c = 2.9432 δ_max/v.
+//! Hertz F = kδ^{3/2} (Johnson 1985, 11.22 to 11.24): largest indentation (5Mv²/4k)^{2/5}, duration 2.9432 times that over v.
 
 use crate::error::{Error, Result};
 
@@ -26,7 +26,7 @@ fn turn(ratio: f64) -> f64 {
     } else {
         // atanh √y with 1 − √y free of cancellation: (1 + √y)²/(1 − y), 1 − y = 2/(1 + ζ).
         let root = (-x).sqrt();
-        ((1.0 + root) * ((1.0 + ratio) / 2.0).sqrt()).ln() / root
+        ((1.0 + root) * f64::midpoint(1.0, ratio).sqrt()).ln() / root
     };
     4.0 * arc / (1.0 + ratio)
 }
@@ -106,7 +106,7 @@ pub fn hertz_depth(stiffness: f64, mass: f64, speed: f64) -> f64 {
     (1.25 * mass * speed * speed / stiffness).powf(0.4)
 }
 
-/// Duration in s of a Hertz contact: 2.9432 δ_max/v, the factor being (4√π/5)Γ(2/5)/Γ(9/10).
+/// Duration in s of a Hertz contact: 2.9432 times its largest indentation over the speed, the factor being (4√π/5)Γ(2/5)/Γ(9/10).
 pub fn hertz_duration(stiffness: f64, mass: f64, speed: f64) -> f64 {
     2.943_275_184_324_705 * hertz_depth(stiffness, mass, speed) / speed
 }

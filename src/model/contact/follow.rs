@@ -1,17 +1,15 @@
 //! Follows a rig from event to event through its linear modes, and through integrated contacts between them.
 
+mod change;
+
 use super::Law;
 use super::modes::{Between, Modes};
 use super::within::Within;
 use crate::error::{Error, Result};
-use crate::model::forcing::Drive;
+use crate::model::forcing::Forcing;
 use crate::model::linear::{Course, Linear, Quantity};
 use crate::model::motion::{Event, Path, Piece};
-use crate::model::simulate::Impact;
 use crate::model::{Excitation, Rig, State};
-
-/// Approach speed in m/s below which a chattering pair of masses counts as stuck together.
-const REST_SPEED: f64 = 1e-9;
 
 /// Work of one call at most, a linear piece being 1 and an integrated one [`INTEGRATED`]: some minutes.
 const MOST_WORK: f64 = 1e9;
@@ -21,6 +19,9 @@ const INTEGRATED: f64 = 10.0;
 
 /// Events in a row without time passing after which a motion is given up.
 const MOST_AT_ONCE: u32 = 1000;
+
+/// Separation speed in m/s below which a rebound does not part masses that are pressed together.
+const REST_SPEED: f64 = 1e-9;
 
 /// How the masses meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,7 +73,7 @@ pub(crate) struct Follow {
     contact: Contact,
     loose: bool,
     modes: Modes,
-    drive: Drive,
+    drive: Forcing,
     within: Within,
     time: f64,
     state: State,
@@ -94,20 +95,15 @@ impl Follow {
         state: State,
         phase: f64,
     ) -> Result<Follow> {
-        // A wall is a mass 2 that nothing moves.
-        if rig.m2 == f64::INFINITY {
-            Rig { m2: 1.0, ..*rig }.check()?;
-            if state.x2 != 0.0 || state.v2 != 0.0 {
-                return Err(Error::usage(
-                    format!(
-                        "mass 2 is a wall (m2 is infinite) and starts at {} m with {} m/s",
-                        state.x2, state.v2
-                    ),
-                    "0 m and 0 m/s",
-                ));
-            }
-        } else {
-            rig.check()?;
+        rig.check()?;
+        if rig.has_wall() && (state.x2 != 0.0 || state.v2 != 0.0) {
+            return Err(Error::usage(
+                format!(
+                    "mass 2 is a wall (m2 is infinite) and starts at {} m with {} m/s",
+                    state.x2, state.v2
+                ),
+                "0 m and 0 m/s",
+            ));
         }
         let law = match contact {
             Contact::Rebound => None,
@@ -126,7 +122,7 @@ impl Follow {
             ));
         }
         let modes = Modes::new(rig, law, buffer.unwrap_or(0.0));
-        let drive = Drive::new(excitation, phase)?;
+        let drive = Forcing::new(excitation, phase)?;
         let mut motion = Follow {
             rig: *rig,
             contact,
@@ -213,7 +209,7 @@ impl Follow {
             ));
         }
         let rate = self.modes.mode(Between::Apart, true).rate().max(self.drive.fastest());
-        let too_much = |from: f64, drive: &Drive| {
+        let too_much = |from: f64, drive: &Forcing| {
             let (seconds, hz) = (until - from, drive.frequency());
             Error::refused(format!("{seconds} s of motion at {hz} Hz are more than one call computes"))
                 .hint("ask for less time at once, or for a softer contact")
@@ -305,128 +301,6 @@ impl Follow {
         Ok(whole && event == Event::Reached)
     }
 
-    /// What a root changes, and what it is called.
-    fn mark(&mut self, mark: Mark) -> Event {
-        match mark {
-            Mark::Meets => match self.contact {
-                Contact::Rebound => self.rebound(),
-                Contact::Law(_) => {
-                    self.touch();
-                    Event::Touch
-                }
-            },
-            Mark::ForceEnds => {
-                // Without a damper the force ends where the surfaces are back at their rest.
-                if self.indentation() <= 0.0 || self.modes.contact_force.weights[1] == 0.0 {
-                    self.separate()
-                } else {
-                    self.stage = Stage::Released;
-                    Event::Part
-                }
-            }
-            Mark::ForceReturns => {
-                self.stage = Stage::Touching;
-                Event::Touch
-            }
-            Mark::Separates => self.separate(),
-            Mark::LetsGo => {
-                self.stage = Stage::Apart;
-                self.slack = self.rounding();
-                Event::Release
-            }
-            Mark::SpringActs => {
-                self.spring_acts = true;
-                Event::Switch
-            }
-            Mark::SpringFree => {
-                self.spring_acts = false;
-                Event::Switch
-            }
-        }
-    }
-
-    fn touch(&mut self) {
-        self.stage = Stage::Touching;
-        self.beginning = Beginning {
-            time: self.time,
-            phase: self.drive.phase(),
-            approach: self.state.approach(),
-            impulse: 0.0,
-        };
-        self.within.begin(self.state.approach().abs());
-    }
-
-    fn separate(&mut self) -> Event {
-        self.stage = Stage::Apart;
-        let Beginning { time, phase, approach, impulse } = self.beginning;
-        Event::Impact(Impact { time, phase, approach_velocity: approach, impulse })
-    }
-
-    fn rebound(&mut self) -> Event {
-        let approach = self.state.approach();
-        let impulse = self.modes.reduced_mass * (1.0 + self.rig.restitution) * approach;
-        self.slack = 0.0;
-        self.state.v1 -= impulse / self.rig.m1;
-        self.state.v2 += impulse / self.rig.m2;
-        Event::Impact(Impact {
-            time: self.time,
-            phase: self.drive.phase(),
-            approach_velocity: approach,
-            impulse,
-        })
-    }
-
-    /// After a rebound too slow to part the masses against the force that presses them together, they move together.
-    fn come_to_rest(&mut self, visit: &mut dyn FnMut(Piece<'_>)) {
-        if self.contact != Contact::Rebound || -self.state.approach() >= REST_SPEED {
-            return;
-        }
-        let pressing = self.modes.pressing(self.spring_acts);
-        let force = self.drive.force(0.0);
-        let w = pressing.weights;
-        let s = &self.state;
-        let size = (w[0] * s.x1).abs() + (w[2] * s.x2).abs() + (pressing.force * force).abs();
-        if pressing.value(s, force) <= 64.0 * f64::EPSILON * size {
-            self.slack = self.rounding();
-            return;
-        }
-        let common = if self.rig.m2.is_infinite() {
-            0.0
-        } else {
-            (self.rig.m1 * s.v1 + self.rig.m2 * s.v2) / (self.rig.m1 + self.rig.m2)
-        };
-        self.state.v1 = common;
-        self.state.v2 = common;
-        self.stage = Stage::Together;
-        let end = Still(self.state);
-        visit(Piece { start: self.time, duration: 0.0, path: &end, event: Event::Stick });
-    }
-
-    /// Makes the excitation's jump.
-    fn jump(&mut self) -> Event {
-        let (impulse, event) = self.drive.jump();
-        self.state.v1 += impulse / self.rig.m1;
-        self.settle();
-        event
-    }
-
-    /// Finds the stage of a contact whose force has jumped.
-    fn settle(&mut self) {
-        let pulls = self.modes.contact_force.value(&self.state, 0.0) < 0.0;
-        match self.stage {
-            Stage::Touching if pulls && !self.within.integrates() => self.stage = Stage::Released,
-            Stage::Released if !pulls => self.stage = Stage::Touching,
-            Stage::Together => {
-                let force = self.drive.force(0.0);
-                let pressed = self.modes.pressing(self.spring_acts).value(&self.state, force) > 0.0;
-                if !pressed || self.state.approach() != 0.0 {
-                    self.stage = Stage::Apart;
-                }
-            }
-            _ => {}
-        }
-    }
-
     /// One step within a contact that is not linear.
     fn integrated(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<bool> {
         let remaining = until - self.time;
@@ -455,73 +329,5 @@ impl Follow {
     }
 }
 
-/// A state that lasts no time.
-struct Still(State);
-
-impl Path for Still {
-    fn state(&self, _: f64) -> State {
-        self.0
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::model::Sine;
-
-    #[test]
-    fn sticking_and_release_come_when_they_should() {
-        // Scene C: gap −0.5 mm, force 0.35 N sin ωt at ν 0.45, x₁ −2 mm at the start. Independent numbers.
-        let rig = Rig { gap: -5e-4, ..Rig::thesis() };
-        let frequency = 0.45 * (rig.k1 / rig.m1).sqrt() / std::f64::consts::TAU;
-        let sine = Excitation::Sine(Sine { force: 0.35, frequency });
-        let start = State { x1: -2e-3, ..State::REST };
-        let phase = -std::f64::consts::FRAC_PI_2;
-        let mut motion = Follow::new(&rig, &sine, Contact::Rebound, None, start, phase).unwrap();
-        let mut found = Vec::new();
-        motion
-            .advance(0.65, &mut |piece| {
-                if matches!(piece.event, Event::Stick | Event::Release) {
-                    found.push((piece.event, piece.start + piece.duration));
-                }
-            })
-            .unwrap();
-        let expected = [
-            (Event::Stick, 0.152_721_089_353_360_45),
-            (Event::Release, 0.220_247_418_265_660_51),
-            (Event::Stick, 0.574_521_373_816_090_68),
-        ];
-        assert_eq!(found.len(), 3, "{found:?}");
-        for ((event, time), (kind, golden)) in found.iter().zip(expected) {
-            assert_eq!(*event, kind);
-            // The last rebounds, below 1e-9 m/s, are left out: 2·1e-9/(a(1 − R)) s.
-            assert!((time - golden).abs() < 2e-8, "{event:?} {time}");
-        }
-        assert!((found[1].1 - expected[1].1).abs() < 1e-9, "{found:?}");
-    }
-
-    #[test]
-    fn rebounds_are_those_of_the_closed_form_flights() {
-        use crate::model::Simulation;
-        let rig = Rig::thesis();
-        let sine = Sine { force: 0.5, frequency: 11.0 };
-        let mut plain = Vec::new();
-        Simulation::new(&rig, &sine).unwrap().run(2.0, |leg| plain.extend(leg.impact())).unwrap();
-        let mut found = Vec::new();
-        let mut motion =
-            Follow::new(&rig, &Excitation::Sine(sine), Contact::Rebound, None, State::REST, 0.0).unwrap();
-        motion
-            .advance(2.0, &mut |piece| {
-                if let Event::Impact(impact) = piece.event {
-                    found.push(impact);
-                }
-            })
-            .unwrap();
-        assert_eq!(found.len(), plain.len());
-        for (a, b) in found.iter().zip(&plain) {
-            // Roundings of times up to 2 s and of displacements of 10 mm, over 20 impacts.
-            assert!((a.time - b.time).abs() < 1e-13, "{a:?} {b:?}");
-            assert!((a.impulse / b.impulse - 1.0).abs() < 1e-11, "{a:?} {b:?}");
-        }
-    }
-}
+mod tests;

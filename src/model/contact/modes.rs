@@ -34,6 +34,8 @@ impl Modes {
     /// Modes of `rig` (m₂ may be infinite) with a contact of spring and damper, the spring of mass 1 acting for
     /// x₁ < −`buffer`.
     pub fn new(rig: &Rig, law: Option<Law>, buffer: f64) -> Modes {
+        // A wall has neither spring nor damper.
+        let (k2, c2) = if rig.has_wall() { (0.0, 0.0) } else { (rig.k2, rig.c2) };
         let inverse = [1.0 / rig.m1, 1.0 / rig.m2];
         let (k3, c3) = match law {
             Some(Law::KelvinVoigt { stiffness, damping }) => (stiffness, damping),
@@ -41,7 +43,7 @@ impl Modes {
         };
         let mode = |between: Between, acting: bool| {
             let k1 = if acting { rig.k1 } else { 0.0 };
-            let own = [[-k1, -rig.c1, 0.0, 0.0], [0.0, 0.0, -rig.k2, -rig.c2]];
+            let own = [[-k1, -rig.c1, 0.0, 0.0], [0.0, 0.0, -k2, -c2]];
             let preload = -k1 * buffer;
             let scaled = |row: [f64; 4], by: f64| row.map(|v| v * by);
             match between {
@@ -69,13 +71,12 @@ impl Modes {
             }
         };
         let pair = |between| [mode(between, false), mode(between, true)];
-        let reduced_mass = if rig.m2.is_infinite() { rig.m1 } else { rig.reduced_mass() };
         Modes {
             linear: [pair(Between::Apart), pair(Between::Pushing), pair(Between::Together)],
             indentation: Quantity { weights: [1.0, 0.0, -1.0, 0.0], force: 0.0, offset: -rig.gap },
             contact_force: Quantity { weights: [k3, c3, -k3, -c3], force: 0.0, offset: -k3 * rig.gap },
             compression: Quantity { weights: [-1.0, 0.0, 0.0, 0.0], force: 0.0, offset: -buffer },
-            reduced_mass,
+            reduced_mass: rig.reduced_mass(),
         }
     }
 

@@ -3,7 +3,7 @@
 use super::Law;
 use crate::error::Result;
 use crate::math::runge_kutta::{Dop853, Integrator, Step, Tolerance};
-use crate::model::forcing::Drive;
+use crate::model::forcing::Forcing;
 use crate::model::linear::Linear;
 use crate::model::motion::Path;
 use crate::model::{Rig, State};
@@ -73,7 +73,7 @@ impl Within {
     }
 
     /// One step of at most `span` seconds from `state`; `mode` holds what acts beside the contact.
-    pub fn step(&mut self, mode: &Linear, drive: &Drive, state: &State, span: f64) -> Result<Bout> {
+    pub fn step(&mut self, mode: &Linear, drive: &Forcing, state: &State, span: f64) -> Result<Bout> {
         let law = self.law;
         let [inverse1, inverse2] = self.inverse;
         let gap = self.gap;

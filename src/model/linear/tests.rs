@@ -13,8 +13,8 @@ fn exponential(mode: &Linear, t: f64) -> [[f64; 5]; 5] {
     a[0][1] = h;
     a[2][3] = h;
     for i in 0..2 {
-        for j in 0..4 {
-            a[2 * i + 1][j] = h * mode.matrix[i][j];
+        for (cell, weight) in a[2 * i + 1].iter_mut().zip(mode.matrix[i]) {
+            *cell = h * weight;
         }
         a[2 * i + 1][4] = h * mode.constant[i];
     }

@@ -56,7 +56,9 @@ fn check_balance(law: Law, rig: &Rig, seconds: f64) {
     let wall = rig.m2.is_infinite();
     let kinetic2 = |v: f64| if wall { 0.0 } else { rig.m2 * v * v / 2.0 };
     let energy = |s: State| {
-        rig.m1 * s.v1.powi(2) / 2.0 + kinetic2(s.v2) + (rig.k1 * s.x1.powi(2) + rig.k2 * s.x2.powi(2)) / 2.0
+        rig.m1 * s.v1.powi(2) / 2.0
+            + kinetic2(s.v2)
+            + f64::midpoint(rig.k1 * s.x1.powi(2), rig.k2 * s.x2.powi(2))
     };
     let (mut put_in, mut through, mut taken, mut impacts) = (0.0, 0.0, 0.0, Vec::new());
     let (touching, mut back_and_forth) = (Cell::new(false), 0.0);
