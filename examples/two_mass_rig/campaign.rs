@@ -87,13 +87,13 @@ pub fn measure(direction: Direction, last: usize, mut show: impl FnMut(&Point) -
 /// if after some cycles every state is the same to a thousandth of the largest.
 fn pattern(mut motion: Simulation) -> Result<String> {
     const LONGEST: usize = 12;
-    let period = 1.0 / motion.sine().frequency;
+    let period = 1.0 / motion.frequency();
     let cycles = (BLOCK / period) as usize;
     let mut strobe = Vec::with_capacity(cycles);
     let start = motion.time();
     for n in 1..=cycles {
         let mut impacts = 0_usize;
-        motion.run(start + n as f64 * period, |leg| impacts += usize::from(leg.impact.is_some()))?;
+        motion.run(start + n as f64 * period, |leg| impacts += usize::from(leg.impact().is_some()))?;
         strobe.push((motion.state(), impacts));
     }
     let tail = &strobe[cycles.saturating_sub(3 * LONGEST)..];
