@@ -144,7 +144,7 @@ fn chatter_ends_in_sticking_and_release() {
     let golden = [
         (Event::Stick, 0.152_721_089_353_360_45),
         (Event::Release, 0.220_247_418_265_660_51),
-        (Event::Stick, 0.574_521_373_816_090_68),
+        (Event::Stick, 0.574_521_373_816_090_7),
     ];
     let mut motion = scene_c();
     let mut found = Vec::new();
