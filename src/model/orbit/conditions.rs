@@ -99,6 +99,7 @@ impl<'a> Conditions<'a> {
             let rounding = amplified * floquet::rounding(rig, period, &before, &after);
             stable = multipliers.as_ref().map_or(stable, |m| floquet::inside(&monodromy, m, rounding));
         }
+        let survey = course.survey();
         let mut orbit = Orbit {
             frequency: self.frequency,
             cycles: self.cycles,
@@ -107,8 +108,8 @@ impl<'a> Conditions<'a> {
             force_phase: root.force_phase,
             approach_velocity: root.impulse / rig.exchange(),
             fundamental: Default::default(),
-            peak_to_peak: course.spread(),
-            validity: Validity::judge(root, &course, stable, multipliers.as_ref()),
+            peak_to_peak: survey.spread,
+            validity: Validity::judge(root, &course, survey.closest, stable, multipliers.as_ref()),
             multipliers,
             upper: root.upper,
             rig: *rig,
