@@ -65,3 +65,11 @@ pub fn orbit(title: &str, rig: &Rig, orbit: &Orbit) -> Figure {
         orbit.frequency, orbit.approach_velocity
     )))
 }
+
+/// Both displacements over a period, in mm.
+fn first_two(orbit: &Orbit, period: f64) -> impl Iterator<Item = f64> + '_ {
+    (0..=POINTS).flat_map(move |i| {
+        let s = orbit.state(period * i as f64 / POINTS as f64);
+        [1e3 * s.x1, 1e3 * s.x2]
+    })
+}
