@@ -1,6 +1,7 @@
 //! A stretch of a periodic motion: no impact, impulse or step of the force inside.
 
 use crate::math::Oscillator;
+use crate::math::cis::sin_cos;
 use crate::model::State;
 use num_complex::Complex64;
 
@@ -40,7 +41,8 @@ impl Stretch {
         }
         all[0][0] += self.rest;
         if self.forced != Complex64::ZERO {
-            let wave = self.forced * Complex64::cis(self.omega * t);
+            let (sin, cos) = sin_cos(self.omega * t);
+            let wave = self.forced * Complex64::new(cos, sin);
             all[0][0] += wave.re;
             all[0][1] -= self.omega * wave.im;
             all[0][2] -= self.omega * self.omega * wave.re;
@@ -130,9 +132,7 @@ impl Stretch {
     /// Rates and slopes of both masses, with bounds on the curvature of the rates for all later times.
     fn rates(&self, free: [(f64, f64); 2], forced: Complex64) -> Rates {
         let mut rates = Rates { rate: [0.0; 2], slope: [0.0; 2], limit: [0.0; 2] };
-        for i in 0..2 {
-            let oscillator = &self.oscillators[i];
-            let (x, v) = free[i];
+        for (i, (oscillator, (x, v))) in self.oscillators.iter().zip(free).enumerate() {
             let a = oscillator.acceleration(x, v);
             let jerk = oscillator.acceleration(v, a);
             rates.rate[i] = v;
