@@ -81,7 +81,7 @@ impl Orbit {
         let [l1, l2] = self.rig.receptances(TAU * f64::from(n) / period);
         // Every line of a train of impulses J is 2J/T high.
         let train = 2.0 * self.impulse / period;
-        let force = if n % self.cycles == 0 {
+        let force = if n.is_multiple_of(self.cycles) {
             self.drive.harmonic(n / self.cycles, self.frequency, self.force_phase)
         } else {
             Complex64::ZERO

@@ -181,9 +181,9 @@ fn between(
             let middle = f64::midpoint(low, high);
             let Some(there) = solve(middle).no_impact else { break };
             if there.possible == here.possible {
-                low = middle
+                low = middle;
             } else {
-                high = middle
+                high = middle;
             }
             amplitude = there.amplitude;
         }

@@ -72,21 +72,18 @@ impl Loss {
 }
 
 impl Validity {
-    /// Judges the orbit `root` that follows `course`; `stable` is the verdict of the `multipliers`.
+    /// Judges the orbit `root` that follows `course` with this smallest gap away from the impact; `stable` is the verdict of the
+    /// `multipliers`.
     pub(super) fn judge(
         root: &Root,
         course: &Course,
+        clearance: Option<f64>,
         stable: Option<bool>,
         multipliers: Option<&[Complex64; 4]>,
     ) -> Validity {
         let noise = 8.0 * course.noise();
-        let (mut lowest, mut clearance) = (0.0_f64, None::<f64>);
-        course.each_closest(|_, gap| {
-            clearance = Some(clearance.map_or(gap, |c| c.min(gap)));
-            lowest = lowest.min(gap);
-        });
         // The gap is zero at both ends, so wherever it is negative it has a smallest value inside.
-        let min_gap = if lowest < -noise { lowest } else { 0.0 };
+        let min_gap = clearance.filter(|gap| *gap < -noise).unwrap_or(0.0);
         let exists = root.impulse > 0.0;
         let own = root.impulse.abs() / root.sensitivity;
         Validity {

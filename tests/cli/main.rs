@@ -7,6 +7,7 @@ mod contact;
 mod convert;
 mod documents;
 mod impacts;
+mod model;
 mod modes;
 mod rig;
 mod simulate;

@@ -43,7 +43,7 @@ fn point(point: &ResponsePoint, gap_std: Option<f64>) -> Point<'_> {
         backbone: point.backbone.as_ref().map(|o| Backbone {
             impulse: o.impulse,
             peak_to_peak: o.peak_to_peak,
-            fundamental: o.fundamental.map(|z| z.norm()),
+            fundamental: o.fundamental.map(num_complex::Complex::norm),
             admissible: o.validity.admissible,
         }),
         refused: point.refused.as_deref(),

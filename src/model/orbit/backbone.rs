@@ -49,5 +49,5 @@ pub fn backbone(rig: &Rig, frequency: f64) -> Result<Option<Orbit>> {
         gap: rig.gap,
     };
     let course = Course::Smooth { stretch, period: conditions.period() };
-    Ok(Some(conditions.orbit(&root, course, Drive::None)))
+    Ok(Some(conditions.orbit(&root, &course, Drive::None)))
 }

@@ -87,10 +87,13 @@ impl<'a> Conditions<'a> {
     }
 
     /// The orbit of a root, with its verdicts.
-    pub fn orbit(&self, root: &Root, course: Course, drive: Drive) -> Orbit {
+    pub fn orbit(&self, root: &Root, course: &Course, drive: Drive) -> Orbit {
         let (rig, period) = (self.rig, self.period());
         let (mut multipliers, mut stable) = (None, Some(false));
-        if root.impulse > 0.0 {
+        if drive == Drive::None {
+            // One of a family of free motions: it neither dies away nor grows.
+            stable = None;
+        } else if root.impulse > 0.0 {
             let (before, after) = course.rates();
             let monodromy = floquet::monodromy(rig, period, &before, &after);
             multipliers = floquet::multipliers(&monodromy).ok();
@@ -99,6 +102,7 @@ impl<'a> Conditions<'a> {
             let rounding = amplified * floquet::rounding(rig, period, &before, &after);
             stable = multipliers.as_ref().map_or(stable, |m| floquet::inside(&monodromy, m, rounding));
         }
+        let survey = course.survey();
         let mut orbit = Orbit {
             frequency: self.frequency,
             cycles: self.cycles,
@@ -107,13 +111,13 @@ impl<'a> Conditions<'a> {
             force_phase: root.force_phase,
             approach_velocity: root.impulse / rig.exchange(),
             fundamental: Default::default(),
-            peak_to_peak: course.spread(),
-            validity: Validity::judge(root, &course, stable, multipliers.as_ref()),
+            peak_to_peak: survey.spread,
+            validity: Validity::judge(root, course, survey.closest, stable, multipliers.as_ref()),
             multipliers,
             upper: root.upper,
             rig: *rig,
             drive,
-            course,
+            course: *course,
         };
         orbit.fundamental = orbit.line(self.cycles);
         orbit

@@ -106,23 +106,6 @@ impl Course {
         }
     }
 
-    /// Largest minus smallest x₁ and x₂ in m.
-    pub fn spread(&self) -> [f64; 2] {
-        let mut ends = [(f64::INFINITY, f64::NEG_INFINITY); 2];
-        self.each(|_, duration, stretch| {
-            for (end, signal) in ends.iter_mut().zip([Signal::X1, Signal::X2]) {
-                let mut take = |t: f64| {
-                    let value = stretch.signal(signal, t)[0];
-                    *end = (end.0.min(value), end.1.max(value));
-                };
-                take(0.0);
-                take(duration);
-                stretch.each_stationary(signal, duration, take);
-            }
-        });
-        ends.map(|(low, high)| high - low)
-    }
-
     /// Rounding error of a computed gap in m.
     pub fn noise(&self) -> f64 {
         let mut noise = 0.0_f64;
@@ -130,30 +113,47 @@ impl Course {
         noise
     }
 
-    /// Visits every smallest gap inside the period, the impact left out, with its time.
-    pub fn each_closest(&self, mut visit: impl FnMut(f64, f64)) {
+    /// How far both masses move, and every smallest gap inside the period, the impact left out.
+    pub fn survey(&self) -> Survey {
         let period = self.period();
         // What lies nearer to the impact than this is the impact itself (without rebound the gap starts at zero rate).
         let margin = 1e-9 * period;
+        let mut ends = [(f64::INFINITY, f64::NEG_INFINITY); 2];
+        let mut closest = None::<f64>;
         let mut before = None::<f64>;
         self.each(|start, duration, stretch| {
-            let [value, slope, _] = stretch.signal(Signal::Gap, 0.0);
-            // A corner or a smooth least gap on the border of two stretches.
-            if before.is_some_and(|before| before < 0.0 && slope >= 0.0)
-                && start > margin
-                && start < period - margin
-            {
-                visit(start, value);
-            }
-            stretch.each_stationary(Signal::Gap, duration, |t| {
-                let [gap, _, bend] = stretch.signal(Signal::Gap, t);
-                let at = start + t;
-                // Rate rising through zero: a smallest gap.
-                if bend > 0.0 && at > margin && at < period - margin {
-                    visit(at, gap);
+            let mut near = |t: f64, gap: f64| {
+                if t > margin && t < period - margin {
+                    closest = Some(closest.map_or(gap, |c| c.min(gap)));
                 }
+            };
+            let (first, last) = (stretch.series(0.0), stretch.series(duration));
+            // A corner or a smooth least gap on the border of two stretches.
+            if before.is_some_and(|before| before < 0.0 && first[1][1] >= first[0][1]) {
+                near(start, stretch.gap + first[1][0] - first[0][0]);
+            }
+            before = Some(last[1][1] - last[0][1]);
+            for (i, (low, high)) in ends.iter_mut().enumerate() {
+                *low = low.min(first[i][0]).min(last[i][0]);
+                *high = high.max(first[i][0]).max(last[i][0]);
+            }
+            stretch.each_turn(duration, |signal, t, value, bend| match signal {
+                Signal::X1 => ends[0] = (ends[0].0.min(value), ends[0].1.max(value)),
+                Signal::X2 => ends[1] = (ends[1].0.min(value), ends[1].1.max(value)),
+                // Rate rising through zero: a smallest gap.
+                Signal::Gap if bend > 0.0 => near(start + t, value),
+                Signal::Gap => {}
             });
-            before = Some(stretch.signal(Signal::Gap, duration)[1]);
         });
+        Survey { spread: ends.map(|(low, high)| high - low), closest }
     }
+}
+
+/// What a course reaches.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Survey {
+    /// Largest minus smallest x₁ and x₂ in m.
+    pub spread: [f64; 2],
+    /// Smallest gap in m away from the impact; `None` where the masses part and return without one.
+    pub closest: Option<f64>,
 }

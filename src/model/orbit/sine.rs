@@ -56,6 +56,6 @@ pub fn orbits<'a>(
             gap,
         };
         let course = Course::Smooth { stretch, period: conditions.period() };
-        conditions.orbit(&root, course, Drive::Sine(force))
+        conditions.orbit(&root, &course, Drive::Sine(force))
     })
 }

@@ -18,13 +18,13 @@ pub struct Compliance {
     pub damping: f64,
     /// ζ = c₃/(2√(k₃M)).
     pub damping_ratio: f64,
-    /// R = e^{−ζω₀t_c}, of this spring and damper.
+    /// Restitution of this spring and damper.
     pub restitution: f64,
-    /// Duration of the contact t_c in s.
+    /// Duration of the contact in s.
     pub duration: f64,
     /// Time t* in s by which an impact without duration would follow the first touch, to leave the masses on the same ways.
     pub delay: f64,
-    /// Change of the restitution in s by the acceleration a that presses the masses together, per a/v: (1 − R)t_c − 2d_r/v.
+    /// Change of the restitution in s by the acceleration a that presses the masses together, per a/v: `(1 − R)t_c − 2d_r/v`.
     #[serde(skip)]
     pressed: f64,
 }
@@ -32,8 +32,8 @@ pub struct Compliance {
 impl Compliance {
     /// Contact of stiffness k₃ (N/m) on a rig; without `damping` (N s/m) the damper is the one that gives the rig's restitution.
     ///
-    /// With ψ = asin ζ: t_c = (π − 2ψ)/ω_d, R = e^{−ζω₀t_c}; the masses part at the indentation d_r = vR sin(2ψ)/ω_d, where the force
-    /// vanishes, and t* = (d_r/v + Rt_c)/(1 + R).
+    /// With ψ = asin ζ: `t_c = (π − 2ψ)/ω_d`, `R = e^{−ζω₀t_c}`; the masses part at the indentation `d_r = vR sin(2ψ)/ω_d`, where the
+    /// force vanishes, and `t* = (d_r/v + Rt_c)/(1 + R)`.
     ///
     /// # Errors
     /// If stiffness or damping are impossible, the damper is critical or more, or no damper gives the rig's restitution.
@@ -79,13 +79,13 @@ impl Compliance {
     }
 }
 
-/// ζω₀t_c and ω_d t_c at damping ratio ζ below 1.
+/// `ζω₀t_c` and `ω_d t_c` at damping ratio ζ below 1.
 fn swing(ratio: f64) -> (f64, f64) {
     let turn = PI - 2.0 * ratio.asin();
     (ratio * turn / (1.0 - ratio * ratio).sqrt(), turn)
 }
 
-/// ζ of a restitution, by halving: ζω₀t_c rises from 0 to 2 with ζ.
+/// ζ of a restitution, by halving: `ζω₀t_c` rises from 0 to 2 with ζ.
 fn ratio_of(restitution: f64) -> Result<f64> {
     let wanted = -restitution.ln();
     // NaN cannot be; above critical damping R falls below e⁻².
@@ -129,7 +129,7 @@ pub struct Softened {
 /// The contact's force f over the masses' reduced one gives I = ∫f dt at the time t* = ∫tf dt/I after the touch: an impact without
 /// duration then and of that size leaves the masses on the same ways. At that time the ways already overlap by vt*, so C + t*/(M(1+R))
 /// takes the place of C = χ₁(0) + χ₂(0). An acceleration a that presses the masses together (to first order) lets them meet at the speed
-/// v + at* then, and makes the restitution R + (a/v)((1 − R)t_c − 2d_r/v).
+/// v + at* then, and makes the restitution `R + (a/v)((1 − R)t_c − 2d_r/v)`.
 ///
 /// # Errors
 /// If the contact lasts longer than [`LONGEST_CONTACT`] of the period.
@@ -181,7 +181,7 @@ fn soften(
         approach_velocity: at.approach_velocity - pressing(&at) * compliance.delay,
         restitution,
         peak_to_peak: at.peak_to_peak,
-        fundamental: at.fundamental.map(|z| z.norm()),
+        fundamental: at.fundamental.map(num_complex::Complex::norm),
         change: at.impulse / orbit.impulse - 1.0,
         share: compliance.duration / orbit.period(),
     }))

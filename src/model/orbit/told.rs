@@ -6,6 +6,7 @@ use crate::model::validity::Loss;
 use serde::ser::{Serialize, Serializer};
 
 #[derive(serde::Serialize)]
+#[expect(clippy::struct_excessive_bools, reason = "verdicts, each on its own")]
 struct Told {
     frequency: f64,
     cycles: u32,
@@ -54,8 +55,8 @@ impl Serialize for Orbit {
             energy_rule: v.energy_rule,
             grazing_distance: v.grazing_distance,
             peak_to_peak: self.peak_to_peak,
-            fundamental: self.fundamental.map(|z| z.norm()),
-            fundamental_phase: self.fundamental.map(|z| z.arg()),
+            fundamental: self.fundamental.map(num_complex::Complex::norm),
+            fundamental_phase: self.fundamental.map(num_complex::Complex::arg),
         }
         .serialize(serializer)
     }

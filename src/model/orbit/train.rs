@@ -41,7 +41,7 @@ pub fn orbits(conditions: &Conditions<'_>, response: &Response, drive: Drive) ->
             delay: timing,
             gap: rig.gap,
         };
-        orbits.push(conditions.orbit(&root, course, drive));
+        orbits.push(conditions.orbit(&root, &course, drive));
     });
     orbits
 }

@@ -70,7 +70,8 @@ fn panel(response: &Response, mass: usize) -> Plot {
     let y = AxisSpec::new(if mass == 0 { "Amplitude of x₁" } else { "Amplitude of x₂" }, "mm");
     let (first, last) = (response.points.first(), response.points.last());
     let ends = [first, last].map(|p| p.map_or(f64::NAN, |p| p.frequency));
-    let y = if top > 0.0 { y.limits(-0.02e3 * top, 1.25e3 * top) } else { y };
+    // Three decades are shown.
+    let y = if top > 0.0 { y.log().limits(1.0 * top, 2.0e3 * top) } else { y };
     let mut plot = Plot::new(AxisSpec::frequency().limits(ends[0], ends[1]), y).title(if mass == 0 {
         "excited mass"
     } else {
@@ -97,7 +98,7 @@ fn panel(response: &Response, mass: usize) -> Plot {
         if let (Some(n), Some(m)) = (&a.backbone, &b.backbone) {
             // Poles are no lines.
             let (n, m) = (place(n), place(m));
-            if n.1.max(m.1) < 1.25e3 * top && n.1 < 3.0 * m.1 && m.1 < 3.0 * n.1 {
+            if n.1.max(m.1) < 2.0e3 * top && n.1 < 3.0 * m.1 && m.1 < 3.0 * n.1 {
                 back.join(n, m);
             }
         }
@@ -123,8 +124,9 @@ fn panel(response: &Response, mass: usize) -> Plot {
         (&["neimark-sacker"], "Neimark–Sacker", Marker::Triangle),
         (&["grazing", "second contact"], "grazing", Marker::OpenCircle),
     ] {
-        let at =
-            response.changes.iter().filter(|c| kinds.contains(&c.kind) && c.amplitude[mass] < 1.25 * top);
+        let at = response.changes.iter().filter(|c| {
+            kinds.contains(&c.kind) && c.amplitude[mass] < 2.0 * top && c.amplitude[mass] > 1e-3 * top
+        });
         let (x, y): (Vec<f64>, Vec<f64>) = at.map(|c| (c.frequency, 1e3 * c.amplitude[mass])).unzip();
         if !x.is_empty() {
             plot = plot.with(Series::points(name, x, y).ink(Ink::Nth(3)).marker(marker));

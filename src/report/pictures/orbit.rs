@@ -29,9 +29,14 @@ pub fn orbit(title: &str, rig: &Rig, orbit: &Orbit) -> Figure {
     .with(Series::line("x₁", time, first).ink(Ink::Nth(0)).stroke(Stroke::Solid))
     .with(Series::points("impact", impacts, [met; 3]).ink(Ink::Black).marker(Marker::OpenCircle));
 
-    let mut plane =
-        Plot::new(AxisSpec::new("Displacement from rest", "mm"), AxisSpec::new("Velocity", "m/s"))
-            .title("phase plane");
+    let mut ends = (f64::INFINITY, f64::NEG_INFINITY);
+    for x in first_two(orbit, period) {
+        ends = (ends.0.min(x), ends.1.max(x));
+    }
+    // Room beside the curves.
+    let room = 0.05 * (ends.1 - ends.0);
+    let x = AxisSpec::new("Displacement from rest", "mm").limits(ends.0 - room, ends.1 + room);
+    let mut plane = Plot::new(x, AxisSpec::new("Velocity", "m/s")).title("phase plane");
     for (i, name) in ["x₁", "x₂"].into_iter().enumerate() {
         let of = |t: f64| {
             let s = if t < period { orbit.state(t) } else { orbit.before_impact() };
@@ -64,4 +69,12 @@ pub fn orbit(title: &str, rig: &Rig, orbit: &Orbit) -> Figure {
          the impact. {verdict}",
         orbit.frequency, orbit.approach_velocity
     )))
+}
+
+/// Both displacements over a period, in mm.
+fn first_two(orbit: &Orbit, period: f64) -> impl Iterator<Item = f64> + '_ {
+    (0..=POINTS).flat_map(move |i| {
+        let s = orbit.state(period * i as f64 / POINTS as f64);
+        [1e3 * s.x1, 1e3 * s.x2]
+    })
 }
