@@ -80,5 +80,5 @@ fn drops_of_one_name_with_other_heights_are_refused_with_their_line() {
     let error = run([name, name], 0.01).err().unwrap();
     assert_eq!(error.exit_code(), 2);
     let text = error.to_string();
-    assert!(text.contains("another height_std") && text.contains(":7:"), "{text}");
+    assert!(text.contains("another height_std") && text.contains("line 11"), "{text}");
 }
