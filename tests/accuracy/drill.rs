@@ -324,7 +324,9 @@ fn covered(turns: usize, rho: f64) {
     println!("{turns} turns, rho {rho}, seeds 1 to {CASES}: {part:.1} % ({})", each.join(", "));
     // Of 240 intervals the part that holds the truth scatters by 1.4 %, that of nine quantities of which some depend on each other by
     // about 0.7 %: the limits are for the mean, and none of them may be off by four times its own scatter.
-    all.iter().for_each(|c| c.mostly_stated());
+    for coverage in &all {
+        coverage.mostly_stated();
+    }
     assert!((92.0..=98.0).contains(&part), "{part}");
     assert!(all.iter().all(|c| (c.part() - part).abs() < 4.0 * 1.6), "{each:?}");
 }
