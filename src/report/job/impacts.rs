@@ -70,6 +70,7 @@ pub(super) fn impacts(
             reference,
             shape,
             scatter: entry.scatter,
+            ..default
         };
         let Some(found) = or_left_out(find(&trace, &how), &name, warnings)? else { continue };
         merge(warnings, &name, &found.warnings);
