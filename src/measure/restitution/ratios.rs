@@ -5,6 +5,9 @@
 //! Inference*, 1973, 4g). ln R follows by generalised least squares (Aitken 1935). What scatters by how much is weighed with the restricted
 //! likelihood (Patterson and Thompson 1971): s and τ evenly in their logarithms, and no scatter between trains with a probability of one half.
 //! A scale that the residuals give makes Student's distribution: there is a standard uncertainty from three degrees of freedom on.
+//!
+//! Where scatter of R rules the first flights and noise of the onsets the last, few flights do not show the former: of single trains of six flights with
+//! R = 0.62, s = 0.01 and σ = 0.3 ms, ±1.96 standard uncertainties hold R in 87 % (300 simulated trains, standard error 2 %); at 0.1 ms in 94 %.
 
 use super::train::{Flight, Train};
 use crate::measure::residuals::student;
