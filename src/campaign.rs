@@ -27,8 +27,12 @@
 //! ```
 //! An unknown key is an error that points at its line.
 
+mod channel;
+mod contact;
 mod drill;
+mod drop;
 mod entry;
+mod fault;
 mod locate;
 mod low_pass;
 mod record;
@@ -164,6 +168,7 @@ impl Campaign {
         for (span, checked) in spectra.chain(functions) {
             checked.map_err(|why| self.at(span, why))?;
         }
+        self.check_contacts()?;
         let mut seen: Vec<&str> = Vec::new();
         for entry in &self.sweep {
             let name = entry.name.get_ref();

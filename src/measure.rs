@@ -1,5 +1,6 @@
 //! Answers from records: every number an [`Estimate`].
 
+pub mod coloured;
 pub mod drill;
 mod estimate;
 pub mod excitation;

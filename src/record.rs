@@ -14,7 +14,7 @@ mod window;
 
 pub use axis::{Axis, AxisKind, Grid};
 pub use frf::{Frf, FrfKind};
-pub use meta::{ADDED_DECAY, Meta, Step};
+pub use meta::{ADDED_DECAY, FROM_BLOWS, Meta, Step};
 pub use spectrum::{Scaling, Spectrum, Values};
 pub use sweep::{Direction, Sweep, SweepPoint};
 pub use trace::Trace;

@@ -5,6 +5,7 @@
 //!
 //! - `BENCH.CSV`: force and velocity of 0.125 kg on a spring and a damper (60 Hz, ζ = 0.02), 4 s at 1024 Hz;
 //! - `PULSE.CSV`: deceleration in a contact of spring and damper (500 Hz, ζ = 0.2), 4 ms at 50 kHz;
+//! - `FILTERED.CSV`: the same behind a Butterworth low-pass of order 2 at 2 kHz;
 //! - `TRUTH.csv`: what a perfect instrument would have found.
 
 use std::f64::consts::TAU;
@@ -17,6 +18,8 @@ const FREQUENCY: f64 = 60.0;
 const ZETA: f64 = 0.02;
 const CONTACT: f64 = 500.0;
 const XI: f64 = 0.2;
+/// Corner of the low-pass of the second pulse.
+const CORNER: f64 = 2000.0;
 /// Steps of the motion in a sample of the bench.
 const STEPS: u32 = 64;
 
@@ -52,17 +55,38 @@ fn bench(noise: &mut Noise) -> String {
     text
 }
 
-fn pulse(noise: &mut Noise) -> String {
+/// Force on a unit mass at `t` seconds after the contact began.
+fn contact(t: f64) -> f64 {
     let w = TAU * CONTACT;
     let damped = w * (1.0 - XI * XI).sqrt();
+    let x = (-XI * w * t).exp() * (damped * t).sin() / damped;
+    let v = (-XI * w * t).exp() * (damped * t).cos() - XI * w * x;
+    let force = w * w * x + 2.0 * XI * w * v;
+    if t > 0.0 && t < 0.5 * TAU / w && force > 0.0 { force } else { 0.0 }
+}
+
+/// y″ + √2 Ω y′ + Ω² y = Ω² F in small steps.
+fn filtered(noise: &mut Noise) -> String {
+    let mut text = String::from("time [s],acceleration [m/s²]\n");
+    let (w, parts) = (TAU * CORNER, 2000);
+    let step = 1.0 / 50_000.0 / f64::from(parts);
+    let (mut y, mut slope) = (0.0, 0.0);
+    for i in 0..200 {
+        let _ = writeln!(text, "{:.6},{:.3}", f64::from(i) / 50_000.0, y + 3.0 * noise.next());
+        for k in 0..parts {
+            let t = (f64::from(i) - 50.3) / 50_000.0 + (f64::from(k) + 0.5) * step;
+            slope += step * (w * w * (contact(t) - y) - 2f64.sqrt() * w * slope);
+            y += step * slope;
+        }
+    }
+    text
+}
+
+fn pulse(noise: &mut Noise) -> String {
     let mut text = String::from("time [s],acceleration [m/s²]\n");
     for i in 0..200 {
         let t = (f64::from(i) - 50.3) / 50_000.0;
-        let x = (-XI * w * t).exp() * (damped * t).sin() / damped;
-        let v = (-XI * w * t).exp() * (damped * t).cos() - XI * w * x;
-        let force = if t > 0.0 { w * w * x + 2.0 * XI * w * v } else { 0.0 };
-        let inside = t > 0.0 && t < 0.5 * TAU / w && force > 0.0;
-        let shown = if inside { force } else { 0.0 } + 3.0 * noise.next();
+        let shown = contact(t) + 3.0 * noise.next();
         let _ = writeln!(text, "{:.6},{shown:.3}", f64::from(i) / 50_000.0);
     }
     text
@@ -77,9 +101,13 @@ fn main() -> Result<()> {
         "what,value,unit\nfrequency of the mass,{FREQUENCY},Hz\nits damping ratio,{ZETA},1\nits mass,{MASS},kg\n\
          frequency of the contact,{CONTACT},Hz\nits damping ratio,{XI},1\n"
     );
-    for (name, text) in
-        [("BENCH.CSV", bench(&mut noise)), ("PULSE.CSV", pulse(&mut noise)), ("TRUTH.csv", truth)]
-    {
+    let files = [
+        ("BENCH.CSV", bench(&mut noise)),
+        ("PULSE.CSV", pulse(&mut noise)),
+        ("FILTERED.CSV", filtered(&mut noise)),
+        ("TRUTH.csv", truth),
+    ];
+    for (name, text) in files {
         let path = folder.join(name);
         std::fs::write(&path, text).map_err(|e| Error::io("write", &path, e))?;
     }

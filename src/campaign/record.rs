@@ -63,12 +63,16 @@ pub enum Detrend {
 trait Filed {
     type Record;
     fn record(&self, of: impl FnOnce(Spanned<PathBuf>) -> RecordEntry) -> Self::Record;
+    fn named(&self) -> bool;
 }
 
 impl Filed for Spanned<PathBuf> {
     type Record = RecordEntry;
     fn record(&self, of: impl FnOnce(Spanned<PathBuf>) -> RecordEntry) -> RecordEntry {
         of(self.clone())
+    }
+    fn named(&self) -> bool {
+        true
     }
 }
 
@@ -77,6 +81,15 @@ impl Filed for Option<Spanned<PathBuf>> {
     fn record(&self, of: impl FnOnce(Spanned<PathBuf>) -> RecordEntry) -> Option<RecordEntry> {
         self.clone().map(of)
     }
+    fn named(&self) -> bool {
+        self.is_some()
+    }
+}
+
+/// What all entries can be asked.
+pub(super) trait Common {
+    /// A key that says how a file is read, where there is no file.
+    fn without_file(&self) -> Option<&'static str>;
 }
 
 /// An entry of a campaign: the common keys and its own.
@@ -89,6 +102,7 @@ macro_rules! record_entry {
             /// Name in the report. Default: that of the file.
             pub name: Option<String>,
             file: $file,
+            #[serde(default, deserialize_with = "super::channel::one")]
             channel: Option<String>,
             unit: Option<String>,
             calibration: Option<f64>,
@@ -101,6 +115,23 @@ macro_rules! record_entry {
             #[serde(default)]
             complex: bool,
             $($(#[$own])* #[serde(default)] pub $field: $kind,)*
+        }
+
+        impl Common for $entry {
+            fn without_file(&self) -> Option<&'static str> {
+                let given = [
+                    ("channel", self.channel.is_some()),
+                    ("unit", self.unit.is_some()),
+                    ("calibration", self.calibration.is_some()),
+                    ("rate", self.rate.is_some()),
+                    ("base_band", self.base_band.is_some()),
+                    ("format", self.format.is_some()),
+                    ("allow_missing", self.allow_missing),
+                    ("decimal", self.decimal.is_some()),
+                    ("complex", self.complex),
+                ];
+                given.into_iter().find(|(_, given)| *given && !self.file.named()).map(|(key, _)| key)
+            }
         }
 
         impl $entry {
@@ -136,6 +167,7 @@ record_entry! {
         /// Lines of a lower coherence are left out. Default 0.5.
         least_coherence: Option<f64>,
         /// Channel of the excitation: the function is computed from it to the channel.
+        #[serde(deserialize_with = "super::channel::one")]
         reference: Option<String>,
         /// Which noise the function does not mind. Default `h1`.
         estimator: Option<Estimator>,
@@ -186,6 +218,7 @@ record_entry! {
         /// Sines fitted to the whole record.
         tones: Option<usize>,
         /// Channel of the excitation.
+        #[serde(deserialize_with = "super::channel::one")]
         reference: Option<String>,
         /// Which noise the function does not mind. Default `h1`.
         estimator: Option<Estimator>,
@@ -208,6 +241,7 @@ record_entry! {
         /// Its standard uncertainty in Hz. Default: that of its digits.
         excitation_std: Option<f64>,
         /// Channel of the same file that rises once a cycle of the excitation.
+        #[serde(deserialize_with = "super::channel::one")]
         reference: Option<String>,
         /// Lowest impact, as part of the median one. Default 1/8.
         threshold: Option<f64>,
@@ -217,6 +251,8 @@ record_entry! {
         keep_hum: bool,
         /// Record of one pulse of the shape that all have.
         shape: Option<PathBuf>,
+        /// Its sampling rate in Hz, where its file does not say.
+        shape_rate: Option<f64>,
         /// What is known to scatter: onsets, intervals, or (default) unknown.
         scatter: Scatter,
     }
@@ -263,7 +299,7 @@ record_entry! {
     PulseEntry(Option<Spanned<PathBuf>>) -> Option<RecordEntry> {
         /// Mass in kg that is decelerated.
         mass: Option<f64>,
-        /// Corner of the instrument's Butterworth low-pass in Hz. Default: none, with a warning.
+        /// Corner of the instrument's Butterworth low-pass in Hz, or `none`. Default: not known, and no uncertainty.
         low_pass: Option<LowPass>,
         /// Its order.
         order: Option<usize>,
@@ -280,8 +316,10 @@ record_entry! {
     /// A hammer-drill trace.
     DrillEntry(Spanned<PathBuf>) -> RecordEntry {
         /// Velocity channel.
+        #[serde(deserialize_with = "super::channel::one")]
         velocity: Option<String>,
         /// Channel with the pulses of the crank.
+        #[serde(deserialize_with = "super::channel::one")]
         reference: Option<String>,
         /// Velocity along the beam in m/s for one unit of the channel.
         sensitivity: Option<f64>,
@@ -320,6 +358,7 @@ record_entry! {
         /// Record without motion.
         noise: Option<PathBuf>,
         /// Acceleration channels of a handle.
+        #[serde(deserialize_with = "super::channel::several")]
         handle: Vec<String>,
         /// Acceleration in m/s² for one unit of these.
         handle_sensitivity: Option<f64>,

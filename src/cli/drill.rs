@@ -28,7 +28,7 @@ pub fn run(typed: &args::Drill, json: bool) -> Result<()> {
     };
     let bar = progress::bar(json);
     bar.set_message("samples, three passes");
-    let mut cycles = typed.each_cycle.as_deref().map(|path| Cycles::new(path, typed)).transpose()?;
+    let mut cycles = typed.each_cycle.as_deref().map(Cycles::new).transpose()?;
     let found = file.measure_each(
         &options,
         &|done, all| {
@@ -73,27 +73,20 @@ fn apart(path: &Path) -> Result<(&Path, String)> {
     Ok((folder, name.ok_or_else(|| Error::usage("--each-cycle without a file name", "a file, NAME.csv"))?))
 }
 
-/// The table of turns over the phase, written as they come: in the folder of results, or beside the table of impacts.
+/// The table of turns over the phase, written as they come, beside the table of impacts.
 struct Cycles {
     output: Output,
     /// Made with the first turn, so that a record that allows no answer leaves nothing.
     file: Option<Growing>,
     name: String,
-    in_results: bool,
 }
 
 impl Cycles {
-    fn new(path: &Path, typed: &args::Drill) -> Result<Cycles> {
+    fn new(path: &Path) -> Result<Cycles> {
         let (beside, name) = apart(path)?;
         let stem =
             Path::new(&name).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-        let output = Output::new(typed.out.as_deref().unwrap_or(beside))?;
-        Ok(Cycles {
-            output,
-            file: None,
-            name: format!("{stem}_velocity.csv"),
-            in_results: typed.out.is_some(),
-        })
+        Ok(Cycles { output: Output::new(beside)?, file: None, name: format!("{stem}_velocity.csv") })
     }
 
     fn push(&mut self, cycle: &Cycle<'_>) -> Result<()> {
@@ -109,11 +102,11 @@ impl Cycles {
         Ok(())
     }
 
-    /// Name of the file, as the others of its folder are named; `None` where there was no turn.
+    /// Path of the file; `None` where there was no turn.
     fn finish(mut self) -> Result<Option<String>> {
         let Some(file) = self.file else { return Ok(None) };
         let path = self.output.finish(file)?;
-        Ok(Some(if self.in_results { self.name } else { path.display().to_string() }))
+        Ok(Some(path.display().to_string()))
     }
 }
 

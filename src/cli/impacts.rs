@@ -4,6 +4,7 @@ use super::{args, complain, print, settings};
 use crate::error::{Error, Result};
 use crate::measure::impacts::{Impacts, ImpactsOptions, Scatter, Shape, impacts};
 use crate::measure::{Estimate, legacy};
+use crate::read::Reader;
 use crate::record::Trace;
 use crate::report::{Output, files, pictures, tables};
 use serde::Serialize;
@@ -51,7 +52,8 @@ pub fn run(typed: &args::Impacts, json: bool) -> Result<()> {
     };
     let shape = match &typed.shape {
         Some(file) => {
-            let pulse = settings::time_reader(&typed.reading)?.from_path(file)?.trace(None, None)?;
+            settings::above_zero("--shape-rate", typed.shape_rate)?;
+            let pulse = Reader::new().rate(typed.shape_rate).from_path(file)?.trace(None, None)?;
             Some(Shape::of(&pulse, &trace)?)
         }
         None => None,

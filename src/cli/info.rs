@@ -87,7 +87,7 @@ fn table(files: &[File]) -> String {
         let notes: Vec<&String> =
             file.records.first().map_or(&[][..], |r| &r.notes).iter().filter(|n| !shown_before(n)).collect();
         if !notes.is_empty() {
-            let shown: Vec<String> = notes.iter().take(NOTES).map(|n| n.chars().take(40).collect()).collect();
+            let shown: Vec<String> = notes.iter().take(NOTES).map(|n| shortened(n)).collect();
             let more = notes.len().saturating_sub(NOTES);
             let more = if more > 0 { format!(" | and {more} more (--json)") } else { String::new() };
             let _ = writeln!(text, "  notes: {}{more}", shown.join(" | "));
@@ -100,6 +100,17 @@ fn table(files: &[File]) -> String {
 fn shown_before(note: &str) -> bool {
     ["id line 1: ", "record 6: ", "point: "].iter().any(|key| note.starts_with(key))
 }
+
+/// A note, or the beginning of a long one: a line of a universal file with its key stands whole.
+fn shortened(note: &str) -> String {
+    if note.chars().count() <= WIDE {
+        return note.to_owned();
+    }
+    note.chars().take(WIDE - 1).chain(['…']).collect()
+}
+
+/// Characters of a note that a table shows.
+const WIDE: usize = 100;
 
 /// Notes of a file that a table shows.
 const NOTES: usize = 4;

@@ -40,6 +40,7 @@ pub fn run(typed: &args::Modal, json: bool) -> Result<()> {
         mass: typed.mass,
         least_coherence: typed.least_coherence,
         decay: meta.added_decay(),
+        from_blows: meta.from_blows(),
     };
     let mut result = modal(&measured, &options)?;
     let doubts: Vec<String> = recording.doubts.iter().chain(&meta.doubts).cloned().collect();

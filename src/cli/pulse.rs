@@ -2,7 +2,7 @@
 
 use super::{args, complain, print, settings};
 use crate::error::{Error, Result};
-use crate::measure::pulse::{Instrument, LowPass, PulseOptions, PulseResult, pulse, two_times};
+use crate::measure::pulse::{Instrument, PulseOptions, PulseResult, pulse, two_times};
 use crate::report::{Output, files, pictures, tables};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -19,25 +19,7 @@ pub fn run(typed: &args::Pulse, json: bool) -> Result<()> {
     let (title, result) = match (&typed.file, typed.time_to_peak, typed.duration) {
         (Some(file), ..) => {
             let (trace, doubts) = settings::trace(file, &typed.reading, &typed.channel)?;
-            let instrument = match (typed.low_pass, typed.order) {
-                (None, None) => Instrument::Unknown,
-                (Some(args::LowPass::Off), None) => Instrument::Flat,
-                (Some(args::LowPass::Corner(hz)), Some(order)) => {
-                    Instrument::LowPass(LowPass::new(hz, order)?)
-                }
-                (Some(args::LowPass::Corner(hz)), None) => {
-                    return Err(Error::usage(
-                        format!("--low-pass {hz} without --order"),
-                        "its order, 1 to 10",
-                    ));
-                }
-                (_, Some(order)) => {
-                    return Err(Error::usage(
-                        format!("--order {order} without a corner"),
-                        "--low-pass HZ, too",
-                    ));
-                }
-            };
+            let instrument = Instrument::stated(typed.low_pass.map(args::LowPass::corner), typed.order)?;
             let mut result = pulse(&trace, &PulseOptions { instrument, mass: typed.mass })?;
             result.warnings.splice(0..0, doubts);
             (file.file_stem().unwrap_or_default().to_string_lossy().into_owned(), result)

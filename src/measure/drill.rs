@@ -129,7 +129,7 @@ pub fn drill_each(
     }
     let turns = Turns::new(&found.edges, options.pulses_per_turn)?;
     let mut pass = Pass::new(options, rate, &turns.turns, &velocity, still.is_some())?;
-    let mut excerpt = Excerpt::new(&turns.turns);
+    let mut excerpt = Excerpt::new(&turns.turns, options.delay * rate);
     channels.play(&mut |block| {
         scale(block.first().copied().unwrap_or_default(), factor, &mut scaled);
         excerpt.push(&scaled, block.get(1).copied().unwrap_or_default());
@@ -203,11 +203,13 @@ fn check(velocity: &Survey, reference: &Survey, same: bool, options: &DrillOptio
     }
 }
 
-/// A few turns of the middle of a record, to be drawn.
+/// A few turns of the middle of a record, to be drawn in the clock of the velocity.
 struct Excerpt {
     at: usize,
     from: usize,
     to: usize,
+    /// Samples by which the reference is earlier than the velocity.
+    delay: isize,
     velocity: Vec<f64>,
     reference: Vec<f64>,
 }
@@ -216,19 +218,30 @@ struct Excerpt {
 const DRAWN: usize = 3;
 
 impl Excerpt {
-    fn new(turns: &[Turn]) -> Excerpt {
+    fn new(turns: &[Turn], delay: f64) -> Excerpt {
         let first = turns.len().saturating_sub(DRAWN) / 2;
         let shown = turns.get(first..(first + DRAWN).min(turns.len())).unwrap_or(&[]);
         let from = shown.first().map_or(0, |t| t.start as usize);
         let to = shown.last().map_or(0, |t| t.end as usize + 1).min(from + EXCERPT);
-        Excerpt { at: 0, from, to, velocity: Vec::new(), reference: Vec::new() }
+        let delay = delay.round() as isize;
+        // What would lie before or behind the record is not there.
+        let velocity = Vec::new();
+        Excerpt { at: 0, from, to, delay, velocity, reference: vec![f64::NAN; to - from] }
     }
 
     fn push(&mut self, velocity: &[f64], reference: &[f64]) {
         let (from, to) = (self.from.saturating_sub(self.at), self.to.saturating_sub(self.at));
-        let part = from.min(velocity.len())..to.min(velocity.len());
-        self.velocity.extend(&velocity[part.clone()]);
-        self.reference.extend(reference.get(part).unwrap_or_default());
+        self.velocity.extend(&velocity[from.min(velocity.len())..to.min(velocity.len())]);
+        // Sample i of the reference belongs to sample i + delay of the velocity.
+        let first = self.from.saturating_add_signed(self.delay.saturating_neg()).max(self.at);
+        for (i, v) in (self.at..).zip(reference).skip(first - self.at) {
+            let place = i.checked_add_signed(self.delay).and_then(|k| k.checked_sub(self.from));
+            match place.map(|k| self.reference.get_mut(k)) {
+                Some(Some(to)) => *to = *v,
+                Some(None) => break,
+                None => {}
+            }
+        }
         self.at += velocity.len();
     }
 }
@@ -249,7 +262,12 @@ mod tests {
             let beam = Beam::new(0.0, From::Axis).unwrap();
             let options = DrillOptions { delay, ..DrillOptions::new(2.0, beam, 1, Edge::Rising) };
             let mut channels = Slices { rate: 20_000.0, channels: vec![&values, &pulse] };
-            drill(&mut channels, &options, None).unwrap().impacts[5].phase
+            let found = drill(&mut channels, &options, None).unwrap();
+            // The edge that begins the turns drawn, at half the height of the pulse, lies on their first samples.
+            assert!(found.excerpt_reference.len() == found.excerpt.len() && found.excerpt.len() > 1200);
+            let edge = found.excerpt_reference.iter().position(|v| *v > 2.5);
+            assert!(edge.is_some_and(|i| i <= 1), "{edge:?} with a delay of {delay} s");
+            found.impacts[5].phase
         };
         // Five of 400 samples a turn.
         let (right, late) = (found(0, 0.0), found(5, 0.0));

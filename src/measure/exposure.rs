@@ -1,5 +1,9 @@
 //! Hand-arm vibration: the weighting `W_h` of ISO 5349-1 as a digital filter, `a_hv` and A(8).
 
+mod handle;
+
+pub use handle::Handle;
+
 use super::Estimate;
 use super::mean::Mean;
 use crate::error::{Error, Result};
@@ -18,6 +22,8 @@ const TRANSITION_Q: f64 = 0.64;
 const LOWEST_RATE: f64 = 4.0 * 1258.9;
 /// Duration in s over which the scatter of the vibration is taken.
 const SPAN: f64 = 1.0;
+/// Part of a record that may be missing: what takes away samples is likely what shakes most, and a mean over the rest then says little.
+const MISSING: f64 = 0.05;
 /// Duration in s after which the weighting has settled: its slowest pole falls by e^(−π √2 · 6.31 · t), e⁻¹⁴ in this time.
 const SETTLED: f64 = 0.5;
 
@@ -90,139 +96,16 @@ pub struct Exposure {
     pub warnings: Vec<String>,
 }
 
-/// Takes one axis of the acceleration of a handle, block by block. The first half second settles the weighting and counts for
-/// nothing.
-#[derive(Debug, Clone)]
-pub struct Handle {
-    weighting: Weighting,
-    /// Samples that are still to be passed over.
-    settling: usize,
-    span: usize,
-    filled: usize,
-    squares: f64,
-    /// Mean square of each whole second.
-    seconds: Vec<f64>,
-    peak: f64,
-    raw: Raw,
-    missing: usize,
-    scratch: Vec<f64>,
-}
-
-/// The acceleration as it was measured.
-#[derive(Debug, Clone, Default)]
-struct Raw {
-    last: Option<f64>,
-    low: f64,
-    high: f64,
-    sum: f64,
-    n: usize,
-}
-
-impl Raw {
-    fn push(&mut self, v: f64) {
-        (self.low, self.high) = if self.n == 0 { (v, v) } else { (self.low.min(v), self.high.max(v)) };
-        self.sum += v;
-        self.n += 1;
-        self.last = Some(v);
-    }
-
-    fn peak(&self) -> f64 {
-        let mean = self.sum / self.n.max(1) as f64;
-        (self.high - mean).max(mean - self.low)
-    }
-}
-
-impl Handle {
-    /// An axis at `rate` samples a second.
-    ///
-    /// # Errors
-    /// As [`Weighting::new`].
-    pub fn new(rate: f64) -> Result<Handle> {
-        Ok(Handle {
-            weighting: Weighting::new(rate)?,
-            settling: (SETTLED * rate).ceil() as usize,
-            span: ((SPAN * rate) as usize).max(1),
-            filled: 0,
-            squares: 0.0,
-            seconds: Vec::new(),
-            peak: 0.0,
-            raw: Raw::default(),
-            missing: 0,
-            scratch: Vec::new(),
-        })
-    }
-
-    /// Takes the next accelerations in m/s². Where one is missing the one before it is held.
-    pub fn push(&mut self, block: &[f64]) {
-        let mut values = std::mem::take(&mut self.scratch);
-        values.clear();
-        if self.raw.last.is_none() {
-            // The weighting begins at the first value that is there.
-            let first = block.iter().copied().find(|v| v.is_finite());
-            let before = block.iter().take_while(|v| !v.is_finite()).count();
-            self.missing += before;
-            values.extend(std::iter::repeat_n(first.unwrap_or(0.0), before));
-            if first.is_none() {
-                self.pass_over(values);
-                return;
-            }
-        }
-        for &v in &block[values.len()..] {
-            if v.is_finite() {
-                self.raw.push(v);
-            } else {
-                self.missing += 1;
-            }
-            values.push(self.raw.last.unwrap_or(0.0));
-        }
-        self.weighting.apply(&mut values);
-        for &weighted in &values {
-            self.take(weighted);
-        }
-        self.scratch = values;
-    }
-
-    /// Samples before the first value: nothing to weight, but time goes on.
-    fn pass_over(&mut self, values: Vec<f64>) {
-        for v in &values {
-            self.take(*v);
-        }
-        self.scratch = values;
-    }
-
-    fn take(&mut self, weighted: f64) {
-        if self.settling > 0 {
-            self.settling -= 1;
-            return;
-        }
-        self.peak = self.peak.max(weighted.abs());
-        self.squares += weighted * weighted;
-        self.filled += 1;
-        if self.filled == self.span {
-            self.seconds.push(self.squares / self.span as f64);
-            (self.squares, self.filled) = (0.0, 0);
-        }
-    }
-
-    /// Weighted samples that count.
-    fn samples(&self) -> usize {
-        self.seconds.len() * self.span + self.filled
-    }
-
-    fn mean_square(&self) -> f64 {
-        (self.seconds.iter().sum::<f64>() * self.span as f64 + self.squares) / self.samples().max(1) as f64
-    }
-}
-
 /// Exposure from one to three axes of a handle; `hours` of it a day.
 ///
 /// `a_hv` = √(Σ `a_hw²`) and A(8) = `a_hv` √(T/8 h) (ISO 5349-1:2001, equations 1 and 2). Uncertainties are those of the scatter
 /// from second to second ([`Mean`]), for `a_hv` of the sum of squares over the axes, since they rise and fall
-/// together; there are none below four seconds. Neither calibration nor mounting are in them.
+/// together; only seconds without a gap in any axis count for them, and there are none below four. Missing samples, and the half
+/// second behind each, in which the weighting settles anew, are in no mean square. Neither calibration nor mounting are in them.
 ///
 /// # Errors
-/// If there is no axis or there are more than three, a duration that is not above 0 and at most 24 h, a record that ends before
-/// the weighting has settled, or no vibration.
+/// If there is no axis or there are more than three, a duration that is not above 0 and at most 24 h, more than 5 % of an axis
+/// missing, a record without a stretch in which the weighting settles, or no vibration.
 pub fn exposure(handles: &[Handle], hours: Option<f64>) -> Result<Exposure> {
     if handles.is_empty() || handles.len() > 3 {
         return Err(Error::usage(format!("{} axes of a handle", handles.len()), "one to three"));
@@ -230,31 +113,52 @@ pub fn exposure(handles: &[Handle], hours: Option<f64>) -> Result<Exposure> {
     if let Some(h) = hours.filter(|h| !(*h > 0.0 && *h <= 24.0)) {
         return Err(Error::usage(format!("an exposure of {h} hours a day"), "a number above 0, at most 24"));
     }
-    if handles.iter().any(|h| h.samples() == 0) {
+    for handle in handles {
+        let part = handle.missing as f64 / handle.samples().max(1) as f64;
+        if part > MISSING {
+            return Err(Error::refused(format!(
+                "{:.1} % of the accelerations of the handle are missing, more than {:.0} %: what was lost with them nobody knows",
+                100.0 * part,
+                100.0 * MISSING
+            ))
+            .hint("mend the cable or the sensor, cut the record, or leave the handle out"));
+        }
+    }
+    if handles.iter().any(|h| h.counted() == 0) {
         return Err(Error::refused(format!(
-            "the record of the handle is not longer than {SETTLED} s, in which the weighting W_h settles"
+            "the record of the handle is nowhere without a gap for longer than {SETTLED} s, in which the weighting W_h settles"
         ))
         .hint("measure longer, or leave the handle out"));
     }
-    let n: usize = handles.iter().map(|h| h.seconds.len()).min().unwrap_or(0);
     // Of y = x²: u_x = u_y/(2x).
     let root = |square: f64, seconds: &[f64], method: &str| {
-        let rms = square.sqrt();
-        Estimate::new(rms, Mean::of(seconds).std.map(|s| s / (2.0 * rms)), "m/s²", n, method)
+        let (rms, mean) = (square.sqrt(), Mean::of(seconds));
+        Estimate::new(rms, mean.std.map(|s| s / (2.0 * rms)), "m/s²", mean.n, method)
     };
     let axes: Vec<Estimate> = handles
         .iter()
-        .map(|h| root(h.mean_square(), &h.seconds, "RMS weighted by W_h, ISO 5349-1"))
+        .map(|h| {
+            root(
+                h.mean_square(),
+                &h.seconds().flatten().collect::<Vec<f64>>(),
+                "RMS weighted by W_h, ISO 5349-1",
+            )
+        })
         .collect();
     let total: f64 = handles.iter().map(Handle::mean_square).sum();
     if total <= 0.0 {
         return Err(Error::refused("the handle does not vibrate: its acceleration does not change"));
     }
-    let together: Vec<f64> = (0..n).map(|k| handles.iter().filter_map(|h| h.seconds.get(k)).sum()).collect();
+    let mut sums: Vec<Option<f64>> = handles[0].seconds().collect();
+    for handle in &handles[1..] {
+        sums = sums.iter().zip(handle.seconds()).map(|(a, b)| Some((*a)? + b?)).collect();
+    }
+    let together: Vec<f64> = sums.into_iter().flatten().collect();
+    let wanders = Mean::of(&together).wanders;
     let a_hv = root(total, &together, "root of the sum of squares of the axes");
     let a8 = hours.map(|h| {
         let part = (h / 8.0).sqrt();
-        Estimate::new(part * a_hv.value, a_hv.std.map(|s| part * s), "m/s²", n, "a_hv √(T/8 h)")
+        Estimate::new(part * a_hv.value, a_hv.std.map(|s| part * s), "m/s²", a_hv.n, "a_hv √(T/8 h)")
     });
     let crest = |h: &Handle| h.peak / h.mean_square().sqrt();
     let crest_factor = handles.iter().map(crest).filter(|c| c.is_finite()).fold(0.0, f64::max);
@@ -268,13 +172,22 @@ pub fn exposure(handles: &[Handle], hours: Option<f64>) -> Result<Exposure> {
             handles.len()
         ));
     }
+    if wanders {
+        warnings.push(
+            "The vibration of the handle changes slowly along the record: the uncertainty of a_hv may be too small; measure longer."
+                .to_owned(),
+        );
+    }
     let missing: usize = handles.iter().map(|h| h.missing).sum();
     if missing > 0 {
+        let counted: usize = handles.iter().map(Handle::counted).sum();
+        let all: usize = handles.iter().map(Handle::samples).sum();
         warnings.push(format!(
-            "{missing} missing accelerations of the handle are taken as the value before them: what was lost there is not in a_hv."
+            "{missing} accelerations of the handle are missing: they and the half second behind each are left out, a_hv rests on {:.1} % of the record.",
+            100.0 * counted as f64 / all as f64
         ));
     }
-    let unweighted_peak = handles.iter().map(|h| h.raw.peak()).fold(0.0, f64::max);
+    let unweighted_peak = handles.iter().map(Handle::unweighted_peak).fold(0.0, f64::max);
     Ok(Exposure { axes, a_hv, a8, hours, crest_factor, unweighted_peak, warnings })
 }
 

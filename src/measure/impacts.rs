@@ -345,8 +345,7 @@ fn find(trace: &Trace, rate: f64, options: &ImpactsOptions) -> Found {
         values.get(b.clone()).unwrap_or_default().iter().map(|v| sign * v).fold(0.0, f64::max)
     };
     let typical = |sign: f64| median(&all.iter().map(|b| extreme(b, sign)).collect::<Vec<f64>>());
-    // Pulses that swing both ways begin upwards unless they are clearly deeper than high.
-    if typical(-1.0) > 1.2 * typical(1.0) {
+    if typical(-1.0) > shape::TURNED * typical(1.0) {
         warnings.push("The pulses point downwards: the trace was turned around.".to_owned());
         for v in &mut values {
             *v = -*v;

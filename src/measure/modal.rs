@@ -55,7 +55,7 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
     }
     if lines.magnitude_only {
         warnings.push(
-            "Only magnitudes are known: modes are fitted to |H| with a constant residual term; a circle fit needs phases and is not made."
+            "Only magnitudes are known: modes are fitted to |H| with a constant residual term, and have no uncertainty, since what other modes and residual terms add at unknown phases is not seen in what the fit leaves. A circle fit needs phases and is not made; modal constants have no sign."
                 .to_owned(),
         );
     }
@@ -233,6 +233,34 @@ mod tests {
         assert!((circle.zeta.as_ref().unwrap().value / 0.01 - 1.0).abs() < 0.02, "{circle:?}");
     }
 
+    /// A mode shape: where two parts move against each other, one of their modal constants is negative.
+    #[test]
+    fn a_modal_constant_has_a_sign_and_a_phase() {
+        let mut measured = two();
+        let poles = [(80.3, 0.01, -0.35), (210.7, 0.004, 2.0)].map(|(frequency, zeta, a)| Pole {
+            frequency,
+            zeta,
+            constant: Complex64::new(a, 0.0),
+        });
+        let sum = |f: &f64| poles.iter().map(|p| p.at(*f, 2)).sum();
+        measured.values = measured.frequency.iter().map(sum).collect();
+        let result = found(&measured, &ModalOptions::default());
+        for (mode, (a, degrees)) in result.modes.iter().zip([(-0.35, 180.0), (2.0, 0.0)]) {
+            assert!((mode.modal_constant.value / a - 1.0).abs() < 1e-3, "{mode:?}");
+            let phase = mode.phase.as_ref().unwrap();
+            assert!((phase.value.abs() - degrees).abs() < 0.1 && phase.unit == "°", "{mode:?}");
+            assert!(phase.std.is_some() && mode.modal_constant.std.is_some());
+            let circle = mode.by.iter().find(|b| b.method == "circle fit").unwrap();
+            assert!(circle.modal_constant.as_ref().is_none_or(|c| c.value * a > 0.0), "{circle:?}");
+        }
+        assert_eq!(result.modes.len(), 2);
+        // A quarter of a turn is neither.
+        measured.values.iter_mut().for_each(|v| *v *= Complex64::i());
+        let result = found(&measured, &ModalOptions::default());
+        assert!(result.warnings.iter().any(|w| w.contains("no sign")), "{result:?}");
+        assert!(result.modes.iter().all(|m| m.modal_constant.value > 0.0));
+    }
+
     /// An exponential window shifts all poles: the function is taken at iω + σ, and so are the modes that are made here.
     #[test]
     fn the_decay_of_an_exponential_window_is_taken_off() {
@@ -254,6 +282,20 @@ mod tests {
         let without = found(&measured, &ModalOptions::default());
         // ζ + σ/ωᵣ, to the square of that.
         assert!((without.modes[0].zeta.value / (zeta + decay / own) - 1.0).abs() < 1e-3);
+        // As an accelerance, whose constant the correction changes by 2e-4, and its uncertainty by as much.
+        let s = |f: &f64| Complex64::new(decay, std::f64::consts::TAU * f);
+        let values = measured.values.iter().zip(&measured.frequency).map(|(v, f)| v * s(f) * s(f));
+        let measured = Measured { values: values.collect(), kind: FrfKind::Accelerance, ..measured.clone() };
+        let of = |decay| {
+            let result = found(&measured, &ModalOptions { decay, ..ModalOptions::default() });
+            let constant = &result.modes[0].modal_constant;
+            (constant.value, constant.std.unwrap() / constant.value)
+        };
+        let (with, without) = (of(Some(3.0)), of(None));
+        assert!(
+            (with.0 / 2.0 - 1.0).abs() < 1e-4 && (with.1 / without.1 - 1.0).abs() < 1e-9,
+            "{with:?} {without:?}"
+        );
     }
 
     #[test]
@@ -265,7 +307,10 @@ mod tests {
         // The other mode is no constant over the band: it bends by (4.5/130)² of itself.
         assert!((result.modes[0].frequency.value - 80.3).abs() < 0.02, "{result:?}");
         assert!((result.modes[0].zeta.value / 0.01 - 1.0).abs() < 0.03, "{result:?}");
-        assert!(result.warnings.iter().any(|w| w.contains("phases")));
+        assert!(result.warnings.iter().any(|w| w.contains("no uncertainty")));
+        let mode = &result.modes[0];
+        assert!([&mode.frequency, &mode.zeta, &mode.modal_constant].iter().all(|e| e.std.is_none()));
+        assert!(mode.phase.is_none());
         assert!(result.modes[0].by.iter().all(|b| b.method != "circle fit"));
     }
 

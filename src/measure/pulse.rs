@@ -52,6 +52,36 @@ pub enum Instrument {
 }
 
 impl Instrument {
+    /// What a person states: nothing, no low-pass (`Some(None)`), or one of a corner in Hz with its order.
+    ///
+    /// # Errors
+    /// If corner and order do not come together; as [`LowPass::new`].
+    pub fn stated(low_pass: Option<Option<f64>>, order: Option<usize>) -> Result<Instrument> {
+        match (low_pass, order) {
+            (None, None) => Ok(Instrument::Unknown),
+            (Some(None), None) => Ok(Instrument::Flat),
+            (Some(Some(corner)), Some(order)) => Ok(Instrument::LowPass(LowPass::new(corner, order)?)),
+            (Some(Some(corner)), None) => Err(Error::usage(
+                format!("a low-pass of {corner} Hz without its order"),
+                "its order, 1 to 10",
+            )),
+            (_, Some(order)) => Err(Error::usage(
+                format!("a low-pass of order {order} without its corner"),
+                "its corner in Hz, too",
+            )),
+        }
+    }
+
+    /// Whether what it does can be told at this sampling rate: not where it is not known, nor where the rise of its low-pass falls between
+    /// two samples.
+    fn told(&self, rate: f64) -> bool {
+        match self {
+            Instrument::Unknown => false,
+            Instrument::Flat => true,
+            Instrument::LowPass(filter) => filter.corner() < 0.5 * rate,
+        }
+    }
+
     /// The low-pass, if there is one.
     pub fn low_pass(&self) -> Option<&LowPass> {
         if let Instrument::LowPass(filter) = self { Some(filter) } else { None }
@@ -63,7 +93,8 @@ impl Instrument {
 /// Residuals are taken for noise of one variance. Where they are correlated, which is tested, uncertainties are enlarged by the
 /// correlation and that is said; where the pulse begins otherwise than the model can, as behind an unstated low-pass, ξ and all
 /// that follows are null. Where it is not known whether the instrument has a low-pass no uncertainty is stated: such a pulse may
-/// pass for one without a low-pass and another ξ. A low-pass at half the sampling rate or above is taken for none.
+/// pass for one without a low-pass and another ξ. A low-pass is applied whatever its corner, but from half the sampling rate on no uncertainty
+/// is stated: its rise falls between two samples, and more than one onset fits.
 ///
 /// # Errors
 /// If the record is not evenly sampled in time, holds no whole pulse, or too few samples of it, or does not determine the
@@ -85,17 +116,12 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
         .hint("sample faster"));
     }
     let mut warnings = Vec::new();
-    let instrument = match &options.instrument {
-        Instrument::LowPass(stated) if stated.corner() >= rate / 2.0 => {
-            warnings.push(format!(
-                "The low-pass at {} Hz is not below half the sampling rate of {rate} Hz: its rise is not seen, and none is applied.",
-                stated.corner()
-            ));
-            Instrument::Flat
-        }
-        stated => stated.clone(),
-    };
-    let options = &PulseOptions { instrument, mass: options.mass };
+    if let Some(filter) = options.instrument.low_pass().filter(|f| f.corner() >= 0.5 * rate) {
+        warnings.push(format!(
+            "The low-pass at {} Hz is not below half the sampling rate of {rate} Hz: its rise falls between two samples, more than one onset fits, and there is no uncertainty. Where it does not matter, --low-pass none states that.",
+            filter.corner()
+        ));
+    }
     let unlike = |error: Error| {
         match options.instrument.low_pass() {
         Some(filter) => Error::refused(format!(
@@ -125,7 +151,8 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let unit = [1.0, 1.0 / view.length];
     let shape = [main.fit.parameters[3], main.fit.parameters[4] * unit[1]];
     let trust = samples.trust(&main, &whiteness);
-    let widened = if options.instrument == Instrument::Unknown { f64::NAN } else { trust.factor() };
+    let told = options.instrument.told(rate);
+    let widened = if told { trust.factor() } else { f64::NAN };
     let covariance =
         |i: usize, j: usize| widened.powi(2) * unit[i] * unit[j] * main.fit.covariance(3 + i, 3 + j);
     let contact = |p: &[f64]| KelvinVoigt::new(p[0], p[1]);
@@ -154,7 +181,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     if trust == Trust::Refused {
         result = result.refused();
     }
-    result.fits = fits.iter().map(|(f, w)| view.report(&samples, f, w, options)).collect();
+    result.fits = fits.iter().map(|(f, w)| view.report(&samples, f, w, options.mass, told)).collect();
     warnings.extend(doubts(&fits[0].0, trust, &fits[0].1, &result.fits, &result, options));
     result.warnings = warnings;
     result.picture = Some(view.picture(&samples, &used, fits.iter().map(|f| &f.0)));
@@ -229,6 +256,30 @@ mod tests {
     }
 
     #[test]
+    fn without_an_uncertainty_the_borders_of_xi_are_said_from_afar() {
+        let of = |xi: f64| {
+            let contact = KelvinVoigt::new(xi, 10e3).unwrap();
+            let values = (0..200).map(|i| {
+                let t = f64::from(i) * DT - 80.4e-6;
+                let pulse = if t >= 0.0 && t <= contact.duration() { contact.unbounded(t) } else { 0.0 };
+                pulse + 50.0 * (f64::from(i * i) * 0.7).sin()
+            });
+            let record = trace(values.collect(), "m/s²");
+            let known = PulseOptions { instrument: Instrument::Flat, mass: None };
+            [pulse(&record, &PulseOptions::default()).unwrap(), pulse(&record, &known).unwrap()]
+        };
+        // 0.44 and 0.05 are each within 0.1 of a border, and not within the uncertainty of about 0.005 of a known instrument.
+        let [unknown, known] = of(0.44);
+        assert!(says(&unknown, "1/2 or more") && !says(&known, "1/2 or more"), "{:?}", unknown.warnings);
+        let [unknown, known] = of(0.05);
+        assert!(
+            says(&unknown, "no damping is seen") && !says(&known, "no damping"),
+            "{:?}",
+            unknown.warnings
+        );
+    }
+
+    #[test]
     fn polarity_and_baseline_do_not_matter() {
         found(record().iter().map(|v| 5e4 - v).collect());
     }
@@ -294,9 +345,9 @@ mod tests {
         let without = fitted(None).unwrap();
         assert!(nothing(&without), "{without:?}");
         assert!(says(&without, "low-pass of the instrument is needed"), "{:?}", without.warnings);
-        // Beyond half the sampling rate there is none; just below, nothing is stated either.
+        // One that is far too high is as good as none, above half the sampling rate as below.
         let beyond = fitted(Some(600e3)).unwrap();
-        assert!(says(&beyond, "half the sampling rate") && nothing(&beyond), "{:?}", beyond.warnings);
+        assert!(nothing(&beyond), "{:?} {:?}", beyond.xi, beyond.warnings);
         let high = fitted(Some(450e3)).unwrap();
         assert!(nothing(&high), "{:?} {:?}", high.xi, without.xi);
         assert!(fitted(Some(1e3)).unwrap_err().to_string().contains("low-pass"));

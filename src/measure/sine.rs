@@ -3,8 +3,10 @@
 //! Least squares of x(t) = C + a cos ωt + b sin ωt over all four unknowns (the four-parameter sine fit of IEEE Std 1057): in
 //! white noise this is the maximum-likelihood estimate, which reaches the Cramér–Rao bound
 //! var(f) ≥ 12/((2πΔt)² η N(N²−1)), η = A²/(2σ²) (S. M. Kay, Fundamentals of Statistical Signal Processing: Estimation
-//! Theory, 1993, eq. 3.41), where the lines of a windowed spectrum lie a third above it.
+//! Theory, 1993, eq. 3.41), where the lines of a windowed spectrum lie a third above it. In coloured noise the density around the
+//! line takes the place of σ²/rate ([`Coloured`]).
 
+use super::coloured::Coloured;
 use super::{Estimate, noise};
 use crate::error::{Error, Result};
 use crate::record::{Scaling, Trace, Window};
@@ -20,7 +22,7 @@ const BY_CHANCE: f64 = 1e-4;
 const STEPS: usize = 20;
 const METHOD: &str = "least-squares sine fit";
 
-/// A sine A cos(2πft + φ) + C in white noise.
+/// A sine A cos(2πft + φ) + C in noise.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Sine {
     /// Frequency in Hz.
@@ -33,6 +35,18 @@ pub struct Sine {
     pub mean: Estimate,
     /// Standard deviation of what is left, in the unit of the trace.
     pub noise: f64,
+    /// What a person must know.
+    pub warnings: Vec<String>,
+}
+
+/// A sentence, where the noise around the line at `frequency` in Hz is stronger by `widening` than white noise of its variance: what
+/// a half more changes is no matter.
+pub(super) fn coloured(frequency: f64, widening: f64) -> Option<String> {
+    (widening > 1.5).then(|| {
+        format!(
+            "The noise is not white: around {frequency:.6} Hz it is {widening:.1} times as strong as white noise of its variance would be, and the uncertainties there are enlarged by that. Noise may pass for a sine there; a sine that is not steady looks the same."
+        )
+    })
 }
 
 /// Fits the sine of the largest line, or of the largest within two lines of `near` Hz.
@@ -105,6 +119,7 @@ fn fit(trace: &Trace, start: f64) -> Result<Sine> {
     let half = 0.5 * n as f64 / rate;
     let time = |i: usize| (i as f64 + 0.5 - 0.5 * n as f64) / rate / half;
     let (mut omega, mut p) = (TAU * start * half, Vector4::<f64>::zeros());
+    let all: f64 = trace.values.iter().map(|v| v * v).sum();
     for step in 0..STEPS {
         let (mut normal, mut right) = (Matrix4::<f64>::zeros(), Vector4::zeros());
         for (i, v) in trace.values.iter().enumerate() {
@@ -123,8 +138,10 @@ fn fit(trace: &Trace, start: f64) -> Result<Sine> {
         p = inverse * right;
         let change = if step == 0 { 0.0 } else { p[3] };
         omega += change;
-        // Far below what any noise leaves; rounding of ω itself lies at 1e-16.
-        if step > 0 && change.abs() <= 1e-13 * omega {
+        // Far below what the noise lets be known; large residuals, as coloured noise leaves, slow the steps down.
+        let left = (all - p.dot(&right)).max(0.0) / (n as f64 - 4.0).max(1.0);
+        let std = (left * inverse[(3, 3)]).sqrt();
+        if step > 0 && change.abs() <= (1e-4 * std).max(1e-13 * omega) {
             return Ok(stated(trace, omega / half, &p, &inverse, half));
         }
     }
@@ -140,22 +157,29 @@ fn stated(trace: &Trace, omega: f64, p: &Vector4<f64>, inverse: &Matrix4<f64>, h
     let [a, b, mean] = [p[0], p[1], p[2]];
     let rest = trace.values.iter().enumerate().map(|(i, v)| {
         let (sin, cos) = (omega * (i as f64 / rate - middle)).sin_cos();
-        (v - mean - a * cos - b * sin).powi(2)
+        v - mean - a * cos - b * sin
     });
-    let variance = rest.sum::<f64>() / (n - 4) as f64;
-    let std = |g: Vector4<f64>| Some((variance * (g.transpose() * inverse * g)[0].max(0.0)).sqrt());
+    let rest: Vec<f64> = rest.collect();
+    let variance = rest.iter().map(|r| r * r).sum::<f64>() / (n - 4) as f64;
+    let std = |g: Vector4<f64>| (variance * (g.transpose() * inverse * g)[0].max(0.0)).sqrt();
     let amplitude = a.hypot(b);
     let square = amplitude * amplitude;
     // φ = −atan2(b, a) − ω·middle.
     let phase = (-b.atan2(a) - omega * middle + std::f64::consts::PI).rem_euclid(TAU) - std::f64::consts::PI;
     let unit = trace.meta.unit.quantity().symbol();
-    let estimate = |value, gradient, unit| Estimate::new(value, std(gradient), unit, n, METHOD);
+    let left = Coloured::of(&rest);
+    let wide = left.widening(omega / TAU / rate);
+    let estimate = |value, gradient, unit| Estimate::new(value, Some(wide * std(gradient)), unit, n, METHOD);
+    // What rounding leaves of an exact sine is no noise.
+    let warnings = coloured(omega / TAU, wide).filter(|_| variance.sqrt() > 1e-12 * amplitude);
+    let level = Vector4::new(0.0, 0.0, 1.0, 0.0);
     Sine {
         frequency: estimate(omega / TAU, Vector4::new(0.0, 0.0, 0.0, 1.0 / (TAU * half)), "Hz"),
         amplitude: estimate(amplitude, Vector4::new(a, b, 0.0, 0.0) / amplitude, unit),
         phase: estimate(phase, Vector4::new(b / square, -a / square, 0.0, -middle / half), "rad"),
-        mean: estimate(mean, Vector4::new(0.0, 0.0, 1.0, 0.0), unit),
+        mean: Estimate::new(mean, Some(left.widening(0.0) * std(level)), unit, n, METHOD),
         noise: variance.sqrt(),
+        warnings: warnings.into_iter().collect(),
     }
 }
 

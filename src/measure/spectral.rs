@@ -22,8 +22,8 @@ use std::f64::consts::TAU;
 
 /// Samples of a segment where none is stated.
 pub const SEGMENT: usize = 8192;
-/// This part of a hammer record stands before the blow.
-const BEFORE: usize = 50;
+/// One part in so many of a hammer record stands before the blow.
+pub(in crate::measure) const BEFORE: usize = 50;
 
 /// The spectrum of the only channel, or with an estimator the frequency response function from the first channel to the second.
 /// `progress` is told how many samples were gone over.
@@ -74,7 +74,7 @@ fn lines(
         let scatter = spectrum::scatter(&averages, scaling);
         (spectrum::averaged(&averages, 0, &meta, window, scaling)?, averages.count, scatter)
     } else {
-        let [trace] = whole(traces)?;
+        let [trace] = whole(traces, progress)?;
         let spectrum = spectrum::plain(&trace, window, scaling, detrend)?;
         if let Some(count) = options.tones {
             tones = Some(tones::tones(&trace, count)?);
@@ -115,7 +115,7 @@ fn response(
             force_window: options.force_window,
             left_at_end: options.left_at_end,
         };
-        let [force, response] = whole(traces)?;
+        let [force, response] = whole(traces, progress)?;
         let found = from_blows(&force, &response, &how, estimator)?;
         let window = (found.window, found.enbw);
         (found.transfer, traces.rate() / length as f64, window, "level before the blow", found.blows)
@@ -152,12 +152,13 @@ fn averages(
 }
 
 /// All samples of all channels.
-fn whole<const N: usize>(traces: &mut Traces) -> Result<[Trace; N]> {
+fn whole<const N: usize>(traces: &mut Traces, mut progress: impl FnMut(usize)) -> Result<[Trace; N]> {
     let (mut block, mut columns) = (Vec::new(), vec![Vec::new(); N]);
     while traces.next_block(&mut block)? > 0 {
         for (column, part) in columns.iter_mut().zip(&block) {
             column.extend_from_slice(part);
         }
+        progress(columns.first().map_or(0, Vec::len));
     }
     let (start, step) = (traces.start(), 1.0 / traces.rate());
     let all: Vec<Trace> = columns

@@ -3,8 +3,10 @@
 //! The strongest line of what is left gives the next sine; all that are known are then fitted together by least squares of
 //! x(t) = C + Σ aᵢ cos ωᵢt + bᵢ sin ωᵢt over all unknowns, as [`super::sine`] does for one (S. M. Kay, Fundamentals of
 //! Statistical Signal Processing: Estimation Theory, 1993, section 7.8: maximum likelihood in white noise). Uncertainties come from
-//! the inverse of the whole normal matrix: what two close sines take from each other is in them.
+//! the inverse of the whole normal matrix: what two close sines take from each other is in them. Where the noise is not white, that
+//! around each line counts ([`Coloured`]).
 
+use super::coloured::Coloured;
 use super::{Estimate, sine};
 use crate::error::{Error, Result};
 use crate::record::Trace;
@@ -19,6 +21,10 @@ pub const MOST: usize = 10;
 const NEAREST: f64 = 0.5;
 /// Gauss–Newton steps.
 const STEPS: usize = 40;
+
+/// Part of the standard uncertainty of a frequency below which a step ends the fit: large residuals, as coloured noise leaves, slow
+/// the steps down.
+const SETTLED: f64 = 1e-4;
 const METHOD: &str = "least-squares fit of all sines together";
 
 /// One sine A cos(2πft + φ).
@@ -69,7 +75,7 @@ pub fn tones(trace: &Trace, count: usize) -> Result<Tones> {
     let mut warnings = Vec::new();
     while fit.omega.len() < count {
         let known = fit.omega.len();
-        let left = Trace { values: fit.rest(trace), ..trace.clone() };
+        let left = Trace { meta: trace.meta.clone(), axis: trace.axis.clone(), values: fit.rest(trace) };
         let stop = |why: String| format!("{known} of {count} tones are given: {why}.");
         // What rounding leaves of exact sines has lines, too.
         if fit.noise <= 1e-12 * fit.largest() {
@@ -102,14 +108,19 @@ pub fn tones(trace: &Trace, count: usize) -> Result<Tones> {
             }
         }
     }
-    let mut tones = fit.stated(trace);
+    let left = Coloured::of(&fit.rest(trace));
+    let mut tones = fit.stated(trace, &left);
+    if fit.noise > 1e-12 * fit.largest() {
+        let rate = trace.rate().unwrap_or(1.0);
+        warnings.extend(fit.frequencies().iter().filter_map(|f| sine::coloured(*f, left.widening(f / rate))));
+    }
     tones.sort_by(|a, b| b.amplitude.value.total_cmp(&a.amplitude.value));
     for (i, a) in tones.iter().enumerate() {
         for b in &tones[..i] {
             let apart = (a.frequency.value - b.frequency.value).abs();
             if apart < spacing {
                 warnings.push(format!(
-                    "The tones at {:.6} and {:.6} Hz are {} apart; a record of {:.4} s parts what is {} apart: both hold only if there are two steady sines and white noise.",
+                    "The tones at {:.6} and {:.6} Hz are {} apart; a record of {:.4} s parts what is {} apart: both hold only if there are two steady sines, and noise without a line of its own there.",
                     b.frequency.value,
                     a.frequency.value,
                     quantity(apart, "Hz", 3),
@@ -148,6 +159,7 @@ fn fit(trace: &Trace, start: &[f64]) -> Result<Fit> {
     let mut omega: Vec<f64> = start.iter().map(|f| TAU * f * half).collect();
     let mut linear = vec![0.0; 2 * count + 1];
     let mut row = vec![0.0; size];
+    let all: f64 = trace.values.iter().map(|v| v * v).sum();
     for step in 0..STEPS {
         let (mut normal, mut right) = (DMatrix::<f64>::zeros(size, size), DVector::<f64>::zeros(size));
         for (i, v) in trace.values.iter().enumerate() {
@@ -173,7 +185,9 @@ fn fit(trace: &Trace, start: &[f64]) -> Result<Fit> {
         }
         let unclear = || Error::refused("the samples do not determine these sines");
         let inverse = normal.cholesky().ok_or_else(unclear)?.inverse();
-        let p = &inverse * right;
+        let p = &inverse * &right;
+        // Variance of what is left, to first order: the steps end far below what it lets be known.
+        let left = (all - p.dot(&right)).max(0.0) / (n - size) as f64;
         let mut settled = step > 0;
         for (k, w) in omega.iter_mut().enumerate() {
             let (a, b) = (p[3 * k], p[3 * k + 1]);
@@ -181,7 +195,8 @@ fn fit(trace: &Trace, start: &[f64]) -> Result<Fit> {
             let change = if step == 0 { 0.0 } else { p[3 * k + 2] / a.hypot(b) };
             // A sine may not leave its line in one step.
             *w += change.clamp(-0.5, 0.5);
-            settled = settled && change.abs() <= 1e-12 * *w;
+            let std = (left * inverse[(3 * k + 2, 3 * k + 2)]).sqrt() / a.hypot(b);
+            settled = settled && change.abs() <= (SETTLED * std).max(1e-12 * *w);
         }
         linear[2 * count] = p[size - 1];
         if omega.iter().any(|w| !w.is_finite()) {
@@ -217,31 +232,30 @@ impl Fit {
     }
 
     /// Estimates with first-order uncertainties.
-    fn stated(&self, trace: &Trace) -> Vec<Tone> {
+    fn stated(&self, trace: &Trace, left: &Coloured) -> Vec<Tone> {
         let n = trace.values.len();
+        let rate = trace.rate().unwrap_or(1.0);
         let unit = trace.meta.unit.quantity().symbol();
         // The first sample, in the time of the fit.
         let first = time(0, n);
         let tone = |(k, (omega, p)): (usize, (&f64, &[f64]))| {
             let (a, b) = (p[0], p[1]);
             let amplitude = a.hypot(b);
+            let frequency = omega / (TAU * self.half);
+            let noise = left.widening(frequency / rate) * self.noise;
             let std = |g: [f64; 3]| {
                 let part = self.inverse.view((3 * k, 3 * k), (3, 3));
                 let square: f64 = (0..3)
                     .flat_map(|i| (0..3).map(move |j| (i, j)))
                     .map(|(i, j)| g[i] * part[(i, j)] * g[j])
                     .sum();
-                Some(self.noise * square.max(0.0).sqrt())
+                Some(noise * square.max(0.0).sqrt())
             };
             let phase = (-b.atan2(a) + omega * first + PI).rem_euclid(TAU) - PI;
             let square = amplitude * amplitude;
             let estimate = |value, gradient, unit| Estimate::new(value, std(gradient), unit, n, METHOD);
             Tone {
-                frequency: estimate(
-                    omega / (TAU * self.half),
-                    [0.0, 0.0, 1.0 / (amplitude * TAU * self.half)],
-                    "Hz",
-                ),
+                frequency: estimate(frequency, [0.0, 0.0, 1.0 / (amplitude * TAU * self.half)], "Hz"),
                 amplitude: estimate(amplitude, [a / amplitude, b / amplitude, 0.0], unit),
                 phase: estimate(phase, [b / square, -a / square, first / amplitude], "rad"),
             }

@@ -21,7 +21,14 @@ impl Reader {
         let file = file.as_ref();
         let mut traces = if let Some(channel) = channel {
             let named: Vec<&str> = reference.into_iter().chain([channel]).collect();
-            self.stream_channels(file, &named)?
+            let found = self.stream_channels(file, &named)?;
+            if found.channels().len() < named.len() {
+                return Err(Error::usage(
+                    format!("the channel {channel:?} is its own reference"),
+                    "two different channels",
+                ));
+            }
+            found
         } else {
             let mut all = self.stream(file)?;
             let reference = reference.map(|name| all.channel(name)).transpose()?;

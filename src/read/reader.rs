@@ -33,6 +33,11 @@ pub struct Options {
 impl Options {
     /// Adopts the unit of values: what a person states, else what the file says. Returns the factor to SI.
     pub(super) fn adopt(&self, meta: &mut Meta, said: Option<&str>) -> f64 {
+        // A coherence beside a function has no unit, whatever that of the function is.
+        let bare = said.is_none_or(|u| matches!(u.trim(), "" | "1"));
+        if self.unit.is_some() && bare && meta.name.to_lowercase().contains("coherence") {
+            return meta.adopt_unit("1");
+        }
         if let Some(given) = &self.unit {
             if let Some(said) = said.filter(|u| Unit::parse_or_opaque(u) != *given) {
                 meta.doubt(format!("The file says the unit {said:?}; {given} was stated and is used."));

@@ -175,7 +175,7 @@ impl Traces {
         self.append(block)
     }
 
-    /// As [`Traces::next_block`], but adds the samples behind what `block` holds, which saves those a copy who collect them.
+    /// As [`Traces::next_block`], but adds the samples behind what `block` holds, which saves a copy where they are collected.
     ///
     /// # Errors
     /// As [`Traces::next_block`].

@@ -27,6 +27,9 @@ impl Step {
 /// How an identification line of UFF-58 begins that states the decay of an exponential window in 1/s.
 pub const ADDED_DECAY: &str = "exponential window; decay in 1/s ";
 
+/// Identification line of UFF-58, and key of a remark in CSV, that a function was averaged over the blows of a hammer.
+pub const FROM_BLOWS: &str = "averaged over hammer blows";
+
 /// Channel, quantity, unit, history and doubts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Meta {
@@ -84,6 +87,17 @@ impl Meta {
         let remark = remark.find_map(|(_, text)| text.strip_suffix(own.as_str()));
         let text = made.map(|(_, value)| value.as_str()).or(line).or(remark)?;
         text.trim().parse().ok().filter(|decay: &f64| decay.is_finite() && *decay > 0.0)
+    }
+
+    /// Whether a frequency response function was averaged over the blows of a hammer: from the history, or as the writers of this
+    /// crate state it.
+    pub fn from_blows(&self) -> bool {
+        let said = |(key, text): &(String, String)| match key.as_str() {
+            "id line 4" => text == FROM_BLOWS,
+            FROM_BLOWS => text.strip_suffix(self.name.as_str()).is_some_and(|t| t.ends_with(" of ")),
+            _ => false,
+        };
+        self.history.iter().any(|step| step.name == "blows") || self.notes.iter().any(said)
     }
 
     /// Takes the unit an instrument wrote: stores its SI unit and quantity, notes the conversion, and returns the factor

@@ -28,6 +28,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::path::PathBuf;
 
+/// Steps of progress through a record.
+const PARTS: usize = 100;
+
 /// Told how far a job is.
 pub trait Progress: Sync {
     /// A part with this many steps begins.
@@ -171,8 +174,8 @@ pub fn run(
             figures.push((format!("map_{slug}"), pictures::map(matrix, fmax)?));
         }
     }
-    let spectra = spectral::spectra(campaign, options, &mut figures, &mut warnings)?;
-    let frf = frf::frfs(campaign, options, &mut figures, &mut warnings)?;
+    let spectra = spectral::spectra(campaign, options, progress, &mut figures, &mut warnings)?;
+    let (frf, computed) = frf::frfs(campaign, options, progress, &mut figures, &mut warnings)?;
     let drilled = drill::drills(campaign, options, progress, &mut figures, &mut warnings)?;
     let impacts = impacts::impacts(campaign, options, &mut figures, &mut warnings)?;
     let drops = drops::drops(campaign, options, &mut figures, &mut warnings)?;
@@ -214,6 +217,7 @@ pub fn run(
         output.write("peaks.csv", tables::peaks(overlay).csv())?;
     }
     spectral::tables(&results.spectra, output, &mut results.warnings)?;
+    frf::tables(&results.frf, &computed, output, &mut results.warnings)?;
     drill::tables(&results.drill, output)?;
     for (i, result) in results.impacts.iter().enumerate() {
         output.write(&format!("impacts_{}.csv", i + 1), tables::impact_times(&result.impacts).csv())?;

@@ -191,7 +191,7 @@ pub fn summary(results: &Results) -> Vec<Table> {
         tables.push(peaks(overlay));
         tables.push(scores(overlay));
     }
-    let records: Vec<_> = results.spectra.iter().map(|s| (s.name.as_str(), &s.result)).collect();
+    let records: Vec<_> = results.spectra.iter().map(|s| (s.result.name.as_str(), &s.result)).collect();
     tables.push(spectra(&records));
     tables.push(tones(&records));
     tables.push(modes(results.frf.iter().map(|f| (f.name.as_str(), &f.modal))));

@@ -5,6 +5,7 @@
 //! poles, so that high orders keep their digits.
 
 use crate::error::{Error, Result};
+use crate::units::notation::shortest;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -256,12 +257,16 @@ impl std::fmt::Display for Filter {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let order = self.order;
         match self.kind {
-            Kind::LowPass(corner) => write!(f, "Butterworth low-pass of order {order}, corner {corner} Hz"),
-            Kind::HighPass(corner) => write!(f, "Butterworth high-pass of order {order}, corner {corner} Hz"),
+            Kind::LowPass(corner) => {
+                write!(f, "Butterworth low-pass of order {order}, corner {} Hz", shortest(corner))
+            }
+            Kind::HighPass(corner) => {
+                write!(f, "Butterworth high-pass of order {order}, corner {} Hz", shortest(corner))
+            }
             Kind::BandPass(low, high) => {
                 write!(f, "Butterworth band-pass of order {order}, corners {low} and {high} Hz")
             }
-            Kind::Smoothing(corner) => write!(f, "exponential smoothing, corner {corner} Hz"),
+            Kind::Smoothing(corner) => write!(f, "exponential smoothing, corner {} Hz", shortest(corner)),
             Kind::Analogue => write!(f, "filter of order {order} from analogue sections"),
         }
     }
@@ -312,8 +317,8 @@ fn pairs(order: usize) -> Result<impl Iterator<Item = Pole>> {
 fn warped(corner: f64, rate: f64) -> Result<f64> {
     if !(corner > 0.0 && corner < rate / 2.0 && rate.is_finite()) {
         return Err(Error::usage(
-            format!("a corner of {corner} Hz at a sampling rate of {rate} Hz"),
-            format!("a corner above 0 and below {} Hz", rate / 2.0),
+            format!("a corner of {} Hz at a sampling rate of {} Hz", shortest(corner), shortest(rate)),
+            format!("a corner above 0 and below {} Hz", shortest(rate / 2.0)),
         ));
     }
     Ok((PI * corner / rate).tan())

@@ -3,12 +3,16 @@
 //! The force counts only while the hammer touches (force window); a response that has not died away when the record ends is
 //! made to (exponential window, on the force, too). That adds damping, by an amount that is known and reported.
 
+mod left;
+
 use super::fft::Transform;
 use super::segment::Segments;
 use super::transfer::{Estimator, Transfer, transfer};
 use super::welch::Sums;
 use crate::error::{Error, Result};
 use crate::record::{Meta, Trace};
+use crate::units::notation::{shortest, significant};
+use left::Left;
 use serde::Serialize;
 use std::f64::consts::PI;
 
@@ -25,6 +29,11 @@ const RAIL: f64 = 0.1;
 const ROUNDED: f64 = 8.0;
 /// Steps in a record of which only few different values are known: at least so many up to its extreme.
 const COARSEST: f64 = 250.0;
+
+/// Blows left out that a sentence names.
+const NAMED: usize = 8;
+/// Less than this part of a response at the end of its record is not worth a sentence: sensors are not as good.
+const TOLD: f64 = 1e-3;
 
 /// How blows are taken out of a long record.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,7 +77,8 @@ pub struct BlowTransfer {
 /// Finds the blows in a force, averages those that are clean, and relates the response to the force.
 ///
 /// # Errors
-/// If the traces are of different rate or length, samples are missing, or fewer than two blows are clean.
+/// If the traces are of different rate or length or shorter than one record of a blow, samples are missing, or fewer than two
+/// blows are clean.
 pub fn from_blows(
     force: &Trace,
     response: &Trace,
@@ -81,8 +91,10 @@ pub fn from_blows(
     let n = force.values.len();
     if rate != other || n != response.values.len() {
         return Err(Error::refused(format!(
-            "the force has {n} samples at {rate} Hz, the response {} at {other} Hz",
-            response.values.len()
+            "the force has {n} samples at {} Hz, the response {} at {} Hz",
+            shortest(rate),
+            response.values.len(),
+            shortest(other)
         )));
     }
     if let Some(i) =
@@ -95,6 +107,13 @@ pub fn from_blows(
             format!("records of {} samples, {} of them before the blow", how.length, how.before),
             "at least 8 samples, and the blow among them",
         ));
+    }
+    if how.length > n {
+        return Err(Error::refused(format!(
+            "blows of {} samples each in a record of {n} samples",
+            how.length
+        ))
+        .hint("take shorter records, or measure longer"));
     }
     let blows = find(force, response, how, rate);
     let kept: Vec<usize> =
@@ -133,9 +152,10 @@ pub fn from_blows(
     let averages = sums.mean(&vec![1.0; how.length], apart, rate, true);
     let metas: [Meta; 2] = [force.meta.clone(), response.meta.clone()];
     let mut transfer = transfer(&averages, 1, &metas, estimator)?;
-    let left_out = blows.len() - kept.len();
-    if left_out > 0 {
-        transfer.warnings.push(format!("{left_out} of {} blows are left out.", blows.len()));
+    transfer.frf.meta.step("blows", &[("length", &how.length), ("before", &how.before)]);
+    transfer.warnings.extend(left_out(&blows));
+    if let Some(left) = Left::of(&response.values, &kept, how, &weights[1]) {
+        unfinished(&mut transfer, &left);
     }
     if decay > 0.0 {
         transfer.warnings.push(format!(
@@ -159,6 +179,41 @@ pub fn from_blows(
     })
 }
 
+/// Which blows are left out, and why.
+fn left_out(blows: &[(usize, Blow)]) -> Option<String> {
+    let named: Vec<String> =
+        blows.iter().filter_map(|(_, b)| b.rejected.map(|why| format!("{:.3} s, {why}", b.time))).collect();
+    let more = if named.len() > NAMED { "; …" } else { "" };
+    let are = if named.len() == 1 { "is" } else { "are" };
+    (!named.is_empty()).then(|| {
+        let shown = named[..named.len().min(NAMED)].join("; ");
+        format!("{} of {} blows {are} left out: {shown}{more}.", named.len(), blows.len())
+    })
+}
+
+/// Takes what is left of the response into the standard deviations, and says so where it is most.
+fn unfinished(transfer: &mut Transfer, left: &Left) {
+    let mut most = (0.0, 0);
+    for (k, h) in transfer.frf.values.iter().enumerate() {
+        // The first line of a function is one above 0 Hz.
+        let part = left.at(k + 1);
+        transfer.magnitude_std[k] = transfer.magnitude_std[k].hypot(part * h.norm());
+        transfer.phase_std[k] = transfer.phase_std[k].hypot(part);
+        if part > TOLD && left.strong(k + 1) && part * h.norm() > most.0 {
+            most = (part * h.norm(), k);
+        }
+    }
+    if most.0 > 0.0 {
+        let part = left.at(most.1 + 1);
+        transfer.warnings.push(format!(
+            "Around {} Hz {} % of the response are left when the record of a blow ends: |H| may be off by as much there, its phase by {}°, which is in the standard deviations but not in the coherence. Longer records (--segment) or an exponential window (--left-at-end) help.",
+            significant(transfer.frf.axis.at(most.1), 3),
+            significant(100.0 * part, 2),
+            significant(part.to_degrees(), 2)
+        ));
+    }
+}
+
 /// First sample of each record, and its blow.
 fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<(usize, Blow)> {
     let values = &force.values;
@@ -173,7 +228,7 @@ fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<(usize, 
             i += 1;
             continue;
         }
-        let (trigger, end) = (i, (i + how.length - how.before).min(values.len()));
+        let (trigger, end) = (i, i.saturating_add(how.length - how.before).min(values.len()));
         let start = trigger.saturating_sub(how.before);
         // The zero may wander from blow to blow.
         let quiet = if trigger > start { Quiet::of(&values[start..trigger]) } else { Quiet::of(values) };

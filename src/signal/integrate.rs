@@ -5,6 +5,7 @@ use super::spectrum;
 use crate::error::{Error, Result};
 use crate::record::{Axis, Grid, Scaling, Spectrum, Trace, Values};
 use crate::units::Unit;
+use crate::units::notation::shortest;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -112,8 +113,9 @@ pub fn in_time(trace: &Trace, how: &InTime) -> Result<Integrated> {
     let band = band(how, rate);
     if band[0] >= band[1] {
         return Err(Error::refused(format!(
-            "a corner of {} Hz at a sampling rate of {rate} Hz leaves no band in which an integral is right within 1 %",
-            how.corner
+            "a corner of {} Hz at a sampling rate of {} Hz leaves no band in which an integral is right within 1 %",
+            shortest(how.corner),
+            shortest(rate)
         ))
         .hint("a lower corner, a higher order, or integration in frequency"));
     }

@@ -57,10 +57,13 @@ pub fn shortest(value: f64) -> String {
     format!("{value:.11e}").parse().unwrap_or(value).to_string()
 }
 
+/// Digits that a value with an uncertainty has at most.
+const DIGITS: i32 = 10;
+
 /// A value with its standard uncertainty, both rounded to two significant digits of the uncertainty (GUM,
 /// 7.2.6).
 ///
-/// Without a usable uncertainty the value is given to five significant digits.
+/// Without a usable uncertainty the value is given to five significant digits, beside a very small one to ten.
 ///
 /// ```
 /// use vibroimpact::units::notation::estimate;
@@ -73,6 +76,10 @@ pub fn estimate(value: f64, std: Option<f64>) -> String {
         return significant(value, 5);
     };
     let exponent = engineering(value.abs().max(std));
+    if value != 0.0 && std < 10f64.powi(decade(value, 1) - DIGITS) {
+        // No number of a measurement has more digits.
+        return format!("{} ± {}", significant(value, DIGITS as usize), significant(std, 2));
+    }
     if (-3..=3).contains(&exponent) {
         let places = 1 - decade(std, 2);
         return format!("{} ± {}", rounded(value, places), rounded(std, places));
@@ -186,7 +193,14 @@ fn unbracketed(unit: &str) -> String {
             None => (under, "¹"),
         };
         let plain = symbol.chars().all(char::is_alphabetic);
-        plain.then(|| format!("{before}{over} {symbol}⁻{power}{after}"))
+        // A square of the whole is one of its parts.
+        let (square, power, after) = match (after.strip_prefix('²'), power) {
+            (Some(after), "¹") => ("²", "²", after),
+            (Some(after), "²") => ("²", "⁴", after),
+            (Some(_), _) => return None,
+            (None, power) => ("", power, after),
+        };
+        plain.then(|| format!("{before}{over}{square} {symbol}⁻{power}{after}"))
     };
     product().unwrap_or_else(|| unit.to_owned())
 }
@@ -225,6 +239,8 @@ mod tests {
         assert_eq!(estimate(0.0, Some(3.0)), "0.0 ± 3.0");
         assert_eq!(estimate(-0.04, Some(2.0)), "0.0 ± 2.0");
         assert_eq!(estimate(0.211_2, Some(0.0)), "0.21120");
+        assert_eq!(estimate(2.0 - 4e-14, Some(7.8e-31)), "2.000000000 ± 7.8×10⁻³¹");
+        assert_eq!(estimate(29.999_986, Some(0.000_052)), "29.999986 ± 0.000052");
         assert_eq!(estimate(f64::NAN, Some(1.0)), "–");
         assert_eq!(estimate(25.0e6, Some(0.4e6)), "(25.00 ± 0.40)×10⁶");
     }
@@ -271,6 +287,8 @@ mod tests {
         assert_eq!(labelled("Frequency", "Hz"), "Frequency (Hz)");
         assert_eq!(labelled("Accelerance", "(m/s²)/N"), "Accelerance (m s⁻²/N)");
         assert_eq!(labelled("Mobility", "10⁻³ (m/s)/N"), "Mobility (10⁻³ m s⁻¹/N)");
+        assert_eq!(labelled("Density", "(m/s²)²/Hz"), "Density (m² s⁻⁴/Hz)");
+        assert_eq!(labelled("Density", "(m/s)²/Hz"), "Density (m² s⁻²/Hz)");
         assert_eq!(labelled("Ratio", "(m/(s A))/N"), "Ratio ((m/(s A))/N)");
         assert_eq!(labelled("Coherence", "1"), "Coherence");
     }

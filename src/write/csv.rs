@@ -10,7 +10,7 @@
 
 use super::{failed, label};
 use crate::error::{Error, Result};
-use crate::record::{Axis, AxisKind, Grid, Record, Scaling, Values};
+use crate::record::{Axis, AxisKind, FROM_BLOWS, Grid, Record, Scaling, Values};
 use std::fmt::Write as _;
 use std::io::Write;
 
@@ -93,6 +93,9 @@ impl Column<'_> {
                 remark("kind", "frf");
                 if let Some(decay) = frf.meta.added_decay() {
                     remark("added decay", &decay.to_string());
+                }
+                if frf.meta.from_blows() {
+                    remark(FROM_BLOWS, "yes");
                 }
             }
             Record::Spectrum(spectrum) => {

@@ -33,6 +33,8 @@ fn modes_of_a_file() {
     // Printed to nine digits.
     assert!((mode["frequency"]["value"].as_f64().unwrap() - 80.3).abs() < 1e-5, "{answer}");
     assert!((mode["zeta"]["value"].as_f64().unwrap() - 0.01).abs() < 1e-6, "{answer}");
+    assert!((mode["modal_constant"]["value"].as_f64().unwrap() - 2.0).abs() < 1e-3, "{answer}");
+    assert!(mode["phase"]["value"].as_f64().unwrap().abs() < 0.1, "{answer}");
     assert!(mode["method"].is_string() && mode["stiffness"]["value"].is_f64());
     let methods: Vec<&str> =
         mode["by"].as_array().unwrap().iter().filter_map(|b| b["method"].as_str()).collect();

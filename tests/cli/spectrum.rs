@@ -238,6 +238,8 @@ fn a_hammer_names_the_windows_applied() {
         // What the end of a record leaves is 0.01 e⁻³ of the response; with the window's decay ζ would be 0.026.
         assert!((zeta / 0.01 - 1.0).abs() < 0.05, "{file:?}: {value}");
         assert!(value["warnings"].to_string().contains("taken off"), "{value}");
+        // The file says that it came from blows, not from a lasting excitation.
+        assert!(!value["warnings"].to_string().contains("lasting excitation"), "{value}");
     }
     for (option, value) in [
         ("--window", "hann"),
@@ -275,4 +277,66 @@ fn lines_carry_their_scatter() {
     // One transform does not know its scatter.
     let (value, std) = ask(&["--method", "fft"]);
     assert!(value.len() == std.len() && std.iter().all(|s| s.is_nan()));
+}
+
+#[test]
+fn blows_left_out_are_named_and_records_too_short_are_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("hammer.csv");
+    let (decay, turn) = (0.003, 0.3f64);
+    let mut table = String::from("time [s],force [N],velocity [m/s]\n");
+    for i in 0..9000 {
+        let since = f64::from((i - 500) % 3000);
+        // The second blow hits twice.
+        let hit = [30.0, 100.0, 30.0].get(since as usize).filter(|_| i >= 500).copied().unwrap_or(0.0);
+        let again = if i == 3700 { 60.0 } else { 0.0 };
+        // The exact response to the three samples of force, in (m/s)/N s.
+        let free = |n: f64| if n < 0.0 { 0.0 } else { (-decay * n).exp() * (turn * n).cos() };
+        let velocity = if i < 500 {
+            0.0
+        } else {
+            30.0 * free(since) + 100.0 * free(since - 1.0) + 30.0 * free(since - 2.0)
+        };
+        let _ = writeln!(table, "{},{},{velocity:.9e}", f64::from(i) / 1024.0, hit + again);
+    }
+    fs::write(&path, table).unwrap();
+    let out = folder.path().join("out");
+    let found = json(&[
+        "spectrum",
+        text(&path),
+        "--reference",
+        "force",
+        "--hammer",
+        "--segment",
+        "800",
+        "--out",
+        text(&out),
+    ]);
+    let said = found["warnings"].to_string();
+    assert!(said.contains("1 of 3 blows is left out: 3.418 s, double hit."), "{said}");
+    // e^(−0.003·784) = 9.5 % are left.
+    assert!(said.contains("are left when the record of a blow ends"), "{said}");
+    for name in ["frf.csv", "frf.uff"] {
+        let file = out.join(name);
+        let value = json(&["modal", text(&file), "--band", "40:58", "--channel", "1"]);
+        let mode = &value["modes"][0];
+        let z = |key: &str, truth: f64| {
+            (mode[key]["value"].as_f64().unwrap() - truth) / mode[key]["std"].as_f64().unwrap()
+        };
+        // Velocity cos over an impulse: 2·Re of the residue 1/2 a sample of 1/1024 s, so A = 1024.
+        let own = turn.hypot(decay) * 1024.0 / TAU;
+        for (key, truth) in
+            [("modal_constant", 1024.0), ("zeta", decay / turn.hypot(decay)), ("frequency", own)]
+        {
+            assert!(z(key, truth).abs() < 2.5, "{name}, {key}: {} from {truth}: {mode}", z(key, truth));
+        }
+        assert!(value["warnings"].to_string().contains("is left when the record of a blow ends"), "{value}");
+        // The unit of the function is not that of the coherence beside it.
+        let scaled = json(&["modal", text(&file), "--band", "40:58", "--channel", "1", "--unit", "(mm/s)/N"]);
+        let ratio = scaled["modes"][0]["modal_constant"]["value"].as_f64().unwrap()
+            / mode["modal_constant"]["value"].as_f64().unwrap();
+        assert!((ratio / 1e-3 - 1.0).abs() < 1e-6, "{name}: {ratio}");
+    }
+    let own = complaint(&["spectrum", text(&path), "--reference", "force", "--channel", "force"], 2);
+    assert!(own.contains("its own reference"), "{own}");
 }

@@ -22,6 +22,9 @@ pub struct Impacts {
     /// Record of one pulse of the shape that all have: each impact is matched to it
     #[arg(long, value_name = "FILE", conflicts_with = "legacy")]
     pub shape: Option<PathBuf>,
+    /// Sampling rate of that record in Hz, where its file does not say
+    #[arg(long, value_name = "HZ", requires = "shape", allow_negative_numbers = true)]
+    pub shape_rate: Option<f64>,
     /// What is known to scatter: the onsets about even times, or the intervals, each on its own
     #[arg(long, value_enum, default_value = "unknown")]
     pub scatter: Scatter,

@@ -7,6 +7,13 @@ pub enum LowPass {
     Off,
 }
 
+impl LowPass {
+    /// The corner in Hz, if there is one.
+    pub fn corner(self) -> Option<f64> {
+        if let LowPass::Corner(hz) = self { Some(hz) } else { None }
+    }
+}
+
 /// Reads it.
 pub fn low_pass(text: &str) -> Result<LowPass, String> {
     match text {

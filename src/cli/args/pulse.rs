@@ -3,13 +3,28 @@
 use super::{Channel, LowPass, Reading};
 use std::path::PathBuf;
 
+/// Options that say how a file is read, or what its instrument did.
+const OF_A_FILE: [&str; 11] = [
+    "low_pass",
+    "order",
+    "channel",
+    "calibration",
+    "format",
+    "allow_missing",
+    "rate",
+    "base_band",
+    "unit",
+    "decimal",
+    "complex",
+];
+
 #[derive(Debug, clap::Args)]
 pub struct Pulse {
     /// Record of the acceleration (or force) of a contact
     #[arg(required_unless_present = "time_to_peak", conflicts_with_all = ["time_to_peak", "duration", "std"])]
     pub file: Option<PathBuf>,
     /// Time from the onset to the largest force, in s: instead of a file
-    #[arg(long, value_name = "S", requires = "duration", allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", requires = "duration", allow_negative_numbers = true, conflicts_with_all = OF_A_FILE)]
     pub time_to_peak: Option<f64>,
     /// Time from the onset to the end of the contact, in s
     #[arg(long, value_name = "S", requires = "time_to_peak", allow_negative_numbers = true)]

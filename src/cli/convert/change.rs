@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::record::{Record, Trace};
 use crate::signal::filter::Filter;
 use crate::signal::{differentiate, integrate};
+use crate::units::Quantity;
 use crate::units::notation::quantity;
 
 /// Order of one pass of every filter here.
@@ -111,7 +112,7 @@ impl Change {
                 found.edge,
                 quantity(found.drift, unit, 2)
             ));
-            *trace = found.trace;
+            *trace = renamed(found.trace, trace);
         }
         if self.integrate < 0 {
             let found = differentiate::in_time(trace, self.integrate.unsigned_abs())?;
@@ -120,10 +121,19 @@ impl Change {
                 often(self.integrate),
                 found.highest
             ));
-            *trace = found.trace;
+            *trace = renamed(found.trace, trace);
         }
         Ok(())
     }
+}
+
+/// A channel that is named after its quantity takes the name of the new one: no displacement is called velocity.
+fn renamed(mut made: Trace, from: &Trace) -> Trace {
+    let (before, after) = (from.meta.quantity, made.meta.quantity);
+    if Quantity::from_name(&made.meta.name) == Some(before) && after != Quantity::Other {
+        after.name().clone_into(&mut made.meta.name);
+    }
+    made
 }
 
 fn often(times: i8) -> &'static str {

@@ -79,6 +79,15 @@ impl DrillOptions {
         if !self.delay.is_finite() {
             return Err(Error::usage(format!("a delay of {} s", self.delay), "a finite number"));
         }
+        if !self.margin.is_finite() {
+            return Err(Error::usage(format!("a margin of {} dB", self.margin), "a finite number"));
+        }
+        if let Some(h) = self.hours.filter(|h| !(*h > 0.0 && *h <= 24.0)) {
+            return Err(Error::usage(
+                format!("an exposure of {h} hours a day"),
+                "a number above 0, at most 24",
+            ));
+        }
         if self.points < 2 || self.points > 100_000 {
             return Err(Error::usage(format!("an average at {} phases", self.points), "2 to 100000"));
         }

@@ -119,6 +119,14 @@ pub struct Displacement {
     pub drift: Estimate,
 }
 
+impl Displacement {
+    /// Where speeds are too small, so is what they add up to: nothing is stated.
+    pub(super) fn over_range(&mut self) {
+        self.stroke.std = None;
+        self.drift.std = None;
+    }
+}
+
 /// Effect of the beam's angle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct BeamResult {

@@ -7,7 +7,8 @@ use crate::signal::filter::Filter;
 /// Harmonics of the speed that the low-pass chosen from the data lets through at least, however few phases the average has:
 /// at the tenth, (10/50)⁴ = 0.2 % of the amplitude are missing then, of a stroke still less.
 const HARMONICS: f64 = 50.0;
-/// Largest corner as a part of the sampling rate: beyond a quarter of it differences of samples show nothing.
+/// Largest corner as a part of the sampling rate: from there on differences of samples show too little:
+/// at a quarter of it a central difference gives 2/π of a slope.
 const HIGHEST: f64 = 0.25;
 
 /// How the velocity is smoothed before it is averaged and integrated. Impacts and bandwidth are always taken from the

@@ -15,6 +15,9 @@ const PULSED: f64 = 0.8;
 /// A motion is near two levels for less than this part of the time: a sine near the medians of its halves for a quarter.
 const MOVING: f64 = 0.5;
 
+/// A displacement that drifts by more than this part of the stroke in a turn is no steady motion.
+const DRIFTING: f64 = 0.1;
+
 /// Everything that the passes leave behind.
 pub(super) struct Measured<'a> {
     pub options: &'a DrillOptions,
@@ -41,8 +44,15 @@ pub(super) fn summary(m: Measured<'_>) -> Drill {
     let value = super::displacement(&mean, period);
     let mut spread = Running::default();
     m.turns.speeds(rate).for_each(|s| spread.push(s));
-    let over = |values: &[f64], method: &str| {
+    let mut wander = Vec::new();
+    if m.turns.wander(m.edge) {
+        wander.push("speed");
+    }
+    let mut over = |values: &[f64], name: &'static str, method: &str| {
         let mean = Mean::of(values);
+        if mean.wanders {
+            wander.push(name);
+        }
         Estimate::new(mean.value, mean.std, "m", mean.n, method)
     };
     let still =
@@ -80,8 +90,16 @@ pub(super) fn summary(m: Measured<'_>) -> Drill {
         },
         displacement: Displacement {
             value,
-            stroke: over(m.pass.motion.stroke(), "peak to peak of the integrated velocity, mean over turns"),
-            drift: over(m.pass.motion.drift(), "integral of the velocity over a turn, mean over turns"),
+            stroke: over(
+                m.pass.motion.stroke(),
+                "stroke",
+                "peak to peak of the integrated velocity, mean over turns",
+            ),
+            drift: over(
+                m.pass.motion.drift(),
+                "drift",
+                "integral of the velocity over a turn, mean over turns",
+            ),
         },
         dropouts: count.dropouts,
         spikes: count.spikes,
@@ -98,6 +116,12 @@ pub(super) fn summary(m: Measured<'_>) -> Drill {
         excerpt_time: (m.excerpt.0 as f64 / rate, 1.0 / rate),
         warnings: Vec::new(),
     };
+    if result.groups.first().is_some_and(|g| g.wanders) {
+        wander.push("impacts");
+    }
+    if count.clipped > 0 {
+        result.displacement.over_range();
+    }
     result.warnings = warnings(
         &result,
         options,
@@ -106,7 +130,18 @@ pub(super) fn summary(m: Measured<'_>) -> Drill {
         (m.pass.left_out, m.turns.apart),
         m.still.is_some(),
     );
+    result.warnings.extend(wandering(&wander));
     result
+}
+
+/// The sentence on means that change slowly along the record.
+fn wandering(names: &[&str]) -> Option<String> {
+    (!names.is_empty()).then(|| {
+        format!(
+            "Slow changes along the record ({}): the uncertainties of these means may be too small; measure longer.",
+            names.join(", ")
+        )
+    })
 }
 
 fn are(n: usize) -> &'static str {
@@ -182,6 +217,15 @@ fn warnings(
         (_, true) => "left out of the means, which lean to the slower ones and have no uncertainty",
         _ => "left out of the means",
     };
+    let [stroke, drift] = [&result.displacement.stroke, &result.displacement.drift].map(|e| e.value);
+    say(
+        drift.abs() > DRIFTING * stroke,
+        format!(
+            "The displacement drifts by {} a turn beside a stroke of {}: the velocity has an offset, or the machine moves. A straight line a turn is taken out of stroke and displacement.",
+            quantity(drift, "m", 2),
+            quantity(stroke, "m", 2)
+        ),
+    );
     say(clipped > 0, format!("{} of {found} over-range: {taken}.", several(clipped, "impact")));
     say(result.impacts.is_empty(), "No impact was found: no jump of the velocity stands out.".to_owned());
     let per_degree = 100.0 * result.beam.per_degree;

@@ -105,7 +105,59 @@ fn an_offset_and_missing_samples_change_nothing_that_vibrates() {
     let gap = of(&gap);
     assert!((gap.unweighted_peak / plain.unweighted_peak - 1.0).abs() < 1e-3);
     assert!((gap.a_hv.value / plain.a_hv.value - 1.0).abs() < 1e-3, "{}", gap.a_hv.value);
-    assert!(gap.warnings.iter().any(|w| w.starts_with("901 missing")), "{:?}", gap.warnings);
+    assert!(gap.warnings.iter().any(|w| w.starts_with("901 accelerations")), "{:?}", gap.warnings);
+}
+
+#[test]
+fn what_is_missing_is_in_no_mean() {
+    let rate = 6_000.0;
+    let wave: Vec<f64> = (0..360_000).map(|i| 30.0 * (TAU * 100.0 * f64::from(i) / rate).sin()).collect();
+    let of = |from: usize, to: usize| {
+        let mut values = wave.clone();
+        values[from..to].fill(f64::NAN);
+        let mut handle = Handle::new(rate).unwrap();
+        values.chunks(777).for_each(|b| handle.push(b));
+        exposure(&[handle], None)
+    };
+    let whole = of(0, 0).unwrap();
+    // 2.9 s of a minute, behind the half second at its beginning, then at its beginning and at its end. Some hundred periods are left:
+    // a part of a period at each end of a stretch is 1/60 of a hundredth of a per cent.
+    for (from, to) in [(60_000, 77_401), (0, 17_401), (342_599, 360_000)] {
+        let gap = of(from, to).unwrap();
+        assert!((gap.a_hv.value / whole.a_hv.value - 1.0).abs() < 1e-4, "{from}: {}", gap.a_hv.value);
+        assert!((gap.crest_factor / whole.crest_factor - 1.0).abs() < 1e-4, "{from}: {}", gap.crest_factor);
+        let said =
+            gap.warnings.iter().any(|w| w.starts_with("17401 accelerations of the handle are missing"));
+        assert!(said && gap.a_hv.n < whole.a_hv.n && gap.a_hv.n >= 55, "{:?} {:?}", gap.warnings, gap.a_hv);
+    }
+    // Half of it is too much, wherever it is; so is a gap in every half second.
+    for (from, to) in [(0, 180_000), (180_000, 360_000), (90_000, 270_000)] {
+        let why = of(from, to).unwrap_err();
+        assert!(why.exit_code() == 1 && why.to_string().contains("50.0 %"), "{why}");
+    }
+    let mut handle = Handle::new(rate).unwrap();
+    let often: Vec<f64> =
+        wave.iter().enumerate().map(|(i, v)| if i % 2500 == 0 { f64::NAN } else { *v }).collect();
+    handle.push(&often);
+    assert!(exposure(&[handle], None).unwrap_err().to_string().contains("settles"));
+}
+
+#[test]
+fn gaps_of_two_axes_leave_the_seconds_of_both_in_step() {
+    let rate = 6_000.0;
+    // Both rise from second to second alike: their sum is twice one of them, and so is its scatter.
+    let axis = |lost: usize| {
+        let mut handle = Handle::new(rate).unwrap();
+        let mut values: Vec<f64> = (0..120_000)
+            .map(|i| (30.0 + f64::from(i / 6000)) * (TAU * 100.0 * f64::from(i) / rate).sin())
+            .collect();
+        values[lost..lost + 600].fill(f64::NAN);
+        handle.push(&values);
+        handle
+    };
+    let both = exposure(&[axis(30_000), axis(60_000)], None).unwrap();
+    // Of 19 whole seconds a gap of 0.1 s and the half second behind it take one or two.
+    assert!((15..=17).contains(&both.a_hv.n) && both.axes.iter().all(|a| a.n > both.a_hv.n), "{both:?}");
 }
 
 #[test]

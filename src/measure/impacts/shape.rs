@@ -33,6 +33,8 @@ pub struct Matched {
     pub variance: f64,
 }
 
+/// Pulses that swing both ways begin upwards unless they are deeper than high by this factor.
+pub(super) const TURNED: f64 = 1.2;
 /// Most knots of a spline.
 const KNOTS: usize = 48;
 /// Most rounds of averaging and matching.
@@ -59,8 +61,11 @@ impl Shape {
     /// # Errors
     /// If either has no sampling rate, or the pulse is too short, too long (10 000 samples), constant, or has gaps.
     pub fn of(pulse: &Trace, trace: &Trace) -> Result<Shape> {
-        let unknown = || Error::refused("the sampling rate is not known").hint("state it with --rate");
-        let (own, rate) = (pulse.rate().ok_or_else(unknown)?, trace.rate().ok_or_else(unknown)?);
+        let rate = super::rate_of(trace)?;
+        let own = pulse.rate().filter(|r| r.is_finite() && *r > 0.0).ok_or_else(|| {
+            Error::refused(format!("the file of the shape {:?} does not say at which rate", pulse.meta.name))
+                .hint("state the rate of the shape: --shape-rate HZ, or shape_rate in a campaign")
+        })?;
         Shape::recorded(&pulse.values, rate / own).ok_or_else(|| {
             Error::refused(format!(
                 "{:?} is no shape of a pulse: {} samples, missing or equal values",
@@ -71,8 +76,12 @@ impl Shape {
         })
     }
 
-    /// The spline of a recorded pulse whose samples are `spacing` samples of the trace apart. It is scaled to unit height, and its origin
-    /// is where the first flank passes half of that, as with impacts of which no shape is known.
+    /// The spline of a recorded pulse whose samples are `spacing` samples of the trace apart. Its level before the pulse is taken off, it is
+    /// turned around where it is clearly deeper than high, as a trace is, and scaled to unit height; its origin is where the first flank
+    /// passes half of that, as with impacts of which no shape is known.
+    ///
+    /// Noise of the record is no shape: the spline has the fewest knots that leave no more than the noise before the pulse (V. A. Morozov,
+    /// Soviet Math. Dokl. 7 (1966) 414).
     ///
     /// `None` where it has fewer than five samples or more than ten thousand, missing or equal ones.
     pub fn recorded(values: &[f64], spacing: f64) -> Option<Shape> {
@@ -81,19 +90,43 @@ impl Shape {
         if !sampled || values.iter().any(|v| !v.is_finite()) {
             return None;
         }
-        let peak = values.iter().copied().fold(0.0, |m: f64, v| if v.abs() > m.abs() { v } else { m });
-        let unit: Vec<f64> = values.iter().map(|v| v / peak).collect();
+        let (level, noise) = before(values);
+        let extreme = |sign: f64| values.iter().map(|v| sign * (v - level)).fold(0.0, f64::max);
+        let (high, deep) = (extreme(1.0), extreme(-1.0));
+        let height = if deep > TURNED * high { -deep } else { high };
+        if height == 0.0 || values.iter().all(|v| *v == values[0]) {
+            return None;
+        }
+        let unit: Vec<f64> = values.iter().map(|v| (v - level) / height).collect();
         let above = unit.iter().position(|v| *v >= 0.5)?;
         let origin = match above.checked_sub(1) {
             Some(before) => above as f64 - (unit[above] - 0.5) / (unit[above] - unit[before]),
             None => 0.0,
         };
-        if unit.iter().all(|v| *v == unit[0]) {
-            return None;
-        }
         let at = |i: usize| (i as f64 - origin) * spacing;
         let points: Vec<(f64, f64)> = unit.iter().enumerate().map(|(i, v)| (at(i), *v)).collect();
-        Shape::through(&points, at(0), spacing, n - 1)
+        let smooth = noise.and_then(|noise| Shape::smooth(&points, (noise / height).powi(2)));
+        smooth.or_else(|| Shape::through(&points, at(0), spacing, n - 1))
+    }
+
+    /// The spline of the fewest knots, by steps of √2, whose residuals have no more than this variance; `None` where only one through
+    /// all points does.
+    fn smooth(points: &[(f64, f64)], variance: f64) -> Option<Shape> {
+        let n = points.len();
+        let (start, end) = (points.first()?.0, points.last()?.0);
+        let mut knots = 4.0;
+        while knots <= (n / 2) as f64 {
+            let whole = knots as usize;
+            let shape = Shape::through(points, start, (end - start) / knots.floor(), whole)?;
+            let left: f64 = points.iter().map(|(x, y)| (y - shape.at(*x).0).powi(2)).sum();
+            // A variance of n values scatters by √(2/n).
+            let free = n.saturating_sub(whole + 3) as f64;
+            if left <= variance * free * (1.0 + (2.0 / free).sqrt()) {
+                return Some(shape);
+            }
+            knots *= std::f64::consts::SQRT_2;
+        }
+        None
     }
 
     /// The spline nearest to points (time in samples, value) over `span`, with knots no closer than samples: a shape that may bend from
@@ -233,6 +266,25 @@ impl Shape {
     }
 }
 
+/// Level of a recorded pulse before its first flank, and the standard deviation of noise there where there are enough samples for one.
+///
+/// What precedes the flank is what stays within a tenth of the range of values from the first one; of that the first half, where no
+/// flank begins yet. A record that does not come back at least half-way begins inside its pulse: its level is 0.
+fn before(values: &[f64]) -> (f64, Option<f64>) {
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let (Some(first), Some(last)) = (values.first(), values.last()) else { return (0.0, None) };
+    let quiet = values.iter().take_while(|v| (*v - first).abs() <= 0.1 * (high - low)).count();
+    let rest =
+        values.get(..quiet / 2).filter(|r| !r.is_empty() && (last - first).abs() <= 0.5 * (high - low));
+    let Some(rest) = rest else { return (0.0, None) };
+    let level = rest.iter().sum::<f64>() / rest.len() as f64;
+    // From differences of neighbours, which know nothing of a slow rise.
+    let squares: f64 = rest.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum();
+    let noise = (rest.len() >= 8).then(|| (squares / 2.0 / (rest.len() - 1) as f64).sqrt());
+    (level, noise)
+}
+
 /// Samples between two times.
 fn samples(n: usize, from: f64, to: f64) -> Range<usize> {
     let first = from.ceil().max(0.0) as usize;
@@ -275,6 +327,46 @@ mod tests {
         // Cubic splines err by (h⁴/384) |s⁗| = 0.25⁴/384 · 3/1.2⁴ = 1.5e-5 of the height; slopes are about 0.5.
         assert!((found.time - 17.37).abs() < 3e-5, "{found:?}");
         assert!((found.height - 0.7).abs() < 3e-5, "{found:?}");
+    }
+
+    #[test]
+    fn level_sign_and_noise_of_a_recorded_pulse_are_no_shape() {
+        let mut normal = crate::measure::synthetic::Normal(0x5a9e);
+        // A pulse and a shallower swing after it; five samples of the record to one of the trace.
+        let swing = |x: f64| gauss(x) - 0.9 * gauss(x - 4.0);
+        let plain: Vec<f64> = (0..150).map(|i| swing((f64::from(i) - 75.0) / 5.0)).collect();
+        let times = |shape: &Shape| -> Vec<f64> {
+            (0..20)
+                .map(|k| {
+                    let at = 20.0 + 0.05 * f64::from(k);
+                    let values: Vec<f64> = (0..50).map(|i| swing(f64::from(i) - at)).collect();
+                    shape.matched(&values, at - 1.4, 1.0).unwrap().time - at
+                })
+                .collect()
+        };
+        let spread = |t: &[f64]| {
+            let mean = t.iter().sum::<f64>() / t.len() as f64;
+            (t.iter().map(|t| (t - mean).powi(2)).sum::<f64>() / t.len() as f64).sqrt()
+        };
+        let clean = times(&Shape::recorded(&plain, 0.2).unwrap());
+        // Gain, level and sign change nothing: the swing is 0.9 of the height, and turned around 1.11, less than 1.2.
+        for (gain, level) in [(3.0, 0.3), (-1.0, 5.0)] {
+            let moved: Vec<f64> = plain.iter().map(|v| gain * v + level).collect();
+            let shape = Shape::recorded(&moved, 0.2).unwrap();
+            if gain > 0.0 {
+                let off = times(&shape);
+                assert!(off.iter().zip(&clean).all(|(a, b)| (a - b).abs() < 1e-3), "{off:?} {clean:?}");
+            } else {
+                // The first swing is now down, and deeper by 1.11: the pulse stays, and the flank to its second swing, whose top lies
+                // 1.41 samples behind half its height, is the first that rises.
+                assert!((shape.at(1.41).0 - 1.0).abs() < 0.05 && shape.at(-2.59).0 < -1.0);
+            }
+        }
+        let noisy: Vec<f64> = plain.iter().map(|v| v + 0.05 * normal.next() + 0.1).collect();
+        let off = times(&Shape::recorded(&noisy, 0.2).unwrap());
+        // Common to all is that the noise moves half the height; what differs is a matching through noise of 0.05/√5 a sample of
+        // the trace over Σ(slope)² of 1.5: 0.018 samples.
+        assert!(spread(&off) < 0.018, "{off:?}");
     }
 
     #[test]

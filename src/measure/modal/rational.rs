@@ -33,8 +33,11 @@ impl Pole {
     /// The mode without a decay σ in 1/s that an exponential window added to a response of (iω)^`power` times the receptance.
     ///
     /// The window moves the pole s = −ζωᵣ ± iωᵣ√(1 − ζ²) by −σ and leaves its residue, which is `s^power` A/(2iωᵣ√(1 − ζ²)).
-    /// `None` where it decays by less than σ.
+    /// `None` where it decays by less than σ, or does not oscillate (ζ of 1 and more).
     pub fn without_decay(&self, decay: f64, power: i32) -> Option<Pole> {
+        if self.zeta.is_nan() || self.zeta.abs() >= 1.0 {
+            return None;
+        }
         let own = TAU * self.frequency;
         let with = Complex64::new(-self.zeta * own, own * (1.0 - self.zeta * self.zeta).sqrt());
         let pole = with + decay;
@@ -48,8 +51,9 @@ impl Pole {
 pub(super) struct Rational {
     /// By frequency.
     pub modes: Vec<Pole>,
-    /// Standard uncertainties of frequency, damping ratio and magnitude of the modal constant.
-    pub std: Vec<[f64; 3]>,
+    /// Standard uncertainties of frequency, damping ratio, magnitude and phase in rad of the modal constant; the last is NaN without
+    /// phases.
+    pub std: Vec<[f64; 4]>,
     /// The fitted response at its lines.
     pub fitted: Vec<Complex64>,
     pub whiteness: Whiteness,
@@ -271,7 +275,7 @@ const KNOWN: f64 = 0.5;
 impl Rational {
     /// Which modes stand: damped, known, and where their peaks, in the same order, are.
     pub fn sound(&self, measured: &Measured, peaks: &[Peak]) -> Vec<bool> {
-        let stands = |((mode, std), peak): ((&Pole, &[f64; 3]), &Peak)| {
+        let stands = |((mode, std), peak): ((&Pole, &[f64; 4]), &Peak)| {
             let f = &measured.frequency;
             let lines = f[peak.at + 1] - f[peak.at - 1];
             mode.zeta > 0.0
@@ -310,7 +314,7 @@ impl Scaled<'_> {
         let place = |i: usize| free.iter().position(|f| *f == i).unwrap_or(0);
         let p = &fit.parameters;
         let to_constant = self.height * (TAU * self.unit).powi(2 - self.power);
-        let (mut modes, mut std): (Vec<Pole>, Vec<[f64; 3]>) = (Vec::new(), Vec::new());
+        let (mut modes, mut std): (Vec<Pole>, Vec<[f64; 4]>) = (Vec::new(), Vec::new());
         for (m, (f, zeta)) in self.starts.iter().enumerate() {
             let (own, damping) = self.shape(p, m);
             let a = Complex64::new(p[4 * m + 2], if self.magnitude_only { 0.0 } else { p[4 * m + 3] });
@@ -318,12 +322,16 @@ impl Scaled<'_> {
             // |a| moves with its real part by cos and with its imaginary part by sin of its phase.
             let (cos, sin) = (a.re / a.norm(), a.im / a.norm());
             let (re, im) = (place(4 * m + 2), place(4 * m + 3));
-            let variance = if self.magnitude_only {
-                fit.covariance(re, re)
+            // The phase, times |a|, moves with its real part by −sin and with its imaginary part by cos.
+            let along = |re_part: f64, im_part: f64| {
+                re_part * re_part * fit.covariance(re, re)
+                    + im_part * im_part * fit.covariance(im, im)
+                    + 2.0 * re_part * im_part * fit.covariance(re, im)
+            };
+            let (variance, across) = if self.magnitude_only {
+                (fit.covariance(re, re), f64::NAN)
             } else {
-                cos * cos * fit.covariance(re, re)
-                    + sin * sin * fit.covariance(im, im)
-                    + 2.0 * sin * cos * fit.covariance(re, im)
+                (along(cos, sin), along(-sin, cos))
             };
             // Fits of fewer than three degrees of freedom were refused.
             let widened = whiteness.inflation * student(fit.degrees_of_freedom()).unwrap_or(f64::NAN);
@@ -332,6 +340,7 @@ impl Scaled<'_> {
                     f * zeta * fit.std(place(4 * m)),
                     zeta * fit.std(place(4 * m + 1)),
                     to_constant * variance.sqrt(),
+                    across.sqrt() / a.norm(),
                 ]
                 .map(|s| s * widened),
             );
@@ -356,5 +365,22 @@ impl Scaled<'_> {
             whiteness,
             noise,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_decay_is_taken_off_what_oscillates_and_decays_by_more() {
+        let pole = |zeta| Pole { frequency: 100.0 / TAU, zeta, constant: Complex64::new(1.0, 0.0) };
+        // s = −10 ± 100i√0.99 without 4 is −6 ± 100i√0.99.
+        let own = pole(0.1).without_decay(4.0, 0).unwrap();
+        let expected = 36f64 + 9900.0;
+        assert!((TAU * own.frequency / expected.sqrt() - 1.0).abs() < 1e-12);
+        assert!((own.zeta / (6.0 / expected.sqrt()) - 1.0).abs() < 1e-12);
+        assert!(pole(0.1).without_decay(11.0, 0).is_none());
+        assert!([1.0, 1.5, f64::NAN].iter().all(|zeta| pole(*zeta).without_decay(0.0, 2).is_none()));
     }
 }

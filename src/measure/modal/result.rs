@@ -7,6 +7,7 @@ use super::response::hertz;
 use super::{Measured, Pole};
 use crate::measure::Estimate;
 use crate::units::notation::{estimate, significant};
+use num_complex::Complex64;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
@@ -21,11 +22,14 @@ pub struct ModalOptions {
     pub least_coherence: f64,
     /// Decay in 1/s that an exponential window added to the response, which is taken off ζ. Default: none.
     pub decay: Option<f64>,
+    /// Whether the function was averaged over the blows of a hammer, each a record as long as one over the distance of the lines.
+    /// Default: false.
+    pub from_blows: bool,
 }
 
 impl Default for ModalOptions {
     fn default() -> ModalOptions {
-        ModalOptions { band: None, mass: None, least_coherence: 0.5, decay: None }
+        ModalOptions { band: None, mass: None, least_coherence: 0.5, decay: None, from_blows: false }
     }
 }
 
@@ -45,8 +49,11 @@ pub struct Mode {
     pub frequency: Estimate,
     /// Damping ratio.
     pub zeta: Estimate,
-    /// Magnitude of the modal constant A of the receptance A/(ωᵣ² − ω² + 2iζωᵣω), 1/kg.
+    /// Modal constant A of the receptance A/(ωᵣ² − ω² + 2iζωᵣω), 1/kg: its magnitude, negative where its phase is within 45° of
+    /// 180°. In a mode shape the signs are the directions.
     pub modal_constant: Estimate,
+    /// Phase of the modal constant in degrees: 0 or 180° for a mode of which all parts move in step. `None` without phases.
+    pub phase: Option<Estimate>,
     /// How these were found.
     pub method: String,
     /// k = m(2πf)² in N/m; `None` without a mass.
@@ -69,7 +76,7 @@ pub struct ByMethod {
     pub frequency: Estimate,
     /// Damping ratio.
     pub zeta: Option<Estimate>,
-    /// Magnitude of the modal constant.
+    /// Modal constant, with the sign of [`Mode::modal_constant`].
     pub modal_constant: Option<Estimate>,
     /// What limits it; empty for nothing.
     pub note: String,
@@ -86,6 +93,18 @@ pub struct ModePicture {
 
 /// What a fit leaves, by root mean square, must be less than this part of the highest line; else these are no modes as modelled.
 const EXPLAINED: f64 = 0.1;
+
+/// So far from 0 or 180°, in degrees, a modal constant has a sign.
+const IN_STEP: f64 = 45.0;
+
+/// The share of a blow's record that lies before the blow.
+const BEFORE: f64 = 1.0 / crate::measure::spectral::BEFORE as f64;
+
+/// |A|, negative where its phase is nearer to 180° than to ±90°.
+fn signed(constant: Complex64) -> f64 {
+    let opposite = constant.arg().to_degrees().abs() > 180.0 - IN_STEP;
+    if opposite { -constant.norm() } else { constant.norm() }
+}
 
 fn stiffness(frequency: &Estimate, mass: Option<f64>) -> Option<Estimate> {
     let k = mass? * (TAU * frequency.value).powi(2);
@@ -129,7 +148,7 @@ pub(super) fn report(
         let bandwidths = 2.0 * pole.zeta * pole.frequency * (group.lines.len() - 1) as f64;
         let span = measured.frequency[group.lines.end - 1] - measured.frequency[group.lines.start];
         let leakage = 4.0 / 3.0 * (span / bandwidths).powi(2);
-        if measured.coherence.is_some() && leakage * pole.zeta > std[1] {
+        if !options.from_blows && measured.coherence.is_some() && leakage * pole.zeta > std[1] {
             warnings.push(format!(
                 "At {at} Hz the bandwidth is {:.1} lines: if segments of a lasting excitation were averaged (Hann window), leakage makes ζ too large, by about {} % where the fit rests on the top of the peak and less where it rests on the flanks, which is not in its uncertainty. Longer segments show.",
                 bandwidths / span,
@@ -137,13 +156,48 @@ pub(super) fn report(
             ));
         }
         let Some(own) = pole.without_decay(options.decay.unwrap_or(0.0), measured.power()) else {
-            warnings.push(format!(
-                "The peak at {at} Hz decays by less than the exponential window added: it is no mode, or the window another than stated."
-            ));
+            warnings.push(if pole.zeta >= 1.0 {
+                format!(
+                    "The peak at {at} Hz is no mode that oscillates: the fit gives ζ = {}.",
+                    estimate(pole.zeta, Some(std[1]))
+                )
+            } else {
+                format!(
+                    "The peak at {at} Hz decays by less than the exponential window added: it is no mode, or the window another than stated."
+                )
+            });
             continue;
         };
-        // ζωᵣ is known as before.
-        let std = &[std[0], std[1] * pole.frequency / own.frequency, std[2]];
+        let mut std = *std;
+        if options.from_blows {
+            // A record that ends T after the blow lacks e^(sT − iωT) of a mode's part. On lines 1/(T + t) apart, t before the blow,
+            // that is a factor on A, which turns by t·ω from line to line as a delay of t would: seen over the width of the
+            // peak, t·ζωᵣ, it changes ζ and ωᵣ, too.
+            let decay = TAU * pole.frequency * pole.zeta;
+            let record = (group.lines.len() - 1) as f64 / span;
+            let left = (-decay * (1.0 - BEFORE) * record).exp();
+            let turned = left * decay * BEFORE * record;
+            if left * pole.constant.norm() > std[2] {
+                warnings.push(format!(
+                    "At {at} Hz {} % of the mode's response is left when the record of a blow ends: its modal constant may be off by as much, which is in the uncertainty. Longer records (--segment) or an exponential window (--left-at-end) help.",
+                    significant(100.0 * left, 2)
+                ));
+            }
+            std[0] = std[0].hypot(turned * pole.zeta * pole.frequency);
+            std[1] = std[1].hypot(turned * pole.zeta);
+            std[2] = std[2].hypot(left * pole.constant.norm());
+            std[3] = std[3].hypot(left);
+        }
+        let phase = own.constant.arg().to_degrees();
+        if !measured.magnitude_only && (IN_STEP..180.0 - IN_STEP).contains(&phase.abs()) {
+            warnings.push(format!(
+                "The modal constant at {at} Hz has a phase of {phase:.0}° and no sign: the parts do not move in step, or the response came late."
+            ));
+        }
+        // ζωᵣ is known as before, and the constant has the factor that its uncertainty has.
+        std[1] *= pole.frequency / own.frequency;
+        std[2] *= own.constant.norm() / pole.constant.norm();
+        let std = &std;
         modes.push(mode(measured, group, peak.at, fit, (&own, std), options));
     }
     reversed
@@ -154,7 +208,7 @@ fn mode(
     group: &Group,
     at: usize,
     fit: &Rational,
-    (pole, std): (&Pole, &[f64; 3]),
+    (pole, std): (&Pole, &[f64; 4]),
     options: &ModalOptions,
 ) -> Mode {
     let lines = group.lines.clone();
@@ -165,10 +219,15 @@ fn mode(
         many => format!(", {many} modes together"),
     };
     let method = format!("rational fit{together}, {}", fit.noise);
-    let estimate = |value, std, unit| Estimate::new(value, std, unit, n, method.clone());
-    let frequency = estimate(pole.frequency, Some(std[0]), "Hz");
-    let zeta = estimate(pole.zeta, Some(std[1]), "1");
-    let modal_constant = estimate(pole.constant.norm(), Some(std[2]), "1/kg");
+    // What the phases of residual terms and other modes do to magnitudes is in no residual.
+    let known = !measured.magnitude_only;
+    let estimate =
+        |value, std: f64, unit| Estimate::new(value, known.then_some(std), unit, n, method.clone());
+    let frequency = estimate(pole.frequency, std[0], "Hz");
+    let zeta = estimate(pole.zeta, std[1], "1");
+    let modal_constant =
+        estimate(if known { signed(pole.constant) } else { pole.constant.norm() }, std[2], "1/kg");
+    let phase = known.then(|| estimate(pole.constant.arg().to_degrees(), std[3].to_degrees(), "°"));
     let mut by = vec![ByMethod {
         method: "rational fit",
         frequency: frequency.clone(),
@@ -200,7 +259,7 @@ fn mode(
                     method: "circle fit",
                     frequency: plain(circle.pole.frequency, "Hz"),
                     zeta: Some(plain(circle.pole.zeta, "1")),
-                    modal_constant: Some(plain(circle.pole.constant.norm(), "1/kg")),
+                    modal_constant: Some(plain(signed(circle.pole.constant), "1/kg")),
                     note: String::new(),
                 };
                 drawn = Some(circle);
@@ -219,6 +278,7 @@ fn mode(
         frequency,
         zeta,
         modal_constant,
+        phase,
         method,
         lines: (f[0], f[n - 1], n),
         by,

@@ -18,7 +18,8 @@ pub(super) fn doubts(
 ) -> Vec<String> {
     let mut said = Vec::new();
     let xi = &result.xi;
-    let spread = 2.0 * xi.std.unwrap_or(0.0);
+    // Without an uncertainty, as behind an instrument that is not known, ξ may be off by 0.1 and more.
+    let spread = xi.std.map_or(0.1, |s| 2.0 * s);
     if xi.value + spread >= 0.5 {
         said.push(
             "ξ is, or may be, 1/2 or more: the force is then largest at the onset, the pulse has no peak inside, and ξ hangs on the shape of the onset."
@@ -26,7 +27,7 @@ pub(super) fn doubts(
         );
     }
     if xi.value - spread < 0.0 {
-        said.push("ξ is not above 0 by more than its uncertainty: no damping is seen.".to_owned());
+        said.push("ξ is not above 0 by more than it may be off: no damping is seen.".to_owned());
     }
     match &options.instrument {
         Instrument::Flat => {}

@@ -3,7 +3,7 @@
 use super::fit::{Fitted, Model, Samples};
 use super::locate::Located;
 use super::result::{PulseCurve, PulseFit, PulsePicture, propagated};
-use super::{HuntCrossley, Instrument, LowPass, PulseOptions};
+use super::{HuntCrossley, LowPass};
 use crate::error::{Error, Result};
 use crate::measure::Estimate;
 use crate::measure::residuals::{Whiteness, aicc};
@@ -155,12 +155,13 @@ impl<'a> View<'a> {
         samples: &Samples,
         fitted: &Fitted,
         whiteness: &Whiteness,
-        options: &PulseOptions,
+        mass: Option<f64>,
+        told: bool,
     ) -> PulseFit {
         let n = fitted.fit.residuals.len();
         let method = "least squares";
         let trust = samples.trust(fitted, whiteness);
-        let widened = if options.instrument == Instrument::Unknown { f64::NAN } else { trust.factor() };
+        let widened = if told { trust.factor() } else { f64::NAN };
         let mut parameters = BTreeMap::new();
         let mut put = |name, i: usize, factor: f64, shift: f64, unit| {
             let value = shift + factor * fitted.fit.parameters[i];
@@ -170,7 +171,7 @@ impl<'a> View<'a> {
         put("onset", 0, self.length, self.seconds(0.0), "s");
         let unit = self.trace.meta.quantity.symbol();
         put("baseline", 1, self.height, 0.0, unit);
-        if let Ok(factor) = self.to_velocity(options.mass) {
+        if let Ok(factor) = self.to_velocity(mass) {
             put("initial_velocity", 2, factor * self.found.height.signum(), 0.0, "m/s");
         }
         match fitted.model {

@@ -49,7 +49,9 @@ impl Plan {
         meta.notes.push(("point".to_owned(), heading.name()));
         meta.declared_n = Some(heading.n);
         meta.step("read", &[("file", &file), ("format", &"uff"), ("case", &heading.layout.case())]);
-        let factor = unit(heading, system, options, &mut meta);
+        let coherence = matches!(heading.function, 6 | 21 | 26)
+            || Stated::of(&heading.id[4]).scaling == Some(Scaling::Coherence);
+        let factor = unit(heading, system, options, coherence, &mut meta);
         let (axis, abscissa_factor) = abscissa::kind_and_factor(heading, options, &mut meta);
         let complex = heading.layout.complex;
         if complex && axis == AxisKind::Time {
@@ -207,9 +209,10 @@ impl Plan {
 }
 
 /// Settles unit and quantity; gives the factor to SI.
-fn unit(heading: &Heading, system: &System, options: &Options, meta: &mut Meta) -> f64 {
+fn unit(heading: &Heading, system: &System, options: &Options, coherence: bool, meta: &mut Meta) -> f64 {
     let Ordinate { unit, factor, written, doubts } = Ordinate::of(heading, system);
-    if let Some(said) = &options.unit {
+    // A coherence has none, whatever that of the function beside it is.
+    if let Some(said) = options.unit.as_ref().filter(|_| !coherence) {
         if unit.is_known() && (unit.dimension() != said.dimension() || factor != said.factor()) {
             meta.doubt(format!("The file says the unit {written}; {said} was given and is used."));
         }

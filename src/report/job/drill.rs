@@ -1,15 +1,12 @@
 //! Hammer drills of a campaign.
 
-use super::{JobOptions, Progress, file_name, merge, or_left_out, slugs};
+use super::{JobOptions, PARTS, Progress, file_name, merge, or_left_out, slugs};
 use crate::campaign::Campaign;
 use crate::error::Result;
 use crate::measure::drill::Drill;
 use crate::report::{Figure, Output, pictures, tables};
 use serde::Serialize;
 use std::cell::Cell;
-
-/// Steps of progress through a drill's record.
-const PARTS: usize = 100;
 
 /// What a drill's record gave.
 #[derive(Debug, Clone, PartialEq, Serialize)]

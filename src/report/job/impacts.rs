@@ -4,7 +4,7 @@ use super::{JobOptions, file_name, merge, or_left_out};
 use crate::campaign::{Campaign, RecordEntry};
 use crate::error::Result;
 use crate::measure::impacts::{Impacts, ImpactsOptions, Shape, impacts as find};
-use crate::read::Recording;
+use crate::read::{Reader, Recording};
 use crate::record::Trace;
 use crate::report::{Figure, pictures};
 use serde::Serialize;
@@ -53,10 +53,11 @@ pub(super) fn impacts(
         };
         let shape = match &entry.shape {
             Some(file) => {
-                let record = entry.record();
-                let path = campaign.beside(&record, file, options.allow_outside)?;
-                let pulse = record.reader().rate_of_base_band().from_path(path)?.trace(None, None)?;
-                Some(Shape::of(&pulse, &trace)?)
+                let path = campaign.beside(&entry.record(), file, options.allow_outside)?;
+                let pulse = Reader::new().rate(entry.shape_rate).from_path(path)?;
+                let shape = pulse.trace(None, None).and_then(|pulse| Shape::of(&pulse, &trace));
+                let Some(shape) = or_left_out(shape, &name, warnings)? else { continue };
+                Some(shape)
             }
             None => None,
         };

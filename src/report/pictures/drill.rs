@@ -1,5 +1,6 @@
 //! Hammer drills: the average turn, a few turns as measured, motion against noise, speed over time.
 
+use super::lettered;
 use crate::measure::drill::{Drill, Impact};
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 
@@ -60,7 +61,7 @@ fn average(name: &str, drill: &Drill) -> Figure {
         Some(s) => format!("{}, corner {:.0} Hz", s.kind, s.corner),
         None => "not smoothed".to_owned(),
     };
-    Figure::double(format!("Average turn, {name}")).height(130.0).shared_x().panel(above).panel(below).caption(format!(
+    lettered(Figure::double(format!("Average turn, {name}")).height(130.0).shared_x().panel(above).panel(below)).caption(format!(
         "Mean of {} turns at {:.2} Hz with the scatter from turn to turn, which ends where no turn went further; {smoothed}. Displacement by integration over whole turns. {marked} of {} impacts are marked.{}",
         drill.averaged,
         drill.speed.value,
@@ -129,11 +130,7 @@ fn trace(name: &str, drill: &Drill) -> Figure {
         below = below.with(Series::vertical("", *edge));
     }
     let caption = "A few turns in the middle of the record, as measured: drop-outs are not bridged here. Vertical lines are the edges of the reference that begin a turn.";
-    Figure::double(format!("Trace, {name}"))
-        .height(110.0)
-        .shared_x()
-        .panel(above)
-        .panel(below)
+    lettered(Figure::double(format!("Trace, {name}")).height(110.0).shared_x().panel(above).panel(below))
         .caption(caption)
 }
 

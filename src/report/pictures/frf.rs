@@ -51,7 +51,7 @@ pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Fig
 /// The Nyquist plane around the modes, at most four, with the circle where one was fitted; `None` without phases or modes.
 pub fn nyquist(title: &str, measured: &Measured, modes: &[Mode]) -> Option<Figure> {
     let mut largest: Vec<&Mode> = modes.iter().filter(|m| m.picture.circle.is_some()).collect();
-    largest.sort_by(|a, b| b.modal_constant.value.total_cmp(&a.modal_constant.value));
+    largest.sort_by(|a, b| b.modal_constant.value.abs().total_cmp(&a.modal_constant.value.abs()));
     largest.truncate(4);
     largest.sort_by(|a, b| a.frequency.value.total_cmp(&b.frequency.value));
     if measured.magnitude_only || largest.is_empty() {

@@ -24,8 +24,10 @@ pub fn pulse(title: &str, result: &PulseResult) -> Option<Figure> {
         let (t, v): (Vec<f64>, Vec<f64>) =
             picture.samples.iter().filter(|s| s.2 == fitted).map(|s| (s.0 - start, s.1)).unzip();
         if !t.is_empty() {
-            // Markers lie over lines; many samples are a line, under the models.
+            // Markers lie over lines; many samples are a line, under the models, with gaps where samples are left out.
             let series = if fitted && t.len() > DENSE {
+                let gaps = |s: &(f64, f64, bool)| (s.0 - start, if s.2 { s.1 } else { f64::NAN });
+                let (t, v): (Vec<f64>, Vec<f64>) = picture.samples.iter().map(gaps).unzip();
                 Series::line(name, t, v).stroke(Stroke::Solid)
             } else {
                 Series::points(name, t, v).marker(marker)

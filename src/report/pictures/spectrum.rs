@@ -1,9 +1,10 @@
 //! Spectra, and frequency response functions with their band and coherence.
 
+use super::lettered;
 use super::response::capital;
 use crate::measure::spectral::{Lines, SpectralResult};
 use crate::record::{Scaling, Spectrum};
-use crate::report::{AxisSpec, Figure, Ink, Legend, Plot, Series};
+use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series};
 use crate::signal::transfer::Transfer;
 use crate::units::Quantity;
 use num_complex::Complex64;
@@ -14,16 +15,63 @@ pub fn lines(title: &str, result: &SpectralResult) -> Figure {
         let (f, level): (Vec<f64>, Vec<f64>) =
             result.frequency.iter().zip(&result.level).filter(|line| *line.0 > 0.0).unzip();
         let plot = Plot::new(AxisSpec::frequency(), AxisSpec::new("Level", unit.clone()));
-        return Figure::double(title).panel(plot.with(Series::line("", f, level)));
+        return drawn(title, plot, (f, level), result);
     }
     match &result.found {
-        Lines::Spectrum(found) => spectrum(title, found),
+        Lines::Spectrum(found) => {
+            let (plot, lines) = axes(found);
+            drawn(title, plot, lines, result)
+        }
         Lines::Transfer(found) => transfer(title, found),
     }
 }
 
+/// Lines of which more are not seen in print: a curve through all would fill the frame.
+const LINES: usize = 4000;
+
+/// The curve, or of very many lines the largest of as many as print shows side by side; and the sines that were fitted.
+fn drawn(title: &str, plot: Plot, lines: (Vec<f64>, Vec<f64>), result: &SpectralResult) -> Figure {
+    let together = lines.0.len().div_ceil(LINES).max(1);
+    let at = |f: f64| {
+        // A sine stands on the higher of the lines beside it.
+        let next = lines.0.partition_point(|x| *x < f);
+        let beside = [next.checked_sub(1), Some(next)];
+        beside.into_iter().flatten().filter_map(|k| lines.1.get(k)).copied().fold(f64::NAN, f64::max)
+    };
+    let tones: Vec<(f64, f64)> =
+        result.tones.iter().map(|t| (t.frequency.value, at(t.frequency.value))).collect();
+    let (x, y): (Vec<f64>, Vec<f64>) = if together == 1 {
+        lines
+    } else {
+        let parts = lines.0.chunks(together).zip(lines.1.chunks(together));
+        let largest = |(f, v): (&[f64], &[f64])| {
+            let lines = f.iter().copied().zip(v.iter().copied()).filter(|line| !line.1.is_nan());
+            lines.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((f[0], f64::NAN))
+        };
+        parts.map(largest).unzip()
+    };
+    let mut plot = plot.with(Series::line("", x, y));
+    let mut said = Vec::new();
+    if !tones.is_empty() {
+        let (f, v): (Vec<f64>, Vec<f64>) = tones.into_iter().unzip();
+        plot = plot.with(Series::points("", f, v).marker(Marker::OpenCircle).ink(Ink::Nth(1)));
+        said.push("Circles mark the sines that were fitted.".to_owned());
+    }
+    if together > 1 {
+        said.push(format!("Of {together} lines side by side the largest is drawn."));
+    }
+    let figure = Figure::double(title).panel(plot);
+    if said.is_empty() { figure } else { figure.caption(said.join(" ")) }
+}
+
 /// Lines of a spectrum over a logarithmic axis.
 pub fn spectrum(title: &str, spectrum: &Spectrum) -> Figure {
+    let (plot, (f, values)) = axes(spectrum);
+    Figure::double(title).panel(plot.with(Series::line("", f, values)))
+}
+
+/// The axes of a spectrum, and its lines.
+fn axes(spectrum: &Spectrum) -> (Plot, (Vec<f64>, Vec<f64>)) {
     // A quantity of no name goes without.
     let quantity = match spectrum.meta.quantity {
         Quantity::Other => String::new(),
@@ -38,9 +86,7 @@ pub fn spectrum(title: &str, spectrum: &Spectrum) -> Figure {
     let y = AxisSpec::new(capital(&label), spectrum.meta.unit.symbol().replace("^2", "²")).log();
     // The line at 0 Hz is a mean, often lost or huge: it would stretch a logarithmic axis.
     let lines = spectrum.axis.values().into_iter().zip(spectrum.values.magnitudes());
-    let (f, values): (Vec<f64>, Vec<f64>) = lines.filter(|line| line.0 > 0.0).unzip();
-    let plot = Plot::new(AxisSpec::frequency(), y).with(Series::line("", f, values));
-    Figure::double(title).panel(plot)
+    (Plot::new(AxisSpec::frequency(), y), lines.filter(|line| line.0 > 0.0).unzip())
 }
 
 /// Magnitude with a band of two standard deviations, phase (where the coherence is 0.5 or more), coherence.
@@ -68,11 +114,6 @@ pub fn transfer(title: &str, transfer: &Transfer) -> Figure {
         .with(Series::phase("", &f, &phase).ink(Ink::Nth(0)));
     let below = Plot::new(AxisSpec::frequency(), AxisSpec::new("Coherence", "").limits(0.0, 1.0))
         .with(Series::line("", f, transfer.coherence.clone()).ink(Ink::Nth(0)));
-    Figure::double(title)
-        .height(140.0)
-        .shared_x()
-        .panel(above)
-        .panel(middle)
-        .panel(below)
+    lettered(Figure::double(title).height(140.0).shared_x().panel(above).panel(middle).panel(below))
         .caption("The phase is drawn where the coherence is 0.5 or more.")
 }

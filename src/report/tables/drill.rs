@@ -13,6 +13,7 @@ pub fn drill(drills: &[(&str, &Drill)]) -> Table {
         let mut row = |what: &str, value: Cell, unit: &str, n: usize| {
             table.push([Cell::from(*name), Cell::from(what), value, Cell::from(unit), Cell::from(n)]);
         };
+        let first = if d.groups.len() > 1 { "group 0: " } else { "" };
         let estimates: [(&str, Option<&Estimate>); 8] = [
             ("speed", Some(&d.speed)),
             ("velocity before impact", d.before.as_ref()),
@@ -25,7 +26,8 @@ pub fn drill(drills: &[(&str, &Drill)]) -> Table {
         ];
         for (what, estimate) in estimates.into_iter().filter_map(|(w, e)| Some((w, e?))) {
             let unit = if what.starts_with("phase") { "turn" } else { estimate.unit };
-            row(what, Cell::from(estimate), unit, estimate.n);
+            let of = if matches!(what, "speed" | "stroke") { "" } else { first };
+            row(&format!("{of}{what}"), Cell::from(estimate), unit, estimate.n);
         }
         for (number, g) in d.groups.iter().enumerate().skip(1) {
             let all = [

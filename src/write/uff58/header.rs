@@ -1,7 +1,7 @@
 //! The eleven header lines of a record.
 
 use super::{Layout, field};
-use crate::record::{ADDED_DECAY, Axis, AxisKind, Meta, Record, Scaling, Spectrum};
+use crate::record::{ADDED_DECAY, Axis, AxisKind, FROM_BLOWS, Meta, Record, Scaling, Spectrum};
 use crate::units::{Quantity, Unit};
 use std::fmt::Write as _;
 use std::io::Write;
@@ -43,6 +43,9 @@ impl Header {
         }
         if let (Record::Frf(_), Some(decay)) = (record, meta.added_decay()) {
             id[4] = format!("{ADDED_DECAY}{decay}");
+        }
+        if matches!(record, Record::Frf(_)) && meta.from_blows() {
+            FROM_BLOWS.clone_into(&mut id[3]);
         }
         let before = read.and_then(|line| line[..5].trim().parse().ok());
         let point = read.map_or(NOWHERE, |line| &line[5..]).to_owned();
