@@ -140,20 +140,30 @@ fn scatter_of_bounces_is_covered_whatever_is_stated_of_the_onsets() {
     let truth: f64 = 0.62;
     for timing in [1e-7, 1e-6, 1e-5, 1e-4] {
         for (flights, trains) in [(6, 1), (12, 1), (5, 5)] {
-            let (mut inside, mut squares) = (0, 0.0);
+            let (mut inside, mut open, mut squares) = (0, 0, 0.0);
             for seed in 0..CASES {
                 let mut noise = Noise::new(130_000 + seed);
                 let trains = (0..trains).map(|_| train(&mut noise, truth, flights, 0.01, timing)).collect();
                 let found = restitution(&Measured { trains, ..Measured::default() }).unwrap().restitution;
-                let score = (found.value - truth) / found.std.unwrap();
+                let Some(std) = found.std else {
+                    open += 1;
+                    continue;
+                };
+                let score = (found.value - truth) / std;
                 inside += usize::from(score.abs() < 1.96);
                 squares += score * score;
             }
-            let coverage = inside as f64 / CASES as f64;
+            // One train always has an uncertainty; five may by chance differ as if R did.
+            assert!(
+                open * 20 <= if trains > 1 { CASES } else { 0 },
+                "{timing}, {trains} of {flights}: {open}"
+            );
+            let stated = CASES - open;
+            let coverage = inside as f64 / stated as f64;
             println!(
-                "restitution, scatter 1 %, onsets {timing:e} s, {trains} trains of {flights}: {CASES} cases, seeds 130000.., 95 % coverage {:.1} %, rms z {:.2}",
+                "restitution, scatter 1 %, onsets {timing:e} s, {trains} trains of {flights}: {CASES} cases, seeds 130000.., 95 % coverage {:.1} % of {stated}, rms z {:.2}",
                 100.0 * coverage,
-                (squares / CASES as f64).sqrt()
+                (squares / stated as f64).sqrt()
             );
             // As above; between trains a scatter is allowed for that is not there, which errs to the safe side.
             let most = if trains > 1 { 0.995 } else { 0.985 };
@@ -189,9 +199,11 @@ fn scatter_between_trains_is_covered_or_refused() {
             "restitution, {trains} trains that differ by 1 %, bounces by {per_bounce}: {CASES} cases, seeds 140000.., 95 % coverage {:.1} % of {stated}",
             100.0 * inside as f64 / stated as f64
         );
-        // Two or three trains that clearly differ have no uncertainty: by 1 % where timing scatters by 1e-5 all but a few per cent of them.
-        if trains < 4 {
-            assert!(open as f64 > 0.97 * CASES as f64, "{trains}: {open}");
+        // Fewer than six trains that clearly differ have no uncertainty: by 1 % where timing scatters by 1e-5 all but a few per cent of them,
+        // fewer where the bounces scatter, too.
+        if trains < 6 {
+            let least = if per_bounce == 0.0 { 0.97 } else { 0.5 };
+            assert!(open as f64 > least * CASES as f64, "{trains}: {open}");
         } else {
             let coverage = inside as f64 / stated as f64;
             assert!(open == 0 && (0.92..=0.985).contains(&coverage), "{trains}, {per_bounce}: {coverage}");

@@ -254,8 +254,9 @@ mod tests {
 
     #[test]
     fn impacts_that_repeat_nothing_are_irregular() {
-        // Golden-ratio steps never repeat within eight impacts, at a rate of one a cycle.
-        let cycles: Vec<f64> = (0..60).map(|k| f64::from(k) + 0.8 * (f64::from(k) * 0.618).fract()).collect();
+        // Steps that grow by the golden ratio repeat nothing, at a rate of one a cycle.
+        let cycles: Vec<f64> =
+            (0..60).map(|k| f64::from(k) + 0.8 * (f64::from(k * k) * 0.618_034).fract()).collect();
         assert_eq!(locking(&cycles, &(0..60).collect::<Vec<_>>(), 0.0), Locking::Irregular);
     }
 

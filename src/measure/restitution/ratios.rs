@@ -13,6 +13,9 @@ use super::train::{Flight, Train};
 use crate::measure::residuals::student;
 use nalgebra::{DMatrix, DVector};
 
+/// Variances between trains that are averaged over.
+const STEPS: usize = 40;
+
 /// ln R, and what the flights say of its scatter.
 #[derive(Debug, Clone, Copy)]
 pub struct Fitted {
@@ -34,7 +37,7 @@ pub struct Fitted {
 /// Scatter of R is believed unless the onsets explain the ratios better by this log-likelihood: it errs to the safe side.
 const SCATTER: f64 = 2.0;
 /// Fewer trains than this show a scatter between them without a standard uncertainty of their mean.
-pub const TRAINS: usize = 4;
+pub const TRAINS: usize = 6;
 /// Steps of the logarithm (to base 10) of a variance.
 const STEP: f64 = 0.15;
 
@@ -212,7 +215,6 @@ impl Node {
             return Some(vec![of(0.0, 0.0, 1.0)]);
         }
         // τ² from a hundredth of the variance of one train on; scatter within the trains may be any part of that between them.
-        const STEPS: usize = 40;
         let own = sums.iter().map(|s| s.mm.recip()).sum::<f64>() / sums.len() as f64;
         let mut nodes = vec![of(0.0, 0.0, 0.5)];
         nodes.extend((0..STEPS).map(|i| {
