@@ -70,7 +70,7 @@ fn drops_of_one_name_with_other_heights_are_refused_with_their_line() {
             names[0], names[1]
         );
         std::fs::write(out.path().join("campaign.toml"), text).unwrap();
-        let campaign = Campaign::from_path(out.path().join("campaign.toml")).unwrap();
+        let campaign = Campaign::from_path(out.path().join("campaign.toml"))?;
         let mut output = Output::new(out.path().join("out")).unwrap();
         job::run(&campaign, JobOptions::default(), &mut output, &())
     };
@@ -80,5 +80,5 @@ fn drops_of_one_name_with_other_heights_are_refused_with_their_line() {
     let error = run([name, name], 0.01).err().unwrap();
     assert_eq!(error.exit_code(), 2);
     let text = error.to_string();
-    assert!(text.contains("another height_std") && text.contains("DROP02.CSV"), "{text}");
+    assert!(text.contains("another height_std") && text.contains("line 11"), "{text}");
 }

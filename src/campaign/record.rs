@@ -255,6 +255,8 @@ record_entry! {
         shape_rate: Option<f64>,
         /// What is known to scatter: onsets, intervals, or (default) unknown.
         scatter: Scatter,
+        /// No impact is missing: long intervals are intervals.
+        none_missed: bool,
     }
 }
 

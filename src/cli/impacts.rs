@@ -59,8 +59,9 @@ pub fn run(typed: &args::Impacts, json: bool) -> Result<()> {
         None => None,
     };
     let options = ImpactsOptions {
-        excitation: typed.excitation,
-        excitation_std: typed.excitation_std,
+        excitation: typed.excitation.map(|f| f.value),
+        excitation_std: typed.excitation_std.or(typed.excitation.map(|f| f.std)),
+        complete: typed.none_missed,
         reference,
         shape,
         scatter: match typed.scatter {

@@ -6,13 +6,15 @@
 mod burst;
 mod count;
 mod cycle;
+mod drift;
 mod hum;
 mod interval;
 mod onset;
+mod pattern;
 mod ringing;
 mod shape;
 
-pub use cycle::{PerCycle, Phase};
+pub use cycle::{PerCycle, Phase, typed};
 pub use hum::Hum;
 pub use interval::{Interval, Scatter, interval};
 pub use onset::Timing;
@@ -28,6 +30,7 @@ use cycle::{Locking, Reference};
 use onset::{Onset, onsets};
 use ringing::bursts;
 use serde::Serialize;
+use std::fmt::Write as _;
 use std::ops::Range;
 
 /// How impacts are found.
@@ -39,6 +42,8 @@ pub struct ImpactsOptions {
     pub refractory: Option<f64>,
     /// Whether mains hum is looked for and taken away. Default true.
     pub hum: bool,
+    /// Whether it is known that no impact is missed and none is too many, however uneven the intervals. Default false.
+    pub complete: bool,
     /// Frequency of the excitation in Hz, for impacts per cycle.
     pub excitation: Option<f64>,
     /// Its standard uncertainty in Hz. Default: that of the digits it is written with.
@@ -57,6 +62,7 @@ impl Default for ImpactsOptions {
             threshold: 0.125,
             refractory: None,
             hum: true,
+            complete: false,
             excitation: None,
             excitation_std: None,
             reference: None,
@@ -79,17 +85,20 @@ pub struct Impacts {
     pub median_interval: f64,
     /// Standard deviation of the intervals between neighbours that miss none, in s; null for fewer than two.
     pub spread: Option<f64>,
-    /// Serial correlation of neighbouring intervals: −0.5 where onsets are noisy, 0 where intervals jitter.
+    /// Serial correlation of neighbouring intervals, less what a pattern repeats: −0.5 where onsets are noisy, 0 where intervals jitter.
     pub serial_correlation: Option<f64>,
-    /// Impacts that should stand in intervals that are a multiple of the others.
+    /// Impacts after which the intervals repeat, where they are unlike within that pattern; null where there is none.
+    pub pattern: Option<usize>,
+    /// Impacts that should stand in intervals that are several of the others.
     pub missed: usize,
-    /// Impacts that follow another within less than half an interval.
+    /// Impacts that follow another within less than half an interval, or cut one of a pattern in two.
     pub doubled: usize,
     /// Frequency of the excitation in Hz, as given or from the reference channel.
     pub excitation: Option<f64>,
     /// Impacts per excitation cycle; null where no fraction fits or no excitation is known.
     pub per_cycle: Option<PerCycle>,
-    /// Whether impacts repeat: a fraction fits, or without an excitation, intervals spread by less than 5 %.
+    /// Whether impacts repeat: a fraction fits, or without an excitation, intervals spread by less than 5 %, or about those of a pattern. Two impacts
+    /// do not show it.
     pub regular: bool,
     /// Phases of the impacts of the pattern, in excitation cycles; empty where there is no pattern.
     pub phases: Vec<Phase>,
@@ -123,34 +132,39 @@ const CLEAR: f64 = 2.0;
 pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     let rate = rate_of(trace)?;
     check(trace, options)?;
-    let Found { onsets, timing, hum, mut warnings } = find(trace, rate, options);
-    if onsets.len() < 2 {
-        let error = too_few(onsets.len());
-        return Err(match &hum {
-            Some(h) => error.hint(format!(
-                "--keep-hum if what comes at {:.2} Hz is the impacts: it was taken away as mains hum",
-                h.frequency
-            )),
-            None => error,
-        });
+    let found = find(trace, rate, options);
+    if found.onsets.len() < 2 {
+        return Err(found.too_few(trace.meta.unit.symbol()));
     }
+    let Found { onsets, timing, hum, mut warnings, .. } = found;
     let start = trace.axis.start();
     let times: Vec<f64> = onsets.iter().map(|o| start + o.time / rate).collect();
     let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
-    let counted = count(&times, &steps);
+    let counted = count(&times, &steps, options.complete);
     let kept: Vec<f64> = counted.kept.iter().map(|i| times[*i]).collect();
-    let found = interval(&kept, &counted.index, options.scatter).ok_or_else(|| too_few(kept.len()))?;
-    let std = Some(found.std).filter(|s| s.is_finite());
-    let single: Vec<f64> = kept
-        .windows(2)
-        .zip(counted.index.windows(2))
-        .filter(|(_, k)| k[1] - k[0] == 1)
-        .map(|(t, _)| t[1] - t[0])
-        .collect();
+    let even = if counted.length > 1 {
+        pattern::evened(&kept, &counted.index, &counted.place, counted.length)
+    } else {
+        kept.clone()
+    };
+    let found = interval(&even, &counted.index, options.scatter)
+        .ok_or_else(|| Error::refused("one impact alone counts: an interval needs two"))?;
+    // The shifts of the places are fitted, too.
+    let free = |n: usize| even.len().saturating_sub(n) as f64;
+    let widened = if counted.length > 1 { (free(2) / free(1 + counted.length)).sqrt() } else { 1.0 };
+    let std = Some(widened * found.std).filter(|s| s.is_finite());
+    let single = |times: &[f64]| -> Vec<f64> {
+        let next = |k: &[usize]| k[1] - k[0] == 1;
+        let both = times.windows(2).zip(counted.index.windows(2));
+        both.filter(|(_, k)| next(k)).map(|(t, _)| t[1] - t[0]).collect()
+    };
     let median_interval = median(&steps);
-    let spread = deviation(&single);
-    let mut regular = spread.is_none_or(|s| s < REGULAR * median_interval);
-    let method = described(&found, kept.len(), timing);
+    let spread = deviation(&single(&kept));
+    let mut regular = deviation(&single(&even)).is_some_and(|s| s < REGULAR * median_interval);
+    let mut method = described(&found, kept.len(), timing);
+    if counted.length > 1 {
+        let _ = write!(method, "; a pattern of {} impacts fitted with it", counted.length);
+    }
     let mut answer = Impacts {
         n: times.len(),
         interval: Estimate::new(found.mean, std, "s", kept.len(), method.as_str()),
@@ -164,6 +178,7 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
         median_interval,
         spread,
         serial_correlation: Some(found.correlation).filter(|r| r.is_finite()),
+        pattern: (counted.length > 1).then_some(counted.length),
         missed: counted.missed,
         doubled: counted.doubled,
         excitation: None,
@@ -214,6 +229,10 @@ struct Found {
     timing: Timing,
     hum: Option<Hum>,
     warnings: Vec<String>,
+    /// What was looked at: how far noise reaches from the level, how far the trace does, and bursts that were left out as too low.
+    reach: f64,
+    highest: f64,
+    low: usize,
 }
 
 /// Sampling rate of a trace.
@@ -264,18 +283,48 @@ fn check(trace: &Trace, options: &ImpactsOptions) -> Result<()> {
     Ok(())
 }
 
-fn too_few(n: usize) -> Error {
-    Error::refused(format!(
-        "{n} impact{} found: an interval needs two",
-        if n == 1 { " was" } else { "s were" }
-    ))
-    .hint("--threshold lower, or --refractory shorter, where there are more")
+impl Found {
+    /// Why there is no interval, and what may be done about it.
+    fn too_few(&self, unit: &str) -> Error {
+        let n = self.onsets.len();
+        let hum = self.warnings.iter().filter(|w| w.contains("mains hum")).map(|w| format!(" {w}"));
+        let error = Error::refused(format!(
+            "{n} impact{} found: an interval needs two; the background alone may reach {} from its level, the trace reaches {}.{}",
+            if n == 1 { " was" } else { "s were" },
+            quantity(self.reach, unit, 3),
+            quantity(self.highest, unit, 3),
+            hum.collect::<String>()
+        ));
+        let mut tried = Vec::new();
+        if let Some(h) = &self.hum {
+            tried.push(format!(
+                "--keep-hum if what comes at {:.2} Hz is the impacts: it was taken away as mains hum",
+                h.frequency
+            ));
+        }
+        if self.low > 0 {
+            tried.push("--threshold lower, as lower bursts were left out".to_owned());
+        }
+        tried.push(
+            "a high-pass where hum or a wandering level hides the impacts (vibro convert --high-pass HZ)"
+                .to_owned(),
+        );
+        tried.push("--refractory S shorter than the pauses where ringing fills them".to_owned());
+        error.hint(tried.join("; "))
+    }
 }
 
 fn find(trace: &Trace, rate: f64, options: &ImpactsOptions) -> Found {
     let mut values = trace.values.clone();
     let mut warnings = Vec::new();
-    let hum = if options.hum { hum::remove(&mut values, rate, &mut warnings) } else { None };
+    if let Some(slope) = drift::remove(&mut values) {
+        warnings.push(format!(
+            "A drift of the level by {} a second was taken away.",
+            quantity(slope * rate, trace.meta.unit.symbol(), 3)
+        ));
+    }
+    let hum::Treated { taken: hum, reach: bound } =
+        hum::remove(&mut values, rate, !options.hum, &mut warnings);
     if let Some(h) = &hum {
         warnings.push(format!(
             "Mains hum of {:.2} Hz, amplitude {}, with {} was fitted and taken away.",
@@ -289,7 +338,7 @@ fn find(trace: &Trace, rate: f64, options: &ImpactsOptions) -> Found {
     for v in &mut values {
         *v -= found.level;
     }
-    let level = Background { level: 0.0, ..found };
+    let level = Background { level: 0.0, reach: bound.map_or(found.reach, |b| b.min(found.reach)), ..found };
     let bursts = bursts(&values, level.reach, quiet);
     let mut all = bursts.each;
     let extreme = |b: &Range<usize>, sign: f64| {
@@ -344,7 +393,15 @@ fn find(trace: &Trace, rate: f64, options: &ImpactsOptions) -> Found {
             if cut == 1 { " is" } else { "s are" }
         ));
     }
-    Found { onsets: found.into_iter().flatten().collect(), timing, hum, warnings }
+    Found {
+        onsets: found.into_iter().flatten().collect(),
+        timing,
+        hum,
+        warnings,
+        reach: level.reach,
+        highest: values.iter().fold(0.0, |h, v| h.max(v.abs())),
+        low,
+    }
 }
 
 /// Says where pulses have flat tops at the largest or smallest value.
@@ -432,11 +489,20 @@ fn cycles(
 }
 
 fn doubts(found: &Impacts, warnings: &mut Vec<String>) {
+    if let Some(length) = found.pattern {
+        warnings.push(format!(
+            "Intervals repeat after {length}: a pattern of {length} impacts, none of which is counted as missed or too many."
+        ));
+    }
+    if found.n == 2 {
+        warnings.push("Two impacts have one interval: whether it repeats is not known.".to_owned());
+    }
     if found.missed > 0 {
         warnings.push(format!(
-            "{} impact{} missed: intervals that are a multiple of the median are counted as such in the mean.",
+            "{} impact{} missed: intervals that are {} are counted as such in the mean. If none is: --none-missed.",
             found.missed,
-            if found.missed == 1 { " is" } else { "s are" }
+            if found.missed == 1 { " is" } else { "s are" },
+            if found.pattern.is_some() { "several of the pattern" } else { "a multiple of the median" }
         ));
     }
     if found.missed > found.n {
@@ -446,7 +512,7 @@ fn doubts(found: &Impacts, warnings: &mut Vec<String>) {
     }
     if found.doubled > 0 {
         warnings.push(format!(
-            "{} impact{} another within half an interval: left out of the mean interval.",
+            "{} impact{} another within half an interval, or between two of a pattern: left out of the mean interval.",
             found.doubled,
             if found.doubled == 1 { " follows" } else { "s follow" }
         ));

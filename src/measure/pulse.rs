@@ -178,6 +178,14 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
             Err(error) => warnings.push(format!("The model {} could not be fitted: {error}.", rival.name())),
         }
     }
+    // Beyond rounding a contact gives back no more than it took.
+    if result.xi.value + 2.0 * result.xi.std.unwrap_or(0.1) < 0.0 {
+        warnings.push(format!(
+            "The fit gives ξ = {:.3}, restitution {:.3}: more comes back than arrived. The top may be cut, the baseline uneven, or this is no contact; nothing is stated.",
+            result.xi.value, result.restitution.value
+        ));
+        result = result.refused();
+    }
     if trust == Trust::Refused {
         result = result.refused();
     }

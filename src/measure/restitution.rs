@@ -4,6 +4,7 @@
 //! nothing is averaged.
 
 mod drop;
+mod ratios;
 mod train;
 mod velocities;
 
@@ -90,8 +91,13 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
             intervals = drop.intervals.iter().map(|d| vec![*d]).collect();
         }
     }
-    if let Some(way) = train::answer(&measured.trains, &mut outliers, &mut warnings)? {
-        by.push(way);
+    match train::answer(&measured.trains, &mut outliers, &mut warnings) {
+        Ok(way) => by.extend(way),
+        // What follows a drop may be no train of bounces; the drop answers nevertheless.
+        Err(error) if measured.drop.is_some() && error.exit_code() == 1 => {
+            warnings.push(format!("Flight times are left out: {error}"));
+        }
+        Err(error) => return Err(error),
     }
     if let Some(velocities) = &measured.velocities {
         by.extend(velocities.answers(&mut warnings)?);

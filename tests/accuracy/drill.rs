@@ -26,6 +26,8 @@ struct Coverage {
     name: &'static str,
     inside: usize,
     all: usize,
+    /// Cases in which nothing is stated.
+    open: usize,
     squares: f64,
 }
 
@@ -42,11 +44,19 @@ impl Coverage {
     }
 
     fn estimate(&mut self, estimate: &Estimate, truth: f64) {
-        self.take(estimate.value, estimate.std.expect("an uncertainty"), truth);
+        match estimate.std {
+            Some(std) => self.take(estimate.value, std, truth),
+            None => self.open += 1,
+        }
     }
 
     fn part(&self) -> f64 {
         100.0 * self.inside as f64 / self.all as f64
+    }
+
+    /// Nothing may be stated in one case of fifty: chance makes a few turns look like a slow change of which the mean is not known.
+    fn mostly_stated(&self) {
+        assert!(50 * self.open <= self.all + self.open, "{}: {} of {} open", self.name, self.open, self.all);
     }
 
     fn check(&self) {
@@ -57,6 +67,7 @@ impl Coverage {
             self.name, self.all
         );
         assert!((92.0..=98.0).contains(&part), "{}: {part} %", self.name);
+        self.mostly_stated();
     }
 }
 
@@ -299,7 +310,7 @@ fn strokes(turns: usize, rho: f64, seed: u64, means: &mut [Coverage; 2]) {
 }
 
 /// Coverage of all means over `turns` turns, each `rho` times the one before, by records of known machines.
-fn covered(turns: usize, rho: f64, limits: std::ops::RangeInclusive<f64>) {
+fn covered(turns: usize, rho: f64) {
     let names = ["speed", "before", "after", "phase", "energy", "energy given", "restitution"];
     let mut means = names.map(Coverage::new);
     let mut moved = ["stroke", "drift"].map(Coverage::new);
@@ -313,25 +324,27 @@ fn covered(turns: usize, rho: f64, limits: std::ops::RangeInclusive<f64>) {
     println!("{turns} turns, rho {rho}, seeds 1 to {CASES}: {part:.1} % ({})", each.join(", "));
     // Of 240 intervals the part that holds the truth scatters by 1.4 %, that of nine quantities of which some depend on each other by
     // about 0.7 %: the limits are for the mean, and none of them may be off by four times its own scatter.
-    assert!(limits.contains(&part), "{part}");
+    for coverage in &all {
+        coverage.mostly_stated();
+    }
+    assert!((92.0..=98.0).contains(&part), "{part}");
     assert!(all.iter().all(|c| (c.part() - part).abs() < 4.0 * 1.6), "{each:?}");
 }
 
 #[test]
 fn means_over_turns_that_vary_by_chance() {
-    covered(20, 0.0, 92.0..=98.0);
-    covered(60, 0.0, 92.0..=98.0);
+    covered(20, 0.0);
+    covered(60, 0.0);
 }
 
 #[test]
 fn means_over_turns_that_depend_a_little() {
-    covered(20, 0.3, 92.0..=98.0);
-    covered(60, 0.3, 92.0..=98.0);
+    covered(20, 0.3);
+    covered(60, 0.3);
 }
 
 #[test]
 fn means_over_turns_that_depend_much() {
-    // Of 20 turns the uncertainty is a sixth too small, see the documentation of the mean: 90 % and not 95 %.
-    covered(20, 0.6, 87.0..=96.0);
-    covered(60, 0.6, 91.0..=98.0);
+    covered(20, 0.6);
+    covered(60, 0.6);
 }

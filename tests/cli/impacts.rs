@@ -98,7 +98,7 @@ fn restitution_of_numbers_and_of_records() {
         "--interval-std",
         "0.0005",
         "--intervals",
-        "0.2,0.18,0.16",
+        "0.2,0.18,0.162,0.1458,0.13122",
     ]);
     assert!(torn["agree"] == false && torn["restitution"]["value"].is_null(), "{torn}");
     // (0.14·7.5 − 0.28·4)/0.14 = −0.5, and (4 + 0.5)/7.5 = 0.6.
@@ -151,4 +151,14 @@ fn impacts_are_matched_to_a_shape_that_is_known() {
     std::fs::write(&constant, "time [s],a [V]\n0,1\n0.1,1\n0.2,1\n0.3,1\n0.4,1\n0.5,1\n").unwrap();
     let said = complaint(&["impacts", text(&file), "--shape", text(&constant)], 1);
     assert!(said.contains("no shape of a pulse"), "{said}");
+}
+
+#[test]
+fn zeros_at_the_end_of_an_excitation_are_digits() {
+    let beat =
+        |typed: &str| json(&["impacts", &trace("nominal"), "--base-band", "50", "--excitation", typed]);
+    // The truth is 7.49 Hz: 7.5 ± 0.03 agrees with it, 7.500 ± 0.0003 does not.
+    assert_eq!(beat("7.5")["per_cycle"]["impacts"].as_u64(), Some(1));
+    assert!(beat("7.500")["per_cycle"].is_null());
+    assert!(complaint(&["impacts", &trace("nominal"), "--excitation", "fast"], 2).contains("number"));
 }

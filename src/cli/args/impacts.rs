@@ -11,8 +11,8 @@ pub struct Impacts {
     #[arg(long)]
     pub legacy: bool,
     /// Frequency of the excitation in Hz
-    #[arg(long, value_name = "HZ", conflicts_with = "reference")]
-    pub excitation: Option<f64>,
+    #[arg(long, value_name = "HZ", conflicts_with = "reference", value_parser = Frequency::typed)]
+    pub excitation: Option<Frequency>,
     /// Its standard uncertainty in Hz [default: that of the digits typed]
     #[arg(long, value_name = "HZ", requires = "excitation")]
     pub excitation_std: Option<f64>,
@@ -28,6 +28,9 @@ pub struct Impacts {
     /// What is known to scatter: the onsets about even times, or the intervals, each on its own
     #[arg(long, value_enum, default_value = "unknown")]
     pub scatter: Scatter,
+    /// No impact is missed and none is too many, however uneven the intervals
+    #[arg(long)]
+    pub none_missed: bool,
     #[command(flatten)]
     pub finding: Finding,
     /// Folder for figures as SVG and PNG, and the times as CSV
@@ -37,6 +40,23 @@ pub struct Impacts {
     pub channel: Channel,
     #[command(flatten)]
     pub reading: Reading,
+}
+
+/// A frequency as sure as the digits it is typed with.
+#[derive(Debug, Clone, Copy)]
+pub struct Frequency {
+    /// Hz.
+    pub value: f64,
+    /// Its standard uncertainty in Hz.
+    pub std: f64,
+}
+
+impl Frequency {
+    fn typed(text: &str) -> Result<Frequency, String> {
+        crate::measure::impacts::typed(text)
+            .map(|(value, std)| Frequency { value, std })
+            .ok_or_else(|| "expected a number".to_owned())
+    }
 }
 
 /// What is known to scatter.

@@ -1,6 +1,7 @@
-//! Missed and doubled impacts: which place in a regular series each impact has.
+//! Missed and doubled impacts: which place in a series each impact has.
 
 use super::burst::median;
+use super::pattern::{Pattern, Step, pattern};
 
 /// Which impacts count, and their indices in a series without missed ones.
 pub struct Counted {
@@ -8,28 +9,82 @@ pub struct Counted {
     pub kept: Vec<usize>,
     /// Their indices; those of missed impacts are left out.
     pub index: Vec<usize>,
-    /// Impacts that should stand in intervals that are a multiple of the others.
+    /// Their places in the pattern; 0 without one.
+    pub place: Vec<usize>,
+    /// Impacts of the pattern that repeats; 1 where intervals are alike, or repeat nothing.
+    pub length: usize,
+    /// Impacts that should stand in intervals that are several of the others.
     pub missed: usize,
-    /// Impacts that follow another within less than half an interval.
+    /// Impacts that follow another too soon.
     pub doubled: usize,
 }
 
 /// Five times the robust spread of intervals is no chance.
 const OUTSIDE: f64 = 5.0;
 
-/// Numbers the impacts at `times`, which are `steps` apart.
-pub fn count(times: &[f64], steps: &[f64]) -> Counted {
+/// Numbers the impacts at `times`, which are `steps` apart. With `complete` none is missed and none is too many.
+pub fn count(times: &[f64], steps: &[f64], complete: bool) -> Counted {
+    let repeated = pattern(steps);
+    if complete {
+        let n = times.len();
+        let (length, first) = repeated.map_or((1, 0), |p| (p.intervals.len(), p.first));
+        return Counted {
+            kept: (0..n).collect(),
+            index: (0..n).collect(),
+            place: (0..n).map(|i| (first + i) % length).collect(),
+            length,
+            missed: 0,
+            doubled: 0,
+        };
+    }
+    match repeated {
+        Some(pattern) => of_pattern(times, &pattern),
+        None => even(times, steps),
+    }
+}
+
+fn of_pattern(times: &[f64], pattern: &Pattern) -> Counted {
+    let length = pattern.intervals.len();
+    let mut place = pattern.first;
+    let mut counted =
+        Counted { kept: vec![0], index: vec![0], place: vec![place], length, missed: 0, doubled: 0 };
+    let (mut last, mut at) = (0, 0);
+    for i in 1..times.len() {
+        let d = times[i] - times[last];
+        let steps = match pattern.step(place, d, times.get(i + 1).map(|t| t - times[i])) {
+            Step::Part => {
+                counted.doubled += 1;
+                continue;
+            }
+            Step::Next => 1,
+            Step::Several(n) => n,
+            Step::From(other) => {
+                place = other;
+                1
+            }
+        };
+        counted.missed += steps - 1;
+        (last, at, place) = (i, at + steps, (place + steps) % length);
+        counted.kept.push(i);
+        counted.index.push(at);
+        counted.place.push(place);
+    }
+    counted
+}
+
+fn even(times: &[f64], steps: &[f64]) -> Counted {
     let typical = median(steps);
     let spread = median(&steps.iter().map(|d| (d - typical).abs()).collect::<Vec<f64>>()) / 0.674_5;
     let short = |d: f64| d < 0.5 * typical && typical - d > OUTSIDE * spread;
-    // As many short intervals as a fifth of all are a pattern, no accident.
-    let pattern = steps.iter().filter(|d| short(**d)).count() * 5 > steps.len();
-    let mut counted = Counted { kept: vec![0], index: vec![0], missed: 0, doubled: 0 };
+    // As many short intervals as a fifth of all are no accident.
+    let many = steps.iter().filter(|d| short(**d)).count() * 5 > steps.len();
+    let mut counted =
+        Counted { kept: vec![0], index: vec![0], place: vec![0], length: 1, missed: 0, doubled: 0 };
     for i in 1..times.len() {
         let (last, at) =
             (counted.kept.last().copied().unwrap_or(0), counted.index.last().copied().unwrap_or(0));
         let d = times[i] - times[last];
-        if !pattern && short(d) {
+        if !many && short(d) {
             counted.doubled += 1;
             continue;
         }
@@ -38,6 +93,27 @@ pub fn count(times: &[f64], steps: &[f64]) -> Counted {
         counted.missed += step - 1;
         counted.kept.push(i);
         counted.index.push(at + step);
+        counted.place.push(0);
     }
     counted
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_missed_and_a_doubled_impact_of_a_pattern() {
+        let mut times: Vec<f64> =
+            (0..100).map(|i| 0.12 * f64::from(i / 2) + if i % 2 == 1 { 0.045 } else { 0.0 }).collect();
+        times.remove(21);
+        times.insert(30, times[29] + 0.02);
+        let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+        let found = count(&times, &steps, false);
+        assert_eq!((found.length, found.missed, found.doubled), (2, 1, 1));
+        assert_eq!(found.index.last(), Some(&99));
+        assert!(found.index.iter().zip(&found.place).all(|(i, p)| i % 2 == *p));
+        let all = count(&times, &steps, true);
+        assert_eq!((all.kept.len(), all.missed, all.doubled), (100, 0, 0));
+    }
 }

@@ -7,7 +7,7 @@ use crate::measure::drill::{Edge, Edges, Numbered, Survey};
 use serde::Serialize;
 use std::f64::consts::TAU;
 
-/// Impacts per excitation cycles, in lowest terms.
+/// Impacts per excitation cycles; 2/2 where impacts come once a cycle, but every second one alike (period doubling).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct PerCycle {
     /// Impacts…
@@ -27,6 +27,18 @@ pub struct Phase {
     pub n: usize,
 }
 
+impl PerCycle {
+    /// In lowest terms, where that is another fraction.
+    fn reduced(self) -> Option<PerCycle> {
+        let by = (2..=self.impacts.min(self.cycles))
+            .rev()
+            .find(|d| self.impacts.is_multiple_of(*d) && self.cycles.is_multiple_of(*d))?;
+        Some(PerCycle { impacts: self.impacts / by, cycles: self.cycles / by })
+    }
+}
+
+/// A multiple of a fraction counts where its places scatter by less than this part of what those of the fraction do.
+const DOUBLED: f64 = 0.5;
 /// Most impacts and cycles of a pattern.
 const LARGEST: usize = 8;
 /// A pattern repeats where n impacts take m cycles within this part of a cycle (root mean square).
@@ -45,7 +57,7 @@ pub enum Locking {
     Irregular,
 }
 
-/// Whether impacts repeat the simplest fraction n/m of impacts per cycle, up to 8/8, that is near their rate.
+/// Whether impacts repeat the simplest fraction n/m of impacts per cycle, up to 8/8, that is near their rate: 2/2 where 1/1 does not repeat.
 ///
 /// `cycles` are the times of the impacts counted in excitation cycles, `index` their places in the series without missed ones, and
 /// `std` is the relative standard uncertainty of the frequency of the excitation. A fraction holds where the slope of `cycles` over
@@ -60,7 +72,6 @@ pub fn locking(cycles: &[f64], index: &[usize], std: f64) -> Locking {
     let std = own.hypot(rate * std);
     let mut fractions: Vec<PerCycle> = (1..=LARGEST)
         .flat_map(|cycles| (1..=LARGEST).map(move |impacts| PerCycle { impacts, cycles }))
-        .filter(|f| (2..=f.impacts.min(f.cycles)).all(|d| f.impacts % d != 0 || f.cycles % d != 0))
         .collect();
     fractions.sort_by_key(|f| (f.impacts + f.cycles, f.cycles));
     let slip = |f: &PerCycle| rate - f.impacts as f64 / f.cycles as f64;
@@ -73,14 +84,28 @@ pub fn locking(cycles: &[f64], index: &[usize], std: f64) -> Locking {
             && (median(&off) / 0.454_936).sqrt() <= REPEATS
     });
     // Of cycles that were counted, roundings alone are left.
+    let widest = |f: PerCycle| phases(cycles, f).iter().map(|p| p.spread).fold(0.0, f64::max);
     let holds = |f: &&PerCycle| {
-        slip(f).abs() <= 3.0 * std + 1e-9 && phases(cycles, **f).iter().all(|p| p.spread <= REPEATS)
+        let spread = widest(**f);
+        // 2/2 is no 1/1 seen twice: its places are told apart by more than they scatter.
+        let own = f.reduced().is_none_or(|r| spread <= DOUBLED * widest(r));
+        slip(f).abs() <= 3.0 * std + 1e-9 && spread <= REPEATS && own
     };
     match (fractions.iter().find(holds), fractions.first()) {
         (Some(f), _) => Locking::Locked(*f),
         (None, Some(f)) => Locking::Drifting(*f, slip(f)),
         (None, None) => Locking::Irregular,
     }
+}
+
+/// A number as it was typed, and its standard uncertainty by its digits, zeros at its end included: 8.400 is surer than 8.4. `None` where `text` is
+/// no number.
+pub fn typed(text: &str) -> Option<(f64, f64)> {
+    let value: f64 = text.trim().parse().ok().filter(|v: &f64| v.is_finite())?;
+    let (digits, power) = text.trim().split_once(['e', 'E']).unwrap_or((text.trim(), "0"));
+    let behind = digits.split_once('.').map_or(0, |(_, d)| d.len());
+    let last = power.parse::<i32>().ok()?.checked_sub(i32::try_from(behind).ok()?)?;
+    Some((value, 0.5 * 10f64.powi(last) / 3f64.sqrt()))
 }
 
 /// Standard uncertainty of a number that was typed: half a unit of its last digit, evenly spread (JCGM 100:2008, 4.3.7).
@@ -211,9 +236,27 @@ mod tests {
     }
 
     #[test]
+    fn a_doubled_period_is_two_impacts_in_two_cycles() {
+        let index: Vec<usize> = (0..40).collect();
+        let doubled: Vec<f64> =
+            (0..40).map(|k| f64::from(k) + if k % 2 == 0 { 0.835 } else { 0.669 }).collect();
+        let found = PerCycle { impacts: 2, cycles: 2 };
+        assert_eq!(locking(&doubled, &index, 1e-4), Locking::Locked(found));
+        let places: Vec<f64> = phases(&doubled, found).iter().map(|p| p.mean).collect();
+        // Means of equal numbers, a few roundings.
+        assert!((places[0] - 0.835).abs() < 1e-12 && (places[1] - 1.669).abs() < 1e-12, "{places:?}");
+        let quadrupled: Vec<f64> =
+            (0..40).map(|k| f64::from(k) + [0.1, 0.4, 0.1, 0.7][k as usize % 4]).collect();
+        assert_eq!(locking(&quadrupled, &index, 1e-4), Locking::Locked(PerCycle { impacts: 4, cycles: 4 }));
+        let even: Vec<f64> = (0..40).map(|k| f64::from(k) + 0.01 * (f64::from(k) * 2.4).sin()).collect();
+        assert_eq!(locking(&even, &index, 1e-4), Locking::Locked(PerCycle { impacts: 1, cycles: 1 }));
+    }
+
+    #[test]
     fn impacts_that_repeat_nothing_are_irregular() {
-        // Golden-ratio steps never repeat within eight impacts, at a rate of one a cycle.
-        let cycles: Vec<f64> = (0..60).map(|k| f64::from(k) + 0.8 * (f64::from(k) * 0.618).fract()).collect();
+        // Steps that grow by the golden ratio repeat nothing, at a rate of one a cycle.
+        let cycles: Vec<f64> =
+            (0..60).map(|k| f64::from(k) + 0.8 * (f64::from(k * k) * 0.618_034).fract()).collect();
         assert_eq!(locking(&cycles, &(0..60).collect::<Vec<_>>(), 0.0), Locking::Irregular);
     }
 
@@ -269,6 +312,11 @@ mod tests {
     #[test]
     fn typed_numbers_are_as_sure_as_their_digits() {
         // Half a unit of the last digit over √3.
+        for (text, unit) in [("15", 1.0), ("8.4", 0.1), ("8.400", 1e-3), ("8.4e2", 10.0), ("840.0", 0.1)] {
+            let (value, std) = typed(text).unwrap();
+            assert!((std / (0.5 * unit / 3f64.sqrt()) - 1.0).abs() < 1e-12, "{text}: {value} ± {std}");
+        }
+        assert!(typed("inf").is_none() && typed("fast").is_none() && typed("1e999999999999").is_none());
         assert!((of_digits(15.0) - 0.288_675).abs() < 1e-6 && (of_digits(11.25) - 0.002_886_75).abs() < 1e-8);
     }
 }

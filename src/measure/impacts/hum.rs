@@ -26,19 +26,29 @@ const PIECE: f64 = 10.0;
 /// The noise between impacts must fall to this part of what it was, or it was no hum.
 const WORTH: f64 = 0.8;
 
-/// Takes the hum out of `values`, sampled at `rate` in Hz, where there is any that matters.
+/// What was done about hum.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Treated {
+    /// Hum that was taken away.
+    pub taken: Option<Hum>,
+    /// How far what was left in the trace and its noise reach from the level, where that is known.
+    pub reach: Option<f64>,
+}
+
+/// Takes the hum out of `values`, sampled at `rate` in Hz, where there is any that matters; with `keep` it is left, and how far it reaches is said.
 ///
 /// Each piece of at least five cycles is fitted by least squares with bisquare weights (Beaton and Tukey 1974), so impacts do not
 /// count; nothing is taken where that does not lower the noise between impacts by a fifth.
 ///
 /// Nothing is taken, and that is said in `warnings`, where what is left comes as often as the hum or every second time: a sine with its
 /// harmonics fits such a train as well, so that the two cannot be told apart.
-pub fn remove(values: &mut [f64], rate: f64, warnings: &mut Vec<String>) -> Option<Hum> {
+pub fn remove(values: &mut [f64], rate: f64, keep: bool, warnings: &mut Vec<String>) -> Treated {
     let piece = (PIECE * rate).min(values.len() as f64) as usize;
     if (piece as f64) < 0.1 * rate || piece < 32 {
-        return None;
+        return Treated::default();
     }
     let mut cleaned = Vec::with_capacity(values.len());
+    let mut highest = 0.0f64;
     let mut hums: Vec<Hum> = Vec::new();
     let mut rest: &[f64] = values;
     while !rest.is_empty() {
@@ -47,6 +57,7 @@ pub fn remove(values: &mut [f64], rate: f64, warnings: &mut Vec<String>) -> Opti
         let (now, later) = rest.split_at(take);
         match fitted(now, rate) {
             Some((hum, model)) => {
+                highest = model.iter().fold(highest, |h, m| h.max(m.abs()));
                 cleaned.extend(now.iter().zip(model).map(|(v, m)| v - m));
                 hums.push(hum);
             }
@@ -55,22 +66,28 @@ pub fn remove(values: &mut [f64], rate: f64, warnings: &mut Vec<String>) -> Opti
         rest = later;
     }
     if hums.is_empty() {
-        return None;
+        return Treated::default();
     }
+    // A sine ends at its amplitude: what stands out of both is no noise.
+    let left_in = Treated { taken: None, reach: Some(highest + background(&cleaned).reach) };
     let mean = |f: &dyn Fn(&Hum) -> f64| hums.iter().map(f).sum::<f64>() / hums.len() as f64;
     let frequency = mean(&|h| h.frequency);
+    if keep {
+        return left_in;
+    }
     if let Some(left) = left(&cleaned, rate).filter(|left| alike(*left, frequency)) {
         warnings.push(format!(
-            "What comes at {frequency:.2} Hz may be mains hum, but the impacts come about as often ({left:.1} Hz), or half as often: the two cannot be told apart, and nothing was taken away."
+            "What comes at {frequency:.2} Hz may be mains hum, but the impacts come about as often ({left:.1} Hz), or half as often: the two cannot be told apart, and nothing was taken away. If it is hum, a high-pass takes it: vibro convert --high-pass HZ."
         ));
-        return None;
+        return left_in;
     }
     values.copy_from_slice(&cleaned);
-    Some(Hum {
+    let taken = Hum {
         frequency,
         amplitude: mean(&|h| h.amplitude),
         harmonics: hums.iter().map(|h| h.harmonics).max().unwrap_or(1),
-    })
+    };
+    Treated { taken: Some(taken), reach: None }
 }
 
 /// Bursts a second that stand out of what is left, from the median of their distances.
@@ -197,7 +214,7 @@ mod tests {
             1.5 * (x + 0.4).sin() + 0.3 * (3.0 * x).cos()
         };
         let mut values: Vec<f64> = clean.iter().enumerate().map(|(i, v)| v + hum(i)).collect();
-        let found = remove(&mut values, rate, &mut Vec::new()).unwrap();
+        let found = remove(&mut values, rate, false, &mut Vec::new()).taken.unwrap();
         // A sine of amplitude A in N samples of noise σ: u(f) = √6 σ/(π A T √N) = 2e-5 Hz, u(A) = σ√(2/N) = 2.2e-4.
         // Bisquare weights cost 5 %, impacts in the tails of the weights more: five times as much.
         assert!((found.frequency - 50.07).abs() < 1e-4, "{found:?}");
@@ -213,7 +230,7 @@ mod tests {
         let values: Vec<f64> =
             (0..4000).map(|i| 0.01 * noise.normal() + if i % 125 < 4 { 1.0 } else { 0.0 }).collect();
         let mut after = values.clone();
-        assert_eq!(remove(&mut after, 1000.0, &mut Vec::new()), None);
+        assert_eq!(remove(&mut after, 1000.0, false, &mut Vec::new()), Treated::default());
         assert_eq!(values, after);
     }
 
@@ -225,7 +242,7 @@ mod tests {
         let values: Vec<f64> =
             (0..10_000).map(|i| 0.01 * noise.normal() + (-f64::from(i % 100) / 20.0).exp()).collect();
         let (mut after, mut warnings) = (values.clone(), Vec::new());
-        assert_eq!(remove(&mut after, rate, &mut warnings), None);
+        assert_eq!(remove(&mut after, rate, false, &mut warnings).taken, None);
         assert_eq!(values, after);
         assert!(warnings.iter().any(|w| w.contains("cannot be told apart")), "{warnings:?}");
     }

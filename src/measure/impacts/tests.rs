@@ -121,3 +121,107 @@ fn what_holds_no_impacts_is_refused() {
     let error = impacts(&pulses(&[0.1, 0.2], 400, 1000.0, 0.005), &one_edge).unwrap_err();
     assert!(error.to_string().contains("1 rising edge:"), "{error}");
 }
+
+/// Pulses of 4 V and 1 ms, sin² each, over a sine of 50 Hz, at 10 kHz for 2 s.
+fn over_hum(times: &[f64], hum: f64, drift: f64) -> Trace {
+    let mut noise = Noise::new(21);
+    let values = (0..20_000)
+        .map(|i| {
+            let t = f64::from(i) / 1e4;
+            let pulse = |x: f64| {
+                if (0.0..1e-3).contains(&x) { (std::f64::consts::PI * x / 1e-3).sin().powi(2) } else { 0.0 }
+            };
+            0.05 * noise.normal()
+                + hum * (std::f64::consts::TAU * 50.0 * t).sin()
+                + drift * t
+                + 4.0 * times.iter().map(|at| pulse(t - at)).sum::<f64>()
+        })
+        .collect();
+    trace(values, 1e4)
+}
+
+#[test]
+fn no_impact_higher_than_the_hum_is_lost() {
+    for rate in [13.37, 25.0, 50.0, 100.0] {
+        let times: Vec<f64> =
+            (0..1000).map(|k| 0.013 + f64::from(k) / rate).take_while(|t| *t < 1.99).collect();
+        for hum in [0.0, 0.2, 0.4, 0.5, 1.0] {
+            for kept in [false, true] {
+                let options = ImpactsOptions { hum: !kept, ..ImpactsOptions::default() };
+                let found = impacts(&over_hum(&times, hum, 0.0), &options).unwrap();
+                assert_eq!(found.n, times.len(), "{rate} Hz, hum {hum}, kept {kept}: {:?}", found.warnings);
+                // The slope of hum of 1 V is 314 V/s, that of the flanks 2π·10³ V/s or more where the hum shifts them by its 1 V: 0.2 ms at most, and the
+                // same in each of these trains but for those of 13.37 Hz.
+                let off = (found.frequency.value / rate - 1.0).abs();
+                assert!(
+                    off < 2e-4 / found.interval.value / (times.len() - 1) as f64,
+                    "{rate} Hz, hum {hum}: {off}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_level_that_drifts_hides_no_impact() {
+    let times: Vec<f64> = (0..38).map(|k| 0.02 + 0.05 * f64::from(k)).collect();
+    for drift in [0.5, -2.0, 4.0] {
+        let found = impacts(&over_hum(&times, 0.0, drift), &ImpactsOptions::default()).unwrap();
+        assert_eq!(found.n, times.len(), "{drift} V/s: {:?}", found.warnings);
+        let said = found.warnings.iter().any(|w| w.contains("drift of the level"));
+        assert!(said, "{drift} V/s: {:?}", found.warnings);
+    }
+}
+
+#[test]
+fn a_refusal_says_what_hides_impacts_and_what_may_help() {
+    // Impacts as high as the hum, at its rate.
+    let times: Vec<f64> = (0..98).map(|k| 0.013 + 0.02 * f64::from(k)).collect();
+    let mut low = over_hum(&times, 0.0, 0.0);
+    for (i, v) in low.values.iter_mut().enumerate() {
+        *v = *v * 0.05 + (std::f64::consts::TAU * 50.0 * i as f64 / 1e4).sin();
+    }
+    if let Err(error) = impacts(&low, &ImpactsOptions::default()) {
+        assert!(error.to_string().contains("high-pass"), "{error}");
+    }
+    let mut noise = Noise::new(8);
+    let quiet = trace((0..5000).map(|_| noise.normal()).collect(), 1000.0);
+    let error = impacts(&quiet, &ImpactsOptions::default()).unwrap_err().to_string();
+    assert!(error.contains("high-pass") && !error.contains("--threshold"), "{error}");
+}
+
+#[test]
+fn two_unequal_intervals_a_cycle_are_a_pattern_and_miss_nothing() {
+    for (second, excitation) in [(0.03, 8.3333), (0.045, 8.3333), (0.05, 8.3333)] {
+        let times: Vec<f64> =
+            (0..32).map(|k| 0.02 + 0.12 * f64::from(k / 2) + if k % 2 == 1 { second } else { 0.0 }).collect();
+        let trace = over_hum(&times, 0.0, 0.0);
+        let options =
+            ImpactsOptions { excitation: Some(excitation), excitation_std: Some(1e-3), ..Default::default() };
+        let found = impacts(&trace, &options).unwrap();
+        assert_eq!((found.n, found.missed, found.doubled, found.pattern), (32, 0, 0, Some(2)), "{found:?}");
+        // Noise of 0.05 on a slope of 6e3 V/s is 8 µs an onset; a line through 32 of them knows T to 8e-6·√(12/32³) = 0.15 µs; four of these.
+        assert!((found.interval.value - 0.06).abs() < 6e-7, "{:?}", found.interval);
+        assert_eq!(found.per_cycle, Some(PerCycle { impacts: 2, cycles: 1 }), "{:?}", found.warnings);
+        let alone = impacts(&trace, &ImpactsOptions::default()).unwrap();
+        assert!(alone.regular && alone.warnings.iter().any(|w| w.contains("pattern of 2")), "{alone:?}");
+    }
+}
+
+#[test]
+fn what_is_known_to_be_complete_misses_nothing() {
+    let mut times: Vec<f64> = (0..30).map(|k| 0.02 + 0.05 * f64::from(k)).collect();
+    times.remove(12);
+    let trace = over_hum(&times, 0.0, 0.0);
+    let known = ImpactsOptions { complete: true, ..ImpactsOptions::default() };
+    assert_eq!(impacts(&trace, &ImpactsOptions::default()).unwrap().missed, 1);
+    let found = impacts(&trace, &known).unwrap();
+    // 28 intervals in 1.45 s.
+    assert!(found.missed == 0 && (found.interval.value - 1.45 / 28.0).abs() < 2e-3, "{found:?}");
+}
+
+#[test]
+fn two_impacts_are_not_regular() {
+    let found = impacts(&pulses(&[0.1, 0.2], 400, 1000.0, 0.005), &ImpactsOptions::default()).unwrap();
+    assert!(!found.regular && found.warnings.iter().any(|w| w.contains("one interval")), "{found:?}");
+}

@@ -22,6 +22,9 @@ pub(super) struct Located {
 /// Equal samples in a row at the largest value from which on a top is taken for clipped.
 const FLAT: usize = 3;
 
+/// Noise deviations within which samples count as equal to the largest.
+const BAND: f64 = 8.0;
+
 /// Noise deviations that a pulse must stand above the baseline.
 const LEAST: f64 = 6.0;
 
@@ -73,14 +76,24 @@ pub(super) fn locate(values: &[f64]) -> Result<Located> {
         }
         i += run.max(1);
     }
-    Ok(Located {
-        baseline,
-        height,
-        noise,
-        flanks: (cross(before, before + 1), cross(after - 1, after)),
-        low,
-        clipped,
-    })
+    let flanks = (cross(before, before + 1), cross(after - 1, after));
+    if clipped.is_empty() {
+        let near = |i: &usize| height.abs() * (1.0 - part(*i)) < BAND * noise;
+        let from = (before..=peak).rev().take_while(near).last().unwrap_or(peak);
+        let to = (peak..after).take_while(near).last().unwrap_or(peak);
+        if flat((to + 1 - from) as f64, flanks.1 - flanks.0, noise / height.abs()) {
+            clipped.extend(from..=to);
+        }
+    }
+    Ok(Located { baseline, height, noise, flanks, low, clipped })
+}
+
+/// Whether `run` samples within the noise of the largest are a flat top of a pulse that is `width` samples wide at half its height. The top
+/// of a half sine, 1.5 widths long, is within a part x of its height for (3/π) acos(1 − x) of these; three times that, and an eighth
+/// of the width at least, is no shape of a contact.
+fn flat(run: f64, width: f64, noise: f64) -> bool {
+    let round = 3.0 / std::f64::consts::PI * (1.0 - BAND * noise).max(-1.0).acos() * width;
+    run > 3.0 * round + FLAT as f64 && run > width / 8.0
 }
 
 /// Middle of the shortest interval that holds a quarter of the values: where most of them are, unlike the median of a record
@@ -129,6 +142,25 @@ mod tests {
         let found = locate(&clipped).unwrap();
         // sin > 0.8 from 0.295 to 0.705 of 40 samples.
         assert!((16..=18).contains(&found.clipped.len()), "{found:?}");
+    }
+
+    #[test]
+    fn a_flat_top_with_noise_is_seen_and_a_round_one_is_not() {
+        // A deterministic noise of 0.05 % of the height; the pulse 200 samples long.
+        let noise = |i: i32| 2.5e-3 * (f64::from(i * i) * 0.7).sin() * f64::sqrt(2.0);
+        let half = |i: i32| {
+            if (0..=200).contains(&i) { (f64::from(i) * std::f64::consts::PI / 200.0).sin() } else { 0.0 }
+        };
+        let record =
+            |limit: f64| (-200..400).map(|i| (5.0 * half(i)).min(limit) + noise(i)).collect::<Vec<f64>>();
+        assert!(locate(&record(9.0)).unwrap().clipped.is_empty());
+        // With this noise 11 samples of a round top count as equal to its peak; a flat part of three times that, a cut of 4 %, is told.
+        for part in [0.8, 0.9] {
+            let n = locate(&record(5.0 * part)).unwrap().clipped.len() as f64;
+            // 200/π · 2 acos(part) samples at the limit, and those within eight deviations of noise and their own noise beside them.
+            let flat = 400.0 / std::f64::consts::PI * f64::acos(part);
+            assert!(n > 0.9 * flat && n < flat + 20.0, "{part}: {n} {flat}");
+        }
     }
 
     #[test]

@@ -6,9 +6,13 @@ use crate::measure::Estimate;
 use crate::measure::impacts::{Impacts, ImpactsOptions, impacts};
 use crate::measure::residuals::student;
 use crate::record::Trace;
+use crate::units::notation::quantity;
 
 /// Standard acceleration of free fall in m/s² (CGPM 1901).
 pub const GRAVITY: f64 = 9.806_65;
+
+/// Drops from more than this, in m, are not made with a ruler: the height may be in other units.
+const HIGH: f64 = 10.0;
 
 /// Drops from one height.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,7 +77,7 @@ impl Drop {
 
     /// `(u_R/R)² = (u_Δt/Δt)² + (u_h/2h)² + (u_g/2g)²`; the interval's part is the scatter of several drops where that is larger than what is stated.
     /// The scatter of n drops has n − 1 degrees of freedom: its standard uncertainty is that of Student's distribution, which up to n = 3 has
-    /// none.
+    /// none. These have an uncertainty only where what is stated of an interval explains how they scatter (χ², 95 %).
     pub(super) fn answer(&self, warnings: &mut Vec<String>) -> Result<Way> {
         self.check()?;
         let n = self.intervals.len();
@@ -81,18 +85,19 @@ impl Drop {
             return Err(Error::usage("a height without an interval", "--interval S, or records of drops"));
         }
         let mean = self.intervals.iter().sum::<f64>() / n as f64;
-        let scatter = student(n - 1).map(|factor| {
-            let s2 = self.intervals.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / (n - 1) as f64;
-            factor * (s2 / n as f64).sqrt()
-        });
-        let stated = self.interval_std.map(|s| s / (n as f64).sqrt());
+        let squares = self.intervals.iter().map(|d| (d - mean).powi(2)).sum::<f64>();
+        let scatter = student(n - 1).map(|factor| factor * (squares / (n - 1) as f64 / n as f64).sqrt());
+        // Quantiles 0.95 of χ² of one and two degrees of freedom.
+        let explains = |s: f64| n == 1 || n > 3 || squares <= [3.841, 5.991][n - 2] * s * s;
+        let stated = self.interval_std.filter(|s| explains(*s)).map(|s| s / (n as f64).sqrt());
         let timing = match (scatter, stated) {
             (Some(a), Some(b)) => Some(a.max(b)),
             (a, b) => a.or(b),
         };
         let value = self.restitution(mean);
-        // That of the height is no substitute for a scatter that two or three drops do not show.
-        let known = timing.is_some() || n == 1 && self.height_std.is_some();
+        // That of the height is no substitute for a scatter that two or three drops do not show, and the timing of a single drop none for
+        // that of its height, which every further drop would share.
+        let known = if n == 1 { self.height_std.is_some() } else { timing.is_some() };
         let part = |u: Option<f64>, x: f64| u.map_or(0.0, |u| (u / x).powi(2));
         let variance = part(timing, mean)
             + part(self.height_std, 2.0 * self.height)
@@ -106,33 +111,50 @@ impl Drop {
         .filter(|(_, u)| u.is_none())
         .map(|(name, _)| *name)
         .collect();
-        if !known && n > 1 {
-            warnings.push(format!(
-                "The scatter of {n} drops has {} of freedom, too few for a standard uncertainty: four drops have one, or state that of an interval.",
-                if n == 2 { "one degree" } else { "two degrees" }
-            ));
-        }
-        if known && !left_out.is_empty() {
+        if !known {
+            warnings.push(self.no_uncertainty(n));
+        } else if !left_out.is_empty() {
             warnings.push(format!(
                 "The uncertainty leaves out that of {}, which is not known.",
                 left_out.join(" and ")
             ));
         }
         let scattered = scatter.is_some() && timing == scatter;
-        let method = match (n, scattered) {
-            (1, _) => "(Δt/2)√(g/2h) of one drop; uncertainty by propagation".to_owned(),
-            (_, true) => format!(
-                "(Δt/2)√(g/2h) of the mean of {n} drops; uncertainty from their scatter (Student, {} degrees of freedom) and by propagation",
+        let how = match (known, scattered) {
+            (false, _) => String::new(),
+            (true, true) => format!(
+                "; uncertainty from their scatter (Student, {} degrees of freedom) and by propagation",
                 n - 1
             ),
-            (_, false) => format!("(Δt/2)√(g/2h) of the mean of {n} drops; uncertainty by propagation"),
+            (true, false) => "; uncertainty by propagation".to_owned(),
         };
+        let without = if known && self.height_std.is_none() { ", without that of the height" } else { "" };
+        let of = if n == 1 { "one drop".to_owned() } else { format!("the mean of {n} drops") };
+        let method = format!("(Δt/2)√(g/2h) of {of}{how}{without}");
         self.notes(value, warnings)?;
         Ok(Way {
             method: "drop",
             restitution: Estimate::new(value, known.then(|| value * variance.sqrt()), "1", n, method),
             shares: Shares::Flights,
         })
+    }
+
+    /// Why there is no uncertainty of `n` drops.
+    fn no_uncertainty(&self, n: usize) -> String {
+        if n == 1 {
+            return "One drop has no standard uncertainty without that of its height: --height-std."
+                .to_owned();
+        }
+        let free = if n == 2 { "one degree" } else { "two degrees" };
+        match self.interval_std {
+            Some(stated) => format!(
+                "{n} drops scatter by more than the {} stated of an interval explains, and their scatter has {free} of freedom, too few for a standard uncertainty: four drops have one.",
+                quantity(stated, "s", 2)
+            ),
+            None => format!(
+                "The scatter of {n} drops has {free} of freedom, too few for a standard uncertainty: four drops have one, or state that of an interval."
+            ),
+        }
     }
 
     /// Standard deviation of R over drawings of as many drops with replacement; `None` for fewer than five.
@@ -157,6 +179,13 @@ impl Drop {
 
     /// What biases a drop, with its size where that follows from what is known.
     fn notes(&self, value: f64, warnings: &mut Vec<String>) -> Result<()> {
+        if self.height > HIGH {
+            warnings.push(format!(
+                "A fall of {} takes {}: is the height in metres?",
+                quantity(self.height, "m", 4),
+                quantity((2.0 * self.height / self.gravity).sqrt(), "s", 3)
+            ));
+        }
         match self.masses {
             // Free mass at rest: v₁⁺/v₁⁻ = (m₁ − R m₂)/(m₁ + m₂).
             Some((m1, m2)) => {
@@ -202,8 +231,10 @@ impl Bounces {
         found.warnings.retain(|w| {
             !w.contains("irregular")
                 && !w.contains("within half an interval")
-                && !w.contains("missed:")
+                && !w.contains(" missed: intervals")
                 && !w.contains("missed than")
+                && !w.contains("one interval:")
+                && !w.contains("Intervals repeat")
         });
         if first > 0 {
             found.warnings.push(format!(

@@ -1,16 +1,13 @@
 //! Restitution from a train of bounces: flight times shrink by R from bounce to bounce, `ln Δt_n = ln Δt₁ + (n − 1) ln R`.
 //!
-//! Two things disturb the logarithms: R that scatters from bounce to bounce (standard deviation s of ln R) makes them a random walk, and noise σ
-//! of the onsets, which neighbouring flights share, weighs the more the shorter the flight. Ratios of successive flights, `y = ln(Δt_b/Δt_a)`, then have
-//! the covariance `s²·(b − a) + σ²AAᵀ` with A the derivative of y by the onsets; ln R follows by generalised least squares, the restricted likelihood
-//! (Patterson and Thompson 1971) says what of both is at work. For s = 0 that is the weighted straight line through `(n, ln Δt_n)`.
+//! R scatters from bounce to bounce, which makes the logarithms a random walk, and from train to train; noise of the onsets, which neighbouring
+//! flights share, weighs the more the shorter the flight. What of these is at work the flights themselves must say: [`super::ratios`].
 
+use super::ratios::{Fitted, TRAINS, fit};
 use super::{Shares, Way, above_zero, not_negative};
 use crate::error::{Error, Result};
 use crate::measure::Estimate;
-use crate::measure::residuals::student;
 use crate::units::notation::quantity;
-use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
 /// Flight times of one train of bounces.
@@ -42,10 +39,10 @@ const MOST: usize = 300;
 
 /// One flight: train, place in the train, logarithm.
 #[derive(Clone, Copy)]
-struct Flight {
-    train: usize,
-    place: usize,
-    log: f64,
+pub(super) struct Flight {
+    pub(super) train: usize,
+    pub(super) place: usize,
+    pub(super) log: f64,
 }
 
 pub(super) fn answer(
@@ -107,19 +104,18 @@ pub(super) fn answer(
         ))
         .hint("are the intervals in the order of the bounces, and all of one train?"));
     }
+    if let Some(sentence) = grows(&flights, trains) {
+        return Err(Error::refused(sentence)
+            .hint("are the intervals in the order of the bounces, and all of one train?"));
+    }
     let std = Some(value * fit.std).filter(|s| s.is_finite());
-    let method = match std {
-        None if flights.len() == 2 => "ratio of two flight times".to_owned(),
-        None => {
-            format!("log-linear fit of {} flight times, too few for a standard uncertainty", flights.len())
-        }
-        Some(_) => format!(
-            "log-linear fit of {} flight times: ln R scatters by {} from bounce to bounce, onsets by {}",
-            flights.len(),
-            quantity(fit.scatter, "1", 2),
-            quantity(fit.onset, "s", 2)
-        ),
-    };
+    if std.is_none() && fit.between.is_some() {
+        warnings.push(format!(
+            "R differs from train to train by more than within them; {} trains are too few for a standard uncertainty of their mean: {TRAINS} have one.",
+            fit.trains
+        ));
+    }
+    let method = described(&fit, flights.len(), value);
     bend(&flights, warnings);
     ends(trains, value, warnings);
     warnings.push("Flight times need neither height nor g; they assume that each impact is short beside its flight and that R is the same at every speed. Drag of the air makes R too low.".to_owned());
@@ -130,118 +126,57 @@ pub(super) fn answer(
     }))
 }
 
-/// Ratios of successive flights of one train.
-struct Ratios {
-    /// Their logarithms.
-    y: DVector<f64>,
-    /// Bounces between them.
-    m: DVector<f64>,
-    /// `AAᵀ`, in 1/s².
-    timing: DMatrix<f64>,
-}
-
-fn ratios(flights: &[Flight]) -> Option<Ratios> {
-    let pairs: Vec<(Flight, Flight)> =
-        flights.windows(2).map(|w| (w[0], w[1])).filter(|(a, b)| a.train == b.train).collect();
-    if pairs.is_empty() {
-        return None;
+/// What the answer rests on.
+fn described(fit: &Fitted, flights: usize, value: f64) -> String {
+    let between =
+        fit.between.map_or_else(String::new, |t| format!(", from train to train by {}", quantity(t, "1", 2)));
+    if fit.std.is_finite() {
+        return format!(
+            "log-linear fit of {flights} flight times: ln R scatters by {} from bounce to bounce{between}, onsets by {}",
+            quantity(fit.scatter, "1", 2),
+            quantity(fit.onset, "s", 2)
+        );
     }
-    // Derivatives of each ratio by the onsets at both ends of both flights, as (train, onset, value).
-    let rows: Vec<[(usize, usize, f64); 4]> = pairs
-        .iter()
-        .map(|(a, b)| {
-            let (da, db) = ((-a.log).exp(), (-b.log).exp());
-            [
-                (a.train, a.place, da),
-                (a.train, a.place + 1, -da),
-                (b.train, b.place, -db),
-                (b.train, b.place + 1, db),
-            ]
-        })
-        .collect();
-    let product = |i: usize, j: usize| -> f64 {
-        let pairs = rows[i].iter().flat_map(|x| rows[j].iter().map(move |y| (x, y)));
-        pairs.filter(|(x, y)| (x.0, x.1) == (y.0, y.1)).map(|(x, y)| x.2 * y.2).sum()
-    };
-    Some(Ratios {
-        y: DVector::from_iterator(pairs.len(), pairs.iter().map(|(a, b)| b.log - a.log)),
-        m: DVector::from_iterator(pairs.len(), pairs.iter().map(|(a, b)| (b.place - a.place) as f64)),
-        timing: DMatrix::from_fn(pairs.len(), pairs.len(), product),
-    })
-}
-
-#[derive(Clone, Copy)]
-struct Fitted {
-    log_r: f64,
-    std: f64,
-    scatter: f64,
-    onset: f64,
-    likelihood: f64,
-    /// Weighted sum of squared residuals.
-    rest: f64,
-}
-
-impl Ratios {
-    /// Generalised least squares for given s² and σ²; with `scaled`, both are multiplied by what the residuals say.
-    fn gls(&self, s2: f64, sigma2: f64, scaled: bool) -> Option<Fitted> {
-        let covariance = DMatrix::from_diagonal(&(&self.m * s2)) + &self.timing * sigma2;
-        let cholesky = covariance.cholesky()?;
-        let (wm, wy) = (cholesky.solve(&self.m), cholesky.solve(&self.y));
-        let mm = self.m.dot(&wm);
-        let log_r = self.m.dot(&wy) / mm;
-        let rest = (self.y.dot(&wy) - log_r * log_r * mm).max(0.0);
-        let free = self.y.len() as f64 - 1.0;
-        let scale = if scaled { rest / free } else { 1.0 };
-        let log_det = 2.0 * cholesky.l().diagonal().iter().map(|d| d.ln()).sum::<f64>() + mm.ln();
-        let misfit = if scaled { free * scale.max(f64::MIN_POSITIVE).ln() } else { rest };
-        Some(Fitted {
-            log_r,
-            std: (scale / mm).sqrt(),
-            scatter: (scale * s2).sqrt(),
-            onset: (scale * sigma2).sqrt(),
-            likelihood: -0.5 * (log_det + misfit),
-            rest,
-        })
-    }
-}
-
-/// Scatter of R is believed unless the onsets explain the ratios better by this log-likelihood: it errs to the safe side.
-const SCATTER: f64 = 2.0;
-
-fn fit(flights: &[Flight], trains: &[Train]) -> Option<Fitted> {
-    let ratios = ratios(flights)?;
-    let unit = ratios.timing.diagonal().mean();
-    let free = ratios.y.len() - 1;
-    // Stated noise of the onsets is believed; of several trains, its root mean square.
-    let stated: Option<Vec<f64>> = trains.iter().map(|t| t.onset_std.filter(|s| *s > 0.0)).collect();
-    let Some(stated) = stated else {
-        if free == 0 {
-            return ratios.gls(1.0, 0.0, false).map(|f| Fitted { std: f64::NAN, ..f });
+    let what = match (flights, fit.between) {
+        (_, Some(_)) => {
+            format!("log-linear fit of {flights} flight times of {} trains that differ{between}", fit.trains)
         }
-        let (scatter, onsets) = (ratios.gls(1.0, 0.0, true)?, ratios.gls(0.0, unit.recip(), true)?);
-        let best = if onsets.likelihood > scatter.likelihood + SCATTER { onsets } else { scatter };
-        // The residuals give the scale: Student's distribution, which has no variance up to two degrees of freedom.
-        let factor = student(free).unwrap_or(f64::NAN);
-        return Some(Fitted { std: factor * best.std, ..best });
+        (2, None) => "ratio of two flight times, which shows no scatter of R".to_owned(),
+        (_, None) => {
+            format!(
+                "log-linear fit of {flights} flight times, too few for a standard uncertainty from their scatter"
+            )
+        }
     };
-    let sigma2 = stated.iter().map(|s| s * s).sum::<f64>() / stated.len() as f64;
-    let alone = ratios.gls(0.0, sigma2, false)?;
-    if alone.rest <= free as f64 {
-        return Some(alone);
+    if fit.onsets_alone.is_finite() {
+        return format!(
+            "{what} (the stated onsets alone would give {})",
+            quantity(value * fit.onsets_alone, "1", 2)
+        );
     }
-    // More scatter than the onsets have: an average over what R may add, with the likelihood as weight.
-    let unit = sigma2 * unit;
-    let fits: Vec<Fitted> = (0..=40)
-        .filter_map(|i| ratios.gls(unit * 10f64.powf(-3.0 + 0.15 * f64::from(i)), sigma2, false))
-        .collect();
-    let best = *fits.iter().max_by(|a, b| a.likelihood.total_cmp(&b.likelihood))?;
-    let weights: Vec<f64> = fits.iter().map(|f| (f.likelihood - best.likelihood).exp()).collect();
-    let total: f64 = weights.iter().sum();
-    let over =
-        |f: &dyn Fn(&Fitted) -> f64| fits.iter().zip(&weights).map(|(g, w)| w * f(g)).sum::<f64>() / total;
-    let log_r = over(&|g| g.log_r);
-    let variance = over(&|g| g.std.powi(2) + (g.log_r - log_r).powi(2));
-    Some(Fitted { log_r, std: variance.sqrt(), ..best })
+    what
+}
+
+/// Growth that the noise of the onsets does not explain is beyond this many of its standard deviations.
+const BEYOND: f64 = 4.0;
+
+/// Says where a flight is longer than one before it in its train.
+fn grows(flights: &[Flight], trains: &[Train]) -> Option<String> {
+    for pair in flights.windows(2).filter(|w| w[0].train == w[1].train) {
+        let (before, after) = (pair[0].log.exp(), pair[1].log.exp());
+        // Two neighbours have the variance 6σ²: they share an onset.
+        let noise = trains.get(pair[0].train).and_then(|t| t.onset_std).unwrap_or(0.0) * 6f64.sqrt();
+        if after - before > (BEYOND * noise).max(1e-3 * before) {
+            return Some(format!(
+                "flight times grow: flight {} of train {} takes {}, the one before {}: R would not be below 1",
+                pair[1].place + 1,
+                pair[1].train + 1,
+                quantity(after, "s", 4),
+                quantity(before, "s", 4)
+            ));
+        }
+    }
+    None
 }
 
 /// Offset of each train, slope, residuals and degrees of freedom of the plain straight line through the logarithms.

@@ -71,6 +71,7 @@ pub(super) fn impacts(
             reference,
             shape,
             scatter: entry.scatter,
+            complete: entry.none_missed,
         };
         let Some(found) = or_left_out(find(&trace, &how), &name, warnings)? else { continue };
         merge(warnings, &name, &found.warnings);
