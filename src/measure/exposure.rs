@@ -99,7 +99,7 @@ pub struct Exposure {
 /// Exposure from one to three axes of a handle; `hours` of it a day.
 ///
 /// `a_hv` = √(Σ `a_hw²`) and A(8) = `a_hv` √(T/8 h) (ISO 5349-1:2001, equations 1 and 2). Uncertainties are those of the scatter
-/// from second to second ([`Mean`]), for `a_hv` of the sum of squares over the axes, since they rise and fall
+/// from second to second (Müller 2007, as for turns of a drill), for `a_hv` of the sum of squares over the axes, since they rise and fall
 /// together; only seconds without a gap in any axis count for them, and there are none below four. Missing samples, and the half
 /// second behind each, in which the weighting settles anew, are in no mean square. Neither calibration nor mounting are in them.
 ///
