@@ -56,14 +56,14 @@ fn chatter_and_starts_are_told() {
 
 #[test]
 fn contacts_that_give_way_are_followed() {
-    let stiff = ["--set", "contact.stiffness=1e7", "--settle", "300", "--cycles", "70"];
+    let stiff = ["--set", "contact.stiffness=1e9", "--settle", "300", "--cycles", "70"];
     let answer = json(&with(&[&["--model", "kelvin-voigt"], &stiff[..]].concat()));
     assert_eq!(answer["regime"], serde_json::json!({"impacts": 1, "cycles": 1}), "{}", answer["warnings"]);
-    // So stiff a contact is nearly an impact at once.
+    // The time in contact falls as 1/√k, and with it what it changes: a fifth of the impulse at 1e6 N/m, a hundred and fiftieth at 1e9.
     let hard = json(&with(&["--settle", "300"]));
     let last =
         |answer: &Value| answer["impacts"].as_array().unwrap().last().unwrap()["impulse"].as_f64().unwrap();
-    assert!((last(&answer) / last(&hard) - 1.0).abs() < 0.05, "{} {}", last(&answer), last(&hard));
+    assert!((last(&answer) / last(&hard) - 1.0).abs() < 0.02, "{} {}", last(&answer), last(&hard));
     assert!(answer["grazing"].is_null() && answer["flights"].is_null());
     let said = complaint(&with(&["--model", "hertz"]), 2);
     assert!(said.contains("a contact without stiffness"), "{said}");

@@ -38,7 +38,9 @@ fn a_sweep_of_the_force_keeps_its_frequency() {
     ));
     let forces: Vec<f64> =
         answer["up"].as_array().unwrap().iter().map(|p| p["force"].as_f64().unwrap()).collect();
-    assert_eq!(forces, [0.1, 0.3, 0.5]);
+    // Two roundings of numbers below 1.
+    let off = forces.iter().zip([0.1, 0.3, 0.5]).map(|(f, truth)| (f - truth).abs());
+    assert!(forces.len() == 3 && off.fold(0.0, f64::max) < 2.0 * f64::EPSILON, "{forces:?}");
     assert_eq!(answer["up"][2]["frequency"], 10.0);
     assert!(answer["down"].as_array().unwrap().is_empty());
 }
