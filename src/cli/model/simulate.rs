@@ -157,7 +157,7 @@ fn doubts(seen: &Seen, typed: &args::Simulate) -> Vec<String> {
     }
     match pattern.regime {
         Regime::Irregular => doubts.push(
-            "No pattern repeats: of an irregular motion only statistics can be compared, not single impacts."
+            "No pattern repeats: the motion is irregular, of which only statistics can be compared, or has not settled. A longer --settle shows which."
                 .to_owned(),
         ),
         _ if !pattern.settled => doubts.push(format!(

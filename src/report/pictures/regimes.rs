@@ -68,7 +68,7 @@ fn frequent(cells: &[Cell]) -> Vec<Regime> {
 fn classes(own: &[Regime]) -> (Vec<String>, impl Fn(Regime) -> usize) {
     let mut names: Vec<String> = own.iter().map(Regime::to_string).collect();
     let n = names.len();
-    names.extend(["other patterns", "irregular", "chatter", "no impact"].map(str::to_owned));
+    names.extend(["other patterns", "irregular or not settled", "chatter", "no impact"].map(str::to_owned));
     let own = own.to_vec();
     let class = move |regime: Regime| {
         own.iter().position(|r| *r == regime).unwrap_or(match regime {
