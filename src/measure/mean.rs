@@ -96,20 +96,9 @@ fn cosines(n: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measure::synthetic::Twelve;
 
-    /// Sums of twelve uniform numbers from a linear congruential generator (Knuth, MMIX).
-    struct Normal(u64);
-
-    impl Normal {
-        fn next(&mut self) -> f64 {
-            let mut uniform = || {
-                self.0 =
-                    self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                (self.0 >> 11) as f64 / f64::powi(2.0, 53)
-            };
-            (0..12).map(|_| uniform()).sum::<f64>() - 6.0
-        }
-
+    impl Twelve {
         /// `n` values of unit variance, each `rho` times the one before and something new.
         fn chain(&mut self, n: usize, rho: f64) -> Vec<f64> {
             let mut x = self.next();
@@ -145,7 +134,7 @@ mod tests {
 
     /// Parts of 2000 sequences, seed `n`, of which ± 1.96 standard uncertainties hold the true mean 0, and which are said to wander, in %.
     fn coverage(n: usize, rho: f64) -> (f64, f64) {
-        let mut noise = Normal(n as u64);
+        let mut noise = Twelve(n as u64);
         let (mut inside, mut told) = (0, 0);
         for _ in 0..2000 {
             let mean = Mean::of(&noise.chain(n, rho));

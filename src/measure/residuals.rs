@@ -80,20 +80,7 @@ pub fn aicc(sum_of_squares: f64, n: usize, parameters: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Sums of twelve uniform numbers from a linear congruential generator (Knuth, MMIX): near enough to a normal distribution here.
-    struct Normal(u64);
-
-    impl Normal {
-        fn next(&mut self) -> f64 {
-            let mut uniform = || {
-                self.0 =
-                    self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                (self.0 >> 11) as f64 / f64::powi(2.0, 53)
-            };
-            (0..12).map(|_| uniform()).sum::<f64>() - 6.0
-        }
-    }
+    use crate::measure::synthetic::Twelve;
 
     #[test]
     fn chi_squared_has_its_tabulated_quantiles() {
@@ -111,7 +98,7 @@ mod tests {
 
     #[test]
     fn white_noise_is_rejected_as_often_as_stated() {
-        let mut noise = Normal(11);
+        let mut noise = Twelve(11);
         let trials = 2000;
         let rejected = (0..trials)
             .filter(|_| {
@@ -126,7 +113,7 @@ mod tests {
     /// y(i) = φ y(i−1) + e has a density at zero frequency of (1 + φ)/(1 − φ) that of white noise of its variance.
     #[test]
     fn the_inflation_of_a_first_order_process_is_found() {
-        let mut noise = Normal(5);
+        let mut noise = Twelve(5);
         let phi = 0.7;
         let mut y = 0.0;
         let r: Vec<f64> = (0..20_000)

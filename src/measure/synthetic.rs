@@ -23,6 +23,19 @@ impl Normal {
     }
 }
 
+/// Sums of twelve uniform numbers from a linear congruential generator (Knuth, MMIX): near enough to normal ones of unit variance.
+pub struct Twelve(pub u64);
+
+impl Twelve {
+    pub fn next(&mut self) -> f64 {
+        let mut uniform = || {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 11) as f64 / f64::powi(2.0, 53)
+        };
+        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+    }
+}
+
 /// Lines of a spectrum.
 pub const LINES: usize = 161;
 

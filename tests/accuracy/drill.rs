@@ -78,10 +78,10 @@ struct Case {
     found: Drill,
 }
 
-fn case(seed: u64) -> Case {
-    let mut noise = Noise::new(seed);
-    let machine = Machine {
-        speed: 40.0 + 20.0 * noise.uniform(),
+/// A machine that turns `slowest` to `slowest` + 20 times a second.
+fn machine(slowest: f64, noise: &mut Noise) -> Machine {
+    Machine {
+        speed: slowest + 20.0 * noise.uniform(),
         speed_scatter: 0.005,
         phase: 0.2 + 0.6 * noise.uniform(),
         phase_scatter: 0.004,
@@ -90,7 +90,12 @@ fn case(seed: u64) -> Case {
         rebound: -0.1 - 0.3 * noise.uniform(),
         rebound_scatter: 0.01,
         contact: 1e-4,
-    };
+    }
+}
+
+fn case(seed: u64) -> Case {
+    let mut noise = Noise::new(seed);
+    let machine = machine(40.0, &mut noise);
     let run = machine.run(COUNT as f64 / RATE, &mut noise);
     // A laser from the side: it sees half of the motion, a volt is 2 m/s, and its noise is 5 mm/s.
     let mut volts: Vec<f64> =
@@ -230,17 +235,7 @@ fn samples(turns: usize, speed: f64) -> usize {
 /// Adds the intervals of a machine whose turns depend on each other.
 fn wandering(turns: usize, rho: f64, seed: u64, means: &mut [Coverage; 7]) {
     let mut noise = Noise::new(seed);
-    let m = Machine {
-        speed: 80.0 + 20.0 * noise.uniform(),
-        speed_scatter: 0.005,
-        phase: 0.2 + 0.6 * noise.uniform(),
-        phase_scatter: 0.004,
-        before: 5.0 + 5.0 * noise.uniform(),
-        before_scatter: 0.02,
-        rebound: -0.1 - 0.3 * noise.uniform(),
-        rebound_scatter: 0.01,
-        contact: 1e-4,
-    };
+    let m = machine(80.0, &mut noise);
     let count = samples(turns, m.speed);
     let mut run = m.run(count as f64 / RATE, &mut noise);
     let [mut speed, mut phase, mut before, mut rebound] = [(); 4].map(|()| Chain::new(rho, &mut noise));
