@@ -215,7 +215,7 @@ fn scatter_between_trains_is_covered_or_refused() {
 fn propagation_agrees_with_a_bootstrap() {
     let mut noise = Noise::new(4321);
     let intervals: Vec<f64> = (0..40).map(|_| 0.144 + 0.003 * noise.normal()).collect();
-    let drop = |intervals| Drop { height: 0.57, intervals, ..Drop::default() };
+    let drop = |intervals| Drop { height: 0.57, height_std: Some(0.0), intervals, ..Drop::default() };
     let (_, stated) = of_drop(drop(intervals.clone()));
     let values: Vec<f64> = (0..2000)
         .map(|_| {
