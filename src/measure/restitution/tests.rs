@@ -158,6 +158,36 @@ fn velocities_of_both_masses_and_by_momentum() {
 }
 
 #[test]
+fn a_restitution_outside_its_range_within_its_uncertainty_is_an_answer() {
+    let velocities = |after: (f64, f64), masses, std| Velocities {
+        before: (1.0, 0.0),
+        after1: Some(after.0),
+        after2: Some(after.1),
+        masses,
+        std,
+    };
+    let of_velocities =
+        |v: &Velocities| restitution(&Measured { velocities: Some(v.clone()), ..Measured::default() });
+    // R = 0.005, −0.0004 by mass 1 and 0.27 by mass 2.
+    let plastic = velocities((0.02, 0.025), Some((1.0, 50.0)), Some(0.05));
+    let found = of_velocities(&plastic).unwrap();
+    assert!(found.by.len() == 3 && found.warnings.iter().any(|w| w.contains("R = -0.0004")), "{found:?}");
+    // R = 1.005, u = 0.02·√(2 + 2·1.005²) or less.
+    let elastic = velocities((-0.3, 0.705), None, Some(0.02));
+    assert!((of_velocities(&elastic).unwrap().restitution.value - 1.005).abs() < 1e-12);
+    // Beyond 2 u, or where nothing is known of u: refused, unless another method answers.
+    for std in [Some(0.001), None] {
+        let sure = Velocities { std, ..elastic.clone() };
+        assert!(of_velocities(&sure).unwrap_err().to_string().contains("outside 0 to 1"));
+        let found =
+            of(&Measured { drop: Some(drop(0.57, 0.144)), velocities: Some(sure), ..Measured::default() });
+        assert!(found.by.len() == 1 && found.warnings.iter().any(|w| w.contains("Velocities are left out")));
+    }
+    let found = of_velocities(&Velocities { std: Some(1e-5), ..plastic }).unwrap();
+    assert!(found.by.len() == 2 && found.warnings.iter().any(|w| w.contains("momentum is left out")));
+}
+
+#[test]
 fn methods_that_disagree_are_not_averaged() {
     let d = Drop { height_std: Some(0.001), interval_std: Some(0.001), ..drop(0.57, 0.144) };
     let intervals = vec![0.144, 0.072, 0.036, 0.018, 0.009];
