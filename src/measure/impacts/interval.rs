@@ -175,13 +175,17 @@ fn widened(free: usize) -> f64 {
     student(free).unwrap_or(if free == 2 { 4.303 / 1.960 } else { 12.706 / 1.960 })
 }
 
-/// Correlation of intervals that follow each other, of those without missed impacts.
+/// Correlation of intervals that follow each other, none of them over a missed impact: the mean product of neighbours over the variance. Without a gap
+/// that is the usual quotient of sums, whose neighbours are one fewer than its squares.
 fn correlation(d: &[f64], m: &[f64]) -> f64 {
     let single: Vec<f64> = d.iter().zip(m).filter(|(_, m)| **m == 1.0).map(|(d, _)| *d).collect();
-    let mean = single.iter().sum::<f64>() / single.len() as f64;
-    let zero: f64 = single.iter().map(|d| (d - mean).powi(2)).sum();
-    let one: f64 = single.windows(2).map(|w| (w[0] - mean) * (w[1] - mean)).sum();
-    if single.len() >= 3 && zero > 0.0 { one / zero } else { f64::NAN }
+    let n = single.len() as f64;
+    let mean = single.iter().sum::<f64>() / n;
+    let squares: f64 = single.iter().map(|d| (d - mean).powi(2)).sum();
+    let neighbours = d.windows(2).zip(m.windows(2)).filter(|(_, m)| m[0] == 1.0 && m[1] == 1.0);
+    let (pairs, products) =
+        neighbours.fold((0.0, 0.0), |(n, sum), (d, _)| (n + 1.0, sum + (d[0] - mean) * (d[1] - mean)));
+    if pairs >= 2.0 && squares > 0.0 { products / squares * (n - 1.0) / pairs } else { f64::NAN }
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -262,6 +266,16 @@ mod tests {
         let found = interval(&times, &[0, 1, 3, 4, 6], Scatter::Unknown).unwrap();
         assert!((found.mean - 0.5).abs() < 1e-15 && found.std < 1e-15, "{found:?}");
         assert_eq!(interval(&[1.0], &[0], Scatter::Unknown), None);
+    }
+
+    #[test]
+    fn intervals_beside_a_missed_impact_are_no_neighbours() {
+        // Deviations from a mean of 1 of 0.1, 0.2, −0.1, −0.2, a gap before the third.
+        let d = [1.1, 1.2, 3.0, 0.9, 0.8];
+        let m = [1.0, 1.0, 3.0, 1.0, 1.0];
+        // Products 0.02 and 0.02 over squares of 0.1 and three pairs for two; few roundings of numbers near 1.
+        assert!((correlation(&d, &m) - 0.04 / 0.1 * 3.0 / 2.0).abs() < 1e-13);
+        assert!(correlation(&[1.1, 0.9, 2.0, 1.2], &[1.0, 1.0, 2.0, 1.0]).is_nan());
     }
 
     #[test]
