@@ -3,7 +3,7 @@
 use super::{Measured, Shares, Train, Way, above_zero, not_negative};
 use crate::error::{Error, Result};
 use crate::measure::Estimate;
-use crate::measure::impacts::{Impacts, ImpactsOptions, impacts};
+use crate::measure::impacts::{Impacts, ImpactsOptions, with_train};
 use crate::measure::residuals::student;
 use crate::record::Trace;
 use crate::units::notation::quantity;
@@ -218,21 +218,13 @@ impl Bounces {
     /// Adds the impacts of a falling body, and gives them; what precedes the first large one is handling, not an impact.
     ///
     /// # Errors
-    /// As [`impacts`]; also where fewer than two impacts are left.
+    /// As [`impacts`](crate::measure::impacts::impacts); also where fewer than two impacts are left.
     pub fn add(&mut self, trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
-        let mut found = impacts(trace, options)?;
+        // What a steady train would mean does not concern bounces.
+        let (mut found, _) = with_train(trace, options)?;
         let largest = found.heights.iter().copied().fold(0.0, f64::max);
         // A body strikes first as hard as it ever does; half of that leaves room for coarse samples.
         let first = found.heights.iter().position(|h| *h >= 0.5 * largest).unwrap_or(0);
-        // What a steady train would mean does not concern bounces.
-        found.warnings.retain(|w| {
-            !w.contains("irregular")
-                && !w.contains("within half an interval")
-                && !w.contains(" missed: intervals")
-                && !w.contains("missed than")
-                && !w.contains("one interval:")
-                && !w.contains("Intervals repeat")
-        });
         if first > 0 {
             found.warnings.push(format!(
                 "{first} burst{} before the first large one {} left out: handling, not an impact.",

@@ -314,3 +314,20 @@ fn a_height_in_millimetres_is_doubted() {
     let found = of(&Measured { drop: Some(drop(0.57, 0.144)), ..Measured::default() });
     assert!(!found.warnings.iter().any(|w| w.contains("in metres?")), "{:?}", found.warnings);
 }
+
+#[test]
+fn bounces_are_told_nothing_of_steady_trains() {
+    use crate::measure::impacts::{ImpactsOptions, impacts};
+    use crate::record::{Axis, Meta, Trace};
+    let times: Vec<f64> = (0..8).map(|k| 0.1 + 0.4 * (1.0 - 0.7f64.powi(k)) / 0.3).collect();
+    let pulse = |t: f64| (-0.5 * (t / 5e-4).powi(2)).exp();
+    let values = (0..15_000).map(|i| times.iter().map(|at| pulse(f64::from(i) * 1e-4 - at)).sum()).collect();
+    let meta = Meta::new("contact", crate::units::Unit::parse("V").unwrap());
+    let trace = Trace { meta, axis: Axis::time(0.0, 1e-4, 15_000), values };
+    let irregular = |found: &crate::measure::impacts::Impacts| {
+        found.warnings.iter().any(|w| w.contains("irregular") || w.contains("slowly"))
+    };
+    assert!(irregular(&impacts(&trace, &ImpactsOptions::default()).unwrap()));
+    let found = Bounces::default().add(&trace, &ImpactsOptions::default()).unwrap();
+    assert!(found.n == 8 && !irregular(&found), "{:?}", found.warnings);
+}
