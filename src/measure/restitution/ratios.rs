@@ -61,7 +61,9 @@ pub fn fit(flights: &[Flight], trains: &[Train]) -> Option<Fitted> {
         if free < 3 {
             return nodes.first().map(|n| few(*n));
         }
-        nodes.iter_mut().for_each(|n| n.weight += SCATTER_ALONE.ln());
+        for node in &mut nodes {
+            node.weight += SCATTER_ALONE.ln();
+        }
         nodes.extend(over_scatter(&blocks, unit.recip(), true, free, 1.0 - SCATTER_ALONE)?);
         return average(&nodes, blocks.len());
     };
@@ -97,7 +99,9 @@ fn over_scatter(
     }
     let total: f64 = each.iter().map(|e| e.0).sum();
     let weighed = |(prior, mut nodes): (f64, Vec<Node>)| {
-        nodes.iter_mut().for_each(|n| n.weight += (probability * prior / total).ln());
+        for node in &mut nodes {
+            node.weight += (probability * prior / total).ln();
+        }
         nodes
     };
     Some(each.into_iter().flat_map(weighed).collect())
