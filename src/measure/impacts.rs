@@ -130,6 +130,13 @@ const CLEAR: f64 = 2.0;
 /// Where the trace has no sampling rate, missing or equal values, or fewer than two impacts; where the reference channel has fewer than two
 /// edges; on options that cannot be.
 pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
+    let (mut found, of_train) = with_train(trace, options)?;
+    found.warnings.extend(of_train);
+    Ok(found)
+}
+
+/// As [`impacts`], with what there is to say of them as a steady train beside the warnings.
+pub(super) fn with_train(trace: &Trace, options: &ImpactsOptions) -> Result<(Impacts, Vec<String>)> {
     let rate = rate_of(trace)?;
     check(trace, options)?;
     let found = find(trace, rate, options);
@@ -151,6 +158,12 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
         .ok_or_else(|| Error::refused("one impact alone counts: an interval needs two"))?;
     // The shifts of the places are fitted, too.
     let free = |n: usize| even.len().saturating_sub(n) as f64;
+    let mut of_train = Vec::new();
+    if found.wanders {
+        of_train.push(
+            "Intervals change slowly along the record: the uncertainty of their mean may be too small; measure longer.".to_owned(),
+        );
+    }
     let widened = if counted.length > 1 { (free(2) / free(1 + counted.length)).sqrt() } else { 1.0 };
     let std = Some(widened * found.std).filter(|s| s.is_finite());
     let single = |times: &[f64]| -> Vec<f64> {
@@ -203,7 +216,7 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
         (answer.excitation, answer.per_cycle, answer.regular) = (Some(cycles.frequency), per_cycle, regular);
         match locking {
             Locking::Locked(_) => {}
-            Locking::Drifting(near, slip) => warnings.push(format!(
+            Locking::Drifting(near, slip) => of_train.push(format!(
                 "The train drifts: beat {} between the impacts and {}/{} of the excitation of {} Hz (standard uncertainty {}): they do not keep their phase, or the excitation has another frequency.",
                 quantity((slip * cycles.frequency).abs(), "Hz", 3),
                 near.impacts,
@@ -211,16 +224,16 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
                 cycles.frequency,
                 quantity(cycles.std, "Hz", 2)
             )),
-            Locking::Irregular => warnings.push(format!(
+            Locking::Irregular => of_train.push(format!(
                 "No fraction of up to 8 impacts in 8 cycles fits within {} % of the rate and {} of a cycle: irregular.",
                 100.0 * cycle::FITS,
                 cycle::REPEATS
             )),
         }
     }
-    doubts(&answer, &mut warnings);
+    doubts(&answer, &mut of_train);
     answer.warnings = warnings;
-    Ok(answer)
+    Ok((answer, of_train))
 }
 
 /// Impacts as onsets in samples, before anything is said of their times.

@@ -100,7 +100,13 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
         Err(error) => return Err(error),
     }
     if let Some(velocities) = &measured.velocities {
-        by.extend(velocities.answers(&mut warnings)?);
+        match velocities.answers(&mut warnings) {
+            Ok(ways) => by.extend(ways),
+            Err(error) if !by.is_empty() && error.exit_code() == 1 => {
+                warnings.push(format!("Velocities are left out: {error}"));
+            }
+            Err(error) => return Err(error),
+        }
     }
     let Some(surest) = by.iter().min_by(|a, b| uncertainty(a).total_cmp(&uncertainty(b))) else {
         return Err(Error::usage(

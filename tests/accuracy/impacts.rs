@@ -169,6 +169,44 @@ fn intervals_of_known_scatter_are_covered() {
     }
 }
 
+/// Intervals of a speed that wanders: each depends on the one before by ρ, and scatters by 3 %.
+#[test]
+fn intervals_that_depend_on_those_before_are_covered() {
+    let n = 61;
+    for rho in [0.0, 0.3, 0.5, 0.7, 0.9f64] {
+        let (mut inside, mut told) = (0, 0);
+        for seed in 0..2 * CASES {
+            let mut noise = Noise::new(57_000 + seed);
+            let (mut slow, mut at) = (noise.normal(), 0.0);
+            let times: Vec<f64> = (0..n)
+                .map(|_| {
+                    let now = at;
+                    at += 1.0 + 0.03 * slow;
+                    slow = rho * slow + (1.0 - rho * rho).sqrt() * noise.normal();
+                    now
+                })
+                .collect();
+            let found = interval(&times, &(0..n).collect::<Vec<_>>(), Scatter::Unknown).unwrap();
+            inside += usize::from((found.mean - 1.0).abs() < 1.96 * found.std);
+            told += usize::from(found.wanders);
+        }
+        let part = |n: usize| n as f64 / (2 * CASES) as f64;
+        println!(
+            "mean interval, each depends on the one before by {rho}: {} cases, seeds 57000.., 95 % coverage {:.1} %, said to wander {:.1} %",
+            2 * CASES,
+            100.0 * part(inside),
+            100.0 * part(told)
+        );
+        // 800 cases scatter the coverage by 0.8 %. Sixty intervals hold three times what ρ = 0.9 remembers (20 intervals): the mean of such a chain is
+        // covered in 89 %, and most are said to wander.
+        if rho < 0.9 {
+            assert!((0.92..=0.98).contains(&part(inside)), "{rho}: {}", part(inside));
+        } else {
+            assert!(part(inside) > 0.86 && part(told) > 0.5, "{rho}: {} {}", part(inside), part(told));
+        }
+    }
+}
+
 /// Fewer than eight pulses are not averaged: each is timed by its own flank.
 #[test]
 fn onsets_of_single_flanks_are_covered() {

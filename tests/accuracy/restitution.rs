@@ -70,7 +70,9 @@ fn trains_of_bounces_are_covered_whether_impacts_or_clock_scatter() {
             "restitution, train with {name}: {CASES} cases, seeds 90000.., 95 % coverage {:.1} %, {n_out} outliers",
             100.0 * coverage
         );
-        assert!((0.92..=0.98).contains(&coverage), "{name}: {coverage}");
+        // Six flights do not show that R does not scatter at all: what is allowed for errs to the safe side.
+        let most = if per_bounce == 0.0 { 1.0 } else { 0.98 };
+        assert!((0.92..=most).contains(&coverage), "{name}: {coverage}");
     }
 }
 
@@ -116,13 +118,14 @@ fn trains_together_are_covered() {
         );
         // Two or three trains that by chance differ as if R did have none.
         assert!(open * 20 < CASES, "{name}: {open}");
-        // 1000 cases scatter the coverage by 0.7 %.
-        assert!((0.92..=0.98).contains(&coverage), "{name}: {coverage}");
+        // 1000 cases scatter the coverage by 0.7 %. That R does not scatter at all these flights do not show: it errs to the safe side.
+        let most = if per_bounce == 0.0 { 1.0 } else { 0.98 };
+        assert!((0.92..=most).contains(&coverage), "{name}: {coverage}");
     }
 }
 
 /// A train of `n` flights whose R scatters from bounce to bounce, seen with noise of the onsets.
-fn train(noise: &mut Noise, r: f64, n: usize, per_bounce: f64, timing: f64) -> Train {
+pub fn train(noise: &mut Noise, r: f64, n: usize, per_bounce: f64, timing: f64) -> Train {
     let (mut flight, mut at) = (noise.between(0.3, 0.4), 0.0);
     let mut times = vec![timing * noise.normal()];
     for _ in 0..n {
@@ -215,7 +218,7 @@ fn scatter_between_trains_is_covered_or_refused() {
 fn propagation_agrees_with_a_bootstrap() {
     let mut noise = Noise::new(4321);
     let intervals: Vec<f64> = (0..40).map(|_| 0.144 + 0.003 * noise.normal()).collect();
-    let drop = |intervals| Drop { height: 0.57, intervals, ..Drop::default() };
+    let drop = |intervals| Drop { height: 0.57, height_std: Some(0.0), intervals, ..Drop::default() };
     let (_, stated) = of_drop(drop(intervals.clone()));
     let values: Vec<f64> = (0..2000)
         .map(|_| {

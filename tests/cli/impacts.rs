@@ -82,7 +82,7 @@ fn restitution_of_numbers_and_of_records() {
     assert!((found["restitution"]["value"].as_f64().unwrap() - 0.2112).abs() < 5e-5);
     has(&found["by"][0], &["method", "restitution"]);
     let drops: Vec<String> = (1..=5).map(|i| example(&format!("DROP{i:02}.CSV"))).collect();
-    let mut arguments = vec!["restitution", "--height", "0.57"];
+    let mut arguments = vec!["restitution", "--height", "0.57", "--height-std", "0.001"];
     arguments.extend(drops.iter().map(String::as_str));
     let found = json(&arguments);
     let (r, u) = (&found["restitution"]["value"], &found["restitution"]["std"]);

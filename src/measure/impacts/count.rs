@@ -101,6 +101,7 @@ fn even(times: &[f64], steps: &[f64]) -> Counted {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measure::impacts::tests::Noise;
 
     #[test]
     fn a_missed_and_a_doubled_impact_of_a_pattern() {
@@ -115,5 +116,23 @@ mod tests {
         assert!(found.index.iter().zip(&found.place).all(|(i, p)| i % 2 == *p));
         let all = count(&times, &steps, true);
         assert_eq!((all.kept.len(), all.missed, all.doubled), (100, 0, 0));
+    }
+
+    /// A gap of any length counts all that it lacks, to the last impact.
+    #[test]
+    fn a_gap_in_a_pattern_counts_every_impact() {
+        let at = |i: usize| 0.1 * (i / 2) as f64 + if i % 2 == 1 { 0.04 } else { 0.0 };
+        for seed in 0..200 {
+            let mut noise = Noise::new(seed);
+            let jitter = if seed % 2 == 0 { 0.0 } else { 2e-4 };
+            for missed in [1, 2, 3, 8, 14, 15, 40] {
+                let kept = (0..60 + missed).filter(|i| !(21..21 + missed).contains(i));
+                let times: Vec<f64> = kept.map(|i| at(i) + jitter * noise.normal()).collect();
+                let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+                let found = count(&times, &steps, false);
+                assert_eq!((found.length, found.missed, found.doubled), (2, missed, 0), "seed {seed}");
+                assert_eq!(found.index.last(), Some(&(59 + missed)), "seed {seed}");
+            }
+        }
     }
 }

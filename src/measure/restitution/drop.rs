@@ -3,7 +3,7 @@
 use super::{Measured, Shares, Train, Way, above_zero, not_negative};
 use crate::error::{Error, Result};
 use crate::measure::Estimate;
-use crate::measure::impacts::{Impacts, ImpactsOptions, impacts};
+use crate::measure::impacts::{Impacts, ImpactsOptions, with_train};
 use crate::measure::residuals::student;
 use crate::record::Trace;
 use crate::units::notation::quantity;
@@ -77,7 +77,8 @@ impl Drop {
 
     /// `(u_R/R)² = (u_Δt/Δt)² + (u_h/2h)² + (u_g/2g)²`; the interval's part is the scatter of several drops where that is larger than what is stated.
     /// The scatter of n drops has n − 1 degrees of freedom: its standard uncertainty is that of Student's distribution, which up to n = 3 has
-    /// none. These have an uncertainty only where what is stated of an interval explains how they scatter (χ², 95 %).
+    /// none. These have an uncertainty only where what is stated of an interval explains how they scatter (χ², 95 %). There is none without
+    /// that of the height.
     pub(super) fn answer(&self, warnings: &mut Vec<String>) -> Result<Way> {
         self.check()?;
         let n = self.intervals.len();
@@ -95,64 +96,60 @@ impl Drop {
             (a, b) => a.or(b),
         };
         let value = self.restitution(mean);
-        // That of the height is no substitute for a scatter that two or three drops do not show, and the timing of a single drop none for
-        // that of its height, which every further drop would share.
-        let known = if n == 1 { self.height_std.is_some() } else { timing.is_some() };
-        let part = |u: Option<f64>, x: f64| u.map_or(0.0, |u| (u / x).powi(2));
-        let variance = part(timing, mean)
-            + part(self.height_std, 2.0 * self.height)
-            + part(self.gravity_std, 2.0 * self.gravity);
-        let left_out: Vec<&str> = [
-            ("the interval", timing),
-            ("the height", self.height_std),
-            ("the acceleration of free fall g", self.gravity_std),
-        ]
-        .iter()
-        .filter(|(_, u)| u.is_none())
-        .map(|(name, _)| *name)
-        .collect();
-        if !known {
-            warnings.push(self.no_uncertainty(n));
-        } else if !left_out.is_empty() {
-            warnings.push(format!(
-                "The uncertainty leaves out that of {}, which is not known.",
-                left_out.join(" and ")
-            ));
+        let share = |u: f64, x: f64| (u / x).powi(2);
+        // Every drop shares the height, and each has its own timing: neither stands in for the other.
+        let known = timing.zip(self.height_std).map(|(timing, height)| {
+            let gravity = self.gravity_std.map_or(0.0, |u| share(u, 2.0 * self.gravity));
+            value * (share(timing, mean) + share(height, 2.0 * self.height) + gravity).sqrt()
+        });
+        if known.is_none() {
+            warnings.push(self.no_uncertainty(timing.is_some()));
+        } else if self.gravity_std.is_none() {
+            warnings.push(
+                "The uncertainty leaves out that of the acceleration of free fall g, which is not known."
+                    .to_owned(),
+            );
         }
-        let scattered = scatter.is_some() && timing == scatter;
-        let how = match (known, scattered) {
-            (false, _) => String::new(),
-            (true, true) => format!(
+        let how = match (known, timing) {
+            (Some(_), _) if scatter.is_some() && timing == scatter => format!(
                 "; uncertainty from their scatter (Student, {} degrees of freedom) and by propagation",
                 n - 1
             ),
-            (true, false) => "; uncertainty by propagation".to_owned(),
+            (Some(_), _) => "; uncertainty by propagation".to_owned(),
+            (None, Some(timing)) => {
+                format!(" (the timing alone would give {})", quantity(value * timing / mean, "1", 2))
+            }
+            (None, None) => String::new(),
         };
-        let without = if known && self.height_std.is_none() { ", without that of the height" } else { "" };
         let of = if n == 1 { "one drop".to_owned() } else { format!("the mean of {n} drops") };
-        let method = format!("(Δt/2)√(g/2h) of {of}{how}{without}");
+        let method = format!("(Δt/2)√(g/2h) of {of}{how}");
         self.notes(value, warnings)?;
         Ok(Way {
             method: "drop",
-            restitution: Estimate::new(value, known.then(|| value * variance.sqrt()), "1", n, method),
+            restitution: Estimate::new(value, known, "1", n, method),
             shares: Shares::Flights,
         })
     }
 
-    /// Why there is no uncertainty of `n` drops.
-    fn no_uncertainty(&self, n: usize) -> String {
-        if n == 1 {
-            return "One drop has no standard uncertainty without that of its height: --height-std."
-                .to_owned();
+    /// Why there is no uncertainty, where that of the timing is known or not.
+    fn no_uncertainty(&self, timed: bool) -> String {
+        let n = self.intervals.len();
+        if timed {
+            let of = if n == 1 { "The drop has" } else { "The drops share their height: they have" };
+            return format!("{of} no standard uncertainty without that of the height: --height-std.");
         }
         let free = if n == 2 { "one degree" } else { "two degrees" };
+        let height = if self.height_std.is_none() { ", and that of the height: --height-std" } else { "" };
         match self.interval_std {
+            _ if n == 1 => format!(
+                "One drop has no standard uncertainty without that of its interval: --interval-std{height}."
+            ),
             Some(stated) => format!(
-                "{n} drops scatter by more than the {} stated of an interval explains, and their scatter has {free} of freedom, too few for a standard uncertainty: four drops have one.",
+                "{n} drops scatter by more than the {} stated of an interval explains, and their scatter has {free} of freedom, too few for a standard uncertainty: four drops have one{height}.",
                 quantity(stated, "s", 2)
             ),
             None => format!(
-                "The scatter of {n} drops has {free} of freedom, too few for a standard uncertainty: four drops have one, or state that of an interval."
+                "The scatter of {n} drops has {free} of freedom, too few for a standard uncertainty: four drops have one, or state that of an interval{height}."
             ),
         }
     }
@@ -221,21 +218,13 @@ impl Bounces {
     /// Adds the impacts of a falling body, and gives them; what precedes the first large one is handling, not an impact.
     ///
     /// # Errors
-    /// As [`impacts`]; also where fewer than two impacts are left.
+    /// As [`impacts`](crate::measure::impacts::impacts); also where fewer than two impacts are left.
     pub fn add(&mut self, trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
-        let mut found = impacts(trace, options)?;
+        // What a steady train would mean does not concern bounces.
+        let (mut found, _) = with_train(trace, options)?;
         let largest = found.heights.iter().copied().fold(0.0, f64::max);
         // A body strikes first as hard as it ever does; half of that leaves room for coarse samples.
         let first = found.heights.iter().position(|h| *h >= 0.5 * largest).unwrap_or(0);
-        // What a steady train would mean does not concern bounces.
-        found.warnings.retain(|w| {
-            !w.contains("irregular")
-                && !w.contains("within half an interval")
-                && !w.contains(" missed: intervals")
-                && !w.contains("missed than")
-                && !w.contains("one interval:")
-                && !w.contains("Intervals repeat")
-        });
         if first > 0 {
             found.warnings.push(format!(
                 "{first} burst{} before the first large one {} left out: handling, not an impact.",

@@ -2,12 +2,14 @@
 //!
 //! Ratios `y = ln(Δt_b/Δt_a)` of one train have the covariance `s²·(b − a) + σ²AAᵀ + τ²mmᵀ` with `m = b − a`, A the derivative of y by the onsets,
 //! s the scatter of ln R from bounce to bounce, σ that of an onset, and τ that of ln R from train to train (random effects: Rao, *Linear Statistical
-//! Inference*, 1973, 4g). ln R follows by generalised least squares (Aitken 1935). What scatters by how much is weighed with the restricted
-//! likelihood (Patterson and Thompson 1971): s and τ evenly in their logarithms, and no scatter between trains with a probability of one half.
+//! Inference*, 1973, 4g). ln R follows by generalised least squares (Aitken 1935). What scatters by how much is averaged over, weighed with the
+//! restricted likelihood (Patterson and Thompson 1971): τ evenly in its logarithm, and no scatter between trains with a probability of one half; s², or
+//! s²/σ² where σ is not stated, with its reference prior, the root of its information (Jeffreys 1946; Berger and Bernardo, *Bayesian Statistics 4*, 1992,
+//! 35), which knows that s shows in the first flights and σ in the last. Where σ is not stated, scatter of R alone has a probability of one half.
 //! A scale that the residuals give makes Student's distribution: there is a standard uncertainty from three degrees of freedom on.
 //!
-//! Where scatter of R rules the first flights and noise of the onsets the last, few flights do not show the former: of single trains of six flights with
-//! R = 0.62, s = 0.01 and σ = 0.3 ms, ±1.96 standard uncertainties hold R in 87 % (300 simulated trains, standard error 2 %); at 0.1 ms in 94 %.
+//! Where R does not scatter at all the uncertainty is some four times what the onsets alone would make of it: they rule the last flights, and a scatter that
+//! few flights hardly show rules the first.
 
 use super::train::{Flight, Train};
 use crate::measure::residuals::student;
@@ -34,8 +36,10 @@ pub struct Fitted {
     pub trains: usize,
 }
 
-/// Scatter of R is believed unless the onsets explain the ratios better by this log-likelihood: it errs to the safe side.
-const SCATTER: f64 = 2.0;
+/// Prior probability that R alone scatters, where nothing is stated of the onsets.
+const SCATTER_ALONE: f64 = 0.5;
+/// Variances of R are averaged over from where they show in ln R to where they outdo all else, and this factor beyond.
+const BEYOND: f64 = 1e3;
 /// Fewer trains than this show a scatter between them without a standard uncertainty of their mean.
 pub const TRAINS: usize = 6;
 /// Steps of the logarithm (to base 10) of a variance.
@@ -53,34 +57,75 @@ pub fn fit(flights: &[Flight], trains: &[Train]) -> Option<Fitted> {
     let stated = stated.map(|s| s.iter().map(|s| s * s).sum::<f64>() / s.len() as f64);
     let few = |node: Node| Fitted { std: f64::NAN, ..node.named(blocks.len()) };
     let Some(sigma2) = stated else {
-        let scatter = Node::all(&blocks, 1.0, 0.0, true, free)?;
+        let mut nodes = Node::all(&blocks, 1.0, 0.0, true, free)?;
         if free < 3 {
-            return scatter.first().map(|n| few(*n));
+            return nodes.first().map(|n| few(*n));
         }
-        let onsets = Node::all(&blocks, 0.0, unit.recip(), true, free)?;
-        let best = if evidence(&onsets) > evidence(&scatter) + SCATTER { onsets } else { scatter };
-        return average(&best, blocks.len());
+        for node in &mut nodes {
+            node.weight += SCATTER_ALONE.ln();
+        }
+        nodes.extend(over_scatter(&blocks, unit.recip(), true, free, 1.0 - SCATTER_ALONE)?);
+        return average(&nodes, blocks.len());
     };
-    let alone = Node::all(&blocks, 0.0, sigma2, false, free)?;
-    let first = *alone.first()?;
-    let onsets_alone = first.std;
+    let alone = *Node::all(&blocks, 0.0, sigma2, false, free)?.first()?;
     let found = if free < 3 {
-        few(first)
-    } else if first.rest <= free as f64 {
-        average(&alone, blocks.len())?
+        few(alone)
     } else {
-        // More scatter than the onsets have: up to a thousand times the variance that the ratios show.
-        let shown = blocks.iter().map(Block::scatter).sum::<f64>() / free as f64;
-        let unit = sigma2 * unit;
-        let decades = 3.0 + (shown / unit).log10().max(0.0);
-        let steps = ((3.0 + decades) / STEP) as usize;
-        let mut nodes = Vec::new();
-        for i in 0..=steps {
-            nodes.extend(Node::all(&blocks, unit * 10f64.powf(STEP * i as f64 - 3.0), sigma2, false, free)?);
-        }
-        average(&nodes, blocks.len())?
+        average(&over_scatter(&blocks, sigma2, false, free, 1.0)?, blocks.len())?
     };
-    Some(Fitted { onsets_alone, ..found })
+    Some(Fitted { onsets_alone: alone.std, ..found })
+}
+
+/// Fits for every s² beside this σ², with the reference prior of s² (of s²/σ² with `scaled`), of this probability together.
+fn over_scatter(
+    blocks: &[Block],
+    sigma2: f64,
+    scaled: bool,
+    free: usize,
+    probability: f64,
+) -> Option<Vec<Node>> {
+    let n = (free + 1) as f64;
+    let alone = blocks.iter().map(|b| b.sums(0.0, sigma2)).collect::<Option<Vec<Sums>>>()?;
+    let least = n / alone.iter().map(|s| s.mm).sum::<f64>() / BEYOND;
+    let noisiest = blocks.iter().map(|b| sigma2 * b.timing.diagonal().max()).fold(0.0, f64::max);
+    let shown = if scaled { 0.0 } else { blocks.iter().map(Block::scatter).sum::<f64>() / free as f64 };
+    let steps = ((BEYOND * noisiest.max(shown) / least).log10() / STEP).ceil().clamp(0.0, 1e3) as usize;
+    let mut each = Vec::new();
+    for i in 0..=steps {
+        let s2 = least * 10f64.powf(STEP * i as f64);
+        // Even steps of the logarithm: the density of s² times s².
+        let prior = s2 * information(blocks, s2, sigma2, scaled.then_some(free))?.sqrt();
+        each.push((prior, Node::all(blocks, s2, sigma2, scaled, free)?));
+    }
+    let total: f64 = each.iter().map(|e| e.0).sum();
+    let weighed = |(prior, mut nodes): (f64, Vec<Node>)| {
+        for node in &mut nodes {
+            node.weight += (probability * prior / total).ln();
+        }
+        nodes
+    };
+    Some(each.into_iter().flat_map(weighed).collect())
+}
+
+/// Twice Fisher's information of the restricted likelihood on s², `tr(PDPD)` with `P = C⁻¹ − C⁻¹mmᵀC⁻¹/mᵀC⁻¹m` and D the derivative of C by s²
+/// (D. Harville, J. Am. Stat. Assoc. 72 (1977) 320); with the degrees of freedom of a scale of C that is not known, what that leaves of it.
+fn information(blocks: &[Block], s2: f64, sigma2: f64, unscaled: Option<usize>) -> Option<f64> {
+    let (mut mm, mut one, mut two, mut once, mut twice) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for block in blocks {
+        let inverse = block.covariance(s2, sigma2).cholesky()?.inverse();
+        let w = &inverse * &block.m;
+        let by = DMatrix::from_diagonal(&block.m);
+        let product = &inverse * &by;
+        let dw = &by * &w;
+        mm += block.m.dot(&w);
+        one += product.trace();
+        two += product.component_mul(&product.transpose()).sum();
+        once += w.dot(&dw);
+        twice += dw.dot(&(&inverse * &dw));
+    }
+    let trace = one - once / mm;
+    let squares = two - 2.0 * twice / mm + (once / mm).powi(2);
+    Some((squares - unscaled.map_or(0.0, |free| trace * trace / free as f64)).max(0.0))
 }
 
 /// Ratios of successive flights of one train.
@@ -130,9 +175,12 @@ struct Sums {
 }
 
 impl Block {
+    fn covariance(&self, s2: f64, sigma2: f64) -> DMatrix<f64> {
+        DMatrix::from_diagonal(&(&self.m * s2)) + &self.timing * sigma2
+    }
+
     fn sums(&self, s2: f64, sigma2: f64) -> Option<Sums> {
-        let covariance = DMatrix::from_diagonal(&(&self.m * s2)) + &self.timing * sigma2;
-        let cholesky = covariance.cholesky()?;
+        let cholesky = self.covariance(s2, sigma2).cholesky()?;
         let (wm, wy) = (cholesky.solve(&self.m), cholesky.solve(&self.y));
         Some(Sums {
             mm: self.m.dot(&wm),
@@ -175,8 +223,6 @@ struct Node {
     ratio: f64,
     /// Logarithm of prior probability times likelihood.
     weight: f64,
-    /// Weighted sum of squared residuals.
-    rest: f64,
 }
 
 impl Node {
@@ -208,7 +254,6 @@ impl Node {
                 between: (scale * tau2).sqrt(),
                 ratio,
                 weight: prior.ln() - 0.5 * (all.log_det + all.mm.ln() + misfit),
-                rest,
             }
         };
         if sums.len() < 2 {

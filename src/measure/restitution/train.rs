@@ -179,52 +179,81 @@ fn grows(flights: &[Flight], trains: &[Train]) -> Option<String> {
     None
 }
 
-/// Offset of each train, slope, residuals and degrees of freedom of the plain straight line through the logarithms.
-fn line(flights: &[Flight]) -> (f64, Vec<f64>, usize) {
-    let trains = flights.iter().map(|f| f.train + 1).max().unwrap_or(0);
-    let mut means = vec![(0.0, 0.0, 0.0); trains];
-    for f in flights {
-        let m = &mut means[f.train];
-        *m = (m.0 + 1.0, m.1 + f.place as f64, m.2 + f.log);
+/// The straight line through the logarithms of trains: one slope, an offset each.
+struct Line {
+    slope: f64,
+    /// Sum of the weights, and weighted means of place and logarithm, of each train.
+    means: Vec<(f64, f64, f64)>,
+    /// Weighted sum of squares of the places about their means.
+    sxx: f64,
+    /// Degrees of freedom of the residuals.
+    free: usize,
+}
+
+impl Line {
+    /// Least squares with the weights `weight` of the flights.
+    fn new(flights: &[Flight], weight: impl Fn(&Flight) -> f64) -> Line {
+        let trains = flights.iter().map(|f| f.train + 1).max().unwrap_or(0);
+        let mut means = vec![(0.0, 0.0, 0.0); trains];
+        for f in flights {
+            let (m, w) = (&mut means[f.train], weight(f));
+            *m = (m.0 + w, m.1 + w * f.place as f64, m.2 + w * f.log);
+        }
+        for m in &mut means {
+            *m = (m.0, m.1 / m.0, m.2 / m.0);
+        }
+        let (mut sxx, mut sxy) = (0.0, 0.0);
+        for f in flights {
+            let (m, w) = (means[f.train], weight(f));
+            let x = f.place as f64 - m.1;
+            (sxx, sxy) = (sxx + w * x * x, sxy + w * x * (f.log - m.2));
+        }
+        let used = means.iter().filter(|m| m.0 > 0.0).count();
+        Line { slope: sxy / sxx, means, sxx, free: flights.len().saturating_sub(used + 1) }
     }
-    let centred = |f: &Flight| {
-        (f.place as f64 - means[f.train].1 / means[f.train].0, f.log - means[f.train].2 / means[f.train].0)
-    };
-    let (sxx, sxy) = flights.iter().map(centred).fold((0.0, 0.0), |(a, b), (x, y)| (a + x * x, b + x * y));
-    let slope = sxy / sxx;
-    let residuals = flights.iter().map(centred).map(|(x, y)| y - slope * x).collect();
-    let used = means.iter().filter(|m| m.0 > 0.0).count();
-    (slope, residuals, flights.len().saturating_sub(used + 1))
+
+    fn at(&self, f: &Flight) -> f64 {
+        let (_, place, log) = self.means[f.train];
+        log + self.slope * (f.place as f64 - place)
+    }
+
+    fn residuals(&self, flights: &[Flight]) -> Vec<f64> {
+        flights.iter().map(|f| f.log - self.at(f)).collect()
+    }
 }
 
 /// Quantile 0.9995 of Student's t from 2 degrees of freedom on: what lies beyond is an outlier.
 const OUTSIDE: [f64; 9] = [31.6, 12.92, 8.61, 6.87, 5.96, 5.41, 5.04, 4.78, 4.59];
 
-/// The flight that fits the others worst, where it is an outlier, and what they expect of it.
+/// How far the flight `one` is from what the `others` expect, in parts of the quantile, and that logarithm; the variance of the logarithm goes as Δt to
+/// `power`.
+fn off(one: &Flight, others: &[Flight], power: f64) -> Option<(f64, f64)> {
+    let weight = |log: f64| (-power * log).exp();
+    let line = Line::new(others, |f| weight(f.log));
+    if others.iter().filter(|f| f.train == one.train).count() < 2 || line.free < 2 {
+        return None;
+    }
+    let expected = line.at(one);
+    let (sum, place, _) = line.means[one.train];
+    let x = one.place as f64 - place;
+    let squares: f64 = others.iter().zip(line.residuals(others)).map(|(f, r)| weight(f.log) * r * r).sum();
+    let variance = squares / line.free as f64 * (weight(expected).recip() + sum.recip() + x * x / line.sxx);
+    // Numbers that were typed have three digits at least: half a unit of the last is 1e-3 of a flight.
+    let score = (one.log - expected).abs() / variance.max(1e-6).sqrt();
+    Some((score / OUTSIDE[(line.free - 2).min(OUTSIDE.len() - 1)], expected))
+}
+
+/// The flight that fits the others worst, where it is an outlier, and what they expect of it: one whether R scatters, which makes the variances of
+/// logarithms alike, or the onsets do, which makes them go as 1/Δt².
 fn worst(flights: &[Flight]) -> Option<(usize, f64)> {
     let mut found: Option<(usize, f64, f64)> = None;
     for i in 0..flights.len() {
         let mut others = flights.to_vec();
         let one = others.remove(i);
-        let same: Vec<&Flight> = others.iter().filter(|f| f.train == one.train).collect();
-        let (slope, residuals, free) = line(&others);
-        if same.len() < 2 || free < 2 {
+        let (Some(alike), Some(timed)) = (off(&one, &others, 0.0), off(&one, &others, -2.0)) else {
             continue;
-        }
-        let n = same.len() as f64;
-        let x = one.place as f64 - same.iter().map(|f| f.place as f64).sum::<f64>() / n;
-        let expected = same.iter().map(|f| f.log).sum::<f64>() / n + slope * x;
-        let sxx: f64 = others
-            .iter()
-            .map(|f| {
-                (f.place as f64 - others.iter().map(|o| o.place as f64).sum::<f64>() / others.len() as f64)
-                    .powi(2)
-            })
-            .sum();
-        let s2 = residuals.iter().map(|r| r * r).sum::<f64>() / free as f64;
-        // Numbers that were typed have three digits at least: half a unit of the last is 1e-3 of a flight.
-        let off = (one.log - expected).abs() / (s2 * (1.0 + 1.0 / n + x * x / sxx)).max(1e-6).sqrt();
-        let score = off / OUTSIDE[(free - 2).min(OUTSIDE.len() - 1)];
+        };
+        let (score, expected) = if timed.0 < alike.0 { timed } else { alike };
         if found.is_none_or(|f| score > f.1) {
             found = Some((i, score, expected.exp()));
         }
@@ -234,13 +263,15 @@ fn worst(flights: &[Flight]) -> Option<(usize, f64)> {
 
 /// Says where residuals bend: R changes with the speed, or impacts are not short beside the last flights.
 fn bend(flights: &[Flight], warnings: &mut Vec<String>) {
-    let (_, residuals, free) = line(flights);
+    let line = Line::new(flights, |_| 1.0);
+    let (residuals, free) = (line.residuals(flights), line.free);
     if free < 3 {
         return;
     }
     let middle = 0.5 * flights.iter().map(|f| f.place).max().unwrap_or(0) as f64;
     let square = |f: &Flight| Flight { log: (f.place as f64 - middle).powi(2), ..*f };
-    let (_, curve, _) = line(&flights.iter().map(square).collect::<Vec<_>>());
+    let squares: Vec<Flight> = flights.iter().map(square).collect();
+    let curve = Line::new(&squares, |_| 1.0).residuals(&squares);
     let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let size = product(&curve, &curve);
     let c = product(&curve, &residuals) / size;

@@ -44,25 +44,9 @@ impl Velocities {
             None => None,
         };
         // R = s/(v₁ − v₂) with s linear in v₁, v₂, v₁⁺, v₂⁺, whose coefficients are given.
-        let way = |method: &'static str, by: [f64; 4], how: &str| {
-            let known = [v1, v2, self.after1.unwrap_or(0.0), self.after2.unwrap_or(0.0)];
-            let r = by.iter().zip(known).map(|(b, v)| b * v).sum::<f64>() / approach;
-            let slopes = [by[0] - r, by[1] + r, by[2], by[3]].map(|d| d / approach);
-            let factor = slopes.iter().map(|d| d * d).sum::<f64>().sqrt();
-            if !(0.0..=1.0).contains(&r) {
-                return Err(Error::refused(format!("velocities give R = {r:.4} ({how}): outside 0 to 1"))
-                    .hint("are all velocities counted in one direction, and the masses in the order of the velocities?"));
-            }
-            let n = if self.after1.is_some() && self.after2.is_some() { 4 } else { 3 };
-            Ok(Way {
-                method,
-                restitution: Estimate::new(r, self.std.map(|u| u * factor), "1", n, how),
-                shares: Shares::Velocities(slopes.map(|d| d * self.std.unwrap_or(f64::NAN))),
-            })
-        };
-        let mut ways = Vec::new();
+        let mut given: Vec<(&'static str, [f64; 4], &str)> = Vec::new();
         if let (Some(w1), Some(w2)) = (self.after1, self.after2) {
-            ways.push(way("velocities of both masses", [0.0, 0.0, -1.0, 1.0], "(v₂⁺ − v₁⁺)/(v₁⁻ − v₂⁻)")?);
+            given.push(("velocities of both masses", [0.0, 0.0, -1.0, 1.0], "(v₂⁺ − v₁⁺)/(v₁⁻ − v₂⁻)"));
             if let Some((m1, m2)) = self.masses {
                 let lost = m1 * (v1 - w1) + m2 * (v2 - w2);
                 let u = self.std.map_or(f64::NAN, |u| u * (2.0 * (m1 * m1 + m2 * m2)).sqrt());
@@ -73,26 +57,52 @@ impl Velocities {
         }
         if let (Some(_), Some(q)) = (self.after1, ratio) {
             // v₂⁺ = v₂ + q(v₁ − v₁⁺).
-            ways.push(way(
+            given.push((
                 "velocity of mass 1 and momentum",
                 [q, 1.0, -1.0 - q, 0.0],
                 "v₂⁺ from the momentum balance",
-            )?);
+            ));
         }
         if let (Some(_), Some(q)) = (self.after2, ratio) {
             // v₁⁺ = v₁ + (v₂ − v₂⁺)/q.
-            ways.push(way(
+            given.push((
                 "velocity of mass 2 and momentum",
                 [-1.0, -1.0 / q, 0.0, 1.0 + 1.0 / q],
                 "v₁⁺ from the momentum balance",
-            )?);
-        }
-        if ways.is_empty() {
-            return Err(Error::usage(
-                "velocities of one mass without masses",
-                "both velocities after the impact, or --masses M1,M2",
             ));
         }
-        Ok(ways)
+        let n = if self.after1.is_some() && self.after2.is_some() { 4 } else { 3 };
+        let known = [v1, v2, self.after1.unwrap_or(0.0), self.after2.unwrap_or(0.0)];
+        let (mut ways, mut refused) = (Vec::new(), None);
+        for (method, by, how) in given {
+            let r = by.iter().zip(known).map(|(b, v)| b * v).sum::<f64>() / approach;
+            let slopes = [by[0] - r, by[1] + r, by[2], by[3]].map(|d| d / approach);
+            let std = self.std.map(|u| u * slopes.iter().map(|d| d * d).sum::<f64>().sqrt());
+            let outside = (-r).max(r - 1.0);
+            // Roundings of equal numbers are no velocity.
+            if outside > std.map_or(0.0, |u| 2.0 * u).max(1e-12) {
+                let why = format!("velocities give R = {r:.4} ({how}): outside 0 to 1");
+                warnings.push(format!("The {method} is left out: {why}."));
+                refused = refused.or(Some(why));
+                continue;
+            }
+            if outside > 1e-12 {
+                warnings.push(format!(
+                    "The {method} gives R = {r:.4}, outside 0 to 1 by less than twice its uncertainty."
+                ));
+            }
+            let shares = Shares::Velocities(slopes.map(|d| d * self.std.unwrap_or(f64::NAN)));
+            ways.push(Way { method, restitution: Estimate::new(r, std, "1", n, how), shares });
+        }
+        match (ways.is_empty(), refused) {
+            (false, _) => Ok(ways),
+            (true, Some(why)) => Err(Error::refused(why).hint(
+                "are all velocities counted in one direction, and the masses in the order of the velocities?",
+            )),
+            (true, None) => Err(Error::usage(
+                "velocities of one mass without masses",
+                "both velocities after the impact, or --masses M1,M2",
+            )),
+        }
     }
 }
