@@ -1,6 +1,7 @@
 //! Estimators against truths: how near they come to the Cramér–Rao bound, and how often the truth lies in their intervals.
 //! Many random cases with fixed seeds; run with `--nocapture` to see the figures.
 
+mod contact;
 mod drill;
 mod exposure;
 mod impacts;
