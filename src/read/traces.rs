@@ -154,13 +154,17 @@ impl Traces {
     /// Sentences about the file and its channels, these with their names where there are several. What only the values
     /// show is among them once all have been read.
     pub fn doubts(&self) -> Vec<String> {
+        self.doubts_but(|_| false)
+    }
+
+    /// As [`Traces::doubts`], without those of the channels that are `known`.
+    pub(crate) fn doubts_but(&self, known: impl Fn(&str) -> bool) -> Vec<String> {
         let several = self.channels.len() > 1;
         let mut all = self.doubts.clone();
         for meta in &self.channels {
             let named = several && !meta.name.is_empty();
-            all.extend(
-                meta.doubts.iter().map(|d| if named { format!("{}: {d}", meta.name) } else { d.clone() }),
-            );
+            let said = meta.doubts.iter().filter(|d| !known(d.as_str()));
+            all.extend(said.map(|d| if named { format!("{}: {d}", meta.name) } else { d.clone() }));
         }
         all
     }

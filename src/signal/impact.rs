@@ -218,7 +218,8 @@ fn unfinished(transfer: &mut Transfer, left: &Left) {
 fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<(usize, Blow)> {
     let values = &force.values;
     // Blows are short: what the force is most of the time is its zero, whatever the amplifier adds.
-    let Quiet { level: zero, .. } = Quiet::of(values);
+    let rest = Quiet::of(values);
+    let zero = rest.level;
     let extreme = values.iter().map(|v| v - zero).fold(0.0f64, |m, v| if v.abs() > m.abs() { v } else { m });
     let sign = if extreme < 0.0 { -1.0 } else { 1.0 };
     let trigger_level = TRIGGER * extreme.abs();
@@ -231,7 +232,7 @@ fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<(usize, 
         let (trigger, end) = (i, i.saturating_add(how.length - how.before).min(values.len()));
         let start = trigger.saturating_sub(how.before);
         // The zero may wander from blow to blow.
-        let quiet = if trigger > start { Quiet::of(&values[start..trigger]) } else { Quiet::of(values) };
+        let quiet = if trigger > start { Quiet::of(&values[start..trigger]) } else { rest };
         let push = |j: usize| sign * (values[j] - quiet.level);
         let (mut peak, mut first_end) = (0.0f64, end);
         for j in trigger..end {
@@ -261,6 +262,7 @@ fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<(usize, 
 }
 
 /// Level and noise of samples of which most are quiet.
+#[derive(Clone, Copy)]
 struct Quiet {
     level: f64,
     sigma: f64,

@@ -2,6 +2,7 @@
 //! Many random cases with fixed seeds; run with `--nocapture` to see the figures.
 
 mod bounces;
+mod contact;
 mod drill;
 mod exposure;
 mod impacts;

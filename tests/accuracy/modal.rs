@@ -146,3 +146,57 @@ fn modes_beside_each_other() {
     frequency.judge("modes beside each other, frequency against its own uncertainty", 1.3);
     zeta.judge("modes beside each other, ζ against its own uncertainty", 1.3);
 }
+
+/// A function and its coherence from `averages` blows of a force that scatters by a tenth; noise in the response 1/30 of its height.
+fn averaged(averages: usize, frequency: f64, damping: f64, noise: &mut Noise) -> Measured {
+    let step = 0.3125;
+    let lines: Vec<f64> =
+        (1..400).map(|k| f64::from(k) * step).filter(|f| (f - frequency).abs() < 40.0 * step).collect();
+    let clean: Vec<Complex64> =
+        lines.iter().map(|f| one(&[frequency, damping, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0], *f, 0)).collect();
+    let sigma = clean.iter().map(|v| v.norm()).fold(0.0, f64::max) / 30.0 / 2f64.sqrt();
+    let (mut values, mut coherence) = (Vec::new(), Vec::new());
+    let forces: Vec<f64> = (0..averages).map(|_| 1.0 + 0.1 * noise.normal()).collect();
+    for h in &clean {
+        let (mut xx, mut yy, mut xy) = (0.0, 0.0, Complex64::new(0.0, 0.0));
+        for x in &forces {
+            let y = h * x + Complex64::new(sigma * noise.normal(), sigma * noise.normal());
+            xx += x * x;
+            yy += y.norm_sqr();
+            xy += y * x;
+        }
+        values.push(xy / xx);
+        coherence.push(xy.norm_sqr() / (xx * yy));
+    }
+    Measured { coherence: Some(coherence), ..measured(lines, values, FrfKind::Receptance) }
+}
+
+#[test]
+fn modes_by_the_coherence_of_few_averages() {
+    for averages in [2, 3, 5, 10] {
+        let mut scores = [(); 3].map(|()| Score::default());
+        println!("seeds 12000 to 12299");
+        for seed in 12_000..12_300 {
+            let mut noise = Noise::new(seed);
+            let f0 = noise.between(49.5, 50.5);
+            let damping = noise.between(1.0, 4.0) * 0.3125 / (2.0 * f0);
+            let found =
+                modal(&averaged(averages, f0, damping, &mut noise), &ModalOptions::default()).unwrap();
+            let mode = found
+                .modes
+                .iter()
+                .min_by(|a, b| (a.frequency.value - f0).abs().total_cmp(&(b.frequency.value - f0).abs()))
+                .unwrap();
+            for (score, (estimate, truth)) in scores.iter_mut().zip([
+                (&mode.frequency, f0),
+                (&mode.zeta, damping),
+                (&mode.modal_constant, 1.0),
+            ]) {
+                score.own(estimate, truth);
+            }
+        }
+        for (score, name) in scores.iter().zip(["frequency", "ζ", "modal constant"]) {
+            score.mostly(&format!("{averages} averages, {name}"));
+        }
+    }
+}

@@ -49,6 +49,8 @@ const JOIN: usize = 3;
 const SPIKE_NOISE: f64 = 10.0;
 /// … and this part of the range of the channel.
 const SPIKE_RANGE: f64 = 0.02;
+/// An extreme nearer to the median than this part of the reach is where the signal rests.
+const RAIL: f64 = 0.1;
 /// Samples gathered before they are looked at.
 const CHUNK: usize = 1 << 14;
 /// Samples after which a fault without an end is given out as lost.
@@ -66,9 +68,13 @@ pub struct Faults {
     quantum: f64,
     height: f64,
     limits: (f64, f64),
+    /// Extremes that may be the end of the range: those far from where the signal is most of the time.
+    rails: [f64; 2],
     raw: Vec<f64>,
     done: usize,
     endless: bool,
+    /// Whether the equal samples that are gone over were entered by a step.
+    entered: bool,
     /// Whether the sample before was over-range.
     over: bool,
     count: FaultCount,
@@ -89,9 +95,11 @@ impl Faults {
             quantum: survey.quantum(),
             height: (SPIKE_NOISE * survey.noise().max(survey.quantum())).max(SPIKE_RANGE * (high - low)),
             limits: (low, high),
+            rails: rails(survey.middle(), low, high),
             raw: Vec::new(),
             done: 0,
             endless: false,
+            entered: false,
             over: false,
             count: FaultCount::default(),
         }
@@ -139,7 +147,7 @@ impl Faults {
             }
             self.bridge(at, end, &kind, values, states);
             self.endless = open;
-            self.over = false;
+            (self.entered, self.over) = (false, false);
             at = end;
         }
         let keep = at.saturating_sub(AROUND + SPIKE);
@@ -228,29 +236,32 @@ impl Faults {
     }
 
     /// Whether a sample stands at the end of the range, equals a neighbour, and was not reached by resolution.
-    fn clipped(&self, i: usize) -> bool {
+    fn clipped(&mut self, i: usize) -> bool {
         let v = self.raw[i];
-        if v > self.limits.0 && v < self.limits.1 {
+        let before = i.checked_sub(1).and_then(|k| self.raw.get(k));
+        let step = |x: &f64| (x - v).abs() > 1.5 * self.quantum;
+        let goes_on = before == Some(&v);
+        let entered = if goes_on { self.entered } else { before.is_some_and(step) };
+        self.entered = entered;
+        if !self.rails.contains(&v) || !(goes_on || self.raw.get(i + 1) == Some(&v)) {
             return false;
         }
-        let same = |k: Option<usize>| k.and_then(|k| self.raw.get(k)) == Some(&v);
-        if !(same(i.checked_sub(1)) || same(Some(i + 1))) {
-            return false;
-        }
-        if self.over && same(i.checked_sub(1)) {
-            return true;
-        }
-        let outside = |mut values: Box<dyn Iterator<Item = &f64> + '_>| {
-            values.find(|x| **x != v).is_some_and(|x| (x - v).abs() > 1.5 * self.quantum)
-        };
         let near = (i + 1 + 2 * AROUND).min(self.raw.len());
-        outside(Box::new(self.raw[..i].iter().rev())) || outside(Box::new(self.raw[i + 1..near].iter()))
+        let left = || self.raw[i + 1..near].iter().find(|x| **x != v).is_some_and(step);
+        entered || (goes_on && self.over) || left()
     }
+}
+
+/// Extremes farther from the `middle` of a signal than a part of the farther one; not a number where the signal rests.
+fn rails(middle: f64, low: f64, high: f64) -> [f64; 2] {
+    let reach = (middle - low).max(high - middle);
+    [low, high].map(|v| if (v - middle).abs() > RAIL * reach { v } else { f64::NAN })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
 
     /// A sine digitised in steps of `quantum`, with a little noise.
     fn signal(n: usize, quantum: f64, noise: f64) -> Vec<f64> {
@@ -327,6 +338,22 @@ mod tests {
         let (_, _, count) = repaired(&raw, 5000);
         assert_eq!((count.dropouts, count.spikes), (0, 0));
         assert!(truth > 10_000 && count.clipped == truth, "{count:?} {truth}");
+    }
+
+    #[test]
+    fn rest_at_an_extreme_is_no_end_of_the_range_and_takes_no_time() {
+        // Half sines that end in coarse steps, or begin and end by a jump, and rest at 0 between them.
+        for jump in [0.0, 1.0] {
+            let one = |i: usize| {
+                if i % 20_000 < 4000 { jump + 3.0 * ((i % 20_000) as f64 * PI / 4000.0).sin() } else { 0.0 }
+            };
+            let raw: Vec<f64> = (0..400_000).map(|i| (one(i) / 0.01).round() * 0.01).collect();
+            let begun = std::time::Instant::now();
+            let (_, _, count) = repaired(&raw, 9999);
+            assert_eq!((count.dropouts, count.spikes, count.clipped), (0, 0, 0), "{jump}");
+            // 8 ms in a program that is not optimised; a search for the beginning of the rest from each sample took 100 times that.
+            assert!(begun.elapsed().as_secs_f64() < 2.0, "{:?}", begun.elapsed());
+        }
     }
 
     #[test]

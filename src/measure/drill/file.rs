@@ -110,8 +110,7 @@ impl DrillFile {
             }
         };
         let mut found = drill_each(&mut channels, &options, noise.as_ref(), each)?;
-        // Sensitivities were given: that a file knows none is no doubt.
-        doubts.extend(channels.doubts.into_iter().filter(|d| !d.ends_with(Trace::UNCALIBRATED)));
+        doubts.append(&mut channels.doubts);
         doubts.append(&mut found.warnings);
         found.warnings = doubts;
         Ok(found)
@@ -163,8 +162,8 @@ impl Channels for Played<'_> {
             self.done += n;
             (self.progress)(self.done, self.all);
         }
-        // What only the values show is known now.
-        self.doubts = traces.doubts();
+        // What only the values show is known now. Sensitivities are stated: that a file knows none is no doubt.
+        self.doubts = traces.doubts_but(|doubt| doubt == Trace::UNCALIBRATED);
         Ok(())
     }
 }

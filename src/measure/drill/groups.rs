@@ -1,5 +1,6 @@
 //! Impacts that belong together: of one direction, at like phases of the turn.
 
+use super::misfit::{Misfit, Misfits};
 use super::rebound::{Doubt, restitution};
 use super::{DrillOptions, Impact};
 use crate::measure::Estimate;
@@ -47,6 +48,9 @@ pub struct Group {
     /// What there is to say of the restitution.
     #[serde(skip)]
     pub(crate) doubt: Option<Doubt>,
+    /// What the fits before and after leave alike, where it may move the mean by more than its scatter tells.
+    #[serde(skip)]
+    pub(super) misfit: [Option<Misfit>; 2],
     /// Whether the impacts come all round the turn, for all that is known.
     #[serde(skip)]
     pub(crate) all_round: bool,
@@ -64,7 +68,12 @@ struct Arc {
 }
 
 /// Groups of impacts found in `turns` turns, the strongest first; each impact is told its group.
-pub(super) fn groups(impacts: &mut [Impact], turns: usize, options: &DrillOptions) -> Vec<Group> {
+pub(super) fn groups(
+    impacts: &mut [Impact],
+    misfits: &Misfits,
+    turns: usize,
+    options: &DrillOptions,
+) -> Vec<Group> {
     let rises = |i: &Impact| i.after > i.before;
     let mut all: Vec<(f64, Arc)> = Vec::new();
     for direction in [false, true] {
@@ -82,7 +91,13 @@ pub(super) fn groups(impacts: &mut [Impact], turns: usize, options: &DrillOption
     all.iter()
         .map(|(_, arc)| {
             let own: Vec<Impact> = arc.members.iter().map(|k| impacts[*k]).collect();
-            Group::new(&own, arc.start, turns, front == Some(arc.rises), options)
+            let taken: Vec<usize> = arc
+                .members
+                .iter()
+                .copied()
+                .filter(|k| own.iter().all(|i| i.clipped) || !impacts[*k].clipped)
+                .collect();
+            Group::new(&own, misfits.alike(&taken), arc.start, turns, front == Some(arc.rises), options)
         })
         .collect()
 }
@@ -134,28 +149,44 @@ fn arcs(impacts: &[Impact], mut members: Vec<usize>) -> Vec<(Option<f64>, Vec<us
 
 impl Group {
     /// Means over `own` impacts; `front` tells that they go the way of the strongest group, towards the struck mass.
-    fn new(own: &[Impact], start: Option<f64>, turns: usize, front: bool, options: &DrillOptions) -> Group {
+    fn new(
+        own: &[Impact],
+        misfit: [Option<Misfit>; 2],
+        start: Option<f64>,
+        turns: usize,
+        front: bool,
+        options: &DrillOptions,
+    ) -> Group {
         let (all, own) = (own, within_range(own));
         let clipped = all.iter().filter(|i| i.clipped).count();
         let leaning = one_sided(clipped, all.len());
-        let estimate = |unit, method: &str, of: &dyn Fn(&Impact) -> f64| {
-            let mean = Mean::of(&own.iter().map(of).collect::<Vec<f64>>());
-            Estimate::new(mean.value, mean.std.filter(|_| !leaning), unit, mean.n, method)
+        let mean = |of: &dyn Fn(&Impact) -> f64| Mean::of(&own.iter().map(of).collect::<Vec<f64>>());
+        // A mean that is moved by less than its scatter leaves open keeps its uncertainty.
+        let moved = |misfit: Option<Misfit>, of: &dyn Fn(&Impact) -> f64| {
+            misfit.filter(|m| mean(of).std.is_some_and(|std| m.bias > BIAS * std))
+        };
+        let misfit = [moved(misfit[0], &|i| i.before), moved(misfit[1], &|i| i.after)];
+        let [open_before, open_after] = misfit.map(|m| leaning || m.is_some());
+        let estimate = |unit, method: &str, open: bool, of: &dyn Fn(&Impact) -> f64| {
+            let mean = mean(of);
+            Estimate::new(mean.value, mean.std.filter(|_| !open), unit, mean.n, method)
         };
         let (phase, phase_variation) = phase(&own, start);
-        let slow = |of: &dyn Fn(&Impact) -> f64| Mean::of(&own.iter().map(of).collect::<Vec<f64>>()).wanders;
+        let slow = |of: &dyn Fn(&Impact) -> f64| mean(of).wanders;
         let from = phase.value - 0.5;
         let wanders =
             slow(&|i| i.before) || slow(&|i| i.after) || slow(&|i| (i.phase - from).rem_euclid(1.0));
         let energy = |m: f64| {
-            estimate("J", "½ m v² before, mean over impacts", &move |i| 0.5 * m * i.before * i.before)
+            estimate("J", "½ m v² before, mean over impacts", open_before, &move |i| {
+                0.5 * m * i.before * i.before
+            })
         };
         let given = |m: f64| {
             let taken = move |i: &Impact| 0.5 * m * (i.before * i.before - i.after * i.after);
-            estimate("J", "½ m (v² before − v² after), mean over impacts", &taken)
+            estimate("J", "½ m (v² before − v² after), mean over impacts", open_before || open_after, &taken)
         };
         let (mut restitution, doubt) = restitution(&own, front, options);
-        if let Some(found) = restitution.as_mut().filter(|_| leaning) {
+        if let Some(found) = restitution.as_mut().filter(|_| open_before || open_after) {
             found.std = None;
         }
         Group {
@@ -164,12 +195,17 @@ impl Group {
             share: all.len() as f64 / turns as f64,
             phase,
             phase_variation,
-            before: estimate("m/s", "parabola up to the contact, mean over impacts", &|i| i.before),
-            after: estimate("m/s", "parabola from the contact on, mean over impacts", &|i| i.after),
+            before: estimate("m/s", "parabola up to the contact, mean over impacts", open_before, &|i| {
+                i.before
+            }),
+            after: estimate("m/s", "parabola from the contact on, mean over impacts", open_after, &|i| {
+                i.after
+            }),
             energy: options.mass.map(energy),
             energy_given: options.mass.map(given),
             restitution,
             doubt,
+            misfit,
             all_round: start.is_none(),
             wanders,
         }
@@ -251,6 +287,7 @@ pub(super) fn doubts(groups: &[Group]) -> Vec<String> {
             ));
         }
         said.extend(group.doubt.map(|doubt| doubt.sentence(&of)));
+        said.extend(Misfit::sentence(group.misfit, &of));
     }
     said
 }

@@ -5,46 +5,19 @@
 //! hold for the balance of momentum. A straight line would be more precise in noise but wrong where the drive accelerates
 //! the striker: over 0.5 ms of a 7.5 m/s stroke at 50 Hz by 0.04 m/s.
 
-use super::crossing;
 use super::faults::State;
+use super::misfit::{Misfits, Shape};
+use super::residue::{Noise, taken_by_fits};
+use super::side::{FEWEST, Side};
 use super::turns::Turn;
+use super::{Impact, crossing};
 
-/// Fewest samples of a fit.
-const FEWEST: usize = 6;
 /// Most impacts that are looked for in a turn.
 const MOST: usize = 4;
 /// Smaller jumps of the same turn count down to this part of the largest.
 const PART: f64 = 0.25;
 /// A jump must be this many times its own uncertainty.
 const CLEAR: f64 = 6.0;
-/// Lags over which the noise may depend on itself.
-const LAGS: usize = 6;
-
-/// One impact.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct Impact {
-    /// Turn, counted from 0 among the whole turns.
-    pub cycle: usize,
-    /// Its place among the groups of the result, the strongest 0.
-    pub group: usize,
-    /// Time from the first sample, in s.
-    pub time: f64,
-    /// Part of the turn after its first edge, 0 to 1.
-    pub phase: f64,
-    /// Standard uncertainty of the phase.
-    pub phase_std: f64,
-    /// Velocity before, in m/s.
-    pub before: f64,
-    /// Its standard uncertainty.
-    pub before_std: f64,
-    /// Velocity after, in m/s.
-    pub after: f64,
-    /// Its standard uncertainty.
-    pub after_std: f64,
-    /// Whether samples of the fits or of the contact stand at the end of the range: then the speeds are too small, and the
-    /// impact is in no mean.
-    pub clipped: bool,
-}
 
 /// What is kept of a jump until all are known.
 #[derive(Debug, Clone, Copy)]
@@ -55,6 +28,7 @@ struct Jump {
     before: f64,
     after: f64,
     leverage: [f64; 2],
+    shapes: [Shape; 2],
     slope: f64,
     weight: f64,
     sharp: bool,
@@ -70,23 +44,6 @@ pub struct Jumps {
     largest: Vec<f64>,
     noise: [Noise; 2],
     hidden: usize,
-}
-
-/// Residuals of all fits on one side.
-#[derive(Debug, Clone, Copy, Default)]
-struct Noise {
-    squares: f64,
-    freedom: f64,
-    lagged: [f64; LAGS],
-    pairs: [f64; LAGS],
-    fits: f64,
-}
-
-/// A parabola at the middle of the contact.
-struct Side {
-    value: f64,
-    leverage: f64,
-    residuals: Vec<f64>,
 }
 
 impl Jumps {
@@ -175,8 +132,9 @@ impl Jumps {
         for _ in 0..3 {
             let left = (at - self.gap as f64).floor() as isize;
             let right = (at + self.gap as f64).ceil() as isize;
-            let before = self.side(values, states, at, left - self.length as isize + 1, left)?;
-            let after = self.side(values, states, at, right, right + self.length as isize - 1)?;
+            let length = self.length as isize - 1;
+            let before = Side::through(values, states, at, left - length..=left)?;
+            let after = Side::through(values, states, at, right..=right + length)?;
             let middle = 0.5 * (before.value + after.value);
             let crossings: Vec<(usize, f64)> = (left.max(0) as usize..right as usize)
                 .filter_map(|i| crossing::between(values, i, middle).map(|t| (i, t)))
@@ -192,14 +150,11 @@ impl Jumps {
                 before: before.value,
                 after: after.value,
                 leverage: [before.leverage, after.leverage],
+                shapes: [before.shape, after.shape],
                 slope: step,
                 weight: (1.0 - share).powi(2) + share * share,
                 sharp: step.abs() > 0.8 * jump.abs(),
-                clipped: over_range(
-                    states,
-                    left - self.length as isize + 1,
-                    right + self.length as isize - 1,
-                ),
+                clipped: over_range(states, left - length, right + length),
             };
             result = Some((found, [before, after]));
         }
@@ -209,54 +164,18 @@ impl Jumps {
         (clear && !self.disturbed(states, jump.at.round() as usize)).then_some((jump, sides))
     }
 
-    /// Parabola through the measured samples `from` to `to`, at the place `at`.
-    fn side(&self, values: &[f64], states: &[State], at: f64, from: isize, to: isize) -> Option<Side> {
-        let (from, to) = (usize::try_from(from).ok()?, usize::try_from(to).ok()?);
-        let (part, known) = (values.get(from..=to)?, states.get(from..=to)?);
-        let scale = 1.0 / self.length as f64;
-        let all = part.iter().zip(known).enumerate();
-        let good: Vec<(f64, f64)> = all
-            .filter(|(_, (v, s))| s.measured() && v.is_finite())
-            .map(|(k, (v, _))| (((from + k) as f64 - at) * scale, *v))
-            .collect();
-        if good.len() < FEWEST || 3 * good.len() < 2 * part.len() {
-            return None;
-        }
-        let (mut s, mut t) = ([0.0; 5], [0.0; 3]);
-        for (x, y) in &good {
-            let mut power = 1.0;
-            for (k, s) in s.iter_mut().enumerate() {
-                *s += power;
-                if let Some(t) = t.get_mut(k) {
-                    *t += power * y;
-                }
-                power *= x;
-            }
-        }
-        // First row of the inverse of the normal matrix, by cofactors.
-        let c = [s[2] * s[4] - s[3] * s[3], s[2] * s[3] - s[1] * s[4], s[1] * s[3] - s[2] * s[2]];
-        let det = s[0] * c[0] + s[1] * c[1] + s[2] * c[2];
-        let c11 = s[0] * s[4] - s[2] * s[2];
-        let c12 = s[1] * s[2] - s[0] * s[3];
-        let c22 = s[0] * s[2] - s[1] * s[1];
-        let value = (c[0] * t[0] + c[1] * t[1] + c[2] * t[2]) / det;
-        let slope = (c[1] * t[0] + c11 * t[1] + c12 * t[2]) / det;
-        let bend = (c[2] * t[0] + c12 * t[1] + c22 * t[2]) / det;
-        let residuals = good.iter().map(|(x, y)| y - value - x * (slope + x * bend)).collect();
-        value.is_finite().then_some(Side { value, leverage: c[0] / det, residuals })
-    }
-
-    /// All impacts, at `rate` samples a second, with reference edges of standard uncertainty `edge` samples; and the number
-    /// of impacts hidden in a fault of the velocity.
-    pub fn finish(self, rate: f64, edge: f64) -> (Vec<Impact>, usize) {
+    /// All impacts, at `rate` samples a second, with reference edges of standard uncertainty `edge` samples; what their fits leave; and
+    /// the number of impacts hidden in a fault of the velocity.
+    pub fn finish(mut self, rate: f64, edge: f64) -> (Vec<Impact>, Misfits, usize) {
         let typical = super::survey::median(self.largest.iter().copied());
         let variance = self.noise.map(|n| n.variance());
         let taken = taken_by_fits(self.length);
         let correlated = self.noise.map(|n| n.inflation(&taken));
-        let mut impacts: Vec<Impact> = self
+        self.found.retain(|j| (j.after - j.before).abs() >= PART * typical);
+        self.found.sort_by(|a, b| a.at.total_cmp(&b.at));
+        let impacts = self
             .found
             .iter()
-            .filter(|j| (j.after - j.before).abs() >= PART * typical)
             .map(|j| {
                 let fitted = [0, 1].map(|k| variance[k] * correlated[k] * j.leverage[k]);
                 let length = j.turn.end - j.turn.start;
@@ -279,8 +198,8 @@ impl Jumps {
                 }
             })
             .collect();
-        impacts.sort_by(|a, b| a.time.total_cmp(&b.time));
-        (impacts, self.hidden)
+        let shapes = self.found.iter().map(|j| j.shapes).collect();
+        (impacts, Misfits { shapes, length: self.length, gap: self.gap }, self.hidden)
     }
 }
 
@@ -288,63 +207,6 @@ impl Jumps {
 fn over_range(states: &[State], from: isize, to: isize) -> bool {
     let [from, to] = [from, to].map(|i| i.max(0) as usize);
     states.get(from..=to).is_some_and(|s| s.contains(&State::Clipped))
-}
-
-impl Side {
-    fn variance(&self) -> f64 {
-        let squares: f64 = self.residuals.iter().map(|r| r * r).sum();
-        self.leverage * squares / (self.residuals.len() - 3) as f64
-    }
-}
-
-impl Noise {
-    fn push(&mut self, residuals: &[f64]) {
-        self.squares += residuals.iter().map(|r| r * r).sum::<f64>();
-        self.freedom += residuals.len() as f64 - 3.0;
-        self.fits += 1.0;
-        for (k, (sum, pairs)) in self.lagged.iter_mut().zip(&mut self.pairs).enumerate() {
-            let behind = residuals.get(k + 1..).unwrap_or(&[]);
-            *sum += residuals.iter().zip(behind).map(|(a, b)| a * b).sum::<f64>();
-            *pairs += behind.len() as f64;
-        }
-    }
-
-    fn variance(&self) -> f64 {
-        self.squares / self.freedom
-    }
-
-    /// How much larger the variance of a mean is than in white noise: 1 + 2Σρ, with the part given back that fits take
-    /// out of every lagged sum.
-    fn inflation(&self, taken: &[f64; LAGS]) -> f64 {
-        let variance = self.variance();
-        let lagged = self.lagged.iter().zip(&self.pairs).zip(taken);
-        let rho = lagged
-            .map(|((sum, pairs), taken)| (sum + taken * variance * self.fits) / (variance * pairs.max(1.0)));
-        let sum = 1.0 + 2.0 * rho.filter(|r| r.is_finite()).sum::<f64>();
-        sum.max(1.0)
-    }
-}
-
-/// What a parabola fitted to `n` samples of white noise of unit variance takes out of the sum of products of residuals at
-/// each lag: the trace of the hat matrix on its side diagonals.
-fn taken_by_fits(n: usize) -> [f64; LAGS] {
-    // Orthonormal polynomials on the samples, by Gram and Schmidt.
-    let mut basis: Vec<Vec<f64>> = Vec::with_capacity(3);
-    for power in 0..3 {
-        let mut v: Vec<f64> = (0..n).map(|i| (i as f64 - 0.5 * (n as f64 - 1.0)).powi(power)).collect();
-        for u in &basis {
-            let along: f64 = u.iter().zip(&v).map(|(a, b)| a * b).sum();
-            v.iter_mut().zip(u).for_each(|(v, u)| *v -= along * u);
-        }
-        let norm = v.iter().map(|x| x * x).sum::<f64>().sqrt();
-        for x in &mut v {
-            *x /= norm;
-        }
-        basis.push(v);
-    }
-    std::array::from_fn(|k| {
-        basis.iter().map(|u| u.iter().zip(u.iter().skip(k + 1)).map(|(a, b)| a * b).sum::<f64>()).sum()
-    })
 }
 
 #[cfg(test)]
@@ -368,7 +230,8 @@ mod tests {
     fn one(values: &[f64], states: &[State]) -> (Vec<Impact>, usize) {
         let mut jumps = Jumps::new(20.0, 50.0);
         jumps.push(4, Turn { start: 100.0, end: 1900.0 }, values, states, 0.0);
-        jumps.finish(1e5, 0.0)
+        let (impacts, _, hidden) = jumps.finish(1e5, 0.0);
+        (impacts, hidden)
     }
 
     #[test]

@@ -35,8 +35,8 @@ pub(super) struct Measured<'a> {
 
 pub(super) fn summary(m: Measured<'_>) -> Drill {
     let (rate, options) = (m.rate, m.options);
-    let (mut impacts, hidden) = m.pass.jumps.clone().finish(rate, m.edge);
-    let groups = groups::groups(&mut impacts, m.pass.averaged, options);
+    let (mut impacts, misfits, hidden) = m.pass.jumps.clone().finish(rate, m.edge);
+    let groups = groups::groups(&mut impacts, &misfits, m.pass.averaged, options);
     let strongest = groups.first();
     let mean = m.pass.average.mean();
     let period =
@@ -227,7 +227,13 @@ fn warnings(
         ),
     );
     say(clipped > 0, format!("{} of {found} over-range: {taken}.", several(clipped, "impact")));
-    say(result.impacts.is_empty(), "No impact was found: no jump of the velocity stands out.".to_owned());
+    say(
+        result.impacts.is_empty(),
+        format!(
+            "No impact was found: no jump of the velocity within {} stands out; one whose contact lasts longer needs a longer --contact.",
+            quantity(options.contact, "s", 2)
+        ),
+    );
     let per_degree = 100.0 * result.beam.per_degree;
     say(
         per_degree > 0.5,

@@ -99,6 +99,11 @@ impl Survey {
         (self.low <= self.high).then_some((self.low, self.high))
     }
 
+    /// Median of the values.
+    pub fn middle(&self) -> f64 {
+        median(self.differences.kept.iter().map(|d| d.value))
+    }
+
     /// Standard deviation of white noise on a smooth signal: second differences of noise scatter √6 as much, and their
     /// median is not moved by the few places where the signal is not smooth.
     pub fn noise(&self) -> f64 {

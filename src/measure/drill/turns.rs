@@ -50,7 +50,8 @@ pub(crate) struct Numbered {
 }
 
 impl Numbered {
-    /// Numbers edges, each by the median interval around it.
+    /// Numbers edges, each by the median interval around it. Of two edges within an interval the one farther from where the edge before lets
+    /// it be expected is passed over; where none is before, the one behind tells.
     pub(crate) fn new(edges: &[f64]) -> Numbered {
         let intervals: Vec<f64> = edges.windows(2).map(|e| e[1] - e[0]).collect();
         let (mut missing, mut extra, mut pauses) = (0, 0, 0);
@@ -61,19 +62,39 @@ impl Numbered {
             let (Some(run), expected) = (runs.last_mut(), median(near)) else { continue };
             let Some(&(place, last)) = run.last() else { continue };
             let ratio = (edge - last) / expected;
-            if ratio < SHORT {
-                extra += 1;
-            } else if ratio > PAUSE {
+            if ratio > PAUSE {
                 pauses += 1;
                 runs.push(vec![(0, edge)]);
-            } else {
-                let steps = if ratio > LONG { ratio.round() as usize } else { 1 };
-                missing += steps - 1;
-                run.push((place + steps, edge));
+                continue;
             }
+            if ratio >= SHORT {
+                missing += steps(ratio) - 1;
+                run.push((place + steps(ratio), edge));
+                continue;
+            }
+            extra += 1;
+            let before = run.len().checked_sub(2).and_then(|k| run.get(k)).copied();
+            let Some(beside) = before.map(|b| b.1).or(edges.get(i + 1).copied()) else { continue };
+            let off = |edge: f64| {
+                let ratio = (edge - beside).abs() / expected;
+                (ratio - steps(ratio) as f64).abs()
+            };
+            if off(edge) >= off(last) {
+                continue;
+            }
+            run.pop();
+            let between = before.map_or(0, |b| steps((edge - b.1) / expected));
+            // Edges that were missing before the one passed over are counted already.
+            missing += between.saturating_sub(before.map_or(0, |b| place - b.0));
+            run.push((before.map_or(0, |b| b.0 + between), edge));
         }
         Numbered { runs, missing, extra, pauses }
     }
+}
+
+/// Intervals in a time of so many expected ones.
+fn steps(ratio: f64) -> usize {
+    if ratio > LONG { ratio.round() as usize } else { 1 }
 }
 
 impl Turns {
@@ -238,6 +259,38 @@ mod tests {
             // three times that.
             assert!((found / expected - 1.0).abs() < 0.11 && found < 2.4, "{found} {expected}");
         }
+    }
+
+    #[test]
+    fn false_edges_anywhere_in_a_turn_are_passed_over() {
+        // Turns of 100 with their third in each place but one half: 148 turns, as without the false edges.
+        for part in [0.05, 0.2, 0.45, 0.55, 0.65, 0.7, 0.8, 0.95] {
+            let mut edges: Vec<f64> =
+                (0..150).map(|k| f64::from(k) * 100.0 + f64::from(k * k % 7) * 0.1).collect();
+            for k in [0.0, 40.0, 90.0, 91.0, 148.0] {
+                edges.push(100.0 * (k + part));
+            }
+            edges.sort_by(f64::total_cmp);
+            let turns = Turns::new(&edges, 1).unwrap();
+            assert_eq!(
+                (turns.turns.len(), turns.extra, turns.missing, turns.pauses),
+                (149, 5, 0, 0),
+                "{part}"
+            );
+            assert!(turns.turns.iter().all(|t| (t.end - t.start - 100.0).abs() < 0.7), "{part}");
+            // Before the first edge, where nothing but the next one tells.
+            let mut edges: Vec<f64> = (1..150).map(|k| f64::from(k) * 100.0).collect();
+            edges.insert(0, 100.0 * part);
+            let first = Turns::new(&edges, 1).unwrap().turns[0];
+            // An edge of 0.6 turns and more before the first may be one.
+            assert!(part < 0.45 || first.start == 100.0, "{part}: {first:?}");
+        }
+        // A false edge at 1.45 where the edge at 1 is missing.
+        let mut edges: Vec<f64> = (0..40).map(|k| f64::from(k) * 100.0).collect();
+        edges[21] = 2145.0;
+        let turns = Turns::new(&edges, 1).unwrap();
+        assert_eq!((turns.turns.len(), turns.extra, turns.missing), (37, 1, 1));
+        assert!(turns.turns.iter().all(|t| t.end - t.start == 100.0));
     }
 
     #[test]

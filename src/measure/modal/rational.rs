@@ -195,8 +195,8 @@ impl Scaled<'_> {
 /// Fits modes near the first guesses `starts` (frequency in Hz, damping ratio) to the lines `part` of a function from which
 /// `others` are taken away.
 ///
-/// Noise is weighted by the coherence where there is one; else as equal on all lines or as proportional to the response,
-/// whichever makes the residuals more likely.
+/// Noise is weighted by the coherence where there is one, its level or its share of the response smoothed over lines; else as equal on all lines or as proportional to the response,
+/// whichever makes the residuals more likely in both cases.
 pub(super) fn rational(
     measured: &Measured,
     part: std::ops::Range<usize>,
@@ -240,23 +240,33 @@ pub(super) fn rational(
     } else {
         scaled.start(width, &equal).ok_or_else(refuse)?
     };
+    let first = scaled.fit(&start, &equal)?;
+    let height = |i: usize| scaled.at(&first.parameters, i).norm();
+    let unlikely = |fit: &Fit, weight: &[f64]| {
+        let n = fit.residuals.len() as f64;
+        let logs = weight.iter().map(|w| w.ln()).sum::<f64>() * n / lines as f64;
+        n * (fit.sum_of_squares() / n).ln() + 2.0 * logs
+    };
     let (fit, noise) = if let Some(coherence) = &measured.coherence {
         // Variance of a line: |H|²(1 − γ²)/(2γ²) over the averages (Bendat & Piersol 2010, 9.90), whose number is left to the fit.
-        let weight: Vec<f64> = coherence[part.clone()]
-            .iter()
-            .zip(&scaled.values)
-            .map(|(c, v)| v.norm().max(1e-6) * ((1.0 - c).max(1e-5) / c).sqrt())
-            .collect();
-        (scaled.fit(&start, &weight)?, "noise by the coherence")
-    } else {
-        let first = scaled.fit(&start, &equal)?;
+        // That of few averages is hardly known from the line alone, and one that is small by chance would draw the fit to it.
+        let part = part.clone().map(|i| coherence[i]);
+        let share: Vec<f64> = part.map(|c| (1.0 - c).max(1e-5) / c).collect();
+        let level: Vec<f64> =
+            share.iter().zip(&scaled.values).map(|(s, v)| s * v.norm_sqr().max(1e-12)).collect();
+        let level: Vec<f64> = smoothed(&level).into_iter().map(f64::sqrt).collect();
         let relative: Vec<f64> =
-            (0..lines).map(|i| scaled.at(&first.parameters, i).norm().max(1e-2)).collect();
-        let unlikely = |fit: &Fit, weight: &[f64]| {
-            let n = fit.residuals.len() as f64;
-            let logs = weight.iter().map(|w| w.ln()).sum::<f64>() * n / lines as f64;
-            n * (fit.sum_of_squares() / n).ln() + 2.0 * logs
+            smoothed(&share).iter().enumerate().map(|(i, s)| height(i).max(1e-6) * s.sqrt()).collect();
+        let by_level = scaled.fit(&first.parameters, &level);
+        let by_share = scaled.fit(&first.parameters, &relative);
+        let likely = match (by_level, by_share) {
+            (Ok(one), Ok(other)) if unlikely(&other, &relative) < unlikely(&one, &level) => other,
+            (Ok(one), _) => one,
+            (Err(_), other) => other?,
         };
+        (likely, "noise by the coherence")
+    } else {
+        let relative: Vec<f64> = (0..lines).map(|i| height(i).max(1e-2)).collect();
         match scaled.fit(&first.parameters, &relative) {
             Ok(second) if unlikely(&second, &relative) < unlikely(&first, &equal) => {
                 (second, "noise proportional to the response")
@@ -267,6 +277,16 @@ pub(super) fn rational(
     let mut result = scaled.result(&fit, noise);
     result.fitted.iter_mut().zip(f).for_each(|(v, f)| *v += taken(*f));
     Ok(result)
+}
+
+/// Lines on either side over which the noise by the coherence is averaged: with two averages the noise of a line has 2 degrees of
+/// freedom, that of all 31 has 62, and a weight scatters by 9 %.
+const NEAR: usize = 15;
+
+/// Means over each value and those beside it.
+fn smoothed(values: &[f64]) -> Vec<f64> {
+    let near = |i: usize| values.get(i.saturating_sub(NEAR)..(i + NEAR + 1).min(values.len())).unwrap_or(&[]);
+    (0..values.len()).map(|i| near(i).iter().sum::<f64>() / near(i).len() as f64).collect()
 }
 
 /// A mode must be known better than this part of its damping ratio; else the peak may be anything.
@@ -369,18 +389,4 @@ impl Scaled<'_> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_decay_is_taken_off_what_oscillates_and_decays_by_more() {
-        let pole = |zeta| Pole { frequency: 100.0 / TAU, zeta, constant: Complex64::new(1.0, 0.0) };
-        // s = −10 ± 100i√0.99 without 4 is −6 ± 100i√0.99.
-        let own = pole(0.1).without_decay(4.0, 0).unwrap();
-        let expected = 36f64 + 9900.0;
-        assert!((TAU * own.frequency / expected.sqrt() - 1.0).abs() < 1e-12);
-        assert!((own.zeta / (6.0 / expected.sqrt()) - 1.0).abs() < 1e-12);
-        assert!(pole(0.1).without_decay(11.0, 0).is_none());
-        assert!([1.0, 1.5, f64::NAN].iter().all(|zeta| pole(*zeta).without_decay(0.0, 2).is_none()));
-    }
-}
+mod tests;

@@ -184,10 +184,11 @@ impl Measured {
                 ));
             }
         }
-        let kept: Vec<usize> = (0..n)
-            .filter(|i| !(missing.contains(i) || impossible.contains(i) || low.contains(i)))
-            .filter(|i| self.frequency[*i] > 0.0)
-            .collect();
+        let mut good: Vec<bool> = self.frequency.iter().map(|f| *f > 0.0).collect();
+        for i in missing.iter().chain(&impossible).chain(&low) {
+            good[*i] = false;
+        }
+        let kept: Vec<usize> = (0..n).filter(|i| good[*i]).collect();
         if kept.len() < 5 {
             return Err(Error::refused(format!(
                 "{} of {n} lines can be used: there is nothing to fit",

@@ -4,6 +4,7 @@ use super::{HuntCrossley, KelvinVoigt, LowPass};
 use crate::error::{Error, Result};
 use crate::math::{Fit, least_squares};
 use crate::measure::residuals::{Whiteness, student};
+use std::f64::consts::PI;
 
 /// What a pulse may be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,6 +32,8 @@ pub(super) struct Samples {
     pub step: f64,
     /// The instrument's low-pass in the same unit of time.
     pub filter: Option<LowPass>,
+    /// Standard deviation of what a converter rounds, and of the baseline by it.
+    rounding: (f64, f64),
     hertz: HuntCrossley,
 }
 
@@ -71,13 +74,50 @@ const GLANCE: usize = 48;
 /// Corner of a low-pass over the sampling rate from which on its rise takes fewer than about four samples.
 const FAST: f64 = 0.1;
 
+/// Lengths of the pulse before its rising flank up to which a record rests.
+const BEFORE: f64 = -0.4;
+
+/// Place of the baseline among the parameters.
+const BASELINE: usize = 1;
+
 /// Part of the pulse's length around the onset in which a wrong low-pass shows.
 const AROUND: f64 = 0.1;
 
 impl Samples {
-    pub fn new(times: Vec<f64>, values: Vec<f64>, step: f64, filter: Option<LowPass>) -> Result<Samples> {
+    /// Samples whose values a converter rounded to whole numbers of `code`, which may be 0.
+    pub fn new(
+        times: Vec<f64>,
+        values: Vec<f64>,
+        step: f64,
+        filter: Option<LowPass>,
+        code: f64,
+    ) -> Result<Samples> {
         let hertz = HuntCrossley::new(0.0).ok_or_else(|| Error::refused("no shape of a Hertzian contact"))?;
-        Ok(Samples { times, values, step, filter, hertz })
+        let rounded = code / 12f64.sqrt();
+        let rest: Vec<f64> =
+            times.iter().zip(&values).filter(|(t, _)| **t < BEFORE).map(|(_, v)| *v).collect();
+        let mean = rest.iter().sum::<f64>() / rest.len().max(1) as f64;
+        let squares = rest.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / rest.len().max(1) as f64;
+        // Noise spreads a level over codes, whose mean is then the level but for exp(−2π²σ²/q²) of what is rounded
+        // (P. Carbone and D. Petri, IEEE Trans. Instrum. Meas. 43 (1994) 389).
+        let noise = (squares - rounded * rounded).max(0.0) / (code * code);
+        let level = if code > 0.0 { rounded * (-2.0 * PI * PI * noise).exp() } else { 0.0 };
+        Ok(Samples { times, values, step, filter, rounding: (rounded, level), hertz })
+    }
+
+    /// Covariance of two parameters of a fit. Noise is not less than what the converter rounds: a baseline that is one code has none,
+    /// and may be off by as much, which moves the others as far as they depend on it.
+    pub fn covariance(&self, fitted: &Fitted, i: usize, j: usize) -> f64 {
+        let (fit, (rounded, level)) = (&fitted.fit, self.rounding);
+        let noise = if rounded > 0.0 { (rounded * rounded / fit.variance()).max(1.0) } else { 1.0 };
+        let along = |i: usize| fit.covariance(i, BASELINE) / fit.covariance(BASELINE, BASELINE);
+        let moved = if level > 0.0 { level * level * along(i) * along(j) } else { 0.0 };
+        noise * fit.covariance(i, j) + moved
+    }
+
+    /// Standard deviation of a parameter, as [`Samples::covariance`].
+    pub fn std(&self, fitted: &Fitted, i: usize) -> f64 {
+        self.covariance(fitted, i, i).sqrt()
     }
 
     /// The model at these rising times; `first` is the first time inside the contact where that is settled.
@@ -177,7 +217,7 @@ impl Samples {
             *part = (part.0 + r * r, part.1 + 1.0);
         }
         let limit = (1.0 + 4.0 * (2.0_f64 / near.1).sqrt()).max(2.0);
-        near.0 * far.1 > limit * far.0 * near.1
+        near.0 / near.1 > limit * (far.0 / far.1).max(self.rounding.0.powi(2))
     }
 
     fn from(&self, model: Model, start: &[f64], first: Option<usize>) -> Result<Fitted> {

@@ -9,8 +9,10 @@ pub(super) struct Located {
     pub baseline: f64,
     /// Largest excursion from it, with its sign.
     pub height: f64,
-    /// Standard deviation of the noise, from neighbours: too small where the noise is not white.
+    /// Standard deviation of the noise, from neighbours: too small where the noise is not white; that of rounding at least.
     pub noise: f64,
+    /// Step of the converter; 0 where none shows.
+    pub step: f64,
     /// Places, in samples, where the flanks cross half the height.
     pub flanks: (f64, f64),
     /// Place, in samples, where the falling flank has come down to a fifth of the height.
@@ -21,6 +23,13 @@ pub(super) struct Located {
 
 /// Equal samples in a row at the largest value from which on a top is taken for clipped.
 const FLAT: usize = 3;
+
+/// A flat top that begins and ends by more steps of the converter than these was cut off while the pulse rose and fell; a contact begins
+/// by a jump, and may be round behind it.
+const ROUNDED: f64 = 8.0;
+
+/// Most steps in the height of a pulse that matter: with more, rounding is a ten-thousandth of the height.
+const STEPS: f64 = 4096.0;
 
 /// Noise deviations within which samples count as equal to the largest.
 const BAND: f64 = 8.0;
@@ -39,20 +48,22 @@ pub(super) fn locate(values: &[f64]) -> Result<Located> {
             .hint("check the channel: `vibro info` lists all"));
     }
     let baseline = mode(&sorted);
-    let noise = {
+    let step = quantum(&sorted);
+    let white = {
         let mut steps: Vec<f64> =
             values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|d| d.is_finite()).collect();
         steps.sort_by(f64::total_cmp);
         // Median to standard deviation of a normal distribution, and of a difference to that of a value.
         1.4826 * steps.get(steps.len() / 2).copied().unwrap_or(0.0) / f64::sqrt(2.0)
     };
+    let noise = white.max(step / f64::sqrt(12.0));
     let far = |v: &f64| if v.is_finite() { (v - baseline).abs() } else { -1.0 };
     let peak = (0..values.len()).max_by(|a, b| far(&values[*a]).total_cmp(&far(&values[*b]))).unwrap_or(0);
     let height = values[peak] - baseline;
-    if height.abs() < LEAST * noise {
+    if height.abs() < LEAST * white {
         return Err(Error::refused(format!(
             "no pulse stands out: the largest excursion is {:.1} times the noise between neighbours, {LEAST} are needed",
-            height.abs() / noise
+            height.abs() / white
         )));
     }
     let part = |i: usize| (values[i] - baseline) / height;
@@ -71,7 +82,10 @@ pub(super) fn locate(values: &[f64]) -> Result<Located> {
     let mut i = before;
     while i < after {
         let run = values[i..after].iter().take_while(|v| **v == top).count();
-        if run >= FLAT {
+        let mut left = [i.checked_sub(1), Some(i + run)].into_iter().flatten().filter_map(|k| values.get(k));
+        let cut = left.all(|v| (v - top).abs() > ROUNDED * step)
+            || flat(run as f64, (after - before) as f64, step / height.abs());
+        if run >= FLAT && cut {
             clipped.extend(i..i + run);
         }
         i += run.max(1);
@@ -81,18 +95,32 @@ pub(super) fn locate(values: &[f64]) -> Result<Located> {
         let near = |i: &usize| height.abs() * (1.0 - part(*i)) < BAND * noise;
         let from = (before..=peak).rev().take_while(near).last().unwrap_or(peak);
         let to = (peak..after).take_while(near).last().unwrap_or(peak);
-        if flat((to + 1 - from) as f64, flanks.1 - flanks.0, noise / height.abs()) {
+        if flat((to + 1 - from) as f64, flanks.1 - flanks.0, BAND * noise / height.abs()) {
             clipped.extend(from..=to);
         }
     }
-    Ok(Located { baseline, height, noise, flanks, low, clipped })
+    Ok(Located { baseline, height, noise, step, flanks, low, clipped })
 }
 
-/// Whether `run` samples within the noise of the largest are a flat top of a pulse that is `width` samples wide at half its height. The top
+/// Step of a converter with few bits: the smallest between rising values, where all are whole numbers of it apart.
+fn quantum(sorted: &[f64]) -> f64 {
+    let [first, .., last] = sorted else { return 0.0 };
+    // Codes in decimals or single precision are a small part of a step apart though they are the same.
+    let least = (last - first) / (2.0 * STEPS);
+    let steps = sorted.windows(2).map(|w| w[1] - w[0]).filter(|d| *d > least);
+    let step = steps.fold(f64::INFINITY, f64::min);
+    let whole = |v: &f64| {
+        let codes = (v - first) / step;
+        (codes - codes.round()).abs() < 0.05
+    };
+    if step > 2.0 * least && step.is_finite() && sorted.iter().all(whole) { step } else { 0.0 }
+}
+
+/// Whether `run` samples within `depth`, a part of the height, of the largest are a flat top of a pulse that is `width` samples wide at half its height. The top
 /// of a half sine, 1.5 widths long, is within a part x of its height for (3/π) acos(1 − x) of these; three times that, and an eighth
 /// of the width at least, is no shape of a contact.
-fn flat(run: f64, width: f64, noise: f64) -> bool {
-    let round = 3.0 / std::f64::consts::PI * (1.0 - BAND * noise).max(-1.0).acos() * width;
+fn flat(run: f64, width: f64, depth: f64) -> bool {
+    let round = 3.0 / std::f64::consts::PI * (1.0 - depth).max(-1.0).acos() * width;
     run > 3.0 * round + FLAT as f64 && run > width / 8.0
 }
 

@@ -24,6 +24,9 @@ pub(super) struct View<'a> {
     filter: Option<LowPass>,
 }
 
+/// A mean of this part of the root mean square is another level; what rings is on both sides of its own.
+const LEVEL: f64 = 0.5;
+
 /// Lengths of the pulse that are fitted before and after it, for the baseline.
 const BESIDE: f64 = 2.0;
 
@@ -60,16 +63,22 @@ impl<'a> View<'a> {
         let used: Vec<usize> = range.filter(usable).collect();
         let times = used.iter().map(|i| self.time(*i)).collect();
         let values = used.iter().map(|i| self.trace.values[*i] / self.height).collect();
-        let samples = Samples::new(times, values, self.step / self.length, self.filter.clone())?;
+        let samples = Samples::new(
+            times,
+            values,
+            self.step / self.length,
+            self.filter.clone(),
+            self.found.step / self.height,
+        )?;
         Ok((samples, used))
     }
 
-    /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record rings after it.
+    /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record does not rest after it. And whether what follows is about the baseline.
     pub fn window(
         &self,
         warnings: &mut Vec<String>,
         unlike: impl Fn(Error) -> Error,
-    ) -> Result<(Samples, Vec<usize>)> {
+    ) -> Result<(Samples, Vec<usize>, bool)> {
         let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
         let from = self.index(-BESIDE - delay);
         let (first, used) = self.samples(from..self.found.low)?;
@@ -78,21 +87,35 @@ impl<'a> View<'a> {
         let settled = self.index(fitted.end() + 3.0 * delay);
         let far = self.index(fitted.end() + 3.0 * delay + BESIDE);
         let (after, _) = self.samples(settled..far)?;
+        // Mean and root of the mean square of what is left after the pulse.
         let left = |samples: &Samples| {
             let model = fitted.at(samples, &samples.times)?;
-            let sum: f64 = model.iter().zip(&samples.values).map(|(m, v)| (v - m).powi(2)).sum();
-            Some((sum / samples.times.len() as f64).sqrt())
+            let off = || model.iter().zip(&samples.values).map(|(m, v)| v - m);
+            let n = samples.times.len() as f64;
+            Some((off().sum::<f64>() / n, (off().map(|d| d * d).sum::<f64>() / n).sqrt()))
         };
-        let inside = (fitted.fit.sum_of_squares() / used.len() as f64).sqrt();
-        let rings = after.times.len() >= 4 && left(&after).is_some_and(|left| left > 4.0 * inside.max(1e-6));
-        if !rings {
-            return self.samples(from..far);
+        let rounded = self.found.step / self.height / 12f64.sqrt();
+        let inside = (fitted.fit.sum_of_squares() / used.len() as f64).sqrt().max(rounded).max(1e-6);
+        let behind = left(&after).filter(|(_, rms)| after.times.len() >= 4 && *rms > 4.0 * inside);
+        let Some((mean, rms)) = behind else {
+            let (samples, used) = self.samples(from..far)?;
+            return Ok((samples, used, true));
+        };
+        let end = self.index(fitted.end()).max(self.found.low);
+        if mean.abs() > LEVEL * rms {
+            warnings.push(
+                "The record comes to another level after the pulse than before: AC coupling or another high-pass of the sensor (its time constant is too short for the pulse), or a second contact. The shape of the pulse is bent as well: there is no uncertainty."
+                    .to_owned(),
+            );
+            let (samples, used) = self.samples(from..end)?;
+            return Ok((samples, used, false));
         }
         warnings.push(
             "The record does not rest after the pulse (ringing, or a second contact): only what precedes the end of the pulse is fitted."
                 .to_owned(),
         );
-        self.samples(from..self.index(fitted.end()).max(self.found.low))
+        let (samples, used) = self.samples(from..end)?;
+        Ok((samples, used, true))
     }
 
     fn count(&self, used: &[usize], range: Range<usize>, warnings: &mut Vec<String>) -> Result<()> {
@@ -165,7 +188,7 @@ impl<'a> View<'a> {
         let mut parameters = BTreeMap::new();
         let mut put = |name, i: usize, factor: f64, shift: f64, unit| {
             let value = shift + factor * fitted.fit.parameters[i];
-            let std = factor.abs() * fitted.fit.std(i) * widened;
+            let std = factor.abs() * samples.std(fitted, i) * widened;
             parameters.insert(name, Estimate::new(trust.value(value), Some(std), unit, n, method));
         };
         put("onset", 0, self.length, self.seconds(0.0), "s");
@@ -184,7 +207,7 @@ impl<'a> View<'a> {
                 put("duration", 3, self.length, 0.0, "s");
                 put("alpha", 4, 1.0, 0.0, "1");
                 let restitution = |p: &[f64]| HuntCrossley::new(p[0]).map(|c| c.restitution());
-                let variance = |_, _| (fitted.fit.std(4) * widened).powi(2);
+                let variance = |_, _| (samples.std(fitted, 4) * widened).powi(2);
                 if let Some((r, std)) = propagated(&fitted.fit.parameters[4..], &[1e3], variance, restitution)
                 {
                     let e = Estimate::new(trust.value(r), Some(std), "1", n, method);

@@ -45,7 +45,7 @@ fn front_and_rear_and_a_stray() {
         i.1 != 30.0 || strays == 1
     });
     let mut all = impacts(&ten);
-    let groups = groups(&mut all, 40, &options(Some((0.1, 0.2))));
+    let groups = groups(&mut all, &Misfits::default(), 40, &options(Some((0.1, 0.2))));
     // Squares of jumps: in front ten times 64 + 100 + 81 + 81, the stray 900, behind ten times 25 + 29 + 27 or so.
     assert_eq!(groups.iter().map(|g| g.n).collect::<Vec<_>>(), [40, 1, 30]);
     assert_eq!(all.iter().take(8).map(|i| i.group).collect::<Vec<_>>(), [0, 2, 0, 2, 0, 1, 0, 2]);
@@ -67,18 +67,18 @@ fn front_and_rear_and_a_stray() {
 fn a_strong_stray_does_not_stand_for_all() {
     let mut of = vec![(0.3, 7.0, -2.0); 20];
     of.push((0.7, 30.0, 0.0));
-    let groups = groups(&mut impacts(&of), 20, &options(None));
+    let groups = groups(&mut impacts(&of), &Misfits::default(), 20, &options(None));
     assert_eq!((groups.len(), groups[0].n, groups[1].n), (2, 20, 1));
 }
 
 #[test]
 fn impacts_at_all_phases_have_no_mean_phase() {
     let of: Vec<_> = (0..40).map(|k| ((0.37 * f64::from(k)).fract(), 5.0, -1.0)).collect();
-    let groups = groups(&mut impacts(&of), 40, &options(None));
+    let groups = groups(&mut impacts(&of), &Misfits::default(), 40, &options(None));
     assert_eq!((groups.len(), groups[0].n, groups[0].phase.std), (1, 40, None));
     assert!(groups[0].before.std.is_some());
     assert!(doubts(&groups)[0].contains("all phases"));
-    assert!(super::groups(&mut [], 3, &options(None)).is_empty());
+    assert!(super::groups(&mut [], &Misfits::default(), 3, &options(None)).is_empty());
 }
 
 /// Of 1000 records of `n` impacts: parts that have more than one group, and whose one group has no mean phase.
@@ -86,7 +86,7 @@ fn parts(n: usize, mut phase: impl FnMut(usize) -> f64) -> (f64, f64) {
     let (mut split, mut round) = (0, 0);
     for _ in 0..1000 {
         let of: Vec<_> = (0..n).map(|k| (phase(k).rem_euclid(1.0), 5.0, -1.0)).collect();
-        let found = groups(&mut impacts(&of), n, &options(None));
+        let found = groups(&mut impacts(&of), &Misfits::default(), n, &options(None));
         split += usize::from(found.len() > 1);
         round += usize::from(found.len() == 1 && found[0].all_round && found[0].phase.std.is_none());
     }
@@ -149,12 +149,12 @@ fn a_ratio_of_sums_and_its_propagated_uncertainty() {
     let of: Vec<_> = (0..12)
         .map(|k| (0.5, 10.0 + 0.2 * f64::from(7 * k % 12), -0.2 * (10.0 + 0.2 * f64::from(7 * k % 12))))
         .collect();
-    let found = groups(&mut impacts(&of), 12, &options(None));
+    let found = groups(&mut impacts(&of), &Misfits::default(), 12, &options(None));
     let r = found[0].restitution.as_ref().unwrap();
     assert!((r.value - 0.2).abs() < 1e-12 && r.std.unwrap() < 1e-12, "{r:?}");
     let of: Vec<_> =
         (0..12).map(|k| (0.5, if k % 5 < 2 { 1.0 } else { -0.8 }, -3.0 - f64::from(k % 3))).collect();
-    let found = groups(&mut impacts(&of), 12, &options(None));
+    let found = groups(&mut impacts(&of), &Misfits::default(), 12, &options(None));
     assert_eq!(found[0].restitution, None);
     assert!(doubts(&found)[0].contains("cannot be told from 0"), "{:?}", doubts(&found));
 }

@@ -1,0 +1,163 @@
+//! Impacts of a drill beside which the velocity is no parabola: what rings, lasts too long or comes through a slow instrument.
+
+use super::noise::Noise;
+use super::score::Score;
+use vibroimpact::measure::drill::{Beam, Drill, DrillOptions, Edge, From, Slices, drill};
+
+const RATE: f64 = 51_200.0;
+const TURNS: usize = 40;
+const CASES: u64 = 200;
+const BEFORE: f64 = 6.0;
+const AFTER: f64 = -1.0;
+
+/// What happens to a velocity that rises in a straight line from −1 to 6 m/s and falls back at phase 0.6.
+#[derive(Clone, Copy)]
+enum Spoilt {
+    /// Nothing but noise of 0.02 m/s, each value this part of the one before.
+    Noise(f64),
+    /// A ring behind the impact: Hz, m/s, s.
+    Rings(f64, f64, f64),
+    /// Mean over this many s.
+    Lasts(f64),
+    /// A first-order low-pass with this corner in Hz.
+    Slow(f64),
+}
+
+fn case(spoilt: Spoilt, seed: u64) -> Drill {
+    let mut noise = Noise::new(seed);
+    let mut edges = vec![0.01 + 0.001 * noise.uniform()];
+    for k in 0..TURNS {
+        edges.push(edges[k] + (1.0 + 0.003 * noise.normal()) / 50.0);
+    }
+    let speeds: Vec<[f64; 2]> =
+        (0..TURNS + 2).map(|_| [BEFORE + 0.03 * noise.normal(), AFTER + 0.03 * noise.normal()]).collect();
+    let count = ((edges[TURNS] + 0.01) * RATE) as usize;
+    let mut turn = 0;
+    let mut velocity: Vec<f64> = (0..count)
+        .map(|i| {
+            let t = i as f64 / RATE;
+            while turn + 2 < edges.len() && t >= edges[turn + 1] {
+                turn += 1;
+            }
+            let period = edges[turn + 1] - edges[turn];
+            let phase = (t - edges[turn]) / period;
+            let behind = (phase - 0.6).rem_euclid(1.0);
+            // The impact that was, and the one that comes.
+            let last = turn + usize::from(phase >= 0.6);
+            let (after, before) = (speeds[last][1], speeds[last + 1][0]);
+            let ring = match spoilt {
+                Spoilt::Rings(frequency, speed, decay) => {
+                    let s = behind * period;
+                    speed * (-s / decay).exp() * (std::f64::consts::TAU * frequency * s).cos()
+                }
+                _ => 0.0,
+            };
+            after + (before - after) * behind + ring
+        })
+        .collect();
+    match spoilt {
+        Spoilt::Lasts(time) => {
+            let n = (time * RATE) as usize | 1;
+            let wide = |i: usize| &velocity[i.saturating_sub(n / 2)..(i + n / 2 + 1).min(count)];
+            velocity = (0..count).map(|i| wide(i).iter().sum::<f64>() / wide(i).len() as f64).collect();
+        }
+        Spoilt::Slow(corner) => {
+            let part = 1.0 - (-std::f64::consts::TAU * corner / RATE).exp();
+            let mut y = velocity[0];
+            for v in &mut velocity {
+                y += part * (*v - y);
+                *v = y;
+            }
+        }
+        _ => {}
+    }
+    let rho = if let Spoilt::Noise(rho) = spoilt { rho } else { 0.0 };
+    let mut x = noise.normal();
+    for v in &mut velocity {
+        x = rho * x + (1.0 - rho * rho).sqrt() * noise.normal();
+        *v += 0.02 * x;
+    }
+    let rise = |samples: f64| 0.5 + 0.5 * (samples / 3.0).tanh();
+    let mut turn = 0;
+    let pulse: Vec<f64> = (0..count)
+        .map(|i| {
+            let t = i as f64 / RATE;
+            while turn + 1 < edges.len() && t >= edges[turn] + 0.01 {
+                turn += 1;
+            }
+            let near = (t - edges[turn]) * RATE;
+            5.0 * (rise(near) - rise(near - 100.0)) + 0.01 * noise.normal()
+        })
+        .collect();
+    let mut options = DrillOptions::new(1.0, Beam::new(0.0, From::Axis).unwrap(), 1, Edge::Rising);
+    options.mass = Some(0.14);
+    drill(&mut Slices { rate: RATE, channels: vec![&velocity, &pulse] }, &options, None).unwrap()
+}
+
+/// Whether the drill says that a side of the impacts is no parabola.
+fn told(found: &Drill, sides: &str) -> bool {
+    found.warnings.iter().any(|w| w.contains(&format!("right {sides} the impacts is no parabola")))
+}
+
+#[test]
+fn parabolas_in_noise_keep_their_intervals() {
+    for rho in [0.0, 0.7] {
+        let mut scores = [(); 3].map(|()| Score::default());
+        for seed in 1..=CASES {
+            let found = case(Spoilt::Noise(rho), seed);
+            let all = [found.before, found.after, found.restitution].map(Option::unwrap);
+            // The quotient of means is that of the sums.
+            for ((score, estimate), truth) in
+                scores.iter_mut().zip(&all).zip([BEFORE, AFTER, -AFTER / BEFORE])
+            {
+                score.own(estimate, truth);
+            }
+        }
+        for (score, name) in scores.iter().zip(["before", "after", "restitution"]) {
+            score.mostly(&format!("{name}, noise of rho {rho}"));
+        }
+    }
+}
+
+#[test]
+fn what_is_no_parabola_has_no_uncertainty_and_is_said() {
+    // Rings from a tenth of the jump down to twice the noise, below, at and above the inverse of the fit's 0.5 ms.
+    let rings = [
+        (3000.0, 0.3, 3e-4),
+        (3000.0, 0.5, 5e-4),
+        (3000.0, 2.0, 5e-4),
+        (2000.0, 1.0, 1e-3),
+        (5000.0, 0.1, 3e-4),
+    ];
+    let mut spoilt: Vec<(Spoilt, &str)> =
+        rings.into_iter().map(|(f, v, tau)| (Spoilt::Rings(f, v, tau), "after")).collect();
+    // Contacts of 0.3 and 0.4 ms where 0.2 are allowed; an instrument that is a thousandth of the jump off after 0.2 ms.
+    spoilt.extend([(Spoilt::Lasts(3e-4), "before and after"), (Spoilt::Lasts(4e-4), "before and after")]);
+    spoilt.push((Spoilt::Slow(5000.0), "after"));
+    let mut score = Score::default();
+    for (number, (spoilt, sides)) in spoilt.into_iter().enumerate() {
+        for seed in 1..=CASES / 4 {
+            let found = case(spoilt, 1000 * number as u64 + seed);
+            let (before, after) = (found.before.as_ref().unwrap(), found.after.as_ref().unwrap());
+            assert!(told(&found, sides), "case {number}, seed {seed}: {:?}", found.warnings);
+            assert!(after.std.is_none() && found.restitution.is_none_or(|r| r.std.is_none()));
+            assert!(found.energy_given.unwrap().std.is_none());
+            assert_eq!(before.std.is_none(), sides.contains("before"), "case {number}, seed {seed}");
+            if sides == "after" {
+                score.own(before, BEFORE);
+            }
+        }
+    }
+    // What rings behind says nothing of the speed before.
+    score.covers("before, with rings behind");
+}
+
+#[test]
+fn a_contact_too_long_to_be_found_names_what_allows_it() {
+    let found = case(Spoilt::Lasts(6e-4), 1);
+    assert!(
+        found.impacts.is_empty() && found.warnings.iter().any(|w| w.contains("--contact")),
+        "{:?}",
+        found.warnings
+    );
+}
