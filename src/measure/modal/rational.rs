@@ -59,7 +59,7 @@ pub(super) struct Rational {
     pub whiteness: Whiteness,
     /// Root mean square of what is left, over the highest line.
     pub unexplained: f64,
-    /// Akaike's criterion under equal noise, to compare numbers of modes.
+    /// Akaike's criterion with the weights of the noise, to compare numbers of modes on the same lines.
     pub aicc: f64,
     /// How the noise of the lines was weighted.
     pub noise: &'static str,
@@ -240,39 +240,51 @@ pub(super) fn rational(
     } else {
         scaled.start(width, &equal).ok_or_else(refuse)?
     };
-    let (fit, noise) = if let Some(coherence) = &measured.coherence {
+    let (fit, noise, weight) = if let Some(coherence) = &measured.coherence {
         // Variance of a line: |H|²(1 − γ²)/(2γ²) over the averages (Bendat & Piersol 2010, 9.90), whose number is left to the fit.
         let weight: Vec<f64> = coherence[part.clone()]
             .iter()
             .zip(&scaled.values)
             .map(|(c, v)| v.norm().max(1e-6) * ((1.0 - c).max(1e-5) / c).sqrt())
             .collect();
-        (scaled.fit(&start, &weight)?, "noise by the coherence")
+        (scaled.fit(&start, &weight)?, "noise by the coherence", weight)
     } else {
         let first = scaled.fit(&start, &equal)?;
         let relative: Vec<f64> =
             (0..lines).map(|i| scaled.at(&first.parameters, i).norm().max(1e-2)).collect();
         let unlikely = |fit: &Fit, weight: &[f64]| {
             let n = fit.residuals.len() as f64;
-            let logs = weight.iter().map(|w| w.ln()).sum::<f64>() * n / lines as f64;
-            n * (fit.sum_of_squares() / n).ln() + 2.0 * logs
+            n * (fit.sum_of_squares() / n).ln() + spread(weight, fit.residuals.len())
         };
         match scaled.fit(&first.parameters, &relative) {
             Ok(second) if unlikely(&second, &relative) < unlikely(&first, &equal) => {
-                (second, "noise proportional to the response")
+                (second, "noise proportional to the response", relative)
             }
-            _ => (first, "equal noise on all lines"),
+            _ => (first, "equal noise on all lines", equal),
         }
     };
-    let mut result = scaled.result(&fit, noise);
+    let mut result = scaled.result(&fit, noise, &weight);
     result.fitted.iter_mut().zip(f).for_each(|(v, f)| *v += taken(*f));
     Ok(result)
 }
+
+/// What the weights of the lines add to minus twice the logarithm of the likelihood of `n` residuals: Σ ln w².
+fn spread(weight: &[f64], n: usize) -> f64 {
+    2.0 * weight.iter().map(|w| w.ln()).sum::<f64>() * n as f64 / weight.len() as f64
+}
+
+/// What a fit leaves, by root mean square, must be less than this part of the highest line; else these are no modes as modelled.
+const EXPLAINED: f64 = 0.1;
 
 /// A mode must be known better than this part of its damping ratio; else the peak may be anything.
 const KNOWN: f64 = 0.5;
 
 impl Rational {
+    /// Whether the modes explain the lines.
+    pub fn explains(&self) -> bool {
+        self.unexplained < EXPLAINED
+    }
+
     /// Which modes stand: damped, known, and where their peaks, in the same order, are.
     pub fn sound(&self, measured: &Measured, peaks: &[Peak]) -> Vec<bool> {
         let stands = |((mode, std), peak): ((&Pole, &[f64; 4]), &Peak)| {
@@ -302,7 +314,7 @@ impl Scaled<'_> {
         p
     }
 
-    fn result(&self, fit: &Fit, noise: &'static str) -> Rational {
+    fn result(&self, fit: &Fit, noise: &'static str, weight: &[f64]) -> Rational {
         let n = self.x.len();
         let whiteness = if self.magnitude_only {
             Whiteness::of(&[&fit.residuals])
@@ -360,7 +372,8 @@ impl Scaled<'_> {
             unexplained: (sum / n as f64).sqrt(),
             modes,
             std,
-            aicc: aicc(sum, fit.residuals.len(), free.len()),
+            aicc: aicc(fit.sum_of_squares(), fit.residuals.len(), free.len())
+                + spread(weight, fit.residuals.len()),
             fitted: fitted.iter().map(|v| v * self.height).collect(),
             whiteness,
             noise,
