@@ -311,6 +311,34 @@ fn a_survey_says_what_reading_says() {
     assert_eq!((headers[1].max_abs, headers[1].max_at, headers[1].n), (Some(9.0 * 1e-3), Some(0.0), 2));
 }
 
+#[test]
+fn two_clocks_in_one_file_are_refused() {
+    let text = |step: f64, from: f64| {
+        let rows = (0..50).map(|i| {
+            let t = f64::from(i);
+            format!("{:.4},1,{:.4},{}\n", 1e-4 * t, from + step * t, 2 * i % 5)
+        });
+        format!("Time A (s),A (V),Time B (s),B (V)\n{}", rows.collect::<String>())
+    };
+    let read_text =
+        |text: String| read(&Source::memory("x.csv", text.into_bytes()).unwrap(), &Options::default());
+    let why = read_text(text(2e-4, 0.0)).unwrap_err().to_string();
+    assert!(why.contains("\"Time A\" and \"Time B\" run over 0.0049 and 0.0098"), "{why}");
+    // The same clock read elsewhere is no other.
+    assert!(read_text(text(1e-4, 0.0)).is_ok() && read_text(text(1e-4, 7.0)).is_ok());
+}
+
+#[test]
+fn a_time_that_runs_backwards_is_refused_whatever_the_rate() {
+    let rows: String = (0..50)
+        .map(|i| format!("{:.4},{}\n", 1e-4 * f64::from(if i < 25 { i } else { i - 10 }), i % 3))
+        .collect();
+    let source = Source::memory("x.csv", format!("Time (s),U (V)\n{rows}").into_bytes()).unwrap();
+    let options = Options { rate: Some(10_000.0), ..Options::default() };
+    let why = read(&source, &options).unwrap_err().to_string();
+    assert!(why.contains("runs backwards: value 26 is 0.0015, behind 0.0024"), "{why}");
+}
+
 proptest! {
     #[test]
     fn never_panics_on_random_tables(text in "[tf \\[\\]Hzms,;\t\"#%:=\r\n0-9.eE+µ-]{0,120}") {
