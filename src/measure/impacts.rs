@@ -7,12 +7,14 @@ mod burst;
 mod count;
 mod cycle;
 mod drift;
+mod excited;
 mod hum;
 mod interval;
 mod onset;
 mod pattern;
 mod ringing;
 mod shape;
+mod unfit;
 
 pub use cycle::{PerCycle, Phase, typed};
 pub use hum::Hum;
@@ -22,11 +24,11 @@ pub use shape::{Matched, Shape};
 
 use super::Estimate;
 use crate::error::{Error, Result};
-use crate::record::{AxisKind, Grid, Trace};
-use crate::units::notation::{quantity, shortest, with_std};
+use crate::record::Trace;
+use crate::units::notation::quantity;
 use burst::{Background, background, median};
 use count::count;
-use cycle::{Locking, Reference};
+use cycle::Reference;
 use onset::{Onset, onsets};
 use ringing::bursts;
 use serde::Serialize;
@@ -172,7 +174,7 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     };
     let median_interval = median(&steps);
     let spread = deviation(&single(&kept));
-    let mut regular = deviation(&single(&even)).is_some_and(|s| s < REGULAR * median_interval);
+    let regular = deviation(&single(&even)).is_some_and(|s| s < REGULAR * median_interval);
     let mut method = described(&found, kept.len(), timing);
     if sharp {
         method.push_str("; first and last onset anywhere within a sample");
@@ -209,42 +211,7 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
         times,
         warnings: Vec::new(),
     };
-    if let Some(cycles) = cycles(&answer.times, start, rate, options, &mut warnings)? {
-        let kept: Vec<f64> = counted.kept.iter().filter_map(|i| cycles.at.get(*i)).copied().collect();
-        let locking = cycle::locking(&kept, &counted.index, hidden.hypot(cycles.std / cycles.frequency));
-        let per_cycle = if let Locking::Locked(fraction) = locking { Some(fraction) } else { None };
-        regular = per_cycle.is_some();
-        answer.phases = per_cycle.map_or_else(Vec::new, |p| cycle::phases(&cycles.at, p));
-        answer.phase = cycles.at.iter().map(|c| c.rem_euclid(1.0)).collect();
-        (answer.excitation, answer.per_cycle, answer.regular) = (Some(cycles.frequency), per_cycle, regular);
-        match locking {
-            Locking::Locked(_) => {}
-            Locking::Drifting(near, slip) => {
-                let beat = (slip * cycles.frequency).abs();
-                let part = near.impacts as f64 / near.cycles as f64;
-                let std = answer.frequency.std.map(|s| s.hypot(part * cycles.std));
-                answer.beat = Some(Estimate::new(
-                    beat,
-                    std,
-                    "Hz",
-                    kept.len(),
-                    format!("impacts a second less {}/{} of the excitation", near.impacts, near.cycles),
-                ));
-                warnings.push(format!(
-                    "The train drifts: the impacts beat against {}/{} of the excitation of {} by {}: they do not keep their phase, or the excitation has another frequency.",
-                    near.impacts,
-                    near.cycles,
-                    with_std(cycles.frequency, Some(cycles.std).filter(|s| *s > 0.0), "Hz"),
-                    with_std(beat, std, "Hz")
-                ));
-            }
-            Locking::Irregular => warnings.push(format!(
-                "No fraction of up to 8 impacts in 8 cycles fits within {} % of the rate and {} of a cycle: irregular.",
-                100.0 * cycle::FITS,
-                cycle::REPEATS
-            )),
-        }
-    }
+    excited::compare(&mut answer, &counted, (start, rate, hidden), options, &mut warnings)?;
     doubts(&answer, &mut warnings);
     answer.warnings = warnings;
     Ok(answer)
@@ -270,42 +237,11 @@ struct Found {
 /// Where it has none.
 pub(super) fn rate_of(trace: &Trace) -> Result<f64> {
     trace.rate().filter(|r| r.is_finite() && *r > 0.0).ok_or_else(|| {
-        if let (AxisKind::Time, Grid::Uneven(times)) = (&trace.axis.kind, &trace.axis.grid) {
-            return uneven(times);
-        }
-        Error::usage("the file does not say at which even rate the trace was sampled", "a sampling rate")
-            .hint("--rate HZ, or --base-band HZ for an analyser that samples at 2.56 times its base band")
+        unfit::uneven(trace).unwrap_or_else(|| {
+            Error::usage("the file does not say at which even rate the trace was sampled", "a sampling rate")
+                .hint("--rate HZ, or --base-band HZ for an analyser that samples at 2.56 times its base band")
+        })
     })
-}
-
-/// Where times are first apart by another step than most.
-fn uneven(times: &[f64]) -> Error {
-    let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
-    let usual = median(&steps);
-    let odd = steps.iter().position(|s| (s - usual).abs() > 0.5 * usual.abs()).unwrap_or(0);
-    let seconds = |v: f64| format!("{} s", shortest(v));
-    Error::refused(format!(
-        "the trace is sampled unevenly: from {} to {} is a step of {}, most are {}",
-        seconds(times[odd]),
-        seconds(times[odd + 1]),
-        seconds(steps[odd]),
-        seconds(usual)
-    ))
-    .hint("cut the file there, or write the lost samples")
-}
-
-/// Says where values are missing.
-fn lost(trace: &Trace, values: &[f64], what: &str, why: &str) -> Result<()> {
-    let odd: Vec<usize> = (0..values.len()).filter(|i| !values[*i].is_finite()).collect();
-    let (Some(first), Some(last)) = (odd.first(), odd.last()) else { return Ok(()) };
-    let at = |i: usize| format!("{} s", shortest(trace.axis.at(i)));
-    Err(Error::refused(format!(
-        "{} values of {what} are missing or infinite, from {} to {}: {why}",
-        odd.len(),
-        at(*first),
-        at(*last)
-    ))
-    .hint("cut the file before or behind them"))
 }
 
 fn check(trace: &Trace, options: &ImpactsOptions) -> Result<()> {
@@ -324,7 +260,7 @@ fn check(trace: &Trace, options: &ImpactsOptions) -> Result<()> {
             return Err(Error::usage(format!("{what} of {v}"), "a finite number above 0"));
         }
     }
-    lost(trace, &trace.values, "the trace", "an impact may stand in any of them")?;
+    unfit::lost(trace, &trace.values, "the trace", "an impact may stand in any of them")?;
     if trace.values.iter().all(|v| Some(v) == trace.values.first()) {
         return Err(Error::refused("all values of the trace are equal: there are no impacts in it"));
     }
@@ -332,7 +268,7 @@ fn check(trace: &Trace, options: &ImpactsOptions) -> Result<()> {
         return Err(Error::refused("the reference channel has another number of samples than the trace"));
     }
     let reference = options.reference.as_deref().unwrap_or_default();
-    lost(trace, reference, "the reference channel", "a cycle may begin in any of them")
+    unfit::lost(trace, reference, "the reference channel", "a cycle may begin in any of them")
 }
 
 impl Found {

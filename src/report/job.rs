@@ -265,7 +265,7 @@ fn merge(all: &mut Vec<String>, name: &str, sentences: &[String]) {
         let said = format!(": {sentence}");
         match all.iter_mut().find_map(|text| text.strip_suffix(&said).map(str::to_owned).map(|n| (text, n))) {
             Some((text, names)) if !names.split("; ").any(|n| n == name) => {
-                *text = format!("{names}; {name}{said}")
+                *text = format!("{names}; {name}{said}");
             }
             Some(_) => {}
             None => all.push(format!("{name}{said}")),

@@ -1,5 +1,5 @@
 use super::*;
-use crate::record::{Axis, Meta};
+use crate::record::{Axis, Grid, Meta};
 use crate::units::Unit;
 
 /// Normal deviates from a 64-bit mix of a counter (splitmix, Steele et al. 2014) and the polar form of Box and Muller.

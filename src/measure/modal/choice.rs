@@ -112,7 +112,7 @@ pub(super) fn together(
     for (group, fit) in groups.into_iter().zip(fits) {
         match fit {
             Ok(fit) if fit.explains() && fit.sound(lines, &group.peaks).contains(&true) => {
-                found.push((group, fit))
+                found.push((group, fit));
             }
             fit => left.push((group, fit)),
         }

@@ -4,6 +4,7 @@ use crate::record::{Axis, AxisKind, FrfKind, Record, Scaling, Values};
 use crate::units::{Quantity, Unit};
 use num_complex::Complex64;
 use proptest::prelude::*;
+use std::fmt::Write as _;
 
 fn read_with(reader: &Reader, text: impl AsRef<[u8]>) -> Result<Recording> {
     reader.from_reader("x.csv", text.as_ref())
@@ -314,11 +315,12 @@ fn a_survey_says_what_reading_says() {
 #[test]
 fn two_clocks_in_one_file_are_refused() {
     let text = |step: f64, from: f64| {
-        let rows = (0..50).map(|i| {
+        let mut text = "Time A (s),A (V),Time B (s),B (V)\n".to_owned();
+        for i in 0..50 {
             let t = f64::from(i);
-            format!("{:.4},1,{:.4},{}\n", 1e-4 * t, from + step * t, 2 * i % 5)
-        });
-        format!("Time A (s),A (V),Time B (s),B (V)\n{}", rows.collect::<String>())
+            let _ = writeln!(text, "{:.4},1,{:.4},{}", 1e-4 * t, from + step * t, 2 * i % 5);
+        }
+        text
     };
     let read_text =
         |text: String| read(&Source::memory("x.csv", text.into_bytes()).unwrap(), &Options::default());
@@ -330,9 +332,10 @@ fn two_clocks_in_one_file_are_refused() {
 
 #[test]
 fn a_time_that_runs_backwards_is_refused_whatever_the_rate() {
-    let rows: String = (0..50)
-        .map(|i| format!("{:.4},{}\n", 1e-4 * f64::from(if i < 25 { i } else { i - 10 }), i % 3))
-        .collect();
+    let mut rows = String::new();
+    for i in 0..50 {
+        let _ = writeln!(rows, "{:.4},{}", 1e-4 * f64::from(if i < 25 { i } else { i - 10 }), i % 3);
+    }
     let source = Source::memory("x.csv", format!("Time (s),U (V)\n{rows}").into_bytes()).unwrap();
     let options = Options { rate: Some(10_000.0), ..Options::default() };
     let why = read(&source, &options).unwrap_err().to_string();
