@@ -166,7 +166,7 @@ impl Campaign {
         let spectra = self.spectrum.iter().map(|e| (e.record().file.span(), e.options().map(drop)));
         let functions = self.frf.iter().map(|e| (e.record().file.span(), e.options().map(drop)));
         for (span, checked) in spectra.chain(functions) {
-            checked.map_err(|why| self.at(span, why))?;
+            checked.map_err(|why| self.at(self.key_named(span, &why), why))?;
         }
         self.check_contacts()?;
         let mut seen: Vec<&str> = Vec::new();
@@ -209,6 +209,16 @@ impl Campaign {
         (!missing.is_empty()).then(|| {
             format!("[rig] does not give {}: the values of the thesis' rig are used.", missing.join(", "))
         })
+    }
+
+    /// Where the key that a complaint begins with stands in the section of `span`; `span` where it does not.
+    fn key_named(&self, span: std::ops::Range<usize>, why: &str) -> std::ops::Range<usize> {
+        let (before, behind) = (self.text.get(..span.start), self.text.get(span.end..));
+        let from = before.and_then(|t| t.rfind("[[")).unwrap_or(0);
+        let to = behind.and_then(|t| t.find("\n[")).map_or(self.text.len(), |n| span.end + n);
+        let key = why.split(|c: char| !(c.is_alphanumeric() || c == '_')).next().unwrap_or_default();
+        let found = if key.is_empty() { 0..0 } else { locate::find(&self.text, key, Some(from)) };
+        if found.is_empty() || found.end > to { span } else { found }
     }
 
     /// An error that points into this file.

@@ -13,7 +13,7 @@ fn mean(detrend: Detrend) -> bool {
 fn window(name: Option<&str>) -> Result<Option<Window>, String> {
     let known = |name: &str| {
         let names = || Window::ALL.iter().map(|w| w.name()).collect::<Vec<_>>().join(", ");
-        Window::from_name(name).ok_or_else(|| format!("the window {name:?} is not one of {}", names()))
+        Window::from_name(name).ok_or_else(|| format!("window = {name:?} is not one of {}", names()))
     };
     name.map(known).transpose()
 }

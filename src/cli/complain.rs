@@ -1,6 +1,7 @@
 //! Complaints go to standard error, in one form. A closed standard error is no reason to fail.
 
 use crate::error::Error;
+use clap::error::{ContextKind, ErrorKind};
 use serde::Serialize;
 use std::io::Write;
 
@@ -29,11 +30,34 @@ pub fn usage(error: &clap::Error, json: bool) -> u8 {
     if !error.use_stderr() {
         return 0;
     }
+    let tried = advice(error);
+    if let Some(tried) = &tried {
+        line(&format!("  try: {tried}"));
+    }
     if json {
         let text = error.to_string();
-        object(text.trim().trim_start_matches("error: ").to_owned(), 2);
+        let tried = tried.map_or_else(String::new, |t| format!("\n  try: {t}"));
+        object(format!("{}{tried}", text.trim().trim_start_matches("error: ")), 2);
     }
     2
+}
+
+/// What may be tried where a number is not written as one is expected.
+fn advice(error: &clap::Error) -> Option<String> {
+    let said = |kind| error.get(kind).map(ToString::to_string);
+    match error.kind() {
+        ErrorKind::ValueValidation => {
+            let value = said(ContextKind::InvalidValue)?;
+            let point = value.replacen(',', ".", 1);
+            (value != point && point.parse::<f64>().is_ok()).then(|| format!("a decimal point: {point}"))
+        }
+        ErrorKind::UnknownArgument => {
+            let number = said(ContextKind::InvalidArg)?;
+            let is = number.strip_prefix('-')?.starts_with(|c: char| c.is_ascii_digit() || c == '.');
+            is.then(|| format!("a number that is not negative: {number} stands where none can be"))
+        }
+        _ => None,
+    }
 }
 
 fn object(error: String, exit_code: u8) {

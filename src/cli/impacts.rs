@@ -71,7 +71,7 @@ pub fn run(typed: &args::Impacts, json: bool) -> Result<()> {
         },
         ..settings::finding(&typed.finding, None)
     };
-    let mut found = impacts(&trace, &options)?;
+    let mut found = impacts(&trace, &options).map_err(|e| e.of_record(&typed.file.display().to_string()))?;
     found.warnings.extend(recording.doubts.iter().chain(&trace.meta.doubts).cloned());
     let mut written = Vec::new();
     if let Some(folder) = &typed.out {

@@ -28,7 +28,12 @@ pub fn run(typed: &args::Restitution, json: bool) -> Result<()> {
     let mut warnings = Vec::new();
     for (i, file) in typed.files.iter().enumerate() {
         let (trace, doubts) = settings::trace(file, &typed.reading, &typed.channel)?;
-        warnings.extend(doubts);
+        for doubt in doubts {
+            match warnings.iter_mut().find(|w: &&mut (String, usize)| w.0 == doubt) {
+                Some(known) => known.1 += 1,
+                None => warnings.push((doubt, 1)),
+            }
+        }
         let found = bounces.add(&trace, &settings::finding(&typed.finding, Some(Bounces::THRESHOLD)))?;
         let name = file.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
         figures.push((format!("drop_{}", i + 1), pictures::drop(&name, &trace, &found)));
@@ -52,6 +57,13 @@ pub fn run(typed: &args::Restitution, json: bool) -> Result<()> {
     }
     measured.velocities = velocities(typed, masses)?;
     let mut found = restitution(&measured)?;
+    let all = typed.files.len();
+    let counted = |(doubt, n): (String, usize)| match n {
+        _ if all == 1 => doubt,
+        n if n == all => format!("All files: {doubt}"),
+        n => format!("{n} of {all} files: {doubt}"),
+    };
+    let mut warnings: Vec<String> = warnings.into_iter().map(counted).collect();
     warnings.append(&mut found.warnings);
     found.warnings = warnings;
     let mut written = Vec::new();

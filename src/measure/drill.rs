@@ -43,6 +43,7 @@ mod side;
 mod smoothing;
 mod summary;
 mod survey;
+mod suspect;
 mod turns;
 
 use average::Average;
@@ -78,8 +79,8 @@ const EXCERPT: usize = 1 << 16;
 /// Measures the turns and impacts of a drill; `still` is a record of the same velocity channel without motion, in m/s.
 ///
 /// # Errors
-/// If the parameters cannot be; if the velocity is constant or missing; if velocity and reference are the same; if the
-/// reference has not two levels, or no whole turn between its edges; if a channel cannot be read.
+/// If the parameters cannot be; if the velocity is constant or missing; if velocity and reference are the same or look swapped; if the
+/// reference has not two levels nor even edges, or no whole turn between its edges; if a channel cannot be read.
 pub fn drill(channels: &mut dyn Channels, options: &DrillOptions, still: Option<&Stream>) -> Result<Drill> {
     drill_each(channels, options, still, &mut |_| Ok(()))
 }
@@ -126,6 +127,7 @@ pub fn drill_each(
         Ok(())
     })?;
     let mut found = edges.finish();
+    suspect::reference(&velocity, &reference, &found.edges)?;
     if options.delay != 0.0 {
         // Turns are counted in the clock of the velocity.
         found.edges.iter_mut().for_each(|edge| *edge += options.delay * rate);

@@ -8,6 +8,7 @@ use super::Estimate;
 use super::mean::Mean;
 use crate::error::{Error, Result};
 use crate::signal::filter::{Analogue, Filter, Running};
+use crate::units::notation::significant;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -76,6 +77,9 @@ impl Weighting {
         self.running.get_or_insert_with(|| filter.settled_at(*first)).apply(values);
     }
 }
+
+/// Records shorter than this in s are unlikely to be reliable (ISO 5349-2:2001, 5.4.1).
+const SHORT: f64 = 8.0;
 
 /// Exposure of a hand.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -177,6 +181,13 @@ pub fn exposure(handles: &[Handle], hours: Option<f64>) -> Result<Exposure> {
             "The vibration of the handle changes slowly along the record: the uncertainty of a_hv may be too small; measure longer."
                 .to_owned(),
         );
+    }
+    let measured = handles.iter().map(Handle::duration).fold(f64::INFINITY, f64::min);
+    if measured < SHORT {
+        warnings.push(format!(
+            "a_hv rests on {} s of the record: below {SHORT} s it is unlikely to be that of the work, of which a minute in all should be measured (ISO 5349-2).",
+            significant(measured, 2)
+        ));
     }
     let missing: usize = handles.iter().map(|h| h.missing).sum();
     if missing > 0 {

@@ -7,12 +7,14 @@ mod burst;
 mod count;
 mod cycle;
 mod drift;
+mod excited;
 mod hum;
 mod interval;
 mod onset;
 mod pattern;
 mod ringing;
 mod shape;
+mod unfit;
 
 pub use cycle::{PerCycle, Phase, typed};
 pub use hum::Hum;
@@ -26,7 +28,7 @@ use crate::record::Trace;
 use crate::units::notation::quantity;
 use burst::{Background, background, median};
 use count::count;
-use cycle::{Locking, Reference};
+use cycle::Reference;
 use onset::{Onset, onsets};
 use ringing::bursts;
 use serde::Serialize;
@@ -97,6 +99,9 @@ pub struct Impacts {
     pub excitation: Option<f64>,
     /// Impacts per excitation cycle; null where no fraction fits or no excitation is known.
     pub per_cycle: Option<PerCycle>,
+    /// Frequency in Hz by which the impacts miss the fraction that they come near to; null where they keep it, come near none, or no
+    /// excitation is known.
+    pub beat: Option<Estimate>,
     /// Whether impacts repeat: a fraction fits, or without an excitation, intervals spread by less than 5 %, or about those of a pattern. Two impacts
     /// do not show it.
     pub regular: bool,
@@ -143,7 +148,7 @@ pub(super) fn with_train(trace: &Trace, options: &ImpactsOptions) -> Result<(Imp
     if found.onsets.len() < 2 {
         return Err(found.too_few(trace.meta.unit.symbol()));
     }
-    let Found { onsets, timing, hum, mut warnings, .. } = found;
+    let Found { onsets, timing, sharp, hum, mut warnings, .. } = found;
     let start = trace.axis.start();
     let times: Vec<f64> = onsets.iter().map(|o| start + o.time / rate).collect();
     let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
@@ -165,7 +170,16 @@ pub(super) fn with_train(trace: &Trace, options: &ImpactsOptions) -> Result<(Imp
         );
     }
     let widened = if counted.length > 1 { (free(2) / free(1 + counted.length)).sqrt() } else { 1.0 };
-    let std = Some(widened * found.std).filter(|s| s.is_finite());
+    // What the samples hide of first and last, as a part of the interval.
+    let span = counted.index.last().zip(counted.index.first()).map_or(0, |(l, f)| l - f) as f64;
+    let hidden = if sharp { cycle::quantised(span * found.mean * rate) } else { 0.0 };
+    let std = Some((widened * found.std).hypot(hidden * found.mean)).filter(|s| s.is_finite());
+    if sharp {
+        warnings.push(format!(
+            "The pulses rise within one sample: onsets are known to {} only.",
+            quantity(1.0 / (12f64.sqrt() * rate), "s", 2)
+        ));
+    }
     let single = |times: &[f64]| -> Vec<f64> {
         let next = |k: &[usize]| k[1] - k[0] == 1;
         let both = times.windows(2).zip(counted.index.windows(2));
@@ -173,8 +187,11 @@ pub(super) fn with_train(trace: &Trace, options: &ImpactsOptions) -> Result<(Imp
     };
     let median_interval = median(&steps);
     let spread = deviation(&single(&kept));
-    let mut regular = deviation(&single(&even)).is_some_and(|s| s < REGULAR * median_interval);
+    let regular = deviation(&single(&even)).is_some_and(|s| s < REGULAR * median_interval);
     let mut method = described(&found, kept.len(), timing);
+    if sharp {
+        method.push_str("; first and last onset anywhere within a sample");
+    }
     if counted.length > 1 {
         let _ = write!(method, "; a pattern of {} impacts fitted with it", counted.length);
     }
@@ -196,6 +213,7 @@ pub(super) fn with_train(trace: &Trace, options: &ImpactsOptions) -> Result<(Imp
         doubled: counted.doubled,
         excitation: None,
         per_cycle: None,
+        beat: None,
         regular,
         phases: Vec::new(),
         onset_std: Some(median(&onsets.iter().map(|o| o.std).collect::<Vec<f64>>()) / rate)
@@ -206,31 +224,7 @@ pub(super) fn with_train(trace: &Trace, options: &ImpactsOptions) -> Result<(Imp
         times,
         warnings: Vec::new(),
     };
-    if let Some(cycles) = cycles(&answer.times, start, rate, options, &mut warnings)? {
-        let kept: Vec<f64> = counted.kept.iter().filter_map(|i| cycles.at.get(*i)).copied().collect();
-        let locking = cycle::locking(&kept, &counted.index, cycles.std / cycles.frequency);
-        let per_cycle = if let Locking::Locked(fraction) = locking { Some(fraction) } else { None };
-        regular = per_cycle.is_some();
-        answer.phases = per_cycle.map_or_else(Vec::new, |p| cycle::phases(&cycles.at, p));
-        answer.phase = cycles.at.iter().map(|c| c.rem_euclid(1.0)).collect();
-        (answer.excitation, answer.per_cycle, answer.regular) = (Some(cycles.frequency), per_cycle, regular);
-        match locking {
-            Locking::Locked(_) => {}
-            Locking::Drifting(near, slip) => of_train.push(format!(
-                "The train drifts: beat {} between the impacts and {}/{} of the excitation of {} Hz (standard uncertainty {}): they do not keep their phase, or the excitation has another frequency.",
-                quantity((slip * cycles.frequency).abs(), "Hz", 3),
-                near.impacts,
-                near.cycles,
-                cycles.frequency,
-                quantity(cycles.std, "Hz", 2)
-            )),
-            Locking::Irregular => of_train.push(format!(
-                "No fraction of up to 8 impacts in 8 cycles fits within {} % of the rate and {} of a cycle: irregular.",
-                100.0 * cycle::FITS,
-                cycle::REPEATS
-            )),
-        }
-    }
+    excited::compare(&mut answer, &counted, (start, rate, hidden), options, &mut of_train)?;
     doubts(&answer, &mut of_train);
     answer.warnings = warnings;
     Ok((answer, of_train))
@@ -240,6 +234,8 @@ pub(super) fn with_train(trace: &Trace, options: &ImpactsOptions) -> Result<(Imp
 struct Found {
     onsets: Vec<Onset>,
     timing: Timing,
+    /// Whether most pulses rise within one sample.
+    sharp: bool,
     hum: Option<Hum>,
     warnings: Vec<String>,
     /// What was looked at: how far noise reaches from the level, how far the trace does, and bursts that were left out as too low.
@@ -254,8 +250,10 @@ struct Found {
 /// Where it has none.
 pub(super) fn rate_of(trace: &Trace) -> Result<f64> {
     trace.rate().filter(|r| r.is_finite() && *r > 0.0).ok_or_else(|| {
-        Error::usage("the file does not say at which even rate the trace was sampled", "a sampling rate")
-            .hint("--rate HZ, or --base-band HZ for an analyser that samples at 2.56 times its base band")
+        unfit::uneven(trace).unwrap_or_else(|| {
+            Error::usage("the file does not say at which even rate the trace was sampled", "a sampling rate")
+                .hint("--rate HZ, or --base-band HZ for an analyser that samples at 2.56 times its base band")
+        })
     })
 }
 
@@ -275,25 +273,15 @@ fn check(trace: &Trace, options: &ImpactsOptions) -> Result<()> {
             return Err(Error::usage(format!("{what} of {v}"), "a finite number above 0"));
         }
     }
-    let missing = trace.values.iter().filter(|v| !v.is_finite()).count();
-    if missing > 0 {
-        return Err(Error::refused(format!(
-            "{missing} values of the trace are missing or infinite: an impact may stand in any of them"
-        )));
-    }
+    unfit::lost(trace, &trace.values, "the trace", "an impact may stand in any of them")?;
     if trace.values.iter().all(|v| Some(v) == trace.values.first()) {
         return Err(Error::refused("all values of the trace are equal: there are no impacts in it"));
     }
     if options.reference.as_ref().is_some_and(|r| r.len() != trace.values.len()) {
         return Err(Error::refused("the reference channel has another number of samples than the trace"));
     }
-    let lost = options.reference.iter().flatten().filter(|v| !v.is_finite()).count();
-    if lost > 0 {
-        return Err(Error::refused(format!(
-            "{lost} values of the reference channel are missing or infinite: a cycle may begin in any of them"
-        )));
-    }
-    Ok(())
+    let reference = options.reference.as_deref().unwrap_or_default();
+    unfit::lost(trace, reference, "the reference channel", "a cycle may begin in any of them")
 }
 
 impl Found {
@@ -398,7 +386,7 @@ fn find(trace: &Trace, rate: f64, options: &ImpactsOptions) -> Found {
     if let Some(sentence) = clipped(&trace.values, &all) {
         warnings.push(sentence);
     }
-    let (found, timing) = onsets(&values, &all, level, options.shape.as_ref());
+    let onset::Found { onsets: found, timing, sharp } = onsets(&values, &all, level, options.shape.as_ref());
     let cut = found.iter().filter(|o| o.is_none()).count();
     if cut > 0 {
         warnings.push(format!(
@@ -409,6 +397,7 @@ fn find(trace: &Trace, rate: f64, options: &ImpactsOptions) -> Found {
     Found {
         onsets: found.into_iter().flatten().collect(),
         timing,
+        sharp,
         hum,
         warnings,
         reach: level.reach,
@@ -492,7 +481,8 @@ fn cycles(
             ));
         }
         let at = times.iter().map(|t| reference.counted((t - start) * rate)).collect();
-        return Ok(Some(Cycles { frequency: rate / reference.mean_cycle(), std: 0.0, at }));
+        let frequency = rate / reference.mean_cycle();
+        return Ok(Some(Cycles { frequency, std: frequency * reference.std(), at }));
     }
     Ok(options.excitation.map(|frequency| Cycles {
         frequency,

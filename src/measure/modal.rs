@@ -5,6 +5,7 @@
 //! Beside it stand the largest line, the half-power bandwidth and the circle fit, to be compared.
 
 mod bands;
+mod choice;
 mod graphic;
 mod rational;
 mod response;
@@ -17,17 +18,18 @@ pub use result::{ByMethod, ModalOptions, ModalResult, Mode, ModePicture};
 
 use crate::error::{Error, Result};
 use crate::record::FrfKind;
-use bands::{Group, Peak, groups};
+use bands::groups;
+use choice::{chosen, together};
 use rational::{Rational, rational};
 
 /// Finds the modes of a frequency response function.
 ///
 /// Each peak that stands a factor of two above its valleys is a candidate; peaks too near each other to be told apart are fitted
-/// together, and modes of other bands are taken away before the last fit of a band. In a band that is given, all its peaks are
-/// fitted together.
+/// together, and modes of other bands are taken away before the last fit of a band. In a band that is given, the modes that were so
+/// found are then fitted together, to all its lines.
 ///
 /// # Errors
-/// If the band is not one, holds no peak or fewer lines than parameters, or no line can be used.
+/// If the band is not one, holds no peak or fewer lines than the parameters of a mode, or no line can be used.
 pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult> {
     let mut warnings = Vec::new();
     if let Some(mass) = options.mass.filter(|m| !(m.is_finite() && *m > 0.0)) {
@@ -63,9 +65,6 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
     let mut unsupported = Vec::new();
     let mut fits: Vec<Result<Rational>> =
         groups.iter_mut().map(|group| chosen(&lines, group, &mut unsupported)).collect();
-    if let (Some(_), [Err(error)]) = (options.band, fits.as_slice()) {
-        return Err(Error::refused(error.to_string()));
-    }
     for _ in 0..2 {
         for at in 0..groups.len() {
             let others: Vec<Pole> = fits
@@ -87,6 +86,9 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
                 }
             }
         }
+    }
+    if let Some(band) = options.band {
+        (groups, fits) = together(&lines, band, groups, fits, &mut unsupported, &mut warnings)?;
     }
     let mut modes = Vec::new();
     let mut reversed = 0;
@@ -120,77 +122,6 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
     }
     modes.sort_by(|a, b| a.frequency.value.total_cmp(&b.frequency.value));
     Ok(ModalResult { modes, warnings })
-}
-
-/// Modes of one group at most: beyond, parameters outgrow the lines.
-const TOGETHER: usize = 6;
-
-/// An additional mode must lower Akaike's criterion by this much (Burnham & Anderson 2002, 2.6).
-const NEEDED: f64 = 10.0;
-
-/// Fits the most prominent peak of a group, then adds the others in the order of their prominence as long as the lines need
-/// them. The group keeps the peaks that were.
-fn chosen(lines: &Measured, group: &mut Group, unsupported: &mut Vec<f64>) -> Result<Rational> {
-    let mut waiting = std::mem::take(&mut group.peaks);
-    waiting.sort_by(|a, b| b.rise.total_cmp(&a.rise));
-    let mut best: Result<Rational> = Err(Error::refused("there is no peak"));
-    let mut kept: Vec<Peak> = Vec::new();
-    for peak in waiting {
-        let mut with = kept.clone();
-        with.push(peak);
-        with.sort_by_key(|p| p.at);
-        let starts: Vec<(f64, f64)> = match &best {
-            Ok(fit) => fit.modes.iter().map(|m| (m.frequency, m.zeta)).chain([peak.start(lines)]).collect(),
-            Err(_) => vec![peak.start(lines)],
-        };
-        let possible = with.len() <= TOGETHER && starts.iter().all(|s| s.0 > 0.0 && s.1 > 0.0);
-        let fit = if possible { rational(lines, group.lines.clone(), &starts, &[]) } else { continue };
-        match (&best, fit) {
-            (Err(_), fit) if kept.is_empty() => {
-                best = fit;
-                kept = with;
-            }
-            (Ok(before), Ok(fit))
-                if fit.aicc < before.aicc - NEEDED && fit.sound(lines, &with).iter().all(|s| *s) =>
-            {
-                best = Ok(fit);
-                kept = with;
-            }
-            _ => unsupported.push(lines.frequency[peak.at]),
-        }
-    }
-    group.peaks = kept;
-    match best {
-        Ok(fit) if fit.whiteness.rejected() => Ok(narrowed(lines, group, fit)),
-        best => best,
-    }
-}
-
-/// Fewest lines on either side of the outer peaks of a band that is made narrower.
-const BESIDE: usize = 8;
-
-/// Makes the band of a fit whose residuals are not white narrower, as long as they are not: what else is in a band matters the
-/// less the narrower it is. Keeps the wide band where that does not help.
-fn narrowed(lines: &Measured, group: &mut Group, wide: Rational) -> Rational {
-    let (Some(first), Some(last)) = (group.peaks.first().map(|p| p.at), group.peaks.last().map(|p| p.at))
-    else {
-        return wide;
-    };
-    let starts: Vec<(f64, f64)> = group.peaks.iter().map(|p| p.start(lines)).collect();
-    let (mut below, mut above) = (first - group.lines.start, group.lines.end - last - 1);
-    while below.max(above) > BESIDE {
-        below = below.min((2 * below / 3).max(BESIDE));
-        above = above.min((2 * above / 3).max(BESIDE));
-        let part = first - below..last + above + 1;
-        match rational(lines, part.clone(), &starts, &[]) {
-            Ok(fit) if !fit.whiteness.rejected() => {
-                group.lines = part;
-                return fit;
-            }
-            _ => {}
-        }
-    }
-    wide
 }
 
 #[cfg(test)]

@@ -23,6 +23,7 @@ use super::Estimate;
 use super::residuals::Whiteness;
 use crate::error::{Error, Result};
 use crate::record::Trace;
+use crate::units::notation::shortest;
 use doubts::doubts;
 use fit::{Model, Trust};
 use locate::locate;
@@ -118,8 +119,9 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let mut warnings = Vec::new();
     if let Some(filter) = options.instrument.low_pass().filter(|f| f.corner() >= 0.5 * rate) {
         warnings.push(format!(
-            "The low-pass at {} Hz is not below half the sampling rate of {rate} Hz: its rise falls between two samples, more than one onset fits, and there is no uncertainty. Where it does not matter, --low-pass none states that.",
-            filter.corner()
+            "The low-pass at {} Hz is not below half the sampling rate of {} Hz: its rise falls between two samples, more than one onset fits, and there is no uncertainty. Where it does not matter, --low-pass none states that.",
+            shortest(filter.corner()),
+            shortest(rate)
         ));
     }
     let unlike = |error: Error| {
@@ -127,7 +129,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
         Some(filter) => Error::refused(format!(
             "no contact behind a low-pass of order {} at {} Hz looks like the pulse, which lasts about {:.3} ms ({error})",
             filter.order(),
-            filter.corner(),
+            shortest(filter.corner()),
             1.5e3 * seen / rate
         ))
         .hint("check corner and order: a low-pass lengthens a pulse to about 1/corner at least; try without, or with a higher corner"),
@@ -144,7 +146,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
         Some(filter) => format!(
             "least squares, spring and damper through a Butterworth low-pass of order {} at {} Hz",
             filter.order(),
-            filter.corner()
+            shortest(filter.corner())
         ),
         None => "least squares, spring and damper".to_owned(),
     };

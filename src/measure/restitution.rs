@@ -108,6 +108,14 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
             Err(error) => return Err(error),
         }
     }
+    if let (true, [only]) = (by.is_empty(), measured.trains.as_slice())
+        && only.intervals.len() == 1
+    {
+        return Err(Error::refused(
+            "one flight time says nothing of restitution: the ratio of two that follow each other does",
+        )
+        .hint("--intervals A,B with two or more, or --height M with --interval S"));
+    }
     let Some(surest) = by.iter().min_by(|a, b| uncertainty(a).total_cmp(&uncertainty(b))) else {
         return Err(Error::usage(
             "nothing from which restitution follows",

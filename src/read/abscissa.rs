@@ -69,6 +69,7 @@ pub(super) fn choose(
         doubts.push(format!("{label} is no axis for what was stated, and is passed over."));
         return Ok(given);
     }
+    printed.runs_forward(path)?;
     if printed.goes_with(&given, options.base_band, SURE) {
         if axis.step().is_none() {
             doubts.push(format!("{label} is uneven; a step of {} was stated and is used.", short(step)));
@@ -102,6 +103,20 @@ impl Printed {
         match given.kind {
             AxisKind::Frequency => ends || (span && self.begins_at_zero()),
             _ => span,
+        }
+    }
+
+    /// Refuses a column that runs backwards: its values are in no order, whatever the rate.
+    fn runs_forward(&self, path: &Path) -> Result<()> {
+        let at = |i: usize| short(self.axis.at(i));
+        match (1..self.axis.len()).find(|i| self.axis.at(*i) < self.axis.at(i - 1) - 2.0 * self.resolution) {
+            Some(i) => Err(Error::input(
+                Place::file(path),
+                format!("{} runs backwards: value {} is {}, behind {}", self.label, i + 1, at(i), at(i - 1)),
+                "times or frequencies that rise",
+            )
+            .hint("sort the rows, or cut the file where it begins anew")),
+            None => Ok(()),
         }
     }
 

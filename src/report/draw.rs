@@ -81,7 +81,7 @@ pub(super) fn draw(figure: &Figure) -> Drawing {
     let mut canvas = Canvas::default();
     let columns = figure.columns.clamp(1, figure.panels.len().max(1));
     let mut sheets = settled(figure, columns);
-    let mut grid = Grid::new(&sheets, columns, page);
+    let mut grid = Grid::new(&sheets, columns, page, figure.square);
     // A legend that finds no place inside makes its frame smaller, which can cost another its place.
     loop {
         let mut moved = false;
@@ -91,7 +91,7 @@ pub(super) fn draw(figure: &Figure) -> Drawing {
         if !moved {
             break;
         }
-        grid = Grid::new(&sheets, columns, page);
+        grid = Grid::new(&sheets, columns, page, figure.square);
     }
     for (i, sheet) in sheets.iter().enumerate() {
         match sheet {
@@ -147,23 +147,28 @@ fn settled(figure: &Figure, columns: usize) -> Vec<Settled<'_>> {
 }
 
 /// Frames in rows and columns, all of one size, with the room that the neediest panel of a row or column
-/// takes.
+/// takes. Where they are to be square, what is left of the page lies around them.
 struct Grid {
     page: Rect,
+    square: bool,
     columns: Vec<Insets>,
     rows: Vec<Insets>,
 }
 
 impl Grid {
-    fn new(sheets: &[Settled<'_>], columns: usize, page: Rect) -> Grid {
+    fn new(sheets: &[Settled<'_>], columns: usize, page: Rect, square: bool) -> Grid {
         let rows = sheets.len().div_ceil(columns).max(1);
-        let mut grid =
-            Grid { page, columns: vec![Insets::default(); columns], rows: vec![Insets::default(); rows] };
+        let empty = || Grid {
+            page,
+            square,
+            columns: vec![Insets::default(); columns],
+            rows: vec![Insets::default(); rows],
+        };
+        let mut grid = empty();
         // Ticks, hence the room for their numbers, depend on the size of the frame: twice is enough.
         for _ in 0..2 {
             let size = grid.frame_size();
-            let mut next =
-                Grid { page, columns: vec![Insets::default(); columns], rows: vec![Insets::default(); rows] };
+            let mut next = empty();
             for (i, sheet) in sheets.iter().enumerate() {
                 let insets = sheet.insets(size);
                 next.columns[i % columns] = next.columns[i % columns].wider(insets);
@@ -177,7 +182,8 @@ impl Grid {
     /// Distance between neighbouring panels.
     const BETWEEN: f64 = 9.0;
 
-    fn frame_size(&self) -> (f64, f64) {
+    /// Size of a frame that fills the page.
+    fn filling(&self) -> (f64, f64) {
         let share = |whole: f64, taken: f64, n: usize| {
             ((whole - taken - Grid::BETWEEN * (n - 1) as f64) / n as f64).max(10.0)
         };
@@ -188,16 +194,28 @@ impl Grid {
         )
     }
 
+    fn frame_size(&self) -> (f64, f64) {
+        let (w, h) = self.filling();
+        if self.square { (w.min(h), w.min(h)) } else { (w, h) }
+    }
+
     fn frame(&self, index: usize) -> Rect {
-        let (w, h) = self.frame_size();
+        let ((w, h), filling) = (self.frame_size(), self.filling());
+        let around = |filling: f64, size: f64, n: usize| 0.5 * (filling - size) * n as f64;
         let (column, row) = (index % self.columns.len(), index / self.columns.len());
         let before = |insets: &[Insets], n: usize, sides: fn(&Insets) -> f64, size: f64| {
             insets.iter().take(n).map(|i| sides(i) + size + Grid::BETWEEN).sum::<f64>()
         };
         let own = (self.columns[column], self.rows[row]);
         Rect {
-            x: self.page.x + before(&self.columns, column, |i| i.left + i.right, w) + own.0.left,
-            y: self.page.y + before(&self.rows, row, |i| i.top + i.bottom, h) + own.1.top,
+            x: self.page.x
+                + around(filling.0, w, self.columns.len())
+                + before(&self.columns, column, |i| i.left + i.right, w)
+                + own.0.left,
+            y: self.page.y
+                + around(filling.1, h, self.rows.len())
+                + before(&self.rows, row, |i| i.top + i.bottom, h)
+                + own.1.top,
             w,
             h,
         }

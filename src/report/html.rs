@@ -96,10 +96,20 @@ impl Page {
         }
         if !self.warnings.is_empty() {
             out.push_str("<section class=\"warnings\" aria-label=\"Warnings\">\n<h2>What this result rests on</h2>\n<ul>\n");
-            for sentence in &self.warnings {
+            let shown = self.warnings.len().min(SHOWN);
+            for sentence in &self.warnings[..shown] {
                 let _ = writeln!(out, "<li>{}</li>", escaped(sentence));
             }
-            out.push_str("</ul>\n</section>\n");
+            out.push_str("</ul>\n");
+            let folded = &self.warnings[shown..];
+            if !folded.is_empty() {
+                let _ = writeln!(out, "<details><summary>{} more</summary>\n<ul>", folded.len());
+                for sentence in folded {
+                    let _ = writeln!(out, "<li>{}</li>", escaped(sentence));
+                }
+                out.push_str("</ul></details>\n");
+            }
+            out.push_str("</section>\n");
         }
         out.push_str(&self.body);
         out.push_str("</main>\n</body>\n</html>\n");
@@ -129,6 +139,9 @@ fn link(file: &str) -> String {
     }
     out
 }
+
+/// Warnings that stand before the results; the others are folded behind them.
+const SHOWN: usize = 8;
 
 const STYLE: &str = include_str!("assets/page.css");
 

@@ -252,22 +252,60 @@ pub(crate) fn common(responses: &[Response]) -> Vec<String> {
     found.into_iter().map(said).collect()
 }
 
-/// Adds sentences, once each, with the name of what they are about.
+/// Adds sentences, once each, with the names of what they are about.
 fn merge(all: &mut Vec<String>, name: &str, sentences: &[String]) {
     for sentence in sentences {
-        let text = if name.is_empty() { sentence.clone() } else { format!("{name}: {sentence}") };
-        if !all.contains(&text) {
-            all.push(text);
+        let sentence = in_keys(sentence);
+        if name.is_empty() {
+            if !all.contains(&sentence) {
+                all.push(sentence);
+            }
+            continue;
+        }
+        let said = format!(": {sentence}");
+        match all.iter_mut().find_map(|text| text.strip_suffix(&said).map(str::to_owned).map(|n| (text, n))) {
+            Some((text, names)) if !names.split("; ").any(|n| n == name) => {
+                *text = format!("{names}; {name}{said}");
+            }
+            Some(_) => {}
+            None => all.push(format!("{name}{said}")),
         }
     }
+}
+
+/// Options of the command as keys of a campaign, `--low-pass` as `low_pass`, but not those of a command line that is named whole.
+fn in_keys(sentence: &str) -> String {
+    let mut text = String::new();
+    let mut rest = sentence;
+    while let Some(at) = rest.find("--") {
+        let (before, option) = rest.split_at(at);
+        let end =
+            option[2..].find(|c: char| !c.is_ascii_lowercase() && c != '-').map_or(option.len(), |n| n + 2);
+        let begins = before.chars().next_back().is_none_or(|c| c.is_whitespace() || "(`:".contains(c));
+        let clause = format!("{text}{before}");
+        let of_command =
+            clause.rsplit(['(', '`', ';', ':', '.']).next().is_some_and(|c| c.contains("vibro "));
+        text.push_str(before);
+        if begins && end > 2 && !of_command {
+            text.push_str(&option[2..end].replace('-', "_"));
+        } else {
+            text.push_str(&option[..end]);
+        }
+        rest = &option[end..];
+    }
+    text + rest
 }
 
 /// What a record gave. One that allows no answer is no reason to give up the rest of a campaign: it becomes a warning.
 fn or_left_out<T>(found: Result<T>, name: &str, warnings: &mut Vec<String>) -> Result<Option<T>> {
     match found {
         Err(error) if error.exit_code() == 1 => {
-            let why = error.to_string().replace("\n  try: ", "; try: ");
-            merge(warnings, name, &[format!("Left out: {why}.")]);
+            let told = error.to_string();
+            let (why, hint) = told.split_once("\n  try: ").unwrap_or((&told, ""));
+            let ended =
+                |text: &str| format!("{}{}", text, if text.ends_with(['.', '?', '!']) { "" } else { "." });
+            let hint = if hint.is_empty() { String::new() } else { format!(" Try: {}", ended(hint)) };
+            merge(warnings, name, &[format!("Left out: {}{hint}", ended(why))]);
             Ok(None)
         }
         found => found.map(Some),
@@ -301,4 +339,39 @@ fn model(campaign: &Campaign, responses: &[Response], warnings: &mut Vec<String>
 fn file_name(path: &std::path::Path) -> String {
     path.file_name()
         .map_or_else(|| PathBuf::from(path).display().to_string(), |n| n.to_string_lossy().into_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sentence_of_many_files_stands_once() {
+        let mut all = Vec::new();
+        for name in ["a.txt", "b.txt", "a.txt", "c.txt"] {
+            merge(&mut all, name, &["The file says no unit.".to_owned()]);
+        }
+        merge(&mut all, "", &["Plain.".to_owned(), "Plain.".to_owned()]);
+        assert_eq!(all, ["a.txt; b.txt; c.txt: The file says no unit.", "Plain."]);
+    }
+
+    #[test]
+    fn advice_in_a_campaign_names_its_keys() {
+        for (said, key) in [
+            ("If none is: --none-missed.", "If none is: none_missed."),
+            ("a low-pass (--low-pass HZ)", "a low-pass (low_pass HZ)"),
+            ("a high-pass (vibro convert --high-pass HZ)", "a high-pass (vibro convert --high-pass HZ)"),
+            ("5 -- 6, a--b", "5 -- 6, a--b"),
+        ] {
+            assert_eq!(in_keys(said), key);
+        }
+    }
+
+    #[test]
+    fn what_is_left_out_is_one_sentence_after_another() {
+        let mut all = Vec::new();
+        let refusal = Error::refused("no peak. Two are noise.").hint("is it a metre?");
+        assert_eq!(or_left_out::<()>(Err(refusal), "a", &mut all).unwrap(), None);
+        assert_eq!(all, ["a: Left out: no peak. Two are noise. Try: is it a metre?"]);
+    }
 }

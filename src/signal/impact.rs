@@ -23,6 +23,9 @@ const ENDED: f64 = 0.05;
 const SIGMAS: f64 = 3.0;
 /// So many samples in a row at the very extreme are a clipped signal.
 const CLIPPED: usize = 3;
+/// Two in a row are where both neighbours are more steps of the converter away: the two highest samples of a round top are the same
+/// step once in half as many blows.
+const PAIR: f64 = 200.0;
 /// An extreme nearer the quiet level than this part of the other one is no rail: a force does not go below zero.
 const RAIL: f64 = 0.1;
 /// Steps of the converter by which a round top of three equal samples or more may fall to the next: (5/3)² for three, and noise.
@@ -223,6 +226,8 @@ fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<(usize, 
     let extreme = values.iter().map(|v| v - zero).fold(0.0f64, |m, v| if v.abs() > m.abs() { v } else { m });
     let sign = if extreme < 0.0 { -1.0 } else { 1.0 };
     let trigger_level = TRIGGER * extreme.abs();
+    let channels = [values, &response.values];
+    let mut rails = [Vec::new(), Vec::new()];
     let (mut found, mut i) = (Vec::new(), 0);
     while i < values.len() {
         if sign * (values[i] - zero) <= trigger_level {
@@ -244,7 +249,12 @@ fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<(usize, 
             }
         }
         let second = (first_end..end).any(|j| push(j) > TRIGGER * peak);
-        let clipped = [values, &response.values].iter().any(|v| overloaded(&v[start..end], trigger - start));
+        let mut clipped = false;
+        for (channel, rails) in channels.iter().zip(&mut rails) {
+            let rail = overloaded(&channel[start..end], trigger - start);
+            clipped |= rail.is_some();
+            rails.extend(rail);
+        }
         let rejected = if trigger < how.before || end - trigger < how.length - how.before {
             Some("the record cuts it off")
         } else if second {
@@ -257,6 +267,16 @@ fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<(usize, 
         let time = force.axis.start() + trigger as f64 / rate;
         found.push((start, Blow { time, peak: sign * peak, rejected }));
         i = end.max(trigger + 1);
+    }
+    // One sample at the value where another blow was clipped is clipped as well.
+    for (start, blow) in &mut found {
+        let reaches = |(channel, rails): (&&Vec<f64>, &Vec<f64>)| {
+            let (lowest, highest) = extremes(&channel[*start..*start + how.length]);
+            rails.iter().any(|rail| *rail == lowest || *rail == highest)
+        };
+        if blow.rejected.is_none() && channels.iter().zip(&rails).any(reaches) {
+            blow.rejected = Some("overload");
+        }
     }
     found
 }
@@ -281,27 +301,35 @@ fn median(mut values: Vec<f64>) -> f64 {
     if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
-/// Whether a record, quiet in its first `before` samples, stays at its highest or its lowest value: each rail on its own, since
+/// Lowest and highest value.
+fn extremes(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)))
+}
+
+/// The highest or lowest value of a record, quiet in its first `before` samples, where it stays there: each rail on its own, since
 /// an offset takes a signal to one of them first.
 ///
 /// A slow vibration in coarse steps stays at its extreme, too, but leaves it by a few steps; a clipped one leaves it as steeply
 /// as it came.
-fn overloaded(values: &[f64], before: usize) -> bool {
+fn overloaded(values: &[f64], before: usize) -> Option<f64> {
     let level = Quiet::of(if before > 0 { &values[..before] } else { values }).level;
-    let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let (lowest, highest) = extremes(values);
     let reach = (highest - level).max(level - lowest);
     let step =
         values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|d| *d > 0.0).fold(reach / COARSEST, f64::min);
-    [highest, lowest].into_iter().filter(|rail| (rail - level).abs() > RAIL * reach).any(|rail| {
+    [highest, lowest].into_iter().filter(|rail| (rail - level).abs() > RAIL * reach).find(|rail| {
         let mut at = 0;
         values.chunk_by(|a, b| a == b).any(|run| {
             let (first, next) = (at, at + run.len());
             at = next;
             let beside = [first.checked_sub(1).and_then(|i| values.get(i)), values.get(next)];
-            run.len() >= CLIPPED
-                && run[0] == rail
-                && beside.into_iter().flatten().any(|v| (v - rail).abs() > ROUNDED * step)
+            let falls = |by: f64| move |v: &f64| (v - rail).abs() > by * step;
+            run[0] == *rail
+                && match run.len() {
+                    0 | 1 => false,
+                    n if n < CLIPPED => beside.into_iter().flatten().all(falls(PAIR)),
+                    _ => beside.into_iter().flatten().any(falls(ROUNDED)),
+                }
         })
     })
 }

@@ -200,3 +200,99 @@ fn modes_by_the_coherence_of_few_averages() {
         }
     }
 }
+
+/// Whether the clean function has a peak near `f` that stands a factor of 2.2 over the valleys towards anything higher: more than the two
+/// that is asked of a peak, as noise may cut it.
+fn stands(lines: &[f64], clean: &[Complex64], f: f64) -> bool {
+    let height: Vec<f64> = clean.iter().map(|v| v.norm()).collect();
+    let near = |i: &usize| (lines[*i] - f).abs() < 0.05 * f;
+    let peak = (0..lines.len()).filter(near).max_by(|a, b| height[*a].total_cmp(&height[*b])).unwrap();
+    let valley = |side: &mut dyn Iterator<Item = usize>| {
+        side.map(|i| height[i]).take_while(|h| *h <= height[peak]).fold(height[peak], f64::min)
+    };
+    let valleys = valley(&mut (0..peak).rev()).max(valley(&mut (peak + 1..lines.len())));
+    (lines[peak] - f).abs() < 0.03 * f && height[peak] > 2.2 * valleys
+}
+
+/// Structures of three to six modes, damped by 0.3 to 3 %, of either sign, noise of the variance that the coherence says
+/// (Bendat & Piersol 2010, 9.90, sixteen averages). The band holds them all: all that have a peak of their own are found and nothing
+/// else, and what is printed as uncertainty covers the error.
+fn structures_in_a_band(with_coherence: bool, banded: bool, from: u64) {
+    let (mut frequency, mut zeta, mut constant) = <(Score, Score, Score)>::default();
+    println!("seeds {from} to {}", from + 60);
+    let (mut missed, mut false_ones, mut modes) = (0, 0, 0);
+    for seed in from..from + 60 {
+        let mut noise = Noise::new(seed);
+        let (kind, power) = kinds(seed);
+        let count = 3 + (seed / 3 % 4) as usize;
+        let mut truth: Vec<[f64; 3]> = Vec::new();
+        let mut f = noise.between(50.0, 90.0);
+        for _ in 0..count {
+            let damping = 0.003 * 10f64.powf(noise.between(0.0, 1.0));
+            let sign = if noise.between(0.0, 1.0) < 0.5 { -1.0 } else { 1.0 };
+            truth.push([f, damping, sign * noise.between(0.4, 1.2)]);
+            let bandwidth = 2.0 * damping * f;
+            f += 4.0 * (2.0 * 0.03 * f).max(bandwidth) * noise.between(1.0, 1.6);
+        }
+        let lines: Vec<f64> = (10..=(2.0 * f) as usize).map(|k| k as f64 * 0.5).collect();
+        let clean: Vec<Complex64> = lines
+            .iter()
+            .map(|f| truth.iter().map(|t| one(&[t[0], t[1], t[2], 0.0, 0.0, 0.0, 0.0, 0.0], *f, power)).sum())
+            .collect();
+        let seen: Vec<bool> = truth.iter().map(|t| stands(&lines, &clean, t[0])).collect();
+        let gamma = 1.0 - 10f64.powf(noise.between(-4.0, -1.0));
+        // Real and imaginary parts have half of the variance of a line each.
+        let relative = ((1.0 - gamma) / (2.0 * 16.0 * gamma)).sqrt();
+        let sigma: Vec<f64> = clean.iter().map(|v| relative * v.norm()).collect();
+        let mut measured = measured(lines.clone(), noisy(&clean, &sigma, &mut noise), kind);
+        measured.coherence = with_coherence.then(|| vec![gamma; lines.len()]);
+        let band = banded.then(|| (truth[0][0] * 0.6, f));
+        let found = modal(&measured, &ModalOptions { band, from_blows: false, ..ModalOptions::default() })
+            .unwrap_or_else(|e| panic!("seed {seed}: {e}"));
+        let mut matched = 0;
+        for (t, seen) in truth.iter().zip(seen) {
+            modes += usize::from(seen);
+            let near = |m: &&vibroimpact::measure::modal::Mode| {
+                (m.frequency.value - t[0]).abs() < t[1] * t[0] && m.frequency.std.is_some()
+            };
+            match found.modes.iter().find(near) {
+                Some(mode) => {
+                    matched += 1;
+                    frequency.own(&mode.frequency, t[0]);
+                    zeta.own(&mode.zeta, t[1]);
+                    constant.own(&mode.modal_constant, t[2]);
+                }
+                None if !seen => {}
+                None => {
+                    println!("seed {seed} γ² {gamma:.5}: no {t:?} of {truth:?}: {:?}", found.warnings);
+                    missed += 1;
+                }
+            }
+        }
+        false_ones += found.modes.len() - matched;
+    }
+    println!("{missed} of {modes} modes missed, {false_ones} false");
+    assert!(
+        50 * missed <= modes && 50 * false_ones <= modes,
+        "{missed} missed, {false_ones} false of {modes}"
+    );
+    let what = format!("structures, band {banded}, coherence {with_coherence}");
+    frequency.covers(&format!("{what}, frequency"));
+    zeta.covers(&format!("{what}, ζ"));
+    constant.covers(&format!("{what}, modal constant"));
+}
+
+#[test]
+fn structures_in_a_band_with_coherence() {
+    structures_in_a_band(true, true, 11_000);
+}
+
+#[test]
+fn structures_in_a_band_without_coherence() {
+    structures_in_a_band(false, true, 12_000);
+}
+
+#[test]
+fn structures_without_a_band() {
+    structures_in_a_band(true, false, 13_000);
+}

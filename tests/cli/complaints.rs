@@ -53,6 +53,42 @@ fn wrong_usage() {
 }
 
 #[test]
+fn numbers_that_are_not_written_as_expected() {
+    let comma = complaint(&["restitution", "--height", "0,57", "--interval", "0.1"], 2);
+    has(&comma, &["--height", "try: a decimal point: 0.57"]);
+    has(
+        &complaint(&["impacts", "a.csv", "--excitation", "-3"], 2),
+        &["-3", "try: a number that is not negative"],
+    );
+    has(&complaint(&["restitution", "--intervals", "0.3"], 1), &["one flight time", "try: --intervals A,B"]);
+    let long = complaint(&["restitution", "--height", "0.15", "--interval", "0.427172953818325"], 1);
+    has(&long, &["drop 1, 0.4272 s, gives R = 1.221"]);
+}
+
+#[test]
+fn a_coherence_above_one_and_a_band_beyond_the_function() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str, text: String| {
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        path
+    };
+    // A mode of 50 Hz, ζ = 2 %, as a receptance.
+    let lines = (1..200).map(|k| {
+        let (x, z) = (f64::from(k) / 50.0, 0.02);
+        let (a, b) = (1.0 - x * x, 2.0 * z * x);
+        format!("{k},{:e},{:e}\n", a / (a * a + b * b), -b / (a * a + b * b))
+    });
+    let frf = at("f.csv", format!("Frequency (Hz),H_re (m/N),H_im (m/N)\n{}", lines.collect::<String>()));
+    let values = (1..200).map(|k| format!("{k},{}\n", if k < 150 { 1.08 } else { 0.9 }));
+    let coherence = at("c.csv", format!("Frequency (Hz),Coherence\n{}", values.collect::<String>()));
+    let above = complaint(&["modal", text(&frf), "--coherence", text(&coherence)], 2);
+    has(&above, &["c.csv", "149 values of the coherence are above 1", "1.08"]);
+    let beyond = complaint(&["modal", text(&frf), "--band", "800:900"], 1);
+    has(&beyond, &["no line between 800 and 900 Hz", "runs from 1 to 199 Hz", "try:"]);
+}
+
+#[test]
 fn wrong_usage_is_an_object_where_one_was_asked_for() {
     for (arguments, word) in [
         (&["spectrum", "--json"][..], "<FILE>"),

@@ -2,6 +2,7 @@
 
 use crate::measure::spectral::SpectralResult;
 use crate::report::tables;
+use crate::units::notation::{estimate, significant};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -35,10 +36,8 @@ impl Answer {
         }
         text.push_str("largest peaks (all lines: --json or --out):\n");
         for k in found.peaks(SHOWN) {
-            let _ = write!(text, "{:>14.6} Hz {:>14.6e}", found.frequency[k], found.value[k]);
-            if found.value_std[k].is_finite() {
-                let _ = write!(text, " ± {:<10.2e}", found.value_std[k]);
-            }
+            let value = estimate(found.value[k], Some(found.value_std[k]));
+            let _ = write!(text, "{:>12} Hz  {value:<24}", significant(found.frequency[k], 6));
             if let Some(level) = found.level.get(k) {
                 let _ = write!(text, " {level:>8.2} dB");
             }

@@ -10,11 +10,6 @@ use crate::measure::mean::Mean;
 use crate::signal::welch::Stream;
 use crate::units::notation::quantity;
 
-/// A pulse stands on its two levels for more than this part of the time; edges and noise are the rest.
-const PULSED: f64 = 0.8;
-/// A motion is near two levels for less than this part of the time: a sine near the medians of its halves for a quarter.
-const MOVING: f64 = 0.5;
-
 /// A displacement that drifts by more than this part of the stroke in a turn is no steady motion.
 const DRIFTING: f64 = 0.1;
 
@@ -170,8 +165,8 @@ fn warnings(
     };
     pulses(result, options, (reference, found), apart, &mut say);
     say(
-        velocity.two_levels() > PULSED && reference.two_levels() < MOVING,
-        "The velocity has two levels as a pulse has, and the reference moves between its levels: are the two channels swapped?"
+        result.restitution.as_ref().is_some_and(|r| r.value < 0.0),
+        "The restitution is negative: after the impacts the velocity has the sign that it had before. Is the velocity the channel of the striker, and are impacts found where they are (--out draws them)?"
             .to_owned(),
     );
     let faults = count.dropouts + count.spikes;

@@ -131,6 +131,11 @@ impl Handle {
         self.seconds.iter().map(|s| s.n).sum()
     }
 
+    /// Time in s of the samples that count.
+    pub(super) fn duration(&self) -> f64 {
+        self.counted() as f64 / self.span as f64
+    }
+
     /// Mean square of the weighted samples that count.
     pub(super) fn mean_square(&self) -> f64 {
         self.seconds.iter().map(|s| s.squares).sum::<f64>() / self.counted().max(1) as f64

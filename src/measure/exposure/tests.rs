@@ -171,3 +171,18 @@ fn what_cannot_be_exposed_is_refused() {
     assert_eq!(exposure(&[], None).unwrap_err().exit_code(), 2);
     assert_eq!(exposure(&[still], Some(30.0)).unwrap_err().exit_code(), 2);
 }
+
+#[test]
+fn a_short_record_is_said() {
+    let rate = 6_000.0;
+    let said = |seconds: i32| {
+        let mut handle = Handle::new(rate).unwrap();
+        let values: Vec<f64> =
+            (0..6_000 * seconds).map(|i| (TAU * 100.0 * f64::from(i) / rate).sin()).collect();
+        handle.push(&values);
+        exposure(&[handle], None).unwrap().warnings.join(" ")
+    };
+    // Half a second settles the weighting.
+    assert!(said(3).contains("a_hv rests on 2.5 s"), "{}", said(3));
+    assert!(!said(9).contains("ISO 5349-2"), "{}", said(9));
+}

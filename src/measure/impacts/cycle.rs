@@ -151,6 +151,15 @@ fn circular(values: &[f64], length: f64) -> Phase {
     Phase { mean: (s.atan2(c) / TAU * length).rem_euclid(length), spread, n: values.len() }
 }
 
+/// Relative standard uncertainty of a mean interval whose first and last edge, so many samples apart, each lie anywhere within one
+/// sample: 1/√6 over that distance.
+///
+/// Where the interval is near a whole number of samples, all edges lie alike between theirs: the scatter of the intervals does not
+/// show it, and no number of edges averages it.
+pub fn quantised(samples: f64) -> f64 {
+    1.0 / (6f64.sqrt() * samples)
+}
+
 /// Cycles of the excitation as a reference channel shows them.
 pub struct Reference {
     /// Cycle that each rising edge begins, and its place in samples; at least two.
@@ -159,6 +168,8 @@ pub struct Reference {
     pub missing: usize,
     /// Edges that should not be there; they are passed over.
     pub extra: usize,
+    /// Whether they rise within one sample, so that nothing is known of them between samples.
+    sharp: bool,
 }
 
 impl Reference {
@@ -177,7 +188,8 @@ impl Reference {
         };
         let mut edges = Edges::new(low, high, Edge::Rising);
         edges.push(channel);
-        let Numbered { mut runs, missing, extra, pauses } = Numbered::new(&edges.finish().edges);
+        let found = edges.finish();
+        let Numbered { mut runs, missing, extra, pauses } = Numbered::new(&found.edges);
         let edges = runs.pop().unwrap_or_default();
         if pauses > 0 {
             return Err(Error::refused(format!(
@@ -194,7 +206,7 @@ impl Reference {
             ))
             .hint(hint));
         }
-        Ok(Reference { edges, missing, extra })
+        Ok(Reference { edges, missing, extra, sharp: found.sharp })
     }
 
     /// Position `t` in samples, counted in cycles; beyond the first and last edge by the mean cycle.
@@ -205,6 +217,14 @@ impl Reference {
             (Some(a), Some(b)) => a.0 as f64 + (b.0 - a.0) as f64 * (t - a.1) / (b.1 - a.1),
             (Some(e), None) | (None, Some(e)) => e.0 as f64 + (t - e.1) / self.mean_cycle(),
             (None, None) => f64::NAN,
+        }
+    }
+
+    /// Relative standard uncertainty of the mean cycle from samples that stand still to it: see [`quantised`].
+    pub fn std(&self) -> f64 {
+        match self.edges.as_slice() {
+            [first, .., last] if self.sharp => quantised(last.1 - first.1),
+            _ => 0.0,
         }
     }
 

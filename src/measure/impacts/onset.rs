@@ -26,6 +26,9 @@ pub enum Timing {
     Known,
 }
 
+/// A flank goes from the background to the top within one sample where both samples are within this part of the height of them.
+const SHARP: f64 = 0.1;
+
 /// Fewer impacts than this are not averaged.
 const ENOUGH: usize = 8;
 
@@ -36,6 +39,17 @@ struct Lobe {
     height: f64,
     width: f64,
     peak: usize,
+    /// Whether no sample lies on the flank.
+    sharp: bool,
+}
+
+/// Onsets, and how they were found.
+pub struct Found {
+    /// One a burst.
+    pub onsets: Vec<Option<Onset>>,
+    pub timing: Timing,
+    /// Whether most pulses rise within one sample: nothing is known of their times between samples.
+    pub sharp: bool,
 }
 
 /// Onsets of the bursts of `values`, whose background level is 0, by the best method that the record allows; `None` stands for a
@@ -45,8 +59,24 @@ pub fn onsets(
     bursts: &[Range<usize>],
     background: Background,
     known: Option<&Shape>,
-) -> (Vec<Option<Onset>>, Timing) {
+) -> Found {
     let lobes: Vec<Lobe> = bursts.iter().filter_map(|b| lobe(values, b, background.sigma)).collect();
+    let (mut onsets, timing) = timed_lobes(values, &lobes, background, known);
+    let sharp =
+        2 * lobes.iter().filter(|l| l.sharp).count() > lobes.iter().filter(|l| l.onset.is_finite()).count();
+    if sharp {
+        // Anywhere between two samples (JCGM 100:2008, 4.3.7).
+        onsets.iter_mut().flatten().for_each(|o| o.std = o.std.hypot(1.0 / 12f64.sqrt()));
+    }
+    Found { onsets, timing, sharp }
+}
+
+fn timed_lobes(
+    values: &[f64],
+    lobes: &[Lobe],
+    background: Background,
+    known: Option<&Shape>,
+) -> (Vec<Option<Onset>>, Timing) {
     let flanks = || {
         lobes
             .iter()
@@ -118,12 +148,14 @@ fn lobe(values: &[f64], burst: &Range<usize>, sigma: f64) -> Option<Lobe> {
     let height = values[peak];
     let level = 0.5 * height;
     let under = |i: &usize| values[*i] < level;
-    let (mut onset, mut std) = (f64::NAN, f64::NAN);
+    let (mut onset, mut std, mut sharp) = (f64::NAN, f64::NAN, false);
     let whole = peak + 1 < values.len();
     if let Some(below) = (0..peak).rev().find(under).filter(|_| whole) {
         let slope = values[below + 1] - values[below];
         let part = (level - values[below]) / slope;
         onset = below as f64 + part;
+        let near = SHARP * height;
+        sharp = values[below] < near && values[below + 1] > height - near;
         // Noise of both neighbours and of the level; and what the place of the samples on a flank of p samples does: for half a
         // sine the chord is off by (π/2p)² sin 30°/8 over a slope of 1.36/p, the highest sample by as much: 0.05/p, root mean square.
         let noise = sigma * (part.powi(2) + (1.0 - part).powi(2) + 0.25).sqrt() / slope;
@@ -133,5 +165,5 @@ fn lobe(values: &[f64], burst: &Range<usize>, sigma: f64) -> Option<Lobe> {
         let slope = values[above - 1] - values[above];
         above as f64 - (level - values[above]) / slope
     });
-    Some(Lobe { onset, std, height, width: falls - onset, peak })
+    Some(Lobe { onset, std, height, width: falls - onset, peak, sharp })
 }

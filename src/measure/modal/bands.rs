@@ -1,6 +1,7 @@
 //! Which lines belong to which peak.
 
 use super::Measured;
+use super::response::hertz;
 use crate::error::{Error, Result};
 use crate::measure::peaks::local_maxima;
 use std::ops::Range;
@@ -35,6 +36,7 @@ impl Peak {
     }
 }
 
+/// The peaks, those too near each other in one group, each with the lines around it; only those of `band` where there is one.
 pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Vec<Group>> {
     let f = &measured.frequency;
     let magnitude: Vec<f64> = measured.values.iter().map(|v| v.norm()).collect();
@@ -46,20 +48,28 @@ pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Ve
             rise: magnitude[m.at] - magnitude[m.valleys[0]].max(magnitude[m.valleys[1]]),
         })
         .collect();
+    let mut within = 0..f.len();
     if let Some((low, high)) = band {
         if !(low >= 0.0 && high > low && high.is_finite()) {
             return Err(Error::usage(format!("a band from {low} to {high} Hz"), "LO:HI in Hz, LO below HI"));
         }
-        let lines = f.partition_point(|f| *f < low)..f.partition_point(|f| *f <= high);
-        peaks.retain(|p| lines.contains(&p.at));
+        within = f.partition_point(|f| *f < low)..f.partition_point(|f| *f <= high);
+        peaks.retain(|p| within.contains(&p.at));
+        if within.is_empty() {
+            return Err(Error::refused(format!(
+                "no line between {low} and {high} Hz: the function runs from {} to {} Hz",
+                hertz(f[0]),
+                hertz(f[f.len() - 1])
+            ))
+            .hint("choose a band within it"));
+        }
         if peaks.is_empty() {
             return Err(Error::refused(format!(
                 "no peak between {low} and {high} Hz stands a factor of {PROMINENCE} above its valleys ({} lines)",
-                lines.len()
+                within.len()
             ))
             .hint("a mode without a peak cannot be told from noise here; choose a band around a peak"));
         }
-        return Ok(vec![Group { peaks, lines }]);
     }
     if peaks.is_empty() {
         return Err(Error::refused(format!("no peak stands a factor of {PROMINENCE} above its valleys")));
@@ -90,7 +100,7 @@ pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Ve
             if let Some((after, _)) = spans.get(i + 1) {
                 high = high.min(usize::midpoint(*after, spans[i].1) + 1);
             }
-            Group { peaks, lines: low..high }
+            Group { peaks, lines: low.max(within.start)..high.min(within.end) }
         })
         .collect())
 }

@@ -59,7 +59,7 @@ pub(super) struct Rational {
     pub whiteness: Whiteness,
     /// Root mean square of what is left, over the highest line.
     pub unexplained: f64,
-    /// Akaike's criterion under equal noise, to compare numbers of modes.
+    /// Akaike's criterion with the weights of the noise, to compare numbers of modes on the same lines.
     pub aicc: f64,
     /// How the noise of the lines was weighted.
     pub noise: &'static str,
@@ -244,10 +244,9 @@ pub(super) fn rational(
     let height = |i: usize| scaled.at(&first.parameters, i).norm();
     let unlikely = |fit: &Fit, weight: &[f64]| {
         let n = fit.residuals.len() as f64;
-        let logs = weight.iter().map(|w| w.ln()).sum::<f64>() * n / lines as f64;
-        n * (fit.sum_of_squares() / n).ln() + 2.0 * logs
+        n * (fit.sum_of_squares() / n).ln() + spread(weight, fit.residuals.len())
     };
-    let (fit, noise) = if let Some(coherence) = &measured.coherence {
+    let (fit, noise, weight) = if let Some(coherence) = &measured.coherence {
         // Variance of a line: |H|²(1 − γ²)/(2γ²) over the averages (Bendat & Piersol 2010, 9.90), whose number is left to the fit.
         // That of few averages is hardly known from the line alone, and one that is small by chance would draw the fit to it.
         let part = part.clone().map(|i| coherence[i]);
@@ -259,22 +258,22 @@ pub(super) fn rational(
             smoothed(&share).iter().enumerate().map(|(i, s)| height(i).max(1e-6) * s.sqrt()).collect();
         let by_level = scaled.fit(&first.parameters, &level);
         let by_share = scaled.fit(&first.parameters, &relative);
-        let likely = match (by_level, by_share) {
-            (Ok(one), Ok(other)) if unlikely(&other, &relative) < unlikely(&one, &level) => other,
-            (Ok(one), _) => one,
-            (Err(_), other) => other?,
+        let (fit, weight) = match (by_level, by_share) {
+            (Ok(one), Ok(other)) if unlikely(&other, &relative) < unlikely(&one, &level) => (other, relative),
+            (Ok(one), _) => (one, level),
+            (Err(_), other) => (other?, relative),
         };
-        (likely, "noise by the coherence")
+        (fit, "noise by the coherence", weight)
     } else {
         let relative: Vec<f64> = (0..lines).map(|i| height(i).max(1e-2)).collect();
         match scaled.fit(&first.parameters, &relative) {
             Ok(second) if unlikely(&second, &relative) < unlikely(&first, &equal) => {
-                (second, "noise proportional to the response")
+                (second, "noise proportional to the response", relative)
             }
-            _ => (first, "equal noise on all lines"),
+            _ => (first, "equal noise on all lines", equal),
         }
     };
-    let mut result = scaled.result(&fit, noise);
+    let mut result = scaled.result(&fit, noise, &weight);
     result.fitted.iter_mut().zip(f).for_each(|(v, f)| *v += taken(*f));
     Ok(result)
 }
@@ -289,10 +288,23 @@ fn smoothed(values: &[f64]) -> Vec<f64> {
     (0..values.len()).map(|i| near(i).iter().sum::<f64>() / near(i).len() as f64).collect()
 }
 
+/// What the weights of the lines add to minus twice the logarithm of the likelihood of `n` residuals: Σ ln w².
+fn spread(weight: &[f64], n: usize) -> f64 {
+    2.0 * weight.iter().map(|w| w.ln()).sum::<f64>() * n as f64 / weight.len() as f64
+}
+
+/// What a fit leaves, by root mean square, must be less than this part of the highest line; else these are no modes as modelled.
+const EXPLAINED: f64 = 0.1;
+
 /// A mode must be known better than this part of its damping ratio; else the peak may be anything.
 const KNOWN: f64 = 0.5;
 
 impl Rational {
+    /// Whether the modes explain the lines.
+    pub fn explains(&self) -> bool {
+        self.unexplained < EXPLAINED
+    }
+
     /// Which modes stand: damped, known, and where their peaks, in the same order, are.
     pub fn sound(&self, measured: &Measured, peaks: &[Peak]) -> Vec<bool> {
         let stands = |((mode, std), peak): ((&Pole, &[f64; 4]), &Peak)| {
@@ -322,7 +334,7 @@ impl Scaled<'_> {
         p
     }
 
-    fn result(&self, fit: &Fit, noise: &'static str) -> Rational {
+    fn result(&self, fit: &Fit, noise: &'static str, weight: &[f64]) -> Rational {
         let n = self.x.len();
         let whiteness = if self.magnitude_only {
             Whiteness::of(&[&fit.residuals])
@@ -380,7 +392,8 @@ impl Scaled<'_> {
             unexplained: (sum / n as f64).sqrt(),
             modes,
             std,
-            aicc: aicc(sum, fit.residuals.len(), free.len()),
+            aicc: aicc(fit.sum_of_squares(), fit.residuals.len(), free.len())
+                + spread(weight, fit.residuals.len()),
             fitted: fitted.iter().map(|v| v * self.height).collect(),
             whiteness,
             noise,

@@ -3,6 +3,7 @@
 use crate::error::{Error, Place, Result};
 use crate::read::Recording;
 use crate::record::{Frf, FrfKind, Meta, Record, Scaling, Spectrum, Values};
+use crate::units::notation::significant;
 use num_complex::Complex64;
 
 /// A frequency to six digits, as in a sentence.
@@ -107,6 +108,24 @@ impl Measured {
         let all: Vec<&Record> = recording.records.iter().filter(|r| is_coherence(r)).collect();
         match all.as_slice() {
             [Record::Spectrum(coherence)] => self.with_coherence(coherence),
+            [] if recording.records.iter().any(names_coherence) => {
+                let values = recording.records.iter().filter(|r| names_coherence(r)).flat_map(real_values);
+                let (mut above, mut below, mut largest) = (0, 0, f64::NEG_INFINITY);
+                for v in values {
+                    above += usize::from(*v > 1.0 + 1e-6);
+                    below += usize::from(*v < -1e-6);
+                    largest = largest.max(*v);
+                }
+                Err(Error::input(
+                    Place::file(&recording.path),
+                    format!(
+                        "{above} values of the coherence are above 1 and {below} below 0, the largest is {}",
+                        significant(largest, 4)
+                    ),
+                    "values between 0 and 1",
+                )
+                .hint("a coherence in per cent is to be divided by 100; leave --coherence out if it is none"))
+            }
             _ => Err(Error::input(
                 Place::file(&recording.path),
                 format!("{} coherences", all.len()),
@@ -208,14 +227,26 @@ impl Measured {
 /// Whether a record says that it is a coherence, or is named so and has the values of one, but for some that are impossible.
 fn is_coherence(record: &Record) -> bool {
     let Record::Spectrum(s) = record else { return false };
-    let named = || {
-        let unit = s.meta.unit.symbol();
-        let Values::Real(values) = &s.values else { return false };
-        let like = values.iter().filter(|v| v.is_nan() || (-1e-6..=1.0 + 1e-6).contains(*v)).count();
-        s.scaling == Scaling::Unknown
-            && s.meta.name.to_lowercase().contains("coherence")
-            && matches!(unit, "" | "1")
-            && 2 * like > values.len()
+    let like = || {
+        let values = real_values(record);
+        let possible = values.iter().filter(|v| v.is_nan() || (-1e-6..=1.0 + 1e-6).contains(*v)).count();
+        2 * possible > values.len()
     };
-    s.scaling == Scaling::Coherence || named()
+    s.scaling == Scaling::Coherence || (names_coherence(record) && like())
+}
+
+/// Whether a record is named a coherence and has no unit, whatever its values.
+fn names_coherence(record: &Record) -> bool {
+    let Record::Spectrum(s) = record else { return false };
+    s.scaling == Scaling::Unknown
+        && matches!(s.values, Values::Real(_))
+        && s.meta.name.to_lowercase().contains("coherence")
+        && matches!(s.meta.unit.symbol(), "" | "1")
+}
+
+fn real_values(record: &Record) -> &[f64] {
+    match record {
+        Record::Spectrum(Spectrum { values: Values::Real(values), .. }) => values,
+        _ => &[],
+    }
 }

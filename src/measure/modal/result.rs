@@ -91,9 +91,6 @@ pub struct ModePicture {
     pub circle: Option<Circle>,
 }
 
-/// What a fit leaves, by root mean square, must be less than this part of the highest line; else these are no modes as modelled.
-const EXPLAINED: f64 = 0.1;
-
 /// So far from 0 or 180°, in degrees, a modal constant has a sign.
 const IN_STEP: f64 = 45.0;
 
@@ -125,7 +122,7 @@ pub(super) fn report(
     let sound = fit.sound(measured, &group.peaks);
     for (((pole, std), peak), sound) in fit.modes.iter().zip(&fit.std).zip(&group.peaks).zip(sound) {
         let at = hertz(measured.frequency[peak.at]);
-        if !(sound && fit.unexplained < EXPLAINED) {
+        if !(sound && fit.explains()) {
             if pole.zeta < 0.0 && std[1] < -pole.zeta / 2.0 {
                 reversed += 1;
             }
@@ -139,8 +136,9 @@ pub(super) fn report(
         }
         if fit.whiteness.rejected() {
             warnings.push(format!(
-                "Around {:.6} Hz the residuals are not white: neighbouring modes, leakage or a damping that is not viscous; the uncertainties are enlarged by {:.1}.",
-                pole.frequency, fit.whiteness.inflation
+                "Around {} Hz the residuals are not white: neighbouring modes, leakage or a damping that is not viscous; the uncertainties are enlarged by a factor of {}.",
+                hertz(pole.frequency),
+                significant(fit.whiteness.inflation, 3)
             ));
         }
         // Averaging segments multiplies the impulse response by the window's autocorrelation, 1 − 2π²t²/3T² for a Hann

@@ -61,7 +61,7 @@ pub(super) fn doubts(
         ));
     } else if whiteness.rejected() {
         said.push(format!(
-            "The residuals of the contact of spring and damper are not white noise: a wrong model, a wrong low-pass or coloured noise. Its uncertainties are enlarged by {:.1}, which covers noise but not a wrong model.",
+            "The residuals of the contact of spring and damper are not white noise: a wrong model, a wrong low-pass or coloured noise. Its uncertainties are enlarged by a factor of {:.2}, which covers noise but not a wrong model.",
             whiteness.inflation
         ));
     }

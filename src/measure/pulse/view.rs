@@ -9,6 +9,7 @@ use crate::measure::Estimate;
 use crate::measure::residuals::{Whiteness, aicc};
 use crate::record::Trace;
 use crate::units::Quantity;
+use crate::units::notation::significant;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -150,7 +151,7 @@ impl<'a> View<'a> {
         if let Some(i) = other {
             warnings.push(format!(
                 "There is another pulse of more than half the height at {} s: the largest is analysed.",
-                self.trace.axis.at(i)
+                significant(self.trace.axis.at(i), 5)
             ));
         }
         Ok(())

@@ -60,11 +60,13 @@ impl Drop {
         not_negative("an uncertainty of the interval", self.interval_std)?;
         not_negative("an uncertainty of the acceleration of free fall", self.gravity_std)?;
         let fall = (2.0 * self.height / self.gravity).sqrt();
-        for interval in &self.intervals {
+        for (i, interval) in self.intervals.iter().enumerate() {
             above_zero("an interval", *interval)?;
             if self.restitution(*interval) > 1.0 {
                 return Err(Error::refused(format!(
-                    "an interval of {interval} s gives R = {:.3}: after a fall of {} m, which takes {fall:.4} s, the second impact comes after {:.4} s at most",
+                    "the interval of drop {}, {}, gives R = {:.3}: after a fall of {} m, which takes {fall:.4} s, the second impact comes after {:.4} s at most",
+                    i + 1,
+                    quantity(*interval, "s", 4),
                     self.restitution(*interval),
                     self.height,
                     2.0 * fall

@@ -4,7 +4,7 @@ use super::columns::Columns;
 use super::layout::Layout;
 use super::name::{Name, Part};
 use crate::error::{Error, Place, Result};
-use crate::read::abscissa::{Printed, choose, from_values, to_si};
+use crate::read::abscissa::{Printed, choose, from_values, short, to_si};
 use crate::read::ascii::SCALING_UNSAID;
 use crate::read::ascii::stated::{self, Stated};
 use crate::read::footer::Footer;
@@ -55,6 +55,9 @@ pub fn build(
     // A column that only counts says nothing, unless there is no other.
     let counts = table.len() > 1 && table[0].counts();
     let first = if counts { table.remove(0).values.first().copied() } else { None };
+    if let Some((kind, column)) = &printed {
+        one_clock(source, kind, column, &table, columns.resolution)?;
+    }
     let axis = match printed {
         Some((kind, column)) => Some(printed_axis(source, kind, &column, columns.resolution)?),
         None => None,
@@ -101,6 +104,42 @@ impl Column {
     fn label(&self) -> String {
         if self.name.name.is_empty() { format!("column {}", self.at) } else { self.name.name.clone() }
     }
+}
+
+/// Refuses a second column of the axis that runs at another pace: which columns are whose cannot be told.
+fn one_clock(
+    source: &Source,
+    kind: &AxisKind,
+    axis: &Column,
+    table: &[Column],
+    resolution: f64,
+) -> Result<()> {
+    let span = |column: &Column| {
+        let factor = column.name.to_axis(kind, "").ok()?.0;
+        let rises = column.values.windows(2).all(|w| w[1] > w[0]);
+        let (first, last) = (column.values.first()?, column.values.last()?);
+        rises.then_some((factor * (last - first), factor))
+    };
+    let Some((own, factor)) = span(axis) else { return Ok(()) };
+    for other in table.iter().filter(|c| c.name.axis(true).as_ref() == Some(kind)) {
+        if let Some((span, theirs)) = span(other)
+            && (span - own).abs() > 4.0 * resolution * factor.max(theirs) + 1e-6 * own.abs()
+        {
+            return Err(Error::input(
+                Place::file(source.path()),
+                format!(
+                    "{:?} and {:?} run over {} and {}",
+                    axis.label(),
+                    other.label(),
+                    short(own),
+                    short(span)
+                ),
+                "one clock for all columns",
+            )
+            .hint("write each of them with its channels to a file of its own"));
+        }
+    }
+    Ok(())
 }
 
 /// Axis from its column, and what is to be said of it.

@@ -4,6 +4,7 @@ use crate::record::{Axis, AxisKind, FrfKind, Record, Scaling, Values};
 use crate::units::{Quantity, Unit};
 use num_complex::Complex64;
 use proptest::prelude::*;
+use std::fmt::Write as _;
 
 fn read_with(reader: &Reader, text: impl AsRef<[u8]>) -> Result<Recording> {
     reader.from_reader("x.csv", text.as_ref())
@@ -309,6 +310,36 @@ fn a_survey_says_what_reading_says() {
     let (format, headers, _) = Reader::new().survey(&path).unwrap();
     assert_eq!((format, headers.len()), (Format::Csv, 2));
     assert_eq!((headers[1].max_abs, headers[1].max_at, headers[1].n), (Some(9.0 * 1e-3), Some(0.0), 2));
+}
+
+#[test]
+fn two_clocks_in_one_file_are_refused() {
+    let text = |step: f64, from: f64| {
+        let mut text = "Time A (s),A (V),Time B (s),B (V)\n".to_owned();
+        for i in 0..50 {
+            let t = f64::from(i);
+            let _ = writeln!(text, "{:.4},1,{:.4},{}", 1e-4 * t, from + step * t, 2 * i % 5);
+        }
+        text
+    };
+    let read_text =
+        |text: String| read(&Source::memory("x.csv", text.into_bytes()).unwrap(), &Options::default());
+    let why = read_text(text(2e-4, 0.0)).unwrap_err().to_string();
+    assert!(why.contains("\"Time A\" and \"Time B\" run over 0.0049 and 0.0098"), "{why}");
+    // The same clock read elsewhere is no other.
+    assert!(read_text(text(1e-4, 0.0)).is_ok() && read_text(text(1e-4, 7.0)).is_ok());
+}
+
+#[test]
+fn a_time_that_runs_backwards_is_refused_whatever_the_rate() {
+    let mut rows = String::new();
+    for i in 0..50 {
+        let _ = writeln!(rows, "{:.4},{}", 1e-4 * f64::from(if i < 25 { i } else { i - 10 }), i % 3);
+    }
+    let source = Source::memory("x.csv", format!("Time (s),U (V)\n{rows}").into_bytes()).unwrap();
+    let options = Options { rate: Some(10_000.0), ..Options::default() };
+    let why = read(&source, &options).unwrap_err().to_string();
+    assert!(why.contains("runs backwards: value 26 is 0.0015, behind 0.0024"), "{why}");
 }
 
 proptest! {

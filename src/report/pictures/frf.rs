@@ -34,9 +34,16 @@ pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Fig
     if measured.magnitude_only {
         return figure.panel(above);
     }
-    let phase: Vec<f64> = measured.values.iter().map(|v| v.arg().to_degrees()).collect();
+    let known = |i: usize| measured.coherence.as_ref().is_none_or(|c| c[i] >= TOLD);
+    let phase: Vec<f64> = measured
+        .values
+        .iter()
+        .enumerate()
+        .map(|(i, v)| if known(i) { v.arg().to_degrees() } else { f64::NAN })
+        .collect();
+    let label = phase_label(phase.iter().any(|p| p.is_nan()));
     let (phase, (low, high)) = fitted(&phase);
-    let mut below = Plot::new(AxisSpec::frequency(), AxisSpec::new("Phase", "°").limits(low, high))
+    let mut below = Plot::new(AxisSpec::frequency(), AxisSpec::new(label, "°").limits(low, high))
         .with(Series::phase("", f, &phase).ink(Ink::Grey).stroke(Stroke::Solid));
     if !x.is_empty() {
         // On the same turn as the measured phase, as far as the axis goes.
@@ -46,6 +53,14 @@ pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Fig
         below = below.with(Series::phase("", &x, &angle).ink(Ink::Nth(0)).stroke(Stroke::Dashed));
     }
     lettered(figure.height(110.0).shared_x().panel(above).panel(below))
+}
+
+/// A phase is drawn where the coherence is this or more: below it only fills the frame.
+pub(super) const TOLD: f64 = 0.5;
+
+/// Name of the axis of a phase of which `some` is not drawn.
+pub(super) fn phase_label(some: bool) -> &'static str {
+    if some { "Phase where γ² ≥ 0.5" } else { "Phase" }
 }
 
 /// The Nyquist plane around the modes, at most four, with the circle where one was fitted; `None` without phases or modes.
@@ -61,6 +76,7 @@ pub fn nyquist(title: &str, measured: &Measured, modes: &[Mode]) -> Option<Figur
     let rows = largest.len().div_ceil(2);
     let mut figure = if columns == 1 { Figure::single(title).height(80.0) } else { Figure::double(title).height(85.0 * rows as f64) }
         .columns(columns)
+        .square()
         .caption("Mobility in the Nyquist plane around each mode: lines that were fitted, the circle through them, and the resonance (diamond). Whatever the kind of the function, the mobility is shown, which runs on a circle.");
     for mode in largest {
         let Some(circle) = &mode.picture.circle else { continue };

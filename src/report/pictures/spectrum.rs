@@ -1,5 +1,6 @@
 //! Spectra, and frequency response functions with their band and coherence.
 
+use super::frf::{TOLD, phase_label};
 use super::lettered;
 use super::response::capital;
 use crate::measure::spectral::{Lines, SpectralResult};
@@ -101,16 +102,16 @@ pub fn transfer(title: &str, transfer: &Transfer) -> Figure {
             .map(|(m, std)| (m + sign * 2.0 * std).max(0.05 * m))
             .collect()
     };
-    // A phase that says nothing only fills the frame.
     let shown =
-        |(v, coherence): (&Complex64, &f64)| if *coherence < 0.5 { f64::NAN } else { v.arg().to_degrees() };
+        |(v, coherence): (&Complex64, &f64)| if *coherence < TOLD { f64::NAN } else { v.arg().to_degrees() };
     let phase: Vec<f64> = frf.values.iter().zip(&transfer.coherence).map(shown).collect();
+    let label = phase_label(phase.iter().any(|p| p.is_nan()));
     let y = AxisSpec::new(capital(frf.meta.quantity.name()), frf.meta.unit.symbol()).log();
     let above = Plot::new(AxisSpec::frequency(), y)
         .with(Series::band("two standard deviations", f.clone(), edge(-1.0), edge(1.0)).ink(Ink::Nth(0)))
         .with(Series::line("", f.clone(), magnitude).ink(Ink::Nth(0)))
         .legend(Legend::Above);
-    let middle = Plot::new(AxisSpec::frequency(), AxisSpec::new("Phase", "°").limits(-180.0, 180.0))
+    let middle = Plot::new(AxisSpec::frequency(), AxisSpec::new(label, "°").limits(-180.0, 180.0))
         .with(Series::phase("", &f, &phase).ink(Ink::Nth(0)));
     let below = Plot::new(AxisSpec::frequency(), AxisSpec::new("Coherence", "").limits(0.0, 1.0))
         .with(Series::line("", f, transfer.coherence.clone()).ink(Ink::Nth(0)));

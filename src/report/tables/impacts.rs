@@ -23,6 +23,7 @@ pub fn impacts(all: &[(String, &Impacts)]) -> Table {
         let per_cycle = match (found.per_cycle, found.regular) {
             (Some(p), _) => format!("{}/{}", p.impacts, p.cycles),
             (None, false) if found.n == 2 => "not known".to_owned(),
+            (None, false) if found.beat.is_some() => "drifts".to_owned(),
             (None, false) => "irregular".to_owned(),
             (None, true) => "regular".to_owned(),
         };

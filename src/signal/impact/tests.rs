@@ -257,3 +257,33 @@ fn what_is_left_at_the_end_of_a_record_is_said() {
     let found = from_blows(&force, &trace("m", values), &how, Estimator::H1).unwrap();
     assert!(!found.transfer.warnings.join(" ").contains("left when"), "{:?}", found.transfer.warnings);
 }
+
+/// A short blow has four or five samples: cut at its ceiling it stays there for two, or one.
+#[test]
+fn short_blows_at_the_ceiling_are_overloads() {
+    let blows = [(500, 100.0), (8000, 130.0), (15_500, 160.0), (23_000, 90.0), (30_500, 121.0)];
+    let [mut force, response] = bench(&blows, 38_000);
+    // Not symmetric about a sample, as no blow is.
+    for (k, (at, peak)) in blows.iter().enumerate() {
+        let width = 4.6;
+        for i in 0..6 {
+            let phase = (i as f64 + 0.13 + 0.05 * k as f64) / width;
+            force.values[at + i] = if phase < 1.0 { peak * (PI * phase).sin() } else { 0.0 };
+        }
+    }
+    let how = Blows { length: 4096, before: 100, force_window: None, left_at_end: None };
+    let rejected = |force: &Trace| {
+        let found = from_blows(force, &response, &how, Estimator::H1).unwrap();
+        found.blows.iter().map(|b| b.rejected).collect::<Vec<_>>()
+    };
+    assert_eq!(rejected(&force), [None; 5]);
+    let tops: Vec<Vec<f64>> = blows.iter().map(|(at, _)| force.values[*at..at + 6].to_vec()).collect();
+    let over = |limit: f64| tops.iter().map(|t| t.iter().filter(|v| **v > limit).count()).collect::<Vec<_>>();
+    let ceiling = 105.0;
+    // Two samples of the second blow, three of the third and one of the last lie above it.
+    assert_eq!(over(ceiling), [0, 2, 3, 0, 1], "{tops:?}");
+    let mut cut = force.clone();
+    cut.values.iter_mut().for_each(|v| *v = v.min(ceiling));
+    let strong = Some("overload");
+    assert_eq!(rejected(&cut), [None, strong, strong, None, strong]);
+}
