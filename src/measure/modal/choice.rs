@@ -81,6 +81,8 @@ fn pruned(lines: &Measured, group: &mut Group, mut fit: Rational) -> (Rational, 
             None => (0..group.peaks.len())
                 .filter_map(|at| without(group, &fit, at).map(|less| (at, less)))
                 .filter(|(_, (less, _))| less.aicc <= fit.aicc + NEEDED)
+                // A mode that leaves its peak for the one taken away is not the other's.
+                .filter(|(_, (less, fewer))| less.sound(lines, fewer).iter().all(|s| *s))
                 .min_by(|a, b| a.1.0.aicc.total_cmp(&b.1.0.aicc)),
         };
         let Some((at, (less, fewer))) = less else { break };
