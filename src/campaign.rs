@@ -35,11 +35,13 @@ mod entry;
 mod fault;
 mod locate;
 mod low_pass;
+mod prediction;
 mod record;
 mod spectral;
 
 pub use entry::{Compute, Drive, SweepEntry};
 pub use low_pass::{LowPass, Word};
+pub use prediction::ModelEntry;
 pub use record::{
     Decimal, Detrend, DrillEntry, DropEntry, FrfEntry, ImpactsEntry, PulseEntry, RecordEntry, SpectrumEntry,
 };
@@ -82,6 +84,8 @@ pub struct Campaign {
     pub pulse: Vec<PulseEntry>,
     /// Hammer-drill traces.
     pub drill: Vec<DrillEntry>,
+    /// How the overlay's predictions are made.
+    pub model: ModelEntry,
     /// What to compute, and how.
     pub compute: Compute,
     #[serde(skip)]
@@ -158,6 +162,10 @@ impl Campaign {
         })?;
         self.compute.check().map_err(|(key, why)| {
             let from = self.text.find("[compute]");
+            self.at(locate::find(&self.text, key, from), why)
+        })?;
+        self.model.check().map_err(|(key, why)| {
+            let from = self.text.find("[model]");
             self.at(locate::find(&self.text, key, from), why)
         })?;
         for entry in self.records() {

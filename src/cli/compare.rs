@@ -27,7 +27,7 @@ pub fn run(typed: &args::Compare, json: bool) -> Result<()> {
     let options = JobOptions { allow_outside: typed.allow_outside };
     let responses = job::responses(&campaign, options, &progress::bar(json))?;
     let force = campaign.excitation.and_then(|e| e.force);
-    let mut overlay = overlay(&rig, force, &responses)?;
+    let mut overlay = overlay(&rig, force, campaign.model.into(), &responses)?;
     overlay.warnings.extend(job::common(&responses));
     let mut written = Vec::new();
     if let Some(folder) = &typed.out {

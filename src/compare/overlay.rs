@@ -4,11 +4,12 @@ use super::forcing::{Forcing, levels};
 use super::observable::Observable;
 use super::prediction::{Kind, Motion, Prediction};
 use super::score::{Score, far_off, score};
+use super::simulated::{Contact, Pace, Simulated, simulated};
 use crate::error::{Error, Result};
 use crate::measure::Estimate;
 use crate::measure::peaks::{local_maxima, vertex};
 use crate::measure::resonance::Resonance;
-use crate::measure::response::Response;
+use crate::measure::response::{Response, ResponsePoint};
 use crate::model::Rig;
 use crate::record::Direction;
 use serde::Serialize;
@@ -30,10 +31,18 @@ pub struct Pair {
     pub measured: Estimate,
     /// What the true amplitude stays below with 95 % confidence, in m, where it does not stand out of the noise.
     pub upper_limit: Option<f64>,
-    /// Predicted amplitude in m; `None` where no motion of the closed form can be seen.
+    /// Predicted amplitude in m; `None` where the motion cannot be followed.
     pub predicted: Option<f64>,
+    /// How far the predicted amplitude scatters from cycle to cycle, in m: 0 for what repeats every cycle.
+    pub scatter: Option<f64>,
     /// Kind of the predicted motion.
     pub motion: Option<Kind>,
+    /// Impacts/cycles of its pattern, or a word.
+    pub regime: Option<String>,
+    /// What predicted the amplitude: `closed form` where it has the motion that the simulated sweep comes to, else `simulated`.
+    pub model: &'static str,
+    /// Stable motions of the closed form at this point: with more than one, history decides.
+    pub choices: usize,
     /// Measured minus predicted in m.
     pub residual: Option<f64>,
 }
@@ -103,12 +112,15 @@ struct Swept<'a> {
     forcing: Forcing,
 }
 
-/// Overlays measured displacement responses (fundamentals of spectra) on the closed-form prediction. `force` in N; where it
-/// is `None` each point is predicted for its own measured force, and the curve between points for the force between theirs.
+/// Overlays measured displacement responses (fundamentals of spectra) on the motions of the rig. `force` in N; where it is `None` each
+/// point is predicted for its own measured force, and the curve between points for the force between theirs.
+///
+/// Each point is predicted by a rig that is led through the points of its sweep in their order at this `pace`: where several motions are
+/// possible, history decides as in the measurement. Where that comes to a motion of the closed form, the closed form gives the amplitude.
 ///
 /// # Errors
 /// If no response names its mass and direction, no force is known, or the rig is impossible.
-pub fn overlay(rig: &Rig, force: Option<f64>, responses: &[Response]) -> Result<Overlay> {
+pub fn overlay(rig: &Rig, force: Option<f64>, pace: Pace, responses: &[Response]) -> Result<Overlay> {
     let usable: Vec<(&Response, u8, Direction)> = responses
         .iter()
         .filter(|r| r.quantity == "displacement")
@@ -152,7 +164,7 @@ pub fn overlay(rig: &Rig, force: Option<f64>, responses: &[Response]) -> Result<
         let Some(mean) = Forcing::mean(&forcings) else { continue };
         let common = curve(&mean)?;
         for sweep in &members {
-            let pairs = pairs(rig, sweep)?;
+            let pairs = pairs(rig, sweep, pace)?;
             overlay.scores.push(score(&sweep.response.name, &pairs));
             overlay.warnings.extend(far_off(&sweep.response.name, &pairs));
             overlay.pairs.extend(pairs);
@@ -162,46 +174,89 @@ pub fn overlay(rig: &Rig, force: Option<f64>, responses: &[Response]) -> Result<
         let sweeps = members.iter().map(|s| s.response.name.clone()).collect();
         overlay.levels.push(Level { force: mean.median(), sweeps, curve: common });
     }
-    let without: usize = overlay.scores.iter().map(|s| s.without).sum();
-    if without > 0 {
-        overlay.warnings.push(format!(
-            "At {without} point(s) the closed form has no motion that can be seen (one impact a cycle, or none): nothing is predicted there."
-        ));
-    }
+    overlay.warnings.extend(doubts(&overlay.pairs, pace));
     Ok(overlay)
 }
 
-fn pairs(rig: &Rig, sweep: &Swept<'_>) -> Result<Vec<Pair>> {
-    let Swept { response, mass, direction, ref forcing } = *sweep;
-    let mut order: Vec<usize> = (0..response.points.len()).collect();
-    order.sort_by(|a, b| response.points[*a].excitation.total_cmp(&response.points[*b].excitation));
-    let points = order.iter().map(|i| &response.points[*i]).map(|p| (p.excitation, forcing.of(p)));
-    let prediction = Prediction::at(rig, points.collect(), Observable::Fundamental)?;
-    let followed = prediction.followed(direction);
-    let mut pairs: Vec<Pair> = order
-        .iter()
-        .zip(followed)
-        .map(|(i, motion)| {
-            let point = &response.points[*i];
-            let predicted = motion.map(|m| m.amplitude[usize::from(mass) - 1]);
-            Pair {
-                sweep: response.name.clone(),
-                mass,
-                direction,
-                frequency: point.excitation,
-                force: forcing.of(point),
-                measured: point.amplitude.clone(),
-                upper_limit: point.upper_limit,
-                predicted,
-                motion: motion.map(|m| m.kind),
-                residual: predicted.map(|p| point.amplitude.value - p).filter(|r| r.is_finite()),
-            }
-        })
-        .collect();
-    if direction == Direction::Down {
-        pairs.reverse();
+/// What is to be said of the predictions.
+fn doubts(pairs: &[Pair], pace: Pace) -> Vec<String> {
+    let count = |of: &dyn Fn(&Pair) -> bool| pairs.iter().filter(|p| of(p)).count();
+    let several = count(&|p| p.choices > 1);
+    let irregular = count(&|p| p.motion == Some(Kind::Irregular));
+    let without = count(&|p| p.predicted.is_none());
+    let mut said = Vec::new();
+    if several > 0 {
+        said.push(format!(
+            "At {several} point(s) more than one motion is stable: predicted is the one that a sweep from rest through the same points \
+             comes to, {} cycles at each.",
+            pace.settle + pace.measure
+        ));
     }
-    Ok(pairs)
+    if irregular > 0 {
+        said.push(format!(
+            "At {irregular} point(s) the predicted motion has no pattern: its amplitude is that of {} cycles, and others differ by about \
+             its scatter.",
+            pace.measure
+        ));
+    }
+    if without > 0 {
+        said.push(format!(
+            "At {without} point(s) the motion cannot be followed: nothing is predicted there."
+        ));
+    }
+    said
+}
+
+fn pairs(rig: &Rig, sweep: &Swept<'_>, pace: Pace) -> Result<Vec<Pair>> {
+    let Swept { response, mass, direction, ref forcing } = *sweep;
+    let mut points: Vec<&ResponsePoint> = response.points.iter().collect();
+    points.sort_by(|a, b| a.excitation.total_cmp(&b.excitation));
+    let driven = |p: &&ResponsePoint| (p.excitation, forcing.of(p));
+    let closed = Prediction::at(rig, points.iter().map(driven).collect(), Observable::Fundamental)?;
+    let mut motions = closed.motions;
+    if direction == Direction::Down {
+        points.reverse();
+        motions.reverse();
+    }
+    let passed: Vec<(f64, f64)> = points.iter().map(driven).collect();
+    let came = simulated(rig, Contact::Restitution, &passed, pace);
+    let of = usize::from(mass) - 1;
+    let pair = |((point, motions), came): ((&&ResponsePoint, &Vec<Motion>), &Result<Simulated>)| {
+        let came = came.as_ref().ok();
+        let closed = came.and_then(|came| came_to(came, motions));
+        let amplitude = closed.map(|m| m.amplitude).or(came.map(|c| c.amplitude));
+        let predicted = amplitude.map(|a| a[of]).filter(|p| p.is_finite());
+        Pair {
+            sweep: response.name.clone(),
+            mass,
+            direction,
+            frequency: point.excitation,
+            force: forcing.of(point),
+            measured: point.amplitude.clone(),
+            upper_limit: point.upper_limit,
+            predicted,
+            scatter: came.map(|c| if closed.is_some() { 0.0 } else { c.scatter[of] }),
+            motion: came.map(|c| Kind::of(c.regime)),
+            regime: came.map(|c| c.regime.to_string()),
+            model: if closed.is_some() { "closed form" } else { "simulated" },
+            choices: motions.iter().filter(|m| m.is_seen()).count(),
+            residual: predicted.map(|p| point.amplitude.value - p).filter(|r| r.is_finite()),
+        }
+    };
+    Ok(points.iter().zip(&motions).zip(&came).map(pair).collect())
+}
+
+/// A simulated motion is one of the closed form where both amplitudes agree to this part: what 300 cycles leave of the start near a border
+/// of stability.
+const SETTLED: f64 = 0.02;
+
+/// The motion of the closed form that a simulation came to.
+fn came_to<'a>(came: &Simulated, motions: &'a [Motion]) -> Option<&'a Motion> {
+    let kind = Kind::of(came.regime);
+    motions.iter().filter(|m| m.is_seen() && m.kind == kind).find(|m| {
+        let [a, b] = [0, 1].map(|i| (came.amplitude[i] - m.amplitude[i]).abs() <= SETTLED * m.amplitude[i]);
+        a && b
+    })
 }
 
 /// A predicted peak belongs to a measured one within this ratio of frequencies.
@@ -266,7 +321,6 @@ fn top(curve: &Prediction, closed: &[f64], i: usize) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measure::response::ResponsePoint;
 
     /// A sweep of mass 1 whose force rises from `force` by half a thousandth a step, with the amplitudes of the closed form
     /// without impacts, F/|k − ω²m + iωc|.
@@ -309,7 +363,7 @@ mod tests {
         let rig = Rig::thesis();
         let responses =
             [free("weak", &rig, 0.05), free("strong", &rig, 0.1), free("weak again", &rig, 0.052)];
-        let own = overlay(&rig, None, &responses).unwrap();
+        let own = overlay(&rig, None, Pace::default(), &responses).unwrap();
         assert_eq!(own.force, None);
         let levels: Vec<&[String]> = own.levels.iter().map(|l| l.sweeps.as_slice()).collect();
         assert_eq!(levels, [&["weak".to_owned(), "weak again".to_owned()][..], &["strong".to_owned()][..]]);
@@ -319,9 +373,9 @@ mod tests {
             let residual = pair.residual.unwrap();
             assert!(residual.abs() < 1e-12 * pair.measured.value, "{pair:?}");
         }
-        assert!(!own.warnings.iter().any(|w| w.contains("off the closed form")), "{:?}", own.warnings);
+        assert!(!own.warnings.iter().any(|w| w.contains("off the prediction")), "{:?}", own.warnings);
         // With one force for all, the points at another are off by the ratio of forces.
-        let stated = overlay(&rig, Some(0.1), &responses[..1]).unwrap();
+        let stated = overlay(&rig, Some(0.1), Pace::default(), &responses[..1]).unwrap();
         assert_eq!(stated.force, Some(0.1));
         let worst = stated.pairs.iter().map(|p| p.measured.value / p.predicted.unwrap()).fold(1.0, f64::min);
         assert!((worst - 0.5).abs() < 1e-12, "{worst}");
@@ -339,12 +393,12 @@ mod tests {
         sweep.points[9].amplitude.std = Some(sweep.points[9].amplitude.value);
         sweep.points[11].amplitude.value *= 0.5;
         sweep.points[11].upper_limit = Some(1.0);
-        let overlay = overlay(&rig, None, &[sweep]).unwrap();
+        let overlay = overlay(&rig, None, Pace::default(), &[sweep]).unwrap();
         let score = &overlay.scores[0];
         assert_eq!((score.n, score.faint, score.max_at), (30, 1, Some(23.5)));
         assert!((score.max_relative.unwrap() - 0.5).abs() < 1e-12 && score.median_relative.unwrap() < 1e-12);
         let said: Vec<&String> =
-            overlay.warnings.iter().filter(|w| w.contains("off the closed form")).collect();
+            overlay.warnings.iter().filter(|w| w.contains("off the prediction")).collect();
         assert!(
             said.len() == 1 && said[0].contains("1 point(s)") && said[0].contains("at 23.50 Hz"),
             "{said:?}"

@@ -137,10 +137,15 @@ pub fn pairs(overlay: &Overlay) -> Table {
             ("measured", "m", &|p| Cell::from(&p.measured)),
             ("predicted", "m", &|p| Cell::from(p.predicted)),
             ("residual", "m", &|p| Cell::from(p.residual)),
+            ("scatter of the prediction", "m", &|p| Cell::from(p.scatter)),
+            ("predicted by", "", &|p| Cell::from(p.model)),
+            ("impacts/cycles", "", &|p| Cell::from(p.regime.as_deref().unwrap_or("-"))),
             ("predicted motion", "", &|p| {
                 Cell::from(match p.motion {
                     Some(Kind::Impacting) => "impacting",
                     Some(Kind::Free) => "free",
+                    Some(Kind::Pattern) => "another pattern",
+                    Some(Kind::Irregular) => "irregular",
                     None => "not predicted",
                 })
             }),
