@@ -1,7 +1,6 @@
 //! Measured results on model predictions, through the same measurement.
 
 pub mod forcing;
-pub mod observable;
 pub mod overlay;
 pub mod prediction;
 pub mod score;
@@ -10,3 +9,5 @@ pub use forcing::{Forcing, levels};
 pub use overlay::{Level, Overlay, Pair, PeakPair, overlay};
 pub use prediction::{Kind, Prediction, Verdict};
 pub use score::Score;
+
+pub use crate::model::observable;

@@ -11,7 +11,7 @@ pub use size::{at_size, size};
 use super::Motion;
 use crate::error::{Error, Result};
 use crate::record::Direction;
-use gauge::Gauge;
+pub(super) use gauge::Gauge;
 use serde::Serialize;
 use std::f64::consts::TAU;
 

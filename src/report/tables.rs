@@ -3,6 +3,7 @@
 mod cycles;
 mod drill;
 mod impacts;
+mod ladder;
 mod modal;
 mod model;
 mod pulse;
@@ -12,6 +13,7 @@ mod sweep;
 pub use cycles::{drill_cycles_head, drill_cycles_row};
 pub use drill::{drill, drill_average, drill_impacts};
 pub use impacts::{impact_times, impacts, restitution};
+pub use ladder::{chosen, rungs, sensitivity, stretches, summaries};
 pub use modal::{modal_methods, modes};
 pub use model::{branches, changes, course, no_impact, orbits, soft, verdicts};
 pub use pulse::{pulse, pulse_fits};
