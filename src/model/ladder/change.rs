@@ -14,8 +14,8 @@ const TOLD: f64 = 2.0;
 pub struct Change {
     /// The other rung.
     pub at: Model,
-    /// Its answer less this one, over this one: of the mass for which that is the larger against what is allowed. An answer of 0 that
-    /// does not stay so changes by 1.
+    /// Its answer less this one, over this one: of the mass for which that is the larger against what is allowed. For a mass that moves
+    /// less than a thousandth of what the other does, over the largest of all answers.
     pub change: f64,
     /// Whether that is no more than the tolerance, the noise floor or what the answers themselves are uncertain by allow.
     pub enough: bool,
@@ -53,7 +53,8 @@ impl Answer {
             let ratio = if allowed > 0.0 { moved.abs() / allowed } else { f64::INFINITY };
             if ratio > far {
                 far = ratio;
-                let change = if self.value[i] == 0.0 { moved.signum() } else { moved / scale };
+                let own = self.value[i].abs();
+                let change = moved / if own < STILL * largest { largest } else { own };
                 worst = Change { at, change, enough: ratio <= 1.0 };
             }
         }

@@ -43,7 +43,7 @@ fn passed_over(rung: &Rung, question: &Question) -> String {
             c.at.name(),
             allowed(question)
         ),
-        None => format!("{name}: valid, but there is nothing to hold it against."),
+        None => format!("{name}: valid, but nothing known says how far its answer is off."),
     }
 }
 

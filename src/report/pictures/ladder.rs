@@ -10,6 +10,18 @@ use ndarray::Array2;
 /// Changes in percent below this are drawn here: an axis of parts has no zero.
 const LEAST: f64 = 1e-3;
 
+/// Colours of the rungs, those of the map last, and their markers.
+const INKS: [usize; 7] = [6, 4, 5, 3, 1, 2, 0];
+const MARKS: [Marker; 7] = [
+    Marker::Circle,
+    Marker::Square,
+    Marker::Triangle,
+    Marker::Diamond,
+    Marker::OpenCircle,
+    Marker::FilledSquare,
+    Marker::Cross,
+];
+
 /// What became of a rung.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Fate {
@@ -109,12 +121,12 @@ pub fn ladder_over(survey: &Survey, question: &Question) -> Result<Figure> {
         Fate::ALL.iter().position(|f| *f == fate).map_or(f64::NAN, |k| k as f64)
     });
     let frequency = || AxisSpec::frequency().limits(x[0], x[x.len() - 1]);
-    let map = Plot::new(frequency(), AxisSpec::new("Rung", ""))
-        .title("rungs")
-        .heatmap(Heatmap::classes(&x, &y, &fates, &Fate::NAMES)?)
-        .legend(Legend::Above);
     let names: Vec<String> =
         Model::ALL[..rows].iter().enumerate().map(|(i, m)| format!("{} {}", i + 1, m.name())).collect();
+    let map = Plot::new(frequency(), AxisSpec::new("Rung", ""))
+        .title(format!("rungs: {}", names.join(", ")))
+        .heatmap(Heatmap::classes(&x, &y, &fates, &Fate::NAMES)?)
+        .legend(Legend::Above);
     let masses = if question.observable.is_of_impacts() { 1 } else { 2 };
     let mut figure = Figure::double("Ladder of models along an axis")
         .height(62.0 + 52.0 * f64::from(masses))
@@ -148,7 +160,7 @@ fn answers(survey: &Survey, question: &Question, mass: usize, x: AxisSpec) -> Pl
         let of = survey.points.iter().filter(|c| c.chosen == Some(model));
         let (x, y): (Vec<f64>, Vec<f64>) = of.filter_map(|c| Some((c.frequency, c.answer()?[mass]))).unzip();
         if !x.is_empty() {
-            plot = plot.with(Series::points(model.name(), x, y).ink(Ink::Nth(i)));
+            plot = plot.with(Series::points(model.name(), x, y).ink(Ink::Nth(INKS[i])).marker(MARKS[i]));
         }
     }
     plot

@@ -45,7 +45,7 @@ pub fn rungs(choice: &Choice, question: &Question) -> Table {
             ("at", "", &|r| worst(r).map_or(Cell::Missing, |c| Cell::from(c.at.name()))),
             ("good enough", "", &|r| word(r.sufficient)),
             ("chosen", "", &|r| word(choice.chosen == Some(r.model))),
-            ("time", "µs", &|r| Cell::from(r.cost_ns.map(|t| t / 1000.0))),
+            ("time in µs", "", &|r| Cell::from(r.cost_ns.map(|t| t / 1000.0))),
         ],
     );
     answered(found, question, choice.rungs.iter().map(|r| r.answer))
@@ -57,7 +57,7 @@ pub fn sensitivity(rows: &[Sensitivity], question: &Question) -> Table {
         "Over the stiffness of the contact",
         rows,
         &[
-            ("contact stiffness", "N/m", &|r| Cell::from(r.stiffness)),
+            ("contact stiffness in N/m", "", &|r| Cell::from(r.stiffness)),
             ("in contact", "% of the cycle", &|r| percent(Some(r.share))),
             ("moves by", "%", &|r| percent(Some(r.change))),
             ("within", "", &|r| word(r.enough)),
@@ -95,7 +95,7 @@ pub fn summaries(rungs: &[Summary]) -> Table {
             ("rung", "", &|r| Cell::from(r.model.name())),
             ("valid everywhere", "", &|r| word(r.valid)),
             ("moves at most by", "%", &|r| percent(r.error)),
-            ("median time", "µs", &|r| Cell::from(r.cost_ns.map(|t| t / 1000.0))),
+            ("median time in µs", "", &|r| Cell::from(r.cost_ns.map(|t| t / 1000.0))),
             ("where", "", &|r| Cell::from(r.why.as_str())),
         ],
     )
