@@ -41,13 +41,13 @@ mod spectral;
 
 pub use entry::{Compute, Drive, SweepEntry};
 pub use low_pass::{LowPass, Word};
-pub use prediction::ModelEntry;
+pub use prediction::{Follows, ModelEntry};
 pub use record::{
     Decimal, Detrend, DrillEntry, DropEntry, FrfEntry, ImpactsEntry, PulseEntry, RecordEntry, SpectrumEntry,
 };
 
 use crate::error::{Error, Place, Result};
-use crate::model::Rig;
+use crate::model::{ContactKeys, Rig};
 use crate::read::{Recording, SweepList, SweepReader, inside};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -84,6 +84,8 @@ pub struct Campaign {
     pub pulse: Vec<PulseEntry>,
     /// Hammer-drill traces.
     pub drill: Vec<DrillEntry>,
+    /// How the masses' contact gives way; left out, its stiffness is not known.
+    pub contact: Option<ContactKeys>,
     /// How the overlay's predictions are made.
     pub model: ModelEntry,
     /// What to compute, and how.

@@ -1,7 +1,7 @@
 //! How well a sweep is predicted, and where it is not.
 
 use super::forcing::median;
-use super::overlay::Pair;
+use super::pair::Pair;
 use serde::Serialize;
 
 /// How well one sweep is predicted.

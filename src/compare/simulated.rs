@@ -1,20 +1,10 @@
 //! The motion of a rig that is led through the points of a sweep one after another, as the measured one was.
 
-use crate::campaign::ModelEntry;
 use crate::error::Result;
 use crate::model::regime::Watch;
 use crate::model::sweep::{Gauge, Observable};
 use crate::model::{Compliant, Excitation, Law, Motion, Regime, Rig, Simulation, Sine, State};
 use std::f64::consts::TAU;
-
-/// How the masses meet.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Contact {
-    /// At once, with the rig's restitution.
-    Restitution,
-    /// Over a while, by a law of force.
-    Law(Law),
-}
 
 /// How long the rig stays at a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,13 +22,6 @@ impl Default for Pace {
     }
 }
 
-impl From<ModelEntry> for Pace {
-    fn from(entry: ModelEntry) -> Pace {
-        let Pace { settle, measure } = Pace::default();
-        Pace { settle: entry.settle.unwrap_or(settle), measure: entry.measure.unwrap_or(measure) }
-    }
-}
-
 /// What the rig does at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Simulated {
@@ -50,17 +33,15 @@ pub struct Simulated {
     pub regime: Regime,
 }
 
-/// Leads the rig through `points` (frequency in Hz, force amplitude in N) in this order, from rest at the first; state and phase of
+/// Leads a rig whose masses meet by this `law` of force, or at once with the rig's restitution, through `points` (frequency in Hz, force amplitude in N) in this order, from rest at the first; state and phase of
 /// the force go on from point to point.
 ///
 /// Each point has its own answer: an error where a parameter is impossible or the motion needs more events than can be followed, behind
 /// which the rig starts from rest again.
-pub fn simulated(rig: &Rig, contact: Contact, points: &[(f64, f64)], pace: Pace) -> Vec<Result<Simulated>> {
-    match contact {
-        Contact::Restitution => {
-            led(rig, points, pace, |sine, state, phase| Simulation::from_state(rig, &sine, state, phase))
-        }
-        Contact::Law(law) => led(rig, points, pace, |sine, state, phase| {
+pub fn simulated(rig: &Rig, law: Option<Law>, points: &[(f64, f64)], pace: Pace) -> Vec<Result<Simulated>> {
+    match law {
+        None => led(rig, points, pace, |sine, state, phase| Simulation::from_state(rig, &sine, state, phase)),
+        Some(law) => led(rig, points, pace, |sine, state, phase| {
             Compliant::new(rig, &Excitation::Sine(sine), law, state, phase)
         }),
     }
@@ -111,7 +92,7 @@ mod tests {
     fn a_sweep_up_comes_to_the_motions_of_the_closed_form() {
         let rig = Rig::thesis();
         let points: Vec<(f64, f64)> = (0..8).map(|i| (10.5 + 0.25 * f64::from(i), 0.5)).collect();
-        let found = simulated(&rig, Contact::Restitution, &points, Pace::default());
+        let found = simulated(&rig, None, &points, Pace::default());
         for (at, point) in found.iter().zip(&points) {
             let at = at.as_ref().unwrap();
             let all = orbits(&rig, point.1, point.0).unwrap();
@@ -135,8 +116,7 @@ mod tests {
         let rig = Rig::thesis();
         let points = [(11.0, 0.5), (11.2, 0.5)];
         let law = Law::kelvin_voigt(1e9, rig.restitution, rig.reduced_mass()).unwrap();
-        let [hard, stiff] = [Contact::Restitution, Contact::Law(law)]
-            .map(|contact| simulated(&rig, contact, &points, Pace::default()));
+        let [hard, stiff] = [None, Some(law)].map(|law| simulated(&rig, law, &points, Pace::default()));
         for (a, b) in hard.iter().flatten().zip(stiff.iter().flatten()) {
             // The contact lasts π√(M/k) = 2.3e-5 s, 2.5e-4 of the cycle; near the clapping resonance that counts some thirty times over
             // (0.74 % of the cycle moves the impact speed by 21 %).
@@ -147,7 +127,7 @@ mod tests {
     #[test]
     fn too_small_a_force_leaves_the_second_mass_at_rest() {
         let rig = Rig::thesis();
-        let found = simulated(&rig, Contact::Restitution, &[(20.0, 0.1), (21.0, 0.2)], Pace::default());
+        let found = simulated(&rig, None, &[(20.0, 0.1), (21.0, 0.2)], Pace::default());
         assert_eq!(found.iter().flatten().count(), 2);
         assert!(found.iter().flatten().all(|f| f.regime == Regime::NoImpact && f.amplitude[1] == 0.0));
     }
@@ -155,8 +135,7 @@ mod tests {
     #[test]
     fn a_point_that_cannot_be_is_refused_alone() {
         let rig = Rig::thesis();
-        let found =
-            simulated(&rig, Contact::Restitution, &[(20.0, 0.1), (-1.0, 0.1), (21.0, 0.1)], Pace::default());
+        let found = simulated(&rig, None, &[(20.0, 0.1), (-1.0, 0.1), (21.0, 0.1)], Pace::default());
         assert_eq!(found.iter().map(Result::is_ok).collect::<Vec<_>>(), [true, false, true]);
     }
 }

@@ -5,6 +5,7 @@ use super::response::{MARKS, log_limits, rank, series, shown};
 use crate::compare::prediction::{Kind, Motion, Prediction};
 use crate::compare::{Level, Overlay, Pair, Verdict};
 use crate::measure::response::Response;
+use crate::model::ladder::Model;
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 use crate::units::notation::significant;
 
@@ -80,7 +81,7 @@ fn panel(mass: u8, curve: &Prediction, pairs: &[Pair], measured: &[(usize, &Resp
         plot = plot.with(faint).with(points);
     }
     let swept = |p: &&Pair| p.mass == mass && measured.iter().any(|(_, r)| r.name == p.sweep);
-    let other = pairs.iter().filter(swept).filter(|p| p.model == "simulated");
+    let other = pairs.iter().filter(swept).filter(|p| p.model != Model::ClosedForm.name());
     let (x, y): (Vec<f64>, Vec<f64>) =
         other.filter_map(|p| Some((p.frequency, factor * p.predicted?))).unzip();
     if !x.is_empty() {
