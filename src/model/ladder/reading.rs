@@ -14,8 +14,12 @@ const BLOCK: u32 = 60;
 const MULTIPLE: f64 = 50.0;
 /// A block lasts this part of the longest time in which free motion falls by e, so that the way to the end is seen in it.
 const DECAY: f64 = 0.3;
-/// Blocks at most.
-const BLOCKS: usize = 64;
+/// Blocks at most, and at least where a cycle holds many swings of a mass.
+const BLOCKS: (usize, usize) = (6, 64);
+/// Blocks at most of motions whose contacts are integrated.
+const BRIEF: usize = 12;
+/// Swings of the faster mass that are followed at most, where that leaves enough blocks: as many as with five in a cycle.
+const SWINGS: f64 = 5.0 * 60.0 * 64.0;
 /// The answer has settled where what is left of its way is this part of the tolerance.
 const SETTLED: f64 = 0.02;
 /// No coarser than this.
@@ -44,6 +48,8 @@ pub struct Reader {
     tolerance: f64,
     /// Cycles of a block.
     block: u32,
+    /// Blocks at most.
+    blocks: usize,
 }
 
 impl Reader {
@@ -52,23 +58,33 @@ impl Reader {
         let decays = rig.oscillators().map(|o| o.decay()).into_iter().filter(|b| *b > 0.0);
         let slowest = decays.fold(f64::INFINITY, f64::min);
         let wanted = (DECAY / slowest * frequency / f64::from(BLOCK)).ceil().clamp(1.0, MULTIPLE);
-        Reader {
-            observable: question.observable,
-            tolerance: question.tolerance,
-            block: BLOCK * wanted as u32,
-        }
+        // Under a slow force a motion settles within a few cycles, each of which holds many swings.
+        let swings =
+            rig.natural_frequencies().into_iter().filter(|f| f.is_finite()).fold(0.0, f64::max) / frequency;
+        let block = match swings {
+            s if s <= 5.0 => BLOCK * wanted as u32,
+            s if s <= 25.0 => BLOCK / 5,
+            _ => BLOCK / 10,
+        };
+        let blocks = (SWINGS / (swings * f64::from(block))).clamp(BLOCKS.0 as f64, BLOCKS.1 as f64) as usize;
+        Reader { observable: question.observable, tolerance: question.tolerance, block, blocks }
+    }
+
+    /// The same, for motions whose contacts are integrated: no more blocks than can be had in a second or so.
+    pub fn brief(self) -> Reader {
+        Reader { blocks: self.blocks.min(BRIEF), ..self }
     }
 
     /// Follows `motion` until what is shown of it moves by no more than a small part of the tolerance; where it does not settle, the
     /// second half of all is averaged.
     pub fn read<M: Motion>(&self, motion: &mut M) -> Result<Reading> {
-        let mut values: Vec<[f64; 2]> = Vec::with_capacity(BLOCKS);
+        let mut values: Vec<[f64; 2]> = Vec::with_capacity(self.blocks);
         let mut watch = Watch::new(motion);
         loop {
             let (value, speed) = self.block(motion, &mut watch)?;
             values.push(value);
             let settled = still(&values, SETTLED * self.tolerance.min(COARSE));
-            if settled || values.len() == BLOCKS {
+            if settled || values.len() == self.blocks {
                 let answer = if settled { Answer::exact(value) } else { mean(&values[values.len() / 2..]) };
                 let (regime, cycles) = (watch.pattern().regime, self.block * values.len() as u32);
                 return Ok(Reading { answer, regime, settled, cycles, speed });

@@ -228,12 +228,18 @@ impl Stage<'_> {
     fn with(&self, motions: &Motions, law: Law) -> Result<(Reading, f64)> {
         let end = &motions.end;
         let mut motion = Compliant::new(self.rig(), self.excitation, law, end.state(), end.phase())?;
-        let (reading, cost) = timed_once(|| self.read(&mut motion));
+        let reader =
+            if matches!(law, Law::KelvinVoigt { .. }) { self.reader() } else { self.reader().brief() };
+        let (reading, cost) = timed_once(|| reader.read(&mut motion));
         Ok((reading?, cost))
     }
 
+    fn reader(&self) -> Reader {
+        Reader::new(self.rig(), self.excitation.frequency(), self.question)
+    }
+
     fn read<M: Motion>(&self, motion: &mut M) -> Result<Reading> {
-        Reader::new(self.rig(), self.excitation.frequency(), self.question).read(motion)
+        self.reader().read(motion)
     }
 
     /// A curved contact: the one stated, or one like the spring stated.
