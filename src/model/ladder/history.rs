@@ -36,12 +36,11 @@ pub fn arrived(rig: &Rig, excitation: &Excitation, direction: Direction) -> Resu
     Ok(motion)
 }
 
-/// Whether the motion without impacts and one with impacts are both possible.
+/// Whether the motion without impacts and one with impacts are both possible. One that has lost its stability counts: round it lies
+/// another motion with impacts, as behind a flip or a Neimark–Sacker loss.
 fn several(rig: &Rig, excitation: &Excitation) -> bool {
-    orbits_of(rig, excitation, 1).is_ok_and(|found| {
-        let seen = |v: &crate::model::Validity| v.admissible && v.stable != Some(false);
-        found.no_impact.possible && found.orbits.iter().any(|o| seen(&o.validity))
-    })
+    orbits_of(rig, excitation, 1)
+        .is_ok_and(|found| found.no_impact.possible && found.orbits.iter().any(|o| o.validity.admissible))
 }
 
 /// The motion without impacts where there is one, else from rest.
