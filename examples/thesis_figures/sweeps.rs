@@ -48,7 +48,7 @@ fn highest(points: &[Point], from: f64, to: f64) -> (f64, f64) {
     inside.max_by(|a, b| a.x1.total_cmp(&b.x1)).map_or((f64::NAN, f64::NAN), |p| (p.frequency, p.x1))
 }
 
-/// Both masses, with the frequencies of x₁'s largest values between the `peaks` (Hz) going up and going down.
+/// Both masses; the largest x₁ in each range (Hz) of `up` and `down` is named by its frequency.
 fn picture(swept: &Swept, up: &[(f64, f64)], down: &[(f64, f64)], caption: &str) -> Figure {
     let mut figure =
         pictures::sweep(swept, &[], &[], Observable::Rms, false, &[]).height(120.0).caption(caption);
@@ -63,8 +63,9 @@ fn picture(swept: &Swept, up: &[(f64, f64)], down: &[(f64, f64)], caption: &str)
     figure
 }
 
-/// Whether the clapping resonance that ends the sweep up between `from` and `to` (Hz) is missing going down.
-fn only_up(swept: &Swept, from: f64, to: f64) -> Claim {
+/// Whether the clapping resonance of the sweep up is missing going down.
+fn only_up(swept: &Swept) -> Claim {
+    let [_, (from, to)] = TWO;
     let (at, up) = highest(&swept.up, from, to);
     let there =
         swept.down.iter().min_by(|a, b| (a.frequency - at).abs().total_cmp(&(b.frequency - at).abs()));
@@ -107,7 +108,7 @@ fn sine_force() -> Result<Sheet> {
             "",
         ),
         Claim::number("largest, down", "5.44", down, (2, "Hz"), 0.1, "").recomputed(),
-        only_up(&swept, 8.0, 14.0),
+        only_up(&swept),
     ];
     let figure = picture(
         &swept,
@@ -220,7 +221,7 @@ fn pulse() -> Result<Sheet> {
         Claim::number("sub-harmonic peak, 1/2, up", "2.81", at(2.3, 3.3), (2, "Hz"), 0.05, "").recomputed(),
         Claim::number("sub-harmonic peak, 1/3, up", "1.87", at(1.6, 2.2), (2, "Hz"), 0.05, "").recomputed(),
         Claim::number("largest, down", "5.42", down, (2, "Hz"), 0.1, "").recomputed(),
-        only_up(&swept, 8.0, 14.0),
+        only_up(&swept),
     ];
     let figure = picture(
         &swept,
@@ -272,7 +273,7 @@ fn loose() -> Result<Sheet> {
             (low.0 - 0.01..=low.1 + 0.01).contains(&4.66),
             "to the 0.01 Hz between two points of the sweep; it may have been one with a loose mass",
         ),
-        only_up(&swept, 8.0, 14.0),
+        only_up(&swept),
     ];
     let figure = picture(
         &swept,
@@ -304,7 +305,7 @@ fn classical() -> Result<Sheet> {
         .recomputed(),
         Claim::number("largest, down", "5.44", highest(&swept.down, 4.0, 14.0).0, (2, "Hz"), 0.1, "")
             .recomputed(),
-        only_up(&swept, 8.0, 14.0),
+        only_up(&swept),
     ];
     let figure = picture(
         &swept,

@@ -143,13 +143,15 @@ fn branches() -> Result<Sheet> {
 /// What becomes of the root that the energy rule accepts.
 const CLASSES: [&str; 5] = ["none with J > 0", "masses pass", "flip", "Neimark–Sacker", "real"];
 
-fn class(orbits: &[Orbit]) -> usize {
-    let Some(orbit) = accepted(orbits) else { return 0 };
+/// Its number among the classes; NaN, which is drawn white, where it is none of them.
+fn class(orbits: &[Orbit]) -> f64 {
+    let Some(orbit) = accepted(orbits) else { return 0.0 };
     match (orbit.validity.admissible, orbit.validity.instability) {
-        (false, _) => 1,
-        (true, Some(Loss::NeimarkSacker)) => 3,
-        (true, Some(_)) => 2,
-        (true, None) => 4,
+        (false, _) => 1.0,
+        (true, Some(Loss::Flip)) => 2.0,
+        (true, Some(Loss::NeimarkSacker)) => 3.0,
+        (true, None) => 4.0,
+        (true, Some(_)) => f64::NAN,
     }
 }
 
@@ -157,14 +159,12 @@ fn regions() -> Result<Sheet> {
     let nu = grid(0.6, 2.4, 181);
     let (restitution, force) = (grid(0.0, 1.0, 51), grid(0.02, 1.0, 50));
     let by = |rows: &[f64], of: &dyn Fn(f64, f64) -> Vec<Orbit>| {
-        Array2::from_shape_fn((rows.len(), nu.len()), |(row, column)| {
-            class(&of(rows[row], nu[column])) as f64
-        })
+        Array2::from_shape_fn((rows.len(), nu.len()), |(row, column)| class(&of(rows[row], nu[column])))
     };
     let over_r = by(&restitution, &|r, nu| under_sine(&rig(r), 0.5, nu));
     let over_f = by(&force, &|force, nu| under_sine(&rig(0.7), force, nu));
     let all = || over_r.iter().chain(&over_f);
-    let accepted = all().filter(|c| **c > 0.0).count();
+    let accepted = all().filter(|c| **c != 0.0).count();
     let real = all().filter(|c| **c == 4.0).count();
     let share = 100.0 * real as f64 / accepted as f64;
     let plot = |title: &str, label: &str, unit: &str| {
