@@ -44,7 +44,7 @@ fn multipliers() -> Result<Sheet> {
     plot =
         plot.note(format!("flip, −{:.3}", m.re.abs()), 1.2, m.norm()).note("Neimark–Sacker", 1.3, n.norm());
     let stable = |o: &Orbit| o.validity.stable == Some(true) || !o.validity.energy_rule;
-    let why = "the rule sees only the loss through +1";
+    let why = "the rule sees no loss but that of one multiplier through +1";
     let claims = vec![
         Claim::told(
             "F₀ 0.9 N, R 1, ν 1.2: the positive root",
@@ -141,7 +141,8 @@ fn branches() -> Result<Sheet> {
 }
 
 /// What becomes of the root that the energy rule accepts.
-const CLASSES: [&str; 5] = ["none with J > 0", "masses pass", "flip", "Neimark–Sacker", "real"];
+const CLASSES: [&str; 6] =
+    ["none with J > 0", "masses pass", "flip", "Neimark–Sacker", "real", "two beyond +1"];
 
 /// Its number among the classes; NaN, which is drawn white, where it is none of them.
 fn class(orbits: &[Orbit]) -> f64 {
@@ -151,7 +152,9 @@ fn class(orbits: &[Orbit]) -> f64 {
         (true, Some(Loss::Flip)) => 2.0,
         (true, Some(Loss::NeimarkSacker)) => 3.0,
         (true, None) => 4.0,
-        (true, Some(_)) => f64::NAN,
+        // One multiplier beyond +1 breaks the energy rule, so here are two: what a Neimark–Sacker pair can become.
+        (true, Some(Loss::Fold)) => 5.0,
+        (true, Some(Loss::Grazing)) => f64::NAN,
     }
 }
 
@@ -177,7 +180,7 @@ fn regions() -> Result<Sheet> {
         .panel(plot("(b) R 0.7", "Force F₀", "N").heatmap(Heatmap::classes(&nu, &force, &over_f, &CLASSES)?).legend(Legend::Above))
         .caption(
             "The root that the energy rule accepts, over frequency and restitution or force: whether it is a motion that can be seen. At none \
-             there is no root with J > 0; masses pass: they would pass through each other.",
+             there is no root with J > 0; masses pass: they would pass through each other; two beyond +1: two real multipliers are.",
         );
     let claims = vec![Claim::told(
         "part of the roots accepted, in both maps, that are motions",
