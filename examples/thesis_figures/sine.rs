@@ -177,7 +177,7 @@ fn additional_peak() -> Sheet {
     }
     plot = plot.with(Series::vertical("", 1.0));
     let told = |n: usize| if n == 0 { "none" } else { "one" };
-    let why = "it came from a script that mistook M(1 + R); M alone in its place does not make one in the equations used here";
+    let why = "the right equations have none; the script that is said to have mistaken M(1 + R) is lost, and M alone in its place does not make one in them";
     let here = format!("{}; with M in the place of M(1 + R) {}", told(tops[0]), told(tops[1]));
     let claims = vec![Claim::told(
         "additional peak at ν = 1",
