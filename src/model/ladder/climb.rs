@@ -3,7 +3,7 @@
 use super::change::Change;
 use super::motions::{Motions, On};
 use super::sensitivity::{Sensitivity, sensitivity};
-use super::tried::{Stage, Tried};
+use super::tried::{Stage, Tried, restitution};
 use super::{Choice, Model, Need, Rung, laws, reasons};
 use crate::error::Result;
 
@@ -33,7 +33,7 @@ impl<'a> Climb<'a> {
             stage.linear(&motions),
             closed,
             soft,
-            stage.restitution(&motions),
+            restitution(&motions),
             stage.kelvin_voigt(&motions),
             if laws::is_curved(stage.scene) {
                 stage.hunt_crossley(&motions)
