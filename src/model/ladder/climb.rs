@@ -3,7 +3,7 @@
 use super::change::Change;
 use super::motions::{Motions, On};
 use super::sensitivity::{Sensitivity, sensitivity};
-use super::tried::{Stage, Tried};
+use super::tried::{Stage, Tried, restitution};
 use super::{Choice, Model, Need, Rung, laws, reasons};
 use crate::error::Result;
 
@@ -33,7 +33,7 @@ impl<'a> Climb<'a> {
             stage.linear(&motions),
             closed,
             soft,
-            stage.restitution(&motions),
+            restitution(&motions),
             stage.kelvin_voigt(&motions),
             if laws::is_curved(stage.scene) {
                 stage.hunt_crossley(&motions)
@@ -105,6 +105,12 @@ impl<'a> Climb<'a> {
         rung
     }
 
+    /// Whether a curved contact is stated, but there are no impacts for its law to act in.
+    fn is_lawless(&self) -> bool {
+        let curved = self.stiffness.is_some() && laws::is_curved(self.stage.scene);
+        curved && self.motions.as_ref().is_some_and(|m| m.reading.speed == 0.0)
+    }
+
     /// Whether a rung is good enough.
     fn is_enough(&self, rung: &Rung) -> bool {
         let still = rung.changes.iter().all(|c| c.enough);
@@ -112,7 +118,7 @@ impl<'a> Climb<'a> {
             && match rung.model {
                 Model::Linear => still,
                 Model::ClosedForm | Model::SoftCorrected | Model::Restitution => {
-                    still && !rung.changes.is_empty()
+                    still && (!rung.changes.is_empty() || self.is_lawless())
                 }
                 // What lies above a law that is stated is another law.
                 Model::KelvinVoigt | Model::HuntCrossley => true,

@@ -19,10 +19,10 @@ pub struct Known {
 }
 
 /// The motion that the rig is in.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum On {
     Free,
-    Orbit(Orbit),
+    Orbit(Box<Orbit>),
     /// None of those known in closed form.
     Other,
     /// Several are known, and nothing says which.
@@ -49,7 +49,7 @@ pub struct Motions {
 }
 
 /// Whether an orbit can be and stay.
-fn stays(orbit: &&Orbit) -> bool {
+fn stays(orbit: &Orbit) -> bool {
     let v = &orbit.validity;
     v.exists && v.admissible && v.stable == Some(true)
 }
@@ -89,7 +89,7 @@ impl Motions {
 
     /// Orbits that can be and stay.
     fn stable(&self) -> impl Iterator<Item = &Orbit> {
-        self.closed.iter().flat_map(|found| found.orbits.iter().filter(stays))
+        self.closed.iter().flat_map(|found| found.orbits.iter().filter(|orbit| stays(orbit)))
     }
 
     /// The motion that was followed, among those in closed form.
@@ -103,7 +103,7 @@ impl Motions {
             off <= question.tolerance.max(1e-3)
                 && answer.change(&self.reading.answer, Model::Restitution, question).enough
         };
-        self.stable().find(near).map_or(On::Other, |orbit| On::Orbit(*orbit))
+        self.stable().find(near).map_or(On::Other, |orbit| On::Orbit(Box::new(*orbit)))
     }
 
     /// Lists the motions known.

@@ -1,6 +1,7 @@
 //! A choice told in sentences.
 
 use super::{Choice, Model, Question, Rung};
+use std::fmt::Write as _;
 
 /// Why this rung, or why none.
 pub fn sentences(choice: &Choice, question: &Question) -> Vec<String> {
@@ -50,20 +51,17 @@ fn passed_over(rung: &Rung, question: &Question) -> String {
 fn chosen(choice: &Choice, rung: &Rung, question: &Question) -> String {
     let mut text = format!("{} is chosen. {}", rung.model.name(), rung.why);
     if let (Some(first), Some(last)) = (choice.sensitivity.first(), choice.sensitivity.last()) {
-        text.push_str(&format!(
+        let _ = write!(
+            text,
             " The contact's stiffness is not known and need not be: from {:.0e} to {:.0e} N/m the answer stays within {}.",
             first.stiffness,
             last.stiffness,
             allowed(question)
-        ));
+        );
     }
     for change in &rung.changes {
         let law = rung.model == Model::KelvinVoigt && !change.enough;
-        text.push_str(&format!(
-            " Its answer moves by {:+.3} % at {}",
-            100.0 * change.change,
-            change.at.name()
-        ));
+        let _ = write!(text, " Its answer moves by {:+.3} % at {}", 100.0 * change.change, change.at.name());
         text.push_str(if law {
             ": the law of the contact matters more than the tolerance, and should be measured."
         } else {

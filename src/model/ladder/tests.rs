@@ -191,6 +191,10 @@ fn other_scenes_find_their_rung() {
     let choice = choose(&Scene { contact: Some(curved), ..scene(0.5, None) }, hz(2.1), &question).unwrap();
     assert!(!choice.rung(Model::KelvinVoigt).valid && choice.rung(Model::HuntCrossley).valid);
     assert!(choice.chosen.is_some(), "{:?}", choice.reasons);
+    // Pressed together for good: no law of impacts matters.
+    let held = Rig { gap: -5e-3, ..Rig::thesis() };
+    let still = Scene { rig: held, contact: Some(curved), ..scene(0.01, None) };
+    assert_eq!(choose(&still, hz(2.1), &question).unwrap().chosen, Some(Model::Restitution));
     // A buffer leaves out all that hold mass 1 both ways.
     let loose = Scene { buffer: Some(Buffer { gap: 0.0 }), ..scene(0.1, Some(1e6)) };
     assert_eq!(choose(&loose, 4.5, &question).unwrap().chosen, Some(Model::LooseMass));

@@ -11,6 +11,7 @@ use crate::model::{
     Compliance, Compliant, Excitation, Law, Loose, Motion, Orbit, Regime, Rig, Scene, Simulation, softened,
 };
 use std::f64::consts::{PI, TAU};
+use std::fmt::Write as _;
 
 /// What became of a rung.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -171,7 +172,10 @@ impl Stage<'_> {
                 );
                 let of_rig = self.rig().restitution;
                 if (restitution - of_rig).abs() > 1e-3 {
-                    why.push_str(&format!(" Its spring and damper rebound with {restitution:.3}, the rig says {of_rig}: theirs counts."));
+                    let _ = write!(
+                        why,
+                        " Its spring and damper rebound with {restitution:.3}, the rig says {of_rig}: theirs counts."
+                    );
                 }
                 Tried { valid: true, answer: Some(answer), cost: Some(cost), why }
             }
@@ -189,16 +193,6 @@ impl Stage<'_> {
         Ok(own.map(|soft| {
             (Answer::exact(self.question.observable.of_softened(&soft)), soft.share, contact.restitution)
         }))
-    }
-
-    /// Impacts at once.
-    pub fn restitution(&self, motions: &Motions) -> Tried {
-        Tried {
-            valid: true,
-            answer: Some(motions.reading.answer),
-            cost: Some(motions.cost),
-            why: format!("{} {}", capital(&into(motions)), told(&motions.reading)),
-        }
     }
 
     /// Spring and damper.
@@ -305,6 +299,16 @@ impl Stage<'_> {
                 ),
             },
         }
+    }
+}
+
+/// Impacts at once.
+pub fn restitution(motions: &Motions) -> Tried {
+    Tried {
+        valid: true,
+        answer: Some(motions.reading.answer),
+        cost: Some(motions.cost),
+        why: format!("{} {}", capital(&into(motions)), told(&motions.reading)),
     }
 }
 
