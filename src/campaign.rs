@@ -35,17 +35,19 @@ mod entry;
 mod fault;
 mod locate;
 mod low_pass;
+mod prediction;
 mod record;
 mod spectral;
 
 pub use entry::{Compute, Drive, SweepEntry};
 pub use low_pass::{LowPass, Word};
+pub use prediction::{Follows, ModelEntry};
 pub use record::{
     Decimal, Detrend, DrillEntry, DropEntry, FrfEntry, ImpactsEntry, PulseEntry, RecordEntry, SpectrumEntry,
 };
 
 use crate::error::{Error, Place, Result};
-use crate::model::Rig;
+use crate::model::{ContactKeys, Rig};
 use crate::read::{Recording, SweepList, SweepReader, inside};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -82,6 +84,10 @@ pub struct Campaign {
     pub pulse: Vec<PulseEntry>,
     /// Hammer-drill traces.
     pub drill: Vec<DrillEntry>,
+    /// How the masses' contact gives way; left out, its stiffness is not known.
+    pub contact: Option<ContactKeys>,
+    /// How the overlay's predictions are made.
+    pub model: ModelEntry,
     /// What to compute, and how.
     pub compute: Compute,
     #[serde(skip)]
@@ -158,6 +164,10 @@ impl Campaign {
         })?;
         self.compute.check().map_err(|(key, why)| {
             let from = self.text.find("[compute]");
+            self.at(locate::find(&self.text, key, from), why)
+        })?;
+        self.model.check().map_err(|(key, why)| {
+            let from = self.text.find("[model]");
             self.at(locate::find(&self.text, key, from), why)
         })?;
         for entry in self.records() {

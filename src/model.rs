@@ -6,7 +6,8 @@
 //! and gives it to mass 2.
 //!
 //! - [`orbits`]: every periodic motion with one impact a period in closed form, each with its verdicts;
-//! - [`Simulation`]: any motion, event by event, on exact flights between guaranteed contacts.
+//! - [`Simulation`]: any motion, event by event, on exact flights between guaranteed contacts;
+//! - [`ladder`]: the simplest of these models that is good enough for a scene.
 //!
 //! ```
 //! use vibroimpact::model::{Rig, orbits};
@@ -25,10 +26,12 @@ pub mod floquet;
 pub mod flow;
 mod forcing;
 pub mod green;
+pub mod ladder;
 pub mod linear;
 pub mod loose;
 pub mod map;
 pub mod motion;
+pub mod observable;
 pub mod orbit;
 pub mod periodic;
 pub mod portrait;
@@ -51,6 +54,7 @@ pub use flow::{Flight, State};
 pub use green::Green;
 pub use loose::Loose;
 pub use motion::{Event, Motion, Path, Piece};
+pub use observable::Observable;
 pub use orbit::{Compliance, Orbit, Orbits, Softened, backbone, orbits, orbits_of, orbits_over, softened};
 pub use periodic::{Beat, PeriodicOrbit};
 pub use receptance::{NoImpact, Steady};

@@ -27,8 +27,8 @@ pub use info::Info;
 pub use low_pass::{LowPass, low_pass};
 pub use modal::Modal;
 pub use model::{
-    Law, Model, ModelCommand, ModelMap, ModelResponse, ModelSweep, Observable, Orbit, Over, Scene, Simulate,
-    Way,
+    Came, Law, Looked, Model, ModelChoose, ModelCommand, ModelMap, ModelResponse, ModelSweep, Observable,
+    Orbit, Over, Scene, Simulate, Way,
 };
 pub use pulse::Pulse;
 pub use reading::{Channel, Decimal, Reading};

@@ -2,7 +2,7 @@
 
 use super::{args, complain, print, progress};
 use crate::campaign::Campaign;
-use crate::compare::{Overlay, overlay};
+use crate::compare::{Overlay, Predicting, overlay};
 use crate::error::{Error, Place, Result};
 use crate::report::job::{self, JobOptions};
 use crate::report::{Output, files, pictures, tables};
@@ -27,7 +27,7 @@ pub fn run(typed: &args::Compare, json: bool) -> Result<()> {
     let options = JobOptions { allow_outside: typed.allow_outside };
     let responses = job::responses(&campaign, options, &progress::bar(json))?;
     let force = campaign.excitation.and_then(|e| e.force);
-    let mut overlay = overlay(&rig, force, &responses)?;
+    let mut overlay = overlay(&rig, force, &Predicting::from(&campaign), &responses)?;
     overlay.warnings.extend(job::common(&responses));
     let mut written = Vec::new();
     if let Some(folder) = &typed.out {
@@ -42,6 +42,9 @@ pub fn run(typed: &args::Compare, json: bool) -> Result<()> {
     }
     complain::warn(&overlay.warnings);
     let mut text = format!("{}\n{}", tables::peaks(&overlay).text(), tables::scores(&overlay).text());
+    if !overlay.rungs.is_empty() {
+        let _ = write!(text, "\n{}", tables::climbed(&overlay).text());
+    }
     for file in written {
         let _ = writeln!(text, "wrote {file}");
     }

@@ -1,5 +1,6 @@
 //! `vibro model`: what the motion of a rig should be.
 
+mod choose;
 mod contact;
 mod map;
 mod orbit;
@@ -18,6 +19,7 @@ pub fn run(typed: &args::Model, json: bool) -> Result<()> {
         ModelCommand::Simulate(typed) => simulate::run(typed, json),
         ModelCommand::Response(typed) => response::run(typed, json),
         ModelCommand::Sweep(typed) => sweep::run(typed, json),
+        ModelCommand::Choose(typed) => choose::run(typed, json),
         ModelCommand::Map(typed) => map::run(typed, json),
     }
 }

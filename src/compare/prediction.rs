@@ -3,7 +3,7 @@
 use super::forcing::Forcing;
 use super::observable::Observable;
 use crate::error::Result;
-use crate::model::{Rig, orbits};
+use crate::model::{Regime, Rig, orbits};
 use crate::record::Direction;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -16,12 +16,28 @@ pub enum Kind {
     Impacting,
     /// No impact.
     Free,
+    /// Another pattern of impacts.
+    Pattern,
+    /// No pattern.
+    Irregular,
+}
+
+impl Kind {
+    /// The kind of a regime.
+    pub fn of(regime: Regime) -> Kind {
+        match regime {
+            Regime::NoImpact => Kind::Free,
+            Regime::Periodic { impacts: 1, cycles: 1 } => Kind::Impacting,
+            Regime::Periodic { .. } | Regime::Chatter { cycles: Some(_) } => Kind::Pattern,
+            Regime::Chatter { cycles: None } | Regime::Irregular => Kind::Irregular,
+        }
+    }
 }
 
 /// One predicted motion at one frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motion {
-    /// Impacting or free.
+    /// Impacting once a cycle, or free.
     pub kind: Kind,
     /// Observed amplitudes of x₁ and x₂ in m.
     pub amplitude: [f64; 2],
@@ -106,7 +122,7 @@ impl Prediction {
             let seen = |kind: Kind| motions.iter().find(|m| m.is_seen() && m.kind == kind).copied();
             let goes_on = match kind {
                 Kind::Free => seen(Kind::Free).is_some(),
-                Kind::Impacting => motions.iter().any(|m| m.kind == Kind::Impacting),
+                _ => motions.iter().any(|m| m.kind == Kind::Impacting),
             };
             if !goes_on {
                 kind = if kind == Kind::Free { Kind::Impacting } else { Kind::Free };

@@ -1,7 +1,7 @@
 //! How well a sweep is predicted, and where it is not.
 
 use super::forcing::median;
-use super::overlay::Pair;
+use super::pair::Pair;
 use serde::Serialize;
 
 /// How well one sweep is predicted.
@@ -83,7 +83,7 @@ pub(super) fn far_off(sweep: &str, pairs: &[Pair]) -> Option<String> {
     let which = if far.len() > NAMED { "the worst at" } else { "at" };
     (!far.is_empty()).then(|| {
         format!(
-            "{sweep}: {} point(s) lie more than {:.0} % and {SIGMAS:.0} standard uncertainties off the closed form, {which} {}; the rig may move in another pattern there than with one impact a cycle, or with none.",
+            "{sweep}: {} point(s) lie more than {:.0} % and {SIGMAS:.0} standard uncertainties off the prediction, {which} {}.",
             far.len(),
             100.0 * FAR,
             named.join(", ")

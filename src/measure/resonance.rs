@@ -253,9 +253,20 @@ pub fn name_modes(curves: &mut [NamedCurve<'_>]) {
     }
 }
 
-/// Frequency of the deepest minimum of mass 1.
+/// Frequency of the antiresonance of mass 1 between its modes: the one that lies deepest below the largest maxima on both of its sides, or the
+/// deepest where none has both.
 fn antiresonance(curves: &[NamedCurve<'_>], direction: Direction) -> Option<f64> {
-    deepest(curves.iter().find(|c| c.mass == 1 && c.direction == direction)?.resonances)
+    let found: &[Resonance] = curves.iter().find(|c| c.mass == 1 && c.direction == direction)?.resonances;
+    let largest = |side: &dyn Fn(f64) -> bool| {
+        let tops =
+            found.iter().filter(|r| r.kind != "antiresonance" && r.kind != "minimum" && side(r.frequency));
+        tops.map(|r| r.amplitude).fold(0.0, f64::max)
+    };
+    let depth =
+        |m: &Resonance| largest(&|f| f < m.frequency).min(largest(&|f| f > m.frequency)) / m.amplitude;
+    let between = found.iter().filter(|r| r.kind == "antiresonance").map(|m| (depth(m), m.frequency));
+    let between = between.filter(|m| m.0 > 0.0).max_by(|a, b| a.0.total_cmp(&b.0));
+    between.map(|m| m.1).or_else(|| deepest(found))
 }
 
 /// Frequency of the deepest antiresonance of a curve.

@@ -6,7 +6,7 @@ pub use draft::Draft;
 
 use super::{Excitation, Rig};
 use crate::error::Result;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 
 /// All that a computation of the rig's motion starts from.
@@ -38,7 +38,8 @@ pub struct Scene {
 }
 
 /// Numbers of a contact that gives way; which are needed depends on its law.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct ContactKeys {
     /// Stiffness k of the force kδⁿ, in N/mⁿ.
     pub stiffness: Option<f64>,

@@ -4,6 +4,7 @@ mod gauge;
 mod named;
 mod size;
 
+pub(crate) use gauge::Gauge;
 pub use gauge::{LOW_PASS, Observable};
 pub use named::{Named, named};
 pub use size::{at_size, size};
@@ -11,7 +12,6 @@ pub use size::{at_size, size};
 use super::Motion;
 use crate::error::{Error, Result};
 use crate::record::Direction;
-use gauge::Gauge;
 use serde::Serialize;
 use std::f64::consts::TAU;
 

@@ -39,7 +39,7 @@ pub struct Validity {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Loss {
-    /// A real one beyond +1: the motion meets another one and both vanish.
+    /// A real one beyond +1: disturbances grow to one side. Where one passes +1 the motion meets another one and both vanish.
     Fold,
     /// A real one beyond −1: the period doubles.
     Flip,

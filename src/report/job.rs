@@ -331,7 +331,7 @@ fn model(campaign: &Campaign, responses: &[Response], warnings: &mut Vec<String>
         }
         return Ok(None);
     }
-    let overlay = overlay(&rig, campaign.excitation.and_then(|e| e.force), responses)?;
+    let overlay = overlay(&rig, campaign.excitation.and_then(|e| e.force), &campaign.into(), responses)?;
     merge(warnings, "", &overlay.warnings);
     Ok(Some(overlay))
 }

@@ -3,6 +3,7 @@
 mod cycles;
 mod drill;
 mod impacts;
+mod ladder;
 mod modal;
 mod model;
 mod pulse;
@@ -12,6 +13,7 @@ mod sweep;
 pub use cycles::{drill_cycles_head, drill_cycles_row};
 pub use drill::{drill, drill_average, drill_impacts};
 pub use impacts::{impact_times, impacts, restitution};
+pub use ladder::{chosen, climbed, rungs, sensitivity, stretches, summaries};
 pub use modal::{modal_methods, modes};
 pub use model::{branches, changes, course, no_impact, orbits, soft, verdicts};
 pub use pulse::{pulse, pulse_fits};
@@ -137,10 +139,15 @@ pub fn pairs(overlay: &Overlay) -> Table {
             ("measured", "m", &|p| Cell::from(&p.measured)),
             ("predicted", "m", &|p| Cell::from(p.predicted)),
             ("residual", "m", &|p| Cell::from(p.residual)),
+            ("scatter of the prediction", "m", &|p| Cell::from(p.scatter)),
+            ("predicted by", "", &|p| Cell::from(p.model)),
+            ("impacts/cycles", "", &|p| Cell::from(p.regime.as_deref().unwrap_or("-"))),
             ("predicted motion", "", &|p| {
                 Cell::from(match p.motion {
                     Some(Kind::Impacting) => "impacting",
                     Some(Kind::Free) => "free",
+                    Some(Kind::Pattern) => "another pattern",
+                    Some(Kind::Irregular) => "irregular",
                     None => "not predicted",
                 })
             }),
@@ -194,6 +201,7 @@ pub fn summary(results: &Results) -> Vec<Table> {
     if let Some(overlay) = &results.overlay {
         tables.push(peaks(overlay));
         tables.push(scores(overlay));
+        tables.push(climbed(overlay));
     }
     let records: Vec<_> = results.spectra.iter().map(|s| (s.result.name.as_str(), &s.result)).collect();
     tables.push(spectra(&records));

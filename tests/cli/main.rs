@@ -2,6 +2,7 @@
 
 mod answers;
 mod campaign;
+mod choose;
 mod complaints;
 mod contact;
 mod convert;

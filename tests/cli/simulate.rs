@@ -55,6 +55,18 @@ fn chatter_and_starts_are_told() {
 }
 
 #[test]
+fn masses_that_never_part_are_told_from_masses_that_never_meet() {
+    let said = |gap: &str| {
+        let scene = format!("--set=gap={gap}");
+        let answer = json(&["model", "simulate", &scene, "--force", "0.5", "--frequency", "20"]);
+        assert_eq!(answer["regime"], "no impact");
+        answer["warnings"].to_string().contains("never part")
+    };
+    // Pressed together by a metre of spring, and a gap that 0.5 N does not close.
+    assert!(said("-1") && !said("1"));
+}
+
+#[test]
 fn contacts_that_give_way_are_followed() {
     let stiff = ["--set", "contact.stiffness=1e9", "--settle", "300", "--cycles", "70"];
     let answer = json(&with(&[&["--model", "kelvin-voigt"], &stiff[..]].concat()));

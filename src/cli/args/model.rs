@@ -1,5 +1,6 @@
 //! `vibro model`, as typed.
 
+mod choose;
 mod map;
 mod orbit;
 mod response;
@@ -7,6 +8,7 @@ mod scene;
 mod simulate;
 mod sweep;
 
+pub use choose::{Came, Choose as ModelChoose, Looked};
 pub use map::Map as ModelMap;
 pub use orbit::Orbit;
 pub use response::ModelResponse;
@@ -32,6 +34,8 @@ pub enum ModelCommand {
     Response(ModelResponse),
     /// Sweep frequency or force up and down, the motion carried on from step to step
     Sweep(Box<ModelSweep>),
+    /// The simplest model that is good enough for a scene, and why
+    Choose(Box<ModelChoose>),
     /// Map regime and stability over two parameters
     Map(ModelMap),
 }

@@ -78,6 +78,7 @@ pub fn run(typed: &args::Simulate, json: bool) -> Result<()> {
         }
     };
     warnings.extend(doubts(&seen, typed));
+    warnings.extend(pressed(&seen, &scene));
     let mut written = Vec::new();
     if let Some(folder) = &typed.out {
         let mut output = Output::new(folder)?;
@@ -167,6 +168,17 @@ fn doubts(seen: &Seen, typed: &args::Simulate) -> Vec<String> {
         _ => {}
     }
     doubts
+}
+
+/// A sentence on masses that touch without meeting.
+fn pressed(seen: &Seen, scene: &Scene) -> Option<String> {
+    let State { x1, x2, .. } = seen.end.state;
+    // Apart by less than a millionth of their ways.
+    let touching = scene.rig.gap + x2 - x1 <= 1e-6 * (x1.abs() + x2.abs());
+    (seen.portrait.pattern.regime == Regime::NoImpact && touching).then(|| {
+        "The masses stay pressed together all the time: there is no impact because they never part."
+            .to_owned()
+    })
 }
 
 fn summary(seen: &Seen) -> Table {

@@ -18,6 +18,9 @@ fn a_mass_that_moves_alone_does_not_clap() {
         resonance(5.5, 10.0, "resonance"),
         resonance(7.5, 0.1, "antiresonance"),
         resonance(10.6, 2.0, "resonance"),
+        // A deeper minimum behind both modes, and a bump behind it: no mode.
+        resonance(10.8, 0.05, "antiresonance"),
+        resonance(10.9, 0.06, "resonance"),
     ];
     let mut second = vec![resonance(5.5, 9.0, "resonance")];
     let curve = |above| vec![(4.0, 1.0, 0.0), (5.5, 9.0, 0.0), (9.0, above, 0.0), (13.0, above, 0.0)];
@@ -42,6 +45,7 @@ fn a_mass_that_moves_alone_does_not_clap() {
             },
         ]);
         assert_eq!((first[0].kind.as_str(), first[2].kind.as_str()), ("grazing", expected));
+        assert_eq!(first[4].kind, "resonance");
         assert_eq!(second[0].kind, "grazing");
     }
 }

@@ -160,6 +160,10 @@ impl Stretch {
     ) {
         let change = left.0 * right.0 <= 0.0;
         if !change {
+            // The chord bounds the rate from below but for M width²/8.
+            if left.0.abs().min(right.0.abs()) > limit * width * width / 8.0 {
+                return;
+            }
             let sign = left.0.signum();
             let (from, back) =
                 (reach(sign * left.0, sign * left.1, limit), reach(sign * right.0, -sign * right.1, limit));

@@ -75,7 +75,7 @@ impl Sums {
 
 /// Reads one observable of both masses, cycle by cycle.
 #[derive(Debug, Clone)]
-pub(super) struct Gauge {
+pub(crate) struct Gauge {
     observable: Observable,
     /// Running mean square.
     square: [f64; 2],

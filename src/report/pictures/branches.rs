@@ -22,21 +22,25 @@ fn look(orbit: &Orbit) -> Option<Look> {
     }
 }
 
-/// A line in pieces, broken by values that are missing.
+/// Lines that grow side by side, each from where it ended.
 #[derive(Default)]
 struct Pieces {
-    x: Vec<f64>,
-    y: Vec<f64>,
+    lines: Vec<Vec<(f64, f64)>>,
 }
 
 impl Pieces {
+    /// Goes on with the line that ends at `from`; begins one where none does.
     fn join(&mut self, from: (f64, f64), to: (f64, f64)) {
-        if (self.x.last(), self.y.last()) != (Some(&from.0), Some(&from.1)) {
-            self.x.extend([f64::NAN, from.0]);
-            self.y.extend([f64::NAN, from.1]);
+        match self.lines.iter_mut().rev().find(|line| line.last() == Some(&from)) {
+            Some(line) => line.push(to),
+            None => self.lines.push(vec![from, to]),
         }
-        self.x.push(to.0);
-        self.y.push(to.1);
+    }
+
+    /// All of them as one series, broken by missing values: each line whole, so that dashes run along it.
+    fn series(self, name: &str) -> Series {
+        let (x, y): (Vec<f64>, Vec<f64>) = self.lines.join(&(f64::NAN, f64::NAN)).into_iter().unzip();
+        Series::line(name, x, y)
     }
 }
 
@@ -104,9 +108,6 @@ fn panel(response: &Response, mass: usize) -> Plot {
         }
     }
     let [real, unstable, impossible] = lines;
-    let line = |name: &str, p: Pieces, ink: Ink, stroke: Stroke| {
-        Series::line(name, p.x, p.y).ink(ink).stroke(stroke)
-    };
     for (name, pieces, ink, stroke) in [
         ("impossible", impossible, Ink::Grey, Stroke::Thin),
         ("backbone", back, Ink::Nth(2), Stroke::DashDot),
@@ -114,8 +115,8 @@ fn panel(response: &Response, mass: usize) -> Plot {
         ("unstable", unstable, Ink::Nth(0), Stroke::Dashed),
         ("stable", real, Ink::Nth(0), Stroke::Solid),
     ] {
-        if !pieces.x.is_empty() {
-            plot = plot.with(line(name, pieces, ink, stroke));
+        if !pieces.lines.is_empty() {
+            plot = plot.with(pieces.series(name).ink(ink).stroke(stroke));
         }
     }
     for (kinds, name, marker) in [
@@ -133,4 +134,24 @@ fn panel(response: &Response, mass: usize) -> Plot {
         }
     }
     plot
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::Shape;
+
+    #[test]
+    fn lines_side_by_side_stay_whole() {
+        let mut pieces = Pieces::default();
+        for i in 0..3 {
+            let x = f64::from(i);
+            pieces.join((x, 0.0), (x + 1.0, 0.0));
+            pieces.join((x, 5.0 + x), (x + 1.0, 6.0 + x));
+        }
+        let Shape::Line { x, y, .. } = pieces.series("").shape else { panic!("a line") };
+        assert_eq!((&x[..4], &y[..4]), (&[0.0, 1.0, 2.0, 3.0][..], &[0.0; 4][..]));
+        assert!(x[4].is_nan() && y[4].is_nan());
+        assert_eq!((&x[5..], &y[5..]), (&[0.0, 1.0, 2.0, 3.0][..], &[5.0, 6.0, 7.0, 8.0][..]));
+    }
 }

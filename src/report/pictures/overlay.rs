@@ -3,9 +3,10 @@
 use super::lettered;
 use super::response::{MARKS, log_limits, rank, series, shown};
 use crate::compare::prediction::{Kind, Motion, Prediction};
-use crate::compare::{Level, Overlay, Verdict};
+use crate::compare::{Level, Overlay, Pair, Verdict};
 use crate::measure::response::Response;
-use crate::report::{AxisSpec, Figure, Ink, Plot, Series, Stroke};
+use crate::model::ladder::Model;
+use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 use crate::units::notation::significant;
 
 /// Height of a panel in mm.
@@ -21,7 +22,7 @@ pub fn overlay(title: &str, overlay: &Overlay, responses: &[Response]) -> Figure
     };
     let mut figure = Figure::double(title).shared_x().caption(format!(
         "Fundamental of the displacement. Lines: closed form for {force}; motions in which the masses would pass through each \
-         other are left out, and so is mass 2 at rest. Points: measured. {MARKS}"
+         other are left out, and so is mass 2 at rest. Crosses: where a simulated sweep comes to another motion. Points: measured. {MARKS}"
     ));
     for level in &overlay.levels {
         for mass in [1, 2] {
@@ -32,7 +33,7 @@ pub fn overlay(title: &str, overlay: &Overlay, responses: &[Response]) -> Figure
                 .collect();
             if !measured.is_empty() {
                 let name = if overlay.levels.len() > 1 { level_name(level) } else { String::new() };
-                let plot = panel(mass, &level.curve, &measured);
+                let plot = panel(mass, &level.curve, &overlay.pairs, &measured);
                 figure = figure.panel(plot.title(name));
             }
         }
@@ -45,7 +46,7 @@ fn level_name(level: &Level) -> String {
     format!("Force {} N", significant(level.force, 3))
 }
 
-fn panel(mass: u8, curve: &Prediction, measured: &[(usize, &Response)]) -> Plot {
+fn panel(mass: u8, curve: &Prediction, pairs: &[Pair], measured: &[(usize, &Response)]) -> Plot {
     let (factor, unit) = shown("m");
     let y = AxisSpec::new(format!("Displacement of mass {mass}"), unit).log();
     // The branches may run out of the picture: what is measured decides its size.
@@ -78,6 +79,14 @@ fn panel(mass: u8, curve: &Prediction, measured: &[(usize, &Response)]) -> Plot 
     for (rank, response) in measured {
         let [points, faint] = series(response, *rank, &[], limits);
         plot = plot.with(faint).with(points);
+    }
+    let swept = |p: &&Pair| p.mass == mass && measured.iter().any(|(_, r)| r.name == p.sweep);
+    let other = pairs.iter().filter(swept).filter(|p| p.model != Model::ClosedForm.name());
+    let (x, y): (Vec<f64>, Vec<f64>) =
+        other.filter_map(|p| Some((p.frequency, factor * p.predicted?))).unzip();
+    if !x.is_empty() {
+        plot = plot
+            .with(Series::points("another motion, simulated", x, y).ink(Ink::Black).marker(Marker::Cross));
     }
     plot
 }

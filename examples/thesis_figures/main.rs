@@ -1,0 +1,85 @@
+//! Makes the figures of `docs/thesis.md` and prints what stands there:
+//! `cargo run --release --example thesis_figures [-- FOLDER]`; FOLDER is `docs/thesis` of this project where it is left out.
+
+mod impulse;
+mod motions;
+mod numbers;
+mod scene;
+mod sheet;
+mod sine;
+mod sweeps;
+mod verdicts;
+
+use sheet::Sheet;
+use std::path::{Path, PathBuf};
+use vibroimpact::Result;
+use vibroimpact::report::Output;
+
+/// Dots an inch of the pictures: enough for a screen.
+const DPI: f64 = 130.0;
+
+fn main() -> Result<()> {
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/thesis");
+    let folder = std::env::args_os().nth(1).map_or(own, PathBuf::from);
+    let mut output = Output::new(folder)?;
+    for (heading, sheets) in chapters()? {
+        println!("## {heading}");
+        for sheet in sheets {
+            println!("{}", sheet.markdown());
+            if let Some(figure) = &sheet.figure {
+                let drawing = figure.draw();
+                output.write(&format!("{}.svg", sheet.name), drawing.svg())?;
+                output.write(&format!("{}.png", sheet.name), drawing.png(DPI)?)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// All sheets, under the headings of the document.
+fn chapters() -> Result<Vec<(&'static str, Vec<Sheet>)>> {
+    let mut closed = sine::sheets()?;
+    closed.extend(verdicts::sheets()?);
+    closed.extend(impulse::sheets()?);
+    let mut simulated = sweeps::sheets()?;
+    simulated.extend(motions::sheets()?);
+    simulated.push(numbers::spectra()?);
+    Ok(vec![
+        ("Figures 3.3 to 3.18: the closed form", closed),
+        ("Figures 4.4 to 4.30: simulations and the rig", simulated),
+        ("Numbers", vec![numbers::numbers()?]),
+    ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    /// What is printed, to the last digit shown, is what the document says; it has no other row, and its pictures are there.
+    #[test]
+    fn the_document_says_what_is_computed() {
+        let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+        let text = fs::read_to_string(docs.join("thesis.md")).unwrap();
+        let mut rows = Vec::new();
+        let mut size = 0;
+        for (heading, sheets) in chapters().unwrap() {
+            assert!(text.contains(&format!("## {heading}\n")), "{heading}");
+            for sheet in sheets {
+                assert!(text.contains(&sheet.markdown()), "not in docs/thesis.md:\n{}", sheet.markdown());
+                rows.extend(sheet.rows());
+                for ending in ["svg", "png"].iter().filter(|_| sheet.figure.is_some()) {
+                    let path = docs.join(format!("thesis/{}.{ending}", sheet.name));
+                    let bytes = fs::metadata(&path).unwrap().len();
+                    assert!(bytes < 60_000, "{}: {bytes} bytes", path.display());
+                    size += bytes;
+                }
+            }
+        }
+        assert!(size < 2_000_000, "{size}");
+        let stated = text.lines().filter(|l| l.starts_with("| ") && !l.starts_with("| what |"));
+        for row in stated {
+            assert!(rows.iter().any(|r| r == row), "nothing computes the row {row}");
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! Where the energy rule of the thesis accepts what is unstable or impossible, and what real motions look like.
+
+use crate::scene::{accepted, grid, ratio, real, rig, under_sine};
+use crate::sheet::{Claim, Sheet};
+use ndarray::Array2;
+use vibroimpact::model::{Excitation, Loss, Orbit, Sine, response};
+use vibroimpact::report::{AxisSpec, Figure, Heatmap, Ink, Legend, Plot, Series, pictures};
+use vibroimpact::{Error, Result};
+
+pub fn sheets() -> Result<Vec<Sheet>> {
+    let mut all = vec![multipliers()?, inadmissible()?];
+    all.extend(traces()?);
+    all.push(branches()?);
+    all.push(regions()?);
+    Ok(all)
+}
+
+/// The motion that the energy rule accepts.
+fn one(restitution: f64, force: f64, nu: f64) -> Result<Orbit> {
+    let found = under_sine(&rig(restitution), force, nu);
+    accepted(&found).copied().ok_or_else(|| Error::refused(format!("no motion at ν {nu}")))
+}
+
+fn multipliers() -> Result<Sheet> {
+    let nu = grid(1.0, 2.3, 1041);
+    let mut plot =
+        Plot::new(ratio(1.0, 2.3), AxisSpec::new("Largest multiplier, modulus", "").limits(0.9, 1.7))
+            .legend(Legend::Above)
+            .with(Series::horizontal("border of stability", 1.0));
+    for (nth, force) in [0.9, 0.05].into_iter().enumerate() {
+        let radius = |nu: &f64| {
+            one(1.0, force, *nu)
+                .ok()
+                .filter(|o| o.validity.admissible)
+                .and_then(|o| o.spectral_radius())
+                .unwrap_or(f64::NAN)
+        };
+        let y: Vec<f64> = nu.iter().map(radius).collect();
+        plot = plot.with(Series::line(format!("F₀ {force} N"), nu.clone(), y).ink(Ink::Nth(nth)));
+    }
+    let flip = one(1.0, 0.9, 1.2)?;
+    let pair = one(1.0, 0.05, 1.3)?;
+    let [m, n] = [&flip, &pair].map(|o| o.multipliers.map_or_else(num_complex::Complex64::default, |m| m[0]));
+    plot =
+        plot.note(format!("flip, −{:.3}", m.re.abs()), 1.2, m.norm()).note("Neimark–Sacker", 1.3, n.norm());
+    let stable = |o: &Orbit| o.validity.stable == Some(true) || !o.validity.energy_rule;
+    let why = "the rule sees no loss but that of one multiplier through +1";
+    let claims = vec![
+        Claim::told(
+            "F₀ 0.9 N, R 1, ν 1.2: the positive root",
+            "stable",
+            format!(
+                "{}, multiplier −{:.3}",
+                flip.validity.instability.map_or("stable", Loss::name),
+                m.re.abs()
+            ),
+            stable(&flip),
+            why,
+        ),
+        Claim::told(
+            "F₀ 0.05 N, R 1, ν 1.3: the positive root",
+            "stable",
+            format!(
+                "{}, multipliers {:.3} ± {:.3}i",
+                pair.validity.instability.map_or("stable", Loss::name),
+                n.re,
+                n.im.abs()
+            ),
+            stable(&pair),
+            why,
+        ),
+    ];
+    let figure = Figure::single("Multipliers").height(70.0).panel(plot).caption(
+        "Largest Floquet multiplier of the motions that the energy rule accepts and in which the masses do not pass through each other, R = 1.",
+    );
+    Ok(Sheet::new("verdict_multipliers", "The positive root is not always stable", figure, claims))
+}
+
+fn inadmissible() -> Result<Sheet> {
+    let rig = rig(0.7);
+    let orbit = one(0.7, 0.5, 0.8)?;
+    let figure = pictures::orbit("Inadmissible orbit", &rig, &orbit).height(70.0);
+    let depth = -1e3 * orbit.validity.min_gap;
+    let why = "the masses would pass through each other by so much within the period";
+    let claims = vec![Claim::told(
+        "F₀ 0.5 N, R 0.7, ν 0.8: the positive root",
+        "a motion",
+        format!("impossible, by {depth:.1} mm"),
+        orbit.validity.admissible,
+        why,
+    )];
+    Ok(Sheet::new("verdict_inadmissible", "A positive root that is no motion", figure, claims))
+}
+
+/// Angle in degrees by which x₂ leads x₁ at the excitation frequency, −180 to 180.
+fn lead(orbit: &Orbit) -> f64 {
+    (orbit.fundamental[1] / orbit.fundamental[0]).arg().to_degrees()
+}
+
+fn traces() -> Result<Vec<Sheet>> {
+    let rig = rig(0.7);
+    let scenes = [
+        ("trace_grazing", "Time traces at the grazing resonance", 1.05, "in phase", "x₂ follows x₁"),
+        (
+            "trace_clapping",
+            "Time traces at the clapping resonance",
+            2.0,
+            "out of phase",
+            "x₂ goes against x₁",
+        ),
+    ];
+    scenes
+        .into_iter()
+        .map(|(name, title, nu, thesis, why)| {
+            let orbit = one(0.7, 0.5, nu)?;
+            let lead = lead(&orbit);
+            let agrees = real(&orbit) && (lead.abs() < 90.0) == (thesis == "in phase");
+            let what = format!("motion of both masses at ν {nu}, F₀ 0.5 N, R 0.7");
+            let here =
+                format!("phase of x₂ to x₁ {lead:.0}°, {}", orbit.validity.stability).replace('-', "−");
+            let figure = pictures::orbit(title, &rig, &orbit).height(70.0);
+            Ok(Sheet::new(name, title, figure, vec![Claim::told(what, thesis, here, agrees, why)]))
+        })
+        .collect()
+}
+
+fn branches() -> Result<Sheet> {
+    let rig = rig(0.98);
+    let sine = Excitation::Sine(Sine { force: 0.1, frequency: 1.0 });
+    let found = response(&rig, &sine, 3.0, 14.0, 700, 1)?;
+    let top = found.changes.iter().filter(|c| c.kind == "fold").map(|c| c.frequency).fold(0.0, f64::max);
+    let claims = vec![Claim::told(
+        "clapping resonance",
+        "only when sweeping up",
+        format!("branch ends in a fold at {top:.2} Hz, the motion without impacts is stable beside it"),
+        top > 9.0,
+        "a sweep down finds the other motion",
+    )];
+    let figure = pictures::branches("Response with all its branches", &found).height(125.0);
+    Ok(Sheet::new("branches", "Response with its branches and the backbone", figure, claims))
+}
+
+/// What becomes of the root that the energy rule accepts.
+const CLASSES: [&str; 6] =
+    ["none with J > 0", "masses pass", "flip", "Neimark–Sacker", "real", "two beyond +1"];
+
+/// Its number among the classes; NaN, which is drawn white, where it is none of them.
+fn class(orbits: &[Orbit]) -> f64 {
+    let Some(orbit) = accepted(orbits) else { return 0.0 };
+    match (orbit.validity.admissible, orbit.validity.instability) {
+        (false, _) => 1.0,
+        (true, Some(Loss::Flip)) => 2.0,
+        (true, Some(Loss::NeimarkSacker)) => 3.0,
+        (true, None) => 4.0,
+        // One multiplier beyond +1 breaks the energy rule, so here are two: what a Neimark–Sacker pair can become.
+        (true, Some(Loss::Fold)) => 5.0,
+        (true, Some(Loss::Grazing)) => f64::NAN,
+    }
+}
+
+fn regions() -> Result<Sheet> {
+    let nu = grid(0.6, 2.4, 181);
+    let (restitution, force) = (grid(0.0, 1.0, 51), grid(0.02, 1.0, 50));
+    let by = |rows: &[f64], of: &dyn Fn(f64, f64) -> Vec<Orbit>| {
+        Array2::from_shape_fn((rows.len(), nu.len()), |(row, column)| class(&of(rows[row], nu[column])))
+    };
+    let over_r = by(&restitution, &|r, nu| under_sine(&rig(r), 0.5, nu));
+    let over_f = by(&force, &|force, nu| under_sine(&rig(0.7), force, nu));
+    let all = || over_r.iter().chain(&over_f);
+    let accepted = all().filter(|c| **c != 0.0).count();
+    let real = all().filter(|c| **c == 4.0).count();
+    let share = 100.0 * real as f64 / accepted as f64;
+    let plot = |title: &str, label: &str, unit: &str| {
+        Plot::new(ratio(0.6, 2.4), AxisSpec::new(label, unit)).title(title)
+    };
+    let figure = Figure::double("Where the positive root is a motion")
+        .height(90.0)
+        .columns(2)
+        .panel(plot("(a) F₀ 0.5 N", "Restitution R", "").heatmap(Heatmap::classes(&nu, &restitution, &over_r, &CLASSES)?).legend(Legend::Hidden))
+        .panel(plot("(b) R 0.7", "Force F₀", "N").heatmap(Heatmap::classes(&nu, &force, &over_f, &CLASSES)?).legend(Legend::Above))
+        .caption(
+            "The root that the energy rule accepts, over frequency and restitution or force: whether it is a motion that can be seen. At none \
+             there is no root with J > 0; masses pass: they would pass through each other; two beyond +1: two real multipliers are.",
+        );
+    let claims = vec![Claim::told(
+        "part of the roots accepted, in both maps, that are motions",
+        "all",
+        format!("{share:.0} %"),
+        real == accepted,
+        "the rule is necessary, not sufficient",
+    )];
+    Ok(Sheet::new("regions", "Regions of existence and stability", figure, claims))
+}

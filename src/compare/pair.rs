@@ -1,0 +1,102 @@
+//! Measured amplitudes and their predictions, point by point.
+
+use super::course::{Course, Swept};
+use super::prediction::{Kind, Motion, Prediction};
+use super::simulated::{Simulated, simulated};
+use crate::error::Result;
+use crate::measure::Estimate;
+use crate::measure::response::ResponsePoint;
+use crate::model::Observable;
+use crate::model::ladder::Model;
+use crate::record::Direction;
+use serde::Serialize;
+
+/// One measured amplitude and its prediction.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Pair {
+    /// Sweep.
+    pub sweep: String,
+    /// 1 excited, 2 passive.
+    pub mass: u8,
+    /// Direction of the sweep.
+    pub direction: Direction,
+    /// Excitation frequency in Hz.
+    pub frequency: f64,
+    /// Force amplitude of the prediction in N.
+    pub force: f64,
+    /// Measured amplitude in m.
+    pub measured: Estimate,
+    /// What the true amplitude stays below with 95 % confidence, in m, where it does not stand out of the noise.
+    pub upper_limit: Option<f64>,
+    /// Predicted amplitude in m; `None` where the motion cannot be followed.
+    pub predicted: Option<f64>,
+    /// How far the predicted amplitude scatters from cycle to cycle, in m: 0 for what repeats every cycle.
+    pub scatter: Option<f64>,
+    /// Kind of the predicted motion.
+    pub motion: Option<Kind>,
+    /// Impacts/cycles of its pattern, or a word.
+    pub regime: Option<String>,
+    /// What predicted the amplitude: `closed-form` where it has the motion that the simulated sweep comes to, else the model that was
+    /// simulated: `restitution`, `kelvin-voigt` or `hunt-crossley`.
+    pub model: &'static str,
+    /// Stable motions of the closed form at this point: with more than one, history decides.
+    pub choices: usize,
+    /// Measured minus predicted in m.
+    pub residual: Option<f64>,
+}
+
+impl Course<'_> {
+    /// The points of a sweep in their order, each with its prediction.
+    pub fn pairs(&self, sweep: &Swept<'_>) -> Result<Vec<Pair>> {
+        let Course { rig, law, model, pace } = *self;
+        let Swept { response, mass, direction, ref forcing } = *sweep;
+        let mut points: Vec<&ResponsePoint> = response.points.iter().collect();
+        points.sort_by(|a, b| a.excitation.total_cmp(&b.excitation));
+        let driven = |p: &&ResponsePoint| (p.excitation, forcing.of(p));
+        let closed = Prediction::at(rig, points.iter().map(driven).collect(), Observable::Fundamental)?;
+        let mut motions = closed.motions;
+        if direction == Direction::Down {
+            points.reverse();
+            motions.reverse();
+        }
+        let passed: Vec<(f64, f64)> = points.iter().map(driven).collect();
+        let came = simulated(rig, law, &passed, pace);
+        let of = usize::from(mass) - 1;
+        let pair = |((point, motions), came): ((&&ResponsePoint, &Vec<Motion>), &Result<Simulated>)| {
+            let came = came.as_ref().ok();
+            let closed = came.filter(|_| law.is_none()).and_then(|came| came_to(came, motions));
+            let amplitude = closed.map(|m| m.amplitude).or(came.map(|c| c.amplitude));
+            let predicted = amplitude.map(|a| a[of]).filter(|p| p.is_finite());
+            Pair {
+                sweep: response.name.clone(),
+                mass,
+                direction,
+                frequency: point.excitation,
+                force: forcing.of(point),
+                measured: point.amplitude.clone(),
+                upper_limit: point.upper_limit,
+                predicted,
+                scatter: came.map(|c| if closed.is_some() { 0.0 } else { c.scatter[of] }),
+                motion: came.map(|c| Kind::of(c.regime)),
+                regime: came.map(|c| c.regime.to_string()),
+                model: if closed.is_some() { Model::ClosedForm.name() } else { model.name() },
+                choices: motions.iter().filter(|m| m.is_seen()).count(),
+                residual: predicted.map(|p| point.amplitude.value - p).filter(|r| r.is_finite()),
+            }
+        };
+        Ok(points.iter().zip(&motions).zip(&came).map(pair).collect())
+    }
+}
+
+/// A simulated motion is one of the closed form where both amplitudes agree to this part: what 300 cycles leave of the start near a border
+/// of stability.
+const SETTLED: f64 = 0.02;
+
+/// The motion of the closed form that a simulation came to.
+fn came_to<'a>(came: &Simulated, motions: &'a [Motion]) -> Option<&'a Motion> {
+    let kind = Kind::of(came.regime);
+    motions.iter().filter(|m| m.is_seen() && m.kind == kind).find(|m| {
+        let [a, b] = [0, 1].map(|i| (came.amplitude[i] - m.amplitude[i]).abs() <= SETTLED * m.amplitude[i]);
+        a && b
+    })
+}

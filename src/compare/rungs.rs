@@ -1,0 +1,161 @@
+//! Which models of the ladder a sweep needs, and where.
+
+use super::simulated::Pace;
+use crate::campaign::{Campaign, Follows};
+use crate::error::Result;
+use crate::model::ladder::{self, Model, Question, Stretch, choose_over};
+use crate::model::{ContactKeys, Excitation, Law, Observable, Rig, Scene, Sine};
+use crate::record::Direction;
+use serde::Serialize;
+
+/// How predictions are made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Predicting {
+    /// The model; `None` where the ladder is to choose.
+    pub model: Option<Follows>,
+    /// What is known of the contact.
+    pub contact: Option<ContactKeys>,
+    /// Relative change that does not matter.
+    pub tolerance: f64,
+    /// How long the rig stays at each point.
+    pub pace: Pace,
+}
+
+impl Default for Predicting {
+    /// The ladder chooses at 2 %; nothing is known of the contact.
+    fn default() -> Predicting {
+        Predicting { model: None, contact: None, tolerance: 0.02, pace: Pace::default() }
+    }
+}
+
+impl From<&Campaign> for Predicting {
+    fn from(campaign: &Campaign) -> Predicting {
+        let (entry, usual) = (campaign.model, Predicting::default());
+        Predicting {
+            model: entry.name,
+            contact: campaign.contact,
+            tolerance: entry.tolerance.unwrap_or(usual.tolerance),
+            pace: Pace {
+                settle: entry.settle.unwrap_or(usual.pace.settle),
+                measure: entry.measure.unwrap_or(usual.pace.measure),
+            },
+        }
+    }
+}
+
+/// What the ladder says of sweeps in one direction at one force.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Rungs {
+    /// Force in N.
+    pub force: f64,
+    /// Direction of the sweep.
+    pub direction: Direction,
+    /// Which rung is good enough where.
+    pub stretches: Vec<Stretch>,
+    /// Why none could be chosen, at the first frequency where that is so.
+    pub open: Option<String>,
+}
+
+/// Frequencies at which the ladder is asked.
+const ASKED: usize = 24;
+
+/// Asks the ladder at evenly spaced frequencies (Hz) of a sweep whether a model is good enough for the fundamental of the displacement.
+///
+/// # Errors
+/// As [`choose_over`].
+pub fn rungs(
+    rig: &Rig,
+    predicting: &Predicting,
+    force: f64,
+    direction: Direction,
+    (low, high): (f64, f64),
+) -> Result<Rungs> {
+    let scene = predicting.scene(rig, force, low);
+    let question = Question {
+        tolerance: predicting.tolerance,
+        history: Some(direction),
+        ..Question::new(Observable::Fundamental)
+    };
+    let survey = choose_over(&scene, low, high, ASKED, &question)?;
+    let open = survey.points.iter().find(|p| p.chosen.is_none());
+    let open = open.and_then(|p| Some(format!("At {:.2} Hz: {}", p.frequency, p.reasons.last()?)));
+    Ok(Rungs { force, direction, stretches: survey.stretches, open })
+}
+
+impl Predicting {
+    fn scene(&self, rig: &Rig, force: f64, frequency: f64) -> Scene {
+        let excitation = Some(Excitation::Sine(Sine { force, frequency }));
+        Scene { rig: *rig, excitation, contact: self.contact, buffer: None }
+    }
+
+    /// The model that follows all sweeps: the one named, else the highest one chosen for any stretch. Impacts without duration stand for
+    /// rungs below, and for what cannot be chosen.
+    pub fn model(&self, asked: &[Rungs]) -> Model {
+        if let Some(named) = self.model {
+            return named.model();
+        }
+        let highest = asked.iter().flat_map(|r| &r.stretches).filter_map(|s| s.chosen).max();
+        match highest {
+            // What the correction is for, the contact of spring and damper has in full.
+            Some(Model::SoftCorrected | Model::KelvinVoigt) => Model::KelvinVoigt,
+            // Without a stated damping a curved contact has no number that fits all speeds.
+            Some(Model::HuntCrossley) if self.contact.is_some_and(|c| c.damping.is_some()) => {
+                Model::HuntCrossley
+            }
+            Some(Model::HuntCrossley) => Model::KelvinVoigt,
+            _ => Model::Restitution,
+        }
+    }
+
+    /// The law of the contact of `model`.
+    ///
+    /// # Errors
+    /// As [`ladder::law`].
+    pub fn law(&self, rig: &Rig, model: Model) -> Result<Option<Law>> {
+        ladder::law(&self.scene(rig, 1.0, 1.0), model)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_soft_contact_asks_for_a_richer_model_than_a_stiff_one() {
+        let rig = Rig::thesis();
+        let asked = |stiffness: f64| {
+            let contact = Some(ContactKeys { stiffness: Some(stiffness), ..ContactKeys::default() });
+            let predicting = Predicting { contact, ..Predicting::default() };
+            let found = rungs(&rig, &predicting, 0.5, Direction::Up, (10.0, 10.6)).unwrap();
+            predicting.model(&[found])
+        };
+        // 1e4 N/m keeps the masses together for 7 % of the cycle, 1e9 N/m for 0.02 %.
+        assert_eq!(asked(1e4), Model::KelvinVoigt);
+        assert_eq!(asked(1e9), Model::Restitution);
+    }
+
+    #[test]
+    fn history_goes_past_a_stretch_where_the_impacting_motion_is_unstable() {
+        // Between 7.0 and 7.3 Hz the motion with one impact a cycle has lost its stability and the one without impacts is possible, but a
+        // sweep up goes on with impacts to the fold at 10.66 Hz; a sweep down comes without.
+        let rig = Rig { restitution: 0.98, ..Rig::thesis() };
+        let contact = Some(ContactKeys { stiffness: Some(1e9), ..ContactKeys::default() });
+        let predicting = Predicting { contact, ..Predicting::default() };
+        let chosen = |direction, range| {
+            let found = rungs(&rig, &predicting, 0.1, direction, range).unwrap();
+            found.stretches.iter().map(|s| s.chosen).collect::<Vec<_>>()
+        };
+        assert!(!chosen(Direction::Up, (9.0, 10.5)).contains(&Some(Model::Linear)));
+        assert_eq!(chosen(Direction::Down, (9.0, 10.5)), [Some(Model::Linear)]);
+    }
+
+    #[test]
+    fn an_unknown_stiffness_is_said_and_a_named_model_is_taken() {
+        let rig = Rig::thesis();
+        let found = rungs(&rig, &Predicting::default(), 0.5, Direction::Up, (10.0, 10.6)).unwrap();
+        assert!(found.open.as_ref().is_some_and(|o| o.contains("contact.stiffness")), "{found:?}");
+        assert_eq!(Predicting::default().model(&[found]), Model::Restitution);
+        let named = Predicting { model: Some(Follows::KelvinVoigt), ..Predicting::default() };
+        assert!(named.law(&rig, named.model(&[])).unwrap_err().to_string().contains("contact.stiffness"));
+    }
+}

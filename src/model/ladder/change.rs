@@ -1,0 +1,63 @@
+//! The change of an answer from one model to another.
+
+use super::{Model, Question};
+use serde::Serialize;
+
+/// A mass that moves less than this part of what the other does is not measured by its own motion.
+const STILL: f64 = 1e-3;
+
+/// Standard errors within which a mean over a motion that does not repeat is not told from another.
+const TOLD: f64 = 2.0;
+
+/// How far an answer moves at another rung.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Change {
+    /// The other rung.
+    pub at: Model,
+    /// Its answer less this one, over this one: of the mass for which that is the larger against what is allowed. For a mass that moves
+    /// less than a thousandth of what the other does, over the largest of all answers.
+    pub change: f64,
+    /// Whether that is no more than the tolerance, the noise floor or what the answers themselves are uncertain by allow.
+    pub enough: bool,
+}
+
+/// An answer of a model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Answer {
+    /// Of x₁ and x₂.
+    pub value: [f64; 2],
+    /// Its standard error.
+    pub spread: [f64; 2],
+}
+
+impl Answer {
+    /// An answer without an error of its own.
+    pub fn exact(value: [f64; 2]) -> Answer {
+        Answer { value, spread: [0.0; 2] }
+    }
+
+    /// How far it moves to `other`, the answer of the rung `at`.
+    pub fn change(&self, other: &Answer, at: Model, question: &Question) -> Change {
+        let largest = self.value.iter().chain(&other.value).fold(0.0_f64, |l, v| l.max(v.abs()));
+        let mut worst = Change { at, change: 0.0, enough: true };
+        let mut far = 0.0;
+        for i in 0..2 {
+            let moved = other.value[i] - self.value[i];
+            let unsure = TOLD * self.spread[i].hypot(other.spread[i]);
+            let scale = self.value[i].abs().max(STILL * largest);
+            let allowed = (question.tolerance * scale).max(question.noise).max(unsure);
+            if moved == 0.0 {
+                continue;
+            }
+            // Nothing is allowed where nothing moves and something should.
+            let ratio = if allowed > 0.0 { moved.abs() / allowed } else { f64::INFINITY };
+            if ratio > far {
+                far = ratio;
+                let own = self.value[i].abs();
+                let change = moved / if own < STILL * largest { largest } else { own };
+                worst = Change { at, change, enough: ratio <= 1.0 };
+            }
+        }
+        worst
+    }
+}

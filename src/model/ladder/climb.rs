@@ -1,0 +1,198 @@
+//! From rung to rung.
+
+use super::change::Change;
+use super::motions::{Motions, On};
+use super::sensitivity::{Sensitivity, sensitivity};
+use super::tried::{Stage, Tried, restitution};
+use super::{Choice, Model, Need, Rung, laws, reasons};
+use crate::error::Result;
+
+/// All rungs tried for a scene.
+pub struct Climb<'a> {
+    stage: Stage<'a>,
+    /// `None` for a mass that is loose on its spring, of which no motion is known before.
+    motions: Option<Motions>,
+    tried: [Tried; 7],
+    stiffness: Option<f64>,
+}
+
+impl<'a> Climb<'a> {
+    pub fn new(stage: Stage<'a>) -> Result<Climb<'a>> {
+        let stiffness = laws::keys(stage.scene).stiffness;
+        if stage.scene.buffer.is_some() {
+            let held = || Tried::not("The spring of mass 1 only pushes; this rung lets it hold both ways.");
+            let mut tried = [(); 7].map(|()| held());
+            let spring = stiffness.filter(|_| !laws::is_curved(stage.scene));
+            tried[Model::LooseMass as usize] = stage.loose_mass(spring);
+            return Ok(Climb { stage, motions: None, tried, stiffness: spring });
+        }
+        let motions = Motions::new(&stage.scene.rig, stage.excitation, stage.question)?;
+        let closed = stage.closed_form(&motions);
+        let soft = stage.soft_corrected(&motions, &closed);
+        let tried = [
+            stage.linear(&motions),
+            closed,
+            soft,
+            restitution(&motions),
+            stage.kelvin_voigt(&motions),
+            if laws::is_curved(stage.scene) {
+                stage.hunt_crossley(&motions)
+            } else {
+                Tried::not("The scene states no exponent of the contact.")
+            },
+            stage.loose_mass(None),
+        ];
+        Ok(Climb { stage, motions: Some(motions), tried, stiffness })
+    }
+
+    fn of(&self, model: Model) -> &Tried {
+        &self.tried[model as usize]
+    }
+
+    /// Rungs at which the answer of `model` is looked at again: the next one that knows more, and the next one that follows the motion.
+    fn above(&self, model: Model) -> Vec<Model> {
+        let valid = |model: &Model| self.of(*model).valid;
+        let soft = Some(Model::SoftCorrected).filter(valid);
+        let followed = [Model::KelvinVoigt, Model::HuntCrossley].into_iter().find(valid);
+        match model {
+            Model::Linear => vec![Model::Restitution],
+            Model::ClosedForm => soft.into_iter().chain(followed).collect(),
+            Model::SoftCorrected | Model::Restitution => followed.into_iter().collect(),
+            Model::KelvinVoigt => vec![Model::HuntCrossley],
+            Model::HuntCrossley | Model::LooseMass => Vec::new(),
+        }
+    }
+
+    fn changes(&self, model: Model) -> Vec<Change> {
+        let Some(answer) = &self.of(model).answer else { return Vec::new() };
+        let changed = |at: Model| {
+            let other = self.of(at).answer.as_ref()?;
+            Some(answer.change(other, at, self.stage.question))
+        };
+        self.above(model).into_iter().filter_map(changed).collect()
+    }
+
+    fn needs(&self, model: Model) -> Vec<Need> {
+        let keys = laws::keys(self.stage.scene);
+        let known = |parameter: &str| match parameter {
+            "contact.stiffness" => keys.stiffness.is_some(),
+            "contact.exponent" => keys.exponent.is_some(),
+            "buffer.gap" => self.stage.scene.buffer.is_some(),
+            "restitution or contact.damping" => {
+                keys.damping.is_some() || self.stage.scene.rig.restitution > 0.0
+            }
+            _ => true,
+        };
+        model.needs().iter().map(|parameter| Need { parameter, known: known(parameter) }).collect()
+    }
+
+    fn rung(&self, model: Model) -> Rung {
+        let tried = self.of(model);
+        let changes = self.changes(model);
+        let mut rung = Rung {
+            model,
+            cost_ns: tried.cost,
+            error: changes.iter().map(|c| c.change.abs()).reduce(f64::max),
+            valid: tried.valid,
+            why: tried.why.clone(),
+            needs: self.needs(model),
+            answer: tried.answer.map(|a| a.value),
+            spread: tried.answer.map_or([0.0; 2], |a| a.spread),
+            changes,
+            sufficient: false,
+        };
+        rung.sufficient = self.is_enough(&rung);
+        rung
+    }
+
+    /// Whether a curved contact is stated, but there are no impacts for its law to act in.
+    fn is_lawless(&self) -> bool {
+        let curved = self.stiffness.is_some() && laws::is_curved(self.stage.scene);
+        curved && self.motions.as_ref().is_some_and(|m| m.reading.speed == 0.0)
+    }
+
+    /// Whether a rung is good enough.
+    fn is_enough(&self, rung: &Rung) -> bool {
+        let still = rung.changes.iter().all(|c| c.enough);
+        rung.valid
+            && match rung.model {
+                Model::Linear => still,
+                Model::ClosedForm | Model::SoftCorrected | Model::Restitution => {
+                    still && (!rung.changes.is_empty() || self.is_lawless())
+                }
+                // What lies above a law that is stated is another law.
+                Model::KelvinVoigt | Model::HuntCrossley => true,
+                Model::LooseMass => self.stiffness.is_some(),
+            }
+    }
+
+    /// Holds a spring that was chosen against curved bodies that meet for as long.
+    fn bend(&mut self, choice: &mut Choice) {
+        let Some(motions) = &self.motions else { return };
+        self.tried[Model::HuntCrossley as usize] = self.stage.hunt_crossley(motions);
+        for model in [Model::KelvinVoigt, Model::HuntCrossley] {
+            choice.rungs[model as usize] = self.rung(model);
+        }
+    }
+
+    /// Chooses; a contact of spring and damper that is chosen is held against curved bodies where `bend` says so.
+    pub fn choose(mut self, bend: bool) -> Choice {
+        let rungs: Vec<Rung> = Model::ALL.iter().map(|model| self.rung(*model)).collect();
+        let open = self.motions.as_ref().is_some_and(|m| m.on == On::Open);
+        let mut choice = Choice {
+            frequency: self.stage.excitation.frequency(),
+            chosen: None,
+            needs: Vec::new(),
+            audit: None,
+            sensitivity: Vec::new(),
+            motions: self.motions.as_ref().map_or_else(Vec::new, |m| m.known.clone()),
+            reasons: Vec::new(),
+            rungs,
+        };
+        if open {
+            choice.needs.push("history");
+        } else {
+            choice.chosen = choice.rungs.iter().find(|r| r.sufficient).map(|r| r.model);
+            if choice.chosen.is_none() {
+                (choice.chosen, choice.sensitivity) = self.without_stiffness();
+            }
+            if choice.chosen.is_none() {
+                choice.needs = self.missing();
+            }
+        }
+        if bend && choice.chosen == Some(Model::KelvinVoigt) {
+            self.bend(&mut choice);
+        }
+        choice.audit = choice.chosen.and_then(|model| choice.rung(model).changes.last().copied());
+        choice.reasons = reasons::sentences(&choice, self.stage.question);
+        choice
+    }
+
+    /// The answer over the stiffness, and the rung that holds whatever it is.
+    fn without_stiffness(&self) -> (Option<Model>, Vec<Sensitivity>) {
+        if self.stiffness.is_some() {
+            return (None, Vec::new());
+        }
+        let lowest = [Model::ClosedForm, Model::Restitution, Model::LooseMass];
+        let base = lowest.into_iter().find(|model| self.of(*model).valid);
+        let Some((model, answer)) = base.and_then(|m| Some((m, self.of(m).answer?))) else {
+            return (None, Vec::new());
+        };
+        let rows = sensitivity(&self.stage, self.motions.as_ref(), &answer);
+        let any = !rows.is_empty() && rows.iter().all(|row| row.enough);
+        (any.then_some(model), rows)
+    }
+
+    /// What the scene lacks.
+    fn missing(&self) -> Vec<&'static str> {
+        let keys = laws::keys(self.stage.scene);
+        let mut missing = Vec::new();
+        if keys.stiffness.is_none() {
+            missing.push("contact.stiffness");
+        }
+        if keys.damping.is_none() && self.stage.scene.rig.restitution == 0.0 {
+            missing.push("contact.damping");
+        }
+        missing
+    }
+}

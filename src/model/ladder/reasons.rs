@@ -1,0 +1,112 @@
+//! A choice told in sentences.
+
+use super::{Choice, Model, Question, Rung};
+use std::fmt::Write as _;
+
+/// Why this rung, or why none.
+pub fn sentences(choice: &Choice, question: &Question) -> Vec<String> {
+    let mut said = Vec::new();
+    if choice.needs.contains(&"history") {
+        let all: Vec<String> =
+            choice.motions.iter().map(|m| format!("{} ({})", m.pattern, value(m.answer, question))).collect();
+        said.push(format!(
+            "Several motions are possible here: {}. Which one the rig is in depends on how it came there: give the history, a frequency that \
+             rose or fell.",
+            all.join(", ")
+        ));
+        return said;
+    }
+    let top = choice.chosen.map_or(Model::ALL.len(), |model| model as usize);
+    said.extend(choice.rungs[..top].iter().filter(|r| matters(r)).map(|r| passed_over(r, question)));
+    if let Some(model) = choice.chosen {
+        said.push(chosen(choice, choice.rung(model), question));
+    } else if choice.sensitivity.is_empty() {
+        said.push(format!("No rung can be chosen without {}.", listed(&choice.needs)));
+    } else {
+        said.push(unknown(choice, question));
+    }
+    said
+}
+
+/// Whether a rung that is not chosen is worth a sentence.
+fn matters(rung: &Rung) -> bool {
+    rung.answer.is_some() || rung.model < Model::Restitution
+}
+
+fn passed_over(rung: &Rung, question: &Question) -> String {
+    let name = rung.model.name();
+    let moved = rung.changes.iter().find(|c| !c.enough);
+    match moved {
+        _ if !rung.valid => format!("{name}: not valid. {}", rung.why),
+        Some(c) => format!(
+            "{name}: valid, but its answer moves by {:+.3} % at {}, more than {} allows.",
+            100.0 * c.change,
+            c.at.name(),
+            allowed(question)
+        ),
+        None => format!("{name}: valid, but nothing known says how far its answer is off."),
+    }
+}
+
+fn chosen(choice: &Choice, rung: &Rung, question: &Question) -> String {
+    let mut text = format!("{} is chosen. {}", rung.model.name(), rung.why);
+    if let (Some(first), Some(last)) = (choice.sensitivity.first(), choice.sensitivity.last()) {
+        let _ = write!(
+            text,
+            " The contact's stiffness is not known and need not be: from {:.0e} to {:.0e} N/m the answer stays within {}.",
+            first.stiffness,
+            last.stiffness,
+            allowed(question)
+        );
+    }
+    for change in &rung.changes {
+        let law = rung.model == Model::KelvinVoigt && !change.enough;
+        let _ = write!(text, " Its answer moves by {:+.3} % at {}", 100.0 * change.change, change.at.name());
+        text.push_str(if law {
+            ": the law of the contact matters more than the tolerance, and should be measured."
+        } else {
+            "."
+        });
+    }
+    text
+}
+
+/// Why the stiffness must be known.
+fn unknown(choice: &Choice, question: &Question) -> String {
+    let rows = &choice.sensitivity;
+    let range = |low: f64, high: f64| format!("from {low:.0e} to {high:.0e} N/m");
+    let all = range(rows[0].stiffness, rows[rows.len() - 1].stiffness);
+    let worst = rows.iter().map(|r| r.change.abs()).fold(0.0, f64::max);
+    let off = rows.iter().rev().find(|r| !r.enough).map_or(0.0, |r| r.stiffness);
+    format!(
+        "No rung can be chosen without {}: {all} the answer moves by up to {:.3} % of that of impacts without duration, and stays within {} \
+         only above {off:.0e} N/m.",
+        listed(&choice.needs),
+        100.0 * worst,
+        allowed(question)
+    )
+}
+
+fn listed(needs: &[&str]) -> String {
+    if needs.is_empty() { "more than the scene states".to_owned() } else { needs.join(" and ") }
+}
+
+/// What a change may be.
+fn allowed(question: &Question) -> String {
+    let tolerance = format!("{} %", 100.0 * question.tolerance);
+    if question.noise > 0.0 {
+        format!("the larger of {tolerance} and {} {}", question.noise, question.observable.unit())
+    } else {
+        tolerance
+    }
+}
+
+/// An answer for a person.
+fn value(answer: [f64; 2], question: &Question) -> String {
+    let unit = question.observable.unit();
+    if question.observable.is_of_impacts() {
+        format!("{:.4e} {unit}", answer[0])
+    } else {
+        format!("x₁ {:.4e} {unit}, x₂ {:.4e} {unit}", answer[0], answer[1])
+    }
+}

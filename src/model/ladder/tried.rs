@@ -1,0 +1,354 @@
+//! What each rung answers, and whether its own checks pass.
+
+use super::Question;
+use super::change::Answer;
+use super::cost::{timed, timed_once};
+use super::laws;
+use super::motions::{Motions, On};
+use super::reading::{Reader, Reading};
+use crate::error::{Error, Result};
+use crate::model::{
+    Compliance, Compliant, Excitation, Law, Loose, Motion, Orbit, Regime, Rig, Scene, Simulation, softened,
+};
+use std::f64::consts::{PI, TAU};
+use std::fmt::Write as _;
+
+/// What became of a rung.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Tried {
+    pub valid: bool,
+    pub answer: Option<Answer>,
+    pub cost: Option<f64>,
+    pub why: String,
+}
+
+impl Tried {
+    pub fn not(why: impl Into<String>) -> Tried {
+        Tried { why: why.into(), ..Tried::default() }
+    }
+
+    /// The first line of an error, as a sentence.
+    fn refused(error: &Error) -> Tried {
+        Tried::not(capital(error.to_string().lines().next().unwrap_or_default()))
+    }
+}
+
+/// A scene at one excitation.
+#[derive(Debug, Clone, Copy)]
+pub struct Stage<'a> {
+    pub scene: &'a Scene,
+    pub excitation: &'a Excitation,
+    pub question: &'a Question,
+}
+
+impl Stage<'_> {
+    fn rig(&self) -> &Rig {
+        &self.scene.rig
+    }
+
+    /// Mass 1 alone.
+    pub fn linear(&self, motions: &Motions) -> Tried {
+        let (found, gap) = match &motions.closed {
+            Ok(found) => (&found.no_impact, self.rig().gap),
+            Err(error) => return Tried::refused(error),
+        };
+        let mut value = self.question.observable.of_no_impact(found);
+        let fundamental = || self.alone();
+        let (line, cost) = timed(fundamental);
+        if self.question.observable == crate::model::Observable::Fundamental {
+            value = [line, 0.0];
+        }
+        let way = format!("Mass 1 alone moves up to {:.3e} m", found.largest);
+        let (valid, why) = match motions.on {
+            _ if !found.possible => (false, format!("{way}, the gap is {gap:.3e} m: the masses meet.")),
+            On::Free => (
+                true,
+                format!("{way}, the gap is {gap:.3e} m: the masses do not meet, and {}.", into(motions)),
+            ),
+            On::Open => (true, format!("{way}, the gap is {gap:.3e} m: the masses need not meet.")),
+            On::Orbit(_) | On::Other => (
+                false,
+                format!(
+                    "{way} and need not meet mass 2, but the rig is in a motion with impacts: {}.",
+                    into(motions)
+                ),
+            ),
+        };
+        Tried { valid, answer: Some(Answer::exact(value)), cost: Some(cost), why }
+    }
+
+    /// Amplitude in m of mass 1 alone at the excitation frequency: |F L₁(iω)|, F being the force's own line, 2J/T of impulses and
+    /// (2F/π) sin(πw/T) of pulses of width w.
+    fn alone(&self) -> f64 {
+        let force = match *self.excitation {
+            Excitation::Sine(sine) => sine.force,
+            Excitation::Impulse(train) => 2.0 * train.impulse.abs() * train.frequency,
+            Excitation::Pulse(train) => {
+                2.0 / PI * train.force.abs() * (PI * train.width * train.frequency).sin()
+            }
+            Excitation::Sines(_) => f64::NAN,
+        };
+        let [l1, _] = self.rig().receptances(TAU * self.excitation.frequency());
+        force * l1.norm()
+    }
+
+    /// One impact a cycle.
+    pub fn closed_form(&self, motions: &Motions) -> Tried {
+        let orbit = match motions.orbit() {
+            Err(error) => return Tried::refused(error),
+            Ok(None) => {
+                return Tried::not(
+                    "There is no motion with one impact a cycle: no impulse above 0 satisfies its equations.",
+                );
+            }
+            Ok(Some(orbit)) => orbit,
+        };
+        let v = &orbit.validity;
+        let radius = orbit.spectral_radius().unwrap_or(f64::NAN);
+        let (valid, why) = if !v.admissible {
+            let deep = 1e3 * v.min_gap.abs();
+            (
+                false,
+                format!(
+                    "The masses would pass through each other by {deep:.3} mm between the impacts of the solution with one impact a cycle."
+                ),
+            )
+        } else if v.stable != Some(true) {
+            (
+                false,
+                format!(
+                    "The motion with one impact a cycle is {} (largest multiplier {radius:.4}).",
+                    v.stability
+                ),
+            )
+        } else if !v.robust(self.question.gap_std) {
+            (
+                false,
+                format!(
+                    "The motion with one impact a cycle is {:.1e} m from grazing, no more than the gap's uncertainty of {:.1e} m.",
+                    v.grazing_distance, self.question.gap_std
+                ),
+            )
+        } else {
+            let real = format!(
+                "The motion with one impact a cycle exists, is admissible, stable (largest multiplier {radius:.4}) and {:.1e} m from grazing",
+                v.grazing_distance
+            );
+            match motions.on {
+                On::Orbit(_) => (true, format!("{real}; {}.", into(motions))),
+                On::Open => (true, format!("{real}.")),
+                On::Free | On::Other => {
+                    (false, format!("{real}, but the rig is in another: {}.", into(motions)))
+                }
+            }
+        };
+        let answer = Answer::exact(self.question.observable.of_orbit(orbit));
+        Tried { valid, answer: Some(answer), cost: Some(motions.closed_cost), why }
+    }
+
+    /// The same with the contact's duration.
+    pub fn soft_corrected(&self, motions: &Motions, closed: &Tried) -> Tried {
+        if laws::is_curved(self.scene) {
+            return Tried::not("The correction knows springs only, and the contact's exponent is not 1.");
+        }
+        let Some(stiffness) = laws::keys(self.scene).stiffness else {
+            return Tried::not("The contact's stiffness is not known.");
+        };
+        if !closed.valid {
+            return Tried::not("There is nothing to correct: the closed form does not hold.");
+        }
+        let Ok(Some(orbit)) = motions.orbit() else { return Tried::not("There is nothing to correct.") };
+        let (soft, cost) = timed(|| self.soften(orbit, stiffness));
+        match soft {
+            Err(error) => Tried { cost: Some(cost), ..Tried::refused(&error) },
+            Ok(None) => Tried {
+                cost: Some(cost),
+                ..Tried::not("With a contact of this duration there is no such motion left.")
+            },
+            Ok(Some((answer, share, restitution))) => {
+                let mut why = format!(
+                    "The contact lasts {:.2} % of the cycle, within the 2.5 % to which its correction is good.",
+                    100.0 * share
+                );
+                let of_rig = self.rig().restitution;
+                if (restitution - of_rig).abs() > 1e-3 {
+                    let _ = write!(
+                        why,
+                        " Its spring and damper rebound with {restitution:.3}, the rig says {of_rig}: theirs counts."
+                    );
+                }
+                Tried { valid: true, answer: Some(answer), cost: Some(cost), why }
+            }
+        }
+    }
+
+    /// Answer, part of the cycle in contact, restitution.
+    fn soften(&self, orbit: &Orbit, stiffness: f64) -> Result<Option<(Answer, f64, f64)>> {
+        let contact = Compliance::new(self.rig(), stiffness, laws::keys(self.scene).damping)?;
+        let rig = Rig { restitution: contact.restitution, ..*self.rig() };
+        let found = crate::model::orbits_of(&rig, self.excitation, 1)?;
+        let soft = softened(&rig, self.excitation, &found, &contact)?;
+        let same = orbit.continued(&found.orbits);
+        let own = found.orbits.iter().zip(soft).find(|(o, _)| Some(*o) == same).and_then(|(_, soft)| soft);
+        Ok(own.map(|soft| {
+            (Answer::exact(self.question.observable.of_softened(&soft)), soft.share, contact.restitution)
+        }))
+    }
+
+    /// Spring and damper.
+    pub fn kelvin_voigt(&self, motions: &Motions) -> Tried {
+        if laws::is_curved(self.scene) {
+            return Tried::not("The contact's exponent is not 1: its stiffness is that of no spring.");
+        }
+        let Some(stiffness) = laws::keys(self.scene).stiffness else {
+            return Tried::not("The contact's stiffness is not known.");
+        };
+        match self.with_spring(motions, stiffness) {
+            Ok((reading, cost)) => Tried {
+                valid: true,
+                answer: Some(reading.answer),
+                cost: Some(cost),
+                why: format!("The contact's stiffness is known: {stiffness:.3e} N/m. {}", told(&reading)),
+            },
+            Err(error) => Tried::refused(&error),
+        }
+    }
+
+    /// What a spring and damper of this stiffness (N/m) gives, from where the motion with impacts at once had settled.
+    pub fn with_spring(&self, motions: &Motions, stiffness: f64) -> Result<(Reading, f64)> {
+        self.with(motions, laws::spring(self.scene, stiffness)?)
+    }
+
+    fn with(&self, motions: &Motions, law: Law) -> Result<(Reading, f64)> {
+        let end = &motions.end;
+        let mut motion = Compliant::new(self.rig(), self.excitation, law, end.state(), end.phase())?;
+        let reader =
+            if matches!(law, Law::KelvinVoigt { .. }) { self.reader() } else { self.reader().brief() };
+        let (reading, cost) = timed_once(|| reader.read(&mut motion));
+        Ok((reading?, cost))
+    }
+
+    fn reader(&self) -> Reader {
+        Reader::new(self.rig(), self.excitation.frequency(), self.question)
+    }
+
+    fn read<M: Motion>(&self, motion: &mut M) -> Result<Reading> {
+        self.reader().read(motion)
+    }
+
+    /// A curved contact: the one stated, or one like the spring stated.
+    pub fn hunt_crossley(&self, motions: &Motions) -> Tried {
+        let speed = motions.reading.speed;
+        let stated = laws::is_curved(self.scene);
+        let Some(stiffness) = laws::keys(self.scene).stiffness else {
+            return Tried::not("The contact's stiffness is not known.");
+        };
+        if speed <= 0.0 {
+            return Tried::not("There are no impacts whose law could matter.");
+        }
+        let law = if stated {
+            laws::curved(self.scene, speed)
+        } else {
+            laws::spring(self.scene, stiffness).and_then(|law| laws::alike(self.rig(), law, speed))
+        };
+        let followed = law.and_then(|law| self.with(motions, law));
+        match followed {
+            Err(error) => Tried::refused(&error),
+            Ok((reading, cost)) => Tried {
+                valid: stated,
+                answer: Some(reading.answer),
+                cost: Some(cost),
+                why: if stated {
+                    format!("The contact's law is known. {}", told(&reading))
+                } else {
+                    "The contact's exponent is not known; curved bodies (exponent 1.5) of the same duration and rebound stand in for it."
+                        .to_owned()
+                },
+            },
+        }
+    }
+
+    /// A mass 1 loose on its spring, from rest; with the contact's spring and damper where they are known.
+    pub fn loose_mass(&self, stiffness: Option<f64>) -> Tried {
+        let Some(buffer) = self.scene.buffer else {
+            return Tried::not("The spring holds mass 1 both ways: the scene has no buffer.");
+        };
+        let run = || -> Result<(Reading, f64)> {
+            let (rig, start) = (self.rig(), Simulation::at_rest(self.rig()));
+            let mut motion = match stiffness {
+                Some(k) => {
+                    let law = laws::spring(self.scene, k)?;
+                    Loose::with_law(rig, self.excitation, buffer.gap, law, start, 0.0)?
+                }
+                None => Loose::new(rig, self.excitation, buffer.gap, start, 0.0)?,
+            };
+            let (reading, cost) = timed_once(|| self.read(&mut motion));
+            Ok((reading?, cost))
+        };
+        match run() {
+            Err(error) => Tried::refused(&error),
+            Ok((reading, cost)) => Tried {
+                valid: true,
+                answer: Some(reading.answer),
+                cost: Some(cost),
+                why: format!(
+                    "The spring of mass 1 only pushes, beyond {:.3e} m; from rest, {}. {}",
+                    buffer.gap,
+                    pattern(reading.regime),
+                    told(&reading)
+                ),
+            },
+        }
+    }
+}
+
+/// Impacts at once.
+pub fn restitution(motions: &Motions) -> Tried {
+    Tried {
+        valid: true,
+        answer: Some(motions.reading.answer),
+        cost: Some(motions.cost),
+        why: format!("{} {}", capital(&into(motions)), told(&motions.reading)),
+    }
+}
+
+/// The motion that the rig is in, and how that is known.
+fn into(motions: &Motions) -> String {
+    let from = if motions.by_history { "coming that way it is in" } else { "from rest it settles into" };
+    format!("{from} {}", pattern(motions.reading.regime))
+}
+
+fn pattern(regime: Regime) -> String {
+    match regime {
+        Regime::Periodic { impacts, cycles } => {
+            format!("a motion with {impacts} impact(s) in {cycles} cycle(s)")
+        }
+        Regime::NoImpact => "the motion without impacts".to_owned(),
+        Regime::Chatter { .. } => {
+            "a motion in which the masses chatter to rest against each other".to_owned()
+        }
+        Regime::Irregular => "a motion in which no pattern repeats".to_owned(),
+    }
+}
+
+/// How the reading was made, where that limits it.
+fn told(reading: &Reading) -> String {
+    let cycles = reading.cycles;
+    if reading.settled {
+        return format!("Settled within {cycles} cycles.");
+    }
+    let Answer { value, spread } = reading.answer;
+    let part =
+        (0..2).map(|i| if value[i] == 0.0 { 0.0 } else { spread[i] / value[i].abs() }).fold(0.0, f64::max);
+    format!(
+        "Not settled within {cycles} cycles: the mean of the second half, with a standard error of {:.1e} %.",
+        100.0 * part
+    )
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters
+        .next()
+        .map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect::<String>() + ".")
+}
