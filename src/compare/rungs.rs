@@ -95,14 +95,12 @@ impl Predicting {
             return named.model();
         }
         let highest = asked.iter().flat_map(|r| &r.stretches).filter_map(|s| s.chosen).max();
+        let damped = self.contact.is_some_and(|c| c.damping.is_some());
         match highest {
-            // What the correction is for, the contact of spring and damper has in full.
-            Some(Model::SoftCorrected | Model::KelvinVoigt) => Model::KelvinVoigt,
-            // Without a stated damping a curved contact has no number that fits all speeds.
-            Some(Model::HuntCrossley) if self.contact.is_some_and(|c| c.damping.is_some()) => {
-                Model::HuntCrossley
-            }
-            Some(Model::HuntCrossley) => Model::KelvinVoigt,
+            Some(Model::HuntCrossley) if damped => Model::HuntCrossley,
+            // What the correction is for, the contact of spring and damper has in full; a curved contact without a stated damping has no
+            // number that fits all speeds.
+            Some(Model::SoftCorrected | Model::KelvinVoigt | Model::HuntCrossley) => Model::KelvinVoigt,
             _ => Model::Restitution,
         }
     }
