@@ -271,4 +271,22 @@ mod tests {
             "{said:?}"
         );
     }
+
+    #[test]
+    fn a_mass_that_rings_on_rests_in_the_closed_form() {
+        // From impacts at 5 Hz up over the fold at 10.66 Hz (0.1 N, R 0.98): behind it the masses part and the struck one rings on.
+        let rig = Rig { restitution: 0.98, ..Rig::thesis() };
+        let mut sweep = free("m", &rig, 0.1);
+        sweep.direction = Some(Direction::Up);
+        for (i, point) in sweep.points.iter_mut().enumerate() {
+            point.excitation = 5.0 + 0.25 * i as f64;
+            point.force = Some(0.1);
+        }
+        let overlay = overlay(&rig, None, &Predicting::default(), &[sweep]).unwrap();
+        let kinds: Vec<Option<Kind>> = overlay.pairs.iter().map(|p| p.motion).collect();
+        assert!(kinds.contains(&Some(Kind::Impacting)) && kinds.contains(&Some(Kind::Free)), "{kinds:?}");
+        for pair in overlay.pairs.iter().filter(|p| p.motion == Some(Kind::Free)) {
+            assert_eq!(pair.model, "closed-form", "{pair:?}");
+        }
+    }
 }

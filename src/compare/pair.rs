@@ -88,15 +88,17 @@ impl Course<'_> {
     }
 }
 
-/// A simulated motion is one of the closed form where both amplitudes agree to this part: what 300 cycles leave of the start near a border
-/// of stability.
+/// A simulated motion is one of the closed form where both amplitudes agree to this part, what 300 cycles leave of the start near a border
+/// of stability, and to this part of the larger one: what rings on in a mass that was struck before.
 const SETTLED: f64 = 0.02;
+const RINGS: f64 = 1e-3;
 
 /// The motion of the closed form that a simulation came to.
 fn came_to<'a>(came: &Simulated, motions: &'a [Motion]) -> Option<&'a Motion> {
     let kind = Kind::of(came.regime);
     motions.iter().filter(|m| m.is_seen() && m.kind == kind).find(|m| {
-        let [a, b] = [0, 1].map(|i| (came.amplitude[i] - m.amplitude[i]).abs() <= SETTLED * m.amplitude[i]);
-        a && b
+        let larger = m.amplitude[0].max(m.amplitude[1]);
+        (0..2)
+            .all(|i| (came.amplitude[i] - m.amplitude[i]).abs() <= SETTLED * m.amplitude[i] + RINGS * larger)
     })
 }
