@@ -33,14 +33,18 @@ mod drill;
 mod drop;
 mod entry;
 mod fault;
+mod fit;
 mod locate;
 mod low_pass;
+mod parameter;
 mod prediction;
 mod record;
 mod spectral;
 
 pub use entry::{Compute, Drive, SweepEntry};
+pub use fit::FitEntry;
 pub use low_pass::{LowPass, Word};
+pub use parameter::Parameter;
 pub use prediction::ModelEntry;
 pub use record::{
     Decimal, Detrend, DrillEntry, DropEntry, FrfEntry, ImpactsEntry, PulseEntry, RecordEntry, SpectrumEntry,
@@ -86,6 +90,8 @@ pub struct Campaign {
     pub drill: Vec<DrillEntry>,
     /// How the overlay's predictions are made.
     pub model: ModelEntry,
+    /// Parameters to be found from the responses.
+    pub fit: FitEntry,
     /// What to compute, and how.
     pub compute: Compute,
     #[serde(skip)]
@@ -166,6 +172,10 @@ impl Campaign {
         })?;
         self.model.check().map_err(|(key, why)| {
             let from = self.text.find("[model]");
+            self.at(locate::find(&self.text, key, from), why)
+        })?;
+        self.fit.check().map_err(|(key, why)| {
+            let from = self.text.find("[fit");
             self.at(locate::find(&self.text, key, from), why)
         })?;
         for entry in self.records() {

@@ -51,7 +51,9 @@ pub use flow::{Flight, State};
 pub use green::Green;
 pub use loose::Loose;
 pub use motion::{Event, Motion, Path, Piece};
-pub use orbit::{Compliance, Orbit, Orbits, Softened, backbone, orbits, orbits_of, orbits_over, softened};
+pub use orbit::{
+    Compliance, Orbit, Orbits, Shown, Softened, backbone, orbits, orbits_of, orbits_over, shown, softened,
+};
 pub use periodic::{Beat, PeriodicOrbit};
 pub use receptance::{NoImpact, Steady};
 pub use regime::{Pattern, Regime, regime};

@@ -251,7 +251,7 @@ fn pairs(rig: &Rig, sweep: &Swept<'_>, pace: Pace) -> Result<Vec<Pair>> {
 const SETTLED: f64 = 0.02;
 
 /// The motion of the closed form that a simulation came to.
-fn came_to<'a>(came: &Simulated, motions: &'a [Motion]) -> Option<&'a Motion> {
+pub(super) fn came_to<'a>(came: &Simulated, motions: &'a [Motion]) -> Option<&'a Motion> {
     let kind = Kind::of(came.regime);
     motions.iter().filter(|m| m.is_seen() && m.kind == kind).find(|m| {
         let [a, b] = [0, 1].map(|i| (came.amplitude[i] - m.amplitude[i]).abs() <= SETTLED * m.amplitude[i]);

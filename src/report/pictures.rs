@@ -2,6 +2,7 @@
 
 mod branches;
 mod drill;
+mod fit;
 mod frf;
 mod impacts;
 mod motion;
@@ -16,6 +17,7 @@ mod waterfall;
 
 pub use branches::branches;
 pub use drill::drill;
+pub use fit::fit;
 pub use frf::{frf, nyquist};
 pub use impacts::{drop, impacts};
 pub use motion::{phase_plane, poincare, traces};

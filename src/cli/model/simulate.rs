@@ -176,7 +176,8 @@ fn pressed(seen: &Seen, scene: &Scene) -> Option<String> {
     // Apart by less than a millionth of their ways.
     let touching = scene.rig.gap + x2 - x1 <= 1e-6 * (x1.abs() + x2.abs());
     (seen.portrait.pattern.regime == Regime::NoImpact && touching).then(|| {
-        "The masses stay pressed together all the time: there is no impact because they never part.".to_owned()
+        "The masses stay pressed together all the time: there is no impact because they never part."
+            .to_owned()
     })
 }
 

@@ -1,0 +1,45 @@
+//! Tables of a fit.
+
+use super::{pair, table};
+use crate::compare::Fit;
+use crate::report::{Cell, Table};
+
+/// Parameters found; each with its own unit, so in SI units as they are.
+pub fn fitted(fit: &Fit) -> Table {
+    let end = |interval: Option<[f64; 2]>, side: usize| Cell::from(interval.map(|i| i[side]));
+    table(
+        "Parameters found",
+        &fit.parameters,
+        &[
+            ("parameter", "", &|p| Cell::from(p.parameter.name())),
+            ("unit", "", &|p| Cell::from(p.estimate.unit)),
+            ("start", "", &|p| Cell::from(p.start)),
+            ("found", "", &|p| pair(p.estimate.value, p.estimate.std)),
+            ("from", "", &|p| end(p.interval, 0)),
+            ("to (95 %)", "", &|p| end(p.interval, 1)),
+            ("held by", "", &|p| {
+                Cell::from(match (p.identifiable, p.rests_on_prior) {
+                    (false, _) => "nothing: not identifiable",
+                    (true, true) => "its prior",
+                    (true, false) => "the points",
+                })
+            }),
+        ],
+    )
+}
+
+/// Point by point.
+pub fn fit_points(fit: &Fit) -> Table {
+    table(
+        "Points of the fit",
+        &fit.points,
+        &[
+            ("sweep", "", &|p| Cell::from(p.sweep.as_str())),
+            ("mass", "", &|p| Cell::from(usize::from(p.mass))),
+            ("frequency", "Hz", &|p| Cell::from(p.frequency)),
+            ("measured", "m", &|p| Cell::from(p.measured)),
+            ("fitted", "m", &|p| Cell::from(p.fitted)),
+            ("residual", "std", &|p| Cell::from(p.residual)),
+        ],
+    )
+}
