@@ -16,6 +16,8 @@ pub struct FitEntry {
     pub bounds: BTreeMap<Parameter, [f64; 2]>,
     /// Starting points. Default 8.
     pub starts: Option<usize>,
+    /// Stiffness of the contact in N/m: the closed form corrected for it is then judged beside the others.
+    pub contact_stiffness: Option<f64>,
 }
 
 /// Starting points, at most.
@@ -33,6 +35,9 @@ impl FitEntry {
         }
         if self.starts.is_some_and(|n| n == 0 || n > MOST_STARTS) {
             return Err(("starts", format!("starts is not from 1 to {MOST_STARTS}")));
+        }
+        if self.contact_stiffness.is_some_and(|k| !(k.is_finite() && k > 0.0)) {
+            return Err(("contact_stiffness", "contact_stiffness is not above 0 N/m".to_owned()));
         }
         for (parameter, [value, std]) in &self.prior {
             let name = parameter.name();

@@ -56,7 +56,7 @@ pub fn run(typed: &args::Compare, json: bool) -> Result<()> {
     let mut text = format!("{}\n{}", tables::peaks(&overlay).text(), tables::scores(&overlay).text());
     if let Some(fit) = &fit {
         complain::warn(&fit.warnings);
-        let _ = write!(text, "\n{}", tables::fitted(fit).text());
+        let _ = write!(text, "\n{}\n{}", tables::fitted(fit).text(), tables::fit_rungs(fit).text());
     }
     for file in written {
         let _ = writeln!(text, "wrote {file}");

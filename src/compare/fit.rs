@@ -10,6 +10,7 @@ mod held;
 mod motion;
 mod problem;
 mod profile;
+mod rung;
 mod search;
 mod setting;
 mod settle;
@@ -17,6 +18,7 @@ mod told;
 mod unknown;
 
 pub use profile::Profile;
+pub use rung::{Block, Rung};
 
 use super::prediction::Kind;
 use super::simulated::Pace;
@@ -115,6 +117,8 @@ pub struct Fit {
     pub agreeing: usize,
     /// Profile of the parameter known worst.
     pub profile: Option<Profile>,
+    /// Models of rising order, by what they predict of points that they were not fitted to.
+    pub rungs: Vec<Rung>,
     /// Points of the fit.
     pub points: Vec<FitPoint>,
     /// What a person must know.
@@ -140,7 +144,7 @@ pub fn fit(
 ) -> Result<Fit> {
     rig.check()?;
     let data = Data::new(force, responses)?;
-    let base = Setting { rig: *rig, force: data.force };
+    let base = Setting { rig: *rig, force: data.force, contact: None };
     let unknowns = Unknown::all(entry, &base)?;
     let starts = entry.starts.unwrap_or(STARTS);
     let (settled, found) = identify(&data, &base, &unknowns, starts, pace)?;
@@ -148,6 +152,7 @@ pub fn fit(
     let profile = profile::profile(&settled, &held, held.worst());
     let mut fit = gathered(&settled, &held, &base, profile);
     (fit.starts, fit.agreeing) = (starts, agreeing(&found));
+    fit.rungs = rung::rungs(&settled, responses, entry.contact_stiffness);
     fit.warnings = told::warnings(&fit, &settled, &data);
     Ok(fit)
 }
@@ -248,6 +253,7 @@ fn gathered(settled: &Settled<'_>, held: &Held, base: &Setting, profile: Option<
         starts: 0,
         agreeing: 0,
         profile,
+        rungs: Vec::new(),
         points: points.collect(),
         warnings: Vec::new(),
     }

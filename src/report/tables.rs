@@ -12,7 +12,7 @@ mod sweep;
 
 pub use cycles::{drill_cycles_head, drill_cycles_row};
 pub use drill::{drill, drill_average, drill_impacts};
-pub use fit::{fit_points, fitted};
+pub use fit::{fit_points, fit_rungs, fitted};
 pub use impacts::{impact_times, impacts, restitution};
 pub use modal::{modal_methods, modes};
 pub use model::{branches, changes, course, no_impact, orbits, soft, verdicts};
@@ -202,7 +202,7 @@ pub fn summary(results: &Results) -> Vec<Table> {
         tables.push(peaks(overlay));
         tables.push(scores(overlay));
     }
-    tables.extend(results.fit.as_ref().map(fitted));
+    tables.extend(results.fit.iter().flat_map(|fit| [fitted(fit), fit_rungs(fit)]));
     let records: Vec<_> = results.spectra.iter().map(|s| (s.result.name.as_str(), &s.result)).collect();
     tables.push(spectra(&records));
     tables.push(tones(&records));

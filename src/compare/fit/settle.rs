@@ -116,7 +116,7 @@ pub fn least<'a>(
 }
 
 /// χ²/ν of the data as their stated uncertainties have it, and whether their residuals are noise.
-fn left(problem: &Problem<'_>, residuals: &[f64]) -> (f64, Whiteness) {
+pub fn left(problem: &Problem<'_>, residuals: &[f64]) -> (f64, Whiteness) {
     let (n, _) = problem.rows();
     let data = residuals.get(..n).unwrap_or_default();
     let free = n.saturating_sub(problem.unknowns.len());

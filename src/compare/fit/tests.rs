@@ -13,7 +13,7 @@ const FREQUENCIES: [f64; 40] = [
 
 /// The example's rig.
 fn example() -> Setting {
-    Setting { rig: Rig { restitution: 0.98, ..Rig::thesis() }, force: 0.1 }
+    Setting { rig: Rig { restitution: 0.98, ..Rig::thesis() }, force: 0.1, contact: None }
 }
 
 /// Amplitudes below this in m do not stand out of the noise.

@@ -35,6 +35,12 @@ pub fn warnings(fit: &Fit, settled: &Settled<'_>, data: &Data) -> Vec<String> {
             ));
         }
     }
+    if let Some(rung) = fit.rungs.iter().find(|r| r.chosen) {
+        said.push(format!(
+            "Of the models that were judged by points held out, the simplest within one standard error of the best is: {}.",
+            rung.model
+        ));
+    }
     if data.guessed {
         said.push(format!("By the residuals the amplitudes are good to {:.2} %.", fit.widened));
     } else if fit.reduced_chi_squared > POOR {

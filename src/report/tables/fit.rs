@@ -43,3 +43,21 @@ pub fn fit_points(fit: &Fit) -> Table {
         ],
     )
 }
+
+/// Models by what they predict of points held out.
+pub fn fit_rungs(fit: &Fit) -> Table {
+    let percent = |value: Option<f64>| Cell::from(value.map(|v| 100.0 * v));
+    table(
+        "Models by points held out",
+        &fit.rungs,
+        &[
+            ("model", "", &|r| Cell::from(r.model)),
+            ("parameters", "", &|r| Cell::from(r.parameters.len())),
+            ("error", "%", &|r| percent(r.held_out)),
+            ("standard error", "%", &|r| percent(r.held_out_std)),
+            ("AICc", "", &|r| Cell::from(r.aicc)),
+            ("white with p", "", &|r| Cell::from(r.whiteness)),
+            ("chosen", "", &|r| Cell::from(if r.chosen { "yes" } else { "" })),
+        ],
+    )
+}
