@@ -254,8 +254,9 @@ const SETTLED: f64 = 0.02;
 pub(super) fn came_to<'a>(came: &Simulated, motions: &'a [Motion]) -> Option<&'a Motion> {
     let kind = Kind::of(came.regime);
     motions.iter().filter(|m| m.is_seen() && m.kind == kind).find(|m| {
-        let [a, b] = [0, 1].map(|i| (came.amplitude[i] - m.amplitude[i]).abs() <= SETTLED * m.amplitude[i]);
-        a && b
+        // What is left of the motion of a mass that comes to rest is held against the other's.
+        let size = |i: usize| if m.amplitude[i] > 0.0 { m.amplitude[i] } else { m.amplitude[1 - i] };
+        (0..2).all(|i| (came.amplitude[i] - m.amplitude[i]).abs() <= SETTLED * size(i))
     })
 }
 

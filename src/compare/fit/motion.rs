@@ -1,17 +1,19 @@
 //! Which motion each step shows.
 
+use super::super::forcing::median;
 use super::super::observable::Observable;
 use super::super::overlay::came_to;
 use super::super::prediction::{Kind, Motion, motions};
 use super::super::simulated::{Contact, Pace, simulated};
 use super::data::{Data, Step};
+use super::problem::counts;
 use super::setting::Setting;
 use crate::error::Result;
 use rayon::prelude::*;
 
 /// The motion of each step, as a sweep simulated through all steps of its sequence comes to it; `None` where that is none of the closed
 /// form. Where the measured amplitudes lie nearer to another motion that can be seen there, it is that one: which of several a sweep
-/// falls into may hang on less than can be known.
+/// falls into may hang on less than can be known. A step far from all of them shows none.
 ///
 /// # Errors
 /// If the rig is impossible.
@@ -44,7 +46,25 @@ pub fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Vec<Option
     for (i, kind) in all.into_iter().flatten() {
         kinds[i] = kind;
     }
-    Ok(kinds)
+    Ok(without_far(data, setting, kinds))
+}
+
+/// A step farther than this from its motion, as part of the amplitude, …
+const FAR: f64 = 0.1;
+/// … and this much farther than the median step shows another motion, whatever the simulated sweep came to.
+const FARTHER: f64 = 5.0;
+
+fn without_far(data: &Data, setting: &Setting, kinds: Vec<Option<Kind>>) -> Vec<Option<Kind>> {
+    let one = |(step, kind): (&Step, &Option<Kind>)| {
+        let shows = setting.shows((*kind)?, setting.force_at(data, step), step.frequency);
+        let clear = step.clear().filter(|(mass, _)| counts(*kind, *mass));
+        clear.map(|(mass, seen)| (seen.amplitude / shows[mass]).ln().abs()).max_by(f64::total_cmp)
+    };
+    let away: Vec<Option<f64>> = data.steps.iter().zip(&kinds).map(one).collect();
+    let mut sorted: Vec<f64> = away.iter().flatten().copied().collect();
+    sorted.sort_by(f64::total_cmp);
+    let limit = FAR.max(FARTHER * median(&sorted).unwrap_or(0.0));
+    kinds.into_iter().zip(away).map(|(kind, away)| kind.filter(|_| away.is_none_or(|a| a <= limit))).collect()
 }
 
 /// Sum of the logarithms of measured over shown; a mass that rests where it was seen to move is as far as can be.

@@ -2,7 +2,7 @@
 
 use super::super::prediction::Kind;
 use super::super::simulated::Pace;
-use super::data::Data;
+use super::data::{Data, Step};
 use super::motion::assigned;
 use super::problem::Problem;
 use super::setting::Setting;
@@ -25,7 +25,7 @@ pub struct Settled<'a> {
     pub reduced: f64,
     /// Of the residuals along frequency, sweep by sweep.
     pub whiteness: Whiteness,
-    /// Steps left out because their motion changed from round to round.
+    /// Amplitudes left out because their motion changed from round to round.
     pub wavering: usize,
     /// Whether the motions stayed the same in the last round.
     pub agreed: bool,
@@ -63,7 +63,8 @@ pub fn settle<'a>(
         let agreed = next == kinds;
         round += 1;
         if agreed || round >= ROUNDS + MORE {
-            let wavering = out.iter().filter(|o| **o).count();
+            let of = |(step, out): (&Step, &bool)| if *out { step.clear().count() } else { 0 };
+            let wavering = data.steps.iter().zip(&out).map(of).sum();
             return Ok(Settled { problem, minimum, reduced, whiteness, wavering, agreed });
         }
         if round >= ROUNDS {

@@ -6,7 +6,11 @@ use crate::report::{Cell, Table};
 
 /// Parameters found; each with its own unit, so in SI units as they are.
 pub fn fitted(fit: &Fit) -> Table {
-    let end = |interval: Option<[f64; 2]>, side: usize| Cell::from(interval.map(|i| i[side]));
+    // Each row has its own unit, so no common number of decimals would do.
+    let six = |value: f64| format!("{value:.5e}").parse::<f64>().unwrap_or(value).to_string();
+    let end = |interval: Option<[f64; 2]>, side: usize| {
+        interval.map_or(Cell::Missing, |i| Cell::from(six(i[side])))
+    };
     table(
         "Parameters found",
         &fit.parameters,
