@@ -249,3 +249,27 @@ fn a_prior_is_used_and_said_where_it_holds_the_parameter() {
     let width = 2.0 * NORMAL * gap.estimate.std.unwrap();
     assert!(((high - low) / width - 1.0).abs() < 0.02, "{profile:?} {gap:?}");
 }
+
+#[test]
+fn the_simplest_model_that_predicts_what_it_has_not_seen_is_chosen() {
+    let setting = example();
+    let (clean, kinds) = truth(&setting, PACE);
+    let data = noisy(&clean, &kinds, &setting, 11);
+    let free: Vec<Option<Kind>> = kinds.iter().map(|k| k.filter(|k| *k == Kind::Free)).collect();
+    for (names, kinds, expected) in
+        [(&ALL[1..], kinds, "closed form"), (&["force", "k1"][..], free, "linear")]
+    {
+        let unknowns = unknowns(names, &setting);
+        let u = coordinates(&setting, &unknowns);
+        let (problem, minimum, reduced, whiteness) =
+            settle::least(&data, &setting, &unknowns, &kinds, &u).unwrap();
+        let settled = Settled { problem, minimum, reduced, whiteness, wavering: 0, agreed: true };
+        // Without named features one block a sequence is held out, away from all.
+        let rungs = rung::rungs(&settled, &[], None);
+        let chosen: Vec<&str> = rungs.iter().filter(|r| r.chosen).map(|r| r.model).collect();
+        assert_eq!(chosen, [expected], "{rungs:?}");
+        // The noise is 0.3 µm of 0.15 mm or more, and the parameters are better known.
+        let right = rungs.iter().find(|r| r.chosen).unwrap();
+        assert!(right.held_out.unwrap() < 2e-3, "{rungs:?}");
+    }
+}
