@@ -138,14 +138,13 @@ impl Data {
                     s.seen[mass].is_none() && (s.frequency, s.force) == (n.frequency, n.force)
                 })
         };
-        let places = match self.sequences.iter().find(beside) {
-            Some(places) => places.clone(),
-            None => {
-                let places: Vec<usize> = (self.steps.len()..self.steps.len() + new.len()).collect();
-                self.steps.extend(new);
-                self.sequences.push(places.clone());
-                places
-            }
+        let places = if let Some(places) = self.sequences.iter().find(beside) {
+            places.clone()
+        } else {
+            let places: Vec<usize> = (self.steps.len()..self.steps.len() + new.len()).collect();
+            self.steps.extend(new);
+            self.sequences.push(places.clone());
+            places
         };
         for (place, point) in places.into_iter().zip(points) {
             let amplitude = point.amplitude.value;

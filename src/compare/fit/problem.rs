@@ -9,7 +9,7 @@ use crate::math::{Minimum, minimise};
 
 /// A sum of squares to be minimised: data with weights, and priors.
 ///
-/// The frequency of a step errs by σ_f for both masses alike, so their amplitudes have the covariance diag(σ²) + σ_f²aaᵀ, a the slope of
+/// The frequency of a step errs by `σ_f` for both masses alike, so their amplitudes have the covariance `diag(σ²) + σ_f²aaᵀ`, a the slope of
 /// the predicted amplitude over frequency. With both scaled by σ that is I + wwᵀ, and the residuals are multiplied by its inverse square
 /// root I − (1 − 1/√(1 + w²)) wwᵀ/w².
 #[derive(Debug, Clone)]

@@ -1,7 +1,7 @@
 //! Where to begin: from several starting points, with every step on that motion which lies nearest to what was measured.
 //!
 //! Far from the truth a simulated sweep says little of the measured one, so here no history is asked. A residual is the logarithm of
-//! measured over predicted, bounded (S. Geman and D. McClure, *Bull. Int. Stat. Inst.* 52 (1987) 5), so that a point of another pattern
+//! measured over predicted, bounded (S. Geman and D. `McClure`, *Bull. Int. Stat. Inst.* 52 (1987) 5), so that a point of another pattern
 //! pulls no more than others, and none can be gained by leaving points out.
 
 use super::super::prediction::Kind;
