@@ -84,8 +84,8 @@ pub struct FitPoint {
 pub struct LeftOut {
     /// They do not stand out of the noise.
     pub faint: usize,
-    /// The simulated sweep comes to another pattern than one impact a cycle or none, or they lie far from these: a tenth of the amplitude and
-    /// five times the median.
+    /// The simulated sweep comes to another pattern than one impact a cycle or none, or they lie far from these: ten
+    /// standard deviations, and ten times the median.
     pub other_motion: usize,
     /// Their motion changed with the parameters from round to round.
     pub wavering: usize,

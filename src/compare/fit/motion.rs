@@ -49,16 +49,22 @@ pub fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Vec<Option
     Ok(without_far(data, setting, kinds))
 }
 
-/// A step farther than this from its motion, as part of the amplitude, …
-const FAR: f64 = 0.1;
-/// … and this much farther than the median step shows another motion, whatever the simulated sweep came to.
-const FARTHER: f64 = 5.0;
+/// A step farther from its motion than so many standard deviations, …
+const FAR: f64 = 10.0;
+/// … and so many times the median step, shows another motion, whatever the simulated sweep came to.
+const FARTHER: f64 = 10.0;
 
 fn without_far(data: &Data, setting: &Setting, kinds: Vec<Option<Kind>>) -> Vec<Option<Kind>> {
     let one = |(step, kind): (&Step, &Option<Kind>)| {
-        let shows = setting.shows((*kind)?, setting.force_at(data, step), step.frequency);
-        let clear = step.clear().filter(|(mass, _)| counts(*kind, *mass));
-        clear.map(|(mass, seen)| (seen.amplitude / shows[mass]).ln().abs()).max_by(f64::total_cmp)
+        let (kind, force) = ((*kind)?, setting.force_at(data, step));
+        // As far as the frequency may err, so may the amplitude.
+        let [shows, moved] =
+            [0.0, step.frequency_std].map(|df| setting.shows(kind, force, step.frequency + df));
+        let clear = step.clear().filter(|(mass, _)| counts(Some(kind), *mass));
+        let away = |(mass, seen): (usize, &super::data::Seen)| {
+            (seen.amplitude - shows[mass]).abs() / seen.std.hypot(moved[mass] - shows[mass])
+        };
+        clear.map(away).max_by(f64::total_cmp)
     };
     let away: Vec<Option<f64>> = data.steps.iter().zip(&kinds).map(one).collect();
     let mut sorted: Vec<f64> = away.iter().flatten().copied().collect();
