@@ -33,14 +33,18 @@ mod drill;
 mod drop;
 mod entry;
 mod fault;
+mod fit;
 mod locate;
 mod low_pass;
+mod parameter;
 mod prediction;
 mod record;
 mod spectral;
 
 pub use entry::{Compute, Drive, SweepEntry};
+pub use fit::FitEntry;
 pub use low_pass::{LowPass, Word};
+pub use parameter::Parameter;
 pub use prediction::{Follows, ModelEntry};
 pub use record::{
     Decimal, Detrend, DrillEntry, DropEntry, FrfEntry, ImpactsEntry, PulseEntry, RecordEntry, SpectrumEntry,
@@ -88,6 +92,8 @@ pub struct Campaign {
     pub contact: Option<ContactKeys>,
     /// How the overlay's predictions are made.
     pub model: ModelEntry,
+    /// Parameters to be found from the responses.
+    pub fit: FitEntry,
     /// What to compute, and how.
     pub compute: Compute,
     #[serde(skip)]
@@ -168,6 +174,10 @@ impl Campaign {
         })?;
         self.model.check().map_err(|(key, why)| {
             let from = self.text.find("[model]");
+            self.at(locate::find(&self.text, key, from), why)
+        })?;
+        self.fit.check().map_err(|(key, why)| {
+            let from = self.text.find("[fit");
             self.at(locate::find(&self.text, key, from), why)
         })?;
         for entry in self.records() {

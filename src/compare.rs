@@ -1,6 +1,7 @@
 //! Measured results on model predictions, through the same measurement.
 
 mod course;
+pub mod fit;
 pub mod forcing;
 pub mod overlay;
 pub mod pair;
@@ -10,6 +11,7 @@ pub mod rungs;
 pub mod score;
 pub mod simulated;
 
+pub use fit::{Fit, fit};
 pub use forcing::{Forcing, levels};
 pub use overlay::{Level, Overlay, overlay};
 pub use pair::Pair;

@@ -10,6 +10,6 @@ pub mod root;
 pub mod runge_kutta;
 pub mod swing;
 
-pub use least_squares::{Fit, least_squares};
+pub use least_squares::{Fit, Minimum, least_squares, minimise};
 pub use oscillator::Oscillator;
 pub use polynomial::Polynomial;

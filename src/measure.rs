@@ -22,7 +22,7 @@ pub mod restitution;
 pub mod sine;
 pub mod spectral;
 #[cfg(test)]
-mod synthetic;
+pub(crate) mod synthetic;
 pub mod tones;
 pub mod top;
 pub mod waterfall;

@@ -55,7 +55,9 @@ pub use green::Green;
 pub use loose::Loose;
 pub use motion::{Event, Motion, Path, Piece};
 pub use observable::Observable;
-pub use orbit::{Compliance, Orbit, Orbits, Softened, backbone, orbits, orbits_of, orbits_over, softened};
+pub use orbit::{
+    Compliance, Orbit, Orbits, Shown, Softened, backbone, orbits, orbits_of, orbits_over, shown, softened,
+};
 pub use periodic::{Beat, PeriodicOrbit};
 pub use receptance::{NoImpact, Steady};
 pub use regime::{Pattern, Regime, regime};

@@ -1,8 +1,8 @@
 //! `vibro compare`: measured responses over the model.
 
 use super::{args, complain, print, progress};
-use crate::campaign::Campaign;
-use crate::compare::{Overlay, Predicting, overlay};
+use crate::campaign::{Campaign, Parameter};
+use crate::compare::{Fit, Overlay, Predicting, overlay};
 use crate::error::{Error, Place, Result};
 use crate::report::job::{self, JobOptions};
 use crate::report::{Output, files, pictures, tables};
@@ -13,13 +13,17 @@ use std::fmt::Write as _;
 struct Answer {
     #[serde(flatten)]
     overlay: Overlay,
-    /// Parameters found from the data; none are fitted yet.
-    fit: Option<()>,
+    /// Parameters found from the data.
+    fit: Option<Fit>,
     files: Vec<String>,
 }
 
 pub fn run(typed: &args::Compare, json: bool) -> Result<()> {
-    let campaign = Campaign::from_path(&typed.campaign)?;
+    let mut campaign = Campaign::from_path(&typed.campaign)?;
+    if !typed.fit.is_empty() {
+        campaign.fit.parameters =
+            typed.fit.iter().map(|name| Parameter::from_name(name.trim())).collect::<Result<_>>()?;
+    }
     let rig = campaign.rig.ok_or_else(|| {
         Error::input(Place::file(campaign.path()), "the campaign has no [rig]", "the rig to compare with")
             .hint("add a [rig] table; keys left out take the values of the thesis' rig")
@@ -29,21 +33,33 @@ pub fn run(typed: &args::Compare, json: bool) -> Result<()> {
     let force = campaign.excitation.and_then(|e| e.force);
     let mut overlay = overlay(&rig, force, &Predicting::from(&campaign), &responses)?;
     overlay.warnings.extend(job::common(&responses));
+    let fit = job::fit(&campaign, &rig, &responses)?;
     let mut written = Vec::new();
     if let Some(folder) = &typed.out {
         let mut output = Output::new(folder)?;
-        let figure = pictures::overlay(&campaign.name, &overlay, &responses);
-        files::figures(&mut output, &[("overlay".to_owned(), figure)], &|| ())?;
+        let mut figures =
+            vec![("overlay".to_owned(), pictures::overlay(&campaign.name, &overlay, &responses))];
+        figures.extend(fit.as_ref().map(|fit| ("fit".to_owned(), pictures::fit(&campaign.name, fit))));
+        files::figures(&mut output, &figures, &|| ())?;
         output.write("pairs.csv", tables::pairs(&overlay).csv())?;
+        if let Some(fit) = &fit {
+            output.write("fit.csv", tables::fitted(fit).csv())?;
+            output.write("fit_points.csv", tables::fit_points(fit).csv())?;
+        }
         written = output.written().to_vec();
     }
     if json {
-        return print::json(&Answer { overlay, fit: None, files: written });
+        overlay.warnings.extend(fit.iter().flat_map(|f| f.warnings.iter().cloned()));
+        return print::json(&Answer { overlay, fit, files: written });
     }
     complain::warn(&overlay.warnings);
     let mut text = format!("{}\n{}", tables::peaks(&overlay).text(), tables::scores(&overlay).text());
     if !overlay.rungs.is_empty() {
         let _ = write!(text, "\n{}", tables::climbed(&overlay).text());
+    }
+    if let Some(fit) = &fit {
+        complain::warn(&fit.warnings);
+        let _ = write!(text, "\n{}\n{}", tables::fitted(fit).text(), tables::fit_rungs(fit).text());
     }
     for file in written {
         let _ = writeln!(text, "wrote {file}");

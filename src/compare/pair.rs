@@ -94,7 +94,7 @@ const SETTLED: f64 = 0.02;
 const RINGS: f64 = 1e-3;
 
 /// The motion of the closed form that a simulation came to.
-fn came_to<'a>(came: &Simulated, motions: &'a [Motion]) -> Option<&'a Motion> {
+pub(super) fn came_to<'a>(came: &Simulated, motions: &'a [Motion]) -> Option<&'a Motion> {
     let kind = Kind::of(came.regime);
     motions.iter().filter(|m| m.is_seen() && m.kind == kind).find(|m| {
         let larger = m.amplitude[0].max(m.amplitude[1]);

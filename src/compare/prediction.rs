@@ -133,7 +133,7 @@ impl Prediction {
     }
 }
 
-fn motions(rig: &Rig, force: f64, frequency: f64, observable: Observable) -> Result<Vec<Motion>> {
+pub(super) fn motions(rig: &Rig, force: f64, frequency: f64, observable: Observable) -> Result<Vec<Motion>> {
     let found = orbits(rig, force, frequency)?;
     let mut motions: Vec<Motion> = found
         .orbits

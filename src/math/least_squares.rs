@@ -90,6 +90,42 @@ pub fn least_squares(
     start: &[f64],
     scale: &[f64],
 ) -> Result<Fit> {
+    let found = minimise(residuals, n, start, scale)?;
+    Ok(Fit {
+        cofactor: cofactor(found.jacobian)?,
+        parameters: found.parameters,
+        residuals: found.residuals,
+        converged: found.converged,
+        evaluations: found.evaluations,
+    })
+}
+
+/// Parameters that minimise a sum of squared residuals, with no word on how well they are determined.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Minimum {
+    /// Parameters at the minimum, in the order of the start.
+    pub parameters: Vec<f64>,
+    /// Residuals there.
+    pub residuals: Vec<f64>,
+    /// ∂rᵢ/∂pⱼ there.
+    pub jacobian: DMatrix<f64>,
+    /// Whether a minimum was reached; else the parameters are the best that were met.
+    pub converged: bool,
+    /// Evaluations of the model.
+    pub evaluations: usize,
+}
+
+/// As [`least_squares`], for callers that look into the Jacobian themselves: a combination of parameters on which nothing depends is no
+/// error, and stays about where it started.
+///
+/// # Errors
+/// As [`least_squares`], but for that.
+pub fn minimise(
+    residuals: impl Fn(&[f64], &mut [f64]),
+    n: usize,
+    start: &[f64],
+    scale: &[f64],
+) -> Result<Minimum> {
     let scaled = scale.iter().all(|s| s.is_finite() && *s != 0.0);
     if start.is_empty() || scale.len() != start.len() || !scaled {
         return Err(Error::usage(
@@ -116,10 +152,10 @@ pub fn least_squares(
     let (Some(residuals), Some(jacobian)) = (problem.at(&parameters), problem.jacobian()) else {
         return Err(Error::refused("a fit ran to where the model gives no finite value"));
     };
-    Ok(Fit {
-        cofactor: cofactor(jacobian)?,
+    Ok(Minimum {
         parameters: parameters.as_slice().to_vec(),
         residuals: residuals.as_slice().to_vec(),
+        jacobian,
         converged: report.termination.was_successful(),
         evaluations: problem.evaluations.get(),
     })

@@ -5,6 +5,7 @@ mod conditions;
 mod course;
 mod drive;
 mod response;
+mod shown;
 mod sine;
 mod soft;
 mod stretch;
@@ -12,6 +13,7 @@ mod told;
 mod train;
 
 pub use backbone::backbone;
+pub use shown::{Shown, shown};
 pub use soft::{Compliance, LONGEST_CONTACT, Softened, softened};
 
 pub(super) use conditions::Root;

@@ -18,7 +18,7 @@ pub use spectral::SpectrumResult;
 
 use super::{Figure, Output, files, page, pictures, tables};
 use crate::campaign::Campaign;
-use crate::compare::{Overlay, overlay};
+use crate::compare::{Fit, Overlay, overlay};
 use crate::error::{Error, Result};
 use crate::measure::response::{Response, ResponseOptions, response, to_displacement};
 use crate::measure::waterfall::{Waterfall, gathered};
@@ -88,6 +88,8 @@ pub struct Results {
     pub rig: Option<Rig>,
     /// Comparison with the model.
     pub overlay: Option<Overlay>,
+    /// Parameters found from the responses.
+    pub fit: Option<Fit>,
     /// Spectra of time records.
     pub spectra: Vec<SpectrumResult>,
     /// Frequency response functions.
@@ -167,6 +169,11 @@ pub fn run(
     if let Some(overlay) = &overlay {
         figures.push(("overlay".to_owned(), pictures::overlay(&name, overlay, &responses)));
     }
+    let fit = match &overlay {
+        Some(_) => fitted(campaign, &responses, &mut warnings)?,
+        None => None,
+    };
+    figures.extend(fit.as_ref().map(|fit| ("fit".to_owned(), pictures::fit(&name, fit))));
     if campaign.compute.waterfall {
         let fmax = campaign.compute.fmax;
         for (slug, matrix) in slugs.iter().zip(&matrices) {
@@ -198,6 +205,7 @@ pub fn run(
         responses,
         rig: campaign.rig.filter(|_| overlay.is_some()),
         overlay,
+        fit,
         spectra,
         frf,
         drill: drilled,
@@ -215,6 +223,10 @@ pub fn run(
     if let Some(overlay) = &results.overlay {
         output.write("pairs.csv", tables::pairs(overlay).csv())?;
         output.write("peaks.csv", tables::peaks(overlay).csv())?;
+    }
+    if let Some(fit) = &results.fit {
+        output.write("fit.csv", tables::fitted(fit).csv())?;
+        output.write("fit_points.csv", tables::fit_points(fit).csv())?;
     }
     spectral::tables(&results.spectra, output, &mut results.warnings)?;
     frf::tables(&results.frf, &computed, output, &mut results.warnings)?;
@@ -334,6 +346,29 @@ fn model(campaign: &Campaign, responses: &[Response], warnings: &mut Vec<String>
     let overlay = overlay(&rig, campaign.excitation.and_then(|e| e.force), &campaign.into(), responses)?;
     merge(warnings, "", &overlay.warnings);
     Ok(Some(overlay))
+}
+
+/// The parameters that a campaign asks for; `None` where it asks for none.
+///
+/// # Errors
+/// As [`crate::compare::fit()`].
+pub fn fit(campaign: &Campaign, rig: &Rig, responses: &[Response]) -> Result<Option<Fit>> {
+    if campaign.fit.parameters.is_empty() {
+        return Ok(None);
+    }
+    let force = campaign.excitation.and_then(|e| e.force);
+    crate::compare::fit(rig, force, crate::compare::Predicting::from(campaign).pace, responses, &campaign.fit)
+        .map(Some)
+}
+
+/// As [`fit`] with its warnings; data that allow no answer are no reason to give up the rest.
+fn fitted(campaign: &Campaign, responses: &[Response], warnings: &mut Vec<String>) -> Result<Option<Fit>> {
+    let Some(rig) = &campaign.rig else { return Ok(None) };
+    let found = or_left_out(fit(campaign, rig, responses), "fit", warnings)?.flatten();
+    if let Some(fit) = &found {
+        merge(warnings, "", &fit.warnings);
+    }
+    Ok(found)
 }
 
 fn file_name(path: &std::path::Path) -> String {

@@ -2,6 +2,7 @@
 
 mod branches;
 mod drill;
+mod fit;
 mod frf;
 mod impacts;
 mod ladder;
@@ -17,6 +18,7 @@ mod waterfall;
 
 pub use branches::branches;
 pub use drill::drill;
+pub use fit::fit;
 pub use frf::{frf, nyquist};
 pub use impacts::{drop, impacts};
 pub use ladder::{ladder, ladder_over};

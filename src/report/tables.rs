@@ -2,6 +2,7 @@
 
 mod cycles;
 mod drill;
+mod fit;
 mod impacts;
 mod ladder;
 mod modal;
@@ -12,6 +13,7 @@ mod sweep;
 
 pub use cycles::{drill_cycles_head, drill_cycles_row};
 pub use drill::{drill, drill_average, drill_impacts};
+pub use fit::{fit_points, fit_rungs, fitted};
 pub use impacts::{impact_times, impacts, restitution};
 pub use ladder::{chosen, climbed, rungs, sensitivity, stretches, summaries};
 pub use modal::{modal_methods, modes};
@@ -203,6 +205,7 @@ pub fn summary(results: &Results) -> Vec<Table> {
         tables.push(scores(overlay));
         tables.push(climbed(overlay));
     }
+    tables.extend(results.fit.iter().flat_map(|fit| [fitted(fit), fit_rungs(fit)]));
     let records: Vec<_> = results.spectra.iter().map(|s| (s.result.name.as_str(), &s.result)).collect();
     tables.push(spectra(&records));
     tables.push(tones(&records));

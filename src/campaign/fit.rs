@@ -1,0 +1,79 @@
+//! What is to be found from the responses.
+
+use super::Parameter;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// The table `[fit]`.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct FitEntry {
+    /// Parameters to be found. None: nothing is fitted.
+    pub parameters: Vec<Parameter>,
+    /// What is known of a parameter from another measurement: `[value, standard uncertainty]`.
+    pub prior: BTreeMap<Parameter, [f64; 2]>,
+    /// Lowest and highest value that a parameter may take.
+    pub bounds: BTreeMap<Parameter, [f64; 2]>,
+    /// Starting points. Default 8.
+    pub starts: Option<usize>,
+    /// Stiffness of the contact in N/m: the closed form corrected for it is then judged beside the others.
+    pub contact_stiffness: Option<f64>,
+}
+
+/// Starting points, at most.
+const MOST_STARTS: usize = 1000;
+
+impl FitEntry {
+    /// The key that holds an impossible value, and why.
+    pub(crate) fn check(&self) -> Result<(), (&'static str, String)> {
+        let mut seen = Vec::new();
+        for parameter in &self.parameters {
+            if seen.contains(parameter) {
+                return Err(("parameters", format!("{} is named twice", parameter.name())));
+            }
+            seen.push(*parameter);
+        }
+        if self.starts.is_some_and(|n| n == 0 || n > MOST_STARTS) {
+            return Err(("starts", format!("starts is not from 1 to {MOST_STARTS}")));
+        }
+        if self.contact_stiffness.is_some_and(|k| !(k.is_finite() && k > 0.0)) {
+            return Err(("contact_stiffness", "contact_stiffness is not above 0 N/m".to_owned()));
+        }
+        for (parameter, [value, std]) in &self.prior {
+            let name = parameter.name();
+            if !(value.is_finite() && std.is_finite() && *std > 0.0) {
+                let found = format!("the prior of {name} is {value} with a standard uncertainty of {std}");
+                return Err((
+                    name,
+                    format!("{found}, which is not above 0: leave it out of the fit to hold it"),
+                ));
+            }
+            let (low, high) = self.range(*parameter);
+            if !(*value > low && *value < high) {
+                return Err((
+                    name,
+                    format!("the prior of {name} is {value}, outside its bounds {low} to {high}"),
+                ));
+            }
+        }
+        for (parameter, [low, high]) in &self.bounds {
+            let (name, (least, most)) = (parameter.name(), parameter.range());
+            // A gap may be negative: the masses are then pressed together.
+            let least = if *parameter == Parameter::Gap { f64::NEG_INFINITY } else { least };
+            if !(low < high && *low >= least && *high <= most) {
+                return Err((
+                    name,
+                    format!(
+                        "the bounds of {name} are {low} to {high}: no value lies between, or none that it can have"
+                    ),
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// Where a parameter may lie.
+    pub fn range(&self, parameter: Parameter) -> (f64, f64) {
+        self.bounds.get(&parameter).map_or(parameter.range(), |[low, high]| (*low, *high))
+    }
+}

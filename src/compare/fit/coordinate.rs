@@ -1,0 +1,67 @@
+//! Parameters without bounds in the place of those with bounds.
+
+/// A parameter θ between two bounds by a coordinate u that runs from −∞ to ∞: ln (θ − low), or logit of its place between both.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coordinate {
+    pub low: f64,
+    /// Infinite where there is none.
+    pub high: f64,
+}
+
+impl Coordinate {
+    /// u of θ; θ at a bound or beyond it counts as just inside.
+    pub fn of(self, value: f64) -> f64 {
+        const INSIDE: f64 = 1e-9;
+        if self.high.is_infinite() {
+            return (value - self.low).max(f64::MIN_POSITIVE).ln();
+        }
+        let part = ((value - self.low) / (self.high - self.low)).clamp(INSIDE, 1.0 - INSIDE);
+        (part / (1.0 - part)).ln()
+    }
+
+    /// θ of u.
+    pub fn value(self, u: f64) -> f64 {
+        // Beyond these the exponential leaves the numbers.
+        let u = u.clamp(-600.0, 600.0);
+        if self.high.is_infinite() {
+            return self.low + u.exp();
+        }
+        self.low + (self.high - self.low) / (1.0 + (-u).exp())
+    }
+
+    /// dθ/du.
+    pub fn slope(self, u: f64) -> f64 {
+        let value = self.value(u);
+        if self.high.is_infinite() {
+            return value - self.low;
+        }
+        (value - self.low) * (self.high - value) / (self.high - self.low)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_and_back() {
+        let cases = [
+            (0.0, 1.0, 0.98),
+            (0.0, f64::INFINITY, 1e-3),
+            (-1e-3, f64::INFINITY, 5e-4),
+            (90.0, 180.0, 128.0),
+        ];
+        for (low, high, value) in cases {
+            let c = Coordinate { low, high };
+            let u = c.of(value);
+            assert!((c.value(u) / value - 1.0).abs() < 1e-12);
+            // A central difference errs by h²/6 of the third derivative, and by ε/h.
+            let slope = (c.value(u + 1e-5) - c.value(u - 1e-5)) / 2e-5;
+            assert!((c.slope(u) / slope - 1.0).abs() < 1e-6, "{c:?}");
+            for u in [-1e9, 1e9] {
+                assert!(c.value(u) >= low && c.value(u) <= high);
+            }
+            assert!(c.of(low).is_finite() && c.of(value.min(high)).is_finite());
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Which motion each step shows.
+
+use super::super::forcing::median;
+use super::super::observable::Observable;
+use super::super::pair::came_to;
+use super::super::prediction::{Kind, Motion, motions};
+use super::super::simulated::{Pace, simulated};
+use super::data::{Data, Step};
+use super::problem::counts;
+use super::setting::Setting;
+use crate::error::Result;
+use rayon::prelude::*;
+
+/// The motion of each step, as a sweep simulated through all steps of its sequence comes to it; `None` where that is none of the closed
+/// form. Where the measured amplitudes lie nearer to another motion that can be seen there, it is that one: which of several a sweep
+/// falls into may hang on less than can be known. A step far from all of them shows none.
+///
+/// # Errors
+/// If the rig is impossible.
+pub fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Vec<Option<Kind>>> {
+    let sequence = |sequence: &Vec<usize>| -> Result<Vec<(usize, Option<Kind>)>> {
+        let points: Vec<(f64, f64)> = sequence
+            .iter()
+            .map(|i| (data.steps[*i].frequency, setting.force_at(data, &data.steps[*i])))
+            .collect();
+        let came = simulated(&setting.rig, None, &points, pace);
+        let one = |((i, (frequency, force)), came): ((&usize, &(f64, f64)), &Result<_>)| {
+            let motions = motions(&setting.rig, *force, *frequency, Observable::Fundamental)?;
+            let history = came.as_ref().ok().and_then(|came| came_to(came, &motions));
+            let step = &data.steps[*i];
+            let seen = motions.iter().filter(|m| m.is_seen());
+            let nearest = seen.min_by(|a, b| away(step, a).total_cmp(&away(step, b)));
+            let kind = history.and(nearest).map(|m| m.kind);
+            // A mass that moves is not free; a second motion of the same kind is not the one that fits go by.
+            let upper = motions.first().filter(|m| m.kind == Kind::Impacting);
+            let kind = kind.filter(|kind| match kind {
+                Kind::Free => step.seen[1].as_ref().is_none_or(|s| s.limit.is_some()),
+                _ => upper.is_some_and(Motion::is_seen),
+            });
+            Ok((*i, kind))
+        };
+        sequence.iter().zip(&points).zip(&came).map(one).collect()
+    };
+    let all: Vec<_> = data.sequences.par_iter().map(sequence).collect::<Result<_>>()?;
+    let mut kinds = vec![None; data.steps.len()];
+    for (i, kind) in all.into_iter().flatten() {
+        kinds[i] = kind;
+    }
+    Ok(without_far(data, setting, kinds))
+}
+
+/// A step farther from its motion than so many standard deviations, …
+const FAR: f64 = 10.0;
+/// … and so many times the median step, shows another motion, whatever the simulated sweep came to.
+const FARTHER: f64 = 10.0;
+
+fn without_far(data: &Data, setting: &Setting, kinds: Vec<Option<Kind>>) -> Vec<Option<Kind>> {
+    let one = |(step, kind): (&Step, &Option<Kind>)| {
+        let (kind, force) = ((*kind)?, setting.force_at(data, step));
+        // As far as the frequency may err, so may the amplitude.
+        let [shows, moved] =
+            [0.0, step.frequency_std].map(|df| setting.shows(kind, force, step.frequency + df));
+        let clear = step.clear().filter(|(mass, _)| counts(Some(kind), *mass));
+        let away = |(mass, seen): (usize, &super::data::Seen)| {
+            (seen.amplitude - shows[mass]).abs() / seen.std.hypot(moved[mass] - shows[mass])
+        };
+        clear.map(away).max_by(f64::total_cmp)
+    };
+    let away: Vec<Option<f64>> = data.steps.iter().zip(&kinds).map(one).collect();
+    let mut sorted: Vec<f64> = away.iter().flatten().copied().collect();
+    sorted.sort_by(f64::total_cmp);
+    let limit = FAR.max(FARTHER * median(&sorted).unwrap_or(0.0));
+    kinds.into_iter().zip(away).map(|(kind, away)| kind.filter(|_| away.is_none_or(|a| a <= limit))).collect()
+}
+
+/// Sum of the logarithms of measured over shown; a mass that rests where it was seen to move is as far as can be.
+fn away(step: &Step, motion: &Motion) -> f64 {
+    let moves =
+        |(mass, seen): (usize, &super::data::Seen)| (seen.amplitude / motion.amplitude[mass]).ln().abs();
+    let faint = (0..2).filter_map(|mass| Some((mass, step.seen[mass].as_ref()?.limit?)));
+    let above: f64 = faint.map(|(mass, limit)| (motion.amplitude[mass] / limit).ln().max(0.0)).sum();
+    step.clear().map(moves).sum::<f64>() + above
+}

@@ -1,0 +1,124 @@
+//! Weighted residuals of the steps whose motion is known.
+
+use super::super::prediction::Kind;
+use super::data::{Data, Step};
+use super::setting::Setting;
+use super::unknown::{Unknown, at};
+use crate::error::Result;
+use crate::math::{Minimum, minimise};
+
+/// A sum of squares to be minimised: data with weights, and priors.
+///
+/// The frequency of a step errs by `σ_f` for both masses alike, so their amplitudes have the covariance `diag(σ²) + σ_f²aaᵀ`, a the slope of
+/// the predicted amplitude over frequency. With both scaled by σ that is I + wwᵀ, and the residuals are multiplied by its inverse square
+/// root I − (1 − 1/√(1 + w²)) wwᵀ/w².
+#[derive(Debug, Clone)]
+pub struct Problem<'a> {
+    pub data: &'a Data,
+    pub base: Setting,
+    pub unknowns: Vec<Unknown>,
+    /// Motion of each step; `None` leaves it out.
+    pub kinds: Vec<Option<Kind>>,
+    /// w of each step.
+    pub slopes: Vec<[f64; 2]>,
+    /// Variances of the data are so much larger than stated.
+    pub scale: f64,
+}
+
+impl Problem<'_> {
+    /// Amplitudes that take part: index of the step and of the mass.
+    pub fn used(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.data.steps.iter().zip(&self.kinds).enumerate().filter(|(_, (_, kind))| kind.is_some()).flat_map(
+            |(i, (step, kind))| {
+                step.clear()
+                    .map(|(mass, _)| mass)
+                    .filter(|mass| counts(*kind, *mass))
+                    .map(move |mass| (i, mass))
+            },
+        )
+    }
+
+    /// Number of residuals: data, then one for each prior.
+    pub fn rows(&self) -> (usize, usize) {
+        (self.used().count(), self.unknowns.iter().filter(|u| u.prior.is_some()).count())
+    }
+
+    /// The setting at these coordinates.
+    pub fn setting(&self, u: &[f64]) -> Setting {
+        at(&self.base, &self.unknowns, u)
+    }
+
+    /// Takes the slopes from the setting at `u`.
+    pub fn weigh(&mut self, u: &[f64]) {
+        let setting = self.setting(u);
+        let slope = |(step, kind): (&Step, &Option<Kind>)| {
+            let Some(kind) = kind.filter(|_| step.frequency_std > 0.0) else { return [0.0; 2] };
+            let force = setting.force_at(self.data, step);
+            // A central difference over a millionth errs by 1e-12 of the third derivative and 1e-10 of the value.
+            let h = 1e-6 * step.frequency;
+            let [above, below] = [h, -h].map(|h| setting.shows(kind, force, step.frequency + h));
+            let mut w = [0.0; 2];
+            for (mass, seen) in step.clear().filter(|(mass, _)| counts(Some(kind), *mass)) {
+                let slope = (above[mass] - below[mass]) / (2.0 * h) * step.frequency_std / seen.std;
+                w[mass] = if slope.is_finite() { slope } else { 0.0 };
+            }
+            w
+        };
+        self.slopes = self.data.steps.iter().zip(&self.kinds).map(slope).collect();
+    }
+
+    /// Residuals at `u` in units of their standard deviation.
+    pub fn residuals(&self, u: &[f64], r: &mut [f64]) {
+        let setting = self.setting(u);
+        let mut r = r.iter_mut();
+        let mut put = |value: f64| {
+            if let Some(place) = r.next() {
+                *place = value;
+            }
+        };
+        let size = 1.0 / self.scale.sqrt();
+        for ((step, kind), w) in self.data.steps.iter().zip(&self.kinds).zip(&self.slopes) {
+            let Some(kind) = *kind else { continue };
+            let shows = setting.shows(kind, setting.force_at(self.data, step), step.frequency);
+            let mut s = [None; 2];
+            for (mass, seen) in step.clear().filter(|(mass, _)| counts(Some(kind), *mass)) {
+                s[mass] = Some((seen.amplitude - shows[mass]) / seen.std);
+            }
+            let square = w[0] * w[0] + w[1] * w[1];
+            let shared = s[0].unwrap_or(0.0) * w[0] + s[1].unwrap_or(0.0) * w[1];
+            let part = if square > 0.0 { (1.0 - 1.0 / (1.0 + square).sqrt()) / square } else { 0.0 };
+            for (s, w) in s.iter().zip(w) {
+                if let Some(s) = s {
+                    put(size * (s - part * shared * w));
+                }
+            }
+        }
+        for unknown in &self.unknowns {
+            if let Some([value, std]) = unknown.prior {
+                put((setting.get(unknown.parameter) - value) / std);
+            }
+        }
+    }
+
+    /// Residuals at `u`, data and priors.
+    pub fn at(&self, u: &[f64]) -> Vec<f64> {
+        let (data, priors) = self.rows();
+        let mut r = vec![0.0; data + priors];
+        self.residuals(u, &mut r);
+        r
+    }
+
+    /// The minimum from `start` on.
+    ///
+    /// # Errors
+    /// As [`minimise`].
+    pub fn solve(&self, start: &[f64]) -> Result<Minimum> {
+        let (data, priors) = self.rows();
+        minimise(|u, r| self.residuals(u, r), data + priors, start, &vec![0.1; start.len()])
+    }
+}
+
+/// Whether the amplitude of a mass counts in a motion of this kind: a mass at rest shows no parameter.
+pub fn counts(kind: Option<Kind>, mass: usize) -> bool {
+    mass == 0 || kind == Some(Kind::Impacting)
+}

@@ -1,0 +1,52 @@
+//! A rig with the force on it, and what each step shows of its motions.
+
+use super::super::prediction::Kind;
+use super::data::{Data, Step};
+use crate::campaign::Parameter;
+use crate::model::{Compliance, Excitation, Rig, Sine, Steady, orbits, shown, softened};
+
+/// A rig and the reference of the forces on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setting {
+    pub rig: Rig,
+    /// In N.
+    pub force: f64,
+    /// Stiffness of the contact in N/m, where its compliance is to be corrected for.
+    pub contact: Option<f64>,
+}
+
+impl Setting {
+    pub fn get(&self, parameter: Parameter) -> f64 {
+        parameter.of(&self.rig, self.force)
+    }
+
+    pub fn with(mut self, parameter: Parameter, value: f64) -> Setting {
+        parameter.set(&mut self.rig, &mut self.force, value);
+        self
+    }
+
+    /// Force at a step in N.
+    pub fn force_at(&self, data: &Data, step: &Step) -> f64 {
+        step.force * self.force / data.force
+    }
+
+    /// What a spectrum shows of both masses in m, of the motion of this kind at this force and frequency; NaN where it cannot be.
+    pub fn shows(&self, kind: Kind, force: f64, frequency: f64) -> [f64; 2] {
+        let sine = Sine { force, frequency };
+        match kind {
+            Kind::Impacting => self
+                .softened(&sine)
+                .unwrap_or_else(|| shown(&self.rig, &sine).map_or([f64::NAN; 2], |s| s.amplitude)),
+            Kind::Free => Steady::new(&self.rig, &sine).map_or([f64::NAN; 2], |s| [s.amplitude(), 0.0]),
+            Kind::Pattern | Kind::Irregular => [f64::NAN; 2],
+        }
+    }
+
+    /// The impacting motion with the compliance of the contact, where it is known and the correction good.
+    fn softened(&self, sine: &Sine) -> Option<[f64; 2]> {
+        let compliance = Compliance::new(&self.rig, self.contact?, None).ok()?;
+        let found = orbits(&self.rig, sine.force, sine.frequency).ok()?;
+        let soft = softened(&self.rig, &Excitation::Sine(*sine), &found, &compliance).ok()?;
+        Some(soft.first()?.as_ref()?.fundamental)
+    }
+}

@@ -1,0 +1,134 @@
+//! Motions by history and parameters by least squares, in turn until both stay.
+
+use super::super::prediction::Kind;
+use super::super::simulated::Pace;
+use super::data::{Data, Step};
+use super::motion::assigned;
+use super::problem::Problem;
+use super::setting::Setting;
+use super::unknown::{Unknown, at};
+use crate::error::{Error, Result};
+use crate::math::Minimum;
+use crate::measure::residuals::Whiteness;
+
+/// Rounds before steps whose motion still changes are left out.
+const ROUNDS: usize = 3;
+/// Rounds after that.
+const MORE: usize = 3;
+
+/// Parameters at the least sum of squares, with the motions that belong to them.
+#[derive(Debug, Clone)]
+pub struct Settled<'a> {
+    pub problem: Problem<'a>,
+    pub minimum: Minimum,
+    /// Sum of squares of the data over points less parameters, before variances were scaled.
+    pub reduced: f64,
+    /// Of the residuals along frequency, sweep by sweep.
+    pub whiteness: Whiteness,
+    /// Amplitudes left out because their motion changed from round to round.
+    pub wavering: usize,
+    /// Whether the motions stayed the same in the last round.
+    pub agreed: bool,
+}
+
+impl Settled<'_> {
+    pub fn setting(&self) -> Setting {
+        self.problem.setting(&self.minimum.parameters)
+    }
+}
+
+/// Settles from the coordinates `start` on.
+///
+/// # Errors
+/// If a round leaves fewer points than parameters.
+pub fn settle<'a>(
+    data: &'a Data,
+    base: &Setting,
+    unknowns: &[Unknown],
+    start: &[f64],
+    pace: Pace,
+) -> Result<Settled<'a>> {
+    let mut u = start.to_vec();
+    let mut out = vec![false; data.steps.len()];
+    let motions = |u: &[f64], out: &[bool]| -> Result<Vec<Option<Kind>>> {
+        let kinds = assigned(data, &at(base, unknowns, u), pace)?;
+        Ok(kinds.into_iter().zip(out).map(|(kind, out)| kind.filter(|_| !out)).collect())
+    };
+    let mut kinds = motions(&u, &out)?;
+    let mut round = 0;
+    loop {
+        let (problem, minimum, reduced, whiteness) = least(data, base, unknowns, &kinds, &u)?;
+        u.clone_from(&minimum.parameters);
+        let next = motions(&u, &out)?;
+        let agreed = next == kinds;
+        round += 1;
+        if agreed || round >= ROUNDS + MORE {
+            let of = |(step, out): (&Step, &bool)| if *out { step.clear().count() } else { 0 };
+            let wavering = data.steps.iter().zip(&out).map(of).sum();
+            return Ok(Settled { problem, minimum, reduced, whiteness, wavering, agreed });
+        }
+        if round >= ROUNDS {
+            for ((out, a), b) in out.iter_mut().zip(&kinds).zip(&next) {
+                *out |= a != b;
+            }
+        }
+        kinds = next.into_iter().zip(&out).map(|(kind, out)| kind.filter(|_| !out)).collect();
+    }
+}
+
+/// The least sum of squares with these motions; weights and scale from the parameters found, twice.
+pub fn least<'a>(
+    data: &'a Data,
+    base: &Setting,
+    unknowns: &[Unknown],
+    kinds: &[Option<Kind>],
+    start: &[f64],
+) -> Result<(Problem<'a>, Minimum, f64, Whiteness)> {
+    let mut problem = Problem {
+        data,
+        base: *base,
+        unknowns: unknowns.to_vec(),
+        kinds: kinds.to_vec(),
+        slopes: Vec::new(),
+        scale: 1.0,
+    };
+    let (n, priors) = problem.rows();
+    if n + priors < unknowns.len() || n == 0 {
+        return Err(Error::refused(format!(
+            "{n} amplitude(s) of motions with one impact a cycle or none do not determine {} parameters",
+            unknowns.len()
+        ))
+        .hint("fit fewer parameters, or begin nearer to the rig"));
+    }
+    let mut u = start.to_vec();
+    let mut turn = 0;
+    loop {
+        problem.weigh(&u);
+        let minimum = problem.solve(&u)?;
+        u.clone_from(&minimum.parameters);
+        let (reduced, whiteness) = left(&problem, &minimum.residuals);
+        turn += 1;
+        if turn == 3 {
+            return Ok((problem, minimum, reduced, whiteness));
+        }
+        let least = if data.guessed { f64::MIN_POSITIVE } else { 1.0 };
+        problem.scale = reduced.max(least) * whiteness.inflation.powi(2);
+    }
+}
+
+/// χ²/ν of the data as their stated uncertainties have it, and whether their residuals are noise.
+pub fn left(problem: &Problem<'_>, residuals: &[f64]) -> (f64, Whiteness) {
+    let (n, _) = problem.rows();
+    let data = residuals.get(..n).unwrap_or_default();
+    let free = n.saturating_sub(problem.unknowns.len());
+    let sum: f64 = data.iter().map(|r| r * r).sum();
+    let reduced = if free > 0 { problem.scale * sum / free as f64 } else { 1.0 };
+    let mut rows: Vec<Vec<f64>> = vec![Vec::new(); problem.data.sweeps.len()];
+    for ((step, mass), r) in problem.used().zip(data) {
+        if let Some(seen) = &problem.data.steps[step].seen[mass] {
+            rows[seen.sweep].push(*r);
+        }
+    }
+    let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
+    (reduced, Whiteness::of(&rows))
+}

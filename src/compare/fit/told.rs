@@ -1,0 +1,91 @@
+//! What is to be said of a fit.
+
+use super::Fit;
+use super::data::Data;
+use super::settle::Settled;
+
+/// χ²/ν beyond which stated uncertainties or the model are doubted.
+const POOR: f64 = 2.0;
+/// Correlations beyond this are named.
+const TIED: f64 = 0.95;
+/// A value within this part of its bounds lies at one.
+const AT_BOUND: f64 = 1e-3;
+
+/// Sentences in the order of their weight.
+pub fn warnings(fit: &Fit, settled: &Settled<'_>, data: &Data) -> Vec<String> {
+    let mut said = Vec::new();
+    for parameter in &fit.parameters {
+        let name = parameter.parameter.name();
+        if let Some(reason) = &parameter.reason {
+            said.push(format!("{name} is not identifiable from these points: {reason}."));
+        }
+        if parameter.rests_on_prior {
+            said.push(format!("{name} rests on its prior: the points say less of it than was known before."));
+        }
+    }
+    for (unknown, u) in settled.problem.unknowns.iter().zip(&settled.minimum.parameters) {
+        let c = unknown.coordinate;
+        let part = (c.value(*u) - c.low) / (c.high - c.low);
+        if c.high.is_finite() && !(AT_BOUND..=1.0 - AT_BOUND).contains(&part) {
+            said.push(format!(
+                "{} lies at a bound, {} to {}: its uncertainty means little.",
+                unknown.parameter.name(),
+                c.low,
+                c.high
+            ));
+        }
+    }
+    if let Some(rung) = fit.rungs.iter().find(|r| r.chosen) {
+        said.push(format!(
+            "Of the models that were judged by points held out, the simplest within one standard error of the best is: {}.",
+            rung.model
+        ));
+    }
+    if data.guessed {
+        said.push(format!("By the residuals the amplitudes are good to {:.2} %.", fit.widened));
+    } else if fit.reduced_chi_squared > POOR {
+        said.push(format!(
+            "The residuals are {:.1} times as large as the uncertainties of the points: these are too small, or the model lacks something. The \
+             uncertainties of the parameters are widened as much.",
+            fit.reduced_chi_squared.sqrt()
+        ));
+    }
+    if settled.whiteness.rejected() {
+        said.push(format!(
+            "The residuals follow each other along frequency, which noise does not: the model lacks something. Uncertainties are widened \
+             by {:.1} for it.",
+            settled.whiteness.inflation
+        ));
+    }
+    for (i, row) in fit.correlations.iter().enumerate() {
+        for (j, r) in row.iter().enumerate().skip(i + 1).filter(|(_, r)| r.abs() > TIED) {
+            let (a, b) = (&fit.parameters[i], &fit.parameters[j]);
+            if a.identifiable && b.identifiable {
+                said.push(format!(
+                    "{} and {} are known better together than each alone: their correlation is {r:.3}.",
+                    a.parameter.name(),
+                    b.parameter.name()
+                ));
+            }
+        }
+    }
+    if fit.left_out.other_motion + fit.left_out.wavering > 0 {
+        said.push(format!(
+            "{} amplitude(s) of other motions than one impact a cycle or none are left out of the fit.",
+            fit.left_out.other_motion + fit.left_out.wavering
+        ));
+    }
+    if !settled.agreed {
+        said.push(
+            "The motions of some points still changed with the parameters in the last round.".to_owned(),
+        );
+    }
+    if fit.agreeing * 2 < fit.starts {
+        said.push(format!(
+            "Only {} of {} starting points led to this answer: others may fit about as well.",
+            fit.agreeing, fit.starts
+        ));
+    }
+    said.extend(data.warnings.iter().cloned());
+    said
+}

@@ -1,0 +1,54 @@
+//! What is to be found.
+
+use super::coordinate::Coordinate;
+use super::setting::Setting;
+use crate::campaign::{FitEntry, Parameter};
+use crate::error::{Error, Result};
+
+/// A parameter to be found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unknown {
+    pub parameter: Parameter,
+    pub coordinate: Coordinate,
+    /// Value and standard uncertainty from another measurement.
+    pub prior: Option<[f64; 2]>,
+}
+
+impl Unknown {
+    /// All that an entry asks for, from these values on.
+    ///
+    /// # Errors
+    /// If nothing is asked for, a parameter twice, a starting value lies outside its bounds, or a prior or bounds cannot be.
+    pub fn all(entry: &FitEntry, from: &Setting) -> Result<Vec<Unknown>> {
+        entry.check().map_err(|(key, why)| Error::usage(format!("fit of {key}: {why}"), "another value"))?;
+        if entry.parameters.is_empty() {
+            return Err(Error::usage("a fit of no parameter", "one parameter or more"));
+        }
+        let one = |parameter: &Parameter| {
+            let (low, high) = entry.range(*parameter);
+            let value = from.get(*parameter);
+            if !(value >= low && value <= high) {
+                return Err(Error::usage(
+                    format!("{} starts at {value}, outside its bounds {low} to {high}", parameter.name()),
+                    "bounds that hold the rig's own value, from which the fit starts",
+                ));
+            }
+            let prior = entry.prior.get(parameter).copied();
+            Ok(Unknown { parameter: *parameter, coordinate: Coordinate { low, high }, prior })
+        };
+        entry.parameters.iter().map(one).collect()
+    }
+}
+
+/// `base` with these unknowns at these coordinates.
+pub fn at(base: &Setting, unknowns: &[Unknown], u: &[f64]) -> Setting {
+    unknowns
+        .iter()
+        .zip(u)
+        .fold(*base, |setting, (unknown, u)| setting.with(unknown.parameter, unknown.coordinate.value(*u)))
+}
+
+/// Coordinates of the unknowns' values in `setting`.
+pub fn coordinates(setting: &Setting, unknowns: &[Unknown]) -> Vec<f64> {
+    unknowns.iter().map(|unknown| unknown.coordinate.of(setting.get(unknown.parameter))).collect()
+}

@@ -1,0 +1,64 @@
+//! What a fit leaves, and how well it holds the parameter known worst.
+
+use super::lettered;
+use crate::compare::Fit;
+use crate::compare::fit::Profile;
+use crate::record::Direction;
+use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
+use std::fmt::Write as _;
+
+/// χ² of one degree of freedom that is exceeded in 5 % of cases.
+const LIMIT: f64 = 3.841;
+
+/// Residuals over frequency, by mass and direction, and the profile of the parameter known worst.
+pub fn fit(title: &str, fit: &Fit) -> Figure {
+    let mut above =
+        Plot::new(AxisSpec::new("Excitation frequency", "Hz"), AxisSpec::new("Residual / std", ""))
+            .legend(Legend::Right);
+    for (mass, direction, marker) in [
+        (1, Direction::Up, Marker::Circle),
+        (1, Direction::Down, Marker::OpenCircle),
+        (2, Direction::Up, Marker::FilledSquare),
+        (2, Direction::Down, Marker::Square),
+    ] {
+        let mine = fit.points.iter().filter(|p| p.mass == mass && p.direction == direction);
+        let (x, y): (Vec<f64>, Vec<f64>) = mine.map(|p| (p.frequency, p.residual)).unzip();
+        if !x.is_empty() {
+            let name = format!("mass {mass}, {}", direction.name());
+            above =
+                above.with(Series::points(name, x, y).ink(Ink::Nth(usize::from(mass) - 1)).marker(marker));
+        }
+    }
+    above = above.with(Series::horizontal("", 0.0));
+    let mut figure = Figure::double(title).panel(above.title("What the fit leaves")).height(80.0);
+    let mut caption = format!(
+        "Residuals of {} amplitudes in units of their standard deviation; {} of other motions are left out.",
+        fit.n,
+        fit.left_out.other_motion + fit.left_out.wavering
+    );
+    if let Some(profile) = &fit.profile {
+        figure = figure.panel(profiled(profile)).height(150.0);
+        let _ = write!(
+            caption,
+            " Below: the least sum of squares over {}, the parameter known worst, all others free; under the grey line ({LIMIT}) it lies with \
+             95 % confidence.",
+            profile.parameter.name()
+        );
+    }
+    lettered(figure).caption(caption)
+}
+
+fn profiled(profile: &Profile) -> Plot {
+    let top = profile.rise.iter().copied().filter(|r| r.is_finite()).fold(LIMIT, f64::max);
+    let unit = if profile.unit == "1" { "" } else { profile.unit };
+    Plot::new(
+        AxisSpec::new(profile.parameter.name(), unit),
+        AxisSpec::new("Rise of the sum of squares", "").limits(0.0, 1.05 * top.min(6.0 * LIMIT)),
+    )
+    .title(format!("Profile of {}", profile.parameter.name()))
+    .legend(Legend::Hidden)
+    .with(Series::horizontal("95 %", LIMIT))
+    .with(
+        Series::line("", profile.value.clone(), profile.rise.clone()).ink(Ink::Nth(0)).stroke(Stroke::Solid),
+    )
+}
