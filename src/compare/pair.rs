@@ -88,17 +88,16 @@ impl Course<'_> {
     }
 }
 
-/// A simulated motion is one of the closed form where both amplitudes agree to this part, what 300 cycles leave of the start near a border
-/// of stability, and to this part of the larger one: what rings on in a mass that was struck before.
+/// A simulated motion is one of the closed form where both amplitudes agree to this part: what 300 cycles leave of the start near a border
+/// of stability.
 const SETTLED: f64 = 0.02;
-const RINGS: f64 = 1e-3;
 
 /// The motion of the closed form that a simulation came to.
 pub(super) fn came_to<'a>(came: &Simulated, motions: &'a [Motion]) -> Option<&'a Motion> {
     let kind = Kind::of(came.regime);
     motions.iter().filter(|m| m.is_seen() && m.kind == kind).find(|m| {
-        let larger = m.amplitude[0].max(m.amplitude[1]);
-        (0..2)
-            .all(|i| (came.amplitude[i] - m.amplitude[i]).abs() <= SETTLED * m.amplitude[i] + RINGS * larger)
+        // What rings on in a mass that comes to rest is held against the other's amplitude.
+        let size = |i: usize| if m.amplitude[i] > 0.0 { m.amplitude[i] } else { m.amplitude[1 - i] };
+        (0..2).all(|i| (came.amplitude[i] - m.amplitude[i]).abs() <= SETTLED * size(i))
     })
 }
