@@ -96,7 +96,7 @@ fn judged(orbit: &Orbit, gap_std: Option<f64>) -> Judged<'_> {
     Judged {
         orbit,
         lines: (1..=LINES).map(|n| orbit.line(n).map(num_complex::Complex::norm)).collect(),
-        robust: gap_std.map(|std| v.robust(std)),
+        robust: gap_std.map(|std| orbit.robust(std)),
         near_grazing: gap_std.filter(|_| v.exists).map(|std| v.grazing_distance <= std),
     }
 }

@@ -10,6 +10,7 @@ use super::score::{Score, far_off, score};
 use super::simulated::Pace;
 use crate::error::{Error, Result};
 use crate::measure::response::Response;
+use crate::model::ladder::Model;
 use crate::model::{Observable, Rig};
 use crate::record::Direction;
 use serde::Serialize;
@@ -95,10 +96,12 @@ pub fn overlay(
         .collect();
     let asked =
         if predicting.model.is_some() { Vec::new() } else { climbed(rig, predicting, &swept, &medians)? };
-    warnings.extend(asked.iter().find_map(|r| r.open.as_ref()).map(|open| {
-        format!("Impacts without duration are assumed, since nothing states [contact] stiffness. {open}")
-    }));
     let model = predicting.model(&asked);
+    if let Some(open) = asked.iter().find_map(|r| r.open.as_ref()) {
+        let stated = predicting.contact.is_some_and(|c| c.stiffness.is_some());
+        let why = if stated { "" } else { ", since nothing states [contact] stiffness" };
+        warnings.push(format!("Where no model can be chosen {} is assumed{why}. {open}", model.name()));
+    }
     let course = Course { rig, law: predicting.law(rig, model)?, model, pace: predicting.pace };
     let mut overlay = Overlay {
         force,
@@ -126,8 +129,35 @@ pub fn overlay(
         let sweeps = members.iter().map(|s| s.response.name.clone()).collect();
         overlay.levels.push(Level { force: mean.median(), sweeps, curve: common });
     }
+    overlay.warnings.extend(elsewhere(&overlay));
     overlay.warnings.extend(doubts(&overlay.pairs, predicting.pace));
     Ok(overlay)
+}
+
+/// Where the ladder takes the motion without impacts and the sweep that is led from rest comes to one with them.
+fn elsewhere(overlay: &Overlay) -> Vec<String> {
+    let mut said = Vec::new();
+    for rungs in &overlay.rungs {
+        for stretch in rungs.stretches.iter().filter(|s| s.chosen == Some(Model::Linear)) {
+            let within = |p: &&Pair| {
+                p.direction == rungs.direction
+                    && (stretch.from..=stretch.to).contains(&p.frequency)
+                    && levels(&[Some(p.force), Some(rungs.force)]).len() == 1
+            };
+            let strikes =
+                overlay.pairs.iter().filter(within).filter(|p| p.motion != Some(Kind::Free)).count();
+            if strikes > 0 {
+                said.push(format!(
+                    "{strikes} point(s) from {:.2} to {:.2} Hz, sweeping {}: led from rest at the first point the rig strikes there; a sweep that \
+                     comes from farther off does not, and the choice of a model is for that one. Both motions are possible.",
+                    stretch.from,
+                    stretch.to,
+                    rungs.direction.name()
+                ));
+            }
+        }
+    }
+    said
 }
 
 /// What is to be said of the predictions.
@@ -288,5 +318,23 @@ mod tests {
         for pair in overlay.pairs.iter().filter(|p| p.motion == Some(Kind::Free)) {
             assert_eq!(pair.model, "closed-form", "{pair:?}");
         }
+    }
+
+    #[test]
+    fn a_start_from_rest_that_strikes_where_a_long_sweep_would_not_is_said() {
+        // At 58 Hz both motions are possible; at full force from rest the first cycles overshoot the gap.
+        let rig =
+            Rig { m1: 0.5, m2: 1.0, k1: 3e4, k2: 8e4, c1: 10.0, c2: 20.0, restitution: 0.5, ..Rig::thesis() };
+        let mut sweep = free("m", &rig, 30.0);
+        for (i, point) in sweep.points.iter_mut().enumerate() {
+            point.excitation = 57.0 + 0.1 * i as f64;
+            point.force = Some(30.0);
+        }
+        let contact = Some(crate::model::ContactKeys { stiffness: Some(1e9), ..Default::default() });
+        let predicting = Predicting { contact, ..Predicting::default() };
+        let overlay = overlay(&rig, None, &predicting, &[sweep]).unwrap();
+        assert!(overlay.pairs.iter().any(|p| p.motion == Some(Kind::Impacting)));
+        let linear = overlay.rungs.iter().flat_map(|r| &r.stretches).any(|s| s.chosen == Some(Model::Linear));
+        assert!(linear && overlay.warnings.iter().any(|w| w.contains("led from rest")), "{overlay:?}");
     }
 }

@@ -3,7 +3,7 @@
 use super::simulated::Pace;
 use crate::campaign::{Campaign, Follows};
 use crate::error::Result;
-use crate::model::ladder::{self, Model, Question, Stretch, choose_over};
+use crate::model::ladder::{self, Choice, Model, Question, Stretch, choose_over};
 use crate::model::{ContactKeys, Excitation, Law, Observable, Rig, Scene, Sine};
 use crate::record::Direction;
 use serde::Serialize;
@@ -52,7 +52,7 @@ pub struct Rungs {
     pub direction: Direction,
     /// Which rung is good enough where.
     pub stretches: Vec<Stretch>,
-    /// Why none could be chosen, at the first frequency where that is so.
+    /// Why none could be chosen, at the frequency where what is not known would move the answer most.
     pub open: Option<String>,
 }
 
@@ -77,7 +77,10 @@ pub fn rungs(
         ..Question::new(Observable::Fundamental)
     };
     let survey = choose_over(&scene, low, high, ASKED, &question)?;
-    let open = survey.points.iter().find(|p| p.chosen.is_none());
+    // Told where the unknown would move the answer most.
+    let moves = |p: &&Choice| p.sensitivity.iter().map(|s| s.change.abs()).fold(0.0, f64::max);
+    let open = survey.points.iter().filter(|p| p.chosen.is_none());
+    let open = open.max_by(|a, b| moves(a).total_cmp(&moves(b)));
     let open = open.and_then(|p| Some(format!("At {:.2} Hz: {}", p.frequency, p.reasons.last()?)));
     Ok(Rungs { force, direction, stretches: survey.stretches, open })
 }
@@ -95,12 +98,15 @@ impl Predicting {
             return named.model();
         }
         let highest = asked.iter().flat_map(|r| &r.stretches).filter_map(|s| s.chosen).max();
-        let damped = self.contact.is_some_and(|c| c.damping.is_some());
+        let known = |of: fn(&ContactKeys) -> Option<f64>| self.contact.as_ref().and_then(of);
+        let curved = known(|c| c.exponent).is_some_and(|n| n != 1.0);
         match highest {
-            Some(Model::HuntCrossley) if damped => Model::HuntCrossley,
-            // What the correction is for, the contact of spring and damper has in full; a curved contact without a stated damping has no
-            // number that fits all speeds.
-            Some(Model::SoftCorrected | Model::KelvinVoigt | Model::HuntCrossley) => Model::KelvinVoigt,
+            // Without a stated damping a curved contact has no number that fits all speeds.
+            Some(Model::HuntCrossley) if curved && known(|c| c.damping).is_some() => Model::HuntCrossley,
+            // What the correction is for, the contact of spring and damper has in full.
+            Some(Model::SoftCorrected | Model::KelvinVoigt | Model::HuntCrossley) if !curved => {
+                Model::KelvinVoigt
+            }
             _ => Model::Restitution,
         }
     }

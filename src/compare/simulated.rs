@@ -69,7 +69,7 @@ fn led<M: Motion>(
 fn read(motion: &mut impl Motion, pace: Pace) -> Result<Simulated> {
     let frequency = motion.frequency();
     motion.advance(motion.time() + f64::from(pace.settle) / frequency, &mut |_| {})?;
-    let (mut gauge, mut watch) = (Gauge::new(Observable::Fundamental), Watch::new(motion));
+    let (mut gauge, mut watch) = (Gauge::new(Observable::Fundamental, motion.rig()), Watch::new(motion));
     let omega = TAU * frequency;
     for _ in 0..pace.measure {
         let (start, begun) = (motion.time(), motion.phase());

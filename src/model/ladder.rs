@@ -89,6 +89,9 @@ pub fn law(scene: &Scene, model: Model) -> Result<Option<Law>> {
     };
     match model {
         Model::Linear | Model::ClosedForm | Model::Restitution => Ok(None),
+        Model::SoftCorrected | Model::KelvinVoigt if laws::is_curved(scene) => {
+            Err(Error::usage(format!("{} with contact.exponent", model.name()), "a spring, exponent 1"))
+        }
         Model::SoftCorrected | Model::KelvinVoigt => {
             laws::spring(scene, keys.stiffness.ok_or_else(|| missing("stiffness"))?).map(Some)
         }

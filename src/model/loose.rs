@@ -75,6 +75,10 @@ impl Loose {
 }
 
 impl Motion for Loose {
+    fn rig(&self) -> &Rig {
+        Loose::rig(self)
+    }
+
     fn time(&self) -> f64 {
         self.follow.time()
     }

@@ -1,6 +1,6 @@
 //! What all simulated motions have in common, whatever their contact law: they go from event to event.
 
-use super::{Impact, State};
+use super::{Impact, Rig, State};
 use crate::error::Result;
 
 /// What ended a piece of a motion.
@@ -45,6 +45,9 @@ pub struct Piece<'a> {
 
 /// A motion that is followed from event to event, whatever its contact law.
 pub trait Motion: Clone {
+    /// The rig that moves.
+    fn rig(&self) -> &Rig;
+
     /// Time in s.
     fn time(&self) -> f64;
 

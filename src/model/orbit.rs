@@ -108,6 +108,21 @@ impl Orbit {
         }
     }
 
+    /// Whether the motion is real, and stays so where the gap differs by up to `gap_uncertainty` (m): farther from grazing than that by
+    /// [`Validity::grazing_distance`], and real when solved again at the ends and half-way to them.
+    pub fn robust(&self, gap_uncertainty: f64) -> bool {
+        if !self.validity.real() || self.validity.grazing_distance <= gap_uncertainty {
+            return false;
+        }
+        let Some(excitation) = self.drive.excitation(self.frequency) else { return false };
+        gap_uncertainty == 0.0
+            || [-1.0, -0.5, 0.5, 1.0].iter().all(|part| {
+                let rig = Rig { gap: self.rig.gap + part * gap_uncertainty, ..self.rig };
+                orbits_of(&rig, &excitation, self.cycles)
+                    .is_ok_and(|found| self.continued(&found.orbits).is_some_and(|o| o.validity.real()))
+            })
+    }
+
     /// Whether the orbit lies on that side of the fold where a larger impulse would take more energy than the force then gives.
     pub fn is_upper(&self) -> bool {
         self.upper

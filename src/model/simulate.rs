@@ -340,6 +340,10 @@ impl Simulation {
 }
 
 impl Motion for Simulation {
+    fn rig(&self) -> &Rig {
+        Simulation::rig(self)
+    }
+
     fn time(&self) -> f64 {
         self.time
     }

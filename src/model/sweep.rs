@@ -143,7 +143,7 @@ impl Plan {
         let Pace::Steps { points, settle, measure } = self.pace else {
             return Err(Error::usage("a sweep of the force with a rate", "steps"));
         };
-        let mut gauge = Gauge::new(self.observable);
+        let mut gauge = Gauge::new(self.observable, motion.rig());
         let last = (points - 1) as f64;
         (0..points)
             .map(|i| {
@@ -184,7 +184,7 @@ impl Plan {
         let all = ((end * end - start * start) / (2.0 * rate)).floor().max(1.0) as u64;
         let group = all.div_ceil(points as u64);
         let at = |cycle: f64| (start * start + 2.0 * rate * cycle).max(0.0).sqrt();
-        let mut gauge = Gauge::new(self.observable);
+        let mut gauge = Gauge::new(self.observable, motion.rig());
         let mut found = Vec::with_capacity((all / group) as usize + 1);
         let mut cycle = 0;
         while cycle < all {

@@ -30,8 +30,8 @@ pub struct Validity {
     /// Gap in m at the closest approach that is not the impact; `None` where the masses part and return without one.
     pub clearance: Option<f64>,
     /// Change of the rest gap in m, to first order, by which the impact would graze, the orbit fold, or a second contact
-    /// appear. Where this is not larger than the uncertainty of the gap, the verdicts and the multipliers are not to be
-    /// relied on: near grazing the multipliers grow like the reciprocal of the approach speed.
+    /// appear; the motion may lose its stability before. Where this is not larger than the uncertainty of the gap, the verdicts and the
+    /// multipliers are not to be relied on: near grazing the multipliers grow like the reciprocal of the approach speed.
     pub grazing_distance: f64,
 }
 
@@ -103,8 +103,8 @@ impl Validity {
         }
     }
 
-    /// Whether the orbit is real, and stays so for any gap within `gap_uncertainty` (m) of the stated one.
-    pub fn robust(&self, gap_uncertainty: f64) -> bool {
-        self.exists && self.admissible && self.stable == Some(true) && self.grazing_distance > gap_uncertainty
+    /// Whether the motion can be measured: it exists, is admissible and stable.
+    pub fn real(&self) -> bool {
+        self.exists && self.admissible && self.stable == Some(true)
     }
 }

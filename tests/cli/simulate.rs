@@ -67,6 +67,19 @@ fn masses_that_never_part_are_told_from_masses_that_never_meet() {
 }
 
 #[test]
+fn keys_of_another_law_are_refused() {
+    for (law, keys, named) in [
+        ("kelvin-voigt", "contact.exponent=1.5", "exponent = 1.5"),
+        ("hertz", "contact.exponent=2.5", "exponent = 2.5"),
+        ("hertz", "contact.damping=3", "damping = 3"),
+        ("loose-mass", "contact.exponent=1.5", "exponent = 1.5"),
+    ] {
+        let said = complaint(&with(&["--model", law, "--set", "contact.stiffness=1e8", "--set", keys]), 2);
+        assert!(said.contains(named) && said.contains("try:"), "{said}");
+    }
+}
+
+#[test]
 fn contacts_that_give_way_are_followed() {
     let stiff = ["--set", "contact.stiffness=1e9", "--settle", "300", "--cycles", "70"];
     let answer = json(&with(&[&["--model", "kelvin-voigt"], &stiff[..]].concat()));

@@ -14,6 +14,28 @@ pub fn law(scene: &Scene, wanted: args::Law) -> Result<Law> {
         Error::usage(format!("a contact without {key}"), format!("contact.{key} in {unit}"))
             .hint(format!("give --set contact.{key}=…: no value fits all contacts, and results depend on it"))
     };
+    // A key that the law has no place for is no detail: N/m and N/m^1.5 are different things.
+    let other = |key: &str, value: f64, expected: &str| {
+        Error::usage(format!("contact.{key} = {value} for this law"), expected)
+            .hint("--model hunt-crossley takes stiffness, exponent and damping; hertz the stiffness alone; kelvin-voigt stiffness and damping")
+    };
+    let exponent = |law: f64| keys.exponent.filter(|n| *n != law);
+    match (wanted, keys.damping) {
+        (args::Law::HuntCrossley, _) => {}
+        (args::Law::Hertz, Some(damping)) => {
+            return Err(other("damping", damping, "none: Hertz has no losses"));
+        }
+        (args::Law::Hertz, None) => {
+            if let Some(n) = exponent(1.5) {
+                return Err(other("exponent", n, "1.5"));
+            }
+        }
+        _ => {
+            if let Some(n) = exponent(1.0) {
+                return Err(other("exponent", n, "1: a spring"));
+            }
+        }
+    }
     let stiffness = keys.stiffness.ok_or_else(|| missing("stiffness", "N/m, or N/mⁿ"))?;
     let law = match wanted {
         args::Law::Hertz => Law::Hertz { stiffness },

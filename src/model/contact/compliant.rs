@@ -44,6 +44,10 @@ impl Compliant {
 }
 
 impl Motion for Compliant {
+    fn rig(&self) -> &Rig {
+        Compliant::rig(self)
+    }
+
     fn time(&self) -> f64 {
         self.follow.time()
     }

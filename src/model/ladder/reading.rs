@@ -97,10 +97,11 @@ impl Reader {
         let observable = self.observable;
         let frequency = motion.frequency();
         let omega = TAU * frequency;
-        let mut gauge = Gauge::new(match observable {
+        let read = match observable {
             Observable::HalfPeakToPeak => sweep::Observable::Peak,
             _ => sweep::Observable::Fundamental,
-        });
+        };
+        let mut gauge = Gauge::new(read, motion.rig());
         let (mut with, mut speeds, mut impulses) = (0.0, 0.0, 0.0);
         watch.restart(motion);
         for _ in 0..self.block {

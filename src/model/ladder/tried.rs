@@ -121,17 +121,22 @@ impl Stage<'_> {
                     v.stability
                 ),
             )
-        } else if !v.robust(self.question.gap_std) {
+        } else if !orbit.robust(self.question.gap_std) {
+            let why = if v.grazing_distance <= self.question.gap_std {
+                format!("is {:.1e} m from grazing, no more than", v.grazing_distance)
+            } else {
+                "is not stable at all gaps within".to_owned()
+            };
             (
                 false,
                 format!(
-                    "The motion with one impact a cycle is {:.1e} m from grazing, no more than the gap's uncertainty of {:.1e} m.",
-                    v.grazing_distance, self.question.gap_std
+                    "The motion with one impact a cycle {why} the gap's uncertainty of {:.1e} m.",
+                    self.question.gap_std
                 ),
             )
         } else {
             let real = format!(
-                "The motion with one impact a cycle exists, is admissible, stable (largest multiplier {radius:.4}) and {:.1e} m from grazing",
+                "The motion with one impact a cycle exists, is admissible, stable (largest multiplier {radius:.4}) and to first order {:.1e} m from grazing",
                 v.grazing_distance
             );
             match motions.on {

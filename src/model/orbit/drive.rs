@@ -1,5 +1,6 @@
 //! What an orbit knows of its excitation.
 
+use crate::model::{Excitation, Impulses, Pulses, Sine};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -17,6 +18,16 @@ pub enum Drive {
 }
 
 impl Drive {
+    /// The excitation at `frequency` (Hz); `None` of a free motion.
+    pub fn excitation(&self, frequency: f64) -> Option<Excitation> {
+        Some(match *self {
+            Drive::None => return None,
+            Drive::Sine(force) => Excitation::Sine(Sine { force, frequency }),
+            Drive::Impulse(impulse) => Excitation::Impulse(Impulses { impulse, frequency }),
+            Drive::Pulse(force, width) => Excitation::Pulse(Pulses { force, width, frequency }),
+        })
+    }
+
     /// Complex amplitude in N of the force's `n`-th harmonic (n ≥ 1) at `frequency` (Hz), the cycle being at `phase` (rad) at time 0.
     ///
     /// Impulses F have 2F/T in every harmonic; pulses (2f/T)(1 − e^{−inωw})/(inω).

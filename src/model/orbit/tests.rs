@@ -440,7 +440,26 @@ fn grazing_distance_is_the_change_of_gap_that_grazes() {
     let expected = amplitude * 1e-5;
     // What second order leaves is some tens of times the relative distance, because C is small against P/ω.
     assert!((orbit.validity.grazing_distance / expected - 1.0).abs() < 100.0 * 1e-5, "{:?}", orbit.validity);
-    assert!(!orbit.validity.robust(2.0 * expected));
+    assert!(!orbit.robust(2.0 * expected));
+}
+
+#[test]
+fn a_motion_that_a_little_more_gap_makes_unstable_is_not_robust() {
+    // To first order its impact grazes 38 mm away, but it has lost its stability when the gap is 1.6 mm wider (found by solving at gaps
+    // 0.01 mm apart).
+    let rig =
+        Rig { m1: 0.5, m2: 1.0, k1: 3e4, k2: 8e4, c1: 10.0, c2: 20.0, restitution: 0.5, ..Rig::thesis() };
+    let orbit = orbits(&rig, 30.0, 45.0).unwrap().orbits[0];
+    assert!(orbit.validity.real() && orbit.validity.grazing_distance > 0.03);
+    let lost = (1..200)
+        .map(|i| 1e-5 * f64::from(i))
+        .find(|more| {
+            let wider = Rig { gap: rig.gap + more, ..rig };
+            !orbits(&wider, 30.0, 45.0).unwrap().orbits[0].validity.real()
+        })
+        .unwrap();
+    assert!(orbit.robust(0.0) && orbit.robust(0.3 * lost), "{lost}");
+    assert!(!orbit.robust(1.01 * lost) && !orbit.robust(2.0 * lost), "{lost}");
 }
 
 #[test]

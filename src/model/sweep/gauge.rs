@@ -1,6 +1,6 @@
 //! What is read off a motion while a sweep passes.
 
-use crate::model::{Path, State};
+use crate::model::{Path, Rig, State};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -32,7 +32,7 @@ impl Observable {
 /// Corner of the running mean square's low-pass in rad/s.
 pub const LOW_PASS: f64 = 10.0;
 
-/// Samples a cycle. Displacements and velocities are both sampled, so between two samples the motion is a cubic (its peaks err by
+/// Samples a cycle of the excitation, or a swing of the faster mass where that is shorter. Displacements and velocities are both sampled, so between two samples the motion is a cubic (its peaks err by
 /// h⁴/384 of the fourth derivative, 4e-6 of the amplitude for h = 2π/32) and integrals are trapezes with end corrections, whose
 /// error is h⁴/720 of the third derivative's step at each impact (Euler–Maclaurin): 3e-6 of the amplitude.
 const SAMPLES: f64 = 32.0;
@@ -77,6 +77,8 @@ impl Sums {
 #[derive(Debug, Clone)]
 pub(crate) struct Gauge {
     observable: Observable,
+    /// Fastest natural motion of the masses in rad/s.
+    natural: f64,
     /// Running mean square.
     square: [f64; 2],
     /// The cycle under way.
@@ -89,9 +91,12 @@ pub(crate) struct Gauge {
 }
 
 impl Gauge {
-    pub fn new(observable: Observable) -> Gauge {
+    /// For motions of `rig`.
+    pub fn new(observable: Observable, rig: &Rig) -> Gauge {
+        let natural = rig.oscillators().map(|o| o.omega2().sqrt());
         Gauge {
             observable,
+            natural: natural.into_iter().filter(|n| n.is_finite()).fold(0.0, f64::max),
             square: [0.0; 2],
             cycle: Sums::NONE,
             total: Sums::NONE,
@@ -107,12 +112,19 @@ impl Gauge {
 
     /// Forgets the cycles read, not the running mean square.
     pub fn clear(&mut self) {
-        *self = Gauge { square: self.square, ..Gauge::new(self.observable) };
+        let nothing = Gauge {
+            cycle: Sums::NONE,
+            total: Sums::NONE,
+            cycles: 0.0,
+            scatter: [(0.0, 0.0); 2],
+            ..self.clone()
+        };
+        *self = nothing;
     }
 
     /// Takes a piece of `duration` s that begins at `phase` (rad) under `omega` (rad/s).
     pub fn take(&mut self, path: &dyn Path, duration: f64, phase: f64, omega: f64) {
-        let n = (duration * omega / TAU * SAMPLES).ceil().max(1.0);
+        let n = (duration * omega.max(self.natural) / TAU * SAMPLES).ceil().max(1.0);
         let h = duration / n;
         if h <= 0.0 {
             return;

@@ -1,5 +1,7 @@
 use super::*;
-use crate::model::{Compliant, Excitation, Law, Loose, Pulses, Rig, Simulation, Sine, State, orbits};
+use crate::model::{
+    Compliant, Excitation, Law, Loose, Pulses, Rig, Simulation, Sine, State, orbits, orbits_of,
+};
 use std::time::Instant;
 
 const BOTH: [Direction; 2] = [Direction::Up, Direction::Down];
@@ -181,6 +183,31 @@ fn impossible_sweeps_are_refused() {
     // A frequency of 0 is the motion's to refuse.
     let mut motion = Simulation::new(&Rig::thesis(), &Sine { force: 0.1, frequency: 3.0 }).unwrap();
     assert!(Plan { from: 0.0, ..good }.frequency(&mut motion, 0.1, Direction::Up).is_err());
+}
+
+/// Under slow pulses the masses swing many times a cycle: the line of the excitation is small beside what they do, and must be read off all
+/// the same. In closed form: that of the force, 2F/π sin(πw/T), times the receptance.
+#[test]
+fn slow_pulses_are_read_like_fast_ones() {
+    let rig = Rig::thesis();
+    let (force, width) = (0.05, 0.01);
+    for frequency in [0.2, 0.3, 0.5, 1.0, 7.0] {
+        let pulses = Excitation::Pulse(Pulses { force, width, frequency });
+        let read = |observable| {
+            let mut motion = Simulation::new(&rig, &pulses).unwrap();
+            let pace = Pace::Steps { points: 2, settle: (60.0 * frequency) as u32, measure: 4 };
+            let plan = Plan { from: frequency, to: frequency * (1.0 + 1e-9), pace, observable };
+            plan.frequency(&mut motion, force, Direction::Up).unwrap()[1]
+        };
+        let omega = TAU * frequency;
+        let line = 2.0 * force / std::f64::consts::PI * (omega * width / 2.0).sin();
+        let expected = line * rig.receptances(omega)[0].norm();
+        let (found, peak) = (read(Observable::Fundamental), read(Observable::Peak).x1);
+        // 60 s leave e^{−24} of the start; the gauge errs by 3e-6 of what it sees, the largest displacement.
+        assert!((found.x1 - expected).abs() < 1e-5 * peak, "{frequency} Hz: {found:?} {expected} {peak}");
+        let exact = orbits_of(&rig, &pulses, 1).unwrap().no_impact.amplitude;
+        assert!((peak / exact - 1.0).abs() < 1e-5, "{frequency} Hz: {peak} {exact}");
+    }
 }
 
 /// Seconds for 136 000 cycles up and down. `cargo test --release -- --ignored --nocapture`.

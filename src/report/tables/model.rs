@@ -41,11 +41,11 @@ pub fn verdicts(orbits: &[Orbit], gap_std: Option<f64>) -> Table {
                 None if o.validity.exists => Cell::from(o.validity.stability),
                 None => Cell::Missing,
             }),
-            ("robust", "", &|(_, o)| gap_std.map_or(Cell::Missing, |std| word(o.validity.robust(std)))),
+            ("robust", "", &|(_, o)| gap_std.map_or(Cell::Missing, |std| word(o.robust(std)))),
             ("largest multiplier", "", &|(_, o)| Cell::from(o.spectral_radius())),
             ("least gap", "m", &|(_, o)| Cell::from(o.validity.min_gap)),
             ("closest approach", "m", &|(_, o)| Cell::from(o.validity.clearance)),
-            ("grazing distance", "m", &|(_, o)| Cell::from(o.validity.grazing_distance)),
+            ("grazing distance, first order", "m", &|(_, o)| Cell::from(o.validity.grazing_distance)),
             ("energy rule", "", &|(_, o)| word(o.validity.energy_rule)),
         ],
     )
@@ -98,7 +98,7 @@ pub fn branches(response: &Response) -> Table {
             ("stability", "", &|o| Cell::from(o.validity.stability)),
             ("largest multiplier", "", &|o| Cell::from(o.spectral_radius())),
             ("least gap", "m", &|o| Cell::from(o.validity.min_gap)),
-            ("grazing distance", "m", &|o| Cell::from(o.validity.grazing_distance)),
+            ("grazing distance, first order", "m", &|o| Cell::from(o.validity.grazing_distance)),
         ],
     )
 }
