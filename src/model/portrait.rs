@@ -21,6 +21,8 @@ pub struct Portrait {
     pub time: Vec<f64>,
     /// States at these times.
     pub states: Vec<State>,
+    /// Time in s of each impact among the samples, and the states before and after it.
+    pub jumps: Vec<(f64, State, State)>,
     /// Beginnings of the cycles in s.
     pub beginnings: Vec<f64>,
     /// States at the beginning of each cycle (phase 0): a Poincaré section.
@@ -59,7 +61,15 @@ impl Portrait {
         let mut section = Comb::new(whole, period, end);
         let mut watch = Watch::new(motion);
         let (mut impacts, mut sticks) = (Vec::new(), 0);
+        let (mut jumps, mut struck): (Vec<(f64, State, State)>, Option<(f64, State)>) = (Vec::new(), None);
         motion.advance(end, &mut |piece| {
+            if let Some((time, before)) = struck.take() {
+                jumps.push((time, before, piece.path.state(0.0)));
+            }
+            let over = piece.start + piece.duration;
+            if matches!(piece.event, Event::Impact(_)) && over > first {
+                struck = Some((over, piece.path.state(piece.duration)));
+            }
             watch.take(&piece);
             samples.take(&piece);
             section.take(&piece);
@@ -75,6 +85,7 @@ impl Portrait {
             pattern: watch.pattern(),
             time: samples.time,
             states: samples.states,
+            jumps,
             beginnings: section.time,
             section: section.states,
         })
@@ -138,6 +149,24 @@ mod tests {
         fourth.run(4.0 / 11.0, |_| {}).unwrap();
         assert!((fourth.state().x1 - portrait.section[0].x1).abs() < 1e-14);
         assert!((fresh.state().v1 - portrait.section[1].v1).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_states_around_an_impact_stand_where_the_masses_meet() {
+        let rig = Rig::thesis();
+        let mut motion = Simulation::new(&rig, &Sine { force: 0.5, frequency: 11.0 }).unwrap();
+        let portrait = Portrait::take(&mut motion, &Sitting { cycles: 30, samples: 50, shown: 30 }).unwrap();
+        assert_eq!(portrait.jumps.len(), portrait.impacts.len());
+        assert!(!portrait.jumps.is_empty());
+        for ((time, before, after), impact) in portrait.jumps.iter().zip(&portrait.impacts) {
+            assert!((time - impact.time).abs() < 1e-12);
+            // One place, to the rounding with which an impact is found, and the momentum that the impulse moves.
+            for mass in [before.x1 - after.x1, before.x2 - after.x2, before.x1 - before.x2 - rig.gap] {
+                assert!(mass.abs() < 1e-15, "{before:?} {after:?}");
+            }
+            assert!((rig.m1 * (before.v1 - after.v1) / impact.impulse - 1.0).abs() < 1e-12);
+            assert!((rig.m2 * (after.v2 - before.v2) / impact.impulse - 1.0).abs() < 1e-12);
+        }
     }
 
     #[test]

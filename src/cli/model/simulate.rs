@@ -78,6 +78,12 @@ pub fn run(typed: &args::Simulate, json: bool) -> Result<()> {
         }
     };
     warnings.extend(doubts(&seen, typed));
+    if typed.model == Law::Hertz && scene.rig.restitution < 1.0 {
+        warnings.push(format!(
+            "Hertz' contact has no losses: the rig's restitution of {} is not used.",
+            scene.rig.restitution
+        ));
+    }
     warnings.extend(pressed(&seen, &scene));
     let mut written = Vec::new();
     if let Some(folder) = &typed.out {

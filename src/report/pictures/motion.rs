@@ -30,14 +30,44 @@ pub fn traces(title: &str, portrait: &Portrait, gap: f64) -> Figure {
     )
 }
 
+/// Samples with the states before and after each impact between them.
+fn whole(portrait: &Portrait) -> Vec<State> {
+    let mut jumps = portrait.jumps.iter().peekable();
+    let mut all = Vec::with_capacity(portrait.states.len() + 2 * portrait.jumps.len());
+    for (time, state) in portrait.time.iter().zip(&portrait.states) {
+        while let Some((_, before, after)) = jumps.next_if(|j| j.0 <= *time) {
+            all.extend([*before, *after]);
+        }
+        all.push(*state);
+    }
+    all
+}
+
+/// An axis over these values with a tenth of room at both ends, and not finer than a hundredth of the largest: what repeats is a point, not
+/// its roundings.
+fn roomy(axis: AxisSpec, values: &[f64]) -> AxisSpec {
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
+    let width = (high - low).max(0.01 * high.abs().max(low.abs()));
+    if !(width.is_finite() && width > 0.0) {
+        return axis;
+    }
+    let middle = f64::midpoint(low, high);
+    axis.limits(middle - 0.6 * width, middle + 0.6 * width)
+}
+
 /// Velocity over displacement of each mass.
 pub fn phase_plane(title: &str, portrait: &Portrait) -> Figure {
+    let states = whole(portrait);
     let plot = |name: &str, nth: usize, x: fn(&State) -> f64, v: fn(&State) -> f64| {
-        let (xs, vs): (Vec<f64>, Vec<f64>) = portrait.states.iter().map(|s| (1e3 * x(s), v(s))).unzip();
-        Plot::new(AxisSpec::new("Displacement", "mm"), AxisSpec::new("Velocity", "m/s"))
-            .title(name)
-            .with(Series::line("", xs, vs).ink(Ink::Nth(nth)).stroke(Stroke::Thin))
-            .legend(Legend::Hidden)
+        let (xs, vs): (Vec<f64>, Vec<f64>) = states.iter().map(|s| (1e3 * x(s), v(s))).unzip();
+        Plot::new(
+            roomy(AxisSpec::new("Displacement", "mm"), &xs),
+            roomy(AxisSpec::new("Velocity", "m/s"), &vs),
+        )
+        .title(name)
+        .with(Series::line("", xs, vs).ink(Ink::Nth(nth)).stroke(Stroke::Thin))
+        .legend(Legend::Hidden)
     };
     lettered(
         Figure::double(title)
@@ -55,7 +85,10 @@ pub fn poincare(title: &str, portrait: &Portrait) -> Figure {
         let marker = if nth == 0 { Marker::Circle } else { Marker::Square };
         Series::points(name, xs, vs).ink(Ink::Nth(nth)).marker(marker)
     };
-    let section = Plot::new(AxisSpec::new("Displacement", "mm"), AxisSpec::new("Velocity", "m/s"))
+    let both = |of: fn(&State) -> [f64; 2]| portrait.section.iter().flat_map(of).collect::<Vec<f64>>();
+    let displacement = roomy(AxisSpec::new("Displacement", "mm"), &both(|s| [1e3 * s.x1, 1e3 * s.x2]));
+    let velocity = roomy(AxisSpec::new("Velocity", "m/s"), &both(|s| [s.v1, s.v2]));
+    let section = Plot::new(displacement, velocity)
         .with(points("excited mass", 0, |s| s.x1, |s| s.v1))
         .with(points("passive mass", 1, |s| s.x2, |s| s.v2))
         .legend(Legend::Above);
@@ -63,7 +96,7 @@ pub fn poincare(title: &str, portrait: &Portrait) -> Figure {
         portrait.impacts.iter().map(|i| (i.phase.to_degrees(), i.approach_velocity)).unzip();
     let impacts = Plot::new(
         AxisSpec::new("Phase of the excitation at the impact", "°").limits(0.0, 360.0),
-        AxisSpec::new("Approach speed", "m/s"),
+        roomy(AxisSpec::new("Approach speed", "m/s"), &speed),
     )
     .with(Series::points("", phase, speed).ink(Ink::Nth(0)).marker(Marker::Circle))
     .legend(Legend::Hidden);
