@@ -3,6 +3,7 @@
 pub mod forcing;
 pub mod observable;
 pub mod overlay;
+pub mod precision;
 pub mod prediction;
 pub mod score;
 
