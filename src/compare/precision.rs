@@ -9,6 +9,7 @@ pub mod failure;
 pub mod measured;
 pub mod models;
 pub mod scene;
+pub mod watched;
 
 pub use failure::{Cell, FailureMap, Outcome};
 pub use scene::{Family, Measured, Scene};
