@@ -4,6 +4,7 @@
 //! together. A [`FailureMap`] tells what the methods do at the borders of what they can: right, refused with a reason, wrong
 //! without a word, stalled, crashed. Two families: models of the motion, and estimators of what is measured of it.
 
+pub mod added;
 pub mod estimators;
 pub mod failure;
 pub mod measured;

@@ -26,7 +26,9 @@ pub fn watched<T: Send + 'static>(seconds: f64, f: impl FnOnce() -> T + Send + '
         Ok(Ok(answer)) => Watched::Done(answer),
         Ok(Err(panic)) => {
             let text = panic.downcast_ref::<String>().map(String::as_str);
-            Watched::Crashed(text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("a panic").to_owned())
+            Watched::Crashed(
+                text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("a panic").to_owned(),
+            )
         }
         Err(_) => Watched::Stalled,
     }
@@ -39,7 +41,10 @@ mod tests {
     #[test]
     fn answers_panics_and_what_does_not_end_are_told_apart() {
         assert_eq!(watched(10.0, || 7), Watched::Done(7));
-        assert_eq!(watched(10.0, || -> u8 { panic!("on purpose") }), Watched::Crashed("on purpose".to_owned()));
+        assert_eq!(
+            watched(10.0, || -> u8 { panic!("on purpose") }),
+            Watched::Crashed("on purpose".to_owned())
+        );
         let wait = || std::thread::sleep(Duration::from_secs(1));
         assert_eq!(watched(0.01, wait), Watched::Stalled);
     }

@@ -50,7 +50,7 @@ fn motion(rig: Rig) -> Task {
     let frequency = at(&Rig::thesis(), 2.1);
     Task {
         start: State { x1: -1e-3, ..State::REST },
-        most: 300_000,
+        most: 100_000,
         ..Task::sine(rig, 0.5, frequency, CYCLES / frequency)
     }
 }
@@ -113,7 +113,7 @@ pub fn borders(quick: bool) -> Result<Vec<Border>> {
     }
     for restitution in [0.3, 0.7, 0.9, 0.95] {
         let scene_c = super::chatter::task();
-        let task = Task { rig: Rig { restitution, ..scene_c.rig }, until: 1.2, most: 300_000, ..scene_c };
+        let task = Task { rig: Rig { restitution, ..scene_c.rig }, until: 1.2, most: 100_000, ..scene_c };
         add("chatter", format!("R {restitution}"), task, Asks::Motion);
     }
     for cycles in if quick { vec![1e3] } else { vec![1e4, 1e6] } {

@@ -5,10 +5,10 @@ use super::ours;
 use super::rivals::{Events, Kind, Loop, events, marched, moreau, penalty};
 use super::scene_b::{spring, steps};
 use super::task::{Fault, Task, Told};
+use crate::Error;
 use crate::compare::precision::measured::quartiles;
 use crate::compare::precision::{Family, Scene};
 use crate::model::{Rig, State};
-use crate::Error;
 
 /// Starts whose answers are read one by one.
 const STARTS: usize = 5;
@@ -20,7 +20,7 @@ const READ: f64 = 1000.0;
 pub fn task(cycles: f64, start: usize) -> Task {
     let rig = Rig { restitution: RESTITUTION, ..Rig::thesis() };
     let task = Task::sine(rig, FORCE, FREQUENCY, (SETTLE + cycles) / FREQUENCY);
-    Task { start: State { x1: -1e-3 * start as f64, ..State::REST }, most: 400_000_000, ..task }
+    Task { start: State { x1: -1e-3 * start as f64, ..State::REST }, most: 3_000_000, ..task }
 }
 
 /// Force in N, frequency in Hz and restitution of the window.
@@ -30,8 +30,7 @@ const RESTITUTION: f64 = 0.7;
 
 /// Mean approach speed behind the beginning.
 fn mean(told: &Told) -> Option<f64> {
-    let speeds: Vec<f64> =
-        told.impacts.iter().filter(|i| i.0 > SETTLE / FREQUENCY).map(|i| i.1).collect();
+    let speeds: Vec<f64> = told.impacts.iter().filter(|i| i.0 > SETTLE / FREQUENCY).map(|i| i.1).collect();
     (speeds.len() > 10).then(|| speeds.iter().sum::<f64>() / speeds.len() as f64)
 }
 
@@ -72,7 +71,13 @@ pub fn scene(quick: bool) -> crate::Result<Scene> {
     }
     for r in few(&[1e-3, 1e-6, 1e-9]) {
         let how = Events::ends(Kind::Rk45(r));
-        entries.several(false, "RK45, sign test", &how.kind.setting(), || all(READ, &|t| events(t, &how)), judge);
+        entries.several(
+            false,
+            "RK45, sign test",
+            &how.kind.setting(),
+            || all(READ, &|t| events(t, &how)),
+            judge,
+        );
     }
     for r in few(&[1e-6, 1e-9]) {
         let how = Events::dense(Kind::Dop853(r));

@@ -17,11 +17,7 @@ pub const GOLDEN: [f64; 3] = [0.152_721_089_353_360_45, 0.220_247_418_265_660_51
 pub fn task() -> Task {
     let rig = Rig { gap: -5e-4, ..Rig::thesis() };
     let frequency = 0.45 * (rig.k1 / rig.m1).sqrt() / TAU;
-    Task {
-        start: State { x1: -2e-3, ..State::REST },
-        most: 500_000,
-        ..Task::sine(rig, 0.35, frequency, 0.6)
-    }
+    Task { start: State { x1: -2e-3, ..State::REST }, most: 500_000, ..Task::sine(rig, 0.35, frequency, 0.6) }
 }
 
 /// Largest error in s of the three golden times.

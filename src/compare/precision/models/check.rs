@@ -41,7 +41,9 @@ pub fn first(told: &Told, truth: Option<f64>, off: f64) -> Found {
         (None, None) => (Outcome::Right, "no impact is seen where there is none".to_owned()),
         (Some(i), None) => wrong(format!("an impact at {:.9} s, where there is none", i.0)),
         (None, Some(t)) => wrong(format!("the impact at {t:.9} s is not seen")),
-        (Some(i), Some(t)) if (i.0 - t).abs() <= off => (Outcome::Right, format!("{:.0e} s off", (i.0 - t).abs())),
+        (Some(i), Some(t)) if (i.0 - t).abs() <= off => {
+            (Outcome::Right, format!("{:.0e} s off", (i.0 - t).abs()))
+        }
         (Some(i), Some(t)) => wrong(format!("the impact is {:.0e} s off", (i.0 - t).abs())),
     }
 }
@@ -112,7 +114,10 @@ fn closes(task: &Task, orbit: &Orbit) -> Result<Option<String>, Fault> {
     ];
     let worst = off.iter().fold(0.0_f64, |worst, d| worst.max(d.abs()));
     if worst.is_nan() || worst > 1e-8 * scale {
-        return Ok(Some(format!("an orbit of {:.3e} m/s does not close: {worst:.1e} m", orbit.approach_velocity)));
+        return Ok(Some(format!(
+            "an orbit of {:.3e} m/s does not close: {worst:.1e} m",
+            orbit.approach_velocity
+        )));
     }
     let through = lowest < -1e-7 * scale;
     if through && orbit.validity.admissible {

@@ -52,7 +52,9 @@ fn judge(told: &[Told], truth: &[Option<f64>]) -> Verdict {
         }
     }
     if missed + invented > 0 {
-        return Err(format!("{missed} of {STARTS} impacts are not seen, {invented} of {STARTS} seen that are none"));
+        return Err(format!(
+            "{missed} of {STARTS} impacts are not seen, {invented} of {STARTS} seen that are none"
+        ));
     }
     errors.sort_by(f64::total_cmp);
     Ok(errors[errors.len() / 2])

@@ -5,9 +5,9 @@ use super::ours;
 use super::rivals::{Events, Kind, Loop, events, marched, moreau};
 use super::scene_b::steps;
 use super::task::{Fault, Task, Told};
+use crate::Error;
 use crate::compare::precision::{Family, Scene};
 use crate::model::{Rig, orbits};
-use crate::Error;
 
 /// Ends in Hz, rate in Hz/s, and the time in s before which the start is still felt.
 const FROM: f64 = 10.2;
@@ -36,7 +36,9 @@ pub fn scene(quick: bool) -> crate::Result<Scene> {
     let fine = largest(&ours::swept(&task, 1e-7).map_err(lost)?);
     let apart = (fine / truth - 1.0).abs();
     if apart.is_nan() || apart > 1e-5 {
-        return Err(Error::refused(format!("exact flights and integration of the sweep differ by {apart:.1e}")));
+        return Err(Error::refused(format!(
+            "exact flights and integration of the sweep differ by {apart:.1e}"
+        )));
     }
     let off = |speed: f64| -> Verdict {
         if speed > 0.0 { Ok((speed / truth - 1.0).abs().max(1e-16)) } else { Err("no impacts".to_owned()) }
