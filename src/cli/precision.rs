@@ -2,10 +2,11 @@
 
 use crate::cli::{args, complain, print, progress};
 use crate::compare::precision::{Cell, FailureMap, Family, Scene, added, estimators, models};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::report::{Figure, Output, files, pictures, tables};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
+use std::path::Path;
 
 #[derive(Serialize)]
 struct Answer<'a> {
@@ -14,6 +15,12 @@ struct Answer<'a> {
     failures: Option<Vec<Failure<'a>>>,
     warnings: &'a [String],
     files: &'a [String],
+}
+
+/// What an earlier run printed.
+#[derive(Deserialize)]
+struct Earlier {
+    scenes: Vec<Scene>,
 }
 
 #[derive(Serialize)]
@@ -31,10 +38,14 @@ pub fn run(typed: &args::Precision, json: bool) -> Result<()> {
         bar.set_message(scene.to_owned());
         bar.inc(1);
     };
-    if wanted(args::Kind::Models) {
+    let measures = typed.from.is_none();
+    if let Some(path) = &typed.from {
+        scenes = earlier(path)?;
+    }
+    if measures && wanted(args::Kind::Models) {
         scenes.extend(models::scenes(typed.quick, &mut tell)?);
     }
-    if wanted(args::Kind::Estimators) {
+    if measures && wanted(args::Kind::Estimators) {
         scenes.extend(estimators::scenes(typed.quick, &mut tell)?);
     }
     if typed.failures {
@@ -55,7 +66,7 @@ pub fn run(typed: &args::Precision, json: bool) -> Result<()> {
             warnings.push(format!("{left} lines of {} name scenes that were not measured.", path.display()));
         }
     }
-    if cfg!(debug_assertions) {
+    if measures && cfg!(debug_assertions) {
         warnings
             .push("This is a build for development: its times are not those of the released program.".into());
     }
@@ -96,4 +107,13 @@ pub fn run(typed: &args::Precision, json: bool) -> Result<()> {
         let _ = writeln!(text, "wrote {file}");
     }
     print::text(&text)
+}
+
+/// The scenes of an earlier run.
+fn earlier(path: &Path) -> Result<Vec<Scene>> {
+    let text = std::fs::read_to_string(path).map_err(|e| Error::io("read", path, e))?;
+    let read: Earlier = serde_json::from_str(&text).map_err(|e| {
+        Error::usage(format!("{}: {e}", path.display()), "what `vibro precision --json` printed")
+    })?;
+    Ok(read.scenes)
 }

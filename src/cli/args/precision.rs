@@ -14,6 +14,9 @@ pub struct Precision {
     /// Tell also what the methods do at the borders of what they can: right, refused, wrong, stalled, crashed
     #[arg(long)]
     pub failures: bool,
+    /// Measure nothing: take the scenes from what `vibro precision --json` printed into this file
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["quick", "failures"])]
+    pub from: Option<PathBuf>,
     /// Add the lines that another program has measured and written into this file (see benches/peers)
     #[arg(long, value_name = "FILE")]
     pub add: Vec<PathBuf>,

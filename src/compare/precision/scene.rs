@@ -1,9 +1,9 @@
 //! Scenes with a known truth, and what methods make of them.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Which kind of method a scene asks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Family {
     /// Models: a motion from a rig and its excitation.
@@ -23,7 +23,7 @@ impl Family {
 }
 
 /// One method with one setting on one scene, measured.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// Name of the method.
     pub method: String,
@@ -48,7 +48,7 @@ pub struct Measured {
 }
 
 /// A scene with a known truth and what each method made of it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
     /// Name, short enough for a file.
     pub name: String,

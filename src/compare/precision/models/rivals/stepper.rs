@@ -15,15 +15,6 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Kind::Rk4(_) => "RK4",
-            Kind::Rk45(_) => "RK45",
-            Kind::Dop853(_) => "DOP853",
-        }
-    }
-
     /// Its setting in words.
     pub fn setting(self) -> String {
         match self {
