@@ -175,7 +175,9 @@ fn corrected(task: &Task) -> std::result::Result<Option<Found>, Fault> {
         .filter_map(|(orbit, soft)| Some((orbit.approach_velocity, soft.as_ref()?)))
         .min_by(|a, b| off(a.1.approach_velocity).total_cmp(&off(b.1.approach_velocity)));
     let Some((plain, soft)) = near else {
-        return Err(Fault::Refused("no orbit is left with this contact, or only one that needs a restitution above 1".to_owned()));
+        return Err(Fault::Refused(
+            "no orbit is left with this contact, or only one that needs a restitution above 1".to_owned(),
+        ));
     };
     // What is left is of second order in the share in contact, enlarged as the first order is.
     let allowed = off(plain).max(0.1) * 3.0 * soft.share + 1e-4;
