@@ -131,8 +131,8 @@ pub struct Softened {
 /// duration then and of that size leaves the masses on the same ways. At that time the ways already overlap by vt*, so C + t*/(M(1+R))
 /// takes the place of C = χ₁(0) + χ₂(0). An acceleration a that presses the masses together (to first order) lets them meet at the speed
 /// v + at* then, and makes the restitution `R + (a/v)((1 − R)t_c − 2d_r/v)`. The rig's own dampers slow a relative speed u by κu, κ = M(c₁/m₁² + c₂/m₂²): between
-/// touch and parting the two ways without duration lose κt_c of it, while in the contact, where it turns round, its envelope falls by
-/// κt_c/2; so R(1 + κt_c/2) takes the place of R, and a is what presses without the dampers.
+/// touch and parting the two ways without duration lose `κt_c` of it, while in the contact, where it turns round, its envelope falls by
+/// `κt_c/2`; so `R(1 + κt_c/2)` takes the place of R, and a is what presses without the dampers.
 ///
 /// # Errors
 /// If the contact lasts longer than [`LONGEST_CONTACT`] of the period.

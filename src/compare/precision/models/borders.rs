@@ -18,7 +18,7 @@ const CYCLES: f64 = 6.0;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Border {
     /// Name of the border.
-    pub border: &'static str,
+    pub name: &'static str,
     /// Name of the scene.
     pub scene: String,
     /// The motion.
@@ -63,7 +63,7 @@ pub fn borders(quick: bool) -> Result<Vec<Border>> {
     let thesis = Rig::thesis();
     let mut all = Vec::new();
     let mut add = |border: &'static str, scene: String, task: Task, asks: Asks| {
-        all.push(Border { border, scene, task, asks });
+        all.push(Border { name: border, scene, task, asks });
     };
     for depth in [1e-3, 1e-6, 1e-9, 1e-12, -1e-12, -1e-9, -1e-6, -1e-3] {
         let (task, time) = grazing::task(depth, 1)?;

@@ -28,6 +28,9 @@ const METHODS: [(&str, bool); 7] = [
     ("stiff spring, RK45", false),
 ];
 
+/// How a method follows a motion.
+type Run<'a> = &'a dyn Fn(&Task) -> std::result::Result<Told, Fault>;
+
 /// What a watched run comes to.
 type Answer = Watched<std::result::Result<Option<Found>, Fault>>;
 
@@ -56,7 +59,7 @@ pub fn failures(quick: bool) -> Result<FailureMap> {
             cells.push(Cell {
                 method: method.to_owned(),
                 ours,
-                border: border.border.to_owned(),
+                border: border.name.to_owned(),
                 scene: border.scene.clone(),
                 outcome,
                 why,
@@ -70,7 +73,7 @@ pub fn failures(quick: bool) -> Result<FailureMap> {
 fn ask(method: &str, border: &Border, truth: &Told) -> std::result::Result<Option<Found>, Fault> {
     let task = &border.task;
     let cycle = task.cycle();
-    let (off, run): (f64, &dyn Fn(&Task) -> std::result::Result<Told, Fault>) = match method {
+    let (off, run): (f64, Run<'_>) = match method {
         "closed form" => {
             return match border.asks {
                 Asks::Motion | Asks::Orbit => check::closed_form(task).map(Some),
@@ -91,12 +94,11 @@ fn ask(method: &str, border: &Border, truth: &Told) -> std::result::Result<Optio
         _ => (0.05 * cycle, &|t: &Task| penalty(t, &spring(&t.rig, STIFFNESS), Kind::Rk45(1e-6))),
     };
     Ok(match border.asks {
-        Asks::Orbit => None,
         Asks::First(time) => Some(check::first(&reported(method, task, run)?, time, off)),
         Asks::Cycles(cycles) if method == "exact flights" || cycles <= 1e4 => {
             Some(long(&run(task)?, method, task)?)
         }
-        Asks::Cycles(_) => None,
+        Asks::Orbit | Asks::Cycles(_) => None,
         Asks::Motion if method == "exact Kelvin–Voigt" => {
             let told = reported(method, task, run)?;
             // What integration cannot follow (a damper far beyond critical is stiff) is no truth.
@@ -108,11 +110,7 @@ fn ask(method: &str, border: &Border, truth: &Told) -> std::result::Result<Optio
 }
 
 /// A contact that gives way is told when it is over: the motion is followed for longer, and what began too late left out.
-fn reported(
-    method: &str,
-    task: &Task,
-    run: &dyn Fn(&Task) -> std::result::Result<Told, Fault>,
-) -> std::result::Result<Told, Fault> {
+fn reported(method: &str, task: &Task, run: Run<'_>) -> std::result::Result<Told, Fault> {
     if method != "exact Kelvin–Voigt" {
         return run(task);
     }

@@ -15,8 +15,8 @@ const STARTS: usize = 8;
 
 /// A motion that reaches `depth` (m) into the other mass, or misses it by −`depth`, and the time of its impact in s.
 ///
-/// Mass 1 is on its forced motion A cos ω(t − t_p) and mass 2 rests, so with the gap A − d they meet at
-/// t_p − 2 asin(√(d/2A))/ω, or never. The difference A − Δ is exact, so the truth knows the d that the rounded gap leaves.
+/// Mass 1 is on its forced motion `A cos ω(t − t_p)` and mass 2 rests, so with the gap A − d they meet at
+/// `t_p − 2 asin(√(d/2A))/ω`, or never. The difference A − Δ is exact, so the truth knows the d that the rounded gap leaves.
 ///
 /// # Errors
 /// As [`Steady::new`].

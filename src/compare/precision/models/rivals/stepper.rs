@@ -45,6 +45,7 @@ pub enum Stepper {
 
 /// One step.
 #[derive(Debug, Clone, Copy)]
+#[allow(clippy::large_enum_variant)]
 pub enum Taken {
     /// Start, state there, size, state at the end.
     Fixed(f64, [f64; 4], f64, [f64; 4]),
@@ -139,9 +140,9 @@ impl Taken {
                 break;
             }
             if height(self.start() + middle, &self.at(&f, middle)) > 0.0 {
-                low = middle
+                low = middle;
             } else {
-                high = middle
+                high = middle;
             }
         }
         Some(high)
