@@ -5,6 +5,7 @@ pub mod forcing;
 pub mod overlay;
 pub mod pair;
 pub mod peak_pair;
+pub mod precision;
 pub mod prediction;
 pub mod rungs;
 pub mod score;
