@@ -23,6 +23,10 @@ pub(super) struct Group {
 /// A peak must stand this factor above its valleys.
 const PROMINENCE: f64 = 2.0;
 
+/// A peak must rise above its valleys by this many standard deviations of the noise of one component of a line: of lines of noise one in a hundred
+/// does, and a mode that does not is known to no better than a third of itself.
+const ABOVE_NOISE: f64 = 3.0;
+
 /// Lines on either side of a peak that are at least fitted, and bandwidths on either side.
 const LINES: usize = 16;
 const BANDWIDTHS: f64 = 6.0;
@@ -45,6 +49,7 @@ pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Ve
             width: width(f, &magnitude, m.at, m.valleys),
             rise: magnitude[m.at] - magnitude[m.valleys[0]].max(magnitude[m.valleys[1]]),
         })
+        .filter(|p| p.rise > ABOVE_NOISE * noise(measured, p.at))
         .collect();
     if let Some((low, high)) = band {
         if !(low >= 0.0 && high > low && high.is_finite()) {
@@ -54,7 +59,7 @@ pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Ve
         peaks.retain(|p| lines.contains(&p.at));
         if peaks.is_empty() {
             return Err(Error::refused(format!(
-                "no peak between {low} and {high} Hz stands a factor of {PROMINENCE} above its valleys ({} lines)",
+                "no peak between {low} and {high} Hz stands a factor of {PROMINENCE} above its valleys and clear of the noise ({} lines)",
                 lines.len()
             ))
             .hint("a mode without a peak cannot be told from noise here; choose a band around a peak"));
@@ -62,7 +67,9 @@ pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Ve
         return Ok(vec![Group { peaks, lines }]);
     }
     if peaks.is_empty() {
-        return Err(Error::refused(format!("no peak stands a factor of {PROMINENCE} above its valleys")));
+        return Err(Error::refused(format!(
+            "no peak stands a factor of {PROMINENCE} above its valleys and clear of the noise"
+        )));
     }
     let mut groups: Vec<Vec<Peak>> = Vec::new();
     for peak in peaks {
@@ -93,6 +100,19 @@ pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Ve
             Group { peaks, lines: low..high }
         })
         .collect())
+}
+
+/// Standard deviation of the noise of one component of the lines around `at`, from the median of their second differences, in which what is smooth
+/// vanishes; 0 where there are too few lines.
+fn noise(measured: &Measured, at: usize) -> f64 {
+    let around = at.saturating_sub(LINES)..(at + LINES + 1).min(measured.values.len());
+    let mut differences: Vec<f64> =
+        measured.values[around].windows(3).map(|v| (v[0] - 2.0 * v[1] + v[2]).norm()).collect();
+    differences.sort_by(f64::total_cmp);
+    // A second difference of lines of σ has 6σ² a component. The median of a Rayleigh variable is √(2 ln 2) of its scale, that of the size of a
+    // normal one, as magnitudes have, 0.6745.
+    let median = if measured.magnitude_only { 0.6745 } else { (2.0 * f64::ln(2.0)).sqrt() };
+    differences.get(differences.len() / 2).map_or(0.0, |d| d / (median * f64::sqrt(6.0)))
 }
 
 /// Whether there are too few lines, or bandwidths, between two peaks to fit each alone.
