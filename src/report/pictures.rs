@@ -2,11 +2,13 @@
 
 mod branches;
 mod drill;
+mod failures;
 mod frf;
 mod impacts;
 mod motion;
 mod orbit;
 mod overlay;
+mod precision;
 mod pulse;
 mod regimes;
 mod response;
@@ -16,11 +18,13 @@ mod waterfall;
 
 pub use branches::branches;
 pub use drill::drill;
+pub use failures::failures;
 pub use frf::{frf, nyquist};
 pub use impacts::{drop, impacts};
 pub use motion::{phase_plane, poincare, traces};
 pub use orbit::orbit;
 pub use overlay::overlay;
+pub use precision::precision;
 pub use pulse::pulse;
 pub use regimes::regimes;
 pub use response::response;

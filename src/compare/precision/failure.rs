@@ -45,3 +45,35 @@ pub struct FailureMap {
     /// The cells, border by border.
     pub cells: Vec<Cell>,
 }
+
+impl Outcome {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Outcome::Right => "right",
+            Outcome::Refused => "refused",
+            Outcome::Wrong => "wrong",
+            Outcome::Stalled => "stalled",
+            Outcome::Crashed => "crashed",
+        }
+    }
+}
+
+impl FailureMap {
+    /// Names of the methods, in the order in which they come.
+    pub fn methods(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        for cell in &self.cells {
+            if !names.contains(&cell.method.as_str()) {
+                names.push(&cell.method);
+            }
+        }
+        names
+    }
+
+    /// The cells of this library's methods that should not be: wrong, stalled or crashed.
+    pub fn broken(&self) -> impl Iterator<Item = &Cell> {
+        let bad = [Outcome::Wrong, Outcome::Stalled, Outcome::Crashed];
+        self.cells.iter().filter(move |c| c.ours && bad.contains(&c.outcome))
+    }
+}

@@ -1,5 +1,11 @@
 //! Models of the motion, on scenes with a known truth.
 
+mod entry;
+mod ours;
+mod rivals;
+mod scene_b;
+mod task;
+
 use super::{FailureMap, Family, Scene};
 use crate::Result;
 
@@ -7,8 +13,13 @@ use crate::Result;
 ///
 /// # Errors
 /// If a scene cannot be built.
-pub fn scenes(_quick: bool, _progress: &mut dyn FnMut(&str)) -> Result<Vec<Scene>> {
-    Ok(Vec::new())
+pub fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Vec<Scene>> {
+    let mut found = Vec::new();
+    for seconds in [2.0, 100.0] {
+        progress(&format!("scene B over {seconds} s"));
+        found.push(scene_b::scene(seconds, quick));
+    }
+    Ok(found)
 }
 
 /// What the models do at their borders.

@@ -12,6 +12,16 @@ pub enum Family {
     Estimators,
 }
 
+impl Family {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Family::Models => "models",
+            Family::Estimators => "estimators",
+        }
+    }
+}
+
 /// One method with one setting on one scene, measured.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Measured {
