@@ -12,7 +12,7 @@ struct Answer<'a> {
     scenes: &'a [Scene],
     #[serde(skip_serializing_if = "Option::is_none")]
     failures: Option<Vec<Failure<'a>>>,
-    warnings: [(); 0],
+    warnings: &'a [String],
     files: &'a [String],
 }
 
@@ -48,6 +48,17 @@ pub fn run(typed: &args::Precision, json: bool) -> Result<()> {
         maps.retain(|map| !map.cells.is_empty());
     }
     bar.finish_and_clear();
+    let mut warnings = Vec::new();
+    for path in &typed.add {
+        let left = added::add(&mut scenes, path)?;
+        if left > 0 {
+            warnings.push(format!("{left} lines of {} name scenes that were not measured.", path.display()));
+        }
+    }
+    if cfg!(debug_assertions) {
+        warnings
+            .push("This is a build for development: its times are not those of the released program.".into());
+    }
     let mut written = Vec::new();
     if let Some(folder) = &typed.out {
         let mut output = Output::new(folder)?;
@@ -66,19 +77,14 @@ pub fn run(typed: &args::Precision, json: bool) -> Result<()> {
         written = output.written().to_vec();
     }
     if json {
-        let cells = |map: &'_ FailureMap| map.family;
         let failures = typed.failures.then(|| {
             maps.iter()
-                .flat_map(|map| map.cells.iter().map(move |cell| Failure { family: cells(map), cell }))
+                .flat_map(|map| map.cells.iter().map(move |cell| Failure { family: map.family, cell }))
                 .collect()
         });
-        return print::json(&Answer { scenes: &scenes, failures, warnings: [], files: &written });
+        return print::json(&Answer { scenes: &scenes, failures, warnings: &warnings, files: &written });
     }
-    if cfg!(debug_assertions) {
-        complain::warn(&[
-            "This is a build for development: its times are not those of the released program.".into(),
-        ]);
-    }
+    complain::warn(&warnings);
     let mut text = String::new();
     for scene in &scenes {
         let _ = writeln!(text, "{}\n{}\n{}", scene.name, scene.says, tables::scene(scene).text());

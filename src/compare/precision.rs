@@ -4,11 +4,13 @@
 //! together. A [`FailureMap`] tells what the methods do at the borders of what they can: right, refused with a reason, wrong
 //! without a word, stalled, crashed. Two families: models of the motion, and estimators of what is measured of it.
 
+pub mod added;
 pub mod estimators;
 pub mod failure;
 pub mod measured;
 pub mod models;
 pub mod scene;
+pub mod watched;
 
 pub use failure::{Cell, FailureMap, Outcome};
 pub use scene::{Family, Measured, Scene};

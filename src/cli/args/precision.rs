@@ -14,6 +14,9 @@ pub struct Precision {
     /// Tell also what the methods do at the borders of what they can: right, refused, wrong, stalled, crashed
     #[arg(long)]
     pub failures: bool,
+    /// Add the lines that another program has measured and written into this file (see benches/peers)
+    #[arg(long, value_name = "FILE")]
+    pub add: Vec<PathBuf>,
     /// Write charts and CSV into this folder
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,

@@ -3,7 +3,7 @@
 use crate::compare::precision::{Family, Measured, Scene};
 use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
 
-/// Markers in turn; with seven colours no two of fifty methods look alike.
+/// Markers in turn.
 const MARKERS: [Marker; 6] = [
     Marker::Circle,
     Marker::Square,
@@ -24,6 +24,7 @@ pub fn precision(scene: &Scene) -> Figure {
     let times = scene.methods.iter().map(|m| 1e-9 * m.time_ns);
     let (first, last) = times.fold((f64::INFINITY, 0.0_f64), |(low, high), t| (low.min(t), high.max(t)));
     let (first, last) = (0.6 * first, 1.7 * last);
+    let (first, last) = if first < last { (first, last) } else { (1e-6, 1.0) };
     let floor = 10f64.powf((0.7 * low).log10().floor());
     let label = if scene.error_of.is_empty() { "Error" } else { &scene.error_of };
     let mut plot = Plot::new(
@@ -39,18 +40,25 @@ pub fn precision(scene: &Scene) -> Figure {
         plot =
             plot.with(Series::line("Pareto front", front.0, front.1).ink(Ink::Grey).stroke(Stroke::Dotted));
     }
-    for (i, (name, methods)) in lines(scene).into_iter().enumerate() {
+    // This library's methods are black, the others coloured: six colours, and another form when they come round.
+    let (mut own, mut others) = (0, 0);
+    for (name, methods) in lines(scene) {
+        let ours = methods.iter().any(|m| m.ours);
+        let (ink, marker, stroke) = if ours {
+            own += 1;
+            (Ink::Black, MARKERS[(own - 1) % MARKERS.len()], Stroke::Solid)
+        } else {
+            others += 1;
+            let turn = others - 1;
+            (Ink::Nth(turn % 6), MARKERS[(turn + 1 + turn / 6) % MARKERS.len()], Stroke::Thin)
+        };
         let points: Vec<(f64, f64)> =
             methods.iter().filter_map(|m| Some((1e-9 * m.time_ns, error(m)?))).collect();
         if points.is_empty() {
             continue;
         }
         let (x, y): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
-        let ours = methods.iter().any(|m| m.ours);
-        let series = Series::points(name, x, y)
-            .ink(Ink::Nth(i % 7))
-            .marker(MARKERS[i % MARKERS.len()])
-            .stroke(if ours { Stroke::Solid } else { Stroke::Thin });
+        let series = Series::points(name, x, y).ink(ink).marker(marker).stroke(stroke);
         plot = plot.with(series);
     }
     let crosses: Vec<&Measured> = failed(scene).collect();
@@ -68,7 +76,7 @@ pub fn precision(scene: &Scene) -> Figure {
         Family::Estimators => "estimator",
     };
     Figure::double(format!("Speed against accuracy: {}", scene.name)).height(95.0).panel(plot).caption(format!(
-        "{} Each line is a {kind}, each point one of its settings: lower is more accurate, further left is faster. Dotted: nothing \
+        "{} Each line is a {kind}, each point one of its settings, black those of this library: lower is more accurate, further left is faster. Dotted: nothing \
          lies below and left of it. Crosses at the upper edge gave no answer. Truth: {}.{bound}",
         scene.says, scene.truth
     ))
