@@ -1,7 +1,7 @@
 //! `vibro precision`: speed against accuracy, and where methods break.
 
 use crate::cli::{args, complain, print, progress};
-use crate::compare::precision::{Cell, FailureMap, Family, Scene, estimators, models};
+use crate::compare::precision::{Cell, FailureMap, Family, Scene, added, estimators, models};
 use crate::error::Result;
 use crate::report::{Figure, Output, files, pictures, tables};
 use serde::Serialize;

@@ -14,7 +14,7 @@ mod slow_sweep;
 mod soft;
 mod task;
 
-use super::{FailureMap, Family, Scene};
+use super::Scene;
 use crate::Result;
 
 /// Every scene of the models, each method measured; `quick` takes fewer settings and repeats.

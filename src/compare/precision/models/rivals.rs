@@ -8,7 +8,7 @@ mod moreau;
 mod penalty;
 mod stepper;
 
-pub use events::{Events, Locate, events};
+pub use events::{Events, events};
 pub use loops::{Loop, marched};
 pub use moreau::moreau;
 pub use penalty::{Spring, penalty, sprung};
