@@ -120,7 +120,7 @@ const RATES: [Method<Trace>; 4] = [
         estimate: |t| Ok(Answer::bare(mean(&rivals::passages(&t.values, false)))),
     },
     Method {
-        name: "largest line",
+        name: "spectrum, first line",
         ours: false,
         estimate: |t| {
             let lines = rivals::lines(t, crate::record::Window::Hann);
@@ -292,11 +292,11 @@ pub fn cells_of_impacts(quick: bool) -> Vec<Cell> {
         changed("one sample missing", plain(), |v, _| v[300] = f64::NAN),
         changed("all equal", plain(), |v, _| v.fill(0.25)),
     ];
-    let mut all = cells("impact frequency: ringing", &RATES, &ringing, quick);
-    all.extend(cells("impact frequency: missing impacts", &RATES, &counts, quick));
-    all.extend(cells("impact frequency: heights", &RATES, &heights, quick));
-    all.extend(cells("impact frequency: noise", &RATES, &noise, quick));
-    all.extend(cells("impact frequency: uneven", &RATES, &uneven, quick));
-    all.extend(cells("impact frequency: faults", &RATES, &faults, quick));
+    let mut all = cells("impact rate: ringing", &RATES, &ringing, quick);
+    all.extend(cells("impact rate: missing", &RATES, &counts, quick));
+    all.extend(cells("impact rate: heights", &RATES, &heights, quick));
+    all.extend(cells("impact rate: noise", &RATES, &noise, quick));
+    all.extend(cells("impact rate: uneven", &RATES, &uneven, quick));
+    all.extend(cells("impact rate: faults", &RATES, &faults, quick));
     all
 }

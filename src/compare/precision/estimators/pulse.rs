@@ -27,13 +27,11 @@ const BY_HAND: Method<Pulse> = Method {
     ours: false,
     estimate: |p| {
         let (peak, end) = rivals::instants(&p.trace.values);
-        // The closed form as it stands in a spreadsheet: it asks for no domain.
-        let rho = peak / end;
-        Ok(Answer::bare((PI * (1.0 - 2.0 * rho) / (2.0 * (3.0 - 2.0 * rho))).sin()))
+        Ok(Answer::bare(closed_form(peak / end)))
     },
 };
 
-const METHODS: [Method<Pulse>; 2] = [BY_HAND, Method { name: "whole pulse", ours: true, estimate: whole }];
+const WHOLE: Method<Pulse> = Method { name: "whole pulse", ours: true, estimate: whole };
 
 fn whole(p: &Pulse) -> Result<Answer> {
     let found = pulse(&p.trace, &PulseOptions { instrument: p.instrument.clone(), mass: None })?;
@@ -42,25 +40,30 @@ fn whole(p: &Pulse) -> Result<Answer> {
 }
 
 /// ξ from two times that come with an uncertainty, as `vibro pulse --peak --end` gives it.
-const TWO: [Method<Pulse>; 2] = [
-    Method {
-        name: "two times",
-        ours: true,
-        estimate: |p| {
-            let [peak, end, std] = p.times;
-            let found = two_times(peak, end, Some(std), None)?;
-            Ok(Answer::stated(&found.xi, &found.warnings, &["Two instants cannot show"]))
-        },
+const TWO_TIMES: Method<Pulse> = Method {
+    name: "two times",
+    ours: true,
+    estimate: |p| {
+        let [peak, end, std] = p.times;
+        let found = two_times(peak, end, Some(std), None)?;
+        Ok(Answer::stated(&found.xi, &found.warnings, &["Two instants cannot show"]))
     },
-    Method {
-        name: "closed form",
-        ours: false,
-        estimate: |p| {
-            let rho = p.times[0] / p.times[1];
-            Ok(Answer::bare((PI * (1.0 - 2.0 * rho) / (2.0 * (3.0 - 2.0 * rho))).sin()))
-        },
-    },
-];
+};
+
+/// The same from a spreadsheet, which asks for no domain.
+const CLOSED_FORM: Method<Pulse> = Method {
+    name: "closed form",
+    ours: false,
+    estimate: |p| Ok(Answer::bare(closed_form(p.times[0] / p.times[1]))),
+};
+
+const METHODS: [Method<Pulse>; 2] = [BY_HAND, WHOLE];
+const FOUR: [Method<Pulse>; 4] = [CLOSED_FORM, BY_HAND, TWO_TIMES, WHOLE];
+
+/// ξ from ρ = time to peak / duration, for any ρ.
+fn closed_form(rho: f64) -> f64 {
+    (PI * (1.0 - 2.0 * rho) / (2.0 * (3.0 - 2.0 * rho))).sin()
+}
 
 /// Deceleration of a contact of spring and damper: −ẍ of x = e^{−ht} sin(Ωt)/Ω, differentiated twice.
 fn contact(xi: f64, t: f64) -> f64 {
@@ -203,13 +206,11 @@ pub fn cells_of_pulses(quick: bool) -> Vec<Cell> {
         changed("all equal", |p, _| p.trace.values.fill(1.0)),
     ];
     let swapped = [changed("the two times swapped", |p, _| p.times.swap(0, 1))];
-    let mut all = cells("ξ of a pulse: ρ to 1/2", &METHODS, &light, quick);
-    all.extend(cells("ξ of a pulse: ρ to 0", &METHODS, &heavy, quick));
-    all.extend(cells("ξ of a pulse: noise", &METHODS, &noise, quick));
-    all.extend(cells("ξ of a pulse: few samples", &METHODS, &few, quick));
-    all.extend(cells("ξ of a pulse: faults", &METHODS, &faults, quick));
-    all.extend(cells("ξ of two times: ρ to 1/2", &TWO, &light, quick));
-    all.extend(cells("ξ of two times: ρ to 0", &TWO, &heavy, quick));
-    all.extend(cells("ξ of two times: faults", &TWO, &swapped, quick));
+    let mut all = cells("contact ξ: ρ → 1/2", &FOUR, &light, quick);
+    all.extend(cells("contact ξ: ρ → 0", &FOUR, &heavy, quick));
+    all.extend(cells("contact ξ: noise", &METHODS, &noise, quick));
+    all.extend(cells("contact ξ: few samples", &METHODS, &few, quick));
+    all.extend(cells("contact ξ: faults", &METHODS, &faults, quick));
+    all.extend(cells("contact ξ: two times", &[CLOSED_FORM, TWO_TIMES], &swapped, quick));
     all
 }

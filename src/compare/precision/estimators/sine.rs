@@ -313,11 +313,11 @@ pub fn cells_of_sines(quick: bool) -> Vec<Cell> {
             Case { truth: case.truth - apart * rivals::spacing(&case.data), ..case }
         })
     });
-    let mut all = cells("frequency of a sine: noise", &FREQUENCY, &noise, quick);
-    all.extend(cells("frequency of a sine: short record", &FREQUENCY, &short, quick));
-    all.extend(cells("frequency of a sine: end of the band", &FREQUENCY, &ends, quick));
-    all.extend(cells("frequency of a sine: faults", &FREQUENCY, &faults, quick));
-    all.extend(cells("stronger of two sines", &FREQUENCY, &stronger, quick));
-    all.extend(cells("weaker of two sines", &WEAKER, &beside, quick));
+    let mut all = cells("frequency: noise", &FREQUENCY, &noise, quick);
+    all.extend(cells("frequency: short record", &FREQUENCY, &short, quick));
+    all.extend(cells("frequency: end of the band", &FREQUENCY, &ends, quick));
+    all.extend(cells("frequency: faults", &FREQUENCY, &faults, quick));
+    all.extend(cells("frequency: stronger of two", &FREQUENCY, &stronger, quick));
+    all.extend(cells("frequency: weaker of two", &WEAKER, &beside, quick));
     all
 }
