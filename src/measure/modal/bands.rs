@@ -23,9 +23,8 @@ pub(super) struct Group {
 /// A peak must stand this factor above its valleys.
 const PROMINENCE: f64 = 2.0;
 
-/// A peak must rise above its valleys by this many standard deviations of the noise of one component of a line: of lines of noise one in a hundred
-/// does, and a mode that does not is known to no better than a third of itself.
-const ABOVE_NOISE: f64 = 3.0;
+/// A peak must rise above its valleys by this many standard deviations of the noise of one component of a line: of 3 000 lines of noise one does.
+const ABOVE_NOISE: f64 = 4.0;
 
 /// Lines on either side of a peak that are at least fitted, and bandwidths on either side.
 const LINES: usize = 16;
@@ -109,9 +108,9 @@ fn noise(measured: &Measured, at: usize) -> f64 {
     let mut differences: Vec<f64> =
         measured.values[around].windows(3).map(|v| (v[0] - 2.0 * v[1] + v[2]).norm()).collect();
     differences.sort_by(f64::total_cmp);
-    // A second difference of lines of σ has 6σ² a component. The median of a Rayleigh variable is √(2 ln 2) of its scale, that of the size of a
-    // normal one, as magnitudes have, 0.6745.
-    let median = if measured.magnitude_only { 0.6745 } else { (2.0 * f64::ln(2.0)).sqrt() };
+    // A second difference of lines of σ has 6σ² a component. The median of a Rayleigh variable is √(2 ln 2) of its scale; that of the size of a
+    // normal one 0.6745, and magnitudes of noise alone scatter by 0.655σ.
+    let median = if measured.magnitude_only { 0.6745 * 0.655 } else { (2.0 * f64::ln(2.0)).sqrt() };
     differences.get(differences.len() / 2).map_or(0.0, |d| d / (median * f64::sqrt(6.0)))
 }
 
