@@ -1,6 +1,6 @@
 //! The excitation frequency of each step of a sweep, from its force spectrum (the job of the thesis' sineswpf).
 
-use super::line::{SubLine, interpolate};
+use super::line::{SubLine, beside, interpolate};
 use super::noise;
 use crate::error::{Error, Place, Result};
 use crate::record::{Sweep, SweepPoint, Window};
@@ -14,7 +14,7 @@ pub struct Excitation {
     pub file: String,
     /// Frequency in Hz.
     pub frequency: f64,
-    /// Its standard uncertainty in Hz; `None` where it is not known.
+    /// Its standard uncertainty in Hz; `None` where it is not known, as where another line near by bends this one.
     pub std: Option<f64>,
     /// Force amplitude in N; `None` where the frequency was given.
     pub force: Option<f64>,
@@ -103,7 +103,27 @@ fn largest(force: &[f64], window: Option<Window>, first: usize) -> std::result::
             quantity(force[k], "N", 3)
         ));
     }
-    interpolate(force, k, window, floor).ok_or_else(|| "the lines beside the largest are missing".to_owned())
+    let found = interpolate(force, k, window, floor)
+        .ok_or_else(|| "the lines beside the largest are missing".to_owned())?;
+    let off = window.and_then(|w| beside(force, k, w)).unwrap_or(0.0);
+    Ok(if floor.is_some_and(|f| off > BY_NOISE * f) { bent(found, off) } else { found })
+}
+
+/// Lines may differ from the shape of a sine by so many standard deviations of a component of the noise.
+const BY_NOISE: f64 = 5.0;
+/// Beyond this part of the amplitude, what stands beside a sine is no small error.
+const SMALL: f64 = 0.02;
+
+/// A line that has not the shape of one sine, by more than noise: what is off tilts the three lines and lifts them by its part of their height,
+/// about; where that is much, how far they are off is not known.
+fn bent(line: SubLine, off: f64) -> SubLine {
+    let known =
+        |std: Option<f64>, by: f64| std.filter(|_| off <= SMALL * line.amplitude).map(|s| s.hypot(by));
+    SubLine {
+        position_std: known(line.position_std, off / line.amplitude),
+        amplitude_std: known(line.amplitude_std, off),
+        ..line
+    }
 }
 
 #[cfg(test)]
