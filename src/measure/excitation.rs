@@ -157,6 +157,31 @@ mod tests {
         }
     }
 
+    /// Lines of the ripple of a floor, a sine, and another of half its height `apart` lines beside it, in phase.
+    fn pair(apart: f64) -> Vec<f64> {
+        (0..401)
+            .map(|k| {
+                let k = f64::from(k);
+                let sines =
+                    line_shape(Window::Hann, k - 110.4) + 0.5 * line_shape(Window::Hann, k - 110.4 - apart);
+                sines.abs() + 1e-5 * (2.0 + (k * k * 0.7).sin())
+            })
+            .collect()
+    }
+
+    #[test]
+    fn what_stands_beside_the_excitation_is_in_its_uncertainty_or_leaves_none() {
+        for apart in [1.0, 2.0, 3.0] {
+            let found = largest(&pair(apart), Some(Window::Hann), 0).unwrap();
+            assert_eq!((found.position_std, found.amplitude_std), (None, None), "{apart}: {found:?}");
+        }
+        let found = largest(&pair(6.0), Some(Window::Hann), 0).unwrap();
+        assert!((found.position - 110.4).abs() < 3.0 * found.position_std.unwrap(), "{found:?}");
+        assert!(found.position_std.unwrap() < 0.02, "{found:?}");
+        let alone = largest(&pair(200.0), Some(Window::Hann), 0).unwrap();
+        assert!(alone.position_std.unwrap() < 1e-4, "{alone:?}");
+    }
+
     #[test]
     fn what_is_no_excitation_is_refused() {
         assert!(largest(&[0.0; 401], Some(Window::Hann), 0).unwrap_err().contains("zero"));

@@ -7,6 +7,7 @@
 mod bands;
 mod choice;
 mod graphic;
+mod hidden;
 mod rational;
 mod response;
 mod result;
@@ -92,9 +93,19 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
     }
     let mut modes = Vec::new();
     let mut reversed = 0;
-    for (group, fit) in groups.iter().zip(fits) {
+    let poles: Vec<Vec<Pole>> =
+        fits.iter().map(|f| f.as_ref().map_or_else(|_| Vec::new(), |f| f.modes.clone())).collect();
+    for (at, (group, fit)) in groups.iter().zip(fits).enumerate() {
         match fit {
-            Ok(fit) => reversed += result::report(&lines, group, &fit, options, &mut modes, &mut warnings),
+            Ok(fit) => {
+                let before = modes.len();
+                reversed += result::report(&lines, group, &fit, options, &mut modes, &mut warnings);
+                if modes.len() > before {
+                    let others = poles.iter().enumerate().filter(|(other, _)| *other != at);
+                    let others: Vec<Pole> = others.flat_map(|(_, poles)| poles).copied().collect();
+                    warnings.extend(hidden::hidden(&lines, group, &fit, &others));
+                }
+            }
             Err(error) => warnings.push(format!(
                 "The peak at {} Hz is not fitted: {error}.",
                 group.peaks.first().map_or_else(String::new, |p| response::hertz(lines.frequency[p.at]))

@@ -241,6 +241,23 @@ mod tests {
     }
 
     #[test]
+    fn another_sine_beside_is_said_and_half_the_rate_is_refused() {
+        // 200 Hz and 201.5 Hz in lines of 1 Hz: 1.5 lines apart.
+        let two = |i: i32| {
+            let t = f64::from(i) * 1e-3;
+            (TAU * 200.0 * t).cos()
+                + 0.5 * (TAU * 201.5 * t + 1.0).cos()
+                + 0.01 * (f64::from(i * i) * 0.7).sin()
+        };
+        let found = sine(&trace((0..1000).map(two).collect()), None).unwrap();
+        assert!(found.warnings.iter().any(|w| w.contains("another sine")), "{:?}", found.warnings);
+        // An eighth of a line below half the rate.
+        let last = |i: i32| (TAU * 499.875 * f64::from(i) * 1e-3 + 0.4).cos();
+        let error = sine(&trace((0..1000).map(last).collect()), None).unwrap_err().to_string();
+        assert!(error.contains("half the sampling rate"), "{error}");
+    }
+
+    #[test]
     fn what_is_no_sine_is_refused() {
         let mut state = 3u64;
         let mut noise = |_| {
