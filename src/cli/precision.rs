@@ -78,7 +78,9 @@ pub fn run(typed: &args::Precision, json: bool) -> Result<()> {
             drawn.push((format!("precision_{}", files::slug(&scene.name)), pictures::precision(scene)));
         }
         for map in &maps {
-            drawn.push((format!("failures_{}", map.family.name()), pictures::failures(map)));
+            let name =
+                |(name, figure): (String, Figure)| (format!("failures_{}", files::slug(&name)), figure);
+            drawn.extend(pictures::failures(map).into_iter().map(name));
         }
         files::figures(&mut output, &drawn, &|| ())?;
         output.write("precision.csv", tables::precision(&scenes).csv())?;

@@ -36,7 +36,9 @@ pub fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Vec<Scene>>
         progress(name);
         all.extend(scenes(quick));
     }
-    all.iter_mut().for_each(|scene| front(&mut scene.methods));
+    for scene in &mut all {
+        front(&mut scene.methods);
+    }
     Ok(all)
 }
 

@@ -71,6 +71,20 @@ impl FailureMap {
         names
     }
 
+    /// The map of each quantity, which its borders name before a colon, with that name; the whole where none does.
+    pub fn parts(&self) -> Vec<(&str, FailureMap)> {
+        let mut parts: Vec<(&str, FailureMap)> = Vec::new();
+        for cell in &self.cells {
+            let (quantity, border) = cell.border.split_once(": ").unwrap_or(("", &cell.border));
+            let cell = Cell { border: border.to_owned(), ..cell.clone() };
+            match parts.iter_mut().find(|p| p.0 == quantity) {
+                Some(part) => part.1.cells.push(cell),
+                None => parts.push((quantity, FailureMap { family: self.family, cells: vec![cell] })),
+            }
+        }
+        parts
+    }
+
     /// The cells of this library's methods that should not be: wrong, stalled or crashed.
     pub fn broken(&self) -> impl Iterator<Item = &Cell> {
         let bad = [Outcome::Wrong, Outcome::Stalled, Outcome::Crashed];

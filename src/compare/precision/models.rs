@@ -1,6 +1,7 @@
 //! Models of the motion, on scenes with a known truth.
 
 mod borders;
+mod chaos;
 mod chatter;
 mod check;
 mod entry;
@@ -36,6 +37,8 @@ pub fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Vec<Scene>>
         progress(&format!("soft contact, {stiffness:.0e} N/m"));
         found.push(soft::scene(stiffness, quick)?);
     }
+    progress("chaotic window");
+    found.push(chaos::scene(quick)?);
     progress("slow sweep");
     found.push(slow_sweep::scene(quick)?);
     Ok(found)

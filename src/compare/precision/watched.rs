@@ -4,6 +4,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::channel;
 use std::time::Duration;
 
+/// Time in s that one answer at a border may take, on a machine that does other things, too: right ones take less than a hundredth of it.
+pub const PATIENCE: f64 = 60.0;
+
 /// How a watched run ended.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Watched<T> {

@@ -157,7 +157,9 @@ mod tests {
             (0..2000).map(|_| Complex64::new(0.3 * noise.next(), 0.3 * noise.next())).collect();
         values[1000] = Complex64::new(3.0, 0.0);
         if magnitude_only {
-            values.iter_mut().for_each(|v| *v = Complex64::new(v.norm(), 0.0));
+            for v in &mut values {
+                *v = Complex64::new(v.norm(), 0.0);
+            }
         }
         let frequency = (0..2000).map(f64::from).collect();
         Measured { frequency, values, magnitude_only, kind: FrfKind::Receptance, coherence: None }

@@ -13,8 +13,21 @@ const OUTCOMES: [(Outcome, &str, Rgb); 5] = [
     (Outcome::Crashed, "C", BLACK),
 ];
 
+/// A picture of each quantity (of all where borders name none), with a name for its file.
+pub fn failures(map: &FailureMap) -> Vec<(String, Figure)> {
+    let family = map.family.name();
+    let one = |(quantity, part): (&str, FailureMap)| {
+        if quantity.is_empty() {
+            (family.to_owned(), grid(&part, format!("Where {family} break")))
+        } else {
+            (format!("{family} {quantity}"), grid(&part, format!("Where {family} break: {quantity}")))
+        }
+    };
+    map.parts().into_iter().map(one).collect()
+}
+
 /// Methods across, scenes of each border down, what came in each cell.
-pub fn failures(map: &FailureMap) -> Figure {
+fn grid(map: &FailureMap, title: String) -> Figure {
     let kinds = OUTCOMES
         .iter()
         .map(|(outcome, letter, colour)| Kind {
@@ -42,7 +55,7 @@ pub fn failures(map: &FailureMap) -> Figure {
         grid = grid.row(*border, *scene, methods.iter().map(of).collect());
     }
     let height = grid.height();
-    Figure::double(format!("Where {} break", map.family.name())).height(height).panel(grid).caption(
+    Figure::double(title).height(height).panel(grid).caption(
         "What each method did at the borders of what it can, decided by a check with the truth: right (+), refused with a reason (–), \
          wrong without a word (W), stalled (S), crashed (C). Empty: the method has nothing to say to that scene.",
     )

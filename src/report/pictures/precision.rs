@@ -13,19 +13,25 @@ const MARKERS: [Marker; 6] = [
     Marker::OpenCircle,
 ];
 
-/// Error over time of every method of a scene, one line a method through its settings; what failed stands as a cross at the
-/// upper edge, with its name.
+/// Room of a row of crosses in parts of the decades of the errors.
+const ROW: f64 = 0.05;
+
+/// Error over time of every method of a scene, one line a method through its settings; what failed stands as crosses at the
+/// upper edge, each method in a row of its own and with its name beside the frame.
 pub fn precision(scene: &Scene) -> Figure {
     let errors = scene.methods.iter().filter_map(error).chain(scene.bound);
     let (low, high) = errors.fold((f64::INFINITY, 0.0_f64), |(low, high), e| (low.min(e), high.max(e)));
     let (low, high) = if low <= high { (low, high) } else { (1e-3, 1.0) };
-    // A decade of room above for what failed.
-    let edge = 10f64.powf(high.log10().ceil() + if failed(scene).next().is_some() { 1.0 } else { 0.0 });
+    let floor = 10f64.powf((0.7 * low).log10().floor());
+    let top = high.log10().ceil();
+    let lines = lines(scene);
+    let failing = lines.iter().filter(|l| l.1.iter().any(|m| error(m).is_none())).count() as f64;
+    let row = ROW * (top - floor.log10()).max(1.0);
+    let edge = 10f64.powf(top + row * failing);
     let times = scene.methods.iter().map(|m| 1e-9 * m.time_ns);
     let (first, last) = times.fold((f64::INFINITY, 0.0_f64), |(low, high), t| (low.min(t), high.max(t)));
     let (first, last) = (0.6 * first, 1.7 * last);
     let (first, last) = if first < last { (first, last) } else { (1e-6, 1.0) };
-    let floor = 10f64.powf((0.7 * low).log10().floor());
     let label = if scene.error_of.is_empty() { "Error" } else { &scene.error_of };
     let mut plot = Plot::new(
         AxisSpec::new("Time of one answer", "s").log().limits(first, last),
@@ -42,7 +48,8 @@ pub fn precision(scene: &Scene) -> Figure {
     }
     // This library's methods are black, the others coloured: six colours, and another form when they come round.
     let (mut own, mut others) = (0, 0);
-    for (name, methods) in lines(scene) {
+    let mut crosses = Vec::new();
+    for (name, methods) in lines {
         let ours = methods.iter().any(|m| m.ours);
         let (ink, marker, stroke) = if ours {
             own += 1;
@@ -52,23 +59,21 @@ pub fn precision(scene: &Scene) -> Figure {
             let turn = others - 1;
             (Ink::Nth(turn % 6), MARKERS[(turn + 1 + turn / 6) % MARKERS.len()], Stroke::Thin)
         };
-        let points: Vec<(f64, f64)> =
-            methods.iter().filter_map(|m| Some((1e-9 * m.time_ns, error(m)?))).collect();
-        if points.is_empty() {
-            continue;
+        let (x, y): (Vec<f64>, Vec<f64>) =
+            methods.iter().filter_map(|m| Some((1e-9 * m.time_ns, error(m)?))).unzip();
+        if !x.is_empty() {
+            plot = plot.with(Series::points(name, x, y).ink(ink).marker(marker).stroke(stroke));
         }
-        let (x, y): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
-        let series = Series::points(name, x, y).ink(ink).marker(marker).stroke(stroke);
-        plot = plot.with(series);
+        let x: Vec<f64> = methods.iter().filter(|m| error(m).is_none()).map(|m| 1e-9 * m.time_ns).collect();
+        if !x.is_empty() {
+            let place = 10f64.powf(top + row * (crosses.len() as f64 + 0.5));
+            let y = vec![place; x.len()];
+            crosses.push(Series::points(format!("{name}: failed"), x, y).ink(ink).marker(Marker::Cross));
+        }
     }
-    let crosses: Vec<&Measured> = failed(scene).collect();
-    if !crosses.is_empty() {
-        let x: Vec<f64> = crosses.iter().map(|m| 1e-9 * m.time_ns).collect();
-        let y = vec![edge / 2.5; x.len()];
-        plot = plot.with(Series::points("failed", x, y).ink(Ink::Black).marker(Marker::Cross));
-        for m in crosses {
-            plot = plot.note(m.method.clone(), 1e-9 * m.time_ns, edge / 2.5);
-        }
+    // The legend names them from above as they stand.
+    for series in crosses.into_iter().rev() {
+        plot = plot.with(series);
     }
     let bound = if scene.bound.is_some() { " Level line: Cramér–Rao bound." } else { "" };
     let kind = match scene.family {
@@ -77,7 +82,7 @@ pub fn precision(scene: &Scene) -> Figure {
     };
     Figure::double(format!("Speed against accuracy: {}", scene.name)).height(95.0).panel(plot).caption(format!(
         "{} Each line is a {kind}, each point one of its settings, black those of this library: lower is more accurate, further left is faster. Dotted: nothing \
-         lies below and left of it. Crosses at the upper edge gave no answer. Truth: {}.{bound}",
+         lies below and left of it. Crosses at the upper edge gave no answer, each method in its row. Truth: {}.{bound}",
         scene.says, scene.truth
     ))
 }
@@ -85,10 +90,6 @@ pub fn precision(scene: &Scene) -> Figure {
 /// Error that can be drawn: an answer without any counts as rounding.
 fn error(m: &Measured) -> Option<f64> {
     m.error.filter(|e| !m.failed && e.is_finite()).map(|e| e.abs().max(1e-17))
-}
-
-fn failed(scene: &Scene) -> impl Iterator<Item = &Measured> {
-    scene.methods.iter().filter(|m| error(m).is_none())
 }
 
 /// The methods with their settings, in their order.

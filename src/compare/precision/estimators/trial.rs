@@ -1,13 +1,12 @@
 //! Methods tried on random records of which the truth is known.
 
 use super::super::measured::{quartiles, timed};
+use super::super::watched::{PATIENCE, Watched, watched};
 use super::super::{Cell, Measured, Outcome};
 use crate::error::Result;
 use crate::math::Noise;
 use crate::measure::Estimate;
 use std::collections::BTreeMap;
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::time::{Duration, Instant};
 
 /// What a method says.
 pub struct Answer {
@@ -54,6 +53,9 @@ pub struct Case<D> {
     pub tolerance: f64,
 }
 
+/// A record from random numbers.
+type Make<D> = Box<dyn Fn(&mut Noise) -> Case<D>>;
+
 /// Random records of one kind.
 pub struct Kind<D> {
     /// Its name: the setting of a scene, or the scene at a border.
@@ -61,7 +63,7 @@ pub struct Kind<D> {
     /// Seed of its first record; the next have the next.
     pub seed: u64,
     /// A record from random numbers.
-    pub make: Box<dyn Fn(&mut Noise) -> Case<D>>,
+    pub make: Make<D>,
 }
 
 impl<D> Kind<D> {
@@ -157,15 +159,35 @@ impl Refusals {
 const TRIALS: [usize; 2] = [40, 6];
 /// An answer within so many of its standard uncertainties is right.
 const WITHIN: f64 = 3.0;
-/// Beyond so many a single answer is wrong: of normal errors one in two million is.
+/// Share of normal errors that lie further off.
+const OUTSIDE: f64 = 2.699_796e-3;
+/// Beyond so many a single answer is wrong: of normal errors 5.7e-7 are, of the 40 of a cell one in 2.3e-5.
 const FAR: f64 = 5.0;
-/// More answers than these between both are wrong: of 40 normal errors three are once in 5 000 cells.
-const BETWEEN: usize = 2;
-/// Time that one answer may take, on a machine that does other things, too.
-const BUDGET: Duration = Duration::from_secs(10);
+/// A method whose errors are what it states is called wrong in fewer than this of the cells: in none of the thousand of the map, in nine of ten runs.
+const CHANCE: f64 = 1e-4;
+
+/// How many of `trials` answers may lie between [`WITHIN`] and [`FAR`]: the least number that chance exceeds in fewer than [`CHANCE`] of the cells
+/// (binomial distribution).
+fn outliers(trials: usize) -> usize {
+    let odds = OUTSIDE / (1.0 - OUTSIDE);
+    let mut term = (1.0 - OUTSIDE).powf(trials as f64);
+    let mut beyond = 1.0 - term;
+    let mut count = 0;
+    while beyond > CHANCE && count < trials {
+        term *= odds * (trials - count) as f64 / (count + 1) as f64;
+        beyond -= term;
+        count += 1;
+    }
+    count
+}
 
 /// What each method does with each kind of record at a border.
-pub fn cells<D>(border: &str, methods: &[Method<D>], kinds: &[Kind<D>], quick: bool) -> Vec<Cell> {
+pub fn cells<D: Send + 'static>(
+    border: &str,
+    methods: &[Method<D>],
+    kinds: &[Kind<D>],
+    quick: bool,
+) -> Vec<Cell> {
     let one = |method: &Method<D>, kind: &Kind<D>| {
         let (outcome, why) = judged(method, kind, TRIALS[usize::from(quick)]);
         Cell {
@@ -180,24 +202,21 @@ pub fn cells<D>(border: &str, methods: &[Method<D>], kinds: &[Kind<D>], quick: b
     kinds.iter().flat_map(|k| methods.iter().map(move |m| one(m, k))).collect()
 }
 
-fn judged<D>(method: &Method<D>, kind: &Kind<D>, trials: usize) -> (Outcome, String) {
+fn judged<D: Send + 'static>(method: &Method<D>, kind: &Kind<D>, trials: usize) -> (Outcome, String) {
     let (mut right, mut between, mut worst) = (0, 0, None::<(f64, String)>);
     let (mut refusals, mut stated) = (Refusals::default(), true);
     for number in 0..trials {
         let case = kind.case(number);
-        let start = Instant::now();
-        let Ok(answer) = catch_unwind(AssertUnwindSafe(|| (method.estimate)(&case.data))) else {
-            return (Outcome::Crashed, format!("it panicked at record {number}"));
-        };
-        let took = start.elapsed();
-        if took > BUDGET {
-            return (Outcome::Stalled, format!("record {number} took {:.1} s", took.as_secs_f64()));
-        }
-        let answer = match answer {
-            Ok(answer) => answer,
-            Err(error) => {
+        let (estimate, data) = (method.estimate, case.data);
+        let answer = match watched(PATIENCE, move || estimate(&data)) {
+            Watched::Done(Ok(answer)) => answer,
+            Watched::Done(Err(error)) => {
                 refusals.add(error.to_string());
                 continue;
+            }
+            Watched::Crashed(why) => return (Outcome::Crashed, format!("record {number}: {why}")),
+            Watched::Stalled => {
+                return (Outcome::Stalled, format!("record {number}: no answer within {PATIENCE} s"));
             }
         };
         let off = (answer.value - case.truth).abs();
@@ -206,13 +225,9 @@ fn judged<D>(method: &Method<D>, kind: &Kind<D>, trials: usize) -> (Outcome, Str
             continue;
         }
         // In standard uncertainties, or in thirds of the tolerance.
-        let score = match answer.std {
-            Some(std) => off / std.max(1e-12 * case.truth.abs()),
-            None => {
-                stated = false;
-                WITHIN * off / case.tolerance
-            }
-        };
+        stated &= answer.std.is_some();
+        let score =
+            answer.std.map_or(WITHIN * off / case.tolerance, |std| off / std.max(1e-12 * case.truth.abs()));
         match answer.doubt {
             Some(doubt) if answer.std.is_none() || score > WITHIN => refusals.add(doubt),
             _ if score <= WITHIN => right += 1,
@@ -228,7 +243,7 @@ fn judged<D>(method: &Method<D>, kind: &Kind<D>, trials: usize) -> (Outcome, Str
     let measure = if stated { "3 standard uncertainties" } else { "what is allowed" };
     let part = |n: usize| format!("{n} of {trials} answers");
     match worst {
-        Some((score, text)) if score > FAR || between > BETWEEN => (
+        Some((score, text)) if score > FAR || between > outliers(trials) => (
             Outcome::Wrong,
             format!(
                 "{} beyond {measure} without a doubt, the worst {text}, {:.3} times as far",
@@ -238,5 +253,25 @@ fn judged<D>(method: &Method<D>, kind: &Kind<D>, trials: usize) -> (Outcome, Str
         ),
         _ if 2 * right >= trials => (Outcome::Right, format!("{} within {measure}", part(right))),
         _ => (Outcome::Refused, refusals.said(trials).unwrap_or_else(|| "no answer".to_owned())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chance_calls_a_right_method_wrong_in_fewer_than_one_cell_in_ten_thousand() {
+        // P(k) of the binomial distribution by its factorials.
+        let share = |n: usize, k: usize| {
+            let ways = (0..k).map(|i| (n - i) as f64 / (i + 1) as f64).product::<f64>();
+            ways * OUTSIDE.powf(k as f64) * (1.0 - OUTSIDE).powf((n - k) as f64)
+        };
+        for n in [1, 6, 40, 1000] {
+            let beyond = |count: usize| (count + 1..=n).map(|k| share(n, k)).sum::<f64>();
+            let count = outliers(n);
+            assert!(beyond(count) < CHANCE, "{n}: {count}");
+            assert!(count == 0 || beyond(count - 1) > CHANCE, "{n}: {count}");
+        }
     }
 }

@@ -7,13 +7,11 @@ use super::rivals::{Events, Kind, Loop, events, marched, penalty};
 use super::scene_b::spring;
 use super::task::{Fault, Task, Told};
 use crate::Result;
-use crate::compare::precision::watched::{Watched, watched};
+use crate::compare::precision::watched::{PATIENCE, Watched, watched};
 use crate::compare::precision::{Cell, FailureMap, Family, Outcome};
 use crate::model::contact::conversion::damping_ratio;
 use crate::model::{Compliance, Excitation, Sine, orbits, softened};
 
-/// Time in s that an answer may take.
-const PATIENCE: f64 = 60.0;
 /// Error in s that one of this library's methods may have: what the truth itself is off after some impacts.
 const OURS: f64 = 1e-7;
 
