@@ -73,7 +73,10 @@ impl Grid {
 
     /// Names of the columns, cut into words that stand under each other.
     pub(super) fn heads(&self) -> Vec<Vec<String>> {
-        self.columns.iter().map(|name| name.split(' ').map(str::to_owned).collect()).collect()
+        self.columns
+            .iter()
+            .map(|name| name.split_inclusive([' ', '-']).map(|w| w.trim().to_owned()).collect())
+            .collect()
     }
 
     /// Height in mm of a figure that it fills.

@@ -49,7 +49,7 @@ fn an_earlier_run_is_drawn_with_the_lines_of_other_programs() {
     assert!(answer["warnings"].to_string().contains("1 lines of"), "{}", answer["warnings"]);
     let chart = std::fs::read_to_string(path("out/precision_scene_c.svg")).unwrap();
     // What failed is named.
-    assert!(chart.contains("events: failed") && chart.contains("Peer 1.0: failed"));
+    assert!(chart.contains("× events") && chart.contains("× Peer 1.0"));
     let table = std::fs::read_to_string(path("out/precision.csv")).unwrap();
     assert_eq!(table.lines().filter(|l| l.contains("it stalls")).count(), 2, "{table}");
     for wrong in ["earlier.json", "out"] {

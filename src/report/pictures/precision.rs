@@ -68,7 +68,7 @@ pub fn precision(scene: &Scene) -> Figure {
         if !x.is_empty() {
             let place = 10f64.powf(top + row * (crosses.len() as f64 + 0.5));
             let y = vec![place; x.len()];
-            crosses.push(Series::points(format!("{name}: failed"), x, y).ink(ink).marker(Marker::Cross));
+            crosses.push(Series::points(format!("× {name}"), x, y).ink(ink).marker(Marker::Cross));
         }
     }
     // The legend names them from above as they stand.
@@ -82,7 +82,7 @@ pub fn precision(scene: &Scene) -> Figure {
     };
     Figure::double(format!("Speed against accuracy: {}", scene.name)).height(95.0).panel(plot).caption(format!(
         "{} Each line is a {kind}, each point one of its settings, black those of this library: lower is more accurate, further left is faster. Dotted: nothing \
-         lies below and left of it. Crosses at the upper edge gave no answer, each method in its row. Truth: {}.{bound}",
+         lies below and left of it. Crosses at the upper edge gave no answer, each method in a row of its own, from above as in the list. Truth: {}.{bound}",
         scene.says, scene.truth
     ))
 }

@@ -82,7 +82,7 @@ impl<D> Kind<D> {
 }
 
 /// Records of a setting: in full, and quick.
-const RECORDS: [usize; 2] = [256, 24];
+const RECORDS: [usize; 2] = [128, 24];
 /// Records of a setting that are also timed: in full, and quick.
 const TIMED: [usize; 2] = [24, 5];
 /// Parts of the records whose errors show how far the error scatters.
