@@ -10,6 +10,7 @@ mod impacts;
 mod info;
 mod modal;
 mod model;
+mod precision;
 mod print;
 mod progress;
 mod pulse;
@@ -57,6 +58,7 @@ fn dispatch(args: &Args) -> Result<u8> {
         Command::Modal(typed) => modal::run(typed, args.json),
         Command::Pulse(typed) => pulse::run(typed, args.json),
         Command::Model(typed) => model::run(typed, args.json),
+        Command::Precision(typed) => precision::run(typed, args.json),
         Command::Run(typed) => return run::run(typed, args.json),
     };
     done.map(|()| 0)

@@ -6,6 +6,7 @@ pub mod forcing;
 pub mod overlay;
 pub mod pair;
 pub mod peak_pair;
+pub mod precision;
 pub mod prediction;
 pub mod rungs;
 pub mod score;

@@ -4,6 +4,7 @@ pub mod bracket;
 pub mod cis;
 pub mod lanes;
 mod least_squares;
+mod noise;
 pub mod oscillator;
 mod polynomial;
 pub mod root;
@@ -11,5 +12,6 @@ pub mod runge_kutta;
 pub mod swing;
 
 pub use least_squares::{Fit, Minimum, least_squares, minimise};
+pub use noise::Noise;
 pub use oscillator::Oscillator;
 pub use polynomial::Polynomial;

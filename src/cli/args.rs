@@ -9,6 +9,7 @@ mod info;
 mod low_pass;
 mod modal;
 mod model;
+mod precision;
 mod pulse;
 mod reading;
 mod response;
@@ -30,6 +31,7 @@ pub use model::{
     Came, Law, Looked, Model, ModelChoose, ModelCommand, ModelMap, ModelResponse, ModelSweep, Observable,
     Orbit, Over, Scene, Simulate, Way,
 };
+pub use precision::{Kind, Precision};
 pub use pulse::Pulse;
 pub use reading::{Channel, Decimal, Reading};
 pub use response::Response;
@@ -80,6 +82,8 @@ pub enum Command {
     Model(Box<Model>),
     /// Overlay a campaign's measured responses on the model's prediction
     Compare(Compare),
+    /// Speed against accuracy of every method on scenes with a known truth, and where each breaks
+    Precision(Precision),
     /// Do all that a campaign asks for: results, tables, figures, report
     Run(Run),
 }

@@ -1,6 +1,6 @@
 //! The excitation frequency of each step of a sweep, from its force spectrum (the job of the thesis' sineswpf).
 
-use super::line::{SubLine, interpolate};
+use super::line::{SubLine, beside, interpolate};
 use super::noise;
 use crate::error::{Error, Place, Result};
 use crate::record::{Sweep, SweepPoint, Window};
@@ -14,7 +14,7 @@ pub struct Excitation {
     pub file: String,
     /// Frequency in Hz.
     pub frequency: f64,
-    /// Its standard uncertainty in Hz; `None` where it is not known.
+    /// Its standard uncertainty in Hz; `None` where it is not known, as where another line near by bends this one.
     pub std: Option<f64>,
     /// Force amplitude in N; `None` where the frequency was given.
     pub force: Option<f64>,
@@ -103,7 +103,27 @@ fn largest(force: &[f64], window: Option<Window>, first: usize) -> std::result::
             quantity(force[k], "N", 3)
         ));
     }
-    interpolate(force, k, window, floor).ok_or_else(|| "the lines beside the largest are missing".to_owned())
+    let found = interpolate(force, k, window, floor)
+        .ok_or_else(|| "the lines beside the largest are missing".to_owned())?;
+    let off = window.and_then(|w| beside(force, k, w)).unwrap_or(0.0);
+    Ok(if floor.is_some_and(|f| off > BY_NOISE * f) { bent(found, off) } else { found })
+}
+
+/// Lines may differ from the shape of a sine by so many standard deviations of a component of the noise.
+const BY_NOISE: f64 = 5.0;
+/// Beyond this part of the amplitude, what stands beside a sine is no small error.
+const SMALL: f64 = 0.02;
+
+/// A line that has not the shape of one sine, by more than noise: what is off tilts the three lines and lifts them by its part of their height,
+/// about; where that is much, how far they are off is not known.
+fn bent(line: SubLine, off: f64) -> SubLine {
+    let known =
+        |std: Option<f64>, by: f64| std.filter(|_| off <= SMALL * line.amplitude).map(|s| s.hypot(by));
+    SubLine {
+        position_std: known(line.position_std, off / line.amplitude),
+        amplitude_std: known(line.amplitude_std, off),
+        ..line
+    }
 }
 
 #[cfg(test)]
@@ -135,6 +155,31 @@ mod tests {
                 assert!((found.position - 110.4).abs() < 1e-9, "{window:?} {offset}: {}", found.position);
             }
         }
+    }
+
+    /// Lines of the ripple of a floor, a sine, and another of half its height `apart` lines beside it, in phase.
+    fn pair(apart: f64) -> Vec<f64> {
+        (0..401)
+            .map(|k| {
+                let k = f64::from(k);
+                let sines =
+                    line_shape(Window::Hann, k - 110.4) + 0.5 * line_shape(Window::Hann, k - 110.4 - apart);
+                sines.abs() + 1e-5 * (2.0 + (k * k * 0.7).sin())
+            })
+            .collect()
+    }
+
+    #[test]
+    fn what_stands_beside_the_excitation_is_in_its_uncertainty_or_leaves_none() {
+        for apart in [1.0, 2.0, 3.0] {
+            let found = largest(&pair(apart), Some(Window::Hann), 0).unwrap();
+            assert_eq!((found.position_std, found.amplitude_std), (None, None), "{apart}: {found:?}");
+        }
+        let found = largest(&pair(6.0), Some(Window::Hann), 0).unwrap();
+        assert!((found.position - 110.4).abs() < 3.0 * found.position_std.unwrap(), "{found:?}");
+        assert!(found.position_std.unwrap() < 0.02, "{found:?}");
+        let alone = largest(&pair(200.0), Some(Window::Hann), 0).unwrap();
+        assert!(alone.position_std.unwrap() < 1e-4, "{alone:?}");
     }
 
     #[test]

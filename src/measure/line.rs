@@ -73,6 +73,20 @@ pub fn misfit(magnitudes: &[f64], k: usize, window: Window) -> Option<f64> {
     Some(off.fold(0.0, f64::max) / lines[1])
 }
 
+/// The largest deviation of the lines within two of line `k` from the shape of the sine that the three in the middle show: what noise, another sine
+/// near by or the sine's own image at the ends of the band add. `None` as in [`interpolate`].
+pub fn beside(magnitudes: &[f64], k: usize, window: Window) -> Option<f64> {
+    let lines: [f64; 3] = magnitudes.get(k.checked_sub(1)?..=k + 1)?.try_into().ok()?;
+    let (delta, amplitude) = solve(lines, window);
+    let near = k.saturating_sub(2)..(k + 3).min(magnitudes.len());
+    let off = |i: usize| {
+        let shape = line_shape(window, i as f64 - k as f64 - delta).abs();
+        (magnitudes[i] - amplitude * shape).abs()
+    };
+    let largest = near.map(off).fold(0.0, f64::max);
+    (lines[1] > 0.0 && largest.is_finite()).then_some(largest)
+}
+
 /// Amplitude of a sine at a known `position` in lines, with its standard uncertainty: the three nearest lines against
 /// the window's shape there. `None` where they do not exist or are missing.
 pub fn amplitude_at(

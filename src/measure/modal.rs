@@ -7,6 +7,7 @@
 mod bands;
 mod choice;
 mod graphic;
+mod hidden;
 mod rational;
 mod response;
 mod result;
@@ -49,18 +50,7 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
         return Err(Error::usage(format!("a least coherence of {least}"), "a number from 0 to below 1"));
     }
     let lines = measured.clone().usable(least, &mut warnings)?;
-    if lines.kind == FrfKind::Other {
-        warnings.push(
-            "The unit is not that of a response over a force: the function is fitted as a receptance, and the modal constants are in its unit times (rad/s)²."
-                .to_owned(),
-        );
-    }
-    if lines.magnitude_only {
-        warnings.push(
-            "Only magnitudes are known: modes are fitted to |H| with a constant residual term, and have no uncertainty, since what other modes and residual terms add at unknown phases is not seen in what the fit leaves. A circle fit needs phases and is not made; modal constants have no sign."
-                .to_owned(),
-        );
-    }
+    warnings.extend(unknown(&lines).map(str::to_owned));
     let mut groups = groups(&lines, options.band)?;
     let mut unsupported = Vec::new();
     let mut fits: Vec<Result<Rational>> =
@@ -92,9 +82,19 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
     }
     let mut modes = Vec::new();
     let mut reversed = 0;
-    for (group, fit) in groups.iter().zip(fits) {
+    let poles: Vec<Vec<Pole>> =
+        fits.iter().map(|f| f.as_ref().map_or_else(|_| Vec::new(), |f| f.modes.clone())).collect();
+    for (at, (group, fit)) in groups.iter().zip(fits).enumerate() {
         match fit {
-            Ok(fit) => reversed += result::report(&lines, group, &fit, options, &mut modes, &mut warnings),
+            Ok(fit) => {
+                let before = modes.len();
+                reversed += result::report(&lines, group, &fit, options, &mut modes, &mut warnings);
+                if modes.len() > before {
+                    let others = poles.iter().enumerate().filter(|(other, _)| *other != at);
+                    let others: Vec<Pole> = others.flat_map(|(_, poles)| poles).copied().collect();
+                    warnings.extend(hidden::hidden(&lines, group, &fit, &others));
+                }
+            }
             Err(error) => warnings.push(format!(
                 "The peak at {} Hz is not fitted: {error}.",
                 group.peaks.first().map_or_else(String::new, |p| response::hertz(lines.frequency[p.at]))
@@ -122,6 +122,17 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
     }
     modes.sort_by(|a, b| a.frequency.value.total_cmp(&b.frequency.value));
     Ok(ModalResult { modes, warnings })
+}
+
+/// What is not known of the lines, and what follows.
+fn unknown(lines: &Measured) -> impl Iterator<Item = &'static str> {
+    let unit = (lines.kind == FrfKind::Other).then_some(
+        "The unit is not that of a response over a force: the function is fitted as a receptance, and the modal constants are in its unit times (rad/s)².",
+    );
+    let phase = lines.magnitude_only.then_some(
+        "Only magnitudes are known: modes are fitted to |H| with a constant residual term, and have no uncertainty, since what other modes and residual terms add at unknown phases is not seen in what the fit leaves. A circle fit needs phases and is not made; modal constants have no sign.",
+    );
+    unit.into_iter().chain(phase)
 }
 
 #[cfg(test)]

@@ -89,6 +89,9 @@ impl Instrument {
     }
 }
 
+/// Fewest samples above half the height, two thirds of a half sine: five inside the pulse, whose shape has four parameters.
+const FEWEST: f64 = 10.0 / 3.0;
+
 /// Fits the largest pulse of a record of acceleration (or of force).
 ///
 /// Residuals are taken for noise of one variance. Where they are correlated, which is tested, uncertainties are enlarged by the
@@ -110,9 +113,9 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     }
     let found = locate(&trace.values)?;
     let seen = found.flanks.1 - found.flanks.0;
-    if seen < 3.0 {
+    if seen < FEWEST {
         return Err(Error::refused(format!(
-            "the pulse has {seen:.1} samples above half its height, and at least 3 are needed"
+            "the pulse has {seen:.1} samples above half its height, and at least {FEWEST:.1} are needed"
         ))
         .hint("sample faster"));
     }

@@ -20,6 +20,10 @@ use std::f64::consts::TAU;
 const BY_CHANCE: f64 = 1e-4;
 /// Gauss–Newton steps; four suffice from a line's interpolated frequency.
 const STEPS: usize = 20;
+/// A frequency that is given may be off by so many lines.
+const NEAR: f64 = 2.0;
+/// Nearer to half the rate than this many lines a sine and its image are half a line apart, and shake each other as two sines do.
+const IMAGE: f64 = 0.25;
 const METHOD: &str = "least-squares sine fit";
 
 /// A sine A cos(2πft + φ) + C in noise.
@@ -46,6 +50,18 @@ pub(super) fn coloured(frequency: f64, widening: f64) -> Option<String> {
         format!(
             "The noise is not white: around {frequency:.6} Hz it is {widening:.1} times as strong as white noise of its variance would be, and the uncertainties there are enlarged by that. Noise may pass for a sine there; a sine that is not steady looks the same."
         )
+    })
+}
+
+/// A sentence, where what is left of a record after sines at these frequencies in Hz holds another line beside one of them.
+pub(super) fn beside(left: &Trace, frequencies: &[f64]) -> Option<String> {
+    let spacing = left.rate()? / left.values.len() as f64;
+    frequencies.iter().find_map(|f| {
+        let other = line(left, Some(*f)).ok()?;
+        Some(format!(
+            "What is left holds a line at {other:.6} Hz, {:.1} lines from {f:.6} Hz: another sine, without which this one is not known to its uncertainty (fit both), or this one is not steady.",
+            (other - f).abs() / spacing
+        ))
     })
 }
 
@@ -82,7 +98,7 @@ fn line(trace: &Trace, near: Option<f64>) -> Result<f64> {
     let lines = spectrum::plain(trace, Window::Hann, Scaling::Peak, true)?;
     let step = lines.axis.step().unwrap_or(0.0);
     let magnitudes = lines.values.magnitudes();
-    let within = |k: &usize| near.is_none_or(|f| (*k as f64 - f / step).abs() <= 2.0);
+    let within = |k: &usize| near.is_none_or(|f| (*k as f64 - f / step).abs() <= NEAR);
     let largest = (1..magnitudes.len().saturating_sub(1))
         .filter(within)
         .max_by(|a, b| magnitudes[*a].total_cmp(&magnitudes[*b]))
@@ -142,6 +158,13 @@ fn fit(trace: &Trace, start: f64) -> Result<Sine> {
         let left = (all - p.dot(&right)).max(0.0) / (n as f64 - 4.0).max(1.0);
         let std = (left * inverse[(3, 3)]).sqrt();
         if step > 0 && change.abs() <= (1e-4 * std).max(1e-13 * omega) {
+            let short = 0.5 * n as f64 - omega / TAU * 2.0;
+            if short < IMAGE {
+                return Err(Error::refused(format!(
+                    "the sine stands {short:.2} lines from half the sampling rate, where phase and amplitude cannot be told apart"
+                ))
+                .hint("sample faster"));
+            }
             return Ok(stated(trace, omega / half, &p, &inverse, half));
         }
     }
@@ -171,7 +194,10 @@ fn stated(trace: &Trace, omega: f64, p: &Vector4<f64>, inverse: &Matrix4<f64>, h
     let wide = left.widening(omega / TAU / rate);
     let estimate = |value, gradient, unit| Estimate::new(value, Some(wide * std(gradient)), unit, n, METHOD);
     // What rounding leaves of an exact sine is no noise.
-    let warnings = coloured(omega / TAU, wide).filter(|_| variance.sqrt() > 1e-12 * amplitude);
+    let noisy = variance.sqrt() > 1e-12 * amplitude;
+    let mut warnings: Vec<String> = coloured(omega / TAU, wide).into_iter().filter(|_| noisy).collect();
+    let left_over = Trace { meta: trace.meta.clone(), axis: trace.axis.clone(), values: rest };
+    warnings.extend(beside(&left_over, &[omega / TAU]).filter(|_| noisy));
     let level = Vector4::new(0.0, 0.0, 1.0, 0.0);
     Sine {
         frequency: estimate(omega / TAU, Vector4::new(0.0, 0.0, 0.0, 1.0 / (TAU * half)), "Hz"),
@@ -179,7 +205,7 @@ fn stated(trace: &Trace, omega: f64, p: &Vector4<f64>, inverse: &Matrix4<f64>, h
         phase: estimate(phase, Vector4::new(b / square, -a / square, 0.0, -middle / half), "rad"),
         mean: Estimate::new(mean, Some(left.widening(0.0) * std(level)), unit, n, METHOD),
         noise: variance.sqrt(),
-        warnings: warnings.into_iter().collect(),
+        warnings,
     }
 }
 
@@ -212,6 +238,23 @@ mod tests {
         // The larger sine is what the smaller one has for noise: 1/√2 over 2000 samples.
         assert!((found.frequency.value - 1.1e3 / TAU).abs() < 0.1, "{:?}", found.frequency);
         assert!((found.amplitude.value - 0.01).abs() < 5e-3);
+    }
+
+    #[test]
+    fn another_sine_beside_is_said_and_half_the_rate_is_refused() {
+        // 200 Hz and 201.5 Hz in lines of 1 Hz: 1.5 lines apart.
+        let two = |i: i32| {
+            let t = f64::from(i) * 1e-3;
+            (TAU * 200.0 * t).cos()
+                + 0.5 * (TAU * 201.5 * t + 1.0).cos()
+                + 0.01 * (f64::from(i * i) * 0.7).sin()
+        };
+        let found = sine(&trace((0..1000).map(two).collect()), None).unwrap();
+        assert!(found.warnings.iter().any(|w| w.contains("another sine")), "{:?}", found.warnings);
+        // An eighth of a line below half the rate.
+        let last = |i: i32| (TAU * 499.875 * f64::from(i) * 1e-3 + 0.4).cos();
+        let error = sine(&trace((0..1000).map(last).collect()), None).unwrap_err().to_string();
+        assert!(error.contains("half the sampling rate"), "{error}");
     }
 
     #[test]

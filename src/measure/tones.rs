@@ -108,11 +108,14 @@ pub fn tones(trace: &Trace, count: usize) -> Result<Tones> {
             }
         }
     }
-    let left = Coloured::of(&fit.rest(trace));
+    let rest = Trace { meta: trace.meta.clone(), axis: trace.axis.clone(), values: fit.rest(trace) };
+    let left = Coloured::of(&rest.values);
     let mut tones = fit.stated(trace, &left);
     if fit.noise > 1e-12 * fit.largest() {
         let rate = trace.rate().unwrap_or(1.0);
         warnings.extend(fit.frequencies().iter().filter_map(|f| sine::coloured(*f, left.widening(f / rate))));
+        // Where fewer were found than wanted it is said why.
+        warnings.extend(sine::beside(&rest, &fit.frequencies()).filter(|_| fit.omega.len() == count));
     }
     tones.sort_by(|a, b| b.amplitude.value.total_cmp(&a.amplitude.value));
     for (i, a) in tones.iter().enumerate() {

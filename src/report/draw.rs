@@ -4,6 +4,7 @@ mod canvas;
 mod clutter;
 mod forms;
 mod frame;
+mod grid;
 mod legend;
 mod map;
 mod notes;
@@ -97,6 +98,7 @@ pub(super) fn draw(figure: &Figure) -> Drawing {
         match sheet {
             Settled::Plot(sheet) => sheet.draw(&mut canvas, grid.frame(i)),
             Settled::Waterfall(waterfall) => waterfall::draw(&mut canvas, waterfall, grid.cell(i)),
+            Settled::Grid(classes) => grid::draw(&mut canvas, classes, grid.cell(i)),
         }
     }
     Drawing { name: figure.title.clone(), size, images: canvas.images, body: canvas.body }
@@ -105,20 +107,21 @@ pub(super) fn draw(figure: &Figure) -> Drawing {
 enum Settled<'a> {
     Plot(Sheet<'a>),
     Waterfall(&'a super::waterfall::Waterfall),
+    Grid(&'a super::grid::Grid),
 }
 
 impl Settled<'_> {
     fn make_room(&mut self, frame: Rect) -> bool {
         match self {
             Settled::Plot(sheet) => sheet.make_room(frame),
-            Settled::Waterfall(_) => false,
+            Settled::Waterfall(_) | Settled::Grid(_) => false,
         }
     }
 
     fn insets(&self, size: (f64, f64)) -> Insets {
         match self {
             Settled::Plot(sheet) => sheet.insets(size),
-            Settled::Waterfall(_) => Insets::default(),
+            Settled::Waterfall(_) | Settled::Grid(_) => Insets::default(),
         }
     }
 }
@@ -127,7 +130,7 @@ impl Settled<'_> {
 fn settled(figure: &Figure, columns: usize) -> Vec<Settled<'_>> {
     let extent = |panel: &Panel| match panel {
         Panel::Plot(plot) => plot::x_extent(plot),
-        Panel::Waterfall(_) => Extent::NONE,
+        Panel::Waterfall(_) | Panel::Grid(_) => Extent::NONE,
     };
     let extents: Vec<Extent> = figure.panels.iter().map(extent).collect();
     let last_row = figure.panels.len().saturating_sub(columns);
@@ -141,6 +144,7 @@ fn settled(figure: &Figure, columns: usize) -> Vec<Settled<'_>> {
             }
             Panel::Plot(plot) => Settled::Plot(Sheet::new(plot, plot::x_extent(plot), true)),
             Panel::Waterfall(waterfall) => Settled::Waterfall(waterfall),
+            Panel::Grid(grid) => Settled::Grid(grid),
         });
     }
     settled

@@ -2,6 +2,7 @@
 
 use super::axis::AxisSpec;
 use super::draw::Drawing;
+use super::grid::Grid;
 use super::heatmap::Heatmap;
 use super::series::Series;
 use super::waterfall::Waterfall;
@@ -44,6 +45,8 @@ pub enum Panel {
     Plot(Plot),
     /// Spectra behind each other.
     Waterfall(Waterfall),
+    /// Classes in rows and columns.
+    Grid(Grid),
 }
 
 /// Series over two axes, on a map where wanted.
@@ -206,5 +209,11 @@ impl From<Plot> for Panel {
 impl From<Waterfall> for Panel {
     fn from(waterfall: Waterfall) -> Panel {
         Panel::Waterfall(waterfall)
+    }
+}
+
+impl From<Grid> for Panel {
+    fn from(grid: Grid) -> Panel {
+        Panel::Grid(grid)
     }
 }

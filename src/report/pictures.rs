@@ -2,6 +2,7 @@
 
 mod branches;
 mod drill;
+mod failures;
 mod fit;
 mod frf;
 mod impacts;
@@ -9,6 +10,7 @@ mod ladder;
 mod motion;
 mod orbit;
 mod overlay;
+mod precision;
 mod pulse;
 mod regimes;
 mod response;
@@ -18,6 +20,7 @@ mod waterfall;
 
 pub use branches::branches;
 pub use drill::drill;
+pub use failures::failures;
 pub use fit::fit;
 pub use frf::{frf, nyquist};
 pub use impacts::{drop, impacts};
@@ -25,6 +28,7 @@ pub use ladder::{ladder, ladder_over};
 pub use motion::{phase_plane, poincare, traces};
 pub use orbit::orbit;
 pub use overlay::overlay;
+pub use precision::precision;
 pub use pulse::pulse;
 pub use regimes::regimes;
 pub use response::response;

@@ -10,6 +10,7 @@ mod documents;
 mod impacts;
 mod model;
 mod modes;
+mod precision;
 mod rig;
 mod simulate;
 mod spectrum;

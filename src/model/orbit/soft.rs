@@ -124,12 +124,15 @@ pub struct Softened {
     pub share: f64,
 }
 
-/// What `compliance` changes in each of the orbits `found` of this rig and excitation; `None` where the orbit has no counterpart left.
+/// What `compliance` changes in each of the orbits `found` of this rig and excitation; `None` where the orbit has no counterpart left, or only one whose restitution
+/// is none (above 1 or below 0).
 ///
 /// The contact's force f over the masses' reduced one gives I = ∫f dt at the time t* = ∫tf dt/I after the touch: an impact without
 /// duration then and of that size leaves the masses on the same ways. At that time the ways already overlap by vt*, so C + t*/(M(1+R))
 /// takes the place of C = χ₁(0) + χ₂(0). An acceleration a that presses the masses together (to first order) lets them meet at the speed
-/// v + at* then, and makes the restitution `R + (a/v)((1 − R)t_c − 2d_r/v)`.
+/// v + at* then, and makes the restitution `R + (a/v)((1 − R)t_c − 2d_r/v)`. The rig's own dampers slow a relative speed u by κu, κ = M(c₁/m₁² + c₂/m₂²): between
+/// touch and parting the two ways without duration lose `κt_c` of it, while in the contact, where it turns round, its envelope falls by
+/// `κt_c/2`; so `R(1 + κt_c/2)` takes the place of R, and a is what presses without the dampers.
 ///
 /// # Errors
 /// If the contact lasts longer than [`LONGEST_CONTACT`] of the period.
@@ -162,9 +165,15 @@ fn soften(
         return Ok(None);
     }
     let (mut at, mut restitution) = (*orbit, rig.restitution);
+    // κ = M(c₁/m₁² + c₂/m₂²): the rig's own dampers slow the masses' approach by κ times its speed.
+    let second = if rig.has_wall() { 0.0 } else { rig.c2 / (rig.m2 * rig.m2) };
+    let drag = rig.reduced_mass() * (rig.c1 / (rig.m1 * rig.m1) + second);
     // Each round leaves about the share in contact of the change that is left: 0.025⁸ is nothing.
     for _ in 0..8 {
-        let changed = rig.restitution + compliance.pressed * pressing(&at) / at.approach_velocity;
+        // The flights take κt_c off a relative speed that in the contact, where it turns round, falls by half of that.
+        let turned = rig.restitution * (1.0 + 0.5 * drag * compliance.duration);
+        let [_, steady] = pressing(&at, drag);
+        let changed = turned + compliance.pressed * steady / at.approach_velocity;
         if !(0.0..=1.0).contains(&changed) {
             return Ok(None);
         }
@@ -178,7 +187,7 @@ fn soften(
     Ok(Some(Softened {
         impulse: at.impulse,
         timing: at.timing,
-        approach_velocity: at.approach_velocity - pressing(&at) * compliance.delay,
+        approach_velocity: at.approach_velocity - pressing(&at, drag)[0] * compliance.delay,
         restitution,
         peak_to_peak: at.peak_to_peak,
         fundamental: at.fundamental.map(num_complex::Complex::norm),
@@ -187,8 +196,11 @@ fn soften(
     }))
 }
 
-/// Acceleration in m/s² that would press the masses together if they did not meet, the mean of before and after the impact.
-fn pressing(orbit: &Orbit) -> f64 {
+/// Accelerations in m/s² that would press the masses together if they did not meet: just before the impact, and that part of it
+/// that their approach, slowed by `drag` (1/s), does not change.
+fn pressing(orbit: &Orbit, drag: f64) -> [f64; 2] {
     let (before, after) = orbit.course.rates();
-    f64::midpoint(before[1] - before[3], after[1] - after[3])
+    let [first, last] = [before, after].map(|rate| rate[1] - rate[3]);
+    let speeds = before[0] - before[2] + (after[0] - after[2]);
+    [first, f64::midpoint(first, last) + 0.5 * drag * speeds]
 }

@@ -1,0 +1,112 @@
+//! Measuring methods: how long an answer takes, and which are on the front.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use super::Measured;
+
+/// Shortest time worth reading from the clock, in ns: short answers are repeated until they fill it.
+const READABLE: f64 = 20_000.0;
+/// Most time spent on one method of one scene, in ns: in full, and quick.
+const SPENT: [f64; 2] = [400e6, 30e6];
+
+/// Runs `f` up to `repeats` times: its answer, the median time of one run in ns, and the quartiles.
+///
+/// A run shorter than what the clock can tell is measured several at a time. A slow one is repeated less often: no more
+/// than 0.4 s are spent on it, 0.03 s where `quick`, but one run at least.
+pub fn timed<T>(repeats: usize, quick: bool, mut f: impl FnMut() -> T) -> (T, f64, [f64; 2]) {
+    let mut clock = |runs: usize| {
+        let start = Instant::now();
+        for _ in 1..runs {
+            black_box(f());
+        }
+        let answer = black_box(f());
+        (answer, start.elapsed().as_secs_f64() * 1e9 / runs as f64)
+    };
+    // The first run also warms the caches; it counts only where it is the only one.
+    let (mut answer, first) = clock(1);
+    let runs = (READABLE / first.max(1.0)).ceil() as usize;
+    let mut left = SPENT[usize::from(quick)] - first;
+    let mut times = Vec::with_capacity(repeats);
+    while times.len() < repeats && left > first * runs as f64 {
+        let (again, time) = clock(runs);
+        answer = again;
+        left -= time * runs as f64;
+        times.push(time);
+    }
+    if times.is_empty() {
+        times.push(first);
+    }
+    let [low, median, high] = quartiles(&mut times);
+    (answer, median, [low, high])
+}
+
+/// Lower quartile, median and upper quartile; none of an empty list is asked for.
+pub fn quartiles(values: &mut [f64]) -> [f64; 3] {
+    values.sort_by(f64::total_cmp);
+    let at = |part: f64| {
+        let place = part * (values.len() - 1) as f64;
+        let low = place.floor() as usize;
+        let high = (low + 1).min(values.len() - 1);
+        values[low] + (values[high] - values[low]) * (place - low as f64)
+    };
+    [at(0.25), at(0.5), at(0.75)]
+}
+
+/// Marks those than which no other is both faster and more accurate (the Pareto front); none that failed.
+pub fn front(methods: &mut [Measured]) {
+    let places: Vec<Option<(f64, f64)>> = methods
+        .iter()
+        .map(|m| m.error.filter(|e| !m.failed && e.is_finite()).map(|error| (error, m.time_ns)))
+        .collect();
+    for (method, place) in methods.iter_mut().zip(&places) {
+        method.front = place.is_some_and(|(error, time)| {
+            !places.iter().flatten().any(|&(e, t)| e <= error && t <= time && (e < error || t < time))
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(error: Option<f64>, time_ns: f64) -> Measured {
+        Measured {
+            method: String::new(),
+            setting: String::new(),
+            ours: false,
+            error,
+            error_spread: None,
+            time_ns,
+            time_spread: [time_ns; 2],
+            failed: error.is_none(),
+            why: None,
+            front: false,
+        }
+    }
+
+    #[test]
+    fn the_front_holds_what_nothing_beats_in_both() {
+        let mut all = [at(Some(1e-3), 1.0), at(Some(1e-6), 5.0), at(Some(1e-5), 6.0), at(None, 0.1)];
+        front(&mut all);
+        assert_eq!(all.map(|m| m.front), [true, true, false, false]);
+    }
+
+    #[test]
+    fn quartiles_of_five_are_its_second_third_and_fourth() {
+        assert_eq!(quartiles(&mut [5.0, 1.0, 4.0, 2.0, 3.0]), [2.0, 3.0, 4.0]);
+        assert_eq!(quartiles(&mut [7.0]), [7.0; 3]);
+    }
+
+    #[test]
+    fn a_run_too_short_for_the_clock_is_measured_many_at_a_time() {
+        let mut runs = 0_usize;
+        let (answer, median, spread) = timed(3, true, || {
+            runs += 1;
+            7
+        });
+        assert_eq!(answer, 7);
+        assert!(runs > 3, "{runs}");
+        assert!(spread[0] <= median && median <= spread[1]);
+    }
+}

@@ -1,0 +1,145 @@
+//! The borders of what models can, and the truth at each.
+
+use std::f64::consts::TAU;
+
+use super::grazing;
+use super::rivals::{Events, Kind, events, sprung};
+use super::scene_b::spring;
+use super::task::{Fault, Task, Told};
+use crate::model::{Rig, Sine, State, Steady};
+use crate::{Error, Result};
+
+/// Stiffness of the contact in N/m where a method has one.
+pub const STIFFNESS: f64 = 1e6;
+/// Cycles that a motion is followed.
+const CYCLES: f64 = 6.0;
+
+/// A scene at a border.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Border {
+    /// Name of the border.
+    pub name: &'static str,
+    /// Name of the scene.
+    pub scene: String,
+    /// The motion.
+    pub task: Task,
+    /// What is asked there.
+    pub asks: Asks,
+}
+
+/// What is asked of a method.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Asks {
+    /// The impacts and rests of the motion.
+    Motion,
+    /// Whether there is an impact, and when: in s, or never.
+    First(Option<f64>),
+    /// The motion that repeats, alone.
+    Orbit,
+    /// The approach speed after so many cycles.
+    Cycles(f64),
+}
+
+/// ν = ω/Ω₁ to a frequency in Hz.
+fn at(rig: &Rig, nu: f64) -> f64 {
+    nu * (rig.k1 / rig.m1).sqrt() / TAU
+}
+
+/// Six cycles at ν 2.1 under 0.5 N from x₁ = −1 mm.
+fn motion(rig: Rig) -> Task {
+    let frequency = at(&Rig::thesis(), 2.1);
+    Task {
+        start: State { x1: -1e-3, ..State::REST },
+        most: 100_000,
+        ..Task::sine(rig, 0.5, frequency, CYCLES / frequency)
+    }
+}
+
+/// All scenes; `quick` follows fewer cycles where many are asked for.
+///
+/// # Errors
+/// If a scene cannot be built.
+pub fn borders(quick: bool) -> Result<Vec<Border>> {
+    let thesis = Rig::thesis();
+    let mut all = Vec::new();
+    let mut add = |border: &'static str, scene: String, task: Task, asks: Asks| {
+        all.push(Border { name: border, scene, task, asks });
+    };
+    for depth in [1e-3, 1e-6, 1e-9, 1e-12, -1e-12, -1e-9, -1e-6, -1e-3] {
+        let (task, time) = grazing::task(depth, 1)?;
+        let words = if depth > 0.0 { "reached" } else { "missed" };
+        add("grazing", format!("{words} by {:.0e} m", depth.abs()), task, Asks::First(time));
+    }
+    // The forced motion alone reaches the gap up to a factor 1 + ε.
+    let frequency = at(&thesis, 2.1);
+    let unit = Steady::new(&thesis, &Sine { force: 1.0, frequency })?.amplitude();
+    for excess in [1e-3, 1e-9, -1e-9, -1e-3] {
+        let task = Task { force: thesis.gap / unit * (1.0 + excess), ..motion(thesis) };
+        add("grazing orbit", format!("amplitude over gap 1 {excess:+.0e}"), task, Asks::Orbit);
+    }
+    for restitution in [0.0, 1e-9, 0.01, 0.99, 0.999_999, 1.0] {
+        add("restitution", format!("R {restitution}"), motion(Rig { restitution, ..thesis }), Asks::Motion);
+    }
+    for (name, part) in
+        [("none", 0.0), ("1e-9 of critical", 1e-9), ("critical", 1.0), ("100 times critical", 100.0)]
+    {
+        let critical = |m: f64, k: f64| 2.0 * part * (m * k).sqrt();
+        let rig = Rig { c1: critical(thesis.m1, thesis.k1), c2: critical(thesis.m2, thesis.k2), ..thesis };
+        // Enough force to reach across the gap.
+        let task = Task { force: 0.5 * (1.0 + 20.0 * part), ..motion(rig) };
+        add("damping", name.to_owned(), task, Asks::Motion);
+    }
+    for gap in [1e-6, 1e-12, 0.0, -1e-12, -1e-6, -5e-4] {
+        add("gap", format!("{gap:.0e} m"), motion(Rig { gap, ..thesis }), Asks::Motion);
+    }
+    for ratio in [1e-3, 1e-1, 1e1, 1e3] {
+        let scale = ratio * thesis.m1 / thesis.m2;
+        let rig = Rig { m2: thesis.m2 * scale, k2: thesis.k2 * scale, c2: thesis.c2 * scale, ..thesis };
+        add("mass ratio", format!("m₂/m₁ {ratio:.0e}"), motion(rig), Asks::Motion);
+    }
+    let pair = ((thesis.k1 + thesis.k2) / (thesis.m1 + thesis.m2)).sqrt() / TAU;
+    let [first, second] = thesis.natural_frequencies();
+    for (name, frequency, c) in [
+        ("mass 1", first, 0.1),
+        ("mass 1, no dampers", first, 0.0),
+        ("mass 2", second, 0.1),
+        ("mass 2, no dampers", second, 0.0),
+        ("both together", pair, 0.1),
+        ("both together, no dampers", pair, 0.0),
+    ] {
+        let rig = Rig { c1: c, c2: c, ..thesis };
+        let task = Task { frequency, until: CYCLES / frequency, ..motion(rig) };
+        add("resonance", name.to_owned(), task, Asks::Motion);
+    }
+    for restitution in [0.3, 0.7, 0.9, 0.95] {
+        let scene_c = super::chatter::task();
+        let task = Task { rig: Rig { restitution, ..scene_c.rig }, until: 1.2, most: 100_000, ..scene_c };
+        add("chatter", format!("R {restitution}"), task, Asks::Motion);
+    }
+    for cycles in if quick { vec![1e3] } else { vec![1e4, 1e6] } {
+        let task = Task { until: cycles / frequency, most: 200_000_000, ..motion(thesis) };
+        add("long runs", format!("{cycles:.0e} cycles"), task, Asks::Cycles(cycles));
+    }
+    Ok(all)
+}
+
+/// The motion with rebounds, by integration of order 8 to 1e-13.
+///
+/// # Errors
+/// If it cannot be integrated.
+pub fn rigid(task: &Task) -> Result<Told> {
+    let how = Events { summed: true, ..Events::dense(Kind::Dop853(1e-13)).sticking(1e-6) };
+    events(task, &how).map_err(|fault| lost(&fault))
+}
+
+/// The same with a contact spring.
+///
+/// # Errors
+/// As [`rigid`].
+pub fn soft(task: &Task) -> Result<Told> {
+    sprung(task, &spring(&task.rig, STIFFNESS), Kind::Dop853(1e-13)).map_err(|fault| lost(&fault))
+}
+
+fn lost(fault: &Fault) -> Error {
+    Error::refused(format!("the truth: {fault}"))
+}

@@ -1,0 +1,141 @@
+//! A chaotic window: no method can follow the motion, all can be asked for its statistics.
+
+use super::entry::{Entries, Verdict};
+use super::ours;
+use super::rivals::{Events, Kind, Loop, events, marched, moreau, penalty};
+use super::scene_b::{spring, steps};
+use super::task::{Task, Told};
+use crate::Error;
+use crate::compare::precision::{Family, Scene};
+use crate::model::Rig;
+
+/// Restitution, force in N and frequency in Hz of the window, which has been irregular for 200 000 cycles.
+const RESTITUTION: f64 = 0.97;
+const FORCE: f64 = 0.3;
+const FREQUENCY: f64 = 5.61;
+/// Cycles left out at the beginning, cycles of a batch, batches that every method reads, and those of the truth.
+const SETTLE: f64 = 100.0;
+const BATCH: f64 = 1000.0;
+const READ: usize = 4;
+const LONG: usize = 40;
+/// Further off than so many standard errors the statistics are those of another motion: of normal errors one in 16 000 is.
+const ALLOWED: f64 = 4.0;
+
+/// The motion from rest through so many batches.
+fn task(batches: usize) -> Task {
+    let rig = Rig { restitution: RESTITUTION, ..Rig::thesis() };
+    Task::sine(rig, FORCE, FREQUENCY, (SETTLE + BATCH * batches as f64) / FREQUENCY)
+}
+
+/// Mean and standard deviation of the approach speeds in a batch, or in all.
+fn statistics(told: &Told, batches: std::ops::Range<usize>) -> Option<[f64; 2]> {
+    let at = |batch: usize| (SETTLE + BATCH * batch as f64) / FREQUENCY;
+    let (from, to) = (at(batches.start), at(batches.end));
+    let inside = told.impacts.iter().filter(|i| i.0 > from && i.0 <= to);
+    let speeds: Vec<f64> = inside.map(|i| i.1).collect();
+    (speeds.len() > 10).then(|| moments(&speeds))
+}
+
+fn moments(values: &[f64]) -> [f64; 2] {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    [mean, (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt()]
+}
+
+/// Measures every method.
+///
+/// # Errors
+/// If the long run has a batch without impacts.
+pub fn scene(quick: bool) -> crate::Result<Scene> {
+    let lost = || Error::refused("the chaotic window has no impacts");
+    let long = ours::flights(&task(LONG)).map_err(|f| Error::refused(f.to_string()))?;
+    let truth = statistics(&long, 0..LONG).ok_or_else(lost)?;
+    let batches: Vec<[f64; 2]> =
+        (0..LONG).map(|b| statistics(&long, b..b + 1)).collect::<Option<_>>().ok_or_else(lost)?;
+    // Standard error of what a method reads, relative, that of the truth included.
+    let share = (1.0 / READ as f64 + 1.0 / LONG as f64).sqrt();
+    let scatter = [0, 1].map(|i| {
+        let [_, std] = moments(&batches.iter().map(|b| b[i]).collect::<Vec<_>>());
+        std / truth[i] * share
+    });
+    let judge = |told: &Told| -> Verdict {
+        let found = statistics(told, 0..READ).ok_or("the impacts die out")?;
+        let off = [0, 1].map(|i| (found[i] / truth[i] - 1.0).abs());
+        for (i, name) in ["mean", "standard deviation"].iter().enumerate() {
+            let errors = off[i] / scatter[i];
+            // Not a number is no statistics either.
+            if errors.is_nan() || errors > ALLOWED {
+                return Err(format!(
+                    "the {name} of the approach speeds is {:.1} % off, {errors:.0} standard errors: the statistics of another motion",
+                    100.0 * off[i]
+                ));
+            }
+        }
+        Ok(off[0].max(off[1]).max(1e-16))
+    };
+    let short = task(READ);
+    let mut entries = Entries::new(quick);
+    let few = |all: &[f64]| if quick { all[..1].to_vec() } else { all.to_vec() };
+    entries.ours("exact flights", "", || ours::flights(&short), judge);
+    for n in few(&[100.0, 1e3]) {
+        entries.rival("Euler loop", &steps(n), || marched(&short, Loop::Euler, n), judge);
+    }
+    for n in few(&[100.0, 1e3]) {
+        entries.rival("RK4 loop", &steps(n), || marched(&short, Loop::Rk4, n), judge);
+    }
+    for n in few(&[100.0, 1e3]) {
+        entries.rival("Moreau time stepping", &steps(n), || moreau(&short, n), judge);
+    }
+    for r in few(&[1e-3, 1e-6, 1e-9]) {
+        let how = Events::ends(Kind::Rk45(r));
+        entries.rival("RK45, sign test", &how.kind.setting(), || events(&short, &how), judge);
+    }
+    for r in few(&[1e-6, 1e-9]) {
+        let how = Events::dense(Kind::Dop853(r));
+        entries.rival("DOP853, dense events", &how.kind.setting(), || events(&short, &how), judge);
+    }
+    for k in few(&[1e6]) {
+        let contact = spring(&short.rig, k);
+        let setting = format!("k₃ {k:.0e} N/m");
+        entries.rival("stiff spring, RK45", &setting, || penalty(&short, &contact, Kind::Rk45(1e-6)), judge);
+    }
+    Ok(Scene {
+        name: "chaotic window".to_owned(),
+        family: Family::Models,
+        says: format!(
+            "At R {RESTITUTION}, {FORCE} N and {FREQUENCY} Hz no two computations agree for long: mean and standard deviation of the \
+             approach speeds over {} cycles, whose standard errors are {:.1} and {:.1} %. Below them errors are chance; beyond {ALLOWED} of them it is another motion.",
+            BATCH * READ as f64,
+            100.0 * scatter[0],
+            100.0 * scatter[1]
+        ),
+        error_of: "larger relative error of mean and deviation".to_owned(),
+        truth: format!(
+            "exact flights over {} cycles; standard errors from the means of batches of {BATCH}",
+            BATCH * LONG as f64
+        ),
+        bound: None,
+        methods: entries.done(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_window_stays_irregular() {
+        let told = ours::flights(&task(20)).unwrap();
+        let mut last: Vec<f64> = told.impacts.iter().rev().take(1000).map(|i| i.1).collect();
+        last.sort_by(f64::total_cmp);
+        // What repeats after fewer than 500 impacts has every speed at least twice.
+        last.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
+        assert!(last.len() > 990, "{}", last.len());
+    }
+
+    #[test]
+    fn moments_of_four_numbers() {
+        let [mean, std] = moments(&[1.0, 2.0, 3.0, 6.0]);
+        assert!((mean - 3.0).abs() < 1e-15 && (std - (14.0_f64 / 3.0).sqrt()).abs() < 1e-15);
+    }
+}

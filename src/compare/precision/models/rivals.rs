@@ -1,0 +1,15 @@
+//! What else is done: integration in steps, by a loop, with events, with a stiff spring, by time stepping.
+//!
+//! Each is written as it usually is, and correctly.
+
+mod events;
+mod loops;
+mod moreau;
+mod penalty;
+mod stepper;
+
+pub use events::{Events, events};
+pub use loops::{Loop, marched};
+pub use moreau::moreau;
+pub use penalty::{Spring, penalty, sprung};
+pub use stepper::{Kind, Stepper, Taken};

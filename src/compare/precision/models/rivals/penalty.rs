@@ -1,0 +1,116 @@
+//! A spring and damper in place of the impact: integrated straight through, or from touch to parting.
+
+use super::super::task::{Fault, Task, Told};
+use super::{Kind, Stepper, Taken};
+
+/// A contact spring k₃ with its damper c₃.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spring {
+    /// k₃ in N/m.
+    pub stiffness: f64,
+    /// c₃ in N s/m.
+    pub damping: f64,
+}
+
+impl Spring {
+    /// Force in N, never pulling.
+    fn force(&self, task: &Task, y: &[f64; 4]) -> f64 {
+        let depth = -task.gap(y);
+        if depth <= 0.0 {
+            return 0.0;
+        }
+        (self.stiffness * depth + self.damping * (y[1] - y[3])).max(0.0)
+    }
+}
+
+/// Integrates straight through contacts, step sizes left to the error control; touches are read off afterwards.
+///
+/// # Errors
+/// If the budget is spent or no step is small enough.
+pub fn penalty(task: &Task, spring: &Spring, kind: Kind) -> Result<Told, Fault> {
+    let f = |t: f64, y: &[f64; 4]| task.pushed(t, y, spring.force(task, y));
+    let (mut told, mut left) = (Told::default(), task.most);
+    let mut stepper = Stepper::new(kind, task, f, 0.0, task.first());
+    let (mut t, mut gap) = (0.0, task.gap(&task.first()));
+    while t < task.until {
+        if left == 0 {
+            return Err(task.stalled(t));
+        }
+        left -= 1;
+        let step = stepper.step(f, task.until)?;
+        if gap > 0.0
+            && let Some(at) = step.crossing(f, gap, |_, y| task.gap(y))
+        {
+            let y = step.at(f, at);
+            told.impacts.push((step.start() + at, y[1] - y[3]));
+        }
+        t = step.start() + step.duration();
+        gap = task.gap(&step.end());
+    }
+    Ok(told)
+}
+
+/// Where a contact is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Stage {
+    Apart,
+    Touching,
+    /// The force is zero, the surfaces are not yet back at their rest.
+    Released,
+}
+
+/// Integrates from touch to the end of the force to parting, each located on the dense output: every piece is smooth.
+///
+/// # Errors
+/// If the budget is spent, no step is small enough, or the steps have no dense output.
+pub fn sprung(task: &Task, spring: &Spring, kind: Kind) -> Result<Told, Fault> {
+    let (k, c, gap) = (spring.stiffness, spring.damping, task.rig.gap);
+    let pushes = [k, c, -k, -c];
+    let negative = |w: [f64; 4]| w.map(|w| -w);
+    let opens = [-1.0, 0.0, 1.0, 0.0];
+    let contact = |y: &[f64; 4]| -k * task.gap(y) + c * (y[1] - y[3]);
+    let (mut t, mut y, mut told, mut left) = (0.0, task.first(), Told::default(), task.most);
+    let mut stage = Stage::Apart;
+    while t < task.until {
+        let f =
+            |t: f64, y: &[f64; 4]| task.pushed(t, y, if stage == Stage::Touching { contact(y) } else { 0.0 });
+        let mut stepper = Stepper::new(kind, task, f, t, y);
+        let mut next = None;
+        while next.is_none() && t < task.until {
+            if left == 0 {
+                return Err(task.stalled(t));
+            }
+            left -= 1;
+            let Taken::Dense(step) = stepper.step(f, task.until)? else {
+                return Err(Fault::Refused("these steps have no dense output".to_owned()));
+            };
+            let fall =
+                |weights: [f64; 4], offset: f64, to: Stage| Some((step.first_fall(&weights, offset)?, to));
+            let found = match stage {
+                Stage::Apart => fall(opens, gap, Stage::Touching),
+                Stage::Touching => fall(pushes, -k * gap, Stage::Released),
+                Stage::Released => [
+                    fall(negative(opens), -gap, Stage::Apart),
+                    fall(negative(pushes), k * gap, Stage::Touching),
+                ]
+                .into_iter()
+                .flatten()
+                .min_by(|a, b| a.0.total_cmp(&b.0)),
+            };
+            (t, y) = match found {
+                Some((at, to)) => {
+                    next = Some(to);
+                    (step.start + at, step.at(at))
+                }
+                None => (step.start + step.duration, step.end),
+            };
+        }
+        if let Some(to) = next {
+            if stage == Stage::Apart {
+                told.impacts.push((t, y[1] - y[3]));
+            }
+            stage = to;
+        }
+    }
+    Ok(told)
+}

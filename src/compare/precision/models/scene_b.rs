@@ -1,0 +1,105 @@
+//! Scene B: impacts from rest that are crossed at speed.
+
+use std::f64::consts::TAU;
+
+use super::entry::{Entries, Verdict};
+use super::ours;
+use super::rivals::{Events, Kind, Loop, Spring, events, marched, moreau, penalty};
+use super::task::{Task, Told};
+use crate::compare::precision::{Family, Scene};
+use crate::model::Rig;
+use crate::model::contact::conversion::damping_ratio;
+
+/// Number, time in s and approach speed in m/s of impacts, by arithmetic with 40 digits (Newton on the equations of motion).
+const GOLDEN: [(usize, f64, f64); 5] = [
+    (1, 0.030_744_282_246_676_34, 0.078_330_829_224_466_23),
+    (2, 0.144_162_776_471_947_4, 0.147_727_906_853_932_83),
+    (3, 0.237_270_475_783_159_57, 0.233_773_950_612_516_77),
+    (22, 1.970_065_574_977_416, 0.283_306_967_791_457_3),
+    (1098, 99.932_500_537_538_15, 0.287_669_247_580_228_4),
+];
+
+/// The motion from rest.
+pub fn task(until: f64) -> Task {
+    let rig = Rig::thesis();
+    Task::sine(rig, 0.5, 2.1 * (rig.k1 / rig.m1).sqrt() / TAU, until)
+}
+
+/// Largest error in s of the times of the golden impacts up to `until`.
+fn judge(told: &Told, until: f64) -> Verdict {
+    let golden: Vec<_> = GOLDEN.iter().filter(|g| g.1 < until).collect();
+    // Up to half a cycle behind the last golden one.
+    let last = golden.last().map_or(until, |g| g.1 + 0.5 / 10.98);
+    let count = told.impacts.iter().filter(|i| i.0 < last).count();
+    let expected = golden.last().map_or(0, |g| g.0);
+    if count != expected {
+        return Err(format!("{count} impacts up to {last:.2} s instead of {expected}: not the same motion"));
+    }
+    Ok(golden
+        .iter()
+        .map(|g| (told.impacts[g.0 - 1].0 - g.1).abs())
+        .fold(0.0, f64::max)
+        .max(f64::EPSILON * until / 2.0))
+}
+
+/// A spring that rebounds as the rig does.
+pub fn spring(rig: &Rig, stiffness: f64) -> Spring {
+    let mass = rig.reduced_mass();
+    let ratio = damping_ratio(rig.restitution).unwrap_or(0.0);
+    Spring { stiffness, damping: 2.0 * ratio * (stiffness * mass).sqrt() }
+}
+
+/// Measures every method over `seconds`.
+pub fn scene(seconds: f64, quick: bool) -> Scene {
+    let task = task(seconds);
+    let judge = |told: &Told| judge(told, seconds);
+    let mut entries = Entries::new(quick);
+    entries.ours("exact flights", "", || ours::flights(&task), judge);
+    let few = |all: &[f64]| if quick { all[..2].to_vec() } else { all.to_vec() };
+    for n in few(&[100.0, 1e3, 1e4]) {
+        entries.rival("Euler loop", &steps(n), || marched(&task, Loop::Euler, n), judge);
+    }
+    for n in few(&[100.0, 1e3, 1e4]) {
+        entries.rival("RK4 loop", &steps(n), || marched(&task, Loop::Rk4, n), judge);
+    }
+    for n in few(&[100.0, 1e3, 1e4]) {
+        entries.rival("Moreau time stepping", &steps(n), || moreau(&task, n), judge);
+    }
+    for n in few(&[30.0, 100.0, 300.0, 1e3]) {
+        let how = Events::ends(Kind::Rk4(n));
+        entries.rival("RK4, sign test", &how.kind.setting(), || events(&task, &how), judge);
+    }
+    for r in few(&[1e-3, 1e-6, 1e-9, 1e-12]) {
+        let how = Events::ends(Kind::Rk45(r));
+        entries.rival("RK45, sign test", &how.kind.setting(), || events(&task, &how), judge);
+    }
+    for r in few(&[1e-3, 1e-6, 1e-9, 1e-12]) {
+        let how = Events::dense(Kind::Rk45(r));
+        entries.rival("RK45, dense events", &how.kind.setting(), || events(&task, &how), judge);
+    }
+    for r in few(&[1e-6, 1e-9, 1e-12, 1e-14]) {
+        let how = Events::dense(Kind::Dop853(r));
+        entries.rival("DOP853, dense events", &how.kind.setting(), || events(&task, &how), judge);
+    }
+    for k in few(&[1e5, 1e6, 1e8]) {
+        let spring = spring(&task.rig, k);
+        let setting = format!("k₃ {k:.0e} N/m");
+        entries.rival("stiff spring, RK45", &setting, || penalty(&task, &spring, Kind::Rk45(1e-8)), judge);
+    }
+    Scene {
+        name: format!("scene B, {seconds} s"),
+        family: Family::Models,
+        says: format!(
+            "From rest under 0.5 N at ν 2.1, every impact crossed at speed: the times of the impacts up to {seconds} s."
+        ),
+        error_of: "largest error of an impact time in s".to_owned(),
+        truth: "Newton's method on the equations of motion with 40 digits".to_owned(),
+        bound: None,
+        methods: entries.done(),
+    }
+}
+
+/// Steps a cycle in words.
+pub fn steps(n: f64) -> String {
+    format!("{n} steps a cycle")
+}
