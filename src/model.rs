@@ -18,6 +18,7 @@
 //! ```
 
 pub mod chirp;
+mod clock;
 pub mod contact;
 pub mod continuation;
 mod drive;

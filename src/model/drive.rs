@@ -1,39 +1,14 @@
-//! Excitation under way: the phases of its sines, and when its next impulse or step of force is due.
+//! Excitation under way, as closed forms take it: the forced motion under its sines, and its clock.
 
+pub(super) use super::clock::Tick;
+use super::clock::{Clock, within};
 use super::excitation::MOST_SINES;
 use super::receptance::receptance;
 use super::waves::Waves;
 use super::{Excitation, Rig, Sine, Steady};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
-
-/// 2π less [`TAU`].
-const TAU_REST: f64 = 2.449_293_598_294_706_4e-16;
-
-/// What an excitation does at an instant.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Tick {
-    /// An impulse in N s.
-    Kick(f64),
-    /// A pulse begins.
-    On,
-    /// A pulse ends.
-    Off,
-}
-
-/// What is repeated once a cycle.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Train {
-    /// One sine, whose phase is that of the cycle.
-    Sine,
-    /// Several sines, each with its own phase.
-    Sines,
-    /// An impulse in N s.
-    Impulses(f64),
-    /// A force in N for a time in s.
-    Pulses { force: f64, width: f64 },
-}
 
 /// A sine under way.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,7 +20,7 @@ struct Line {
     /// F L₁(iω), of mass 1 alone, in m, and its modulus.
     alone: Complex64,
     amplitude: f64,
-    /// F L(iω) of both masses together, in m; not finite where they are driven at their undamped resonance.
+    /// F L(iω) of both masses together, in m; not finite where they are driven at their undamped resonance. Against a wall, F in N.
     together: Complex64,
 }
 
@@ -53,95 +28,76 @@ struct Line {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Drive {
     lines: [Option<Line>; MOST_SINES],
-    train: Train,
-    /// Cycles a second.
-    frequency: f64,
-    phase: f64,
-    /// Rest of the pulse under way in s; 0 where there is none.
-    left: f64,
-    /// Whether the cycle's beginning is still to come at phase 0.
-    due: bool,
+    /// Whether there is one sine, whose phase is that of the cycle.
+    single: bool,
+    clock: Clock,
 }
 
 impl Drive {
     /// Excitation of `rig` at `phase` of its cycle; each of several sines has its own phase at phase 0 and has gone on since.
     pub fn new(rig: &Rig, excitation: &Excitation, phase: f64) -> Result<Drive> {
         rig.check()?;
-        excitation.check()?;
-        let frequency = excitation.frequency();
-        let phase = phase.rem_euclid(TAU);
-        // The remainder of a tiny negative phase rounds to 2π.
-        let phase = if phase < TAU { phase } else { 0.0 };
-        let mut drive = Drive {
-            lines: [None; MOST_SINES],
-            train: Train::Sine,
-            frequency,
-            phase,
-            left: 0.0,
-            due: phase == 0.0,
-        };
+        let clock = Clock::new(excitation, phase)?;
+        let single = matches!(excitation, Excitation::Sine(_));
+        let mut drive = Drive { lines: [None; MOST_SINES], single, clock };
         match excitation {
-            Excitation::Sine(sine) => drive.lines[0] = Some(Line::new(rig, sine, phase)?),
+            Excitation::Sine(sine) => drive.lines[0] = Some(Line::new(rig, sine, clock.phase())?),
             Excitation::Sines(sines) => {
-                if sines.parts.len() > MOST_SINES {
-                    let found = format!("{} sines", sines.parts.len());
-                    return Err(Error::usage(found, format!("no more than {MOST_SINES}")));
-                }
-                drive.train = Train::Sines;
                 for (line, part) in drive.lines.iter_mut().zip(&sines.parts) {
                     let sine = Sine { force: part.force, frequency: part.frequency };
-                    let start = part.phase + phase * part.frequency / frequency;
+                    let start = part.phase + clock.phase() * part.frequency / clock.frequency();
                     *line = Some(Line::new(rig, &sine, start.rem_euclid(TAU))?);
                 }
             }
-            Excitation::Impulse(impulses) => drive.train = Train::Impulses(impulses.impulse),
-            Excitation::Pulse(pulses) => {
-                let (force, width) = (pulses.force, pulses.width);
-                drive.train = Train::Pulses { force, width };
-                if !drive.due {
-                    drive.left = (width - phase / (TAU * frequency)).max(0.0);
-                }
-            }
+            Excitation::Impulse(_) | Excitation::Pulse(_) => {}
         }
         Ok(drive)
     }
 
     /// Phase of the cycle in 0..2π.
+    #[inline]
     pub fn phase(&self) -> f64 {
-        self.phase
+        self.clock.phase()
     }
 
     /// Cycles a second in Hz.
     pub fn frequency(&self) -> f64 {
-        self.frequency
+        self.clock.frequency()
     }
 
     /// Goes on at another frequency of the cycle in Hz; several sines keep the ratios of theirs.
     pub fn set_frequency(&mut self, rig: &Rig, frequency: f64) -> Result<()> {
-        Sine { force: 0.0, frequency }.check()?;
-        if let Train::Pulses { width, .. } = self.train
-            && width * frequency >= 1.0
-        {
-            let found = format!("pulses of {width} s at {frequency} Hz");
-            return Err(Error::usage(found, "a width below the cycle"));
-        }
-        let ratio = frequency / self.frequency;
-        let mut lines = self.lines;
+        let (mut clock, mut lines) = (self.clock, self.lines);
+        let before = clock.frequency();
+        clock.set_frequency(frequency)?;
         for line in lines.iter_mut().flatten() {
             // The first sine counts the cycles: no rounding of its frequency.
-            let own = if line.frequency == self.frequency { frequency } else { line.frequency * ratio };
+            let own =
+                if line.frequency == before { frequency } else { line.frequency * (frequency / before) };
             *line = Line::new(rig, &Sine { force: line.force, frequency: own }, line.phase)?;
         }
-        (self.lines, self.frequency) = (lines, frequency);
+        (self.lines, self.clock) = (lines, clock);
+        Ok(())
+    }
+
+    /// Goes on under another excitation of the same kind, whose phases are those of this one.
+    pub fn set_excitation(&mut self, rig: &Rig, excitation: &Excitation) -> Result<()> {
+        let mut clock = self.clock;
+        clock.set_excitation(excitation)?;
+        let mut next = Drive::new(rig, excitation, 0.0)?;
+        for (line, before) in next.lines.iter_mut().zip(&self.lines) {
+            if let (Some(line), Some(before)) = (line, before) {
+                line.phase = before.phase;
+            }
+        }
+        *self = Drive { clock, ..next };
         Ok(())
     }
 
     /// Force in N that is constant up to the next tick.
+    #[inline]
     pub fn constant(&self) -> f64 {
-        match self.train {
-            Train::Pulses { force, .. } if self.left > 0.0 => force,
-            _ => 0.0,
-        }
+        self.clock.constant()
     }
 
     /// Forced motion of mass 1 alone from now on.
@@ -154,7 +110,7 @@ impl Drive {
         waves
     }
 
-    /// Forced motion of both masses together from now on.
+    /// Forced motion of both masses together from now on, in m; against a wall the sine forces in N.
     pub fn together(&self) -> Waves {
         let mut waves = Waves::default();
         for line in self.lines.iter().flatten() {
@@ -163,64 +119,39 @@ impl Drive {
         waves
     }
 
-    /// Seconds to the next tick, and what it does; infinite where there is none.
+    /// As [`Clock::next`].
     #[inline]
-    pub fn next(&self) -> (f64, Option<Tick>) {
-        let (whole, begin) = match self.train {
-            Train::Sine | Train::Sines => return (f64::INFINITY, None),
-            Train::Impulses(impulse) => (self.whole(), Tick::Kick(impulse)),
-            Train::Pulses { .. } => (self.whole(), Tick::On),
-        };
-        if self.left > 0.0 && self.left < whole { (self.left, Some(Tick::Off)) } else { (whole, Some(begin)) }
-    }
-
-    /// Seconds to the beginning of the next cycle.
-    fn whole(&self) -> f64 {
-        if self.due { 0.0 } else { (TAU - self.phase) / (TAU * self.frequency) }
+    pub fn next(&self, span: f64, end: f64) -> (f64, Option<Tick>) {
+        self.clock.next(span, end)
     }
 
     /// Goes on by `dt` seconds, no further than to the next tick.
     #[inline]
     pub fn advance(&mut self, dt: f64) {
+        self.clock.advance(dt);
+        if let (true, Some(line)) = (self.single, &mut self.lines[0]) {
+            line.phase = self.clock.phase();
+            return;
+        }
         for line in self.lines.iter_mut().flatten() {
             line.phase = within(line.phase + line.omega * dt);
         }
-        match (&self.train, &self.lines[0]) {
-            (Train::Sine, Some(line)) => {
-                self.phase = line.phase;
-                return;
-            }
-            (Train::Sine | Train::Sines, _) => {
-                self.phase = within(self.phase + TAU * self.frequency * dt);
-                return;
-            }
-            _ => {}
-        }
-        // The cycle ends by its tick.
-        self.phase = (self.phase + TAU * self.frequency * dt).min(TAU.next_down());
-        if dt > 0.0 {
-            self.due = false;
-        }
-        self.left = (self.left - dt).max(0.0);
     }
 
     /// Does what is due now.
     pub fn tick(&mut self, tick: Tick) {
-        if tick == Tick::Off {
-            self.left = 0.0;
-            return;
-        }
-        (self.phase, self.due) = (0.0, false);
-        if let Train::Pulses { width, .. } = self.train {
-            self.left = width;
-        }
+        self.clock.tick(tick);
     }
 }
 
 impl Line {
     fn new(rig: &Rig, sine: &Sine, phase: f64) -> Result<Line> {
         let steady = Steady::new(rig, sine)?;
-        let (m, c, k) = (rig.m1 + rig.m2, rig.c1 + rig.c2, rig.k1 + rig.k2);
+        let compliance = if rig.has_wall() {
+            Complex64::ONE
+        } else {
+            receptance(rig.m1 + rig.m2, rig.c1 + rig.c2, rig.k1 + rig.k2, steady.omega)
+        };
         Ok(Line {
             force: sine.force,
             frequency: sine.frequency,
@@ -228,7 +159,7 @@ impl Line {
             phase,
             alone: steady.response,
             amplitude: steady.amplitude(),
-            together: receptance(m, c, k, steady.omega) * sine.force,
+            together: compliance * sine.force,
         })
     }
 }
@@ -238,15 +169,4 @@ impl Line {
 fn turn(phase: f64) -> Complex64 {
     let (sin, cos) = crate::math::cis::sin_cos(phase);
     Complex64::new(cos, sin)
-}
-
-/// A phase of 0 or more within 0..2π.
-#[inline]
-fn within(phase: f64) -> f64 {
-    if phase < TAU {
-        return phase;
-    }
-    let turns = (phase / TAU).floor();
-    let rest = (phase - turns * TAU) - turns * TAU_REST;
-    if (0.0..TAU).contains(&rest) { rest } else { phase.rem_euclid(TAU) }
 }

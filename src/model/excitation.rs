@@ -206,13 +206,17 @@ impl Pulses {
 }
 
 impl Sines {
-    /// Checks that there is a sine, and each as [`Sine::check`], with a finite phase.
+    /// Checks that there are one to [`MOST_SINES`] sines, and each as [`Sine::check`], with a finite phase.
     ///
     /// # Errors
-    /// If one of them is not.
+    /// If it is not so.
     pub fn check(&self) -> Result<()> {
         if self.parts.is_empty() {
             return Err(Error::usage("sines without parts", "parts = [{ force = …, frequency = … }]"));
+        }
+        if self.parts.len() > MOST_SINES {
+            let found = format!("{} sines", self.parts.len());
+            return Err(Error::usage(found, format!("no more than {MOST_SINES}")));
         }
         for part in &self.parts {
             pushing(part.force)?;
@@ -252,6 +256,10 @@ mod tests {
         assert!(refused(&Excitation::Pulse(pulses)).starts_with("width is 0.2 s"));
         assert!(Pulses { width: 0.199, ..pulses }.check().is_ok());
         assert!(refused(&Excitation::Sines(Sines { parts: Vec::new() })).starts_with("sines without parts"));
+        let part = Part { force: 0.1, frequency: 5.0, phase: 0.0 };
+        assert!(Sines { parts: vec![part; MOST_SINES] }.check().is_ok());
+        let many = Excitation::Sines(Sines { parts: vec![part; MOST_SINES + 1] });
+        assert!(refused(&many).starts_with("5 sines"));
         let impulse = Impulses { impulse: f64::NAN, frequency: 5.0 };
         assert!(refused(&Excitation::Impulse(impulse)).starts_with("impulse is NaN N s"));
     }

@@ -1,9 +1,9 @@
-//! The exciting force as a motion meets it: series in time, and the times at which it jumps.
+//! The exciting force as series in time, and its clock.
 
+use super::clock::{Clock, Tick, within};
 use super::linear::{ORDER, Terms};
-use super::motion::Event;
 use super::{Excitation, Part};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use std::f64::consts::TAU;
 
 /// One sine force, with its phase now.
@@ -14,79 +14,59 @@ struct Tone {
     phase: f64,
 }
 
-/// What happens once a cycle.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Jumps {
-    None,
-    /// An impulse in N s; `due` where it falls on the very start.
-    Kick {
-        impulse: f64,
-        due: bool,
-    },
-    /// A force in N for a width in s from the cycle's beginning; `on` while it acts.
-    Pulse {
-        force: f64,
-        width: f64,
-        on: bool,
-    },
-}
-
 /// The exciting force from now on.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Forcing {
-    excitation: Excitation,
     tones: Vec<Tone>,
-    jumps: Jumps,
-    omega: f64,
-    phase: f64,
+    clock: Clock,
 }
 
 impl Forcing {
     /// The excitation in a cycle of which `phase` rad are past: a sine is F₀ cos(phase), an impulse falls on phase 0, a
     /// pulse begins there, and of several sines each is ahead by its own part of the time that the phase stands for.
     pub fn new(excitation: &Excitation, phase: f64) -> Result<Forcing> {
-        excitation.check()?;
-        if !phase.is_finite() {
-            return Err(Error::usage(format!("phase is {phase} rad"), "a finite value"));
-        }
-        let omega = TAU * excitation.frequency();
-        let phase = phase.rem_euclid(TAU);
+        let clock = Clock::new(excitation, phase)?;
+        let (phase, frequency) = (clock.phase(), clock.frequency());
         let tone = |p: &Part| {
-            let own = TAU * p.frequency;
-            Tone { force: p.force, omega: own, phase: (p.phase + phase * (own / omega)).rem_euclid(TAU) }
+            let start = (p.phase + phase * (p.frequency / frequency)).rem_euclid(TAU);
+            Tone { force: p.force, omega: TAU * p.frequency, phase: start }
         };
-        let (tones, jumps) = match excitation {
-            Excitation::Sine(sine) => (vec![Tone { force: sine.force, omega, phase }], Jumps::None),
-            Excitation::Sines(sines) => (sines.parts.iter().map(tone).collect(), Jumps::None),
-            Excitation::Impulse(i) => (Vec::new(), Jumps::Kick { impulse: i.impulse, due: phase == 0.0 }),
-            Excitation::Pulse(p) => {
-                let on = phase < p.width * omega;
-                (Vec::new(), Jumps::Pulse { force: p.force, width: p.width, on })
-            }
+        let tones = match excitation {
+            Excitation::Sine(sine) => vec![Tone { force: sine.force, omega: TAU * frequency, phase }],
+            Excitation::Sines(sines) => sines.parts.iter().map(tone).collect(),
+            Excitation::Impulse(_) | Excitation::Pulse(_) => Vec::new(),
         };
-        Ok(Forcing { excitation: excitation.clone(), tones, jumps, omega, phase })
+        Ok(Forcing { tones, clock })
     }
 
     /// Phase of the cycle in 0..2π.
     pub fn phase(&self) -> f64 {
-        self.phase
+        self.clock.phase()
     }
 
     /// Frequency of the cycle in Hz.
     pub fn frequency(&self) -> f64 {
-        self.excitation.frequency()
+        self.clock.frequency()
     }
 
     /// Changes the frequency from now on; every phase goes on.
     pub fn set_frequency(&mut self, hz: f64) -> Result<()> {
-        let excitation = self.excitation.at_frequency(hz);
-        excitation.check()?;
-        let ratio = hz / self.frequency();
+        let before = self.frequency();
+        self.clock.set_frequency(hz)?;
         for tone in &mut self.tones {
-            tone.omega *= ratio;
+            // The first sine counts the cycles: no rounding of its frequency.
+            tone.omega = if tone.omega == TAU * before { TAU * hz } else { tone.omega * (hz / before) };
         }
-        self.omega = TAU * hz;
-        self.excitation = excitation;
+        Ok(())
+    }
+
+    /// Goes on under another excitation of the same kind, whose phases are those of this one.
+    pub fn set_excitation(&mut self, excitation: &Excitation) -> Result<()> {
+        self.clock.set_excitation(excitation)?;
+        let next = Forcing::new(excitation, 0.0)?;
+        for (tone, next) in self.tones.iter_mut().zip(next.tones) {
+            *tone = Tone { phase: tone.phase, ..next };
+        }
         Ok(())
     }
 
@@ -95,7 +75,7 @@ impl Forcing {
         self.tones.iter().map(|t| t.omega).fold(0.0, f64::max)
     }
 
-    /// The force in N at `t` seconds from now, before its next jump.
+    /// The force in N at `t` seconds from now, before its next tick.
     pub fn force(&self, t: f64) -> f64 {
         self.tones.iter().map(|tone| tone.force * (tone.phase + tone.omega * t).cos()).sum::<f64>()
             + self.steady()
@@ -120,64 +100,32 @@ impl Forcing {
     }
 
     fn steady(&self) -> f64 {
-        match self.jumps {
-            Jumps::Pulse { force, on: true, .. } => force,
-            _ => 0.0,
-        }
+        self.clock.constant()
     }
 
-    /// Seconds to the next jump.
-    pub fn next_jump(&self) -> f64 {
-        let rest = || ((TAU - self.phase) / self.omega).max(0.0);
-        match self.jumps {
-            Jumps::None => f64::INFINITY,
-            Jumps::Kick { due: true, .. } => 0.0,
-            Jumps::Kick { .. } | Jumps::Pulse { on: false, .. } => rest(),
-            Jumps::Pulse { width, on: true, .. } => (width - self.phase / self.omega).max(0.0),
-        }
+    /// As [`Clock::next`].
+    pub fn next(&self, span: f64, end: f64) -> (f64, Option<Tick>) {
+        self.clock.next(span, end)
     }
 
-    /// Lets `t` seconds pass, at most up to the next jump.
+    /// Lets `t` seconds pass, at most up to the next tick.
     pub fn pass(&mut self, t: f64) {
-        let turn = |phase: f64, omega: f64| {
-            let phase = phase + omega * t;
-            // A jump at the end of the cycle is taken before the next cycle begins.
-            if phase < TAU { phase } else { phase.rem_euclid(TAU) }
-        };
         for tone in &mut self.tones {
-            tone.phase = turn(tone.phase, tone.omega);
+            tone.phase = within(tone.phase + tone.omega * t);
         }
-        self.phase = match self.jumps {
-            Jumps::None => turn(self.phase, self.omega),
-            // Stays below 2π until the jump has been made.
-            _ => (self.phase + self.omega * t).min(TAU),
-        };
+        self.clock.advance(t);
     }
 
-    /// Makes the jump that is due now: its impulse in N s and what to call it.
-    pub fn jump(&mut self) -> (f64, Event) {
-        match &mut self.jumps {
-            Jumps::None => (0.0, Event::Switch),
-            Jumps::Kick { impulse, due } => {
-                *due = false;
-                self.phase = 0.0;
-                (*impulse, Event::Kick)
-            }
-            Jumps::Pulse { on, .. } => {
-                if !*on {
-                    self.phase = 0.0;
-                }
-                *on = !*on;
-                (0.0, Event::Switch)
-            }
-        }
+    /// Does what is due now.
+    pub fn tick(&mut self, tick: Tick) {
+        self.clock.tick(tick);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Impulses, Pulses, Sine, Sines};
+    use crate::model::{Sine, Sines};
 
     #[test]
     fn the_series_is_the_force() {
@@ -198,33 +146,6 @@ mod tests {
             assert!((sum - plain).abs() < 0.5 * 16.0 * f64::EPSILON, "{sum} {plain}");
             assert!((drive.force(t) - plain).abs() < 0.5 * 16.0 * f64::EPSILON);
         }
-    }
-
-    #[test]
-    fn jumps_come_once_a_cycle() {
-        let pulses = Pulses { force: 0.5, width: 0.01, frequency: 5.0 };
-        let mut drive = Forcing::new(&Excitation::Pulse(pulses), 0.0).unwrap();
-        let mut times = Vec::new();
-        let mut time = 0.0;
-        for _ in 0..4 {
-            let wait = drive.next_jump();
-            time += wait;
-            times.push(time);
-            drive.pass(wait);
-            assert_eq!(drive.jump(), (0.0, Event::Switch));
-        }
-        for (found, expected) in times.iter().zip([0.01, 0.2, 0.21, 0.4]) {
-            assert!((found - expected).abs() < 1e-15, "{times:?}");
-        }
-        let impulses = Impulses { impulse: 0.009, frequency: 5.0 };
-        let mut drive = Forcing::new(&Excitation::Impulse(impulses), 0.0).unwrap();
-        assert_eq!(drive.next_jump(), 0.0);
-        assert_eq!(drive.jump(), (0.009, Event::Kick));
-        assert!((drive.next_jump() - 0.2).abs() < 1e-16);
-        drive.pass(0.05);
-        drive.set_frequency(10.0).unwrap();
-        // Three quarters of a cycle are left.
-        assert!((drive.next_jump() - 0.075).abs() < 1e-16);
     }
 
     #[test]

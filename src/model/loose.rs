@@ -99,6 +99,10 @@ impl Motion for Loose {
         self.follow.set_frequency(hz)
     }
 
+    fn set_excitation(&mut self, excitation: &Excitation) -> Result<()> {
+        self.follow.set_excitation(excitation)
+    }
+
     fn advance(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<()> {
         self.follow.advance(until, visit)
     }

@@ -61,7 +61,8 @@ impl Portrait {
         let mut section = Comb::new(whole, period, end);
         let mut watch = Watch::new(motion);
         let (mut impacts, mut sticks) = (Vec::new(), 0);
-        let (mut jumps, mut struck): (Vec<(f64, State, State)>, Option<(f64, State)>) = (Vec::new(), None);
+        let mut jumps = Vec::new();
+        let mut struck: Option<(f64, State)> = None;
         motion.advance(end, &mut |piece| {
             if let Some((time, before)) = struck.take() {
                 jumps.push((time, before, piece.path.state(0.0)));

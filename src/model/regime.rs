@@ -99,7 +99,7 @@ pub struct Strike {
     pub time: f64,
     /// Phase of the excitation in rad.
     pub phase: f64,
-    /// State just before it.
+    /// State just before an impact at once; of a contact that gives way, at its end.
     pub before: State,
     /// Impulse in N s; 0 where the masses begin to move together.
     pub impulse: f64,

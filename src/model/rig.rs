@@ -1,5 +1,6 @@
 //! The rig: two masses on springs and dampers, a gap and a restitution.
 
+use super::State;
 use crate::error::{Error, Result};
 use crate::math::Oscillator;
 use serde::{Deserialize, Serialize};
@@ -92,6 +93,16 @@ impl Rig {
     /// Whether the passive mass is infinite: a wall.
     pub fn has_wall(&self) -> bool {
         self.m2 == f64::INFINITY
+    }
+
+    /// Checks that a start leaves a wall where it is.
+    pub(super) fn check_wall(&self, state: &State) -> Result<()> {
+        let State { x2, v2, .. } = *state;
+        if !self.has_wall() || x2 == 0.0 && v2 == 0.0 {
+            return Ok(());
+        }
+        let found = format!("mass 2 is a wall (m2 is infinite) and starts at {x2} m with {v2} m/s");
+        Err(Error::usage(found, "0 m and 0 m/s"))
     }
 
     /// Reduced mass M = m₁m₂/(m₁ + m₂) in kg.

@@ -64,7 +64,7 @@ pub struct Simulation {
 
 impl Simulation {
     /// Both masses at rest at time 0 and phase 0 of the excitation: the crest of a sine, the instant of an impulse, the beginning of a
-    /// pulse. With a negative gap they rest pressed together, at x₁ = k₂Δ/(k₁ + k₂).
+    /// pulse. With a negative gap they rest pressed together, at x₁ = k₂Δ/(k₁ + k₂), or at x₁ = Δ against a wall.
     ///
     /// # Errors
     /// If a parameter is impossible, there are more than four sines, or mass 1 is undamped and driven at resonance.
@@ -77,6 +77,9 @@ impl Simulation {
         if rig.gap >= 0.0 {
             return State::REST;
         }
+        if rig.has_wall() {
+            return State { x1: rig.gap, ..State::REST };
+        }
         let x1 = rig.k2 * rig.gap / (rig.k1 + rig.k2);
         State { x1, x2: x1 - rig.gap, ..State::REST }
     }
@@ -85,7 +88,7 @@ impl Simulation {
     /// each of several sines has its own phase at phase 0, an impulse falls on phase 0 and a pulse begins there.
     ///
     /// # Errors
-    /// As [`Simulation::new`], and if the state is not finite or the masses overlap in it.
+    /// As [`Simulation::new`], and if the state is not finite, the masses overlap in it or it moves a wall.
     pub fn from_state(
         rig: &Rig,
         excitation: &(impl Clone + Into<Excitation>),
@@ -93,6 +96,7 @@ impl Simulation {
         phase: f64,
     ) -> Result<Simulation> {
         rig.check()?;
+        rig.check_wall(&state)?;
         let State { x1, v1, x2, v2 } = state;
         if ![x1, v1, x2, v2, phase].iter().all(|v| v.is_finite()) {
             return Err(Error::usage(
@@ -148,7 +152,7 @@ impl Simulation {
         self.state
     }
 
-    /// Phase in 0..2π of the excitation's cycle now.
+    /// Phase in 0..2π of the excitation's cycle now; above 0 once the cycle's impulse has come or its pulse has begun.
     pub fn phase(&self) -> f64 {
         self.drive.phase()
     }
@@ -183,7 +187,18 @@ impl Simulation {
         self.drive.set_frequency(&self.rig, frequency)
     }
 
-    /// Goes to the next event, or to the time `until` if that comes before. Does not allocate.
+    /// Goes on under an excitation of another size or frequency and of the same kind; phases, state and time go on without a step, and
+    /// a pulse under way keeps its width.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`], and if the excitation is of another kind or has another number of sines.
+    pub fn set_excitation(&mut self, excitation: &(impl Clone + Into<Excitation>)) -> Result<()> {
+        self.drive.set_excitation(&self.rig, &excitation.clone().into())?;
+        self.look_again()
+    }
+
+    /// Goes to the next event, or to the time `until` if that comes before; an impulse or a step of force at `until` itself is left to
+    /// what follows. Does not allocate.
     ///
     /// # Errors
     /// If `until` is not finite or in the past, or the motion grows beyond all numbers.
@@ -195,7 +210,7 @@ impl Simulation {
             ));
         }
         let remaining = ((until - self.time) - self.carry).max(0.0);
-        let (wait, tick) = self.drive.next();
+        let (wait, tick) = self.drive.next(remaining, until);
         let ahead = remaining.min(wait);
         let start = self.time;
         self.counts.flights += 1;
@@ -238,7 +253,7 @@ impl Simulation {
         };
         let event = match (event, tick) {
             (Some(event), _) => event,
-            (None, Some(tick)) if wait <= remaining => self.tick(tick)?,
+            (None, Some(tick)) => self.tick(tick)?,
             _ => {
                 (self.time, self.carry) = (until, 0.0);
                 Event::Reached
@@ -271,7 +286,8 @@ impl Simulation {
     /// Motion of both masses together from now on, with their common momentum.
     fn pair(&self) -> Result<Pair> {
         let (rig, state) = (&self.rig, &self.state);
-        let v = (rig.m1 * state.v1 + rig.m2 * state.v2) / (rig.m1 + rig.m2);
+        let v =
+            if rig.has_wall() { 0.0 } else { (rig.m1 * state.v1 + rig.m2 * state.v2) / (rig.m1 + rig.m2) };
         let pair = Pair::new(rig, self.drive.together(), self.drive.constant(), state.x1, v);
         if pair.is_finite() {
             return Ok(pair);
@@ -362,6 +378,10 @@ impl Motion for Simulation {
 
     fn set_frequency(&mut self, hz: f64) -> Result<()> {
         Simulation::set_frequency(self, hz)
+    }
+
+    fn set_excitation(&mut self, excitation: &Excitation) -> Result<()> {
+        Simulation::set_excitation(self, excitation)
     }
 
     fn advance(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<()> {

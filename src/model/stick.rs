@@ -10,57 +10,92 @@ use crate::math::root::{Bounded, first_fall};
 ///
 /// One oscillator of m₁ + m₂, c₁ + c₂ and K = k₁ + k₂: x₁ = (P + k₂Δ)/K + Σ Re(Ye^{iωt}) + free motion under a constant force P and
 /// sine forces, x₂ = x₁ − Δ. The contact force on mass 2 is N = m₂ẍ₂ + c₂ẋ₂ + k₂x₂; the masses part where it vanishes.
+///
+/// Against a wall (m₂ infinite) mass 1 stays at x₁ = Δ, and N = P + Σ Re(Fe^{iωt}) − k₁Δ is what the forces press with.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pair {
+    /// Forced motion in m, or the sine forces in N on a wall.
     waves: Waves,
-    /// Where x₁ would rest, in m.
-    rest: f64,
-    free: Free,
     gap: f64,
-    /// m₂, c₂, k₂.
-    passive: [f64; 3],
+    course: Course,
+}
+
+/// How a pair moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Course {
+    Moving {
+        /// Where x₁ would rest, in m.
+        rest: f64,
+        free: Free,
+        /// m₂, c₂, k₂.
+        passive: [f64; 3],
+    },
+    /// Held against a wall.
+    Still {
+        /// Constant force P in N and k₁.
+        force: f64,
+        stiffness: f64,
+    },
 }
 
 impl Pair {
     /// Motion from displacement `x1` (m) of mass 1 and the common velocity `v` (m/s), under a constant force (N) and with forced
-    /// motion `waves` of the pair.
+    /// motion `waves` of the pair (m; against a wall, the sine forces in N).
     pub(super) fn new(rig: &Rig, waves: Waves, force: f64, x1: f64, v: f64) -> Pair {
+        if rig.has_wall() {
+            return Pair { waves, gap: rig.gap, course: Course::Still { force, stiffness: rig.k1 } };
+        }
         let [x, slope, ..] = waves.start();
         let rest = (force + rig.k2 * rig.gap) / (rig.k1 + rig.k2);
         let oscillator = Oscillator::new(rig.m1 + rig.m2, rig.c1 + rig.c2, rig.k1 + rig.k2);
-        Pair {
-            waves,
-            rest,
-            free: Free { oscillator, x: x1 - rest - x, v: v - slope },
-            gap: rig.gap,
-            passive: [rig.m2, rig.c2, rig.k2],
-        }
+        let free = Free { oscillator, x: x1 - rest - x, v: v - slope };
+        let course = Course::Moving { rest, free, passive: [rig.m2, rig.c2, rig.k2] };
+        Pair { waves, gap: rig.gap, course }
     }
 
     /// State at `t` ≥ 0.
     pub fn state(&self, t: f64) -> State {
-        let (x, v, _) = self.derivative(0, t);
-        State { x1: x, v1: v, x2: x - self.gap, v2: v }
+        match &self.course {
+            Course::Still { .. } => State { x1: self.gap, ..State::REST },
+            Course::Moving { rest, free, .. } => {
+                let (x, v, _) = self.derivative(*rest, free, 0, t);
+                State { x1: x, v1: v, x2: x - self.gap, v2: v }
+            }
+        }
     }
 
     /// Contact force N in N at `t`, its rate, and a bound on its second derivative for all later times.
     pub fn force(&self, t: f64) -> Bounded {
-        let (x, v, bend) = self.derivative(0, t);
-        let (_, a, third) = self.derivative(1, t);
-        let (_, jerk, fourth) = self.derivative(2, t);
-        let [m, c, k] = self.passive;
-        Bounded {
-            value: m * a + c * v + k * (x - self.gap),
-            slope: m * jerk + c * a + k * v,
-            curvature: m * fourth + c * third + k * bend,
+        match &self.course {
+            Course::Still { force, stiffness } => {
+                let (sines, slope, curvature) = self.waves.derivative(0, t);
+                Bounded { value: sines + force - stiffness * self.gap, slope, curvature }
+            }
+            Course::Moving { rest, free, passive: [m, c, k] } => {
+                let (x, v, bend) = self.derivative(*rest, free, 0, t);
+                let (_, a, third) = self.derivative(*rest, free, 1, t);
+                let (_, jerk, fourth) = self.derivative(*rest, free, 2, t);
+                Bounded {
+                    value: m * a + c * v + k * (x - self.gap),
+                    slope: m * jerk + c * a + k * v,
+                    curvature: m * fourth + c * third + k * bend,
+                }
+            }
         }
     }
 
     /// Rounding error of the contact force in N: a few ε of the largest term.
     pub(super) fn noise(&self) -> f64 {
-        let (x, _, bend) = self.derivative(0, 0.0);
-        let [m, _, k] = self.passive;
-        8.0 * f64::EPSILON * (m * bend + k * (x.abs() + self.rest.abs() + self.gap.abs()))
+        let size = match &self.course {
+            Course::Still { force, stiffness } => {
+                self.waves.amplitude() + force.abs() + stiffness * self.gap.abs()
+            }
+            Course::Moving { rest, free, passive: [m, _, k] } => {
+                let (x, _, bend) = self.derivative(*rest, free, 0, 0.0);
+                m * bend + k * (x.abs() + rest.abs() + self.gap.abs())
+            }
+        };
+        8.0 * f64::EPSILON * size
     }
 
     /// Time in `0..=duration` at which the contact force vanishes; at once where it pulls at the start.
@@ -71,15 +106,19 @@ impl Pair {
         first_fall(0.0, duration, 0.0, |t| self.force(t))
     }
 
-    fn derivative(&self, order: u32, t: f64) -> (f64, f64, f64) {
-        let (forced, free) = (self.waves.derivative(order, t), self.free.derivative(order, t));
-        let rest = if order == 0 { self.rest } else { 0.0 };
+    fn derivative(&self, rest: f64, free: &Free, order: u32, t: f64) -> (f64, f64, f64) {
+        let (forced, free) = (self.waves.derivative(order, t), free.derivative(order, t));
+        let rest = if order == 0 { rest } else { 0.0 };
         (rest + forced.0 + free.0, forced.1 + free.1, forced.2 + free.2)
     }
 
     /// Whether the motion is a number: not where the pair is driven at its undamped resonance.
     pub(super) fn is_finite(&self) -> bool {
-        self.waves.amplitude().is_finite() && self.free.x.is_finite() && self.free.v.is_finite()
+        let free = match &self.course {
+            Course::Still { .. } => true,
+            Course::Moving { free, .. } => free.x.is_finite() && free.v.is_finite(),
+        };
+        self.waves.amplitude().is_finite() && free
     }
 }
 

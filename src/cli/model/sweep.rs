@@ -150,7 +150,7 @@ fn over<M: Motion>(
         let mut motion = make(&at_size(excitation, start), rest, 0.0)?;
         let frequency = excitation.frequency();
         plan.steps(&mut motion, direction, |motion, value| {
-            *motion = make(&at_size(excitation, value), motion.state(), motion.phase())?;
+            motion.set_excitation(&at_size(excitation, value))?;
             Ok((frequency, value))
         })
     })

@@ -96,15 +96,7 @@ impl Follow {
         phase: f64,
     ) -> Result<Follow> {
         rig.check()?;
-        if rig.has_wall() && (state.x2 != 0.0 || state.v2 != 0.0) {
-            return Err(Error::usage(
-                format!(
-                    "mass 2 is a wall (m2 is infinite) and starts at {} m with {} m/s",
-                    state.x2, state.v2
-                ),
-                "0 m and 0 m/s",
-            ));
-        }
+        rig.check_wall(&state)?;
         let law = match contact {
             Contact::Rebound => None,
             Contact::Law(law) => law.check().map(|()| Some(law))?,
@@ -181,6 +173,13 @@ impl Follow {
         self.drive.set_frequency(hz)
     }
 
+    /// Goes on under another excitation of the same kind.
+    pub fn set_excitation(&mut self, excitation: &Excitation) -> Result<()> {
+        self.drive.set_excitation(excitation)?;
+        self.settle();
+        Ok(())
+    }
+
     fn indentation(&self) -> f64 {
         self.modes.indentation.value(&self.state, 0.0)
     }
@@ -245,7 +244,7 @@ impl Follow {
             return self.integrated(until, visit);
         }
         let remaining = until - self.time;
-        let jump = self.drive.next_jump();
+        let (jump, tick) = self.drive.next(remaining, until);
         let mode = self.mode();
         let longest = 1.0 / mode.rate().max(self.drive.fastest());
         let span = remaining.min(jump).min(longest);
@@ -291,8 +290,10 @@ impl Follow {
         self.time = if whole { until } else { start + duration };
         let event = match first {
             Some((_, mark)) => self.mark(mark),
-            None if span == jump => self.jump(),
-            None => Event::Reached,
+            None => match tick.filter(|_| span == jump) {
+                Some(tick) => self.tick(tick),
+                None => Event::Reached,
+            },
         };
         visit(Piece { start, duration, path: &taylor, event });
         if self.stage == Stage::Apart && matches!(event, Event::Impact(_)) {
@@ -304,7 +305,7 @@ impl Follow {
     /// One step within a contact that is not linear.
     fn integrated(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<bool> {
         let remaining = until - self.time;
-        let jump = self.drive.next_jump();
+        let (jump, tick) = self.drive.next(remaining, until);
         let span = remaining.min(jump);
         let start = self.time;
         let mode = self.modes.mode(Between::Apart, self.spring_acts);
@@ -319,8 +320,8 @@ impl Follow {
         self.time = if whole { until } else { start + duration };
         let event = if fall.is_some() {
             self.separate()
-        } else if ended && span == jump {
-            self.jump()
+        } else if let Some(tick) = tick.filter(|_| ended && span == jump) {
+            self.tick(tick)
         } else {
             Event::Reached
         };

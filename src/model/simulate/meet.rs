@@ -73,6 +73,17 @@ impl Simulation {
             }
             return Ok(Event::Kick);
         }
+        self.look_again()?;
+        Ok(Event::Switch)
+    }
+
+    /// Finds how the masses are to each other once the force has stepped.
+    pub(super) fn look_again(&mut self) -> Result<()> {
+        if let Hold::Settling(_) = self.hold {
+            // What is left of the chatter is far below the masses' ways: it ends now, in rest or in parting.
+            self.counts.sticks -= 1;
+            return self.rest();
+        }
         if self.hold == Hold::Parting {
             // The new force may press again what has only begun to part.
             let flight = self.flight();
@@ -82,6 +93,6 @@ impl Simulation {
                 self.rest()?;
             }
         }
-        Ok(Event::Switch)
+        Ok(())
     }
 }

@@ -6,6 +6,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 mod bounds;
 mod energy;
 mod settle;
+mod wall;
 
 fn scene_b() -> Simulation {
     let rig = Rig::thesis();

@@ -2,6 +2,7 @@
 
 use super::{Beginning, Contact, Follow, Mark, REST_SPEED, Stage};
 use crate::model::State;
+use crate::model::clock::Tick;
 use crate::model::motion::{Event, Path, Piece};
 use crate::model::simulate::Impact;
 
@@ -103,10 +104,16 @@ impl Follow {
         visit(Piece { start: self.time, duration: 0.0, path: &end, event: Event::Stick });
     }
 
-    /// Makes the excitation's jump.
-    pub(super) fn jump(&mut self) -> Event {
-        let (impulse, event) = self.drive.jump();
-        self.state.v1 += impulse / self.rig.m1;
+    /// Does what the excitation does now.
+    pub(super) fn tick(&mut self, tick: Tick) -> Event {
+        self.drive.tick(tick);
+        let event = match tick {
+            Tick::Kick(impulse) => {
+                self.state.v1 += impulse / self.rig.m1;
+                Event::Kick
+            }
+            Tick::On | Tick::Off => Event::Switch,
+        };
         self.settle();
         event
     }
