@@ -63,29 +63,23 @@ fn the_thesis_contact_that_gives_way_has_the_known_peaks() {
     println!("sine: {:?}", tops(&swept));
     let [grazing, clapping, down] = tops(&swept);
     assert!((grazing - 5.58).abs() < 0.05 && (clapping - 10.59).abs() < 0.1 && (down - 5.44).abs() < 0.1);
-    let swept = apart(&BOTH, |direction| {
-        let frequency = if direction == Direction::Up { 1.5 } else { 14.0 };
+    // From 3 Hz, as the thesis swept: between 6 and 7.5 Hz the motion is irregular, and the start decides whether it leaves that with impacts
+    // (2 of 6 starts from 1.5 to 1.6 Hz do not come to the clapping branch). The sub-harmonic peak lies below.
+    let pulses = |frequency| {
         let pulses = Excitation::Pulse(Pulses { force: 0.5, width: 0.01, frequency });
-        let mut motion = Compliant::new(&rig, &pulses, law, State::REST, 0.0)?;
-        plan(1.5).frequency(&mut motion, 0.5, direction)
+        Compliant::new(&rig, &pulses, law, State::REST, 0.0)
+    };
+    let swept = apart(&BOTH, |direction| {
+        let mut motion = pulses(if direction == Direction::Up { 3.0 } else { 14.0 })?;
+        plan(3.0).frequency(&mut motion, 0.5, direction)
     })
     .unwrap();
-    let below = highest(&swept.up, 2.3, 3.3).frequency;
+    let low = Plan { to: 4.0, ..plan(1.5) };
+    let below = low.frequency(&mut pulses(1.5).unwrap(), 0.5, Direction::Up).unwrap();
+    let below = highest(&below, 2.3, 3.3).frequency;
     println!("pulse: {:?}, below {below}", tops(&swept));
     let [grazing, clapping, down] = tops(&swept);
-    assert!((grazing - 5.58).abs() < 0.05 && (down - 5.42).abs() < 0.1);
-    // Between 6 and 7.5 Hz the motion is irregular; whether it leaves that with impacts or without is chance, so there are several starts.
-    let mut peaks = vec![clapping];
-    for from in [1.51, 1.55, 1.6] {
-        let pulses = Excitation::Pulse(Pulses { force: 0.5, width: 0.01, frequency: from });
-        let mut motion = Compliant::new(&rig, &pulses, law, State::REST, 0.0).unwrap();
-        let up = plan(from).frequency(&mut motion, 0.5, Direction::Up).unwrap();
-        peaks.push(highest(&up, 8.0, 14.0).frequency);
-    }
-    println!("clapping: {peaks:?}");
-    // Without impacts the response rises up to the end.
-    peaks.retain(|f| *f < 13.9);
-    assert!(!peaks.is_empty() && peaks.iter().all(|f| (f - 10.71).abs() < 0.1), "{peaks:?}");
+    assert!((grazing - 5.58).abs() < 0.05 && (clapping - 10.71).abs() < 0.1 && (down - 5.42).abs() < 0.1);
     assert!((below - 2.81).abs() < 0.05, "{below}");
     let mut loose = Loose::with_law(&rig, &sine(3.0), 0.0, law, State::REST, 0.0).unwrap();
     let up = plan(3.0).frequency(&mut loose, 0.1, Direction::Up).unwrap();
