@@ -67,6 +67,14 @@ fn masses_that_never_part_are_told_from_masses_that_never_meet() {
 }
 
 #[test]
+fn a_buffer_and_a_model_that_do_not_belong_together_are_said() {
+    let warned = |more: &[&str]| json(&with(more))["warnings"].to_string();
+    assert!(warned(&["--set", "buffer.gap=1e-3"]).contains("not used"));
+    assert!(warned(&["--model", "loose-mass"]).contains("gap 0"));
+    assert!(!warned(&["--model", "loose-mass", "--set", "buffer.gap=1e-3"]).contains("[buffer]"));
+}
+
+#[test]
 fn keys_of_another_law_are_refused() {
     for (law, keys, named) in [
         ("kelvin-voigt", "contact.exponent=1.5", "exponent = 1.5"),

@@ -52,3 +52,19 @@ pub fn law(scene: &Scene, wanted: args::Law) -> Result<Law> {
     law.check()?;
     Ok(law)
 }
+
+/// A sentence where the scene's `[buffer]` and the model do not belong together.
+pub fn buffer(scene: &Scene, wanted: args::Law) -> Option<String> {
+    match (scene.buffer, wanted) {
+        (Some(_), args::Law::LooseMass) => None,
+        (Some(buffer), _) => Some(format!(
+            "[buffer] gap = {} m is not used: the spring of mass 1 holds both ways in this model; --model loose-mass lets it push alone.",
+            buffer.gap
+        )),
+        (None, args::Law::LooseMass) => Some(
+            "Nothing states [buffer] gap: the loose mass is taken to touch its spring at rest (gap 0)."
+                .to_owned(),
+        ),
+        (None, _) => None,
+    }
+}

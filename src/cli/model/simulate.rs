@@ -77,6 +77,7 @@ pub fn run(typed: &args::Simulate, json: bool) -> Result<()> {
             whole(motion, typed)?
         }
     };
+    warnings.extend(contact::buffer(&scene, typed.model));
     warnings.extend(doubts(&seen, typed));
     if typed.model == Law::Hertz && scene.rig.restitution < 1.0 {
         warnings.push(format!(

@@ -46,6 +46,7 @@ pub fn run(typed: &args::ModelSweep, json: bool) -> Result<()> {
     plan.check()?;
     let swept = sweep(&scene, &excitation, &plan, typed)?;
     let (resonances, jumps) = if over_force { (Vec::new(), Vec::new()) } else { named(&swept) };
+    warnings.extend(contact::buffer(&scene, typed.model));
     warnings.extend(scattered(&swept));
     let branches = if typed.branches { branches(&scene.rig, &excitation, &plan) } else { Vec::new() };
     let mut written = Vec::new();
