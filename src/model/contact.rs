@@ -24,5 +24,5 @@ mod modes;
 mod within;
 
 pub use compliant::Compliant;
-pub(super) use follow::{Contact, Follow};
+pub(super) use follow::{Contact, Follow, Followed};
 pub use law::Law;

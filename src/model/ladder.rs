@@ -93,7 +93,7 @@ pub fn law(scene: &Scene, model: Model) -> Result<Option<Law>> {
             Err(Error::usage(format!("{} with contact.exponent", model.name()), "a spring, exponent 1"))
         }
         Model::SoftCorrected | Model::KelvinVoigt => {
-            laws::spring(scene, keys.stiffness.ok_or_else(|| missing("stiffness"))?).map(Some)
+            scene.spring(keys.stiffness.ok_or_else(|| missing("stiffness"))?).map(Some)
         }
         Model::HuntCrossley => {
             keys.damping.ok_or_else(|| missing("damping"))?;

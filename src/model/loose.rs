@@ -4,8 +4,7 @@
 //! −k₁(x₁ + b) for x₁ < −b and none elsewhere, where only its damper holds it. With the contact of the masses (at once, or by
 //! a spring and a damper) the motion has four linear modes, each flown exactly ([`super::linear`]).
 
-use super::contact::{Contact, Follow};
-use super::motion::{Motion, Piece};
+use super::contact::{Contact, Follow, Followed};
 use super::{Excitation, Law, Rig, State};
 use crate::error::{Error, Result};
 
@@ -67,44 +66,15 @@ impl Loose {
         let follow = Follow::new(rig, excitation, Contact::Law(law), Some(buffer_gap), state, phase)?;
         Ok(Loose { follow })
     }
-
-    /// The rig.
-    pub fn rig(&self) -> &Rig {
-        self.follow.rig()
-    }
 }
 
-impl Motion for Loose {
-    fn rig(&self) -> &Rig {
-        Loose::rig(self)
+impl Followed for Loose {
+    fn follow(&self) -> &Follow {
+        &self.follow
     }
 
-    fn time(&self) -> f64 {
-        self.follow.time()
-    }
-
-    fn state(&self) -> State {
-        self.follow.state()
-    }
-
-    fn phase(&self) -> f64 {
-        self.follow.phase()
-    }
-
-    fn frequency(&self) -> f64 {
-        self.follow.frequency()
-    }
-
-    fn set_frequency(&mut self, hz: f64) -> Result<()> {
-        self.follow.set_frequency(hz)
-    }
-
-    fn set_excitation(&mut self, excitation: &Excitation) -> Result<()> {
-        self.follow.set_excitation(excitation)
-    }
-
-    fn advance(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<()> {
-        self.follow.advance(until, visit)
+    fn follow_mut(&mut self) -> &mut Follow {
+        &mut self.follow
     }
 }
 

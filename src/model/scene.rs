@@ -4,7 +4,7 @@ mod draft;
 
 pub use draft::Draft;
 
-use super::{Excitation, Rig};
+use super::{Excitation, Law, Rig};
 use crate::error::Result;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -76,5 +76,17 @@ impl Scene {
     /// As [`Draft::from_toml`] and [`Draft::scene`].
     pub fn from_toml(text: &str) -> Result<Scene> {
         Draft::from_toml(text)?.scene()
+    }
+
+    /// Spring and damper of this stiffness (N/m) between the masses: the damper stated, or that which gives the rig's restitution.
+    ///
+    /// # Errors
+    /// As [`Law::kelvin_voigt`] and [`Law::check`].
+    pub fn spring(&self, stiffness: f64) -> Result<Law> {
+        let law = match self.contact.and_then(|keys| keys.damping) {
+            Some(damping) => Law::KelvinVoigt { stiffness, damping },
+            None => Law::kelvin_voigt(stiffness, self.rig.restitution, self.rig.reduced_mass())?,
+        };
+        law.check().map(|()| law)
     }
 }

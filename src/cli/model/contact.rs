@@ -44,10 +44,7 @@ pub fn law(scene: &Scene, wanted: args::Law) -> Result<Law> {
             exponent: keys.exponent.unwrap_or(1.5),
             damping: keys.damping.ok_or_else(|| missing("damping", "s/m"))?,
         },
-        _ => match keys.damping {
-            Some(damping) => Law::KelvinVoigt { stiffness, damping },
-            None => Law::kelvin_voigt(stiffness, scene.rig.restitution, scene.rig.reduced_mass())?,
-        },
+        _ => scene.spring(stiffness)?,
     };
     law.check()?;
     Ok(law)

@@ -1,8 +1,7 @@
 //! Any motion of the rig with a contact that gives way.
 
-use super::{Contact, Follow, Law};
+use super::{Contact, Follow, Followed, Law};
 use crate::error::Result;
-use crate::model::motion::{Motion, Piece};
 use crate::model::{Excitation, Rig, State};
 
 /// A motion with a contact that gives way: where it is now, and what drives it on.
@@ -36,44 +35,15 @@ impl Compliant {
     pub fn law(&self) -> Law {
         self.law
     }
-
-    /// The rig.
-    pub fn rig(&self) -> &Rig {
-        self.follow.rig()
-    }
 }
 
-impl Motion for Compliant {
-    fn rig(&self) -> &Rig {
-        Compliant::rig(self)
+impl Followed for Compliant {
+    fn follow(&self) -> &Follow {
+        &self.follow
     }
 
-    fn time(&self) -> f64 {
-        self.follow.time()
-    }
-
-    fn state(&self) -> State {
-        self.follow.state()
-    }
-
-    fn phase(&self) -> f64 {
-        self.follow.phase()
-    }
-
-    fn frequency(&self) -> f64 {
-        self.follow.frequency()
-    }
-
-    fn set_frequency(&mut self, hz: f64) -> Result<()> {
-        self.follow.set_frequency(hz)
-    }
-
-    fn set_excitation(&mut self, excitation: &Excitation) -> Result<()> {
-        self.follow.set_excitation(excitation)
-    }
-
-    fn advance(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<()> {
-        self.follow.advance(until, visit)
+    fn follow_mut(&mut self) -> &mut Follow {
+        &mut self.follow
     }
 }
 

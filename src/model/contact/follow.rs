@@ -8,7 +8,7 @@ use super::within::Within;
 use crate::error::{Error, Result};
 use crate::model::forcing::Forcing;
 use crate::model::linear::{Course, Linear, Quantity};
-use crate::model::motion::{Event, Path, Piece};
+use crate::model::motion::{Event, Motion, Path, Piece};
 use crate::model::{Excitation, Rig, State};
 
 /// Work of one call at most, a linear piece being 1 and an integrated one [`INTEGRATED`]: some minutes.
@@ -143,38 +143,7 @@ impl Follow {
         Ok(motion)
     }
 
-    /// The rig.
-    pub fn rig(&self) -> &Rig {
-        &self.rig
-    }
-
-    /// Time in s.
-    pub fn time(&self) -> f64 {
-        self.time
-    }
-
-    /// State now.
-    pub fn state(&self) -> State {
-        self.state
-    }
-
-    /// Phase of the excitation's cycle.
-    pub fn phase(&self) -> f64 {
-        self.drive.phase()
-    }
-
-    /// Frequency of the excitation in Hz.
-    pub fn frequency(&self) -> f64 {
-        self.drive.frequency()
-    }
-
-    /// Changes the frequency in Hz.
-    pub fn set_frequency(&mut self, hz: f64) -> Result<()> {
-        self.drive.set_frequency(hz)
-    }
-
-    /// Goes on under another excitation of the same kind.
-    pub fn set_excitation(&mut self, excitation: &Excitation) -> Result<()> {
+    fn set_excitation(&mut self, excitation: &Excitation) -> Result<()> {
         self.drive.set_excitation(excitation)?;
         self.settle();
         Ok(())
@@ -198,8 +167,7 @@ impl Follow {
         self.modes.mode(between, self.spring_acts)
     }
 
-    /// See [`crate::model::Motion::advance`].
-    pub fn advance(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<()> {
+    fn advance(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<()> {
         let span = until - self.time;
         if !(span.is_finite() && span >= 0.0) {
             return Err(Error::usage(
@@ -327,6 +295,49 @@ impl Follow {
         };
         visit(Piece { start, duration, path: &step, event });
         Ok(whole && event == Event::Reached)
+    }
+}
+
+/// A motion that consists of following a rig from event to event.
+pub(crate) trait Followed: Clone {
+    /// Where it is now.
+    fn follow(&self) -> &Follow;
+
+    /// Where it is now, to be driven on.
+    fn follow_mut(&mut self) -> &mut Follow;
+}
+
+impl<T: Followed> Motion for T {
+    fn rig(&self) -> &Rig {
+        &self.follow().rig
+    }
+
+    fn time(&self) -> f64 {
+        self.follow().time
+    }
+
+    fn state(&self) -> State {
+        self.follow().state
+    }
+
+    fn phase(&self) -> f64 {
+        self.follow().drive.phase()
+    }
+
+    fn frequency(&self) -> f64 {
+        self.follow().drive.frequency()
+    }
+
+    fn set_frequency(&mut self, hz: f64) -> Result<()> {
+        self.follow_mut().drive.set_frequency(hz)
+    }
+
+    fn set_excitation(&mut self, excitation: &Excitation) -> Result<()> {
+        self.follow_mut().set_excitation(excitation)
+    }
+
+    fn advance(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<()> {
+        self.follow_mut().advance(until, visit)
     }
 }
 

@@ -17,18 +17,6 @@ pub fn is_curved(scene: &Scene) -> bool {
     keys(scene).exponent.is_some_and(|n| n != 1.0)
 }
 
-/// Spring and damper of this stiffness (N/m) on the rig: the damper stated, or that which gives the rig's restitution.
-///
-/// # Errors
-/// As [`Law::kelvin_voigt`] and [`Law::check`].
-pub fn spring(scene: &Scene, stiffness: f64) -> Result<Law> {
-    let law = match keys(scene).damping {
-        Some(damping) => Law::KelvinVoigt { stiffness, damping },
-        None => Law::kelvin_voigt(stiffness, scene.rig.restitution, scene.rig.reduced_mass())?,
-    };
-    law.check().map(|()| law)
-}
-
 /// The curved law that the scene states; losses that are not stated rebound with the rig's restitution at `speed` (m/s).
 ///
 /// # Errors

@@ -38,7 +38,7 @@ pub fn sensitivity(stage: &Stage<'_>, motions: Option<&Motions>, base: &Answer) 
     }
     let mass = stage.scene.rig.reduced_mass();
     // ω₀t_c at the damping that the law has at 1 N/m: it depends on the damping ratio only, if that is not stated.
-    let Ok(Law::KelvinVoigt { damping, .. }) = laws::spring(stage.scene, 1.0) else { return Vec::new() };
+    let Ok(Law::KelvinVoigt { damping, .. }) = stage.scene.spring(1.0) else { return Vec::new() };
     let stated = laws::keys(stage.scene).damping.is_some();
     let share = |k: f64| {
         let c = if stated { damping } else { damping * k.sqrt() };

@@ -221,7 +221,7 @@ impl Stage<'_> {
 
     /// What a spring and damper of this stiffness (N/m) gives, from where the motion with impacts at once had settled.
     pub fn with_spring(&self, motions: &Motions, stiffness: f64) -> Result<(Reading, f64)> {
-        self.with(motions, laws::spring(self.scene, stiffness)?)
+        self.with(motions, self.scene.spring(stiffness)?)
     }
 
     fn with(&self, motions: &Motions, law: Law) -> Result<(Reading, f64)> {
@@ -254,7 +254,7 @@ impl Stage<'_> {
         let law = if stated {
             laws::curved(self.scene, speed)
         } else {
-            laws::spring(self.scene, stiffness).and_then(|law| laws::alike(self.rig(), law, speed))
+            self.scene.spring(stiffness).and_then(|law| laws::alike(self.rig(), law, speed))
         };
         let followed = law.and_then(|law| self.with(motions, law));
         match followed {
@@ -282,7 +282,7 @@ impl Stage<'_> {
             let (rig, start) = (self.rig(), Simulation::at_rest(self.rig()));
             let mut motion = match stiffness {
                 Some(k) => {
-                    let law = laws::spring(self.scene, k)?;
+                    let law = self.scene.spring(k)?;
                     Loose::with_law(rig, self.excitation, buffer.gap, law, start, 0.0)?
                 }
                 None => Loose::new(rig, self.excitation, buffer.gap, start, 0.0)?,

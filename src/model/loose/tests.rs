@@ -1,5 +1,6 @@
 use super::*;
 use crate::math::runge_kutta::{Dop853, Integrator, Tolerance};
+use crate::model::Motion;
 use crate::model::{Event, Sine};
 
 fn sine(force: f64, frequency: f64) -> Excitation {

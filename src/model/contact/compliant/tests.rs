@@ -1,6 +1,7 @@
 use super::*;
 use crate::math::runge_kutta::{Dop853, Integrator, Tolerance};
 use crate::model::contact::conversion;
+use crate::model::motion::{Motion, Piece};
 use crate::model::simulate::Impact;
 use crate::model::{Event, Impulses, Pulses, Simulation, Sine};
 use std::cell::Cell;
