@@ -169,8 +169,8 @@ impl Grid {
             rows: vec![Insets::default(); rows],
         };
         let mut grid = empty();
-        // Ticks, hence the room for their numbers, depend on the size of the frame: twice is enough.
-        for _ in 0..2 {
+        // Ticks, hence the room for their numbers, and that of a legend depend on the size of the frame: thrice is enough.
+        for _ in 0..3 {
             let size = grid.frame_size();
             let mut next = empty();
             for (i, sheet) in sheets.iter().enumerate() {

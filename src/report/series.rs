@@ -128,6 +128,8 @@ pub enum Marker {
     Cross,
     /// Open triangle that points down: an upper limit.
     Limit,
+    /// A letter: names in a legend what notes in the frame refer to.
+    Letter(char),
 }
 
 impl Series {

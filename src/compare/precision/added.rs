@@ -61,7 +61,7 @@ pub fn add(scenes: &mut [Scene], path: &Path) -> Result<usize> {
             why: line.why.or_else(|| failed.then(|| "no answer".to_owned())),
             front: false,
         });
-        front(&mut scene.methods);
+        front(scene.family, &mut scene.methods);
     }
     Ok(left)
 }

@@ -37,7 +37,7 @@ pub fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Vec<Scene>>
         all.extend(scenes(quick));
     }
     for scene in &mut all {
-        front(&mut scene.methods);
+        front(scene.family, &mut scene.methods);
     }
     Ok(all)
 }

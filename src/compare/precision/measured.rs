@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use super::Measured;
+use super::{Family, Measured};
 
 /// Shortest time worth reading from the clock, in ns: short answers are repeated until they fill it.
 const READABLE: f64 = 20_000.0;
@@ -54,15 +54,23 @@ pub fn quartiles(values: &mut [f64]) -> [f64; 3] {
 }
 
 /// Marks those than which no other is both faster and more accurate (the Pareto front); none that failed.
-pub fn front(methods: &mut [Measured]) {
-    let places: Vec<Option<(f64, f64)>> = methods
+///
+/// A setting of a model is the model's own choice; that of an estimator is the record, and only answers to the same record compete.
+pub fn front(family: Family, methods: &mut [Measured]) {
+    let reached = |m: &Measured| m.error.filter(|e| !m.failed && e.is_finite());
+    let beats = |a: &Measured, b: &Measured| match (reached(a), reached(b)) {
+        (Some(e), Some(error)) => {
+            e <= error && a.time_ns <= b.time_ns && (e < error || a.time_ns < b.time_ns)
+        }
+        _ => false,
+    };
+    let competes = |a: &Measured, b: &Measured| family == Family::Models || a.setting == b.setting;
+    let marked: Vec<bool> = methods
         .iter()
-        .map(|m| m.error.filter(|e| !m.failed && e.is_finite()).map(|error| (error, m.time_ns)))
+        .map(|m| reached(m).is_some() && !methods.iter().any(|other| competes(other, m) && beats(other, m)))
         .collect();
-    for (method, place) in methods.iter_mut().zip(&places) {
-        method.front = place.is_some_and(|(error, time)| {
-            !places.iter().flatten().any(|&(e, t)| e <= error && t <= time && (e < error || t < time))
-        });
+    for (method, front) in methods.iter_mut().zip(marked) {
+        method.front = front;
     }
 }
 
@@ -88,8 +96,23 @@ mod tests {
     #[test]
     fn the_front_holds_what_nothing_beats_in_both() {
         let mut all = [at(Some(1e-3), 1.0), at(Some(1e-6), 5.0), at(Some(1e-5), 6.0), at(None, 0.1)];
-        front(&mut all);
+        front(Family::Models, &mut all);
         assert_eq!(all.map(|m| m.front), [true, true, false, false]);
+    }
+
+    #[test]
+    fn estimators_compete_on_the_same_record_only() {
+        let of = |setting: &str, error, time| Measured { setting: setting.into(), ..at(error, time) };
+        let mut all = [
+            of("0 dB", Some(1e-1), 9.0),
+            of("60 dB", Some(1e-6), 8.0),
+            of("0 dB", Some(1e-1), 10.0),
+            of("60 dB", None, 1.0),
+        ];
+        front(Family::Estimators, &mut all);
+        assert_eq!(all.clone().map(|m| m.front), [true, true, false, false]);
+        front(Family::Models, &mut all);
+        assert_eq!(all.map(|m| m.front), [false, true, false, false]);
     }
 
     #[test]

@@ -27,7 +27,7 @@ impl Family {
 pub struct Measured {
     /// Name of the method.
     pub method: String,
-    /// Its setting: step, tolerance, length, …; empty where it has none.
+    /// A model's setting: step, tolerance, …; empty where it has none. Of an estimator the record it was given.
     pub setting: String,
     /// Whether it is one of this library's.
     pub ours: bool,
@@ -43,7 +43,7 @@ pub struct Measured {
     pub failed: bool,
     /// Why it failed, in a sentence.
     pub why: Option<String>,
-    /// No other is both faster and more accurate.
+    /// No other is both faster and more accurate, of estimators none with the same record.
     pub front: bool,
 }
 

@@ -1,11 +1,12 @@
 //! Series as shapes on the page.
 
-use super::canvas::{Canvas, Pen};
+use super::canvas::{Anchor, Canvas, Pen};
 use super::clutter::Clutter;
-use super::frame::Place;
-use super::style::{Look, MARKER, OUTLINE};
+use super::frame::{Place, label};
+use super::style::{Look, MARKER, OUTLINE, SMALL};
 use crate::report::axis::Axis;
 use crate::report::colour::{Rgb, WHITE};
+use crate::report::font;
 use crate::report::path::{Point, Rect, clipped, clipped_polygon, thinned};
 use crate::report::series::{Marker, Series, Shape};
 
@@ -120,6 +121,12 @@ pub(super) fn markers(canvas: &mut Canvas, points: &[Point], marker: Marker, siz
             let mut parts = polygon(&[(-1.2, 0.0), (1.2, 0.0)]);
             parts.extend(polygon(&[(0.0, -1.2), (0.0, 1.2)]));
             canvas.lines(&parts, Pen::solid(colour, OUTLINE));
+        }
+        Marker::Letter(letter) => {
+            for &(x, y) in points {
+                let at = (x, y + font::DIGIT_HEIGHT * SMALL / 2.0);
+                label(canvas, &letter.to_string(), at, SMALL, Anchor::Middle);
+            }
         }
     }
 }

@@ -14,6 +14,9 @@ use crate::report::path::Rect;
 use crate::report::series::Shape;
 use crate::units::notation::labelled;
 
+/// Most room of a legend beside the frame, in parts of the frame's width.
+const BESIDE: f64 = 0.45;
+
 /// Where the legend has been put.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Names {
@@ -126,7 +129,7 @@ impl<'a> Sheet<'a> {
             insets.bottom += style::TICK;
         }
         match self.names {
-            Names::Right => insets.right += GAP + LEADING + self.keys.column(0.4 * size.0).0,
+            Names::Right => insets.right += GAP + LEADING + self.keys.column(BESIDE * size.0).0,
             Names::Above => insets.top += self.keys.rows(size.0) + 2.0,
             Names::Inside | Names::Nowhere => {}
         }
@@ -170,7 +173,7 @@ impl<'a> Sheet<'a> {
                 }
             }
             Names::Right => {
-                let (w, h) = self.keys.column(0.4 * frame.w);
+                let (w, h) = self.keys.column(BESIDE * frame.w);
                 self.keys.draw_column(canvas, Rect { x: frame.right() + LEADING, y: frame.y, w, h });
             }
             Names::Above => {

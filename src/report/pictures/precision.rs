@@ -16,39 +16,71 @@ const MARKERS: [Marker; 6] = [
 /// Room of a row of crosses in parts of the decades of the errors.
 const ROW: f64 = 0.05;
 
-/// Error over time of every method of a scene, one line a method through its settings; what failed stands as crosses at the
-/// upper edge, each method in a row of its own and with its name beside the frame.
+/// What of the plane is seen, and the rows of crosses over it.
+struct View {
+    times: [f64; 2],
+    floor: f64,
+    /// The decade from which the rows begin.
+    top: f64,
+    /// Height of a row in decades.
+    row: f64,
+    edge: f64,
+}
+
+impl View {
+    fn of(scene: &Scene, lines: &[(&str, Vec<&Measured>)]) -> View {
+        let span = |values: &mut dyn Iterator<Item = f64>, none: [f64; 2]| {
+            let (low, high) =
+                values.fold((f64::INFINITY, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
+            if low <= high { [low, high] } else { none }
+        };
+        let errors = span(&mut scene.methods.iter().filter_map(error).chain(scene.bound), [1e-3, 1.0]);
+        let [first, last] = span(&mut scene.methods.iter().map(|m| 1e-9 * m.time_ns), [1e-6, 1.0]);
+        let floor = (0.7 * errors[0]).log10().floor();
+        let top = errors[1].log10().ceil();
+        let row = ROW * (top - floor).max(1.0);
+        let failing = lines.iter().filter(|l| l.1.iter().any(|m| error(m).is_none())).count() as f64;
+        let (floor, edge) = (10f64.powf(floor), 10f64.powf(top + row * failing));
+        View { times: [0.6 * first, 1.7 * last], floor, top, row, edge }
+    }
+
+    /// Place of the crosses of the `nth` method that failed, from below.
+    fn crosses(&self, nth: usize) -> f64 {
+        10f64.powf(self.top + self.row * (nth as f64 + 0.5))
+    }
+
+    /// Whether two points are so close that they share their letters.
+    fn shares(&self, (x, y): (f64, f64), other: (f64, f64)) -> bool {
+        let parts = |a: f64, b: f64, [low, high]: [f64; 2]| (a / b).log10().abs() / (high / low).log10();
+        parts(x, other.0, self.times) < SHARED[0] && parts(y, other.1, [self.floor, self.edge]) < SHARED[1]
+    }
+}
+
+/// Error over time of every method of a scene, one line a method; what failed stands as crosses at the upper edge, each method in a
+/// row of its own. Points of models are their settings; those of estimators are kinds of records, which letters name.
 pub fn precision(scene: &Scene) -> Figure {
-    let errors = scene.methods.iter().filter_map(error).chain(scene.bound);
-    let (low, high) = errors.fold((f64::INFINITY, 0.0_f64), |(low, high), e| (low.min(e), high.max(e)));
-    let (low, high) = if low <= high { (low, high) } else { (1e-3, 1.0) };
-    let floor = 10f64.powf((0.7 * low).log10().floor());
-    let top = high.log10().ceil();
     let lines = lines(scene);
-    let failing = lines.iter().filter(|l| l.1.iter().any(|m| error(m).is_none())).count() as f64;
-    let row = ROW * (top - floor.log10()).max(1.0);
-    let edge = 10f64.powf(top + row * failing);
-    let times = scene.methods.iter().map(|m| 1e-9 * m.time_ns);
-    let (first, last) = times.fold((f64::INFINITY, 0.0_f64), |(low, high), t| (low.min(t), high.max(t)));
-    let (first, last) = (0.6 * first, 1.7 * last);
-    let (first, last) = if first < last { (first, last) } else { (1e-6, 1.0) };
+    let view = View::of(scene, &lines);
+    let [first, last] = view.times;
     let label = if scene.error_of.is_empty() { "Error" } else { &scene.error_of };
     let mut plot = Plot::new(
         AxisSpec::new("Time of one answer", "s").log().limits(first, last),
-        AxisSpec::new(capital(label), "").log().limits(floor, edge),
+        AxisSpec::new(capital(label), "").log().limits(view.floor, view.edge),
     )
     .legend(Legend::Right);
     if let Some(bound) = scene.bound {
         plot = plot.with(Series::horizontal("Cramér–Rao bound", bound));
     }
-    let front = stairs(scene, edge, last);
-    if !front.0.is_empty() {
-        plot =
-            plot.with(Series::line("Pareto front", front.0, front.1).ink(Ink::Grey).stroke(Stroke::Dotted));
+    if scene.family == Family::Models {
+        let front = stairs(scene, view.edge, last);
+        if !front.0.is_empty() {
+            plot = plot
+                .with(Series::line("Pareto front", front.0, front.1).ink(Ink::Grey).stroke(Stroke::Dotted));
+        }
     }
     // This library's methods are black, the others coloured: six colours, and another form when they come round.
     let (mut own, mut others) = (0, 0);
-    let mut crosses = Vec::new();
+    let (mut crosses, mut named) = (Vec::new(), Vec::new());
     for (name, methods) in lines {
         let ours = methods.iter().any(|m| m.ours);
         let (ink, marker, stroke) = if ours {
@@ -59,32 +91,83 @@ pub fn precision(scene: &Scene) -> Figure {
             let turn = others - 1;
             (Ink::Nth(turn % 6), MARKERS[(turn + 1 + turn / 6) % MARKERS.len()], Stroke::Thin)
         };
-        let (x, y): (Vec<f64>, Vec<f64>) =
-            methods.iter().filter_map(|m| Some((1e-9 * m.time_ns, error(m)?))).unzip();
-        if !x.is_empty() {
+        let row = view.crosses(crosses.len());
+        let place = |m: &&Measured| (1e-9 * m.time_ns, error(m).unwrap_or(row));
+        let (failed, reached): (Vec<&Measured>, Vec<_>) = methods.iter().partition(|m| error(m).is_none());
+        if !reached.is_empty() {
+            let (x, y): (Vec<f64>, Vec<f64>) = reached.iter().map(place).unzip();
             plot = plot.with(Series::points(name, x, y).ink(ink).marker(marker).stroke(stroke));
         }
-        let x: Vec<f64> = methods.iter().filter(|m| error(m).is_none()).map(|m| 1e-9 * m.time_ns).collect();
-        if !x.is_empty() {
-            let place = 10f64.powf(top + row * (crosses.len() as f64 + 0.5));
-            let y = vec![place; x.len()];
-            crosses.push(Series::points(format!("× {name}"), x, y).ink(ink).marker(Marker::Cross));
+        if !failed.is_empty() {
+            let (x, y): (Vec<f64>, Vec<f64>) = failed.iter().map(place).unzip();
+            crosses.push(Series::points(name, x, y).ink(ink).marker(Marker::Cross));
         }
+        named.push(methods.into_iter().map(|m| (place(&m), m)).collect());
+    }
+    if !crosses.is_empty() {
+        plot = plot.with(Series::horizontal("above: failed", 10f64.powf(view.top)));
     }
     // The legend names them from above as they stand.
     for series in crosses.into_iter().rev() {
         plot = plot.with(series);
     }
-    let bound = if scene.bound.is_some() { " Level line: Cramér–Rao bound." } else { "" };
-    let kind = match scene.family {
-        Family::Models => "model",
-        Family::Estimators => "estimator",
+    let (points, front) = match scene.family {
+        Family::Models => {
+            ("a model, each point one of its settings", "Dotted: nothing lies below and left of it.")
+        }
+        Family::Estimators => {
+            plot = lettered(plot, scene, &view, named);
+            (
+                "an estimator, each point a kind of record, named by its letter",
+                "Capital letters: no other is both faster and more accurate on the same records.",
+            )
+        }
     };
+    let bound = if scene.bound.is_some() { " Level line: Cramér–Rao bound." } else { "" };
     Figure::double(format!("Speed against accuracy: {}", scene.name)).height(95.0).panel(plot).caption(format!(
-        "{} Each line is a {kind}, each point one of its settings, black those of this library: lower is more accurate, further left is faster. Dotted: nothing \
-         lies below and left of it. Crosses at the upper edge gave no answer, each method in a row of its own, from above as in the list. Truth: {}.{bound}",
+        "{} Each line is {points}, black those of this library: lower is more accurate, further left is faster. {front} Crosses at the upper edge \
+         have failed, each method in a row of its own, from above as in the list. Truth: {}.{bound}",
         scene.says, scene.truth
     ))
+}
+
+/// Distance within which points of a line share their letters, in parts of the width and of the height.
+const SHARED: [f64; 2] = [0.025, 0.03];
+
+/// Names the record of each point by a letter, a capital on the front of that record.
+fn lettered(mut plot: Plot, scene: &Scene, view: &View, lines: Vec<Vec<((f64, f64), &Measured)>>) -> Plot {
+    let mut records: Vec<&str> = Vec::new();
+    for m in &scene.methods {
+        if !records.contains(&m.setting.as_str()) {
+            records.push(&m.setting);
+        }
+    }
+    if !(2..=26).contains(&records.len()) {
+        return plot;
+    }
+    let letter = |m: &Measured| {
+        let place = records.iter().position(|r| *r == m.setting).unwrap_or_default();
+        char::from(if m.front { b'A' } else { b'a' } + place as u8)
+    };
+    for line in lines {
+        let mut named: Vec<((f64, f64), String)> = Vec::new();
+        for (at, m) in line {
+            match named.iter_mut().find(|n| view.shares(at, n.0)) {
+                Some(there) => there.1.push(letter(m)),
+                None => named.push((at, letter(m).to_string())),
+            }
+        }
+        for ((time, error), letters) in named {
+            plot = plot.note(letters, time, error);
+        }
+    }
+    let entry = |letter: u8, says: &str| {
+        Series::points(says, [], []).marker(Marker::Letter(letter.into())).ink(Ink::Black)
+    };
+    for (letter, record) in (b'a'..).zip(&records) {
+        plot = plot.with(entry(letter, record));
+    }
+    plot.with(entry(b'A', "capital: Pareto front"))
 }
 
 /// Error that can be drawn: an answer without any counts as rounding.
@@ -129,4 +212,75 @@ fn stairs(scene: &Scene, edge: f64, last: f64) -> (Vec<f64>, Vec<f64>) {
 fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::Panel;
+
+    fn measured(method: &str, setting: &str, error: Option<f64>, front: bool) -> Measured {
+        Measured {
+            method: method.into(),
+            setting: setting.into(),
+            ours: false,
+            error,
+            error_spread: None,
+            time_ns: 1e3,
+            time_spread: [1e3; 2],
+            failed: error.is_none(),
+            why: None,
+            front,
+        }
+    }
+
+    fn plot(family: Family) -> Plot {
+        let methods = vec![
+            measured("one", "0 dB", Some(1e-2), true),
+            measured("one", "20 dB", Some(1.001e-2), false),
+            measured("one", "40 dB", Some(1e-6), true),
+            measured("other", "20 dB", None, false),
+        ];
+        let scene = Scene {
+            name: "scene".into(),
+            family,
+            says: "A scene.".into(),
+            error_of: "error".into(),
+            truth: "known".into(),
+            bound: None,
+            methods,
+        };
+        match precision(&scene).panels.remove(0) {
+            Panel::Plot(plot) => plot,
+            _ => panic!("a plot"),
+        }
+    }
+
+    #[test]
+    fn letters_name_the_records_of_estimators_together_where_they_meet() {
+        let plot = plot(Family::Estimators);
+        let notes: Vec<&str> = plot.notes.iter().map(|n| n.text.as_str()).collect();
+        assert_eq!(notes, ["Ab", "C", "b"]);
+        let names: Vec<&str> = plot.series.iter().map(|s| s.name.as_str()).collect();
+        let list = ["one", "above: failed", "other", "0 dB", "20 dB", "40 dB", "capital: Pareto front"];
+        assert_eq!(names, list);
+    }
+
+    #[test]
+    fn models_have_their_front_as_a_line() {
+        let plot = plot(Family::Models);
+        assert!(plot.notes.is_empty());
+        assert!(plot.series.iter().any(|s| s.name == "Pareto front"));
+    }
+
+    #[test]
+    fn crosses_stand_above_all_errors() {
+        let plot = plot(Family::Models);
+        let heights = |name: &str| match &plot.series.iter().rfind(|s| s.name == name).unwrap().shape {
+            crate::report::Shape::Points { y, .. } => y.clone(),
+            _ => panic!("points"),
+        };
+        assert!(heights("other")[0] > 1e-2, "{:?}", heights("other"));
+        assert!(heights("one").iter().all(|y| *y < heights("other")[0]));
+    }
 }

@@ -1,8 +1,8 @@
 //! One method with one setting: run, timed, judged.
 
 use super::task::Fault;
-use crate::compare::precision::Measured;
 use crate::compare::precision::measured::{front, quartiles, timed};
+use crate::compare::precision::{Family, Measured};
 
 /// Repeats of an answer: in full, and quick.
 const REPEATS: [usize; 2] = [15, 3];
@@ -78,7 +78,7 @@ impl Entries {
 
     /// The methods, those on the front marked.
     pub fn done(mut self) -> Vec<Measured> {
-        front(&mut self.methods);
+        front(Family::Models, &mut self.methods);
         self.methods
     }
 }
