@@ -1,12 +1,11 @@
 //! `vibro precision`: speed against accuracy, and where methods break.
 
 use crate::cli::{args, complain, print, progress};
-use crate::compare::precision::{Cell, FailureMap, Family, Scene, added, estimators, models};
-use crate::error::{Error, Result};
+use crate::compare::precision::{Cell, FailureMap, Family, Scene, added, earlier, estimators, models};
+use crate::error::Result;
 use crate::report::{Figure, Output, files, pictures, tables};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::fmt::Write as _;
-use std::path::Path;
 
 #[derive(Serialize)]
 struct Answer<'a> {
@@ -15,12 +14,6 @@ struct Answer<'a> {
     failures: Option<Vec<Failure<'a>>>,
     warnings: &'a [String],
     files: &'a [String],
-}
-
-/// What an earlier run printed.
-#[derive(Deserialize)]
-struct Earlier {
-    scenes: Vec<Scene>,
 }
 
 #[derive(Serialize)]
@@ -40,7 +33,7 @@ pub fn run(typed: &args::Precision, json: bool) -> Result<()> {
     };
     let measures = typed.from.is_none();
     if let Some(path) = &typed.from {
-        scenes = earlier(path)?;
+        scenes = earlier::scenes(path)?;
     }
     if measures && wanted(args::Kind::Models) {
         scenes.extend(models::scenes(typed.quick, &mut tell)?);
@@ -109,13 +102,4 @@ pub fn run(typed: &args::Precision, json: bool) -> Result<()> {
         let _ = writeln!(text, "wrote {file}");
     }
     print::text(&text)
-}
-
-/// The scenes of an earlier run.
-fn earlier(path: &Path) -> Result<Vec<Scene>> {
-    let text = std::fs::read_to_string(path).map_err(|e| Error::io("read", path, e))?;
-    let read: Earlier = serde_json::from_str(&text).map_err(|e| {
-        Error::usage(format!("{}: {e}", path.display()), "what `vibro precision --json` printed")
-    })?;
-    Ok(read.scenes)
 }

@@ -48,10 +48,20 @@ fn an_earlier_run_is_drawn_with_the_lines_of_other_programs() {
     assert_eq!(front, [("exact", ""), ("Peer 1.0", "")]);
     assert!(answer["warnings"].to_string().contains("1 lines of"), "{}", answer["warnings"]);
     let chart = std::fs::read_to_string(path("out/precision_scene_c.svg")).unwrap();
-    // What failed is named.
-    assert!(chart.contains("× events") && chart.contains("× Peer 1.0"));
+    // What failed is named: "events" has failed alone, the other program once out of twice.
+    assert!(chart.contains("above: failed"));
+    assert_eq!((chart.matches(">events<").count(), chart.matches(">Peer 1.0<").count()), (1, 2));
     let table = std::fs::read_to_string(path("out/precision.csv")).unwrap();
     assert_eq!(table.lines().filter(|l| l.contains("it stalls")).count(), 2, "{table}");
+    // Numbers that cannot be are no measurement.
+    for (key, value) in [("time_ns", -5.0), ("error", -1.0)] {
+        let mut edited: serde_json::Value =
+            serde_json::from_str(&std::fs::read_to_string(path("earlier.json")).unwrap()).unwrap();
+        edited["scenes"][0]["methods"][1][key] = json!(value);
+        std::fs::write(path("edited.json"), edited.to_string()).unwrap();
+        let said = super::complaint(&["precision", "--from", &path("edited.json")], 2);
+        assert!(said.contains("scene C, steps 100") && said.contains("edited.json"), "{said}");
+    }
     for wrong in ["earlier.json", "out"] {
         super::complaint(&["precision", "--from", &path("earlier.json"), "--add", &path(wrong)], 2);
     }

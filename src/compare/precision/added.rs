@@ -56,7 +56,7 @@ pub fn add(scenes: &mut [Scene], path: &Path) -> Result<usize> {
             error: line.error,
             error_spread: None,
             time_ns: line.time_ns,
-            time_spread: [line.time_ns; 2],
+            time_spread: None,
             failed,
             why: line.why.or_else(|| failed.then(|| "no answer".to_owned())),
             front: false,

@@ -31,14 +31,15 @@ pub struct Measured {
     pub setting: String,
     /// Whether it is one of this library's.
     pub ours: bool,
-    /// Median error, relative or in the unit that the scene names; none where it gave no answer.
+    /// Error, relative or in the unit that the scene names: the median of a model's, the root mean square of an estimator's over all
+    /// records; none where it gave no answer.
     pub error: Option<f64>,
     /// Quartiles of the error.
     pub error_spread: Option<[f64; 2]>,
     /// Median time of one answer in ns.
     pub time_ns: f64,
-    /// Quartiles of the time in ns.
-    pub time_spread: [f64; 2],
+    /// Quartiles of the time in ns; none where it was run once.
+    pub time_spread: Option<[f64; 2]>,
     /// It gave no answer, or one that is not an answer to the scene.
     pub failed: bool,
     /// Why it failed, in a sentence.

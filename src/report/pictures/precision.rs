@@ -227,7 +227,7 @@ mod tests {
             error,
             error_spread: None,
             time_ns: 1e3,
-            time_spread: [1e3; 2],
+            time_spread: None,
             failed: error.is_none(),
             why: None,
             front,

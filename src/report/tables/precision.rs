@@ -40,8 +40,8 @@ pub fn precision(scenes: &[Scene]) -> Table {
                 m.error_spread.map(|s| s[0]).into(),
                 m.error_spread.map(|s| s[1]).into(),
                 (1e-9 * m.time_ns).into(),
-                (1e-9 * m.time_spread[0]).into(),
-                (1e-9 * m.time_spread[1]).into(),
+                m.time_spread.map(|s| 1e-9 * s[0]).into(),
+                m.time_spread.map(|s| 1e-9 * s[1]).into(),
                 yes(m.front),
                 m.why.clone().unwrap_or_default().into(),
             ]);

@@ -127,7 +127,7 @@ pub fn measured<D>(methods: &[Method<D>], settings: &[Kind<D>], quick: bool) -> 
                 [low, high]
             }),
             time_ns,
-            time_spread: [fast, slow],
+            time_spread: Some([fast, slow]),
             failed,
             why: refusals.said(records),
             front: false,

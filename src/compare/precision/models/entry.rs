@@ -69,7 +69,7 @@ impl Entries {
             error: found.map(|f| f.0[1]),
             error_spread: found.filter(|f| f.1 > 1).map(|f| [f.0[0], f.0[2]]),
             time_ns: time / self.share,
-            time_spread: spread.map(|t| t / self.share),
+            time_spread: spread.map(|s| s.map(|t| t / self.share)),
             failed: verdict.is_err(),
             why: verdict.err(),
             front: false,
