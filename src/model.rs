@@ -57,7 +57,8 @@ pub use loose::Loose;
 pub use motion::{Event, Motion, Path, Piece};
 pub use observable::Observable;
 pub use orbit::{
-    Compliance, Orbit, Orbits, Shown, Softened, backbone, orbits, orbits_of, orbits_over, shown, softened,
+    Compliance, Orbit, Orbits, Shown, Softened, backbone, no_impact, orbits, orbits_of, orbits_over, shown,
+    softened,
 };
 pub use periodic::{Beat, PeriodicOrbit};
 pub use receptance::{NoImpact, Steady};

@@ -148,8 +148,9 @@ fn elsewhere(overlay: &Overlay) -> Vec<String> {
                 overlay.pairs.iter().filter(within).filter(|p| p.motion != Some(Kind::Free)).count();
             if strikes > 0 {
                 said.push(format!(
-                    "{strikes} point(s) from {:.2} to {:.2} Hz, sweeping {}: led from rest at the first point the rig strikes there; a sweep that \
-                     comes from farther off does not, and the choice of a model is for that one. Both motions are possible.",
+                    "{strikes} point(s) from {:.2} to {:.2} Hz, sweeping {}: led from rest at the first point the rig strikes there; led from \
+                     farther off to the frequencies at which the ladder was asked, it does not, and the choice of a model is for that \
+                     motion.",
                     stretch.from,
                     stretch.to,
                     rungs.direction.name()

@@ -58,6 +58,8 @@ pub struct Choice {
     pub audit: Option<Change>,
     /// The answer over the contact's stiffness, where that is not known and matters.
     pub sensitivity: Vec<Sensitivity>,
+    /// Stiffnesses in N/m at which that could not be computed.
+    pub sensitivity_failed: Vec<f64>,
     /// Motions that the rig can be in, as far as they are known.
     pub motions: Vec<Known>,
     /// Why, in sentences.
@@ -119,7 +121,8 @@ pub fn choose(scene: &Scene, frequency: f64, question: &Question) -> Result<Choi
     chosen(scene, frequency, question, true)
 }
 
-/// As [`choose`]; `bend` says whether a contact of spring and damper that is chosen is held against curved bodies.
+/// As [`choose`]; `bend` says whether a contact of spring and damper that is chosen is held against curved bodies, and answers are timed
+/// more than once.
 fn chosen(scene: &Scene, frequency: f64, question: &Question, bend: bool) -> Result<Choice> {
     question.check()?;
     scene.rig.check()?;
@@ -136,7 +139,7 @@ fn chosen(scene: &Scene, frequency: f64, question: &Question, bend: bool) -> Res
         ))
         .hint("at such frequencies springs alone decide: x₁ = F/k₁ until the masses meet"));
     }
-    Ok(Climb::new(Stage { scene, excitation: &excitation, question })?.choose(bend))
+    Ok(Climb::new(Stage { scene, excitation: &excitation, question, repeat: bend })?.choose(bend))
 }
 
 #[cfg(test)]

@@ -188,34 +188,54 @@ pub fn orbits_of(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Orbi
     solve(rig, excitation, cycles, 0.0)
 }
 
+/// The motion without impacts.
+///
+/// # Errors
+/// As [`orbits_of`].
+pub fn no_impact(rig: &Rig, excitation: &Excitation) -> Result<NoImpact> {
+    rig.check()?;
+    excitation.check()?;
+    if let Excitation::Sine(sine) = excitation {
+        return Ok(NoImpact::new(&Steady::new(rig, sine)?, rig.gap));
+    }
+    Ok(train(rig, excitation)?.0.no_impact(rig.gap))
+}
+
 /// As [`orbits_of`], the impact following the first touch by `delay` (s).
 fn solve(rig: &Rig, excitation: &Excitation, cycles: u32, delay: f64) -> Result<Orbits> {
     rig.check()?;
     excitation.check()?;
+    if let Excitation::Sine(sine) = excitation {
+        return under_sine(rig, sine, cycles, delay);
+    }
+    let (response, drive) = train(rig, excitation)?;
+    let conditions = Conditions::new(rig, excitation.frequency(), cycles)?.delayed(delay);
+    Ok(Orbits {
+        orbits: train::orbits(&conditions, &response, drive),
+        no_impact: response.no_impact(rig.gap),
+    })
+}
+
+/// Response of mass 1 alone to a train of impulses or pulses.
+fn train(rig: &Rig, excitation: &Excitation) -> Result<(Response, Drive)> {
     let oscillator = rig.oscillators()[0];
     let cycle = 1.0 / excitation.frequency();
-    let (response, drive) = match *excitation {
-        Excitation::Sine(sine) => return under_sine(rig, &sine, cycles, delay),
+    match *excitation {
         Excitation::Impulse(train) => {
             driven(train.impulse)?;
-            (Response::impulse(rig.m1, oscillator, cycle, train.impulse)?, Drive::Impulse(train.impulse))
+            let response = Response::impulse(rig.m1, oscillator, cycle, train.impulse)?;
+            Ok((response, Drive::Impulse(train.impulse)))
         }
         Excitation::Pulse(train) => {
             driven(train.force)?;
             let response = Response::pulse(rig.m1, oscillator, cycle, train.force, train.width)?;
-            (response, Drive::Pulse(train.force, train.width))
+            Ok((response, Drive::Pulse(train.force, train.width)))
         }
-        Excitation::Sines(_) => {
-            return Err(Error::refused("several sines at once have no closed form")
-                .hint("`vibro model simulate` follows the motion"));
+        Excitation::Sine(_) | Excitation::Sines(_) => {
+            Err(Error::refused("several sines at once have no closed form")
+                .hint("`vibro model simulate` follows the motion"))
         }
-    };
-    let conditions = Conditions::new(rig, excitation.frequency(), cycles)?.delayed(delay);
-    let (low, high) = response.range();
-    Ok(Orbits {
-        orbits: train::orbits(&conditions, &response, drive),
-        no_impact: NoImpact { possible: high < rig.gap, amplitude: (high - low) / 2.0, largest: high },
-    })
+    }
 }
 
 /// An excitation that drives.

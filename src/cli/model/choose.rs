@@ -125,9 +125,10 @@ fn along(
     }
     complain::warn(&warnings);
     let mut text = format!("{}\n{}", stretches.text(), tables::summaries(&survey.rungs).text());
-    if let Some(model) = survey.chosen {
-        let _ = writeln!(text, "\n{} is good enough at all of these frequencies.", model.name());
-    }
+    let _ = match survey.chosen {
+        Some(model) => writeln!(text, "\n{} is good enough at all of these frequencies.", model.name()),
+        None => writeln!(text, "\nNo single model was found good enough at all of these frequencies."),
+    };
     told(text, written)
 }
 

@@ -12,7 +12,7 @@ pub const MOST_POINTS: usize = 2000;
 /// Choices along an axis.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Survey {
-    /// The lowest rung that is at least as high as each one chosen; `None` where nothing is chosen somewhere.
+    /// The lowest rung that is good enough at every point; `None` where there is none, or nothing is chosen somewhere.
     pub chosen: Option<Model>,
     /// Each rung over the whole axis.
     pub rungs: Vec<Summary>,
@@ -84,13 +84,17 @@ pub fn choose_over(scene: &Scene, from: f64, to: f64, points: usize, question: &
     for (i, choice) in held {
         all[i] = choice;
     }
-    let chosen: Option<Vec<Model>> = all.iter().map(|c| c.chosen).collect();
     Ok(Survey {
-        chosen: chosen.and_then(|models| models.into_iter().max()),
+        chosen: Model::ALL.into_iter().find(|model| all.iter().all(|choice| is_enough(choice, *model))),
         rungs: Model::ALL.iter().map(|model| summary(*model, &all)).collect(),
         stretches: stretches(&all),
         points: all,
     })
+}
+
+/// Whether a rung is good enough where one could be chosen; that which holds over all stiffnesses is.
+fn is_enough(choice: &Choice, model: Model) -> bool {
+    choice.chosen.is_some_and(|chosen| chosen == model || choice.rung(model).sufficient)
 }
 
 /// Points at which a contact of spring and damper that is chosen is held against curved bodies: the ends of each stretch and its peak.

@@ -17,7 +17,8 @@ pub struct Change {
     /// Its answer less this one, over this one: of the mass for which that is the larger against what is allowed. For a mass that moves
     /// less than a thousandth of what the other does, over the largest of all answers.
     pub change: f64,
-    /// Whether that is no more than the tolerance, the noise floor or what the answers themselves are uncertain by allow.
+    /// Whether that is no more than the tolerance, the noise floor or what the answers themselves are uncertain by allow; never where one of
+    /// them comes from a motion that has not settled.
     pub enough: bool,
 }
 
@@ -28,22 +29,26 @@ pub struct Answer {
     pub value: [f64; 2],
     /// Its standard error.
     pub spread: [f64; 2],
+    /// Whether the motion that it was read from had settled, or has means that are steady. Else the answer may be any.
+    pub steady: bool,
 }
 
 impl Answer {
     /// An answer without an error of its own.
     pub fn exact(value: [f64; 2]) -> Answer {
-        Answer { value, spread: [0.0; 2] }
+        Answer { value, spread: [0.0; 2], steady: true }
     }
 
     /// How far it moves to `other`, the answer of the rung `at`.
     pub fn change(&self, other: &Answer, at: Model, question: &Question) -> Change {
         let largest = self.value.iter().chain(&other.value).fold(0.0_f64, |l, v| l.max(v.abs()));
-        let mut worst = Change { at, change: 0.0, enough: true };
+        let steady = self.steady && other.steady;
+        let mut worst = Change { at, change: 0.0, enough: steady };
         let mut far = 0.0;
         for i in 0..2 {
             let moved = other.value[i] - self.value[i];
-            let unsure = TOLD * self.spread[i].hypot(other.spread[i]);
+            // A motion on its way somewhere does not widen what is allowed.
+            let unsure = if steady { TOLD * self.spread[i].hypot(other.spread[i]) } else { 0.0 };
             let scale = self.value[i].abs().max(STILL * largest);
             let allowed = (question.tolerance * scale).max(question.noise).max(unsure);
             if moved == 0.0 {
@@ -55,7 +60,7 @@ impl Answer {
                 far = ratio;
                 let own = self.value[i].abs();
                 let change = moved / if own < STILL * largest { largest } else { own };
-                worst = Change { at, change, enough: ratio <= 1.0 };
+                worst = Change { at, change, enough: steady && ratio <= 1.0 };
             }
         }
         worst

@@ -2,7 +2,7 @@
 
 use super::change::Change;
 use super::motions::{Motions, On};
-use super::sensitivity::{Sensitivity, sensitivity};
+use super::sensitivity::sensitivity;
 use super::tried::{Stage, Tried, restitution};
 use super::{Choice, Model, Need, Rung, laws, reasons};
 use crate::error::Result;
@@ -26,7 +26,7 @@ impl<'a> Climb<'a> {
             tried[Model::LooseMass as usize] = stage.loose_mass(spring);
             return Ok(Climb { stage, motions: None, tried, stiffness: spring });
         }
-        let motions = Motions::new(&stage.scene.rig, stage.excitation, stage.question)?;
+        let motions = Motions::new(&stage)?;
         let closed = stage.closed_form(&motions);
         let soft = stage.soft_corrected(&motions, &closed);
         let tried = [
@@ -91,7 +91,8 @@ impl<'a> Climb<'a> {
         let changes = self.changes(model);
         let mut rung = Rung {
             model,
-            cost_ns: tried.cost,
+            cost_ns: tried.cost.map(|c| c.ns),
+            cost_runs: tried.cost.map(|c| c.runs),
             error: changes.iter().map(|c| c.change.abs()).reduce(f64::max),
             valid: tried.valid,
             why: tried.why.clone(),
@@ -114,7 +115,9 @@ impl<'a> Climb<'a> {
     /// Whether a rung is good enough.
     fn is_enough(&self, rung: &Rung) -> bool {
         let still = rung.changes.iter().all(|c| c.enough);
+        let steady = self.of(rung.model).answer.is_some_and(|answer| answer.steady);
         rung.valid
+            && steady
             && match rung.model {
                 Model::Linear => still,
                 Model::ClosedForm | Model::SoftCorrected | Model::Restitution => {
@@ -145,6 +148,7 @@ impl<'a> Climb<'a> {
             needs: Vec::new(),
             audit: None,
             sensitivity: Vec::new(),
+            sensitivity_failed: Vec::new(),
             motions: self.motions.as_ref().map_or_else(Vec::new, |m| m.known.clone()),
             reasons: Vec::new(),
             rungs,
@@ -154,7 +158,7 @@ impl<'a> Climb<'a> {
         } else {
             choice.chosen = choice.rungs.iter().find(|r| r.sufficient).map(|r| r.model);
             if choice.chosen.is_none() {
-                (choice.chosen, choice.sensitivity) = self.without_stiffness();
+                self.without_stiffness(&mut choice);
             }
             if choice.chosen.is_none() {
                 choice.needs = self.missing();
@@ -169,18 +173,20 @@ impl<'a> Climb<'a> {
     }
 
     /// The answer over the stiffness, and the rung that holds whatever it is.
-    fn without_stiffness(&self) -> (Option<Model>, Vec<Sensitivity>) {
+    fn without_stiffness(&self, choice: &mut Choice) {
         if self.stiffness.is_some() {
-            return (None, Vec::new());
+            return;
         }
         let lowest = [Model::ClosedForm, Model::Restitution, Model::LooseMass];
-        let base = lowest.into_iter().find(|model| self.of(*model).valid);
+        let steady = |model: &Model| self.of(*model).answer.is_some_and(|a| a.steady);
+        let base = lowest.into_iter().find(|model| self.of(*model).valid).filter(steady);
         let Some((model, answer)) = base.and_then(|m| Some((m, self.of(m).answer?))) else {
-            return (None, Vec::new());
+            return;
         };
-        let rows = sensitivity(&self.stage, self.motions.as_ref(), &answer);
-        let any = !rows.is_empty() && rows.iter().all(|row| row.enough);
-        (any.then_some(model), rows)
+        let (rows, failed) = sensitivity(&self.stage, self.motions.as_ref(), &answer);
+        let all = !rows.is_empty() && failed.is_empty() && rows.iter().all(|row| row.enough);
+        choice.chosen = all.then_some(model);
+        (choice.sensitivity, choice.sensitivity_failed) = (rows, failed);
     }
 
     /// What the scene lacks.

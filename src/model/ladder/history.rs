@@ -1,7 +1,7 @@
 //! Which of several motions a rig is in, by the way it came there.
 
 use crate::error::Result;
-use crate::model::{Excitation, Motion, Rig, Simulation, State, Steady, orbits_of};
+use crate::model::{Excitation, Motion, Orbits, Rig, Simulation, State, Steady, orbits_of};
 use crate::record::Direction;
 
 /// Ratio of one frequency to the next.
@@ -24,7 +24,9 @@ pub fn arrived(rig: &Rig, excitation: &Excitation, direction: Direction) -> Resu
     };
     // A pulse that is longer than a cycle ends the way.
     let end = (1..=STEPS.1).take_while(|n| at(*n).check().is_ok()).last().unwrap_or(0);
-    let one = |n: &i32| *n == end || (*n >= STEPS.0 && !several(rig, &at(*n)));
+    let one = |n: &i32| {
+        *n == end || (*n >= STEPS.0 && !orbits_of(rig, &at(*n), 1).is_ok_and(|found| several(&found)))
+    };
     let first = (0..=end).find(one).unwrap_or(end);
     let mut motion = outset(rig, &at(first))?;
     motion.run(CYCLES.0 / motion.frequency(), |_| {})?;
@@ -38,9 +40,8 @@ pub fn arrived(rig: &Rig, excitation: &Excitation, direction: Direction) -> Resu
 
 /// Whether the motion without impacts and one with impacts are both possible. One that has lost its stability counts: round it lies
 /// another motion with impacts, as behind a flip or a Neimark–Sacker loss.
-fn several(rig: &Rig, excitation: &Excitation) -> bool {
-    orbits_of(rig, excitation, 1)
-        .is_ok_and(|found| found.no_impact.possible && found.orbits.iter().any(|o| o.validity.admissible))
+pub fn several(found: &Orbits) -> bool {
+    found.no_impact.possible && found.orbits.iter().any(|o| o.validity.admissible)
 }
 
 /// The motion without impacts where there is one, else from rest.

@@ -1,13 +1,15 @@
 //! The motions of a rig at one excitation, as far as they are known, and the one that it is in.
 
-use super::change::Answer;
-use super::cost::{timed, timed_once};
-use super::history::arrived;
-use super::reading::{Reader, Reading};
-use super::{Model, Question};
+use super::Question;
+use super::cost::Cost;
+use super::history::{arrived, several};
+use super::reading::{End, Reader, Reading};
+use super::tried::Stage;
 use crate::error::{Error, Result};
-use crate::model::{Excitation, Orbit, Orbits, Regime, Rig, Simulation, orbits_of};
+use crate::model::regime::Strike;
+use crate::model::{Orbit, Orbits, Regime, Simulation, orbits_of};
 use serde::Serialize;
+use std::f64::consts::{PI, TAU};
 
 /// A motion that the rig can be in.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -16,6 +18,8 @@ pub struct Known {
     pub pattern: String,
     /// What is shown of it.
     pub answer: [f64; 2],
+    /// Whether it lasts. One that does not is listed where it divides the motion without impacts from others with impacts round it.
+    pub stable: bool,
 }
 
 /// The motion that the rig is in.
@@ -34,16 +38,18 @@ pub enum On {
 pub struct Motions {
     /// In closed form.
     pub closed: Result<Orbits>,
-    /// What that took in ns.
-    pub closed_cost: f64,
+    /// What that took.
+    pub closed_cost: Cost,
     pub known: Vec<Known>,
     pub on: On,
+    /// How far mass 1 alone stays clear of mass 2, in m; `None` without a closed form.
+    pub clearance: Option<f64>,
     /// Whether it is told from the way the rig came there.
     pub by_history: bool,
     /// The motion followed with impacts at once, from rest or the way it came.
     pub reading: Reading,
-    /// What that took in ns.
-    pub cost: f64,
+    /// What that took.
+    pub cost: Cost,
     /// Where it ended.
     pub end: Simulation,
 }
@@ -55,34 +61,37 @@ fn stays(orbit: &Orbit) -> bool {
 }
 
 impl Motions {
-    /// Looks for them: in closed form, and from rest.
-    pub fn new(rig: &Rig, excitation: &Excitation, question: &Question) -> Result<Motions> {
-        let (closed, closed_cost) = timed(|| orbits_of(rig, excitation, 1));
-        let mut end = Simulation::new(rig, excitation)?;
-        let reader = Reader::new(rig, excitation.frequency(), question);
-        let (reading, cost) = timed_once(|| reader.read(&mut end));
+    /// Looks for them: in closed form, and by following the rig from rest or the way it came.
+    pub fn new(stage: &Stage<'_>) -> Result<Motions> {
+        let (rig, excitation, question) = (&stage.scene.rig, stage.excitation, stage.question);
+        let (closed, closed_cost) = stage.timed(|| orbits_of(rig, excitation, 1));
+        let clearance = closed.as_ref().ok().map(|found| rig.gap - found.no_impact.largest);
+        let start = match question.history {
+            Some(direction) => arrived(rig, excitation, direction)?,
+            None => Simulation::new(rig, excitation)?,
+        };
+        let reader = Reader::new(rig, excitation.frequency(), question).clear_by(clearance);
+        let (followed, cost) = stage.timed(|| {
+            let mut motion = start.clone();
+            reader.read(&mut motion).map(|reading| (reading, motion))
+        });
+        let (reading, end) = followed?;
         let mut motions = Motions {
             closed,
             closed_cost,
             known: Vec::new(),
             on: On::Other,
-            by_history: false,
-            reading: reading?,
+            clearance,
+            by_history: question.history.is_some(),
+            reading,
             cost,
             end,
         };
-        motions.on = motions.which(question);
+        motions.on = motions.which(reader.fine());
         motions.list(question);
-        if motions.known.len() > 1 {
-            match question.history {
-                None => motions.on = On::Open,
-                Some(direction) => {
-                    motions.end = arrived(rig, excitation, direction)?;
-                    let (reading, cost) = timed_once(|| reader.read(&mut motions.end));
-                    (motions.reading, motions.cost, motions.by_history) = (reading?, cost, true);
-                    motions.on = motions.which(question);
-                }
-            }
+        let several = motions.known.len() > 1 || motions.closed.as_ref().is_ok_and(several);
+        if several && !motions.by_history {
+            motions.on = On::Open;
         }
         Ok(motions)
     }
@@ -92,35 +101,45 @@ impl Motions {
         self.closed.iter().flat_map(|found| found.orbits.iter().filter(|orbit| stays(orbit)))
     }
 
-    /// The motion that was followed, among those in closed form.
-    fn which(&self, question: &Question) -> On {
-        if self.reading.regime == Regime::NoImpact {
-            return On::Free;
+    /// The motion that was followed, among those in closed form; `fine` is the part of its states to which it has settled.
+    fn which(&self, fine: f64) -> On {
+        if self.reading.end != End::Settled {
+            return On::Other;
         }
-        let near = |orbit: &&Orbit| {
-            let answer = Answer::exact(question.observable.of_orbit(orbit));
-            let off = (self.reading.speed / orbit.approach_velocity - 1.0).abs();
-            off <= question.tolerance.max(1e-3)
-                && answer.change(&self.reading.answer, Model::Restitution, question).enough
-        };
-        self.stable().find(near).map_or(On::Other, |orbit| On::Orbit(Box::new(*orbit)))
+        match (self.reading.regime, &self.reading.strike) {
+            (Regime::NoImpact, _) => On::Free,
+            (Regime::Periodic { impacts: 1, cycles: 1 }, Some(strike)) => {
+                let near = self.stable().map(|orbit| (distance(strike, orbit), orbit));
+                let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0));
+                nearest
+                    .filter(|(far, orbit)| *far <= reach(fine, orbit))
+                    .map_or(On::Other, |(_, orbit)| On::Orbit(Box::new(*orbit)))
+            }
+            _ => On::Other,
+        }
     }
 
     /// Lists the motions known.
     fn list(&mut self, question: &Question) {
         let mut known = Vec::new();
-        if let Ok(found) = &self.closed
-            && found.no_impact.possible
-        {
-            let answer = question.observable.of_no_impact(&found.no_impact);
-            known.push(Known { pattern: Regime::NoImpact.to_string(), answer });
+        let found = self.closed.as_ref().ok();
+        if let Some(free) = found.map(|found| &found.no_impact).filter(|free| free.possible) {
+            let answer = question.observable.of_no_impact(free);
+            known.push(Known { pattern: Regime::NoImpact.to_string(), answer, stable: true });
         }
-        known.extend(self.stable().map(|orbit| Known {
+        let known_as = |orbit: &Orbit| Known {
             pattern: Regime::Periodic { impacts: 1, cycles: 1 }.to_string(),
             answer: question.observable.of_orbit(orbit),
-        }));
-        if self.on == On::Other {
-            known.push(Known { pattern: self.reading.regime.to_string(), answer: self.reading.answer.value });
+            stable: stays(orbit),
+        };
+        known.extend(self.stable().map(known_as));
+        if self.on == On::Other && self.reading.end != End::Under {
+            let pattern = self.reading.regime.to_string();
+            known.push(Known { pattern, answer: self.reading.answer.value, stable: true });
+        }
+        // Where nothing else is known with impacts, orbits that have lost their stability tell of others round them.
+        if let Some(found) = found.filter(|found| known.len() == 1 && several(found)) {
+            known.extend(found.orbits.iter().filter(|o| o.validity.admissible).map(known_as));
         }
         self.known = known;
     }
@@ -135,3 +154,30 @@ impl Motions {
         Ok(self.stable().next().or(existing))
     }
 }
+
+/// Distance of an impact to that of an orbit: of phases in rad, and of states in units of the largest.
+fn distance(strike: &Strike, orbit: &Orbit) -> f64 {
+    let omega = TAU * orbit.frequency;
+    let (a, b) = (&strike.before, &orbit.before_impact());
+    let turn = (strike.phase - orbit.force_phase + PI).rem_euclid(TAU) - PI;
+    let moved = [(a.x1 - b.x1) * omega, a.v1 - b.v1, (a.x2 - b.x2) * omega, a.v2 - b.v2];
+    moved.iter().fold(turn.abs(), |far, d| far.max(d.abs() / speed(orbit)))
+}
+
+/// The largest of the speeds and ω × displacements at the impact, in m/s.
+fn speed(orbit: &Orbit) -> f64 {
+    let (omega, s) = (TAU * orbit.frequency, orbit.before_impact());
+    [s.x1 * omega, s.v1, s.x2 * omega, s.v2].iter().fold(f64::MIN_POSITIVE, |most, v| most.max(v.abs()))
+}
+
+/// How far from its orbit the impact of a motion may be whose state is off by the part `fine` once a cycle. Both masses are off, by that of
+/// what each moves at most: some twice what they do at the impact. They meet earlier or later by the distance over the approach speed, which turns
+/// the phase, and the speeds by as much again.
+fn reach(fine: f64, orbit: &Orbit) -> f64 {
+    let moves = orbit.peak_to_peak[0].max(orbit.peak_to_peak[1]) * TAU * orbit.frequency;
+    let size = moves.max(speed(orbit));
+    4.0 * fine * (size / speed(orbit)) * (1.0 + size / orbit.approach_velocity)
+}
+
+#[cfg(test)]
+mod tests;

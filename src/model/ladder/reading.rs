@@ -1,12 +1,15 @@
 //! What a motion shows, followed until it has settled.
 
+mod strobe;
+
 use super::Question;
 use super::change::Answer;
 use crate::error::Result;
-use crate::model::regime::{Regime, Watch};
+use crate::model::regime::{Regime, Strike, Watch};
 use crate::model::sweep::{self, Gauge};
 use crate::model::{Event, Motion, Observable, Rig};
 use std::f64::consts::TAU;
+use strobe::Strobe;
 
 /// Cycles read at once, or a multiple of them: whole patterns of 1 to 6, 10, 12, 15, 20 and 30 cycles.
 const BLOCK: u32 = 60;
@@ -20,25 +23,39 @@ const BLOCKS: (usize, usize) = (6, 64);
 const BRIEF: usize = 12;
 /// Swings of the faster mass that are followed at most, where that leaves enough blocks: as many as with five in a cycle.
 const SWINGS: f64 = 5.0 * 60.0 * 64.0;
-/// The answer has settled where what is left of its way is this part of the tolerance.
+/// The motion has settled where what is left of its way is this part of the tolerance.
 const SETTLED: f64 = 0.02;
 /// No coarser than this.
 const COARSE: f64 = 0.02;
-/// Of both answers, less than this part of the larger one is nothing.
+/// Of both masses, less than this part of what the larger one does is nothing.
 const NOTHING: f64 = 1e-3;
 
 /// What a motion shows.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
     pub answer: Answer,
     /// Its pattern over the last block.
     pub regime: Regime,
-    /// Whether the answer had settled.
-    pub settled: bool,
+    /// The last impact of the pattern.
+    pub strike: Option<Strike>,
+    pub end: End,
     /// Cycles followed.
     pub cycles: u32,
     /// Mean over the cycles with impacts of the fastest one's approach speed in m/s, in the last block; 0 without impacts.
     pub speed: f64,
+}
+
+/// What a motion that was followed came to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// It repeats.
+    Settled,
+    /// The masses stay in contact, and the motion repeats.
+    Pressed,
+    /// It does not repeat, and its means over long stretches are no different from each other.
+    Steady,
+    /// Neither: it was not followed for long enough.
+    Under,
 }
 
 /// How motions are read.
@@ -50,6 +67,8 @@ pub struct Reader {
     block: u32,
     /// Blocks at most.
     blocks: usize,
+    /// How far the motion without impacts stays clear of the other mass, in m, where that is known: below 0 there is none.
+    clearance: Option<f64>,
 }
 
 impl Reader {
@@ -67,7 +86,24 @@ impl Reader {
             _ => BLOCK / 10,
         };
         let blocks = (SWINGS / (swings * f64::from(block))).clamp(BLOCKS.0 as f64, BLOCKS.1 as f64) as usize;
-        Reader { observable: question.observable, tolerance: question.tolerance, block, blocks }
+        Reader {
+            observable: question.observable,
+            tolerance: question.tolerance,
+            block,
+            blocks,
+            clearance: None,
+        }
+    }
+
+    /// The same, for a rig whose motion without impacts stays clear of the other mass by `clearance` (m): no motion without impacts is
+    /// taken as settled that may yet come nearer.
+    pub fn clear_by(self, clearance: Option<f64>) -> Reader {
+        Reader { clearance, ..self }
+    }
+
+    /// The part of the tolerance to which motions settle.
+    pub fn fine(&self) -> f64 {
+        SETTLED * self.tolerance.min(COARSE)
     }
 
     /// The same, for motions whose contacts are integrated: no more blocks than can be had in a second or so.
@@ -75,25 +111,45 @@ impl Reader {
         Reader { blocks: self.blocks.min(BRIEF), ..self }
     }
 
-    /// Follows `motion` until what is shown of it moves by no more than a small part of the tolerance; where it does not settle, the
-    /// second half of all is averaged.
+    /// Follows `motion` until its state, once a cycle, has nearly come to where it goes, and what is shown of it holds still; where it does
+    /// not settle, the second half of all is averaged.
     pub fn read<M: Motion>(&self, motion: &mut M) -> Result<Reading> {
         let mut values: Vec<[f64; 2]> = Vec::with_capacity(self.blocks);
         let mut watch = Watch::new(motion);
+        let mut strobe = Strobe::new(motion, self.block as usize);
         loop {
-            let (value, speed) = self.block(motion, &mut watch)?;
+            let (value, speed) = self.block(motion, &mut watch, &mut strobe)?;
             values.push(value);
-            let settled = still(&values, SETTLED * self.tolerance.min(COARSE));
+            let pattern = watch.pattern();
+            let pressed = strobe.pressed();
+            let left = strobe.left(self.fine()).filter(|_| still(&values, self.fine()));
+            // Without impacts the motion is that of mass 1 alone, of which it is known how far it goes.
+            let free = pattern.regime == Regime::NoImpact && !pressed;
+            let apart = |left: f64| !free || self.clearance.is_none_or(|clear| left < clear);
+            let settled = left.is_some_and(apart);
             if settled || values.len() == self.blocks {
-                let answer = if settled { Answer::exact(value) } else { mean(&values[values.len() / 2..]) };
-                let (regime, cycles) = (watch.pattern().regime, self.block * values.len() as u32);
-                return Ok(Reading { answer, regime, settled, cycles, speed });
+                let half = &values[values.len() / 2..];
+                let end = match pattern.regime {
+                    _ if settled && pressed => End::Pressed,
+                    _ if settled => End::Settled,
+                    Regime::Irregular | Regime::Chatter { cycles: None } if !drifts(half) => End::Steady,
+                    _ => End::Under,
+                };
+                let answer = if settled { Answer::exact(value) } else { mean(half, end == End::Steady) };
+                let strike = pattern.strikes.last().copied();
+                let cycles = self.block * values.len() as u32;
+                return Ok(Reading { answer, regime: pattern.regime, strike, end, cycles, speed });
             }
         }
     }
 
     /// One block, and the mean approach speed in it.
-    fn block<M: Motion>(&self, motion: &mut M, watch: &mut Watch) -> Result<([f64; 2], f64)> {
+    fn block<M: Motion>(
+        &self,
+        motion: &mut M,
+        watch: &mut Watch,
+        strobe: &mut Strobe,
+    ) -> Result<([f64; 2], f64)> {
         let observable = self.observable;
         let frequency = motion.frequency();
         let omega = TAU * frequency;
@@ -119,6 +175,7 @@ impl Reader {
                 }
             })?;
             gauge.close_cycle();
+            strobe.take(&motion.state());
             if let Some((speed, impulse)) = strongest {
                 with += 1.0;
                 speeds += speed;
@@ -148,15 +205,41 @@ fn still(values: &[[f64; 2]], fine: f64) -> bool {
     })
 }
 
-/// Mean of several blocks with its standard error.
-fn mean(values: &[[f64; 2]]) -> Answer {
+/// Mean of several blocks with its standard error: s²(1 + ρ)/(1 − ρ)/n, ρ being their correlation with the next one.
+fn mean(values: &[[f64; 2]], steady: bool) -> Answer {
     let n = values.len() as f64;
-    let mut answer = Answer::exact([0.0; 2]);
+    let mut answer = Answer { steady, ..Answer::exact([0.0; 2]) };
     for i in 0..2 {
-        let mean = values.iter().map(|v| v[i]).sum::<f64>() / n;
-        let square: f64 = values.iter().map(|v| (v[i] - mean).powi(2)).sum();
+        let (mean, square, eta) = scatter(values, i);
+        // η = 2(1 − ρ). Blocks that take turns are not trusted to make the mean better than independent ones would.
+        let rho = (1.0 - eta / 2.0).clamp(0.0, 0.99);
         answer.value[i] = mean;
-        answer.spread[i] = (square / (n - 1.0) / n).sqrt();
+        answer.spread[i] = (square / (n - 1.0) / n * (1.0 + rho) / (1.0 - rho)).sqrt();
     }
     answer
 }
+
+/// Standard deviations below its expectation from which von Neumann's ratio tells a drift: of a hundred steady motions less than one.
+const TOLD: f64 = 2.5;
+
+/// Whether successive values are nearer to each other than independent ones are: Σ(xᵢ₊₁ − xᵢ)²/Σ(xᵢ − x̄)² has the mean 2 and the variance
+/// 4(n − 2)/(n² − 1) for independent ones (J. von Neumann, 1941).
+fn drifts(values: &[[f64; 2]]) -> bool {
+    let n = values.len() as f64;
+    let least = 2.0 - TOLD * (4.0 * (n - 2.0) / (n * n - 1.0)).sqrt();
+    (0..2).any(|i| {
+        let (_, square, eta) = scatter(values, i);
+        square > 0.0 && eta < least
+    })
+}
+
+/// Mean, sum of squares about it, and von Neumann's ratio.
+fn scatter(values: &[[f64; 2]], i: usize) -> (f64, f64, f64) {
+    let mean = values.iter().map(|v| v[i]).sum::<f64>() / values.len() as f64;
+    let square: f64 = values.iter().map(|v| (v[i] - mean).powi(2)).sum();
+    let steps: f64 = values.windows(2).map(|w| (w[1][i] - w[0][i]).powi(2)).sum();
+    (mean, square, if square > 0.0 { steps / square } else { 2.0 })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,14 +1,17 @@
 //! A choice told in sentences.
 
-use super::{Choice, Model, Question, Rung};
+use super::{Choice, Known, Model, Question, Rung};
 use std::fmt::Write as _;
 
 /// Why this rung, or why none.
 pub fn sentences(choice: &Choice, question: &Question) -> Vec<String> {
     let mut said = Vec::new();
     if choice.needs.contains(&"history") {
-        let all: Vec<String> =
-            choice.motions.iter().map(|m| format!("{} ({})", m.pattern, value(m.answer, question))).collect();
+        let named = |m: &Known| {
+            let lost = if m.stable { "" } else { ", unstable: others with impacts may last round it" };
+            format!("{} ({}{lost})", m.pattern, value(m.answer, question))
+        };
+        let all: Vec<String> = choice.motions.iter().map(named).collect();
         said.push(format!(
             "Several motions are possible here: {}. Which one the rig is in depends on how it came there: give the history, a frequency that \
              rose or fell.",
@@ -21,12 +24,20 @@ pub fn sentences(choice: &Choice, question: &Question) -> Vec<String> {
     if let Some(model) = choice.chosen {
         said.push(chosen(choice, choice.rung(model), question));
     } else if choice.sensitivity.is_empty() {
-        said.push(format!("No rung can be chosen without {}.", listed(&choice.needs)));
+        said.push(if choice.needs.is_empty() {
+            "No rung can be chosen: none is valid with an answer that is settled and stays within what is allowed at the rungs above."
+                .to_owned()
+        } else {
+            format!("No rung can be chosen without {}.", choice.needs.join(" and "))
+        });
     } else {
         said.push(unknown(choice, question));
     }
     said
 }
+
+/// What an answer that is not settled is told with.
+pub const UNSETTLED: &str = "Not settled";
 
 /// Whether a rung that is not chosen is worth a sentence.
 fn matters(rung: &Rung) -> bool {
@@ -38,6 +49,7 @@ fn passed_over(rung: &Rung, question: &Question) -> String {
     let moved = rung.changes.iter().find(|c| !c.enough);
     match moved {
         _ if !rung.valid => format!("{name}: not valid. {}", rung.why),
+        _ if rung.why.contains(UNSETTLED) => format!("{name}: its motion has not settled. {}", rung.why),
         Some(c) => format!(
             "{name}: valid, but its answer moves by {:+.3} % at {}, more than {} allows.",
             100.0 * c.change,
@@ -75,20 +87,27 @@ fn chosen(choice: &Choice, rung: &Rung, question: &Question) -> String {
 fn unknown(choice: &Choice, question: &Question) -> String {
     let rows = &choice.sensitivity;
     let range = |low: f64, high: f64| format!("from {low:.0e} to {high:.0e} N/m");
-    let all = range(rows[0].stiffness, rows[rows.len() - 1].stiffness);
+    let last = &rows[rows.len() - 1];
+    let all = range(rows[0].stiffness, last.stiffness);
     let worst = rows.iter().map(|r| r.change.abs()).fold(0.0, f64::max);
-    let off = rows.iter().rev().find(|r| !r.enough).map_or(0.0, |r| r.stiffness);
-    format!(
-        "No rung can be chosen without {}: {all} the answer moves by up to {:.3} % of that of impacts without duration, and stays within {} \
-         only above {off:.0e} N/m.",
-        listed(&choice.needs),
-        100.0 * worst,
-        allowed(question)
-    )
-}
-
-fn listed(needs: &[&str]) -> String {
-    if needs.is_empty() { "more than the scene states".to_owned() } else { needs.join(" and ") }
+    let (within, needs) = (allowed(question), choice.needs.join(" and "));
+    let mut text = format!(
+        "No rung can be chosen without {needs}: {all} the answer moves by up to {:.3} % of that of impacts without duration",
+        100.0 * worst
+    );
+    let _ = match rows.iter().rposition(|r| !r.enough) {
+        Some(i) if i + 1 == rows.len() => {
+            let still = 100.0 * last.change;
+            write!(text, ", and at the stiffest of them it is still {still:+.3} % off, outside {within}.")
+        }
+        Some(i) => write!(text, ", and stays within {within} from {:.0e} N/m on.", rows[i + 1].stiffness),
+        None => write!(text, ", within {within}."),
+    };
+    if !choice.sensitivity_failed.is_empty() {
+        let failed: Vec<String> = choice.sensitivity_failed.iter().map(|k| format!("{k:.0e}")).collect();
+        let _ = write!(text, " At {} N/m it could not be computed.", failed.join(", "));
+    }
+    text
 }
 
 /// What a change may be.

@@ -72,6 +72,8 @@ pub struct Rung {
     /// Time in ns that its answer took on this machine; of models that are followed until they settle, all of it. `None` where it was
     /// not asked.
     pub cost_ns: Option<f64>,
+    /// Times that the answer was timed; `cost_ns` is the shortest. 1 where it takes long, and along an axis.
+    pub cost_runs: Option<u32>,
     /// Largest change of its answer at the rungs above that answer, over the answer: at the next one, and at the next one that follows
     /// the motion. `None` where there is none.
     pub error: Option<f64>,

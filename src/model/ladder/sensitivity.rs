@@ -1,10 +1,9 @@
 //! What an unknown contact stiffness would do to an answer.
 
-use super::Model;
-use super::change::Answer;
-use super::laws;
+use super::change::{Answer, Change};
 use super::motions::Motions;
 use super::tried::Stage;
+use super::{Model, laws};
 use crate::model::Law;
 use crate::model::contact::conversion;
 use serde::Serialize;
@@ -26,19 +25,26 @@ pub struct Sensitivity {
     pub answer: [f64; 2],
     /// Its change, from impacts without duration.
     pub change: f64,
-    /// Whether that is allowed.
+    /// Whether that is allowed, and the motion had settled.
     pub enough: bool,
 }
 
-/// Answers over the stiffnesses, in decades, that keep the masses in contact for 10 % to 0.01 % of the cycle; empty where none rebounds
-/// with the scene's restitution.
-pub fn sensitivity(stage: &Stage<'_>, motions: Option<&Motions>, base: &Answer) -> Vec<Sensitivity> {
+/// Answers over the stiffnesses, in decades, that keep the masses in contact for 10 % to 0.01 % of the cycle, and the stiffnesses (N/m) whose
+/// answer cannot be computed; both empty where none rebounds with the scene's restitution.
+pub fn sensitivity(
+    stage: &Stage<'_>,
+    motions: Option<&Motions>,
+    base: &Answer,
+) -> (Vec<Sensitivity>, Vec<f64>) {
+    let (mut rows, mut failed) = (Vec::new(), Vec::new());
     if laws::is_curved(stage.scene) {
-        return Vec::new();
+        return (rows, failed);
     }
     let mass = stage.scene.rig.reduced_mass();
     // ω₀t_c at the damping that the law has at 1 N/m: it depends on the damping ratio only, if that is not stated.
-    let Ok(Law::KelvinVoigt { damping, .. }) = stage.scene.spring(1.0) else { return Vec::new() };
+    let Ok(Law::KelvinVoigt { damping, .. }) = stage.scene.spring(1.0) else {
+        return (rows, failed);
+    };
     let stated = laws::keys(stage.scene).damping.is_some();
     let share = |k: f64| {
         let c = if stated { damping } else { damping * k.sqrt() };
@@ -48,22 +54,18 @@ pub fn sensitivity(stage: &Stage<'_>, motions: Option<&Motions>, base: &Answer) 
     let half = std::f64::consts::PI * mass.sqrt() * stage.excitation.frequency();
     let [low, high] = [SHARES.0, SHARES.1].map(|s| 2.0 * (half / s).log10());
     let low = low.ceil() as i32;
-    let decades = low..=(high.floor() as i32).min(low + DECADES - 1);
-    decades
-        .filter_map(|decade| {
-            let stiffness = 10_f64.powi(decade);
-            let answer = match motions {
-                Some(motions) => stage.with_spring(motions, stiffness).ok()?.0.answer,
-                None => stage.loose_mass(Some(stiffness)).answer?,
-            };
-            let change = base.change(&answer, Model::KelvinVoigt, stage.question);
-            Some(Sensitivity {
-                stiffness,
-                share: share(stiffness),
-                answer: answer.value,
-                change: change.change,
-                enough: change.enough,
-            })
-        })
-        .collect()
+    for decade in low..=(high.floor() as i32).min(low + DECADES - 1) {
+        let stiffness = 10_f64.powi(decade);
+        let answer = match motions {
+            Some(motions) => stage.with_spring(motions, stiffness).ok().map(|(reading, _)| reading.answer),
+            None => stage.loose_mass(Some(stiffness)).answer,
+        };
+        let Some(answer) = answer else {
+            failed.push(stiffness);
+            continue;
+        };
+        let Change { change, enough, .. } = base.change(&answer, Model::KelvinVoigt, stage.question);
+        rows.push(Sensitivity { stiffness, share: share(stiffness), answer: answer.value, change, enough });
+    }
+    (rows, failed)
 }

@@ -2,13 +2,15 @@
 
 use super::Question;
 use super::change::Answer;
-use super::cost::{timed, timed_once};
+use super::cost::{self, Cost};
 use super::laws;
 use super::motions::{Motions, On};
-use super::reading::{Reader, Reading};
+use super::reading::{End, Reader, Reading};
+use super::reasons::UNSETTLED;
 use crate::error::{Error, Result};
 use crate::model::{
-    Compliance, Compliant, Excitation, Law, Loose, Motion, Orbit, Regime, Rig, Scene, Simulation, softened,
+    Compliance, Compliant, Excitation, Law, Loose, Observable, Orbit, Regime, Rig, Scene, Simulation,
+    no_impact, softened,
 };
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
@@ -18,7 +20,7 @@ use std::fmt::Write as _;
 pub struct Tried {
     pub valid: bool,
     pub answer: Option<Answer>,
-    pub cost: Option<f64>,
+    pub cost: Option<Cost>,
     pub why: String,
 }
 
@@ -39,28 +41,45 @@ pub struct Stage<'a> {
     pub scene: &'a Scene,
     pub excitation: &'a Excitation,
     pub question: &'a Question,
+    /// Whether answers are timed more than once.
+    pub repeat: bool,
 }
 
 impl Stage<'_> {
+    /// What `work` gives and the time it takes.
+    pub fn timed<T>(&self, work: impl FnMut() -> T) -> (T, Cost) {
+        cost::timed(self.repeat, work)
+    }
+
     fn rig(&self) -> &Rig {
         &self.scene.rig
     }
 
     /// Mass 1 alone.
     pub fn linear(&self, motions: &Motions) -> Tried {
-        let (found, gap) = match &motions.closed {
-            Ok(found) => (&found.no_impact, self.rig().gap),
-            Err(error) => return Tried::refused(error),
+        let (found, cost) = self.timed(|| {
+            let found = no_impact(self.rig(), self.excitation)?;
+            let value = match self.question.observable {
+                Observable::Fundamental => [self.alone(), 0.0],
+                other => other.of_no_impact(&found),
+            };
+            Ok((found, value))
+        });
+        let (found, value) = match found {
+            Ok(found) => found,
+            Err(error) => return Tried::refused(&error),
         };
-        let mut value = self.question.observable.of_no_impact(found);
-        let fundamental = || self.alone();
-        let (line, cost) = timed(fundamental);
-        if self.question.observable == crate::model::Observable::Fundamental {
-            value = [line, 0.0];
-        }
+        let (gap, sure) = (self.rig().gap, self.question.gap_std);
         let way = format!("Mass 1 alone moves up to {:.3e} m", found.largest);
         let (valid, why) = match motions.on {
             _ if !found.possible => (false, format!("{way}, the gap is {gap:.3e} m: the masses meet.")),
+            _ if gap - found.largest <= sure => {
+                let left = gap - found.largest;
+                let clear = format!(
+                    "{way}, the gap is {gap:.3e} m: the masses stay clear by {left:.1e} m, no more than"
+                );
+                (false, format!("{clear} the gap's uncertainty of {sure:.1e} m."))
+            }
             On::Free => (
                 true,
                 format!("{way}, the gap is {gap:.3e} m: the masses do not meet, and {}.", into(motions)),
@@ -69,7 +88,7 @@ impl Stage<'_> {
             On::Orbit(_) | On::Other => (
                 false,
                 format!(
-                    "{way} and need not meet mass 2, but the rig is in a motion with impacts: {}.",
+                    "{way} and need not meet mass 2, but the rig is not in this motion: {}.",
                     into(motions)
                 ),
             ),
@@ -143,7 +162,7 @@ impl Stage<'_> {
                 On::Orbit(_) => (true, format!("{real}; {}.", into(motions))),
                 On::Open => (true, format!("{real}.")),
                 On::Free | On::Other => {
-                    (false, format!("{real}, but the rig is in another: {}.", into(motions)))
+                    (false, format!("{real}, but the rig is not in it: {}.", into(motions)))
                 }
             }
         };
@@ -163,7 +182,7 @@ impl Stage<'_> {
             return Tried::not("There is nothing to correct: the closed form does not hold.");
         }
         let Ok(Some(orbit)) = motions.orbit() else { return Tried::not("There is nothing to correct.") };
-        let (soft, cost) = timed(|| self.soften(orbit, stiffness));
+        let (soft, cost) = self.timed(|| self.soften(orbit, stiffness));
         match soft {
             Err(error) => Tried { cost: Some(cost), ..Tried::refused(&error) },
             Ok(None) => Tried {
@@ -220,25 +239,21 @@ impl Stage<'_> {
     }
 
     /// What a spring and damper of this stiffness (N/m) gives, from where the motion with impacts at once had settled.
-    pub fn with_spring(&self, motions: &Motions, stiffness: f64) -> Result<(Reading, f64)> {
+    pub fn with_spring(&self, motions: &Motions, stiffness: f64) -> Result<(Reading, Cost)> {
         self.with(motions, self.scene.spring(stiffness)?)
     }
 
-    fn with(&self, motions: &Motions, law: Law) -> Result<(Reading, f64)> {
+    fn with(&self, motions: &Motions, law: Law) -> Result<(Reading, Cost)> {
         let end = &motions.end;
-        let mut motion = Compliant::new(self.rig(), self.excitation, law, end.state(), end.phase())?;
-        let reader =
-            if matches!(law, Law::KelvinVoigt { .. }) { self.reader() } else { self.reader().brief() };
-        let (reading, cost) = timed_once(|| reader.read(&mut motion));
+        let start = Compliant::new(self.rig(), self.excitation, law, end.state(), end.phase())?;
+        let reader = self.reader().clear_by(motions.clearance);
+        let reader = if matches!(law, Law::KelvinVoigt { .. }) { reader } else { reader.brief() };
+        let (reading, cost) = self.timed(|| reader.read(&mut start.clone()));
         Ok((reading?, cost))
     }
 
     fn reader(&self) -> Reader {
         Reader::new(self.rig(), self.excitation.frequency(), self.question)
-    }
-
-    fn read<M: Motion>(&self, motion: &mut M) -> Result<Reading> {
-        self.reader().read(motion)
     }
 
     /// A curved contact: the one stated, or one like the spring stated.
@@ -278,16 +293,16 @@ impl Stage<'_> {
         let Some(buffer) = self.scene.buffer else {
             return Tried::not("The spring holds mass 1 both ways: the scene has no buffer.");
         };
-        let run = || -> Result<(Reading, f64)> {
-            let (rig, start) = (self.rig(), Simulation::at_rest(self.rig()));
-            let mut motion = match stiffness {
+        let run = || -> Result<(Reading, Cost)> {
+            let (rig, rest) = (self.rig(), Simulation::at_rest(self.rig()));
+            let start = match stiffness {
                 Some(k) => {
                     let law = self.scene.spring(k)?;
-                    Loose::with_law(rig, self.excitation, buffer.gap, law, start, 0.0)?
+                    Loose::with_law(rig, self.excitation, buffer.gap, law, rest, 0.0)?
                 }
-                None => Loose::new(rig, self.excitation, buffer.gap, start, 0.0)?,
+                None => Loose::new(rig, self.excitation, buffer.gap, rest, 0.0)?,
             };
-            let (reading, cost) = timed_once(|| self.read(&mut motion));
+            let (reading, cost) = self.timed(|| self.reader().read(&mut start.clone()));
             Ok((reading?, cost))
         };
         match run() {
@@ -297,15 +312,19 @@ impl Stage<'_> {
                 answer: Some(reading.answer),
                 cost: Some(cost),
                 why: format!(
-                    "The spring of mass 1 only pushes, beyond {:.3e} m; from rest, {}. {}",
+                    "The spring of mass 1 only pushes, beyond {:.3e} m; from rest, {}. {} {ALONE}{}",
                     buffer.gap,
-                    pattern(reading.regime),
-                    told(&reading)
+                    pattern(&reading),
+                    told(&reading),
+                    self.question.history.map_or("", |_| " The history is not followed.")
                 ),
             },
         }
     }
 }
+
+/// What is not done for a loose mass.
+const ALONE: &str = "Other motions are not looked for, and no richer model checks the answer.";
 
 /// Impacts at once.
 pub fn restitution(motions: &Motions) -> Tried {
@@ -319,12 +338,20 @@ pub fn restitution(motions: &Motions) -> Tried {
 
 /// The motion that the rig is in, and how that is known.
 fn into(motions: &Motions) -> String {
-    let from = if motions.by_history { "coming that way it is in" } else { "from rest it settles into" };
-    format!("{from} {}", pattern(motions.reading.regime))
+    let reading = &motions.reading;
+    match (reading.end, motions.by_history) {
+        (End::Under, true) => {
+            format!("coming that way it has not settled within {} cycles", reading.cycles)
+        }
+        (End::Under, false) => format!("from rest it has not settled within {} cycles", reading.cycles),
+        (_, true) => format!("coming that way it is in {}", pattern(reading)),
+        (_, false) => format!("from rest it settles into {}", pattern(reading)),
+    }
 }
 
-fn pattern(regime: Regime) -> String {
-    match regime {
+fn pattern(reading: &Reading) -> String {
+    match reading.regime {
+        _ if reading.end == End::Pressed => "a motion in which the masses stay in contact".to_owned(),
         Regime::Periodic { impacts, cycles } => {
             format!("a motion with {impacts} impact(s) in {cycles} cycle(s)")
         }
@@ -336,19 +363,25 @@ fn pattern(regime: Regime) -> String {
     }
 }
 
-/// How the reading was made, where that limits it.
+/// How the reading was made.
 fn told(reading: &Reading) -> String {
     let cycles = reading.cycles;
-    if reading.settled {
-        return format!("Settled within {cycles} cycles.");
+    match reading.end {
+        End::Settled | End::Pressed => format!("Settled within {cycles} cycles."),
+        End::Steady => {
+            let Answer { value, spread, .. } = reading.answer;
+            let part = |i: usize| if value[i] == 0.0 { 0.0 } else { spread[i] / value[i].abs() };
+            format!(
+                "The answer is the mean over the second half of {cycles} cycles, with a standard error of {:.1e} %.",
+                100.0 * part(0).max(part(1))
+            )
+        }
+        End::Under => {
+            format!(
+                "{UNSETTLED} within {cycles} cycles: the answer is a mean on the way, and may be any in the end."
+            )
+        }
     }
-    let Answer { value, spread } = reading.answer;
-    let part =
-        (0..2).map(|i| if value[i] == 0.0 { 0.0 } else { spread[i] / value[i].abs() }).fold(0.0, f64::max);
-    format!(
-        "Not settled within {cycles} cycles: the mean of the second half, with a standard error of {:.1e} %.",
-        100.0 * part
-    )
 }
 
 fn capital(text: &str) -> String {

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::math::Oscillator;
 use crate::math::swing::passages;
-use crate::model::Green;
+use crate::model::{Green, NoImpact};
 
 /// The steady motion, piece by piece free: during the pulse about f/k₁, after it about 0. An impulse is a pulse of no width.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,6 +100,12 @@ impl Response {
             }
         }
         (low, high)
+    }
+
+    /// The motion as one without impacts on a rig with this `gap` in m.
+    pub fn no_impact(&self, gap: f64) -> NoImpact {
+        let (low, high) = self.range();
+        NoImpact { possible: high < gap, amplitude: (high - low) / 2.0, largest: high }
     }
 }
 

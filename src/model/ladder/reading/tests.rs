@@ -1,0 +1,113 @@
+use super::{End, Reader, drifts, mean};
+use crate::math::runge_kutta::{Dop853, Integrator, Tolerance};
+use crate::model::ladder::Question;
+use crate::model::{Excitation, Observable, Rig, Simulation, Sine, no_impact};
+use std::f64::consts::TAU;
+
+/// Values x ← ρx + noise, noise from a linear congruence: an autoregression whose mean of n has the variance σ²(1 + ρ)/(1 − ρ)/n.
+fn correlated(seed: u64, n: usize, rho: f64) -> Vec<[f64; 2]> {
+    let mut state = seed;
+    let mut even = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    let mut x = 0.0;
+    let all: Vec<f64> = (0..n + 100)
+        .map(|_| {
+            x = rho * x + even();
+            x
+        })
+        .collect();
+    all[100..].iter().map(|x| [10.0 + x; 2]).collect()
+}
+
+#[test]
+fn a_standard_error_covers_what_it_should() {
+    // Of 1000 means of 32 values with a correlation of 0.3 about 5 % lie farther than two standard errors from the truth: with estimated
+    // errors 8 ± 1 %. Taken as independent, √(1.3/0.7) = 1.36 times as narrow, 15 % do.
+    let far = |rho: f64| {
+        let outside = |seed: u64| {
+            let found = mean(&correlated(seed, 32, rho), true);
+            (found.value[0] - 10.0).abs() > 2.0 * found.spread[0]
+        };
+        (1..=1000).filter(|seed| outside(*seed)).count()
+    };
+    assert!(far(0.0) < 80 && far(0.3) < 120, "{} {}", far(0.0), far(0.3));
+}
+
+#[test]
+fn a_drift_is_told_from_scatter() {
+    let told = |rho: f64, slope: f64| {
+        let one = |seed: u64| {
+            let mut values = correlated(seed, 32, rho);
+            for (i, v) in values.iter_mut().enumerate() {
+                *v = v.map(|v| v + slope * i as f64);
+            }
+            drifts(&values)
+        };
+        (1..=1000).filter(|seed| one(*seed)).count()
+    };
+    // Φ(−2.5) = 0.6 % of independent values; a rise over all of five standard deviations (0.29 each) hides from none.
+    assert!(told(0.0, 0.0) < 15, "{}", told(0.0, 0.0));
+    assert_eq!(told(0.0, 5.0 * 0.29 / 32.0 * 2.0), 1000);
+    // Of few values as well: a straight line of six has the ratio 5/17.5.
+    let line: Vec<[f64; 2]> = (0..6).map(|i| [f64::from(i); 2]).collect();
+    assert!(drifts(&line) && !drifts(&[[1.0; 2]; 6]));
+}
+
+/// First time in s at which x₁ of mass 1 alone, from rest, reaches the gap: by an integrator that shares nothing with the flights.
+fn first_touch(rig: &Rig, sine: &Sine, until: f64) -> f64 {
+    let omega = TAU * sine.frequency;
+    let rate = |t: f64, y: &[f64; 2]| {
+        [y[1], (sine.force * (omega * t).cos() - rig.k1 * y[0] - rig.c1 * y[1]) / rig.m1]
+    };
+    let tolerance = Tolerance { relative: 1e-10, floor: [rig.gap, rig.gap * omega] };
+    let mut plain = Integrator::<Dop853, 2>::new(rate, 0.0, [0.0; 2], 1e-3, tolerance);
+    while plain.time() < until {
+        let start = plain.time();
+        let step = plain.step(rate, until).unwrap();
+        if let Some(t) = step.first_fall(&[-1.0, 0.0], rig.gap) {
+            return start + t;
+        }
+    }
+    f64::INFINITY
+}
+
+#[test]
+fn a_slow_growth_towards_the_gap_is_not_the_end() {
+    // Hardly damped at its resonance: the amplitude A(1 − e^{−bt}) with A 1.3 mm passes the gap of 1 mm only after 1900 cycles, in which
+    // no impact is seen and every impact speed is 0.
+    let rig = Rig { c1: 1e-3, c2: 1e-3, ..Rig::thesis() };
+    let sine = Sine { force: 4.272_235_95e-5, frequency: 5.230_365_15 };
+    let found = no_impact(&rig, &Excitation::Sine(sine)).unwrap();
+    let decay = rig.c1 / (2.0 * rig.m1);
+    let closed = -(1.0 - rig.gap / found.largest).ln() / decay;
+    let touched = first_touch(&rig, &sine, 2.0 * closed);
+    // The amplitude grows by bA a second: a cycle earlier or later, and what the detuning of a damped resonance leaves.
+    assert!((touched / closed - 1.0).abs() < 0.01 && touched * sine.frequency > 1800.0, "{touched} {closed}");
+    let question = Question::new(Observable::ImpactSpeed);
+    let reader = Reader::new(&rig, sine.frequency, &question).clear_by(Some(rig.gap - found.largest));
+    let mut motion = Simulation::new(&rig, &sine).unwrap();
+    let reading = reader.read(&mut motion).unwrap();
+    assert!(f64::from(reading.cycles) > touched * sine.frequency && reading.speed > 0.0, "{reading:?}");
+    // The state alone tells it too: without the clearance it goes on just as long.
+    let blind = Reader::new(&rig, sine.frequency, &question).read(&mut Simulation::new(&rig, &sine).unwrap());
+    assert!(f64::from(blind.unwrap().cycles) > touched * sine.frequency);
+}
+
+#[test]
+fn a_motion_that_ends_a_thousandth_beyond_the_gap_does_not_settle_without_impacts() {
+    let rig = Rig::thesis();
+    let unit = no_impact(&rig, &Excitation::Sine(Sine { force: 1.0, frequency: 9.0 })).unwrap().largest;
+    let question = Question::new(Observable::ImpactSpeed);
+    let read = |part: f64| {
+        let sine = Sine { force: part * rig.gap / unit, frequency: 9.0 };
+        let reader = Reader::new(&rig, 9.0, &question).clear_by(Some(rig.gap * (1.0 - part)));
+        reader.read(&mut Simulation::new(&rig, &sine).unwrap()).unwrap()
+    };
+    let over = read(1.001);
+    assert!(over.speed > 0.0 || over.end == End::Under, "{over:?}");
+    // Clear of the gap it does, in the time in which e^{−bt} falls to the part asked for.
+    let under = read(0.5);
+    assert!(under.end == End::Settled && under.speed == 0.0, "{under:?}");
+}
