@@ -31,11 +31,11 @@ use crate::record::Direction;
 use data::Data;
 use held::Held;
 use rayon::prelude::*;
-use search::{Found, search, unexplained};
+use search::{around, search};
 use serde::Serialize;
 use setting::Setting;
 use settle::{Settled, settle};
-use unknown::Unknown;
+use unknown::{Unknown, coordinates};
 
 /// A parameter as it was found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -84,9 +84,10 @@ pub struct FitPoint {
 pub struct LeftOut {
     /// They do not stand out of the noise.
     pub faint: usize,
-    /// The simulated sweep comes to another pattern than one impact a cycle or none, or they lie far from these: ten
-    /// standard deviations, and ten times the median.
+    /// The simulated sweep comes to another pattern than one impact a cycle or none.
     pub other_motion: usize,
+    /// The simulated sweep comes to one of these, but they lie five standard deviations from it, and five times the median scatter.
+    pub far: usize,
     /// Their motion changed with the parameters from round to round.
     pub wavering: usize,
 }
@@ -128,8 +129,12 @@ pub struct Fit {
 
 /// Starting points where none are asked for.
 const STARTS: usize = 8;
-/// Answers of the search that are looked at more closely.
-const CLOSER: usize = 3;
+/// Turns of looking around the best answer.
+const TURNS: usize = 6;
+/// So many turns in which no answer came nearer by [`BETTER`] are the last.
+const IDLE: usize = 2;
+/// One point more within one κ.
+const BETTER: f64 = 1.0;
 
 /// Finds the parameters that `entry` asks for from displacement responses, beginning with `rig` and the stated `force` (N; `None`: each
 /// point its measured one).
@@ -148,24 +153,24 @@ pub fn fit(
     let base = Setting { rig: *rig, force: data.force, contact: None };
     let unknowns = Unknown::all(entry, &base)?;
     let starts = entry.starts.unwrap_or(STARTS);
-    let (settled, found) = identify(&data, &base, &unknowns, starts, pace)?;
+    let (settled, ends) = identify(&data, &base, &unknowns, starts, pace)?;
     let held = Held::new(&settled.problem, &settled.minimum.parameters, &settled.minimum.jacobian)?;
     let profile = profile::profile(&settled, &held, held.worst());
     let mut fit = gathered(&settled, &held, &base, profile);
-    (fit.starts, fit.agreeing) = (starts, agreeing(&found));
+    (fit.starts, fit.agreeing) = (starts, agreeing(&ends, &settled.minimum.parameters, &held));
     fit.rungs = rung::rungs(&settled, responses, entry.contact_stiffness);
     fit.warnings = told::warnings(&fit, &settled, &data);
     Ok(fit)
 }
 
-/// The best answer of several starts.
+/// The best answer of several starts, and where each start led that led anywhere.
 fn identify<'a>(
     data: &'a Data,
     base: &Setting,
     unknowns: &[Unknown],
     starts: usize,
     pace: Pace,
-) -> Result<(Settled<'a>, Vec<Found>)> {
+) -> Result<(Settled<'a>, Vec<Vec<f64>>)> {
     let clear = data.steps.iter().flat_map(data::Step::clear).count();
     let priors = unknowns.iter().filter(|u| u.prior.is_some()).count();
     if clear + priors < unknowns.len() || clear == 0 {
@@ -175,41 +180,45 @@ fn identify<'a>(
         ))
         .hint("fit fewer parameters, or give priors"));
     }
-    let found = search(data, base, unknowns, starts.max(1));
-    let mut distinct: Vec<&Found> = Vec::new();
-    for one in &found {
-        if distinct.iter().all(|d| !same(d, one)) && one.cost <= 2.0 * found[0].cost + 1.0 {
-            distinct.push(one);
+    let all = |places: &[Vec<f64>]| -> Vec<Result<Settled<'a>>> {
+        places.par_iter().map(|u| settle(data, base, unknowns, u, pace)).collect()
+    };
+    let mut found = all(&search(data, base, unknowns, starts.max(1)));
+    let ends = found.iter().flatten().map(|s| s.minimum.parameters.clone()).collect();
+    // Where the rig is known well, no search is nearer than the rig itself.
+    found.extend(all(&[coordinates(base, unknowns)]));
+    let (mut best, mut idle) = (nearest(found)?, 0);
+    for turn in 0..TURNS {
+        let around = around(base, unknowns, &best.minimum.parameters, turn);
+        match nearest(all(&around)) {
+            Ok(next) if next.missed < best.missed - BETTER => (best, idle) = (next, 0),
+            _ => idle += 1,
+        }
+        if idle == IDLE {
+            break;
         }
     }
-    let settled: Vec<Result<Settled<'a>>> =
-        distinct.par_iter().take(CLOSER).map(|f| settle(data, base, unknowns, &f.u, pace)).collect();
-    let mut best: Option<(f64, Settled<'a>)> = None;
+    Ok((best, ends))
+}
+
+/// The answer nearest to the points; the first refusal where there is none.
+fn nearest(found: Vec<Result<Settled<'_>>>) -> Result<Settled<'_>> {
+    let mut best: Option<Settled<'_>> = None;
     let mut refusal = None;
-    for one in settled {
+    for one in found {
         match one {
-            Ok(settled) => {
-                let cost = unexplained(data, &settled.setting(), &settled.problem.kinds);
-                if best.as_ref().is_none_or(|b| cost < b.0) {
-                    best = Some((cost, settled));
-                }
-            }
+            Ok(one) if best.as_ref().is_none_or(|b| one.missed < b.missed) => best = Some(one),
+            Ok(_) => {}
             Err(error) => refusal = refusal.or(Some(error)),
         }
     }
-    match best {
-        Some((_, settled)) => Ok((settled, found)),
-        None => Err(refusal.unwrap_or_else(|| Error::refused("no starting point led to an answer"))),
-    }
+    best.ok_or_else(|| refusal.unwrap_or_else(|| Error::refused("no starting point led to an answer")))
 }
 
-/// Whether two starts led to the same.
-fn same(a: &Found, b: &Found) -> bool {
-    (a.cost - b.cost).abs() <= 0.01 * a.cost.max(b.cost) + 1e-6
-}
-
-fn agreeing(found: &[Found]) -> usize {
-    found.first().map_or(0, |best| found.iter().filter(|f| same(best, f)).count())
+/// How many starts led within one standard uncertainty of the answer in every parameter.
+fn agreeing(ends: &[Vec<f64>], best: &[f64], held: &Held) -> usize {
+    let near = |i: usize, u: f64| (u - best[i]).abs() <= held.covariance[(i, i)].sqrt();
+    ends.iter().filter(|end| end.iter().enumerate().all(|(i, u)| near(i, *u))).count()
 }
 
 /// Normal deviate that is exceeded on both sides together in 5 % of cases.
@@ -245,7 +254,8 @@ fn gathered(settled: &Settled<'_>, held: &Held, base: &Setting, profile: Option<
         n: used.len(),
         left_out: LeftOut {
             faint: problem.data.faint,
-            other_motion: (clear - used.len()).saturating_sub(settled.wavering),
+            other_motion: (clear - used.len()).saturating_sub(settled.wavering + settled.far),
+            far: settled.far,
             wavering: settled.wavering,
         },
         reduced_chi_squared: settled.reduced,
@@ -265,7 +275,7 @@ fn fitted(settled: &Settled<'_>, held: &Held, base: &Setting, i: usize) -> Fitte
     let Unknown { parameter, coordinate, prior } = settled.problem.unknowns[i];
     let std = held.covariance[(i, i)].sqrt();
     let reason = held.loose[i].clone();
-    let slope = coordinate.slope(u);
+    let slope = coordinate.slope(u).abs();
     let method = "least squares of both masses and directions by the closed form";
     let value = coordinate.value(u);
     // A prior adds 1/s² to the reciprocal of the variance that all else leaves, exactly where the model is linear.
@@ -280,7 +290,7 @@ fn fitted(settled: &Settled<'_>, held: &Held, base: &Setting, i: usize) -> Fitte
             method,
         ),
         start: base.get(parameter),
-        interval: reason.is_none().then(|| [-NORMAL, NORMAL].map(|z| coordinate.value(u + z * std))),
+        interval: reason.is_none().then(|| coordinate.interval(u, NORMAL * std)),
         identifiable: reason.is_none(),
         reason,
         prior,

@@ -126,6 +126,32 @@ pub fn minimise(
     start: &[f64],
     scale: &[f64],
 ) -> Result<Minimum> {
+    run(residuals, n, start, scale, &LevenbergMarquardt::new().with_patience(200))
+}
+
+/// As [`minimise`], but no farther than to the neighbourhood of a minimum: until a step gains less than a thousandth, and over twenty
+/// evaluations a parameter at most. For searches that go on from there.
+///
+/// # Errors
+/// As [`minimise`].
+pub fn approach(
+    residuals: impl Fn(&[f64], &mut [f64]),
+    n: usize,
+    start: &[f64],
+    scale: &[f64],
+) -> Result<Minimum> {
+    const GAIN: f64 = 1e-3;
+    let near = LevenbergMarquardt::new().with_patience(20).with_ftol(GAIN).with_xtol(GAIN);
+    run(residuals, n, start, scale, &near)
+}
+
+fn run(
+    residuals: impl Fn(&[f64], &mut [f64]),
+    n: usize,
+    start: &[f64],
+    scale: &[f64],
+    algorithm: &LevenbergMarquardt<f64>,
+) -> Result<Minimum> {
     let scaled = scale.iter().all(|s| s.is_finite() && *s != 0.0);
     if start.is_empty() || scale.len() != start.len() || !scaled {
         return Err(Error::usage(
@@ -147,7 +173,7 @@ pub fn minimise(
         return Err(Error::refused("the model gives no finite value at the first guess of a fit"));
     }
     let report;
-    (problem, report) = LevenbergMarquardt::new().with_patience(200).minimize(problem);
+    (problem, report) = algorithm.minimize(problem);
     let parameters = problem.parameters.clone();
     let (Some(residuals), Some(jacobian)) = (problem.at(&parameters), problem.jacobian()) else {
         return Err(Error::refused("a fit ran to where the model gives no finite value"));

@@ -1,6 +1,8 @@
 //! Parameters without bounds in the place of those with bounds.
 
-/// A parameter θ between two bounds by a coordinate u that runs from −∞ to ∞: ln (θ − low), or logit of its place between both.
+/// A parameter θ between two bounds by a coordinate u that runs from −∞ to ∞: √(θ − low), or logit of its place between both.
+///
+/// A logarithm in the place of the root would never come back from θ = low, where all its slopes vanish: a damper may be 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coordinate {
     pub low: f64,
@@ -13,7 +15,7 @@ impl Coordinate {
     pub fn of(self, value: f64) -> f64 {
         const INSIDE: f64 = 1e-9;
         if self.high.is_infinite() {
-            return (value - self.low).max(f64::MIN_POSITIVE).ln();
+            return (value - self.low).max(0.0).sqrt();
         }
         let part = ((value - self.low) / (self.high - self.low)).clamp(INSIDE, 1.0 - INSIDE);
         (part / (1.0 - part)).ln()
@@ -21,19 +23,26 @@ impl Coordinate {
 
     /// θ of u.
     pub fn value(self, u: f64) -> f64 {
+        if self.high.is_infinite() {
+            return self.low + u * u;
+        }
         // Beyond these the exponential leaves the numbers.
         let u = u.clamp(-600.0, 600.0);
-        if self.high.is_infinite() {
-            return self.low + u.exp();
-        }
         self.low + (self.high - self.low) / (1.0 + (-u).exp())
+    }
+
+    /// Least and largest θ from u − `away` to u + `away`.
+    pub fn interval(self, u: f64, away: f64) -> [f64; 2] {
+        let [a, b] = [u - away, u + away].map(|u| self.value(u));
+        let low = if self.high.is_infinite() && u.abs() < away { self.low } else { a.min(b) };
+        [low, a.max(b)]
     }
 
     /// dθ/du.
     pub fn slope(self, u: f64) -> f64 {
         let value = self.value(u);
         if self.high.is_infinite() {
-            return value - self.low;
+            return 2.0 * u;
         }
         (value - self.low) * (self.high - value) / (self.high - self.low)
     }

@@ -11,14 +11,33 @@ use super::setting::Setting;
 use crate::error::Result;
 use rayon::prelude::*;
 
+/// Motions of all steps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motions {
+    /// `None` where it is none of the closed form.
+    pub kinds: Vec<Option<Kind>>,
+    /// What the simulated sweep shows of both masses in m; `None` where it has no answer.
+    pub came: Vec<Option<[f64; 2]>>,
+}
+
+impl Motions {
+    /// Amplitudes that motions of the closed form show.
+    pub fn amplitudes(&self, data: &Data) -> usize {
+        let one = |(step, kind): (&Step, &Option<Kind>)| {
+            step.clear().filter(|(mass, _)| kind.is_some() && counts(*kind, *mass)).count()
+        };
+        data.steps.iter().zip(&self.kinds).map(one).sum()
+    }
+}
+
 /// The motion of each step, as a sweep simulated through all steps of its sequence comes to it; `None` where that is none of the closed
 /// form. Where the measured amplitudes lie nearer to another motion that can be seen there, it is that one: which of several a sweep
 /// falls into may hang on less than can be known. A step far from all of them shows none.
 ///
 /// # Errors
 /// If the rig is impossible.
-pub fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Vec<Option<Kind>>> {
-    let sequence = |sequence: &Vec<usize>| -> Result<Vec<(usize, Option<Kind>)>> {
+pub fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Motions> {
+    let sequence = |sequence: &Vec<usize>| -> Result<Vec<(usize, Option<Kind>, Option<[f64; 2]>)>> {
         let points: Vec<(f64, f64)> = sequence
             .iter()
             .map(|i| (data.steps[*i].frequency, setting.force_at(data, &data.steps[*i])))
@@ -37,24 +56,27 @@ pub fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Vec<Option
                 Kind::Free => step.seen[1].as_ref().is_none_or(|s| s.limit.is_some()),
                 _ => upper.is_some_and(Motion::is_seen),
             });
-            Ok((*i, kind))
+            Ok((*i, kind, came.as_ref().ok().map(|came| came.amplitude)))
         };
         sequence.iter().zip(&points).zip(&came).map(one).collect()
     };
     let all: Vec<_> = data.sequences.par_iter().map(sequence).collect::<Result<_>>()?;
-    let mut kinds = vec![None; data.steps.len()];
-    for (i, kind) in all.into_iter().flatten() {
-        kinds[i] = kind;
+    let n = data.steps.len();
+    let mut motions = Motions { kinds: vec![None; n], came: vec![None; n] };
+    for (i, kind, came) in all.into_iter().flatten() {
+        (motions.kinds[i], motions.came[i]) = (kind, came);
     }
-    Ok(without_far(data, setting, kinds))
+    Ok(motions)
 }
 
-/// A step farther from its motion than so many standard deviations, …
-const FAR: f64 = 10.0;
-/// … and so many times the median step, shows another motion, whatever the simulated sweep came to.
-const FARTHER: f64 = 10.0;
+/// A step farther from its motion than so many standard deviations shows another one: noise alone takes one of two million there.
+const FAR: f64 = 5.0;
+/// Median of the larger of two absolute normal deviates: erf² (x/√2) = 1/2.
+const MEDIAN: f64 = 1.052;
 
-fn without_far(data: &Data, setting: &Setting, kinds: Vec<Option<Kind>>) -> Vec<Option<Kind>> {
+/// Motions without those of steps that lie far from them, whatever the simulated sweep came to. Where the points scatter more than they
+/// should, by the median, that is what counts for a standard deviation.
+pub fn without_far(data: &Data, setting: &Setting, kinds: Vec<Option<Kind>>) -> Vec<Option<Kind>> {
     let one = |(step, kind): (&Step, &Option<Kind>)| {
         let (kind, force) = ((*kind)?, setting.force_at(data, step));
         // As far as the frequency may err, so may the amplitude.
@@ -69,7 +91,7 @@ fn without_far(data: &Data, setting: &Setting, kinds: Vec<Option<Kind>>) -> Vec<
     let away: Vec<Option<f64>> = data.steps.iter().zip(&kinds).map(one).collect();
     let mut sorted: Vec<f64> = away.iter().flatten().copied().collect();
     sorted.sort_by(f64::total_cmp);
-    let limit = FAR.max(FARTHER * median(&sorted).unwrap_or(0.0));
+    let limit = FAR * (median(&sorted).unwrap_or(0.0) / MEDIAN).max(1.0);
     kinds.into_iter().zip(away).map(|(kind, away)| kind.filter(|_| away.is_none_or(|a| a <= limit))).collect()
 }
 

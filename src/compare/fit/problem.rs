@@ -3,7 +3,7 @@
 use super::super::prediction::Kind;
 use super::data::{Data, Step};
 use super::setting::Setting;
-use super::unknown::{Unknown, at};
+use super::unknown::{Unknown, at, fold};
 use crate::error::Result;
 use crate::math::{Minimum, minimise};
 
@@ -114,7 +114,14 @@ impl Problem<'_> {
     /// As [`minimise`].
     pub fn solve(&self, start: &[f64]) -> Result<Minimum> {
         let (data, priors) = self.rows();
-        minimise(|u, r| self.residuals(u, r), data + priors, start, &vec![0.1; start.len()])
+        let mut minimum =
+            minimise(|u, r| self.residuals(u, r), data + priors, start, &vec![0.1; start.len()])?;
+        for (i, lower) in fold(&self.unknowns, &mut minimum.parameters).into_iter().enumerate() {
+            if lower {
+                minimum.jacobian.column_mut(i).neg_mut();
+            }
+        }
+        Ok(minimum)
     }
 }
 

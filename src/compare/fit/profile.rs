@@ -27,14 +27,16 @@ pub struct Profile {
     pub interval: [Option<f64>; 2],
 }
 
-/// Profile of the unknown number `which`, over four standard uncertainties on both sides, and at most a factor of ten.
+/// Profile of the unknown number `which`, over four standard uncertainties on both sides, but not beyond a bound.
 pub fn profile(settled: &Settled<'_>, held: &Held, which: usize) -> Option<Profile> {
     let problem = &settled.problem;
     let best = &settled.minimum.parameters;
     let unknown = *problem.unknowns.get(which)?;
     let std = held.covariance[(which, which)].sqrt();
-    // ln 10 in a coordinate that is a logarithm.
-    let reach = (4.0 * std).min(std::f64::consts::LN_10);
+    // Down to the lower bound, or a factor of ten in the odds between two.
+    let most =
+        if unknown.coordinate.high.is_infinite() { best[which].abs() } else { std::f64::consts::LN_10 };
+    let reach = (4.0 * std).min(most);
     let least: f64 = settled.minimum.residuals.iter().map(|r| r * r).sum();
     let others: Vec<Unknown> =
         problem.unknowns.iter().enumerate().filter(|(i, _)| *i != which).map(|(_, k)| *k).collect();

@@ -1,38 +1,36 @@
 //! Where to begin: from several starting points, with every step on that motion which lies nearest to what was measured.
 //!
-//! Far from the truth a simulated sweep says little of the measured one, so here no history is asked. A residual is the logarithm of
-//! measured over predicted, bounded (S. Geman and D. `McClure`, *Bull. Int. Stat. Inst.* 52 (1987) 5), so that a point of another pattern
-//! pulls no more than others, and none can be gained by leaving points out.
+//! Far from the truth a simulated sweep says little of the measured one, so here no history is asked, and points of other patterns cannot be
+//! told beforehand. A residual z is the logarithm of measured over shown, over a part κ of the amplitude or three standard deviations,
+//! and it costs ln (1 + z²) (P. J. Huber, *Robust Statistics* (1981), 4.8: Cauchy's): a point that lies far off pulls the less the farther it
+//! is. κ falls from three tenths on in steps, so that the valley that most points share is found before its floor (A. Blake & A. Zisserman,
+//! *Visual Reconstruction* (1987), 7: graduated non-convexity).
 
 use super::super::prediction::Kind;
-use super::data::{Data, Step};
+use super::data::{Data, Seen, Step};
 use super::setting::Setting;
-use super::unknown::{Unknown, at, coordinates};
-use crate::math::minimise;
+use super::unknown::{Unknown, at, coordinates, fold};
+use crate::campaign::Parameter;
+use crate::math::approach;
 use rayon::prelude::*;
 
-/// Bound of a residual: three tenths of the amplitude.
-const BOUND: f64 = 0.3;
-/// What counts as one standard deviation here, beside a prior's.
-const TYPICAL: f64 = 0.05;
+/// κ of the search, in turn.
+const COARSE: [f64; 2] = [0.3, 0.1];
+/// κ once motions are told by simulated sweeps.
+pub const FINE: [f64; 4] = [0.1, 0.03, 0.01, 0.003];
+/// So many standard deviations of a point count as one, so that noise is no outlier.
+const WIDE: f64 = 3.0;
 /// Starting values lie within this factor of the first.
 const REACH: f64 = 1.5;
 /// Points that are looked at for each that is followed.
 const SCREENED: usize = 16;
-/// Rounds of choosing motions and fitting.
-const ROUNDS: usize = 6;
+/// Places beside an answer.
+const AROUND: usize = 8;
+/// Rounds of choosing motions and fitting, for each κ.
+const ROUNDS: usize = 4;
 
-/// Where one start led.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Found {
-    /// Coordinates of the unknowns.
-    pub u: Vec<f64>,
-    /// Sum of squared bounded residuals.
-    pub cost: f64,
-}
-
-/// Follows `starts` starting points, the first from `base` itself, and gives where they led, the best first.
-pub fn search(data: &Data, base: &Setting, unknowns: &[Unknown], starts: usize) -> Vec<Found> {
+/// Follows `starts` starting points, the first from `base` itself, and gives the coordinates where each led.
+pub fn search(data: &Data, base: &Setting, unknowns: &[Unknown], starts: usize) -> Vec<Vec<f64>> {
     let first = coordinates(base, unknowns);
     let mut screened: Vec<(f64, Vec<f64>)> = (1..=SCREENED * (starts - 1))
         .into_par_iter()
@@ -44,9 +42,20 @@ pub fn search(data: &Data, base: &Setting, unknowns: &[Unknown], starts: usize) 
     screened.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut all = vec![first];
     all.extend(screened.into_iter().take(starts - 1).map(|s| s.1));
-    let mut found: Vec<Found> = all.par_iter().map(|u| follow(data, base, unknowns, u)).collect();
-    found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    found
+    all.par_iter().map(|u| follow(data, base, unknowns, u)).collect()
+}
+
+/// Places beside the answer `u`: losses can stand for one another, and the points hold them weakest, so they are spread anew.
+pub fn around(base: &Setting, unknowns: &[Unknown], u: &[f64], turn: usize) -> Vec<Vec<f64>> {
+    let lossy = |k: &Unknown| matches!(k.parameter, Parameter::Restitution | Parameter::C1 | Parameter::C2);
+    if !unknowns.iter().any(lossy) {
+        return Vec::new();
+    }
+    let place = |i: usize| {
+        let fresh = spread(base, unknowns, i);
+        unknowns.iter().zip(fresh).zip(u).map(|((k, fresh), u)| if lossy(k) { fresh } else { *u }).collect()
+    };
+    (turn * AROUND + 1..=(turn + 1) * AROUND).map(place).collect()
 }
 
 /// Starting point number `i` of Halton's sequence (1960), within [`REACH`] of the base, or two standard uncertainties of a prior.
@@ -77,30 +86,65 @@ fn radical(mut i: usize, base: usize) -> f64 {
     sum
 }
 
-fn follow(data: &Data, base: &Setting, unknowns: &[Unknown], start: &[f64]) -> Found {
+fn follow(data: &Data, base: &Setting, unknowns: &[Unknown], start: &[f64]) -> Vec<f64> {
     let mut u = start.to_vec();
-    let mut kinds = nearest(data, &at(base, unknowns, &u));
-    let n = data.steps.iter().flat_map(Step::clear).count() + unknowns.len();
-    for _ in 0..ROUNDS {
-        let residuals = |u: &[f64], r: &mut [f64]| residuals(data, base, unknowns, &kinds, u, r);
-        let Ok(minimum) = minimise(residuals, n, &u, &vec![0.1; u.len()]) else { break };
-        u = minimum.parameters;
-        let next = nearest(data, &at(base, unknowns, &u));
-        if next == kinds {
-            break;
+    for part in COARSE {
+        let mut kinds = Vec::new();
+        for _ in 0..ROUNDS {
+            let next = nearest(data, &at(base, unknowns, &u), part);
+            if next == kinds {
+                break;
+            }
+            kinds = next;
+            u = approached(data, base, unknowns, &kinds, part, u);
         }
-        kinds = next;
     }
-    Found { cost: cost(data, base, unknowns, &u), u }
+    u
 }
 
+/// Goes from `u` towards the least of Σ ln (1 + z²) with these motions; steps without one cost nothing.
+pub fn approached(
+    data: &Data,
+    base: &Setting,
+    unknowns: &[Unknown],
+    kinds: &[Option<Kind>],
+    part: f64,
+    u: Vec<f64>,
+) -> Vec<f64> {
+    let n = data.steps.iter().flat_map(Step::clear).count() + unknowns.len();
+    let residuals = |u: &[f64], r: &mut [f64]| residuals(data, base, unknowns, kinds, part, u, r);
+    let Ok(mut minimum) = approach(residuals, n, &u, &vec![0.1; u.len()]) else { return u };
+    fold(unknowns, &mut minimum.parameters);
+    minimum.parameters
+}
+
+/// Σ ln (1 + z²) of all points at the coarser of the κ, each on its nearest motion, and of the priors.
 fn cost(data: &Data, base: &Setting, unknowns: &[Unknown], u: &[f64]) -> f64 {
     let setting = at(base, unknowns, u);
-    let priors = unknowns.iter().map(|unknown| prior(unknown, &setting).powi(2)).sum::<f64>();
-    priors + data.steps.iter().map(|step| near(data, &setting, step).1).sum::<f64>()
+    let one = |step: &Step| Shows::new(data, &setting, step).nearest(step, COARSE[1]).1;
+    priors(unknowns, &setting) + data.steps.iter().map(one).sum::<f64>()
 }
 
-fn residuals(data: &Data, base: &Setting, unknowns: &[Unknown], kinds: &[Kind], u: &[f64], r: &mut [f64]) {
+/// What the priors add to a cost.
+pub fn priors(unknowns: &[Unknown], setting: &Setting) -> f64 {
+    unknowns.iter().map(|unknown| prior(unknown, setting).powi(2)).sum()
+}
+
+/// Σ min (z², 1) of a step's points over all the finer κ, where these amplitudes are shown.
+pub fn missed(step: &Step, shown: [f64; 2]) -> f64 {
+    let z = |(mass, seen): (usize, &Seen), part: f64| away(seen, shown[mass], part).powi(2).min(1.0);
+    FINE.iter().flat_map(|part| step.clear().map(|point| z(point, *part))).sum()
+}
+
+fn residuals(
+    data: &Data,
+    base: &Setting,
+    unknowns: &[Unknown],
+    kinds: &[Option<Kind>],
+    part: f64,
+    u: &[f64],
+    r: &mut [f64],
+) {
     let setting = at(base, unknowns, u);
     let mut r = r.iter_mut();
     let mut put = |value: f64| {
@@ -109,9 +153,10 @@ fn residuals(data: &Data, base: &Setting, unknowns: &[Unknown], kinds: &[Kind], 
         }
     };
     for (step, kind) in data.steps.iter().zip(kinds) {
-        let shows = setting.shows(*kind, setting.force_at(data, step), step.frequency);
+        let shows = kind.map(|kind| setting.shows(kind, setting.force_at(data, step), step.frequency));
         for (mass, seen) in step.clear() {
-            put(bounded(seen.amplitude, shows[mass]));
+            let z = shows.map_or(0.0, |shows| away(seen, shows[mass], part));
+            put((z * z).ln_1p().sqrt().copysign(z));
         }
     }
     for unknown in unknowns {
@@ -120,56 +165,49 @@ fn residuals(data: &Data, base: &Setting, unknowns: &[Unknown], kinds: &[Kind], 
 }
 
 fn prior(unknown: &Unknown, setting: &Setting) -> f64 {
-    unknown.prior.map_or(0.0, |[value, std]| TYPICAL * (setting.get(unknown.parameter) - value) / std)
+    unknown.prior.map_or(0.0, |[value, std]| (setting.get(unknown.parameter) - value) / (WIDE * std))
 }
 
-fn bounded(measured: f64, shown: f64) -> f64 {
-    let r = (measured / shown).ln();
-    if r.is_finite() { r / (1.0 + (r / BOUND).powi(2)).sqrt() } else { BOUND }
+/// z of a point; as far as can be where the motion shows nothing, or does not exist.
+fn away(seen: &Seen, shown: f64, part: f64) -> f64 {
+    const FARTHEST: f64 = 20.0;
+    let r = (seen.amplitude / shown).ln();
+    let r = if r.is_finite() { r.clamp(-FARTHEST, FARTHEST) } else { FARTHEST };
+    r / part.hypot(WIDE * seen.std / seen.amplitude)
 }
 
 /// The motion nearest to each step.
-fn nearest(data: &Data, setting: &Setting) -> Vec<Kind> {
-    data.steps.iter().map(|step| near(data, setting, step).0).collect()
+fn nearest(data: &Data, setting: &Setting, part: f64) -> Vec<Option<Kind>> {
+    data.steps.iter().map(|step| Some(Shows::new(data, setting, step).nearest(step, part).0)).collect()
 }
 
-/// The motion nearest to a step, and the sum of its squared bounded residuals.
-fn near(data: &Data, setting: &Setting, step: &Step) -> (Kind, f64) {
-    let force = setting.force_at(data, step);
-    let away = |kind: Kind| {
-        let shows = setting.shows(kind, force, step.frequency);
-        let clear: f64 = step.clear().map(|(mass, seen)| bounded(seen.amplitude, shows[mass]).powi(2)).sum();
-        (clear, shows)
-    };
-    let (impacting, shows) = away(Kind::Impacting);
-    let (free, alone) = away(Kind::Free);
-    // What should be seen and is not, speaks against a motion; without weight in the sum, since it is the same for all parameters.
-    let missing = |shows: [f64; 2]| {
-        (0..2).any(|mass| {
-            let limit = step.seen[mass].as_ref().and_then(|s| s.limit);
-            limit.is_some_and(|limit| shows[mass] > 2.0 * limit)
-        })
-    };
-    // No sharp border while the parameters are wrong.
-    let clears = alone[0] < 1.5 * setting.rig.gap;
-    let prefers_free = match (missing(shows), clears) {
-        (true, _) => true,
-        (false, true) => free < impacting,
-        (false, false) => false,
-    };
-    if prefers_free { (Kind::Free, free) } else { (Kind::Impacting, impacting) }
+/// What both motions show at a step.
+struct Shows {
+    impacting: [f64; 2],
+    free: [f64; 2],
+    gap: f64,
 }
 
-/// What of the steps is explained to a twentieth by the motions `kinds`: sum of squared logarithms over that, 1 at most for each point, 1
-/// where there is none.
-pub fn unexplained(data: &Data, setting: &Setting, kinds: &[Option<Kind>]) -> f64 {
-    let one = |(step, kind): (&Step, &Option<Kind>)| {
-        let shows = kind.map(|kind| setting.shows(kind, setting.force_at(data, step), step.frequency));
-        let point = |(mass, seen): (usize, &super::data::Seen)| {
-            let r = shows.map_or(f64::INFINITY, |s| (seen.amplitude / s[mass]).ln() / TYPICAL);
-            if r.is_finite() { (r * r).min(1.0) } else { 1.0 }
+impl Shows {
+    fn new(data: &Data, setting: &Setting, step: &Step) -> Shows {
+        let shows = |kind| setting.shows(kind, setting.force_at(data, step), step.frequency);
+        Shows { impacting: shows(Kind::Impacting), free: shows(Kind::Free), gap: setting.rig.gap }
+    }
+
+    /// The motion nearest to the step, and what its points cost.
+    fn nearest(&self, step: &Step, part: f64) -> (Kind, f64) {
+        let costs = |shown: [f64; 2]| -> f64 {
+            step.clear().map(|(mass, seen)| away(seen, shown[mass], part).powi(2).ln_1p()).sum()
         };
-        step.clear().map(point).sum::<f64>()
-    };
-    data.steps.iter().zip(kinds).map(one).sum()
+        let (impacting, free) = (costs(self.impacting), costs(self.free));
+        // What should be seen and is not, speaks against a motion; without weight in the sum, since it is the same for all parameters.
+        let missing = (0..2).any(|mass| {
+            let limit = step.seen[mass].as_ref().and_then(|s| s.limit);
+            limit.is_some_and(|limit| self.impacting[mass] > 2.0 * limit)
+        });
+        // No sharp border while the parameters are wrong.
+        let clears = self.free[0] < 1.5 * self.gap;
+        let prefers_free = missing || clears && free < impacting;
+        if prefers_free { (Kind::Free, free) } else { (Kind::Impacting, impacting) }
+    }
 }

@@ -3,8 +3,9 @@
 use super::super::prediction::Kind;
 use super::super::simulated::Pace;
 use super::data::{Data, Step};
-use super::motion::assigned;
+use super::motion::{Motions, assigned, without_far};
 use super::problem::Problem;
+use super::search::{FINE, approached, missed, priors};
 use super::setting::Setting;
 use super::unknown::{Unknown, at};
 use crate::error::{Error, Result};
@@ -29,6 +30,11 @@ pub struct Settled<'a> {
     pub wavering: usize,
     /// Whether the motions stayed the same in the last round.
     pub agreed: bool,
+    /// Amplitudes left out because they lie far from the motion that the simulated sweep comes to.
+    pub far: usize,
+    /// How far all points lie from what a simulated sweep shows, or from the motion they are taken for, and the parameters from their
+    /// priors: Σ min (z², 1), the less the better.
+    pub missed: f64,
 }
 
 impl Settled<'_> {
@@ -38,6 +44,8 @@ impl Settled<'_> {
 }
 
 /// Settles from the coordinates `start` on.
+///
+/// At first far points pull little ([`super::search`]), since the motions of wrong parameters are wrong, too; in the end all count as stated.
 ///
 /// # Errors
 /// If a round leaves fewer points than parameters.
@@ -49,23 +57,32 @@ pub fn settle<'a>(
     pace: Pace,
 ) -> Result<Settled<'a>> {
     let mut u = start.to_vec();
+    let motions = |u: &[f64]| assigned(data, &at(base, unknowns, u), pace);
+    let mut now = motions(&u)?;
+    for part in FINE {
+        u = approached(data, base, unknowns, &now.kinds, part, u);
+        now = motions(&u)?;
+    }
     let mut out = vec![false; data.steps.len()];
-    let motions = |u: &[f64], out: &[bool]| -> Result<Vec<Option<Kind>>> {
-        let kinds = assigned(data, &at(base, unknowns, u), pace)?;
-        Ok(kinds.into_iter().zip(out).map(|(kind, out)| kind.filter(|_| !out)).collect())
+    let left = |now: &Motions, u: &[f64], out: &[bool]| -> Vec<Option<Kind>> {
+        let near = without_far(data, &at(base, unknowns, u), now.kinds.clone());
+        near.into_iter().zip(out).map(|(kind, out)| kind.filter(|_| !out)).collect()
     };
-    let mut kinds = motions(&u, &out)?;
+    let mut kinds = left(&now, &u, &out);
     let mut round = 0;
     loop {
         let (problem, minimum, reduced, whiteness) = least(data, base, unknowns, &kinds, &u)?;
         u.clone_from(&minimum.parameters);
-        let next = motions(&u, &out)?;
+        now = motions(&u)?;
+        let next = left(&now, &u, &out);
         let agreed = next == kinds;
         round += 1;
         if agreed || round >= ROUNDS + MORE {
             let of = |(step, out): (&Step, &bool)| if *out { step.clear().count() } else { 0 };
             let wavering = data.steps.iter().zip(&out).map(of).sum();
-            return Ok(Settled { problem, minimum, reduced, whiteness, wavering, agreed });
+            let far = now.amplitudes(data) - problem.rows().0.min(now.amplitudes(data));
+            let missed = missing(&problem, &u, &now);
+            return Ok(Settled { problem, minimum, reduced, whiteness, wavering, agreed, far, missed });
         }
         if round >= ROUNDS {
             for ((out, a), b) in out.iter_mut().zip(&kinds).zip(&next) {
@@ -74,6 +91,18 @@ pub fn settle<'a>(
         }
         kinds = next.into_iter().zip(&out).map(|(kind, out)| kind.filter(|_| !out)).collect();
     }
+}
+
+/// How far all points lie from what was simulated, or from the motion they are taken for.
+fn missing(problem: &Problem<'_>, u: &[f64], motions: &Motions) -> f64 {
+    let setting = problem.setting(u);
+    let one = |((step, kind), came): ((&Step, &Option<Kind>), &Option<[f64; 2]>)| {
+        let own = kind.map(|kind| setting.shows(kind, setting.force_at(problem.data, step), step.frequency));
+        let nothing = missed(step, [0.0; 2]);
+        own.iter().chain(came).map(|shown| missed(step, *shown)).fold(nothing, f64::min)
+    };
+    let points: f64 = problem.data.steps.iter().zip(&problem.kinds).zip(&motions.came).map(one).sum();
+    points + FINE.len() as f64 * priors(&problem.unknowns, &setting)
 }
 
 /// The least sum of squares with these motions; weights and scale from the parameters found, twice.

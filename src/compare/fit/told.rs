@@ -8,12 +8,23 @@ use super::settle::Settled;
 const POOR: f64 = 2.0;
 /// Correlations beyond this are named.
 const TIED: f64 = 0.95;
+/// Part of the amplitudes whose motion is known that may lie far from it before the answer is doubted.
+pub const CONTRADICTED: f64 = 0.1;
 /// A value within this part of its bounds lies at one.
 const AT_BOUND: f64 = 1e-3;
 
 /// Sentences in the order of their weight.
 pub fn warnings(fit: &Fit, settled: &Settled<'_>, data: &Data) -> Vec<String> {
     let mut said = Vec::new();
+    let left = fit.left_out;
+    if left.far as f64 > CONTRADICTED * (fit.n + left.far) as f64 {
+        said.push(format!(
+            "{} of {} amplitudes lie far from the motions that this very rig comes to: the answer may be wrong altogether. Begin nearer to the \
+             rig, with more `starts`, or fit fewer parameters.",
+            left.far,
+            fit.n + left.far
+        ));
+    }
     for parameter in &fit.parameters {
         let name = parameter.parameter.name();
         if let Some(reason) = &parameter.reason {
@@ -69,10 +80,17 @@ pub fn warnings(fit: &Fit, settled: &Settled<'_>, data: &Data) -> Vec<String> {
             }
         }
     }
-    if fit.left_out.other_motion + fit.left_out.wavering > 0 {
+    if left.other_motion > 0 {
         said.push(format!(
-            "{} amplitude(s) of other motions than one impact a cycle or none are left out of the fit.",
-            fit.left_out.other_motion + fit.left_out.wavering
+            "{} of {} amplitudes take no part: the rig comes to other motions there than one impact a cycle or none.",
+            left.other_motion,
+            fit.n + left.other_motion + left.far + left.wavering
+        ));
+    }
+    if left.far + left.wavering > 0 {
+        said.push(format!(
+            "{} amplitude(s) take no part because they lie far from their motion, {} because it changed with the parameters.",
+            left.far, left.wavering
         ));
     }
     if !settled.agreed {
@@ -82,7 +100,7 @@ pub fn warnings(fit: &Fit, settled: &Settled<'_>, data: &Data) -> Vec<String> {
     }
     if fit.agreeing * 2 < fit.starts {
         said.push(format!(
-            "Only {} of {} starting points led to this answer: others may fit about as well.",
+            "{} of {} starting points led to this answer: of all that were met it explains the most points.",
             fit.agreeing, fit.starts
         ));
     }

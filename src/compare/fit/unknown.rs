@@ -33,6 +33,15 @@ impl Unknown {
                     "bounds that hold the rig's own value, from which the fit starts",
                 ));
             }
+            if high.is_infinite() && value == low {
+                return Err(Error::usage(
+                    format!(
+                        "{} starts at {value}, where nothing says how large a change of it is",
+                        parameter.name()
+                    ),
+                    format!("a value above {low} in the rig, roughly right"),
+                ));
+            }
             let prior = entry.prior.get(parameter).copied();
             Ok(Unknown { parameter: *parameter, coordinate: Coordinate { low, high }, prior })
         };
@@ -40,12 +49,31 @@ impl Unknown {
     }
 }
 
+/// A parameter without an upper bound goes no farther than this factor from where it started: beyond, nothing pulls it back, and motions
+/// of a rig without dampers, or without a gap, take for ever to simulate.
+const LEASH: f64 = 1e3;
+
 /// `base` with these unknowns at these coordinates.
 pub fn at(base: &Setting, unknowns: &[Unknown], u: &[f64]) -> Setting {
-    unknowns
-        .iter()
-        .zip(u)
-        .fold(*base, |setting, (unknown, u)| setting.with(unknown.parameter, unknown.coordinate.value(*u)))
+    unknowns.iter().zip(u).fold(*base, |setting, (unknown, u)| {
+        let Coordinate { low, high } = unknown.coordinate;
+        let (value, start) = (unknown.coordinate.value(*u), base.get(unknown.parameter) - low);
+        let leashed = high.is_infinite() && start > 0.0;
+        let value = if leashed { low + (value - low).clamp(start / LEASH, start * LEASH) } else { value };
+        setting.with(unknown.parameter, value)
+    })
+}
+
+/// Which coordinates are the lower of the two that give the same value; they are turned into the upper.
+pub fn fold(unknowns: &[Unknown], u: &mut [f64]) -> Vec<bool> {
+    let one = |(unknown, u): (&Unknown, &mut f64)| {
+        let lower = unknown.coordinate.high.is_infinite() && *u < 0.0;
+        if lower {
+            *u = -*u;
+        }
+        lower
+    };
+    unknowns.iter().zip(u).map(one).collect()
 }
 
 /// Coordinates of the unknowns' values in `setting`.
