@@ -16,6 +16,9 @@ pub struct FitEntry {
     pub bounds: BTreeMap<Parameter, [f64; 2]>,
     /// Starting points. Default 8.
     pub starts: Option<usize>,
+    /// Relative standard uncertainty of the calibration of each mass' amplitudes: one factor for all of them, and as much again as a slope
+    /// from the lowest to the highest frequency. Default 0.
+    pub calibration: Option<f64>,
     /// Stiffness of the contact in N/m: the closed form corrected for it is then judged beside the others.
     pub contact_stiffness: Option<f64>,
 }
@@ -35,6 +38,12 @@ impl FitEntry {
         }
         if self.starts.is_some_and(|n| n == 0 || n > MOST_STARTS) {
             return Err(("starts", format!("starts is not from 1 to {MOST_STARTS}")));
+        }
+        if self.calibration.is_some_and(|c| !(0.0..0.5).contains(&c)) {
+            return Err((
+                "calibration",
+                "calibration is not from 0 to 0.5: it is relative, 0.01 for 1 %".to_owned(),
+            ));
         }
         if self.contact_stiffness.is_some_and(|k| !(k.is_finite() && k > 0.0)) {
             return Err(("contact_stiffness", "contact_stiffness is not above 0 N/m".to_owned()));

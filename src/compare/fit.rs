@@ -4,6 +4,7 @@
 //! or none). Which motion a step shows, a simulated sweep with the parameters found so far decides; parameters and motions are found in
 //! turn until both stay. Steps of any other pattern are left out and counted.
 
+mod calibration;
 mod coordinate;
 mod data;
 mod held;
@@ -149,7 +150,8 @@ pub fn fit(
     entry: &FitEntry,
 ) -> Result<Fit> {
     rig.check()?;
-    let data = Data::new(force, responses)?;
+    let mut data = Data::new(force, responses)?;
+    data.calibration = entry.calibration.unwrap_or(0.0);
     let base = Setting { rig: *rig, force: data.force, contact: None };
     let unknowns = Unknown::all(entry, &base)?;
     let starts = entry.starts.unwrap_or(STARTS);

@@ -53,6 +53,8 @@ pub struct Data {
     pub guessed: bool,
     /// Points that do not stand out of the noise.
     pub faint: usize,
+    /// Relative standard uncertainty that all amplitudes of a mass share; 0 where none is stated.
+    pub calibration: f64,
     /// What was assumed.
     pub warnings: Vec<String>,
 }
@@ -89,6 +91,7 @@ impl Data {
             force: force.or(median(&medians)).unwrap_or(f64::NAN),
             guessed: false,
             faint: 0,
+            calibration: 0.0,
             warnings: Vec::new(),
         };
         let known = relative(usable.iter().flat_map(|u| &u.0.points));

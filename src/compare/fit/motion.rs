@@ -84,7 +84,10 @@ pub fn without_far(data: &Data, setting: &Setting, kinds: Vec<Option<Kind>>) -> 
             [0.0, step.frequency_std].map(|df| setting.shows(kind, force, step.frequency + df));
         let clear = step.clear().filter(|(mass, _)| counts(Some(kind), *mass));
         let away = |(mass, seen): (usize, &super::data::Seen)| {
-            (seen.amplitude - shows[mass]).abs() / seen.std.hypot(moved[mass] - shows[mass])
+            // Both errors of a calibration.
+            let calibration = data.calibration * shows[mass] * std::f64::consts::SQRT_2;
+            (seen.amplitude - shows[mass]).abs()
+                / seen.std.hypot(moved[mass] - shows[mass]).hypot(calibration)
         };
         clear.map(away).max_by(f64::total_cmp)
     };

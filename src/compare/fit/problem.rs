@@ -1,6 +1,7 @@
 //! Weighted residuals of the steps whose motion is known.
 
 use super::super::prediction::Kind;
+use super::calibration::Calibration;
 use super::data::{Data, Step};
 use super::setting::Setting;
 use super::unknown::{Unknown, at, fold};
@@ -23,6 +24,8 @@ pub struct Problem<'a> {
     pub slopes: Vec<[f64; 2]>,
     /// Variances of the data are so much larger than stated.
     pub scale: f64,
+    /// Errors shared by all points of a mass.
+    pub calibration: Calibration,
 }
 
 impl Problem<'_> {
@@ -48,7 +51,7 @@ impl Problem<'_> {
         at(&self.base, &self.unknowns, u)
     }
 
-    /// Takes the slopes from the setting at `u`.
+    /// Takes the slopes and the shares of calibrations from the setting at `u`.
     pub fn weigh(&mut self, u: &[f64]) {
         let setting = self.setting(u);
         let slope = |(step, kind): (&Step, &Option<Kind>)| {
@@ -65,39 +68,66 @@ impl Problem<'_> {
             w
         };
         self.slopes = self.data.steps.iter().zip(&self.kinds).map(slope).collect();
+        self.calibration = Calibration::new(&self.shares(&setting));
+    }
+
+    /// By how much each residual changes by one standard uncertainty of the calibrations: of each mass' factor, and of its slope, 1 at the
+    /// ends of the frequencies.
+    fn shares(&self, setting: &Setting) -> Vec<Vec<f64>> {
+        if self.data.calibration == 0.0 {
+            return Vec::new();
+        }
+        let frequencies = self.data.steps.iter().map(|s| s.frequency);
+        let (low, high) =
+            frequencies.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), f| (l.min(f), h.max(f)));
+        let share = |mass: usize, sloped: bool| {
+            let error = |step: &Step, shown: [f64; 2]| {
+                let along = if sloped { (2.0 * step.frequency - low - high) / (high - low) } else { 1.0 };
+                let mut error = [0.0; 2];
+                error[mass] = shown[mass] * self.data.calibration * along;
+                error
+            };
+            self.scaled(setting, error)
+        };
+        [(0, false), (1, false), (0, true), (1, true)].map(|(mass, sloped)| share(mass, sloped)).to_vec()
+    }
+
+    /// What `of` makes of each step and the amplitudes shown there, over the standard deviations of both masses.
+    fn scaled(&self, setting: &Setting, of: impl Fn(&Step, [f64; 2]) -> [f64; 2]) -> Vec<f64> {
+        let mut all = Vec::new();
+        for ((step, kind), w) in self.data.steps.iter().zip(&self.kinds).zip(&self.slopes) {
+            let Some(kind) = *kind else { continue };
+            let shows = setting.shows(kind, setting.force_at(self.data, step), step.frequency);
+            let of = of(step, shows);
+            let mut s = [None; 2];
+            for (mass, seen) in step.clear().filter(|(mass, _)| counts(Some(kind), *mass)) {
+                s[mass] = Some(of[mass] / seen.std);
+            }
+            let square = w[0] * w[0] + w[1] * w[1];
+            let shared = s[0].unwrap_or(0.0) * w[0] + s[1].unwrap_or(0.0) * w[1];
+            let part = if square > 0.0 { (1.0 - 1.0 / (1.0 + square).sqrt()) / square } else { 0.0 };
+            all.extend(s.iter().zip(w).filter_map(|(s, w)| Some((*s)? - part * shared * w)));
+        }
+        all
     }
 
     /// Residuals at `u` in units of their standard deviation.
     pub fn residuals(&self, u: &[f64], r: &mut [f64]) {
         let setting = self.setting(u);
-        let mut r = r.iter_mut();
-        let mut put = |value: f64| {
-            if let Some(place) = r.next() {
-                *place = value;
-            }
+        let off = |step: &Step, shown: [f64; 2]| {
+            [0, 1]
+                .map(|mass: usize| step.seen[mass].as_ref().map_or(0.0, |seen| seen.amplitude) - shown[mass])
         };
-        let size = 1.0 / self.scale.sqrt();
-        for ((step, kind), w) in self.data.steps.iter().zip(&self.kinds).zip(&self.slopes) {
-            let Some(kind) = *kind else { continue };
-            let shows = setting.shows(kind, setting.force_at(self.data, step), step.frequency);
-            let mut s = [None; 2];
-            for (mass, seen) in step.clear().filter(|(mass, _)| counts(Some(kind), *mass)) {
-                s[mass] = Some((seen.amplitude - shows[mass]) / seen.std);
-            }
-            let square = w[0] * w[0] + w[1] * w[1];
-            let shared = s[0].unwrap_or(0.0) * w[0] + s[1].unwrap_or(0.0) * w[1];
-            let part = if square > 0.0 { (1.0 - 1.0 / (1.0 + square).sqrt()) / square } else { 0.0 };
-            for (s, w) in s.iter().zip(w) {
-                if let Some(s) = s {
-                    put(size * (s - part * shared * w));
-                }
-            }
-        }
+        let widened = self.scale.sqrt();
+        let mut all = self.scaled(&setting, off);
+        all.iter_mut().for_each(|r| *r /= widened);
+        self.calibration.allow(&mut all, widened);
         for unknown in &self.unknowns {
             if let Some([value, std]) = unknown.prior {
-                put((setting.get(unknown.parameter) - value) / std);
+                all.push((setting.get(unknown.parameter) - value) / std);
             }
         }
+        r.iter_mut().zip(all).for_each(|(r, value)| *r = value);
     }
 
     /// Residuals at `u`, data and priors.

@@ -2,6 +2,7 @@
 
 use super::super::prediction::Kind;
 use super::super::simulated::Pace;
+use super::calibration::Calibration;
 use super::data::{Data, Step};
 use super::motion::{Motions, assigned, without_far};
 use super::problem::Problem;
@@ -120,6 +121,7 @@ pub fn least<'a>(
         kinds: kinds.to_vec(),
         slopes: Vec::new(),
         scale: 1.0,
+        calibration: Calibration::default(),
     };
     let (n, priors) = problem.rows();
     if n + priors < unknowns.len() || n == 0 {
