@@ -9,8 +9,9 @@ mod noise;
 
 use campaign::{Direction, list, measure, truth_header};
 use std::path::Path;
-use vibroimpact::campaign::Campaign;
-use vibroimpact::report::job::{JobOptions, responses};
+use vibroimpact::campaign::{Campaign, FitEntry, Parameter};
+use vibroimpact::compare::fit::Fit;
+use vibroimpact::report::job::{JobOptions, fit, responses};
 
 fn committed(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/two_mass_rig").join(name);
@@ -33,7 +34,7 @@ fn the_upward_sweep_comes_out_again() {
             assert!(truth.contains(&row), "TRUTH.csv lacks {row}");
         }
         if shown.contains(&number) {
-            for (name, text) in point.files() {
+            for (name, text) in point.files(0) {
                 assert_eq!(name.len(), 11);
                 assert!(text == committed(&name), "{name} differs from what the generator makes");
                 compared += 1;
@@ -119,4 +120,75 @@ fn the_rig_is_found_again_in_its_spectra() {
     }
     // The passive mass at rest: 5 points going up and 20 going down. No other amplitude is in the noise.
     assert_eq!((at_rest, limited), (25, 25));
+}
+
+/// The whole campaign measured again with the noise of these draws, and all that can be found of the rig fitted to each.
+fn fitted_again(draws: std::ops::RangeInclusive<u64>) -> Vec<Fit> {
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/two_mass_rig");
+    let folder = tempfile::tempdir().unwrap();
+    let own = |draw: u64| folder.path().join(draw.to_string());
+    for draw in draws.clone() {
+        std::fs::create_dir(own(draw)).unwrap();
+        std::fs::copy(shipped.join("campaign.toml"), own(draw).join("campaign.toml")).unwrap();
+    }
+    for direction in [Direction::Up, Direction::Down] {
+        for draw in draws.clone() {
+            for mass in [1, 2] {
+                let (name, text) = list(direction, mass);
+                std::fs::write(own(draw).join(name), text).unwrap();
+            }
+        }
+        measure(direction, usize::MAX, |point| {
+            for draw in draws.clone() {
+                for (name, text) in point.files(draw) {
+                    std::fs::write(own(draw).join(name), text).unwrap();
+                }
+            }
+            Ok(())
+        })
+        .unwrap();
+    }
+    let fitted = |draw: u64| {
+        let mut campaign = Campaign::from_path(own(draw).join("campaign.toml")).unwrap();
+        let found = responses(&campaign, JobOptions::default(), &()).unwrap();
+        campaign.fit = FitEntry { parameters: Parameter::ALL.to_vec(), starts: Some(1), ..campaign.fit };
+        fit(&campaign, &campaign.rig.unwrap(), &found).unwrap().unwrap()
+    };
+    draws.map(fitted).collect()
+}
+
+/// Distance of the truth from an answer in its own uncertainties and correlations, squared.
+fn apart(fit: &Fit) -> f64 {
+    let n = fit.parameters.len();
+    let z: Vec<f64> =
+        fit.parameters.iter().map(|p| (p.estimate.value - p.start) / p.estimate.std.unwrap()).collect();
+    let correlations = nalgebra::DMatrix::from_fn(n, n, |i, j| fit.correlations[i][j]);
+    let z = nalgebra::DVector::from_vec(z);
+    z.dot(&(correlations.try_inverse().unwrap() * &z))
+}
+
+/// χ² of 7 degrees of freedom that is exceeded in 5 % of cases (Abramowitz & Stegun, table 26.8).
+const SEVEN: f64 = 14.067;
+
+/// Through files, spectra, integration, and sweeps: the fit begins at the truth, which is the rig of the campaign.
+#[test]
+fn the_truth_lies_within_the_joint_region_of_the_fit() {
+    let inside = fitted_again(1..=12)
+        .iter()
+        .map(apart)
+        .inspect(|a| println!("{a:.1}"))
+        .filter(|a| *a <= SEVEN)
+        .count();
+    println!("{inside} of 12, draws 1 to 12");
+    // Of a binomial of 0.95, nine or fewer of twelve are left in one of five hundred cases.
+    assert!(inside >= 10, "{inside}");
+}
+
+/// The same a hundred times, to be run by hand.
+#[test]
+#[ignore = "a measurement: minutes"]
+fn of_a_hundred_draws_the_truth_lies_within_the_joint_region_of_92_to_98() {
+    let inside = fitted_again(1..=100).iter().map(apart).filter(|a| *a <= SEVEN).count();
+    println!("{inside} of 100, draws 1 to 100");
+    assert!((92..=98).contains(&inside), "{inside}");
 }

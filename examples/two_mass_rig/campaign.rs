@@ -117,8 +117,8 @@ fn pattern(mut motion: Simulation) -> Result<String> {
 }
 
 impl Point {
-    /// Names and contents of the force spectrum and both velocity spectra.
-    pub fn files(&self) -> [(String, String); 3] {
+    /// Names and contents of the force spectrum and both velocity spectra, with the noise of this draw.
+    pub fn files(&self, draw: u64) -> [(String, String); 3] {
         let omega = TAU * self.frequency;
         let force: Vec<f64> =
             (0..SAMPLES).map(|i| FORCE * (omega * i as f64 * INTERVAL + self.phase).cos()).collect();
@@ -127,7 +127,7 @@ impl Point {
         let mean = |x: fn(&State) -> f64| -> Vec<f64> {
             self.states.windows(2).map(|pair| (x(&pair[1]) - x(&pair[0])) / INTERVAL).collect()
         };
-        let noise = |channel| Noise::new(self.direction as u64, self.number as u64, channel);
+        let noise = |channel| Noise::new(draw, self.direction as u64, self.number as u64, channel);
         let spectra = [
             analyser::force(&force, &mut noise(0)),
             analyser::velocity(&mean(|s| s.x1), &mut noise(1)),

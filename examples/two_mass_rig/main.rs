@@ -33,7 +33,7 @@ fn main() -> Result<()> {
         }
         measure(direction, usize::MAX, |point| {
             truth.push_str(&point.truth());
-            point.files().iter().try_for_each(|(name, text)| write(name, text))
+            point.files(0).iter().try_for_each(|(name, text)| write(name, text))
         })?;
     }
     write("TRUTH.csv", &truth)

@@ -19,8 +19,6 @@ pub struct FitEntry {
     /// Relative standard uncertainty of the calibration of each mass' amplitudes: one factor for all of them, and as much again as a slope
     /// from the lowest to the highest frequency. Default 0.
     pub calibration: Option<f64>,
-    /// Stiffness of the contact in N/m: the closed form corrected for it is then judged beside the others.
-    pub contact_stiffness: Option<f64>,
 }
 
 /// Starting points, at most.
@@ -44,9 +42,6 @@ impl FitEntry {
                 "calibration",
                 "calibration is not from 0 to 0.5: it is relative, 0.01 for 1 %".to_owned(),
             ));
-        }
-        if self.contact_stiffness.is_some_and(|k| !(k.is_finite() && k > 0.0)) {
-            return Err(("contact_stiffness", "contact_stiffness is not above 0 N/m".to_owned()));
         }
         for (parameter, [value, std]) in &self.prior {
             let name = parameter.name();

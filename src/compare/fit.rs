@@ -32,7 +32,7 @@ use crate::record::Direction;
 use data::Data;
 use held::Held;
 use rayon::prelude::*;
-use search::{around, search};
+use search::{Led, around, search};
 use serde::Serialize;
 use setting::Setting;
 use settle::{Settled, settle};
@@ -134,17 +134,20 @@ const STARTS: usize = 8;
 const TURNS: usize = 6;
 /// So many turns in which no answer came nearer by [`BETTER`] are the last.
 const IDLE: usize = 2;
+/// Part of what all points can miss below which there is nothing better to be found.
+const EXPLAINED: f64 = 0.1;
 /// One point more within one κ.
 const BETTER: f64 = 1.0;
 
 /// Finds the parameters that `entry` asks for from displacement responses, beginning with `rig` and the stated `force` (N; `None`: each
-/// point its measured one).
+/// point its measured one). With the stiffness of the `contact` (N/m) the closed form corrected for it is judged beside the others.
 ///
 /// # Errors
 /// If nothing can be fitted, the entry is impossible, or there are fewer usable points than parameters.
 pub fn fit(
     rig: &Rig,
     force: Option<f64>,
+    contact: Option<f64>,
     pace: Pace,
     responses: &[Response],
     entry: &FitEntry,
@@ -160,7 +163,7 @@ pub fn fit(
     let profile = profile::profile(&settled, &held, held.worst());
     let mut fit = gathered(&settled, &held, &base, profile);
     (fit.starts, fit.agreeing) = (starts, agreeing(&ends, &settled.minimum.parameters, &held));
-    fit.rungs = rung::rungs(&settled, responses, entry.contact_stiffness);
+    fit.rungs = rung::rungs(&settled, responses, contact, pace);
     fit.warnings = told::warnings(&fit, &settled, &data);
     Ok(fit)
 }
@@ -185,19 +188,24 @@ fn identify<'a>(
     let all = |places: &[Vec<f64>]| -> Vec<Result<Settled<'a>>> {
         places.par_iter().map(|u| settle(data, base, unknowns, u, pace)).collect()
     };
-    let mut found = all(&search(data, base, unknowns, starts.max(1)));
-    let ends = found.iter().flatten().map(|s| s.minimum.parameters.clone()).collect();
+    let led = search(data, base, unknowns, starts.max(1));
+    let mut found = all(&led.iter().map(|l| l.u.clone()).collect::<Vec<_>>());
+    let end = |(settled, led): (&Result<Settled<'a>>, &Led)| {
+        Some(vec![settled.as_ref().ok()?.minimum.parameters.clone(); led.starts])
+    };
+    let ends = found.iter().zip(&led).filter_map(end).flatten().collect();
     // Where the rig is known well, no search is nearer than the rig itself.
     found.extend(all(&[coordinates(base, unknowns)]));
     let (mut best, mut idle) = (nearest(found)?, 0);
+    let most = search::MOST * clear as f64;
     for turn in 0..TURNS {
+        if idle == IDLE || best.missed < EXPLAINED * most {
+            break;
+        }
         let around = around(base, unknowns, &best.minimum.parameters, turn);
         match nearest(all(&around)) {
             Ok(next) if next.missed < best.missed - BETTER => (best, idle) = (next, 0),
             _ => idle += 1,
-        }
-        if idle == IDLE {
-            break;
         }
     }
     Ok((best, ends))

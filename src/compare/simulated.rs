@@ -1,9 +1,9 @@
 //! The motion of a rig that is led through the points of a sweep one after another, as the measured one was.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::model::regime::Watch;
 use crate::model::sweep::{Gauge, Observable};
-use crate::model::{Compliant, Excitation, Law, Motion, Regime, Rig, Simulation, Sine, State};
+use crate::model::{Compliant, Event, Excitation, Law, Motion, Regime, Rig, Simulation, Sine, State};
 use std::f64::consts::TAU;
 
 /// How long the rig stays at a point.
@@ -40,17 +40,56 @@ pub struct Simulated {
 /// which the rig starts from rest again.
 pub fn simulated(rig: &Rig, law: Option<Law>, points: &[(f64, f64)], pace: Pace) -> Vec<Result<Simulated>> {
     match law {
-        None => led(rig, points, pace, |sine, state, phase| Simulation::from_state(rig, &sine, state, phase)),
-        Some(law) => led(rig, points, pace, |sine, state, phase| {
-            Compliant::new(rig, &Excitation::Sine(sine), law, state, phase)
-        }),
+        None => led(
+            rig,
+            points,
+            |motion| read(motion, pace),
+            |sine, state, phase| Simulation::from_state(rig, &sine, state, phase),
+        ),
+        Some(law) => led(
+            rig,
+            points,
+            |motion| read(motion, pace),
+            |sine, state, phase| Compliant::new(rig, &Excitation::Sine(sine), law, state, phase),
+        ),
     }
+}
+
+/// As [`simulated`] with impacts that take no time, but a point with more impacts than a plain pattern has is given up, where a rig of wrong
+/// parameters could take minutes.
+pub fn simulated_plain(rig: &Rig, points: &[(f64, f64)], pace: Pace) -> Vec<Result<Simulated>> {
+    let plain = |motion: &mut Simulation| if is_busy(motion)? { Err(busy()) } else { read(motion, pace) };
+    led(rig, points, plain, |sine, state, phase| Simulation::from_state(rig, &sine, state, phase))
+}
+
+/// Cycles that are looked at for many impacts, twice: at first, and when what there was at first may have died away.
+const LOOKED_AT: u32 = 8;
+/// Flights a cycle that no plain pattern has.
+const BUSY: u32 = 100;
+
+/// Whether a motion has more flights than a plain pattern.
+fn is_busy(motion: &mut Simulation) -> Result<bool> {
+    for _ in 0..2 {
+        let until = motion.time() + f64::from(LOOKED_AT) / motion.frequency();
+        let mut flights = 0;
+        while motion.fly(until)?.event != Event::Reached {
+            flights += 1;
+            if flights > BUSY * LOOKED_AT {
+                return Ok(true);
+            }
+        }
+    }
+    Ok(false)
+}
+
+fn busy() -> Error {
+    Error::refused(format!("the masses meet more than {BUSY} times a cycle"))
 }
 
 fn led<M: Motion>(
     rig: &Rig,
     points: &[(f64, f64)],
-    pace: Pace,
+    read: impl Fn(&mut M) -> Result<Simulated>,
     make: impl Fn(Sine, State, f64) -> Result<M>,
 ) -> Vec<Result<Simulated>> {
     let rest = (Simulation::at_rest(rig), 0.0);
@@ -58,7 +97,7 @@ fn led<M: Motion>(
     let one = |&(frequency, force): &(f64, f64)| {
         let (state, phase) = std::mem::replace(&mut now, rest);
         let mut motion = make(Sine { force, frequency }, state, phase)?;
-        let found = read(&mut motion, pace)?;
+        let found = read(&mut motion)?;
         now = (motion.state(), motion.phase());
         Ok(found)
     };

@@ -357,8 +357,9 @@ pub fn fit(campaign: &Campaign, rig: &Rig, responses: &[Response]) -> Result<Opt
         return Ok(None);
     }
     let force = campaign.excitation.and_then(|e| e.force);
-    crate::compare::fit(rig, force, crate::compare::Predicting::from(campaign).pace, responses, &campaign.fit)
-        .map(Some)
+    let contact = campaign.contact.and_then(|c| c.stiffness);
+    let pace = crate::compare::Predicting::from(campaign).pace;
+    crate::compare::fit(rig, force, contact, pace, responses, &campaign.fit).map(Some)
 }
 
 /// As [`fit`] with its warnings; data that allow no answer are no reason to give up the rest.

@@ -60,7 +60,7 @@ pub struct Data {
 }
 
 /// Part of an amplitude that stands for its uncertainty where none is known; the residuals scale it.
-const GUESS: f64 = 1e-2;
+pub const GUESS: f64 = 1e-2;
 
 impl Data {
     /// The points of displacement responses that name their mass and direction. `force` in N is the stated one.

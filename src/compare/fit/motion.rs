@@ -4,7 +4,7 @@ use super::super::forcing::median;
 use super::super::observable::Observable;
 use super::super::pair::came_to;
 use super::super::prediction::{Kind, Motion, motions};
-use super::super::simulated::{Pace, simulated};
+use super::super::simulated::{Pace, simulated_plain};
 use super::data::{Data, Step};
 use super::problem::counts;
 use super::setting::Setting;
@@ -16,6 +16,8 @@ use rayon::prelude::*;
 pub struct Motions {
     /// `None` where it is none of the closed form.
     pub kinds: Vec<Option<Kind>>,
+    /// The same by the simulated sweep alone, whatever was measured.
+    pub history: Vec<Option<Kind>>,
     /// What the simulated sweep shows of both masses in m; `None` where it has no answer.
     pub came: Vec<Option<[f64; 2]>>,
 }
@@ -37,12 +39,13 @@ impl Motions {
 /// # Errors
 /// If the rig is impossible.
 pub fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Motions> {
-    let sequence = |sequence: &Vec<usize>| -> Result<Vec<(usize, Option<Kind>, Option<[f64; 2]>)>> {
+    type One = (usize, [Option<Kind>; 2], Option<[f64; 2]>);
+    let sequence = |sequence: &Vec<usize>| -> Result<Vec<One>> {
         let points: Vec<(f64, f64)> = sequence
             .iter()
             .map(|i| (data.steps[*i].frequency, setting.force_at(data, &data.steps[*i])))
             .collect();
-        let came = simulated(&setting.rig, None, &points, pace);
+        let came = simulated_plain(&setting.rig, &points, pace);
         let one = |((i, (frequency, force)), came): ((&usize, &(f64, f64)), &Result<_>)| {
             let motions = motions(&setting.rig, *force, *frequency, Observable::Fundamental)?;
             let history = came.as_ref().ok().and_then(|came| came_to(came, &motions));
@@ -56,15 +59,15 @@ pub fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Motions> {
                 Kind::Free => step.seen[1].as_ref().is_none_or(|s| s.limit.is_some()),
                 _ => upper.is_some_and(Motion::is_seen),
             });
-            Ok((*i, kind, came.as_ref().ok().map(|came| came.amplitude)))
+            Ok((*i, [kind, history.map(|m| m.kind)], came.as_ref().ok().map(|came| came.amplitude)))
         };
         sequence.iter().zip(&points).zip(&came).map(one).collect()
     };
     let all: Vec<_> = data.sequences.par_iter().map(sequence).collect::<Result<_>>()?;
     let n = data.steps.len();
-    let mut motions = Motions { kinds: vec![None; n], came: vec![None; n] };
-    for (i, kind, came) in all.into_iter().flatten() {
-        (motions.kinds[i], motions.came[i]) = (kind, came);
+    let mut motions = Motions { kinds: vec![None; n], history: vec![None; n], came: vec![None; n] };
+    for (i, [kind, history], came) in all.into_iter().flatten() {
+        (motions.kinds[i], motions.history[i], motions.came[i]) = (kind, history, came);
     }
     Ok(motions)
 }

@@ -81,24 +81,23 @@ impl Problem<'_> {
         let (low, high) =
             frequencies.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), f| (l.min(f), h.max(f)));
         let share = |mass: usize, sloped: bool| {
-            let error = |step: &Step, shown: [f64; 2]| {
+            self.scaled(|step, kind| {
                 let along = if sloped { (2.0 * step.frequency - low - high) / (high - low) } else { 1.0 };
+                let shows = setting.shows(kind, setting.force_at(self.data, step), step.frequency);
                 let mut error = [0.0; 2];
-                error[mass] = shown[mass] * self.data.calibration * along;
+                error[mass] = shows[mass] * self.data.calibration * along;
                 error
-            };
-            self.scaled(setting, error)
+            })
         };
         [(0, false), (1, false), (0, true), (1, true)].map(|(mass, sloped)| share(mass, sloped)).to_vec()
     }
 
-    /// What `of` makes of each step and the amplitudes shown there, over the standard deviations of both masses.
-    fn scaled(&self, setting: &Setting, of: impl Fn(&Step, [f64; 2]) -> [f64; 2]) -> Vec<f64> {
+    /// What `of` makes of each step and its motion, in m for both masses, over their standard deviations.
+    fn scaled(&self, of: impl Fn(&Step, Kind) -> [f64; 2]) -> Vec<f64> {
         let mut all = Vec::new();
         for ((step, kind), w) in self.data.steps.iter().zip(&self.kinds).zip(&self.slopes) {
             let Some(kind) = *kind else { continue };
-            let shows = setting.shows(kind, setting.force_at(self.data, step), step.frequency);
-            let of = of(step, shows);
+            let of = of(step, kind);
             let mut s = [None; 2];
             for (mass, seen) in step.clear().filter(|(mass, _)| counts(Some(kind), *mass)) {
                 s[mass] = Some(of[mass] / seen.std);
@@ -111,17 +110,23 @@ impl Problem<'_> {
         all
     }
 
+    /// Measured less what `shown` makes of each step and its motion, in units of their standard deviation.
+    pub fn off(&self, shown: impl Fn(&Step, Kind) -> [f64; 2]) -> Vec<f64> {
+        let widened = self.scale.sqrt();
+        let mut all = self.scaled(|step, kind| {
+            let shown = shown(step, kind);
+            [0, 1].map(|mass: usize| step.seen[mass].as_ref().map_or(0.0, |s| s.amplitude) - shown[mass])
+        });
+        all.iter_mut().for_each(|r| *r /= widened);
+        self.calibration.allow(&mut all, widened);
+        all
+    }
+
     /// Residuals at `u` in units of their standard deviation.
     pub fn residuals(&self, u: &[f64], r: &mut [f64]) {
         let setting = self.setting(u);
-        let off = |step: &Step, shown: [f64; 2]| {
-            [0, 1]
-                .map(|mass: usize| step.seen[mass].as_ref().map_or(0.0, |seen| seen.amplitude) - shown[mass])
-        };
-        let widened = self.scale.sqrt();
-        let mut all = self.scaled(&setting, off);
-        all.iter_mut().for_each(|r| *r /= widened);
-        self.calibration.allow(&mut all, widened);
+        let mut all =
+            self.off(|step, kind| setting.shows(kind, setting.force_at(self.data, step), step.frequency));
         for unknown in &self.unknowns {
             if let Some([value, std]) = unknown.prior {
                 all.push((setting.get(unknown.parameter) - value) / std);

@@ -1,17 +1,27 @@
 //! No more model than the points ask for: models of rising order, each judged by points that it was not fitted to.
 
 use super::super::prediction::Kind;
-use super::data::{Data, Step};
-use super::problem::{Problem, counts};
+use super::super::simulated::Pace;
+use super::data::{Data, Seen, Step};
+use super::motion::assigned;
+use super::problem::Problem;
+use super::setting::Setting;
 use super::settle::{Settled, left};
+use super::unknown::coordinates;
 use crate::campaign::Parameter;
 use crate::measure::residuals::aicc;
 use crate::measure::response::Response;
 use rayon::prelude::*;
 use serde::Serialize;
+use std::ops::RangeInclusive;
 
 /// Steps on both sides of a feature that are held out with it.
 const BESIDE: usize = 2;
+
+/// Part of a frequency by which steps of two sweeps may differ and be the same.
+const SAME: f64 = 1e-3;
+/// The model without impacts.
+const LINEAR: &str = "linear";
 
 /// A stretch of steps that was held out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -20,7 +30,7 @@ pub struct Block {
     pub feature: String,
     /// Its frequency in Hz.
     pub frequency: f64,
-    /// Mean of |ln (measured/predicted)| over the amplitudes held out, each 1 at most: about the relative error.
+    /// Mean of |ln (measured/predicted)| over all amplitudes of the steps held out, each 1 at most: about the relative error.
     pub error: f64,
 }
 
@@ -35,7 +45,7 @@ pub struct Rung {
     pub held_out: Option<f64>,
     /// Standard error of that mean, by the scatter of the blocks.
     pub held_out_std: Option<f64>,
-    /// Akaike's criterion of the logarithms of measured over predicted, corrected for their number (Hurvich & Tsai 1989).
+    /// Akaike's criterion of the weighted residuals of all amplitudes of the answer, corrected for their number (Hurvich & Tsai 1989).
     pub aicc: Option<f64>,
     /// Probability that white noise shows as much correlation along frequency as its residuals.
     pub whiteness: Option<f64>,
@@ -47,10 +57,11 @@ pub struct Rung {
 
 /// Judges the rungs; `contact` (N/m) is the stiffness of the contact, where it is known.
 ///
-/// Blocks of steps around each resonance, antiresonance and jump, and away from them, are left out in turn, the rest is fitted, and what was
-/// left out predicted (blocked cross-validation: D. R. Roberts et al., *Ecography* 40 (2017) 913). The simplest model within one standard
-/// error of the best is chosen (L. Breiman et al., *Classification and Regression Trees* (1984), 3.4.3).
-pub fn rungs(settled: &Settled<'_>, responses: &[Response], contact: Option<f64>) -> Vec<Rung> {
+/// Steps around each resonance, antiresonance and jump, and a stretch away from them, are left out in turn, in all sweeps; the rest is
+/// fitted, and what was left out predicted (blocked cross-validation: D. R. Roberts et al., *Ecography* 40 (2017) 913). No measured
+/// amplitude tells a model which motion a step left out shows: the simulated sweep of its own rig does. The simplest model within one
+/// standard error of the best is chosen (L. Breiman et al., *Classification and Regression Trees* (1984), 3.4.3).
+pub fn rungs(settled: &Settled<'_>, responses: &[Response], contact: Option<f64>, pace: Pace) -> Vec<Rung> {
     let full = &settled.problem;
     let blocks = blocks(full, responses);
     let mut linear = full.clone();
@@ -58,14 +69,14 @@ pub fn rungs(settled: &Settled<'_>, responses: &[Response], contact: Option<f64>
         *kind = kind.filter(|_| step.clear().any(|(mass, _)| mass == 0)).map(|_| Kind::Free);
     }
     linear.unknowns.retain(|u| matches!(u.parameter, Parameter::Force | Parameter::C1 | Parameter::K1));
-    let mut models = vec![("linear", linear), ("closed form", full.clone())];
+    let mut models = vec![(LINEAR, linear), ("closed form", full.clone())];
     if contact.is_some() {
         let mut soft = full.clone();
         soft.base.contact = contact;
         models.push(("soft-corrected closed form", soft));
     }
-    let mut rungs: Vec<Rung> =
-        models.iter().filter_map(|(name, problem)| rung(name, problem, settled, &blocks)).collect();
+    let judged = |(name, problem): &(&'static str, Problem<'_>)| rung(name, problem, settled, &blocks, pace);
+    let mut rungs: Vec<Rung> = models.iter().filter_map(judged).collect();
     let best =
         rungs.iter().filter_map(|r| Some((r.held_out?, r.held_out_std?))).min_by(|a, b| a.0.total_cmp(&b.0));
     if let Some((mean, std)) = best
@@ -81,18 +92,19 @@ fn rung(
     problem: &Problem<'_>,
     settled: &Settled<'_>,
     blocks: &[(String, f64, Vec<usize>)],
+    pace: Pace,
 ) -> Option<Rung> {
-    let start: Vec<f64> =
-        problem.unknowns.iter().map(|u| u.coordinate.of(settled.setting().get(u.parameter))).collect();
-    let fitted = |problem: &Problem<'_>| -> Option<Vec<f64>> {
-        if start.is_empty() { Some(Vec::new()) } else { Some(problem.solve(&start).ok()?.parameters) }
-    };
-    let kinds = &settled.problem.kinds;
-    let all: Vec<usize> = (0..kinds.len()).collect();
-    let u = fitted(problem)?;
-    let errors = errors(problem, &u, kinds, &all);
-    let sum = errors.iter().map(|e| e * e).sum();
-    let (_, whiteness) = left(problem, &problem.at(&u));
+    let (full, from) = (&settled.problem, settled.setting());
+    let (own, u) = fitted(problem.clone(), &from)?;
+    let setting = own.setting(&u);
+    // One set of weights, that of the answer, for all models: sums of squares over different ones cannot be compared.
+    let linear = model == LINEAR;
+    let off = full.off(|step, kind| {
+        let kind = if linear { Kind::Free } else { kind };
+        setting.shows(kind, setting.force_at(full.data, step), step.frequency)
+    });
+    let sum = off.iter().map(|r| r * r).sum();
+    let (_, whiteness) = left(&own, &own.at(&u));
     let judged: Vec<Block> = blocks
         .par_iter()
         .filter_map(|(feature, frequency, steps)| {
@@ -100,10 +112,9 @@ fn rung(
             for i in steps {
                 rest.kinds[*i] = None;
             }
-            let u = fitted(&rest)?;
-            let errors = self::errors(problem, &u, kinds, steps);
-            let error = errors.iter().sum::<f64>() / errors.len() as f64;
-            error.is_finite().then(|| Block { feature: feature.clone(), frequency: *frequency, error })
+            let (rest, u) = fitted(rest, &from)?;
+            let error = missed(full.data, &rest.setting(&u), linear, steps, pace)?;
+            Some(Block { feature: feature.clone(), frequency: *frequency, error })
         })
         .collect();
     let n = judged.len() as f64;
@@ -115,62 +126,83 @@ fn rung(
         parameters: problem.unknowns.iter().map(|u| u.parameter).collect(),
         held_out: several.then_some(mean),
         held_out_std: several.then(|| (variance / n).sqrt()),
-        aicc: Some(aicc(sum, errors.len(), problem.unknowns.len())).filter(|a| a.is_finite()),
+        aicc: Some(aicc(sum, off.len(), problem.unknowns.len())).filter(|a| a.is_finite()),
         whiteness: whiteness.p_value,
         chosen: false,
         blocks: judged,
     })
 }
 
-/// |ln (measured/predicted)|, 1 at most, of the amplitudes that the motions `of` show at these steps, whatever a model takes part of.
-fn errors(problem: &Problem<'_>, u: &[f64], of: &[Option<Kind>], steps: &[usize]) -> Vec<f64> {
-    let setting = problem.setting(u);
-    let one = |i: &usize| -> Vec<f64> {
-        let step = &problem.data.steps[*i];
-        let (Some(own), Some(kind)) = (of[*i], problem.kinds[*i].or(of[*i])) else { return Vec::new() };
-        let shows = setting.shows(kind, setting.force_at(problem.data, step), step.frequency);
-        let error = |(mass, seen): (usize, &super::data::Seen)| {
-            let r = (seen.amplitude / shows[mass]).ln().abs();
-            if r.is_finite() { r.min(1.0) } else { 1.0 }
-        };
-        step.clear().filter(|(mass, _)| counts(Some(own), *mass)).map(error).collect()
-    };
-    steps.iter().flat_map(one).collect()
+/// A model at its least sum of squares over its steps, with weights of its own; it begins at the setting `from`.
+fn fitted<'a>(mut problem: Problem<'a>, from: &Setting) -> Option<(Problem<'a>, Vec<f64>)> {
+    let mut u = coordinates(from, &problem.unknowns);
+    for _ in 0..2 {
+        problem.weigh(&u);
+        if !u.is_empty() {
+            u = problem.solve(&u).ok()?.parameters;
+        }
+    }
+    Some((problem, u))
 }
 
-/// Features with their frequency and the steps around them.
+/// Mean of |ln (measured/predicted)|, 1 at most, of all amplitudes at these steps; `None` where there is none.
+fn missed(data: &Data, setting: &Setting, linear: bool, steps: &[usize], pace: Pace) -> Option<f64> {
+    let motions = if linear { None } else { Some(assigned(data, setting, pace).ok()?) };
+    let one = |i: &usize| -> Vec<f64> {
+        let step = &data.steps[*i];
+        let of = |kind| setting.shows(kind, setting.force_at(data, step), step.frequency);
+        let predicted = match &motions {
+            None => of(Kind::Free),
+            Some(motions) => motions.history[*i].map(of).or(motions.came[*i]).unwrap_or([f64::NAN; 2]),
+        };
+        let error = |(mass, seen): (usize, &Seen)| {
+            let r = (seen.amplitude / predicted[mass]).ln().abs();
+            if r.is_finite() { r.min(1.0) } else { 1.0 }
+        };
+        step.clear().map(error).collect()
+    };
+    let errors: Vec<f64> = steps.iter().flat_map(one).collect();
+    (!errors.is_empty()).then(|| errors.iter().sum::<f64>() / errors.len() as f64)
+}
+
+/// Features with their frequency and the steps of all sweeps around them; between them pieces of as many steps.
 fn blocks(problem: &Problem<'_>, responses: &[Response]) -> Vec<(String, f64, Vec<usize>)> {
     let data = problem.data;
-    let mut found: Vec<(String, f64, Vec<usize>)> = Vec::new();
+    let mut used: Vec<usize> = (0..data.steps.len()).filter(|i| problem.kinds[*i].is_some()).collect();
+    let at = |i: &usize| data.steps[*i].frequency;
+    used.sort_by(|a, b| at(a).total_cmp(&at(b)));
+    let mut ranges: Vec<(String, f64, RangeInclusive<f64>)> = Vec::new();
     for sequence in &data.sequences {
-        let used: Vec<usize> = sequence.iter().copied().filter(|i| problem.kinds[*i].is_some()).collect();
+        let own: Vec<usize> = used.iter().copied().filter(|i| sequence.contains(i)).collect();
         let mine =
             |r: &&Response| sequence.iter().any(|i| sweeps(data, &data.steps[*i]).any(|name| name == r.name));
-        let mut taken = vec![false; used.len()];
         for response in responses.iter().filter(mine) {
             let named = response.resonances.iter().map(|r| (r.kind.clone(), r.frequency));
             let jumps = response.jumps.iter().map(|j| ("jump".to_owned(), j.frequency));
             for (feature, frequency) in named.chain(jumps) {
-                let away = |i: &usize| (data.steps[used[*i]].frequency - frequency).abs();
-                let Some(at) = (0..used.len()).min_by(|a, b| away(a).total_cmp(&away(b))) else { continue };
-                let range = at.saturating_sub(BESIDE)..(at + BESIDE + 1).min(used.len());
-                taken[range.clone()].fill(true);
-                let steps = used[range].to_vec();
-                if !found.iter().any(|f| f.2 == steps) {
-                    found.push((feature, frequency, steps));
+                let away = |k: &usize| (at(&own[*k]) - frequency).abs();
+                let Some(k) = (0..own.len()).min_by(|a, b| away(a).total_cmp(&away(b))) else { continue };
+                if ranges.iter().any(|(name, _, range)| *name == feature && range.contains(&frequency)) {
+                    continue;
                 }
+                let (low, high) = (k.saturating_sub(BESIDE), (k + BESIDE).min(own.len() - 1));
+                let range = at(&own[low]) * (1.0 - SAME)..=at(&own[high]) * (1.0 + SAME);
+                ranges.push((feature, frequency, range));
             }
         }
-        let open: Vec<usize> = (0..used.len()).filter(|i| !taken[*i]).collect();
-        let stretches = open.chunk_by(|a, b| b - a == 1);
-        if let Some(longest) = stretches.max_by_key(|s| s.len()).filter(|s| s.len() > 2 * BESIDE) {
-            let middle = longest.len() / 2;
-            let steps: Vec<usize> =
-                longest[middle - BESIDE..=middle + BESIDE].iter().map(|i| used[*i]).collect();
-            found.push(("amplitude".to_owned(), data.steps[steps[BESIDE]].frequency, steps));
-        }
     }
-    found
+    let within =
+        |range: &RangeInclusive<f64>| used.iter().copied().filter(|i| range.contains(&at(i))).collect();
+    let mut blocks: Vec<(String, f64, Vec<usize>)> =
+        ranges.iter().map(|(name, frequency, range)| (name.clone(), *frequency, within(range))).collect();
+    let open: Vec<usize> =
+        (0..used.len()).filter(|k| !ranges.iter().any(|r| r.2.contains(&at(&used[*k])))).collect();
+    let piece = (2 * BESIDE + 1) * data.sequences.len();
+    for steps in open.chunk_by(|a, b| b - a == 1).flat_map(|s| s.chunks_exact(piece)) {
+        let steps: Vec<usize> = steps.iter().map(|k| used[*k]).collect();
+        blocks.push(("amplitude".to_owned(), at(&steps[piece / 2]), steps));
+    }
+    blocks
 }
 
 /// Names of the sweeps of a step.

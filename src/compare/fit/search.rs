@@ -20,6 +20,10 @@ const COARSE: [f64; 2] = [0.3, 0.1];
 pub const FINE: [f64; 4] = [0.1, 0.03, 0.01, 0.003];
 /// So many standard deviations of a point count as one, so that noise is no outlier.
 const WIDE: f64 = 3.0;
+/// Most that one point can miss: 1 for each of the finer κ.
+pub const MOST: f64 = FINE.len() as f64;
+/// Places that cost the same but for this are one: a tenth of a point.
+const SAME: f64 = 0.1;
 /// Starting values lie within this factor of the first.
 const REACH: f64 = 1.5;
 /// Points that are looked at for each that is followed.
@@ -29,8 +33,17 @@ const AROUND: usize = 8;
 /// Rounds of choosing motions and fitting, for each κ.
 const ROUNDS: usize = 4;
 
-/// Follows `starts` starting points, the first from `base` itself, and gives the coordinates where each led.
-pub fn search(data: &Data, base: &Setting, unknowns: &[Unknown], starts: usize) -> Vec<Vec<f64>> {
+/// Where some starts led.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Led {
+    /// Coordinates of the unknowns.
+    pub u: Vec<f64>,
+    /// How many starts led there.
+    pub starts: usize,
+}
+
+/// Follows `starts` starting points, the first from `base` itself, and gives where they led, each place once.
+pub fn search(data: &Data, base: &Setting, unknowns: &[Unknown], starts: usize) -> Vec<Led> {
     let first = coordinates(base, unknowns);
     let mut screened: Vec<(f64, Vec<f64>)> = (1..=SCREENED * (starts - 1))
         .into_par_iter()
@@ -42,7 +55,18 @@ pub fn search(data: &Data, base: &Setting, unknowns: &[Unknown], starts: usize) 
     screened.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut all = vec![first];
     all.extend(screened.into_iter().take(starts - 1).map(|s| s.1));
-    all.par_iter().map(|u| follow(data, base, unknowns, u)).collect()
+    let one = |u: &Vec<f64>| {
+        let u = follow(data, base, unknowns, u);
+        (cost(data, base, unknowns, &u), Led { u, starts: 1 })
+    };
+    let mut led: Vec<(f64, Led)> = all.par_iter().map(one).collect();
+    led.sort_by(|a, b| a.0.total_cmp(&b.0));
+    led.dedup_by(|b, a| {
+        let same = (a.0 - b.0).abs() <= SAME;
+        a.1.starts += if same { b.1.starts } else { 0 };
+        same
+    });
+    led.into_iter().map(|l| l.1).collect()
 }
 
 /// Places beside the answer `u`: losses can stand for one another, and the points hold them weakest, so they are spread anew.

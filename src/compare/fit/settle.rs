@@ -18,6 +18,9 @@ const ROUNDS: usize = 3;
 /// Rounds after that.
 const MORE: usize = 3;
 
+/// Pace of simulated sweeps on the way.
+const BRIEF: Pace = Pace { settle: 60, measure: 36 };
+
 /// Parameters at the least sum of squares, with the motions that belong to them.
 #[derive(Debug, Clone)]
 pub struct Settled<'a> {
@@ -58,12 +61,19 @@ pub fn settle<'a>(
     pace: Pace,
 ) -> Result<Settled<'a>> {
     let mut u = start.to_vec();
-    let motions = |u: &[f64]| assigned(data, &at(base, unknowns, u), pace);
-    let mut now = motions(&u)?;
+    let motions = |u: &[f64], pace: Pace| assigned(data, &at(base, unknowns, u), pace);
+    // Parameters that are wrong by more than a disturbance leaves need no long wait for it.
+    let brief = Pace { settle: pace.settle.min(BRIEF.settle), measure: pace.measure.min(BRIEF.measure) };
+    let priors = unknowns.iter().filter(|u| u.prior.is_some()).count();
     for part in FINE {
+        let now = motions(&u, brief)?;
+        let n = now.amplitudes(data);
+        if n + priors < unknowns.len() || n == 0 {
+            return Err(too_few(n, unknowns.len()));
+        }
         u = approached(data, base, unknowns, &now.kinds, part, u);
-        now = motions(&u)?;
     }
+    let mut now = motions(&u, pace)?;
     let mut out = vec![false; data.steps.len()];
     let left = |now: &Motions, u: &[f64], out: &[bool]| -> Vec<Option<Kind>> {
         let near = without_far(data, &at(base, unknowns, u), now.kinds.clone());
@@ -74,7 +84,7 @@ pub fn settle<'a>(
     loop {
         let (problem, minimum, reduced, whiteness) = least(data, base, unknowns, &kinds, &u)?;
         u.clone_from(&minimum.parameters);
-        now = motions(&u)?;
+        now = motions(&u, pace)?;
         let next = left(&now, &u, &out);
         let agreed = next == kinds;
         round += 1;
@@ -106,6 +116,13 @@ fn missing(problem: &Problem<'_>, u: &[f64], motions: &Motions) -> f64 {
     points + FINE.len() as f64 * priors(&problem.unknowns, &setting)
 }
 
+fn too_few(n: usize, unknowns: usize) -> Error {
+    Error::refused(format!(
+        "{n} amplitude(s) of motions with one impact a cycle or none do not determine {unknowns} parameters"
+    ))
+    .hint("fit fewer parameters, or begin nearer to the rig")
+}
+
 /// The least sum of squares with these motions; weights and scale from the parameters found, twice.
 pub fn least<'a>(
     data: &'a Data,
@@ -125,11 +142,7 @@ pub fn least<'a>(
     };
     let (n, priors) = problem.rows();
     if n + priors < unknowns.len() || n == 0 {
-        return Err(Error::refused(format!(
-            "{n} amplitude(s) of motions with one impact a cycle or none do not determine {} parameters",
-            unknowns.len()
-        ))
-        .hint("fit fewer parameters, or begin nearer to the rig"));
+        return Err(too_few(n, unknowns.len()));
     }
     let mut u = start.to_vec();
     let mut turn = 0;
@@ -147,13 +160,14 @@ pub fn least<'a>(
     }
 }
 
-/// χ²/ν of the data as their stated uncertainties have it, and whether their residuals are noise.
+/// χ²/ν of the data as their stated uncertainties have it, priors counted among them, and whether the data's residuals are noise.
 pub fn left(problem: &Problem<'_>, residuals: &[f64]) -> (f64, Whiteness) {
-    let (n, _) = problem.rows();
-    let data = residuals.get(..n).unwrap_or_default();
-    let free = n.saturating_sub(problem.unknowns.len());
-    let sum: f64 = data.iter().map(|r| r * r).sum();
-    let reduced = if free > 0 { problem.scale * sum / free as f64 } else { 1.0 };
+    let (n, priors) = problem.rows();
+    let (data, known) = residuals.split_at(n.min(residuals.len()));
+    let free = (n + priors).saturating_sub(problem.unknowns.len());
+    let sum = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
+    let all = problem.scale * sum(data) + sum(known);
+    let reduced = if free > 0 { all / free as f64 } else { 1.0 };
     let mut rows: Vec<Vec<f64>> = vec![Vec::new(); problem.data.sweeps.len()];
     for ((step, mass), r) in problem.used().zip(data) {
         if let Some(seen) = &problem.data.steps[step].seen[mass] {

@@ -1,13 +1,15 @@
 //! What is to be said of a fit.
 
 use super::Fit;
-use super::data::Data;
+use super::data::{self, Data};
 use super::settle::Settled;
 
 /// χ²/ν beyond which stated uncertainties or the model are doubted.
 const POOR: f64 = 2.0;
 /// Correlations beyond this are named.
 const TIED: f64 = 0.95;
+/// A profile that falls so far below the answer has found a better one.
+const LOWER: f64 = 0.1;
 /// Part of the amplitudes whose motion is known that may lie far from it before the answer is doubted.
 pub const CONTRADICTED: f64 = 0.1;
 /// A value within this part of its bounds lies at one.
@@ -53,7 +55,8 @@ pub fn warnings(fit: &Fit, settled: &Settled<'_>, data: &Data) -> Vec<String> {
         ));
     }
     if data.guessed {
-        said.push(format!("By the residuals the amplitudes are good to {:.2} %.", fit.widened));
+        let good = data::GUESS * fit.reduced_chi_squared.sqrt();
+        said.push(format!("By the residuals the amplitudes are good to {:.2} %.", 100.0 * good));
     } else if fit.reduced_chi_squared > POOR {
         said.push(format!(
             "The residuals are {:.1} times as large as the uncertainties of the points: these are too small, or the model lacks something. The \
@@ -104,6 +107,16 @@ pub fn warnings(fit: &Fit, settled: &Settled<'_>, data: &Data) -> Vec<String> {
             fit.agreeing, fit.starts
         ));
     }
+    if let Some(profile) = &fit.profile
+        && let Some(lower) = profile.rise.iter().copied().filter(|r| *r < -LOWER).reduce(f64::min)
+    {
+        said.push(format!(
+            "Beside the answer {} has values of a smaller sum of squares, by {:.1}: the least was not found. More `starts` may find it.",
+            profile.parameter.name(),
+            -lower
+        ));
+    }
+    said.push("The overlay and its scores are of the rig as it was stated, not of the one found.".to_owned());
     said.extend(data.warnings.iter().cloned());
     said
 }

@@ -52,14 +52,21 @@ impl Unknown {
 /// A parameter without an upper bound goes no farther than this factor from where it started: beyond, nothing pulls it back, and motions
 /// of a rig without dampers, or without a gap, take for ever to simulate.
 const LEASH: f64 = 1e3;
+/// A parameter between two bounds comes no nearer to either than this part of the way between.
+const NEAREST: f64 = 1e-6;
 
 /// `base` with these unknowns at these coordinates.
 pub fn at(base: &Setting, unknowns: &[Unknown], u: &[f64]) -> Setting {
     unknowns.iter().zip(u).fold(*base, |setting, (unknown, u)| {
         let Coordinate { low, high } = unknown.coordinate;
         let (value, start) = (unknown.coordinate.value(*u), base.get(unknown.parameter) - low);
-        let leashed = high.is_infinite() && start > 0.0;
-        let value = if leashed { low + (value - low).clamp(start / LEASH, start * LEASH) } else { value };
+        let value = if high.is_finite() {
+            value.clamp(low + NEAREST * (high - low), high - NEAREST * (high - low))
+        } else if start > 0.0 {
+            low + (value - low).clamp(start / LEASH, start * LEASH)
+        } else {
+            value
+        };
         setting.with(unknown.parameter, value)
     })
 }

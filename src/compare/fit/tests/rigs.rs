@@ -80,3 +80,30 @@ fn points_of_other_patterns_pull_nothing_away() {
         assert!(right >= 3, "{right} of 4");
     }
 }
+
+/// A gap stated in metres that was meant in millimetres, or the other way round: starts are spread no farther than by a half, and simulated
+/// rigs of that kind strike a million times a cycle. The fit ends all the same, here at the truth.
+#[test]
+fn a_gap_a_thousand_times_off_is_found() {
+    let setting = example();
+    let (clean, kinds) = truth(&setting, PACE);
+    println!("seed 9");
+    let data = noisy(&clean, &kinds, &setting, 9);
+    for gap in [1.0, 1e-6] {
+        let start = setting.with(Parameter::Gap, gap);
+        let unknowns = unknowns(&["restitution", "c1", "c2", "gap"], &start);
+        let (settled, _) = identify(&data, &start, &unknowns, STARTS, PACE).unwrap();
+        let held =
+            Held::new(&settled.problem, &settled.minimum.parameters, &settled.minimum.jacobian).unwrap();
+        let all = settled.minimum.parameters.iter().zip(&unknowns).enumerate();
+        for (i, (u, unknown)) in all {
+            let truth = unknown.coordinate.of(setting.get(unknown.parameter));
+            // Four standard deviations, of four parameters.
+            assert!(
+                (u - truth).abs() < 4.0 * held.covariance[(i, i)].sqrt(),
+                "{gap}: {:?}",
+                unknown.parameter
+            );
+        }
+    }
+}
