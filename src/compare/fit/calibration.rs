@@ -5,8 +5,8 @@ use nalgebra::{DMatrix, SVD};
 /// Directions in which calibrations move all residuals at once, and how far.
 ///
 /// A sensor's calibration errs by one factor for all its points, and by a slope over the frequencies. With W the change of the residuals by
-/// one standard uncertainty of each, their covariance is I + WWᵀ, and with W = VSQᵀ they are multiplied by its inverse square root
-/// I − V (I − (I + S²)^(−1/2)) Vᵀ: as if each error were an unknown with a prior, and found with the rest.
+/// one standard uncertainty of each, their covariance is `I + WWᵀ`, and with `W = VSQᵀ` they are multiplied by its inverse square root
+/// `I − V (I − (I + S²)^(−1/2)) Vᵀ`: as if each error were an unknown with a prior, and found with the rest.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Calibration {
     /// Columns of V, each of length 1, and S.

@@ -117,7 +117,9 @@ impl Problem<'_> {
             let shown = shown(step, kind);
             [0, 1].map(|mass: usize| step.seen[mass].as_ref().map_or(0.0, |s| s.amplitude) - shown[mass])
         });
-        all.iter_mut().for_each(|r| *r /= widened);
+        for r in &mut all {
+            *r /= widened;
+        }
         self.calibration.allow(&mut all, widened);
         all
     }

@@ -71,18 +71,7 @@ pub fn warnings(fit: &Fit, settled: &Settled<'_>, data: &Data) -> Vec<String> {
             settled.whiteness.inflation
         ));
     }
-    for (i, row) in fit.correlations.iter().enumerate() {
-        for (j, r) in row.iter().enumerate().skip(i + 1).filter(|(_, r)| r.abs() > TIED) {
-            let (a, b) = (&fit.parameters[i], &fit.parameters[j]);
-            if a.identifiable && b.identifiable {
-                said.push(format!(
-                    "{} and {} are known better together than each alone: their correlation is {r:.3}.",
-                    a.parameter.name(),
-                    b.parameter.name()
-                ));
-            }
-        }
-    }
+    said.extend(tied(fit));
     if left.other_motion > 0 {
         said.push(format!(
             "{} of {} amplitudes take no part: the rig comes to other motions there than one impact a cycle or none.",
@@ -118,5 +107,23 @@ pub fn warnings(fit: &Fit, settled: &Settled<'_>, data: &Data) -> Vec<String> {
     }
     said.push("The overlay and its scores are of the rig as it was stated, not of the one found.".to_owned());
     said.extend(data.warnings.iter().cloned());
+    said
+}
+
+/// Pairs of parameters that are known better together than each alone.
+fn tied(fit: &Fit) -> Vec<String> {
+    let mut said = Vec::new();
+    for (i, row) in fit.correlations.iter().enumerate() {
+        for (j, r) in row.iter().enumerate().skip(i + 1).filter(|(_, r)| r.abs() > TIED) {
+            let (a, b) = (&fit.parameters[i], &fit.parameters[j]);
+            if a.identifiable && b.identifiable {
+                said.push(format!(
+                    "{} and {} are known better together than each alone: their correlation is {r:.3}.",
+                    a.parameter.name(),
+                    b.parameter.name()
+                ));
+            }
+        }
+    }
     said
 }
