@@ -14,6 +14,8 @@ pub const ALLOWED: f64 = 0.01;
 
 /// Approach speed in m/s from which an impact must be told.
 const SLOW: f64 = 1e-3;
+/// Cycles within which a motion may settle.
+pub const SETTLED: f64 = 400.0;
 /// How well an orbit in closed form has to close, in parts of its largest displacement: far above the 1e-13 to which the
 /// exponentials are exact, far below what anybody could measure.
 const CLOSES: f64 = 1e-8;
@@ -92,7 +94,7 @@ pub fn closed_form(task: &Task) -> Result<Found, Fault> {
         }
     }
     let mut settles = "the motion does not settle on one";
-    if let Some(truth) = settled(task, None).map_err(Fault::Stalled)? {
+    if let Some(truth) = settled(task, None, SETTLED).map_err(Fault::Stalled)? {
         settles = "the motion settles on one of them";
         let told = |o: &&Orbit| {
             (o.approach_velocity / truth.speed() - 1.0).abs() < CLOSES.sqrt()

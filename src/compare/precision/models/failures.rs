@@ -87,9 +87,11 @@ impl Truth {
         }
         match border.asks {
             Asks::Motion => Truth::Motion(truth::motion(task, contact)),
-            Asks::Cycles(_) => Truth::Speed(truth::settled(task, contact).and_then(|found| {
-                found.map(|r| r.speed()).ok_or_else(|| "the motion does not settle".to_owned())
-            })),
+            Asks::Cycles(_) => {
+                Truth::Speed(truth::settled(task, contact, check::SETTLED).and_then(|found| {
+                    found.map(|r| r.speed()).ok_or_else(|| "the motion does not settle".to_owned())
+                }))
+            }
             Asks::First(time) => Truth::First(time),
             Asks::Orbit => Truth::Orbit,
         }

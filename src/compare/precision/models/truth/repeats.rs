@@ -17,6 +17,9 @@ const SMALL: f64 = 1e-7;
 /// does so.
 const CLOSED: f64 = 1e-9;
 
+/// What is left of the start, relative, where Newton's method takes over.
+const NEARLY: f64 = 1e-3;
+
 /// A motion with one impact a period, as the masses meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Repeats {
@@ -65,10 +68,6 @@ pub fn repeats(task: &Task, contact: Option<&Spring>, period: f64, guess: &Repea
     let mut u = Vector4::new(y[0] / LENGTH, y[1] / speed, y[3] / speed, guess.phase);
     let mut off = missed(&u)?;
     for _ in 0..ROUNDS {
-        if off.amax() < CLOSED {
-            let (before, phase) = state(&u);
-            return Some(Repeats { before, phase: phase.rem_euclid(TAU) });
-        }
         let mut slope = Matrix4::zeros();
         for i in 0..4 {
             let (mut up, mut down) = (u, u);
@@ -83,15 +82,21 @@ pub fn repeats(task: &Task, contact: Option<&Spring>, period: f64, guess: &Repea
             let missed = missed(&tried)?;
             (missed.norm() < off.norm()).then_some((tried, missed))
         });
-        (u, off) = nearer?;
+        // Until rounding is all that is left.
+        let Some(nearer) = nearer else { break };
+        (u, off) = nearer;
     }
-    None
+    let (before, phase) = state(&u);
+    (off.amax() < CLOSED).then_some(Repeats { before, phase: phase.rem_euclid(TAU) })
 }
 
-/// The motion with one impact a cycle on which a task settles within 400 cycles, if it does.
-pub fn settled(task: &Task, contact: Option<&Spring>) -> Result<Option<Repeats>, String> {
+/// The motion with one impact a cycle on which a task settles within so many `cycles`, if it does.
+///
+/// # Errors
+/// As [`Course::run`].
+pub fn settled(task: &Task, contact: Option<&Spring>, cycles: f64) -> Result<Option<Repeats>, String> {
     let mut last: Vec<(f64, [f64; 4])> = Vec::new();
-    let until = 400.0 * task.cycle();
+    let until = cycles * task.cycle();
     Course::new(task, contact).run(task.phase, Start::Free(task.first()), until, &mut |met| {
         if let Met::Impact(time, before) = met
             && *time > until - 10.0 * task.cycle()
@@ -103,8 +108,8 @@ pub fn settled(task: &Task, contact: Option<&Spring>) -> Result<Option<Repeats>,
     let speed = |y: &[f64; 4]| y[1] - y[3];
     let regular = last.len() > 8
         && last.windows(2).all(|w| {
-            ((w[1].0 - w[0].0) * task.frequency - 1.0).abs() < 1e-3
-                && (speed(&w[1].1) / speed(&w[0].1) - 1.0).abs() < 1e-3
+            ((w[1].0 - w[0].0) * task.frequency - 1.0).abs() < NEARLY
+                && (speed(&w[1].1) / speed(&w[0].1) - 1.0).abs() < NEARLY
         });
     let Some((time, before)) = last.last().filter(|_| regular) else { return Ok(None) };
     let phase = TAU * task.frequency * time + task.phase;

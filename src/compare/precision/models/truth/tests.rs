@@ -30,7 +30,7 @@ fn chatter_rest_and_release_of_scene_c_are_those_of_arithmetic_with_40_digits() 
 #[test]
 fn a_settled_cycle_spends_what_the_force_gives() {
     let task = scene_b::task(2.0);
-    let found = settled(&task, None).unwrap().unwrap();
+    let found = settled(&task, None, 400.0).unwrap().unwrap();
     let course = Course::new(&task, None);
     let rig = task.rig;
     let [x1, v1, x2, v2] = found.before;
