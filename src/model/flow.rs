@@ -1,5 +1,7 @@
 //! Exact flight between impacts, and the first contact at its end.
 
+mod hop;
+
 use super::receptance::Steady;
 use super::waves::Waves;
 use crate::math::Oscillator;
@@ -236,6 +238,11 @@ impl Flight {
         let rounding = 0.25
             * f64::EPSILON
             * (self.gap.abs() + self.waves.amplitude() + self.free[0].x.abs() + self.free[1].x.abs());
+        if self.open == 0.0
+            && let Some(landing) = self.hop(duration, rounding)
+        {
+            return Some(landing);
+        }
         let (at, mut ahead) = first_landing(
             self.open,
             duration,
