@@ -66,7 +66,7 @@ impl Free {
 
     /// Displacement and its first five derivatives at `t`.
     #[inline]
-    fn series(&self, t: f64) -> [f64; 6] {
+    pub(super) fn series(&self, t: f64) -> [f64; 6] {
         let (x, v) = if t == 0.0 { (self.x, self.v) } else { self.oscillator.free(self.x, self.v, t) };
         let a = self.oscillator.acceleration(x, v);
         let jerk = self.oscillator.acceleration(v, a);

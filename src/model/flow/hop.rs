@@ -24,7 +24,7 @@ impl Free {
     fn terms(&self) -> ([f64; TERMS], f64) {
         let mut last = [self.x, self.v];
         let mut terms = [self.x, self.v, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-        for (term, weight) in terms.iter_mut().zip(WEIGHTS).skip(2) {
+        for (term, weight) in terms[2..].iter_mut().zip(&WEIGHTS[2..]) {
             let next = self.oscillator.acceleration(last[0], last[1]);
             *term = next * weight;
             last = [last[1], next];
