@@ -57,7 +57,7 @@ fn counterpart(task: &Task, orbit: &Orbit, stiffness: f64) -> Option<Repeats> {
         match found.filter(|f| (f.speed() / guess.speed() - 1.0).hypot(turn(f.phase - guess.phase)) < NEAR) {
             Some(found) => {
                 (last, part) = (part, (next, found));
-                step = 1.5 * step;
+                step *= 1.5;
             }
             None if step > 0.01 * FIRST => step *= 0.5,
             None => return None,
@@ -91,7 +91,7 @@ fn turn(phase: f64) -> f64 {
 struct Fit {
     corrected: f64,
     plain: f64,
-    /// ωt_c, the phase in rad that passes in the contact.
+    /// `ωt_c`, the phase in rad that passes in the contact.
     turn: f64,
 }
 
@@ -107,7 +107,7 @@ impl Fit {
         }
     }
 
-    /// The correction is the first order in ωt_c. What it leaves is the second, that of ωt_c and of the change itself, which grows where a motion
+    /// The correction is the first order in `ωt_c`. What it leaves is the second, that of `ωt_c` and of the change itself, which grows where a motion
     /// is sensitive; and where that is more than half of the change, half: no correction at all never passes.
     fn allowed(&self) -> f64 {
         (self.turn + self.plain).powi(2).min(0.5 * self.plain)
