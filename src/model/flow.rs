@@ -1,5 +1,7 @@
 //! Exact flight between impacts, and the first contact at its end.
 
+mod hop;
+
 use super::receptance::Steady;
 use super::waves::Waves;
 use crate::math::Oscillator;
@@ -64,7 +66,7 @@ impl Free {
 
     /// Displacement and its first five derivatives at `t`.
     #[inline]
-    fn series(&self, t: f64) -> [f64; 6] {
+    pub(super) fn series(&self, t: f64) -> [f64; 6] {
         let (x, v) = if t == 0.0 { (self.x, self.v) } else { self.oscillator.free(self.x, self.v, t) };
         let a = self.oscillator.acceleration(x, v);
         let jerk = self.oscillator.acceleration(v, a);
@@ -236,6 +238,11 @@ impl Flight {
         let rounding = 0.25
             * f64::EPSILON
             * (self.gap.abs() + self.waves.amplitude() + self.free[0].x.abs() + self.free[1].x.abs());
+        if self.open == 0.0
+            && let Some(landing) = self.hop(duration, rounding)
+        {
+            return Some(landing);
+        }
         let (at, mut ahead) = first_landing(
             self.open,
             duration,

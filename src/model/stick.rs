@@ -58,7 +58,7 @@ impl Pair {
         match &self.course {
             Course::Still { .. } => State { x1: self.gap, ..State::REST },
             Course::Moving { rest, free, .. } => {
-                let (x, v, _) = self.derivative(*rest, free, 0, t);
+                let [x, v, ..] = self.series(*rest, free, t).0;
                 State { x1: x, v1: v, x2: x - self.gap, v2: v }
             }
         }
@@ -72,9 +72,7 @@ impl Pair {
                 Bounded { value: sines + force - stiffness * self.gap, slope, curvature }
             }
             Course::Moving { rest, free, passive: [m, c, k] } => {
-                let (x, v, bend) = self.derivative(*rest, free, 0, t);
-                let (_, a, third) = self.derivative(*rest, free, 1, t);
-                let (_, jerk, fourth) = self.derivative(*rest, free, 2, t);
+                let ([x, v, a, jerk, ..], [bend, third, fourth]) = self.series(*rest, free, t);
                 Bounded {
                     value: m * a + c * v + k * (x - self.gap),
                     slope: m * jerk + c * a + k * v,
@@ -91,7 +89,7 @@ impl Pair {
                 self.waves.amplitude() + force.abs() + stiffness * self.gap.abs()
             }
             Course::Moving { rest, free, passive: [m, _, k] } => {
-                let (x, _, bend) = self.derivative(*rest, free, 0, 0.0);
+                let ([x, ..], [bend, ..]) = self.series(*rest, free, 0.0);
                 m * bend + k * (x.abs() + rest.abs() + self.gap.abs())
             }
         };
@@ -106,10 +104,18 @@ impl Pair {
         first_fall(0.0, duration, 0.0, |t| self.force(t))
     }
 
-    fn derivative(&self, rest: f64, free: &Free, order: u32, t: f64) -> (f64, f64, f64) {
-        let (forced, free) = (self.waves.derivative(order, t), free.derivative(order, t));
-        let rest = if order == 0 { rest } else { 0.0 };
-        (rest + forced.0 + free.0, forced.1 + free.1, forced.2 + free.2)
+    /// x₁ with its first five derivatives at `t`, and bounds on the second to the fourth for all later times.
+    fn series(&self, rest: f64, free: &Free, t: f64) -> ([f64; 6], [f64; 3]) {
+        let mut terms = free.series(t);
+        let limits = self.waves.limits();
+        let bound = |n: usize| free.oscillator.bound(terms[n], terms[n + 1]);
+        let bounds = [limits.curvature + bound(2), limits.jerk + bound(3), limits.snap + bound(4)];
+        let forced = if t == 0.0 { self.waves.start() } else { self.waves.at(t) };
+        for (sum, term) in terms.iter_mut().zip(forced) {
+            *sum += term;
+        }
+        terms[0] += rest;
+        (terms, bounds)
     }
 
     /// Whether the motion is a number: not where the pair is driven at its undamped resonance.

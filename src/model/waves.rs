@@ -67,6 +67,25 @@ impl Waves {
         self.sum(|wave| turned(wave, t))
     }
 
+    /// Largest ω in rad/s.
+    #[inline]
+    pub fn fastest(&self) -> f64 {
+        self.terms.iter().take(self.count).fold(0.0, |most, wave| most.max(wave.omega))
+    }
+
+    /// Adds x and its derivatives at time 0, each times its weight, to `terms`; gives a bound on the next derivative.
+    #[inline]
+    pub fn terms<const N: usize>(&self, weights: &[f64; N], terms: &mut [f64; N]) -> f64 {
+        for wave in self.terms.iter().take(self.count) {
+            let (square, mut last) = (wave.omega * wave.omega, [wave.re, -wave.omega * wave.im]);
+            for (term, weight) in terms.iter_mut().zip(weights) {
+                *term += last[0] * weight;
+                last = [last[1], -square * last[0]];
+            }
+        }
+        self.limits.sixth * self.fastest().powi(N as i32 - 6)
+    }
+
     #[inline]
     fn sum(&self, turn: impl Fn(&Wave) -> (f64, f64)) -> [f64; 6] {
         let mut sum = [0.0; 6];

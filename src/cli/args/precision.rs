@@ -11,7 +11,7 @@ pub struct Precision {
     /// Only methods of this kind [default: both]
     #[arg(long, value_name = "KIND")]
     pub family: Option<Kind>,
-    /// Tell also what the methods do at the borders of what they can: right, refused, wrong, stalled, crashed
+    /// Tell also what the methods do at the borders of what they can: right, refused, wrong, stalled, crashed, not asked
     #[arg(long)]
     pub failures: bool,
     /// Measure nothing: take the scenes from what `vibro precision --json` printed into this file

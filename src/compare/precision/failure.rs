@@ -18,6 +18,9 @@ pub enum Outcome {
     Stalled,
     /// It panicked.
     Crashed,
+    /// The scene is not asked of it, or its truth is not known; the reason is told.
+    #[serde(rename = "not asked")]
+    NotAsked,
 }
 
 /// One method at one scene of a border.
@@ -55,6 +58,7 @@ impl Outcome {
             Outcome::Wrong => "wrong",
             Outcome::Stalled => "stalled",
             Outcome::Crashed => "crashed",
+            Outcome::NotAsked => "not asked",
         }
     }
 }

@@ -4,6 +4,7 @@ mod borders;
 mod chaos;
 mod chatter;
 mod check;
+mod corrected;
 mod entry;
 mod failures;
 mod grazing;
@@ -13,6 +14,7 @@ mod scene_b;
 mod slow_sweep;
 mod soft;
 mod task;
+mod truth;
 
 use super::Scene;
 use crate::Result;

@@ -236,3 +236,64 @@ fn ranges_hold_every_sample_and_no_more() {
         }
     }
 }
+
+/// Flights from contact under a pressing force, as in a chatter.
+fn chatter(seed: &mut u64, w: f64) -> Flight {
+    let c = [0.0, 0.1, 8.3][(uniform(seed) * 3.0) as usize];
+    let rig = Rig { c1: c, c2: uniform(seed), gap: -1e-3, ..Rig::thesis() };
+    let sine = Sine { force: 0.02 * uniform(seed), frequency: 2.0 + 14.0 * uniform(seed) };
+    let mut signed = |scale: f64| scale * (2.0 * uniform(seed) - 1.0);
+    let (common, phase) = (signed(5e-3), signed(3.1));
+    let x1 = -5e-4 + signed(5e-5);
+    let start = State { x1, v1: common, x2: x1 - rig.gap, v2: common + w };
+    let steady = Steady::new(&rig, &sine).unwrap();
+    Flight::new(rig.oscillators(), &steady, rig.gap, &start, phase)
+}
+
+#[test]
+fn short_flights_land_where_the_closed_form_is_at_contact_and_not_before() {
+    let mut seed = 8;
+    for w in [1e-6, 1e-5, 1e-4, 5e-4] {
+        for _ in 0..200 {
+            let flight = chatter(&mut seed, w);
+            let [_, a1, _, a2] = flight.rate(0.0);
+            assert!(a1 > a2, "seed 8: the springs press");
+            let rounding = 0.25 * flight.noise();
+            let landing =
+                flight.hop(1.0, rounding).expect("seed 8: a short flight is followed by its series");
+            // Rounding of the gap by the closed form, at whose root the slope is at least w/2.
+            let off = flight.gap(landing.time).abs();
+            assert!(off <= 4.0 * flight.noise(), "seed 8, {w}: {off:e}");
+            let (there, state) = (flight.state(landing.time), landing.state);
+            assert!((there.x1 - state.x1).abs() <= 4.0 * flight.noise());
+            // Speeds by the series lose what the displacements lose, times the fastest rate of 250 rad/s, and their own rounding.
+            let slack = 250.0 * flight.noise() + 4.0 * f64::EPSILON * (state.v1.abs() + state.v2.abs() + 0.1);
+            assert!((there.v1 - state.v1).abs() <= slack && (there.v2 - state.v2).abs() <= slack);
+            for i in 1..50 {
+                let gap = flight.gap(landing.time * f64::from(i) / 50.0);
+                assert!(gap > -flight.noise(), "seed 8, {w}: {gap:e} before the landing");
+            }
+            assert!(flight.hop(0.9 * landing.time, rounding).is_none(), "it lands later");
+        }
+    }
+}
+
+#[test]
+fn the_series_is_silent_where_it_proves_nothing() {
+    let mut seed = 9;
+    let mut rounding = 0.0;
+    for _ in 0..50 {
+        let flight = chatter(&mut seed, 1e-3);
+        rounding = 0.25 * flight.noise();
+        // A long flight, one that begins apart, one towards the other mass, one that nothing presses.
+        assert!(chatter(&mut seed, 0.2).hop(1.0, rounding).is_none());
+        assert!(Flight { gap: flight.gap + 1e-9, ..flight }.hop(1.0, rounding).is_none());
+        assert!(chatter(&mut seed, -1e-3).hop(1.0, rounding).is_none());
+    }
+    let rig = Rig { gap: 1e-3, ..Rig::thesis() };
+    let steady = Steady::new(&rig, &Sine { force: 1e-3, frequency: 5.0 }).unwrap();
+    let start = State { x1: 5e-4, v1: 0.0, x2: -5e-4, v2: 1e-3 };
+    let pulled = Flight::new(rig.oscillators(), &steady, rig.gap, &start, 0.0);
+    assert!(pulled.rate(0.0)[1] < pulled.rate(0.0)[3]);
+    assert!(pulled.hop(1.0, rounding).is_none());
+}

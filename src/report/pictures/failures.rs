@@ -1,16 +1,17 @@
 //! Where methods break.
 
 use crate::compare::precision::{FailureMap, Outcome};
-use crate::report::colour::{BLACK, Rgb, SERIES};
+use crate::report::colour::{BLACK, Rgb, SERIES, WHITE};
 use crate::report::{Figure, Grid, Kind};
 
 /// Outcomes with their letters and colours; the letters tell them apart without colour.
-const OUTCOMES: [(Outcome, &str, Rgb); 5] = [
+const OUTCOMES: [(Outcome, &str, Rgb); 6] = [
     (Outcome::Right, "+", SERIES[2]),
     (Outcome::Refused, "–", SERIES[5]),
     (Outcome::Wrong, "W", SERIES[1]),
     (Outcome::Stalled, "S", SERIES[4]),
     (Outcome::Crashed, "C", BLACK),
+    (Outcome::NotAsked, "·", WHITE),
 ];
 
 /// A picture of each quantity (of all where borders name none), with a name for its file.
@@ -57,6 +58,6 @@ fn grid(map: &FailureMap, title: String) -> Figure {
     let height = grid.height();
     Figure::double(title).height(height).panel(grid).caption(
         "What each method did at the borders of what it can, decided by a check with the truth: right (+), refused with a reason (–), \
-         wrong without a word (W), stalled (S), crashed (C). Empty: the method has nothing to say to that scene.",
+         wrong without a word (W), stalled (S), crashed (C). Not asked (·): the method has nothing to say to that scene, or its truth is not known; the table says which.",
     )
 }

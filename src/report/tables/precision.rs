@@ -110,7 +110,14 @@ pub fn failures(maps: &[FailureMap]) -> Table {
 
 /// How often each method came out how, and what went wrong.
 pub fn borders(map: &FailureMap) -> Table {
-    let outcomes = [Outcome::Right, Outcome::Refused, Outcome::Wrong, Outcome::Stalled, Outcome::Crashed];
+    let outcomes = [
+        Outcome::Right,
+        Outcome::Refused,
+        Outcome::Wrong,
+        Outcome::Stalled,
+        Outcome::Crashed,
+        Outcome::NotAsked,
+    ];
     let head = std::iter::once(("method", "")).chain(outcomes.map(|o| (o.name(), "")));
     let mut table = headed(format!("Borders of {}", map.family.name()), &head.collect::<Vec<_>>());
     for method in map.methods() {

@@ -1,13 +1,11 @@
-//! The borders of what models can, and the truth at each.
+//! The borders of what models can.
 
 use std::f64::consts::TAU;
 
 use super::grazing;
-use super::rivals::{Events, Kind, events, sprung};
-use super::scene_b::spring;
-use super::task::{Fault, Task, Told};
+use super::task::Task;
+use crate::Result;
 use crate::model::{Rig, Sine, State, Steady};
-use crate::{Error, Result};
 
 /// Stiffness of the contact in N/m where a method has one.
 pub const STIFFNESS: f64 = 1e6;
@@ -34,7 +32,7 @@ pub enum Asks {
     Motion,
     /// Whether there is an impact, and when: in s, or never.
     First(Option<f64>),
-    /// The motion that repeats, alone.
+    /// The motions that repeat.
     Orbit,
     /// The approach speed after so many cycles.
     Cycles(f64),
@@ -121,25 +119,4 @@ pub fn borders(quick: bool) -> Result<Vec<Border>> {
         add("long runs", format!("{cycles:.0e} cycles"), task, Asks::Cycles(cycles));
     }
     Ok(all)
-}
-
-/// The motion with rebounds, by integration of order 8 to 1e-13.
-///
-/// # Errors
-/// If it cannot be integrated.
-pub fn rigid(task: &Task) -> Result<Told> {
-    let how = Events { summed: true, ..Events::dense(Kind::Dop853(1e-13)).sticking(1e-6) };
-    events(task, &how).map_err(|fault| lost(&fault))
-}
-
-/// The same with a contact spring.
-///
-/// # Errors
-/// As [`rigid`].
-pub fn soft(task: &Task) -> Result<Told> {
-    sprung(task, &spring(&task.rig, STIFFNESS), Kind::Dop853(1e-13)).map_err(|fault| lost(&fault))
-}
-
-fn lost(fault: &Fault) -> Error {
-    Error::refused(format!("the truth: {fault}"))
 }

@@ -11,7 +11,7 @@ use crate::model::Rig;
 use crate::model::contact::conversion::damping_ratio;
 
 /// Number, time in s and approach speed in m/s of impacts, by arithmetic with 40 digits (Newton on the equations of motion).
-const GOLDEN: [(usize, f64, f64); 5] = [
+pub const GOLDEN: [(usize, f64, f64); 5] = [
     (1, 0.030_744_282_246_676_34, 0.078_330_829_224_466_23),
     (2, 0.144_162_776_471_947_4, 0.147_727_906_853_932_83),
     (3, 0.237_270_475_783_159_57, 0.233_773_950_612_516_77),
@@ -42,10 +42,10 @@ fn judge(told: &Told, until: f64) -> Verdict {
         .max(f64::EPSILON * until / 2.0))
 }
 
-/// A spring that rebounds as the rig does.
+/// A spring that rebounds as the rig does; at R = 0, which no damper gives, with the critical one, as is usual: it rebounds with e⁻².
 pub fn spring(rig: &Rig, stiffness: f64) -> Spring {
     let mass = rig.reduced_mass();
-    let ratio = damping_ratio(rig.restitution).unwrap_or(0.0);
+    let ratio = damping_ratio(rig.restitution).unwrap_or(1.0);
     Spring { stiffness, damping: 2.0 * ratio * (stiffness * mass).sqrt() }
 }
 

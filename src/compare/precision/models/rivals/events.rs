@@ -22,14 +22,12 @@ pub struct Events {
     pub locate: Locate,
     /// Approach speed in m/s below which masses that press each other stay together.
     pub sticks: Option<f64>,
-    /// Whether the time of the impacts left out below that speed is summed as a geometric series, 2w/(a(1 − R)).
-    pub summed: bool,
 }
 
 impl Events {
     /// Impacts located by the dense output, no sticking.
     pub fn dense(kind: Kind) -> Events {
-        Events { kind, locate: Locate::Dense, sticks: None, summed: false }
+        Events { kind, locate: Locate::Dense, sticks: None }
     }
 
     /// Impacts located by sign tests, no sticking.
@@ -79,20 +77,6 @@ pub fn events(task: &Task, how: &Events) -> Result<Told, Fault> {
             let approach = task.collide(&mut y);
             told.impacts.push((t, approach));
             if how.sticks.is_some_and(|speed| approach < speed) && task.hold(t, &y) > 0.0 {
-                if how.summed {
-                    let pressed = task.hold(t, &y) / task.rig.reduced_mass();
-                    let (w, lost) = (y[3] - y[1], 1.0 - task.rig.restitution);
-                    let rest = 2.0 * w / (pressed * lost);
-                    let mut both = Stepper::new(
-                        Kind::Dop853(1e-13),
-                        task,
-                        |t, y| task.together(t, y),
-                        t,
-                        merged(task, &y),
-                    );
-                    let step = both.step(|t, y| task.together(t, y), t + rest)?;
-                    (t, y) = (step.start() + step.duration(), step.end());
-                }
                 (t, y) = rest(task, how, t, y, &mut told, &mut left)?;
             }
             continue 'flights;

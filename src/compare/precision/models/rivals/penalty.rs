@@ -23,7 +23,8 @@ impl Spring {
     }
 }
 
-/// Integrates straight through contacts, step sizes left to the error control; touches are read off afterwards.
+/// Integrates straight through contacts, step sizes left to the error control; touches are read off afterwards, and a contact that lasts ten
+/// times as long as that of the spring alone, π√(M/k₃), counts as rest.
 ///
 /// # Errors
 /// If the budget is spent or no step is small enough.
@@ -32,6 +33,8 @@ pub fn penalty(task: &Task, spring: &Spring, kind: Kind) -> Result<Told, Fault> 
     let (mut told, mut left) = (Told::default(), task.most);
     let mut stepper = Stepper::new(kind, task, f, 0.0, task.first());
     let (mut t, mut gap) = (0.0, task.gap(&task.first()));
+    let alone = std::f64::consts::PI * (task.rig.reduced_mass() / spring.stiffness).sqrt();
+    let mut touch = None;
     while t < task.until {
         if left == 0 {
             return Err(task.stalled(t));
@@ -43,9 +46,16 @@ pub fn penalty(task: &Task, spring: &Spring, kind: Kind) -> Result<Told, Fault> 
         {
             let y = step.at(f, at);
             told.impacts.push((step.start() + at, y[1] - y[3]));
+            touch = Some(step.start() + at);
         }
         t = step.start() + step.duration();
         gap = task.gap(&step.end());
+        if let Some(from) = touch.filter(|_| gap > 0.0 || t >= task.until) {
+            if t - from > 10.0 * alone {
+                told.sticks.push([from, if gap > 0.0 { t } else { f64::INFINITY }]);
+            }
+            touch = None;
+        }
     }
     Ok(told)
 }

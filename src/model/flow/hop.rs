@@ -1,0 +1,99 @@
+//! Short flights from contact to contact, as they follow each other in a chatter: one Taylor series about the start serves for the
+//! proof that the masses land, for the time and for the state.
+
+use super::{Flight, Free, Landing, State};
+
+/// Terms of the series: up to the tenth power of time.
+const TERMS: usize = 11;
+/// 1/n!.
+const WEIGHTS: [f64; TERMS] = {
+    let mut weights = [1.0; TERMS];
+    let mut n = 1;
+    while n < TERMS {
+        weights[n] = weights[n - 1] / n as f64;
+        n += 1;
+    }
+    weights
+};
+/// A flight of more than this over the fastest rate is not tried: (0.25)¹¹/11! = 6e-15 of a displacement is more than its rounding.
+const LONGEST: f64 = 0.25;
+
+impl Free {
+    /// Displacement and its derivatives at the start, over n!, and a bound on the next one for all later times.
+    #[inline]
+    fn terms(&self) -> ([f64; TERMS], f64) {
+        let mut last = [self.x, self.v];
+        let mut terms = [self.x, self.v, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        for (term, weight) in terms[2..].iter_mut().zip(&WEIGHTS[2..]) {
+            let next = self.oscillator.acceleration(last[0], last[1]);
+            *term = next * weight;
+            last = [last[1], next];
+        }
+        let gain = self.oscillator.gain();
+        (terms, self.oscillator.bound(last[0], last[1]) * gain * gain)
+    }
+}
+
+/// Σ terms tⁿ and its rate.
+#[inline]
+fn at(terms: &[f64; TERMS], t: f64) -> (f64, f64) {
+    let (mut value, mut rate) = (0.0, 0.0);
+    for term in terms.iter().rev() {
+        rate = rate * t + value;
+        value = value * t + term;
+    }
+    (value, rate)
+}
+
+impl Flight {
+    /// The landing of a short flight that begins at contact; nothing where the series proves none within `duration`.
+    ///
+    /// With g = g₀ + t q(t), g₀ being rounding, q falls where −g̈/2 outweighs Σ|gₙ|(n − 1)tⁿ⁻²/n!, n from 3 on. So within twice and a half the
+    /// flight of a constant g̈, if it falls up to there and is below 0 there, q has one root, and g was positive before it. What the series
+    /// leaves out, M₁₁t¹¹/11!, has to be below `rounding`.
+    #[inline]
+    pub(super) fn hop(&self, duration: f64, rounding: f64) -> Option<Landing> {
+        let [first, second] = &self.free;
+        let [x, v, a, ..] = self.waves.start();
+        let w = second.v - first.v - v;
+        let pressed = first.oscillator.acceleration(first.x, first.v) + a
+            - second.oscillator.acceleration(second.x, second.v);
+        let longest = 2.5 * w / pressed;
+        let fastest = self.waves.fastest().max(first.oscillator.gain()).max(second.oscillator.gain());
+        let touches = (self.gap + second.x - first.x - x - self.rest).abs() <= 32.0 * rounding;
+        if !(touches && w > 0.0 && pressed > 0.0 && longest * fastest < LONGEST) {
+            return None;
+        }
+        let [(mut one, first), (two, second)] = [first.terms(), second.terms()];
+        let forced = self.waves.terms(&WEIGHTS, &mut one);
+        one[0] += self.rest;
+        let left = (first + second + forced) * WEIGHTS[TERMS - 1] / TERMS as f64;
+        let mut gap: [f64; TERMS] = std::array::from_fn(|n| two[n] - one[n]);
+        gap[0] += self.gap;
+        // Powers of the time from the third term on, and what q's rate has of them.
+        let (mut power, mut bends) = (1.0, 0.0);
+        for (n, term) in gap.iter().enumerate().skip(3) {
+            power *= longest;
+            bends += term.abs() * (n - 1) as f64 * power;
+        }
+        bends += left * TERMS as f64 * power * longest;
+        if !(left * power * longest * longest * longest <= rounding && bends < -gap[2])
+            || at(&gap, longest).0 >= -rounding
+        {
+            return None;
+        }
+        // Newton's method from the flight of a constant jerk: a step of 1e-8 leaves 1e-16.
+        let mut time = 2.0 * w / pressed * (1.0 + 4.0 * gap[3] * w / (pressed * pressed));
+        for _ in 0..6 {
+            let (value, rate) = at(&gap, time);
+            let step = value / rate;
+            time -= step;
+            if step.abs() <= 1e-8 * time {
+                break;
+            }
+        }
+        let [(x1, v1), (x2, v2)] = [at(&one, time), at(&two, time)];
+        (time > 0.0 && time <= duration && v1 > v2)
+            .then_some(Landing { time, state: State { x1, v1, x2, v2 } })
+    }
+}
