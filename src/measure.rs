@@ -5,6 +5,7 @@ pub mod drill;
 mod estimate;
 pub mod excitation;
 pub mod exposure;
+mod folded;
 pub mod impacts;
 pub mod jump;
 pub mod legacy;

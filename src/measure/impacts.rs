@@ -128,6 +128,9 @@ pub const REGULAR: f64 = 0.05;
 const STEADY: f64 = 2.0;
 /// Impacts of typically less than this many times the reach of the noise are hardly told from it.
 const CLEAR: f64 = 2.0;
+/// Impacts that typically rise above the reach of the noise by less than this many of its standard deviations are lost in it by chance, one of 700 and
+/// more: how many there were is not known.
+const LOST: f64 = 3.0;
 
 /// Finds the impacts of `trace` and what they repeat.
 ///
@@ -148,7 +151,7 @@ pub(super) fn with_train(trace: &Trace, options: &ImpactsOptions) -> Result<(Imp
     if found.onsets.len() < 2 {
         return Err(found.too_few(trace.meta.unit.symbol()));
     }
-    let Found { onsets, timing, sharp, hum, mut warnings, .. } = found;
+    let Found { onsets, timing, sharp, held, hum, lost, mut warnings, .. } = found;
     let start = trace.axis.start();
     let times: Vec<f64> = onsets.iter().map(|o| start + o.time / rate).collect();
     let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
@@ -172,12 +175,12 @@ pub(super) fn with_train(trace: &Trace, options: &ImpactsOptions) -> Result<(Imp
     let widened = if counted.length > 1 { (free(2) / free(1 + counted.length)).sqrt() } else { 1.0 };
     // What the samples hide of first and last, as a part of the interval.
     let span = counted.index.last().zip(counted.index.first()).map_or(0, |(l, f)| l - f) as f64;
-    let hidden = if sharp { cycle::quantised(span * found.mean * rate) } else { 0.0 };
-    let std = Some((widened * found.std).hypot(hidden * found.mean)).filter(|s| s.is_finite());
+    let hidden = if sharp { cycle::quantised(span * found.mean * rate / held as f64) } else { 0.0 };
+    let std = Some((widened * found.std).hypot(hidden * found.mean)).filter(|s| s.is_finite() && !lost);
     if sharp {
         warnings.push(format!(
             "The pulses rise within one sample: onsets are known to {} only.",
-            quantity(1.0 / (12f64.sqrt() * rate), "s", 2)
+            quantity(held as f64 / (12f64.sqrt() * rate), "s", 2)
         ));
     }
     let single = |times: &[f64]| -> Vec<f64> {
@@ -234,14 +237,18 @@ pub(super) fn with_train(trace: &Trace, options: &ImpactsOptions) -> Result<(Imp
 struct Found {
     onsets: Vec<Onset>,
     timing: Timing,
-    /// Whether most pulses rise within one sample.
+    /// Whether most pulses rise within one sample, or within one value that is held.
     sharp: bool,
+    /// Samples for which each value is held: 1 but in a trace that was sampled more slowly than it says.
+    held: usize,
     hum: Option<Hum>,
     warnings: Vec<String>,
     /// What was looked at: how far noise reaches from the level, how far the trace does, and bursts that were left out as too low.
     reach: f64,
     highest: f64,
     low: usize,
+    /// Whether some impacts are lost in the noise.
+    lost: bool,
 }
 
 /// Sampling rate of a trace.
@@ -383,10 +390,27 @@ fn find(trace: &Trace, rate: f64, options: &ImpactsOptions) -> Found {
             typical / level.reach
         ));
     }
+    let lost = typical - level.reach < LOST * level.sigma;
+    if lost {
+        warnings.push(format!(
+            "Impacts rise above the level that noise reaches by only {:.1} of its standard deviations: some are lost by chance, and the uncertainty of the mean interval is not known.",
+            (typical - level.reach) / level.sigma
+        ));
+    }
     if let Some(sentence) = clipped(&trace.values, &all) {
         warnings.push(sentence);
     }
-    let onset::Found { onsets: found, timing, sharp } = onsets(&values, &all, level, options.shape.as_ref());
+    let onset::Found { onsets: mut found, timing, mut sharp } =
+        onsets(&values, &all, level, options.shape.as_ref());
+    let held = held(&trace.values);
+    if held > 1 {
+        warnings.push(format!(
+            "Each value is held for {held} samples: the trace was sampled at {} and no faster.",
+            quantity(rate / held as f64, "Hz", 4)
+        ));
+        sharp = true;
+        found.iter_mut().flatten().for_each(|o| o.std = o.std.hypot(held as f64 / 12f64.sqrt()));
+    }
     let cut = found.iter().filter(|o| o.is_none()).count();
     if cut > 0 {
         warnings.push(format!(
@@ -398,12 +422,36 @@ fn find(trace: &Trace, rate: f64, options: &ImpactsOptions) -> Found {
         onsets: found.into_iter().flatten().collect(),
         timing,
         sharp,
+        held,
         hum,
         warnings,
         reach: level.reach,
         highest: values.iter().fold(0.0, |h, v| h.max(v.abs())),
         low,
+        lost,
     }
+}
+
+/// Changes of a trace that all stand at multiples of two samples by chance in one of 30 000 traces.
+const CHANGES: usize = 16;
+
+/// Samples for which each value is held: the largest number of which all distances between changes of the value are multiples.
+fn held(values: &[f64]) -> usize {
+    let (mut common, mut before, mut changes) = (0, None, 0);
+    for i in (1..values.len()).filter(|i| values[*i] != values[i - 1]) {
+        if let Some(before) = before.replace(i) {
+            let (mut a, mut b) = (common, i - before);
+            while b > 0 {
+                (a, b) = (b, a % b);
+            }
+            common = a;
+            changes += 1;
+            if common == 1 {
+                break;
+            }
+        }
+    }
+    if changes < CHANGES { 1 } else { common }
 }
 
 /// Says where pulses have flat tops at the largest or smallest value.

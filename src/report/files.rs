@@ -114,18 +114,61 @@ pub fn left_over(output: &Output, coming: &[&str]) -> Option<String> {
     })
 }
 
-/// A name as part of a file name: letters and digits, everything else one `_`.
+/// A name as part of a file name that every system takes: ASCII letters and digits, Greek letters by their names, raised and lowered digits as
+/// digits, everything else one `_`.
 pub fn slug(name: &str) -> String {
     let mut slug = String::new();
-    for c in name.chars() {
-        if c.is_alphanumeric() {
-            slug.extend(c.to_lowercase());
+    for c in name.chars().flat_map(char::to_lowercase) {
+        if c.is_ascii_alphanumeric() {
+            slug.push(c);
+        } else if let Some((_, spelled)) = SPELLED.iter().find(|s| s.0.contains(c)) {
+            slug.push_str(spelled);
         } else if !slug.ends_with('_') && !slug.is_empty() {
             slug.push('_');
         }
     }
     slug.trim_end_matches('_').to_owned()
 }
+
+/// Characters of names in this field, and how they are spelled in ASCII.
+const SPELLED: [(&str, &str); 36] = [
+    ("⁰₀", "0"),
+    ("¹₁", "1"),
+    ("²₂", "2"),
+    ("³₃", "3"),
+    ("⁴₄", "4"),
+    ("⁵₅", "5"),
+    ("⁶₆", "6"),
+    ("⁷₇", "7"),
+    ("⁸₈", "8"),
+    ("⁹₉", "9"),
+    ("α", "alpha"),
+    ("β", "beta"),
+    ("γ", "gamma"),
+    ("δ", "delta"),
+    ("ε", "epsilon"),
+    ("ζ", "zeta"),
+    ("η", "eta"),
+    ("θ", "theta"),
+    ("κ", "kappa"),
+    ("λ", "lambda"),
+    ("μµ", "mu"),
+    ("ν", "nu"),
+    ("ξ", "xi"),
+    ("π", "pi"),
+    ("ρ", "rho"),
+    ("σ", "sigma"),
+    ("τ", "tau"),
+    ("φ", "phi"),
+    ("χ", "chi"),
+    ("ψ", "psi"),
+    ("ω", "omega"),
+    ("ä", "ae"),
+    ("ö", "oe"),
+    ("ü", "ue"),
+    ("ß", "ss"),
+    ("é", "e"),
+];
 
 #[cfg(test)]
 mod tests {
@@ -187,5 +230,8 @@ mod tests {
         assert_eq!(slug("Mass 1, up!"), "mass_1_up");
         assert_eq!(slug("../../x"), "x");
         assert_eq!(slug("***"), "");
+        assert_eq!(slug("contact ξ: ρ → 0"), "contact_xi_rho_0");
+        assert_eq!(slug("H¹, m₂ in µm"), "h1_m2_in_mum");
+        assert_eq!(slug("Straße Ω, 振動 x"), "strasse_omega_x");
     }
 }

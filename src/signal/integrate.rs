@@ -82,6 +82,21 @@ pub struct InTime {
     pub period: Option<f64>,
 }
 
+impl InTime {
+    /// Part of the amplitude of a sine of `frequency` Hz that is left by high-pass and trapezoid at this sampling rate in Hz, in all
+    /// integrations together, between the edges of the record.
+    ///
+    /// # Errors
+    /// If the corner or the order cannot be.
+    pub fn gain(&self, frequency: f64, rate: f64) -> Result<f64> {
+        let filter = Filter::high_pass(self.corner, self.order, rate)?;
+        let turn = 0.5 * TAU * frequency / rate;
+        // Both passes; the trapezoid's Δt/2·(1 + z⁻¹)/(1 − z⁻¹) over the integral's 1/(iω).
+        let once = filter.response(frequency).norm_sqr() * turn / turn.tan();
+        Ok(once.powi(i32::from(self.times)))
+    }
+}
+
 /// An integrated trace and what is known of its faults.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Integrated {
@@ -203,6 +218,28 @@ mod tests {
     fn trace(unit: &str, rate: f64, values: Vec<f64>) -> Trace {
         let meta = Meta::new("laser", Unit::parse(unit).unwrap());
         Trace { meta, axis: Axis::time(0.0, 1.0 / rate, values.len()), values }
+    }
+
+    #[test]
+    fn the_gain_is_what_is_left_of_a_sine() {
+        let (rate, n) = (1000.0, 8000);
+        let values: Vec<f64> = (0..n).map(|i| (TAU * 20.0 * f64::from(i) / rate + 0.4).sin()).collect();
+        let meta = Meta::new("velocity", Unit::parse("m/s").unwrap());
+        let trace = Trace { meta, axis: Axis::time(0.0, 1.0 / rate, values.len()), values };
+        for times in [1, 2] {
+            for corner in [5.0, 12.0] {
+                let how = InTime { times, corner, order: 4, period: Some(0.05) };
+                let found = in_time(&trace, &how).unwrap().trace.values;
+                // 80 whole periods in the middle; what the ends have left there, exp(−0.38·2π·5·2), is 4e-11.
+                let sum = |f: fn(f64) -> f64| -> f64 {
+                    (2000..6000).map(|i| found[i] * f(TAU * 20.0 * i as f64 / rate)).sum::<f64>() / 2000.0
+                };
+                let left = sum(f64::sin).hypot(sum(f64::cos)) * (TAU * 20.0).powi(i32::from(times));
+                let gain = how.gain(20.0, rate).unwrap();
+                // The sum of an integration carries rounding of 8000 steps.
+                assert!((left / gain - 1.0).abs() < 1e-9, "{times} {corner}: {left} {gain}");
+            }
+        }
     }
 
     #[test]

@@ -66,3 +66,56 @@ fn an_earlier_run_is_drawn_with_the_lines_of_other_programs() {
         super::complaint(&["precision", "--from", &path("earlier.json"), "--add", &path(wrong)], 2);
     }
 }
+
+/// The whole of it, small: scenes and borders of the estimators, their charts, tables and keys.
+#[test]
+fn estimators_are_measured_and_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let answer = super::json(&[
+        "precision",
+        "--quick",
+        "--family",
+        "estimators",
+        "--failures",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    let scenes = answer["scenes"].as_array().unwrap();
+    assert_eq!(scenes.len(), 9);
+    for scene in scenes {
+        assert!(scene["bound"].as_f64().unwrap() > 0.0 && scene["family"] == "estimators");
+        for method in scene["methods"].as_array().unwrap() {
+            for key in ["method", "setting", "ours", "error", "time_ns", "failed", "why", "front"] {
+                assert!(method.get(key).is_some(), "{key} of {method}");
+            }
+            let failed = method["failed"].as_bool().unwrap();
+            assert_eq!(method["error"].is_null(), failed);
+            assert!(method["time_ns"].as_f64().unwrap() > 0.0 && (!failed || method["why"].is_string()));
+        }
+        // On each chart something is best, and this library has an answer.
+        let methods = scene["methods"].as_array().unwrap();
+        assert!(methods.iter().any(|m| m["front"] == true));
+        assert!(methods.iter().any(|m| m["ours"] == true && m["failed"] == false));
+    }
+    let cells = answer["failures"].as_array().unwrap();
+    let outcomes = ["right", "refused", "wrong", "stalled", "crashed"];
+    for cell in cells {
+        assert!(outcomes.contains(&cell["outcome"].as_str().unwrap()) && cell["family"] == "estimators");
+        assert!(["method", "border", "scene", "why"].iter().all(|key| cell[key].is_string()));
+    }
+    // One chart a scene and one map a quantity, each twice, and two tables; names that every system takes.
+    let files = answer["files"].as_array().unwrap();
+    assert_eq!(files.len(), 2 * (9 + 5) + 2);
+    let names: Vec<String> = std::fs::read_dir(&out)
+        .unwrap()
+        .map(|file| file.unwrap().file_name().into_string().unwrap())
+        .collect();
+    assert_eq!(names.len(), files.len());
+    assert!(names.iter().all(|n| n.is_ascii() && n.chars().all(|c| c.is_alphanumeric() || "._".contains(c))));
+    for name in ["precision_sine_noise.svg", "failures_estimators_contact_xi.png", "failures.csv"] {
+        assert!(names.iter().any(|n| n == name), "{name}: {names:?}");
+    }
+    let rows = std::fs::read_to_string(out.join("failures.csv")).unwrap().lines().count();
+    assert_eq!(rows, cells.len() + 1);
+}

@@ -10,9 +10,9 @@ use super::Family;
 pub enum Outcome {
     /// The answer agrees with the truth within what the method states, or what the check allows.
     Right,
-    /// No answer, and the reason is told.
+    /// No answer, or none that claims to be one, and the reason is told.
     Refused,
-    /// An answer that is wrong without a word.
+    /// An answer further off than it allows for, without a word on what is wrong.
     Wrong,
     /// No answer within the budget of steps or time.
     Stalled,

@@ -65,9 +65,13 @@ fn firsts(values: &[f64], runs: &[Run], decay: f64) -> Vec<usize> {
     let (mut envelope, mut at) = (0.0f64, 0);
     let mut found: Vec<usize> = Vec::new();
     for (j, run) in runs.iter().enumerate() {
-        for v in &values[at..run.samples.start] {
+        // The flank that leads up to a run is its own, and nothing that rings.
+        let rises = |i: &usize| values[i - 1].abs() < values[*i].abs();
+        let foot = (at + 1..=run.samples.start).rev().take_while(rises).last().unwrap_or(run.samples.start);
+        for v in &values[at..foot] {
             envelope = (envelope * keep).max(v.abs());
         }
+        envelope *= keep.powi((run.samples.start - foot) as i32);
         at = run.samples.start;
         let own = found.last().is_some_and(|f| (at - runs[*f].samples.start) as f64 <= decay);
         if !own && run.height > RISE * envelope {

@@ -291,3 +291,33 @@ fn uneven_times_and_missing_values_are_named() {
     let why = impacts(&odd, &ImpactsOptions::default()).unwrap_err().to_string();
     assert!(why.contains("from 0.299 s to 0.33 s is a step of 0.031 s"), "{why}");
 }
+
+#[test]
+fn a_held_trace_is_known_to_what_it_was_sampled_at() {
+    for hold in [1, 2, 40] {
+        for seed in 0..20 {
+            let mut noise = Noise::new(seed);
+            let interval = 200.3 + 40.0 * noise.uniform();
+            let train = |i: usize| {
+                let since = (i as f64 + 17.0) % interval;
+                if since < 90.0 { 1.0 } else { 0.0 }
+            };
+            let values: Vec<f64> =
+                (0..12_000).map(|i| train(i / hold * hold) + 0.01 * (i / hold % 7) as f64).collect();
+            assert_eq!(held(&values), hold, "seed {seed}");
+            let axis = Axis::time(0.0, 1e-3, values.len());
+            let trace = Trace { meta: Meta::new("contact", Unit::parse("V").unwrap()), axis, values };
+            let found = impacts(&trace, &ImpactsOptions::default()).unwrap();
+            let off = found.interval.value - interval * 1e-3;
+            // Quantised times are off by evenly spread errors, of which none lies beyond three standard deviations.
+            assert!(
+                off.abs() < 3.0 * found.interval.std.unwrap(),
+                "held {hold}, seed {seed}: {off} {:?}",
+                found.interval
+            );
+            assert_eq!(found.warnings.iter().any(|w| w.contains("is held for")), hold > 1);
+        }
+    }
+    // A contact that closes and opens at any sample is not held, however long it stays.
+    assert_eq!(held(&[0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]), 1);
+}

@@ -58,6 +58,7 @@ fn grid(map: &FailureMap, title: String) -> Figure {
     let height = grid.height();
     Figure::double(title).height(height).panel(grid).caption(
         "What each method did at the borders of what it can, decided by a check with the truth: right (+), refused with a reason (–), \
-         wrong without a word (W), stalled (S), crashed (C). Not asked (·): the method has nothing to say to that scene, or its truth is not known; the table says which.",
+         wrong without a word on the cause (W), stalled (S), crashed (C). Not asked (·): the method has nothing to say to that scene, or its \
+         truth is not known; the table says which.",
     )
 }

@@ -2,8 +2,8 @@
 
 use super::bound::bounds;
 use super::rivals;
-use super::trial::{Answer, Case, Kind, Method, cells, measured};
-use crate::compare::precision::{Cell, Family, Scene};
+use super::trial::{Answer, Case, Kind, Method, Task, cells, measured};
+use crate::compare::precision::{Family, Scene};
 use crate::error::{Error, Result};
 use crate::math::Noise;
 use crate::measure::modal::{Measured, ModalOptions, Pole, modal};
@@ -40,11 +40,7 @@ fn rational(measured: &Measured) -> Result<Answer> {
     let height = |m: &&crate::measure::modal::Mode| m.modal_constant.value.abs() / m.zeta.value;
     let strongest = found.modes.iter().max_by(|a, b| height(a).total_cmp(&height(b)));
     let mode = strongest.ok_or_else(|| Error::refused("no mode"))?;
-    Ok(Answer::stated(
-        &mode.zeta,
-        &found.warnings,
-        &["are not needed to explain the lines", "is not supported as a mode"],
-    ))
+    Ok(Answer::stated(&mode.zeta, &found.warnings))
 }
 
 /// A receptance of modes on lines `step` Hz apart from `from` Hz to `to` Hz, in noise of this part of the highest line.
@@ -63,12 +59,14 @@ fn mode(frequency: f64, zeta: f64) -> Pole {
     Pole { frequency, zeta, constant: Complex64::new(1.0, 0.0) }
 }
 
-/// So many lines in the bandwidth, the mode anywhere between two; noise of this part of the height of the peak.
+/// So many lines in the bandwidth, the mode anywhere between two, in a band of 24 Hz or 24 lines about it as far as there are any above 0 Hz;
+/// noise of this part of the highest line.
 fn lines(in_bandwidth: f64, part: f64) -> impl Fn(&mut Noise) -> Case<Measured> {
     move |noise| {
         let step = 2.0 * ZETA * OWN / in_bandwidth;
-        let from = 88.0 + step * noise.uniform();
-        let data = function(&[mode(OWN, ZETA)], (from, 112.0, step), part, noise);
+        let reach = (12.0 * step).max(12.0);
+        let from = (OWN - reach).max(0.0) + step * noise.uniform();
+        let data = function(&[mode(OWN, ZETA)], (from, OWN + reach, step), part, noise);
         Case { data, truth: ZETA, unit: ZETA, tolerance: 0.1 * ZETA }
     }
 }
@@ -110,12 +108,21 @@ pub fn scenes(quick: bool) -> Vec<Scene> {
 }
 
 /// One mode on lines of 0.5 Hz up to 300 Hz.
-fn one(name: &str, frequency: f64, zeta: f64, change: impl Fn(&mut Measured) + 'static) -> Kind<Measured> {
+fn one(
+    name: &str,
+    frequency: f64,
+    zeta: f64,
+    change: impl Fn(&mut Measured) + Send + Sync + 'static,
+) -> Kind<Measured> {
     many(name, vec![mode(frequency, zeta)], change)
 }
 
 /// Modes of which the first is asked for.
-fn many(name: &str, modes: Vec<Pole>, change: impl Fn(&mut Measured) + 'static) -> Kind<Measured> {
+fn many(
+    name: &str,
+    modes: Vec<Pole>,
+    change: impl Fn(&mut Measured) + Send + Sync + 'static,
+) -> Kind<Measured> {
     Kind::new(name, 21_000, move |noise: &mut Noise| {
         let mut data = function(&modes, (1.0, 300.0, 0.5), 0.01, noise);
         change(&mut data);
@@ -125,14 +132,15 @@ fn many(name: &str, modes: Vec<Pole>, change: impl Fn(&mut Measured) + 'static) 
 }
 
 /// What methods for damping do at their borders.
-pub fn cells_of_damping(quick: bool) -> Vec<Cell> {
+pub fn cells_of_damping(quick: bool) -> Vec<Task> {
     let narrow = [0.01, 0.1, 0.3, 0.5, 1.0]
         .map(|n| Kind::new(format!("bandwidth of {n} lines"), 22_000, lines(n, 0.01)));
     let noise = [0.1, 0.3, 1.0]
         .map(|part| Kind::new(format!("noise of {} % of the peak", 100.0 * part), 23_000, lines(4.0, part)));
     let heavy = [0.1, 0.3, 0.5, 0.7, 0.9, 1.5].map(|z| one(&format!("ζ = {z}"), 100.0, z, |_| ()));
     let beside = [
-        many("equal mode half a bandwidth beside", vec![mode(100.0, 0.01), mode(101.0, 0.01)], |_| ()),
+        many("equal mode half a bandwidth beside", vec![mode(100.0, 0.01), mode(101.0, 0.01)], |_| ())
+            .named_by(&["Two modes"]),
         many("equal mode two bandwidths beside", vec![mode(100.0, 0.01), mode(104.0, 0.01)], |_| ()),
         many(
             "antiresonance a bandwidth above",
@@ -148,9 +156,9 @@ pub fn cells_of_damping(quick: bool) -> Vec<Cell> {
         one("one line missing", 100.0, 0.01, |m| m.values[190] = Complex64::new(f64::NAN, f64::NAN)),
         one("all lines zero", 100.0, 0.01, |m| m.values.fill(Complex64::new(0.0, 0.0))),
     ];
-    let mut all = cells("damping: narrow peak", &METHODS, &narrow, quick);
-    all.extend(cells("damping: noise", &METHODS, &noise, quick));
-    all.extend(cells("damping: heavy", &METHODS, &heavy, quick));
-    all.extend(cells("damping: faults", &METHODS, &beside, quick));
+    let mut all = cells("damping: narrow peak", &METHODS, narrow, quick);
+    all.extend(cells("damping: noise", &METHODS, noise, quick));
+    all.extend(cells("damping: heavy", &METHODS, heavy, quick));
+    all.extend(cells("damping: faults", &METHODS, beside, quick));
     all
 }

@@ -1,8 +1,8 @@
 //! Displacement from a velocity.
 
 use super::rivals;
-use super::trial::{Answer, Case, Kind, Method, cells, measured};
-use crate::compare::precision::{Cell, Family, Scene};
+use super::trial::{Answer, Case, Kind, Method, Task, cells, measured};
+use crate::compare::precision::{Family, Scene};
 use crate::error::{Error, Result};
 use crate::math::Noise;
 use crate::measure::response::{ResponseOptions, response};
@@ -86,19 +86,28 @@ fn with_cut_off(v: &Vibration) -> Result<Answer> {
     };
     let found = response(&sweep, &ResponseOptions { integrate: 1, ..ResponseOptions::default() })?;
     let point = found.points.first().ok_or_else(|| Error::refused("no point"))?;
-    let mut answer =
-        Answer::stated(&point.amplitude, &found.warnings, &["one point only", "Resonances and jumps need"]);
-    if let Some(limit) = point.upper_limit {
-        answer.doubt = Some(format!("the amplitude does not stand out; it is below {limit:.3e} m"));
+    match point.upper_limit {
+        Some(limit) => {
+            Err(Error::refused(format!("the amplitude does not stand out; it is below {limit:.3e} m")))
+        }
+        None => {
+            // What is said of the sweep as such is nothing on its one point.
+            let of_sweep = |s: &&String| s.contains("one point only") || s.contains("Resonances and jumps");
+            let said: Vec<String> = found.warnings.iter().filter(|s| !of_sweep(s)).cloned().collect();
+            Ok(Answer::stated(&point.amplitude, &said))
+        }
     }
-    Ok(answer)
 }
 
-/// `vibro convert --integrate 1 --fmin f/2 --excitation f`, then the sine of what lies between the edges.
+/// `vibro convert --integrate 1 --fmin f/2 --excitation f`, then the sine of what lies between the edges, over the gain of filter and trapezoid.
 fn filtered(v: &Vibration) -> Result<Answer> {
     let f = v.frequency;
     let how = InTime { times: 1, corner: 0.5 * f, order: 4, period: Some(1.0 / f) };
     let found = in_time(&v.velocity, &how)?;
+    let [low, high] = found.band;
+    if !(low..=high).contains(&f) {
+        return Err(Error::refused(format!("amplitudes are right from {low:.1} to {high:.1} Hz only")));
+    }
     let edge = (found.edge * RATE) as usize;
     let inner = found.trace.values.get(edge..found.trace.values.len().saturating_sub(edge));
     let inner = inner
@@ -106,14 +115,9 @@ fn filtered(v: &Vibration) -> Result<Answer> {
         .ok_or_else(|| Error::refused("the edges of the filter fill the record"))?;
     let axis = Axis::time(0.0, 1.0 / RATE, inner.len());
     let sine = sine(&Trace { values: inner.to_vec(), axis, meta: found.trace.meta.clone() }, Some(f))?;
-    let mut answer = Answer::stated(&sine.amplitude, &sine.warnings, &[]);
-    // Within the band an amplitude is right within 1 %: evenly spread.
-    answer.std = answer.std.map(|s| s.hypot(0.01 * answer.value / f64::sqrt(3.0)));
-    let [low, high] = found.band;
-    if !(low..=high).contains(&f) {
-        answer.doubt = Some(format!("amplitudes are right from {low:.1} to {high:.1} Hz only"));
-    }
-    Ok(answer)
+    let gain = how.gain(f, RATE)?;
+    let amplitude = &sine.amplitude;
+    Ok(Answer { value: amplitude.value / gain, std: amplitude.std.map(|s| s / gain), said: sine.warnings })
 }
 
 /// What lies on the velocity beside its noise, in amplitudes of the velocity: a level, and a slope over the whole record.
@@ -172,7 +176,7 @@ pub fn scenes(quick: bool) -> Vec<Scene> {
 }
 
 /// What methods of integration do at their borders.
-pub fn cells_of_integration(quick: bool) -> Vec<Cell> {
+pub fn cells_of_integration(quick: bool) -> Vec<Task> {
     let kind = |name: &str, n, band, faults| Kind::new(name, 41_000, vibration(n, band, faults));
     let usual = (15.0, 25.0);
     let level = [
@@ -192,8 +196,8 @@ pub fn cells_of_integration(quick: bool) -> Vec<Cell> {
         kind("0.45 of the rate", N, (920.0, 925.0), CLEAN),
         kind("64 samples", 64, (100.0, 120.0), CLEAN),
     ];
-    let mut all = cells("displacement: level and drift", &METHODS, &level, quick);
-    all.extend(cells("displacement: noise", &METHODS, &noise, quick));
-    all.extend(cells("displacement: ends of the band", &METHODS, &band, quick));
+    let mut all = cells("displacement: level and drift", &METHODS, level, quick);
+    all.extend(cells("displacement: noise", &METHODS, noise, quick));
+    all.extend(cells("displacement: ends of the band", &METHODS, band, quick));
     all
 }

@@ -101,7 +101,8 @@ pub fn half_swing(values: &[f64]) -> f64 {
 pub fn half_power(frequency: &[f64], values: &[Complex64], between: bool) -> f64 {
     let size: Vec<f64> = values.iter().map(|v| v.norm()).collect();
     let at = largest(&size);
-    let level = size[at] / f64::sqrt(2.0);
+    let Some(top) = size.get(at) else { return f64::NAN };
+    let level = top / f64::sqrt(2.0);
     let under = |i: &usize| size[*i] < level;
     let (Some(left), Some(right)) = ((0..at).rev().find(under), (at + 1..size.len()).find(under)) else {
         return f64::NAN;
@@ -118,7 +119,8 @@ pub fn half_power(frequency: &[f64], values: &[Complex64], between: bool) -> f64
 pub fn circle(frequency: &[f64], values: &[Complex64]) -> f64 {
     let size: Vec<f64> = values.iter().map(|v| v.norm()).collect();
     let at = largest(&size);
-    let level = size[at] / f64::sqrt(2.0);
+    let Some(top) = size.get(at) else { return f64::NAN };
+    let level = top / f64::sqrt(2.0);
     let low = (0..at).rev().find(|i| size[*i] < level).unwrap_or(0).saturating_sub(1);
     let high = ((at + 1..size.len()).find(|i| size[*i] < level).unwrap_or(at) + 1).min(size.len() - 1);
     let points: Vec<Complex64> = (low..=high)
@@ -194,6 +196,11 @@ mod tests {
         near(half_power(&frequency, &values, true), 0.02);
         near(half_power(&frequency, &values, false), 0.15);
         near(circle(&frequency, &values), 1e-6);
+    }
+
+    #[test]
+    fn no_line_has_no_damping() {
+        assert!(half_power(&[], &[], true).is_nan() && circle(&[], &[]).is_nan());
     }
 
     #[test]

@@ -2,8 +2,8 @@
 
 use super::bound::bounds;
 use super::rivals;
-use super::trial::{Answer, Case, Kind, Method, cells, measured};
-use crate::compare::precision::{Cell, Family, Scene};
+use super::trial::{Answer, Case, Kind, Method, Task, cells, measured};
+use crate::compare::precision::{Family, Scene};
 use crate::error::{Error, Result};
 use crate::math::Noise;
 use crate::measure::excitation::{Excitation, excitations};
@@ -47,8 +47,8 @@ fn bound(n: usize, sigma: f64) -> f64 {
 fn three_lines(trace: &Trace) -> Result<Excitation> {
     let response = spectrum::plain(trace, Window::Hann, Scaling::Peak, false)?;
     let point = SweepPoint {
-        force_path: None,
-        response_path: "sine".into(),
+        force_path: Some("record".into()),
+        response_path: "record".into(),
         force: response.values.magnitudes(),
         given: None,
         response,
@@ -66,12 +66,12 @@ fn three_lines(trace: &Trace) -> Result<Excitation> {
 }
 
 fn doubted(value: f64, std: Option<f64>) -> Answer {
-    let doubt = std.is_none().then(|| "no uncertainty is stated".to_owned());
-    Answer { value, std, doubt }
+    let said = std.is_none().then(|| "no uncertainty is stated".to_owned());
+    Answer { value, std, said: said.into_iter().collect() }
 }
 
 fn of_sine(found: &Sine) -> Answer {
-    Answer::stated(&found.frequency, &found.warnings, &[])
+    Answer::stated(&found.frequency, &found.warnings)
 }
 
 const FREQUENCY: [Method<Trace>; 5] = [
@@ -125,7 +125,7 @@ const AMPLITUDE: [Method<Trace>; 6] = [
     Method {
         name: "least squares",
         ours: true,
-        estimate: |t| sine(t, None).map(|s| Answer::stated(&s.amplitude, &s.warnings, &[])),
+        estimate: |t| sine(t, None).map(|s| Answer::stated(&s.amplitude, &s.warnings)),
     },
 ];
 
@@ -159,7 +159,7 @@ const WEAKER: [Method<Trace>; 3] = [
 fn weaker(trace: &Trace) -> Result<Answer> {
     let found = tones(trace, 2)?;
     match found.tones.get(1) {
-        Some(tone) => Ok(Answer::stated(&tone.frequency, &found.warnings, &[])),
+        Some(tone) => Ok(Answer::stated(&tone.frequency, &found.warnings)),
         None => Err(Error::refused(found.warnings.join(" "))),
     }
 }
@@ -273,7 +273,7 @@ fn at(name: &str, n: usize, place: f64, level: f64, decibel: f64) -> Kind<Trace>
 }
 
 /// A record changed after it was made.
-fn changed(name: &str, change: impl Fn(&mut Vec<f64>, &mut Noise) + 'static) -> Kind<Trace> {
+fn changed(name: &str, change: impl Fn(&mut Vec<f64>, &mut Noise) + Send + Sync + 'static) -> Kind<Trace> {
     let make = anywhere(N, 40.0, |line| line);
     Kind::new(name, 11_000, move |noise: &mut Noise| {
         let mut case = make(noise);
@@ -283,7 +283,7 @@ fn changed(name: &str, change: impl Fn(&mut Vec<f64>, &mut Noise) + 'static) -> 
 }
 
 /// What methods for sines do at their borders.
-pub fn cells_of_sines(quick: bool) -> Vec<Cell> {
+pub fn cells_of_sines(quick: bool) -> Vec<Task> {
     let noise = [0.0, -10.0, -20.0, -30.0]
         .map(|db| Kind::new(format!("{db} dB"), 12_000, anywhere(N, db, |line| line)));
     let short = [0.5, 0.9, 1.2, 1.6, 2.5].map(|p| at(&format!("{p} periods"), 256, p, 0.0, 40.0));
@@ -312,12 +312,13 @@ pub fn cells_of_sines(quick: bool) -> Vec<Cell> {
             let case = pair(apart, 40.0)(noise);
             Case { truth: case.truth - apart * rivals::spacing(&case.data), ..case }
         })
+        .named_by(&["another sine"])
     });
-    let mut all = cells("frequency: noise", &FREQUENCY, &noise, quick);
-    all.extend(cells("frequency: short record", &FREQUENCY, &short, quick));
-    all.extend(cells("frequency: end of the band", &FREQUENCY, &ends, quick));
-    all.extend(cells("frequency: faults", &FREQUENCY, &faults, quick));
-    all.extend(cells("frequency: stronger of two", &FREQUENCY, &stronger, quick));
-    all.extend(cells("frequency: weaker of two", &WEAKER, &beside, quick));
+    let mut all = cells("frequency: noise", &FREQUENCY, noise, quick);
+    all.extend(cells("frequency: short record", &FREQUENCY, short, quick));
+    all.extend(cells("frequency: end of the band", &FREQUENCY, ends, quick));
+    all.extend(cells("frequency: faults", &FREQUENCY, faults, quick));
+    all.extend(cells("frequency: stronger of two", &FREQUENCY, stronger, quick));
+    all.extend(cells("frequency: weaker of two", &WEAKER, beside, quick));
     all
 }
