@@ -384,19 +384,7 @@ fn find(trace: &Trace, rate: f64, options: &ImpactsOptions) -> Found {
         ));
     }
     let typical = median(&heights.iter().copied().filter(|h| *h > least).collect::<Vec<f64>>());
-    if typical < CLEAR * level.reach {
-        warnings.push(format!(
-            "Impacts rise to only {:.1} times the level that noise reaches: either they drown in it, or ringing fills the pauses, and impacts may be missing.",
-            typical / level.reach
-        ));
-    }
-    let lost = typical - level.reach < LOST * level.sigma;
-    if lost {
-        warnings.push(format!(
-            "Impacts rise above the level that noise reaches by only {:.1} of its standard deviations: some are lost by chance, and the uncertainty of the mean interval is not known.",
-            (typical - level.reach) / level.sigma
-        ));
-    }
+    let lost = is_drowned(typical, level, &mut warnings);
     if let Some(sentence) = clipped(&trace.values, &all) {
         warnings.push(sentence);
     }
@@ -430,6 +418,24 @@ fn find(trace: &Trace, rate: f64, options: &ImpactsOptions) -> Found {
         low,
         lost,
     }
+}
+
+/// Whether impacts of this typical height are lost in the noise by chance; what is to be said of it.
+fn is_drowned(typical: f64, level: Background, said: &mut Vec<String>) -> bool {
+    if typical < CLEAR * level.reach {
+        said.push(format!(
+            "Impacts rise to only {:.1} times the level that noise reaches: either they drown in it, or ringing fills the pauses, and impacts may be missing.",
+            typical / level.reach
+        ));
+    }
+    let lost = typical - level.reach < LOST * level.sigma;
+    if lost {
+        said.push(format!(
+            "Impacts rise above the level that noise reaches by only {:.1} of its standard deviations: some are lost by chance, and the uncertainty of the mean interval is not known.",
+            (typical - level.reach) / level.sigma
+        ));
+    }
+    lost
 }
 
 /// Changes of a trace that all stand at multiples of two samples by chance in one of 30 000 traces.

@@ -86,17 +86,13 @@ fn with_cut_off(v: &Vibration) -> Result<Answer> {
     };
     let found = response(&sweep, &ResponseOptions { integrate: 1, ..ResponseOptions::default() })?;
     let point = found.points.first().ok_or_else(|| Error::refused("no point"))?;
-    match point.upper_limit {
-        Some(limit) => {
-            Err(Error::refused(format!("the amplitude does not stand out; it is below {limit:.3e} m")))
-        }
-        None => {
-            // What is said of the sweep as such is nothing on its one point.
-            let of_sweep = |s: &&String| s.contains("one point only") || s.contains("Resonances and jumps");
-            let said: Vec<String> = found.warnings.iter().filter(|s| !of_sweep(s)).cloned().collect();
-            Ok(Answer::stated(&point.amplitude, &said))
-        }
+    if let Some(limit) = point.upper_limit {
+        return Err(Error::refused(format!("the amplitude does not stand out; it is below {limit:.3e} m")));
     }
+    // What is said of the sweep as such is nothing on its one point.
+    let of_sweep = |s: &&String| s.contains("one point only") || s.contains("Resonances and jumps");
+    let said: Vec<String> = found.warnings.iter().filter(|s| !of_sweep(s)).cloned().collect();
+    Ok(Answer::stated(&point.amplitude, &said))
 }
 
 /// `vibro convert --integrate 1 --fmin f/2 --excitation f`, then the sine of what lies between the edges, over the gain of filter and trapezoid.
