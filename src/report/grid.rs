@@ -75,7 +75,7 @@ impl Grid {
     pub(super) fn heads(&self) -> Vec<Vec<String>> {
         self.columns
             .iter()
-            .map(|name| name.split_inclusive([' ', '-']).map(|w| w.trim().to_owned()).collect())
+            .map(|name| name.split_inclusive([' ', '-', '–']).map(|w| w.trim().to_owned()).collect())
             .collect()
     }
 

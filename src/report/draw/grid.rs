@@ -11,6 +11,9 @@ use crate::report::path::Rect;
 /// Size of names and letters.
 const SIZE: f64 = 7.4;
 
+/// Least size of the names of columns.
+const LEAST: f64 = 5.5;
+
 /// Draws names, cells and the key into `cell`.
 pub(super) fn draw(canvas: &mut Canvas, grid: &Grid, cell: Rect) {
     let widest = |names: &mut dyn Iterator<Item = &String>| {
@@ -24,11 +27,14 @@ pub(super) fn draw(canvas: &mut Canvas, grid: &Grid, cell: Rect) {
     let count = grid.columns.len().max(1) as f64;
     let width = ((cell.right() - left) / count).clamp(4.0, 60.0);
     let (places, _) = grid.places();
+    // All heads as large as the widest word lets them be.
+    let word = widest(&mut heads.iter().flatten());
+    let size = (SIZE * (width - 1.0) / word.max(1.0)).clamp(LEAST, SIZE);
     for (i, words) in heads.iter().enumerate() {
         let middle = left + (i as f64 + 0.5) * width;
         for (k, word) in words.iter().rev().enumerate() {
             let at = (middle, top - GAP - k as f64 * (ROW - 1.0));
-            label(canvas, &font::fit(word, SIZE, width), at, SIZE, Anchor::Middle);
+            label(canvas, &font::fit(word, size, width), at, size, Anchor::Middle);
         }
     }
     let base = 0.5 * ROW + font::DIGIT_HEIGHT * SIZE / 2.0;
@@ -46,7 +52,7 @@ pub(super) fn draw(canvas: &mut Canvas, grid: &Grid, cell: Rect) {
             label(canvas, &kind.letter, (area.middle().0, y + base), SIZE, Anchor::Middle);
         }
     }
-    let (mut x, y) = (left, cell.bottom() - KEY + 4.0);
+    let (mut x, y) = (cell.x + GAP, cell.bottom() - KEY + 4.0);
     for kind in &grid.kinds {
         let area = Rect { x, y, w: 14.0, h: ROW };
         canvas.rect(area, kind.colour, Some(Pen { width: 0.4, ..FRAME }));

@@ -34,7 +34,7 @@ fn grid(map: &FailureMap, title: String) -> Figure {
         .map(|(outcome, letter, colour)| Kind {
             name: outcome.name().to_owned(),
             letter: (*letter).to_owned(),
-            colour: if *outcome == Outcome::Crashed { colour.tint(0.35) } else { colour.tint(0.45) },
+            colour: if *outcome == Outcome::Crashed { colour.tint(0.7) } else { colour.tint(0.45) },
         })
         .collect();
     let methods = map.methods();
@@ -47,11 +47,10 @@ fn grid(map: &FailureMap, title: String) -> Figure {
     }
     for (border, scene) in &rows {
         let of = |method: &&str| {
-            let cell = map
-                .cells
-                .iter()
-                .find(|c| c.method == **method && c.border == *border && c.scene == *scene)?;
-            OUTCOMES.iter().position(|o| o.0 == cell.outcome)
+            let cell =
+                map.cells.iter().find(|c| c.method == **method && c.border == *border && c.scene == *scene);
+            let outcome = cell.map_or(Outcome::NotAsked, |c| c.outcome);
+            OUTCOMES.iter().position(|o| o.0 == outcome)
         };
         grid = grid.row(*border, *scene, methods.iter().map(of).collect());
     }
@@ -59,6 +58,6 @@ fn grid(map: &FailureMap, title: String) -> Figure {
     Figure::double(title).height(height).panel(grid).caption(
         "What each method did at the borders of what it can, decided by a check with the truth: right (+), refused with a reason (–), \
          wrong without a word on the cause (W), stalled (S), crashed (C). Not asked (·): the method has nothing to say to that scene, or its \
-         truth is not known; the table says which.",
+         truth is not known.",
     )
 }

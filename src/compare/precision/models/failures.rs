@@ -46,7 +46,7 @@ const METHODS: [(&str, bool, Can); 11] = [
     ("Moreau time stepping", false, Can::Follow(|t| moreau(t, 1000.0))),
     ("RK45, sign test", false, Can::Follow(|t| events(t, &Events::ends(Kind::Rk45(1e-6))))),
     (
-        "DOP853, dense events, rule for rest",
+        "DOP853, rule for rest",
         false,
         Can::Follow(|t| events(t, &Events::dense(Kind::Dop853(1e-9)).sticking(1e-5))),
     ),
