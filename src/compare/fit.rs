@@ -43,7 +43,7 @@ use unknown::{Unknown, coordinates};
 pub struct Fitted {
     /// Parameter.
     pub parameter: Parameter,
-    /// Value with its standard uncertainty, `None` where the points do not hold it.
+    /// Value with its standard uncertainty, `None` where the points do not hold it or the answer contradicts them.
     pub estimate: Estimate,
     /// Where it started.
     pub start: f64,
@@ -284,16 +284,15 @@ fn fitted(settled: &Settled<'_>, held: &Held, base: &Setting, i: usize) -> Fitte
     let u = settled.minimum.parameters[i];
     let Unknown { parameter, coordinate, prior } = settled.problem.unknowns[i];
     let std = held.covariance[(i, i)].sqrt();
-    let reason = held.loose[i].clone();
+    let reason = settled.doubt().or_else(|| held.loose[i].clone());
     let slope = coordinate.slope(u).abs();
     let method = "least squares of both masses and directions by the closed form";
-    let value = coordinate.value(u);
     // A prior adds 1/s² to the reciprocal of the variance that all else leaves, exactly where the model is linear.
     let rests = prior.is_some_and(|[_, s]| (std * slope).powi(2) > 0.5 * s * s);
     Fitted {
         parameter,
         estimate: Estimate::new(
-            value,
+            settled.setting().get(parameter),
             reason.is_none().then_some(std * slope),
             parameter.unit(),
             settled.problem.rows().0,

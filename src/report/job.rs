@@ -357,7 +357,9 @@ pub fn fit(campaign: &Campaign, rig: &Rig, responses: &[Response]) -> Result<Opt
         return Ok(None);
     }
     let force = campaign.excitation.and_then(|e| e.force);
-    let contact = campaign.contact.and_then(|c| c.stiffness);
+    // A curved contact has no stiffness in N/m, and a damper that is stated leaves no restitution to be found.
+    let straight = campaign.contact.filter(|c| c.exponent.is_none_or(|n| n == 1.0) && c.damping.is_none());
+    let contact = straight.and_then(|c| c.stiffness);
     let pace = crate::compare::Predicting::from(campaign).pace;
     crate::compare::fit(rig, force, contact, pace, responses, &campaign.fit).map(Some)
 }

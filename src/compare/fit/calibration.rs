@@ -18,7 +18,7 @@ impl Calibration {
     pub fn new(columns: &[Vec<f64>]) -> Calibration {
         let rows = columns.first().map_or(0, Vec::len);
         let w = DMatrix::from_fn(rows, columns.len(), |i, j| columns[j][i]);
-        let usable = rows >= columns.len() && w.iter().all(|v| v.is_finite()) && w.amax() > 0.0;
+        let usable = rows > 0 && w.iter().all(|v| v.is_finite()) && w.amax() > 0.0;
         let Some(svd) = usable.then(|| SVD::try_new(w, true, false, f64::EPSILON, 10_000)).flatten() else {
             return Calibration::default();
         };

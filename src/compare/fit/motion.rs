@@ -25,10 +25,13 @@ pub struct Motions {
 impl Motions {
     /// Amplitudes that motions of the closed form show.
     pub fn amplitudes(&self, data: &Data) -> usize {
-        let one = |(step, kind): (&Step, &Option<Kind>)| {
-            step.clear().filter(|(mass, _)| kind.is_some() && counts(*kind, *mass)).count()
-        };
-        data.steps.iter().zip(&self.kinds).map(one).sum()
+        (0..data.steps.len()).map(|i| self.amplitudes_at(data, i)).sum()
+    }
+
+    /// The same at one step.
+    pub fn amplitudes_at(&self, data: &Data, step: usize) -> usize {
+        let kind = self.kinds[step];
+        data.steps[step].clear().filter(|(mass, _)| kind.is_some() && counts(kind, *mass)).count()
     }
 }
 
@@ -72,7 +75,7 @@ pub fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Motions> {
     Ok(motions)
 }
 
-/// A step farther from its motion than so many standard deviations shows another one: noise alone takes one of two million there.
+/// A step farther from its motion than so many standard deviations shows another one: noise alone takes one of a million there.
 const FAR: f64 = 5.0;
 /// Median of the larger of two absolute normal deviates: erf² (x/√2) = 1/2.
 const MEDIAN: f64 = 1.052;

@@ -82,7 +82,11 @@ impl Problem<'_> {
             frequencies.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), f| (l.min(f), h.max(f)));
         let share = |mass: usize, sloped: bool| {
             self.scaled(|step, kind| {
-                let along = if sloped { (2.0 * step.frequency - low - high) / (high - low) } else { 1.0 };
+                let along = match sloped {
+                    false => 1.0,
+                    true if high > low => (2.0 * step.frequency - low - high) / (high - low),
+                    true => 0.0,
+                };
                 let shows = setting.shows(kind, setting.force_at(self.data, step), step.frequency);
                 let mut error = [0.0; 2];
                 error[mass] = shows[mass] * self.data.calibration * along;

@@ -63,7 +63,7 @@ pub struct Rung {
 /// standard error of the best is chosen (L. Breiman et al., *Classification and Regression Trees* (1984), 3.4.3).
 pub fn rungs(settled: &Settled<'_>, responses: &[Response], contact: Option<f64>, pace: Pace) -> Vec<Rung> {
     let full = &settled.problem;
-    let blocks = blocks(full, responses);
+    let blocks = blocks(full.data, responses);
     let mut linear = full.clone();
     for (kind, step) in linear.kinds.iter_mut().zip(&full.data.steps) {
         *kind = kind.filter(|_| step.clear().any(|(mass, _)| mass == 0)).map(|_| Kind::Free);
@@ -166,9 +166,8 @@ fn missed(data: &Data, setting: &Setting, linear: bool, steps: &[usize], pace: P
 }
 
 /// Features with their frequency and the steps of all sweeps around them; between them pieces of as many steps.
-fn blocks(problem: &Problem<'_>, responses: &[Response]) -> Vec<(String, f64, Vec<usize>)> {
-    let data = problem.data;
-    let mut used: Vec<usize> = (0..data.steps.len()).filter(|i| problem.kinds[*i].is_some()).collect();
+fn blocks(data: &Data, responses: &[Response]) -> Vec<(String, f64, Vec<usize>)> {
+    let mut used: Vec<usize> = (0..data.steps.len()).filter(|i| data.steps[*i].clear().count() > 0).collect();
     let at = |i: &usize| data.steps[*i].frequency;
     used.sort_by(|a, b| at(a).total_cmp(&at(b)));
     let mut ranges: Vec<(String, f64, RangeInclusive<f64>)> = Vec::new();

@@ -22,8 +22,10 @@ pub const FINE: [f64; 4] = [0.1, 0.03, 0.01, 0.003];
 const WIDE: f64 = 3.0;
 /// Most that one point can miss: 1 for each of the finer κ.
 pub const MOST: f64 = FINE.len() as f64;
-/// Places that cost the same but for this are one: a tenth of a point.
+/// Places that cost the same but for this, a tenth of a point, are one …
 const SAME: f64 = 0.1;
+/// … if their coordinates are the same but for this part. Losses that stand for one another cost the same, and are not one.
+const NEAR: f64 = 0.02;
 /// Starting values lie within this factor of the first.
 const REACH: f64 = 1.5;
 /// Points that are looked at for each that is followed.
@@ -62,7 +64,8 @@ pub fn search(data: &Data, base: &Setting, unknowns: &[Unknown], starts: usize) 
     let mut led: Vec<(f64, Led)> = all.par_iter().map(one).collect();
     led.sort_by(|a, b| a.0.total_cmp(&b.0));
     led.dedup_by(|b, a| {
-        let same = (a.0 - b.0).abs() <= SAME;
+        let near = |(a, b): (&f64, &f64)| (a - b).abs() <= NEAR * a.abs().max(b.abs());
+        let same = (a.0 - b.0).abs() <= SAME && a.1.u.iter().zip(&b.1.u).all(near);
         a.1.starts += if same { b.1.starts } else { 0 };
         same
     });

@@ -41,7 +41,28 @@ pub struct Settled<'a> {
     pub missed: f64,
 }
 
+/// Part of the amplitudes whose motion is known that may lie far from it before the answer is doubted.
+const CONTRADICTED: f64 = 0.1;
+
 impl Settled<'_> {
+    /// Why the answer as a whole may be wrong, and its uncertainties mean nothing.
+    pub fn doubt(&self) -> Option<String> {
+        let n = self.problem.rows().0 + self.far;
+        if self.far as f64 > CONTRADICTED * n as f64 {
+            return Some(format!(
+                "{} of {n} amplitudes lie far from the motions that this very rig comes to: the answer may be wrong altogether",
+                self.far
+            ));
+        }
+        if !self.agreed {
+            return Some(
+                "the motions of some points still changed with the parameters in the last round".to_owned(),
+            );
+        }
+        (!self.minimum.converged)
+            .then(|| "the search ended before it found the least sum of squares".to_owned())
+    }
+
     pub fn setting(&self) -> Setting {
         self.problem.setting(&self.minimum.parameters)
     }
@@ -91,7 +112,9 @@ pub fn settle<'a>(
         if agreed || round >= ROUNDS + MORE {
             let of = |(step, out): (&Step, &bool)| if *out { step.clear().count() } else { 0 };
             let wavering = data.steps.iter().zip(&out).map(of).sum();
-            let far = now.amplitudes(data) - problem.rows().0.min(now.amplitudes(data));
+            let left_out = |i: usize| kinds[i].is_none() && !out[i];
+            let far =
+                (0..data.steps.len()).filter(|i| left_out(*i)).map(|i| now.amplitudes_at(data, i)).sum();
             let missed = missing(&problem, &u, &now);
             return Ok(Settled { problem, minimum, reduced, whiteness, wavering, agreed, far, missed });
         }

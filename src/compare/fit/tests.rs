@@ -121,9 +121,10 @@ fn miscalibrated(mut data: Data, std: f64, seed: u64) -> Data {
     data
 }
 
-/// Of 100 seeds the truth lies within the joint region of 95 % in 92 to 98, and within the interval of each parameter in 89 to 100: a
-/// binomial of 0.95 leaves these in one of a thousand cases for one of seven parameters. So with calibrations that err, too, by three
-/// times the noise of the largest points.
+/// Of 100 seeds the truth lies within the joint region of 95 % in 92 to 98, within the interval of each parameter in 89 or more, which a
+/// binomial of 0.95 misses in one of 230 cases, and within all intervals together in 92 to 98 %: neither too narrow nor too wide. So with
+/// calibrations that err, too, by three times the noise of the largest points. The fits begin at the truth with its motions: how the
+/// search gets there is for other tests.
 #[test]
 fn the_truth_lies_within_the_region_as_often_as_stated() {
     let setting = example();
@@ -154,7 +155,9 @@ fn the_truth_lies_within_the_region_as_often_as_stated() {
         let own: Vec<usize> = (0..7).map(|k| inside.iter().filter(|i| i.1[k]).count()).collect();
         println!("joint {joint}, own {own:?}");
         assert!((92..=98).contains(&joint), "{joint}");
-        assert!(own.iter().all(|n| (89..=100).contains(n)), "{own:?}");
+        assert!(own.iter().all(|n| *n >= 89), "{own:?}");
+        let share = own.iter().sum::<usize>() as f64 / 700.0;
+        assert!((0.92..=0.98).contains(&share), "{share}");
     }
 }
 
@@ -296,13 +299,17 @@ fn the_simplest_model_that_predicts_what_it_has_not_seen_is_chosen() {
     let (clean, kinds) = truth(&setting, PACE);
     let data = noisy(&clean, &kinds, &setting, 11);
     let free: Vec<Option<Kind>> = kinds.iter().map(|k| k.filter(|k| *k == Kind::Free)).collect();
-    for (names, kinds, expected) in
-        [(&ALL[1..], kinds, "closed form"), (&["force", "k1"][..], free, "linear")]
+    let mut still = data.clone();
+    for (step, _) in still.steps.iter_mut().zip(&free).filter(|(_, kind)| kind.is_none()) {
+        step.seen = [None, None];
+    }
+    for (data, names, kinds, expected) in
+        [(&data, &ALL[1..], kinds, "closed form"), (&still, &["force", "k1"][..], free, "linear")]
     {
         let unknowns = unknowns(names, &setting);
         let u = coordinates(&setting, &unknowns);
         let (problem, minimum, reduced, whiteness) =
-            settle::least(&data, &setting, &unknowns, &kinds, &u).unwrap();
+            settle::least(data, &setting, &unknowns, &kinds, &u).unwrap();
         let settled =
             Settled { problem, minimum, reduced, whiteness, wavering: 0, agreed: true, far: 0, missed: 0.0 };
         // Without named features all steps are held out in turn, ten at a time.

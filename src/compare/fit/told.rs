@@ -10,8 +10,6 @@ const POOR: f64 = 2.0;
 const TIED: f64 = 0.95;
 /// A profile that falls so far below the answer has found a better one.
 const LOWER: f64 = 0.1;
-/// Part of the amplitudes whose motion is known that may lie far from it before the answer is doubted.
-pub const CONTRADICTED: f64 = 0.1;
 /// A value within this part of its bounds lies at one.
 const AT_BOUND: f64 = 1e-3;
 
@@ -19,17 +17,15 @@ const AT_BOUND: f64 = 1e-3;
 pub fn warnings(fit: &Fit, settled: &Settled<'_>, data: &Data) -> Vec<String> {
     let mut said = Vec::new();
     let left = fit.left_out;
-    if left.far as f64 > CONTRADICTED * (fit.n + left.far) as f64 {
+    let doubt = settled.doubt();
+    if let Some(doubt) = &doubt {
         said.push(format!(
-            "{} of {} amplitudes lie far from the motions that this very rig comes to: the answer may be wrong altogether. Begin nearer to the \
-             rig, with more `starts`, or fit fewer parameters.",
-            left.far,
-            fit.n + left.far
+            "No parameter has an uncertainty: {doubt}. Begin nearer to the rig, with more `starts`, or fit fewer parameters."
         ));
     }
     for parameter in &fit.parameters {
         let name = parameter.parameter.name();
-        if let Some(reason) = &parameter.reason {
+        if let Some(reason) = parameter.reason.as_ref().filter(|_| doubt.is_none()) {
             said.push(format!("{name} is not identifiable from these points: {reason}."));
         }
         if parameter.rests_on_prior {
@@ -84,11 +80,6 @@ pub fn warnings(fit: &Fit, settled: &Settled<'_>, data: &Data) -> Vec<String> {
             "{} amplitude(s) take no part because they lie far from their motion, {} because it changed with the parameters.",
             left.far, left.wavering
         ));
-    }
-    if !settled.agreed {
-        said.push(
-            "The motions of some points still changed with the parameters in the last round.".to_owned(),
-        );
     }
     if fit.agreeing * 2 < fit.starts {
         said.push(format!(

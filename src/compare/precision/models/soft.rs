@@ -13,7 +13,7 @@ use crate::compare::precision::{Family, Scene};
 use crate::model::{Compliance, Excitation, Rig, Sine, orbits, softened};
 
 /// Cycles until the motion is read: the slowest multiplier of the rigid orbit, 0.970, is then below 1e-16; with a contact of 7 % of the
-/// period it is −0.9945, and what is left turns round from impact to impact, so that its square is in their mean.
+/// period it is −0.9945, and what is left turns round from impact to impact: the mean of sixteen keeps 2.6e-3 of it, 2e-10 of the start.
 const CYCLES: [f64; 2] = [1250.0, 3000.0];
 /// Part of the period in contact from which it takes the longer.
 const LASTING: f64 = 0.02;
