@@ -67,9 +67,15 @@ impl Parameter {
     pub fn from_name(name: &str) -> Result<Parameter> {
         Parameter::ALL.into_iter().find(|p| p.name() == name).ok_or_else(|| {
             let known: Vec<&str> = Parameter::ALL.into_iter().map(Parameter::name).collect();
-            Error::usage(format!("no parameter of a fit is named {name:?}"), known.join(", ")).hint(
-                "masses are weighed, not fitted: motion alone tells only stiffness and damping over mass",
-            )
+            let error = Error::usage(format!("no parameter of a fit is named {name:?}"), known.join(", "));
+            match name {
+                "m1" | "m2" => error.hint(
+                    "masses are weighed, not fitted: motion alone tells only stiffness and damping over mass",
+                ),
+                _ if name.contains("contact") => error
+                    .hint("state it as `stiffness` in [contact]: a model corrected for it is then judged"),
+                _ => error,
+            }
         })
     }
 

@@ -42,6 +42,17 @@ pub fn usage(error: &clap::Error, json: bool) -> u8 {
     2
 }
 
+/// The plain number in a value that has a unit behind it.
+fn plain(value: &str) -> Option<String> {
+    let digits = value.trim_end_matches(|c: char| !c.is_ascii_digit() && c != '.');
+    let number: f64 = digits.trim().parse().ok()?;
+    match value[digits.len()..].trim() {
+        "" => None,
+        "%" => Some(format!("a part of 1 without %: {}", number / 100.0)),
+        unit => Some(format!("the number alone, {number}, in the unit that --help names, without {unit:?}")),
+    }
+}
+
 /// What may be tried where a number is not written as one is expected.
 fn advice(error: &clap::Error) -> Option<String> {
     let said = |kind| error.get(kind).map(ToString::to_string);
@@ -49,7 +60,10 @@ fn advice(error: &clap::Error) -> Option<String> {
         ErrorKind::ValueValidation => {
             let value = said(ContextKind::InvalidValue)?;
             let point = value.replacen(',', ".", 1);
-            (value != point && point.parse::<f64>().is_ok()).then(|| format!("a decimal point: {point}"))
+            if value != point && point.parse::<f64>().is_ok() {
+                return Some(format!("a decimal point: {point}"));
+            }
+            plain(&value)
         }
         ErrorKind::UnknownArgument => {
             let number = said(ContextKind::InvalidArg)?;

@@ -34,6 +34,11 @@ pub fn run(typed: &args::Precision, json: bool) -> Result<()> {
     let measures = typed.from.is_none();
     if let Some(path) = &typed.from {
         scenes = earlier::scenes(path)?;
+        let kind = |s: &Scene| match s.family {
+            Family::Models => args::Kind::Models,
+            Family::Estimators => args::Kind::Estimators,
+        };
+        scenes.retain(|scene| wanted(kind(scene)));
     }
     if measures && wanted(args::Kind::Models) {
         scenes.extend(models::scenes(typed.quick, &mut tell)?);

@@ -49,9 +49,9 @@ impl Unknown {
     }
 }
 
-/// A parameter without an upper bound goes no farther than this factor from where it started: beyond, nothing pulls it back, and motions
+/// A parameter without an upper bound goes no farther than this factor from where it started, more than a mistaken unit: beyond, nothing pulls it back, and motions
 /// of a rig without dampers, or without a gap, take for ever to simulate.
-const LEASH: f64 = 1e3;
+const LEASH: f64 = 1e4;
 /// A parameter between two bounds comes no nearer to either than this part of the way between.
 const NEAREST: f64 = 1e-6;
 

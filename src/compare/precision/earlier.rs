@@ -21,6 +21,7 @@ pub fn scenes(path: &Path) -> Result<Vec<Scene>> {
     let text = std::fs::read_to_string(path).map_err(|e| Error::io("read", path, e))?;
     let wrong = |found: String| {
         Error::usage(format!("{}: {found}", path.display()), "what `vibro precision --json` printed")
+            .hint("write it with `vibro precision --json > FILE`; the CSV of --out holds less")
     };
     let Earlier { mut scenes } = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
     for scene in &mut scenes {
