@@ -9,6 +9,7 @@ mod coordinate;
 mod data;
 mod held;
 mod motion;
+mod prior;
 mod problem;
 mod profile;
 mod rung;
@@ -158,7 +159,8 @@ pub fn fit(
     let base = Setting { rig: *rig, force: data.force, contact: None };
     let unknowns = Unknown::all(entry, &base)?;
     let starts = entry.starts.unwrap_or(STARTS);
-    let (settled, ends) = identify(&data, &base, &unknowns, starts, pace)?;
+    let (mut settled, ends) = identify(&data, &base, &unknowns, starts, pace)?;
+    settled.contradictions = prior::contradictions(&settled, starts, pace);
     let held = Held::new(&settled.problem, &settled.minimum.parameters, &settled.minimum.jacobian)?;
     let profile = profile::profile(&settled, &held, held.worst());
     let mut fit = gathered(&settled, &held, &base, profile);

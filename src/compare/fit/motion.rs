@@ -6,7 +6,7 @@ use super::super::pair::came_to;
 use super::super::prediction::{Kind, Motion, motions};
 use super::super::simulated::{Pace, simulated_plain};
 use super::data::{Data, Step};
-use super::problem::counts;
+use super::problem::{Problem, counts};
 use super::setting::Setting;
 use crate::error::Result;
 use rayon::prelude::*;
@@ -102,6 +102,32 @@ pub fn without_far(data: &Data, setting: &Setting, kinds: Vec<Option<Kind>>) -> 
     sorted.sort_by(f64::total_cmp);
     let limit = FAR * (median(&sorted).unwrap_or(0.0) / MEDIAN).max(1.0);
     kinds.into_iter().zip(away).map(|(kind, away)| kind.filter(|_| away.is_none_or(|a| a <= limit))).collect()
+}
+
+/// Motions without those of steps that lie far from them once the calibrations' errors are allowed for as errors that all points share:
+/// one after the other, the farthest first, since it moves what is shared.
+pub fn without_lone(data: &Data, setting: &Setting, mut kinds: Vec<Option<Kind>>) -> Vec<Option<Kind>> {
+    if data.calibration == 0.0 {
+        return kinds;
+    }
+    for _ in 0..kinds.len() / 4 {
+        let mut problem = Problem::new(data, setting, &[], &kinds);
+        problem.weigh(&[]);
+        let mut away = vec![None::<f64>; kinds.len()];
+        for ((step, _), r) in problem.used().zip(problem.at(&[])) {
+            away[step] = Some(away[step].unwrap_or(0.0).max(r.abs()));
+        }
+        let mut sorted: Vec<f64> = away.iter().flatten().copied().collect();
+        sorted.sort_by(f64::total_cmp);
+        let limit = FAR * (median(&sorted).unwrap_or(0.0) / MEDIAN).max(1.0);
+        let farthest =
+            (0..away.len()).max_by(|a, b| away[*a].unwrap_or(0.0).total_cmp(&away[*b].unwrap_or(0.0)));
+        match farthest.filter(|i| away[*i].is_some_and(|a| a > limit)) {
+            Some(i) => kinds[i] = None,
+            None => break,
+        }
+    }
+    kinds
 }
 
 /// Sum of the logarithms of measured over shown; a mass that rests where it was seen to move is as far as can be.

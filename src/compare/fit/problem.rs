@@ -28,6 +28,21 @@ pub struct Problem<'a> {
     pub calibration: Calibration,
 }
 
+impl<'a> Problem<'a> {
+    /// Of these motions; weights are still to be taken.
+    pub fn new(data: &'a Data, base: &Setting, unknowns: &[Unknown], kinds: &[Option<Kind>]) -> Problem<'a> {
+        Problem {
+            data,
+            base: *base,
+            unknowns: unknowns.to_vec(),
+            kinds: kinds.to_vec(),
+            slopes: Vec::new(),
+            scale: 1.0,
+            calibration: Calibration::default(),
+        }
+    }
+}
+
 impl Problem<'_> {
     /// Amplitudes that take part: index of the step and of the mass.
     pub fn used(&self) -> impl Iterator<Item = (usize, usize)> + '_ {

@@ -152,14 +152,22 @@ fn cost(data: &Data, base: &Setting, unknowns: &[Unknown], u: &[f64]) -> f64 {
     priors(unknowns, &setting) + data.steps.iter().map(one).sum::<f64>()
 }
 
+/// As [`missed`] for one point that lies so many standard deviations off, all that points share allowed for.
+pub fn missed_by(seen: &Seen, deviations: f64) -> f64 {
+    let z = |part: f64| deviations / (part * seen.amplitude / seen.std).hypot(WIDE);
+    FINE.iter().map(|part| z(*part).powi(2).min(1.0)).sum()
+}
+
 /// What the priors add to a cost.
 pub fn priors(unknowns: &[Unknown], setting: &Setting) -> f64 {
     unknowns.iter().map(|unknown| prior(unknown, setting).powi(2)).sum()
 }
 
 /// Σ min (z², 1) of a step's points over all the finer κ, where these amplitudes are shown.
-pub fn missed(step: &Step, shown: [f64; 2]) -> f64 {
-    let z = |(mass, seen): (usize, &Seen), part: f64| away(seen, shown[mass], part).powi(2).min(1.0);
+pub fn missed(data: &Data, step: &Step, shown: [f64; 2]) -> f64 {
+    let z = |(mass, seen): (usize, &Seen), part: f64| {
+        away(seen, shown[mass], part, data.calibration).powi(2).min(1.0)
+    };
     FINE.iter().flat_map(|part| step.clear().map(|point| z(point, *part))).sum()
 }
 
@@ -182,7 +190,7 @@ fn residuals(
     for (step, kind) in data.steps.iter().zip(kinds) {
         let shows = kind.map(|kind| setting.shows(kind, setting.force_at(data, step), step.frequency));
         for (mass, seen) in step.clear() {
-            let z = shows.map_or(0.0, |shows| away(seen, shows[mass], part));
+            let z = shows.map_or(0.0, |shows| away(seen, shows[mass], part, data.calibration));
             put((z * z).ln_1p().sqrt().copysign(z));
         }
     }
@@ -196,11 +204,11 @@ fn prior(unknown: &Unknown, setting: &Setting) -> f64 {
 }
 
 /// z of a point; as far as can be where the motion shows nothing, or does not exist.
-fn away(seen: &Seen, shown: f64, part: f64) -> f64 {
+fn away(seen: &Seen, shown: f64, part: f64, calibration: f64) -> f64 {
     const FARTHEST: f64 = 20.0;
     let r = (seen.amplitude / shown).ln();
     let r = if r.is_finite() { r.clamp(-FARTHEST, FARTHEST) } else { FARTHEST };
-    r / part.hypot(WIDE * seen.std / seen.amplitude)
+    r / part.hypot(WIDE * (seen.std / seen.amplitude).hypot(calibration))
 }
 
 /// The motion nearest to each step.
@@ -213,18 +221,26 @@ struct Shows {
     impacting: [f64; 2],
     free: [f64; 2],
     gap: f64,
+    calibration: f64,
 }
 
 impl Shows {
     fn new(data: &Data, setting: &Setting, step: &Step) -> Shows {
         let shows = |kind| setting.shows(kind, setting.force_at(data, step), step.frequency);
-        Shows { impacting: shows(Kind::Impacting), free: shows(Kind::Free), gap: setting.rig.gap }
+        Shows {
+            impacting: shows(Kind::Impacting),
+            free: shows(Kind::Free),
+            gap: setting.rig.gap,
+            calibration: data.calibration,
+        }
     }
 
     /// The motion nearest to the step, and what its points cost.
     fn nearest(&self, step: &Step, part: f64) -> (Kind, f64) {
         let costs = |shown: [f64; 2]| -> f64 {
-            step.clear().map(|(mass, seen)| away(seen, shown[mass], part).powi(2).ln_1p()).sum()
+            step.clear()
+                .map(|(mass, seen)| away(seen, shown[mass], part, self.calibration).powi(2).ln_1p())
+                .sum()
         };
         let (impacting, free) = (costs(self.impacting), costs(self.free));
         // What should be seen and is not, speaks against a motion; without weight in the sum, since it is the same for all parameters.

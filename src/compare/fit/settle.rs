@@ -2,11 +2,10 @@
 
 use super::super::prediction::Kind;
 use super::super::simulated::Pace;
-use super::calibration::Calibration;
 use super::data::{Data, Step};
-use super::motion::{Motions, assigned, without_far};
+use super::motion::{Motions, assigned, without_far, without_lone};
 use super::problem::Problem;
-use super::search::{FINE, approached, missed, priors};
+use super::search::{FINE, approached, missed, missed_by, priors};
 use super::setting::Setting;
 use super::unknown::{Unknown, at};
 use crate::error::{Error, Result};
@@ -39,6 +38,8 @@ pub struct Settled<'a> {
     /// How far all points lie from what a simulated sweep shows, or from the motion they are taken for, and the parameters from their
     /// priors: Σ min (z², 1), the less the better.
     pub missed: f64,
+    /// Why what was known of a parameter contradicts the points.
+    pub contradictions: Vec<String>,
 }
 
 /// Part of the amplitudes whose motion is known that may lie far from it before the answer is doubted.
@@ -47,6 +48,9 @@ const CONTRADICTED: f64 = 0.1;
 impl Settled<'_> {
     /// Why the answer as a whole may be wrong, and its uncertainties mean nothing.
     pub fn doubt(&self) -> Option<String> {
+        if !self.contradictions.is_empty() {
+            return Some(self.contradictions.join("; "));
+        }
         let n = self.problem.rows().0 + self.far;
         if self.far as f64 > CONTRADICTED * n as f64 {
             return Some(format!(
@@ -98,6 +102,7 @@ pub fn settle<'a>(
     let mut out = vec![false; data.steps.len()];
     let left = |now: &Motions, u: &[f64], out: &[bool]| -> Vec<Option<Kind>> {
         let near = without_far(data, &at(base, unknowns, u), now.kinds.clone());
+        let near = without_lone(data, &at(base, unknowns, u), near);
         near.into_iter().zip(out).map(|(kind, out)| kind.filter(|_| !out)).collect()
     };
     let mut kinds = left(&now, &u, &out);
@@ -116,7 +121,17 @@ pub fn settle<'a>(
             let far =
                 (0..data.steps.len()).filter(|i| left_out(*i)).map(|i| now.amplitudes_at(data, i)).sum();
             let missed = missing(&problem, &u, &now);
-            return Ok(Settled { problem, minimum, reduced, whiteness, wavering, agreed, far, missed });
+            return Ok(Settled {
+                problem,
+                minimum,
+                reduced,
+                whiteness,
+                wavering,
+                agreed,
+                far,
+                missed,
+                contradictions: Vec::new(),
+            });
         }
         if round >= ROUNDS {
             for ((out, a), b) in out.iter_mut().zip(&kinds).zip(&next) {
@@ -127,15 +142,21 @@ pub fn settle<'a>(
     }
 }
 
-/// How far all points lie from what was simulated, or from the motion they are taken for.
+/// How far all points lie from what was simulated, or from the motion they are taken for; errors that points of the fit share are allowed
+/// for there.
 fn missing(problem: &Problem<'_>, u: &[f64], motions: &Motions) -> f64 {
-    let setting = problem.setting(u);
-    let one = |((step, kind), came): ((&Step, &Option<Kind>), &Option<[f64; 2]>)| {
-        let own = kind.map(|kind| setting.shows(kind, setting.force_at(problem.data, step), step.frequency));
-        let nothing = missed(step, [0.0; 2]);
-        own.iter().chain(came).map(|shown| missed(step, *shown)).fold(nothing, f64::min)
+    let (data, setting) = (problem.data, problem.setting(u));
+    let plain = Problem { scale: 1.0, ..problem.clone() };
+    let mut own = vec![[None; 2]; data.steps.len()];
+    for ((step, mass), r) in plain.used().zip(plain.at(u)) {
+        own[step][mass] = data.steps[step].seen[mass].as_ref().map(|seen| missed_by(seen, r));
+    }
+    let one = |((step, own), came): ((&Step, &[Option<f64>; 2]), &Option<[f64; 2]>)| {
+        let simulated = missed(data, step, came.unwrap_or([0.0; 2]));
+        let used: f64 = own.iter().flatten().sum();
+        if own.iter().any(Option::is_some) { used.min(simulated) } else { simulated }
     };
-    let points: f64 = problem.data.steps.iter().zip(&problem.kinds).zip(&motions.came).map(one).sum();
+    let points: f64 = data.steps.iter().zip(&own).zip(&motions.came).map(one).sum();
     points + FINE.len() as f64 * priors(&problem.unknowns, &setting)
 }
 
@@ -154,15 +175,7 @@ pub fn least<'a>(
     kinds: &[Option<Kind>],
     start: &[f64],
 ) -> Result<(Problem<'a>, Minimum, f64, Whiteness)> {
-    let mut problem = Problem {
-        data,
-        base: *base,
-        unknowns: unknowns.to_vec(),
-        kinds: kinds.to_vec(),
-        slopes: Vec::new(),
-        scale: 1.0,
-        calibration: Calibration::default(),
-    };
+    let mut problem = Problem::new(data, base, unknowns, kinds);
     let (n, priors) = problem.rows();
     if n + priors < unknowns.len() || n == 0 {
         return Err(too_few(n, unknowns.len()));

@@ -279,8 +279,17 @@ fn a_prior_is_used_and_said_where_it_holds_the_parameter() {
     let u = coordinates(&setting, &unknowns);
     let (problem, minimum, reduced, whiteness) =
         settle::least(&data, &setting, &unknowns, &kinds, &u).unwrap();
-    let settled =
-        Settled { problem, minimum, reduced, whiteness, wavering: 0, agreed: true, far: 0, missed: 0.0 };
+    let settled = Settled {
+        problem,
+        minimum,
+        reduced,
+        whiteness,
+        wavering: 0,
+        agreed: true,
+        far: 0,
+        missed: 0.0,
+        contradictions: Vec::new(),
+    };
     let held = Held::new(&settled.problem, &settled.minimum.parameters, &settled.minimum.jacobian).unwrap();
     let [gap, c1] = [0, 1].map(|i| fitted(&settled, &held, &setting, i));
     assert!(!gap.rests_on_prior && gap.identifiable, "{gap:?}");
@@ -310,8 +319,17 @@ fn the_simplest_model_that_predicts_what_it_has_not_seen_is_chosen() {
         let u = coordinates(&setting, &unknowns);
         let (problem, minimum, reduced, whiteness) =
             settle::least(data, &setting, &unknowns, &kinds, &u).unwrap();
-        let settled =
-            Settled { problem, minimum, reduced, whiteness, wavering: 0, agreed: true, far: 0, missed: 0.0 };
+        let settled = Settled {
+            problem,
+            minimum,
+            reduced,
+            whiteness,
+            wavering: 0,
+            agreed: true,
+            far: 0,
+            missed: 0.0,
+            contradictions: Vec::new(),
+        };
         // Without named features all steps are held out in turn, ten at a time.
         let rungs = rung::rungs(&settled, &[], None, PACE);
         let chosen: Vec<&str> = rungs.iter().filter(|r| r.chosen).map(|r| r.model).collect();
@@ -323,3 +341,4 @@ fn the_simplest_model_that_predicts_what_it_has_not_seen_is_chosen() {
 }
 
 mod rigs;
+mod shared;

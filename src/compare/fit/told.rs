@@ -20,7 +20,8 @@ pub fn warnings(fit: &Fit, settled: &Settled<'_>, data: &Data) -> Vec<String> {
     let doubt = settled.doubt();
     if let Some(doubt) = &doubt {
         said.push(format!(
-            "No parameter has an uncertainty: {doubt}. Begin nearer to the rig, with more `starts`, or fit fewer parameters."
+            "No parameter has an uncertainty: {doubt}. A value that is held (force, mass, stiffness), a unit or a prior may be wrong; else begin \
+             nearer to the rig, or with more `starts`."
         ));
     }
     for parameter in &fit.parameters {

@@ -1,0 +1,47 @@
+//! What was known of parameters beside what the points say.
+
+use super::super::simulated::Pace;
+use super::held::Held;
+use super::identify;
+use super::settle::Settled;
+use super::unknown::Unknown;
+use crate::units::notation::with_std;
+
+/// A prior and the points contradict each other where they differ by more than so many standard uncertainties of both: chance does so in one
+/// of 1.7 million cases.
+const APART: f64 = 5.0;
+
+/// A sentence for each prior that the points alone contradict, by a fit without any prior.
+pub fn contradictions(settled: &Settled<'_>, starts: usize, pace: Pace) -> Vec<String> {
+    let problem = &settled.problem;
+    if problem.unknowns.iter().all(|k| k.prior.is_none()) {
+        return Vec::new();
+    }
+    let free: Vec<Unknown> = problem.unknowns.iter().map(|k| Unknown { prior: None, ..*k }).collect();
+    // Where the points alone do not determine the parameters, they contradict nothing.
+    let Ok((alone, _)) = identify(problem.data, &problem.base, &free, starts, pace) else {
+        return Vec::new();
+    };
+    let minimum = &alone.minimum;
+    let Ok(held) = Held::new(&alone.problem, &minimum.parameters, &minimum.jacobian) else {
+        return Vec::new();
+    };
+    if alone.doubt().is_some() {
+        return Vec::new();
+    }
+    let one = |(i, unknown): (usize, &Unknown)| {
+        let [known, known_std] = unknown.prior?;
+        let value = alone.setting().get(unknown.parameter);
+        let std = held.covariance[(i, i)].sqrt() * unknown.coordinate.slope(minimum.parameters[i]).abs();
+        let apart = (value - known).abs() / known_std.hypot(std);
+        (held.loose[i].is_none() && apart > APART).then(|| {
+            let (name, unit) = (unknown.parameter.name(), unknown.parameter.unit());
+            format!(
+                "the prior of {name}, {}, contradicts the points, which say {} without priors",
+                with_std(known, Some(known_std), unit),
+                with_std(value, Some(std), unit)
+            )
+        })
+    };
+    problem.unknowns.iter().enumerate().filter_map(one).collect()
+}
