@@ -151,12 +151,12 @@ fn missing(problem: &Problem<'_>, u: &[f64], motions: &Motions) -> f64 {
     for ((step, mass), r) in plain.used().zip(plain.at(u)) {
         own[step][mass] = data.steps[step].seen[mass].as_ref().map(|seen| missed_by(seen, r));
     }
-    let one = |((step, own), came): ((&Step, &[Option<f64>; 2]), &Option<[f64; 2]>)| {
-        let simulated = missed(data, step, came.unwrap_or([0.0; 2]));
-        let used: f64 = own.iter().flatten().sum();
-        if own.iter().any(Option::is_some) { used.min(simulated) } else { simulated }
+    let one = |i: usize| {
+        let simulated = missed(data, &data.steps[i], motions.came[i].unwrap_or([0.0; 2]));
+        let used: f64 = own[i].iter().flatten().sum();
+        if own[i].iter().any(Option::is_some) { used.min(simulated) } else { simulated }
     };
-    let points: f64 = data.steps.iter().zip(&own).zip(&motions.came).map(one).sum();
+    let points: f64 = (0..data.steps.len()).map(one).sum();
     points + FINE.len() as f64 * priors(&problem.unknowns, &setting)
 }
 
