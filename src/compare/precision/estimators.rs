@@ -8,17 +8,19 @@ mod damping;
 mod impacts;
 mod integration;
 mod pulse;
+mod rate;
 pub mod rivals;
 mod sine;
 mod trial;
 
 pub use bound::bounds;
+pub use rate::Rate;
 
 use super::measured::front;
 use super::watched::side_by_side;
 use super::{FailureMap, Family, Scene};
 use crate::Result;
-use trial::Task;
+use trial::{Task, Tried};
 
 /// Every scene of the estimators, each method measured; `quick` takes fewer records.
 ///
@@ -48,15 +50,40 @@ pub fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Vec<Scene>>
 ///
 /// An answer is right within three of its standard uncertainties; one without an uncertainty within what is the same for all methods of a
 /// border: half a line for a frequency, 5 % for an amplitude, 10 % for a damping ratio, 1 % for an impact frequency, 0.02 for ξ. It is
-/// refused where it is withheld, where it states no uncertainty and says why, where its uncertainty is more than ten times what is
-/// allowed, and where it is off but one of its sentences names what is wrong with the record. A doubt of something else excuses nothing. A
+/// refused where it is withheld, where it states no uncertainty and says so, where its uncertainty is more than what is allowed, and where
+/// it is off but one of its sentences names what is wrong with the record. A doubt of something else excuses nothing. A
 /// method is wrong where more answers are off than chance allows, or one by more than 5.2 standard uncertainties: limits that methods
 /// whose errors are as they state them pass in fewer than one of a hundred full maps.
 ///
 /// # Errors
 /// None today: every scene can be built.
 pub fn failures(quick: bool) -> Result<FailureMap> {
-    Ok(FailureMap { family: Family::Estimators, cells: side_by_side(tasks(quick)) })
+    Ok(failures_and_rates(quick)?.0)
+}
+
+/// As [`failures`], and how often each method's answers are further off than they state, at all borders together.
+///
+/// # Errors
+/// None today: every scene can be built.
+pub fn failures_and_rates(quick: bool) -> Result<(FailureMap, Vec<Rate>)> {
+    let tried = side_by_side(tasks(quick));
+    let mut rates: Vec<Rate> = Vec::new();
+    for Tried { cell, judged, beyond } in &tried {
+        match rates.iter_mut().find(|r| r.method == cell.method && r.ours == cell.ours) {
+            Some(rate) => {
+                rate.judged += judged;
+                rate.beyond += beyond;
+            }
+            None => rates.push(Rate {
+                method: cell.method.clone(),
+                ours: cell.ours,
+                judged: *judged,
+                beyond: *beyond,
+            }),
+        }
+    }
+    let cells = tried.into_iter().map(|t| t.cell).collect();
+    Ok((FailureMap { family: Family::Estimators, cells }, rates))
 }
 
 fn tasks(quick: bool) -> Vec<Task> {

@@ -277,6 +277,8 @@ fn edges_within_one_sample_leave_the_interval_unsure() {
     let found = impacts(&trace(values, rate), &options).unwrap();
     let beat = found.beat.unwrap();
     assert!((beat.value - 0.02).abs() < 1e-9 && beat.std.is_some(), "{beat:?}");
+    // 12 samples closed and 88 open are multiples of 4, but nothing is held for 4.
+    assert!(found.warnings.iter().all(|w| !w.contains("is held for")), "{:?}", found.warnings);
 }
 
 #[test]
@@ -320,4 +322,29 @@ fn a_held_trace_is_known_to_what_it_was_sampled_at() {
     }
     // A contact that closes and opens at any sample is not held, however long it stays.
     assert_eq!(held(&[0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]), 1);
+}
+
+/// A train that is locked to the sampling clock has few distances between its changes, with a common divisor: it is not held for that.
+#[test]
+fn a_train_locked_to_the_sampling_clock_is_not_held() {
+    let of = |closed: usize, period: usize, height: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        (0..200 * period).map(|i| if i % period < closed { height(i / period) } else { 0.0 }).collect()
+    };
+    let even = |_: usize| 5.0;
+    // Missed by no pattern, as bits of a product of large odd numbers; as high as no other; both half of the time.
+    let gaps = |k: usize| if (k * k * 2_654_435_761) >> 20 & 3 == 0 { 0.0 } else { 5.0 };
+    let heights = |k: usize| 5.0 + (k as f64).sqrt();
+    for (closed, period) in [(12, 100), (12, 96), (4, 8), (10, 100), (40, 120)] {
+        assert_eq!(held(&of(closed, period, &even)), 1, "{closed} of {period}");
+        assert_eq!(held(&of(closed, period, &gaps)), 1, "{closed} of {period}, some missed");
+        assert_eq!(held(&of(closed, period, &heights)), 1, "{closed} of {period}, heights");
+    }
+    // Pulses of stairs, all alike, four samples a stair.
+    let stairs: Vec<f64> = (0..20_000).map(|i| (i % 100 / 4).min(6) as f64).collect();
+    assert_eq!(held(&stairs), 1);
+    // The same train in noise of which one sample in 40 is kept.
+    let mut noise = Noise::new(3);
+    let kept: Vec<f64> = of(12, 96, &even).iter().step_by(40).map(|v| v + 0.01 * noise.normal()).collect();
+    let values: Vec<f64> = (0..40 * kept.len()).map(|i| kept[i / 40]).collect();
+    assert_eq!(held(&values), 40);
 }

@@ -3,6 +3,7 @@
 use super::super::measured::{quartiles, timed};
 use super::super::watched::{PATIENCE, Watched, watched};
 use super::super::{Cell, Measured, Outcome};
+use super::rate::{OUTSIDE, WITHIN, exceeded};
 use crate::error::Result;
 use crate::math::Noise;
 use crate::measure::Estimate;
@@ -181,32 +182,31 @@ const TRIALS: [usize; 2] = [40, 6];
 pub const CELLS: usize = 500;
 /// Chance that anywhere in the full map a method whose errors are as it states them is called wrong: half of it by [`FAR`], half by [`outliers`].
 const CHANCE: f64 = 0.01;
-/// An answer within so many of its standard uncertainties is right.
-const WITHIN: f64 = 3.0;
-/// Share of normal errors that lie further off.
-const OUTSIDE: f64 = 2.699_796e-3;
 /// Beyond so many a single answer is wrong: of normal errors 2.0e-7 are, of the 20 000 of the full map one in 0.4 % of such maps.
 const FAR: f64 = 5.2;
-/// An answer whose standard uncertainty is so many times what is allowed to one without says that it knows nothing.
-const LOOSE: f64 = 10.0;
+/// An answer of a greater standard uncertainty, in parts of what is allowed to one without, is too vague to be right.
+const LOOSE: f64 = 1.0;
+/// Words by which a sentence says that there is no uncertainty, or why.
+const WITHHELD: [&str; 2] = ["uncertainty", "not known"];
 
-/// How many of `trials` answers may lie between [`WITHIN`] and [`FAR`]: the least number that chance exceeds anywhere in the map less often
-/// than half of [`CHANCE`] (binomial distribution).
-fn outliers(trials: usize) -> usize {
-    let odds = OUTSIDE / (1.0 - OUTSIDE);
-    let mut term = (1.0 - OUTSIDE).powf(trials as f64);
-    let mut beyond = 1.0 - term;
-    let mut count = 0;
-    while beyond > 0.5 * CHANCE / CELLS as f64 && count < trials {
-        term *= odds * (trials - count) as f64 / (count + 1) as f64;
-        beyond -= term;
-        count += 1;
-    }
-    count
+/// How many of so many answers may lie between [`WITHIN`] and [`FAR`]: the least number that chance exceeds anywhere in the map less often
+/// than half of [`CHANCE`].
+fn outliers(judged: usize) -> usize {
+    exceeded(judged, OUTSIDE, 0.5 * CHANCE / CELLS as f64)
+}
+
+/// What came of the answers of one cell.
+pub struct Tried {
+    /// The cell.
+    pub cell: Cell,
+    /// Answers that were held to the uncertainty that they state.
+    pub judged: usize,
+    /// Those of them that lie further off than [`WITHIN`] of it.
+    pub beyond: usize,
 }
 
 /// One cell of the map, still to be asked for.
-pub type Task = Box<dyn FnOnce() -> Cell + Send>;
+pub type Task = Box<dyn FnOnce() -> Tried + Send>;
 
 /// What each method does with each kind of record at a border, to be run.
 pub fn cells<D: Send + 'static>(
@@ -217,15 +217,16 @@ pub fn cells<D: Send + 'static>(
 ) -> Vec<Task> {
     let task = |method: &'static Method<D>, kind: Arc<Kind<D>>| -> Task {
         Box::new(move || {
-            let (outcome, why) = judged(method, &kind, TRIALS[usize::from(quick)]);
-            Cell {
+            let Asked { outcome, why, judged, beyond } = asked(method, &kind, TRIALS[usize::from(quick)]);
+            let cell = Cell {
                 method: method.name.to_owned(),
                 ours: method.ours,
                 border: border.to_owned(),
                 scene: kind.name.clone(),
                 outcome,
                 why,
-            }
+            };
+            Tried { cell, judged, beyond }
         })
     };
     let kinds = kinds.into_iter().map(Arc::new);
@@ -242,31 +243,44 @@ enum Verdict {
 }
 
 /// An answer that states its uncertainty is held to it, whatever it says beside; beyond it, a sentence that names what is wrong with the record
-/// makes it a refusal, another does not. One without is a refusal where it says why, and else is held to what is allowed.
+/// makes it a refusal, another does not. One without is a refusal where it says that it has none, or names what is wrong, and else is held to
+/// what is allowed.
 fn verdict(answer: &Answer, truth: f64, tolerance: f64, causes: &[&str]) -> Verdict {
     let off = (answer.value - truth).abs();
-    let first = answer.said.first().cloned();
+    let refused = |why: &str| Verdict::Refused(why.to_owned());
     if !off.is_finite() {
-        return Verdict::Refused(first.unwrap_or_else(|| "it gives no number".to_owned()));
+        return refused(answer.said.first().map_or("it gives no number", String::as_str));
     }
-    let score = match (answer.std, first) {
-        (None, Some(why)) => return Verdict::Refused(why),
-        (None, None) => off / tolerance,
-        (Some(std), _) if std > LOOSE * tolerance => {
-            return Verdict::Refused(format!("its uncertainty of {std:.2e} says that it does not know"));
+    let score = match answer.std {
+        None => match answer.naming(&WITHHELD) {
+            Some(why) => return refused(why),
+            None => off / tolerance,
+        },
+        Some(std) if std > LOOSE * tolerance => {
+            return Verdict::Refused(format!("its uncertainty of {std:.2e} is more than is allowed"));
         }
-        (Some(std), _) => off / (WITHIN * std.max(1e-12 * truth.abs())),
+        Some(std) => off / (WITHIN * std.max(1e-12 * truth.abs())),
     };
     match answer.naming(causes) {
         _ if score <= 1.0 => Verdict::Right,
-        Some(named) if answer.std.is_some() => Verdict::Refused(named.to_owned()),
-        _ => Verdict::Off(score),
+        Some(named) => refused(named),
+        None => Verdict::Off(score),
     }
 }
 
-fn judged<D: Send + 'static>(method: &Method<D>, kind: &Kind<D>, trials: usize) -> (Outcome, String) {
+/// What came of the answers to records of one kind.
+struct Asked {
+    outcome: Outcome,
+    why: String,
+    judged: usize,
+    beyond: usize,
+}
+
+fn asked<D: Send + 'static>(method: &Method<D>, kind: &Kind<D>, trials: usize) -> Asked {
+    let broken = |outcome, why| Asked { outcome, why, judged: 0, beyond: 0 };
     let (mut right, mut off, mut worst) = (0, 0, None::<(f64, String)>);
     let (mut refusals, mut stated) = (Refusals::default(), true);
+    let (mut judged, mut beyond) = (0, 0);
     for number in 0..trials {
         let Case { data, truth, tolerance, .. } = kind.case(number);
         let estimate = method.estimate;
@@ -276,13 +290,18 @@ fn judged<D: Send + 'static>(method: &Method<D>, kind: &Kind<D>, trials: usize) 
                 refusals.add(error.to_string());
                 continue;
             }
-            Watched::Crashed(why) => return (Outcome::Crashed, format!("record {number}: {why}")),
+            Watched::Crashed(why) => return broken(Outcome::Crashed, format!("record {number}: {why}")),
             Watched::Stalled => {
-                return (Outcome::Stalled, format!("record {number}: no answer within {PATIENCE} s"));
+                return broken(Outcome::Stalled, format!("record {number}: no answer within {PATIENCE} s"));
             }
         };
         stated &= answer.std.is_some();
-        match verdict(&answer, truth, tolerance, kind.causes) {
+        let verdict = verdict(&answer, truth, tolerance, kind.causes);
+        if answer.std.is_some() && !matches!(verdict, Verdict::Refused(_)) {
+            judged += 1;
+            beyond += usize::from(verdict != Verdict::Right);
+        }
+        match verdict {
             Verdict::Right => right += 1,
             Verdict::Refused(why) => refusals.add(why),
             Verdict::Off(score) => {
@@ -300,13 +319,14 @@ fn judged<D: Send + 'static>(method: &Method<D>, kind: &Kind<D>, trials: usize) 
     }
     let measure = if stated { "3 standard uncertainties" } else { "what is allowed" };
     let part = |n: usize| format!("{n} of {trials} answers");
-    match worst {
-        Some((score, text)) if WITHIN * score > FAR || off > outliers(trials) => {
+    let (outcome, why) = match worst {
+        Some((score, text)) if WITHIN * score > FAR || off > outliers(right + off) => {
             (Outcome::Wrong, format!("{} beyond {measure}, the worst {text}", part(off)))
         }
         _ if 2 * right >= trials => (Outcome::Right, format!("{} within {measure}", part(right))),
         _ => (Outcome::Refused, refusals.said(trials).unwrap_or_else(|| "no answer".to_owned())),
-    }
+    };
+    Asked { outcome, why, judged, beyond }
 }
 
 #[cfg(test)]
@@ -315,18 +335,7 @@ mod tests {
 
     #[test]
     fn chance_calls_a_right_method_wrong_in_fewer_than_one_map_in_a_hundred() {
-        // P(k) of the binomial distribution by its factorials.
-        let share = |n: usize, k: usize| {
-            let ways = (0..k).map(|i| (n - i) as f64 / (i + 1) as f64).product::<f64>();
-            ways * OUTSIDE.powf(k as f64) * (1.0 - OUTSIDE).powf((n - k) as f64)
-        };
         let half = 0.5 * CHANCE / CELLS as f64;
-        for n in [1, 6, 40, 1000] {
-            let beyond = |count: usize| (count + 1..=n).map(|k| share(n, k)).sum::<f64>();
-            let count = outliers(n);
-            assert!(beyond(count) < half, "{n}: {count}");
-            assert!(count == 0 || beyond(count - 1) > half, "{n}: {count}");
-        }
         // The normal distribution by the midpoint rule, which is off by 1e-8/24 of its curvature.
         let density = |x: f64| (-0.5 * x * x).exp() * (2.0 / std::f64::consts::PI).sqrt();
         let beyond =
@@ -348,7 +357,13 @@ mod tests {
         assert!(matches!(of(10.6, Some(0.1), &["The noise is not white."]), Verdict::Off(_)));
         assert!(refused(of(10.6, Some(0.1), &["The noise is not white.", "3 pulses are clipped."])));
         assert!(refused(of(10.0, None, &["No uncertainty is known."])) && refused(of(f64::NAN, None, &[])));
-        assert!(refused(of(10.0, Some(11.0), &[])));
+        // A sentence on something else withholds nothing.
+        assert_eq!(of(12.0, None, &["A drift was taken away."]), Verdict::Off(2.0));
+        assert_eq!(of(10.9, None, &["A drift was taken away."]), Verdict::Right);
+        assert!(refused(of(12.0, None, &["A drift was taken away.", "3 pulses are clipped."])));
+        // What is known less well than what is allowed is not right, however near it comes.
+        assert!(refused(of(10.0, Some(1.1), &[])));
+        assert_eq!(of(10.0, Some(0.9), &[]), Verdict::Right);
         assert_eq!((of(10.9, None, &[]), of(12.0, None, &[])), (Verdict::Right, Verdict::Off(2.0)));
     }
 }
