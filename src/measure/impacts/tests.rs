@@ -332,7 +332,7 @@ fn a_train_locked_to_the_sampling_clock_is_not_held() {
     };
     let even = |_: usize| 5.0;
     // Missed by no pattern, as bits of a product of large odd numbers; as high as no other; both half of the time.
-    let gaps = |k: usize| if (k * k * 2_654_435_761) >> 20 & 3 == 0 { 0.0 } else { 5.0 };
+    let gaps = |k: usize| if ((k * k * 2_654_435_761) >> 20).is_multiple_of(4) { 0.0 } else { 5.0 };
     let heights = |k: usize| 5.0 + (k as f64).sqrt();
     for (closed, period) in [(12, 100), (12, 96), (4, 8), (10, 100), (40, 120)] {
         assert_eq!(held(&of(closed, period, &even)), 1, "{closed} of {period}");
@@ -340,7 +340,7 @@ fn a_train_locked_to_the_sampling_clock_is_not_held() {
         assert_eq!(held(&of(closed, period, &heights)), 1, "{closed} of {period}, heights");
     }
     // Pulses of stairs, all alike, four samples a stair.
-    let stairs: Vec<f64> = (0..20_000).map(|i| (i % 100 / 4).min(6) as f64).collect();
+    let stairs: Vec<f64> = (0..20_000).map(|i| f64::from((i % 100 / 4).min(6))).collect();
     assert_eq!(held(&stairs), 1);
     // The same train in noise of which one sample in 40 is kept.
     let mut noise = Noise::new(3);
