@@ -126,7 +126,21 @@ fn along(
     complain::warn(&warnings);
     let mut text = format!("{}\n{}", stretches.text(), tables::summaries(&survey.rungs).text());
     let _ = match survey.chosen {
-        Some(model) => writeln!(text, "\n{} is good enough at all of these frequencies.", model.name()),
+        Some(model) => {
+            let changes = survey.points.iter().flat_map(|p| &p.rungs).filter(|r| r.model == model);
+            let beyond = changes.flat_map(|r| &r.changes).filter(|c| !c.enough);
+            match beyond.max_by(|a, b| a.change.abs().total_cmp(&b.change.abs())) {
+                Some(c) => writeln!(
+                    text,
+                    "\n{} is good enough at all of these frequencies if its law of the contact is: at {} the answer moves by up to {:.1} %. \
+                     The law should be measured.",
+                    model.name(),
+                    c.at.name(),
+                    100.0 * c.change.abs()
+                ),
+                None => writeln!(text, "\n{} is good enough at all of these frequencies.", model.name()),
+            }
+        }
         None => writeln!(text, "\nNo single model was found good enough at all of these frequencies."),
     };
     told(text, written)

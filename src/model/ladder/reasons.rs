@@ -73,9 +73,12 @@ fn chosen(choice: &Choice, rung: &Rung, question: &Question) -> String {
     }
     for change in &rung.changes {
         let law = rung.model == Model::KelvinVoigt && !change.enough;
+        let excused = change.enough && change.change.abs() > question.tolerance;
         let _ = write!(text, " Its answer moves by {:+.3} % at {}", 100.0 * change.change, change.at.name());
         text.push_str(if law {
             ": the law of the contact matters more than the tolerance, and should be measured."
+        } else if excused {
+            ", more than the tolerance: the noise floor, or what the answers themselves are uncertain by, allows it."
         } else {
             "."
         });

@@ -87,8 +87,10 @@ pub fn precision(scene: &Scene) -> Figure {
             own += 1;
             (Ink::Black, MARKERS[(own - 1) % MARKERS.len()], Stroke::Solid)
         } else {
-            others += 1;
-            let turn = others - 1;
+            let turn = OFTEN.iter().position(|often| *often == name).unwrap_or_else(|| {
+                others += 1;
+                OFTEN.len() + others - 1
+            });
             (Ink::Nth(turn % 6), MARKERS[(turn + 1 + turn / 6) % MARKERS.len()], Stroke::Thin)
         };
         let row = view.crosses(crosses.len());
@@ -130,6 +132,18 @@ pub fn precision(scene: &Scene) -> Figure {
         scene.says, scene.truth
     ))
 }
+
+/// Methods of other kinds that stand in several charts: each has one colour and form in all of them.
+const OFTEN: [&str; 8] = [
+    "Euler loop",
+    "RK4 loop",
+    "Moreau time stepping",
+    "RK4, sign test",
+    "RK45, sign test",
+    "RK45, dense events",
+    "DOP853, dense events",
+    "stiff spring, RK45",
+];
 
 /// Distance within which points of a line share their letters, in parts of the width and of the height.
 const SHARED: [f64; 2] = [0.025, 0.03];
