@@ -161,7 +161,7 @@ pub fn fit(
     let starts = entry.starts.unwrap_or(STARTS);
     let (mut settled, ends) = identify(&data, &base, &unknowns, starts, pace)?;
     settled.contradictions = prior::contradictions(&settled, starts, pace);
-    let held = Held::new(&settled.problem, &settled.minimum.parameters, &settled.minimum.jacobian)?;
+    let held = settled.held()?;
     let profile = profile::profile(&settled, &held, held.worst());
     let mut fit = gathered(&settled, &held, &base, profile);
     (fit.starts, fit.agreeing) = (starts, agreeing(&ends, &settled.minimum.parameters, &held));

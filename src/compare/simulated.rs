@@ -58,7 +58,12 @@ pub fn simulated(rig: &Rig, law: Option<Law>, points: &[(f64, f64)], pace: Pace)
 /// As [`simulated`] with impacts that take no time, but a point with more impacts than a plain pattern has is given up, where a rig of wrong
 /// parameters could take minutes.
 pub fn simulated_plain(rig: &Rig, points: &[(f64, f64)], pace: Pace) -> Vec<Result<Simulated>> {
-    let plain = |motion: &mut Simulation| if is_busy(motion)? { Err(busy()) } else { read(motion, pace) };
+    let plain = |motion: &mut Simulation| {
+        if is_busy(motion)? {
+            return Err(Error::refused(format!("the masses meet more than {BUSY} times a cycle")));
+        }
+        read(motion, pace)
+    };
     led(rig, points, plain, |sine, state, phase| Simulation::from_state(rig, &sine, state, phase))
 }
 
@@ -80,10 +85,6 @@ fn is_busy(motion: &mut Simulation) -> Result<bool> {
         }
     }
     Ok(false)
-}
-
-fn busy() -> Error {
-    Error::refused(format!("the masses meet more than {BUSY} times a cycle"))
 }
 
 fn led<M: Motion>(

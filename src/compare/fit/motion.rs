@@ -98,15 +98,22 @@ pub fn without_far(data: &Data, setting: &Setting, kinds: Vec<Option<Kind>>) -> 
         clear.map(away).max_by(f64::total_cmp)
     };
     let away: Vec<Option<f64>> = data.steps.iter().zip(&kinds).map(one).collect();
+    let limit = limit(&away);
+    let near =
+        kinds.into_iter().zip(away).map(|(kind, away)| kind.filter(|_| away.is_none_or(|a| a <= limit)));
+    without_lone(data, setting, near.collect())
+}
+
+/// How far a step may lie from its motion where the others lie so far from theirs.
+fn limit(away: &[Option<f64>]) -> f64 {
     let mut sorted: Vec<f64> = away.iter().flatten().copied().collect();
     sorted.sort_by(f64::total_cmp);
-    let limit = FAR * (median(&sorted).unwrap_or(0.0) / MEDIAN).max(1.0);
-    kinds.into_iter().zip(away).map(|(kind, away)| kind.filter(|_| away.is_none_or(|a| a <= limit))).collect()
+    FAR * (median(&sorted).unwrap_or(0.0) / MEDIAN).max(1.0)
 }
 
 /// Motions without those of steps that lie far from them once the calibrations' errors are allowed for as errors that all points share:
 /// one after the other, the farthest first, since it moves what is shared.
-pub fn without_lone(data: &Data, setting: &Setting, mut kinds: Vec<Option<Kind>>) -> Vec<Option<Kind>> {
+fn without_lone(data: &Data, setting: &Setting, mut kinds: Vec<Option<Kind>>) -> Vec<Option<Kind>> {
     if data.calibration == 0.0 {
         return kinds;
     }
@@ -117,9 +124,7 @@ pub fn without_lone(data: &Data, setting: &Setting, mut kinds: Vec<Option<Kind>>
         for ((step, _), r) in problem.used().zip(problem.at(&[])) {
             away[step] = Some(away[step].unwrap_or(0.0).max(r.abs()));
         }
-        let mut sorted: Vec<f64> = away.iter().flatten().copied().collect();
-        sorted.sort_by(f64::total_cmp);
-        let limit = FAR * (median(&sorted).unwrap_or(0.0) / MEDIAN).max(1.0);
+        let limit = limit(&away);
         let farthest =
             (0..away.len()).max_by(|a, b| away[*a].unwrap_or(0.0).total_cmp(&away[*b].unwrap_or(0.0)));
         match farthest.filter(|i| away[*i].is_some_and(|a| a > limit)) {

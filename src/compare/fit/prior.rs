@@ -1,7 +1,6 @@
 //! What was known of parameters beside what the points say.
 
 use super::super::simulated::Pace;
-use super::held::Held;
 use super::identify;
 use super::settle::Settled;
 use super::unknown::Unknown;
@@ -23,7 +22,7 @@ pub fn contradictions(settled: &Settled<'_>, starts: usize, pace: Pace) -> Vec<S
         return Vec::new();
     };
     let minimum = &alone.minimum;
-    let Ok(held) = Held::new(&alone.problem, &minimum.parameters, &minimum.jacobian) else {
+    let Ok(held) = alone.held() else {
         return Vec::new();
     };
     if alone.doubt().is_some() {

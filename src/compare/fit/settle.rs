@@ -3,7 +3,8 @@
 use super::super::prediction::Kind;
 use super::super::simulated::Pace;
 use super::data::{Data, Step};
-use super::motion::{Motions, assigned, without_far, without_lone};
+use super::held::Held;
+use super::motion::{Motions, assigned, without_far};
 use super::problem::Problem;
 use super::search::{FINE, approached, missed, missed_by, priors};
 use super::setting::Setting;
@@ -46,6 +47,14 @@ pub struct Settled<'a> {
 const CONTRADICTED: f64 = 0.1;
 
 impl Settled<'_> {
+    /// How well the points hold each parameter.
+    ///
+    /// # Errors
+    /// As [`Held::new`].
+    pub fn held(&self) -> Result<Held> {
+        Held::new(&self.problem, &self.minimum.parameters, &self.minimum.jacobian)
+    }
+
     /// Why the answer as a whole may be wrong, and its uncertainties mean nothing.
     pub fn doubt(&self) -> Option<String> {
         if !self.contradictions.is_empty() {
@@ -89,20 +98,15 @@ pub fn settle<'a>(
     let motions = |u: &[f64], pace: Pace| assigned(data, &at(base, unknowns, u), pace);
     // Parameters that are wrong by more than a disturbance leaves need no long wait for it.
     let brief = Pace { settle: pace.settle.min(BRIEF.settle), measure: pace.measure.min(BRIEF.measure) };
-    let priors = unknowns.iter().filter(|u| u.prior.is_some()).count();
     for part in FINE {
         let now = motions(&u, brief)?;
-        let n = now.amplitudes(data);
-        if n + priors < unknowns.len() || n == 0 {
-            return Err(too_few(n, unknowns.len()));
-        }
+        enough(now.amplitudes(data), unknowns)?;
         u = approached(data, base, unknowns, &now.kinds, part, u);
     }
     let mut now = motions(&u, pace)?;
     let mut out = vec![false; data.steps.len()];
     let left = |now: &Motions, u: &[f64], out: &[bool]| -> Vec<Option<Kind>> {
         let near = without_far(data, &at(base, unknowns, u), now.kinds.clone());
-        let near = without_lone(data, &at(base, unknowns, u), near);
         near.into_iter().zip(out).map(|(kind, out)| kind.filter(|_| !out)).collect()
     };
     let mut kinds = left(&now, &u, &out);
@@ -160,11 +164,17 @@ fn missing(problem: &Problem<'_>, u: &[f64], motions: &Motions) -> f64 {
     points + FINE.len() as f64 * priors(&problem.unknowns, &setting)
 }
 
-fn too_few(n: usize, unknowns: usize) -> Error {
-    Error::refused(format!(
-        "{n} amplitude(s) of motions with one impact a cycle or none do not determine {unknowns} parameters"
-    ))
-    .hint("fit fewer parameters, or begin nearer to the rig")
+/// Whether `n` amplitudes and the priors can determine the unknowns.
+fn enough(n: usize, unknowns: &[Unknown]) -> Result<()> {
+    let priors = unknowns.iter().filter(|u| u.prior.is_some()).count();
+    if n + priors < unknowns.len() || n == 0 {
+        return Err(Error::refused(format!(
+            "{n} amplitude(s) of motions with one impact a cycle or none do not determine {} parameters",
+            unknowns.len()
+        ))
+        .hint("fit fewer parameters, or begin nearer to the rig"));
+    }
+    Ok(())
 }
 
 /// The least sum of squares with these motions; weights and scale from the parameters found, twice.
@@ -176,10 +186,7 @@ pub fn least<'a>(
     start: &[f64],
 ) -> Result<(Problem<'a>, Minimum, f64, Whiteness)> {
     let mut problem = Problem::new(data, base, unknowns, kinds);
-    let (n, priors) = problem.rows();
-    if n + priors < unknowns.len() || n == 0 {
-        return Err(too_few(n, unknowns.len()));
-    }
+    enough(problem.rows().0, unknowns)?;
     let mut u = start.to_vec();
     let mut turn = 0;
     loop {

@@ -178,8 +178,7 @@ fn wrong_starts_come_back() {
         });
         let unknowns = unknowns(&ALL, &start);
         let (settled, found) = identify(&data, &start, &unknowns, STARTS, PACE).unwrap();
-        let held =
-            Held::new(&settled.problem, &settled.minimum.parameters, &settled.minimum.jacobian).unwrap();
+        let held = settled.held().unwrap();
         println!(
             "{} of {STARTS} agree, {} points",
             agreeing(&found, &settled.minimum.parameters, &held),
@@ -192,6 +191,38 @@ fn wrong_starts_come_back() {
         }
         assert!(settled.reduced < 1.6 && settled.problem.rows().0 > 100, "{}", settled.reduced);
     }
+}
+
+/// The least sum of squares from `setting` on with these motions, settled as it stands.
+fn least_from<'a>(
+    data: &'a Data,
+    setting: &Setting,
+    unknowns: &[Unknown],
+    kinds: &[Option<Kind>],
+) -> Settled<'a> {
+    let u = coordinates(setting, unknowns);
+    let (problem, minimum, reduced, whiteness) = settle::least(data, setting, unknowns, kinds, &u).unwrap();
+    Settled {
+        problem,
+        minimum,
+        reduced,
+        whiteness,
+        wavering: 0,
+        agreed: true,
+        far: 0,
+        missed: 0.0,
+        contradictions: Vec::new(),
+    }
+}
+
+/// How many of its standard deviations each parameter lies off `truth`.
+fn away(settled: &Settled<'_>, truth: &Setting) -> Vec<f64> {
+    let held = settled.held().unwrap();
+    let off = |(i, unknown): (usize, &Unknown)| {
+        let expected = unknown.coordinate.of(truth.get(unknown.parameter));
+        (settled.minimum.parameters[i] - expected).abs() / held.covariance[(i, i)].sqrt()
+    };
+    settled.problem.unknowns.iter().enumerate().map(off).collect()
 }
 
 /// Held of these parameters, with the steps and masses that `keep` lets through.
@@ -276,21 +307,8 @@ fn a_prior_is_used_and_said_where_it_holds_the_parameter() {
         toml::from_str("parameters = [\"gap\", \"c1\"]\nprior.c1 = [0.1, 1e-7]\nprior.gap = [1e-3, 1e-4]")
             .unwrap();
     let unknowns = Unknown::all(&entry, &setting).unwrap();
-    let u = coordinates(&setting, &unknowns);
-    let (problem, minimum, reduced, whiteness) =
-        settle::least(&data, &setting, &unknowns, &kinds, &u).unwrap();
-    let settled = Settled {
-        problem,
-        minimum,
-        reduced,
-        whiteness,
-        wavering: 0,
-        agreed: true,
-        far: 0,
-        missed: 0.0,
-        contradictions: Vec::new(),
-    };
-    let held = Held::new(&settled.problem, &settled.minimum.parameters, &settled.minimum.jacobian).unwrap();
+    let settled = least_from(&data, &setting, &unknowns, &kinds);
+    let held = settled.held().unwrap();
     let [gap, c1] = [0, 1].map(|i| fitted(&settled, &held, &setting, i));
     assert!(!gap.rests_on_prior && gap.identifiable, "{gap:?}");
     // The points know c1 to some 1e-5: all but the hundredth part squared is the prior's.
@@ -316,20 +334,7 @@ fn the_simplest_model_that_predicts_what_it_has_not_seen_is_chosen() {
         [(&data, &ALL[1..], kinds, "closed form"), (&still, &["force", "k1"][..], free, "linear")]
     {
         let unknowns = unknowns(names, &setting);
-        let u = coordinates(&setting, &unknowns);
-        let (problem, minimum, reduced, whiteness) =
-            settle::least(data, &setting, &unknowns, &kinds, &u).unwrap();
-        let settled = Settled {
-            problem,
-            minimum,
-            reduced,
-            whiteness,
-            wavering: 0,
-            agreed: true,
-            far: 0,
-            missed: 0.0,
-            contradictions: Vec::new(),
-        };
+        let settled = least_from(data, &setting, &unknowns, &kinds);
         // Without named features all steps are held out in turn, ten at a time.
         let rungs = rung::rungs(&settled, &[], None, PACE);
         let chosen: Vec<&str> = rungs.iter().filter(|r| r.chosen).map(|r| r.model).collect();

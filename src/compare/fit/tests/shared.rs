@@ -2,17 +2,11 @@
 
 use super::*;
 
-/// The answer from this start, and how many of its standard deviations each parameter lies off `setting`.
-fn away(data: &Data, setting: &Setting, start: &Setting, names: &[&str]) -> (f64, Vec<f64>) {
-    let unknowns = unknowns(names, start);
-    let (settled, _) = identify(data, start, &unknowns, STARTS, PACE).unwrap();
+/// The undoubted answer from this start: what is left over freedom, and how many standard deviations each parameter lies off `setting`.
+fn answer(data: &Data, setting: &Setting, start: &Setting, names: &[&str]) -> (f64, Vec<f64>) {
+    let (settled, _) = identify(data, start, &unknowns(names, start), STARTS, PACE).unwrap();
     assert_eq!(settled.doubt(), None);
-    let held = Held::new(&settled.problem, &settled.minimum.parameters, &settled.minimum.jacobian).unwrap();
-    let off = |(i, unknown): (usize, &Unknown)| {
-        let truth = unknown.coordinate.of(setting.get(unknown.parameter));
-        (settled.minimum.parameters[i] - truth).abs() / held.covariance[(i, i)].sqrt()
-    };
-    (settled.reduced, unknowns.iter().enumerate().map(off).collect())
+    (settled.reduced, away(&settled, setting))
 }
 
 /// A calibration of 1 % errs by ten times the noise: what explains the points to 0.3 % is not the rig.
@@ -26,7 +20,7 @@ fn a_poor_calibration_leads_to_no_other_rig() {
         let data = miscalibrated(noisy(&clean, &kinds, &setting, seed), 1e-2, seed);
         let names = ["restitution", "c1", "c2", "gap", "k1", "k2"];
         for start in [&setting, &start] {
-            let (reduced, away) = away(&data, &setting, start, &names);
+            let (reduced, away) = answer(&data, &setting, start, &names);
             println!("{reduced:.2} {away:.1?}");
             // Four standard deviations of six parameters, four times: one of 650 cases.
             assert!(reduced < 1.6 && away.iter().all(|a| *a < 4.0), "{reduced} {away:?}");
@@ -46,7 +40,7 @@ fn a_lone_point_does_not_hide_behind_the_calibration() {
     let seen = data.steps[lone.unwrap()].seen[1].as_mut().unwrap();
     assert!(0.027 * seen.amplitude > 9.0 * seen.std);
     seen.amplitude *= 1.027;
-    let (reduced, away) = away(&data, &setting, &setting, &["restitution", "c1", "c2"]);
+    let (reduced, away) = answer(&data, &setting, &setting, &["restitution", "c1", "c2"]);
     assert!(reduced < 1.6 && away.iter().all(|a| *a < 4.0), "{reduced} {away:?}");
 }
 
