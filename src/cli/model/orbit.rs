@@ -5,6 +5,7 @@ use crate::cli::{args, complain, print, settings};
 use crate::error::Result;
 use crate::model::{Compliance, Excitation, NoImpact, Orbits, Rig, Scene, Softened, orbits_of, softened};
 use crate::report::{Output, files, pictures, tables};
+use crate::units::notation::quantity;
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -36,10 +37,11 @@ pub fn run(typed: &args::Orbit, json: bool) -> Result<()> {
         let near = gap_std.filter(|std| orbit.validity.exists && orbit.validity.grazing_distance <= *std);
         if let Some(std) = near {
             warnings.push(format!(
-                "Motion {} is {:.2e} m from grazing, no more than the gap's uncertainty of {std:.2e} m: its verdicts and multipliers \
-                 are not to be relied on.",
+                "Motion {} is {} from grazing, no more than the gap's uncertainty of {}: its verdicts and multipliers are not to be \
+                 relied on.",
                 i + 1,
-                orbit.validity.grazing_distance
+                quantity(orbit.validity.grazing_distance, "m", 3),
+                quantity(std, "m", 3)
             ));
         }
     }

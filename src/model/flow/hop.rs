@@ -3,28 +3,31 @@
 
 use super::{Flight, Free, Landing, State};
 
-/// Terms of the series: up to the tenth power of time.
-const TERMS: usize = 11;
+/// What counts as short, over the fastest rate: twenty terms leave out (1.3)²⁰/20! = 8e-17 of a displacement, eleven (0.2)¹¹/11! =
+/// 5e-16 and six (0.003)⁶/6! = 1e-18, of a speed 2e-15. Whether that is below the rounding of the flight itself is looked at each time.
+const LONGEST: f64 = 1.3;
+const SHORT: f64 = 0.2;
+const SHORTEST: f64 = 0.003;
+
 /// 1/n!.
-const WEIGHTS: [f64; TERMS] = {
-    let mut weights = [1.0; TERMS];
+const fn weights<const N: usize>() -> [f64; N] {
+    let mut weights = [1.0; N];
     let mut n = 1;
-    while n < TERMS {
+    while n < N {
         weights[n] = weights[n - 1] / n as f64;
         n += 1;
     }
     weights
-};
-/// A flight of more than this over the fastest rate is not tried: (0.25)¹¹/11! = 6e-15 of a displacement is more than its rounding.
-const LONGEST: f64 = 0.25;
+}
 
 impl Free {
     /// Displacement and its derivatives at the start, over n!, and a bound on the next one for all later times.
     #[inline]
-    fn terms(&self) -> ([f64; TERMS], f64) {
+    fn terms<const N: usize>(&self) -> ([f64; N], f64) {
         let mut last = [self.x, self.v];
-        let mut terms = [self.x, self.v, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-        for (term, weight) in terms[2..].iter_mut().zip(&WEIGHTS[2..]) {
+        let mut terms = [0.0; N];
+        terms[..2].copy_from_slice(&last);
+        for (term, weight) in terms[2..].iter_mut().zip(&const { weights::<N>() }[2..]) {
             let next = self.oscillator.acceleration(last[0], last[1]);
             *term = next * weight;
             last = [last[1], next];
@@ -36,7 +39,7 @@ impl Free {
 
 /// Σ terms tⁿ and its rate.
 #[inline]
-fn at(terms: &[f64; TERMS], t: f64) -> (f64, f64) {
+fn at<const N: usize>(terms: &[f64; N], t: f64) -> (f64, f64) {
     let (mut value, mut rate) = (0.0, 0.0);
     for term in terms.iter().rev() {
         rate = rate * t + value;
@@ -45,12 +48,24 @@ fn at(terms: &[f64; TERMS], t: f64) -> (f64, f64) {
     (value, rate)
 }
 
+/// A short flight at its beginning.
+struct Begun {
+    /// Time in s within which it is looked for.
+    longest: f64,
+    /// Speed of the separation in m/s.
+    separation: f64,
+    /// Acceleration in m/s² that brings the masses together again.
+    pressed: f64,
+    /// Rounding error of the gap in m.
+    rounding: f64,
+}
+
 impl Flight {
     /// The landing of a short flight that begins at contact; nothing where the series proves none within `duration`.
     ///
     /// With g = g₀ + t q(t), g₀ being rounding, q falls where −g̈/2 outweighs Σ|gₙ|(n − 1)tⁿ⁻²/n!, n from 3 on. So within twice and a half the
     /// flight of a constant g̈, if it falls up to there and is below 0 there, q has one root, and g was positive before it. What the series
-    /// leaves out, M₁₁t¹¹/11!, has to be below `rounding`.
+    /// leaves out, M_N tᴺ/N! of N terms, has to be below `rounding`.
     #[inline]
     pub(super) fn hop(&self, duration: f64, rounding: f64) -> Option<Landing> {
         let [first, second] = &self.free;
@@ -64,11 +79,24 @@ impl Flight {
         if !(touches && w > 0.0 && pressed > 0.0 && longest * fastest < LONGEST) {
             return None;
         }
-        let [(mut one, first), (two, second)] = [first.terms(), second.terms()];
-        let forced = self.waves.terms(&WEIGHTS, &mut one);
+        let begun = Begun { longest, separation: w, pressed, rounding };
+        let landing = match longest * fastest {
+            span if span < SHORTEST => self.summed::<6>(&begun),
+            span if span < SHORT => self.summed::<11>(&begun),
+            _ => self.summed::<20>(&begun),
+        };
+        landing.filter(|l| l.time <= duration)
+    }
+
+    /// The landing by series of `N` terms.
+    #[inline]
+    fn summed<const N: usize>(&self, begun: &Begun) -> Option<Landing> {
+        let Begun { longest, separation: w, pressed, rounding } = *begun;
+        let [(mut one, first), (two, second)] = [self.free[0].terms::<N>(), self.free[1].terms::<N>()];
+        let forced = self.waves.terms(&const { weights::<N>() }, &mut one);
         one[0] += self.rest;
-        let left = (first + second + forced) * WEIGHTS[TERMS - 1] / TERMS as f64;
-        let mut gap: [f64; TERMS] = std::array::from_fn(|n| two[n] - one[n]);
+        let left = (first + second + forced) * const { weights::<N>()[N - 1] / N as f64 };
+        let mut gap: [f64; N] = std::array::from_fn(|n| two[n] - one[n]);
         gap[0] += self.gap;
         // Powers of the time from the third term on, and what q's rate has of them.
         let (mut power, mut bends) = (1.0, 0.0);
@@ -76,7 +104,7 @@ impl Flight {
             power *= longest;
             bends += term.abs() * (n - 1) as f64 * power;
         }
-        bends += left * TERMS as f64 * power * longest;
+        bends += left * N as f64 * power * longest;
         if !(left * power * longest * longest * longest <= rounding && bends < -gap[2])
             || at(&gap, longest).0 >= -rounding
         {
@@ -89,11 +117,10 @@ impl Flight {
             let step = value / rate;
             time -= step;
             if step.abs() <= 1e-8 * time {
-                break;
+                let [(x1, v1), (x2, v2)] = [at(&one, time), at(&two, time)];
+                return (v1 > v2).then_some(Landing { time, state: State { x1, v1, x2, v2 } });
             }
         }
-        let [(x1, v1), (x2, v2)] = [at(&one, time), at(&two, time)];
-        (time > 0.0 && time <= duration && v1 > v2)
-            .then_some(Landing { time, state: State { x1, v1, x2, v2 } })
+        None
     }
 }

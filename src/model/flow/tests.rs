@@ -253,14 +253,16 @@ fn chatter(seed: &mut u64, w: f64) -> Flight {
 #[test]
 fn short_flights_land_where_the_closed_form_is_at_contact_and_not_before() {
     let mut seed = 8;
-    for w in [1e-6, 1e-5, 1e-4, 5e-4] {
+    // The longest ones are followed by series of twenty terms, where they prove enough.
+    for (w, least) in [(1e-6, 200), (1e-5, 200), (1e-4, 200), (5e-4, 200), (2e-3, 150), (5e-3, 50)] {
+        let mut followed = 0;
         for _ in 0..200 {
             let flight = chatter(&mut seed, w);
             let [_, a1, _, a2] = flight.rate(0.0);
             assert!(a1 > a2, "seed 8: the springs press");
             let rounding = 0.25 * flight.noise();
-            let landing =
-                flight.hop(1.0, rounding).expect("seed 8: a short flight is followed by its series");
+            let Some(landing) = flight.hop(1.0, rounding) else { continue };
+            followed += 1;
             // Rounding of the gap by the closed form, at whose root the slope is at least w/2.
             let off = flight.gap(landing.time).abs();
             assert!(off <= 4.0 * flight.noise(), "seed 8, {w}: {off:e}");
@@ -268,13 +270,22 @@ fn short_flights_land_where_the_closed_form_is_at_contact_and_not_before() {
             assert!((there.x1 - state.x1).abs() <= 4.0 * flight.noise());
             // Speeds by the series lose what the displacements lose, times the fastest rate of 250 rad/s, and their own rounding.
             let slack = 250.0 * flight.noise() + 4.0 * f64::EPSILON * (state.v1.abs() + state.v2.abs() + 0.1);
-            assert!((there.v1 - state.v1).abs() <= slack && (there.v2 - state.v2).abs() <= slack);
+            let apart = [there.v1 - state.v1, there.v2 - state.v2];
+            assert!(
+                apart.iter().all(|d| d.abs() <= slack),
+                "seed 8, {w}, {:e} s: {apart:?}, {slack:e}",
+                landing.time
+            );
             for i in 1..50 {
                 let gap = flight.gap(landing.time * f64::from(i) / 50.0);
                 assert!(gap > -flight.noise(), "seed 8, {w}: {gap:e} before the landing");
             }
             assert!(flight.hop(0.9 * landing.time, rounding).is_none(), "it lands later");
         }
+        assert!(
+            followed >= least,
+            "seed 8: {followed} of 200 flights at {w} m/s are followed by their series"
+        );
     }
 }
 

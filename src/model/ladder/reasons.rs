@@ -20,7 +20,13 @@ pub fn sentences(choice: &Choice, question: &Question) -> Vec<String> {
         return said;
     }
     let top = choice.chosen.map_or(Model::ALL.len(), |model| model as usize);
-    said.extend(choice.rungs[..top].iter().filter(|r| matters(r)).map(|r| passed_over(r, question)));
+    let (below, above) = choice.rungs.split_at(top);
+    let mut left: Vec<&Rung> = below.iter().collect();
+    left.extend(above.iter().filter(|r| Some(r.model) != choice.chosen && !r.valid));
+    said.extend(left.chunk_by(|a, b| not_valid(a).is_some() && not_valid(a) == not_valid(b)).map(|same| {
+        let names: Vec<&str> = same.iter().map(|r| r.model.name()).collect();
+        format!("{}: {}", names.join(", "), passed_over(same[0], question))
+    }));
     if let Some(model) = choice.chosen {
         said.push(chosen(choice, choice.rung(model), question));
     } else if choice.sensitivity.is_empty() {
@@ -39,24 +45,23 @@ pub fn sentences(choice: &Choice, question: &Question) -> Vec<String> {
 /// What an answer that is not settled is told with.
 pub const UNSETTLED: &str = "Not settled";
 
-/// Whether a rung that is not chosen is worth a sentence.
-fn matters(rung: &Rung) -> bool {
-    rung.answer.is_some() || rung.model < Model::Restitution
+/// Why a rung says nothing about the scene.
+fn not_valid(rung: &Rung) -> Option<&str> {
+    (!rung.valid).then_some(rung.why.as_str())
 }
 
 fn passed_over(rung: &Rung, question: &Question) -> String {
-    let name = rung.model.name();
     let moved = rung.changes.iter().find(|c| !c.enough);
     match moved {
-        _ if !rung.valid => format!("{name}: not valid. {}", rung.why),
-        _ if rung.why.contains(UNSETTLED) => format!("{name}: its motion has not settled. {}", rung.why),
+        _ if !rung.valid => format!("not valid. {}", rung.why),
+        _ if rung.why.contains(UNSETTLED) => format!("its motion has not settled. {}", rung.why),
         Some(c) => format!(
-            "{name}: valid, but its answer moves by {:+.3} % at {}, more than {} allows.",
+            "valid, but its answer moves by {:+.3} % at {}, more than {} allows.",
             100.0 * c.change,
             c.at.name(),
             allowed(question)
         ),
-        None => format!("{name}: valid, but nothing known says how far its answer is off."),
+        None => "valid, but nothing known says how far its answer is off.".to_owned(),
     }
 }
 

@@ -12,6 +12,7 @@ use crate::model::{
     Compliance, Compliant, Excitation, Law, Loose, Observable, Orbit, Regime, Rig, Scene, Simulation,
     no_impact, softened,
 };
+use crate::units::notation::quantity;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 
@@ -70,21 +71,24 @@ impl Stage<'_> {
             Err(error) => return Tried::refused(&error),
         };
         let (gap, sure) = (self.rig().gap, self.question.gap_std);
-        let way = format!("Mass 1 alone moves up to {:.3e} m", found.largest);
+        let [size, width] = [found.largest, gap].map(|v| quantity(v, "m", 4));
+        let way = if found.largest == 0.0 {
+            "Nothing moves mass 1".to_owned()
+        } else {
+            format!("Mass 1 alone moves up to {size}")
+        };
         let (valid, why) = match motions.on {
-            _ if !found.possible => (false, format!("{way}, the gap is {gap:.3e} m: the masses meet.")),
+            _ if !found.possible => (false, format!("{way}, the gap is {width}: the masses meet.")),
             _ if gap - found.largest <= sure => {
-                let left = gap - found.largest;
-                let clear = format!(
-                    "{way}, the gap is {gap:.3e} m: the masses stay clear by {left:.1e} m, no more than"
-                );
-                (false, format!("{clear} the gap's uncertainty of {sure:.1e} m."))
+                let left = quantity(gap - found.largest, "m", 2);
+                let clear =
+                    format!("{way}, the gap is {width}: the masses stay clear by {left}, no more than");
+                (false, format!("{clear} the gap's uncertainty of {}.", quantity(sure, "m", 2)))
             }
-            On::Free => (
-                true,
-                format!("{way}, the gap is {gap:.3e} m: the masses do not meet, and {}.", into(motions)),
-            ),
-            On::Open => (true, format!("{way}, the gap is {gap:.3e} m: the masses need not meet.")),
+            On::Free => {
+                (true, format!("{way}, the gap is {width}: the masses do not meet, and {}.", into(motions)))
+            }
+            On::Open => (true, format!("{way}, the gap is {width}: the masses need not meet.")),
             On::Orbit(_) | On::Other => (
                 false,
                 format!(
@@ -142,21 +146,21 @@ impl Stage<'_> {
             )
         } else if !orbit.robust(self.question.gap_std) {
             let why = if v.grazing_distance <= self.question.gap_std {
-                format!("is {:.1e} m from grazing, no more than", v.grazing_distance)
+                format!("is {} from grazing, no more than", quantity(v.grazing_distance, "m", 2))
             } else {
                 "is not stable at all gaps within".to_owned()
             };
             (
                 false,
                 format!(
-                    "The motion with one impact a cycle {why} the gap's uncertainty of {:.1e} m.",
-                    self.question.gap_std
+                    "The motion with one impact a cycle {why} the gap's uncertainty of {}.",
+                    quantity(self.question.gap_std, "m", 2)
                 ),
             )
         } else {
             let real = format!(
-                "The motion with one impact a cycle exists, is admissible, stable (largest multiplier {radius:.4}) and to first order {:.1e} m from grazing",
-                v.grazing_distance
+                "The motion with one impact a cycle exists, is admissible, stable (largest multiplier {radius:.4}) and to first order {} from grazing",
+                quantity(v.grazing_distance, "m", 2)
             );
             match motions.on {
                 On::Orbit(_) => (true, format!("{real}; {}.", into(motions))),
@@ -312,8 +316,8 @@ impl Stage<'_> {
                 answer: Some(reading.answer),
                 cost: Some(cost),
                 why: format!(
-                    "The spring of mass 1 only pushes, beyond {:.3e} m; from rest, {}. {} {ALONE}{}",
-                    buffer.gap,
+                    "The spring of mass 1 only pushes, beyond {}; from rest, {}. {} {ALONE}{}",
+                    quantity(buffer.gap, "m", 4),
                     pattern(&reading),
                     told(&reading),
                     self.question.history.map_or("", |_| " The history is not followed.")

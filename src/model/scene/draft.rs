@@ -112,10 +112,23 @@ impl Draft {
         if key.is_empty() || value.is_empty() || value.contains('\n') {
             return Err(wrong());
         }
-        let quoted = format!("{key} = {value:?}");
+        // TOML knows no `.3` and no `5.`, people do.
+        let number = value.parse::<f64>().ok().map(|v| format!("{key} = {v:?}"));
         let plain = format!("{key} = {value}");
-        let text = if DeTable::parse(&plain).is_ok() { &plain } else { &quoted };
-        let given = parse(text).map_err(|e| e.aside(format!("in --set {assignment}")))?;
+        let text = if DeTable::parse(&plain).is_ok() {
+            plain
+        } else {
+            number.unwrap_or_else(|| format!("{key} = {value:?}"))
+        };
+        let given = parse(&text).map_err(|e| {
+            let e = e.aside(format!("in --set {assignment}"));
+            match value.replacen(',', ".", 1) {
+                point if point != value && point.parse::<f64>().is_ok() => {
+                    e.hint(format!("a decimal point: {key}={point}"))
+                }
+                _ => e,
+            }
+        })?;
         for (key, one) in given {
             self.insert(&key, one.value);
         }
@@ -238,7 +251,7 @@ impl Draft {
                     format!("excitation.{key}"),
                 );
                 self.at("excitation.kind", error)
-                    .hint(format!("give --set excitation.{key}=…, or the key in [excitation]"))
+                    .hint(format!("give --{key}, --set excitation.{key}=…, or the key in [excitation]"))
             })
         };
         let excitation = match kind {

@@ -6,6 +6,7 @@ use super::grazing;
 use super::task::Task;
 use crate::Result;
 use crate::model::{Rig, Sine, State, Steady};
+use crate::units::notation::quantity;
 
 /// Stiffness of the contact in N/m where a method has one.
 pub const STIFFNESS: f64 = 1e6;
@@ -66,17 +67,20 @@ pub fn borders(quick: bool) -> Result<Vec<Border>> {
     for depth in [1e-3, 1e-6, 1e-9, 1e-12, -1e-12, -1e-9, -1e-6, -1e-3] {
         let (task, time) = grazing::task(depth, 1)?;
         let words = if depth > 0.0 { "reached" } else { "missed" };
-        add("grazing", format!("{words} by {:.0e} m", depth.abs()), task, Asks::First(time));
+        add("grazing", format!("{words} by {}", quantity(depth.abs(), "m", 1)), task, Asks::First(time));
     }
     // The forced motion alone reaches the gap up to a factor 1 + ε.
     let frequency = at(&thesis, 2.1);
     let unit = Steady::new(&thesis, &Sine { force: 1.0, frequency })?.amplitude();
     for excess in [1e-3, 1e-9, -1e-9, -1e-3] {
         let task = Task { force: thesis.gap / unit * (1.0 + excess), ..motion(thesis) };
-        add("grazing orbit", format!("amplitude over gap 1 {excess:+.0e}"), task, Asks::Orbit);
+        let sign = if excess > 0.0 { '+' } else { '−' };
+        add("grazing orbit", format!("amplitude over gap 1 {sign} {:.0e}", excess.abs()), task, Asks::Orbit);
     }
-    for restitution in [0.0, 1e-9, 0.01, 0.99, 0.999_999, 1.0] {
-        add("restitution", format!("R {restitution}"), motion(Rig { restitution, ..thesis }), Asks::Motion);
+    for (name, restitution) in
+        [("0", 0.0), ("1e-9", 1e-9), ("0.01", 0.01), ("0.99", 0.99), ("1 − 1e-6", 1.0 - 1e-6), ("1", 1.0)]
+    {
+        add("restitution", format!("R {name}"), motion(Rig { restitution, ..thesis }), Asks::Motion);
     }
     for (name, part) in
         [("none", 0.0), ("1e-9 of critical", 1e-9), ("critical", 1.0), ("100 times critical", 100.0)]
@@ -88,7 +92,7 @@ pub fn borders(quick: bool) -> Result<Vec<Border>> {
         add("damping", name.to_owned(), task, Asks::Motion);
     }
     for gap in [1e-6, 1e-12, 0.0, -1e-12, -1e-6, -5e-4] {
-        add("gap", format!("{gap:.0e} m"), motion(Rig { gap, ..thesis }), Asks::Motion);
+        add("gap", quantity(gap, "m", 1), motion(Rig { gap, ..thesis }), Asks::Motion);
     }
     for ratio in [1e-3, 1e-1, 1e1, 1e3] {
         let scale = ratio * thesis.m1 / thesis.m2;
