@@ -7,6 +7,7 @@
 mod calibration;
 mod coordinate;
 mod data;
+mod edge;
 mod held;
 mod motion;
 mod prior;
@@ -16,6 +17,7 @@ mod rung;
 mod search;
 mod setting;
 mod settle;
+mod stiff;
 mod told;
 mod unknown;
 
@@ -31,12 +33,13 @@ use crate::measure::response::Response;
 use crate::model::Rig;
 use crate::record::Direction;
 use data::Data;
-use held::Held;
+use held::{Held, NORMAL};
 use rayon::prelude::*;
 use search::{Led, around, search};
 use serde::Serialize;
 use setting::Setting;
 use settle::{Settled, settle};
+use stiff::stiff;
 use unknown::{Unknown, coordinates};
 
 /// A parameter as it was found.
@@ -77,7 +80,7 @@ pub struct FitPoint {
     pub measured: f64,
     /// Amplitude in m by the parameters found.
     pub fitted: f64,
-    /// Residual in standard deviations.
+    /// Residual in stated standard deviations; in those that the residuals tell, where none are stated.
     pub residual: f64,
 }
 
@@ -92,6 +95,8 @@ pub struct LeftOut {
     pub far: usize,
     /// Their motion changed with the parameters from round to round.
     pub wavering: usize,
+    /// The contact lasts too long there for the correction of its compliance.
+    pub soft: usize,
 }
 
 /// What the responses say of the rig.
@@ -109,7 +114,8 @@ pub struct Fit {
     pub n: usize,
     /// Amplitudes left out.
     pub left_out: LeftOut,
-    /// Sum of squared residuals over amplitudes less parameters, by the stated uncertainties: about 1 where model and uncertainties are right.
+    /// Sum of squared residuals over amplitudes less parameters, by the stated uncertainties: about 1 where model and uncertainties are right;
+    /// NaN (null) with no more amplitudes than parameters.
     pub reduced_chi_squared: f64,
     /// Factor on the standard deviations of the data, by which the residuals are larger than stated.
     pub widened: f64,
@@ -141,7 +147,7 @@ const EXPLAINED: f64 = 0.1;
 const BETTER: f64 = 1.0;
 
 /// Finds the parameters that `entry` asks for from displacement responses, beginning with `rig` and the stated `force` (N; `None`: each
-/// point its measured one). With the stiffness of the `contact` (N/m) the closed form corrected for it is judged beside the others.
+/// point its measured one). With the stiffness of the `contact` (N/m) its compliance is taken out of the points.
 ///
 /// # Errors
 /// If nothing can be fitted, the entry is impossible, or there are fewer usable points than parameters.
@@ -156,17 +162,40 @@ pub fn fit(
     rig.check()?;
     let mut data = Data::new(force, responses)?;
     data.calibration = entry.calibration.unwrap_or(0.0);
-    let base = Setting { rig: *rig, force: data.force, contact: None };
-    let unknowns = Unknown::all(entry, &base)?;
+    let base = Setting { rig: *rig, force: data.force };
+    found(&data, &base, contact, responses, entry, pace)
+}
+
+/// As [`fit`], from points that have been taken.
+fn found(
+    data: &Data,
+    base: &Setting,
+    contact: Option<f64>,
+    responses: &[Response],
+    entry: &FitEntry,
+    pace: Pace,
+) -> Result<Fit> {
+    let unknowns = Unknown::all(entry, base)?;
     let starts = entry.starts.unwrap_or(STARTS);
-    let (mut settled, ends) = identify(&data, &base, &unknowns, starts, pace)?;
+    let (rigid, ends) = identify(data, base, &unknowns, starts, pace)?;
+    let stiff = contact.map(|stiffness| stiff(&rigid, stiffness, pace)).transpose()?;
+    let mut settled = match &stiff {
+        None => rigid.clone(),
+        Some(stiff) => settle(&stiff.data, base, &unknowns, &stiff.u, pace)?,
+    };
     settled.contradictions = prior::contradictions(&settled, starts, pace);
+    settled.contradictions.extend(settled.pulled());
+    settled.lost = stiff.as_ref().map_or(0, |s| s.lost);
     let held = settled.held()?;
     let profile = profile::profile(&settled, &held, held.worst());
-    let mut fit = gathered(&settled, &held, &base, profile);
-    (fit.starts, fit.agreeing) = (starts, agreeing(&ends, &settled.minimum.parameters, &held));
-    fit.rungs = rung::rungs(&settled, responses, contact, pace);
-    fit.warnings = told::warnings(&fit, &settled, &data);
+    let mut fit = gathered(&settled, &held, base, profile);
+    (fit.starts, fit.agreeing) = (starts, agreeing(&ends, &rigid.minimum.parameters, &rigid.held()?));
+    fit.rungs = rung::rungs(&rigid, stiff.is_some().then_some(&settled), responses, pace);
+    fit.warnings = told::warnings(&fit, &settled, data);
+    if contact.is_none() && settled.doubt().is_none() {
+        fit.warnings.extend(stiff::untold(&settled, &held, pace));
+    }
+    fit.warnings.extend(told::unused(entry));
     Ok(fit)
 }
 
@@ -233,15 +262,18 @@ fn agreeing(ends: &[Vec<f64>], best: &[f64], held: &Held) -> usize {
     ends.iter().filter(|end| end.iter().enumerate().all(|(i, u)| near(i, *u))).count()
 }
 
-/// Normal deviate that is exceeded on both sides together in 5 % of cases.
-const NORMAL: f64 = 1.959_964;
-
 fn gathered(settled: &Settled<'_>, held: &Held, base: &Setting, profile: Option<Profile>) -> Fit {
     let (problem, u) = (&settled.problem, &settled.minimum.parameters);
     let setting = settled.setting();
-    let parameters = (0..u.len()).map(|i| fitted(settled, held, base, i)).collect();
+    // What the profile says of its parameter is nearer to the truth than the slopes at the least.
+    let profiled = |i: usize| {
+        let profile = profile.as_ref().filter(|p| p.parameter == problem.unknowns[i].parameter)?;
+        Some([profile.interval[0]?, profile.interval[1]?])
+    };
+    let parameters = (0..u.len()).map(|i| fitted(settled, held, base, i, profiled(i))).collect();
     let row = |i: usize| (0..u.len()).map(|j| held.correlation(i, j)).collect();
     let used: Vec<(usize, usize)> = problem.used().collect();
+    let stated = if problem.data.guessed { 1.0 } else { problem.scale.sqrt() };
     let points = used.iter().zip(&settled.minimum.residuals).filter_map(|((i, mass), residual)| {
         let step = &problem.data.steps[*i];
         let (kind, seen) = (problem.kinds[*i]?, step.seen[*mass].as_ref()?);
@@ -252,9 +284,10 @@ fn gathered(settled: &Settled<'_>, held: &Held, base: &Setting, profile: Option<
             direction: *direction,
             frequency: step.frequency,
             motion: kind,
-            measured: seen.amplitude,
-            fitted: setting.shows(kind, setting.force_at(problem.data, step), step.frequency)[*mass],
-            residual: *residual,
+            measured: seen.amplitude * seen.soft,
+            fitted: setting.shows(kind, setting.force_at(problem.data, step), step.frequency)[*mass]
+                * seen.soft,
+            residual: *residual * stated,
         })
     });
     let clear = problem.data.steps.iter().flat_map(data::Step::clear).count();
@@ -269,6 +302,7 @@ fn gathered(settled: &Settled<'_>, held: &Held, base: &Setting, profile: Option<
             other_motion: (clear - used.len()).saturating_sub(settled.wavering + settled.far),
             far: settled.far,
             wavering: settled.wavering,
+            soft: settled.lost,
         },
         reduced_chi_squared: settled.reduced,
         widened: problem.scale.sqrt(),
@@ -282,13 +316,19 @@ fn gathered(settled: &Settled<'_>, held: &Held, base: &Setting, profile: Option<
     }
 }
 
-fn fitted(settled: &Settled<'_>, held: &Held, base: &Setting, i: usize) -> Fitted {
+fn fitted(
+    settled: &Settled<'_>,
+    held: &Held,
+    base: &Setting,
+    i: usize,
+    interval: Option<[f64; 2]>,
+) -> Fitted {
     let u = settled.minimum.parameters[i];
     let Unknown { parameter, coordinate, prior } = settled.problem.unknowns[i];
     let std = held.covariance[(i, i)].sqrt();
     let reason = settled.doubt().or_else(|| held.loose[i].clone());
     let slope = coordinate.slope(u).abs();
-    let method = "least squares of both masses and directions by the closed form";
+    let method = "least squares of both masses and directions by the closed form, the masses taken as exact";
     // A prior adds 1/s² to the reciprocal of the variance that all else leaves, exactly where the model is linear.
     let rests = prior.is_some_and(|[_, s]| (std * slope).powi(2) > 0.5 * s * s);
     Fitted {
@@ -301,7 +341,7 @@ fn fitted(settled: &Settled<'_>, held: &Held, base: &Setting, i: usize) -> Fitte
             method,
         ),
         start: base.get(parameter),
-        interval: reason.is_none().then(|| coordinate.interval(u, NORMAL * std)),
+        interval: reason.is_none().then(|| interval.unwrap_or_else(|| coordinate.interval(u, NORMAL * std))),
         identifiable: reason.is_none(),
         reason,
         prior,

@@ -37,8 +37,9 @@ pub use question::Question;
 pub use rung::{Model, Need, Rung};
 pub use sensitivity::Sensitivity;
 
-use super::{Law, Scene};
+use super::{Law, Rig, Scene};
 use crate::error::{Error, Result};
+use change::Answer;
 use climb::Climb;
 use serde::Serialize;
 use tried::Stage;
@@ -56,6 +57,11 @@ pub struct Choice {
     pub needs: Vec<&'static str>,
     /// The change of the chosen answer at the next rung that follows the motion.
     pub audit: Option<Change>,
+    /// What curved bodies (exponent 1.5) that meet for as long and rebound alike would change, where a spring and a damper were chosen, or the
+    /// correction for them, and their law was not stated.
+    pub law: Option<Change>,
+    /// The changes of the chosen answer where the gap is smaller or larger by its uncertainty; `None` where there is then no such answer.
+    pub gap: Vec<Option<Change>>,
     /// The answer over the contact's stiffness, where that is not known and matters.
     pub sensitivity: Vec<Sensitivity>,
     /// Stiffnesses in N/m at which that could not be computed.
@@ -139,7 +145,27 @@ fn chosen(scene: &Scene, frequency: f64, question: &Question, bend: bool) -> Res
         ))
         .hint("at such frequencies springs alone decide: x₁ = F/k₁ until the masses meet"));
     }
-    Ok(Climb::new(Stage { scene, excitation: &excitation, question, repeat: bend })?.choose(bend))
+    let stage = Stage { scene, excitation: &excitation, question, repeat: bend };
+    let mut choice = Climb::new(stage)?.choose(bend);
+    if bend && question.gap_std > 0.0 {
+        choice.gap = gaps(&choice, &stage);
+        choice.reasons.extend(reasons::gap(&choice, question));
+    }
+    Ok(choice)
+}
+
+/// The changes of the chosen answer at both ends of the gap's uncertainty.
+fn gaps(choice: &Choice, stage: &Stage<'_>) -> Vec<Option<Change>> {
+    let (Some(model), Some(value)) = (choice.chosen, choice.answer()) else { return Vec::new() };
+    let here = Answer { spread: choice.rung(model).spread, ..Answer::exact(value) };
+    let question = Question { gap_std: 0.0, ..*stage.question };
+    let at = |std: f64| {
+        let rig = Rig { gap: stage.scene.rig.gap + std, ..stage.scene.rig };
+        let scene = Scene { rig, ..stage.scene.clone() };
+        let there = Climb::new(Stage { scene: &scene, question: &question, repeat: false, ..*stage }).ok()?;
+        Some(here.change(&there.answer(model)?, model, &question))
+    };
+    [-1.0, 1.0].map(|sign| at(sign * stage.question.gap_std)).to_vec()
 }
 
 #[cfg(test)]

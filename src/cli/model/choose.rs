@@ -127,8 +127,7 @@ fn along(
     let mut text = format!("{}\n{}", stretches.text(), tables::summaries(&survey.rungs).text());
     let _ = match survey.chosen {
         Some(model) => {
-            let changes = survey.points.iter().flat_map(|p| &p.rungs).filter(|r| r.model == model);
-            let beyond = changes.flat_map(|r| &r.changes).filter(|c| !c.enough);
+            let beyond = survey.points.iter().filter_map(|p| p.law).filter(|c| !c.enough);
             match beyond.max_by(|a, b| a.change.abs().total_cmp(&b.change.abs())) {
                 Some(c) => writeln!(
                     text,

@@ -16,6 +16,8 @@ pub struct Seen {
     pub std: f64,
     /// What the true amplitude stays below, where it does not stand out of the noise.
     pub limit: Option<f64>,
+    /// What the compliance of the contact has made of the amplitude; amplitude and uncertainty are those divided by it.
+    pub soft: f64,
 }
 
 /// One step of a sweep: both masses where they were measured under the very same force.
@@ -155,7 +157,8 @@ impl Data {
                 continue;
             }
             let std = point.amplitude.std.filter(|s| *s > 0.0).unwrap_or(known.unwrap_or(GUESS) * amplitude);
-            self.steps[place].seen[mass] = Some(Seen { sweep, amplitude, std, limit: point.upper_limit });
+            self.steps[place].seen[mass] =
+                Some(Seen { sweep, amplitude, std, limit: point.upper_limit, soft: 1.0 });
         }
     }
 }

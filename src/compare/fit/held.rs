@@ -1,13 +1,20 @@
 //! How well the points hold each parameter.
 
 use super::super::prediction::Kind;
+use super::coordinate::Coordinate;
+use super::edge::Edge;
 use super::problem::Problem;
+use super::unknown::Unknown;
 use crate::campaign::Parameter;
 use crate::error::{Error, Result};
 use nalgebra::{DMatrix, SVD};
 
 /// A relative standard uncertainty beyond which a parameter, or a combination, is not held: half its value.
 const LOOSE: f64 = 0.5;
+/// A parameter between two bounds is not held where it may lie, with 95 % confidence, in more than this part of what is between them.
+const WIDE: f64 = 0.5;
+/// Normal deviate that is exceeded on both sides together in 5 % of cases.
+pub const NORMAL: f64 = 1.959_964;
 /// A part of a direction that makes a parameter belong to it.
 const BELONGS: f64 = 0.2;
 /// A parameter found below this part of where it started has gone to its lower bound.
@@ -35,7 +42,12 @@ impl Held {
     ///
     /// # Errors
     /// If the singular values cannot be found.
-    pub fn new(problem: &Problem<'_>, u: &[f64], jacobian: &DMatrix<f64>) -> Result<Held> {
+    pub fn new(
+        problem: &Problem<'_>,
+        u: &[f64],
+        jacobian: &DMatrix<f64>,
+        edges: &[Option<Edge>],
+    ) -> Result<Held> {
         let setting = problem.setting(u);
         let n = u.len();
         // d ln θ/du.
@@ -71,13 +83,32 @@ impl Held {
             // The direction from which it gets most of its variance.
             let share = |k: &usize| (v[(*k, i)] / s[*k]).abs();
             let k = (0..n).max_by(|a, b| share(a).total_cmp(&share(b)))?;
-            if relative[i] <= LOOSE {
+            let influence = jacobian.column(i).norm() / rates[i];
+            let alone = || {
+                Some(alone(
+                    problem,
+                    i,
+                    setting.get(problem.unknowns[i].parameter),
+                    influence,
+                    edges[i].as_ref(),
+                ))
+            };
+            if edges[i].is_some() {
+                return alone();
+            }
+            let Unknown { coordinate, .. } = problem.unknowns[i];
+            if coordinate.high.is_finite() {
+                let [low, high] = coordinate.interval(u[i], NORMAL * covariance[(i, i)].sqrt());
+                let part = (high - low) / (coordinate.high - coordinate.low);
+                if part <= WIDE {
+                    return None;
+                }
+            } else if relative[i] <= LOOSE {
                 return None;
             }
             let others: Vec<usize> = (0..n).filter(|j| *j != i && v[(k, *j)].abs() > BELONGS).collect();
             if others.is_empty() || v[(k, i)].abs() <= BELONGS || 1.0 / s[k] <= LOOSE {
-                let influence = jacobian.column(i).norm() / rates[i];
-                return Some(alone(problem, i, setting.get(problem.unknowns[i].parameter), influence));
+                return alone();
             }
             let others: Vec<String> =
                 others.iter().map(|j| format!("{} by {:+.2} %", names[*j], v[(k, *j)] / v[(k, i)])).collect();
@@ -103,7 +134,7 @@ impl Held {
 }
 
 /// Why the parameter number `i` is not held on its own account; `influence` is the length of ∂r/∂ln θ at its `value`.
-fn alone(problem: &Problem<'_>, i: usize, value: f64, influence: f64) -> String {
+fn alone(problem: &Problem<'_>, i: usize, value: f64, influence: f64, edge: Option<&Edge>) -> String {
     let parameter = problem.unknowns[i].parameter;
     let impacts = problem.kinds.contains(&Some(Kind::Impacting));
     let needs = matches!(parameter, Parameter::Restitution | Parameter::C2 | Parameter::K2 | Parameter::Gap);
@@ -111,11 +142,18 @@ fn alone(problem: &Problem<'_>, i: usize, value: f64, influence: f64) -> String 
         return "no point of the fit shows a motion with impacts, and the others do not depend on it"
             .to_owned();
     }
+    let Coordinate { low, high } = problem.unknowns[i].coordinate;
     if value < NOTHING * problem.base.get(parameter) {
-        return format!("the points do not tell it from {}", problem.unknowns[i].coordinate.low);
+        return format!("the points do not tell it from {low}");
     }
     if influence < 1e-6 {
         return "no point of the fit depends on it".to_owned();
+    }
+    if let Some(edge) = edge {
+        return format!("the points do not tell it from {}, farther than which it does not go", edge.value);
+    }
+    if high.is_finite() {
+        return format!("with 95 % confidence it lies in more than half of all from {low} to {high}");
     }
     "twice or half of it would leave the points within their uncertainty".to_owned()
 }

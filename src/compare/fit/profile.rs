@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 /// χ² of one degree of freedom that is exceeded in 5 % of cases (Abramowitz & Stegun, table 26.8).
-pub const ONE: f64 = 3.841;
+const ONE: f64 = 3.841;
 /// Values on each side of the minimum.
 const SIDE: i32 = 12;
 
@@ -23,7 +23,9 @@ pub struct Profile {
     pub value: Vec<f64>,
     /// Least sum of squares at each value above the least of all.
     pub rise: Vec<f64>,
-    /// Values within which the rise stays below 3.841: with 95 % confidence. `None` for a side on which it is not reached in the values.
+    /// The rise that the true value stays below with 95 % confidence.
+    pub limit: f64,
+    /// Values within which the rise stays below it. `None` for a side on which it is not reached in the values.
     pub interval: [Option<f64>; 2],
 }
 
@@ -67,6 +69,7 @@ pub fn profile(settled: &Settled<'_>, held: &Held, which: usize) -> Option<Profi
         unit: unknown.parameter.unit(),
         value,
         rise,
+        limit: ONE,
         interval: [below, above],
     })
 }

@@ -20,6 +20,8 @@ const BESIDE: usize = 2;
 
 /// Part of a frequency by which steps of two sweeps may differ and be the same.
 const SAME: f64 = 1e-3;
+/// Models that miss what was held out by a half of it are not chosen among.
+const NONSENSE: f64 = 0.5;
 /// The model without impacts.
 const LINEAR: &str = "linear";
 
@@ -41,6 +43,8 @@ pub struct Rung {
     pub model: &'static str,
     /// Parameters that it was fitted with.
     pub parameters: Vec<Parameter>,
+    /// Their values by this model.
+    pub values: Vec<f64>,
     /// Mean error of the blocks held out; `None` with fewer than two.
     pub held_out: Option<f64>,
     /// Standard error of that mean, by the scatter of the blocks.
@@ -55,31 +59,38 @@ pub struct Rung {
     pub blocks: Vec<Block>,
 }
 
-/// Judges the rungs; `contact` (N/m) is the stiffness of the contact, where it is known.
+/// Judges the rungs by the answer without compliance, `rigid`, and that with it, where it is known.
 ///
 /// Steps around each resonance, antiresonance and jump, and a stretch away from them, are left out in turn, in all sweeps; the rest is
 /// fitted, and what was left out predicted (blocked cross-validation: D. R. Roberts et al., *Ecography* 40 (2017) 913). No measured
 /// amplitude tells a model which motion a step left out shows: the simulated sweep of its own rig does. The simplest model within one
 /// standard error of the best is chosen (L. Breiman et al., *Classification and Regression Trees* (1984), 3.4.3).
-pub fn rungs(settled: &Settled<'_>, responses: &[Response], contact: Option<f64>, pace: Pace) -> Vec<Rung> {
-    let full = &settled.problem;
+pub fn rungs(
+    rigid: &Settled<'_>,
+    soft: Option<&Settled<'_>>,
+    responses: &[Response],
+    pace: Pace,
+) -> Vec<Rung> {
+    let full = &rigid.problem;
     let blocks = blocks(full.data, responses);
     let mut linear = full.clone();
     for (kind, step) in linear.kinds.iter_mut().zip(&full.data.steps) {
         *kind = kind.filter(|_| step.clear().any(|(mass, _)| mass == 0)).map(|_| Kind::Free);
     }
     linear.unknowns.retain(|u| matches!(u.parameter, Parameter::Force | Parameter::C1 | Parameter::K1));
-    let mut models = vec![(LINEAR, linear), ("closed form", full.clone())];
-    if contact.is_some() {
-        let mut soft = full.clone();
-        soft.base.contact = contact;
-        models.push(("soft-corrected closed form", soft));
+    let mut models = vec![(LINEAR, linear, rigid), ("closed form", full.clone(), rigid)];
+    if let Some(soft) = soft {
+        models.push(("soft-corrected closed form", soft.problem.clone(), soft));
     }
-    let judged = |(name, problem): &(&'static str, Problem<'_>)| rung(name, problem, settled, &blocks, pace);
+    let answer = soft.unwrap_or(rigid);
+    let judged = |(name, problem, own): &(&'static str, Problem<'_>, &Settled<'_>)| {
+        rung(name, problem, &own.setting(), answer, &blocks, pace)
+    };
     let mut rungs: Vec<Rung> = models.iter().filter_map(judged).collect();
     let best =
         rungs.iter().filter_map(|r| Some((r.held_out?, r.held_out_std?))).min_by(|a, b| a.0.total_cmp(&b.0));
     if let Some((mean, std)) = best
+        && mean < NONSENSE
         && let Some(chosen) = rungs.iter_mut().find(|r| r.held_out.is_some_and(|h| h <= mean + std))
     {
         chosen.chosen = true;
@@ -90,18 +101,26 @@ pub fn rungs(settled: &Settled<'_>, responses: &[Response], contact: Option<f64>
 fn rung(
     model: &'static str,
     problem: &Problem<'_>,
-    settled: &Settled<'_>,
+    from: &Setting,
+    answer: &Settled<'_>,
     blocks: &[(String, f64, Vec<usize>)],
     pace: Pace,
 ) -> Option<Rung> {
-    let (full, from) = (&settled.problem, settled.setting());
-    let (own, u) = fitted(problem.clone(), &from)?;
+    let full = &answer.problem;
+    let (own, u) = fitted(problem.clone(), from)?;
     let setting = own.setting(&u);
     // One set of weights, that of the answer, for all models: sums of squares over different ones cannot be compared.
     let linear = model == LINEAR;
     let off = full.off(|step, kind| {
         let kind = if linear { Kind::Free } else { kind };
-        setting.shows(kind, setting.force_at(full.data, step), step.frequency)
+        let mut shows = setting.shows(kind, setting.force_at(full.data, step), step.frequency);
+        // A model without compliance is held against what was measured with it.
+        if !std::ptr::eq(problem.data, full.data) {
+            for (shows, seen) in shows.iter_mut().zip(&step.seen) {
+                *shows /= seen.as_ref().map_or(1.0, |s| s.soft);
+            }
+        }
+        shows
     });
     let sum = off.iter().map(|r| r * r).sum();
     let (_, whiteness) = left(&own, &own.at(&u));
@@ -112,8 +131,8 @@ fn rung(
             for i in steps {
                 rest.kinds[*i] = None;
             }
-            let (rest, u) = fitted(rest, &from)?;
-            let error = missed(full.data, &rest.setting(&u), linear, steps, pace)?;
+            let (rest, u) = fitted(rest, from)?;
+            let error = missed(problem.data, &rest.setting(&u), linear, steps, pace)?;
             Some(Block { feature: feature.clone(), frequency: *frequency, error })
         })
         .collect();
@@ -124,6 +143,7 @@ fn rung(
     Some(Rung {
         model,
         parameters: problem.unknowns.iter().map(|u| u.parameter).collect(),
+        values: problem.unknowns.iter().map(|u| setting.get(u.parameter)).collect(),
         held_out: several.then_some(mean),
         held_out_std: several.then(|| (variance / n).sqrt()),
         aicc: Some(aicc(sum, off.len(), problem.unknowns.len())).filter(|a| a.is_finite()),
@@ -192,8 +212,15 @@ fn blocks(data: &Data, responses: &[Response]) -> Vec<(String, f64, Vec<usize>)>
     }
     let within =
         |range: &RangeInclusive<f64>| used.iter().copied().filter(|i| range.contains(&at(i))).collect();
-    let mut blocks: Vec<(String, f64, Vec<usize>)> =
-        ranges.iter().map(|(name, frequency, range)| (name.clone(), *frequency, within(range))).collect();
+    let mut blocks: Vec<(String, f64, Vec<usize>)> = Vec::new();
+    for (name, frequency, range) in &ranges {
+        let steps: Vec<usize> = within(range);
+        // Two features in the same steps are one block.
+        let shared = |b: &(String, f64, Vec<usize>)| steps.iter().filter(|i| b.2.contains(i)).count();
+        if blocks.iter().all(|b| 2 * shared(b) <= steps.len()) {
+            blocks.push((name.clone(), *frequency, steps));
+        }
+    }
     let open: Vec<usize> =
         (0..used.len()).filter(|k| !ranges.iter().any(|r| r.2.contains(&at(&used[*k])))).collect();
     let piece = (2 * BESIDE + 1) * data.sequences.len();

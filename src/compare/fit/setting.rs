@@ -3,7 +3,7 @@
 use super::super::prediction::Kind;
 use super::data::{Data, Step};
 use crate::campaign::Parameter;
-use crate::model::{Compliance, Excitation, Rig, Sine, Steady, orbits, shown, softened};
+use crate::model::{Rig, Sine, Steady, shown};
 
 /// A rig and the reference of the forces on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,8 +11,6 @@ pub struct Setting {
     pub rig: Rig,
     /// In N.
     pub force: f64,
-    /// Stiffness of the contact in N/m, where its compliance is to be corrected for.
-    pub contact: Option<f64>,
 }
 
 impl Setting {
@@ -34,19 +32,9 @@ impl Setting {
     pub fn shows(&self, kind: Kind, force: f64, frequency: f64) -> [f64; 2] {
         let sine = Sine { force, frequency };
         match kind {
-            Kind::Impacting => self
-                .softened(&sine)
-                .unwrap_or_else(|| shown(&self.rig, &sine).map_or([f64::NAN; 2], |s| s.amplitude)),
+            Kind::Impacting => shown(&self.rig, &sine).map_or([f64::NAN; 2], |s| s.amplitude),
             Kind::Free => Steady::new(&self.rig, &sine).map_or([f64::NAN; 2], |s| [s.amplitude(), 0.0]),
             Kind::Pattern | Kind::Irregular => [f64::NAN; 2],
         }
-    }
-
-    /// The impacting motion with the compliance of the contact, where it is known and the correction good.
-    fn softened(&self, sine: &Sine) -> Option<[f64; 2]> {
-        let compliance = Compliance::new(&self.rig, self.contact?, None).ok()?;
-        let found = orbits(&self.rig, sine.force, sine.frequency).ok()?;
-        let soft = softened(&self.rig, &Excitation::Sine(*sine), &found, &compliance).ok()?;
-        Some(soft.first()?.as_ref()?.fundamental)
     }
 }

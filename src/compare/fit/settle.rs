@@ -3,6 +3,7 @@
 use super::super::prediction::Kind;
 use super::super::simulated::Pace;
 use super::data::{Data, Step};
+use super::edge::{edges, pulled};
 use super::held::Held;
 use super::motion::{Motions, assigned, without_far};
 use super::problem::Problem;
@@ -11,7 +12,7 @@ use super::setting::Setting;
 use super::unknown::{Unknown, at};
 use crate::error::{Error, Result};
 use crate::math::Minimum;
-use crate::measure::residuals::Whiteness;
+use crate::measure::residuals::{Whiteness, student};
 
 /// Rounds before steps whose motion still changes are left out.
 const ROUNDS: usize = 3;
@@ -26,7 +27,7 @@ const BRIEF: Pace = Pace { settle: 60, measure: 36 };
 pub struct Settled<'a> {
     pub problem: Problem<'a>,
     pub minimum: Minimum,
-    /// Sum of squares of the data over points less parameters, before variances were scaled.
+    /// Sum of squares of the data over points less parameters, before variances were scaled; NaN where there are no more points.
     pub reduced: f64,
     /// Of the residuals along frequency, sweep by sweep.
     pub whiteness: Whiteness,
@@ -39,12 +40,18 @@ pub struct Settled<'a> {
     /// How far all points lie from what a simulated sweep shows, or from the motion they are taken for, and the parameters from their
     /// priors: Σ min (z², 1), the less the better.
     pub missed: f64,
-    /// Why what was known of a parameter contradicts the points.
+    /// Why the answer cannot be right as it stands: what was known of a parameter, or its bounds, contradict the points.
     pub contradictions: Vec<String>,
+    /// Amplitudes of which the compliance of the contact could not be taken out.
+    pub lost: usize,
 }
 
 /// Part of the amplitudes whose motion is known that may lie far from it before the answer is doubted.
 const CONTRADICTED: f64 = 0.1;
+/// χ²/ν beyond which stated uncertainties or the model are doubted.
+pub const POOR: f64 = 2.0;
+/// χ²/ν beyond which no mistake in the uncertainties of the points, ten times too small, would explain the residuals.
+const HOPELESS: f64 = 100.0;
 
 impl Settled<'_> {
     /// How well the points hold each parameter.
@@ -52,7 +59,20 @@ impl Settled<'_> {
     /// # Errors
     /// As [`Held::new`].
     pub fn held(&self) -> Result<Held> {
-        Held::new(&self.problem, &self.minimum.parameters, &self.minimum.jacobian)
+        let edges = edges(&self.problem, &self.minimum.parameters);
+        let mut jacobian = self.minimum.jacobian.clone();
+        for (i, edge) in edges.iter().enumerate() {
+            if let Some(edge) = edge {
+                jacobian.set_column(i, &edge.column);
+            }
+        }
+        Held::new(&self.problem, &self.minimum.parameters, &jacobian, &edges)
+    }
+
+    /// What the points ask for beyond the bounds.
+    pub fn pulled(&self) -> Vec<String> {
+        let edges = edges(&self.problem, &self.minimum.parameters);
+        pulled(&self.problem, &self.minimum.jacobian, &self.minimum.residuals, &edges)
     }
 
     /// Why the answer as a whole may be wrong, and its uncertainties mean nothing.
@@ -60,11 +80,38 @@ impl Settled<'_> {
         if !self.contradictions.is_empty() {
             return Some(self.contradictions.join("; "));
         }
+        let n = self.problem.rows().0 + self.lost;
+        if self.lost as f64 > CONTRADICTED * n as f64 {
+            return Some(format!(
+                "at {} of {n} amplitudes the contact lasts too long for the closed form and its correction",
+                self.lost
+            ));
+        }
         let n = self.problem.rows().0 + self.far;
         if self.far as f64 > CONTRADICTED * n as f64 {
             return Some(format!(
                 "{} of {n} amplitudes lie far from the motions that this very rig comes to: the answer may be wrong altogether",
                 self.far
+            ));
+        }
+        let residuals = self.reduced.sqrt();
+        let guessed = self.problem.data.guessed;
+        if !guessed && self.reduced > POOR && self.whiteness.rejected() {
+            return Some(format!(
+                "the residuals are {residuals:.1} times as large as the uncertainties of the points and follow each other along frequency, \
+                 which noise does not"
+            ));
+        }
+        if !guessed && self.reduced > HOPELESS {
+            return Some(format!(
+                "the residuals are {residuals:.0} times as large as the uncertainties of the points"
+            ));
+        }
+        let free = free(&self.problem);
+        if (guessed || self.reduced > 1.0) && student(free).is_none() {
+            return Some(format!(
+                "the residuals have to tell how large the errors of the points are, and there are only {free} amplitudes and priors more than \
+                 parameters"
             ));
         }
         if !self.agreed {
@@ -135,6 +182,7 @@ pub fn settle<'a>(
                 far,
                 missed,
                 contradictions: Vec::new(),
+                lost: 0,
             });
         }
         if round >= ROUNDS {
@@ -198,19 +246,27 @@ pub fn least<'a>(
         if turn == 3 {
             return Ok((problem, minimum, reduced, whiteness));
         }
-        let least = if data.guessed { f64::MIN_POSITIVE } else { 1.0 };
-        problem.scale = reduced.max(least) * whiteness.inflation.powi(2);
+        let least = if data.guessed && free(&problem) > 0 { f64::MIN_POSITIVE } else { 1.0 };
+        // A scale that the residuals had to tell is itself uncertain.
+        let told = if reduced > least { student(free(&problem)).unwrap_or(1.0) } else { 1.0 };
+        problem.scale = reduced.max(least) * (told * whiteness.inflation).powi(2);
     }
 }
 
-/// χ²/ν of the data as their stated uncertainties have it, priors counted among them, and whether the data's residuals are noise.
-pub fn left(problem: &Problem<'_>, residuals: &[f64]) -> (f64, Whiteness) {
+/// Amplitudes and priors less parameters.
+fn free(problem: &Problem<'_>) -> usize {
     let (n, priors) = problem.rows();
+    (n + priors).saturating_sub(problem.unknowns.len())
+}
+
+/// χ²/ν of the data as their stated uncertainties have it, priors counted among them, NaN where ν is 0, and whether the data's residuals are noise.
+pub fn left(problem: &Problem<'_>, residuals: &[f64]) -> (f64, Whiteness) {
+    let (n, _) = problem.rows();
     let (data, known) = residuals.split_at(n.min(residuals.len()));
-    let free = (n + priors).saturating_sub(problem.unknowns.len());
+    let free = free(problem);
     let sum = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
-    let all = problem.scale * sum(data) + sum(known);
-    let reduced = if free > 0 { all / free as f64 } else { 1.0 };
+    let all = if free == 0 { f64::NAN } else { problem.scale * sum(data) + sum(known) };
+    let reduced = all / free as f64;
     let mut rows: Vec<Vec<f64>> = vec![Vec::new(); problem.data.sweeps.len()];
     for ((step, mass), r) in problem.used().zip(data) {
         if let Some(seen) = &problem.data.steps[step].seen[mass] {

@@ -1,11 +1,13 @@
 //! What is to be said of a fit.
 
+use super::super::forcing::median;
 use super::Fit;
 use super::data::{self, Data};
-use super::settle::Settled;
+use super::settle::{POOR, Settled};
+use crate::campaign::{FitEntry, Parameter};
 
-/// χ²/ν beyond which stated uncertainties or the model are doubted.
-const POOR: f64 = 2.0;
+/// A factor by which amplitudes are off that no calibration explains.
+const MANY: f64 = 5.0;
 /// Correlations beyond this are named.
 const TIED: f64 = 0.95;
 /// A profile that falls so far below the answer has found a better one.
@@ -20,9 +22,11 @@ pub fn warnings(fit: &Fit, settled: &Settled<'_>, data: &Data) -> Vec<String> {
     let doubt = settled.doubt();
     if let Some(doubt) = &doubt {
         said.push(format!(
-            "No parameter has an uncertainty: {doubt}. A value that is held (force, mass, stiffness), a unit or a prior may be wrong; else begin \
-             nearer to the rig, or with more `starts`."
+            "No parameter has an uncertainty: {doubt}. A value that is held (force, mass, stiffness of the contact), a unit, the scaling (peak or \
+             rms), a calibration (`calibration` in [fit] says how well it is known), which mass is which, or a prior may be wrong; else begin nearer to \
+             the rig, or with more `starts`."
         ));
+        said.extend(off_by(fit));
     }
     for parameter in &fit.parameters {
         let name = parameter.parameter.name();
@@ -54,14 +58,16 @@ pub fn warnings(fit: &Fit, settled: &Settled<'_>, data: &Data) -> Vec<String> {
     if data.guessed {
         let good = data::GUESS * fit.reduced_chi_squared.sqrt();
         said.push(format!("By the residuals the amplitudes are good to {:.2} %.", 100.0 * good));
-    } else if fit.reduced_chi_squared > POOR {
+    } else if fit.reduced_chi_squared.is_nan() {
+        said.push("There are no more amplitudes and priors than parameters: nothing tells whether the model fits them.".to_owned());
+    } else if doubt.is_none() && fit.reduced_chi_squared > POOR {
         said.push(format!(
             "The residuals are {:.1} times as large as the uncertainties of the points: these are too small, or the model lacks something. The \
              uncertainties of the parameters are widened as much.",
             fit.reduced_chi_squared.sqrt()
         ));
     }
-    if settled.whiteness.rejected() {
+    if doubt.is_none() && settled.whiteness.rejected() {
         said.push(format!(
             "The residuals follow each other along frequency, which noise does not: the model lacks something. Uncertainties are widened \
              by {:.1} for it.",
@@ -74,6 +80,12 @@ pub fn warnings(fit: &Fit, settled: &Settled<'_>, data: &Data) -> Vec<String> {
             "{} of {} amplitudes take no part: the rig comes to other motions there than one impact a cycle or none.",
             left.other_motion,
             fit.n + left.other_motion + left.far + left.wavering
+        ));
+    }
+    if left.soft > 0 {
+        said.push(format!(
+            "{} amplitude(s) take no part: the contact lasts too long there for the correction of its compliance.",
+            left.soft
         ));
     }
     if left.far + left.wavering > 0 {
@@ -100,6 +112,34 @@ pub fn warnings(fit: &Fit, settled: &Settled<'_>, data: &Data) -> Vec<String> {
     said.push("The overlay and its scores are of the rig as it was stated, not of the one found.".to_owned());
     said.extend(data.warnings.iter().cloned());
     said
+}
+
+/// Where the amplitudes are many times what the answer shows: most likely a mistake of units.
+fn off_by(fit: &Fit) -> Option<String> {
+    let mut ratios: Vec<f64> =
+        fit.points.iter().map(|p| p.measured / p.fitted).filter(|r| r.is_finite()).collect();
+    ratios.sort_by(f64::total_cmp);
+    let middle = median(&ratios)?;
+    (middle.ln().abs() > MANY.ln()).then(|| {
+        format!("Half of the amplitudes are {middle:.3} times what the answer shows, or more: the unit or the scaling may be wrong.")
+    })
+}
+
+/// Sentences about what was given and has no use.
+pub fn unused(entry: &FitEntry) -> Vec<String> {
+    let stray = |what: &str, names: Vec<&str>| {
+        (!names.is_empty()).then(|| {
+            format!(
+                "The {what} of {} is not used: {} not fitted.",
+                names.join(", "),
+                if names.len() == 1 { "it is" } else { "they are" }
+            )
+        })
+    };
+    let idle = |p: &&Parameter| !entry.parameters.contains(p);
+    let priors = entry.prior.keys().filter(idle).map(|p| p.name()).collect();
+    let bounds = entry.bounds.keys().filter(idle).map(|p| p.name()).collect();
+    [stray("prior", priors), stray("bound", bounds)].into_iter().flatten().collect()
 }
 
 /// Pairs of parameters that are known better together than each alone.

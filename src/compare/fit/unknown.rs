@@ -58,17 +58,22 @@ const NEAREST: f64 = 1e-6;
 /// `base` with these unknowns at these coordinates.
 pub fn at(base: &Setting, unknowns: &[Unknown], u: &[f64]) -> Setting {
     unknowns.iter().zip(u).fold(*base, |setting, (unknown, u)| {
-        let Coordinate { low, high } = unknown.coordinate;
-        let (value, start) = (unknown.coordinate.value(*u), base.get(unknown.parameter) - low);
-        let value = if high.is_finite() {
-            value.clamp(low + NEAREST * (high - low), high - NEAREST * (high - low))
-        } else if start > 0.0 {
-            low + (value - low).clamp(start / LEASH, start * LEASH)
-        } else {
-            value
-        };
-        setting.with(unknown.parameter, value)
+        let [low, high] = limits(base, unknown);
+        setting.with(unknown.parameter, unknown.coordinate.value(*u).clamp(low, high))
     })
+}
+
+/// Where a parameter may go.
+pub fn limits(base: &Setting, unknown: &Unknown) -> [f64; 2] {
+    let Coordinate { low, high } = unknown.coordinate;
+    let start = base.get(unknown.parameter) - low;
+    if high.is_finite() {
+        [low + NEAREST * (high - low), high - NEAREST * (high - low)]
+    } else if start > 0.0 {
+        [low + start / LEASH, low + start * LEASH]
+    } else {
+        [low, f64::INFINITY]
+    }
 }
 
 /// Which coordinates are the lower of the two that give the same value; they are turned into the upper.

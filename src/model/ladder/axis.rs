@@ -97,14 +97,14 @@ fn is_enough(choice: &Choice, model: Model) -> bool {
     choice.chosen.is_some_and(|chosen| chosen == model || choice.rung(model).sufficient)
 }
 
-/// Points at which a contact of spring and damper that is chosen is held against curved bodies: the ends of each stretch and its peak.
+/// Points at which a contact of spring and damper that is chosen, or the correction for one, is held against curved bodies: the ends of each stretch and its peak.
 fn probes(all: &[Choice]) -> Vec<usize> {
     let size = |i: &usize| all[*i].answer().map_or(0.0, |a| a[0].abs().max(a[1].abs()));
     let mut probes = Vec::new();
     let mut first = 0;
     for same in all.chunk_by(|a, b| a.chosen == b.chosen) {
         let last = first + same.len() - 1;
-        if same[0].chosen == Some(Model::KelvinVoigt) {
+        if matches!(same[0].chosen, Some(Model::KelvinVoigt | Model::SoftCorrected)) {
             let peak = (first..=last).max_by(|a, b| size(a).total_cmp(&size(b)));
             probes.extend([first, peak.unwrap_or(last), last]);
         }

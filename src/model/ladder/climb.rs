@@ -1,6 +1,6 @@
 //! From rung to rung.
 
-use super::change::Change;
+use super::change::{Answer, Change};
 use super::motions::{Motions, On};
 use super::sensitivity::sensitivity;
 use super::tried::{Stage, Tried, restitution};
@@ -136,6 +136,15 @@ impl<'a> Climb<'a> {
         for model in [Model::KelvinVoigt, Model::HuntCrossley] {
             choice.rungs[model as usize] = self.rung(model);
         }
+        let answers = (choice.chosen.and_then(|m| self.answer(m)), self.answer(Model::HuntCrossley));
+        if let (Some(own), Some(curved)) = answers {
+            choice.law = Some(own.change(&curved, Model::HuntCrossley, self.stage.question));
+        }
+    }
+
+    /// What a rung answers.
+    pub fn answer(&self, model: Model) -> Option<Answer> {
+        self.of(model).answer
     }
 
     /// Chooses; a contact of spring and damper that is chosen is held against curved bodies where `bend` says so.
@@ -147,6 +156,8 @@ impl<'a> Climb<'a> {
             chosen: None,
             needs: Vec::new(),
             audit: None,
+            law: None,
+            gap: Vec::new(),
             sensitivity: Vec::new(),
             sensitivity_failed: Vec::new(),
             motions: self.motions.as_ref().map_or_else(Vec::new, |m| m.known.clone()),
@@ -164,7 +175,7 @@ impl<'a> Climb<'a> {
                 choice.needs = self.missing();
             }
         }
-        if bend && choice.chosen == Some(Model::KelvinVoigt) {
+        if bend && matches!(choice.chosen, Some(Model::KelvinVoigt | Model::SoftCorrected)) {
             self.bend(&mut choice);
         }
         choice.audit = choice.chosen.and_then(|model| choice.rung(model).changes.last().copied());

@@ -1,6 +1,7 @@
 //! A choice told in sentences.
 
-use super::{Choice, Known, Model, Question, Rung};
+use super::{Change, Choice, Known, Model, Question, Rung};
+use crate::units::notation::quantity;
 use std::fmt::Write as _;
 
 /// Why this rung, or why none.
@@ -77,18 +78,51 @@ fn chosen(choice: &Choice, rung: &Rung, question: &Question) -> String {
         );
     }
     for change in &rung.changes {
-        let law = rung.model == Model::KelvinVoigt && !change.enough;
+        if change.at == Model::HuntCrossley {
+            continue;
+        }
         let excused = change.enough && change.change.abs() > question.tolerance;
         let _ = write!(text, " Its answer moves by {:+.3} % at {}", 100.0 * change.change, change.at.name());
-        text.push_str(if law {
-            ": the law of the contact matters more than the tolerance, and should be measured."
-        } else if excused {
+        text.push_str(if excused {
             ", more than the tolerance: the noise floor, or what the answers themselves are uncertain by, allows it."
         } else {
             "."
         });
     }
+    if let Some(law) = choice.law {
+        let moved = 100.0 * law.change;
+        let _ = write!(
+            text,
+            " With curved bodies that meet for as long and rebound alike it moves by {moved:+.3} %"
+        );
+        text.push_str(if law.enough {
+            "."
+        } else {
+            ": the law of the contact matters more than the tolerance, and should be measured (`vibro pulse`)."
+        });
+    }
     text
+}
+
+/// What the uncertainty of the gap does to the chosen answer.
+pub fn gap(choice: &Choice, question: &Question) -> Option<String> {
+    let at = |change: &Option<Change>| match change {
+        Some(change) => format!("moves it by {:+.3} %", 100.0 * change.change),
+        None => "leaves no such answer".to_owned(),
+    };
+    let [smaller, larger] = choice.gap.as_slice() else { return None };
+    let enough = choice.gap.iter().all(|c| c.is_some_and(|c| c.enough));
+    Some(format!(
+        "A gap smaller by its uncertainty of {} {}, a larger one {}: {}.",
+        quantity(question.gap_std, "m", 2),
+        at(smaller),
+        at(larger),
+        if enough {
+            "within what is allowed"
+        } else {
+            "whatever the model, the answer is known no better than the gap"
+        }
+    ))
 }
 
 /// Why the stiffness must be known.

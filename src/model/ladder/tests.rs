@@ -81,9 +81,37 @@ fn a_soft_contact_is_followed() {
     assert_eq!(choice.chosen, Some(Model::KelvinVoigt));
     let soft = choice.rung(Model::SoftCorrected);
     assert!(!soft.valid && soft.why.contains("2.5 %") && !soft.why.contains('\n'), "{}", soft.why);
-    // Held against curved bodies only here.
     assert!(choice.rung(Model::HuntCrossley).answer.is_some());
-    assert!(scene_b(Some(1e6)).rung(Model::HuntCrossley).answer.is_none());
+}
+
+#[test]
+fn the_law_of_a_contact_is_asked_for_wherever_its_duration_counts() {
+    for stiffness in [1e4, 1e6] {
+        let choice = scene_b(Some(stiffness));
+        let law = choice.law.unwrap();
+        let [own, curved] = [choice.answer(), choice.rung(Model::HuntCrossley).answer].map(|a| a.unwrap()[0]);
+        assert!(((curved / own - 1.0) / law.change - 1.0).abs() < 1e-9 && !law.enough, "{law:?}");
+        assert!(choice.reasons.iter().any(|r| r.contains("should be measured")), "{:?}", choice.reasons);
+    }
+    // A contact of 0.07 % of the cycle, whatever its law.
+    assert!(scene_b(Some(1e8)).law.is_none_or(|law| law.enough));
+}
+
+#[test]
+fn an_uncertain_gap_is_carried_to_the_answer() {
+    let at = |gap: f64, gap_std: f64| {
+        let rig = Rig { gap, ..Rig::thesis() };
+        let scene = Scene { rig, ..scene(0.5, Some(1e6)) };
+        choose(&scene, hz(2.1), &Question { gap_std, ..Question::new(Observable::ImpactSpeed) }).unwrap()
+    };
+    let choice = at(1e-3, 1e-4);
+    assert_eq!(choice.chosen, Some(Model::SoftCorrected));
+    let here = choice.answer().unwrap()[0];
+    let there = at(9e-4, 0.0).rung(Model::SoftCorrected).answer.unwrap()[0];
+    let smaller = choice.gap[0].unwrap();
+    assert!((smaller.change - (there / here - 1.0)).abs() < 1e-9 && !smaller.enough, "{smaller:?}");
+    assert!(choice.reasons.last().unwrap().contains("no better than the gap"), "{:?}", choice.reasons);
+    assert!(at(1e-3, 0.0).gap.is_empty());
 }
 
 #[test]

@@ -7,13 +7,10 @@ use crate::record::Direction;
 use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
 use std::fmt::Write as _;
 
-/// χ² of one degree of freedom that is exceeded in 5 % of cases.
-const LIMIT: f64 = 3.841;
-
 /// Residuals over frequency, by mass and direction, and the profile of the parameter known worst.
 pub fn fit(title: &str, fit: &Fit) -> Figure {
     let mut above =
-        Plot::new(AxisSpec::new("Excitation frequency", "Hz"), AxisSpec::new("Residual / std", ""))
+        Plot::new(AxisSpec::new("Excitation frequency", "Hz"), AxisSpec::new("Residual / stated std", ""))
             .legend(Legend::Right);
     for (mass, direction, marker) in [
         (1, Direction::Up, Marker::Circle),
@@ -31,33 +28,36 @@ pub fn fit(title: &str, fit: &Fit) -> Figure {
     }
     above = above.with(Series::horizontal("", 0.0));
     let mut figure = Figure::double(title).panel(above.title("What the fit leaves")).height(80.0);
+    let left = fit.left_out;
     let mut caption = format!(
-        "Residuals of {} amplitudes in units of their standard deviation; {} of other motions are left out.",
+        "Residuals of {} amplitudes in units of the standard uncertainties that they were stated with; {} of other motions, or far from theirs, are \
+         left out.",
         fit.n,
-        fit.left_out.other_motion + fit.left_out.wavering
+        left.other_motion + left.far + left.wavering + left.soft
     );
     if let Some(profile) = &fit.profile {
         figure = figure.panel(profiled(profile)).height(150.0);
         let _ = write!(
             caption,
-            " Below: the least sum of squares over {}, the parameter known worst, all others free; under the grey line ({LIMIT}) it lies with \
+            " Below: the least sum of squares over {}, the parameter known worst, all others free; under the grey line ({}) it lies with \
              95 % confidence.",
-            profile.parameter.name()
+            profile.parameter.name(),
+            profile.limit
         );
     }
     lettered(figure).caption(caption)
 }
 
 fn profiled(profile: &Profile) -> Plot {
-    let top = profile.rise.iter().copied().filter(|r| r.is_finite()).fold(LIMIT, f64::max);
+    let top = profile.rise.iter().copied().filter(|r| r.is_finite()).fold(profile.limit, f64::max);
     let unit = if profile.unit == "1" { "" } else { profile.unit };
     Plot::new(
         AxisSpec::new(profile.parameter.name(), unit),
-        AxisSpec::new("Rise of the sum of squares", "").limits(0.0, 1.05 * top.min(6.0 * LIMIT)),
+        AxisSpec::new("Rise of the sum of squares", "").limits(0.0, 1.05 * top.min(6.0 * profile.limit)),
     )
     .title(format!("Profile of {}", profile.parameter.name()))
     .legend(Legend::Hidden)
-    .with(Series::horizontal("95 %", LIMIT))
+    .with(Series::horizontal("95 %", profile.limit))
     .with(
         Series::line("", profile.value.clone(), profile.rise.clone()).ink(Ink::Nth(0)).stroke(Stroke::Solid),
     )

@@ -5,7 +5,7 @@ use super::*;
 /// A light second mass on a soft spring, struck hard.
 fn light(restitution: f64, force: f64) -> Setting {
     let rig = Rig { m1: 0.4, m2: 0.09, k1: 6000.0, k2: 4000.0, c1: 1.2, c2: 0.6, gap: 0.4e-3, restitution };
-    Setting { rig, force, contact: None }
+    Setting { rig, force }
 }
 
 /// Steps evenly over this range.

@@ -1,0 +1,150 @@
+//! The compliance of the contact, taken out of the points.
+
+use super::super::prediction::Kind;
+use super::super::simulated::Pace;
+use super::data::{Data, Seen, Step};
+use super::held::Held;
+use super::motion::assigned;
+use super::problem::Problem;
+use super::setting::Setting;
+use super::settle::{Settled, settle};
+use super::unknown::{Unknown, coordinates};
+use crate::error::Result;
+use crate::model::{Compliance, Excitation, Sine, orbits, shown, softened};
+use crate::units::notation::quantity;
+use std::f64::consts::PI;
+
+/// Rounds after which the corrections have to stand still.
+const ROUNDS: usize = 8;
+/// Part of a standard deviation by which they then still change at most.
+const STILL: f64 = 0.1;
+
+/// Points as they would be without compliance.
+#[derive(Debug, Clone)]
+pub struct Stiff {
+    pub data: Data,
+    /// Amplitudes of which that cannot be told; they are no longer seen.
+    pub lost: usize,
+    /// Coordinates that belong to them.
+    pub u: Vec<f64>,
+}
+
+/// The points of an answer with the compliance of a contact of `stiffness` (N/m) taken out of them.
+///
+/// Each amplitude of impacts is divided by what the contact makes of it in the rig found, and the rig found again from the points so
+/// corrected, in turn until both stay. With the part of the period in contact s, a change of the rig by δ changes the correction by some
+/// sδ: each round leaves about s of the change that was left.
+///
+/// # Errors
+/// If too few points are left.
+pub fn stiff(rigid: &Settled<'_>, stiffness: f64, pace: Pace) -> Result<Stiff> {
+    // The answer without compliance may be one of which none can be taken out: then from the rig as it was stated.
+    let found = led(rigid, &rigid.setting(), stiffness, pace);
+    if found.as_ref().is_ok_and(|s| s.lost == 0) {
+        return found;
+    }
+    match (found, led(rigid, &rigid.problem.base, stiffness, pace)) {
+        (Ok(a), Ok(b)) => Ok(if b.lost < a.lost { b } else { a }),
+        (Err(_), other) => other,
+        (found, Err(_)) => found,
+    }
+}
+
+/// The same from this setting on.
+fn led(rigid: &Settled<'_>, from: &Setting, stiffness: f64, pace: Pace) -> Result<Stiff> {
+    let Problem { data: plain, base, unknowns, .. } = &rigid.problem;
+    // Points far from their motion may be so for want of the correction.
+    let corrected = |data: &Data, setting: &Setting| -> Result<Stiff> {
+        let kinds = assigned(data, setting, pace)?.kinds;
+        Ok(Stiff { u: coordinates(setting, unknowns), ..corrected(plain, setting, &kinds, stiffness) })
+    };
+    let mut now = corrected(plain, from)?;
+    for _ in 0..ROUNDS {
+        let settled = settle(&now.data, base, unknowns, &now.u, pace)?;
+        let next = corrected(&now.data, &settled.setting())?;
+        let still = change(&now.data, &next.data) <= STILL;
+        now = next;
+        if still {
+            break;
+        }
+    }
+    Ok(now)
+}
+
+/// Largest change of an amplitude in standard deviations.
+fn change(before: &Data, after: &Data) -> f64 {
+    let steps = before.steps.iter().zip(&after.steps);
+    let pairs = steps.flat_map(|(a, b)| a.seen.iter().zip(&b.seen));
+    let one = |pair: (&Option<Seen>, &Option<Seen>)| match pair {
+        (Some(a), Some(b)) => (b.amplitude - a.amplitude).abs() / b.std,
+        (None, None) => 0.0,
+        _ => f64::INFINITY,
+    };
+    pairs.map(one).fold(0.0, f64::max)
+}
+
+fn corrected(data: &Data, setting: &Setting, kinds: &[Option<Kind>], stiffness: f64) -> Stiff {
+    let mut stiff = Stiff { data: data.clone(), lost: 0, u: Vec::new() };
+    for (step, kind) in stiff.data.steps.iter_mut().zip(kinds) {
+        if *kind != Some(Kind::Impacting) {
+            continue;
+        }
+        let made = made(setting, stiffness, setting.force_at(data, step), step.frequency);
+        let Some(made) = made else {
+            stiff.lost += Step::clear(step).count();
+            step.seen = [None, None];
+            continue;
+        };
+        for (seen, made) in step.seen.iter_mut().zip(made) {
+            if let Some(seen) = seen {
+                seen.amplitude /= made;
+                seen.std /= made;
+                seen.limit = seen.limit.map(|l| l / made);
+                seen.soft = made;
+            }
+        }
+    }
+    stiff
+}
+
+/// What the compliance makes of the amplitudes of both masses, as factors; `None` where the correction does not hold.
+fn made(setting: &Setting, stiffness: f64, force: f64, frequency: f64) -> Option<[f64; 2]> {
+    let (rig, sine) = (&setting.rig, Sine { force, frequency });
+    let compliance = Compliance::new(rig, stiffness, None).ok()?;
+    let found = orbits(rig, force, frequency).ok()?;
+    let soft =
+        softened(rig, &Excitation::Sine(sine), &found, &compliance).ok()?.first()?.as_ref()?.fundamental;
+    let rigid = shown(rig, &sine).ok()?.amplitude;
+    let made = [0, 1].map(|mass| soft[mass] / rigid[mass]);
+    made.iter().all(|m| m.is_finite() && *m > 0.0).then_some(made)
+}
+
+/// Part of the period in contact for which is said what an unknown compliance does.
+const SHARE: f64 = 1e-3;
+
+/// What a contact of a thousandth of the period would make of the parameters, where its stiffness is not known: those that it changes by more
+/// than their standard uncertainty.
+pub fn untold(settled: &Settled<'_>, held: &Held, pace: Pace) -> Option<String> {
+    let (problem, setting) = (&settled.problem, settled.setting());
+    let used: Vec<f64> = problem.used().map(|(step, _)| problem.data.steps[step].frequency).collect();
+    let frequency = used.iter().sum::<f64>() / used.len() as f64;
+    // t_c = π√(M/k₃) of a spring.
+    let stiffness = setting.rig.reduced_mass() * (PI * frequency / SHARE).powi(2);
+    let soft = stiff(settled, stiffness, pace).ok()?;
+    let changed =
+        |i: usize| (soft.u[i] - settled.minimum.parameters[i]).abs() > held.covariance[(i, i)].sqrt();
+    let one = |i: usize| {
+        let Unknown { parameter, coordinate, .. } = problem.unknowns[i];
+        format!("{} {}", parameter.name(), quantity(coordinate.value(soft.u[i]), parameter.unit(), 4))
+    };
+    let moved: Vec<String> =
+        (0..soft.u.len()).filter(|i| held.loose[*i].is_none() && changed(*i)).map(one).collect();
+    (!moved.is_empty()).then(|| {
+        format!(
+            "Impacts are taken to last no time. With a contact of a thousandth of the period, {} stiff, it would be: {}. Give `stiffness` in \
+             [contact] where it is known.",
+            quantity(stiffness, "N/m", 2),
+            moved.join(", ")
+        )
+    })
+}

@@ -1,0 +1,70 @@
+//! Contacts that give way.
+
+use super::*;
+use crate::compare::simulated::simulated;
+use crate::model::Law;
+
+/// Sweeps of a rig whose contact is a spring and a damper, with noise.
+fn soft(setting: &Setting, stiffness: f64, seed: u64) -> Data {
+    let (clean, kinds) = truth(setting, PACE);
+    let mut data = noisy(&clean, &kinds, setting, seed);
+    let mut normal = Normal(900 + seed);
+    for _ in 0..16 {
+        normal.next();
+    }
+    let rig = &setting.rig;
+    let law = Law::kelvin_voigt(stiffness, rig.restitution, rig.reduced_mass()).unwrap();
+    for sequence in data.sequences.clone() {
+        let points: Vec<(f64, f64)> =
+            sequence.iter().map(|i| (clean.steps[*i].frequency, data.steps[*i].force)).collect();
+        let came = simulated(&setting.rig, Some(law), &points, PACE);
+        for (i, came) in sequence.iter().zip(&came) {
+            let Ok(came) = came else { continue };
+            for (seen, amplitude) in data.steps[*i].seen.iter_mut().zip(came.amplitude) {
+                if let Some(seen) = seen {
+                    seen.amplitude = (amplitude + seen.std * normal.next()).abs().max(seen.std);
+                    seen.limit = (amplitude < FAINT * seen.std).then_some(3.0 * seen.std);
+                }
+            }
+        }
+    }
+    data
+}
+
+const NAMES: &str = "parameters = [\"restitution\", \"c1\", \"c2\", \"gap\"]";
+
+/// Kelvin–Voigt contacts that last 0.5 and 0.15 % of the period at resonance: with the stiffness stated the rig is found, without it nothing is claimed.
+#[test]
+fn the_stiffness_of_the_contact_is_allowed_for() {
+    let setting = example();
+    let entry: FitEntry = toml::from_str(NAMES).unwrap();
+    let start = setting.with(Parameter::Gap, 1.1e-3).with(Parameter::C1, 0.08);
+    println!("seeds 41 and 42");
+    let data = soft(&setting, 1e7, 42);
+    let blind = found(&data, &start, None, &[], &entry, PACE).unwrap();
+    assert!(blind.parameters.iter().all(|p| p.estimate.std.is_none()), "{:?}", blind.parameters);
+    for (stiffness, data) in [(1e6, soft(&setting, 1e6, 41)), (1e7, data)] {
+        let fit = found(&data, &start, Some(stiffness), &[], &entry, PACE).unwrap();
+        for found in &fit.parameters {
+            let Estimate { value, std, .. } = found.estimate;
+            let away = (value - setting.get(found.parameter)) / std.unwrap_or(f64::NAN);
+            // Four standard deviations of eight: one of 2000 cases.
+            assert!(away.abs() < 4.0, "{stiffness:e}: {found:?} lies {away} off");
+        }
+    }
+}
+
+/// Impacts without duration, where nothing is said of the contact: what one of a thousandth of the period would change, is said.
+#[test]
+fn an_unknown_compliance_is_spoken_of() {
+    let setting = example();
+    let (clean, kinds) = truth(&setting, PACE);
+    println!("seed 44");
+    let data = noisy(&clean, &kinds, &setting, 44);
+    let entry: FitEntry = toml::from_str(NAMES).unwrap();
+    let fit = found(&data, &setting, None, &[], &entry, PACE).unwrap();
+    let said =
+        fit.warnings.iter().find(|w| w.contains("no time")).unwrap_or_else(|| panic!("{:?}", fit.warnings));
+    // The compliance of the contact is not there for what rebounds slower than it does: R would have to be higher.
+    assert!(said.contains("restitution 0.99") && said.contains("gap 9") && said.contains("N/m"), "{said}");
+}
