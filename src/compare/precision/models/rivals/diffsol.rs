@@ -216,3 +216,98 @@ fn run<'a, E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a>(
 fn four(y: &[f64]) -> [f64; 4] {
     std::array::from_fn(|i| y[i])
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    use super::*;
+    use crate::model::{Rig, State};
+
+    /// Displacement in m from which both masses start.
+    const START: f64 = 1e-3;
+    const STEPS: u64 = 5_000;
+
+    /// Two equal masses without dampers let go a gap of nothing apart: each meets its mirror image, and the distance between them
+    /// follows z″ = −ω²z.
+    fn mirrored(restitution: f64, until: f64) -> (Task, f64) {
+        let thesis = Rig::thesis();
+        let rig = Rig { m2: thesis.m1, k2: thesis.k1, c1: 0.0, c2: 0.0, gap: 0.0, restitution, ..thesis };
+        let omega = (rig.k1 / rig.m1).sqrt();
+        let start = State { x1: -START, x2: START, ..State::REST };
+        let sine = Task::sine(rig, 0.0, omega / std::f64::consts::TAU, until / omega);
+        (Task { start, most: STEPS, ..sine }, omega)
+    }
+
+    /// What all steps together can leave of (ωz, z′) in m/s: the norm of four errors is below 1, so each is below twice its tolerance,
+    /// and z is the difference of two. Between contacts neither grows.
+    fn allowed(how: Diffsol, omega: f64) -> f64 {
+        let step = omega * (FLOOR[0] + START) + (FLOOR[1] + omega * START);
+        STEPS as f64 * 4.0 * how.relative() * step
+    }
+
+    #[test]
+    fn equal_masses_meet_every_half_period_and_part_with_r_times_their_speed() {
+        let (task, omega) = mirrored(0.7, FRAC_PI_2 + 3.5 * PI);
+        for how in [Diffsol::Tsit45(1e-6), Diffsol::Tsit45(1e-9), Diffsol::Tsit45(1e-12), Diffsol::Bdf(1e-9)]
+        {
+            let told = impacts(&task, how, None).unwrap();
+            assert_eq!(told.impacts.len(), 4, "{how:?}");
+            for (n, (time, approach)) in told.impacts.iter().enumerate() {
+                let speed = 2.0 * omega * START * 0.7_f64.powi(n as i32);
+                // At an impact without acceleration an error turns round and shrinks by R, as the speed does.
+                let off = allowed(how, omega);
+                assert!(
+                    (time - (FRAC_PI_2 + PI * n as f64) / omega).abs() < off / (omega * speed),
+                    "{how:?}"
+                );
+                assert!((approach - speed).abs() < off, "{how:?}: {approach} {speed}");
+            }
+        }
+    }
+
+    #[test]
+    fn equal_masses_on_a_contact_of_spring_and_damper_meet_when_two_oscillations_say() {
+        let (task, omega) = mirrored(0.7, FRAC_PI_2 + 2.75 * PI);
+        let spring = Spring { stiffness: 1e3, damping: 2.0 };
+        let (mass, k, c) = (task.rig.m1, spring.stiffness, spring.damping);
+        // z″ = −ω²z − 2(kz + cz′)/m in contact, from (0, V).
+        let (decay, stiff) = (c / mass, (omega * omega + 2.0 * k / mass).sqrt());
+        let ring = (stiff * stiff - decay * decay).sqrt();
+        let (mut time, mut speed) = (FRAC_PI_2 / omega, 2.0 * omega * START);
+        let mut touches = Vec::new();
+        while time < task.until {
+            touches.push((time, speed));
+            // kz + cz′ = 0.
+            let lasts = (PI - (c * ring / (k - c * decay)).atan()) / ring;
+            let (sin, cos) = (ring * lasts).sin_cos();
+            let left = speed * (-decay * lasts).exp();
+            let (z, v) = (left * sin / ring, left * (cos - decay / ring * sin));
+            time += lasts + (2.0 * PI - (omega * z).atan2(v)) / omega;
+            speed = v.hypot(omega * z);
+        }
+        assert_eq!(touches.len(), 3);
+        for how in [Diffsol::Tsit45(1e-9), Diffsol::Tsit45(1e-12), Diffsol::Bdf(1e-9)] {
+            let told = contacts(&task, how, &spring).unwrap();
+            assert_eq!(told.impacts.len(), 3, "{how:?}");
+            for (n, (found, truth)) in told.impacts.iter().zip(&touches).enumerate() {
+                // In contact (Ωz, z′) does not grow: a contact makes (ωz, z′) larger by Ω/ω at most.
+                let off = allowed(how, omega) * (stiff / omega).powi(n as i32);
+                assert!((found.0 - truth.0).abs() < off / (omega * truth.1), "{how:?}: {found:?} {truth:?}");
+                assert!((found.1 - truth.1).abs() < off, "{how:?}: {found:?} {truth:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_the_crate_cannot_do_is_its_own_word_and_a_spent_budget_stalls() {
+        let (task, _) = mirrored(0.7, 10.0);
+        let impossible = impacts(&task, Diffsol::Tsit45(1e-30), None);
+        assert!(
+            matches!(&impossible, Err(Fault::Refused(why)) if why.starts_with("diffsol: ")),
+            "{impossible:?}"
+        );
+        let short = Task { most: 3, ..task };
+        assert!(matches!(impacts(&short, Diffsol::Tsit45(1e-6), None), Err(Fault::Stalled(_))));
+    }
+}
