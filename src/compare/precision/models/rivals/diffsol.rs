@@ -142,7 +142,7 @@ fn follow(
     let stage = Cell::new(Stage::Apart);
     let now = |t: f64, y: &[f64]| rate(stage.get(), t, &four(y));
     let first = task.first();
-    let problem = OdeBuilder::<NalgebraMat<f64>>::new()
+    let mut problem = OdeBuilder::<NalgebraMat<f64>>::new()
         .h0(first_step(task, 0.0, &first))
         .rtol(how.relative())
         .atol(FLOOR.map(|floor| how.relative() * floor))
@@ -157,6 +157,9 @@ fn follow(
         .init(|_, _, y| y.copy_from_slice(&first), first.len())
         .root(|y, _, t, values| values.copy_from_slice(&falls(stage.get(), t, &four(y))), 2)
         .build()?;
+    // Counted over the whole run, 50 of them as it comes; a step that Newton's method does not solve is shortened, and one too short is an
+    // error all the same.
+    problem.ode_options.max_nonlinear_solver_failures = usize::MAX;
     match how {
         Diffsol::Tsit45(_) => run(task, problem.tsit45()?, &stage, &rate, &falls, meet),
         Diffsol::Bdf(_) => run(task, problem.bdf::<NalgebraLU<f64>>()?, &stage, &rate, &falls, meet),
