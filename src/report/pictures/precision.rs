@@ -87,7 +87,8 @@ pub fn precision(scene: &Scene) -> Figure {
             own += 1;
             (Ink::Black, MARKERS[(own - 1) % MARKERS.len()], Stroke::Solid)
         } else {
-            let turn = OFTEN.iter().position(|often| *often == name).unwrap_or_else(|| {
+            let nth = |list: &[&str]| list.iter().position(|known| *known == name);
+            let turn = nth(&OFTEN).or_else(|| Some(TURNS - 1 - nth(&OPTIONAL)?)).unwrap_or_else(|| {
                 others += 1;
                 OFTEN.len() + others - 1
             });
@@ -144,6 +145,13 @@ const OFTEN: [&str; 8] = [
     "DOP853, dense events",
     "stiff spring, RK45",
 ];
+
+/// Methods that only some builds have: their colours and forms are the last ones, so that no other method has different ones without
+/// them.
+const OPTIONAL: [&str; 2] = ["diffsol TSIT45, sign test", "diffsol BDF, sign test"];
+
+/// Pairs of a colour and a form.
+const TURNS: usize = 6 * MARKERS.len();
 
 /// Distance within which points of a line share their letters, in parts of the width and of the height.
 const SHARED: [f64; 2] = [0.025, 0.03];

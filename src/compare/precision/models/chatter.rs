@@ -4,6 +4,8 @@ use std::f64::consts::TAU;
 
 use super::entry::{Entries, Verdict};
 use super::ours;
+#[cfg(feature = "diffsol")]
+use super::rivals::{Diffsol, impacts};
 use super::rivals::{Events, Kind, Loop, events, marched, moreau};
 use super::scene_b::steps;
 use super::task::{Task, Told};
@@ -51,22 +53,27 @@ pub fn scene(quick: bool) -> Scene {
     let plain = Events::ends(Kind::Rk45(1e-6));
     entries.rival("RK45, no rule for rest", &plain.kind.setting(), || events(&task, &plain), judge);
     // At rest below the speed at which a bounce is as high as the integrator's error, 1 mm times its tolerance.
-    let rule = |kind: Kind| (0.02 * kind.relative()).sqrt();
+    let rule = |relative: f64| (0.02 * relative).sqrt();
     for n in few(&[100.0, 1e3]) {
-        let how = Events::ends(Kind::Rk4(n)).sticking(rule(Kind::Rk4(n)).max(1e-7));
+        let how = Events::ends(Kind::Rk4(n)).sticking(rule(Kind::Rk4(n).relative()).max(1e-7));
         entries.rival("RK4, sign test", &how.kind.setting(), || events(&task, &how), judge);
     }
     for r in few(&[1e-3, 1e-6, 1e-9, 1e-12]) {
-        let how = Events::ends(Kind::Rk45(r)).sticking(rule(Kind::Rk45(r)));
+        let how = Events::ends(Kind::Rk45(r)).sticking(rule(r));
         entries.rival("RK45, sign test", &how.kind.setting(), || events(&task, &how), judge);
     }
     for r in few(&[1e-3, 1e-6, 1e-9, 1e-12]) {
-        let how = Events::dense(Kind::Rk45(r)).sticking(rule(Kind::Rk45(r)));
+        let how = Events::dense(Kind::Rk45(r)).sticking(rule(r));
         entries.rival("RK45, dense events", &how.kind.setting(), || events(&task, &how), judge);
     }
     for r in few(&[1e-6, 1e-9, 1e-12, 1e-14]) {
-        let how = Events::dense(Kind::Dop853(r)).sticking(rule(Kind::Dop853(r)));
+        let how = Events::dense(Kind::Dop853(r)).sticking(rule(r));
         entries.rival("DOP853, dense events", &how.kind.setting(), || events(&task, &how), judge);
+    }
+    #[cfg(feature = "diffsol")]
+    for how in few(&[1e-4, 1e-6, 1e-9, 1e-12]).into_iter().map(Diffsol::Tsit45) {
+        let rests = Some(rule(how.relative()));
+        entries.rival("diffsol TSIT45, sign test", &how.setting(), || impacts(&task, how, rests), judge);
     }
     Scene {
         name: "scene C".to_owned(),

@@ -4,6 +4,8 @@ use super::borders::{Asks, Border, STIFFNESS, borders};
 use super::check::{self, Found};
 use super::corrected::corrected;
 use super::ours;
+#[cfg(feature = "diffsol")]
+use super::rivals::{Diffsol, impacts};
 use super::rivals::{Events, Kind, Loop, Spring, events, marched, moreau, penalty};
 use super::scene_b::spring;
 use super::task::{Fault, Task, Told};
@@ -36,7 +38,7 @@ const STIFF: f64 = 1e8;
 const LONG: f64 = 1e4;
 
 /// Methods in the order of the picture, whether they are this library's, and what they can.
-const METHODS: [(&str, bool, Can); 11] = [
+const METHODS: &[(&str, bool, Can)] = &[
     ("closed form", true, Can::Orbits),
     ("soft-corrected form", true, Can::SoftOrbits),
     ("exact flights", true, Can::Follow(ours::flights)),
@@ -50,6 +52,8 @@ const METHODS: [(&str, bool, Can); 11] = [
         false,
         Can::Follow(|t| events(t, &Events::dense(Kind::Dop853(1e-9)).sticking(1e-5))),
     ),
+    #[cfg(feature = "diffsol")]
+    ("diffsol TSIT45, rule for rest", false, Can::Follow(|t| impacts(t, Diffsol::Tsit45(1e-9), Some(1e-5)))),
     ("stiff spring, RK45", false, Can::Follow(|t| penalty(t, &spring(&t.rig, STIFF), Kind::Rk45(1e-6)))),
     (
         "RK45 through the contact",
@@ -107,7 +111,7 @@ pub fn failures(quick: bool) -> Result<FailureMap> {
     for border in borders(quick)? {
         let contact = spring(&border.task.rig, STIFFNESS);
         let [rigid, soft] = [None, Some(&contact)].map(|contact| Truth::new(&border, contact));
-        for (method, ours, can) in METHODS {
+        for &(method, ours, can) in METHODS {
             let truth = if matches!(can, Can::FollowSoft(_) | Can::SoftOrbits) { &soft } else { &rigid };
             let (own, truth) = (border.clone(), truth.clone());
             let answer = watched(PATIENCE, move || ask(can, ours, &own, &truth));

@@ -4,6 +4,8 @@ use std::f64::consts::TAU;
 
 use super::entry::{Entries, Verdict};
 use super::ours;
+#[cfg(feature = "diffsol")]
+use super::rivals::{Diffsol, impacts};
 use super::rivals::{Events, Kind, Loop, events, marched, moreau};
 use super::scene_b::steps;
 use super::task::{Fault, Task, Told};
@@ -103,6 +105,10 @@ pub fn scene(depth: f64, quick: bool) -> crate::Result<Scene> {
     for r in few(&[1e-6, 1e-9, 1e-12, 1e-14]) {
         let how = Events::dense(Kind::Dop853(r));
         entries.rival("DOP853, dense events", &how.kind.setting(), || all(&|t| events(t, &how)), judge);
+    }
+    #[cfg(feature = "diffsol")]
+    for how in few(&[1e-4, 1e-6, 1e-9, 1e-12]).into_iter().map(Diffsol::Tsit45) {
+        entries.rival("diffsol TSIT45, sign test", &how.setting(), || all(&|t| impacts(t, how, None)), judge);
     }
     Ok(Scene {
         name: format!("grazing {depth:.0e} m"),

@@ -2,12 +2,16 @@
 //!
 //! Each is written as it usually is, and correctly.
 
+#[cfg(feature = "diffsol")]
+mod diffsol;
 mod events;
 mod loops;
 mod moreau;
 mod penalty;
 mod stepper;
 
+#[cfg(feature = "diffsol")]
+pub use self::diffsol::{Diffsol, contacts, impacts};
 pub use events::{Events, events};
 pub use loops::{Loop, marched};
 pub use moreau::moreau;

@@ -4,6 +4,8 @@ use std::f64::consts::TAU;
 
 use super::entry::{Entries, Verdict};
 use super::ours;
+#[cfg(feature = "diffsol")]
+use super::rivals::{Diffsol, impacts};
 use super::rivals::{Events, Kind, Loop, Spring, events, marched, moreau, penalty};
 use super::task::{Task, Told};
 use crate::compare::precision::{Family, Scene};
@@ -80,6 +82,10 @@ pub fn scene(seconds: f64, quick: bool) -> Scene {
     for r in few(&[1e-6, 1e-9, 1e-12, 1e-14]) {
         let how = Events::dense(Kind::Dop853(r));
         entries.rival("DOP853, dense events", &how.kind.setting(), || events(&task, &how), judge);
+    }
+    #[cfg(feature = "diffsol")]
+    for how in few(&[1e-4, 1e-6, 1e-9, 1e-12]).into_iter().map(Diffsol::Tsit45) {
+        entries.rival("diffsol TSIT45, sign test", &how.setting(), || impacts(&task, how, None), judge);
     }
     for k in few(&[1e5, 1e6, 1e8]) {
         let spring = spring(&task.rig, k);

@@ -4,6 +4,8 @@ use std::f64::consts::TAU;
 
 use super::entry::{Entries, Verdict};
 use super::ours;
+#[cfg(feature = "diffsol")]
+use super::rivals::{Diffsol, contacts};
 use super::rivals::{Kind, penalty, sprung};
 use super::scene_b::spring;
 use super::task::{Fault, Task, Told};
@@ -91,6 +93,14 @@ pub fn scene(stiffness: f64, quick: bool) -> crate::Result<Scene> {
     for r in few(&[1e-6, 1e-9, 1e-12]) {
         let kind = Kind::Dop853(r);
         entries.rival("DOP853, touch to parting", &kind.setting(), || sprung(&task, &contact, kind), judge);
+    }
+    #[cfg(feature = "diffsol")]
+    for r in few(&[1e-4, 1e-6, 1e-9, 1e-12]) {
+        for (name, how) in
+            [("diffsol TSIT45, sign test", Diffsol::Tsit45(r)), ("diffsol BDF, sign test", Diffsol::Bdf(r))]
+        {
+            entries.rival(name, &how.setting(), || contacts(&task, how, &contact), judge);
+        }
     }
     Ok(Scene {
         name: format!("soft contact {stiffness:.0e} N m⁻¹"),

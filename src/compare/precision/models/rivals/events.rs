@@ -86,10 +86,18 @@ pub fn events(task: &Task, how: &Events) -> Result<Told, Fault> {
 }
 
 /// Both masses at contact with their common momentum.
-fn merged(task: &Task, y: &[f64; 4]) -> [f64; 4] {
+pub(super) fn merged(task: &Task, y: &[f64; 4]) -> [f64; 4] {
     let rig = &task.rig;
     let v = (rig.m1 * y[1] + rig.m2 * y[3]) / (rig.m1 + rig.m2);
     [y[0], v, y[0] - rig.gap, v]
+}
+
+/// Time and state shortly behind the release at `t`: the gap opens like the cube of time, and a ten-thousandth of a cycle passes unwatched,
+/// until it is more than rounding.
+pub(super) fn parted(task: &Task, t: f64, mut y: [f64; 4]) -> (f64, [f64; 4]) {
+    let short = 1e-4 * task.cycle();
+    y[0] = y[2] + task.rig.gap;
+    (t + short, rk4(&|t: f64, y: &[f64; 4]| task.apart(t, y), t, &y, short))
 }
 
 /// Together from `t` until the force between the masses vanishes.
@@ -119,12 +127,7 @@ fn rest(
             if let Some(last) = told.sticks.last_mut() {
                 last[1] = t;
             }
-            // The gap opens like the cube of time: a ten-thousandth of a cycle passes unwatched, until it is more than rounding.
-            let short = 1e-4 * task.cycle();
-            y[0] = y[2] + task.rig.gap;
-            y = rk4(&|t: f64, y: &[f64; 4]| task.apart(t, y), t, &y, short);
-            t += short;
-            return Ok((t, y));
+            return Ok(parted(task, t, y));
         }
         t = step.start() + step.duration();
         y = step.end();

@@ -13,13 +13,14 @@ pub struct Spring {
 }
 
 impl Spring {
+    /// Force in N of spring and damper alone, which may pull.
+    pub(super) fn bound(&self, task: &Task, y: &[f64; 4]) -> f64 {
+        -self.stiffness * task.gap(y) + self.damping * (y[1] - y[3])
+    }
+
     /// Force in N, never pulling.
     fn force(&self, task: &Task, y: &[f64; 4]) -> f64 {
-        let depth = -task.gap(y);
-        if depth <= 0.0 {
-            return 0.0;
-        }
-        (self.stiffness * depth + self.damping * (y[1] - y[3])).max(0.0)
+        if task.gap(y) < 0.0 { self.bound(task, y).max(0.0) } else { 0.0 }
     }
 }
 
@@ -78,12 +79,12 @@ pub fn sprung(task: &Task, spring: &Spring, kind: Kind) -> Result<Told, Fault> {
     let pushes = [k, c, -k, -c];
     let negative = |w: [f64; 4]| w.map(|w| -w);
     let opens = [-1.0, 0.0, 1.0, 0.0];
-    let contact = |y: &[f64; 4]| -k * task.gap(y) + c * (y[1] - y[3]);
     let (mut t, mut y, mut told, mut left) = (0.0, task.first(), Told::default(), task.most);
     let mut stage = Stage::Apart;
     while t < task.until {
-        let f =
-            |t: f64, y: &[f64; 4]| task.pushed(t, y, if stage == Stage::Touching { contact(y) } else { 0.0 });
+        let f = |t: f64, y: &[f64; 4]| {
+            task.pushed(t, y, if stage == Stage::Touching { spring.bound(task, y) } else { 0.0 })
+        };
         let mut stepper = Stepper::new(kind, task, f, t, y);
         let mut next = None;
         while next.is_none() && t < task.until {

@@ -3,6 +3,17 @@
 use super::super::task::{Fault, Task};
 use crate::math::runge_kutta::{Dop853, DormandPrince, Integrator, Step, Tolerance};
 
+/// Displacements in m and speeds in m/s below which errors are not counted against the state itself.
+pub(super) const FLOOR: [f64; 4] = [1e-3, 0.05, 1e-3, 0.05];
+
+/// First step in s from `y` at `t`: a hundredth of a cycle, behind an impact that is followed by another no more than a tenth of the
+/// flight 2w/a, since a sign test does not see a flight that ends within its first step.
+pub(super) fn first_step(task: &Task, t: f64, y: &[f64; 4]) -> f64 {
+    let (apart, pressed) = (y[3] - y[1], task.hold(t, y) / task.rig.reduced_mass());
+    let flight = if apart > 0.0 && pressed > 0.0 { 2.0 * apart / pressed } else { f64::INFINITY };
+    (task.cycle() / 100.0).min(flight / 10.0)
+}
+
 /// An integrator and its setting.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kind {
@@ -54,9 +65,7 @@ pub enum Taken {
 }
 
 impl Stepper {
-    /// Starts at `t` with `y`; errors of the state count against 1 mm and 0.05 m/s where it is smaller than that. The first step is a
-    /// hundredth of a cycle, behind an impact that is followed by another no more than a tenth of the flight 2w/a: a sign test
-    /// does not see a flight that ends within its first step.
+    /// Starts at `t` with `y`; errors of the state count against [`FLOOR`] where it is smaller than that.
     pub fn new<F: Fn(f64, &[f64; 4]) -> [f64; 4]>(
         kind: Kind,
         task: &Task,
@@ -64,10 +73,7 @@ impl Stepper {
         t: f64,
         y: [f64; 4],
     ) -> Stepper {
-        let floor = [1e-3, 0.05, 1e-3, 0.05];
-        let (apart, pressed) = (y[3] - y[1], task.hold(t, &y) / task.rig.reduced_mass());
-        let flight = if apart > 0.0 && pressed > 0.0 { 2.0 * apart / pressed } else { f64::INFINITY };
-        let first = (task.cycle() / 100.0).min(flight / 10.0);
+        let (floor, first) = (FLOOR, first_step(task, t, &y));
         match kind {
             Kind::Rk4(n) => Stepper::Fixed(t, y, task.cycle() / n),
             Kind::Rk45(relative) => {
