@@ -10,6 +10,7 @@ mod drift;
 mod excited;
 mod hum;
 mod interval;
+mod multiples;
 mod onset;
 mod pattern;
 mod ringing;
@@ -177,7 +178,8 @@ pub(super) fn with_train(trace: &Trace, options: &ImpactsOptions) -> Result<(Imp
     // What the samples hide of first and last, as a part of the interval.
     let span = counted.index.last().zip(counted.index.first()).map_or(0, |(l, f)| l - f) as f64;
     let hidden = if sharp { cycle::quantised(span * found.mean * rate / held as f64) } else { 0.0 };
-    let std = Some((widened * found.std).hypot(hidden * found.mean)).filter(|s| s.is_finite() && !lost);
+    let std = Some((widened * found.std).hypot(hidden * found.mean))
+        .filter(|s| s.is_finite() && !lost && counted.unsure.is_none());
     if sharp {
         warnings.push(format!(
             "The pulses rise within one sample: onsets are known to {} only.",
@@ -230,6 +232,7 @@ pub(super) fn with_train(trace: &Trace, options: &ImpactsOptions) -> Result<(Imp
     };
     excited::compare(&mut answer, &counted, (start, rate, hidden), options, &mut of_train)?;
     doubts(&answer, &mut of_train);
+    of_train.extend(counted.unsure);
     answer.warnings = warnings;
     Ok((answer, of_train))
 }
@@ -587,7 +590,7 @@ fn doubts(found: &Impacts, warnings: &mut Vec<String>) {
     }
     if let Some(spread) = found.spread.filter(|_| !found.regular && found.excitation.is_none()) {
         warnings.push(format!(
-            "Intervals spread by {:.0} % of their median: impacts are irregular, and their mean says little.",
+            "Intervals spread by {:.0} % of their median: impacts are irregular, and their mean is no period.",
             100.0 * spread / found.median_interval
         ));
     }
