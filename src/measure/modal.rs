@@ -8,12 +8,13 @@ mod bands;
 mod choice;
 mod graphic;
 mod hidden;
+mod pole;
 mod rational;
 mod response;
 mod result;
 
 pub use graphic::Circle;
-pub use rational::Pole;
+pub use pole::Pole;
 pub use response::Measured;
 pub use result::{ByMethod, ModalOptions, ModalResult, Mode, ModePicture};
 
