@@ -8,12 +8,13 @@ mod bands;
 mod choice;
 mod graphic;
 mod hidden;
+mod pole;
 mod rational;
 mod response;
 mod result;
 
 pub use graphic::Circle;
-pub use rational::Pole;
+pub use pole::Pole;
 pub use response::Measured;
 pub use result::{ByMethod, ModalOptions, ModalResult, Mode, ModePicture};
 
@@ -87,13 +88,9 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
     for (at, (group, fit)) in groups.iter().zip(fits).enumerate() {
         match fit {
             Ok(fit) => {
-                let before = modes.len();
-                reversed += result::report(&lines, group, &fit, options, &mut modes, &mut warnings);
-                if modes.len() > before {
-                    let others = poles.iter().enumerate().filter(|(other, _)| *other != at);
-                    let others: Vec<Pole> = others.flat_map(|(_, poles)| poles).copied().collect();
-                    warnings.extend(hidden::hidden(&lines, group, &fit, &others));
-                }
+                let others = poles.iter().enumerate().filter(|(other, _)| *other != at);
+                let others: Vec<Pole> = others.flat_map(|(_, poles)| poles).copied().collect();
+                reversed += result::report(&lines, group, &fit, &others, options, &mut modes, &mut warnings);
             }
             Err(error) => warnings.push(format!(
                 "The peak at {} Hz is not fitted: {error}.",
@@ -201,6 +198,31 @@ mod tests {
         let result = found(&measured, &ModalOptions::default());
         assert!(result.warnings.iter().any(|w| w.contains("no sign")), "{result:?}");
         assert!(result.modes.iter().all(|m| m.modal_constant.value > 0.0));
+    }
+
+    /// Two like modes half a bandwidth of 2 Hz apart show as one peak: what is fitted to it is neither, however well it fits.
+    #[test]
+    fn a_peak_of_two_modes_has_no_uncertainty() {
+        let mut noise = crate::math::Noise::new(3);
+        let mut with = |modes: &[f64]| {
+            let pole = |f: &f64| Pole { frequency: *f, zeta: 0.01, constant: Complex64::new(2.0, 0.0) };
+            let poles: Vec<Pole> = modes.iter().map(pole).collect();
+            let frequency: Vec<f64> = (1..600).map(|i| f64::from(i) * 0.5).collect();
+            let mut values: Vec<Complex64> =
+                frequency.iter().map(|f| poles.iter().map(|p| p.at(*f, 0)).sum()).collect();
+            let sigma = 0.01 * values.iter().map(|v| v.norm()).fold(0.0, f64::max);
+            values.iter_mut().for_each(|v| *v += sigma * Complex64::new(noise.normal(), noise.normal()));
+            let measured = Measured { frequency, values, kind: FrfKind::Receptance, ..two() };
+            found(&measured, &ModalOptions { mass: Some(1.0), ..ModalOptions::default() })
+        };
+        let result = with(&[100.0, 101.0]);
+        let mode = &result.modes[0];
+        let own = [&mode.frequency, &mode.zeta, &mode.modal_constant, &mode.by[0].frequency];
+        let own = own.into_iter().chain(&mode.phase).chain(&mode.stiffness);
+        assert!(result.modes.len() == 1 && own.into_iter().all(|e| e.value.is_finite() && e.std.is_none()));
+        assert!(result.warnings.iter().any(|w| w.contains("no uncertainty")), "{result:?}");
+        let result = with(&[100.0]);
+        assert!(result.modes[0].zeta.std.is_some() && result.modes[0].stiffness.is_some(), "{result:?}");
     }
 
     /// An exponential window shifts all poles: the function is taken at iω + σ, and so are the modes that are made here.

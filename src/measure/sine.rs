@@ -22,6 +22,8 @@ const BY_CHANCE: f64 = 1e-4;
 const STEPS: usize = 20;
 /// A frequency that is given may be off by so many lines.
 const NEAR: f64 = 2.0;
+/// From so many lines on the uncertainty in coloured noise holds what another sine does.
+const FAR: f64 = 8.0;
 /// Nearer to half the rate than this many lines a sine and its image are half a line apart, and shake each other as two sines do.
 const IMAGE: f64 = 0.25;
 const METHOD: &str = "least-squares sine fit";
@@ -53,19 +55,27 @@ pub(super) fn coloured(frequency: f64, widening: f64) -> Option<String> {
     })
 }
 
-/// A sentence, where what is left of a record after sines at these frequencies in Hz holds another line beside one of them.
-pub(super) fn beside(left: &Trace, frequencies: &[f64]) -> Option<String> {
+/// A sentence, where what is left of a record after all sines that were fitted holds another line beside that at `frequency` in Hz: it moves
+/// that sine by more than noise does, and no uncertainty of it is known.
+pub(super) fn beside(left: &Trace, frequency: f64) -> Option<String> {
     let spacing = left.rate()? / left.values.len() as f64;
-    frequencies.iter().find_map(|f| {
-        let other = line(left, Some(*f)).ok()?;
-        Some(format!(
-            "What is left holds a line at {other:.6} Hz, {:.1} lines from {f:.6} Hz: another sine, without which this one is not known to its uncertainty (fit both), or this one is not steady.",
-            (other - f).abs() / spacing
-        ))
-    })
+    let other = line(left, Some(frequency)).ok()?;
+    let strongest = line(left, None).ok()?;
+    let magnitudes = spectrum::plain(left, Window::Hann, Scaling::Peak, true).ok()?.values.magnitudes();
+    let size = |f: f64| magnitudes.get((f / spacing).round() as usize).copied().unwrap_or(0.0);
+    // A sine so far off that was not fitted, which the noise around this one holds, leaves a line here of up to that part of itself.
+    let away = (strongest - frequency).abs() / spacing;
+    if away >= FAR && size(other) * away < size(strongest) {
+        return None;
+    }
+    Some(format!(
+        "What is left holds a line at {other:.6} Hz, {:.1} lines from {frequency:.6} Hz, which has no uncertainty therefore: there is another sine (fit one more with it), or this one is not steady.",
+        (other - frequency).abs() / spacing
+    ))
 }
 
-/// Fits the sine of the largest line, or of the largest within two lines of `near` Hz.
+/// Fits the sine of the largest line, or of the largest within two lines of `near` Hz. Where what is left holds another line within two of it,
+/// frequency, amplitude and phase have no uncertainty: [`super::tones`] fits both.
 ///
 /// ```
 /// use vibroimpact::measure::sine::sine;
@@ -192,12 +202,15 @@ fn stated(trace: &Trace, omega: f64, p: &Vector4<f64>, inverse: &Matrix4<f64>, h
     let unit = trace.meta.unit.quantity().symbol();
     let left = Coloured::of(&rest);
     let wide = left.widening(omega / TAU / rate);
-    let estimate = |value, gradient, unit| Estimate::new(value, Some(wide * std(gradient)), unit, n, METHOD);
     // What rounding leaves of an exact sine is no noise.
     let noisy = variance.sqrt() > 1e-12 * amplitude;
     let mut warnings: Vec<String> = coloured(omega / TAU, wide).into_iter().filter(|_| noisy).collect();
     let left_over = Trace { meta: trace.meta.clone(), axis: trace.axis.clone(), values: rest };
-    warnings.extend(beside(&left_over, &[omega / TAU]).filter(|_| noisy));
+    let beside = beside(&left_over, omega / TAU).filter(|_| noisy);
+    let alone = beside.is_none();
+    warnings.extend(beside);
+    let estimate =
+        |value, gradient, unit| Estimate::new(value, alone.then(|| wide * std(gradient)), unit, n, METHOD);
     let level = Vector4::new(0.0, 0.0, 1.0, 0.0);
     Sine {
         frequency: estimate(omega / TAU, Vector4::new(0.0, 0.0, 0.0, 1.0 / (TAU * half)), "Hz"),
@@ -251,10 +264,40 @@ mod tests {
         };
         let found = sine(&trace((0..1000).map(two).collect()), None).unwrap();
         assert!(found.warnings.iter().any(|w| w.contains("another sine")), "{:?}", found.warnings);
+        let alone = [&found.frequency, &found.amplitude, &found.phase];
+        assert!(alone.iter().all(|e| e.value.is_finite() && e.std.is_none()), "{found:?}");
+        let noise = |i: i32| (TAU * 0.2 * f64::from(i)).cos() + 0.01 * (f64::from(i * i) * 0.7).sin();
+        let found = sine(&trace((0..1000).map(noise).collect()), None).unwrap();
+        assert!(found.warnings.is_empty() && found.frequency.std.is_some(), "{found:?}");
         // An eighth of a line below half the rate.
         let last = |i: i32| (TAU * 499.875 * f64::from(i) * 1e-3 + 0.4).cos();
         let error = sine(&trace((0..1000).map(last).collect()), None).unwrap_err().to_string();
         assert!(error.contains("half the sampling rate"), "{error}");
+    }
+
+    /// A sine of half the amplitude 8 to 40 lines off is noise to this one, and counted in its uncertainty; 1 to 2 lines off there is none.
+    #[test]
+    fn what_is_stated_beside_another_sine_holds() {
+        for (apart, stated) in [(1.0, 0), (2.0, 0), (8.0, 100), (16.0, 100), (40.0, 100)] {
+            let mut all = 0;
+            for seed in 0..100 {
+                let mut noise = crate::math::Noise::new(seed);
+                let (f, p, q) =
+                    (noise.between(50.0, 400.0), noise.between(0.0, TAU), noise.between(0.0, TAU));
+                let mut value = |i: i32| {
+                    let t = f64::from(i) * 1e-3;
+                    let two = (TAU * f * t + p).cos() + 0.5 * (TAU * (f + apart) * t + q).cos();
+                    two + 7e-3 * noise.normal()
+                };
+                let found = sine(&trace((0..1000).map(&mut value).collect()), None).unwrap();
+                if let Some(std) = found.frequency.std {
+                    all += 1;
+                    let off = (found.frequency.value - f).abs() / std;
+                    assert!(off < 3.0, "{apart} lines apart, seed {seed}: {off}");
+                }
+            }
+            assert!(if stated == 0 { all == 0 } else { 2 * all > stated }, "{apart} lines apart: {all}");
+        }
     }
 
     #[test]

@@ -38,6 +38,15 @@ pub struct Tone {
     pub phase: Estimate,
 }
 
+impl Tone {
+    /// Leaves no uncertainty.
+    fn withhold(&mut self) {
+        for estimate in [&mut self.frequency, &mut self.amplitude, &mut self.phase] {
+            estimate.std = None;
+        }
+    }
+}
+
 /// Sines of a record, and what is left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tones {
@@ -49,7 +58,8 @@ pub struct Tones {
     pub warnings: Vec<String>,
 }
 
-/// The `count` strongest sines of a trace; fewer, with a warning, where no more stand out of the noise or can be parted.
+/// The `count` strongest sines of a trace; fewer, with a warning, where no more stand out of the noise or can be parted. One beside which what is left
+/// holds another line has no uncertainty.
 ///
 /// ```
 /// use vibroimpact::measure::tones::tones;
@@ -114,8 +124,12 @@ pub fn tones(trace: &Trace, count: usize) -> Result<Tones> {
     if fit.noise > 1e-12 * fit.largest() {
         let rate = trace.rate().unwrap_or(1.0);
         warnings.extend(fit.frequencies().iter().filter_map(|f| sine::coloured(*f, left.widening(f / rate))));
-        // Where fewer were found than wanted it is said why.
-        warnings.extend(sine::beside(&rest, &fit.frequencies()).filter(|_| fit.omega.len() == count));
+        for tone in &mut tones {
+            if let Some(other) = sine::beside(&rest, tone.frequency.value) {
+                tone.withhold();
+                warnings.push(other);
+            }
+        }
     }
     tones.sort_by(|a, b| b.amplitude.value.total_cmp(&a.amplitude.value));
     for (i, a) in tones.iter().enumerate() {
@@ -270,12 +284,35 @@ impl Fit {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::Noise;
     use crate::record::{Axis, Meta};
     use crate::units::Unit;
 
     fn trace(values: Vec<f64>) -> Trace {
         let meta = Meta::new("a", Unit::parse("m").unwrap());
         Trace { meta, axis: Axis::time(0.0, 1e-3, values.len()), values }
+    }
+
+    /// Of three sines two are asked for; what is left stands 1.5 lines beside one of them, 40 lines from the other.
+    #[test]
+    fn the_tone_beside_which_another_is_left_has_no_uncertainty() {
+        let mut noise = Noise::new(5);
+        let mut value = |i: i32| {
+            let t = f64::from(i) * 1e-3;
+            let sines = [(100.0, 1.0), (140.0, 2.0), (141.5, 0.3)];
+            sines.iter().map(|(f, a)| a * (TAU * f * t + f).cos()).sum::<f64>() + 0.02 * noise.normal()
+        };
+        let trace = trace((0..1000).map(&mut value).collect());
+        let found = tones(&trace, 2).unwrap();
+        let near = |f: f64| found.tones.iter().find(|t| (t.frequency.value - f).abs() < 1.0).unwrap();
+        let (doubtful, clear) = (near(140.0), near(100.0));
+        assert!(clear.frequency.std.is_some() && clear.amplitude.std.is_some(), "{found:?}");
+        let all = [&doubtful.frequency, &doubtful.amplitude, &doubtful.phase];
+        assert!(all.iter().all(|e| e.std.is_none()), "{found:?}");
+        assert!(found.warnings.iter().any(|w| w.contains("another sine")), "{found:?}");
+        // With the third nothing is left beside any.
+        let found = tones(&trace, 3).unwrap();
+        assert!(found.tones.iter().all(|t| t.frequency.std.is_some()), "{found:?}");
     }
 
     #[test]

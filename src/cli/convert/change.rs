@@ -112,6 +112,13 @@ impl Change {
                 found.edge,
                 quantity(found.drift, unit, 2)
             ));
+            if let Some(f) = self.excitation {
+                let what = if (low..=high).contains(&f) { "" } else { ", which lies outside of that band," };
+                said.push(format!(
+                    "{name}: of a sine of {f} Hz{what} high-pass and trapezoid leave {:.6} of the amplitude, by which it may be divided.",
+                    how.gain(f, rate)?
+                ));
+            }
             *trace = renamed(found.trace, trace);
         }
         if self.integrate < 0 {

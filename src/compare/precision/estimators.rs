@@ -50,9 +50,8 @@ pub fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Vec<Scene>>
 ///
 /// An answer is right within three of its standard uncertainties; one without an uncertainty within what is the same for all methods of a
 /// border: half a line for a frequency, 5 % for an amplitude, 10 % for a damping ratio, 1 % for an impact frequency, 0.02 for ξ. It is
-/// refused where it is withheld, where it states no uncertainty and says so, where its uncertainty is more than what is allowed, and where
-/// it is off but one of its sentences names what is wrong with the record. A doubt of something else excuses nothing. A
-/// method is wrong where more answers are off than chance allows, or one by more than 5.2 standard uncertainties: limits that methods
+/// refused where it is withheld, where it states no uncertainty and says so, and where its uncertainty is more than what is allowed. No doubt excuses
+/// an uncertainty that is stated. A method is wrong where more answers are off than chance allows, or one by more than 5.2 standard uncertainties: limits that methods
 /// whose errors are as they state them pass in fewer than one of a hundred full maps.
 ///
 /// # Errors

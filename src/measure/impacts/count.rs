@@ -1,7 +1,9 @@
 //! Missed and doubled impacts: which place in a series each impact has.
 
 use super::burst::median;
+use super::multiples::multiples;
 use super::pattern::{Pattern, Step, pattern};
+use crate::units::notation::quantity;
 
 /// Which impacts count, and their indices in a series without missed ones.
 pub struct Counted {
@@ -17,6 +19,8 @@ pub struct Counted {
     pub missed: usize,
     /// Impacts that follow another too soon.
     pub doubled: usize,
+    /// Why it is not known how many there are, as a sentence.
+    pub unsure: Option<String>,
 }
 
 /// Five times the robust spread of intervals is no chance.
@@ -35,6 +39,7 @@ pub fn count(times: &[f64], steps: &[f64], complete: bool) -> Counted {
             length,
             missed: 0,
             doubled: 0,
+            unsure: None,
         };
     }
     match repeated {
@@ -46,8 +51,15 @@ pub fn count(times: &[f64], steps: &[f64], complete: bool) -> Counted {
 fn of_pattern(times: &[f64], pattern: &Pattern) -> Counted {
     let length = pattern.intervals.len();
     let mut place = pattern.first;
-    let mut counted =
-        Counted { kept: vec![0], index: vec![0], place: vec![place], length, missed: 0, doubled: 0 };
+    let mut counted = Counted {
+        kept: vec![0],
+        index: vec![0],
+        place: vec![place],
+        length,
+        missed: 0,
+        doubled: 0,
+        unsure: None,
+    };
     let (mut last, mut at) = (0, 0);
     for i in 1..times.len() {
         let d = times[i] - times[last];
@@ -78,8 +90,15 @@ fn even(times: &[f64], steps: &[f64]) -> Counted {
     let short = |d: f64| d < 0.5 * typical && typical - d > OUTSIDE * spread;
     // As many short intervals as a fifth of all are no accident.
     let many = steps.iter().filter(|d| short(**d)).count() * 5 > steps.len();
-    let mut counted =
-        Counted { kept: vec![0], index: vec![0], place: vec![0], length: 1, missed: 0, doubled: 0 };
+    let mut counted = Counted {
+        kept: vec![0],
+        index: vec![0],
+        place: vec![0],
+        length: 1,
+        missed: 0,
+        doubled: 0,
+        unsure: None,
+    };
     for i in 1..times.len() {
         let (last, at) =
             (counted.kept.last().copied().unwrap_or(0), counted.index.last().copied().unwrap_or(0));
@@ -95,7 +114,25 @@ fn even(times: &[f64], steps: &[f64]) -> Counted {
         counted.index.push(at + step);
         counted.place.push(0);
     }
+    counted.unsure = unsure(steps, &counted, OUTSIDE * spread > 0.5 * typical);
     counted
+}
+
+/// Why the count of even intervals may be another: all of them are multiples of a common one and were counted otherwise, or impacts were counted
+/// though the intervals `scatter` as far as one more or less would change them.
+fn unsure(steps: &[f64], counted: &Counted, scatter: bool) -> Option<String> {
+    let span = counted.index.last().copied().unwrap_or(0);
+    let other = multiples(steps).map(|m| (m.interval, m.counts.iter().sum::<usize>()));
+    if let Some((interval, all)) = other.filter(|(_, all)| *all != span) {
+        return Some(format!(
+            "All intervals are near whole multiples of {}: either {} impacts are missed, or the train skips cycles. Which of them is not known, and the mean interval has no uncertainty. If none is missed: --none-missed.",
+            quantity(interval, "s", 4),
+            all - steps.len().min(all)
+        ));
+    }
+    (scatter && counted.missed + counted.doubled > 0).then(|| {
+        "Intervals scatter as far as an impact more or less would change them: which of them miss an impact or have one too many is not known, and the mean interval has no uncertainty. If none is missed or too many: --none-missed.".to_owned()
+    })
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::count::Counted;
 use super::cycle::{self, Locking};
+use super::cycles::cycles;
 use super::{Impacts, ImpactsOptions};
 use crate::error::Result;
 use crate::measure::Estimate;
@@ -16,7 +17,7 @@ pub fn compare(
     options: &ImpactsOptions,
     warnings: &mut Vec<String>,
 ) -> Result<()> {
-    let Some(cycles) = super::cycles(&answer.times, start, rate, options, warnings)? else { return Ok(()) };
+    let Some(cycles) = cycles(&answer.times, start, rate, options, warnings)? else { return Ok(()) };
     let kept: Vec<f64> = counted.kept.iter().filter_map(|i| cycles.at.get(*i)).copied().collect();
     let locking = cycle::locking(&kept, &counted.index, hidden.hypot(cycles.std / cycles.frequency));
     let per_cycle = if let Locking::Locked(fraction) = locking { Some(fraction) } else { None };

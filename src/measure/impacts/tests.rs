@@ -1,3 +1,4 @@
+use super::held::held;
 use super::*;
 use crate::record::{Axis, Grid, Meta};
 use crate::units::Unit;

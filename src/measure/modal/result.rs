@@ -2,6 +2,7 @@
 
 use super::bands::Group;
 use super::graphic::{Circle, POINTS, circle, half_power};
+use super::hidden::hidden;
 use super::rational::Rational;
 use super::response::hertz;
 use super::{Measured, Pole};
@@ -109,18 +110,21 @@ fn stiffness(frequency: &Estimate, mass: Option<f64>) -> Option<Estimate> {
     Some(Estimate::new(k, std, "N/m", frequency.n, "k = m(2πf)²"))
 }
 
-/// Adds the modes of a fitted group; returns how many of them have a phase that runs the wrong way.
+/// Adds the modes of a fitted group, beside those of `others`; returns how many of them have a phase that runs the wrong way.
 pub(super) fn report(
     measured: &Measured,
     group: &Group,
     fit: &Rational,
+    others: &[Pole],
     options: &ModalOptions,
     modes: &mut Vec<Mode>,
     warnings: &mut Vec<String>,
 ) -> usize {
     let mut reversed = 0;
     let sound = fit.sound(measured, &group.peaks);
-    for (((pole, std), peak), sound) in fit.modes.iter().zip(&fit.std).zip(&group.peaks).zip(sound) {
+    for (m, (((pole, std), peak), sound)) in
+        fit.modes.iter().zip(&fit.std).zip(&group.peaks).zip(sound).enumerate()
+    {
         let at = hertz(measured.frequency[peak.at]);
         if !(sound && fit.explains()) {
             if pole.zeta < 0.0 && std[1] < -pole.zeta / 2.0 {
@@ -195,8 +199,11 @@ pub(super) fn report(
         // ζωᵣ is known as before, and the constant has the factor that its uncertainty has.
         std[1] *= pole.frequency / own.frequency;
         std[2] *= own.constant.norm() / pole.constant.norm();
-        let std = &std;
+        let hidden = hidden(measured, group, fit, m, others);
+        // What the phases of residual terms and other modes do to magnitudes is in no residual, nor what a mode does that shows as no peak.
+        let std = (hidden.is_none() && !measured.magnitude_only).then_some(&std);
         modes.push(mode(measured, group, peak.at, fit, (&own, std), options));
+        warnings.extend(hidden);
     }
     reversed
 }
@@ -206,7 +213,7 @@ fn mode(
     group: &Group,
     at: usize,
     fit: &Rational,
-    (pole, std): (&Pole, &[f64; 4]),
+    (pole, std): (&Pole, Option<&[f64; 4]>),
     options: &ModalOptions,
 ) -> Mode {
     let lines = group.lines.clone();
@@ -217,15 +224,14 @@ fn mode(
         many => format!(", {many} modes together"),
     };
     let method = format!("rational fit{together}, {}", fit.noise);
-    // What the phases of residual terms and other modes do to magnitudes is in no residual.
-    let known = !measured.magnitude_only;
-    let estimate =
-        |value, std: f64, unit| Estimate::new(value, known.then_some(std), unit, n, method.clone());
-    let frequency = estimate(pole.frequency, std[0], "Hz");
-    let zeta = estimate(pole.zeta, std[1], "1");
+    let phases = !measured.magnitude_only;
+    let estimate = |value, std: Option<f64>, unit| Estimate::new(value, std, unit, n, method.clone());
+    let std = |i: usize| std.map(|s| s[i]);
+    let frequency = estimate(pole.frequency, std(0), "Hz");
+    let zeta = estimate(pole.zeta, std(1), "1");
     let modal_constant =
-        estimate(if known { signed(pole.constant) } else { pole.constant.norm() }, std[2], "1/kg");
-    let phase = known.then(|| estimate(pole.constant.arg().to_degrees(), std[3].to_degrees(), "°"));
+        estimate(if phases { signed(pole.constant) } else { pole.constant.norm() }, std(2), "1/kg");
+    let phase = phases.then(|| estimate(pole.constant.arg().to_degrees(), std(3).map(f64::to_degrees), "°"));
     let mut by = vec![ByMethod {
         method: "rational fit",
         frequency: frequency.clone(),
@@ -234,7 +240,7 @@ fn mode(
         note: String::new(),
     }];
     let mut drawn = None;
-    if !measured.magnitude_only {
+    if phases {
         let blank = |note: String| ByMethod {
             method: "circle fit",
             frequency: Estimate::new(f64::NAN, None, "Hz", 0, "circle fit"),

@@ -139,8 +139,7 @@ pub fn cells_of_damping(quick: bool) -> Vec<Task> {
         .map(|part| Kind::new(format!("noise of {} % of the peak", 100.0 * part), 23_000, lines(4.0, part)));
     let heavy = [0.1, 0.3, 0.5, 0.7, 0.9, 1.5].map(|z| one(&format!("ζ = {z}"), 100.0, z, |_| ()));
     let beside = [
-        many("equal mode half a bandwidth beside", vec![mode(100.0, 0.01), mode(101.0, 0.01)], |_| ())
-            .named_by(&["Two modes"]),
+        many("equal mode half a bandwidth beside", vec![mode(100.0, 0.01), mode(101.0, 0.01)], |_| ()),
         many("equal mode two bandwidths beside", vec![mode(100.0, 0.01), mode(104.0, 0.01)], |_| ()),
         many(
             "antiresonance a bandwidth above",

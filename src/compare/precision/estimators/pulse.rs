@@ -163,7 +163,7 @@ pub fn cells_of_pulses(quick: bool) -> Vec<Task> {
         Kind::new(format!("ξ = {xi}, {rho}"), 52_000, pulses(xi, 40.0, 0.01))
     };
     let light = [0.0, 0.003, 0.02].map(damped);
-    let heavy = [0.4, 0.45, 0.49, 0.6].map(|xi| damped(xi).named_by(&["beyond what such a contact allows"]));
+    let heavy = [0.4, 0.45, 0.49, 0.6].map(damped);
     let noise = [0.1, 0.3, 1.0, 3.0].map(|part| {
         Kind::new(format!("noise of {} % of the height", 100.0 * part), 53_000, pulses(0.2, 40.0, part))
     });

@@ -312,7 +312,6 @@ pub fn cells_of_sines(quick: bool) -> Vec<Task> {
             let case = pair(apart, 40.0)(noise);
             Case { truth: case.truth - apart * rivals::spacing(&case.data), ..case }
         })
-        .named_by(&["another sine"])
     });
     let mut all = cells("frequency: noise", &FREQUENCY, noise, quick);
     all.extend(cells("frequency: short record", &FREQUENCY, short, quick));

@@ -32,9 +32,9 @@ impl Answer {
         Answer { value: estimate.value, std: estimate.std, said: warnings.to_vec() }
     }
 
-    /// The first sentence that holds one of these words.
-    fn naming(&self, causes: &[&str]) -> Option<&str> {
-        self.said.iter().map(String::as_str).find(|s| causes.iter().any(|cause| s.contains(cause)))
+    /// The first sentence that says that there is no uncertainty, or why.
+    fn withheld(&self) -> Option<&str> {
+        self.said.iter().map(String::as_str).find(|s| WITHHELD.iter().any(|word| s.contains(word)))
     }
 }
 
@@ -71,8 +71,6 @@ pub struct Kind<D> {
     pub seed: u64,
     /// A record from random numbers.
     pub make: Make<D>,
-    /// Words by which a sentence names what is wrong with these records.
-    pub causes: &'static [&'static str],
 }
 
 impl<D> Kind<D> {
@@ -82,12 +80,7 @@ impl<D> Kind<D> {
         seed: u64,
         make: impl Fn(&mut Noise) -> Case<D> + Send + Sync + 'static,
     ) -> Kind<D> {
-        Kind { name: name.into(), seed, make: Box::new(make), causes: &[] }
-    }
-
-    /// With the words by which a sentence names what is wrong with these records.
-    pub fn named_by(self, causes: &'static [&'static str]) -> Kind<D> {
-        Kind { causes, ..self }
+        Kind { name: name.into(), seed, make: Box::new(make) }
     }
 
     fn case(&self, number: usize) -> Case<D> {
@@ -242,17 +235,16 @@ enum Verdict {
     Off(f64),
 }
 
-/// An answer that states its uncertainty is held to it, whatever it says beside; beyond it, a sentence that names what is wrong with the record
-/// makes it a refusal, another does not. One without is a refusal where it says that it has none, or names what is wrong, and else is held to
-/// what is allowed.
-fn verdict(answer: &Answer, truth: f64, tolerance: f64, causes: &[&str]) -> Verdict {
+/// An answer that states its uncertainty is held to it, whatever it says beside: what is doubted has none. One without is a refusal where it says
+/// that it has none, and else is held to what is allowed.
+fn verdict(answer: &Answer, truth: f64, tolerance: f64) -> Verdict {
     let off = (answer.value - truth).abs();
     let refused = |why: &str| Verdict::Refused(why.to_owned());
     if !off.is_finite() {
         return refused(answer.said.first().map_or("it gives no number", String::as_str));
     }
     let score = match answer.std {
-        None => match answer.naming(&WITHHELD) {
+        None => match answer.withheld() {
             Some(why) => return refused(why),
             None => off / tolerance,
         },
@@ -261,11 +253,7 @@ fn verdict(answer: &Answer, truth: f64, tolerance: f64, causes: &[&str]) -> Verd
         }
         Some(std) => off / (WITHIN * std.max(1e-12 * truth.abs())),
     };
-    match answer.naming(causes) {
-        _ if score <= 1.0 => Verdict::Right,
-        Some(named) => refused(named),
-        None => Verdict::Off(score),
-    }
+    if score <= 1.0 { Verdict::Right } else { Verdict::Off(score) }
 }
 
 /// What came of the answers to records of one kind.
@@ -296,7 +284,7 @@ fn asked<D: Send + 'static>(method: &Method<D>, kind: &Kind<D>, trials: usize) -
             }
         };
         stated &= answer.std.is_some();
-        let verdict = verdict(&answer, truth, tolerance, kind.causes);
+        let verdict = verdict(&answer, truth, tolerance);
         if answer.std.is_some() && !matches!(verdict, Verdict::Refused(_)) {
             judged += 1;
             beyond += usize::from(verdict != Verdict::Right);
@@ -346,21 +334,28 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_is_held_to_its_uncertainty_and_excused_by_naming_the_cause_alone() {
+    fn an_answer_is_held_to_its_uncertainty_whatever_it_says_beside() {
         let of = |value, std, said: &[&str]| {
             let said = said.iter().map(|s| (*s).to_owned()).collect();
-            verdict(&Answer { value, std, said }, 10.0, 1.0, &["clipped"])
+            verdict(&Answer { value, std, said }, 10.0, 1.0)
         };
         let refused = |v: Verdict| matches!(v, Verdict::Refused(_));
         assert_eq!(of(10.2, Some(0.1), &["3 pulses are clipped."]), Verdict::Right);
         assert!(matches!(of(10.6, Some(0.1), &[]), Verdict::Off(score) if (score - 2.0).abs() < 1e-9));
         assert!(matches!(of(10.6, Some(0.1), &["The noise is not white."]), Verdict::Off(_)));
-        assert!(refused(of(10.6, Some(0.1), &["The noise is not white.", "3 pulses are clipped."])));
+        assert!(matches!(
+            of(10.6, Some(0.1), &["3 pulses are clipped, the uncertainty is too small."]),
+            Verdict::Off(_)
+        ));
         assert!(refused(of(10.0, None, &["No uncertainty is known."])) && refused(of(f64::NAN, None, &[])));
         // A sentence on something else withholds nothing.
         assert_eq!(of(12.0, None, &["A drift was taken away."]), Verdict::Off(2.0));
         assert_eq!(of(10.9, None, &["A drift was taken away."]), Verdict::Right);
-        assert!(refused(of(12.0, None, &["A drift was taken away.", "3 pulses are clipped."])));
+        assert!(refused(of(
+            12.0,
+            None,
+            &["A drift was taken away.", "Pulses are clipped: no uncertainty is stated."]
+        )));
         // What is known less well than what is allowed is not right, however near it comes.
         assert!(refused(of(10.0, Some(1.1), &[])));
         assert_eq!(of(10.0, Some(0.9), &[]), Verdict::Right);
