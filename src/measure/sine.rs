@@ -23,7 +23,7 @@ const STEPS: usize = 20;
 /// A frequency that is given may be off by so many lines.
 const NEAR: f64 = 2.0;
 /// From so many lines on the uncertainty in coloured noise holds what another sine does.
-const FAR: f64 = 8.0;
+const FAR: f64 = 4.0;
 /// Nearer to half the rate than this many lines a sine and its image are half a line apart, and shake each other as two sines do.
 const IMAGE: f64 = 0.25;
 const METHOD: &str = "least-squares sine fit";
@@ -275,10 +275,10 @@ mod tests {
         assert!(error.contains("half the sampling rate"), "{error}");
     }
 
-    /// A sine of half the amplitude 8 to 40 lines off is noise to this one, and counted in its uncertainty; 1 to 2 lines off there is none.
+    /// A sine of half the amplitude 5 to 40 lines off is noise to this one, and counted in its uncertainty; 1 to 2 lines off there is none.
     #[test]
     fn what_is_stated_beside_another_sine_holds() {
-        for (apart, stated) in [(1.0, 0), (2.0, 0), (8.0, 100), (16.0, 100), (40.0, 100)] {
+        for (apart, stated) in [(1.0, 0), (2.0, 0), (5.0, 100), (16.0, 100), (40.0, 100)] {
             let mut all = 0;
             for seed in 0..100 {
                 let mut noise = crate::math::Noise::new(seed);
@@ -293,7 +293,8 @@ mod tests {
                 if let Some(std) = found.frequency.std {
                     all += 1;
                     let off = (found.frequency.value - f).abs() / std;
-                    assert!(off < 3.0, "{apart} lines apart, seed {seed}: {off}");
+                    // Four standard uncertainties of 300: one of 50 cases.
+                    assert!(off < 4.0, "{apart} lines apart, seed {seed}: {off}");
                 }
             }
             assert!(if stated == 0 { all == 0 } else { 2 * all > stated }, "{apart} lines apart: {all}");
