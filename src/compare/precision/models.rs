@@ -8,6 +8,7 @@ mod corrected;
 mod entry;
 mod failures;
 mod grazing;
+mod in_order;
 mod ours;
 mod rivals;
 mod scene_b;
