@@ -8,8 +8,6 @@ use crate::Result;
 use crate::model::{Rig, Sine, State, Steady};
 use crate::units::notation::quantity;
 
-/// Stiffness of the contact in N/m where a method has one.
-pub const STIFFNESS: f64 = 1e6;
 /// Cycles that a motion is followed.
 const CYCLES: f64 = 6.0;
 
@@ -35,6 +33,8 @@ pub enum Asks {
     First(Option<f64>),
     /// The motions that repeat.
     Orbit,
+    /// As [`Asks::Motion`], of methods that have a contact.
+    Contact,
     /// The approach speed after so many cycles.
     Cycles(f64),
 }
@@ -98,6 +98,11 @@ pub fn borders(quick: bool) -> Result<Vec<Border>> {
         let scale = ratio * thesis.m1 / thesis.m2;
         let rig = Rig { m2: thesis.m2 * scale, k2: thesis.k2 * scale, c2: thesis.c2 * scale, ..thesis };
         add("mass ratio", format!("m₂/m₁ {ratio:.0e}"), motion(rig), Asks::Motion);
+    }
+    // 0.07 to 7 % of the period in contact.
+    for stiffness in [1e8, 1e5, 1e4] {
+        let task = Task { stiffness, ..motion(thesis) };
+        add("soft contact", format!("{stiffness:.0e} N/m"), task, Asks::Contact);
     }
     let pair = ((thesis.k1 + thesis.k2) / (thesis.m1 + thesis.m2)).sqrt() / TAU;
     let [first, second] = thesis.natural_frequencies();

@@ -1,6 +1,6 @@
 //! Each method at each border.
 
-use super::borders::{Asks, Border, STIFFNESS, borders};
+use super::borders::{Asks, Border, borders};
 use super::check::{self, Found};
 use super::corrected::corrected;
 use super::ours;
@@ -22,7 +22,7 @@ type Follow = fn(&Task) -> std::result::Result<Told, Fault>;
 enum Can {
     /// Motions that repeat.
     Orbits,
-    /// The same with a contact of [`STIFFNESS`].
+    /// The same with a contact of the task's stiffness.
     SoftOrbits,
     /// Any motion, with impacts at once.
     Follow(Follow),
@@ -54,13 +54,13 @@ const METHODS: [(&str, bool, Can); 11] = [
     (
         "RK45 through the contact",
         false,
-        Can::FollowSoft(|t| penalty(t, &spring(&t.rig, STIFFNESS), Kind::Rk45(1e-6))),
+        Can::FollowSoft(|t| penalty(t, &spring(&t.rig, t.stiffness), Kind::Rk45(1e-6))),
     ),
 ];
 
 fn kelvin_voigt(task: &Task) -> std::result::Result<Told, Fault> {
     damping_ratio(task.rig.restitution)?;
-    let contact = spring(&task.rig, STIFFNESS);
+    let contact = spring(&task.rig, task.stiffness);
     // A contact that gives way is told when it is over: the motion is followed for longer, and what began too late left out.
     let mut told = ours::kelvin_voigt(&Task { until: task.until + 3.0 * task.cycle(), ..*task }, &contact)?;
     told.impacts.retain(|i| i.0 < task.until);
@@ -87,7 +87,7 @@ impl Truth {
             return Truth::Motion(Err("no damper of a contact stops a rebound altogether".to_owned()));
         }
         match border.asks {
-            Asks::Motion => Truth::Motion(truth::motion(task, contact)),
+            Asks::Motion | Asks::Contact => Truth::Motion(truth::motion(task, contact)),
             Asks::Cycles(_) => {
                 Truth::Speed(truth::settled(task, contact, check::SETTLED).and_then(|found| {
                     found.map(|r| r.speed()).ok_or_else(|| "the motion does not settle".to_owned())
@@ -106,7 +106,7 @@ impl Truth {
 pub fn failures(quick: bool) -> Result<FailureMap> {
     let mut cells = Vec::new();
     for border in borders(quick)? {
-        let contact = spring(&border.task.rig, STIFFNESS);
+        let contact = spring(&border.task.rig, border.task.stiffness);
         let [rigid, soft] = [None, Some(&contact)].map(|contact| Truth::new(&border, contact));
         for (method, ours, can) in METHODS {
             let truth = if matches!(can, Can::FollowSoft(_) | Can::SoftOrbits) { &soft } else { &rigid };
@@ -138,8 +138,13 @@ fn ask(can: Can, ours: bool, border: &Border, truth: &Truth) -> std::result::Res
     let not_asked = |why: &str| Ok((Outcome::NotAsked, why.to_owned()));
     let no_truth = |why: &str| not_asked(&format!("no truth: {why}"));
     let follow = match (can, border.asks) {
+        (Can::Orbits | Can::Follow(_), Asks::Contact) => {
+            return not_asked("asked is a contact, and its impacts have no duration");
+        }
         (Can::Orbits, Asks::Motion | Asks::Orbit) => return check::closed_form(task),
-        (Can::SoftOrbits, Asks::Motion | Asks::Orbit | Asks::Cycles(_)) => return corrected(task, STIFFNESS),
+        (Can::SoftOrbits, Asks::Motion | Asks::Contact | Asks::Orbit | Asks::Cycles(_)) => {
+            return corrected(task);
+        }
         (Can::Orbits, Asks::Cycles(_)) => {
             let found = orbits(&task.rig, task.force, task.frequency)?;
             let told = found.orbits.first().map_or(f64::NAN, |o| o.approach_velocity);
@@ -182,11 +187,11 @@ mod tests {
     fn exact_motions_are_exact_wherever_they_answer() {
         let (mut compared, mut refused) = ([0; 2], Vec::new());
         for border in borders(true).unwrap() {
-            if border.asks != Asks::Motion {
+            if !matches!(border.asks, Asks::Motion | Asks::Contact) {
                 continue;
             }
             let place = format!("{} {}", border.name, border.scene);
-            let contact = spring(&border.task.rig, STIFFNESS);
+            let contact = spring(&border.task.rig, border.task.stiffness);
             let follow: [(Follow, Option<&Spring>); 2] =
                 [(ours::flights, None), (kelvin_voigt, Some(&contact))];
             for (which, (follow, contact)) in follow.into_iter().enumerate() {
