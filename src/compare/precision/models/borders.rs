@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use super::grazing;
 use super::task::Task;
+use super::truth;
 use crate::Result;
 use crate::model::{Rig, Sine, State, Steady};
 use crate::units::notation::quantity;
@@ -52,6 +53,21 @@ fn motion(rig: Rig) -> Task {
         most: 100_000,
         ..Task::sine(rig, 0.5, frequency, CYCLES / frequency)
     }
+}
+
+/// Restitution up to which the first chatter of a motion ends in rest, by halving: with more the masses are let go while they still bounce.
+fn onset(task: &impl Fn(f64) -> Task) -> f64 {
+    // The first release is at a quarter of a second whatever R is, the next chatter begins behind 0.4 s.
+    let rests = |restitution: f64| {
+        truth::motion(&Task { until: 0.3, ..task(restitution) }, None)
+            .is_ok_and(|told| !told.sticks.is_empty())
+    };
+    let (mut low, mut high) = (0.7, 0.9);
+    for _ in 0..20 {
+        let middle = f64::midpoint(low, high);
+        if rests(middle) { low = middle } else { high = middle }
+    }
+    low
 }
 
 /// All scenes; `quick` follows fewer cycles where many are asked for.
@@ -118,10 +134,17 @@ pub fn borders(quick: bool) -> Result<Vec<Border>> {
         let task = Task { frequency, until: CYCLES / frequency, ..motion(rig) };
         add("resonance", name.to_owned(), task, Asks::Motion);
     }
-    for restitution in [0.3, 0.7, 0.9, 0.95] {
+    let chatter = |restitution: f64| {
         let scene_c = super::chatter::task();
-        let task = Task { rig: Rig { restitution, ..scene_c.rig }, until: 1.2, most: 100_000, ..scene_c };
-        add("chatter", format!("R {restitution}"), task, Asks::Motion);
+        Task { rig: Rig { restitution, ..scene_c.rig }, until: 1.2, most: 100_000, ..scene_c }
+    };
+    for restitution in [0.3, 0.7, 0.9, 0.95] {
+        add("chatter", format!("R {restitution}"), chatter(restitution), Asks::Motion);
+    }
+    let onset = onset(&chatter);
+    for (sign, beside) in [('−', -1e-3), ('+', 1e-3)] {
+        let scene = format!("R {onset:.4} {sign} 1e-3, where rest begins");
+        add("chatter", scene, chatter(onset + beside), Asks::Motion);
     }
     for cycles in if quick { vec![1e3] } else { vec![1e4, 1e6] } {
         let task = Task { until: cycles / frequency, most: 200_000_000, ..motion(thesis) };
