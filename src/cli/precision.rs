@@ -2,7 +2,7 @@
 
 use crate::cli::{args, complain, print, progress};
 use crate::compare::precision::{Cell, FailureMap, Family, Scene, added, earlier, estimators, models};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::report::{Figure, Output, files, pictures, tables};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -38,7 +38,16 @@ pub fn run(typed: &args::Precision, json: bool) -> Result<()> {
             Family::Models => args::Kind::Models,
             Family::Estimators => args::Kind::Estimators,
         };
+        let held = scenes.len();
         scenes.retain(|scene| wanted(kind(scene)));
+        if scenes.is_empty() && !typed.failures {
+            let family =
+                typed.family.map_or(String::new(), |f| format!(" of the family {f:?}").to_lowercase());
+            return Err(Error::usage(
+                format!("{}: {held} scenes, none{family}", path.display()),
+                "one scene at least; ask for the family that the file holds",
+            ));
+        }
     }
     if measures && wanted(args::Kind::Models) {
         scenes.extend(models::scenes(typed.quick, &mut tell)?);

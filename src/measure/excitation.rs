@@ -79,7 +79,7 @@ fn one(point: &SweepPoint, start: f64, df: f64, fmin: f64, last: f64) -> Result<
 fn largest(force: &[f64], window: Option<Window>, first: usize) -> std::result::Result<SubLine, String> {
     // The main lobe of an offset is as wide as the window has terms; of an unknown window the widest is feared.
     let lobe = window.unwrap_or(Window::FlatTop).coefficients().len() + 1;
-    let first = first.max(lobe);
+    let (cut, first) = (first > lobe, first.max(lobe));
     let n = force.len();
     if n < first.saturating_add(3) {
         return Err(format!("the force spectrum has {n} lines, too few above line {first}"));
@@ -89,6 +89,12 @@ fn largest(force: &[f64], window: Option<Window>, first: usize) -> std::result::
     let Some(k) = peak else { return Err("no line of the force stands above its neighbours".into()) };
     if force[k] == 0.0 {
         return Err("the force spectrum is zero".into());
+    }
+    // The lines of an offset end with its lobe, where nobody has cut off what is larger.
+    if !cut && force[first] > force[k] {
+        return Err(format!(
+            "what lies below line {first}, where a sine is not told from an offset, reaches higher there than any line above"
+        ));
     }
     if k == n - 1 {
         return Err(
@@ -142,6 +148,17 @@ mod tests {
                 line_shape(Window::Hann, k - position).abs() + offset * line_shape(Window::Hann, k).abs()
             })
             .collect()
+    }
+
+    #[test]
+    fn a_line_on_the_flank_of_a_sine_too_near_to_zero_is_not_the_excitation() {
+        let mut force: Vec<f64> =
+            (0..401).map(|k| line_shape(Window::Hann, f64::from(k) - 0.5).abs()).collect();
+        force[6] = 1.5 * force[5];
+        assert!(force[6] < force[3]);
+        assert!(largest(&force, Some(Window::Hann), 0).unwrap_err().contains("below line 3"));
+        // Whoever has cut that off wants the other.
+        assert!(largest(&force, Some(Window::Hann), 5).is_ok());
     }
 
     #[test]

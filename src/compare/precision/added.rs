@@ -1,5 +1,6 @@
 //! Lines of other programs, measured by them on the same scenes.
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use serde::Deserialize;
@@ -26,7 +27,8 @@ struct Added {
 /// scenes that they name, and marks the fronts anew. Lines of scenes that were not measured are left out; gives their count.
 ///
 /// # Errors
-/// If the file cannot be read, is not such a list, or has a time or an error that is not above 0.
+/// If the file cannot be read, is not such a list, has a time or an error that is not above 0, or gives a method the name of one of
+/// this library's, whose line it would become.
 pub fn add(scenes: &mut [Scene], path: &Path) -> Result<usize> {
     let text = std::fs::read_to_string(path).map_err(|e| Error::io("read", path, e))?;
     let wrong = |found: String| {
@@ -36,6 +38,8 @@ pub fn add(scenes: &mut [Scene], path: &Path) -> Result<usize> {
         )
     };
     let lines: Vec<Added> = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
+    let own: HashSet<String> =
+        scenes.iter().flat_map(|s| &s.methods).filter(|m| m.ours).map(|m| m.method.clone()).collect();
     let mut left = 0;
     for line in lines {
         if [Some(line.time_ns), line.error].iter().flatten().any(|v| !(v.is_finite() && *v > 0.0)) {
@@ -48,6 +52,9 @@ pub fn add(scenes: &mut [Scene], path: &Path) -> Result<usize> {
             left += 1;
             continue;
         };
+        if own.contains(&line.method) {
+            return Err(wrong(format!("{:?} is the name of a method of this library", line.method)));
+        }
         let failed = line.error.is_none();
         scene.methods.push(Measured {
             method: line.method,
@@ -64,4 +71,45 @@ pub fn add(scenes: &mut [Scene], path: &Path) -> Result<usize> {
         front(scene.family, &mut scene.methods);
     }
     Ok(left)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compare::precision::Family;
+
+    #[test]
+    fn a_peer_does_not_take_the_name_of_one_of_our_methods() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("peer.json");
+        let method = |method: &str, ours| Measured {
+            method: method.to_owned(),
+            setting: String::new(),
+            ours,
+            error: Some(1e-9),
+            error_spread: None,
+            time_ns: 1e3,
+            time_spread: None,
+            failed: false,
+            why: None,
+            front: true,
+        };
+        let mut scenes = [Scene {
+            name: "one".into(),
+            family: Family::Models,
+            says: String::new(),
+            error_of: String::new(),
+            truth: String::new(),
+            bound: None,
+            methods: vec![method("exact flights", true), method("Euler loop", false)],
+        }];
+        let mut added = |name: &str| {
+            let line = format!(r#"[{{"scene": "one", "method": "{name}", "error": 1e-12, "time_ns": 1.0}}]"#);
+            std::fs::write(&path, line).unwrap();
+            add(&mut scenes, &path)
+        };
+        assert_eq!(added("a peer").unwrap(), 0);
+        assert_eq!(added("Euler loop").unwrap(), 0);
+        assert!(added("exact flights").unwrap_err().to_string().contains("of this library"));
+    }
 }

@@ -16,7 +16,8 @@ struct Earlier {
 /// The scenes of what `vibro precision --json` printed, with their fronts marked anew.
 ///
 /// # Errors
-/// If the file cannot be read, is something else, or has a time, an error or a bound that is not above 0.
+/// If the file cannot be read, is something else, has a time, an error or a bound that is not above 0, or a method
+/// that failed with an error, or did not without one.
 pub fn scenes(path: &Path) -> Result<Vec<Scene>> {
     let text = std::fs::read_to_string(path).map_err(|e| Error::io("read", path, e))?;
     let wrong = |found: String| {
@@ -37,6 +38,12 @@ pub fn scenes(path: &Path) -> Result<Vec<Scene>> {
             return Err(wrong(format!(
                 "scene {}, {} {}: time {} ns, error {:?}",
                 scene.name, m.method, m.setting, m.time_ns, m.error
+            )));
+        }
+        if let Some(m) = scene.methods.iter().find(|m| m.failed == m.error.is_some()) {
+            return Err(wrong(format!(
+                "scene {}, {} {}: failed is {}, and the error {:?}",
+                scene.name, m.method, m.setting, m.failed, m.error
             )));
         }
         front(scene.family, &mut scene.methods);

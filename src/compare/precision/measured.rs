@@ -58,14 +58,22 @@ pub fn quartiles(values: &mut [f64]) -> [f64; 3] {
     [at(0.25), at(0.5), at(0.75)]
 }
 
+/// Errors that differ by less than this part are told apart by rounding, and by no chart.
+const TIE: f64 = 1e-3;
+
 /// Marks those than which no other is both faster and more accurate (the Pareto front); none that failed.
+///
+/// Errors within [`TIE`] of each other are the same, and the faster of two is on the front.
 ///
 /// A setting of a model is the model's own choice; that of an estimator is the record, and only answers to the same record compete.
 pub fn front(family: Family, methods: &mut [Measured]) {
     let reached = |m: &Measured| m.error.filter(|e| !m.failed && e.is_finite());
     let beats = |a: &Measured, b: &Measured| match (reached(a), reached(b)) {
         (Some(e), Some(error)) => {
-            e <= error && a.time_ns <= b.time_ns && (e < error || a.time_ns < b.time_ns)
+            let clearly = e < error * (1.0 - TIE);
+            (clearly || e <= error * (1.0 + TIE))
+                && a.time_ns <= b.time_ns
+                && (clearly || a.time_ns < b.time_ns)
         }
         _ => false,
     };
@@ -103,6 +111,14 @@ mod tests {
         let mut all = [at(Some(1e-3), 1.0), at(Some(1e-6), 5.0), at(Some(1e-5), 6.0), at(None, 0.1)];
         front(Family::Models, &mut all);
         assert_eq!(all.map(|m| m.front), [true, true, false, false]);
+    }
+
+    #[test]
+    fn of_two_errors_that_only_rounding_tells_apart_the_faster_is_on_the_front() {
+        let [fast, slow] = [5.203_620_391_064_66, 5.203_620_391_064_653];
+        let mut all = [at(Some(fast), 1.0), at(Some(slow), 408.0), at(Some(5.1), 408.0)];
+        front(Family::Models, &mut all);
+        assert_eq!(all.map(|m| m.front), [true, false, true]);
     }
 
     #[test]

@@ -8,6 +8,7 @@ mod corrected;
 mod entry;
 mod failures;
 mod grazing;
+mod in_order;
 mod ours;
 mod rivals;
 mod scene_b;
@@ -27,7 +28,7 @@ pub fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Vec<Scene>>
     let mut found = Vec::new();
     for seconds in [2.0, 100.0] {
         progress(&format!("scene B over {seconds} s"));
-        found.push(scene_b::scene(seconds, quick));
+        found.push(scene_b::scene(seconds, quick)?);
     }
     for depth in if quick { &[1e-6, 1e-12][..] } else { &[1e-3, 1e-6, 1e-9, 1e-12] } {
         progress(&format!("grazing by {depth:.0e} m"));

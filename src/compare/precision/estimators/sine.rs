@@ -65,9 +65,9 @@ fn three_lines(trace: &Trace) -> Result<Excitation> {
     excitations(&sweep, 0.0)?.pop().ok_or_else(|| Error::refused("no point"))
 }
 
-fn doubted(value: f64, std: Option<f64>) -> Answer {
-    let said = std.is_none().then(|| "no uncertainty is stated".to_owned());
-    Answer { value, std, said: said.into_iter().collect() }
+/// The three lines say no word: where they have no uncertainty, they are held to what is allowed to all.
+fn silent(value: f64, std: Option<f64>) -> Answer {
+    Answer { std, ..Answer::bare(value) }
 }
 
 fn of_sine(found: &Sine) -> Answer {
@@ -95,7 +95,7 @@ const FREQUENCY: [Method<Trace>; 5] = [
     Method {
         name: "three lines, Hann",
         ours: true,
-        estimate: |t| three_lines(t).map(|e| doubted(e.frequency, e.std)),
+        estimate: |t| three_lines(t).map(|e| silent(e.frequency, e.std)),
     },
     Method { name: "least squares", ours: true, estimate: |t| sine(t, None).map(|s| of_sine(&s)) },
 ];
@@ -120,7 +120,7 @@ const AMPLITUDE: [Method<Trace>; 6] = [
     Method {
         name: "three lines, Hann",
         ours: true,
-        estimate: |t| three_lines(t).map(|e| doubted(e.force.unwrap_or(f64::NAN), e.force_std)),
+        estimate: |t| three_lines(t).map(|e| silent(e.force.unwrap_or(f64::NAN), e.force_std)),
     },
     Method {
         name: "least squares",

@@ -179,8 +179,9 @@ const CHANCE: f64 = 0.01;
 const FAR: f64 = 5.2;
 /// An answer of a greater standard uncertainty, in parts of what is allowed to one without, is too vague to be right.
 const LOOSE: f64 = 1.0;
-/// Words by which a sentence says that there is no uncertainty, or why.
-const WITHHELD: [&str; 2] = ["uncertainty", "not known"];
+/// Words by which a sentence says that there is no uncertainty; one that is about an uncertainty, or about something else that is not known, withholds none.
+const WITHHELD: [&str; 3] =
+    ["no uncertainty", "uncertainty of the mean interval is not known", "too few for a standard uncertainty"];
 
 /// How many of so many answers may lie between [`WITHIN`] and [`FAR`]: the least number that chance exceeds anywhere in the map less often
 /// than half of [`CHANCE`].
@@ -347,7 +348,11 @@ mod tests {
             of(10.6, Some(0.1), &["3 pulses are clipped, the uncertainty is too small."]),
             Verdict::Off(_)
         ));
-        assert!(refused(of(10.0, None, &["No uncertainty is known."])) && refused(of(f64::NAN, None, &[])));
+        assert!(refused(of(10.0, None, &["There is no uncertainty."])) && refused(of(f64::NAN, None, &[])));
+        assert_eq!(
+            of(12.0, None, &["Whether it repeats is not known: the uncertainty may be too small."]),
+            Verdict::Off(2.0)
+        );
         // A sentence on something else withholds nothing.
         assert_eq!(of(12.0, None, &["A drift was taken away."]), Verdict::Off(2.0));
         assert_eq!(of(10.9, None, &["A drift was taken away."]), Verdict::Right);

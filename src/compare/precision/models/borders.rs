@@ -4,12 +4,11 @@ use std::f64::consts::TAU;
 
 use super::grazing;
 use super::task::Task;
+use super::truth;
 use crate::Result;
 use crate::model::{Rig, Sine, State, Steady};
 use crate::units::notation::quantity;
 
-/// Stiffness of the contact in N/m where a method has one.
-pub const STIFFNESS: f64 = 1e6;
 /// Cycles that a motion is followed.
 const CYCLES: f64 = 6.0;
 
@@ -35,6 +34,8 @@ pub enum Asks {
     First(Option<f64>),
     /// The motions that repeat.
     Orbit,
+    /// As [`Asks::Motion`], of methods that have a contact.
+    Contact,
     /// The approach speed after so many cycles.
     Cycles(f64),
 }
@@ -52,6 +53,21 @@ fn motion(rig: Rig) -> Task {
         most: 100_000,
         ..Task::sine(rig, 0.5, frequency, CYCLES / frequency)
     }
+}
+
+/// Restitution up to which the first chatter of a motion ends in rest, by halving: with more the masses are let go while they still bounce.
+fn onset(task: &impl Fn(f64) -> Task) -> f64 {
+    // The first release is at a quarter of a second whatever R is, the next chatter begins behind 0.4 s.
+    let rests = |restitution: f64| {
+        truth::motion(&Task { until: 0.3, ..task(restitution) }, None)
+            .is_ok_and(|told| !told.sticks.is_empty())
+    };
+    let (mut low, mut high) = (0.7, 0.9);
+    for _ in 0..20 {
+        let middle = f64::midpoint(low, high);
+        if rests(middle) { low = middle } else { high = middle }
+    }
+    low
 }
 
 /// All scenes; `quick` follows fewer cycles where many are asked for.
@@ -99,6 +115,11 @@ pub fn borders(quick: bool) -> Result<Vec<Border>> {
         let rig = Rig { m2: thesis.m2 * scale, k2: thesis.k2 * scale, c2: thesis.c2 * scale, ..thesis };
         add("mass ratio", format!("m₂/m₁ {ratio:.0e}"), motion(rig), Asks::Motion);
     }
+    // 0.07 to 7 % of the period in contact.
+    for stiffness in [1e8, 1e5, 1e4] {
+        let task = Task { stiffness, ..motion(thesis) };
+        add("soft contact", format!("{stiffness:.0e} N/m"), task, Asks::Contact);
+    }
     let pair = ((thesis.k1 + thesis.k2) / (thesis.m1 + thesis.m2)).sqrt() / TAU;
     let [first, second] = thesis.natural_frequencies();
     for (name, frequency, c) in [
@@ -113,10 +134,17 @@ pub fn borders(quick: bool) -> Result<Vec<Border>> {
         let task = Task { frequency, until: CYCLES / frequency, ..motion(rig) };
         add("resonance", name.to_owned(), task, Asks::Motion);
     }
-    for restitution in [0.3, 0.7, 0.9, 0.95] {
+    let chatter = |restitution: f64| {
         let scene_c = super::chatter::task();
-        let task = Task { rig: Rig { restitution, ..scene_c.rig }, until: 1.2, most: 100_000, ..scene_c };
-        add("chatter", format!("R {restitution}"), task, Asks::Motion);
+        Task { rig: Rig { restitution, ..scene_c.rig }, until: 1.2, most: 100_000, ..scene_c }
+    };
+    for restitution in [0.3, 0.7, 0.9, 0.95] {
+        add("chatter", format!("R {restitution}"), chatter(restitution), Asks::Motion);
+    }
+    let onset = onset(&chatter);
+    for (sign, beside) in [('−', -1e-3), ('+', 1e-3)] {
+        let scene = format!("R {onset:.4} {sign} 1e-3, where rest begins");
+        add("chatter", scene, chatter(onset + beside), Asks::Motion);
     }
     for cycles in if quick { vec![1e3] } else { vec![1e4, 1e6] } {
         let task = Task { until: cycles / frequency, most: 200_000_000, ..motion(thesis) };

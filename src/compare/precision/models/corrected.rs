@@ -9,41 +9,50 @@ use super::truth::{Repeats, repeats};
 use crate::compare::precision::Outcome;
 use crate::model::{Compliance, Excitation, Orbit, Sine, Softened, orbits, softened};
 
-/// Every corrected orbit that does not pass through the other mass, against the motion with the contact that repeats.
-pub fn corrected(task: &Task, stiffness: f64) -> Result<Found, Fault> {
+/// Every orbit that does not pass through the other mass, corrected, against the motion with the contact that repeats.
+pub fn corrected(task: &Task) -> Result<Found, Fault> {
     let excitation = Excitation::Sine(Sine { force: task.force, frequency: task.frequency });
     let found = orbits(&task.rig, task.force, task.frequency)?;
-    let compliance = Compliance::new(&task.rig, stiffness, None)?;
+    let compliance = Compliance::new(&task.rig, task.stiffness, None)?;
     let soft = softened(&task.rig, &excitation, &found, &compliance)?;
     let real: Vec<_> = found.orbits.iter().zip(&soft).filter(|(o, _)| o.validity.admissible).collect();
     if real.is_empty() {
         return Ok((Outcome::NotAsked, "no motion with one impact a cycle is to be corrected".to_owned()));
     }
-    let told: Vec<_> = real.iter().filter_map(|(o, s)| Some((*o, s.as_ref()?))).collect();
-    if told.is_empty() {
-        return Err(Fault::Refused(
-            "no orbit is left with this contact, or only one that needs a restitution above 1".to_owned(),
-        ));
-    }
-    let mut judged = Vec::new();
-    for (orbit, soft) in told {
-        let Some(truth) = counterpart(task, orbit, stiffness) else { continue };
-        let fit = Fit::new(task, orbit, soft, &compliance, &truth);
-        if fit.corrected > fit.allowed() {
-            return Ok((Outcome::Wrong, fit.told()));
+    let (mut judged, mut withheld) = (Vec::new(), Vec::new());
+    for (orbit, soft) in real {
+        match (soft, counterpart(task, orbit)) {
+            (Some(soft), Some(truth)) => {
+                let fit = Fit::new(task, orbit, soft, &compliance, &truth);
+                if fit.corrected.is_nan() || fit.corrected > fit.allowed() {
+                    return Ok((Outcome::Wrong, fit.told()));
+                }
+                judged.push(fit.told());
+            }
+            (Some(soft), None) => {
+                return Ok((
+                    Outcome::Wrong,
+                    format!("corrected to {:.3e} m/s, where no motion with this contact goes on from the orbit", soft.approach_velocity),
+                ));
+            }
+            // That is what no correction stands for.
+            (None, Some(truth)) => withheld.push(format!(
+                "no correction: it has no orbit with this contact, or only one with a restitution above 1 (there is one of {:.3e} m/s)",
+                truth.speed()
+            )),
+            (None, None) => judged.push("no orbit is left with this contact, as is told".to_owned()),
         }
-        judged.push(fit.told());
     }
-    Ok(if judged.is_empty() {
-        (Outcome::NotAsked, "no truth: no motion with this contact repeats near the orbit".to_owned())
-    } else {
-        (Outcome::Right, judged.join("; "))
-    })
+    if judged.is_empty() {
+        return Err(Fault::Refused(withheld.join("; ")));
+    }
+    judged.extend(withheld);
+    Ok((Outcome::Right, judged.join("; ")))
 }
 
 /// The motion that an orbit goes over into as its contact gives way, by the definition of a motion that repeats: its duration rises from
-/// nothing to that of `stiffness` in steps, each guessed by going on straight from the two before.
-fn counterpart(task: &Task, orbit: &Orbit, stiffness: f64) -> Option<Repeats> {
+/// nothing to that of the task in steps, each guessed by going on straight from the two before.
+fn counterpart(task: &Task, orbit: &Orbit) -> Option<Repeats> {
     let before = orbit.before_impact();
     let rigid = Repeats { before: [before.x1, before.v1, before.x2, before.v2], phase: orbit.force_phase };
     let (mut last, mut part) = ((0.0, rigid), (0.0, rigid));
@@ -51,7 +60,7 @@ fn counterpart(task: &Task, orbit: &Orbit, stiffness: f64) -> Option<Repeats> {
     while part.0 < 1.0 {
         let next = (part.0 + step).min(1.0);
         let guess = straight(last, part, next);
-        let contact = spring(&task.rig, stiffness / (next * next));
+        let contact = spring(&task.rig, task.stiffness / (next * next));
         let found = repeats(task, Some(&contact), orbit.period(), &guess);
         // Newton's method may end in another motion: it must not lead away from the guess.
         match found.filter(|f| (f.speed() / guess.speed() - 1.0).hypot(turn(f.phase - guess.phase)) < NEAR) {
@@ -107,10 +116,10 @@ impl Fit {
         }
     }
 
-    /// The correction is the first order in `ωt_c`. What it leaves is the second, that of `ωt_c` and of the change itself, which grows where a motion
-    /// is sensitive; and where that is more than half of the change, half: no correction at all never passes.
+    /// The correction is of first order in `ωt_c` in the restitution, the delay and the speed at the touch, and exact in all that follows from them: each
+    /// leaves a second order, (ωt_c)². It may never be half of the change: no correction at all is wrong.
     fn allowed(&self) -> f64 {
-        (self.turn + self.plain).powi(2).min(0.5 * self.plain)
+        (3.0 * self.turn.powi(2)).min(0.5 * self.plain)
     }
 
     fn told(&self) -> String {
@@ -138,7 +147,7 @@ mod tests {
             let compliance = Compliance::new(&task.rig, stiffness, None).unwrap();
             let soft = softened(&task.rig, &excitation, &found, &compliance).unwrap();
             let (orbit, soft) = (&found.orbits[0], soft[0].unwrap());
-            let truth = counterpart(&task, orbit, stiffness).unwrap();
+            let truth = counterpart(&Task { stiffness, ..task }, orbit).unwrap();
             let fit = |soft: &Softened| Fit::new(&task, orbit, soft, &compliance, &truth);
             let corrected = fit(&soft);
             assert!(corrected.corrected <= corrected.allowed(), "{stiffness:e}: {}", corrected.told());

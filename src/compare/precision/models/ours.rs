@@ -43,7 +43,12 @@ pub fn kelvin_voigt(task: &Task, spring: &Spring) -> Result<Told, Fault> {
     let law = Law::KelvinVoigt { stiffness: spring.stiffness, damping: spring.damping };
     let mut motion = Compliant::new(&task.rig, &excitation, law, task.start, task.phase)?;
     let mut told = Told::default();
-    motion.advance(task.until, &mut |piece| take(&mut told, &piece))?;
+    motion.advance(task.until, &mut |piece| {
+        take(&mut told, &piece);
+        if let Event::Impact(impact) = piece.event {
+            told.sticks.extend(spring.rest(task, impact.time, piece.start + piece.duration));
+        }
+    })?;
     Ok(told)
 }
 

@@ -20,11 +20,16 @@ pub struct Task {
     pub phase: f64,
     /// State at time 0.
     pub start: State,
+    /// Stiffness in N/m of the contact, for methods that have one.
+    pub stiffness: f64,
     /// Time of the end in s.
     pub until: f64,
     /// The most steps that a method may take before it counts as stalled.
     pub most: u64,
 }
+
+/// Stiffness of a contact in N/m where it is not what is varied.
+const STIFFNESS: f64 = 1e6;
 
 /// What a method tells of a motion.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -63,7 +68,8 @@ impl Task {
     /// A motion under F₀ sin ωt from rest, as [`Task::most`] steps of twenty million allow.
     pub fn sine(rig: Rig, force: f64, frequency: f64, until: f64) -> Task {
         let phase = -std::f64::consts::FRAC_PI_2;
-        Task { rig, force, frequency, rate: 0.0, phase, start: State::REST, until, most: 20_000_000 }
+        let (start, most) = (State::REST, 20_000_000);
+        Task { rig, force, frequency, rate: 0.0, phase, start, stiffness: STIFFNESS, until, most }
     }
 
     /// Duration of a cycle at time 0 in s.

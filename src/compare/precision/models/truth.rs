@@ -5,11 +5,13 @@
 //! one matrix carries it over a step to rounding. An impact keeps momentum and turns the relative speed v into −Rv.
 
 mod course;
+mod definition;
 mod guard;
 mod mode;
 mod repeats;
 
 pub use course::{Course, Met, Start};
+pub use definition::{CLOSES, Growth, growth, impacts};
 pub use repeats::{Repeats, repeats, settled};
 
 use super::rivals::Spring;
@@ -21,10 +23,16 @@ use super::task::{Task, Told};
 /// As [`Course::run`].
 pub fn motion(task: &Task, contact: Option<&Spring>) -> Result<Told, String> {
     let mut told = Told::default();
+    let mut touch = None;
+    let rest = |touch: Option<f64>, until| contact.zip(touch).and_then(|(c, from)| c.rest(task, from, until));
     Course::new(task, contact).run(task.phase, Start::Free(task.first()), task.until, &mut |met| {
         match met {
-            Met::Impact(time, before) => told.impacts.push((*time, before[1] - before[3])),
+            Met::Impact(time, before) => {
+                told.impacts.push((*time, before[1] - before[3]));
+                touch = Some(*time);
+            }
             Met::Stick(time) => told.sticks.push([*time, f64::INFINITY]),
+            Met::Release(time) if contact.is_some() => told.sticks.extend(rest(touch.take(), *time)),
             Met::Release(time) => {
                 if let Some(rest) = told.sticks.last_mut() {
                     rest[1] = *time;
@@ -33,6 +41,7 @@ pub fn motion(task: &Task, contact: Option<&Spring>) -> Result<Told, String> {
         }
         true
     })?;
+    told.sticks.extend(rest(touch, f64::INFINITY));
     told.impacts.retain(|i| i.0 < task.until);
     Ok(told)
 }

@@ -12,10 +12,19 @@ pub struct Spring {
     pub damping: f64,
 }
 
+/// A contact that lasts so many times as long as that of the spring alone, π√(M/k₃), counts as rest.
+const RESTS: f64 = 10.0;
+
 impl Spring {
     /// Force in N of spring and damper alone, which may pull.
     pub(super) fn bound(&self, task: &Task, y: &[f64; 4]) -> f64 {
         -self.stiffness * task.gap(y) + self.damping * (y[1] - y[3])
+    }
+
+    /// The rest in a contact between these times in s, if it lasts long enough to be one.
+    pub fn rest(&self, task: &Task, from: f64, to: f64) -> Option<[f64; 2]> {
+        let alone = std::f64::consts::PI * (task.rig.reduced_mass() / self.stiffness).sqrt();
+        (to - from > RESTS * alone).then_some([from, to])
     }
 
     /// Force in N, never pulling.
@@ -24,8 +33,7 @@ impl Spring {
     }
 }
 
-/// Integrates straight through contacts, step sizes left to the error control; touches are read off afterwards, and a contact that lasts ten
-/// times as long as that of the spring alone, π√(M/k₃), counts as rest.
+/// Integrates straight through contacts, step sizes left to the error control; touches are read off afterwards.
 ///
 /// # Errors
 /// If the budget is spent or no step is small enough.
@@ -34,7 +42,6 @@ pub fn penalty(task: &Task, spring: &Spring, kind: Kind) -> Result<Told, Fault> 
     let (mut told, mut left) = (Told::default(), task.most);
     let mut stepper = Stepper::new(kind, task, f, 0.0, task.first());
     let (mut t, mut gap) = (0.0, task.gap(&task.first()));
-    let alone = std::f64::consts::PI * (task.rig.reduced_mass() / spring.stiffness).sqrt();
     let mut touch = None;
     while t < task.until {
         if left == 0 {
@@ -49,14 +56,14 @@ pub fn penalty(task: &Task, spring: &Spring, kind: Kind) -> Result<Told, Fault> 
             told.impacts.push((step.start() + at, y[1] - y[3]));
             touch = Some(step.start() + at);
         }
+        let after = task.gap(&step.end());
         t = step.start() + step.duration();
-        gap = task.gap(&step.end());
-        if let Some(from) = touch.filter(|_| gap > 0.0 || t >= task.until) {
-            if t - from > 10.0 * alone {
-                told.sticks.push([from, if gap > 0.0 { t } else { f64::INFINITY }]);
-            }
+        if let Some(from) = touch.filter(|_| after > 0.0 || t >= task.until) {
+            let parts = step.crossing(f, -gap, |_, y| -task.gap(y)).map_or(t, |at| step.start() + at);
+            told.sticks.extend(spring.rest(task, from, if after > 0.0 { parts } else { f64::INFINITY }));
             touch = None;
         }
+        gap = after;
     }
     Ok(told)
 }

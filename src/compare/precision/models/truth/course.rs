@@ -20,7 +20,7 @@ pub enum Met {
     Impact(f64, [f64; 4]),
     /// They come to rest against each other.
     Stick(f64),
-    /// They are released.
+    /// They are released, or part behind a contact.
     Release(f64),
 }
 
@@ -140,7 +140,12 @@ impl Course {
                     t += short;
                     Stage::Apart
                 }
-                (Stage::Eased, 0) => Stage::Apart,
+                (Stage::Eased, 0) => {
+                    if !visit(&Met::Release(t)) {
+                        return Ok(());
+                    }
+                    Stage::Apart
+                }
                 (Stage::Eased, _) => Stage::Held,
             };
         }
