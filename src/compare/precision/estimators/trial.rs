@@ -92,25 +92,28 @@ impl<D> Kind<D> {
 const RECORDS: [usize; 2] = [128, 24];
 /// Records of a setting that are also timed: in full, and quick.
 const TIMED: [usize; 2] = [24, 5];
+/// Seeds from one setting of a scene to the next: each has records of its own, the same for all methods.
+const APART: usize = 1_000_000;
 /// Parts of the records whose errors show how far the error scatters.
 const PARTS: usize = 8;
 
 /// Every method with every setting: the error is the root mean square over the answers, so that it compares with a standard deviation;
 /// its spread are the quartiles over eighths of the records. A method that answers to fewer than half of them has failed.
 pub fn measured<D>(methods: &[Method<D>], settings: &[Kind<D>], quick: bool) -> Vec<Measured> {
-    let one = |method: &Method<D>, setting: &Kind<D>| {
+    let one = |method: &Method<D>, place: usize, setting: &Kind<D>| {
+        let case = |number: usize| setting.case(place * APART + number);
         let (mut errors, mut times) = (vec![Vec::new(); PARTS], Vec::new());
         let mut refusals = Refusals::default();
         let records = RECORDS[usize::from(quick)];
         let answered = |number: usize| {
-            let case = setting.case(number);
+            let case = case(number);
             let answer = (method.estimate)(&case.data);
             (answer, case.truth, case.unit)
         };
         // Times are those of an idle machine: one after another, before the records that are not timed.
         let mut answers: Vec<(Result<Answer>, f64, f64)> = (0..TIMED[usize::from(quick)])
             .map(|number| {
-                let case = setting.case(number);
+                let case = case(number);
                 let (answer, time, _) = timed(1, quick, || (method.estimate)(&case.data));
                 times.push(time);
                 (answer, case.truth, case.unit)
@@ -147,7 +150,7 @@ pub fn measured<D>(methods: &[Method<D>], settings: &[Kind<D>], quick: bool) -> 
             front: false,
         }
     };
-    methods.iter().flat_map(|m| settings.iter().map(move |s| one(m, s))).collect()
+    methods.iter().flat_map(|m| settings.iter().enumerate().map(move |(place, s)| one(m, place, s))).collect()
 }
 
 /// Reasons that were given for no answer: how often each, and how it was first said.
