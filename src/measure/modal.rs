@@ -211,7 +211,9 @@ mod tests {
             let mut values: Vec<Complex64> =
                 frequency.iter().map(|f| poles.iter().map(|p| p.at(*f, 0)).sum()).collect();
             let sigma = 0.01 * values.iter().map(|v| v.norm()).fold(0.0, f64::max);
-            values.iter_mut().for_each(|v| *v += sigma * Complex64::new(noise.normal(), noise.normal()));
+            for v in &mut values {
+                *v += sigma * Complex64::new(noise.normal(), noise.normal());
+            }
             let measured = Measured { frequency, values, kind: FrfKind::Receptance, ..two() };
             found(&measured, &ModalOptions { mass: Some(1.0), ..ModalOptions::default() })
         };
