@@ -65,7 +65,7 @@ impl Flight {
     ///
     /// With g = g₀ + t q(t), g₀ being rounding, q falls where −g̈/2 outweighs Σ|gₙ|(n − 1)tⁿ⁻²/n!, n from 3 on. So within twice and a half the
     /// flight of a constant g̈, if it falls up to there and is below 0 there, q has one root, and g was positive before it. What the series
-    /// leaves out, M_N tᴺ/N! of N terms, has to be below `rounding`.
+    /// leaves out, `M_N tᴺ/N!` of N terms, has to be below `rounding`.
     #[inline]
     pub(super) fn hop(&self, duration: f64, rounding: f64) -> Option<Landing> {
         let [first, second] = &self.free;

@@ -117,7 +117,7 @@ impl Fit {
     }
 
     /// The correction is of first order in `ωt_c` in the restitution, the delay and the speed at the touch, and exact in all that follows from them: each
-    /// leaves a second order, (ωt_c)². It may never be half of the change: no correction at all is wrong.
+    /// leaves a second order, `(ωt_c)²`. It may never be half of the change: no correction at all is wrong.
     fn allowed(&self) -> f64 {
         (3.0 * self.turn.powi(2)).min(0.5 * self.plain)
     }
