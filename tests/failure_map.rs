@@ -58,7 +58,8 @@ fn estimators_are_right_or_refuse_at_their_borders() {
     // Uncertainties are those of the errors, over all borders of a method.
     let ours: Vec<_> = rates.iter().filter(|r| r.ours).collect();
     println!("{ours:?}");
-    assert!(ours.len() == RIGHT.len() && ours.iter().all(|r| r.judged >= 30), "{ours:?}");
+    // Four cells of six records each at least.
+    assert!(ours.len() == RIGHT.len() && ours.iter().all(|r| r.judged >= 24), "{ours:?}");
     assert!(ours.iter().all(|r| r.beyond <= r.limit()), "{ours:?}");
     // Nobody is left out of the list above, and the check can fail: other methods do.
     let ours = map.cells.iter().filter(|c| c.ours);

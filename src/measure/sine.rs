@@ -23,7 +23,7 @@ const STEPS: usize = 20;
 /// A frequency that is given may be off by so many lines.
 const NEAR: f64 = 2.0;
 /// From so many lines on the uncertainty in coloured noise holds what another sine does.
-const FAR: f64 = 4.0;
+const FAR: f64 = 3.5;
 /// Nearer to half the rate than this many lines a sine and its image are half a line apart, and shake each other as two sines do.
 const IMAGE: f64 = 0.25;
 const METHOD: &str = "least-squares sine fit";
