@@ -96,11 +96,12 @@ fn largest(force: &[f64], window: Option<Window>, first: usize) -> std::result::
             "what lies below line {first}, where a sine is not told from an offset, reaches higher there than any line above"
         ));
     }
-    if k == n - 1 {
-        return Err(
-            "the largest line of the force is the last one: the excitation may lie above the base band"
-                .into(),
-        );
+    if k + 2 >= n {
+        let which = if k + 1 == n { "last one" } else { "last but one" };
+        return Err(format!(
+            "the largest line of the force is the {which}: the excitation may lie above the base band, or so near to half the sampling rate that \
+             its image moves it"
+        ));
     }
     let floor = noise::around(force, k, window);
     if let Some(floor) = floor
@@ -159,6 +160,20 @@ mod tests {
         assert!(largest(&force, Some(Window::Hann), 0).unwrap_err().contains("below line 3"));
         // Whoever has cut that off wants the other.
         assert!(largest(&force, Some(Window::Hann), 5).is_ok());
+    }
+
+    #[test]
+    fn a_line_before_the_last_may_be_moved_by_its_image() {
+        for (position, last) in [(399.4, "last but one"), (399.9, "last one"), (405.0, "last one")] {
+            let image = |k: f64| line_shape(Window::Hann, k - (800.0 - position)).abs();
+            let force: Vec<f64> = (0..401)
+                .map(f64::from)
+                .map(|k| line_shape(Window::Hann, k - position).abs() + 0.3 * image(k))
+                .collect();
+            let said = largest(&force, Some(Window::Hann), 0).unwrap_err();
+            assert!(said.contains(last) && said.contains("above the base band"), "{position}: {said}");
+        }
+        assert!(largest(&sine(398.3, 0.0), Some(Window::Hann), 0).is_ok());
     }
 
     #[test]

@@ -369,7 +369,11 @@ fn fitted(campaign: &Campaign, responses: &[Response], warnings: &mut Vec<String
     let Some(rig) = &campaign.rig else { return Ok(None) };
     let found = or_left_out(fit(campaign, rig, responses), "fit", warnings)?.flatten();
     if let Some(fit) = &found {
-        merge(warnings, "", &fit.warnings);
+        // That nothing has an uncertainty comes before all else.
+        let doubted = usize::from(fit.parameters.iter().all(|p| p.estimate.std.is_none()));
+        let (first, rest) = fit.warnings.split_at(doubted.min(fit.warnings.len()));
+        warnings.splice(0..0, first.iter().cloned());
+        merge(warnings, "", rest);
     }
     Ok(found)
 }

@@ -191,7 +191,9 @@ impl Stage<'_> {
             Err(error) => Tried { cost: Some(cost), ..Tried::refused(&error) },
             Ok(None) => Tried {
                 cost: Some(cost),
-                ..Tried::not("With a contact of this duration there is no such motion left.")
+                ..Tried::not(
+                    "The correction finds no motion: with a contact of this duration the masses would have to rebound faster than they meet, or none is left.",
+                )
             },
             Ok(Some((answer, share, restitution))) => {
                 let mut why = format!(
