@@ -164,7 +164,7 @@ mod tests {
 
     #[test]
     fn a_line_before_the_last_may_be_moved_by_its_image() {
-        for (position, last) in [(399.4, "last but one"), (399.9, "last one"), (405.0, "last one")] {
+        for (position, last) in [(399.0, "last but one"), (399.9, "last one")] {
             let image = |k: f64| line_shape(Window::Hann, k - (800.0 - position)).abs();
             let force: Vec<f64> = (0..401)
                 .map(f64::from)

@@ -55,9 +55,24 @@ pub(super) fn coloured(frequency: f64, widening: f64) -> Option<String> {
     })
 }
 
-/// A sentence, where what is left of a record after all sines that were fitted holds another line beside that at `frequency` in Hz: it moves
-/// that sine by more than noise does, and no uncertainty of it is known.
-pub(super) fn beside(left: &Trace, frequency: f64) -> Option<String> {
+/// A line that is left beside a sine.
+pub(super) struct Beside {
+    /// A sentence about it.
+    pub said: String,
+    /// Standard uncertainties of the frequency in Hz, of the amplitude as a part of itself, and of the phase in rad that allow for it; `None` where
+    /// it is so large that how far it moves the sine is not known.
+    pub allowed: Option<[f64; 3]>,
+}
+
+/// Up to this part of the amplitude, what stands beside a sine moves it by a small and known part.
+const SMALL: f64 = 0.02;
+
+/// Where what is left of a record after all sines that were fitted holds another line beside that of this `amplitude` at `frequency` in Hz: it
+/// moves that sine by more than noise does.
+///
+/// A sine of a part r of the amplitude moves the frequency of a least-squares fit over T by up to 12r/T³ ∫t sin Δt dt/2π = 0.42 r/T, amplitude
+/// and phase in the middle by up to r, so the phase at the first sample by 2.3 r; the fit may have taken up half of it.
+pub(super) fn beside(left: &Trace, frequency: f64, amplitude: f64) -> Option<Beside> {
     let spacing = left.rate()? / left.values.len() as f64;
     let other = line(left, Some(frequency)).ok()?;
     let strongest = line(left, None).ok()?;
@@ -68,10 +83,23 @@ pub(super) fn beside(left: &Trace, frequency: f64) -> Option<String> {
     if away >= FAR && size(other) * away < size(strongest) {
         return None;
     }
-    Some(format!(
-        "What is left holds a line at {other:.6} Hz, {:.1} lines from {frequency:.6} Hz, which has no uncertainty therefore: there is another sine (fit one more with it), or this one is not steady.",
+    let part = 2.0 * size(other) / amplitude;
+    let allowed = (part <= SMALL).then_some([0.42 * part * spacing, part, 2.4 * part]);
+    let place = format!(
+        "What is left holds a line at {other:.6} Hz, {:.1} lines from {frequency:.6} Hz",
         (other - frequency).abs() / spacing
-    ))
+    );
+    let said = if allowed.is_some() {
+        format!(
+            "{place}, of {:.1e} of its amplitude: its uncertainty allows for another sine there.",
+            0.5 * part
+        )
+    } else {
+        format!(
+            "{place}, which has no uncertainty therefore: there is another sine (fit one more with it), or this one is not steady."
+        )
+    };
+    Some(Beside { said, allowed })
 }
 
 /// Fits the sine of the largest line, or of the largest within two lines of `near` Hz. Where what is left holds another line within two of it,
@@ -206,16 +234,19 @@ fn stated(trace: &Trace, omega: f64, p: &Vector4<f64>, inverse: &Matrix4<f64>, h
     let noisy = variance.sqrt() > 1e-12 * amplitude;
     let mut warnings: Vec<String> = coloured(omega / TAU, wide).into_iter().filter(|_| noisy).collect();
     let left_over = Trace { meta: trace.meta.clone(), axis: trace.axis.clone(), values: rest };
-    let beside = beside(&left_over, omega / TAU).filter(|_| noisy);
-    let alone = beside.is_none();
-    warnings.extend(beside);
-    let estimate =
-        |value, gradient, unit| Estimate::new(value, alone.then(|| wide * std(gradient)), unit, n, METHOD);
+    let beside = beside(&left_over, omega / TAU, amplitude).filter(|_| noisy);
+    let allowed =
+        beside.as_ref().map_or(Some([0.0; 3]), |b| b.allowed).map(|[f, a, p]| [f, a * amplitude, p]);
+    warnings.extend(beside.map(|b| b.said));
+    let estimate = |value, gradient, unit, of: fn([f64; 3]) -> f64| {
+        let std = allowed.map(|a| (wide * std(gradient)).hypot(of(a)));
+        Estimate::new(value, std, unit, n, METHOD)
+    };
     let level = Vector4::new(0.0, 0.0, 1.0, 0.0);
     Sine {
-        frequency: estimate(omega / TAU, Vector4::new(0.0, 0.0, 0.0, 1.0 / (TAU * half)), "Hz"),
-        amplitude: estimate(amplitude, Vector4::new(a, b, 0.0, 0.0) / amplitude, unit),
-        phase: estimate(phase, Vector4::new(b / square, -a / square, 0.0, -middle / half), "rad"),
+        frequency: estimate(omega / TAU, Vector4::new(0.0, 0.0, 0.0, 1.0 / (TAU * half)), "Hz", |a| a[0]),
+        amplitude: estimate(amplitude, Vector4::new(a, b, 0.0, 0.0) / amplitude, unit, |a| a[1]),
+        phase: estimate(phase, Vector4::new(b / square, -a / square, 0.0, -middle / half), "rad", |a| a[2]),
         mean: Estimate::new(mean, Some(left.widening(0.0) * std(level)), unit, n, METHOD),
         noise: variance.sqrt(),
         warnings,
@@ -273,6 +304,39 @@ mod tests {
         let last = |i: i32| (TAU * 499.875 * f64::from(i) * 1e-3 + 0.4).cos();
         let error = sine(&trace((0..1000).map(last).collect()), None).unwrap_err().to_string();
         assert!(error.contains("half the sampling rate"), "{error}");
+    }
+
+    /// A sine of half a hundredth of the amplitude 0.7 to 2 lines off is allowed for.
+    #[test]
+    fn a_small_sine_beside_is_allowed_for() {
+        for apart in [0.7, 1.0, 2.0] {
+            let mut wide = 0;
+            for seed in 0..100 {
+                let mut noise = crate::math::Noise::new(seed);
+                let (f, p, q) =
+                    (noise.between(50.0, 400.0), noise.between(0.0, TAU), noise.between(0.0, TAU));
+                let mut value = |i: i32| {
+                    let t = f64::from(i) * 1e-3;
+                    (TAU * f * t + p).cos()
+                        + 0.005 * (TAU * (f + apart) * t + q).cos()
+                        + 1e-5 * noise.normal()
+                };
+                let found = sine(&trace((0..1000).map(&mut value).collect()), None).unwrap();
+                let turn = |a: f64| (a + std::f64::consts::PI).rem_euclid(TAU) - std::f64::consts::PI;
+                let off = [
+                    (&found.frequency, found.frequency.value - f),
+                    (&found.amplitude, found.amplitude.value - 1.0),
+                    (&found.phase, turn(found.phase.value - p)),
+                ];
+                for (estimate, off) in off {
+                    // What is allowed is the most that can be, but for the half that the fit may have taken up.
+                    let std = estimate.std.unwrap();
+                    assert!(off.abs() < 3.0 * std, "{apart} lines apart, seed {seed}: {off} with {std}");
+                }
+                wide += usize::from(found.frequency.std.unwrap() > 5e-4);
+            }
+            assert!(wide > 50, "{apart} lines apart: {wide}");
+        }
     }
 
     /// A sine of half the amplitude 5 to 40 lines off is noise to this one, and counted in its uncertainty; 1 to 2 lines off there is none.

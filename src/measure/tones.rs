@@ -39,10 +39,14 @@ pub struct Tone {
 }
 
 impl Tone {
-    /// Leaves no uncertainty.
-    fn withhold(&mut self) {
-        for estimate in [&mut self.frequency, &mut self.amplitude, &mut self.phase] {
-            estimate.std = None;
+    /// Allows for what is left beside it, as [`sine::Beside::allowed`] says; where that is not known, no uncertainty is left.
+    fn allow(&mut self, allowed: Option<[f64; 3]>) {
+        let size = self.amplitude.value;
+        for (i, estimate) in
+            [&mut self.frequency, &mut self.amplitude, &mut self.phase].into_iter().enumerate()
+        {
+            let unit = if i == 1 { size } else { 1.0 };
+            estimate.std = allowed.and_then(|a| Some(estimate.std?.hypot(unit * a[i])));
         }
     }
 }
@@ -125,9 +129,9 @@ pub fn tones(trace: &Trace, count: usize) -> Result<Tones> {
         let rate = trace.rate().unwrap_or(1.0);
         warnings.extend(fit.frequencies().iter().filter_map(|f| sine::coloured(*f, left.widening(f / rate))));
         for tone in &mut tones {
-            if let Some(other) = sine::beside(&rest, tone.frequency.value) {
-                tone.withhold();
-                warnings.push(other);
+            if let Some(other) = sine::beside(&rest, tone.frequency.value, tone.amplitude.value) {
+                tone.allow(other.allowed);
+                warnings.push(other.said);
             }
         }
     }

@@ -39,19 +39,19 @@ pub struct Stiff {
 /// If too few points are left.
 pub fn stiff(rigid: &Settled<'_>, stiffness: f64, pace: Pace) -> Result<Stiff> {
     // The answer without compliance may be one of which none can be taken out: then from the rig as it was stated.
-    let found = led(rigid, &rigid.setting(), stiffness, pace);
+    let found = led(rigid, &rigid.setting(), stiffness, ROUNDS, pace);
     if found.as_ref().is_ok_and(|s| s.lost == 0) {
         return found;
     }
-    match (found, led(rigid, &rigid.problem.base, stiffness, pace)) {
+    match (found, led(rigid, &rigid.problem.base, stiffness, ROUNDS, pace)) {
         (Ok(a), Ok(b)) => Ok(if b.lost < a.lost { b } else { a }),
         (Err(_), other) => other,
         (found, Err(_)) => found,
     }
 }
 
-/// The same from this setting on.
-fn led(rigid: &Settled<'_>, from: &Setting, stiffness: f64, pace: Pace) -> Result<Stiff> {
+/// The same from this setting on, in so many rounds at most.
+fn led(rigid: &Settled<'_>, from: &Setting, stiffness: f64, rounds: usize, pace: Pace) -> Result<Stiff> {
     let Problem { data: plain, base, unknowns, .. } = &rigid.problem;
     // Points far from their motion may be so for want of the correction.
     let corrected = |data: &Data, setting: &Setting| -> Result<Stiff> {
@@ -59,7 +59,7 @@ fn led(rigid: &Settled<'_>, from: &Setting, stiffness: f64, pace: Pace) -> Resul
         Ok(Stiff { u: coordinates(setting, unknowns), ..corrected(plain, setting, &kinds, stiffness) })
     };
     let mut now = corrected(plain, from)?;
-    for _ in 0..ROUNDS {
+    for _ in 0..rounds {
         let settled = settle(&now.data, base, unknowns, &now.u, pace)?;
         let next = corrected(&now.data, &settled.setting())?;
         let still = change(&now.data, &next.data) <= STILL;
@@ -130,7 +130,8 @@ pub fn untold(settled: &Settled<'_>, held: &Held, pace: Pace) -> Option<String> 
     let frequency = used.iter().sum::<f64>() / used.len() as f64;
     // t_c = π√(M/k₃) of a spring.
     let stiffness = setting.rig.reduced_mass() * (PI * frequency / SHARE).powi(2);
-    let soft = stiff(settled, stiffness, pace).ok()?;
+    // What is left after one round is some thousandth of the change.
+    let soft = led(settled, &setting, stiffness, 1, pace).ok()?;
     let changed =
         |i: usize| (soft.u[i] - settled.minimum.parameters[i]).abs() > held.covariance[(i, i)].sqrt();
     let one = |i: usize| {

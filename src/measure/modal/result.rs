@@ -150,7 +150,8 @@ pub(super) fn report(
         let bandwidths = 2.0 * pole.zeta * pole.frequency * (group.lines.len() - 1) as f64;
         let span = measured.frequency[group.lines.end - 1] - measured.frequency[group.lines.start];
         let leakage = 4.0 / 3.0 * (span / bandwidths).powi(2);
-        if !options.from_blows && measured.coherence.is_some() && leakage * pole.zeta > std[1] {
+        let leaks = !options.from_blows && measured.coherence.is_some() && leakage * pole.zeta > std[1];
+        if leaks {
             warnings.push(format!(
                 "At {at} Hz the bandwidth is {:.1} lines: if segments of a lasting excitation were averaged (Hann window), leakage makes ζ too large, by about {} % where the fit rests on the top of the peak and less where it rests on the flanks, which is not in its uncertainty. Longer segments show.",
                 bandwidths / span,
@@ -199,7 +200,8 @@ pub(super) fn report(
         // ζωᵣ is known as before, and the constant has the factor that its uncertainty has.
         std[1] *= pole.frequency / own.frequency;
         std[2] *= own.constant.norm() / pole.constant.norm();
-        let hidden = hidden(measured, group, fit, m, others);
+        // A peak that leakage widens has no longer the form of one mode.
+        let hidden = if leaks { None } else { hidden(measured, group, fit, m, others) };
         // What the phases of residual terms and other modes do to magnitudes is in no residual, nor what a mode does that shows as no peak.
         let std = (hidden.is_none() && !measured.magnitude_only).then_some(&std);
         modes.push(mode(measured, group, peak.at, fit, (&own, std), options));
