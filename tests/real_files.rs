@@ -88,7 +88,9 @@ fn three_methods_agree_on_measured_modes() {
                 .filter(|b| b.frequency.value.is_finite() && b.note.is_empty())
         };
         for method in ["circle fit", "half power"] {
-            let (Some(by), Some(std)) = (of(method), mode.zeta.std) else { continue };
+            let Some(by) = of(method) else { continue };
+            // The peak at 81.5 Hz has no uncertainty, since two modes explain it better; the methods agree on its one.
+            let std = mode.zeta.std.unwrap_or(0.0);
             if std > 0.1 * mode.zeta.value {
                 continue;
             }
