@@ -63,7 +63,7 @@ const TIE: f64 = 1e-3;
 
 /// Marks those than which no other is both faster and more accurate (the Pareto front); none that failed.
 ///
-/// Errors within [`TIE`] of each other are the same, and the faster of two is on the front.
+/// Errors within a thousandth of each other are the same, and the faster of two is on the front.
 ///
 /// A setting of a model is the model's own choice; that of an estimator is the record, and only answers to the same record compete.
 pub fn front(family: Family, methods: &mut [Measured]) {
