@@ -306,22 +306,24 @@ mod tests {
         assert!(error.contains("half the sampling rate"), "{error}");
     }
 
+    /// What is found of a sine of amplitude 1 with another of amplitude `size` so many lines apart, in noise; frequency and phase of the first.
+    fn beside_another(seed: u64, apart: f64, size: f64, floor: f64) -> (Sine, f64, f64) {
+        let mut noise = crate::math::Noise::new(seed);
+        let (f, p, q) = (noise.between(50.0, 400.0), noise.between(0.0, TAU), noise.between(0.0, TAU));
+        let mut value = |i: i32| {
+            let t = f64::from(i) * 1e-3;
+            (TAU * f * t + p).cos() + size * (TAU * (f + apart) * t + q).cos() + floor * noise.normal()
+        };
+        (sine(&trace((0..1000).map(&mut value).collect()), None).unwrap(), f, p)
+    }
+
     /// A sine of half a hundredth of the amplitude 0.7 to 2 lines off is allowed for.
     #[test]
     fn a_small_sine_beside_is_allowed_for() {
         for apart in [0.7, 1.0, 2.0] {
             let mut wide = 0;
             for seed in 0..100 {
-                let mut noise = crate::math::Noise::new(seed);
-                let (f, p, q) =
-                    (noise.between(50.0, 400.0), noise.between(0.0, TAU), noise.between(0.0, TAU));
-                let mut value = |i: i32| {
-                    let t = f64::from(i) * 1e-3;
-                    (TAU * f * t + p).cos()
-                        + 0.005 * (TAU * (f + apart) * t + q).cos()
-                        + 1e-5 * noise.normal()
-                };
-                let found = sine(&trace((0..1000).map(&mut value).collect()), None).unwrap();
+                let (found, f, p) = beside_another(seed, apart, 0.005, 1e-5);
                 let turn = |a: f64| (a + std::f64::consts::PI).rem_euclid(TAU) - std::f64::consts::PI;
                 let off = [
                     (&found.frequency, found.frequency.value - f),
@@ -345,15 +347,7 @@ mod tests {
         for (apart, stated) in [(1.0, 0), (2.0, 0), (5.0, 100), (16.0, 100), (40.0, 100)] {
             let mut all = 0;
             for seed in 0..100 {
-                let mut noise = crate::math::Noise::new(seed);
-                let (f, p, q) =
-                    (noise.between(50.0, 400.0), noise.between(0.0, TAU), noise.between(0.0, TAU));
-                let mut value = |i: i32| {
-                    let t = f64::from(i) * 1e-3;
-                    let two = (TAU * f * t + p).cos() + 0.5 * (TAU * (f + apart) * t + q).cos();
-                    two + 7e-3 * noise.normal()
-                };
-                let found = sine(&trace((0..1000).map(&mut value).collect()), None).unwrap();
+                let (found, f, _) = beside_another(seed, apart, 0.5, 7e-3);
                 if let Some(std) = found.frequency.std {
                     all += 1;
                     let off = (found.frequency.value - f).abs() / std;
