@@ -148,10 +148,11 @@ fn fitted_again(draws: std::ops::RangeInclusive<u64>) -> Vec<Fit> {
         })
         .unwrap();
     }
+    let parameters: Vec<Parameter> = Parameter::ALL.into_iter().filter(|p| !p.is_mass()).collect();
     let fitted = |draw: u64| {
         let mut campaign = Campaign::from_path(own(draw).join("campaign.toml")).unwrap();
         let found = responses(&campaign, JobOptions::default(), &()).unwrap();
-        campaign.fit = FitEntry { parameters: Parameter::ALL.to_vec(), starts: Some(1), ..campaign.fit };
+        campaign.fit = FitEntry { parameters: parameters.clone(), starts: Some(1), ..campaign.fit };
         fit(&campaign, &campaign.rig.unwrap(), &found).unwrap().unwrap()
     };
     draws.map(fitted).collect()

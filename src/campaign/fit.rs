@@ -33,6 +33,16 @@ impl FitEntry {
                 return Err(("parameters", format!("{} is named twice", parameter.name())));
             }
             seen.push(*parameter);
+            let name = parameter.name();
+            if parameter.is_mass() && !self.prior.contains_key(parameter) {
+                return Err((
+                    "parameters",
+                    format!(
+                        "{name} is fitted without a prior, while motion tells only the ratios of force, stiffness and damping to the masses: weigh \
+                         it and give `prior.{name} = [kg, standard uncertainty]` in [fit]"
+                    ),
+                ));
+            }
         }
         if self.starts.is_some_and(|n| n == 0 || n > MOST_STARTS) {
             return Err(("starts", format!("starts is not from 1 to {MOST_STARTS}")));

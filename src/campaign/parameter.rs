@@ -22,11 +22,15 @@ pub enum Parameter {
     K1,
     /// Stiffness of the passive mass' spring.
     K2,
+    /// The excited mass; only beside what is known of it, since motion tells the ratios of force, stiffness and damping to it.
+    M1,
+    /// The passive mass; likewise.
+    M2,
 }
 
 impl Parameter {
     /// All, in the order of their printing.
-    pub const ALL: [Parameter; 7] = [
+    pub const ALL: [Parameter; 9] = [
         Parameter::Force,
         Parameter::Restitution,
         Parameter::C1,
@@ -34,6 +38,8 @@ impl Parameter {
         Parameter::Gap,
         Parameter::K1,
         Parameter::K2,
+        Parameter::M1,
+        Parameter::M2,
     ];
 
     /// Name as in a campaign.
@@ -46,6 +52,8 @@ impl Parameter {
             Parameter::Gap => "gap",
             Parameter::K1 => "k1",
             Parameter::K2 => "k2",
+            Parameter::M1 => "m1",
+            Parameter::M2 => "m2",
         }
     }
 
@@ -57,6 +65,7 @@ impl Parameter {
             Parameter::C1 | Parameter::C2 => "N s/m",
             Parameter::Gap => "m",
             Parameter::K1 | Parameter::K2 => "N/m",
+            Parameter::M1 | Parameter::M2 => "kg",
         }
     }
 
@@ -68,13 +77,10 @@ impl Parameter {
         Parameter::ALL.into_iter().find(|p| p.name() == name).ok_or_else(|| {
             let known: Vec<&str> = Parameter::ALL.into_iter().map(Parameter::name).collect();
             let error = Error::usage(format!("no parameter of a fit is named {name:?}"), known.join(", "));
-            match name {
-                "m1" | "m2" => error.hint(
-                    "masses are weighed, not fitted: motion alone tells only stiffness and damping over mass",
-                ),
-                _ if name.contains("contact") => error
-                    .hint("state it as `stiffness` in [contact]: a model corrected for it is then judged"),
-                _ => error,
+            if name.contains("contact") {
+                error.hint("state it as `stiffness` in [contact]: a model corrected for it is then judged")
+            } else {
+                error
             }
         })
     }
@@ -82,6 +88,11 @@ impl Parameter {
     /// Where it can lie: R from 0 to 1, all others above 0.
     pub fn range(self) -> (f64, f64) {
         if self == Parameter::Restitution { (0.0, 1.0) } else { (0.0, f64::INFINITY) }
+    }
+
+    /// Whether it is one of the masses.
+    pub fn is_mass(self) -> bool {
+        matches!(self, Parameter::M1 | Parameter::M2)
     }
 
     /// Its value on this rig under this force (N).
@@ -94,6 +105,8 @@ impl Parameter {
             Parameter::Gap => rig.gap,
             Parameter::K1 => rig.k1,
             Parameter::K2 => rig.k2,
+            Parameter::M1 => rig.m1,
+            Parameter::M2 => rig.m2,
         }
     }
 
@@ -107,6 +120,8 @@ impl Parameter {
             Parameter::Gap => &mut rig.gap,
             Parameter::K1 => &mut rig.k1,
             Parameter::K2 => &mut rig.k2,
+            Parameter::M1 => &mut rig.m1,
+            Parameter::M2 => &mut rig.m2,
         };
         *place = value;
     }
@@ -127,7 +142,7 @@ mod tests {
             }
             assert_eq!(Parameter::from_name(parameter.name()).unwrap(), parameter);
         }
-        let text = Parameter::from_name("m1").unwrap_err().to_string();
-        assert!(text.contains("\"m1\"") && text.contains("restitution"), "{text}");
+        let text = Parameter::from_name("mass").unwrap_err().to_string();
+        assert!(text.contains("\"mass\"") && text.contains("restitution"), "{text}");
     }
 }

@@ -17,6 +17,7 @@ mod rung;
 mod search;
 mod setting;
 mod settle;
+mod shared;
 mod stiff;
 mod told;
 mod unknown;
@@ -184,9 +185,10 @@ fn found(
         Some(stiff) => settle(&stiff.data, base, &unknowns, &stiff.u, pace)?,
     };
     settled.contradictions = prior::contradictions(&settled, starts, pace);
-    settled.contradictions.extend(settled.pulled());
     settled.lost = stiff.as_ref().map_or(0, |s| s.lost);
     let held = settled.held()?;
+    let pulled = settled.pulled(&held);
+    settled.contradictions.extend(pulled);
     let profile = profile::profile(&settled, &held, held.worst());
     let mut fit = gathered(&settled, &held, base, profile);
     (fit.starts, fit.agreeing) = (starts, agreeing(&ends, &rigid.minimum.parameters, &rigid.held()?));
@@ -328,7 +330,13 @@ fn fitted(
     let std = held.covariance[(i, i)].sqrt();
     let reason = settled.doubt().or_else(|| held.loose[i].clone());
     let slope = coordinate.slope(u).abs();
-    let method = "least squares of both masses and directions by the closed form, the masses taken as exact";
+    let exact = |p: &Parameter| settled.problem.unknowns.iter().all(|u| u.parameter != *p);
+    let exact: Vec<&str> =
+        [Parameter::M1, Parameter::M2].iter().filter(|p| exact(p)).map(|p| p.name()).collect();
+    let mut method = "least squares of both masses and directions by the closed form".to_owned();
+    if !exact.is_empty() {
+        method += &format!(", {} taken as exact", exact.join(" and "));
+    }
     // A prior adds 1/s² to the reciprocal of the variance that all else leaves, exactly where the model is linear.
     let rests = prior.is_some_and(|[_, s]| (std * slope).powi(2) > 0.5 * s * s);
     Fitted {

@@ -231,6 +231,7 @@ mod tests {
                 excitation,
                 excitation_std: None,
                 force: Some(force),
+                force_std: None,
                 frequency: excitation,
                 frequency_std: None,
                 amplitude: Estimate::new(amplitude, None, "m", 1, "closed form"),

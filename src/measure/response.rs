@@ -65,6 +65,8 @@ pub struct ResponsePoint {
     pub excitation_std: Option<f64>,
     /// Force amplitude in N, where there is a force spectrum.
     pub force: Option<f64>,
+    /// Its standard uncertainty in N.
+    pub force_std: Option<f64>,
     /// Frequency of the response peak in Hz.
     pub frequency: f64,
     /// Its standard uncertainty in Hz.
@@ -294,6 +296,7 @@ impl Taker<'_> {
             excitation: excitation.frequency,
             excitation_std: excitation.std,
             force: excitation.force,
+            force_std: excitation.force_std,
             frequency,
             frequency_std,
             amplitude,

@@ -65,7 +65,7 @@ fn points(response: &Response) -> Table {
         &response.points,
         &[
             ("excitation", "Hz", &|p| pair(p.excitation, p.excitation_std)),
-            ("force", "N", &|p| Cell::from(p.force)),
+            ("force", "N", &|p| p.force.map_or(Cell::Missing, |force| pair(force, p.force_std))),
             ("response at", "Hz", &|p| pair(p.frequency, p.frequency_std)),
             ("amplitude", response.unit, &|p| Cell::from(&p.amplitude)),
             ("largest at", "Hz", &|p| {

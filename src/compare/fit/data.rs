@@ -29,6 +29,8 @@ pub struct Step {
     pub frequency_std: f64,
     /// Force in N at the reference of [`Data::force`].
     pub force: f64,
+    /// Its standard uncertainty in N; 0 where it is not known.
+    pub force_std: f64,
     /// Mass 1 and mass 2.
     pub seen: [Option<Seen>; 2],
 }
@@ -133,6 +135,7 @@ impl Data {
             frequency: p.excitation,
             frequency_std: p.excitation_std.unwrap_or(0.0),
             force: forcing.of(p),
+            force_std: forcing.std_of(p),
             seen: [None, None],
         };
         let new: Vec<Step> = points.iter().map(step).collect();

@@ -31,6 +31,8 @@ pub struct Held {
     pub loose: Vec<Option<String>>,
     /// Relative standard uncertainty of each parameter.
     pub relative: Vec<f64>,
+    /// Where a parameter lies at the end of where it may.
+    pub edges: Vec<Option<Edge>>,
 }
 
 impl Held {
@@ -46,7 +48,7 @@ impl Held {
         problem: &Problem<'_>,
         u: &[f64],
         jacobian: &DMatrix<f64>,
-        edges: &[Option<Edge>],
+        edges: Vec<Option<Edge>>,
     ) -> Result<Held> {
         let setting = problem.setting(u);
         let n = u.len();
@@ -119,7 +121,7 @@ impl Held {
             ))
         };
         let loose = (0..n).map(reason).collect();
-        Ok(Held { covariance, loose, relative })
+        Ok(Held { covariance, loose, relative, edges })
     }
 
     /// Correlation of two parameters.
@@ -137,7 +139,10 @@ impl Held {
 fn alone(problem: &Problem<'_>, i: usize, value: f64, influence: f64, edge: Option<&Edge>) -> String {
     let parameter = problem.unknowns[i].parameter;
     let impacts = problem.kinds.contains(&Some(Kind::Impacting));
-    let needs = matches!(parameter, Parameter::Restitution | Parameter::C2 | Parameter::K2 | Parameter::Gap);
+    let needs = matches!(
+        parameter,
+        Parameter::Restitution | Parameter::C2 | Parameter::K2 | Parameter::Gap | Parameter::M2
+    );
     if !impacts && needs {
         return "no point of the fit shows a motion with impacts, and the others do not depend on it"
             .to_owned();

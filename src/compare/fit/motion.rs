@@ -85,15 +85,20 @@ const MEDIAN: f64 = 1.052;
 pub fn without_far(data: &Data, setting: &Setting, kinds: Vec<Option<Kind>>) -> Vec<Option<Kind>> {
     let one = |(step, kind): (&Step, &Option<Kind>)| {
         let (kind, force) = ((*kind)?, setting.force_at(data, step));
-        // As far as the frequency may err, so may the amplitude.
-        let [shows, moved] =
-            [0.0, step.frequency_std].map(|df| setting.shows(kind, force, step.frequency + df));
+        let shows = setting.shows(kind, force, step.frequency);
+        // As far as frequency and force may err, so may the amplitude.
+        let moved = setting.shows(kind, force, step.frequency + step.frequency_std);
+        let forced = setting.shows(kind, force * (1.0 + step.force_std / step.force), step.frequency);
         let clear = step.clear().filter(|(mass, _)| counts(Some(kind), *mass));
         let away = |(mass, seen): (usize, &super::data::Seen)| {
             // Both errors of a calibration.
             let calibration = data.calibration * shows[mass] * std::f64::consts::SQRT_2;
             (seen.amplitude - shows[mass]).abs()
-                / seen.std.hypot(moved[mass] - shows[mass]).hypot(calibration)
+                / seen
+                    .std
+                    .hypot(moved[mass] - shows[mass])
+                    .hypot(forced[mass] - shows[mass])
+                    .hypot(calibration)
         };
         clear.map(away).max_by(f64::total_cmp)
     };

@@ -10,13 +10,15 @@ use crate::units::notation::with_std;
 /// of 1.7 million cases.
 const APART: f64 = 5.0;
 
-/// A sentence for each prior that the points alone contradict, by a fit without any prior.
+/// A sentence for each prior that the points alone contradict, by a fit without any but those of masses, which motion does not tell.
 pub fn contradictions(settled: &Settled<'_>, starts: usize, pace: Pace) -> Vec<String> {
     let problem = &settled.problem;
-    if problem.unknowns.iter().all(|k| k.prior.is_none()) {
+    let told = |k: &Unknown| k.prior.is_some() && !k.parameter.is_mass();
+    if !problem.unknowns.iter().any(told) {
         return Vec::new();
     }
-    let free: Vec<Unknown> = problem.unknowns.iter().map(|k| Unknown { prior: None, ..*k }).collect();
+    let without = |k: &Unknown| Unknown { prior: k.prior.filter(|_| !told(k)), ..*k };
+    let free: Vec<Unknown> = problem.unknowns.iter().map(without).collect();
     // Where the points alone do not determine the parameters, they contradict nothing.
     let Ok((alone, _)) = identify(problem.data, &problem.base, &free, starts, pace) else {
         return Vec::new();
@@ -29,7 +31,7 @@ pub fn contradictions(settled: &Settled<'_>, starts: usize, pace: Pace) -> Vec<S
         return Vec::new();
     }
     let one = |(i, unknown): (usize, &Unknown)| {
-        let [known, known_std] = unknown.prior?;
+        let [known, known_std] = unknown.prior.filter(|_| told(unknown))?;
         let value = alone.setting().get(unknown.parameter);
         let std = held.covariance[(i, i)].sqrt() * unknown.coordinate.slope(minimum.parameters[i]).abs();
         let apart = (value - known).abs() / known_std.hypot(std);

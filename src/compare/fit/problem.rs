@@ -4,15 +4,19 @@ use super::super::prediction::Kind;
 use super::calibration::Calibration;
 use super::data::{Data, Step};
 use super::setting::Setting;
+use super::shared::Shared;
 use super::unknown::{Unknown, at, fold};
 use crate::error::Result;
 use crate::math::{Minimum, minimise};
 
+/// Relative step of a difference.
+const NEAR: f64 = 1e-6;
+
 /// A sum of squares to be minimised: data with weights, and priors.
 ///
-/// The frequency of a step errs by `σ_f` for both masses alike, so their amplitudes have the covariance `diag(σ²) + σ_f²aaᵀ`, a the slope of
-/// the predicted amplitude over frequency. With both scaled by σ that is I + wwᵀ, and the residuals are multiplied by its inverse square
-/// root I − (1 − 1/√(1 + w²)) wwᵀ/w².
+/// Frequency and force of a step err by `σ_f` and `σ_F` for both masses alike, so their amplitudes have the covariance
+/// `diag(σ²) + σ_f²aaᵀ + σ_F²bbᵀ`, a and b the slopes of the predicted amplitudes over frequency and force. The residuals, over σ, are
+/// multiplied by the inverse square root of what that leaves ([`Shared`]).
 #[derive(Debug, Clone)]
 pub struct Problem<'a> {
     pub data: &'a Data,
@@ -20,8 +24,8 @@ pub struct Problem<'a> {
     pub unknowns: Vec<Unknown>,
     /// Motion of each step; `None` leaves it out.
     pub kinds: Vec<Option<Kind>>,
-    /// w of each step.
-    pub slopes: Vec<[f64; 2]>,
+    /// Errors that both masses of a step share.
+    pub shared: Vec<Shared>,
     /// Variances of the data are so much larger than stated.
     pub scale: f64,
     /// Errors shared by all points of a mass.
@@ -36,7 +40,7 @@ impl<'a> Problem<'a> {
             base: *base,
             unknowns: unknowns.to_vec(),
             kinds: kinds.to_vec(),
-            slopes: Vec::new(),
+            shared: Vec::new(),
             scale: 1.0,
             calibration: Calibration::default(),
         }
@@ -66,23 +70,33 @@ impl Problem<'_> {
         at(&self.base, &self.unknowns, u)
     }
 
-    /// Takes the slopes and the shares of calibrations from the setting at `u`.
+    /// Takes the shares of frequencies, forces and calibrations from the setting at `u`.
     pub fn weigh(&mut self, u: &[f64]) {
         let setting = self.setting(u);
-        let slope = |(step, kind): (&Step, &Option<Kind>)| {
-            let Some(kind) = kind.filter(|_| step.frequency_std > 0.0) else { return [0.0; 2] };
+        let shared = |(step, kind): (&Step, &Option<Kind>)| {
+            let Some(kind) = *kind else { return Shared::default() };
             let force = setting.force_at(self.data, step);
-            // A central difference over a millionth errs by 1e-12 of the third derivative and 1e-10 of the value.
-            let h = 1e-6 * step.frequency;
-            let [above, below] = [h, -h].map(|h| setting.shows(kind, force, step.frequency + h));
-            let mut w = [0.0; 2];
-            for (mass, seen) in step.clear().filter(|(mass, _)| counts(Some(kind), *mass)) {
-                let slope = (above[mass] - below[mass]) / (2.0 * h) * step.frequency_std / seen.std;
-                w[mass] = if slope.is_finite() { slope } else { 0.0 };
-            }
-            w
+            // By so many standard uncertainties the amplitudes change with a relative change of frequency or force, which errs by `std`. A
+            // central difference over a millionth errs by 1e-12 of the third derivative and 1e-10 of the value.
+            let error = |std: f64, shows: &dyn Fn(f64) -> [f64; 2]| {
+                let mut w = [0.0; 2];
+                if std > 0.0 {
+                    let [above, below] = [1.0 + NEAR, 1.0 - NEAR].map(shows);
+                    for (mass, seen) in step.clear().filter(|(mass, _)| counts(Some(kind), *mass)) {
+                        let slope = (above[mass] - below[mass]) / (2.0 * NEAR) * std / seen.std;
+                        w[mass] = if slope.is_finite() { slope } else { 0.0 };
+                    }
+                }
+                w
+            };
+            Shared::new([
+                error(step.frequency_std / step.frequency, &|by| {
+                    setting.shows(kind, force, step.frequency * by)
+                }),
+                error(step.force_std / step.force, &|by| setting.shows(kind, force * by, step.frequency)),
+            ])
         };
-        self.slopes = self.data.steps.iter().zip(&self.kinds).map(slope).collect();
+        self.shared = self.data.steps.iter().zip(&self.kinds).map(shared).collect();
         self.calibration = Calibration::new(&self.shares(&setting));
     }
 
@@ -114,17 +128,16 @@ impl Problem<'_> {
     /// What `of` makes of each step and its motion, in m for both masses, over their standard deviations.
     fn scaled(&self, of: impl Fn(&Step, Kind) -> [f64; 2]) -> Vec<f64> {
         let mut all = Vec::new();
-        for ((step, kind), w) in self.data.steps.iter().zip(&self.kinds).zip(&self.slopes) {
+        for ((step, kind), shared) in self.data.steps.iter().zip(&self.kinds).zip(&self.shared) {
             let Some(kind) = *kind else { continue };
             let of = of(step, kind);
             let mut s = [None; 2];
             for (mass, seen) in step.clear().filter(|(mass, _)| counts(Some(kind), *mass)) {
                 s[mass] = Some(of[mass] / seen.std);
             }
-            let square = w[0] * w[0] + w[1] * w[1];
-            let shared = s[0].unwrap_or(0.0) * w[0] + s[1].unwrap_or(0.0) * w[1];
-            let part = if square > 0.0 { (1.0 - 1.0 / (1.0 + square).sqrt()) / square } else { 0.0 };
-            all.extend(s.iter().zip(w).filter_map(|(s, w)| Some((*s)? - part * shared * w)));
+            // What does not count has no share, and leaves the other as it is.
+            let allowed = shared.allow(s.map(|s| s.unwrap_or(0.0)));
+            all.extend(s.iter().zip(allowed).filter_map(|(s, allowed)| s.and(Some(allowed))));
         }
         all
     }

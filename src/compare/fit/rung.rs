@@ -77,7 +77,8 @@ pub fn rungs(
     for (kind, step) in linear.kinds.iter_mut().zip(&full.data.steps) {
         *kind = kind.filter(|_| step.clear().any(|(mass, _)| mass == 0)).map(|_| Kind::Free);
     }
-    linear.unknowns.retain(|u| matches!(u.parameter, Parameter::Force | Parameter::C1 | Parameter::K1));
+    let alone = |p| matches!(p, Parameter::Force | Parameter::C1 | Parameter::K1 | Parameter::M1);
+    linear.unknowns.retain(|u| alone(u.parameter));
     let mut models = vec![(LINEAR, linear, rigid), ("closed form", full.clone(), rigid)];
     if let Some(soft) = soft {
         models.push(("soft-corrected closed form", soft.problem.clone(), soft));

@@ -87,7 +87,7 @@ pub fn around(base: &Setting, unknowns: &[Unknown], u: &[f64], turn: usize) -> V
 
 /// Starting point number `i` of Halton's sequence (1960), within [`REACH`] of the base, or two standard uncertainties of a prior.
 fn spread(base: &Setting, unknowns: &[Unknown], i: usize) -> Vec<f64> {
-    const PRIMES: [usize; 7] = [2, 3, 5, 7, 11, 13, 17];
+    const PRIMES: [usize; 9] = [2, 3, 5, 7, 11, 13, 17, 19, 23];
     let one = |(unknown, prime): (&Unknown, usize)| {
         let part = 2.0 * radical(i, prime) - 1.0;
         let value = base.get(unknown.parameter);

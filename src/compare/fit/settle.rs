@@ -66,13 +66,12 @@ impl Settled<'_> {
                 jacobian.set_column(i, &edge.column);
             }
         }
-        Held::new(&self.problem, &self.minimum.parameters, &jacobian, &edges)
+        Held::new(&self.problem, &self.minimum.parameters, &jacobian, edges)
     }
 
     /// What the points ask for beyond the bounds.
-    pub fn pulled(&self) -> Vec<String> {
-        let edges = edges(&self.problem, &self.minimum.parameters);
-        pulled(&self.problem, &self.minimum.jacobian, &self.minimum.residuals, &edges)
+    pub fn pulled(&self, held: &Held) -> Vec<String> {
+        pulled(&self.problem, &self.minimum.jacobian, &self.minimum.residuals, &held.edges)
     }
 
     /// Why the answer as a whole may be wrong, and its uncertainties mean nothing.

@@ -56,7 +56,8 @@ fn led(rigid: &Settled<'_>, from: &Setting, stiffness: f64, rounds: usize, pace:
     // Points far from their motion may be so for want of the correction.
     let corrected = |data: &Data, setting: &Setting| -> Result<Stiff> {
         let kinds = assigned(data, setting, pace)?.kinds;
-        Ok(Stiff { u: coordinates(setting, unknowns), ..corrected(plain, setting, &kinds, stiffness) })
+        let (data, lost) = corrected(plain, setting, &kinds, stiffness);
+        Ok(Stiff { data, lost, u: coordinates(setting, unknowns) })
     };
     let mut now = corrected(plain, from)?;
     for _ in 0..rounds {
@@ -83,15 +84,16 @@ fn change(before: &Data, after: &Data) -> f64 {
     pairs.map(one).fold(0.0, f64::max)
 }
 
-fn corrected(data: &Data, setting: &Setting, kinds: &[Option<Kind>], stiffness: f64) -> Stiff {
-    let mut stiff = Stiff { data: data.clone(), lost: 0, u: Vec::new() };
-    for (step, kind) in stiff.data.steps.iter_mut().zip(kinds) {
+/// The points without the compliance, and of how many amplitudes that cannot be told.
+fn corrected(data: &Data, setting: &Setting, kinds: &[Option<Kind>], stiffness: f64) -> (Data, usize) {
+    let (mut stiff, mut lost) = (data.clone(), 0);
+    for (step, kind) in stiff.steps.iter_mut().zip(kinds) {
         if *kind != Some(Kind::Impacting) {
             continue;
         }
         let made = made(setting, stiffness, setting.force_at(data, step), step.frequency);
         let Some(made) = made else {
-            stiff.lost += Step::clear(step).count();
+            lost += Step::clear(step).count();
             step.seen = [None, None];
             continue;
         };
@@ -104,7 +106,7 @@ fn corrected(data: &Data, setting: &Setting, kinds: &[Option<Kind>], stiffness: 
             }
         }
     }
-    stiff
+    (stiff, lost)
 }
 
 /// What the compliance makes of the amplitudes of both masses, as factors; `None` where the correction does not hold.

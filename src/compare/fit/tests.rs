@@ -56,7 +56,13 @@ fn swept(setting: &Setting, pace: Pace, frequencies: &[f64], noise: f64) -> (Dat
                 Some(Seen { sweep: mass + 2 * usize::from(down), amplitude, std: noise, limit, soft: 1.0 })
             };
             let seen = [seen(0), seen(1)];
-            data.steps.push(Step { frequency: *frequency, frequency_std: 1.5e-4, force: *force, seen });
+            data.steps.push(Step {
+                frequency: *frequency,
+                frequency_std: 1.5e-4,
+                force: *force,
+                force_std: 0.0,
+                seen,
+            });
         }
         data.sequences.push((from..data.steps.len()).collect());
     }
@@ -73,9 +79,12 @@ fn noisy(truth: &Data, kinds: &[Option<Kind>], setting: &Setting, seed: u64) -> 
     }
     let mut data = truth.clone();
     for (step, kind) in data.steps.iter_mut().zip(kinds) {
-        let meant = step.frequency;
+        let (meant, force) = (step.frequency, step.force);
         step.frequency += step.frequency_std * normal.next();
-        let shows = kind.map(|kind| setting.shows(kind, step.force, meant));
+        if step.force_std > 0.0 {
+            step.force += step.force_std * normal.next();
+        }
+        let shows = kind.map(|kind| setting.shows(kind, force, meant));
         for (mass, seen) in step.seen.iter_mut().enumerate() {
             let Some(seen) = seen else { continue };
             if seen.limit.is_none() {
@@ -95,8 +104,8 @@ fn unknowns(names: &[&str], from: &Setting) -> Vec<Unknown> {
 
 const ALL: [&str; 7] = ["force", "restitution", "c1", "c2", "gap", "k1", "k2"];
 
-/// χ² of 1 to 7 degrees of freedom that is exceeded in 5 % of cases (Abramowitz & Stegun, table 26.8).
-const JOINT: [f64; 7] = [3.841, 5.991, 7.815, 9.488, 11.070, 12.592, 14.067];
+/// χ² of 1 to 9 degrees of freedom that is exceeded in 5 % of cases (Abramowitz & Stegun, table 26.8).
+const JOINT: [f64; 9] = [3.841, 5.991, 7.815, 9.488, 11.070, 12.592, 14.067, 15.507, 16.919];
 
 /// Shorter than by default, so that tests are quick: noise and answer are the same.
 const PACE: Pace = Pace { settle: 150, measure: 36 };
@@ -121,46 +130,88 @@ fn miscalibrated(mut data: Data, std: f64, seed: u64) -> Data {
     data
 }
 
-/// Of 100 seeds the truth lies within the joint region of 95 % in 92 to 98, within the interval of each parameter in 89 or more, which a
-/// binomial of 0.95 misses in one of 230 cases, and within all intervals together in 92 to 98 %: neither too narrow nor too wide. So with
-/// calibrations that err, too, by three times the noise of the largest points. The fits begin at the truth with its motions: how the
-/// search gets there is for other tests.
+/// Seeds of a coverage.
+const SEEDS: u64 = 500;
+
+/// The truth lies within the joint region of 95 % in 92 to 98 % of 500 seeds, three standard deviations of a binomial, within the interval of
+/// each parameter in 91 % or more, four of them, and within all intervals together in 92 to 98 %: neither too narrow nor too wide. `drawn`
+/// gives the points of a seed and what is to be found. The fits begin at the truth with its motions: how the search gets there is for other
+/// tests.
+fn covered(setting: &Setting, kinds: &[Option<Kind>], drawn: impl Fn(u64) -> (Data, Vec<Unknown>) + Sync) {
+    let inside: Vec<(bool, Vec<bool>)> = (1..=SEEDS)
+        .into_par_iter()
+        .map(|seed| {
+            let (data, unknowns) = drawn(seed);
+            let true_u = coordinates(setting, &unknowns);
+            let (problem, minimum, ..) = settle::least(&data, setting, &unknowns, kinds, &true_u).unwrap();
+            let sum = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
+            let rise = sum(&problem.at(&true_u)) - sum(&minimum.residuals);
+            let n = unknowns.len();
+            let held = Held::new(&problem, &minimum.parameters, &minimum.jacobian, vec![None; n]).unwrap();
+            assert!(held.loose.iter().all(Option::is_none), "seed {seed}: {:?}", held.loose);
+            let own = (0..n).map(|i| {
+                (minimum.parameters[i] - true_u[i]).abs() <= NORMAL * held.covariance[(i, i)].sqrt()
+            });
+            (rise <= JOINT[n - 1], own.collect())
+        })
+        .collect();
+    let joint = inside.iter().filter(|i| i.0).count();
+    let n = inside[0].1.len();
+    let own: Vec<usize> = (0..n).map(|k| inside.iter().filter(|i| i.1[k]).count()).collect();
+    println!("joint {joint}, own {own:?} of {SEEDS}");
+    assert!((460..=490).contains(&joint), "{joint}");
+    assert!(own.iter().all(|n| *n >= 455), "{own:?}");
+    let share = own.iter().sum::<usize>() as f64 / (n as u64 * SEEDS) as f64;
+    assert!((0.92..=0.98).contains(&share), "{share}");
+}
+
+/// So with noise alone, with calibrations that err, too, by three times the noise of the largest points, and with the measured force of each
+/// step, by four times.
 #[test]
 fn the_truth_lies_within_the_region_as_often_as_stated() {
     let setting = example();
     let (clean, kinds) = truth(&setting, PACE);
-    let unknowns = unknowns(&ALL, &setting);
-    let true_u = coordinates(&setting, &unknowns);
     println!("{} of 80 steps", kinds.iter().flatten().count());
-    let seeds: Vec<u64> = (1..=100).collect();
-    for calibration in [0.0, 1e-3] {
-        println!("seeds 1 to 100, calibration {calibration}");
-        let inside: Vec<(bool, Vec<bool>)> = seeds
-            .par_iter()
-            .map(|seed| {
-                let data = miscalibrated(noisy(&clean, &kinds, &setting, *seed), calibration, *seed);
-                let (problem, minimum, ..) =
-                    settle::least(&data, &setting, &unknowns, &kinds, &true_u).unwrap();
-                let sum = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
-                let rise = sum(&problem.at(&true_u)) - sum(&minimum.residuals);
-                let held =
-                    Held::new(&problem, &minimum.parameters, &minimum.jacobian, &vec![None; unknowns.len()])
-                        .unwrap();
-                assert!(held.loose.iter().all(Option::is_none), "{:?}", held.loose);
-                let own = (0..7).map(|i| {
-                    (minimum.parameters[i] - true_u[i]).abs() <= NORMAL * held.covariance[(i, i)].sqrt()
-                });
-                (rise <= JOINT[6], own.collect())
-            })
-            .collect();
-        let joint = inside.iter().filter(|i| i.0).count();
-        let own: Vec<usize> = (0..7).map(|k| inside.iter().filter(|i| i.1[k]).count()).collect();
-        println!("joint {joint}, own {own:?}");
-        assert!((92..=98).contains(&joint), "{joint}");
-        assert!(own.iter().all(|n| *n >= 89), "{own:?}");
-        let share = own.iter().sum::<usize>() as f64 / 700.0;
-        assert!((0.92..=0.98).contains(&share), "{share}");
+    for (calibration, force) in [(0.0, 0.0), (1e-3, 0.0), (0.0, 1.2e-3)] {
+        println!("seeds 1 to {SEEDS}, calibration {calibration}, force {force}");
+        let mut clean = clean.clone();
+        for step in &mut clean.steps {
+            step.force_std = force * step.force;
+        }
+        covered(&setting, &kinds, |seed| {
+            let data = noisy(&clean, &kinds, &setting, seed);
+            (miscalibrated(data, calibration, seed), unknowns(&ALL, &setting))
+        });
     }
+}
+
+/// So where both masses were weighed to half a hundredth only, which is then in the uncertainty of all that motion tells by its ratio to them.
+#[test]
+fn what_is_not_known_of_the_masses_is_in_the_uncertainties() {
+    let setting = example();
+    let (clean, kinds) = truth(&setting, PACE);
+    println!("seeds 1 to {SEEDS}");
+    covered(&setting, &kinds, |seed| {
+        let mut normal = Normal(900 + seed);
+        for _ in 0..16 {
+            normal.next();
+        }
+        let parameters = Parameter::ALL.to_vec();
+        let mut weighed = |p: Parameter| {
+            let (mass, std) = (setting.get(p), 5e-3 * setting.get(p));
+            (p, [mass + std * normal.next(), std])
+        };
+        let prior = [weighed(Parameter::M1), weighed(Parameter::M2)].into();
+        let entry = FitEntry { parameters, prior, ..FitEntry::default() };
+        (noisy(&clean, &kinds, &setting, seed), Unknown::all(&entry, &setting).unwrap())
+    });
+}
+
+#[test]
+fn a_mass_is_fitted_only_where_it_was_weighed() {
+    let entry = FitEntry { parameters: vec![Parameter::K1, Parameter::M1], ..FitEntry::default() };
+    let said = Unknown::all(&entry, &example()).unwrap_err().to_string();
+    assert!(said.contains("m1 is fitted without a prior") && said.contains("prior.m1 = [kg"), "{said}");
 }
 
 /// The whole way, from starting values up to 30 % off in every corner.
@@ -172,12 +223,13 @@ fn wrong_starts_come_back() {
     println!("seed 7");
     for signs in [0b0101_0101, 0b0011_0110] {
         let off = |i: usize| if signs >> i & 1 == 1 { 1.3 } else { 0.7 };
-        let start = Parameter::ALL.iter().enumerate().fold(setting, |s, (i, p)| {
-            let value = setting.get(*p);
-            // A loss of 2 % may be taken for 5 %; R itself cannot be 30 % higher.
-            let wrong = if *p == Parameter::Restitution { 0.95 } else { value * off(i) };
-            s.with(*p, wrong)
-        });
+        let start =
+            ALL.map(|n| Parameter::from_name(n).unwrap()).iter().enumerate().fold(setting, |s, (i, p)| {
+                let value = setting.get(*p);
+                // A loss of 2 % may be taken for 5 %; R itself cannot be 30 % higher.
+                let wrong = if *p == Parameter::Restitution { 0.95 } else { value * off(i) };
+                s.with(*p, wrong)
+            });
         let unknowns = unknowns(&ALL, &start);
         let (settled, found) = identify(&data, &start, &unknowns, STARTS, PACE).unwrap();
         let held = settled.held().unwrap();
@@ -245,7 +297,7 @@ fn held(names: &[&str], keep: impl Fn(usize, &Step, Option<Kind>) -> bool) -> He
     let unknowns = unknowns(names, &setting);
     let u = coordinates(&setting, &unknowns);
     let (problem, minimum, ..) = settle::least(&data, &setting, &unknowns, &kinds, &u).unwrap();
-    Held::new(&problem, &minimum.parameters, &minimum.jacobian, &vec![None; unknowns.len()]).unwrap()
+    Held::new(&problem, &minimum.parameters, &minimum.jacobian, vec![None; unknowns.len()]).unwrap()
 }
 
 #[test]
@@ -274,7 +326,7 @@ fn what_cannot_be_is_refused() {
         Unknown::all(&entry, &setting).map_err(|e| e.to_string())
     };
     let cases = [
-        ("parameters = [\"m1\"]", "unknown variant `m1`"),
+        ("parameters = [\"m3\"]", "unknown variant `m3`"),
         ("parameters = []", "no parameter"),
         ("parameters = [\"c1\", \"c1\"]", "named twice"),
         ("parameters = [\"c1\"]\nprior.c1 = [0.1, 0.0]", "standard uncertainty of 0"),

@@ -121,7 +121,8 @@ fn off_by(fit: &Fit) -> Option<String> {
     ratios.sort_by(f64::total_cmp);
     let middle = median(&ratios)?;
     (middle.ln().abs() > MANY.ln()).then(|| {
-        format!("Half of the amplitudes are {middle:.3} times what the answer shows, or more: the unit or the scaling may be wrong.")
+        let bound = if middle > 1.0 { "more" } else { "less" };
+        format!("Half of the amplitudes are {middle:.3} times what the answer shows, or {bound}: the unit or the scaling may be wrong.")
     })
 }
 
