@@ -333,10 +333,11 @@ fn fitted(
     let exact = |p: &Parameter| settled.problem.unknowns.iter().all(|u| u.parameter != *p);
     let exact: Vec<&str> =
         [Parameter::M1, Parameter::M2].iter().filter(|p| exact(p)).map(|p| p.name()).collect();
-    let mut method = "least squares of both masses and directions by the closed form".to_owned();
-    if !exact.is_empty() {
-        method += &format!(", {} taken as exact", exact.join(" and "));
-    }
+    let method = "least squares of both masses and directions by the closed form";
+    let method = match exact.as_slice() {
+        [] => method.to_owned(),
+        some => format!("{method}, {} taken as exact", some.join(" and ")),
+    };
     // A prior adds 1/s² to the reciprocal of the variance that all else leaves, exactly where the model is linear.
     let rests = prior.is_some_and(|[_, s]| (std * slope).powi(2) > 0.5 * s * s);
     Fitted {

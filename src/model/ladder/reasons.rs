@@ -57,8 +57,8 @@ fn passed_over(rung: &Rung, question: &Question) -> String {
         _ if !rung.valid => format!("not valid. {}", rung.why),
         _ if rung.why.contains(UNSETTLED) => format!("its motion has not settled. {}", rung.why),
         Some(c) => format!(
-            "valid, but its answer moves by {:+.3} % at {}, more than {} allows.",
-            100.0 * c.change,
+            "valid, but its answer moves by {} at {}, more than {} allows.",
+            percent(c.change),
             c.at.name(),
             allowed(question)
         ),
@@ -82,7 +82,7 @@ fn chosen(choice: &Choice, rung: &Rung, question: &Question) -> String {
             continue;
         }
         let excused = change.enough && change.change.abs() > question.tolerance;
-        let _ = write!(text, " Its answer moves by {:+.3} % at {}", 100.0 * change.change, change.at.name());
+        let _ = write!(text, " Its answer moves by {} at {}", percent(change.change), change.at.name());
         text.push_str(if excused {
             ", more than the tolerance: the noise floor, or what the answers themselves are uncertain by, allows it."
         } else {
@@ -90,11 +90,9 @@ fn chosen(choice: &Choice, rung: &Rung, question: &Question) -> String {
         });
     }
     if let Some(law) = choice.law {
-        let moved = 100.0 * law.change;
-        let _ = write!(
-            text,
-            " With curved bodies that meet for as long and rebound alike it moves by {moved:+.3} %"
-        );
+        let moved = percent(law.change);
+        let _ =
+            write!(text, " With curved bodies that meet for as long and rebound alike it moves by {moved}");
         text.push_str(if law.enough {
             "."
         } else {
@@ -107,7 +105,7 @@ fn chosen(choice: &Choice, rung: &Rung, question: &Question) -> String {
 /// What the uncertainty of the gap does to the chosen answer.
 pub fn gap(choice: &Choice, question: &Question) -> Option<String> {
     let at = |change: &Option<Change>| match change {
-        Some(change) => format!("moves it by {:+.3} %", 100.0 * change.change),
+        Some(change) => format!("moves it by {}", percent(change.change)),
         None => "leaves no such answer".to_owned(),
     };
     let [smaller, larger] = choice.gap.as_slice() else { return None };
@@ -139,8 +137,8 @@ fn unknown(choice: &Choice, question: &Question) -> String {
     );
     let _ = match rows.iter().rposition(|r| !r.enough) {
         Some(i) if i + 1 == rows.len() => {
-            let still = 100.0 * last.change;
-            write!(text, ", and at the stiffest of them it is still {still:+.3} % off, outside {within}.")
+            let still = percent(last.change);
+            write!(text, ", and at the stiffest of them it is still {still} off, outside {within}.")
         }
         Some(i) => write!(text, ", and stays within {within} from {:.0e} N/m on.", rows[i + 1].stiffness),
         None => write!(text, ", within {within}."),
@@ -150,6 +148,15 @@ fn unknown(choice: &Choice, question: &Question) -> String {
         let _ = write!(text, " At {} N/m it could not be computed.", failed.join(", "));
     }
     text
+}
+
+/// A relative change in percent; one that rounds to nothing is not nothing.
+fn percent(change: f64) -> String {
+    if change == 0.0 || change.abs() >= 5e-6 {
+        format!("{:+.3} %", 100.0 * change)
+    } else {
+        "less than 0.001 %".to_owned()
+    }
 }
 
 /// What a change may be.

@@ -103,7 +103,7 @@ pub fn precision(scene: &Scene) -> Figure {
         }
         if !failed.is_empty() {
             let (x, y): (Vec<f64>, Vec<f64>) = failed.iter().map(place).unzip();
-            crosses.push(Series::points(name, x, y).ink(ink).marker(Marker::Cross));
+            crosses.push(Series::points(format!("{name}: failed"), x, y).ink(ink).marker(Marker::Cross));
         }
         named.push(methods.into_iter().map(|m| (place(&m), m)).collect());
     }

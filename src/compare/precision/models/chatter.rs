@@ -81,7 +81,7 @@ pub fn scene(quick: bool) -> Scene {
         says: "Pressed together by their springs, the masses chatter to rest, are released and chatter again: the times of both ends \
                and of the release. Methods with events let the masses rest below the speed that their tolerance resolves."
             .to_owned(),
-        error_of: "largest error of the three times in s".to_owned(),
+        error_of: "largest error of the three times (s)".to_owned(),
         truth: "arithmetic with 40 digits".to_owned(),
         bound: None,
         methods: entries.done(),

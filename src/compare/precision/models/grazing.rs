@@ -117,7 +117,7 @@ pub fn scene(depth: f64, quick: bool) -> crate::Result<Scene> {
             "A motion that reaches {depth:.0e} m into the other mass, and one that misses it by as much, each from {STARTS} starts: is \
              the impact seen, and when?"
         ),
-        error_of: "median error of the impact's time in s".to_owned(),
+        error_of: "median error of the impact's time (s)".to_owned(),
         truth: "the forced motion A cos ω(t − tₚ) meets the gap A − d at tₚ − 2 asin(√(d/2A))/ω".to_owned(),
         bound: None,
         methods: entries.done(),

@@ -107,7 +107,7 @@ pub fn scene(seconds: f64, quick: bool) -> crate::Result<Scene> {
         says: format!(
             "From rest under 0.5 N at ν 2.1, every impact crossed at speed: the times of the impacts up to {seconds} s."
         ),
-        error_of: "largest error of an impact time in s".to_owned(),
+        error_of: "largest error of an impact time (s)".to_owned(),
         truth: format!(
             "impacts 1, 2, 3, 22 and 1098: Newton's method on the equations of motion with 40 digits; all others: matrix exponentials in \
              short steps, beyond {FOLLOWED:.0e} s; smaller errors than {:.0e} s, the rounding of the time, are told as that",
