@@ -44,6 +44,24 @@ fn tell(message: &str, line: &str) -> Told {
         };
         return Told { found: format!("unknown key `{wrong}`"), hint, ..Told::default() };
     }
+    if message.starts_with("unknown variant")
+        && let Some((wrong, known)) = names.split_first()
+    {
+        let (_, expected) = message.split_once(", expected ").unwrap_or_default();
+        let hint = nearest(wrong, known).map(|near| format!("did you mean `{near}`?"));
+        return Told {
+            found: format!("the name `{wrong}`"),
+            expected: expected.to_owned(),
+            hint: hint.unwrap_or_default(),
+        };
+    }
+    if message == "duplicate key" {
+        return Told {
+            found: "this name a second time".to_owned(),
+            expected: "each key and each table once".to_owned(),
+            hint: "put what belongs to it in one place".to_owned(),
+        };
+    }
     if let Some(key) = message.strip_prefix("missing field ") {
         let hint = format!("add {} = …", key.trim_matches('`'));
         return Told { found: format!("the key {key} is missing"), hint, ..Told::default() };
@@ -80,13 +98,17 @@ fn tell(message: &str, line: &str) -> Told {
     let (found, expected) = message.split_once(", expected ").unwrap_or((message, ""));
     let found = match found.split_once(": ") {
         Some(("invalid type" | "invalid value", what)) => format!("found the {what}"),
-        _ => found.to_owned(),
+        _ => match found.strip_prefix("invalid length ") {
+            Some(length) => format!("found a list of {length}"),
+            None => found.to_owned(),
+        },
     };
     let expected = match expected {
         "u8" => "a small whole number",
         "usize" | "u64" => "a whole number, 0 or more",
         "f64" => "a number",
         "a string" | "path string" => "text between quotes",
+        "an array of length 2" => "two values between square brackets",
         "a sequence" => "a list between square brackets, or tables with double brackets",
         "a boolean" => "true or false",
         other => other,
@@ -156,5 +178,35 @@ mod tests {
         let text = "a = 1\n[x]\n  a = 2\n";
         assert_eq!(find(text, "a", None), 0..5);
         assert_eq!(&text[find(text, "a", Some(6))], "  a = 2");
+    }
+
+    #[test]
+    fn the_parsers_words_are_told_in_those_of_a_campaign() {
+        for (text, found, expected, hint) in [
+            ("prior.gap = [1e-3]", "a list of 1", "two values between square brackets", ""),
+            (
+                "prior.gap = 1e-3",
+                "found the floating point `0.001`",
+                "two values between square brackets",
+                "",
+            ),
+            (
+                "prior.gapp = [1e-3, 1e-5]",
+                "the name `gapp`",
+                "one of `force`, `restitution`, `c1`",
+                "did you mean `gap`?",
+            ),
+            (
+                "starts = 3\nstarts = 4",
+                "this name a second time",
+                "each key and each table once",
+                "in one place",
+            ),
+        ] {
+            let error = toml::from_str::<crate::campaign::FitEntry>(text).unwrap_err();
+            let told = tell(error.message(), text.lines().next().unwrap());
+            assert!(told.found.contains(found), "{text}: {told:?}");
+            assert!(told.expected.contains(expected) && told.hint.contains(hint), "{text}: {told:?}");
+        }
     }
 }

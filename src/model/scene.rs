@@ -1,6 +1,7 @@
 //! A scene: the rig, what drives it, and how its contact is made.
 
 mod draft;
+mod given;
 
 pub use draft::Draft;
 
