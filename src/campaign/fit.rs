@@ -19,6 +19,9 @@ pub struct FitEntry {
     /// Relative standard uncertainty of the calibration of each mass' amplitudes: one factor for all of them, and as much again as a slope
     /// from the lowest to the highest frequency. Default 0.
     pub calibration: Option<f64>,
+    /// Relative standard uncertainty of each amplitude for itself, beside the noise in its spectrum: how far a measurement that is repeated
+    /// strays. Default 0.
+    pub scatter: Option<f64>,
 }
 
 /// Starting points, at most.
@@ -47,11 +50,10 @@ impl FitEntry {
         if self.starts.is_some_and(|n| n == 0 || n > MOST_STARTS) {
             return Err(("starts", format!("starts is not from 1 to {MOST_STARTS}")));
         }
-        if self.calibration.is_some_and(|c| !(0.0..0.5).contains(&c)) {
-            return Err((
-                "calibration",
-                "calibration is not from 0 to 0.5: it is relative, 0.01 for 1 %".to_owned(),
-            ));
+        for (key, value) in [("calibration", self.calibration), ("scatter", self.scatter)] {
+            if value.is_some_and(|v| !(0.0..0.5).contains(&v)) {
+                return Err((key, format!("{key} is not from 0 to 0.5: it is relative, 0.01 for 1 %")));
+            }
         }
         for (parameter, [value, std]) in &self.prior {
             let name = parameter.name();

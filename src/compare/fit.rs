@@ -132,6 +132,8 @@ pub struct Fit {
     pub rungs: Vec<Rung>,
     /// Points of the fit.
     pub points: Vec<FitPoint>,
+    /// Why no parameter has an uncertainty, where none has: the answer as a whole may be wrong.
+    pub doubt: Option<String>,
     /// What a person must know.
     pub warnings: Vec<String>,
 }
@@ -146,6 +148,8 @@ const IDLE: usize = 2;
 const EXPLAINED: f64 = 0.1;
 /// One point more within one κ.
 const BETTER: f64 = 1.0;
+/// Times that the least is looked for from where a profile falls below it.
+const AGAIN: usize = 3;
 
 /// Finds the parameters that `entry` asks for from displacement responses, beginning with `rig` and the stated `force` (N; `None`: each
 /// point its measured one). With the stiffness of the `contact` (N/m) its compliance is taken out of the points.
@@ -163,6 +167,7 @@ pub fn fit(
     rig.check()?;
     let mut data = Data::new(force, responses)?;
     data.calibration = entry.calibration.unwrap_or(0.0);
+    data.scattered(entry.scatter.unwrap_or(0.0));
     let base = Setting { rig: *rig, force: data.force };
     found(&data, &base, contact, responses, entry, pace)
 }
@@ -180,25 +185,53 @@ fn found(
     let starts = entry.starts.unwrap_or(STARTS);
     let (rigid, ends) = identify(data, base, &unknowns, starts, pace)?;
     let stiff = contact.map(|stiffness| stiff(&rigid, stiffness, pace)).transpose()?;
-    let mut settled = match &stiff {
+    let settled = match &stiff {
         None => rigid.clone(),
         Some(stiff) => settle(&stiff.data, base, &unknowns, &stiff.u, pace)?,
     };
-    settled.contradictions = prior::contradictions(&settled, starts, pace);
+    let (mut settled, mut held, profile) = profiled(settled, pace)?;
+    settled.contradictions.extend(profile.as_ref().and_then(Profile::missed));
+    settled.contradictions.extend(prior::contradictions(&settled, starts, pace));
+    settled.contradictions.extend(settled.pulled(&held));
     settled.lost = stiff.as_ref().map_or(0, |s| s.lost);
-    let held = settled.held()?;
-    let pulled = settled.pulled(&held);
-    settled.contradictions.extend(pulled);
-    let profile = profile::profile(&settled, &held, held.worst());
+    if entry.calibration.is_none() {
+        held.lose_scale(&settled.problem);
+    }
     let mut fit = gathered(&settled, &held, base, profile);
     (fit.starts, fit.agreeing) = (starts, agreeing(&ends, &rigid.minimum.parameters, &rigid.held()?));
-    fit.rungs = rung::rungs(&rigid, stiff.is_some().then_some(&settled), responses, pace);
+    fit.rungs = match stiff {
+        None => rung::rungs(&settled, None, responses, pace),
+        Some(_) => rung::rungs(&rigid, Some(&settled), responses, pace),
+    };
     fit.warnings = told::warnings(&fit, &settled, data);
-    if contact.is_none() && settled.doubt().is_none() {
+    if fit.doubt.is_some() {
+        fit.warnings.extend(told::scarce(data, motion::assigned(data, base, pace)?.amplitudes(data)));
+    } else if contact.is_none() {
         fit.warnings.extend(stiff::untold(&settled, &held, pace));
     }
     fit.warnings.extend(told::unused(entry));
     Ok(fit)
+}
+
+/// An answer with how well it is held and the profile of the parameter known worst. Where that falls below the answer, the least was not
+/// found: it is looked for from there.
+fn profiled(settled: Settled<'_>, pace: Pace) -> Result<(Settled<'_>, Held, Option<Profile>)> {
+    let of = |settled: &Settled<'_>| -> Result<(Held, Option<Profile>)> {
+        let held = settled.held()?;
+        let profile = profile::profile(settled, &held, held.worst());
+        Ok((held, profile))
+    };
+    let (mut best, (mut held, mut profile)) = (settled.clone(), of(&settled)?);
+    for _ in 0..AGAIN {
+        let Some(u) = profile.as_ref().and_then(Profile::lower) else { break };
+        let next = settle(best.problem.data, &best.problem.base, &best.problem.unknowns, u, pace)?;
+        if next.missed > best.missed + BETTER {
+            break;
+        }
+        (held, profile) = of(&next)?;
+        best = next;
+    }
+    Ok((best, held, profile))
 }
 
 /// The best answer of several starts, and where each start led that led anywhere.
@@ -314,6 +347,7 @@ fn gathered(settled: &Settled<'_>, held: &Held, base: &Setting, profile: Option<
         profile,
         rungs: Vec::new(),
         points: points.collect(),
+        doubt: settled.doubt(),
         warnings: Vec::new(),
     }
 }
@@ -331,12 +365,16 @@ fn fitted(
     let reason = settled.doubt().or_else(|| held.loose[i].clone());
     let slope = coordinate.slope(u).abs();
     let exact = |p: &Parameter| settled.problem.unknowns.iter().all(|u| u.parameter != *p);
-    let exact: Vec<&str> =
+    let mut exact: Vec<&str> =
         [Parameter::M1, Parameter::M2].iter().filter(|p| exact(p)).map(|p| p.name()).collect();
+    let corrected = |step: &data::Step| step.seen.iter().flatten().any(|seen| seen.soft != 1.0);
+    if settled.problem.data.steps.iter().any(corrected) {
+        exact.push("the stiffness of the contact");
+    }
     let method = "least squares of both masses and directions by the closed form";
     let method = match exact.as_slice() {
         [] => method.to_owned(),
-        some => format!("{method}, {} taken as exact", some.join(" and ")),
+        some => format!("{method}, {} taken as exact", some.join(", ")),
     };
     // A prior adds 1/s² to the reciprocal of the variance that all else leaves, exactly where the model is linear.
     let rests = prior.is_some_and(|[_, s]| (std * slope).powi(2) > 0.5 * s * s);

@@ -115,6 +115,20 @@ impl Data {
         Ok(data)
     }
 
+    /// Amplitudes stray by this part of each, beside what is known of them; with it none is guessed.
+    pub fn scattered(&mut self, part: f64) {
+        if part == 0.0 {
+            return;
+        }
+        for seen in self.steps.iter_mut().flat_map(|s| s.seen.iter_mut().flatten()) {
+            let known = if self.guessed { 0.0 } else { seen.std };
+            seen.std = known.hypot(part * seen.amplitude);
+        }
+        if std::mem::take(&mut self.guessed) {
+            self.warnings.clear();
+        }
+    }
+
     /// Adds a sweep: beside the other mass, where that passed the very same steps.
     fn add(
         &mut self,

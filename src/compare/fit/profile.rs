@@ -27,6 +27,37 @@ pub struct Profile {
     pub limit: f64,
     /// Values within which the rise stays below it. `None` for a side on which it is not reached in the values.
     pub interval: [Option<f64>; 2],
+    /// Coordinates of all unknowns where the rise is least.
+    #[serde(skip)]
+    pub lowest: Vec<f64>,
+}
+
+/// A profile that falls so far below the answer has found a better one.
+const LOWER: f64 = 0.1;
+/// By one the sum rises within one standard uncertainty.
+const MISSED: f64 = 1.0;
+
+impl Profile {
+    /// How far the profile falls below the answer.
+    fn fall(&self) -> f64 {
+        -self.rise.iter().copied().fold(0.0, f64::min)
+    }
+
+    /// Coordinates of a better answer, where the profile has found one.
+    pub fn lower(&self) -> Option<&[f64]> {
+        (self.fall() > LOWER).then_some(self.lowest.as_slice())
+    }
+
+    /// That the answer is not the least sum of squares, where it is not.
+    pub fn missed(&self) -> Option<String> {
+        (self.fall() > MISSED).then(|| {
+            format!(
+                "beside the answer {} has values of a smaller sum of squares, by {:.1}: the least was not found",
+                self.parameter.name(),
+                self.fall()
+            )
+        })
+    }
 }
 
 /// Profile of the unknown number `which`, over four standard uncertainties on both sides, but not beyond a bound.
@@ -55,12 +86,18 @@ pub fn profile(settled: &Settled<'_>, held: &Held, which: usize) -> Option<Profi
             .map(|j| best[j] + away * (held.covariance[(j, which)] / held.covariance[(which, which)]))
             .collect();
         let sum = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
-        let sum =
-            if others.is_empty() { sum(&rest.at(&[])) } else { sum(&rest.solve(&start).ok()?.residuals) };
-        Some((value, sum + prior - least))
+        let (sum, mut u) = if others.is_empty() {
+            (sum(&rest.at(&[])), Vec::new())
+        } else {
+            let minimum = rest.solve(&start).ok()?;
+            (sum(&minimum.residuals), minimum.parameters)
+        };
+        u.insert(which, best[which] + away);
+        Some((value, sum + prior - least, u))
     };
-    let points: Vec<(f64, f64)> = (-SIDE..=SIDE).into_par_iter().filter_map(rise).collect();
-    let (value, rise): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
+    let points: Vec<(f64, f64, Vec<f64>)> = (-SIDE..=SIDE).into_par_iter().filter_map(rise).collect();
+    let lowest = points.iter().min_by(|a, b| a.1.total_cmp(&b.1)).map(|p| p.2.clone())?;
+    let (value, rise): (Vec<f64>, Vec<f64>) = points.into_iter().map(|p| (p.0, p.1)).unzip();
     let middle = value.iter().position(|v| *v >= unknown.coordinate.value(best[which]))?;
     let below = crossing(value[..=middle].iter().zip(&rise[..=middle]).rev());
     let above = crossing(value[middle..].iter().zip(&rise[middle..]));
@@ -71,6 +108,7 @@ pub fn profile(settled: &Settled<'_>, held: &Held, which: usize) -> Option<Profi
         rise,
         limit: ONE,
         interval: [below, above],
+        lowest,
     })
 }
 

@@ -48,10 +48,11 @@ pub struct Settled<'a> {
 
 /// Part of the amplitudes whose motion is known that may lie far from it before the answer is doubted.
 const CONTRADICTED: f64 = 0.1;
-/// χ²/ν beyond which stated uncertainties or the model are doubted.
-pub const POOR: f64 = 2.0;
-/// χ²/ν beyond which no mistake in the uncertainties of the points, ten times too small, would explain the residuals.
-const HOPELESS: f64 = 100.0;
+/// χ²/ν beyond which residuals say more of the model than of noise: what it lacks moves parameters by more than what is left of it in the
+/// residuals, which the parameters take up as far as they can.
+const POOR: f64 = 1.5;
+/// Normal deviate that χ²/ν exceeds by chance in one of a thousand cases.
+const CHANCE: f64 = 3.09;
 
 impl Settled<'_> {
     /// How well the points hold each parameter.
@@ -95,15 +96,11 @@ impl Settled<'_> {
         }
         let residuals = self.reduced.sqrt();
         let guessed = self.problem.data.guessed;
-        if !guessed && self.reduced > POOR && self.whiteness.rejected() {
+        if !guessed && self.reduced > POOR && (self.beyond_chance() || self.whiteness.rejected()) {
+            let row = if self.whiteness.rejected() { " and follow each other along frequency" } else { "" };
             return Some(format!(
-                "the residuals are {residuals:.1} times as large as the uncertainties of the points and follow each other along frequency, \
-                 which noise does not"
-            ));
-        }
-        if !guessed && self.reduced > HOPELESS {
-            return Some(format!(
-                "the residuals are {residuals:.0} times as large as the uncertainties of the points"
+                "the residuals are {residuals:.1} times as large as the uncertainties of the points{row}: the model lacks something, or the amplitudes \
+                 stray by more than the noise in their spectra (`scatter` in [fit] says by how much)"
             ));
         }
         let free = free(&self.problem);
@@ -120,6 +117,12 @@ impl Settled<'_> {
         }
         (!self.minimum.converged)
             .then(|| "the search ended before it found the least sum of squares".to_owned())
+    }
+
+    /// Whether χ²/ν is larger than chance makes it (E. B. Wilson & M. M. Hilferty 1931).
+    pub fn beyond_chance(&self) -> bool {
+        let part = 2.0 / (9.0 * free(&self.problem) as f64);
+        self.reduced > (1.0 - part + CHANCE * part.sqrt()).powi(3)
     }
 
     pub fn setting(&self) -> Setting {

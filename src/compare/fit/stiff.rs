@@ -27,6 +27,8 @@ pub struct Stiff {
     pub lost: usize,
     /// Coordinates that belong to them.
     pub u: Vec<f64>,
+    /// Whether the last round found a least sum of squares where parameters may lie.
+    pub sure: bool,
 }
 
 /// The points of an answer with the compliance of a contact of `stiffness` (N/m) taken out of them.
@@ -57,12 +59,14 @@ fn led(rigid: &Settled<'_>, from: &Setting, stiffness: f64, rounds: usize, pace:
     let corrected = |data: &Data, setting: &Setting| -> Result<Stiff> {
         let kinds = assigned(data, setting, pace)?.kinds;
         let (data, lost) = corrected(plain, setting, &kinds, stiffness);
-        Ok(Stiff { data, lost, u: coordinates(setting, unknowns) })
+        Ok(Stiff { data, lost, u: coordinates(setting, unknowns), sure: false })
     };
     let mut now = corrected(plain, from)?;
     for _ in 0..rounds {
         let settled = settle(&now.data, base, unknowns, &now.u, pace)?;
-        let next = corrected(&now.data, &settled.setting())?;
+        let inside = settled.held()?.edges.iter().all(Option::is_none);
+        let sure = settled.agreed && settled.minimum.converged && inside;
+        let next = Stiff { sure, ..corrected(&now.data, &settled.setting())? };
         let still = change(&now.data, &next.data) <= STILL;
         now = next;
         if still {
@@ -91,8 +95,8 @@ fn corrected(data: &Data, setting: &Setting, kinds: &[Option<Kind>], stiffness: 
         if *kind != Some(Kind::Impacting) {
             continue;
         }
-        let made = made(setting, stiffness, setting.force_at(data, step), step.frequency);
-        let Some(made) = made else {
+        let Some((made, left)) = made(setting, stiffness, setting.force_at(data, step), step.frequency)
+        else {
             lost += Step::clear(step).count();
             step.seen = [None, None];
             continue;
@@ -100,7 +104,7 @@ fn corrected(data: &Data, setting: &Setting, kinds: &[Option<Kind>], stiffness: 
         for (seen, made) in step.seen.iter_mut().zip(made) {
             if let Some(seen) = seen {
                 seen.amplitude /= made;
-                seen.std /= made;
+                seen.std = (seen.std / made).hypot(left * seen.amplitude);
                 seen.limit = seen.limit.map(|l| l / made);
                 seen.soft = made;
             }
@@ -109,16 +113,18 @@ fn corrected(data: &Data, setting: &Setting, kinds: &[Option<Kind>], stiffness: 
     (stiff, lost)
 }
 
-/// What the compliance makes of the amplitudes of both masses, as factors; `None` where the correction does not hold.
-fn made(setting: &Setting, stiffness: f64, force: f64, frequency: f64) -> Option<[f64; 2]> {
+/// What the compliance makes of the amplitudes of both masses, as factors, and the part (ωt)² of each that a correction of first order in the
+/// time t in contact leaves; `None` where the correction does not hold.
+fn made(setting: &Setting, stiffness: f64, force: f64, frequency: f64) -> Option<([f64; 2], f64)> {
     let (rig, sine) = (&setting.rig, Sine { force, frequency });
     let compliance = Compliance::new(rig, stiffness, None).ok()?;
     let found = orbits(rig, force, frequency).ok()?;
-    let soft =
-        softened(rig, &Excitation::Sine(sine), &found, &compliance).ok()?.first()?.as_ref()?.fundamental;
+    let softened = softened(rig, &Excitation::Sine(sine), &found, &compliance).ok()?;
+    let soft = softened.first()?.as_ref()?;
     let rigid = shown(rig, &sine).ok()?.amplitude;
-    let made = [0, 1].map(|mass| soft[mass] / rigid[mass]);
-    made.iter().all(|m| m.is_finite() && *m > 0.0).then_some(made)
+    let made = [0, 1].map(|mass| soft.fundamental[mass] / rigid[mass]);
+    let left = (2.0 * PI * soft.share).powi(2);
+    made.iter().all(|m| m.is_finite() && *m > 0.0).then_some((made, left))
 }
 
 /// Part of the period in contact for which is said what an unknown compliance does.
@@ -132,8 +138,14 @@ pub fn untold(settled: &Settled<'_>, held: &Held, pace: Pace) -> Option<String> 
     let frequency = used.iter().sum::<f64>() / used.len() as f64;
     // t_c = π√(M/k₃) of a spring.
     let stiffness = setting.rig.reduced_mass() * (PI * frequency / SHARE).powi(2);
+    let contact = format!("a contact of a thousandth of the period, {} stiff", quantity(stiffness, "N/m", 2));
     // What is left after one round is some thousandth of the change.
-    let soft = led(settled, &setting, stiffness, 1, pace).ok()?;
+    let Some(soft) = led(settled, &setting, stiffness, 1, pace).ok().filter(|soft| soft.sure) else {
+        return Some(format!(
+            "Impacts are taken to last no time. What {contact}, would make of the parameters could not be told. Give `stiffness` in [contact] where \
+             it is known."
+        ));
+    };
     let changed =
         |i: usize| (soft.u[i] - settled.minimum.parameters[i]).abs() > held.covariance[(i, i)].sqrt();
     let one = |i: usize| {
@@ -144,9 +156,7 @@ pub fn untold(settled: &Settled<'_>, held: &Held, pace: Pace) -> Option<String> 
         (0..soft.u.len()).filter(|i| held.loose[*i].is_none() && changed(*i)).map(one).collect();
     (!moved.is_empty()).then(|| {
         format!(
-            "Impacts are taken to last no time. With a contact of a thousandth of the period, {} stiff, it would be: {}. Give `stiffness` in \
-             [contact] where it is known.",
-            quantity(stiffness, "N/m", 2),
+            "Impacts are taken to last no time. With {contact}, it would be: {}. Give `stiffness` in [contact] where it is known.",
             moved.join(", ")
         )
     })

@@ -3,15 +3,15 @@
 use super::super::forcing::median;
 use super::Fit;
 use super::data::{self, Data};
-use super::settle::{POOR, Settled};
+use super::settle::Settled;
 use crate::campaign::{FitEntry, Parameter};
 
 /// A factor by which amplitudes are off that no calibration explains.
 const MANY: f64 = 5.0;
+/// A force that differs by more than this part is another one.
+const OTHER: f64 = 0.05;
 /// Correlations beyond this are named.
 const TIED: f64 = 0.95;
-/// A profile that falls so far below the answer has found a better one.
-const LOWER: f64 = 0.1;
 /// A value within this part of its bounds lies at one.
 const AT_BOUND: f64 = 1e-3;
 
@@ -49,18 +49,22 @@ pub fn warnings(fit: &Fit, settled: &Settled<'_>, data: &Data) -> Vec<String> {
             ));
         }
     }
-    if let Some(rung) = fit.rungs.iter().find(|r| r.chosen) {
-        said.push(format!(
-            "Of the models that were judged by points held out, the simplest within one standard error of the best is: {}.",
-            rung.model
-        ));
+    said.extend(simplest(fit));
+    if let Some(force) = fit.parameters.iter().find(|p| p.parameter == Parameter::Force && p.prior.is_none())
+    {
+        let ratio = force.estimate.value / force.start;
+        if doubt.is_none() && (ratio - 1.0).abs() > OTHER {
+            said.push(format!(
+                "The force found is {ratio:.3} times that of the campaign or its files: that one, or the scale of the amplitudes, is wrong."
+            ));
+        }
     }
     if data.guessed {
         let good = data::GUESS * fit.reduced_chi_squared.sqrt();
         said.push(format!("By the residuals the amplitudes are good to {:.2} %.", 100.0 * good));
     } else if fit.reduced_chi_squared.is_nan() {
         said.push("There are no more amplitudes and priors than parameters: nothing tells whether the model fits them.".to_owned());
-    } else if doubt.is_none() && fit.reduced_chi_squared > POOR {
+    } else if doubt.is_none() && settled.beyond_chance() {
         said.push(format!(
             "The residuals are {:.1} times as large as the uncertainties of the points: these are too small, or the model lacks something. The \
              uncertainties of the parameters are widened as much.",
@@ -100,18 +104,44 @@ pub fn warnings(fit: &Fit, settled: &Settled<'_>, data: &Data) -> Vec<String> {
             fit.agreeing, fit.starts
         ));
     }
-    if let Some(profile) = &fit.profile
-        && let Some(lower) = profile.rise.iter().copied().filter(|r| *r < -LOWER).reduce(f64::min)
-    {
-        said.push(format!(
-            "Beside the answer {} has values of a smaller sum of squares, by {:.1}: the least was not found. More `starts` may find it.",
-            profile.parameter.name(),
-            -lower
-        ));
-    }
     said.push("The overlay and its scores are of the rig as it was stated, not of the one found.".to_owned());
     said.extend(data.warnings.iter().cloned());
     said
+}
+
+/// Which model was chosen, and whether the parameters found are those of it.
+fn simplest(fit: &Fit) -> Option<String> {
+    let (rung, own) = (fit.rungs.iter().find(|r| r.chosen)?, fit.rungs.last()?);
+    let said = format!(
+        "Of the models that were judged by points held out, the simplest within one standard error of the best is: {}.",
+        rung.model
+    );
+    if rung.model == own.model {
+        return Some(said);
+    }
+    let criterion = match (own.aicc, rung.aicc) {
+        (Some(a), Some(b)) => format!(
+            ", for which Akaike's criterion, of all points together, is {} by {:.0}",
+            if a < b { "lower" } else { "higher" },
+            (a - b).abs()
+        ),
+        _ => String::new(),
+    };
+    Some(format!(
+        "{said} The parameters found are those of another, the {}{criterion}; `rungs` has the values of each.",
+        own.model
+    ))
+}
+
+/// That a doubted fit had little to go by: at the rig as stated so many of all amplitudes are of motions that a fit can use.
+pub fn scarce(data: &Data, usable: usize) -> Option<String> {
+    let all = data.steps.iter().flat_map(data::Step::clear).count();
+    (2 * usable < all).then(|| {
+        format!(
+            "The rig as it is stated shows one impact a cycle, or none, at {usable} of {all} amplitudes only, and a fit can use no other motions: sweep \
+             where it does, or begin nearer to the rig."
+        )
+    })
 }
 
 /// Where the amplitudes are many times what the answer shows: most likely a mistake of units.

@@ -31,7 +31,16 @@ impl Unknown {
                 return Err(Error::usage(
                     format!("{} starts at {value}, outside its bounds {low} to {high}", parameter.name()),
                     "bounds that hold the rig's own value, from which the fit starts",
-                ));
+                )
+                .hint(format!(
+                    "give `bounds.{} = [lowest, highest]` in [fit]{}",
+                    parameter.name(),
+                    if *parameter == Parameter::Gap {
+                        ", below 0 for masses that are pressed together"
+                    } else {
+                        ""
+                    }
+                )));
             }
             if high.is_infinite() && value == low {
                 return Err(Error::usage(

@@ -23,6 +23,7 @@ pub fn fitted(fit: &Fit) -> Table {
             ("to (95 %)", "", &|p| end(p.interval, 1)),
             ("held by", "", &|p| {
                 Cell::from(match (p.identifiable, p.rests_on_prior) {
+                    _ if fit.doubt.is_some() => "not told: the answer is in doubt",
                     (false, _) => "nothing: not identifiable",
                     (true, true) => "its prior",
                     (true, false) => "the points",

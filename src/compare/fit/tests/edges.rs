@@ -95,3 +95,91 @@ fn what_was_given_in_vain_is_said() {
         assert!(fit.warnings.iter().any(|w| w.contains(name)), "{name}: {:?}", fit.warnings);
     }
 }
+
+/// All lengths and forces half as large: with force and gap free nothing but the calibration tells.
+#[test]
+fn a_scale_that_nothing_holds_has_no_uncertainty() {
+    let names = "parameters = [\"force\", \"restitution\", \"c1\", \"gap\"]";
+    let halved = |data: &mut Data| {
+        for seen in data.steps.iter_mut().flat_map(|s| s.seen.iter_mut().flatten()) {
+            seen.amplitude /= 2.0;
+            seen.std /= 2.0;
+            seen.limit = seen.limit.map(|l| l / 2.0);
+        }
+    };
+    let fit = answered(names, 38, halved).unwrap();
+    for (parameter, value) in [(Parameter::Force, 0.05), (Parameter::Gap, 0.5e-3)] {
+        let found = of(&fit, parameter);
+        // Half as large to the noise over the amplitudes, 1e-4 to 1e-3.
+        assert!((found.estimate.value / value - 1.0).abs() < 3e-3, "{found:?}");
+        assert!(found.estimate.std.is_none() && found.interval.is_none(), "{found:?}");
+        assert!(found.reason.as_ref().is_some_and(|r| r.contains("one factor")), "{found:?}");
+    }
+    let c1 = of(&fit, Parameter::C1).estimate.clone();
+    assert!((c1.value - 0.1).abs() < 4.0 * c1.std.unwrap(), "{c1:?}");
+    assert!(fit.warnings.iter().any(|w| w.contains("The force found is 0.5")), "{:?}", fit.warnings);
+    // Where a calibration is stated, or a prior of one of both, the scale is held.
+    for held in ["calibration = 0", "prior.gap = [0.5e-3, 1e-6]"] {
+        let fit = answered(&format!("{names}\n{held}"), 38, halved).unwrap();
+        assert!(of(&fit, Parameter::Force).estimate.std.is_some(), "{held}: {:?}", fit.warnings);
+    }
+}
+
+/// Amplitudes that stray by a thousandth, up to sixteen times what the noise in their spectra shows: doubted, and right where it is stated.
+#[test]
+fn amplitudes_that_stray_need_their_scatter() {
+    let names = "parameters = [\"restitution\", \"c1\", \"c2\", \"gap\"]";
+    for seed in [39, 40] {
+        let strayed = |data: &mut Data| {
+            let mut normal = Normal(700 + seed);
+            for _ in 0..16 {
+                normal.next();
+            }
+            for seen in data.steps.iter_mut().flat_map(|s| s.seen.iter_mut().flatten()) {
+                seen.amplitude *= 1.0 + 1e-3 * normal.next();
+            }
+        };
+        let blind = answered(names, seed, strayed).unwrap();
+        assert!(blind.doubt.as_ref().is_some_and(|d| d.contains("scatter")), "{:?}", blind.doubt);
+        let told = answered(names, seed, |data| {
+            strayed(data);
+            data.scattered(1e-3);
+        })
+        .unwrap();
+        let setting = example();
+        for found in &told.parameters {
+            let Estimate { value, std, .. } = found.estimate;
+            // Four standard deviations of eight: one of 2000 cases.
+            assert!((value - setting.get(found.parameter)).abs() < 4.0 * std.unwrap_or(0.0), "{found:?}");
+        }
+    }
+}
+
+/// Hardly any loss in the impact: a search that begins at 0.95 must not end at 1, nor say more than the points hold.
+#[test]
+fn a_restitution_near_one_is_found_or_doubted() {
+    let setting = example().with(Parameter::Restitution, 0.999);
+    let (clean, kinds) = truth(&setting, PACE);
+    let entry: FitEntry = toml::from_str("parameters = [\"restitution\", \"c1\", \"c2\", \"gap\"]").unwrap();
+    for seed in 45..49 {
+        println!("seed {seed}");
+        let data = noisy(&clean, &kinds, &setting, seed);
+        let start = setting.with(Parameter::Restitution, 0.95).with(Parameter::C2, 0.08);
+        let fit = found(&data, &start, None, &[], &entry, PACE).unwrap();
+        println!("{:?}", fit.doubt);
+        for found in &fit.parameters {
+            let Estimate { value, std, .. } = found.estimate;
+            let off = (value - setting.get(found.parameter)).abs();
+            // Four standard deviations of sixteen: one of a thousand cases.
+            assert!(std.is_none_or(|std| off < 4.0 * std), "{found:?}");
+        }
+    }
+}
+
+#[test]
+fn that_a_rig_shows_few_usable_motions_is_said() {
+    let (data, _) = truth(&example(), PACE);
+    let all = data.steps.iter().flat_map(Step::clear).count();
+    assert_eq!(told::scarce(&data, all / 2 + 1), None);
+    assert!(told::scarce(&data, 3).is_some_and(|s| s.contains(&format!("at 3 of {all} amplitudes"))));
+}
