@@ -50,7 +50,7 @@ pub struct Settled<'a> {
 const CONTRADICTED: f64 = 0.1;
 /// χ²/ν beyond which residuals say more of the model than of noise: what it lacks moves parameters by more than what is left of it in the
 /// residuals, which the parameters take up as far as they can.
-const POOR: f64 = 1.5;
+const POOR: f64 = 1.25;
 /// Normal deviate that χ²/ν exceeds by chance in one of a thousand cases.
 const CHANCE: f64 = 3.09;
 
@@ -99,8 +99,9 @@ impl Settled<'_> {
         if !guessed && self.reduced > POOR && (self.beyond_chance() || self.whiteness.rejected()) {
             let row = if self.whiteness.rejected() { " and follow each other along frequency" } else { "" };
             return Some(format!(
-                "the residuals are {residuals:.1} times as large as the uncertainties of the points{row}: the model lacks something, or the amplitudes \
-                 stray by more than the noise in their spectra (`scatter` in [fit] says by how much)"
+                "the residuals are {residuals:.1} times as large as the uncertainties of the points{row}, {}: the model lacks something, a motion had not \
+                 settled, or the amplitudes stray by more than the noise in their spectra (`scatter` in [fit] says by how much)",
+                self.largest()
             ));
         }
         let free = free(&self.problem);
@@ -117,6 +118,20 @@ impl Settled<'_> {
         }
         (!self.minimum.converged)
             .then(|| "the search ended before it found the least sum of squares".to_owned())
+    }
+
+    /// The largest residual, for a sentence.
+    fn largest(&self) -> String {
+        let all = self.problem.used().zip(&self.minimum.residuals);
+        let largest = all.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+        largest.map_or_else(String::new, |((step, mass), residual)| {
+            format!(
+                "{:.1} times at {:.4} Hz of mass {}",
+                residual.abs() * self.problem.scale.sqrt(),
+                self.problem.data.steps[step].frequency,
+                mass + 1
+            )
+        })
     }
 
     /// Whether χ²/ν is larger than chance makes it (E. B. Wilson & M. M. Hilferty 1931).
