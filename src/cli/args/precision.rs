@@ -24,7 +24,7 @@ pub struct Precision {
     /// (program, version and method), error (in what the scene's "Error:" names; null where it failed), `time_ns` (ns
     /// of one answer), and, where wanted, setting and why (the reason of a failure). For example:
     ///
-    /// [{"scene": "scene C", "method": "Peer 1.0", "error": 2e-4, "time_ns": 7e5}]
+    /// `[{"scene": "scene C", "method": "Peer 1.0", "error": 2e-4, "time_ns": 7e5}]`
     ///
     /// docs/precision.md says what each scene asks; benches/peers/peers.py writes such a file.
     #[arg(long, value_name = "FILE")]
