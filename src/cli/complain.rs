@@ -53,6 +53,26 @@ fn plain(value: &str) -> Option<String> {
     }
 }
 
+/// Units by the names that values have in `--help`.
+const UNITS: [(&str, &str); 8] = [
+    ("<HZ>", " in Hz"),
+    ("<N>", " in N"),
+    ("<NS>", " in N s"),
+    ("<S>", " in s"),
+    ("<M>", " in m"),
+    ("<KG>", " in kg"),
+    ("<RAD>", " in rad"),
+    ("<DB>", " in dB"),
+];
+
+/// That a number was expected, and in which unit.
+fn number(error: &clap::Error) -> Option<String> {
+    std::error::Error::source(error)?.downcast_ref::<std::num::ParseFloatError>()?;
+    let option = error.get(ContextKind::InvalidArg)?.to_string();
+    let unit = UNITS.iter().find(|u| option.ends_with(u.0)).map_or("", |u| u.1);
+    Some(format!("a number{unit}, such as 0.5 or 2e-3"))
+}
+
 /// What may be tried where a number is not written as one is expected.
 fn advice(error: &clap::Error) -> Option<String> {
     let said = |kind| error.get(kind).map(ToString::to_string);
@@ -63,7 +83,7 @@ fn advice(error: &clap::Error) -> Option<String> {
             if value != point && point.parse::<f64>().is_ok() {
                 return Some(format!("a decimal point: {point}"));
             }
-            plain(&value)
+            plain(&value).or_else(|| number(error))
         }
         ErrorKind::UnknownArgument => {
             let number = said(ContextKind::InvalidArg)?;

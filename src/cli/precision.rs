@@ -1,11 +1,12 @@
 //! `vibro precision`: speed against accuracy, and where methods break.
 
 use crate::cli::{args, complain, print, progress};
-use crate::compare::precision::{Cell, FailureMap, Family, Scene, added, earlier, estimators, models};
+use crate::compare::precision::{Cell, Earlier, FailureMap, Family, Scene, added, estimators, models};
 use crate::error::{Error, Result};
 use crate::report::{Figure, Output, files, pictures, tables};
 use serde::Serialize;
 use std::fmt::Write as _;
+use std::path::Path;
 
 #[derive(Serialize)]
 struct Answer<'a> {
@@ -24,56 +25,38 @@ struct Failure<'a> {
 }
 
 pub fn run(typed: &args::Precision, json: bool) -> Result<()> {
-    let wanted = |kind: args::Kind| typed.family.is_none_or(|family| family == kind);
+    let wanted = |family: Family| typed.family.holds(family);
     let (mut scenes, mut maps): (Vec<Scene>, Vec<FailureMap>) = Default::default();
     let bar = progress::bar(json);
     let mut tell = |scene: &str| {
         bar.set_message(scene.to_owned());
         bar.inc(1);
     };
-    let measures = typed.from.is_none();
     if let Some(path) = &typed.from {
-        scenes = earlier::scenes(path)?;
-        let kind = |s: &Scene| match s.family {
-            Family::Models => args::Kind::Models,
-            Family::Estimators => args::Kind::Estimators,
-        };
-        let held = scenes.len();
-        scenes.retain(|scene| wanted(kind(scene)));
-        if scenes.is_empty() && !typed.failures {
-            let family =
-                typed.family.map_or(String::new(), |f| format!(" of the family {f:?}").to_lowercase());
-            return Err(Error::usage(
-                format!("{}: {held} scenes, none{family}", path.display()),
-                "one scene at least; ask for the family that the file holds",
-            ));
+        Earlier { scenes, maps } = earlier(path, typed)?;
+    } else {
+        if wanted(Family::Models) {
+            scenes.extend(models::scenes(typed.quick, &mut tell)?);
         }
-    }
-    if measures && wanted(args::Kind::Models) {
-        scenes.extend(models::scenes(typed.quick, &mut tell)?);
-    }
-    if measures && wanted(args::Kind::Estimators) {
-        scenes.extend(estimators::scenes(typed.quick, &mut tell)?);
-    }
-    if typed.failures {
-        tell("borders");
-        if wanted(args::Kind::Models) {
-            maps.push(models::failures(typed.quick)?);
+        if wanted(Family::Estimators) {
+            scenes.extend(estimators::scenes(typed.quick, &mut tell)?);
         }
-        if wanted(args::Kind::Estimators) {
-            maps.push(estimators::failures(typed.quick)?);
+        if typed.failures {
+            tell("borders");
+            if wanted(Family::Models) {
+                maps.push(models::failures(typed.quick)?);
+            }
+            if wanted(Family::Estimators) {
+                maps.push(estimators::failures(typed.quick)?);
+            }
         }
-        maps.retain(|map| !map.cells.is_empty());
     }
     bar.finish_and_clear();
     let mut warnings = Vec::new();
     for path in &typed.add {
-        let left = added::add(&mut scenes, path)?;
-        if left > 0 {
-            warnings.push(format!("{left} lines of {} name scenes that were not measured.", path.display()));
-        }
+        warnings.extend(added::add(&mut scenes, path)?);
     }
-    if measures && cfg!(debug_assertions) {
+    if typed.from.is_none() && cfg!(debug_assertions) {
         warnings
             .push("This is a build for development: its times are not those of the released program.".into());
     }
@@ -91,13 +74,13 @@ pub fn run(typed: &args::Precision, json: bool) -> Result<()> {
         }
         files::figures(&mut output, &drawn, &|| ())?;
         output.write("precision.csv", tables::precision(&scenes).csv())?;
-        if typed.failures {
+        if !maps.is_empty() {
             output.write("failures.csv", tables::failures(&maps).csv())?;
         }
         written = output.written().to_vec();
     }
     if json {
-        let failures = typed.failures.then(|| {
+        let failures = (!maps.is_empty()).then(|| {
             maps.iter()
                 .flat_map(|map| map.cells.iter().map(move |cell| Failure { family: map.family, cell }))
                 .collect()
@@ -107,7 +90,9 @@ pub fn run(typed: &args::Precision, json: bool) -> Result<()> {
     complain::warn(&warnings);
     let mut text = String::new();
     for scene in &scenes {
-        let _ = writeln!(text, "{}\n{}\n{}", scene.name, scene.says, tables::scene(scene).text());
+        let bound = scene.bound.map_or(String::new(), |b| format!("; Cramér–Rao bound: {b:.1e}"));
+        let Scene { name, says, error_of, .. } = scene;
+        let _ = writeln!(text, "{name}\n{says}\nError: {error_of}{bound}\n{}", tables::scene(scene).text());
     }
     for map in &maps {
         let _ = writeln!(text, "{}", tables::borders(map).text());
@@ -116,4 +101,28 @@ pub fn run(typed: &args::Precision, json: bool) -> Result<()> {
         let _ = writeln!(text, "wrote {file}");
     }
     print::text(&text)
+}
+
+/// What a file holds of the family that is asked for.
+fn earlier(path: &Path, typed: &args::Precision) -> Result<Earlier> {
+    let mut earlier = Earlier::from_path(path)?;
+    let cells = |maps: &[FailureMap]| maps.iter().map(|map| map.cells.len()).sum::<usize>();
+    let held = format!("scenes held: {}, failures held: {}", earlier.scenes.len(), cells(&earlier.maps));
+    earlier.retain(|family| typed.family.holds(family));
+    let of = match typed.family {
+        args::Kind::Both => String::new(),
+        kind => format!(" of the family {kind:?}").to_lowercase(),
+    };
+    if typed.failures && earlier.maps.is_empty() {
+        return Err(Error::usage(
+            format!("{}: no failures{of} ({held})", path.display()),
+            "failures to draw",
+        )
+        .hint("write the file with `vibro precision --failures --json > FILE`, or leave out --failures"));
+    }
+    if earlier.scenes.is_empty() && earlier.maps.is_empty() {
+        return Err(Error::usage(format!("{}: nothing{of} ({held})", path.display()), "one scene at least")
+            .hint("ask for the family that the file holds"));
+    }
+    Ok(earlier)
 }

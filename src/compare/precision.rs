@@ -13,5 +13,6 @@ pub mod models;
 pub mod scene;
 pub mod watched;
 
+pub use earlier::Earlier;
 pub use failure::{Cell, FailureMap, Outcome};
 pub use scene::{Family, Measured, Scene};

@@ -126,6 +126,10 @@ pub enum Marker {
     FilledSquare,
     /// Upright cross.
     Cross,
+    /// Slanting cross.
+    Saltire,
+    /// Both crosses at once.
+    Star,
     /// Open triangle that points down: an upper limit.
     Limit,
     /// A letter: names in a legend what notes in the frame refer to.

@@ -29,6 +29,24 @@ pub fn power_of_ten(exponent: i32) -> String {
     text
 }
 
+/// A text whose numbers are written as programs write them, with powers of ten and true minus signs: `1e-9 m` becomes `10⁻⁹ m`.
+pub fn typeset(text: &str) -> String {
+    let word = |word: &str| {
+        let number = word.trim_end_matches([',', ';', ':']);
+        if number.parse::<f64>().is_err() || !number.ends_with(|c: char| c.is_ascii_digit()) {
+            return word.to_owned();
+        }
+        let rest = &word[number.len()..];
+        let power = number.split_once('e').and_then(|(m, e)| Some((m, power_of_ten(e.parse().ok()?))));
+        match power {
+            Some(("1", power)) => format!("{power}{rest}"),
+            Some((mantissa, power)) => format!("{}×{power}{rest}", mantissa.replace('-', MINUS)),
+            None => word.replace('-', MINUS),
+        }
+    };
+    text.split(' ').map(word).collect::<Vec<_>>().join(" ")
+}
+
 /// A number with so many significant digits, as a plain decimal between 10⁻⁴ and 10⁷, else with a power of
 /// ten.
 ///
@@ -271,6 +289,19 @@ mod tests {
         assert_eq!(significant(f64::NEG_INFINITY, 3), "−∞");
         assert_eq!(power_of_ten(-120), "10⁻¹²⁰");
         assert_eq!(power_of_ten(456_789), "10⁴⁵⁶⁷⁸⁹");
+    }
+
+    #[test]
+    fn numbers_in_a_text_are_set_as_numbers() {
+        for (text, set) in [
+            ("-10 dB", "−10 dB"),
+            ("R 0.75 + 1e-3, where rest begins", "R 0.75 + 10⁻³, where rest begins"),
+            ("-2.5e8 N/m", "−2.5×10⁸ N/m"),
+            ("soft-corrected form", "soft-corrected form"),
+            ("a level of inf, e-mail", "a level of inf, e-mail"),
+        ] {
+            assert_eq!(typeset(text), set);
+        }
     }
 
     #[test]

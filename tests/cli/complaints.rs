@@ -56,6 +56,10 @@ fn wrong_usage() {
 fn numbers_that_are_not_written_as_expected() {
     let comma = complaint(&["restitution", "--height", "0,57", "--interval", "0.1"], 2);
     has(&comma, &["--height", "try: a decimal point: 0.57"]);
+    for (option, unit) in [("--frequency", "in Hz,"), ("--force", "in N,"), ("--width", "in s,")] {
+        let word = complaint(&["model", "orbit", option, "abc"], 2);
+        has(&word, &[option, "'abc'", "try: a number", unit]);
+    }
     has(
         &complaint(&["impacts", "a.csv", "--excitation", "-3"], 2),
         &["-3", "try: a number that is not negative"],
@@ -293,6 +297,25 @@ fn mistakes_in_a_campaign_point_at_their_line() {
     with("name = \"nothing asked\"\n");
     json(&["run", text(&path)]);
     has(&complaint(&["compare", text(&path)], 2), &["[rig]", "try:"]);
+}
+
+#[test]
+fn a_rig_and_a_campaign_are_told_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let (rig, campaign) = (folder.path().join("rig.toml"), folder.path().join("campaign.toml"));
+    fs::write(&rig, "m1 = 0.42\ngap = 1e-3\n[excitation]\nkind = \"sine\"\nforce = 0.4\n").unwrap();
+    fs::write(&campaign, "name = \"x\"\n[rig]\nm1 = 0.42\n[excitation]\nforce = 0.4\n").unwrap();
+    for command in ["run", "compare"] {
+        let found = complaint(&[command, text(&rig)], 2);
+        has(&found, &["rig.toml: this is a rig, not a campaign", "[[sweep]]", "try: `vibro model orbit "]);
+    }
+    for command in ["orbit", "choose"] {
+        let found = complaint(&["model", command, text(&campaign), "--frequency", "5"], 2);
+        has(&found, &["campaign.toml: [rig]: this is a campaign, not a rig", "try:", "`vibro run "]);
+    }
+    // A key in the wrong place is still told as one.
+    fs::write(&campaign, "gap = 1e-3\n[[frf]]\nfile = \"a.uff\"\n").unwrap();
+    has(&complaint(&["run", text(&campaign)], 2), &["line 1", "unknown key `gap`"]);
 }
 
 #[test]

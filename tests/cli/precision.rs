@@ -46,11 +46,14 @@ fn an_earlier_run_is_drawn_with_the_lines_of_other_programs() {
         .map(|m| (m["method"].as_str().unwrap(), m["setting"].as_str().unwrap()))
         .collect();
     assert_eq!(front, [("exact", ""), ("Peer 1.0", "")]);
-    assert!(answer["warnings"].to_string().contains("1 lines of"), "{}", answer["warnings"]);
+    let warnings = answer["warnings"][0].as_str().unwrap();
+    assert!(warnings.contains("1 line is left out, of the scene \"another\""), "{warnings}");
     let chart = std::fs::read_to_string(path("out/precision_scene_c.svg")).unwrap();
     // What failed is named: "events" has failed alone, the other program once out of twice.
     assert!(chart.contains("above: failed"));
-    assert_eq!((chart.matches(">events<").count(), chart.matches(">Peer 1.0<").count()), (1, 2));
+    let named =
+        [">events: failed<", ">Peer 1.0<", ">Peer 1.0: failed<"].map(|name| chart.matches(name).count());
+    assert_eq!((named, chart.matches(">events<").count()), ([1, 1, 1], 0));
     let table = std::fs::read_to_string(path("out/precision.csv")).unwrap();
     assert_eq!(table.lines().filter(|l| l.contains("it stalls")).count(), 2, "{table}");
     // Numbers that cannot be are no measurement.
@@ -65,6 +68,83 @@ fn an_earlier_run_is_drawn_with_the_lines_of_other_programs() {
     for wrong in ["earlier.json", "out"] {
         super::complaint(&["precision", "--from", &path("earlier.json"), "--add", &path(wrong)], 2);
     }
+    // The text says what the errors are, and names a number of another program that cannot be.
+    let text = super::vibro(&["precision", "--from", &path("earlier.json")]);
+    assert!(String::from_utf8(text.stdout).unwrap().contains("\nError: error in s\n"));
+    let impossible = json!([{ "scene": "scene C", "method": "Peer 1.0", "error": -1.0, "time_ns": 1e3 }]);
+    std::fs::write(path("added.json"), impossible.to_string()).unwrap();
+    let said =
+        super::complaint(&["precision", "--from", &path("earlier.json"), "--add", &path("added.json")], 2);
+    assert!(said.contains("Peer 1.0") && said.contains("error is -1; expected a number above 0"), "{said}");
+}
+
+/// Scenes without methods and a map of one cell in a file.
+fn earlier(family: &str) -> serde_json::Value {
+    let scene = |name: &str| json!({ "name": name, "family": family, "says": "", "error_of": "error in s", "truth": "", "bound": null, "methods": [] });
+    let cell = json!({
+        "family": family, "method": "exact", "ours": true, "border": "grazing", "scene": "1e-9 m",
+        "outcome": "right", "why": "all times agree"
+    });
+    json!({ "scenes": [scene("scene C"), scene("scene B, 100 s")], "failures": [cell] })
+}
+
+#[test]
+fn failures_of_an_earlier_run_are_drawn_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let held = earlier("models");
+    std::fs::write(path("earlier.json"), held.to_string()).unwrap();
+    for more in [&[][..], &["--failures"], &["--family", "both"], &["--family", "models"]] {
+        let out = path("out");
+        let from = path("earlier.json");
+        let typed = ["precision", "--from", &from, "--out", &out].into_iter().chain(more.iter().copied());
+        let answer = super::json(&typed.collect::<Vec<_>>());
+        assert_eq!(answer["failures"], held["failures"]);
+        assert_eq!(answer["scenes"].as_array().unwrap().len(), 2);
+        let map = std::fs::read_to_string(path("out/failures_models.svg")).unwrap();
+        assert!(map.contains(">10⁻⁹ m<"));
+        let table = std::fs::read_to_string(path("out/failures.csv")).unwrap();
+        assert!(table.contains("all times agree"), "{table}");
+        std::fs::remove_dir_all(out).unwrap();
+    }
+    // What the file does not hold is not drawn in silence.
+    let said = super::complaint(&["precision", "--from", &path("earlier.json"), "--family", "estimators"], 2);
+    assert!(said.contains("nothing of the family estimators (scenes held: 2, failures held: 1)"), "{said}");
+    std::fs::write(path("scenes.json"), json!({ "scenes": held["scenes"] }).to_string()).unwrap();
+    let said = super::complaint(&["precision", "--from", &path("scenes.json"), "--failures"], 2);
+    assert!(
+        said.contains("no failures (scenes held: 2, failures held: 0)") && said.contains("try: "),
+        "{said}"
+    );
+}
+
+/// The example of docs/precision.md is one, and has every key that its table lists; so is that of `--help`.
+#[test]
+fn the_lines_of_other_programs_are_as_described() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    std::fs::write(path("earlier.json"), earlier("models").to_string()).unwrap();
+    let document = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/precision.md");
+    let document = std::fs::read_to_string(document).unwrap();
+    let example = document.split("```json\n").nth(1).unwrap().split("```").next().unwrap();
+    let help = String::from_utf8(super::vibro(&["precision", "--help"]).stdout).unwrap();
+    let shown = help[help.find("[{").unwrap()..].split_inclusive("}]").next().unwrap();
+    for (lines, count) in [(example, 2), (shown, 1)] {
+        std::fs::write(path("added.json"), lines).unwrap();
+        let answer =
+            super::json(&["precision", "--from", &path("earlier.json"), "--add", &path("added.json")]);
+        assert_eq!(answer["warnings"], json!([]));
+        let methods =
+            answer["scenes"].as_array().unwrap().iter().flat_map(|s| s["methods"].as_array().unwrap());
+        assert_eq!(methods.count(), count);
+    }
+    let lines: Vec<serde_json::Value> = serde_json::from_str(example).unwrap();
+    let keys = ["scene", "method", "setting", "error", "time_ns", "why"];
+    for key in keys {
+        assert!(document.contains(&format!("| `{key}` |")), "{key}");
+        assert!(lines.iter().any(|line| line.get(key).is_some()), "{key}");
+    }
+    assert!(lines.iter().all(|line| line.as_object().unwrap().keys().all(|k| keys.contains(&k.as_str()))));
 }
 
 /// The whole of it, small: scenes and borders of the estimators, their charts, tables and keys.

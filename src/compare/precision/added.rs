@@ -1,6 +1,6 @@
 //! Lines of other programs, measured by them on the same scenes.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 
 use serde::Deserialize;
@@ -24,36 +24,39 @@ struct Added {
 }
 
 /// Adds the lines of a JSON file, a list of objects with `scene`, `method`, `setting`, `error`, `time_ns` and `why`, to the
-/// scenes that they name, and marks the fronts anew. Lines of scenes that were not measured are left out; gives their count.
+/// scenes that they name, and marks the fronts anew. Lines of scenes that were not measured are left out; gives a sentence on each such scene.
 ///
 /// # Errors
 /// If the file cannot be read, is not such a list, has a time or an error that is not above 0, or gives a method the name of one of
 /// this library's, whose line it would become.
-pub fn add(scenes: &mut [Scene], path: &Path) -> Result<usize> {
+pub fn add(scenes: &mut [Scene], path: &Path) -> Result<Vec<String>> {
     let text = std::fs::read_to_string(path).map_err(|e| Error::io("read", path, e))?;
-    let wrong = |found: String| {
-        Error::usage(
-            format!("{}: {found}", path.display()),
-            "a list of lines as benches/peers/peers.py writes them",
-        )
+    let wrong = |found: String, expected: &str| {
+        Error::usage(format!("{}: {found}", path.display()), expected)
+            .hint("`vibro precision --help` and docs/precision.md show a file of lines")
     };
-    let lines: Vec<Added> = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
+    let lines: Vec<Added> = serde_json::from_str(&text)
+        .map_err(|e| wrong(e.to_string(), "a list of lines, each with scene, method, error and time_ns"))?;
     let own: HashSet<String> =
         scenes.iter().flat_map(|s| &s.methods).filter(|m| m.ours).map(|m| m.method.clone()).collect();
-    let mut left = 0;
-    for line in lines {
-        if [Some(line.time_ns), line.error].iter().flatten().any(|v| !(v.is_finite() && *v > 0.0)) {
-            return Err(wrong(format!(
-                "{} has time {} ns, error {:?}",
-                line.method, line.time_ns, line.error
-            )));
+    let mut left: BTreeMap<String, usize> = BTreeMap::new();
+    for (number, line) in (1..).zip(lines) {
+        let of = format!("line {number} of the list ({}, {:?})", line.scene, line.method);
+        for (key, value) in [("time_ns", Some(line.time_ns)), ("error", line.error)] {
+            if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
+                let failed = if key == "error" { "; null where the method failed" } else { "" };
+                return Err(wrong(format!("{of}: {key} is {value}"), &format!("a number above 0{failed}")));
+            }
         }
         let Some(scene) = scenes.iter_mut().find(|s| s.name == line.scene) else {
-            left += 1;
+            *left.entry(line.scene).or_default() += 1;
             continue;
         };
         if own.contains(&line.method) {
-            return Err(wrong(format!("{:?} is the name of a method of this library", line.method)));
+            return Err(wrong(
+                format!("{of}: {:?} is the name of a method of this library", line.method),
+                "the name of the other program",
+            ));
         }
         let failed = line.error.is_none();
         scene.methods.push(Measured {
@@ -70,7 +73,15 @@ pub fn add(scenes: &mut [Scene], path: &Path) -> Result<usize> {
         });
         front(scene.family, &mut scene.methods);
     }
-    Ok(left)
+    let known = scenes.iter().map(|s| format!("{:?}", s.name)).collect::<Vec<_>>().join(", ");
+    let sentence = |(scene, count): (String, usize)| {
+        let lines = if count == 1 { "1 line is".to_owned() } else { format!("{count} lines are") };
+        format!(
+            "{}: {lines} left out, of the scene {scene:?}, which was not measured; these were: {known}.",
+            path.display()
+        )
+    };
+    Ok(left.into_iter().map(sentence).collect())
 }
 
 #[cfg(test)]
@@ -108,8 +119,8 @@ mod tests {
             std::fs::write(&path, line).unwrap();
             add(&mut scenes, &path)
         };
-        assert_eq!(added("a peer").unwrap(), 0);
-        assert_eq!(added("Euler loop").unwrap(), 0);
+        assert!(added("a peer").unwrap().is_empty());
+        assert!(added("Euler loop").unwrap().is_empty());
         assert!(added("exact flights").unwrap_err().to_string().contains("of this library"));
     }
 }

@@ -1,11 +1,11 @@
 //! What methods do at the borders of what they can.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::Family;
 
 /// What a method did at a border, told with the truth.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Outcome {
     /// The answer agrees with the truth within what the method states, or what the check allows.
@@ -24,7 +24,7 @@ pub enum Outcome {
 }
 
 /// One method at one scene of a border.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Cell {
     /// Name of the method.
     pub method: String,

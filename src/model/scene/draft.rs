@@ -17,6 +17,22 @@ const KINDS: [(&str, &[&str]); 4] = [
     ("sines", &["parts", "frequency"]),
 ];
 
+/// Tables that only a campaign has.
+const CAMPAIGN: [&str; 10] =
+    ["rig", "sweep", "spectrum", "frf", "impacts", "drop", "pulse", "drill", "fit", "compute"];
+
+/// The complaint about a campaign where a rig file should stand.
+fn campaign(path: &Path, text: &str) -> Option<Error> {
+    let table = DeTable::parse(text).ok()?;
+    let own = |key: &&str| table.get_ref().keys().any(|name| name.get_ref() == *key);
+    let key = CAMPAIGN.iter().find(|key| own(key))?;
+    let found = format!("[{key}]: this is a campaign, not a rig");
+    Some(Error::usage(found, "the keys of a rig at the top, and [excitation], [contact], [buffer]").hint(format!(
+        "put what stands under [rig] into a file of its own; `vibro run {}` does what the campaign asks for",
+        path.display()
+    )))
+}
+
 /// Keys of a scene, of which later ones replace earlier ones.
 ///
 /// ```
@@ -48,7 +64,8 @@ impl Draft {
             Error::input(place, "bytes that are not UTF-8", "a rig as TOML text")
         })?;
         let mut draft = Draft { path: Some(path.to_owned()), text, given: BTreeMap::new() };
-        draft.given = parse(&draft.text).map_err(|e| e.in_file(path))?;
+        draft.given =
+            parse(&draft.text).map_err(|e| campaign(path, &draft.text).unwrap_or(e).in_file(path))?;
         Ok(draft)
     }
 

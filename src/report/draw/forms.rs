@@ -117,9 +117,15 @@ pub(super) fn markers(canvas: &mut Canvas, points: &[Point], marker: Marker, siz
         Marker::Limit => {
             canvas.areas(&polygon(&[(0.0, 1.3), (1.2, -0.85), (-1.2, -0.85)]), WHITE, pen);
         }
-        Marker::Cross => {
-            let mut parts = polygon(&[(-1.2, 0.0), (1.2, 0.0)]);
-            parts.extend(polygon(&[(0.0, -1.2), (0.0, 1.2)]));
+        Marker::Cross | Marker::Saltire | Marker::Star => {
+            let upright = [[(-1.2, 0.0), (1.2, 0.0)], [(0.0, -1.2), (0.0, 1.2)]];
+            let slanting = [[(-0.9, -0.9), (0.9, 0.9)], [(-0.9, 0.9), (0.9, -0.9)]];
+            let strokes: &[_] = match marker {
+                Marker::Cross => &[upright],
+                Marker::Saltire => &[slanting],
+                _ => &[upright, slanting],
+            };
+            let parts: Vec<_> = strokes.iter().flatten().flat_map(|stroke| polygon(stroke)).collect();
             canvas.lines(&parts, Pen::solid(colour, OUTLINE));
         }
         Marker::Letter(letter) => {

@@ -15,7 +15,7 @@ use crate::report::series::Shape;
 use crate::units::notation::labelled;
 
 /// Most room of a legend beside the frame, in parts of the frame's width.
-const BESIDE: f64 = 0.45;
+const BESIDE: f64 = 0.55;
 
 /// Where the legend has been put.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,6 +3,7 @@
 use crate::compare::precision::{FailureMap, Outcome};
 use crate::report::colour::{BLACK, Rgb, SERIES, WHITE};
 use crate::report::{Figure, Grid, Kind};
+use crate::units::notation::typeset;
 
 /// Outcomes with their letters and colours; the letters tell them apart without colour.
 const OUTCOMES: [(Outcome, &str, Rgb); 6] = [
@@ -52,7 +53,7 @@ fn grid(map: &FailureMap, title: String) -> Figure {
             let outcome = cell.map_or(Outcome::NotAsked, |c| c.outcome);
             OUTCOMES.iter().position(|o| o.0 == outcome)
         };
-        grid = grid.row(*border, *scene, methods.iter().map(of).collect());
+        grid = grid.row(*border, typeset(scene), methods.iter().map(of).collect());
     }
     let height = grid.height();
     Figure::double(title).height(height).panel(grid).caption(

@@ -64,7 +64,7 @@ fn panel(mass: u8, curve: &Prediction, pairs: &[Pair], measured: &[(usize, &Resp
         // Both branches have one entry in the legend.
         for rank in 0..2 {
             let y: Vec<f64> = branch(curve, mass, rank, verdict).iter().map(|v| factor * v).collect();
-            if y.iter().any(|v| v.is_finite()) {
+            if is_within(&y, limits) {
                 plot =
                     plot.with(Series::line(name, curve.frequency.clone(), y).ink(Ink::Black).stroke(stroke));
             }
@@ -72,9 +72,13 @@ fn panel(mass: u8, curve: &Prediction, pairs: &[Pair], measured: &[(usize, &Resp
     }
     if mass == 1 {
         let y: Vec<f64> = curve.motions.iter().map(|m| factor * free(m, usize::from(mass) - 1)).collect();
-        plot = plot.with(
-            Series::line("without impacts", curve.frequency.clone(), y).ink(Ink::Grey).stroke(Stroke::Thin),
-        );
+        if is_within(&y, limits) {
+            plot = plot.with(
+                Series::line("without impacts", curve.frequency.clone(), y)
+                    .ink(Ink::Grey)
+                    .stroke(Stroke::Thin),
+            );
+        }
     }
     for (rank, response) in measured {
         let [points, faint] = series(response, *rank, &[], limits);
@@ -89,6 +93,14 @@ fn panel(mass: u8, curve: &Prediction, pairs: &[Pair], measured: &[(usize, &Resp
             .with(Series::points("another motion, simulated", x, y).ink(Ink::Black).marker(Marker::Cross));
     }
     plot
+}
+
+/// Whether anything of a line is seen between these limits.
+fn is_within(y: &[f64], limits: Option<(f64, f64)>) -> bool {
+    let (low, high) = limits.unwrap_or((f64::MIN, f64::MAX));
+    y.windows(2).any(|part| {
+        part.iter().all(|v| v.is_finite()) && part[0].max(part[1]) >= low && part[0].min(part[1]) <= high
+    })
 }
 
 fn free(motions: &[Motion], mass: usize) -> f64 {
@@ -107,4 +119,27 @@ fn branch(curve: &Prediction, mass: u8, rank: usize, verdict: Verdict) -> Vec<f6
             shown.map_or(f64::NAN, |m| m.amplitude[usize::from(mass) - 1])
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_beyond_the_limits_is_not_within() {
+        let limits = Some((1.0, 10.0));
+        for (y, seen) in [
+            (&[0.1, 0.5, 0.2][..], false),
+            (&[20.0, 50.0], false),
+            (&[0.5, 2.0], true),
+            // It crosses them between two points.
+            (&[0.5, 20.0], true),
+            // No line leads to a single point.
+            (&[f64::NAN, 2.0, f64::NAN], false),
+            (&[2.0], false),
+        ] {
+            assert_eq!(is_within(y, limits), seen, "{y:?}");
+        }
+        assert!(is_within(&[1e-9, 1e9], None) && !is_within(&[f64::NAN, f64::NAN], None));
+    }
 }

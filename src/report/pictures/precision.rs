@@ -2,6 +2,7 @@
 
 use crate::compare::precision::{Family, Measured, Scene};
 use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
+use crate::units::notation::typeset;
 
 /// Markers in turn.
 const MARKERS: [Marker; 6] = [
@@ -12,6 +13,9 @@ const MARKERS: [Marker; 6] = [
     Marker::FilledSquare,
     Marker::OpenCircle,
 ];
+
+/// Crosses of what failed, in turn.
+const CROSSES: [Marker; 3] = [Marker::Cross, Marker::Saltire, Marker::Star];
 
 /// Room of a row of crosses in parts of the decades of the errors.
 const ROW: f64 = 0.05;
@@ -83,16 +87,23 @@ pub fn precision(scene: &Scene) -> Figure {
     let (mut crosses, mut named) = (Vec::new(), Vec::new());
     for (name, methods) in lines {
         let ours = methods.iter().any(|m| m.ours);
-        let (ink, marker, stroke) = if ours {
+        let (ink, marker, cross, stroke) = if ours {
             own += 1;
-            (Ink::Black, MARKERS[(own - 1) % MARKERS.len()], Stroke::Solid)
+            let turn = own - 1;
+            (Ink::Black, MARKERS[turn % MARKERS.len()], CROSSES[turn % CROSSES.len()], Stroke::Solid)
         } else {
             let nth = |list: &[&str]| list.iter().position(|known| *known == name);
             let turn = nth(&OFTEN).or_else(|| Some(TURNS - 1 - nth(&OPTIONAL)?)).unwrap_or_else(|| {
                 others += 1;
                 OFTEN.len() + others - 1
             });
-            (Ink::Nth(turn % 6), MARKERS[(turn + 1 + turn / 6) % MARKERS.len()], Stroke::Thin)
+            let round = turn / 6;
+            (
+                Ink::Nth(turn % 6),
+                MARKERS[(turn + 1 + round) % MARKERS.len()],
+                CROSSES[round % CROSSES.len()],
+                Stroke::Thin,
+            )
         };
         let row = view.crosses(crosses.len());
         let place = |m: &&Measured| (1e-9 * m.time_ns, error(m).unwrap_or(row));
@@ -103,7 +114,7 @@ pub fn precision(scene: &Scene) -> Figure {
         }
         if !failed.is_empty() {
             let (x, y): (Vec<f64>, Vec<f64>) = failed.iter().map(place).unzip();
-            crosses.push(Series::points(format!("{name}: failed"), x, y).ink(ink).marker(Marker::Cross));
+            crosses.push(Series::points(format!("{name}: failed"), x, y).ink(ink).marker(cross));
         }
         named.push(methods.into_iter().map(|m| (place(&m), m)).collect());
     }
@@ -127,7 +138,7 @@ pub fn precision(scene: &Scene) -> Figure {
         }
     };
     let bound = if scene.bound.is_some() { " Level line: Cramér–Rao bound." } else { "" };
-    Figure::double(format!("Speed against accuracy: {}", scene.name)).height(95.0).panel(plot).caption(format!(
+    Figure::double(format!("Speed against accuracy: {}", typeset(&scene.name))).height(95.0).panel(plot).caption(format!(
         "{} Each line is {points}, black those of this library: lower is more accurate, further left is faster. {front} Crosses at the upper edge \
          have failed, each method in a row of its own, from above as in the list. Truth: {}.{bound}",
         scene.says, scene.truth
@@ -184,7 +195,7 @@ fn lettered(mut plot: Plot, scene: &Scene, view: &View, lines: Vec<Vec<((f64, f6
         }
     }
     let entry = |letter: u8, says: &str| {
-        Series::points(says, [], []).marker(Marker::Letter(letter.into())).ink(Ink::Black)
+        Series::points(typeset(says), [], []).marker(Marker::Letter(letter.into())).ink(Ink::Black)
     };
     for (letter, record) in (b'a'..).zip(&records) {
         plot = plot.with(entry(letter, record));
@@ -239,7 +250,7 @@ fn capital(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Panel;
+    use crate::report::{Panel, Shape};
 
     fn measured(method: &str, setting: &str, error: Option<f64>, front: bool) -> Measured {
         Measured {
@@ -256,14 +267,8 @@ mod tests {
         }
     }
 
-    fn plot(family: Family) -> Plot {
-        let methods = vec![
-            measured("one", "0 dB", Some(1e-2), true),
-            measured("one", "20 dB", Some(1.001e-2), false),
-            measured("one", "40 dB", Some(1e-6), true),
-            measured("other", "20 dB", None, false),
-        ];
-        let scene = Scene {
+    fn scene(family: Family, methods: Vec<Measured>) -> Scene {
+        Scene {
             name: "scene".into(),
             family,
             says: "A scene.".into(),
@@ -271,8 +276,17 @@ mod tests {
             truth: "known".into(),
             bound: None,
             methods,
-        };
-        match precision(&scene).panels.remove(0) {
+        }
+    }
+
+    fn plot(family: Family) -> Plot {
+        let methods = vec![
+            measured("one", "0 dB", Some(1e-2), true),
+            measured("one", "20 dB", Some(1.001e-2), false),
+            measured("one", "40 dB", Some(1e-6), true),
+            measured("other", "20 dB", None, false),
+        ];
+        match precision(&scene(family, methods)).panels.remove(0) {
             Panel::Plot(plot) => plot,
             _ => panic!("a plot"),
         }
@@ -296,11 +310,37 @@ mod tests {
         assert!(plot.series.iter().any(|s| s.name == "Pareto front"));
     }
 
+    /// Colour and form of the crosses of each method that failed.
+    fn crosses(methods: &[(&str, bool)]) -> Vec<(Ink, Marker)> {
+        let failing = |&(name, ours): &(&str, bool)| Measured { ours, ..measured(name, "", None, false) };
+        let methods = methods.iter().map(failing).collect();
+        let Panel::Plot(plot) = precision(&scene(Family::Models, methods)).panels.remove(0) else {
+            panic!("a plot")
+        };
+        let form = |s: &Series| match s.shape {
+            Shape::Points { marker, .. } => Some((s.ink, marker)),
+            _ => None,
+        };
+        plot.series.iter().filter_map(form).collect()
+    }
+
+    /// As many as a chart may have: all that stand in several charts, four of its own, two added, two of ours.
+    #[test]
+    fn what_failed_is_told_apart() {
+        let own = [("exact", true), ("closed form", true)];
+        let here = ["one", "two", "three", "four", "added", "added, too"].map(|name| (name, false));
+        let methods: Vec<_> = OFTEN.map(|name| (name, false)).into_iter().chain(own).chain(here).collect();
+        let found = crosses(&methods);
+        assert_eq!(found.len(), methods.len());
+        let twice = |i: usize| found[..i].contains(&found[i]);
+        assert!(!(0..found.len()).any(twice), "{found:?}");
+    }
+
     #[test]
     fn crosses_stand_above_all_errors() {
         let plot = plot(Family::Models);
         let heights = |name: &str| match &plot.series.iter().rfind(|s| s.name == name).unwrap().shape {
-            crate::report::Shape::Points { y, .. } => y.clone(),
+            Shape::Points { y, .. } => y.clone(),
             _ => panic!("points"),
         };
         assert!(heights("other: failed")[0] > 1e-2, "{:?}", heights("other: failed"));
