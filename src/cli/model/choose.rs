@@ -75,6 +75,7 @@ fn single(
             write(folder, pictures::ladder(choice, question), &tables)?
         }
     };
+    warnings.extend(choice.doubt());
     if choice.chosen.is_none() {
         warnings.extend(choice.reasons.last().cloned());
     }

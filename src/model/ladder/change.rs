@@ -18,7 +18,7 @@ pub struct Change {
     /// less than a thousandth of what the other does, over the largest of all answers.
     pub change: f64,
     /// Whether that is no more than the tolerance, the noise floor or what the answers themselves are uncertain by allow; never where one of
-    /// them comes from a motion that has not settled.
+    /// them comes from a motion that has not settled, or has a standard error above tolerance and noise floor.
     pub enough: bool,
 }
 
@@ -39,16 +39,31 @@ impl Answer {
         Answer { value, spread: [0.0; 2], steady: true }
     }
 
+    /// The largest ratio of its standard error to the tolerance or the noise floor, whichever allows more.
+    pub fn unsure(&self, question: &Question) -> f64 {
+        let largest = self.value.iter().fold(0.0_f64, |l, v| l.max(v.abs()));
+        let part = |i: usize| {
+            let scale = self.value[i].abs().max(STILL * largest);
+            if self.spread[i] > 0.0 {
+                self.spread[i] / (question.tolerance * scale).max(question.noise)
+            } else {
+                0.0
+            }
+        };
+        part(0).max(part(1))
+    }
+
     /// How far it moves to `other`, the answer of the rung `at`.
     pub fn change(&self, other: &Answer, at: Model, question: &Question) -> Change {
         let largest = self.value.iter().chain(&other.value).fold(0.0_f64, |l, v| l.max(v.abs()));
-        let steady = self.steady && other.steady;
-        let mut worst = Change { at, change: 0.0, enough: steady };
+        // What is hardly known bears nothing out.
+        let known = [self, other].iter().all(|answer| answer.steady && answer.unsure(question) <= 1.0);
+        let mut worst = Change { at, change: 0.0, enough: known };
         let mut far = 0.0;
         for i in 0..2 {
             let moved = other.value[i] - self.value[i];
-            // A motion on its way somewhere does not widen what is allowed.
-            let unsure = if steady { TOLD * self.spread[i].hypot(other.spread[i]) } else { 0.0 };
+            // Nor does a motion on its way somewhere widen what is allowed.
+            let unsure = if known { TOLD * self.spread[i].hypot(other.spread[i]) } else { 0.0 };
             let scale = self.value[i].abs().max(STILL * largest);
             let allowed = (question.tolerance * scale).max(question.noise).max(unsure);
             if moved == 0.0 {
@@ -60,7 +75,7 @@ impl Answer {
                 far = ratio;
                 let own = self.value[i].abs();
                 let change = moved / if own < STILL * largest { largest } else { own };
-                worst = Change { at, change, enough: steady && ratio <= 1.0 };
+                worst = Change { at, change, enough: known && ratio <= 1.0 };
             }
         }
         worst
