@@ -121,6 +121,11 @@ fn along(
             first.reasons.last().map_or("", String::as_str)
         ));
     }
+    let size = |c: &&Choice| c.law.map_or(0.0, |law| law.change.abs());
+    let doubted = survey.points.iter().filter(|c| c.doubt().is_some());
+    if let Some(worst) = doubted.max_by(|a, b| size(a).total_cmp(&size(b))) {
+        warnings.push(format!("At {} Hz: {}", worst.frequency, worst.doubt().unwrap_or_default()));
+    }
     if json {
         return print::json(&Answer { scene, question, found: survey, warnings: &warnings, files: written });
     }

@@ -212,10 +212,6 @@ fn allowed(question: &Question) -> String {
 
 /// An answer for a person.
 fn value(answer: [f64; 2], question: &Question) -> String {
-    let unit = question.observable.unit();
-    if question.observable.is_of_impacts() {
-        format!("{:.4e} {unit}", answer[0])
-    } else {
-        format!("x₁ {:.4e} {unit}, x₂ {:.4e} {unit}", answer[0], answer[1])
-    }
+    let [one, two] = answer.map(|v| quantity(v, question.observable.unit(), 4));
+    if question.observable.is_of_impacts() { one } else { format!("x₁ {one}, x₂ {two}") }
 }

@@ -408,7 +408,7 @@ fn told(reading: &Reading) -> String {
             let Answer { value, spread, .. } = reading.answer;
             let part = |i: usize| if value[i] == 0.0 { 0.0 } else { spread[i] / value[i].abs() };
             format!(
-                "The answer is the mean over the second half of {cycles} cycles, with a standard error of {:.1e} %.",
+                "The answer is the mean over the second half of {cycles} cycles, with a standard error of {:.2} %.",
                 100.0 * part(0).max(part(1))
             )
         }
