@@ -137,7 +137,7 @@ impl Motions {
     /// Whether a contact that gives way leads from rest to another motion than the one that its answer is read from.
     pub fn differs(&mut self, tried: &Tried, model: Model, question: &Question) {
         let (Some(answer), Some(rest)) = (&tried.answer, &tried.from_rest) else { return };
-        if rest.end == End::Under || !answer.steady || answer.change(&rest.answer, model, question).enough {
+        if rest.end == End::Under || !answer.steady || answer.agrees(&rest.answer, question) {
             return;
         }
         let pattern = rest.regime.to_string();
@@ -154,10 +154,9 @@ impl Motions {
         let pattern = reading.regime.to_string();
         let same = |known: &Known| {
             let still = reading.regime == Regime::NoImpact && known.pattern == pattern;
-            still || Answer::exact(known.answer).change(&reading.answer, model, question).enough
+            still || Answer::exact(known.answer).agrees(&reading.answer, question)
         };
-        let own = self.reading.end != End::Under
-            && self.reading.answer.change(&reading.answer, model, question).enough;
+        let own = self.reading.end != End::Under && self.reading.answer.agrees(&reading.answer, question);
         if !own && !self.known.iter().any(same) {
             self.known.push(Known { pattern, model, answer: reading.answer.value, stable: true });
         }

@@ -326,6 +326,9 @@ fn a_motion_on_its_way_widens_nothing() {
         assert!(!enough(of(1.0, spread, true), of(1.0, 0.0, true)));
         assert!(!enough(of(1.0, 0.0, true), of(1.0, spread, true)));
     }
+    // That does not make them two motions; nor does it make one of what lies farther apart.
+    assert!(of(1.0, 0.03, true).agrees(&of(1.08, 0.03, true), &question));
+    assert!(!of(1.0, 0.03, true).agrees(&of(1.09, 0.03, true), &question));
     for (a, b) in [(true, false), (false, true), (false, false)] {
         assert!(!enough(of(1.0, 0.015, a), of(1.04, 0.015, b)));
         // Nor does equality tell anything: both may have left from the same state.

@@ -13,7 +13,7 @@ use crate::model::{
     Compliance, Compliant, Excitation, Law, Loose, Observable, Orbit, Regime, Rig, Scene, Simulation,
     no_impact, softened,
 };
-use crate::units::notation::quantity;
+use crate::units::notation::{quantity, significant};
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 
@@ -408,8 +408,8 @@ fn told(reading: &Reading) -> String {
             let Answer { value, spread, .. } = reading.answer;
             let part = |i: usize| if value[i] == 0.0 { 0.0 } else { spread[i] / value[i].abs() };
             format!(
-                "The answer is the mean over the second half of {cycles} cycles, with a standard error of {:.2} %.",
-                100.0 * part(0).max(part(1))
+                "The answer is the mean over the second half of {cycles} cycles, with a standard error of {} %.",
+                significant(100.0 * part(0).max(part(1)), 2)
             )
         }
         End::Under => {
