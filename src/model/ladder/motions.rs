@@ -106,7 +106,7 @@ impl Motions {
         motions.on = motions.which(reader.fine());
         motions.list(question, reader.fine());
         if !motions.by_history {
-            motions.seek(stage, &reader)?;
+            motions.seek(stage, &reader);
             if motions.known.len() > 1 || motions.closed.as_ref().is_ok_and(several) {
                 motions.on = On::Open;
             }
@@ -115,7 +115,7 @@ impl Motions {
     }
 
     /// Looks for a second motion from other states: near orbits that have lost their stability, and those of [`starts`].
-    fn seek(&mut self, stage: &Stage<'_>, reader: &Reader) -> Result<()> {
+    fn seek(&mut self, stage: &Stage<'_>, reader: &Reader) {
         let (rig, excitation) = (&stage.scene.rig, stage.excitation);
         let orbits = self.closed.iter().flat_map(|found| &found.orbits).chain(&self.longer);
         let lost = orbits.filter(|o| o.validity.admissible && o.validity.stable == Some(false));
@@ -125,13 +125,12 @@ impl Motions {
             if self.known.len() > 1 || followed > MOST_FOLLOWED {
                 break;
             }
-            let mut motion = Simulation::from_state(rig, excitation, state, phase)?;
+            let started = Simulation::from_state(rig, excitation, state, phase);
             // Some states lead beyond what can be followed.
-            let Ok(reading) = reader.read(&mut motion) else { continue };
+            let Ok(reading) = started.and_then(|mut motion| reader.read(&mut motion)) else { continue };
             followed += reading.cycles;
             self.add(&reading, stage.question);
         }
-        Ok(())
     }
 
     /// Whether a contact that gives way leads from rest to another motion than the one that its answer is read from.

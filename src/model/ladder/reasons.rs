@@ -36,7 +36,7 @@ pub fn sentences(choice: &Choice, question: &Question) -> Vec<String> {
     }));
     if question.history.is_none() && choice.chosen != Some(Model::LooseMass) {
         said.push(format!(
-            "Other motions were looked for in closed form with one impact in up to {MOST_CYCLES} cycles, from rest and from some {STARTS} other states: there can be more, \
+            "Other motions were looked for in closed form with one impact in up to {MOST_CYCLES} cycles, from rest and from up to {STARTS} other states: there can be more, \
              which a history would tell."
         ));
     }

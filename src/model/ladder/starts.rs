@@ -27,3 +27,26 @@ pub fn starts(rig: &Rig, excitation: &Excitation) -> impl Iterator<Item = (State
         (State { x1: x1 - 2.0 * overlap, v1: omega * v1, x2, v2: omega * v2 }, 0.0)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Simulation, Sine};
+
+    #[test]
+    fn states_are_apart_and_grow_in_all_directions() {
+        let sine: Excitation = Sine { force: 0.3, frequency: 12.97 }.into();
+        for (gap, m2) in [(1e-3, 0.094), (0.0, 0.094), (-5e-4, 0.094), (1e-3, f64::INFINITY)] {
+            let rig = Rig { gap, m2, ..Rig::thesis() };
+            let all: Vec<State> = starts(&rig, &sine).map(|s| s.0).collect();
+            assert_eq!(all.len(), STARTS as usize);
+            // Overlapping and moving walls are refused.
+            assert!(all.iter().all(|s| Simulation::from_state(&rig, &sine, *s, 0.0).is_ok()));
+            // x₁ need not: it cannot lie far beyond a contact.
+            assert!(all.iter().any(|s| s.v1 > 0.0) && all.iter().any(|s| s.v1 < 0.0));
+            let size = |s: &State| s.v1.abs().max(s.v2.abs()) / (TAU * 12.97);
+            let unit = no_impact(&rig, &sine).unwrap().largest.max(gap.abs());
+            assert!(all.iter().all(|s| size(s) <= SIZES.1 * unit) && size(&all[0]) <= SIZES.0 * unit);
+        }
+    }
+}
