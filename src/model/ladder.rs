@@ -10,7 +10,7 @@
 //! ```
 //! use vibroimpact::model::ladder::{Model, Question, choose};
 //! use vibroimpact::model::{Observable, Scene};
-//! let scene = Scene::from_toml("[excitation]\nkind = \"sine\"\nforce = 0.3\nfrequency = 13.6")?;
+//! let scene = Scene::from_toml("[excitation]\nkind = \"sine\"\nforce = 0.05\nfrequency = 13.6")?;
 //! let choice = choose(&scene, 13.6, &Question::new(Observable::Fundamental))?;
 //! assert_eq!(choice.chosen, Some(Model::Linear));
 //! # Ok::<(), vibroimpact::Error>(())
@@ -28,6 +28,7 @@ mod reading;
 mod reasons;
 mod rung;
 mod sensitivity;
+mod starts;
 mod tried;
 
 pub use axis::{MOST_POINTS, Stretch, Summary, Survey, choose_over};
@@ -76,6 +77,11 @@ impl Choice {
     /// The answer of the chosen rung: of x₁ and x₂; of impacts the same number twice.
     pub fn answer(&self) -> Option<[f64; 2]> {
         self.rung(self.chosen?).answer
+    }
+
+    /// What the chosen answer is to be doubted for, in a sentence: the law of the contact, where that moves it beyond what is allowed.
+    pub fn doubt(&self) -> Option<String> {
+        reasons::doubt(self)
     }
 
     /// What was found of a rung.

@@ -36,6 +36,9 @@ fn a_choice_has_its_keys() {
     assert!(rungs[1]["cost_ns"].as_f64().unwrap() > 0.0);
     assert!((rungs[1]["error"].as_f64().unwrap() - 0.209).abs() < 0.004, "{}", rungs[1]);
     assert_eq!(found["audit"]["at"], "kelvin-voigt");
+    assert_eq!((&found["law"]["at"], &found["law"]["enough"]), (&"hunt-crossley".into(), &false.into()));
+    let warnings = found["warnings"].as_array().unwrap();
+    assert_eq!(warnings.iter().filter(|w| w.as_str().unwrap().contains("law of the contact")).count(), 1);
     assert!(found["audit"]["change"].as_f64().unwrap().abs() < 0.003);
     assert_eq!(
         (&found["tolerance"], &found["observable"]),

@@ -75,6 +75,7 @@ fn single(
             write(folder, pictures::ladder(choice, question), &tables)?
         }
     };
+    warnings.extend(choice.doubt());
     if choice.chosen.is_none() {
         warnings.extend(choice.reasons.last().cloned());
     }
@@ -119,6 +120,11 @@ fn along(
             first.frequency,
             first.reasons.last().map_or("", String::as_str)
         ));
+    }
+    let size = |c: &&Choice| c.law.map_or(0.0, |law| law.change.abs());
+    let doubted = survey.points.iter().filter(|c| c.doubt().is_some());
+    if let Some(worst) = doubted.max_by(|a, b| size(a).total_cmp(&size(b))) {
+        warnings.push(format!("At {} Hz: {}", worst.frequency, worst.doubt().unwrap_or_default()));
     }
     if json {
         return print::json(&Answer { scene, question, found: survey, warnings: &warnings, files: written });

@@ -85,16 +85,13 @@ pub fn choose_over(scene: &Scene, from: f64, to: f64, points: usize, question: &
         all[i] = choice;
     }
     Ok(Survey {
-        chosen: Model::ALL.into_iter().find(|model| all.iter().all(|choice| is_enough(choice, *model))),
+        chosen: Model::ALL
+            .into_iter()
+            .find(|model| all.iter().all(|choice| choice.chosen.is_some() && choice.rung(*model).sufficient)),
         rungs: Model::ALL.iter().map(|model| summary(*model, &all)).collect(),
         stretches: stretches(&all),
         points: all,
     })
-}
-
-/// Whether a rung is good enough where one could be chosen; that which holds over all stiffnesses is.
-fn is_enough(choice: &Choice, model: Model) -> bool {
-    choice.chosen.is_some_and(|chosen| chosen == model || choice.rung(model).sufficient)
 }
 
 /// Points at which a contact of spring and damper that is chosen, or the correction for one, is held against curved bodies: the ends of each stretch and its peak.

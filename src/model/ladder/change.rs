@@ -18,7 +18,7 @@ pub struct Change {
     /// less than a thousandth of what the other does, over the largest of all answers.
     pub change: f64,
     /// Whether that is no more than the tolerance, the noise floor or what the answers themselves are uncertain by allow; never where one of
-    /// them comes from a motion that has not settled.
+    /// them comes from a motion that has not settled, or has a standard error above tolerance and noise floor.
     pub enough: bool,
 }
 
@@ -39,30 +39,47 @@ impl Answer {
         Answer { value, spread: [0.0; 2], steady: true }
     }
 
+    /// The largest ratio of its standard error to the tolerance or the noise floor, whichever allows more.
+    pub fn unsure(&self, question: &Question) -> f64 {
+        let largest = self.value.iter().fold(0.0_f64, |l, v| l.max(v.abs()));
+        let part = |i: usize| {
+            let scale = self.value[i].abs().max(STILL * largest);
+            if self.spread[i] > 0.0 {
+                self.spread[i] / (question.tolerance * scale).max(question.noise)
+            } else {
+                0.0
+            }
+        };
+        part(0).max(part(1))
+    }
+
+    /// Whether `other` may be an answer of the same motion: no farther off than tolerance, noise floor or what both are uncertain by allow.
+    pub fn agrees(&self, other: &Answer, question: &Question) -> bool {
+        self.farthest(other, question, true).is_none_or(|(ratio, _)| ratio <= 1.0)
+    }
+
     /// How far it moves to `other`, the answer of the rung `at`.
     pub fn change(&self, other: &Answer, at: Model, question: &Question) -> Change {
+        // What is hardly known bears nothing out. Nor does a motion on its way somewhere widen what is allowed.
+        let known = [self, other].iter().all(|answer| answer.steady && answer.unsure(question) <= 1.0);
+        match self.farthest(other, question, known) {
+            None => Change { at, change: 0.0, enough: known },
+            Some((ratio, change)) => Change { at, change, enough: known && ratio <= 1.0 },
+        }
+    }
+
+    /// The change to `other` over what is allowed, and the relative change, of the mass for which the first is larger; `None` where neither
+    /// moves. `scattered` says whether the standard errors count.
+    fn farthest(&self, other: &Answer, question: &Question, scattered: bool) -> Option<(f64, f64)> {
         let largest = self.value.iter().chain(&other.value).fold(0.0_f64, |l, v| l.max(v.abs()));
-        let steady = self.steady && other.steady;
-        let mut worst = Change { at, change: 0.0, enough: steady };
-        let mut far = 0.0;
-        for i in 0..2 {
-            let moved = other.value[i] - self.value[i];
-            // A motion on its way somewhere does not widen what is allowed.
-            let unsure = if steady { TOLD * self.spread[i].hypot(other.spread[i]) } else { 0.0 };
-            let scale = self.value[i].abs().max(STILL * largest);
-            let allowed = (question.tolerance * scale).max(question.noise).max(unsure);
-            if moved == 0.0 {
-                continue;
-            }
+        let far = |i: usize| {
+            let (own, moved) = (self.value[i].abs(), other.value[i] - self.value[i]);
+            let unsure = if scattered { TOLD * self.spread[i].hypot(other.spread[i]) } else { 0.0 };
+            let allowed = (question.tolerance * own.max(STILL * largest)).max(question.noise).max(unsure);
             // Nothing is allowed where nothing moves and something should.
             let ratio = if allowed > 0.0 { moved.abs() / allowed } else { f64::INFINITY };
-            if ratio > far {
-                far = ratio;
-                let own = self.value[i].abs();
-                let change = moved / if own < STILL * largest { largest } else { own };
-                worst = Change { at, change, enough: steady && ratio <= 1.0 };
-            }
-        }
-        worst
+            (moved != 0.0).then(|| (ratio, moved / if own < STILL * largest { largest } else { own }))
+        };
+        [0, 1].into_iter().filter_map(far).reduce(|a, b| if b.0 > a.0 { b } else { a })
     }
 }

@@ -26,7 +26,7 @@ impl<'a> Climb<'a> {
             tried[Model::LooseMass as usize] = stage.loose_mass(spring);
             return Ok(Climb { stage, motions: None, tried, stiffness: spring });
         }
-        let motions = Motions::new(&stage)?;
+        let mut motions = Motions::new(&stage)?;
         let closed = stage.closed_form(&motions);
         let soft = stage.soft_corrected(&motions, &closed);
         let tried = [
@@ -42,6 +42,9 @@ impl<'a> Climb<'a> {
             },
             stage.loose_mass(None),
         ];
+        for model in [Model::KelvinVoigt, Model::HuntCrossley] {
+            motions.differs(&tried[model as usize], model, stage.question);
+        }
         Ok(Climb { stage, motions: Some(motions), tried, stiffness })
     }
 
@@ -112,12 +115,16 @@ impl<'a> Climb<'a> {
         curved && self.motions.as_ref().is_some_and(|m| m.reading.speed == 0.0)
     }
 
+    /// Whether the answer of a rung comes from a motion that has settled, or is a mean that is known as exactly as is asked for.
+    fn is_known(&self, model: Model) -> bool {
+        self.answer(model).is_some_and(|a| a.steady && a.unsure(self.stage.question) <= 1.0)
+    }
+
     /// Whether a rung is good enough.
     fn is_enough(&self, rung: &Rung) -> bool {
         let still = rung.changes.iter().all(|c| c.enough);
-        let steady = self.of(rung.model).answer.is_some_and(|answer| answer.steady);
         rung.valid
-            && steady
+            && self.is_known(rung.model)
             && match rung.model {
                 Model::Linear => still,
                 Model::ClosedForm | Model::SoftCorrected | Model::Restitution => {
@@ -189,14 +196,16 @@ impl<'a> Climb<'a> {
             return;
         }
         let lowest = [Model::ClosedForm, Model::Restitution, Model::LooseMass];
-        let steady = |model: &Model| self.of(*model).answer.is_some_and(|a| a.steady);
-        let base = lowest.into_iter().find(|model| self.of(*model).valid).filter(steady);
+        let base = lowest.into_iter().find(|model| self.of(*model).valid).filter(|m| self.is_known(*m));
         let Some((model, answer)) = base.and_then(|m| Some((m, self.of(m).answer?))) else {
             return;
         };
         let (rows, failed) = sensitivity(&self.stage, self.motions.as_ref(), &answer);
         let all = !rows.is_empty() && failed.is_empty() && rows.iter().all(|row| row.enough);
-        choice.chosen = all.then_some(model);
+        if all {
+            choice.chosen = Some(model);
+            choice.rungs[model as usize].sufficient = true;
+        }
         (choice.sensitivity, choice.sensitivity_failed) = (rows, failed);
     }
 

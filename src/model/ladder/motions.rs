@@ -1,21 +1,32 @@
 //! The motions of a rig at one excitation, as far as they are known, and the one that it is in.
 
-use super::Question;
+use super::change::Answer;
 use super::cost::Cost;
-use super::history::{arrived, several};
+use super::history::{Way, several};
 use super::reading::{End, Reader, Reading};
-use super::tried::Stage;
+use super::starts::starts;
+use super::tried::{Stage, Tried};
+use super::{Model, Question};
 use crate::error::{Error, Result};
 use crate::model::regime::Strike;
-use crate::model::{Orbit, Orbits, Regime, Simulation, orbits_of};
+use crate::model::{Orbit, Orbits, Regime, Simulation, State, orbits_of};
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
+
+/// Cycles up to which motions with one impact are looked for in closed form.
+pub const MOST_CYCLES: u32 = 6;
+/// Cycles after which no further state is started from.
+const MOST_FOLLOWED: u32 = 40_000;
+/// Part of the speeds by which a motion starts beside an orbit.
+const BESIDE: f64 = 0.02;
 
 /// A motion that the rig can be in.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Known {
     /// Its pattern: `no impact`, impacts/cycles, `chatter` or `irregular`.
     pub pattern: String,
+    /// The model by which it is known.
+    pub model: Model,
     /// What is shown of it.
     pub answer: [f64; 2],
     /// Whether it lasts. One that does not is listed where it divides the motion without impacts from others with impacts round it.
@@ -40,6 +51,8 @@ pub struct Motions {
     pub closed: Result<Orbits>,
     /// What that took.
     pub closed_cost: Cost,
+    /// In closed form with one impact in 2 to [`MOST_CYCLES`] cycles: those whose masses do not pass through each other.
+    longer: Vec<Orbit>,
     pub known: Vec<Known>,
     pub on: On,
     /// How far mass 1 alone stays clear of mass 2, in m; `None` without a closed form.
@@ -61,13 +74,15 @@ fn stays(orbit: &Orbit) -> bool {
 }
 
 impl Motions {
-    /// Looks for them: in closed form, and by following the rig from rest or the way it came.
+    /// Looks for them: in closed form, and by following the rig the way it came, or from rest and other states.
     pub fn new(stage: &Stage<'_>) -> Result<Motions> {
         let (rig, excitation, question) = (&stage.scene.rig, stage.excitation, stage.question);
         let (closed, closed_cost) = stage.timed(|| orbits_of(rig, excitation, 1));
         let clearance = closed.as_ref().ok().map(|found| rig.gap - found.no_impact.largest);
+        let longer = (2..=MOST_CYCLES).filter_map(|cycles| orbits_of(rig, excitation, cycles).ok());
+        let longer = longer.flat_map(|found| found.orbits).filter(|o| o.validity.admissible).collect();
         let start = match question.history {
-            Some(direction) => arrived(rig, excitation, direction)?,
+            Some(direction) => Way::new(rig, excitation, direction)?.rigid()?,
             None => Simulation::new(rig, excitation)?,
         };
         let reader = Reader::new(rig, excitation.frequency(), question).clear_by(clearance);
@@ -79,6 +94,7 @@ impl Motions {
         let mut motions = Motions {
             closed,
             closed_cost,
+            longer,
             known: Vec::new(),
             on: On::Other,
             clearance,
@@ -88,54 +104,114 @@ impl Motions {
             end,
         };
         motions.on = motions.which(reader.fine());
-        motions.list(question);
-        let several = motions.known.len() > 1 || motions.closed.as_ref().is_ok_and(several);
-        if several && !motions.by_history {
-            motions.on = On::Open;
+        motions.list(question, reader.fine());
+        if !motions.by_history {
+            motions.seek(stage, &reader);
+            if motions.known.len() > 1 || motions.closed.as_ref().is_ok_and(several) {
+                motions.on = On::Open;
+            }
         }
         Ok(motions)
     }
 
-    /// Orbits that can be and stay.
+    /// Looks for a second motion from other states: near orbits that have lost their stability, and those of [`starts`].
+    fn seek(&mut self, stage: &Stage<'_>, reader: &Reader) {
+        let (rig, excitation) = (&stage.scene.rig, stage.excitation);
+        let orbits = self.closed.iter().flat_map(|found| &found.orbits).chain(&self.longer);
+        let lost = orbits.filter(|o| o.validity.admissible && o.validity.stable == Some(false));
+        let round: Vec<_> = lost.map(|orbit| (beside(orbit), orbit.force_phase)).collect();
+        let mut followed = 0;
+        for (state, phase) in round.into_iter().chain(starts(rig, excitation)) {
+            if self.known.len() > 1 || followed > MOST_FOLLOWED {
+                break;
+            }
+            let started = Simulation::from_state(rig, excitation, state, phase);
+            // Some states lead beyond what can be followed.
+            let Ok(reading) = started.and_then(|mut motion| reader.read(&mut motion)) else { continue };
+            followed += reading.cycles;
+            self.add(&reading, stage.question);
+        }
+    }
+
+    /// Whether a contact that gives way leads from rest to another motion than the one that its answer is read from.
+    pub fn differs(&mut self, tried: &Tried, model: Model, question: &Question) {
+        let (Some(answer), Some(rest)) = (&tried.answer, &tried.from_rest) else { return };
+        if rest.end == End::Under || !answer.steady || answer.agrees(&rest.answer, question) {
+            return;
+        }
+        let pattern = rest.regime.to_string();
+        self.known.push(Known { pattern, model, answer: rest.answer.value, stable: true });
+        self.on = On::Open;
+    }
+
+    /// Adds a motion with impacts at once, where that is not on its way and answers differently from those known.
+    fn add(&mut self, reading: &Reading, question: &Question) {
+        let model = Model::Restitution;
+        if reading.end == End::Under {
+            return;
+        }
+        let pattern = reading.regime.to_string();
+        let same = |known: &Known| {
+            let still = reading.regime == Regime::NoImpact && known.pattern == pattern;
+            still || Answer::exact(known.answer).agrees(&reading.answer, question)
+        };
+        let own = self.reading.end != End::Under && self.reading.answer.agrees(&reading.answer, question);
+        if !own && !self.known.iter().any(same) {
+            self.known.push(Known { pattern, model, answer: reading.answer.value, stable: true });
+        }
+    }
+
+    /// Orbits with one impact a cycle that can be and stay.
     fn stable(&self) -> impl Iterator<Item = &Orbit> {
         self.closed.iter().flat_map(|found| found.orbits.iter().filter(|orbit| stays(orbit)))
     }
 
     /// The motion that was followed, among those in closed form; `fine` is the part of its states to which it has settled.
     fn which(&self, fine: f64) -> On {
-        if self.reading.end != End::Settled {
-            return On::Other;
-        }
-        match (self.reading.regime, &self.reading.strike) {
-            (Regime::NoImpact, _) => On::Free,
-            (Regime::Periodic { impacts: 1, cycles: 1 }, Some(strike)) => {
-                let near = self.stable().map(|orbit| (distance(strike, orbit), orbit));
-                let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0));
-                nearest
-                    .filter(|(far, orbit)| *far <= reach(fine, orbit))
-                    .map_or(On::Other, |(_, orbit)| On::Orbit(Box::new(*orbit)))
+        match self.reading.regime {
+            _ if self.reading.end != End::Settled => On::Other,
+            Regime::NoImpact => On::Free,
+            Regime::Periodic { impacts: 1, cycles: 1 } => {
+                self.near(self.stable(), fine).map_or(On::Other, |orbit| On::Orbit(Box::new(*orbit)))
             }
             _ => On::Other,
         }
     }
 
+    /// The orbit nearest to the motion that was followed, if that is on it.
+    fn near<'a>(&self, orbits: impl Iterator<Item = &'a Orbit>, fine: f64) -> Option<&'a Orbit> {
+        let strike = self.reading.strike.as_ref()?;
+        let near = orbits.map(|orbit| (distance(strike, orbit), orbit));
+        let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0));
+        nearest.filter(|(far, orbit)| *far <= reach(fine, orbit)).map(|(_, orbit)| orbit)
+    }
+
+    /// Whether the motion that was followed is one of those with one impact in several cycles.
+    fn is_longer(&self, fine: f64) -> bool {
+        let Regime::Periodic { impacts: 1, cycles } = self.reading.regime else { return false };
+        let alike = self.longer.iter().filter(|o| o.cycles == cycles && stays(o));
+        self.reading.end == End::Settled && self.near(alike, fine).is_some()
+    }
+
     /// Lists the motions known.
-    fn list(&mut self, question: &Question) {
+    fn list(&mut self, question: &Question, fine: f64) {
         let mut known = Vec::new();
         let found = self.closed.as_ref().ok();
         if let Some(free) = found.map(|found| &found.no_impact).filter(|free| free.possible) {
             let answer = question.observable.of_no_impact(free);
-            known.push(Known { pattern: Regime::NoImpact.to_string(), answer, stable: true });
+            let pattern = Regime::NoImpact.to_string();
+            known.push(Known { pattern, model: Model::Linear, answer, stable: true });
         }
         let known_as = |orbit: &Orbit| Known {
-            pattern: Regime::Periodic { impacts: 1, cycles: 1 }.to_string(),
+            pattern: Regime::Periodic { impacts: 1, cycles: orbit.cycles }.to_string(),
+            model: Model::ClosedForm,
             answer: question.observable.of_orbit(orbit),
             stable: stays(orbit),
         };
-        known.extend(self.stable().map(known_as));
-        if self.on == On::Other && self.reading.end != End::Under {
-            let pattern = self.reading.regime.to_string();
-            known.push(Known { pattern, answer: self.reading.answer.value, stable: true });
+        known.extend(self.stable().chain(self.longer.iter().filter(|o| stays(o))).map(known_as));
+        if self.on == On::Other && self.reading.end != End::Under && !self.is_longer(fine) {
+            let (pattern, model) = (self.reading.regime.to_string(), Model::Restitution);
+            known.push(Known { pattern, model, answer: self.reading.answer.value, stable: true });
         }
         // Where nothing else is known with impacts, orbits that have lost their stability tell of others round them.
         if let Some(found) = found.filter(|found| known.len() == 1 && several(found)) {
@@ -153,6 +229,12 @@ impl Motions {
         let existing = found.orbits.iter().find(|o| o.validity.exists);
         Ok(self.stable().next().or(existing))
     }
+}
+
+/// The state after the impact of an orbit, with speeds that are a little less.
+fn beside(orbit: &Orbit) -> State {
+    let state = orbit.state(0.0);
+    State { v1: (1.0 - BESIDE) * state.v1, v2: (1.0 - BESIDE) * state.v2, ..state }
 }
 
 /// Distance of an impact to that of an orbit: of phases in rad, and of states in units of the largest.

@@ -11,7 +11,7 @@ use crate::model::{Event, Motion, Observable, Rig};
 use std::f64::consts::TAU;
 use strobe::Strobe;
 
-/// Cycles read at once, or a multiple of them: whole patterns of 1 to 6, 10, 12, 15, 20 and 30 cycles.
+/// Cycles read at once, or a multiple of them: whole patterns of 1 to 6, 10, 12, 15, 20 and 30 cycles. Of others several blocks are.
 const BLOCK: u32 = 60;
 /// The multiple at most.
 const MULTIPLE: f64 = 50.0;
@@ -115,14 +115,18 @@ impl Reader {
     /// not settle, the second half of all is averaged.
     pub fn read<M: Motion>(&self, motion: &mut M) -> Result<Reading> {
         let mut values: Vec<[f64; 2]> = Vec::with_capacity(self.blocks);
+        let mut weights: Vec<f64> = Vec::with_capacity(self.blocks);
         let mut watch = Watch::new(motion);
         let mut strobe = Strobe::new(motion, self.block as usize);
         loop {
-            let (value, speed) = self.block(motion, &mut watch, &mut strobe)?;
+            let (value, weight, speed) = self.block(motion, &mut watch, &mut strobe)?;
             values.push(value);
+            weights.push(weight);
             let pattern = watch.pattern();
-            let pressed = strobe.pressed();
-            let left = strobe.left(self.fine()).filter(|_| still(&values, self.fine()));
+            let whole = whole(&values, &weights, self.blocks_of(pattern.regime));
+            // Masses that chatter to rest may be in contact at the end of each cycle, too.
+            let pressed = pattern.regime == Regime::NoImpact && strobe.pressed();
+            let left = strobe.left(self.fine()).filter(|_| still(&whole, self.fine()));
             // Without impacts the motion is that of mass 1 alone, of which it is known how far it goes.
             let free = pattern.regime == Regime::NoImpact && !pressed;
             let apart = |left: f64| !free || self.clearance.is_none_or(|clear| left < clear);
@@ -135,7 +139,8 @@ impl Reader {
                     Regime::Irregular | Regime::Chatter { cycles: None } if !drifts(half) => End::Steady,
                     _ => End::Under,
                 };
-                let answer = if settled { Answer::exact(value) } else { mean(half, end == End::Steady) };
+                let exact = whole.last().filter(|_| settled).map(|value| Answer::exact(*value));
+                let answer = exact.unwrap_or_else(|| mean(half, end == End::Steady));
                 let strike = pattern.strikes.last().copied();
                 let cycles = self.block * values.len() as u32;
                 return Ok(Reading { answer, regime: pattern.regime, strike, end, cycles, speed });
@@ -143,13 +148,23 @@ impl Reader {
         }
     }
 
-    /// One block, and the mean approach speed in it.
+    /// Blocks that hold whole patterns.
+    fn blocks_of(&self, regime: Regime) -> usize {
+        match regime {
+            Regime::Periodic { cycles, .. } | Regime::Chatter { cycles: Some(cycles) } => {
+                (1..=cycles).find(|n| (n * self.block).is_multiple_of(cycles)).unwrap_or(1) as usize
+            }
+            _ => 1,
+        }
+    }
+
+    /// One block: what is shown, what that counts beside other blocks, and the mean approach speed.
     fn block<M: Motion>(
         &self,
         motion: &mut M,
         watch: &mut Watch,
         strobe: &mut Strobe,
-    ) -> Result<([f64; 2], f64)> {
+    ) -> Result<([f64; 2], f64, f64)> {
         let observable = self.observable;
         let frequency = motion.frequency();
         let omega = TAU * frequency;
@@ -188,8 +203,22 @@ impl Reader {
             Observable::Impulse => [per(impulses); 2],
             _ => gauge.read().map(|r| r.0),
         };
-        Ok((value, per(speeds)))
+        Ok((value, if observable.is_of_impacts() { with } else { 1.0 }, per(speeds)))
     }
+}
+
+/// Means over each `n` values, counted from the last.
+fn whole(values: &[[f64; 2]], weights: &[f64], n: usize) -> Vec<[f64; 2]> {
+    let mean = |(values, weights): (&[[f64; 2]], &[f64])| {
+        let all: f64 = weights.iter().sum();
+        [0, 1].map(|i| {
+            let sum: f64 = values.iter().zip(weights).map(|(v, w)| v[i] * w).sum();
+            if all > 0.0 { sum / all } else { 0.0 }
+        })
+    };
+    let mut means: Vec<[f64; 2]> = values.rchunks_exact(n).zip(weights.rchunks_exact(n)).map(mean).collect();
+    means.reverse();
+    means
 }
 
 /// Whether the last of these values is the end of the way: what falls by the ratio ρ a block has ρ/(1 − ρ) of its last step before it.

@@ -1,5 +1,8 @@
 //! A choice told in sentences.
 
+use super::change::Answer;
+use super::motions::MOST_CYCLES;
+use super::starts::STARTS;
 use super::{Change, Choice, Known, Model, Question, Rung};
 use crate::units::notation::quantity;
 use std::fmt::Write as _;
@@ -10,7 +13,9 @@ pub fn sentences(choice: &Choice, question: &Question) -> Vec<String> {
     if choice.needs.contains(&"history") {
         let named = |m: &Known| {
             let lost = if m.stable { "" } else { ", unstable: others with impacts may last round it" };
-            format!("{} ({}{lost})", m.pattern, value(m.answer, question))
+            let at =
+                if m.model > Model::Restitution { format!(" at {}", m.model.name()) } else { String::new() };
+            format!("{}{at} ({}{lost})", m.pattern, value(m.answer, question))
         };
         let all: Vec<String> = choice.motions.iter().map(named).collect();
         said.push(format!(
@@ -23,11 +28,18 @@ pub fn sentences(choice: &Choice, question: &Question) -> Vec<String> {
     let top = choice.chosen.map_or(Model::ALL.len(), |model| model as usize);
     let (below, above) = choice.rungs.split_at(top);
     let mut left: Vec<&Rung> = below.iter().collect();
-    left.extend(above.iter().filter(|r| Some(r.model) != choice.chosen && !r.valid));
+    let out = |r: &&Rung| !r.valid || unsure(r, question) > 1.0;
+    left.extend(above.iter().filter(|r| Some(r.model) != choice.chosen).filter(out));
     said.extend(left.chunk_by(|a, b| not_valid(a).is_some() && not_valid(a) == not_valid(b)).map(|same| {
         let names: Vec<&str> = same.iter().map(|r| r.model.name()).collect();
         format!("{}: {}", names.join(", "), passed_over(same[0], question))
     }));
+    if question.history.is_none() && choice.chosen != Some(Model::LooseMass) {
+        said.push(format!(
+            "Other motions were looked for in closed form with one impact in up to {MOST_CYCLES} cycles, from rest and from up to {STARTS} other states: there can be more, \
+             which a history would tell."
+        ));
+    }
     if let Some(model) = choice.chosen {
         said.push(chosen(choice, choice.rung(model), question));
     } else if choice.sensitivity.is_empty() {
@@ -56,6 +68,7 @@ fn passed_over(rung: &Rung, question: &Question) -> String {
     match moved {
         _ if !rung.valid => format!("not valid. {}", rung.why),
         _ if rung.why.contains(UNSETTLED) => format!("its motion has not settled. {}", rung.why),
+        _ if unsure(rung, question) > 1.0 => hardly_known(rung, question),
         Some(c) => format!(
             "valid, but its answer moves by {} at {}, more than {} allows.",
             percent(c.change),
@@ -64,6 +77,21 @@ fn passed_over(rung: &Rung, question: &Question) -> String {
         ),
         None => "valid, but nothing known says how far its answer is off.".to_owned(),
     }
+}
+
+/// Standard error of its answer over what is allowed.
+fn unsure(rung: &Rung, question: &Question) -> f64 {
+    let answer = |value| Answer { value, spread: rung.spread, steady: true };
+    rung.answer.map_or(0.0, |value| answer(value).unsure(question))
+}
+
+/// What an answer is told with that is a mean of too large an error.
+fn hardly_known(rung: &Rung, question: &Question) -> String {
+    format!(
+        "valid, but its motion never repeats, and the standard error of its mean is {:.1} times what {} allows: try a larger tolerance.",
+        unsure(rung, question),
+        allowed(question)
+    )
 }
 
 fn chosen(choice: &Choice, rung: &Rung, question: &Question) -> String {
@@ -90,16 +118,29 @@ fn chosen(choice: &Choice, rung: &Rung, question: &Question) -> String {
         });
     }
     if let Some(law) = choice.law {
-        let moved = percent(law.change);
-        let _ =
-            write!(text, " With curved bodies that meet for as long and rebound alike it moves by {moved}");
-        text.push_str(if law.enough {
-            "."
-        } else {
-            ": the law of the contact matters more than the tolerance, and should be measured (`vibro pulse`)."
-        });
+        let _ = write!(text, " {}", bent(law));
     }
     text
+}
+
+/// How far the law of the contact moves the chosen answer.
+fn bent(law: Change) -> String {
+    let moved = format!(
+        "With curved bodies that meet for as long and rebound alike it moves by {}",
+        percent(law.change)
+    );
+    if law.enough {
+        moved + "."
+    } else {
+        moved
+            + ": the law of the contact matters more than the tolerance, and should be measured (`vibro pulse`)."
+    }
+}
+
+/// What a chosen answer is to be doubted for, in a sentence.
+pub fn doubt(choice: &Choice) -> Option<String> {
+    let law = choice.law.filter(|law| !law.enough)?;
+    Some(format!("The answer of {} depends on the law of the contact. {}", choice.chosen?.name(), bent(law)))
 }
 
 /// What the uncertainty of the gap does to the chosen answer.
@@ -171,10 +212,6 @@ fn allowed(question: &Question) -> String {
 
 /// An answer for a person.
 fn value(answer: [f64; 2], question: &Question) -> String {
-    let unit = question.observable.unit();
-    if question.observable.is_of_impacts() {
-        format!("{:.4e} {unit}", answer[0])
-    } else {
-        format!("x₁ {:.4e} {unit}, x₂ {:.4e} {unit}", answer[0], answer[1])
-    }
+    let [one, two] = answer.map(|v| quantity(v, question.observable.unit(), 4));
+    if question.observable.is_of_impacts() { one } else { format!("x₁ {one}, x₂ {two}") }
 }

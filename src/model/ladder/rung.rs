@@ -79,7 +79,8 @@ pub struct Rung {
     pub error: Option<f64>,
     /// Whether its own checks pass.
     pub valid: bool,
-    /// Whether it is good enough: valid, and its answer stays within what is allowed at the rungs above.
+    /// Whether it is good enough: valid, its answer known as exactly as is asked for, and within what is allowed at the rungs above, or over all
+    /// stiffnesses of a contact of which nothing is known.
     pub sufficient: bool,
     /// Why, in sentences.
     pub why: String,

@@ -3,6 +3,7 @@
 use super::Question;
 use super::change::Answer;
 use super::cost::{self, Cost};
+use super::history::Way;
 use super::laws;
 use super::motions::{Motions, On};
 use super::reading::{End, Reader, Reading};
@@ -12,7 +13,7 @@ use crate::model::{
     Compliance, Compliant, Excitation, Law, Loose, Observable, Orbit, Regime, Rig, Scene, Simulation,
     no_impact, softened,
 };
-use crate::units::notation::quantity;
+use crate::units::notation::{quantity, significant};
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 
@@ -23,6 +24,8 @@ pub struct Tried {
     pub answer: Option<Answer>,
     pub cost: Option<Cost>,
     pub why: String,
+    /// What the rig comes to from rest, where its answer is followed from elsewhere.
+    pub from_rest: Option<Reading>,
 }
 
 impl Tried {
@@ -97,7 +100,7 @@ impl Stage<'_> {
                 ),
             ),
         };
-        Tried { valid, answer: Some(Answer::exact(value)), cost: Some(cost), why }
+        Tried { valid, answer: Some(Answer::exact(value)), cost: Some(cost), why, from_rest: None }
     }
 
     /// Amplitude in m of mass 1 alone at the excitation frequency: |F L₁(iω)|, F being the force's own line, 2J/T of impulses and
@@ -171,7 +174,7 @@ impl Stage<'_> {
             }
         };
         let answer = Answer::exact(self.question.observable.of_orbit(orbit));
-        Tried { valid, answer: Some(answer), cost: Some(motions.closed_cost), why }
+        Tried { valid, answer: Some(answer), cost: Some(motions.closed_cost), why, from_rest: None }
     }
 
     /// The same with the contact's duration.
@@ -207,7 +210,7 @@ impl Stage<'_> {
                         " Its spring and damper rebound with {restitution:.3}, the rig says {of_rig}: theirs counts."
                     );
                 }
-                Tried { valid: true, answer: Some(answer), cost: Some(cost), why }
+                Tried { valid: true, answer: Some(answer), cost: Some(cost), why, from_rest: None }
             }
         }
     }
@@ -233,15 +236,35 @@ impl Stage<'_> {
         let Some(stiffness) = laws::keys(self.scene).stiffness else {
             return Tried::not("The contact's stiffness is not known.");
         };
-        match self.with_spring(motions, stiffness) {
-            Ok((reading, cost)) => Tried {
-                valid: true,
-                answer: Some(reading.answer),
-                cost: Some(cost),
-                why: format!("The contact's stiffness is known: {stiffness:.3e} N/m. {}", told(&reading)),
-            },
-            Err(error) => Tried::refused(&error),
-        }
+        let said = format!("The contact's stiffness is known: {stiffness:.3e} N/m.");
+        self.scene
+            .spring(stiffness)
+            .map_or_else(|e| Tried::refused(&e), |law| self.contact(motions, law, said))
+    }
+
+    /// A contact whose law is known: followed the way the rig came, else from where the motion with impacts at once had settled and from rest.
+    fn contact(&self, motions: &Motions, law: Law, said: String) -> Tried {
+        let run = || -> Result<Tried> {
+            let rig = self.rig();
+            let (reading, cost) = match self.question.history {
+                Some(direction) => {
+                    let came = Way::new(rig, self.excitation, direction)?.with(law)?;
+                    self.follow(motions, &came)?
+                }
+                None => self.with(motions, law)?,
+            };
+            let rest = Compliant::new(rig, self.excitation, law, Simulation::at_rest(rig), 0.0)?;
+            let from_rest = match self.question.history {
+                Some(_) => None,
+                None => Some(self.watching(motions, law).read(&mut rest.clone())?),
+            };
+            let mut why = format!("{said} {}", told(&reading));
+            if from_rest.as_ref().is_some_and(|rest| rest.end == End::Under) {
+                why.push_str(" From rest it has not settled, and may come to another motion.");
+            }
+            Ok(Tried { valid: true, answer: Some(reading.answer), cost: Some(cost), why, from_rest })
+        };
+        run().unwrap_or_else(|error| Tried::refused(&error))
     }
 
     /// What a spring and damper of this stiffness (N/m) gives, from where the motion with impacts at once had settled.
@@ -251,11 +274,19 @@ impl Stage<'_> {
 
     fn with(&self, motions: &Motions, law: Law) -> Result<(Reading, Cost)> {
         let end = &motions.end;
-        let start = Compliant::new(self.rig(), self.excitation, law, end.state(), end.phase())?;
-        let reader = self.reader().clear_by(motions.clearance);
-        let reader = if matches!(law, Law::KelvinVoigt { .. }) { reader } else { reader.brief() };
+        self.follow(motions, &Compliant::new(self.rig(), self.excitation, law, end.state(), end.phase())?)
+    }
+
+    fn follow(&self, motions: &Motions, start: &Compliant) -> Result<(Reading, Cost)> {
+        let reader = self.watching(motions, start.law());
         let (reading, cost) = self.timed(|| reader.read(&mut start.clone()));
         Ok((reading?, cost))
+    }
+
+    /// How motions with this contact are read.
+    fn watching(&self, motions: &Motions, law: Law) -> Reader {
+        let reader = self.reader().clear_by(motions.clearance);
+        if matches!(law, Law::KelvinVoigt { .. }) { reader } else { reader.brief() }
     }
 
     fn reader(&self) -> Reader {
@@ -272,24 +303,21 @@ impl Stage<'_> {
         if speed <= 0.0 {
             return Tried::not("There are no impacts whose law could matter.");
         }
-        let law = if stated {
-            laws::curved(self.scene, speed)
-        } else {
-            self.scene.spring(stiffness).and_then(|law| laws::alike(self.rig(), law, speed))
-        };
-        let followed = law.and_then(|law| self.with(motions, law));
-        match followed {
+        if stated {
+            return match laws::curved(self.scene, speed) {
+                Ok(law) => self.contact(motions, law, "The contact's law is known.".to_owned()),
+                Err(error) => Tried::refused(&error),
+            };
+        }
+        let law = self.scene.spring(stiffness).and_then(|law| laws::alike(self.rig(), law, speed));
+        match law.and_then(|law| self.with(motions, law)) {
             Err(error) => Tried::refused(&error),
             Ok((reading, cost)) => Tried {
-                valid: stated,
                 answer: Some(reading.answer),
                 cost: Some(cost),
-                why: if stated {
-                    format!("The contact's law is known. {}", told(&reading))
-                } else {
-                    "The contact's exponent is not known; curved bodies (exponent 1.5) of the same duration and rebound stand in for it."
-                        .to_owned()
-                },
+                ..Tried::not(
+                    "The contact's exponent is not known; curved bodies (exponent 1.5) of the same duration and rebound stand in for it.",
+                )
             },
         }
     }
@@ -324,6 +352,7 @@ impl Stage<'_> {
                     told(&reading),
                     self.question.history.map_or("", |_| " The history is not followed.")
                 ),
+                from_rest: None,
             },
         }
     }
@@ -339,6 +368,7 @@ pub fn restitution(motions: &Motions) -> Tried {
         answer: Some(motions.reading.answer),
         cost: Some(motions.cost),
         why: format!("{} {}", capital(&into(motions)), told(&motions.reading)),
+        from_rest: None,
     }
 }
 
@@ -378,8 +408,8 @@ fn told(reading: &Reading) -> String {
             let Answer { value, spread, .. } = reading.answer;
             let part = |i: usize| if value[i] == 0.0 { 0.0 } else { spread[i] / value[i].abs() };
             format!(
-                "The answer is the mean over the second half of {cycles} cycles, with a standard error of {:.1e} %.",
-                100.0 * part(0).max(part(1))
+                "The answer is the mean over the second half of {cycles} cycles, with a standard error of {} %.",
+                significant(100.0 * part(0).max(part(1)), 2)
             )
         }
         End::Under => {

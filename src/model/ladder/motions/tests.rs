@@ -1,6 +1,8 @@
 use crate::math::runge_kutta::{Dop853, Integrator, Tolerance};
 use crate::model::ladder::{Choice, Model, Question, choose};
-use crate::model::{ContactKeys, Excitation, Observable, Rig, Scene, Sine};
+use crate::model::{
+    Compliant, ContactKeys, Excitation, Motion, Observable, Rig, Scene, Simulation, Sine, State,
+};
 use crate::record::Direction;
 use std::f64::consts::TAU;
 
@@ -91,4 +93,78 @@ fn a_motion_that_repeats_nothing_is_on_no_orbit() {
     // Where the motion is on its orbit, it is found.
     let on = asked(0.98, 0.5, 10.98, None);
     assert!(on.rung(Model::ClosedForm).valid, "{:?}", on.reasons);
+}
+
+/// Impacts of the thesis' rig from a state at phase 0, in 240 cycles after 3000.
+fn impacts_from(restitution: f64, force: f64, frequency: f64, state: State) -> usize {
+    let rig = Rig { restitution, ..Rig::thesis() };
+    let mut motion = Simulation::from_state(&rig, &Sine { force, frequency }, state, 0.0).unwrap();
+    motion.run(3000.0 / frequency, |_| {}).unwrap();
+    let mut impacts = 0;
+    motion
+        .run(motion.time() + 240.0 / frequency, |leg| impacts += usize::from(leg.impact().is_some()))
+        .unwrap();
+    impacts
+}
+
+#[test]
+fn motions_that_strike_once_in_several_cycles_ask_for_the_history() {
+    // None strikes once a cycle, and from rest nothing strikes. At 32.98 Hz an orbit of 4 cycles is stable; at 12.97 Hz and at ν 2.6 one of
+    // 2 cycles has lost its stability by a flip, and patterns of 8 and of 4 cycles lie round it.
+    let state = State { x1: -4e-3, v1: 0.3, x2: -1e-3, v2: -0.2 };
+    assert!(impacts_from(0.7, 0.3, 12.9701, state) > 100);
+    for (restitution, force, frequency, pattern) in
+        [(0.9, 0.6, 32.9769, "1/4"), (0.7, 0.3, 12.9701, "4/8"), (0.7, 0.3, 13.5986, "2/4")]
+    {
+        assert_eq!(impacts_from(restitution, force, frequency, State::REST), 0);
+        let open = asked(restitution, force, frequency, None);
+        assert_eq!((open.chosen, open.needs.as_slice()), (None, &["history"][..]), "{:?}", open.reasons);
+        let patterns: Vec<&str> = open.motions.iter().map(|m| m.pattern.as_str()).collect();
+        assert_eq!(patterns[..2], ["no impact", pattern]);
+        let fell = asked(restitution, force, frequency, Some(Direction::Down));
+        assert_eq!(fell.chosen, Some(Model::Linear), "{:?}", fell.reasons);
+    }
+    // What was not looked for is said, once.
+    let linear = asked(0.7, 0.05, 13.5986, None);
+    assert_eq!(linear.chosen, Some(Model::Linear));
+    assert_eq!(linear.reasons.iter().filter(|r| r.contains("there can be more")).count(), 1);
+}
+
+#[test]
+fn a_contact_that_leads_from_rest_to_another_motion_asks_for_the_history() {
+    let rig = Rig {
+        m1: 0.19582,
+        m2: 0.38351,
+        k1: 3661.2,
+        k2: 3952.9,
+        c1: 1.3178,
+        c2: 6.312,
+        gap: 0.188_32e-3,
+        restitution: 0.98,
+    };
+    let excitation = Excitation::Sine(Sine { force: 3.3475, frequency: 17.196 });
+    let scene = Scene {
+        rig,
+        excitation: Some(excitation.clone()),
+        contact: Some(ContactKeys { stiffness: Some(529_320.0), ..ContactKeys::default() }),
+        buffer: None,
+    };
+    let question = Question { tolerance: 0.002, ..Question::new(Observable::HalfPeakToPeak) };
+    let open = choose(&scene, 17.196, &question).unwrap();
+    assert_eq!((open.chosen, open.needs.as_slice()), (None, &["history"][..]), "{:?}", open.reasons);
+    let soft = open.motions.last().unwrap();
+    assert_eq!((soft.model, soft.pattern.as_str()), (Model::KelvinVoigt, "1/1"));
+    // From rest the largest and the smallest x₁ of a cycle, from states at many instants.
+    let law = scene.spring(529_320.0).unwrap();
+    let mut motion = Compliant::new(&rig, &excitation, law, State::REST, 0.0).unwrap();
+    motion.advance(2000.0 / 17.196, &mut |_| {}).unwrap();
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for _ in 0..2000 {
+        let next = motion.time() + 1.0 / 17.196 / 2000.0;
+        motion.advance(next, &mut |_| {}).unwrap();
+        let x = motion.state().x1;
+        (low, high) = (low.min(x), high.max(x));
+    }
+    assert!((soft.answer[0] / ((high - low) / 2.0) - 1.0).abs() < 1e-4, "{} {low} {high}", soft.answer[0]);
+    assert!((open.motions[0].answer[0] / soft.answer[0] - 1.0).abs() > 0.2);
 }

@@ -1,7 +1,7 @@
 use super::{End, Reader, drifts, mean};
 use crate::math::runge_kutta::{Dop853, Integrator, Tolerance};
 use crate::model::ladder::Question;
-use crate::model::{Excitation, Observable, Rig, Simulation, Sine, no_impact};
+use crate::model::{Excitation, Observable, Rig, Simulation, Sine, State, no_impact};
 use std::f64::consts::TAU;
 
 /// Values x ← ρx + noise, noise from a linear congruence: an autoregression whose mean of n has the variance σ²(1 + ρ)/(1 − ρ)/n.
@@ -110,4 +110,26 @@ fn a_motion_that_ends_a_thousandth_beyond_the_gap_does_not_settle_without_impact
     // Clear of the gap it does, in the time in which e^{−bt} falls to the part asked for.
     let under = read(0.5);
     assert!(under.end == End::Settled && under.speed == 0.0, "{under:?}");
+}
+
+#[test]
+fn a_pattern_that_no_block_holds_whole_is_read_whole() {
+    // Four impacts in eight cycles, in blocks of sixty: their speeds by hand.
+    let (rig, sine) = (Rig::thesis(), Sine { force: 0.3, frequency: 12.9701 });
+    let state = State { x1: -4e-3, v1: 0.3, x2: -1e-3, v2: -0.2 };
+    let start = Simulation::from_state(&rig, &sine, state, 0.0).unwrap();
+    let question = Question { tolerance: 1e-3, ..Question::new(Observable::ImpactSpeed) };
+    let reading = Reader::new(&rig, sine.frequency, &question).read(&mut start.clone()).unwrap();
+    assert_eq!((reading.end, reading.regime.to_string().as_str()), (End::Settled, "4/8"));
+    let mut motion = start;
+    motion.run(4000.0 / sine.frequency, |_| {}).unwrap();
+    let mut speeds = Vec::new();
+    let until = motion.time() + 8.0 / sine.frequency;
+    motion.run(until, |leg| speeds.extend(leg.impact().map(|i| i.approach_velocity))).unwrap();
+    assert_eq!(speeds.len(), 4);
+    let mean = speeds.iter().sum::<f64>() / 4.0;
+    // Settled to a fiftieth of the tolerance.
+    assert!((reading.answer.value[0] / mean - 1.0).abs() < 2e-5, "{} {mean}", reading.answer.value[0]);
+    // A block alone holds four cycles too many: off by up to a fifteenth of the spread.
+    assert!(speeds.iter().any(|v| (v / mean - 1.0).abs() > 0.05), "{speeds:?}");
 }
