@@ -10,7 +10,7 @@
 //! ```
 //! use vibroimpact::model::ladder::{Model, Question, choose};
 //! use vibroimpact::model::{Observable, Scene};
-//! let scene = Scene::from_toml("[excitation]\nkind = \"sine\"\nforce = 0.05\nfrequency = 13.6")?;
+//! let scene = Scene::from_toml("[excitation]\nkind = \"sine\"\nforce = 0.3\nfrequency = 13.6")?;
 //! let choice = choose(&scene, 13.6, &Question::new(Observable::Fundamental))?;
 //! assert_eq!(choice.chosen, Some(Model::Linear));
 //! # Ok::<(), vibroimpact::Error>(())
@@ -82,6 +82,11 @@ impl Choice {
     /// What the chosen answer is to be doubted for, in a sentence: the law of the contact, where that moves it beyond what is allowed.
     pub fn doubt(&self) -> Option<String> {
         reasons::doubt(self)
+    }
+
+    /// That motions beside the one answered for strike less than once a cycle, in a sentence.
+    pub fn rare(&self, question: &Question) -> Option<String> {
+        reasons::rare(self, question)
     }
 
     /// What was found of a rung.

@@ -76,6 +76,7 @@ fn single(
         }
     };
     warnings.extend(choice.doubt());
+    warnings.extend(choice.rare(question));
     if choice.chosen.is_none() {
         warnings.extend(choice.reasons.last().cloned());
     }
@@ -119,6 +120,16 @@ fn along(
             survey.points.len(),
             first.frequency,
             first.reasons.last().map_or("", String::as_str)
+        ));
+    }
+    let rare: Vec<&Choice> = survey.points.iter().filter(|c| c.rare(question).is_some()).collect();
+    if let Some(first) = rare.first() {
+        warnings.push(format!(
+            "At {} of {} points, the first at {} Hz: {}",
+            rare.len(),
+            survey.points.len(),
+            first.frequency,
+            first.rare(question).unwrap_or_default()
         ));
     }
     let size = |c: &&Choice| c.law.map_or(0.0, |law| law.change.abs());

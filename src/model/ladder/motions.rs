@@ -31,6 +31,9 @@ pub struct Known {
     pub answer: [f64; 2],
     /// Whether it lasts. One that does not is listed where it divides the motion without impacts from others with impacts round it.
     pub stable: bool,
+    /// Whether it strikes less than once a cycle, and was found beside the motion to which the rig comes from rest, or the way it came. It is
+    /// warned of, and asks for no history.
+    pub rare: bool,
 }
 
 /// The motion that the rig is in.
@@ -107,7 +110,7 @@ impl Motions {
         motions.list(question, reader.fine());
         if !motions.by_history {
             motions.seek(stage, &reader);
-            if motions.known.len() > 1 || motions.closed.as_ref().is_ok_and(several) {
+            if motions.common() > 1 || motions.closed.as_ref().is_ok_and(several) {
                 motions.on = On::Open;
             }
         }
@@ -122,7 +125,7 @@ impl Motions {
         let round: Vec<_> = lost.map(|orbit| (beside(orbit), orbit.force_phase)).collect();
         let mut followed = 0;
         for (state, phase) in round.into_iter().chain(starts(rig, excitation)) {
-            if self.known.len() > 1 || followed > MOST_FOLLOWED {
+            if self.common() > 1 || followed > MOST_FOLLOWED {
                 break;
             }
             let started = Simulation::from_state(rig, excitation, state, phase);
@@ -140,7 +143,7 @@ impl Motions {
             return;
         }
         let pattern = rest.regime.to_string();
-        self.known.push(Known { pattern, model, answer: rest.answer.value, stable: true });
+        self.known.push(Known { pattern, model, answer: rest.answer.value, stable: true, rare: false });
         self.on = On::Open;
     }
 
@@ -157,7 +160,8 @@ impl Motions {
         };
         let own = self.reading.end != End::Under && self.reading.answer.agrees(&reading.answer, question);
         if !own && !self.known.iter().any(same) {
-            self.known.push(Known { pattern, model, answer: reading.answer.value, stable: true });
+            let rare = matches!(reading.regime, Regime::Periodic { impacts, cycles } if impacts < cycles);
+            self.known.push(Known { pattern, model, answer: reading.answer.value, stable: true, rare });
         }
     }
 
@@ -186,35 +190,42 @@ impl Motions {
         nearest.filter(|(far, orbit)| *far <= reach(fine, orbit)).map(|(_, orbit)| orbit)
     }
 
-    /// Whether the motion that was followed is one of those with one impact in several cycles.
-    fn is_longer(&self, fine: f64) -> bool {
-        let Regime::Periodic { impacts: 1, cycles } = self.reading.regime else { return false };
+    /// The orbit with one impact in several cycles that the motion which was followed is on.
+    fn longer_own(&self, fine: f64) -> Option<&Orbit> {
+        let Regime::Periodic { impacts: 1, cycles } = self.reading.regime else { return None };
         let alike = self.longer.iter().filter(|o| o.cycles == cycles && stays(o));
-        self.reading.end == End::Settled && self.near(alike, fine).is_some()
+        self.near(alike, fine).filter(|_| self.reading.end == End::Settled)
+    }
+
+    /// Motions between which only the history decides.
+    fn common(&self) -> usize {
+        self.known.iter().filter(|m| !m.rare).count()
     }
 
     /// Lists the motions known.
     fn list(&mut self, question: &Question, fine: f64) {
         let mut known = Vec::new();
-        let found = self.closed.as_ref().ok();
+        let (found, own) = (self.closed.as_ref().ok(), self.longer_own(fine));
         if let Some(free) = found.map(|found| &found.no_impact).filter(|free| free.possible) {
             let answer = question.observable.of_no_impact(free);
             let pattern = Regime::NoImpact.to_string();
-            known.push(Known { pattern, model: Model::Linear, answer, stable: true });
+            known.push(Known { pattern, model: Model::Linear, answer, stable: true, rare: false });
         }
         let known_as = |orbit: &Orbit| Known {
             pattern: Regime::Periodic { impacts: 1, cycles: orbit.cycles }.to_string(),
             model: Model::ClosedForm,
             answer: question.observable.of_orbit(orbit),
             stable: stays(orbit),
+            rare: orbit.cycles > 1 && own.is_none_or(|own| own != orbit),
         };
         known.extend(self.stable().chain(self.longer.iter().filter(|o| stays(o))).map(known_as));
-        if self.on == On::Other && self.reading.end != End::Under && !self.is_longer(fine) {
+        if self.on == On::Other && self.reading.end != End::Under && own.is_none() {
             let (pattern, model) = (self.reading.regime.to_string(), Model::Restitution);
-            known.push(Known { pattern, model, answer: self.reading.answer.value, stable: true });
+            let answer = self.reading.answer.value;
+            known.push(Known { pattern, model, answer, stable: true, rare: false });
         }
         // Where nothing else is known with impacts, orbits that have lost their stability tell of others round them.
-        if let Some(found) = found.filter(|found| known.len() == 1 && several(found)) {
+        if let Some(found) = found.filter(|found| known.iter().filter(|m| !m.rare).count() == 1 && several(found)) {
             known.extend(found.orbits.iter().filter(|o| o.validity.admissible).map(known_as));
         }
         self.known = known;

@@ -34,6 +34,7 @@ pub fn sentences(choice: &Choice, question: &Question) -> Vec<String> {
         let names: Vec<&str> = same.iter().map(|r| r.model.name()).collect();
         format!("{}: {}", names.join(", "), passed_over(same[0], question))
     }));
+    said.extend(rare(choice, question));
     if question.history.is_none() && choice.chosen != Some(Model::LooseMass) {
         said.push(format!(
             "Other motions were looked for in closed form with one impact in up to {MOST_CYCLES} cycles, from rest and from up to {STARTS} other states: there can be more, \
@@ -77,6 +78,20 @@ fn passed_over(rung: &Rung, question: &Question) -> String {
         ),
         None => "valid, but nothing known says how far its answer is off.".to_owned(),
     }
+}
+
+/// That motions which strike less than once a cycle are possible beside the one that is answered for.
+pub fn rare(choice: &Choice, question: &Question) -> Option<String> {
+    let rare = choice.motions.iter().filter(|m| m.rare);
+    let named: Vec<String> = rare.map(|m| format!("{} ({})", m.pattern, value(m.answer, question))).collect();
+    let came = if question.history.is_some() { "the way it came" } else { "from rest" };
+    (!named.is_empty() && choice.needs.is_empty()).then(|| {
+        format!(
+            "The rig does not come to them {came}, but motions that strike less than once a cycle are possible as well: {}. After a knock it may be in \
+             one of them.",
+            named.join(", ")
+        )
+    })
 }
 
 /// Standard error of its answer over what is allowed.

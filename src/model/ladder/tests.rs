@@ -142,22 +142,19 @@ fn without_a_stiffness_it_refuses_and_gives_the_sensitivity() {
 
 #[test]
 fn where_the_masses_do_not_meet_nothing_more_than_linear_is_needed() {
-    // Under 0.05 N nothing else lasts; under 0.3 N impacts in 2 of 4 cycles do, but not where the frequency fell.
-    for (force, history, stiffness, observable) in [
-        (0.05, None, None, Observable::Fundamental),
-        (0.05, None, Some(1e5), Observable::ImpactSpeed),
-        (0.3, Some(Direction::Down), Some(1e5), Observable::ImpactSpeed),
-        (0.3, Some(Direction::Down), None, Observable::HalfPeakToPeak),
+    for (stiffness, observable) in [
+        (None, Observable::Fundamental),
+        (Some(1e5), Observable::ImpactSpeed),
+        (None, Observable::HalfPeakToPeak),
     ] {
-        let question = Question { history, ..Question::new(observable) };
-        let choice = choose(&scene(force, stiffness), hz(2.6), &question).unwrap();
+        let choice = choose(&scene(0.3, stiffness), hz(2.6), &Question::new(observable)).unwrap();
         assert_eq!(choice.chosen, Some(Model::Linear), "{:?}", choice.reasons);
         assert!(!choice.rung(Model::ClosedForm).valid && choice.sensitivity.is_empty());
         let expected = if observable.is_of_impacts() {
             0.0
         } else {
             let (rig, omega) = (Rig::thesis(), TAU * hz(2.6));
-            force / (rig.k1 - rig.m1 * omega * omega).hypot(rig.c1 * omega)
+            0.3 / (rig.k1 - rig.m1 * omega * omega).hypot(rig.c1 * omega)
         };
         assert!((choice.answer().unwrap()[0] - expected).abs() <= 1e-12 * expected);
     }
@@ -265,10 +262,10 @@ fn other_scenes_find_their_rung() {
 #[test]
 fn a_gap_that_is_hardly_known_lets_no_mass_stay_clear() {
     let (rig, omega) = (Rig::thesis(), TAU * hz(2.6));
-    let clear = rig.gap - 0.05 / (rig.k1 - rig.m1 * omega * omega).hypot(rig.c1 * omega);
+    let clear = rig.gap - 0.3 / (rig.k1 - rig.m1 * omega * omega).hypot(rig.c1 * omega);
     let chosen = |gap_std: f64| {
         let question = Question { gap_std, ..Question::new(Observable::Fundamental) };
-        choose(&scene(0.05, None), hz(2.6), &question).unwrap()
+        choose(&scene(0.3, None), hz(2.6), &question).unwrap()
     };
     assert_eq!(chosen(0.99 * clear).chosen, Some(Model::Linear));
     let unsure = chosen(1.01 * clear);
