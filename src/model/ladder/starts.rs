@@ -37,7 +37,7 @@ mod tests {
     fn states_are_apart_and_grow_in_all_directions() {
         let sine: Excitation = Sine { force: 0.3, frequency: 12.97 }.into();
         for (gap, m2) in [(1e-3, 0.094), (0.0, 0.094), (-5e-4, 0.094), (1e-3, f64::INFINITY)] {
-            let rig = Rig { gap, m2, ..Rig::thesis() };
+            let rig = Rig { m2, gap, ..Rig::thesis() };
             let all: Vec<State> = starts(&rig, &sine).map(|s| s.0).collect();
             assert_eq!(all.len(), STARTS as usize);
             // Overlapping and moving walls are refused.

@@ -239,11 +239,11 @@ impl Stage<'_> {
         let said = format!("The contact's stiffness is known: {stiffness:.3e} N/m.");
         self.scene
             .spring(stiffness)
-            .map_or_else(|e| Tried::refused(&e), |law| self.contact(motions, law, said))
+            .map_or_else(|e| Tried::refused(&e), |law| self.contact(motions, law, &said))
     }
 
     /// A contact whose law is known: followed the way the rig came, else from where the motion with impacts at once had settled and from rest.
-    fn contact(&self, motions: &Motions, law: Law, said: String) -> Tried {
+    fn contact(&self, motions: &Motions, law: Law, said: &str) -> Tried {
         let run = || -> Result<Tried> {
             let rig = self.rig();
             let (reading, cost) = match self.question.history {
@@ -305,7 +305,7 @@ impl Stage<'_> {
         }
         if stated {
             return match laws::curved(self.scene, speed) {
-                Ok(law) => self.contact(motions, law, "The contact's law is known.".to_owned()),
+                Ok(law) => self.contact(motions, law, "The contact's law is known."),
                 Err(error) => Tried::refused(&error),
             };
         }
