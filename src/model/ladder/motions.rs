@@ -225,7 +225,9 @@ impl Motions {
             known.push(Known { pattern, model, answer, stable: true, rare: false });
         }
         // Where nothing else is known with impacts, orbits that have lost their stability tell of others round them.
-        if let Some(found) = found.filter(|found| known.iter().filter(|m| !m.rare).count() == 1 && several(found)) {
+        if let Some(found) =
+            found.filter(|found| known.iter().filter(|m| !m.rare).count() == 1 && several(found))
+        {
             known.extend(found.orbits.iter().filter(|o| o.validity.admissible).map(known_as));
         }
         self.known = known;
