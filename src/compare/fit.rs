@@ -215,13 +215,13 @@ fn found(
 
 /// An answer with how well it is held and the profile of the parameter known worst. Where that falls below the answer, the least was not
 /// found: it is looked for from there.
-fn profiled(settled: Settled<'_>, pace: Pace) -> Result<(Settled<'_>, Held, Option<Profile>)> {
+fn profiled(mut best: Settled<'_>, pace: Pace) -> Result<(Settled<'_>, Held, Option<Profile>)> {
     let of = |settled: &Settled<'_>| -> Result<(Held, Option<Profile>)> {
         let held = settled.held()?;
         let profile = profile::profile(settled, &held, held.worst());
         Ok((held, profile))
     };
-    let (mut best, (mut held, mut profile)) = (settled.clone(), of(&settled)?);
+    let (mut held, mut profile) = of(&best)?;
     for _ in 0..AGAIN {
         let Some(u) = profile.as_ref().and_then(Profile::lower) else { break };
         let next = settle(best.problem.data, &best.problem.base, &best.problem.unknowns, u, pace)?;
