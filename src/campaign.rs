@@ -39,6 +39,7 @@ mod low_pass;
 mod parameter;
 mod prediction;
 mod record;
+mod rig_file;
 mod spectral;
 
 pub use entry::{Compute, Drive, SweepEntry};
@@ -55,27 +56,6 @@ use crate::model::{ContactKeys, Rig};
 use crate::read::{Recording, SweepList, SweepReader, inside};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
-
-/// Keys of a rig.
-const RIG: [&str; 8] = ["m1", "m2", "k1", "k2", "c1", "c2", "gap", "restitution"];
-
-/// Tables that a rig file has beside these keys.
-const SCENE: [&str; 3] = ["excitation", "contact", "buffer"];
-
-/// The complaint about a rig file where a campaign should stand.
-fn rig_file(path: &Path, text: &str) -> Option<Error> {
-    let table = toml::from_str::<toml::Table>(text).ok()?;
-    let of_rig = |key: &String| RIG.contains(&key.as_str());
-    let is_rig =
-        table.keys().any(of_rig) && table.keys().all(|key| of_rig(key) || SCENE.contains(&key.as_str()));
-    is_rig.then(|| {
-        let expected = "a campaign: the rig's keys under [rig], and what was measured, such as [[sweep]]";
-        Error::input(Place::file(path), "this is a rig, not a campaign", expected).hint(format!(
-            "`vibro model orbit {}` tells what the rig does; docs/campaign.md shows a campaign",
-            path.display()
-        ))
-    })
-}
 
 /// Folder for results where none is named.
 const RESULTS: &str = "results";
@@ -150,8 +130,9 @@ impl Campaign {
     }
 
     fn parse(path: &Path, text: String) -> Result<Campaign> {
-        let mut campaign: Campaign = toml::from_str(&text)
-            .map_err(|e| rig_file(path, &text).unwrap_or_else(|| locate::toml_error(path, &text, &e)))?;
+        let mut campaign: Campaign = toml::from_str(&text).map_err(|e| {
+            rig_file::complaint(path, &text).unwrap_or_else(|| locate::toml_error(path, &text, &e))
+        })?;
         path.clone_into(&mut campaign.path);
         campaign.text = text;
         campaign.check()?;
@@ -243,7 +224,7 @@ impl Campaign {
     pub fn rig_left_out(&self) -> Option<String> {
         let table = toml::from_str::<toml::Table>(&self.text).ok()?;
         let rig = table.get("rig")?.as_table()?;
-        let missing: Vec<&str> = RIG.into_iter().filter(|k| !rig.contains_key(*k)).collect();
+        let missing: Vec<&str> = rig_file::RIG.into_iter().filter(|k| !rig.contains_key(*k)).collect();
         (!missing.is_empty()).then(|| {
             format!("[rig] does not give {}: the values of the thesis' rig are used.", missing.join(", "))
         })
@@ -351,69 +332,4 @@ impl Campaign {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn of(text: &str) -> Result<Campaign> {
-        Campaign::parse(Path::new("campaign.toml"), text.to_owned())
-    }
-
-    const SWEEP: &str = "[[sweep]]\nname = \"a\"\nlist = \"L.TXT\"\n";
-
-    #[test]
-    fn a_campaign_of_every_part() {
-        let text = format!(
-            "name = \"x\"\n[rig]\ngap = 2e-3\n[excitation]\nkind = \"sine\"\nforce = 0.1\n{SWEEP}\
-             quantity = \"velocity\"\ndirection = \"down\"\nmass = 2\nwindow = \"hann\"\n\
-             [[frf]]\nfile = \"a.uff\"\n[[drop]]\nfile = \"d.wav\"\n[compute]\noverlay = false\n"
-        );
-        let campaign = of(&text).unwrap();
-        assert_eq!(campaign.rig.map(|r| r.gap), Some(2e-3));
-        assert_eq!(campaign.sweep[0].reader().quantity, Some(crate::units::Quantity::Velocity));
-        assert_eq!(campaign.out(), Path::new("./results"));
-    }
-
-    #[test]
-    fn mistakes_point_at_their_line() {
-        for (text, line, word) in [
-            ("nam = 1", "line 1, column 1", "`name`"),
-            ("name = \"a\"\n[rig]\nm3 = 1", "line 3, column 1", "m3"),
-            ("[[sweep]]\nname = \"a\"", "line 2", "neither a list"),
-            (&format!("{SWEEP}{SWEEP}"), "line 5", "two sweeps"),
-            (&format!("{SWEEP}mass = 3"), "line 4", "mass"),
-            (&format!("{SWEEP}base_band = 50.0"), "line 3", "beside a list"),
-            (&format!("{SWEEP}quantity = \"speed\""), "line 4", "speed"),
-            (&format!("{SWEEP}unit = \"mm\"\nquantity = \"velocity\""), "line 4", "displacement"),
-            (&format!("{SWEEP}window = \"kaiser\""), "line 4", "kaiser"),
-            (&format!("{SWEEP}calibration = 0.0"), "line 4", "calibration"),
-            ("out = \"../x\"", "line 1", "outside"),
-            ("name = ", "line 1", ""),
-            ("[sweep]\nname = \"a\"", "line 1", "write [[sweep]]"),
-            ("[[rig]]\nm1 = 1.0", "line 1", "write [rig]"),
-            ("sweep = \"a\"", "line 1", "double brackets"),
-            (&format!("{SWEEP}direction = 3"), "line 4", "direction = 3; expected \"up\" or \"down\""),
-            (&format!("{SWEEP}direction = \"left\""), "line 4", "`up` or `down`"),
-            (&format!("{SWEEP}scaling = 1 # ?"), "line 4", "scaling = 1; expected \"peak\" or \"rms\""),
-            (&format!("{SWEEP}mass = -1"), "line 4", "found the integer `-1`; expected a small whole number"),
-            ("[[sweep]]\nlist = \"L\"", "line 1", "add name = "),
-            ("[rig]\nm1 = 0,5\nm2 = 1", "line 2", "write m1 = 0.5"),
-            ("[rig]\nm2 = 1.0\nk1 = -1.0", "line 3, column 1", "k1 is -1 N/m"),
-            (
-                "[[sweep]]\nname = \"a\"\nforce = [\"f\"]\nresponse = [\"r\"]\nlines = 400",
-                "line 2",
-                "1 force and 1 response files, lines 400, base_band left out",
-            ),
-        ] {
-            let error = of(text).unwrap_err().to_string();
-            assert!(error.contains(line) && error.contains(word) && error.contains('^'), "{text}\n{error}");
-        }
-    }
-
-    #[test]
-    fn a_sweep_is_chosen_by_name() {
-        let campaign = of(&format!("{SWEEP}[[sweep]]\nname = \"b\"\nlist = \"M.TXT\"\n")).unwrap();
-        assert!(campaign.sweep(None, false).unwrap_err().to_string().contains("a, b"));
-        assert!(campaign.sweep(Some("c"), false).unwrap_err().to_string().contains("a, b"));
-        assert!(campaign.sweep(Some("a"), false).unwrap_err().to_string().contains("does not exist"));
-    }
-}
+mod tests;

@@ -61,7 +61,18 @@ pub(super) struct Beside {
     pub said: String,
     /// Standard uncertainties of the frequency in Hz, of the amplitude as a part of itself, and of the phase in rad that allow for it; `None` where
     /// it is so large that how far it moves the sine is not known.
-    pub allowed: Option<[f64; 3]>,
+    allowed: Option<[f64; 3]>,
+}
+
+impl Beside {
+    /// Widens frequency, amplitude and phase of the sine; where how far they are moved is not known, no uncertainty is left.
+    pub fn widen(&self, frequency: &mut Estimate, amplitude: &mut Estimate, phase: &mut Estimate) {
+        let size = amplitude.value;
+        for (i, estimate) in [frequency, amplitude, phase].into_iter().enumerate() {
+            let unit = if i == 1 { size } else { 1.0 };
+            estimate.std = self.allowed.and_then(|a| Some(estimate.std?.hypot(unit * a[i])));
+        }
+    }
 }
 
 /// Up to this part of the amplitude, what stands beside a sine moves it by a small and known part.
@@ -232,25 +243,24 @@ fn stated(trace: &Trace, omega: f64, p: &Vector4<f64>, inverse: &Matrix4<f64>, h
     let wide = left.widening(omega / TAU / rate);
     // What rounding leaves of an exact sine is no noise.
     let noisy = variance.sqrt() > 1e-12 * amplitude;
-    let mut warnings: Vec<String> = coloured(omega / TAU, wide).into_iter().filter(|_| noisy).collect();
+    let warnings = coloured(omega / TAU, wide).into_iter().filter(|_| noisy).collect();
     let left_over = Trace { meta: trace.meta.clone(), axis: trace.axis.clone(), values: rest };
     let beside = beside(&left_over, omega / TAU, amplitude).filter(|_| noisy);
-    let allowed =
-        beside.as_ref().map_or(Some([0.0; 3]), |b| b.allowed).map(|[f, a, p]| [f, a * amplitude, p]);
-    warnings.extend(beside.map(|b| b.said));
-    let estimate = |value, gradient, unit, of: fn([f64; 3]) -> f64| {
-        let std = allowed.map(|a| (wide * std(gradient)).hypot(of(a)));
-        Estimate::new(value, std, unit, n, METHOD)
-    };
+    let estimate = |value, gradient, unit| Estimate::new(value, Some(wide * std(gradient)), unit, n, METHOD);
     let level = Vector4::new(0.0, 0.0, 1.0, 0.0);
-    Sine {
-        frequency: estimate(omega / TAU, Vector4::new(0.0, 0.0, 0.0, 1.0 / (TAU * half)), "Hz", |a| a[0]),
-        amplitude: estimate(amplitude, Vector4::new(a, b, 0.0, 0.0) / amplitude, unit, |a| a[1]),
-        phase: estimate(phase, Vector4::new(b / square, -a / square, 0.0, -middle / half), "rad", |a| a[2]),
+    let mut sine = Sine {
+        frequency: estimate(omega / TAU, Vector4::new(0.0, 0.0, 0.0, 1.0 / (TAU * half)), "Hz"),
+        amplitude: estimate(amplitude, Vector4::new(a, b, 0.0, 0.0) / amplitude, unit),
+        phase: estimate(phase, Vector4::new(b / square, -a / square, 0.0, -middle / half), "rad"),
         mean: Estimate::new(mean, Some(left.widening(0.0) * std(level)), unit, n, METHOD),
         noise: variance.sqrt(),
         warnings,
+    };
+    if let Some(other) = beside {
+        other.widen(&mut sine.frequency, &mut sine.amplitude, &mut sine.phase);
+        sine.warnings.push(other.said);
     }
+    sine
 }
 
 #[cfg(test)]

@@ -38,19 +38,6 @@ pub struct Tone {
     pub phase: Estimate,
 }
 
-impl Tone {
-    /// Allows for what is left beside it, as [`sine::Beside::allowed`] says; where that is not known, no uncertainty is left.
-    fn allow(&mut self, allowed: Option<[f64; 3]>) {
-        let size = self.amplitude.value;
-        for (i, estimate) in
-            [&mut self.frequency, &mut self.amplitude, &mut self.phase].into_iter().enumerate()
-        {
-            let unit = if i == 1 { size } else { 1.0 };
-            estimate.std = allowed.and_then(|a| Some(estimate.std?.hypot(unit * a[i])));
-        }
-    }
-}
-
 /// Sines of a record, and what is left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tones {
@@ -130,7 +117,7 @@ pub fn tones(trace: &Trace, count: usize) -> Result<Tones> {
         warnings.extend(fit.frequencies().iter().filter_map(|f| sine::coloured(*f, left.widening(f / rate))));
         for tone in &mut tones {
             if let Some(other) = sine::beside(&rest, tone.frequency.value, tone.amplitude.value) {
-                tone.allow(other.allowed);
+                other.widen(&mut tone.frequency, &mut tone.amplitude, &mut tone.phase);
                 warnings.push(other.said);
             }
         }

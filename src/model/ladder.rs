@@ -28,6 +28,7 @@ mod reading;
 mod reasons;
 mod rung;
 mod sensitivity;
+mod stage;
 mod starts;
 mod tried;
 
@@ -43,7 +44,7 @@ use crate::error::{Error, Result};
 use change::Answer;
 use climb::Climb;
 use serde::Serialize;
-use tried::Stage;
+use stage::Stage;
 
 /// The rung that is good enough for a scene, and how that was found.
 #[derive(Debug, Clone, PartialEq, Serialize)]

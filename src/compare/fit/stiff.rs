@@ -27,8 +27,6 @@ pub struct Stiff {
     pub lost: usize,
     /// Coordinates that belong to them.
     pub u: Vec<f64>,
-    /// Whether the last round found a least sum of squares where parameters may lie.
-    pub sure: bool,
 }
 
 /// The points of an answer with the compliance of a contact of `stiffness` (N/m) taken out of them.
@@ -41,32 +39,24 @@ pub struct Stiff {
 /// If too few points are left.
 pub fn stiff(rigid: &Settled<'_>, stiffness: f64, pace: Pace) -> Result<Stiff> {
     // The answer without compliance may be one of which none can be taken out: then from the rig as it was stated.
-    let found = led(rigid, &rigid.setting(), stiffness, ROUNDS, pace);
+    let found = led(rigid, &rigid.setting(), stiffness, pace);
     if found.as_ref().is_ok_and(|s| s.lost == 0) {
         return found;
     }
-    match (found, led(rigid, &rigid.problem.base, stiffness, ROUNDS, pace)) {
+    match (found, led(rigid, &rigid.problem.base, stiffness, pace)) {
         (Ok(a), Ok(b)) => Ok(if b.lost < a.lost { b } else { a }),
         (Err(_), other) => other,
         (found, Err(_)) => found,
     }
 }
 
-/// The same from this setting on, in so many rounds at most.
-fn led(rigid: &Settled<'_>, from: &Setting, stiffness: f64, rounds: usize, pace: Pace) -> Result<Stiff> {
-    let Problem { data: plain, base, unknowns, .. } = &rigid.problem;
-    // Points far from their motion may be so for want of the correction.
-    let corrected = |data: &Data, setting: &Setting| -> Result<Stiff> {
-        let kinds = assigned(data, setting, pace)?.kinds;
-        let (data, lost) = corrected(plain, setting, &kinds, stiffness);
-        Ok(Stiff { data, lost, u: coordinates(setting, unknowns), sure: false })
-    };
-    let mut now = corrected(plain, from)?;
-    for _ in 0..rounds {
-        let settled = settle(&now.data, base, unknowns, &now.u, pace)?;
-        let inside = settled.held()?.edges.iter().all(Option::is_none);
-        let sure = settled.agreed && settled.minimum.converged && inside;
-        let next = Stiff { sure, ..corrected(&now.data, &settled.setting())? };
+/// The same from this setting on.
+fn led(rigid: &Settled<'_>, from: &Setting, stiffness: f64, pace: Pace) -> Result<Stiff> {
+    let problem = &rigid.problem;
+    let mut now = without(problem, problem.data, from, stiffness, pace)?;
+    for _ in 0..ROUNDS {
+        let settled = settle(&now.data, &problem.base, &problem.unknowns, &now.u, pace)?;
+        let next = without(problem, &now.data, &settled.setting(), stiffness, pace)?;
         let still = change(&now.data, &next.data) <= STILL;
         now = next;
         if still {
@@ -74,6 +64,20 @@ fn led(rigid: &Settled<'_>, from: &Setting, stiffness: f64, rounds: usize, pace:
         }
     }
     Ok(now)
+}
+
+/// The points of the problem without what the contact makes of them in this setting. Which motion each shows, `told` tells: points far from
+/// their motion may be so for want of the correction.
+fn without(
+    problem: &Problem<'_>,
+    told: &Data,
+    setting: &Setting,
+    stiffness: f64,
+    pace: Pace,
+) -> Result<Stiff> {
+    let kinds = assigned(told, setting, pace)?.kinds;
+    let (data, lost) = corrected(problem.data, setting, &kinds, stiffness);
+    Ok(Stiff { data, lost, u: coordinates(setting, &problem.unknowns) })
 }
 
 /// Largest change of an amplitude in standard deviations.
@@ -139,25 +143,28 @@ pub fn untold(settled: &Settled<'_>, held: &Held, pace: Pace) -> Option<String> 
     // t_c = π√(M/k₃) of a spring.
     let stiffness = setting.rig.reduced_mass() * (PI * frequency / SHARE).powi(2);
     let contact = format!("a contact of a thousandth of the period, {} stiff", quantity(stiffness, "N/m", 2));
-    // What is left after one round is some thousandth of the change.
-    let Some(soft) = led(settled, &setting, stiffness, 1, pace).ok().filter(|soft| soft.sure) else {
-        return Some(format!(
-            "Impacts are taken to last no time. What {contact}, would make of the parameters could not be told. Give `stiffness` in [contact] where \
-             it is known."
-        ));
+    let say = |what: String| {
+        format!("Impacts are taken to last no time. {what} Give `stiffness` in [contact] where it is known.")
     };
-    let changed =
-        |i: usize| (soft.u[i] - settled.minimum.parameters[i]).abs() > held.covariance[(i, i)].sqrt();
+    let Ok(Some(soft)) = once(settled, stiffness, pace) else {
+        return Some(say(format!("What {contact}, would make of the parameters could not be told.")));
+    };
+    let changed = |i: usize| (soft[i] - settled.minimum.parameters[i]).abs() > held.covariance[(i, i)].sqrt();
     let one = |i: usize| {
         let Unknown { parameter, coordinate, .. } = problem.unknowns[i];
-        format!("{} {}", parameter.name(), quantity(coordinate.value(soft.u[i]), parameter.unit(), 4))
+        format!("{} {}", parameter.name(), quantity(coordinate.value(soft[i]), parameter.unit(), 4))
     };
     let moved: Vec<String> =
-        (0..soft.u.len()).filter(|i| held.loose[*i].is_none() && changed(*i)).map(one).collect();
-    (!moved.is_empty()).then(|| {
-        format!(
-            "Impacts are taken to last no time. With {contact}, it would be: {}. Give `stiffness` in [contact] where it is known.",
-            moved.join(", ")
-        )
-    })
+        (0..soft.len()).filter(|i| held.loose[*i].is_none() && changed(*i)).map(one).collect();
+    (!moved.is_empty()).then(|| say(format!("With {contact}, it would be: {}.", moved.join(", "))))
+}
+
+/// The parameters found from the points without this compliance: what is left after one round is some thousandth of the change. `None` where
+/// that is no least sum of squares, or not where parameters may lie.
+fn once(rigid: &Settled<'_>, stiffness: f64, pace: Pace) -> Result<Option<Vec<f64>>> {
+    let problem = &rigid.problem;
+    let stiff = without(problem, problem.data, &rigid.setting(), stiffness, pace)?;
+    let found = settle(&stiff.data, &problem.base, &problem.unknowns, &stiff.u, pace)?;
+    let inside = found.held()?.edges.iter().all(Option::is_none);
+    Ok((found.agreed && found.minimum.converged && inside).then_some(found.minimum.parameters))
 }

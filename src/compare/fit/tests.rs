@@ -1,8 +1,13 @@
+use super::super::prediction::Kind;
 use super::data::{Seen, Step};
+use super::held::NORMAL;
 use super::motion::assigned;
 use super::unknown::coordinates;
 use super::*;
+use crate::campaign::Parameter;
+use crate::measure::Estimate;
 use crate::measure::synthetic::Normal;
+use crate::record::Direction;
 
 /// Generator's settings of the example campaign in Hz.
 const FREQUENCIES: [f64; 40] = [
@@ -364,7 +369,7 @@ fn a_prior_is_used_and_said_where_it_holds_the_parameter() {
     let unknowns = Unknown::all(&entry, &setting).unwrap();
     let settled = least_from(&data, &setting, &unknowns, &kinds);
     let held = settled.held().unwrap();
-    let [gap, c1] = [0, 1].map(|i| fitted(&settled, &held, &setting, i, None));
+    let [gap, c1] = [0, 1].map(|i| answer::fitted(&settled, &held, &setting, i, None, ""));
     assert!(!gap.rests_on_prior && gap.identifiable, "{gap:?}");
     // The points know c1 to some 1e-5: all but the hundredth part squared is the prior's.
     assert!(c1.rests_on_prior && (c1.estimate.std.unwrap() / 1e-7 - 1.0).abs() < 1e-3, "{c1:?}");

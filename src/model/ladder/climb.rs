@@ -3,7 +3,8 @@
 use super::change::{Answer, Change};
 use super::motions::{Motions, On};
 use super::sensitivity::sensitivity;
-use super::tried::{Stage, Tried, restitution};
+use super::stage::{Stage, restitution};
+use super::tried::Tried;
 use super::{Choice, Model, Need, Rung, laws, reasons};
 use crate::error::Result;
 

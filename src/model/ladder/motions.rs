@@ -4,8 +4,9 @@ use super::change::Answer;
 use super::cost::Cost;
 use super::history::{Way, several};
 use super::reading::{End, Reader, Reading};
+use super::stage::Stage;
 use super::starts::starts;
-use super::tried::{Stage, Tried};
+use super::tried::Tried;
 use super::{Model, Question};
 use crate::error::{Error, Result};
 use crate::model::regime::Strike;
@@ -110,7 +111,7 @@ impl Motions {
         motions.list(question, reader.fine());
         if !motions.by_history {
             motions.seek(stage, &reader);
-            if motions.common() > 1 || motions.closed.as_ref().is_ok_and(several) {
+            if common(&motions.known) > 1 || motions.closed.as_ref().is_ok_and(several) {
                 motions.on = On::Open;
             }
         }
@@ -125,7 +126,7 @@ impl Motions {
         let round: Vec<_> = lost.map(|orbit| (beside(orbit), orbit.force_phase)).collect();
         let mut followed = 0;
         for (state, phase) in round.into_iter().chain(starts(rig, excitation)) {
-            if self.common() > 1 || followed > MOST_FOLLOWED {
+            if common(&self.known) > 1 || followed > MOST_FOLLOWED {
                 break;
             }
             let started = Simulation::from_state(rig, excitation, state, phase);
@@ -197,11 +198,6 @@ impl Motions {
         self.near(alike, fine).filter(|_| self.reading.end == End::Settled)
     }
 
-    /// Motions between which only the history decides.
-    fn common(&self) -> usize {
-        self.known.iter().filter(|m| !m.rare).count()
-    }
-
     /// Lists the motions known.
     fn list(&mut self, question: &Question, fine: f64) {
         let mut known = Vec::new();
@@ -225,9 +221,7 @@ impl Motions {
             known.push(Known { pattern, model, answer, stable: true, rare: false });
         }
         // Where nothing else is known with impacts, orbits that have lost their stability tell of others round them.
-        if let Some(found) =
-            found.filter(|found| known.iter().filter(|m| !m.rare).count() == 1 && several(found))
-        {
+        if let Some(found) = found.filter(|found| common(&known) == 1 && several(found)) {
             known.extend(found.orbits.iter().filter(|o| o.validity.admissible).map(known_as));
         }
         self.known = known;
@@ -242,6 +236,11 @@ impl Motions {
         let existing = found.orbits.iter().find(|o| o.validity.exists);
         Ok(self.stable().next().or(existing))
     }
+}
+
+/// Motions between which only the history decides.
+fn common(known: &[Known]) -> usize {
+    known.iter().filter(|m| !m.rare).count()
 }
 
 /// The state after the impact of an orbit, with speeds that are a little less.

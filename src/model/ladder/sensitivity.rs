@@ -2,7 +2,7 @@
 
 use super::change::{Answer, Change};
 use super::motions::Motions;
-use super::tried::Stage;
+use super::stage::Stage;
 use super::{Model, laws};
 use crate::model::Law;
 use crate::model::contact::conversion;

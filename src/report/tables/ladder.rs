@@ -70,7 +70,7 @@ pub fn sensitivity(rows: &[Sensitivity], question: &Question) -> Table {
 /// Which rung is chosen where.
 pub fn stretches(stretches: &[Stretch]) -> Table {
     table(
-        "Chosen along the axis (rows end at points that were asked; between two rows the choice changes)",
+        "Chosen along the axis, from and to points that were asked",
         stretches,
         &[
             ("from", "Hz", &|s| Cell::from(s.from)),
@@ -92,7 +92,7 @@ pub fn climbed(overlay: &Overlay) -> Table {
     let rows: Vec<(&Rungs, &Stretch)> =
         overlay.rungs.iter().flat_map(|r| r.stretches.iter().map(move |s| (r, s))).collect();
     table(
-        "The simplest model that is good enough (rows end at frequencies that were asked; between two rows the choice changes)",
+        "The simplest model that is good enough, from and to frequencies that were asked",
         &rows,
         &[
             ("force", "N", &|(r, _)| Cell::from(r.force)),
