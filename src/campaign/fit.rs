@@ -1,6 +1,7 @@
 //! What is to be found from the responses.
 
 use super::Parameter;
+use crate::error::{Error, Result};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -17,7 +18,7 @@ pub struct FitEntry {
     /// Starting points. Default 8.
     pub starts: Option<usize>,
     /// Relative standard uncertainty of the calibration of each mass' amplitudes: one factor for all of them, and as much again as a slope
-    /// from the lowest to the highest frequency. Default 0.
+    /// from the lowest to the highest frequency. Default 0.01, which is said.
     pub calibration: Option<f64>,
     /// Relative standard uncertainty of each amplitude for itself, beside the noise in its spectrum: how far a measurement that is repeated
     /// strays. Default 0.
@@ -28,8 +29,26 @@ pub struct FitEntry {
 const MOST_STARTS: usize = 1000;
 
 impl FitEntry {
+    /// Asks for these parameters.
+    ///
+    /// # Errors
+    /// If one stands there twice, or is a mass without a prior.
+    pub fn ask(&mut self, parameters: Vec<Parameter>) -> Result<()> {
+        self.parameters = parameters;
+        self.usable()
+    }
+
+    /// That nothing in it is impossible.
+    ///
+    /// # Errors
+    /// With the key that is, and why.
+    pub(crate) fn usable(&self) -> Result<()> {
+        let expected = "each parameter once, masses with a prior, and values as docs/campaign.md has them";
+        self.check().map_err(|(key, why)| Error::usage(format!("fit of {key}: {why}"), expected))
+    }
+
     /// The key that holds an impossible value, and why.
-    pub(crate) fn check(&self) -> Result<(), (&'static str, String)> {
+    pub(crate) fn check(&self) -> std::result::Result<(), (&'static str, String)> {
         let mut seen = Vec::new();
         for parameter in &self.parameters {
             if seen.contains(parameter) {

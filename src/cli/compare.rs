@@ -21,8 +21,8 @@ struct Answer {
 pub fn run(typed: &args::Compare, json: bool) -> Result<()> {
     let mut campaign = Campaign::from_path(&typed.campaign)?;
     if !typed.fit.is_empty() {
-        campaign.fit.parameters =
-            typed.fit.iter().map(|name| Parameter::from_name(name.trim())).collect::<Result<_>>()?;
+        let names = typed.fit.iter().map(|name| Parameter::from_name(name.trim()));
+        campaign.fit.ask(names.collect::<Result<_>>()?)?;
     }
     let rig = campaign.rig.ok_or_else(|| {
         Error::input(Place::file(campaign.path()), "the campaign has no [rig]", "the rig to compare with")

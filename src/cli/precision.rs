@@ -1,7 +1,7 @@
 //! `vibro precision`: speed against accuracy, and where methods break.
 
 use crate::cli::{args, complain, print, progress};
-use crate::compare::precision::{Cell, Earlier, FailureMap, Family, Scene, added, estimators, models};
+use crate::compare::precision::{Cell, Earlier, FailureMap, Family, Scene, added, busy, estimators, models};
 use crate::error::{Error, Result};
 use crate::report::{Figure, Output, files, pictures, tables};
 use serde::Serialize;
@@ -52,7 +52,8 @@ pub fn run(typed: &args::Precision, json: bool) -> Result<()> {
         }
     }
     bar.finish_and_clear();
-    let mut warnings = Vec::new();
+    // Of a file or of this run: those of other programs come without quartiles.
+    let mut warnings: Vec<String> = busy::busy(&scenes).into_iter().collect();
     for path in &typed.add {
         warnings.extend(added::add(&mut scenes, path)?);
     }

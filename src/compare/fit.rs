@@ -44,6 +44,9 @@ use unknown::{Unknown, coordinates};
 
 /// Starting points where none are asked for.
 const STARTS: usize = 8;
+/// Relative standard uncertainty of calibrations where none is stated: that of a good sensor. Amplitudes alone cannot tell it, and all that
+/// grows with them (gap, force, masses) is as uncertain.
+const ASSUMED: f64 = 0.01;
 /// Turns of looking around the best answer.
 const TURNS: usize = 6;
 /// So many turns in which no answer came nearer by [`BETTER`] are the last.
@@ -70,7 +73,7 @@ pub fn fit(
 ) -> Result<Fit> {
     rig.check()?;
     let mut data = Data::new(force, responses)?;
-    data.calibration = entry.calibration.unwrap_or(0.0);
+    data.calibration = entry.calibration.unwrap_or(ASSUMED);
     data.scattered(entry.scatter.unwrap_or(0.0));
     let base = Setting { rig: *rig, force: data.force };
     found(&data, &base, contact, responses, entry, pace)
@@ -93,14 +96,11 @@ fn found(
         None => rigid.clone(),
         Some(stiff) => settle(&stiff.data, base, &unknowns, &stiff.u, pace)?,
     };
-    let (mut settled, mut held, profile) = profiled(settled, pace)?;
+    let (mut settled, held, profile) = profiled(settled, pace)?;
     settled.contradictions.extend(profile.as_ref().and_then(Profile::missed));
     settled.contradictions.extend(prior::contradictions(&settled, starts, pace));
     settled.contradictions.extend(settled.pulled(&held));
     settled.lost = stiff.as_ref().map_or(0, |s| s.lost);
-    if entry.calibration.is_none() {
-        held.lose_scale(&settled.problem);
-    }
     let mut fit = gathered(&settled, &held, base, profile);
     (fit.starts, fit.agreeing) = (starts, agreeing(&ends, &rigid.minimum.parameters, &rigid.held()?));
     fit.rungs = match stiff {
@@ -112,6 +112,9 @@ fn found(
         fit.warnings.extend(told::scarce(data, motion::assigned(data, base, pace)?.amplitudes(data)));
     } else if contact.is_none() {
         fit.warnings.extend(stiff::untold(&settled, &held, pace));
+    }
+    if entry.calibration.is_none() {
+        fit.warnings.push(told::assumed(data.calibration));
     }
     fit.warnings.extend(told::unused(entry));
     Ok(fit)

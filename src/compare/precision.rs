@@ -5,6 +5,7 @@
 //! without a word, stalled, crashed. Two families: models of the motion, and estimators of what is measured of it.
 
 pub mod added;
+pub mod busy;
 pub mod earlier;
 pub mod estimators;
 pub mod failure;

@@ -9,8 +9,8 @@ pub struct Compare {
     /// Allow names in lists that lead outside their folder
     #[arg(long)]
     pub allow_outside: bool,
-    /// Parameters to be found from the responses, with commas between: force, restitution, c1, c2, gap, k1, k2 [default: those of [fit]
-    /// in the campaign]
+    /// Parameters to be found from the responses, with commas between: force, restitution, c1, c2, gap, k1, k2, and m1, m2 with a prior in
+    /// [fit] [default: those of [fit] in the campaign]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub fit: Vec<String>,
     /// Folder for the overlay and the fit as SVG, PNG and CSV

@@ -7,6 +7,7 @@ use crate::model::ladder::{Choice, Question, Survey, choose, choose_over};
 use crate::model::{Observable, Scene};
 use crate::record::Direction;
 use crate::report::{Figure, Output, Table, files, pictures, tables};
+use crate::units::notation::significant;
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -118,7 +119,7 @@ fn along(
         warnings.push(format!(
             "At {open} of {} frequencies no rung can be chosen, the first of them {} Hz: {}",
             survey.points.len(),
-            first.frequency,
+            significant(first.frequency, 6),
             first.reasons.last().map_or("", String::as_str)
         ));
     }
@@ -128,14 +129,15 @@ fn along(
             "At {} of {} points, the first at {} Hz: {}",
             rare.len(),
             survey.points.len(),
-            first.frequency,
+            significant(first.frequency, 6),
             first.rare(question).unwrap_or_default()
         ));
     }
     let size = |c: &&Choice| c.law.map_or(0.0, |law| law.change.abs());
     let doubted = survey.points.iter().filter(|c| c.doubt().is_some());
     if let Some(worst) = doubted.max_by(|a, b| size(a).total_cmp(&size(b))) {
-        warnings.push(format!("At {} Hz: {}", worst.frequency, worst.doubt().unwrap_or_default()));
+        let at = significant(worst.frequency, 6);
+        warnings.push(format!("At {at} Hz: {}", worst.doubt().unwrap_or_default()));
     }
     if json {
         return print::json(&Answer { scene, question, found: survey, warnings: &warnings, files: written });

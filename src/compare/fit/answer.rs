@@ -172,8 +172,7 @@ fn method(settled: &Settled<'_>) -> String {
     let exact = |p: &Parameter| problem.unknowns.iter().all(|u| u.parameter != *p);
     let masses = [Parameter::M1, Parameter::M2].into_iter().filter(exact);
     let mut exact: Vec<&str> = masses.map(Parameter::name).collect();
-    let corrected = |step: &Step| step.seen.iter().flatten().any(|seen| seen.soft != 1.0);
-    if problem.data.steps.iter().any(corrected) {
+    if problem.data.corrected() {
         exact.push("the stiffness of the contact");
     }
     let method = "least squares of both masses and directions by the closed form";

@@ -67,6 +67,11 @@ pub struct Data {
 pub const GUESS: f64 = 1e-2;
 
 impl Data {
+    /// Whether a contact's compliance was taken out of amplitudes.
+    pub fn corrected(&self) -> bool {
+        self.steps.iter().flat_map(|step| step.seen.iter().flatten()).any(|seen| seen.soft != 1.0)
+    }
+
     /// The points of displacement responses that name their mass and direction. `force` in N is the stated one.
     ///
     /// # Errors

@@ -124,20 +124,6 @@ impl Held {
         Ok(Held { covariance, loose, relative, edges })
     }
 
-    /// With force and gap both free, all lengths and forces can be larger by one factor: only the calibration of the amplitudes holds it, and
-    /// where that is not stated, neither of the two has an uncertainty.
-    pub fn lose_scale(&mut self, problem: &Problem<'_>) {
-        let free = |p: Parameter| problem.unknowns.iter().position(|u| u.parameter == p && u.prior.is_none());
-        let (Some(force), Some(gap)) = (free(Parameter::Force), free(Parameter::Gap)) else { return };
-        for i in [force, gap] {
-            self.loose[i].get_or_insert_with(|| {
-                "force, gap and all amplitudes can be larger by one factor, and how well the amplitudes are calibrated is not stated \
-                 (`calibration` in [fit])"
-                    .to_owned()
-            });
-        }
-    }
-
     /// Correlation of two parameters.
     pub fn correlation(&self, i: usize, j: usize) -> f64 {
         self.covariance[(i, j)] / (self.covariance[(i, i)] * self.covariance[(j, j)]).sqrt()

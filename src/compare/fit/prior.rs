@@ -4,19 +4,47 @@ use super::super::simulated::Pace;
 use super::identify;
 use super::settle::Settled;
 use super::unknown::Unknown;
-use crate::units::notation::with_std;
+use crate::units::notation::{quantity, with_std};
 
 /// A prior and the points contradict each other where they differ by more than so many standard uncertainties of both: chance does so in one
 /// of 1.7 million cases.
 const APART: f64 = 5.0;
 
-/// A sentence for each prior that the points alone contradict, by a fit without any but those of masses, which motion does not tell.
+/// A sentence for each prior that the points alone contradict, by a fit without any but those of masses, and for each mass that does
+/// not agree with its own: without the force, motion does not tell masses.
 pub fn contradictions(settled: &Settled<'_>, starts: usize, pace: Pace) -> Vec<String> {
     let problem = &settled.problem;
     let told = |k: &Unknown| k.prior.is_some() && !k.parameter.is_mass();
-    if !problem.unknowns.iter().any(told) {
-        return Vec::new();
+    let mut said: Vec<String> = problem.unknowns.iter().filter_map(|k| weighed(settled, k)).collect();
+    if problem.unknowns.iter().any(told) {
+        said.extend(contradicted(settled, told, starts, pace));
     }
+    said
+}
+
+/// That a mass lies far from what it weighs.
+fn weighed(settled: &Settled<'_>, unknown: &Unknown) -> Option<String> {
+    let [known, std] = unknown.prior.filter(|_| unknown.parameter.is_mass())?;
+    let (value, parameter) = (settled.setting().get(unknown.parameter), unknown.parameter);
+    let apart = (value - known).abs() / std;
+    (apart > APART).then(|| {
+        format!(
+            "{} of {} lies {apart:.1} standard uncertainties from its prior, {}",
+            parameter.name(),
+            quantity(value, parameter.unit(), 4),
+            with_std(known, Some(std), parameter.unit())
+        )
+    })
+}
+
+/// As [`contradictions`], of the parameters that are `told` apart from the masses.
+fn contradicted(
+    settled: &Settled<'_>,
+    told: impl Fn(&Unknown) -> bool,
+    starts: usize,
+    pace: Pace,
+) -> Vec<String> {
+    let problem = &settled.problem;
     let without = |k: &Unknown| Unknown { prior: k.prior.filter(|_| !told(k)), ..*k };
     let free: Vec<Unknown> = problem.unknowns.iter().map(without).collect();
     // Where the points alone do not determine the parameters, they contradict nothing.

@@ -99,8 +99,10 @@ pub fn warnings(fit: &Fit, settled: &Settled<'_>, data: &Data) -> Vec<String> {
         ));
     }
     if fit.agreeing * 2 < fit.starts {
+        let rigid =
+            if data.corrected() { ", before the compliance of the contact was taken out" } else { "" };
         said.push(format!(
-            "{} of {} starting points led to this answer: of all that were met it explains the most points.",
+            "{} of {} starting points led to this answer{rigid}: it was found around the best of them, and explains the most points of all that were met.",
             fit.agreeing, fit.starts
         ));
     }
@@ -154,6 +156,15 @@ fn off_by(fit: &Fit) -> Option<String> {
         let bound = if middle > 1.0 { "more" } else { "less" };
         format!("Half of the amplitudes are {middle:.3} times what the answer shows, or {bound}: the unit or the scaling may be wrong.")
     })
+}
+
+/// What is taken for the calibration where nothing is stated.
+pub fn assumed(calibration: f64) -> String {
+    format!(
+        "How well the amplitudes are calibrated is not stated: {} % is assumed for each mass, and is in all uncertainties. A better known one makes them \
+         smaller (`calibration` in [fit]).",
+        100.0 * calibration
+    )
 }
 
 /// Sentences about what was given and has no use.

@@ -20,7 +20,7 @@ impl Unknown {
     /// # Errors
     /// If nothing is asked for, a parameter twice, a starting value lies outside its bounds, or a prior or bounds cannot be.
     pub fn all(entry: &FitEntry, from: &Setting) -> Result<Vec<Unknown>> {
-        entry.check().map_err(|(key, why)| Error::usage(format!("fit of {key}: {why}"), "another value"))?;
+        entry.usable()?;
         if entry.parameters.is_empty() {
             return Err(Error::usage("a fit of no parameter", "one parameter or more"));
         }

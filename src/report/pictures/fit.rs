@@ -36,29 +36,33 @@ pub fn fit(title: &str, fit: &Fit) -> Figure {
         left.other_motion + left.far + left.wavering + left.soft
     );
     if let Some(profile) = &fit.profile {
-        figure = figure.panel(profiled(profile)).height(150.0);
+        let sure = fit.doubt.is_none();
+        figure = figure.panel(profiled(profile, sure)).height(150.0);
+        let name = profile.parameter.name();
         let _ = write!(
             caption,
-            " Below: the least sum of squares over {}, the parameter known worst, all others free; under the grey line ({}) it lies with \
-             95 % confidence.",
-            profile.parameter.name(),
-            profile.limit
+            " Below: the least sum of squares over {name}, the parameter known worst, all others free; "
         );
+        let _ = if sure {
+            write!(caption, "under the grey line ({}) it lies with 95 % confidence.", profile.limit)
+        } else {
+            write!(caption, "the answer is in doubt, and this says nothing of the truth.")
+        };
     }
     lettered(figure).caption(caption)
 }
 
-fn profiled(profile: &Profile) -> Plot {
+fn profiled(profile: &Profile, sure: bool) -> Plot {
     let top = profile.rise.iter().copied().filter(|r| r.is_finite()).fold(profile.limit, f64::max);
     let unit = if profile.unit == "1" { "" } else { profile.unit };
-    Plot::new(
+    let plot = Plot::new(
         AxisSpec::new(profile.parameter.name(), unit),
         AxisSpec::new("Rise of the sum of squares", "").limits(0.0, 1.05 * top.min(6.0 * profile.limit)),
     )
     .title(format!("Profile of {}", profile.parameter.name()))
-    .legend(Legend::Hidden)
-    .with(Series::horizontal("95 %", profile.limit))
-    .with(
+    .legend(Legend::Hidden);
+    let plot = if sure { plot.with(Series::horizontal("95 %", profile.limit)) } else { plot };
+    plot.with(
         Series::line("", profile.value.clone(), profile.rise.clone()).ink(Ink::Nth(0)).stroke(Stroke::Solid),
     )
 }

@@ -22,7 +22,7 @@ pub fn overlay(title: &str, overlay: &Overlay, responses: &[Response]) -> Figure
     };
     let mut figure = Figure::double(title).shared_x().caption(format!(
         "Fundamental of the displacement. Lines: closed form for {force}; motions in which the masses would pass through each \
-         other are left out, and so is mass 2 at rest. Crosses: where a simulated sweep comes to another motion. Points: measured. {MARKS}"
+         other are left out, and so is mass 2 at rest. Crosses: what a simulated sweep comes to where that is another motion, or where impacts last. Points: measured. {MARKS}"
     ));
     for level in &overlay.levels {
         for mass in [1, 2] {
@@ -56,8 +56,15 @@ fn panel(mass: u8, curve: &Prediction, pairs: &[Pair], measured: &[(usize, &Resp
         None => y,
     };
     let mut plot = Plot::new(AxisSpec::new("Excitation frequency", "Hz"), y);
+    let swept = |p: &&Pair| p.mass == mass && measured.iter().any(|(_, r)| r.name == p.sweep);
+    let lasting = [Model::KelvinVoigt, Model::HuntCrossley].map(Model::name);
+    let lasts = pairs.iter().filter(swept).any(|p| lasting.contains(&p.model));
     for (verdict, name, stroke) in [
-        (Verdict::Seen, "one impact a cycle", Stroke::Solid),
+        (
+            Verdict::Seen,
+            if lasts { "one impact a cycle, at once" } else { "one impact a cycle" },
+            Stroke::Solid,
+        ),
         (Verdict::Unstable, "unstable", Stroke::Dashed),
         (Verdict::Neutral, "neutral", Stroke::DashDot),
     ] {
@@ -84,13 +91,19 @@ fn panel(mass: u8, curve: &Prediction, pairs: &[Pair], measured: &[(usize, &Resp
         let [points, faint] = series(response, *rank, &[], limits);
         plot = plot.with(faint).with(points);
     }
-    let swept = |p: &&Pair| p.mass == mass && measured.iter().any(|(_, r)| r.name == p.sweep);
     let other = pairs.iter().filter(swept).filter(|p| p.model != Model::ClosedForm.name());
     let (x, y): (Vec<f64>, Vec<f64>) =
         other.filter_map(|p| Some((p.frequency, factor * p.predicted?))).unzip();
     if !x.is_empty() {
-        plot = plot
-            .with(Series::points("another motion, simulated", x, y).ink(Ink::Black).marker(Marker::Cross));
+        plot = plot.with(
+            Series::points(
+                if lasts { "predicted with the contact" } else { "another motion, simulated" },
+                x,
+                y,
+            )
+            .ink(Ink::Black)
+            .marker(Marker::Cross),
+        );
     }
     plot
 }

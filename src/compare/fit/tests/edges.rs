@@ -96,33 +96,58 @@ fn what_was_given_in_vain_is_said() {
     }
 }
 
-/// All lengths and forces half as large: with force and gap free nothing but the calibration tells.
+/// All amplitudes larger by this factor.
+fn larger(data: &mut Data, factor: f64) {
+    for seen in data.steps.iter_mut().flat_map(|s| s.seen.iter_mut().flatten()) {
+        seen.amplitude *= factor;
+        seen.std *= factor;
+        seen.limit = seen.limit.map(|l| l * factor);
+    }
+}
+
+/// Only the calibration tells one factor on lengths and forces, or on lengths and, where the force is held, masses and stiffnesses.
 #[test]
-fn a_scale_that_nothing_holds_has_no_uncertainty() {
-    let names = "parameters = [\"force\", \"restitution\", \"c1\", \"gap\"]";
-    let halved = |data: &mut Data| {
-        for seen in data.steps.iter_mut().flat_map(|s| s.seen.iter_mut().flatten()) {
-            seen.amplitude /= 2.0;
-            seen.std /= 2.0;
-            seen.limit = seen.limit.map(|l| l / 2.0);
+fn a_scale_is_as_uncertain_as_the_calibration() {
+    let both = "parameters = [\"force\", \"restitution\", \"c1\", \"gap\"]";
+    let loose = format!("{both}\nprior.force = [0.1, 0.05]");
+    let weighed = "parameters = [\"restitution\", \"c1\", \"c2\", \"gap\", \"k1\", \"k2\", \"m1\", \"m2\"]\n\
+                   prior.m1 = [0.125, 0.00625]\nprior.m2 = [0.094, 0.0047]";
+    for (names, scale) in [(both, Parameter::Force), (&loose, Parameter::Gap), (weighed, Parameter::M1)] {
+        let fit = answered(names, 38, |data| {
+            larger(data, 1.01);
+            data.calibration = ASSUMED;
+        })
+        .unwrap();
+        let setting = example();
+        for found in &fit.parameters {
+            let Estimate { value, std, .. } = found.estimate;
+            let off = (value - setting.get(found.parameter)).abs();
+            println!("{found:?}");
+            // The factor is one standard uncertainty of each mass' calibration, √2 of both together; 2.5 more are chance of one in 80.
+            assert!(off < 3.9 * std.unwrap_or(0.0), "{names}: {found:?}");
         }
-    };
-    let fit = answered(names, 38, halved).unwrap();
-    for (parameter, value) in [(Parameter::Force, 0.05), (Parameter::Gap, 0.5e-3)] {
-        let found = of(&fit, parameter);
-        // Half as large to the noise over the amplitudes, 1e-4 to 1e-3.
-        assert!((found.estimate.value / value - 1.0).abs() < 3e-3, "{found:?}");
-        assert!(found.estimate.std.is_none() && found.interval.is_none(), "{found:?}");
-        assert!(found.reason.as_ref().is_some_and(|r| r.contains("one factor")), "{found:?}");
+        let Estimate { value, std, .. } = of(&fit, scale).estimate;
+        // Two calibrations together: 1 %/√2; a little more with their slopes.
+        assert!((0.006..0.012).contains(&(std.unwrap() / value)), "{names}: {std:?}");
+        assert!(fit.warnings.iter().any(|w| w.contains("is assumed")), "{:?}", fit.warnings);
     }
-    let c1 = of(&fit, Parameter::C1).estimate.clone();
-    assert!((c1.value - 0.1).abs() < 4.0 * c1.std.unwrap(), "{c1:?}");
-    assert!(fit.warnings.iter().any(|w| w.contains("The force found is 0.5")), "{:?}", fit.warnings);
-    // Where a calibration is stated, or a prior of one of both, the scale is held.
-    for held in ["calibration = 0", "prior.gap = [0.5e-3, 1e-6]"] {
-        let fit = answered(&format!("{names}\n{held}"), 38, halved).unwrap();
-        assert!(of(&fit, Parameter::Force).estimate.std.is_some(), "{held}: {:?}", fit.warnings);
-    }
+    let far = answered(&format!("{both}\ncalibration = 0.2"), 38, |data| {
+        larger(data, 0.8);
+        data.calibration = 0.2;
+    })
+    .unwrap();
+    assert!(far.warnings.iter().any(|w| w.contains("The force found is 0.8")), "{:?}", far.warnings);
+    assert!(!far.warnings.iter().any(|w| w.contains("is assumed")), "{:?}", far.warnings);
+}
+
+/// Amplitudes 1 % too large that are said to be exact, and a force that is held: the masses cannot be what they weigh.
+#[test]
+fn masses_far_from_what_they_weigh_are_named() {
+    let weighed = "parameters = [\"restitution\", \"c1\", \"c2\", \"gap\", \"k1\", \"k2\", \"m1\", \"m2\"]\n\
+                   calibration = 0\nprior.m1 = [0.125, 1.25e-4]\nprior.m2 = [0.094, 0.94e-4]";
+    let fit = answered(weighed, 38, |data| larger(data, 1.01)).unwrap();
+    let doubt = fit.doubt.unwrap();
+    assert!(doubt.contains("m1 of 0.1") && doubt.contains("from its prior"), "{doubt}");
 }
 
 /// Amplitudes that stray by a thousandth, up to sixteen times what the noise in their spectra shows: doubted, and right where it is stated.
@@ -161,6 +186,7 @@ fn a_restitution_near_one_is_found_or_doubted() {
     let setting = example().with(Parameter::Restitution, 0.999);
     let (clean, kinds) = truth(&setting, PACE);
     let entry: FitEntry = toml::from_str("parameters = [\"restitution\", \"c1\", \"c2\", \"gap\"]").unwrap();
+    let mut stated = 0;
     for seed in 45..49 {
         println!("seed {seed}");
         let data = noisy(&clean, &kinds, &setting, seed);
@@ -170,10 +196,13 @@ fn a_restitution_near_one_is_found_or_doubted() {
         for found in &fit.parameters {
             let Estimate { value, std, .. } = found.estimate;
             let off = (value - setting.get(found.parameter)).abs();
+            stated += usize::from(std.is_some());
             // Four standard deviations of sixteen: one of a thousand cases.
             assert!(std.is_none_or(|std| off < 4.0 * std), "{found:?}");
         }
     }
+    println!("{stated} of 16 stated");
+    assert!(stated >= 8, "{stated}");
 }
 
 #[test]
