@@ -224,7 +224,7 @@ impl Campaign {
     pub fn rig_left_out(&self) -> Option<String> {
         let table = toml::from_str::<toml::Table>(&self.text).ok()?;
         let rig = table.get("rig")?.as_table()?;
-        let missing: Vec<&str> = rig_file::RIG.into_iter().filter(|k| !rig.contains_key(*k)).collect();
+        let missing: Vec<&str> = Rig::KEYS.into_iter().filter(|k| !rig.contains_key(*k)).collect();
         (!missing.is_empty()).then(|| {
             format!("[rig] does not give {}: the values of the thesis' rig are used.", missing.join(", "))
         })

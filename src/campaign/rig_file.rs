@@ -1,10 +1,8 @@
 //! A rig file where a campaign should stand.
 
 use crate::error::{Error, Place};
+use crate::model::Rig;
 use std::path::Path;
-
-/// Keys of a rig.
-pub(super) const RIG: [&str; 8] = ["m1", "m2", "k1", "k2", "c1", "c2", "gap", "restitution"];
 
 /// Tables that a rig file has beside these keys.
 const SCENE: [&str; 3] = ["excitation", "contact", "buffer"];
@@ -12,7 +10,7 @@ const SCENE: [&str; 3] = ["excitation", "contact", "buffer"];
 /// The complaint about a rig file where a campaign should stand.
 pub(super) fn complaint(path: &Path, text: &str) -> Option<Error> {
     let table = toml::from_str::<toml::Table>(text).ok()?;
-    let of_rig = |key: &String| RIG.contains(&key.as_str());
+    let of_rig = |key: &String| Rig::KEYS.contains(&key.as_str());
     let is_rig =
         table.keys().any(of_rig) && table.keys().all(|key| of_rig(key) || SCENE.contains(&key.as_str()));
     is_rig.then(|| {

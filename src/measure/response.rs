@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::record::{Direction, Step, Sweep, SweepPoint, Window};
 use crate::signal::window::line_shape;
 use crate::units::Quantity;
-use doubts::{direction, hidden, twice, wrong_window};
+use doubts::{alone, direction, hidden, twice, wrong_window};
 use serde::Serialize;
 use std::f64::consts::PI;
 
@@ -172,8 +172,9 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
             let mut order: Vec<usize> = (0..points.len()).collect();
             order.sort_by(|a, b| frequency[*a].total_cmp(&frequency[*b]));
             let sorted = |v: &[f64]| -> Vec<f64> { order.iter().map(|i| v[*i]).collect() };
-            let found =
-                resonances(&sorted(&frequency), &sorted(&amplitude), &sorted(&std), &jumps, sweep.mass);
+            let (rising, height) = (sorted(&frequency), sorted(&amplitude));
+            let found = resonances(&rising, &height, &sorted(&std), &jumps, sweep.mass);
+            warnings.extend(alone(&rising, &height, &found));
             (jumps, found)
         }
         _ => {

@@ -40,6 +40,9 @@ impl Default for Rig {
 }
 
 impl Rig {
+    /// Names of its values in files.
+    pub const KEYS: [&str; 8] = ["m1", "m2", "k1", "k2", "c1", "c2", "gap", "restitution"];
+
     /// The thesis' rig; its damping was estimated, its restitution is the one of its closed-form examples.
     pub fn thesis() -> Rig {
         Rig { m1: 0.125, m2: 0.094, k1: 135.0, k2: 128.0, c1: 0.1, c2: 0.1, gap: 1e-3, restitution: 0.7 }

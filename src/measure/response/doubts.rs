@@ -2,7 +2,9 @@
 
 use crate::measure::excitation::Excitation;
 use crate::measure::line::misfit;
+use crate::measure::resonance::Resonance;
 use crate::record::{Direction, Sweep, SweepPoint, Window};
+use crate::units::notation::significant;
 
 /// Force lines further than this from their window's shape are not under that window.
 const WRONG_SHAPE: f64 = 0.02;
@@ -72,6 +74,32 @@ pub fn hidden(excitation: &[f64], hiders: &[Option<f64>]) -> Option<String> {
     let more = if pairs.len() > 5 { format!("; and {} more", pairs.len() - 5) } else { String::new() };
     (!pairs.is_empty()).then(|| {
         format!("Amplitudes that are mostly leakage, with upper limits that allow for it: {shown}{more}.")
+    })
+}
+
+/// A point that stands this factor above both its neighbours is no curve's top.
+const ALONE: f64 = 2.0;
+
+/// A sentence where a maximum is one point alone; frequencies are rising, `found` the resonances of the curve.
+pub fn alone(frequency: &[f64], amplitude: &[f64], found: &[Resonance]) -> Option<String> {
+    let lone = |i: &usize| {
+        let sides = [amplitude[i - 1], amplitude[i + 1]];
+        let top = |r: &Resonance| r.frequency == frequency[*i] && r.amplitude_std.is_none() && !r.at_jump;
+        sides.iter().all(|side| amplitude[*i] > ALONE * side) && found.iter().any(top)
+    };
+    let places: Vec<String> = (1..frequency.len().saturating_sub(1))
+        .filter(lone)
+        .map(|i| {
+            let factor = amplitude[i] / amplitude[i - 1].max(amplitude[i + 1]);
+            format!("{} Hz ({factor:.1} times its neighbours)", significant(frequency[i], 6))
+        })
+        .collect();
+    (!places.is_empty()).then(|| {
+        format!(
+            "One point alone stands at {}: a narrow resonance that the steps miss, or a file of another range or point. Names of resonances and minima \
+             beside it may be wrong.",
+            places.join(", ")
+        )
     })
 }
 

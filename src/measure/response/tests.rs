@@ -154,3 +154,21 @@ fn a_file_that_is_named_twice_is_told() {
     // A copy under another name.
     assert!(told(vec![point("a", 1.0), point("b", 2.0), point("c", 2.0)]).unwrap().contains("2 and 3"));
 }
+
+#[test]
+fn a_point_that_stands_alone_is_told() {
+    let mut normal = Normal(0xa10e);
+    let mut told = |heights: [f64; 7]| {
+        let steps = heights.iter().zip(0..).map(|(height, i)| {
+            let at = 40.3 + f64::from(i);
+            let lines = spectrum(Window::Hann, &[(at, Complex64::new(*height, 0.0))], 1e-3, &mut normal);
+            step(&format!("{i}"), at, Window::Hann, lines)
+        });
+        let found = response(&sweep(steps.collect()), &ResponseOptions::default()).unwrap();
+        found.warnings.into_iter().find(|w| w.contains("One point alone"))
+    };
+    // The middle one in another range, and a top that the steps resolve.
+    let said = told([1.0, 1.1, 1.2, 3.9, 1.3, 1.2, 1.1]).unwrap();
+    assert!(said.contains("43.3000 Hz (3.0 times its neighbours)"), "{said}");
+    assert_eq!(told([1.0, 1.4, 2.0, 2.4, 2.1, 1.5, 1.1]), None);
+}

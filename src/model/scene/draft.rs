@@ -18,16 +18,24 @@ const KINDS: [(&str, &[&str]); 4] = [
 ];
 
 /// Tables that only a campaign has.
-const CAMPAIGN: [&str; 10] =
-    ["rig", "sweep", "spectrum", "frf", "impacts", "drop", "pulse", "drill", "fit", "compute"];
+const CAMPAIGN: [&str; 11] =
+    ["rig", "sweep", "spectrum", "frf", "impacts", "drop", "pulse", "drill", "model", "fit", "compute"];
 
 /// The complaint about a campaign where a rig file should stand.
 fn campaign(path: &Path, text: &str) -> Option<Error> {
     let table = DeTable::parse(text).ok()?;
     let own = |key: &&str| table.get_ref().keys().any(|name| name.get_ref() == *key);
     let key = CAMPAIGN.iter().find(|key| own(key))?;
+    let expected = "the keys of a rig at the top, and [excitation], [contact], [buffer]";
+    if let Some(of_rig) = Rig::KEYS.iter().find(|key| own(key)) {
+        let found = format!("[{key}] beside `{of_rig}` at the top: half a campaign, half a rig");
+        return Some(
+            Error::usage(found, expected)
+                .hint(format!("take [{key}] out for a rig; in a campaign the rig's keys stand under [rig]")),
+        );
+    }
     let found = format!("[{key}]: this is a campaign, not a rig");
-    Some(Error::usage(found, "the keys of a rig at the top, and [excitation], [contact], [buffer]").hint(format!(
+    Some(Error::usage(found, expected).hint(format!(
         "put what stands under [rig] into a file of its own; `vibro run {}` does what the campaign asks for",
         path.display()
     )))
@@ -143,7 +151,7 @@ impl Draft {
 
     /// Keys of the rig that were not given and take the values of [`Rig::thesis`].
     pub fn left_out(&self) -> Vec<&'static str> {
-        KEYS[..8].iter().copied().filter(|key| !self.has(key)).collect()
+        Rig::KEYS.into_iter().filter(|key| !self.has(key)).collect()
     }
 
     /// The scene, checked.
@@ -163,7 +171,7 @@ impl Draft {
             &mut rig.gap,
             &mut rig.restitution,
         ];
-        for (key, slot) in KEYS.iter().zip(slots) {
+        for (key, slot) in Rig::KEYS.into_iter().zip(slots) {
             *slot = self.number(key).unwrap_or(*slot);
         }
         if let Some((key, error)) = rig.fault() {
