@@ -114,7 +114,8 @@ fn found(
         fit.warnings.extend(stiff::untold(&settled, &held, pace));
     }
     if entry.calibration.is_none() {
-        fit.warnings.push(told::assumed(data.calibration));
+        // Nothing is more important but that there is no uncertainty.
+        fit.warnings.insert(usize::from(fit.doubt.is_some()), told::assumed(data.calibration));
     }
     fit.warnings.extend(told::unused(entry));
     Ok(fit)
