@@ -38,6 +38,7 @@ pub use motions::Known;
 pub use question::Question;
 pub use rung::{Model, Need, Rung};
 pub use sensitivity::Sensitivity;
+pub use starts::Followed;
 
 use super::{Law, Rig, Scene};
 use crate::error::{Error, Result};
@@ -70,6 +71,8 @@ pub struct Choice {
     pub sensitivity_failed: Vec<f64>,
     /// Motions that the rig can be in, as far as they are known.
     pub motions: Vec<Known>,
+    /// States that others were looked for from; `None` with a history and for a loose mass.
+    pub followed: Option<Followed>,
     /// Why, in sentences.
     pub reasons: Vec<String>,
 }
@@ -88,6 +91,11 @@ impl Choice {
     /// That motions beside the one answered for strike less than once a cycle, in a sentence.
     pub fn rare(&self, question: &Question) -> Option<String> {
         reasons::rare(self, question)
+    }
+
+    /// That others were not looked for from all states, in a sentence.
+    pub fn cut(&self) -> Option<String> {
+        reasons::cut(self)
     }
 
     /// What was found of a rung.

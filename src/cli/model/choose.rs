@@ -78,6 +78,7 @@ fn single(
     };
     warnings.extend(choice.doubt());
     warnings.extend(choice.rare(question));
+    warnings.extend(choice.cut());
     if choice.chosen.is_none() {
         warnings.extend(choice.reasons.last().cloned());
     }
@@ -132,6 +133,12 @@ fn along(
             significant(first.frequency, 6),
             first.rare(question).unwrap_or_default()
         ));
+    }
+    let cut: Vec<(f64, String)> =
+        survey.points.iter().filter_map(|c| Some((c.frequency, c.cut()?))).collect();
+    if let Some((first, said)) = cut.first() {
+        let (n, all) = (cut.len(), survey.points.len());
+        warnings.push(format!("At {n} of {all} points, the first at {first} Hz: {said}"));
     }
     let size = |c: &&Choice| c.law.map_or(0.0, |law| law.change.abs());
     let doubted = survey.points.iter().filter(|c| c.doubt().is_some());

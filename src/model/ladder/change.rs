@@ -6,8 +6,17 @@ use serde::Serialize;
 /// A mass that moves less than this part of what the other does is not measured by its own motion.
 const STILL: f64 = 1e-3;
 
-/// Standard errors within which a mean over a motion that does not repeat is not told from another.
+/// Standard errors by which a change between two rungs may be due to means over motions that do not repeat.
 const TOLD: f64 = 2.0;
+
+/// Chance at most that means over one motion are taken for those of two.
+const CHANCE: f64 = 0.01;
+
+/// Standard errors beyond which two means are of two motions, where `n` pairs are compared: of a normal distribution less than e^{−z²/2} lies
+/// farther than z on either side, and n pairs have n times that chance. So z = √(2 ln(n/chance)).
+pub fn apart(n: u32) -> f64 {
+    (2.0 * (f64::from(n.max(1)) / CHANCE).ln()).sqrt()
+}
 
 /// How far an answer moves at another rung.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -53,28 +62,29 @@ impl Answer {
         part(0).max(part(1))
     }
 
-    /// Whether `other` may be an answer of the same motion: no farther off than tolerance, noise floor or what both are uncertain by allow.
-    pub fn agrees(&self, other: &Answer, question: &Question) -> bool {
-        self.farthest(other, question, true).is_none_or(|(ratio, _)| ratio <= 1.0)
+    /// Whether `other` may be an answer of the same motion: of both masses no farther off than tolerance, noise floor or this many standard
+    /// errors allow.
+    pub fn agrees(&self, other: &Answer, question: &Question, errors: f64) -> bool {
+        self.farthest(other, question, errors).is_none_or(|(ratio, _)| ratio <= 1.0)
     }
 
     /// How far it moves to `other`, the answer of the rung `at`.
     pub fn change(&self, other: &Answer, at: Model, question: &Question) -> Change {
         // What is hardly known bears nothing out. Nor does a motion on its way somewhere widen what is allowed.
         let known = [self, other].iter().all(|answer| answer.steady && answer.unsure(question) <= 1.0);
-        match self.farthest(other, question, known) {
+        match self.farthest(other, question, if known { TOLD } else { 0.0 }) {
             None => Change { at, change: 0.0, enough: known },
             Some((ratio, change)) => Change { at, change, enough: known && ratio <= 1.0 },
         }
     }
 
     /// The change to `other` over what is allowed, and the relative change, of the mass for which the first is larger; `None` where neither
-    /// moves. `scattered` says whether the standard errors count.
-    fn farthest(&self, other: &Answer, question: &Question, scattered: bool) -> Option<(f64, f64)> {
+    /// moves. So many standard errors are allowed.
+    fn farthest(&self, other: &Answer, question: &Question, errors: f64) -> Option<(f64, f64)> {
         let largest = self.value.iter().chain(&other.value).fold(0.0_f64, |l, v| l.max(v.abs()));
         let far = |i: usize| {
             let (own, moved) = (self.value[i].abs(), other.value[i] - self.value[i]);
-            let unsure = if scattered { TOLD * self.spread[i].hypot(other.spread[i]) } else { 0.0 };
+            let unsure = errors * self.spread[i].hypot(other.spread[i]);
             let allowed = (question.tolerance * own.max(STILL * largest)).max(question.noise).max(unsure);
             // Nothing is allowed where nothing moves and something should.
             let ratio = if allowed > 0.0 { moved.abs() / allowed } else { f64::INFINITY };

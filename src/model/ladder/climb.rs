@@ -169,6 +169,7 @@ impl<'a> Climb<'a> {
             sensitivity: Vec::new(),
             sensitivity_failed: Vec::new(),
             motions: self.motions.as_ref().map_or_else(Vec::new, |m| m.known.clone()),
+            followed: self.motions.as_ref().and_then(|m| m.followed),
             reasons: Vec::new(),
             rungs,
         };

@@ -13,8 +13,8 @@ const CYCLES: (f64, f64) = (300.0, 60.0);
 
 /// The way to an excitation after its frequency rose or fell to it: from where only one motion is known, in steps of 1 %.
 #[derive(Debug)]
-pub struct Way<'a> {
-    rig: &'a Rig,
+pub struct Way {
+    rig: Rig,
     first: Excitation,
     /// State at the beginning, at phase 0: of the motion without impacts where there is one, else at rest.
     state: State,
@@ -22,10 +22,10 @@ pub struct Way<'a> {
     then: Vec<f64>,
 }
 
-impl<'a> Way<'a> {
+impl Way {
     /// # Errors
     /// If a parameter is impossible, or an undamped mass is driven at resonance.
-    pub fn new(rig: &'a Rig, excitation: &Excitation, direction: Direction) -> Result<Way<'a>> {
+    pub fn new(rig: &Rig, excitation: &Excitation, direction: Direction) -> Result<Way> {
         let frequency = excitation.frequency();
         let at = |n: i32| {
             let n = if direction == Direction::Up { -n } else { n };
@@ -38,7 +38,7 @@ impl<'a> Way<'a> {
         };
         let first = (0..=end).find(one).unwrap_or(end);
         let then = (0..first).rev().map(|n| at(n).frequency()).collect();
-        Ok(Way { rig, first: at(first), state: outset(rig, &at(first))?, then })
+        Ok(Way { rig: *rig, first: at(first), state: outset(rig, &at(first))?, then })
     }
 
     /// The motion at its end, with impacts at once.
@@ -46,7 +46,7 @@ impl<'a> Way<'a> {
     /// # Errors
     /// As [`Simulation::run`].
     pub fn rigid(&self) -> Result<Simulation> {
-        self.lead(Simulation::from_state(self.rig, &self.first, self.state, 0.0)?)
+        self.lead(Simulation::from_state(&self.rig, &self.first, self.state, 0.0)?)
     }
 
     /// The motion at its end, with a contact that gives way.
@@ -54,7 +54,7 @@ impl<'a> Way<'a> {
     /// # Errors
     /// As [`Compliant::new`] and [`Motion::advance`].
     pub fn with(&self, law: Law) -> Result<Compliant> {
-        self.lead(Compliant::new(self.rig, &self.first, law, self.state, 0.0)?)
+        self.lead(Compliant::new(&self.rig, &self.first, law, self.state, 0.0)?)
     }
 
     fn lead<M: Motion>(&self, mut motion: M) -> Result<M> {

@@ -1,23 +1,23 @@
 //! The motions of a rig at one excitation, as far as they are known, and the one that it is in.
 
-use super::change::Answer;
+use super::change::{Answer, apart};
 use super::cost::Cost;
 use super::history::{Way, several};
 use super::reading::{End, Reader, Reading};
 use super::stage::Stage;
-use super::starts::starts;
+use super::starts::{Followed, starts};
 use super::tried::Tried;
 use super::{Model, Question};
 use crate::error::{Error, Result};
 use crate::model::regime::Strike;
-use crate::model::{Orbit, Orbits, Regime, Simulation, State, orbits_of};
+use crate::model::{Motion, Orbit, Orbits, Regime, Simulation, State, orbits_of};
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
 
 /// Cycles up to which motions with one impact are looked for in closed form.
 pub const MOST_CYCLES: u32 = 6;
 /// Cycles after which no further state is started from.
-const MOST_FOLLOWED: u32 = 40_000;
+pub const MOST_FOLLOWED: u32 = 40_000;
 /// Part of the speeds by which a motion starts beside an orbit.
 const BESIDE: f64 = 0.02;
 
@@ -30,11 +30,28 @@ pub struct Known {
     pub model: Model,
     /// What is shown of it.
     pub answer: [f64; 2],
+    /// Standard error of that, where it is a mean over a motion that does not repeat; else 0.
+    pub spread: [f64; 2],
     /// Whether it lasts. One that does not is listed where it divides the motion without impacts from others with impacts round it.
     pub stable: bool,
-    /// Whether it strikes less than once a cycle, and was found beside the motion to which the rig comes from rest, or the way it came. It is
-    /// warned of, and asks for no history.
+    /// Whether it strikes less than once a cycle, and was found beside the motion to which the rig comes from rest, or the way it came, and to which
+    /// no contact that gives way comes from rest. It is warned of, and asks for no history.
     pub rare: bool,
+}
+
+impl Known {
+    /// A motion that was followed, and lasts.
+    fn followed(reading: &Reading, model: Model, rare: bool) -> Known {
+        let Answer { value, spread, .. } = reading.answer;
+        Known { pattern: reading.regime.to_string(), model, answer: value, spread, stable: true, rare }
+    }
+
+    /// Whether it may be the motion that was read: both without impacts, or their answers no farther apart than is allowed.
+    fn may_be(&self, reading: &Reading, question: &Question, errors: f64) -> bool {
+        let still = reading.regime == Regime::NoImpact && self.pattern == Regime::NoImpact.to_string();
+        let own = Answer { spread: self.spread, ..Answer::exact(self.answer) };
+        still || own.agrees(&reading.answer, question, errors)
+    }
 }
 
 /// The motion that the rig is in.
@@ -61,8 +78,12 @@ pub struct Motions {
     pub on: On,
     /// How far mass 1 alone stays clear of mass 2, in m; `None` without a closed form.
     pub clearance: Option<f64>,
-    /// Whether it is told from the way the rig came there.
-    pub by_history: bool,
+    /// The way the rig came there, where that is known.
+    pub way: Option<Way>,
+    /// States that other motions were looked for from; `None` where none was looked for.
+    pub followed: Option<Followed>,
+    /// Standard errors beyond which means are of two motions.
+    errors: f64,
     /// The motion followed with impacts at once, from rest or the way it came.
     pub reading: Reading,
     /// What that took.
@@ -85,8 +106,9 @@ impl Motions {
         let clearance = closed.as_ref().ok().map(|found| rig.gap - found.no_impact.largest);
         let longer = (2..=MOST_CYCLES).filter_map(|cycles| orbits_of(rig, excitation, cycles).ok());
         let longer = longer.flat_map(|found| found.orbits).filter(|o| o.validity.admissible).collect();
-        let start = match question.history {
-            Some(direction) => Way::new(rig, excitation, direction)?.rigid()?,
+        let way = question.history.map(|direction| Way::new(rig, excitation, direction)).transpose()?;
+        let start = match &way {
+            Some(way) => way.rigid()?,
             None => Simulation::new(rig, excitation)?,
         };
         let reader = Reader::new(rig, excitation.frequency(), question).clear_by(clearance);
@@ -102,14 +124,16 @@ impl Motions {
             known: Vec::new(),
             on: On::Other,
             clearance,
-            by_history: question.history.is_some(),
+            way,
+            followed: None,
+            errors: apart(1),
             reading,
             cost,
             end,
         };
         motions.on = motions.which(reader.fine());
         motions.list(question, reader.fine());
-        if !motions.by_history {
+        if motions.way.is_none() {
             motions.seek(stage, &reader);
             if common(&motions.known) > 1 || motions.closed.as_ref().is_ok_and(several) {
                 motions.on = On::Open;
@@ -123,46 +147,53 @@ impl Motions {
         let (rig, excitation) = (&stage.scene.rig, stage.excitation);
         let orbits = self.closed.iter().flat_map(|found| &found.orbits).chain(&self.longer);
         let lost = orbits.filter(|o| o.validity.admissible && o.validity.stable == Some(false));
-        let round: Vec<_> = lost.map(|orbit| (beside(orbit), orbit.force_phase)).collect();
-        let mut followed = 0;
-        for (state, phase) in round.into_iter().chain(starts(rig, excitation)) {
-            if common(&self.known) > 1 || followed > MOST_FOLLOWED {
+        let round = lost.map(|orbit| (beside(orbit), orbit.force_phase));
+        let states: Vec<_> = round.chain(starts(rig, excitation)).collect();
+        let of = states.len() as u32;
+        // Of each mass, and once more with a contact that gives way.
+        let masses = if stage.question.observable.is_of_impacts() { 1 } else { 2 };
+        self.errors = apart((of + 1) * masses);
+        let (mut followed, mut cycles) = (0, 0);
+        for (state, phase) in states {
+            if common(&self.known) > 1 || cycles > MOST_FOLLOWED {
                 break;
             }
-            let started = Simulation::from_state(rig, excitation, state, phase);
+            let started = Simulation::from_state(rig, excitation, state, phase).and_then(at_phase_0);
             // Some states lead beyond what can be followed.
             let Ok(reading) = started.and_then(|mut motion| reader.read(&mut motion)) else { continue };
-            followed += reading.cycles;
+            (followed, cycles) = (followed + 1, cycles + reading.cycles);
             self.add(&reading, stage.question);
         }
+        self.followed = Some(Followed { states: followed, of });
     }
 
     /// Whether a contact that gives way leads from rest to another motion than the one that its answer is read from.
     pub fn differs(&mut self, tried: &Tried, model: Model, question: &Question) {
         let (Some(answer), Some(rest)) = (&tried.answer, &tried.from_rest) else { return };
-        if rest.end == End::Under || !answer.steady || answer.agrees(&rest.answer, question) {
+        if rest.end == End::Under || !answer.steady || answer.agrees(&rest.answer, question, self.errors) {
             return;
         }
-        let pattern = rest.regime.to_string();
-        self.known.push(Known { pattern, model, answer: rest.answer.value, stable: true, rare: false });
         self.on = On::Open;
+        let (found, errors) = (Known::followed(rest, model, false), self.errors);
+        let same =
+            |known: &&mut Known| known.pattern == found.pattern && known.may_be(rest, question, errors);
+        match self.known.iter_mut().find(same) {
+            // From rest it is come to, if not with impacts at once.
+            Some(known) => known.rare = false,
+            None => self.known.push(found),
+        }
     }
 
     /// Adds a motion with impacts at once, where that is not on its way and answers differently from those known.
     fn add(&mut self, reading: &Reading, question: &Question) {
-        let model = Model::Restitution;
         if reading.end == End::Under {
             return;
         }
-        let pattern = reading.regime.to_string();
-        let same = |known: &Known| {
-            let still = reading.regime == Regime::NoImpact && known.pattern == pattern;
-            still || Answer::exact(known.answer).agrees(&reading.answer, question)
-        };
-        let own = self.reading.end != End::Under && self.reading.answer.agrees(&reading.answer, question);
-        if !own && !self.known.iter().any(same) {
+        let (own, errors) = (&self.reading, self.errors);
+        let own = own.end != End::Under && own.answer.agrees(&reading.answer, question, errors);
+        if !own && !self.known.iter().any(|known| known.may_be(reading, question, errors)) {
             let rare = matches!(reading.regime, Regime::Periodic { impacts, cycles } if impacts < cycles);
-            self.known.push(Known { pattern, model, answer: reading.answer.value, stable: true, rare });
+            self.known.push(Known::followed(reading, Model::Restitution, rare));
         }
     }
 
@@ -205,20 +236,20 @@ impl Motions {
         if let Some(free) = found.map(|found| &found.no_impact).filter(|free| free.possible) {
             let answer = question.observable.of_no_impact(free);
             let pattern = Regime::NoImpact.to_string();
-            known.push(Known { pattern, model: Model::Linear, answer, stable: true, rare: false });
+            let spread = [0.0; 2];
+            known.push(Known { pattern, model: Model::Linear, answer, spread, stable: true, rare: false });
         }
         let known_as = |orbit: &Orbit| Known {
             pattern: Regime::Periodic { impacts: 1, cycles: orbit.cycles }.to_string(),
             model: Model::ClosedForm,
             answer: question.observable.of_orbit(orbit),
+            spread: [0.0; 2],
             stable: stays(orbit),
             rare: orbit.cycles > 1 && own.is_none_or(|own| own != orbit),
         };
         known.extend(self.stable().chain(self.longer.iter().filter(|o| stays(o))).map(known_as));
         if self.on == On::Other && self.reading.end != End::Under && own.is_none() {
-            let (pattern, model) = (self.reading.regime.to_string(), Model::Restitution);
-            let answer = self.reading.answer.value;
-            known.push(Known { pattern, model, answer, stable: true, rare: false });
+            known.push(Known::followed(&self.reading, Model::Restitution, false));
         }
         // Where nothing else is known with impacts, orbits that have lost their stability tell of others round them.
         if let Some(found) = found.filter(|found| common(&known) == 1 && several(found)) {
@@ -247,6 +278,13 @@ fn common(known: &[Known]) -> usize {
 fn beside(orbit: &Orbit) -> State {
     let state = orbit.state(0.0);
     State { v1: (1.0 - BESIDE) * state.v1, v2: (1.0 - BESIDE) * state.v2, ..state }
+}
+
+/// The same motion at the next phase 0 of the excitation, where cycles that are read begin.
+fn at_phase_0(mut motion: Simulation) -> Result<Simulation> {
+    let left = (-motion.phase()).rem_euclid(TAU) / (TAU * motion.frequency());
+    motion.advance(motion.time() + left, &mut |_| {})?;
+    Ok(motion)
 }
 
 /// Distance of an impact to that of an orbit: of phases in rad, and of states in units of the largest.

@@ -123,15 +123,19 @@ impl Reader {
             values.push(value);
             weights.push(weight);
             let pattern = watch.pattern();
-            let whole = whole(&values, &weights, self.blocks_of(pattern.regime));
+            let n = self.blocks_of(pattern.regime);
+            let whole = whole(&values, &weights, n);
             // Masses that chatter to rest may be in contact at the end of each cycle, too.
             let pressed = pattern.regime == Regime::NoImpact && strobe.pressed();
-            let left = strobe.left(self.fine()).filter(|_| still(&whole, self.fine()));
+            let left = strobe.left(self.fine());
+            // What repeats is followed until three means hold whole patterns.
+            let most = if left.is_some() { self.blocks.max(n + 2) } else { self.blocks };
+            let left = left.filter(|_| still(&whole, self.fine()));
             // Without impacts the motion is that of mass 1 alone, of which it is known how far it goes.
             let free = pattern.regime == Regime::NoImpact && !pressed;
             let apart = |left: f64| !free || self.clearance.is_none_or(|clear| left < clear);
             let settled = left.is_some_and(apart);
-            if settled || values.len() == self.blocks {
+            if settled || values.len() >= most {
                 let half = &values[values.len() / 2..];
                 let end = match pattern.regime {
                     _ if settled && pressed => End::Pressed,
@@ -207,7 +211,7 @@ impl Reader {
     }
 }
 
-/// Means over each `n` values, counted from the last.
+/// Means over each `n` successive values.
 fn whole(values: &[[f64; 2]], weights: &[f64], n: usize) -> Vec<[f64; 2]> {
     let mean = |(values, weights): (&[[f64; 2]], &[f64])| {
         let all: f64 = weights.iter().sum();
@@ -216,9 +220,7 @@ fn whole(values: &[[f64; 2]], weights: &[f64], n: usize) -> Vec<[f64; 2]> {
             if all > 0.0 { sum / all } else { 0.0 }
         })
     };
-    let mut means: Vec<[f64; 2]> = values.rchunks_exact(n).zip(weights.rchunks_exact(n)).map(mean).collect();
-    means.reverse();
-    means
+    values.windows(n).zip(weights.windows(n)).map(mean).collect()
 }
 
 /// Whether the last of these values is the end of the way: what falls by the ratio ρ a block has ρ/(1 − ρ) of its last step before it.

@@ -1,9 +1,8 @@
 //! A choice told in sentences.
 
 use super::change::Answer;
-use super::motions::MOST_CYCLES;
-use super::starts::STARTS;
-use super::{Change, Choice, Known, Model, Question, Rung};
+use super::motions::{MOST_CYCLES, MOST_FOLLOWED};
+use super::{Change, Choice, Followed, Known, Model, Question, Rung};
 use crate::units::notation::quantity;
 use std::fmt::Write as _;
 
@@ -35,9 +34,10 @@ pub fn sentences(choice: &Choice, question: &Question) -> Vec<String> {
         format!("{}: {}", names.join(", "), passed_over(same[0], question))
     }));
     said.extend(rare(choice, question));
-    if question.history.is_none() && choice.chosen != Some(Model::LooseMass) {
+    if let Some(Followed { states, of }) = choice.followed {
+        let states = if states < of { format!("{states} of {of}") } else { of.to_string() };
         said.push(format!(
-            "Other motions were looked for in closed form with one impact in up to {MOST_CYCLES} cycles, from rest and from up to {STARTS} other states: there can be more, \
+            "Other motions were looked for in closed form with one impact in up to {MOST_CYCLES} cycles, from rest and from {states} other states: there can be more, \
              which a history would tell."
         ));
     }
@@ -92,6 +92,16 @@ pub fn rare(choice: &Choice, question: &Question) -> Option<String> {
             named.join(", ")
         )
     })
+}
+
+/// That not all states were followed, although no second motion was found that would have ended the search.
+pub fn cut(choice: &Choice) -> Option<String> {
+    let Followed { states, of } =
+        choice.followed.filter(|f| f.states < f.of && !choice.needs.contains(&"history"))?;
+    Some(format!(
+        "Other motions were looked for from {states} of {of} states only: the others would take more than {MOST_FOLLOWED} cycles, or lead beyond what can be \
+         followed. There can be more motions; a history would tell which one the rig is in."
+    ))
 }
 
 /// Standard error of its answer over what is allowed.

@@ -3,7 +3,6 @@
 use super::Question;
 use super::change::Answer;
 use super::cost::{self, Cost};
-use super::history::Way;
 use super::laws;
 use super::motions::{Motions, On};
 use super::reading::{End, Reader, Reading};
@@ -224,17 +223,16 @@ impl Stage<'_> {
     fn contact(&self, motions: &Motions, law: Law, said: &str) -> Tried {
         let run = || -> Result<Tried> {
             let rig = self.rig();
-            let (reading, cost) = match self.question.history {
-                Some(direction) => {
-                    let came = Way::new(rig, self.excitation, direction)?.with(law)?;
-                    self.follow(motions, &came)?
-                }
+            let (reading, cost) = match &motions.way {
+                Some(way) => self.follow(motions, &way.with(law)?)?,
                 None => self.with(motions, law)?,
             };
-            let rest = Compliant::new(rig, self.excitation, law, Simulation::at_rest(rig), 0.0)?;
-            let from_rest = match self.question.history {
-                Some(_) => None,
-                None => Some(self.watching(motions, law).read(&mut rest.clone())?),
+            let from_rest = if motions.way.is_some() {
+                None
+            } else {
+                let rest = Simulation::at_rest(rig);
+                let mut rest = Compliant::new(rig, self.excitation, law, rest, 0.0)?;
+                Some(self.watching(motions, law).read(&mut rest)?)
             };
             let mut why = format!("{said} {}", told(&reading));
             if from_rest.as_ref().is_some_and(|rest| rest.end == End::Under) {

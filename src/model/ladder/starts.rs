@@ -1,12 +1,23 @@
 //! States from which motions are looked for.
 
 use crate::model::{Excitation, Rig, State, no_impact};
+use serde::Serialize;
 use std::f64::consts::TAU;
 
 /// States tried.
-pub const STARTS: u32 = 8;
+const STARTS: u32 = 8;
 /// Their size at least and at most, in units of the gap or of what mass 1 does alone, the larger.
 const SIZES: (f64, f64) = (1.0, 6.0);
+
+/// How many states beside rest the rig was followed from in search of other motions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Followed {
+    /// Those that were.
+    pub states: u32,
+    /// All that there are. Fewer are followed once a second motion is found, where it takes too many cycles, and where some lead beyond what can
+    /// be followed.
+    pub of: u32,
+}
 
 /// States with the phase 0 of the excitation, of sizes that rise from one to the next and in directions spread evenly (the additive recurrence
 /// of the generalised golden ratio, M. Roberts, 2018). Masses that would overlap are mirrored at their contact.

@@ -324,8 +324,8 @@ fn a_motion_on_its_way_widens_nothing() {
         assert!(!enough(of(1.0, 0.0, true), of(1.0, spread, true)));
     }
     // That does not make them two motions; nor does it make one of what lies farther apart.
-    assert!(of(1.0, 0.03, true).agrees(&of(1.08, 0.03, true), &question));
-    assert!(!of(1.0, 0.03, true).agrees(&of(1.09, 0.03, true), &question));
+    assert!(of(1.0, 0.03, true).agrees(&of(1.08, 0.03, true), &question, 2.0));
+    assert!(!of(1.0, 0.03, true).agrees(&of(1.09, 0.03, true), &question, 2.0));
     for (a, b) in [(true, false), (false, true), (false, false)] {
         assert!(!enough(of(1.0, 0.015, a), of(1.04, 0.015, b)));
         // Nor does equality tell anything: both may have left from the same state.

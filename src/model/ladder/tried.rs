@@ -34,7 +34,7 @@ impl Tried {
 /// The motion that the rig is in, and how that is known.
 pub fn into(motions: &Motions) -> String {
     let reading = &motions.reading;
-    match (reading.end, motions.by_history) {
+    match (reading.end, motions.way.is_some()) {
         (End::Under, true) => {
             format!("coming that way it has not settled within {} cycles", reading.cycles)
         }

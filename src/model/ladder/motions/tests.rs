@@ -1,3 +1,4 @@
+use super::{Answer, Followed, Motions, On, Reader, Stage, Tried};
 use crate::math::runge_kutta::{Dop853, Integrator, Tolerance};
 use crate::model::ladder::{Choice, Model, Question, choose};
 use crate::model::{
@@ -15,6 +16,17 @@ fn asked(restitution: f64, force: f64, frequency: f64, history: Option<Direction
     };
     let question = Question { history, ..Question::new(Observable::Fundamental) };
     choose(&scene, frequency, &question).unwrap()
+}
+
+/// The thesis' rig by its impact speed, without a history.
+fn speeds(restitution: f64, force: f64, frequency: f64, stiffness: f64) -> Choice {
+    let scene = Scene {
+        rig: Rig { restitution, ..Rig::thesis() },
+        excitation: Some(Excitation::Sine(Sine { force, frequency })),
+        contact: Some(ContactKeys { stiffness: Some(stiffness), ..ContactKeys::default() }),
+        buffer: None,
+    };
+    choose(&scene, frequency, &Question::new(Observable::ImpactSpeed)).unwrap()
 }
 
 /// Impacts of a rig in the second half of the last of `stations` (Hz, cycles), integrated from rest through all of them.
@@ -173,4 +185,83 @@ fn a_contact_that_leads_from_rest_to_another_motion_asks_for_the_history() {
     }
     assert!((soft.answer[0] / ((high - low) / 2.0) - 1.0).abs() < 1e-4, "{} {low} {high}", soft.answer[0]);
     assert!((open.motions[0].answer[0] / soft.answer[0] - 1.0).abs() > 0.2);
+}
+
+#[test]
+fn one_motion_is_read_alike_from_wherever_it_starts() {
+    // Started beside an orbit, at the phase of its impact, cycles that begin there hold both impacts of 2/2, or other ones of 5/6.
+    for (restitution, frequency, cycles, pattern) in
+        [(0.97, 5.85, 2, "2/2"), (0.9, 13.700_000_000_000_001, 6, "5/6")]
+    {
+        let rig = Rig { restitution, ..Rig::thesis() };
+        let mut motion = Simulation::new(&rig, &Sine { force: 0.9, frequency }).unwrap();
+        motion.run(6000.0 / frequency, |_| {}).unwrap();
+        let mut fastest = Vec::new();
+        for _ in 0..cycles {
+            let mut most = 0.0_f64;
+            let until = motion.time() + 1.0 / frequency;
+            motion
+                .run(until, |leg| most = leg.impact().map_or(most, |i| most.max(i.approach_velocity)))
+                .unwrap();
+            fastest.extend((most > 0.0).then_some(most));
+        }
+        let mean = fastest.iter().sum::<f64>() / fastest.len() as f64;
+        // The fastest of all counts too much where cycles begin elsewhere.
+        assert!(fastest.iter().any(|v| v / mean > 1.1), "{fastest:?}");
+        let choice = speeds(restitution, 0.9, frequency, 1e8);
+        let [only] = choice.motions.as_slice() else { panic!("{:?}", choice.motions) };
+        // Settled to a fiftieth of the tolerance.
+        assert!(only.pattern == pattern && (only.answer[0] / mean - 1.0).abs() < 4e-4, "{only:?} {mean}");
+        assert!(choice.chosen.is_some() && choice.followed.is_some_and(|f| f.states == f.of));
+    }
+}
+
+#[test]
+fn a_motion_known_with_impacts_at_once_is_not_listed_again_with_a_contact_that_gives_way() {
+    for (frequency, stiffness, pattern) in [(13.2, 1e7, "4/6"), (12.0, 1e8, "irregular")] {
+        let open = speeds(0.9, 0.5, frequency, stiffness);
+        assert_eq!(open.needs, ["history"]);
+        let patterns: Vec<&str> = open.motions.iter().map(|m| m.pattern.as_str()).collect();
+        assert_eq!(patterns, ["no impact", pattern]);
+    }
+}
+
+#[test]
+fn a_motion_that_a_contact_comes_to_from_rest_is_not_rare() {
+    let scene = Scene { rig: Rig { restitution: 0.7, ..Rig::thesis() }, ..Scene::thesis() };
+    let excitation = Excitation::Sine(Sine { force: 0.3, frequency: 13.5986 });
+    let question = Question::new(Observable::ImpactSpeed);
+    let stage = Stage { scene: &scene, excitation: &excitation, question: &question, repeat: false };
+    let mut motions = Motions::new(&stage).unwrap();
+    let rare = |motions: &Motions| motions.known.iter().map(|m| m.rare).collect::<Vec<_>>();
+    assert_eq!((rare(&motions), &motions.on), (vec![false, true], &On::Free));
+    // What would be read of a contact that comes to it.
+    let state = State { x1: -4e-3, v1: 0.3, x2: -1e-3, v2: -0.2 };
+    let mut motion = Simulation::from_state(&scene.rig, &excitation, state, 0.0).unwrap();
+    let from_rest = Reader::new(&scene.rig, 13.5986, &question).read(&mut motion).unwrap();
+    assert_eq!(from_rest.regime.to_string(), motions.known[1].pattern);
+    let tried =
+        Tried { answer: Some(Answer::exact([0.0; 2])), from_rest: Some(from_rest), ..Tried::default() };
+    motions.differs(&tried, Model::KelvinVoigt, &question);
+    assert_eq!((rare(&motions), &motions.on), (vec![false, false], &On::Open));
+}
+
+#[test]
+fn states_that_were_not_followed_are_counted() {
+    // Hardly damped, a motion takes thousands of cycles to settle.
+    let at = |damping: f64| {
+        let rig = Rig { c1: damping, c2: damping, restitution: 0.98, ..Rig::thesis() };
+        let excitation = Some(Excitation::Sine(Sine { force: 0.9, frequency: 9.0 }));
+        let contact = Some(ContactKeys { stiffness: Some(1e8), ..ContactKeys::default() });
+        let scene = Scene { rig, excitation, contact, buffer: None };
+        choose(&scene, 9.0, &Question::new(Observable::Fundamental)).unwrap()
+    };
+    let short = at(1e-3);
+    let Followed { states, of } = short.followed.unwrap();
+    assert!(states > 0 && states < of && short.needs.is_empty(), "{states} {of}");
+    let told = format!("from {states} of {of} ");
+    assert!(short.cut().is_some_and(|said| said.contains(&told)), "{:?}", short.cut());
+    assert!(short.reasons.iter().any(|said| said.contains(&told)), "{:?}", short.reasons);
+    let all = at(0.1);
+    assert!(all.followed.is_some_and(|f| f.states == f.of) && all.cut().is_none());
 }

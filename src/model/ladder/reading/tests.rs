@@ -1,6 +1,7 @@
 use super::{End, Reader, drifts, mean};
 use crate::math::runge_kutta::{Dop853, Integrator, Tolerance};
 use crate::model::ladder::Question;
+use crate::model::ladder::change::apart;
 use crate::model::{Excitation, Observable, Rig, Simulation, Sine, State, no_impact};
 use std::f64::consts::TAU;
 
@@ -33,6 +34,24 @@ fn a_standard_error_covers_what_it_should() {
         (1..=1000).filter(|seed| outside(*seed)).count()
     };
     assert!(far(0.0) < 80 && far(0.3) < 120, "{} {}", far(0.0), far(0.3));
+}
+
+#[test]
+fn many_means_of_one_motion_are_not_told_apart() {
+    // Twenty pairs in each of 500 questions. With two standard errors that are known, 1 − 0.954²⁰ = 61 % of them have a pair that is told apart. Estimated
+    // ones are never narrower than those of independent values, and often wider: fewer have, but more than a quarter. A hundredth, 5 ± 2.2, may
+    // have where all comparisons are counted.
+    let question = Question { tolerance: 1e-4, ..Question::new(Observable::Fundamental) };
+    let told = |errors: f64| {
+        let pair = |seed: u64| {
+            let [a, b] = [2 * seed, 2 * seed + 1].map(|seed| mean(&correlated(seed, 32, 0.0), true));
+            !a.agrees(&b, &question, errors)
+        };
+        (0..500).filter(|set| (20 * set..20 * set + 20).any(pair)).count()
+    };
+    assert!(told(2.0) > 125 && told(apart(20)) < 12, "{} {}", told(2.0), told(apart(20)));
+    // Fewer comparisons need less.
+    assert!(apart(1) < apart(20));
 }
 
 #[test]
@@ -132,4 +151,28 @@ fn a_pattern_that_no_block_holds_whole_is_read_whole() {
     assert!((reading.answer.value[0] / mean - 1.0).abs() < 2e-5, "{} {mean}", reading.answer.value[0]);
     // A block alone holds four cycles too many: off by up to a fifteenth of the spread.
     assert!(speeds.iter().any(|v| (v / mean - 1.0).abs() > 0.05), "{speeds:?}");
+}
+
+#[test]
+fn a_pattern_longer_than_a_brief_reading_is_read_to_its_end() {
+    // Nine impacts in thirteen cycles: thirteen blocks of sixty hold whole patterns, more than the twelve of a brief reading.
+    let (rig, frequency) = (Rig { restitution: 0.664_347_826_087, ..Rig::thesis() }, 14.235_294_117_647);
+    let mut motion = Simulation::new(&rig, &Sine { force: 0.9, frequency }).unwrap();
+    motion.run(6000.0 / frequency, |_| {}).unwrap();
+    let question = Question::new(Observable::ImpactSpeed);
+    let reading = Reader::new(&rig, frequency, &question).brief().read(&mut motion).unwrap();
+    assert_eq!((reading.end, reading.regime.to_string().as_str()), (End::Settled, "9/13"));
+    // The fastest impacts of the cycles that have one.
+    let mut speeds = Vec::new();
+    for _ in 0..13 {
+        let mut most = 0.0_f64;
+        let until = motion.time() + 1.0 / frequency;
+        motion.run(until, |leg| most = leg.impact().map_or(most, |i| most.max(i.approach_velocity))).unwrap();
+        speeds.extend((most > 0.0).then_some(most));
+    }
+    let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
+    // Settled to a fiftieth of the tolerance.
+    assert!((reading.answer.value[0] / mean - 1.0).abs() < 4e-4, "{reading:?} {mean}");
+    // No more than three means of thirteen blocks need.
+    assert_eq!(reading.cycles, 15 * 60);
 }
