@@ -137,7 +137,7 @@ fn along(
     let cut: Vec<(f64, String)> =
         survey.points.iter().filter_map(|c| Some((c.frequency, c.cut()?))).collect();
     if let Some((first, said)) = cut.first() {
-        let (n, all) = (cut.len(), survey.points.len());
+        let (n, all, first) = (cut.len(), survey.points.len(), significant(*first, 6));
         warnings.push(format!("At {n} of {all} points, the first at {first} Hz: {said}"));
     }
     let size = |c: &&Choice| c.law.map_or(0.0, |law| law.change.abs());
