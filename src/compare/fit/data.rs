@@ -57,7 +57,7 @@ pub struct Data {
     pub guessed: bool,
     /// Points that do not stand out of the noise.
     pub faint: usize,
-    /// Relative standard uncertainty that all amplitudes of a mass share; 0 where none is stated.
+    /// Relative standard uncertainty that all amplitudes of a mass share.
     pub calibration: f64,
     /// What was assumed.
     pub warnings: Vec<String>,
