@@ -97,6 +97,14 @@ fn single(
     told(text, written)
 }
 
+/// What `say` says of the first of these points of which it says anything, and of how many it does.
+fn at_first(points: &[Choice], say: impl Fn(&Choice) -> Option<String>) -> Option<String> {
+    let said: Vec<(f64, String)> = points.iter().filter_map(|c| Some((c.frequency, say(c)?))).collect();
+    let (first, what) = said.first()?;
+    let (n, all, first) = (said.len(), points.len(), significant(*first, 6));
+    Some(format!("At {n} of {all} points, the first at {first} Hz: {what}"))
+}
+
 fn along(
     typed: &args::ModelChoose,
     json: bool,
@@ -124,22 +132,8 @@ fn along(
             first.reasons.last().map_or("", String::as_str)
         ));
     }
-    let rare: Vec<&Choice> = survey.points.iter().filter(|c| c.rare(question).is_some()).collect();
-    if let Some(first) = rare.first() {
-        warnings.push(format!(
-            "At {} of {} points, the first at {} Hz: {}",
-            rare.len(),
-            survey.points.len(),
-            significant(first.frequency, 6),
-            first.rare(question).unwrap_or_default()
-        ));
-    }
-    let cut: Vec<(f64, String)> =
-        survey.points.iter().filter_map(|c| Some((c.frequency, c.cut()?))).collect();
-    if let Some((first, said)) = cut.first() {
-        let (n, all, first) = (cut.len(), survey.points.len(), significant(*first, 6));
-        warnings.push(format!("At {n} of {all} points, the first at {first} Hz: {said}"));
-    }
+    warnings.extend(at_first(&survey.points, |c| c.rare(question)));
+    warnings.extend(at_first(&survey.points, Choice::cut));
     let size = |c: &&Choice| c.law.map_or(0.0, |law| law.change.abs());
     let doubted = survey.points.iter().filter(|c| c.doubt().is_some());
     if let Some(worst) = doubted.max_by(|a, b| size(a).total_cmp(&size(b))) {

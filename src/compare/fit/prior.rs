@@ -14,12 +14,16 @@ const APART: f64 = 5.0;
 /// not agree with its own: without the force, motion does not tell masses.
 pub fn contradictions(settled: &Settled<'_>, starts: usize, pace: Pace) -> Vec<String> {
     let problem = &settled.problem;
-    let told = |k: &Unknown| k.prior.is_some() && !k.parameter.is_mass();
     let mut said: Vec<String> = problem.unknowns.iter().filter_map(|k| weighed(settled, k)).collect();
     if problem.unknowns.iter().any(told) {
-        said.extend(contradicted(settled, told, starts, pace));
+        said.extend(contradicted(settled, starts, pace));
     }
     said
+}
+
+/// Whether it has a prior that the points can contradict.
+fn told(unknown: &Unknown) -> bool {
+    unknown.prior.is_some() && !unknown.parameter.is_mass()
 }
 
 /// That a mass lies far from what it weighs.
@@ -37,13 +41,8 @@ fn weighed(settled: &Settled<'_>, unknown: &Unknown) -> Option<String> {
     })
 }
 
-/// As [`contradictions`], of the parameters that are `told` apart from the masses.
-fn contradicted(
-    settled: &Settled<'_>,
-    told: impl Fn(&Unknown) -> bool,
-    starts: usize,
-    pace: Pace,
-) -> Vec<String> {
+/// As [`contradictions`], of the parameters that are no masses.
+fn contradicted(settled: &Settled<'_>, starts: usize, pace: Pace) -> Vec<String> {
     let problem = &settled.problem;
     let without = |k: &Unknown| Unknown { prior: k.prior.filter(|_| !told(k)), ..*k };
     let free: Vec<Unknown> = problem.unknowns.iter().map(without).collect();

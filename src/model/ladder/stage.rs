@@ -223,16 +223,13 @@ impl Stage<'_> {
     fn contact(&self, motions: &Motions, law: Law, said: &str) -> Tried {
         let run = || -> Result<Tried> {
             let rig = self.rig();
-            let (reading, cost) = match &motions.way {
-                Some(way) => self.follow(motions, &way.with(law)?)?,
-                None => self.with(motions, law)?,
-            };
-            let from_rest = if motions.way.is_some() {
-                None
+            let ((reading, cost), from_rest) = if let Some(way) = &motions.way {
+                (self.follow(motions, &way.with(law)?)?, None)
             } else {
+                let own = self.with(motions, law)?;
                 let rest = Simulation::at_rest(rig);
                 let mut rest = Compliant::new(rig, self.excitation, law, rest, 0.0)?;
-                Some(self.watching(motions, law).read(&mut rest)?)
+                (own, Some(self.watching(motions, law).read(&mut rest)?))
             };
             let mut why = format!("{said} {}", told(&reading));
             if from_rest.as_ref().is_some_and(|rest| rest.end == End::Under) {

@@ -12,6 +12,16 @@ fn hz(nu: f64) -> f64 {
     nu * (rig.k1 / rig.m1).sqrt() / TAU
 }
 
+/// The fastest approach in each of these cycles that has an impact, in m/s.
+pub(super) fn fastest(motion: &mut Simulation, cycles: u32) -> Vec<f64> {
+    let one = |_| {
+        let (mut most, until) = (0.0_f64, motion.time() + 1.0 / motion.frequency());
+        motion.run(until, |leg| most = leg.impact().map_or(most, |i| most.max(i.approach_velocity))).unwrap();
+        most
+    };
+    (0..cycles).map(one).filter(|most| *most > 0.0).collect()
+}
+
 fn scene(force: f64, stiffness: Option<f64>) -> Scene {
     Scene {
         excitation: Some(Excitation::Sine(Sine { force, frequency: 1.0 })),

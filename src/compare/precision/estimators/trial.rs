@@ -89,9 +89,9 @@ impl<D> Kind<D> {
 }
 
 /// Records of a setting: in full, and quick.
-const RECORDS: [usize; 2] = [128, 24];
+const RECORDS: [usize; 2] = [128, 8];
 /// Records of a setting that are also timed: in full, and quick.
-const TIMED: [usize; 2] = [24, 5];
+const TIMED: [usize; 2] = [24, 3];
 /// Seeds from one setting of a scene to the next: each has records of its own, the same for all methods.
 const APART: usize = 1_000_000;
 /// Parts of the records whose errors show how far the error scatters.

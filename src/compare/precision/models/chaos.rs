@@ -8,6 +8,7 @@ use super::task::{Task, Told};
 use crate::Error;
 use crate::compare::precision::{Family, Scene};
 use crate::model::{Rig, State};
+use rayon::prelude::*;
 
 /// Restitution, force in N and frequency in Hz of the window, which has been irregular for 200 000 cycles.
 const RESTITUTION: f64 = 0.97;
@@ -53,15 +54,15 @@ fn moments(values: &[f64]) -> [f64; 2] {
 
 /// Batches of the truth: integration of order 8 with tight tolerance, from starts that no method is given, so that no run of a method is among them.
 fn truth(starts: usize) -> crate::Result<Vec<[f64; 2]>> {
-    let mut all = Vec::new();
-    for start in 0..starts {
+    let one = |start: usize| {
         let state = State { x1: -1e-4 * (start + 1) as f64, ..State::REST };
         let other = Task { start: state, ..task(LONG) };
         let told = events(&other, &Events::dense(Kind::Dop853(1e-12)))
             .map_err(|fault| Error::refused(format!("the truth of the chaotic window: {fault}")))?;
-        all.extend(batches(&told, LONG).ok_or_else(|| Error::refused("the chaotic window has no impacts"))?);
-    }
-    Ok(all)
+        batches(&told, LONG).ok_or_else(|| Error::refused("the chaotic window has no impacts"))
+    };
+    let all: Vec<_> = (0..starts).into_par_iter().map(one).collect::<crate::Result<_>>()?;
+    Ok(all.concat())
 }
 
 /// Measures every method.

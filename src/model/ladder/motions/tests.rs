@@ -1,5 +1,6 @@
 use super::{Answer, Followed, Motions, On, Reader, Stage, Tried};
 use crate::math::runge_kutta::{Dop853, Integrator, Tolerance};
+use crate::model::ladder::tests::fastest;
 use crate::model::ladder::{Choice, Model, Question, choose};
 use crate::model::{
     Compliant, ContactKeys, Excitation, Motion, Observable, Rig, Scene, Simulation, Sine, State,
@@ -196,15 +197,7 @@ fn one_motion_is_read_alike_from_wherever_it_starts() {
         let rig = Rig { restitution, ..Rig::thesis() };
         let mut motion = Simulation::new(&rig, &Sine { force: 0.9, frequency }).unwrap();
         motion.run(6000.0 / frequency, |_| {}).unwrap();
-        let mut fastest = Vec::new();
-        for _ in 0..cycles {
-            let mut most = 0.0_f64;
-            let until = motion.time() + 1.0 / frequency;
-            motion
-                .run(until, |leg| most = leg.impact().map_or(most, |i| most.max(i.approach_velocity)))
-                .unwrap();
-            fastest.extend((most > 0.0).then_some(most));
-        }
+        let fastest = fastest(&mut motion, cycles);
         let mean = fastest.iter().sum::<f64>() / fastest.len() as f64;
         // The fastest of all counts too much where cycles begin elsewhere.
         assert!(fastest.iter().any(|v| v / mean > 1.1), "{fastest:?}");

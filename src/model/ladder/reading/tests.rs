@@ -2,6 +2,7 @@ use super::{End, Reader, drifts, mean};
 use crate::math::runge_kutta::{Dop853, Integrator, Tolerance};
 use crate::model::ladder::Question;
 use crate::model::ladder::change::apart;
+use crate::model::ladder::tests::fastest;
 use crate::model::{Excitation, Observable, Rig, Simulation, Sine, State, no_impact};
 use std::f64::consts::TAU;
 
@@ -162,14 +163,7 @@ fn a_pattern_longer_than_a_brief_reading_is_read_to_its_end() {
     let question = Question::new(Observable::ImpactSpeed);
     let reading = Reader::new(&rig, frequency, &question).brief().read(&mut motion).unwrap();
     assert_eq!((reading.end, reading.regime.to_string().as_str()), (End::Settled, "9/13"));
-    // The fastest impacts of the cycles that have one.
-    let mut speeds = Vec::new();
-    for _ in 0..13 {
-        let mut most = 0.0_f64;
-        let until = motion.time() + 1.0 / frequency;
-        motion.run(until, |leg| most = leg.impact().map_or(most, |i| most.max(i.approach_velocity))).unwrap();
-        speeds.extend((most > 0.0).then_some(most));
-    }
+    let speeds = fastest(&mut motion, 13);
     let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
     // Settled to a fiftieth of the tolerance.
     assert!((reading.answer.value[0] / mean - 1.0).abs() < 4e-4, "{reading:?} {mean}");
