@@ -107,7 +107,7 @@ fn found(
         None => rung::rungs(&settled, None, responses, pace),
         Some(_) => rung::rungs(&rigid, Some(&settled), responses, pace),
     };
-    fit.warnings = told::warnings(&fit, &settled, data);
+    fit.warnings = told::warnings(&fit, &settled);
     if fit.doubt.is_some() {
         fit.warnings.extend(told::scarce(data, motion::assigned(data, base, pace)?.amplitudes(data)));
     } else if contact.is_none() {

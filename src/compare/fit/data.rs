@@ -18,6 +18,8 @@ pub struct Seen {
     pub limit: Option<f64>,
     /// What the compliance of the contact has made of the amplitude; amplitude and uncertainty are those divided by it.
     pub soft: f64,
+    /// Part of the amplitude by which that may be off; it is in the uncertainty.
+    pub left: f64,
 }
 
 /// One step of a sweep: both masses where they were measured under the very same force.
@@ -180,7 +182,7 @@ impl Data {
             }
             let std = point.amplitude.std.filter(|s| *s > 0.0).unwrap_or(known.unwrap_or(GUESS) * amplitude);
             self.steps[place].seen[mass] =
-                Some(Seen { sweep, amplitude, std, limit: point.upper_limit, soft: 1.0 });
+                Some(Seen { sweep, amplitude, std, limit: point.upper_limit, soft: 1.0, left: 0.0 });
         }
     }
 }

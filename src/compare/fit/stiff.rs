@@ -110,7 +110,7 @@ fn corrected(data: &Data, setting: &Setting, kinds: &[Option<Kind>], stiffness: 
                 seen.amplitude /= made;
                 seen.std = (seen.std / made).hypot(left * seen.amplitude);
                 seen.limit = seen.limit.map(|l| l / made);
-                seen.soft = made;
+                (seen.soft, seen.left) = (made, left);
             }
         }
     }

@@ -58,7 +58,14 @@ fn swept(setting: &Setting, pace: Pace, frequencies: &[f64], noise: f64) -> (Dat
                 let limit = (amplitude[mass] < FAINT * noise).then_some(3.0 * noise);
                 // A mass at rest shows the noise.
                 let amplitude = amplitude[mass].max(noise);
-                Some(Seen { sweep: mass + 2 * usize::from(down), amplitude, std: noise, limit, soft: 1.0 })
+                Some(Seen {
+                    sweep: mass + 2 * usize::from(down),
+                    amplitude,
+                    std: noise,
+                    limit,
+                    soft: 1.0,
+                    left: 0.0,
+                })
             };
             let seen = [seen(0), seen(1)];
             data.steps.push(Step {

@@ -2,9 +2,10 @@
 
 use super::super::forcing::median;
 use super::Fit;
-use super::data::{self, Data};
+use super::data::{self, Data, Seen, Step};
 use super::settle::Settled;
 use crate::campaign::{FitEntry, Parameter};
+use crate::units::notation::significant;
 
 /// A factor by which amplitudes are off that no calibration explains.
 const MANY: f64 = 5.0;
@@ -16,8 +17,8 @@ const TIED: f64 = 0.95;
 const AT_BOUND: f64 = 1e-3;
 
 /// Sentences in the order of their weight.
-pub fn warnings(fit: &Fit, settled: &Settled<'_>, data: &Data) -> Vec<String> {
-    let mut said = Vec::new();
+pub fn warnings(fit: &Fit, settled: &Settled<'_>) -> Vec<String> {
+    let (mut said, data) = (Vec::new(), settled.problem.data);
     let left = fit.left_out;
     let doubt = settled.doubt();
     if let Some(doubt) = &doubt {
@@ -92,6 +93,7 @@ pub fn warnings(fit: &Fit, settled: &Settled<'_>, data: &Data) -> Vec<String> {
             left.soft
         ));
     }
+    said.extend(first_order(data));
     if left.far + left.wavering > 0 {
         said.push(format!(
             "{} amplitude(s) take no part because they lie far from their motion, {} because it changed with the parameters.",
@@ -135,9 +137,26 @@ fn simplest(fit: &Fit) -> Option<String> {
     ))
 }
 
+/// That the correction of the compliance, not the measurement, makes most of the uncertainty of the amplitudes of impacts.
+fn first_order(data: &Data) -> Option<String> {
+    let seen = data.steps.iter().flat_map(Step::clear).map(|(_, seen)| seen);
+    let corrected: Vec<&Seen> = seen.filter(|s| s.left > 0.0).collect();
+    // Both are in `std`, as the root of the sum of their squares.
+    let mostly = corrected.iter().filter(|s| s.left * s.amplitude > s.std / f64::sqrt(2.0)).count();
+    let most = corrected.iter().map(|s| s.left).fold(0.0, f64::max);
+    (2 * mostly > corrected.len()).then(|| {
+        format!(
+            "The compliance of the contact is taken out to first order. What that may leave, up to {} % of an amplitude, is more than what was measured \
+             leaves open, at {mostly} of {} amplitudes of impacts: uncertainties are larger for it, and residuals can be far below 1.",
+            significant(100.0 * most, 2),
+            corrected.len()
+        )
+    })
+}
+
 /// That a doubted fit had little to go by: at the rig as stated so many of all amplitudes are of motions that a fit can use.
 pub fn scarce(data: &Data, usable: usize) -> Option<String> {
-    let all = data.steps.iter().flat_map(data::Step::clear).count();
+    let all = data.steps.iter().flat_map(Step::clear).count();
     (2 * usable < all).then(|| {
         format!(
             "The rig as it is stated shows one impact a cycle, or none, at {usable} of {all} amplitudes only, and a fit can use no other motions: sweep \
