@@ -18,7 +18,7 @@ pub struct FitEntry {
     /// Starting points. Default 8.
     pub starts: Option<usize>,
     /// Relative standard uncertainty of the calibration of each mass' amplitudes: one factor for all of them, and as much again as a slope
-    /// from the lowest to the highest frequency. Default 0.01, which is said.
+    /// from the lowest to the highest frequency; and of the factor of the force, where that is not fitted. Default 0.01, which is said.
     pub calibration: Option<f64>,
     /// Relative standard uncertainty of each amplitude for itself, beside the noise in its spectrum: how far a measurement that is repeated
     /// strays. Default 0.
@@ -96,12 +96,12 @@ impl FitEntry {
             // A gap may be negative: the masses are then pressed together.
             let least = if *parameter == Parameter::Gap { f64::NEG_INFINITY } else { least };
             if !(low < high && *low >= least && *high <= most) {
-                return Err((
-                    name,
-                    format!(
-                        "the bounds of {name} are {low} to {high}: no value lies between, or none that it can have"
-                    ),
-                ));
+                let why = match parameter {
+                    Parameter::Restitution if low < high => "it is from 0 to 1",
+                    _ if low < high => "it is not below 0",
+                    _ => "no value lies between",
+                };
+                return Err((name, format!("the bounds of {name} are {low} to {high}: {why}")));
             }
         }
         Ok(())

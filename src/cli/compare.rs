@@ -32,6 +32,7 @@ pub fn run(typed: &args::Compare, json: bool) -> Result<()> {
     let responses = job::responses(&campaign, options, &progress::bar(json))?;
     let force = campaign.excitation.and_then(|e| e.force);
     let mut overlay = overlay(&rig, force, &Predicting::from(&campaign), &responses)?;
+    overlay.warnings.splice(0..0, campaign.rig_left_out());
     overlay.warnings.extend(job::common(&responses));
     let fit = job::fit(&campaign, &rig, &responses)?;
     let mut written = Vec::new();

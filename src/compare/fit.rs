@@ -115,7 +115,7 @@ fn found(
     }
     if entry.calibration.is_none() {
         // Nothing is more important but that there is no uncertainty.
-        fit.warnings.insert(usize::from(fit.doubt.is_some()), told::assumed(data.calibration));
+        fit.warnings.insert(usize::from(fit.doubt.is_some()), told::assumed(data.calibration, entry));
     }
     fit.warnings.extend(told::unused(entry));
     Ok(fit)

@@ -42,6 +42,7 @@ pub use starts::Followed;
 
 use super::{Law, Rig, Scene};
 use crate::error::{Error, Result};
+use crate::units::notation::significant;
 use change::Answer;
 use climb::Climb;
 use serde::Serialize;
@@ -160,8 +161,9 @@ fn chosen(scene: &Scene, frequency: f64, question: &Question, bend: bool) -> Res
     let fastest = scene.rig.natural_frequencies().into_iter().filter(|f| f.is_finite()).fold(0.0, f64::max);
     if fastest > MOST_SWINGS * frequency {
         return Err(Error::refused(format!(
-            "a mass swings {:.0} times in a cycle of {frequency} Hz: more than {MOST_SWINGS:.0} are not followed",
-            fastest / frequency
+            "a mass swings {} times in a cycle of {} Hz: more than {MOST_SWINGS:.0} are not followed",
+            significant(fastest / frequency, 3),
+            significant(frequency, 6)
         ))
         .hint("at such frequencies springs alone decide: x₁ = F/k₁ until the masses meet"));
     }

@@ -16,6 +16,7 @@ use super::stick::Pair;
 use super::{Event, Excitation, Flight, Motion, Piece, Rig, State};
 use crate::error::{Error, Result};
 use crate::math::Oscillator;
+use crate::units::notation::significant;
 
 /// Approach speed in m/s below which an impact after which the masses part by themselves is counted as grazing, unless
 /// [`Simulation::grazing_below`] says otherwise.
@@ -261,7 +262,10 @@ impl Simulation {
         };
         let State { x1, v1, x2, v2 } = self.state;
         if !(x1 + v1 + x2 + v2).is_finite() {
-            return Err(Error::refused(format!("at {} s the motion exceeds all numbers", self.time)));
+            return Err(Error::refused(format!(
+                "at {} s the motion exceeds all numbers",
+                significant(self.time, 6)
+            )));
         }
         Ok(Leg { start, duration, course, event })
     }
@@ -321,8 +325,9 @@ impl Simulation {
             legs += 1.0;
             if legs > MOST_CYCLES {
                 return Err(Error::refused(format!(
-                    "more than {MOST_CYCLES:.0} impacts and other events before {} s of {until} s",
-                    self.time
+                    "more than {MOST_CYCLES:.0} impacts and other events before {} s of {} s",
+                    significant(self.time, 6),
+                    significant(until, 6)
                 ))
                 .hint("ask for less time, or give the impacts some loss: restitution below 1"));
             }

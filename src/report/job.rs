@@ -195,7 +195,8 @@ pub fn run(
     }
     pairing::twice(&responses, &mut warnings);
     if overlay.is_some() {
-        warnings.extend(campaign.rig_left_out());
+        // All that follows rests on it.
+        warnings.splice(0..0, campaign.rig_left_out());
     }
     let mut results = Results {
         campaign: name,

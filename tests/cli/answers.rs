@@ -228,6 +228,23 @@ fn run_and_compare_do_the_example_campaign() {
     }
 }
 
+#[test]
+fn what_the_rig_of_a_campaign_leaves_out_is_said_first() {
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/two_mass_rig");
+    let whole = fs::read_to_string(example.join("campaign.toml")).unwrap();
+    let left: Vec<&str> = whole.lines().filter(|l| !l.starts_with("k2 ")).collect();
+    assert_eq!(left.len() + 1, whole.lines().count());
+    let folder = tempfile::tempdir().unwrap();
+    let (campaign, out) = (folder.path().join("campaign.toml"), folder.path().join("out"));
+    let lists = format!("list = '{}{}", text(&example), std::path::MAIN_SEPARATOR);
+    fs::write(&campaign, left.join("\n").replace("list = \"", &lists).replace(".TXT\"", ".TXT'")).unwrap();
+    let compared = json(&["compare", text(&campaign), "--allow-outside"]);
+    let run = json(&["run", text(&campaign), "--allow-outside", "--out", text(&out)]);
+    for warnings in [&compared["warnings"], &run["results"]["warnings"]] {
+        assert!(warnings[0].as_str().unwrap().contains("[rig] does not give k2"), "{warnings}");
+    }
+}
+
 /// The example's truth, point by point: column `x1` or `x2` of one direction.
 fn truth(direction: &str, mass: usize) -> Vec<(f64, f64)> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/two_mass_rig/TRUTH.csv");

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
 pub struct Precision {
-    /// Fewer settings and repeats: seconds instead of minutes
+    /// Fewer settings, repeats, records and cycles, so rougher errors: seconds instead of minutes
     #[arg(long)]
     pub quick: bool,
     /// Methods of this kind

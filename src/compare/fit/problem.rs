@@ -6,6 +6,7 @@ use super::data::{Data, Step};
 use super::setting::Setting;
 use super::shared::Shared;
 use super::unknown::{Unknown, at, fold};
+use crate::campaign::Parameter;
 use crate::error::Result;
 use crate::math::{Minimum, minimise};
 
@@ -100,8 +101,8 @@ impl Problem<'_> {
         self.calibration = Calibration::new(&self.shares(&setting));
     }
 
-    /// By how much each residual changes by one standard uncertainty of the calibrations: of each mass' factor, and of its slope, 1 at the
-    /// ends of the frequencies.
+    /// By how much each residual changes by one standard uncertainty of the calibrations: of each mass' factor, of its slope, 1 at the ends of
+    /// the frequencies, and of the force where it is not looked for. That moves gap and amplitudes alike, and no amplitude tells it.
     fn shares(&self, setting: &Setting) -> Vec<Vec<f64>> {
         if self.data.calibration == 0.0 {
             return Vec::new();
@@ -122,7 +123,17 @@ impl Problem<'_> {
                 error
             })
         };
-        [(0, false), (1, false), (0, true), (1, true)].map(|(mass, sloped)| share(mass, sloped)).to_vec()
+        let mut shares =
+            [(0, false), (1, false), (0, true), (1, true)].map(|(mass, sloped)| share(mass, sloped)).to_vec();
+        if self.unknowns.iter().all(|u| u.parameter != Parameter::Force) {
+            shares.push(self.scaled(|step, kind| {
+                let force = setting.force_at(self.data, step);
+                let [above, below] =
+                    [1.0 + NEAR, 1.0 - NEAR].map(|by| setting.shows(kind, force * by, step.frequency));
+                [0, 1].map(|mass| (above[mass] - below[mass]) / (2.0 * NEAR) * self.data.calibration)
+            }));
+        }
+        shares
     }
 
     /// What `of` makes of each step and its motion, in m for both masses, over their standard deviations.

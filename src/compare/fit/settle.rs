@@ -237,7 +237,7 @@ fn enough(n: usize, unknowns: &[Unknown]) -> Result<()> {
             "{n} amplitude(s) of motions with one impact a cycle or none do not determine {} parameters",
             unknowns.len()
         ))
-        .hint("fit fewer parameters, or begin nearer to the rig"));
+        .hint("check units and which mass is which, begin nearer to the rig, or fit fewer parameters"));
     }
     Ok(())
 }

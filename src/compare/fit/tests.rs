@@ -343,7 +343,7 @@ fn what_cannot_be_is_refused() {
         ("parameters = [\"c1\", \"c1\"]", "named twice"),
         ("parameters = [\"c1\"]\nprior.c1 = [0.1, 0.0]", "standard uncertainty of 0"),
         ("parameters = [\"c1\"]\nbounds.c1 = [0.2, 0.1]", "no value lies between"),
-        ("parameters = [\"restitution\"]\nbounds.restitution = [0.5, 1.2]", "or none that it can have"),
+        ("parameters = [\"restitution\"]\nbounds.restitution = [0.5, 1.2]", "it is from 0 to 1"),
         ("parameters = [\"c1\"]\nbounds.c1 = [0.2, 0.3]", "starts at 0.1"),
         ("parameters = [\"c1\"]\nprior.c1 = [0.5, 0.1]\nbounds.c1 = [0.05, 0.3]", "outside its bounds"),
         ("parameters = [\"c1\"]\nstarts = 0", "starts"),

@@ -2,7 +2,7 @@
 
 use super::super::forcing::median;
 use super::Fit;
-use super::data::{self, Data, Seen, Step};
+use super::data::{self, Data, Seen};
 use super::settle::Settled;
 use crate::campaign::{FitEntry, Parameter};
 use crate::units::notation::significant;
@@ -42,12 +42,9 @@ pub fn warnings(fit: &Fit, settled: &Settled<'_>) -> Vec<String> {
         let c = unknown.coordinate;
         let part = (c.value(*u) - c.low) / (c.high - c.low);
         if c.high.is_finite() && !(AT_BOUND..=1.0 - AT_BOUND).contains(&part) {
-            said.push(format!(
-                "{} lies at a bound, {} to {}: its uncertainty means little.",
-                unknown.parameter.name(),
-                c.low,
-                c.high
-            ));
+            let little = if doubt.is_none() { ": its uncertainty means little" } else { "" };
+            let name = unknown.parameter.name();
+            said.push(format!("{name} lies at a bound, {} to {}{little}.", c.low, c.high));
         }
     }
     said.extend(simplest(fit));
@@ -93,7 +90,9 @@ pub fn warnings(fit: &Fit, settled: &Settled<'_>) -> Vec<String> {
             left.soft
         ));
     }
-    said.extend(first_order(data));
+    if doubt.is_none() && !data.guessed {
+        said.extend(first_order(settled));
+    }
     if left.far + left.wavering > 0 {
         said.push(format!(
             "{} amplitude(s) take no part because they lie far from their motion, {} because it changed with the parameters.",
@@ -137,17 +136,18 @@ fn simplest(fit: &Fit) -> Option<String> {
     ))
 }
 
-/// That the correction of the compliance, not the measurement, makes most of the uncertainty of the amplitudes of impacts.
-fn first_order(data: &Data) -> Option<String> {
-    let seen = data.steps.iter().flat_map(Step::clear).map(|(_, seen)| seen);
+/// That for most amplitudes of impacts the correction of the compliance may be off by more than their noise.
+fn first_order(settled: &Settled<'_>) -> Option<String> {
+    let steps = &settled.problem.data.steps;
+    let seen = settled.problem.used().filter_map(|(step, mass)| steps[step].seen[mass].as_ref());
     let corrected: Vec<&Seen> = seen.filter(|s| s.left > 0.0).collect();
-    // Both are in `std`, as the root of the sum of their squares.
-    let mostly = corrected.iter().filter(|s| s.left * s.amplitude > s.std / f64::sqrt(2.0)).count();
+    // `std` is the root of the sum of both squares.
+    let coarse = corrected.iter().filter(|s| s.left * s.amplitude > s.std / f64::sqrt(2.0)).count();
     let most = corrected.iter().map(|s| s.left).fold(0.0, f64::max);
-    (2 * mostly > corrected.len()).then(|| {
+    (2 * coarse > corrected.len()).then(|| {
         format!(
-            "The compliance of the contact is taken out to first order. What that may leave, up to {} % of an amplitude, is more than what was measured \
-             leaves open, at {mostly} of {} amplitudes of impacts: uncertainties are larger for it, and residuals can be far below 1.",
+            "The compliance of the contact is taken out to first order, which may still be off by up to {} % of an amplitude: more than the noise at {coarse} of \
+             {} amplitudes of impacts. Uncertainties hold it, so residuals can lie far below 1.",
             significant(100.0 * most, 2),
             corrected.len()
         )
@@ -156,7 +156,7 @@ fn first_order(data: &Data) -> Option<String> {
 
 /// That a doubted fit had little to go by: at the rig as stated so many of all amplitudes are of motions that a fit can use.
 pub fn scarce(data: &Data, usable: usize) -> Option<String> {
-    let all = data.steps.iter().flat_map(Step::clear).count();
+    let all = data.steps.iter().flat_map(data::Step::clear).count();
     (2 * usable < all).then(|| {
         format!(
             "The rig as it is stated shows one impact a cycle, or none, at {usable} of {all} amplitudes only, and a fit can use no other motions: sweep \
@@ -178,10 +178,11 @@ fn off_by(fit: &Fit) -> Option<String> {
 }
 
 /// What is taken for the calibration where nothing is stated.
-pub fn assumed(calibration: f64) -> String {
+pub fn assumed(calibration: f64, entry: &FitEntry) -> String {
+    let force = if entry.parameters.contains(&Parameter::Force) { "" } else { " and for the force" };
     format!(
-        "How well the amplitudes are calibrated is not stated: {} % is assumed for each mass, and is in all uncertainties. A better known one makes them \
-         smaller (`calibration` in [fit]).",
+        "How well the sensors are calibrated is not stated: {} % is assumed for each mass{force}, and is in all uncertainties. A better known one makes \
+         them smaller (`calibration` in [fit]).",
         100.0 * calibration
     )
 }

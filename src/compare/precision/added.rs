@@ -24,10 +24,10 @@ struct Added {
 }
 
 /// Adds the lines of a JSON file, a list of objects with `scene`, `method`, `setting`, `error`, `time_ns` and `why`, to the
-/// scenes that they name, and marks the fronts anew. Lines of scenes that were not measured are left out; gives a sentence on each such scene.
+/// scenes that they name, and marks the fronts anew. Lines of scenes that were not measured are left out; gives a sentence on each such scene, and on an empty list.
 ///
 /// # Errors
-/// If the file cannot be read, is not such a list, has a time or an error that is not above 0, or gives a method the name of one of
+/// If the file cannot be read, is not such a list, has a time or an error that is not above 0, or gives a method no name, or that of one of
 /// this library's, whose line it would become.
 pub fn add(scenes: &mut [Scene], path: &Path) -> Result<Vec<String>> {
     let text = std::fs::read_to_string(path).map_err(|e| Error::io("read", path, e))?;
@@ -37,6 +37,7 @@ pub fn add(scenes: &mut [Scene], path: &Path) -> Result<Vec<String>> {
     };
     let lines: Vec<Added> = serde_json::from_str(&text)
         .map_err(|e| wrong(e.to_string(), "a list of lines, each with scene, method, error and time_ns"))?;
+    let none = lines.is_empty();
     let own: HashSet<String> =
         scenes.iter().flat_map(|s| &s.methods).filter(|m| m.ours).map(|m| m.method.clone()).collect();
     let mut left: BTreeMap<String, usize> = BTreeMap::new();
@@ -47,6 +48,9 @@ pub fn add(scenes: &mut [Scene], path: &Path) -> Result<Vec<String>> {
                 let failed = if key == "error" { "; null where the method failed" } else { "" };
                 return Err(wrong(format!("{of}: {key} is {value}"), &format!("a number above 0{failed}")));
             }
+        }
+        if line.method.trim().is_empty() {
+            return Err(wrong(format!("{of}: no method is named"), "the name of the other program"));
         }
         let Some(scene) = scenes.iter_mut().find(|s| s.name == line.scene) else {
             *left.entry(line.scene).or_default() += 1;
@@ -81,7 +85,8 @@ pub fn add(scenes: &mut [Scene], path: &Path) -> Result<Vec<String>> {
             path.display()
         )
     };
-    Ok(left.into_iter().map(sentence).collect())
+    let empty = none.then(|| format!("{}: the list holds no lines.", path.display()));
+    Ok(empty.into_iter().chain(left.into_iter().map(sentence)).collect())
 }
 
 #[cfg(test)]
@@ -122,5 +127,8 @@ mod tests {
         assert!(added("a peer").unwrap().is_empty());
         assert!(added("Euler loop").unwrap().is_empty());
         assert!(added("exact flights").unwrap_err().to_string().contains("of this library"));
+        assert!(added(" ").unwrap_err().to_string().contains("no method is named"));
+        std::fs::write(&path, "[]").unwrap();
+        assert!(add(&mut scenes, &path).unwrap()[0].contains("no lines"));
     }
 }

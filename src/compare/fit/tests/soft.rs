@@ -46,7 +46,7 @@ fn the_stiffness_of_the_contact_is_allowed_for() {
     for (stiffness, data) in [(1e6, soft(&setting, 1e6, 41)), (1e7, data)] {
         let fit = found(&data, &start, Some(stiffness), &[], &entry, PACE).unwrap();
         // (ωt)² is 1e-3 and 1e-4 of amplitudes of 1 mm, in noise of 0.3 µm.
-        let said = fit.warnings.iter().any(|w| w.contains("to first order"));
+        let said = fit.warnings.iter().any(|w| w.contains("taken out to first order"));
         assert_eq!(said, stiffness == 1e6, "{:?}", fit.warnings);
         for found in &fit.parameters {
             let Estimate { value, std, .. } = found.estimate;

@@ -51,7 +51,7 @@ const TWO_TIMES: Method<Pulse> = Method {
 
 /// The same from a spreadsheet, which asks for no domain.
 const CLOSED_FORM: Method<Pulse> = Method {
-    name: "closed form",
+    name: "formula of ρ",
     ours: false,
     estimate: |p| Ok(Answer::bare(closed_form(p.times[0] / p.times[1]))),
 };

@@ -94,15 +94,16 @@ const RECORDS: [usize; 2] = [128, 8];
 const TIMED: [usize; 2] = [24, 3];
 /// Seeds from one setting of a scene to the next: each has records of its own, the same for all methods.
 const APART: usize = 1_000_000;
-/// Parts of the records whose errors show how far the error scatters.
-const PARTS: usize = 8;
+/// Parts of the records whose errors show how far the error scatters: in full, and quick.
+const PARTS: [usize; 2] = [8, 4];
 
 /// Every method with every setting: the error is the root mean square over the answers, so that it compares with a standard deviation;
-/// its spread are the quartiles over eighths of the records. A method that answers to fewer than half of them has failed.
+/// its spread are the quartiles over eighths of the records, quarters of the few that are quick. A method that answers to fewer than half of them has failed.
 pub fn measured<D>(methods: &[Method<D>], settings: &[Kind<D>], quick: bool) -> Vec<Measured> {
     let one = |method: &Method<D>, place: usize, setting: &Kind<D>| {
         let case = |number: usize| setting.case(place * APART + number);
-        let (mut errors, mut times) = (vec![Vec::new(); PARTS], Vec::new());
+        let parts = PARTS[usize::from(quick)];
+        let (mut errors, mut times) = (vec![Vec::new(); parts], Vec::new());
         let mut refusals = Refusals::default();
         let records = RECORDS[usize::from(quick)];
         let answered = |number: usize| {
@@ -123,7 +124,7 @@ pub fn measured<D>(methods: &[Method<D>], settings: &[Kind<D>], quick: bool) -> 
         for (number, (answer, truth, unit)) in answers.into_iter().enumerate() {
             match answer {
                 Ok(answer) if answer.value.is_finite() => {
-                    errors[number % PARTS].push(((answer.value - truth) / unit).powi(2));
+                    errors[number % parts].push(((answer.value - truth) / unit).powi(2));
                 }
                 Ok(answer) => refusals.add(answer.said.first().map_or("it gives no number", String::as_str)),
                 Err(error) => refusals.add(error.to_string()),
@@ -131,7 +132,7 @@ pub fn measured<D>(methods: &[Method<D>], settings: &[Kind<D>], quick: bool) -> 
         }
         let root = |squares: &[f64]| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
         let all: Vec<f64> = errors.iter().flatten().copied().collect();
-        let mut parts: Vec<f64> = errors.iter().filter(|e| !e.is_empty()).map(|e| root(e)).collect();
+        let mut scattered: Vec<f64> = errors.iter().filter(|e| !e.is_empty()).map(|e| root(e)).collect();
         let failed = 2 * all.len() < records;
         let [fast, time_ns, slow] = quartiles(&mut times);
         Measured {
@@ -140,7 +141,7 @@ pub fn measured<D>(methods: &[Method<D>], settings: &[Kind<D>], quick: bool) -> 
             ours: method.ours,
             error: (!failed).then(|| root(&all)),
             error_spread: (!failed).then(|| {
-                let [low, _, high] = quartiles(&mut parts);
+                let [low, _, high] = quartiles(&mut scattered);
                 [low, high]
             }),
             time_ns,
