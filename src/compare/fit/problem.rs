@@ -77,15 +77,13 @@ impl Problem<'_> {
         let shared = |(step, kind): (&Step, &Option<Kind>)| {
             let Some(kind) = *kind else { return Shared::default() };
             let force = setting.force_at(self.data, step);
-            // By so many standard uncertainties the amplitudes change with a relative change of frequency or force, which errs by `std`. A
-            // central difference over a millionth errs by 1e-12 of the third derivative and 1e-10 of the value.
+            // By so many standard uncertainties the amplitudes change with a relative change of frequency or force, which errs by `std`.
             let error = |std: f64, shows: &dyn Fn(f64) -> [f64; 2]| {
                 let mut w = [0.0; 2];
                 if std > 0.0 {
-                    let [above, below] = [1.0 + NEAR, 1.0 - NEAR].map(shows);
+                    let slopes = slopes(shows);
                     for (mass, seen) in step.clear().filter(|(mass, _)| counts(Some(kind), *mass)) {
-                        let slope = (above[mass] - below[mass]) / (2.0 * NEAR) * std / seen.std;
-                        w[mass] = if slope.is_finite() { slope } else { 0.0 };
+                        w[mass] = slopes[mass] * std / seen.std;
                     }
                 }
                 w
@@ -128,9 +126,8 @@ impl Problem<'_> {
         if self.unknowns.iter().all(|u| u.parameter != Parameter::Force) {
             shares.push(self.scaled(|step, kind| {
                 let force = setting.force_at(self.data, step);
-                let [above, below] =
-                    [1.0 + NEAR, 1.0 - NEAR].map(|by| setting.shows(kind, force * by, step.frequency));
-                [0, 1].map(|mass| (above[mass] - below[mass]) / (2.0 * NEAR) * self.data.calibration)
+                slopes(|by| setting.shows(kind, force * by, step.frequency))
+                    .map(|s| s * self.data.calibration)
             }));
         }
         shares
@@ -203,6 +200,14 @@ impl Problem<'_> {
         }
         Ok(minimum)
     }
+}
+
+/// Change of both amplitudes by a relative change of what `shows` multiplies by its argument; 0 at the end of a motion, where there is none.
+///
+/// A central difference over a millionth errs by 1e-12 of the third derivative and 1e-10 of the value.
+fn slopes(shows: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
+    let [above, below] = [1.0 + NEAR, 1.0 - NEAR].map(shows);
+    [0, 1].map(|mass| (above[mass] - below[mass]) / (2.0 * NEAR)).map(|s| if s.is_finite() { s } else { 0.0 })
 }
 
 /// Whether the amplitude of a mass counts in a motion of this kind: a mass at rest shows no parameter.

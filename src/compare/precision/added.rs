@@ -37,7 +37,9 @@ pub fn add(scenes: &mut [Scene], path: &Path) -> Result<Vec<String>> {
     };
     let lines: Vec<Added> = serde_json::from_str(&text)
         .map_err(|e| wrong(e.to_string(), "a list of lines, each with scene, method, error and time_ns"))?;
-    let none = lines.is_empty();
+    if lines.is_empty() {
+        return Ok(vec![format!("{}: the list holds no lines.", path.display())]);
+    }
     let own: HashSet<String> =
         scenes.iter().flat_map(|s| &s.methods).filter(|m| m.ours).map(|m| m.method.clone()).collect();
     let mut left: BTreeMap<String, usize> = BTreeMap::new();
@@ -85,8 +87,7 @@ pub fn add(scenes: &mut [Scene], path: &Path) -> Result<Vec<String>> {
             path.display()
         )
     };
-    let empty = none.then(|| format!("{}: the list holds no lines.", path.display()));
-    Ok(empty.into_iter().chain(left.into_iter().map(sentence)).collect())
+    Ok(left.into_iter().map(sentence).collect())
 }
 
 #[cfg(test)]

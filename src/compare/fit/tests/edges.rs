@@ -165,8 +165,8 @@ fn the_gap_is_as_uncertain_as_a_force_that_is_held() {
             assert!(off < 3.5 * std.unwrap_or(0.0), "{names}: {found:?}");
         }
         let Estimate { value, std, .. } = of(&fit, Parameter::Gap).estimate;
-        // The force's 1 % beside what two masses of 1 % tell of it: (1 + 2)^(-1/2) of one is taken off; a little more with their slopes. With
-        // the force fitted, 1 %/√2.
+        // 1 % of the force together with two masses' 1 %, which tell it as well: 1 %/√3, a little more with their slopes. With the force fitted,
+        // 1 %/√2.
         assert!((0.005..0.012).contains(&(std.unwrap() / value)), "{names}: {std:?}");
         assert!(fit.warnings.iter().any(|w| w.contains(said)), "{:?}", fit.warnings);
     }

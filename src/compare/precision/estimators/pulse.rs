@@ -50,14 +50,14 @@ const TWO_TIMES: Method<Pulse> = Method {
 };
 
 /// The same from a spreadsheet, which asks for no domain.
-const CLOSED_FORM: Method<Pulse> = Method {
+const FORMULA: Method<Pulse> = Method {
     name: "formula of ρ",
     ours: false,
     estimate: |p| Ok(Answer::bare(closed_form(p.times[0] / p.times[1]))),
 };
 
 const METHODS: [Method<Pulse>; 2] = [BY_HAND, WHOLE];
-const FOUR: [Method<Pulse>; 4] = [CLOSED_FORM, BY_HAND, TWO_TIMES, WHOLE];
+const FOUR: [Method<Pulse>; 4] = [FORMULA, BY_HAND, TWO_TIMES, WHOLE];
 
 /// ξ from ρ = time to peak / duration, for any ρ.
 fn closed_form(rho: f64) -> f64 {
@@ -210,6 +210,6 @@ pub fn cells_of_pulses(quick: bool) -> Vec<Task> {
     all.extend(cells("contact ξ: noise", &METHODS, noise, quick));
     all.extend(cells("contact ξ: few samples", &METHODS, few, quick));
     all.extend(cells("contact ξ: faults", &METHODS, faults, quick));
-    all.extend(cells("contact ξ: two times", &[CLOSED_FORM, TWO_TIMES], swapped, quick));
+    all.extend(cells("contact ξ: two times", &[FORMULA, TWO_TIMES], swapped, quick));
     all
 }
