@@ -5,7 +5,8 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use rayon::prelude::*;
 use std::hint::black_box;
-use vibroimpact::read::{Reader, Traces};
+use vibroimpact::read::Reader;
+use vibroimpact::record::Traces;
 use vibroimpact::record::{Axis, Meta, Record, Trace, Window};
 use vibroimpact::signal::fft::Transform;
 use vibroimpact::signal::segment::Segments;

@@ -3,10 +3,10 @@
 mod course;
 pub mod fit;
 pub mod forcing;
+pub mod named;
 pub mod overlay;
 pub mod pair;
 pub mod peak_pair;
-pub mod precision;
 pub mod prediction;
 pub mod rungs;
 pub mod score;
@@ -23,3 +23,4 @@ pub use score::Score;
 pub use simulated::{Pace, Simulated, simulated};
 
 pub use crate::model::observable;
+pub use vibro_precision as precision;

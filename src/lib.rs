@@ -23,19 +23,23 @@
 //! # Ok::<(), vibroimpact::Error>(())
 //! ```
 
+pub mod analysis;
 pub mod campaign;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod compare;
-pub mod error;
-pub mod math;
-pub mod measure;
-pub mod model;
-pub mod read;
-pub mod record;
 pub mod report;
-pub mod signal;
-pub mod units;
-pub mod write;
 
-pub use error::{Error, Result};
+pub use vibro_io as read;
+pub use vibro_io::write;
+pub use vibro_math as math;
+pub use vibro_measure as measure;
+pub use vibro_model as model;
+pub use vibro_record as record;
+pub use vibro_record::units;
+pub use vibro_record::{Error, Result};
+pub use vibro_signal as signal;
+/// Errors that say where, what was found, what was expected and what to try.
+pub mod error {
+    pub use vibro_record::{Error, ErrorKind, Fault, Place, Result};
+}

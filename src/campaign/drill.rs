@@ -1,8 +1,9 @@
 //! Hammer drills of a campaign: from keys to a file and options.
 
 use super::{Campaign, DrillEntry, LowPass};
+use crate::analysis::DrillFile;
 use crate::error::Result;
-use crate::measure::drill::{Beam, DrillFile, DrillOptions, Smoothing};
+use crate::measure::drill::{Beam, DrillOptions, Smoothing};
 
 impl Campaign {
     /// The file of a drill's record and how it is measured.

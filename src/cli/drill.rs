@@ -1,8 +1,9 @@
 //! `vibro drill`: speed, impacts and the average turn of a hammer drill.
 
 use super::{args, complain, print, progress, settings};
+use crate::analysis::DrillFile;
 use crate::error::{Error, Result};
-use crate::measure::drill::{Beam, Cycle, Drill, DrillFile, DrillOptions, Edge, From, Smoothing};
+use crate::measure::drill::{Beam, Cycle, Drill, DrillOptions, Edge, From, Smoothing};
 use crate::report::{Growing, Output, files, pictures, tables};
 use serde::Serialize;
 use std::fmt::Write as _;

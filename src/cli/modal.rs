@@ -17,7 +17,8 @@ struct Answer {
 pub fn run(typed: &args::Modal, json: bool) -> Result<()> {
     settings::above_zero("--mass", typed.mass)?;
     let recording = settings::reader(&typed.reading)?.from_path(&typed.file)?;
-    let mut functions = Measured::all(&recording, typed.channel.channel.as_deref())?;
+    let mut functions = Measured::all(&recording.records, typed.channel.channel.as_deref())
+        .map_err(|e| e.of_record(&recording.path.display().to_string()).in_file(&recording.path))?;
     if functions.len() > 1 {
         let names: Vec<&str> = functions.iter().map(|(meta, _)| meta.name.as_str()).collect();
         return Err(Error::usage(
@@ -33,7 +34,7 @@ pub fn run(typed: &args::Modal, json: bool) -> Result<()> {
     }
     if let Some(path) = &typed.coherence {
         let coherence = settings::reader(&typed.reading)?.from_path(path)?;
-        measured = measured.with_coherence_of(&coherence)?;
+        measured = measured.with_coherence_of(&coherence.records).map_err(|e| e.in_file(&coherence.path))?;
     }
     let options = ModalOptions {
         band: typed.band,

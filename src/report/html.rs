@@ -1,8 +1,9 @@
 //! One page that holds a whole report: no script, no network, no other file.
 
-use super::draw::{Drawing, escaped};
+use super::Drawing;
 use super::table::Table;
 use std::fmt::Write;
+use vibro_figure::escaped;
 
 /// A report in the order in which it is read.
 ///

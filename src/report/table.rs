@@ -1,11 +1,11 @@
 //! Tables of results: one content for the terminal, for other programs and for the page.
 
-use super::draw::escaped;
 use crate::measure::Estimate;
 use crate::units::notation::{
     decimals_needed, engineering, estimate, fixed, labelled, scaled_unit, significant,
 };
 use std::fmt::Write;
+use vibro_figure::escaped;
 
 /// Rows of results under named columns.
 ///

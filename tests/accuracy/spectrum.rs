@@ -3,7 +3,7 @@
 use crate::noise::Noise;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
-use vibroimpact::read::Traces;
+use vibroimpact::record::Traces;
 use vibroimpact::record::{Axis, Meta, Scaling, Trace, Window};
 use vibroimpact::signal::integrate::{InTime, in_time};
 use vibroimpact::signal::segment::Segments;

@@ -1,7 +1,7 @@
 //! The band of a frequency response function.
 
 use crate::noise::Noise;
-use vibroimpact::read::Traces;
+use vibroimpact::record::Traces;
 use vibroimpact::record::{Axis, Meta, Trace, Window};
 use vibroimpact::signal::segment::Segments;
 use vibroimpact::signal::transfer::{Estimator, transfer};

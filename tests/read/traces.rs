@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 use vibroimpact::Error;
-use vibroimpact::read::{Reader, Traces};
+use vibroimpact::read::Reader;
+use vibroimpact::record::Traces;
 use vibroimpact::record::{Axis, Meta, Record, Trace};
 use vibroimpact::units::Unit;
 use vibroimpact::write::{Storage, Target};

@@ -3,11 +3,12 @@
 use super::contact;
 use crate::cli::args::{self, Law, Over, Way};
 use crate::cli::{complain, print};
+use crate::compare::named::{Named, named};
 use crate::error::{Error, Result};
 use crate::measure::jump::Jump;
 use crate::measure::resonance::Resonance;
 use crate::model::continuation::{Branch, Parameter, follow};
-use crate::model::sweep::{Named, Observable, Pace, Plan, Point, Swept, apart, at_size, named, size};
+use crate::model::sweep::{Observable, Pace, Plan, Point, Swept, apart, at_size, size};
 use crate::model::{
     Compliant, Excitation, Loose, Motion, PeriodicOrbit, Rig, Scene, Simulation, State, orbits,
 };

@@ -5,8 +5,8 @@ use super::motion::assigned;
 use super::unknown::coordinates;
 use super::*;
 use crate::campaign::Parameter;
+use crate::math::Noise;
 use crate::measure::Estimate;
-use crate::measure::synthetic::Normal;
 use crate::record::Direction;
 
 /// Generator's settings of the example campaign in Hz.
@@ -85,22 +85,22 @@ fn swept(setting: &Setting, pace: Pace, frequencies: &[f64], noise: f64) -> (Dat
 
 /// The same with noise: amplitudes of the closed form where it has the motion, at a frequency that is not quite the stated one.
 fn noisy(truth: &Data, kinds: &[Option<Kind>], setting: &Setting, seed: u64) -> Data {
-    let mut normal = Normal(seed);
+    let mut normal = Noise::new(seed);
     for _ in 0..16 {
-        normal.next();
+        normal.normal();
     }
     let mut data = truth.clone();
     for (step, kind) in data.steps.iter_mut().zip(kinds) {
         let (meant, force) = (step.frequency, step.force);
-        step.frequency += step.frequency_std * normal.next();
+        step.frequency += step.frequency_std * normal.normal();
         if step.force_std > 0.0 {
-            step.force += step.force_std * normal.next();
+            step.force += step.force_std * normal.normal();
         }
         let shows = kind.map(|kind| setting.shows(kind, force, meant));
         for (mass, seen) in step.seen.iter_mut().enumerate() {
             let Some(seen) = seen else { continue };
             if seen.limit.is_none() {
-                seen.amplitude = shows.map_or(seen.amplitude, |s| s[mass]) + seen.std * normal.next();
+                seen.amplitude = shows.map_or(seen.amplitude, |s| s[mass]) + seen.std * normal.normal();
             }
         }
     }
@@ -124,11 +124,11 @@ const PACE: Pace = Pace { settle: 150, measure: 36 };
 
 /// Errors of calibrations: one factor for each mass, and one slope.
 fn miscalibrated(mut data: Data, std: f64, seed: u64) -> Data {
-    let mut normal = Normal(500 + seed);
+    let mut normal = Noise::new(500 + seed);
     for _ in 0..16 {
-        normal.next();
+        normal.normal();
     }
-    let errors = [0, 1].map(|_| [normal.next() * std, normal.next() * std]);
+    let errors = [0, 1].map(|_| [normal.normal() * std, normal.normal() * std]);
     let (low, high) = (FREQUENCIES[0], FREQUENCIES[39]);
     for step in &mut data.steps {
         let along = (2.0 * step.frequency - low - high) / (high - low);
@@ -204,14 +204,14 @@ fn what_is_not_known_of_the_masses_is_in_the_uncertainties() {
     let (clean, kinds) = truth(&setting, PACE);
     println!("seeds 1 to {SEEDS}");
     covered(&setting, &kinds, |seed| {
-        let mut normal = Normal(900 + seed);
+        let mut normal = Noise::new(900 + seed);
         for _ in 0..16 {
-            normal.next();
+            normal.normal();
         }
         let parameters = Parameter::ALL.to_vec();
         let mut weighed = |p: Parameter| {
             let (mass, std) = (setting.get(p), 5e-3 * setting.get(p));
-            (p, [mass + std * normal.next(), std])
+            (p, [mass + std * normal.normal(), std])
         };
         let prior = [weighed(Parameter::M1), weighed(Parameter::M2)].into();
         let entry = FitEntry { parameters, prior, ..FitEntry::default() };

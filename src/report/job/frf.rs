@@ -140,10 +140,14 @@ fn functions(
         }
         None => None,
     };
+    let all = Measured::all(&recording.records, entry.channel.as_deref())
+        .map_err(|e| e.of_record(&recording.path.display().to_string()).in_file(&recording.path))?;
     let mut found = Vec::new();
-    for (meta, measured) in Measured::all(&recording, entry.channel.as_deref())? {
+    for (meta, measured) in all {
         let measured = match &coherence {
-            Some(recording) => measured.with_coherence_of(recording),
+            Some(recording) => {
+                measured.with_coherence_of(&recording.records).map_err(|e| e.in_file(&recording.path))
+            }
             None => Ok(measured),
         };
         if let Some(measured) = or_left_out(measured, &name, warnings)? {

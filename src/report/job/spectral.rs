@@ -4,7 +4,7 @@ use super::{JobOptions, PARTS, Progress, file_name, merge, or_left_out, slugs};
 use crate::campaign::{Campaign, RecordEntry};
 use crate::error::Result;
 use crate::measure::spectral::{SpectralOptions, SpectralResult, spectral};
-use crate::read::Traces;
+use crate::record::Traces;
 use crate::report::{Figure, Output, files, pictures};
 use serde::Serialize;
 

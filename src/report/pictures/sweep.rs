@@ -1,10 +1,11 @@
 //! Sweeps of a model: both masses, up and down, with jumps and branches.
 
 use super::lettered;
+use crate::compare::named::Named;
 use crate::measure::jump::Jump;
 use crate::measure::resonance::Resonance;
 use crate::model::continuation::Branch;
-use crate::model::sweep::{Named, Observable, Point, Swept};
+use crate::model::sweep::{Observable, Point, Swept};
 use crate::record::Direction;
 use crate::report::tables::{FollowedPoint, followed};
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};

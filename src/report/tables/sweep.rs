@@ -1,11 +1,12 @@
 //! Tables of sweeps of a model, and of the branches beside them.
 
 use super::{headed, pair};
+use crate::compare::named::Named;
 use crate::measure::jump::Jump;
 use crate::measure::resonance::Resonance;
 use crate::model::PeriodicOrbit;
 use crate::model::continuation::{Branch, MarkKind};
-use crate::model::sweep::{Named, Observable, Swept};
+use crate::model::sweep::{Observable, Swept};
 use crate::report::{Cell, Table};
 use num_complex::Complex64;
 use serde::Serialize;

@@ -188,12 +188,12 @@ fn amplitudes_that_stray_need_their_scatter() {
     let names = "parameters = [\"restitution\", \"c1\", \"c2\", \"gap\"]";
     for seed in [39, 40] {
         let strayed = |data: &mut Data| {
-            let mut normal = Normal(700 + seed);
+            let mut normal = Noise::new(700 + seed);
             for _ in 0..16 {
-                normal.next();
+                normal.normal();
             }
             for seen in data.steps.iter_mut().flat_map(|s| s.seen.iter_mut().flatten()) {
-                seen.amplitude *= 1.0 + 1e-3 * normal.next();
+                seen.amplitude *= 1.0 + 1e-3 * normal.normal();
             }
         };
         let blind = answered(names, seed, strayed).unwrap();

@@ -15,13 +15,13 @@ fn evenly(low: f64, high: f64, n: usize) -> Vec<f64> {
 
 /// Starts off by 20 to 50 % as `draw` has it; a loss 1 − R as much.
 fn off(setting: &Setting, draw: u64) -> Setting {
-    let mut normal = Normal(1000 + draw);
+    let mut normal = Noise::new(1000 + draw);
     for _ in 0..16 {
-        normal.next();
+        normal.normal();
     }
     Parameter::ALL.iter().filter(|p| !p.is_mass()).fold(*setting, |s, p| {
         let value = setting.get(*p);
-        let (sign, size) = (normal.next().signum(), 0.2 + 0.3 * (normal.next().abs() / 2.0).min(1.0));
+        let (sign, size) = (normal.normal().signum(), 0.2 + 0.3 * (normal.normal().abs() / 2.0).min(1.0));
         let factor = (1.0 + size).powf(sign);
         s.with(*p, if *p == Parameter::Restitution { 1.0 - (1.0 - value) * factor } else { value * factor })
     })

@@ -8,9 +8,9 @@ use crate::model::Law;
 fn soft(setting: &Setting, stiffness: f64, seed: u64) -> Data {
     let (clean, kinds) = truth(setting, PACE);
     let mut data = noisy(&clean, &kinds, setting, seed);
-    let mut normal = Normal(900 + seed);
+    let mut normal = Noise::new(900 + seed);
     for _ in 0..16 {
-        normal.next();
+        normal.normal();
     }
     let rig = &setting.rig;
     let law = Law::kelvin_voigt(stiffness, rig.restitution, rig.reduced_mass()).unwrap();
@@ -22,7 +22,7 @@ fn soft(setting: &Setting, stiffness: f64, seed: u64) -> Data {
             let Ok(came) = came else { continue };
             for (seen, amplitude) in data.steps[*i].seen.iter_mut().zip(came.amplitude) {
                 if let Some(seen) = seen {
-                    seen.amplitude = (amplitude + seen.std * normal.next()).abs().max(seen.std);
+                    seen.amplitude = (amplitude + seen.std * normal.normal()).abs().max(seen.std);
                     seen.limit = (amplitude < FAINT * seen.std).then_some(3.0 * seen.std);
                 }
             }

@@ -1,0 +1,360 @@
+//! Axes: what a caller asks for, and what it becomes once the data are known.
+
+use super::ticks::{self, Ticks};
+use vibro_record::units::notation::{self, engineering, labelled, scaled_unit};
+
+/// How values are laid out along an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Scale {
+    /// In proportion.
+    #[default]
+    Linear,
+    /// By logarithm; negative values are missing there, zero lies below every limit.
+    Log,
+    /// By level: the data are amplitudes and are drawn as 20 lg(|value|/reference).
+    Db {
+        /// Amplitude of 0 dB, in the unit of the data.
+        reference: f64,
+    },
+}
+
+impl Scale {
+    /// The value on the scale: itself, its log₁₀ or its level in dB.
+    pub(super) fn of(self, value: f64) -> f64 {
+        match self {
+            Scale::Linear => value,
+            Scale::Log => value.log10(),
+            Scale::Db { reference } => vibro_record::units::decibel(value, reference),
+        }
+    }
+}
+
+/// What an axis shows: label, unit, scale and, where wanted, limits.
+///
+/// Data are given in SI units; a linear axis finds its own prefix, so that displacements of 0.002 m are drawn
+/// as 2 with the label `Displacement (mm)`.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct AxisSpec {
+    /// Quantity, e.g. `Displacement amplitude`.
+    pub label: String,
+    /// Unit of the data, e.g. `m`; empty or `1` for ratios.
+    pub unit: String,
+    /// Layout.
+    pub scale: Scale,
+    /// Lower and upper limit in the unit of the data (in dB on a level axis). An end that is not finite is
+    /// found from the data.
+    pub limits: Option<(f64, f64)>,
+}
+
+impl AxisSpec {
+    /// Linear axis with limits from the data.
+    pub fn new(label: impl Into<String>, unit: impl Into<String>) -> AxisSpec {
+        AxisSpec { label: label.into(), unit: unit.into(), ..AxisSpec::default() }
+    }
+
+    /// Frequency in Hz.
+    pub fn frequency() -> AxisSpec {
+        AxisSpec::new("Frequency", "Hz")
+    }
+
+    /// Logarithmic.
+    pub fn log(mut self) -> AxisSpec {
+        self.scale = Scale::Log;
+        self
+    }
+
+    /// Level in dB against an amplitude in the unit of the data.
+    pub fn db(mut self, reference: f64) -> AxisSpec {
+        self.scale = Scale::Db { reference };
+        self
+    }
+
+    /// Limits in the unit of the data (in dB on a level axis); an end that is not finite is found from the
+    /// data.
+    pub fn limits(mut self, low: f64, high: f64) -> AxisSpec {
+        self.limits = Some((low, high));
+        self
+    }
+}
+
+/// Range of data on an axis' scale, from which limits are found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Extent {
+    lo: f64,
+    hi: f64,
+}
+
+impl Extent {
+    pub(super) const NONE: Extent = Extent { lo: f64::INFINITY, hi: f64::NEG_INFINITY };
+
+    /// Widens by values on the scale; what is not finite, or so large that a difference of two could
+    /// overflow, is left out.
+    pub(super) fn include(&mut self, values: impl IntoIterator<Item = f64>) {
+        for u in values.into_iter().filter(|u| u.abs() <= 1e300) {
+            self.lo = self.lo.min(u);
+            self.hi = self.hi.max(u);
+        }
+    }
+
+    /// The range of both.
+    pub(super) fn joined(self, other: Extent) -> Extent {
+        Extent { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
+    }
+
+    pub(super) fn is_empty(self) -> bool {
+        self.lo > self.hi
+    }
+}
+
+/// Room left beyond the data, in parts of their range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Room {
+    /// None: the axis ends with the data.
+    Tight,
+    /// Some at both ends, for markers.
+    Margin,
+    /// None, and the lower limit is a floor on which magnitudes stand: zero, or 60 dB under the largest, since
+    /// noise on a hundred spectra behind each other would hide all else.
+    Floor,
+    /// This much above; below some, or none if the axis can begin at zero, which it does where the data come
+    /// near.
+    Above(f64),
+}
+
+/// An axis with its limits.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Axis {
+    pub lo: f64,
+    pub hi: f64,
+    pub title: String,
+    scale: Scale,
+    power: i32,
+    degrees: bool,
+}
+
+/// The range of levels shown where the limits are found from the data: what lies deeper is noise or an exact
+/// zero.
+const LEVELS: f64 = 100.0;
+
+impl Axis {
+    /// Settles the limits; `None` where neither data nor limits say anything.
+    pub(super) fn new(spec: &AxisSpec, data: Extent, room: Room) -> Option<Axis> {
+        let given = |end: f64| {
+            let u = if matches!(spec.scale, Scale::Log) { end.log10() } else { end };
+            (u.abs() <= 1e300).then_some(u)
+        };
+        let (low, high) = spec.limits.map_or((None, None), |(a, b)| (given(a), given(b)));
+        let (lo, hi) = match (low, high) {
+            (Some(a), Some(b)) => (a.min(b), a.max(b)),
+            _ if data.is_empty() => return None,
+            (a, b) => {
+                let found = roomy(spec.scale, data, room);
+                (
+                    a.unwrap_or(found.0.min(b.unwrap_or(f64::INFINITY))),
+                    b.unwrap_or(found.1.max(a.unwrap_or(f64::NEG_INFINITY))),
+                )
+            }
+        };
+        let (lo, hi) = widened(spec.scale, lo, hi);
+        let degrees = spec.unit == "°";
+        let power = match spec.scale {
+            Scale::Linear if !degrees => engineering(lo.abs().max(hi.abs())),
+            _ => 0,
+        };
+        let unit = match spec.scale {
+            Scale::Db { reference } => level_unit(&spec.unit, reference),
+            _ => scaled_unit(&spec.unit, power),
+        };
+        Some(Axis { lo, hi, title: labelled(&spec.label, &unit), scale: spec.scale, power, degrees })
+    }
+
+    /// Where a value lies: 0 at the lower limit, 1 at the upper one. NaN where it has no place; what lies far
+    /// outside is brought to a finite distance, so that lines can be cut at the frame.
+    pub(super) fn at(&self, value: f64) -> f64 {
+        self.at_scaled(self.scale.of(value))
+    }
+
+    /// As [`Axis::at`], for a value on the scale already, such as a tick.
+    pub(super) fn at_scaled(&self, u: f64) -> f64 {
+        // Half the numbers, so that no difference overflows.
+        ((u / 2.0 - self.lo / 2.0) / (self.hi / 2.0 - self.lo / 2.0)).clamp(-1e4, 1e4)
+    }
+
+    /// Whether values are laid out in proportion.
+    pub(super) fn is_linear(&self) -> bool {
+        matches!(self.scale, Scale::Linear)
+    }
+
+    /// The axis with its lower end (where `lower`) and its upper one moved out to the next tick: to a named one where that
+    /// costs little room.
+    pub(super) fn rounded_out(mut self, lower: bool) -> Axis {
+        // As many ticks as an axis of a waterfall has room for.
+        let ticks = self.ticks(7);
+        let named: Vec<f64> = ticks.major.iter().map(|t| t.at).collect();
+        let [a, b, ..] = named[..] else { return self };
+        if matches!(self.scale, Scale::Log) {
+            return self;
+        }
+        let inner = ticks.minor.iter().filter(|u| (a..b).contains(*u)).count();
+        let (step, span) = (b - a, self.hi - self.lo);
+        let out = |end: f64, way: f64| {
+            // Never inwards, not even by rounding: the outermost data would be lost.
+            let next = |step: f64| way * (step * (way * end / step - 1e-9).ceil()).max(way * end);
+            if (next(step) - end).abs() <= 0.1 * span { next(step) } else { next(step / (inner + 1) as f64) }
+        };
+        self.hi = out(self.hi, 1.0);
+        if lower {
+            self.lo = out(self.lo, -1.0);
+        }
+        self
+    }
+
+    /// Ticks, at most so many.
+    pub(super) fn ticks(&self, most: usize) -> Ticks {
+        match self.scale {
+            Scale::Log => ticks::logarithmic(self.lo, self.hi, most),
+            _ => ticks::linear(self.lo, self.hi, most, self.power, self.degrees),
+        }
+    }
+}
+
+/// Limits that leave room beyond the data.
+fn roomy(scale: Scale, data: Extent, room: Room) -> (f64, f64) {
+    let Extent { mut lo, hi } = data;
+    if matches!(scale, Scale::Db { .. }) {
+        lo = lo.max(hi - LEVELS);
+    }
+    let span = hi - lo;
+    match room {
+        Room::Tight => (lo, hi),
+        Room::Floor => match scale {
+            Scale::Linear => (lo.min(0.0), hi),
+            Scale::Log => (lo, hi),
+            Scale::Db { .. } => (lo.max(hi - 60.0), hi),
+        },
+        Room::Margin => (lo - 0.03 * span, hi + 0.03 * span),
+        Room::Above(part) => {
+            let zero = matches!(scale, Scale::Linear);
+            let low = if zero && lo >= 0.0 && lo <= 0.4 * hi { 0.0 } else { lo - 0.06 * span };
+            let high = if zero && hi <= 0.0 && hi >= 0.4 * lo { 0.0 } else { hi + part * span };
+            (low, high)
+        }
+    }
+}
+
+/// Limits with a distance that can be drawn, also where all data are equal.
+fn widened(scale: Scale, lo: f64, hi: f64) -> (f64, f64) {
+    // Powers of ten beyond these would round to zero or to infinity in between.
+    let furthest = if matches!(scale, Scale::Log) { 290.0 } else { 1e300 };
+    let (lo, hi) = (lo.clamp(-furthest, furthest), hi.clamp(-furthest, furthest));
+    let size = lo.abs().max(hi.abs());
+    if hi - lo > 1e-11 * size && hi - lo > 1e-280 {
+        return (lo, hi);
+    }
+    let middle = lo / 2.0 + hi / 2.0;
+    let half = match scale {
+        Scale::Linear if size > 1e-270 => 0.1 * size,
+        Scale::Linear => 1.0,
+        Scale::Log => 0.5,
+        Scale::Db { .. } => 10f64.max(0.1 * size),
+    };
+    (middle - half, middle + half)
+}
+
+/// `dB re 1 µm/s`.
+fn level_unit(unit: &str, reference: f64) -> String {
+    if unit.is_empty() || unit == "1" {
+        return "dB".to_owned();
+    }
+    format!("dB re {}", notation::reference(reference, unit))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn extent(values: &[f64]) -> Extent {
+        let mut extent = Extent::NONE;
+        extent.include(values.iter().copied());
+        extent
+    }
+
+    #[test]
+    fn small_displacements_are_drawn_in_millimetres() {
+        let axis = Axis::new(&AxisSpec::new("Displacement", "m"), extent(&[0.0, 0.0021]), Room::Above(0.06))
+            .unwrap();
+        assert_eq!(axis.title, "Displacement (mm)");
+        let labels: Vec<_> = axis.ticks(6).major.into_iter().map(|t| t.label).collect();
+        assert_eq!(labels, ["0.0", "0.5", "1.0", "1.5", "2.0"]);
+    }
+
+    #[test]
+    fn levels_name_their_reference_and_end_above_the_zeros() {
+        let spec = AxisSpec::new("Velocity", "m/s").db(1e-6);
+        let levels = [0.0, 1e-30, 0.1].map(|v| spec.scale.of(v));
+        let axis = Axis::new(&spec, extent(&levels), Room::Tight).unwrap();
+        assert_eq!(axis.title, "Velocity (dB re 1 µm/s)");
+        assert!((axis.hi - 100.0).abs() < 1e-9 && axis.lo.abs() < 1e-9);
+        assert!(axis.at(0.0) < 0.0);
+        assert_eq!(level_unit("m", 2.5e-5), "dB re 25 µm");
+        assert_eq!(level_unit("1", 1.0), "dB");
+    }
+
+    #[test]
+    fn an_end_that_is_not_given_comes_from_the_data() {
+        let spec = AxisSpec::new("x", "1").limits(2.0, f64::INFINITY);
+        let axis = Axis::new(&spec, extent(&[0.0, 8.0]), Room::Tight).unwrap();
+        assert_eq!((axis.lo, axis.hi), (2.0, 8.0));
+        let below = Axis::new(&spec, extent(&[0.0, 1.0]), Room::Tight).unwrap();
+        assert!(below.lo < below.hi);
+        assert_eq!(Axis::new(&spec, Extent::NONE, Room::Tight), None);
+        let reversed =
+            Axis::new(&AxisSpec::new("x", "1").limits(5.0, -5.0), Extent::NONE, Room::Tight).unwrap();
+        assert_eq!((reversed.lo, reversed.hi), (-5.0, 5.0));
+    }
+
+    #[test]
+    fn the_lower_limit_is_zero_only_where_the_data_come_near() {
+        let spec = AxisSpec::new("x", "1");
+        assert_eq!(Axis::new(&spec, extent(&[1.0, 9.0]), Room::Above(0.06)).unwrap().lo, 0.0);
+        assert!(Axis::new(&spec, extent(&[8.0, 9.0]), Room::Above(0.06)).unwrap().lo > 7.9);
+        assert_eq!(Axis::new(&spec, extent(&[-9.0, -1.0]), Room::Above(0.06)).unwrap().hi, 0.0);
+    }
+
+    #[test]
+    fn an_axis_ends_with_a_tick() {
+        let axis =
+            |lo, hi| Axis::new(&AxisSpec::new("x", "Hz").limits(lo, hi), Extent::NONE, Room::Tight).unwrap();
+        let ends = |a: Axis| (a.lo, a.hi);
+        // Steps of 2, each in four.
+        assert_eq!(ends(axis(0.0, 13.9).rounded_out(false)), (0.0, 14.0));
+        assert_eq!(ends(axis(3.99, 12.84).rounded_out(true)), (3.5, 13.0));
+        assert_eq!(ends(axis(4.0, 12.0).rounded_out(true)), (4.0, 12.0));
+    }
+
+    proptest! {
+        /// No data and no scale may panic, or give limits that cannot be drawn.
+        #[test]
+        fn every_axis_can_be_drawn(
+            values in prop::collection::vec(prop_oneof![
+                any::<f64>(), Just(0.0), Just(1e300), Just(-1e300), Just(f64::NAN), Just(5.0), Just(1e-310),
+            ], 0..6),
+            limits in prop::option::of((any::<f64>(), any::<f64>())),
+            scale in prop_oneof![Just(Scale::Linear), Just(Scale::Log), Just(Scale::Db { reference: 1e-6 })],
+        ) {
+            let spec = AxisSpec { scale, limits, ..AxisSpec::new("x", "m") };
+            let data = extent(&values.iter().map(|v| scale.of(*v)).collect::<Vec<_>>());
+            if let Some(axis) = Axis::new(&spec, data, Room::Above(0.06)) {
+                prop_assert!(axis.lo < axis.hi && axis.lo.is_finite() && axis.hi.is_finite(), "{axis:?}");
+                let ticks = axis.ticks(6);
+                prop_assert!((2..=10).contains(&ticks.major.len()), "{axis:?} {ticks:?}");
+                for tick in &ticks.major {
+                    prop_assert!((-1e-9..=1.0 + 1e-9).contains(&axis.at_scaled(tick.at)), "{axis:?} {tick:?}");
+                }
+                let placed = |v: &f64| axis.at(*v).is_nan() || axis.at(*v).is_finite();
+                prop_assert!(values.iter().all(placed));
+            }
+        }
+    }
+}

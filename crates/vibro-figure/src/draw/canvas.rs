@@ -1,0 +1,332 @@
+//! The one writer of SVG: paths, texts and images at fixed places.
+//!
+//! Coordinates are points (1/72 inch) with two decimals, so equal figures give equal bytes. Nothing refers to
+//! anything by an id, so any number of pictures can stand in one page.
+
+use crate::colour::Rgb;
+use crate::path::{Point, Rect};
+use crate::{font, png};
+use std::fmt::Write;
+
+/// How a line is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Pen {
+    pub colour: Rgb,
+    pub width: f64,
+    /// Lengths of dashes and gaps, in points.
+    pub dashes: &'static [f64],
+}
+
+impl Pen {
+    pub const fn solid(colour: Rgb, width: f64) -> Pen {
+        Pen { colour, width, dashes: &[] }
+    }
+}
+
+/// Which point of a text stands at its place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// A text and how it stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Text<'a> {
+    pub words: &'a str,
+    /// End of the baseline, or its middle.
+    pub at: Point,
+    pub size: f64,
+    pub anchor: Anchor,
+    /// Degrees by which it is turned, counter-clockwise.
+    pub turn: f64,
+    pub colour: Rgb,
+    /// Whether a white edge sets it off from what it lies on.
+    pub halo: bool,
+}
+
+/// A small picture of coloured cells, drawn without smoothing.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Image {
+    pub place: Rect,
+    /// Cells across.
+    pub width: usize,
+    /// Index in the palette of each cell, row by row from the top; index 0 is left transparent.
+    pub cells: Vec<u8>,
+    pub palette: Vec<Rgb>,
+}
+
+/// What has been drawn so far; images lie under everything else.
+#[derive(Debug, Default)]
+pub(super) struct Canvas {
+    pub body: String,
+    pub images: Vec<Image>,
+}
+
+impl Canvas {
+    /// Open lines with one pen. Thin ones have plain corners: no rounding would be seen, and long noisy lines
+    /// have many.
+    pub fn lines(&mut self, parts: &[Vec<Point>], pen: Pen) {
+        let data = path(parts, false);
+        if !data.is_empty() {
+            let corners = if pen.width < 0.7 { " stroke-linejoin=\"bevel\"" } else { "" };
+            let _ = writeln!(self.body, "<path d=\"{data}\"{}{corners}/>", stroke(pen));
+        }
+    }
+
+    /// The sides of a rectangle.
+    pub fn outline(&mut self, r: Rect, pen: Pen) {
+        let _ = writeln!(self.body, "<path d=\"{}\"{}/>", path(&[corners(r)], true), stroke(pen));
+    }
+
+    /// One straight line.
+    pub fn line(&mut self, a: Point, b: Point, pen: Pen) {
+        self.lines(&[vec![a, b]], pen);
+    }
+
+    /// Closed areas with one fill and, where wanted, an outline.
+    pub fn areas(&mut self, parts: &[Vec<Point>], fill: Rgb, outline: Option<Pen>) {
+        let data = path(parts, true);
+        if !data.is_empty() {
+            let outline = outline.map(stroke).unwrap_or_default();
+            let _ = writeln!(self.body, "<path d=\"{data}\" fill=\"{fill}\"{outline}/>");
+        }
+    }
+
+    /// A filled rectangle.
+    pub fn rect(&mut self, r: Rect, fill: Rgb, outline: Option<Pen>) {
+        self.areas(&[corners(r)], fill, outline);
+    }
+
+    /// Circles of one radius.
+    pub fn circles(&mut self, centres: &[Point], radius: f64, fill: Rgb, outline: Option<Pen>) {
+        let mut data = String::new();
+        for &(x, y) in centres {
+            data.push('M');
+            pair(&mut data, hundredths(x - radius), hundredths(y));
+            let (r, d) = (hundredths(radius), hundredths(2.0 * radius));
+            for across in [d, -d] {
+                data.push('a');
+                pair(&mut data, r, r);
+                data.push_str(" 0 1 0 ");
+                pair(&mut data, across, 0);
+            }
+            data.push('z');
+        }
+        if !data.is_empty() {
+            let outline = outline.map(stroke).unwrap_or_default();
+            let _ = writeln!(self.body, "<path d=\"{data}\" fill=\"{fill}\"{outline}/>");
+        }
+    }
+
+    /// A text.
+    pub fn text(&mut self, text: Text<'_>) {
+        if text.words.is_empty() {
+            return;
+        }
+        let (x, y) = (decimal(text.at.0), decimal(text.at.1));
+        let place = match text.turn {
+            0.0 => format!("x=\"{x}\" y=\"{y}\""),
+            turn => format!("transform=\"translate({x} {y}) rotate({})\"", decimal(-turn)),
+        };
+        let anchor = match text.anchor {
+            Anchor::Start => "",
+            Anchor::Middle => " text-anchor=\"middle\"",
+            Anchor::End => " text-anchor=\"end\"",
+        };
+        let halo =
+            if text.halo { " stroke=\"#ffffff\" stroke-width=\"2\" paint-order=\"stroke\"" } else { "" };
+        let (size, colour, words) = (decimal(text.size), text.colour, escaped(text.words));
+        let _ = writeln!(
+            self.body,
+            "<text {place} font-size=\"{size}\"{anchor} fill=\"{colour}\"{halo}>{words}</text>"
+        );
+    }
+}
+
+/// The whole document of `width` by `height` mm, with a name for readers that cannot see it.
+pub(super) fn document((width, height): (f64, f64), name: &str, images: &[Image], body: &str) -> String {
+    const POINTS: f64 = 72.0 / 25.4;
+    let mut svg = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {} {}\" \
+         role=\"img\" aria-label=\"{}\" style=\"background:#ffffff\">\n",
+        decimal(width),
+        decimal(height),
+        decimal(width * POINTS),
+        decimal(height * POINTS),
+        escaped(name)
+    );
+    for image in images {
+        let Rect { x, y, w, h } = image.place;
+        let _ = writeln!(
+            svg,
+            "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" \
+             style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{}\"/>",
+            decimal(x),
+            decimal(y),
+            decimal(w),
+            decimal(h),
+            base64(&png::indexed(image))
+        );
+    }
+    let family = font::FAMILY;
+    let _ = writeln!(
+        svg,
+        "<g fill=\"none\" stroke-linejoin=\"round\" font-family=\"{family}\">\n{body}</g>\n</svg>"
+    );
+    svg
+}
+
+/// Text for use between tags and in attributes; characters that XML 1.0 forbids (2.2) become `\u{FFFD}`.
+pub fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&#39;"),
+            '\t' | '\n' | '\r' => out.push(' '),
+            '\0'..='\u{1F}' | '\u{FFFE}' | '\u{FFFF}' => out.push('\u{FFFD}'),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+fn corners(r: Rect) -> Vec<Point> {
+    vec![(r.x, r.y), (r.right(), r.y), (r.right(), r.bottom()), (r.x, r.bottom())]
+}
+
+fn stroke(pen: Pen) -> String {
+    let mut text = format!(" stroke=\"{}\" stroke-width=\"{}\"", pen.colour, decimal(pen.width));
+    if !pen.dashes.is_empty() {
+        let lengths: Vec<String> = pen.dashes.iter().map(|d| decimal(*d)).collect();
+        let _ = write!(text, " stroke-dasharray=\"{}\"", lengths.join(" "));
+    }
+    text
+}
+
+/// Path data; after the first point each is relative to the one before, in whole hundredths, so that nothing
+/// accumulates.
+fn path(parts: &[Vec<Point>], closed: bool) -> String {
+    let mut data = String::new();
+    for part in parts.iter().filter(|p| p.len() >= 2) {
+        let mut before = None;
+        for &(x, y) in part {
+            let now = (hundredths(x), hundredths(y));
+            match before {
+                None => {
+                    data.push('M');
+                    pair(&mut data, now.0, now.1);
+                }
+                Some((x, y)) if (x, y) == now => continue,
+                Some((x, y)) => {
+                    data.push('l');
+                    pair(&mut data, now.0 - x, now.1 - y);
+                }
+            }
+            before = Some(now);
+        }
+        if closed {
+            data.push('z');
+        }
+    }
+    data
+}
+
+fn hundredths(value: f64) -> i64 {
+    (value * 100.0).round() as i64
+}
+
+fn pair(out: &mut String, x: i64, y: i64) {
+    number(out, x);
+    if y >= 0 {
+        out.push(' ');
+    }
+    number(out, y);
+}
+
+/// A value to two decimals.
+fn decimal(value: f64) -> String {
+    let mut text = String::new();
+    number(&mut text, hundredths(value));
+    text
+}
+
+/// A count of hundredths as a decimal without needless zeros.
+fn number(out: &mut String, hundredths: i64) {
+    if hundredths < 0 {
+        out.push('-');
+    }
+    let (whole, part) = (hundredths.unsigned_abs() / 100, hundredths.unsigned_abs() % 100);
+    if whole > 0 || part == 0 {
+        let _ = write!(out, "{whole}");
+    }
+    if part > 0 {
+        let _ = if part % 10 == 0 { write!(out, ".{}", part / 10) } else { write!(out, ".{part:02}") };
+    }
+}
+
+/// RFC 4648, section 4.
+fn base64(bytes: &[u8]) -> String {
+    const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for group in bytes.chunks(3) {
+        let word = (0..3).fold(0u32, |w, i| w << 8 | u32::from(group.get(i).copied().unwrap_or(0)));
+        for i in 0..4 {
+            let sextet = (word >> (18 - 6 * i) & 63) as usize;
+            out.push(if i <= group.len() { char::from(ALPHABET[sextet]) } else { '=' });
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        let cases = [
+            (0.0, "0"),
+            (1.0, "1"),
+            (-0.5, "-.5"),
+            (0.04, ".04"),
+            (12.345, "12.35"),
+            (-3.1, "-3.1"),
+            (-0.001, "0"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(decimal(value), text);
+        }
+        assert_eq!(decimal(f64::NAN), "0");
+    }
+
+    #[test]
+    fn relative_steps_end_where_the_line_ends() {
+        // A third of a hundredth a step would be lost wholly if steps were rounded on their own.
+        let line: Vec<Point> = (0..=300).map(|i| (f64::from(i) / 300.0, 0.0)).collect();
+        let data = path(&[line], false);
+        let sum: f64 =
+            data.split('l').skip(1).map(|s| s.split(' ').next().unwrap().parse::<f64>().unwrap()).sum();
+        assert!((sum - 1.0).abs() < 1e-9, "{data}");
+    }
+
+    #[test]
+    fn markup_in_texts_is_only_text() {
+        assert_eq!(escaped("<a href='x'>&\"\u{1}\n"), "&lt;a href=&#39;x&#39;&gt;&amp;&quot;\u{FFFD} ");
+    }
+
+    #[test]
+    fn base64_has_the_examples_of_its_standard() {
+        // RFC 4648, section 10.
+        for (plain, coded) in
+            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")]
+        {
+            assert_eq!(base64(plain.as_bytes()), coded);
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! The frame of a plot: axes, ticks, their numbers and names.
+
+use super::canvas::{Anchor, Canvas, Text};
+use super::style::{DESCENT, FRAME, GAP, LARGE, LEADING, SMALL, TICK, TICKS};
+use crate::axis::Axis;
+use crate::colour::BLACK;
+use crate::font;
+use crate::path::{Point, Rect};
+use crate::ticks::Ticks;
+
+/// Room around a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Insets {
+    pub left: f64,
+    pub right: f64,
+    pub top: f64,
+    pub bottom: f64,
+}
+
+impl Insets {
+    /// The larger of both on each side.
+    pub fn wider(self, other: Insets) -> Insets {
+        Insets {
+            left: self.left.max(other.left),
+            right: self.right.max(other.right),
+            top: self.top.max(other.top),
+            bottom: self.bottom.max(other.bottom),
+        }
+    }
+}
+
+/// Two axes with a frame on the page.
+#[derive(Debug, Clone)]
+pub(super) struct Place<'a> {
+    pub x: &'a Axis,
+    pub y: &'a Axis,
+    pub frame: Rect,
+}
+
+impl Place<'_> {
+    /// Place of a value pair; not finite where one has none.
+    pub fn at(&self, x: f64, y: f64) -> Point {
+        (self.across(self.x.at(x)), self.up(self.y.at(y)))
+    }
+
+    /// Place of a fraction of the abscissa.
+    pub fn across(&self, fraction: f64) -> f64 {
+        self.frame.x + fraction * self.frame.w
+    }
+
+    /// Place of a fraction of the ordinate.
+    pub fn up(&self, fraction: f64) -> f64 {
+        self.frame.bottom() - fraction * self.frame.h
+    }
+}
+
+/// Ticks along `length` points of a horizontal axis, as many as their numbers leave room for.
+pub(super) fn across(axis: &Axis, length: f64) -> Ticks {
+    spread(axis, length, length / 28.0, 6.0, |label| font::width(label, SMALL))
+}
+
+/// Ticks along `length` points of a vertical axis.
+pub(super) fn upward(axis: &Axis, length: f64) -> Ticks {
+    spread(axis, length, length / 17.0, 2.0, |_| SMALL)
+}
+
+fn spread(axis: &Axis, length: f64, most: f64, gap: f64, size: impl Fn(&str) -> f64) -> Ticks {
+    let most = (most as usize).clamp(2, 8);
+    let touch = |ticks: &Ticks| {
+        ticks.major.windows(2).any(|w| {
+            let distance = (axis.at_scaled(w[1].at) - axis.at_scaled(w[0].at)) * length;
+            distance < f64::midpoint(size(&w[0].label), size(&w[1].label)) + gap
+        })
+    };
+    let mut candidates = (2..=most).rev().map(|most| axis.ticks(most));
+    let mut ticks = candidates.find(|ticks| !touch(ticks)).unwrap_or_else(|| axis.ticks(2));
+    if touch(&ticks) {
+        // Not even two numbers fit: the ticks stay, the first is named.
+        ticks.major.iter_mut().skip(1).for_each(|t| t.label.clear());
+    }
+    ticks
+}
+
+/// Width of the widest number.
+pub(super) fn widest(ticks: &Ticks) -> f64 {
+    ticks.major.iter().map(|t| font::width(&t.label, SMALL)).fold(0.0, f64::max)
+}
+
+/// Room that axes need around a frame of about this size.
+pub(super) fn insets(x: &Axis, y: &Axis, size: (f64, f64), named_x: bool) -> Insets {
+    let (tx, ty) = (across(x, size.0), upward(y, size.1));
+    let half = |at: Option<&crate::ticks::Tick>, end: f64, axis: &Axis| {
+        at.map_or(0.0, |t| font::width(&t.label, SMALL) / 2.0 - (axis.at_scaled(t.at) - end).abs() * size.0)
+    };
+    let (first, last) = (half(tx.major.first(), 0.0, x), half(tx.major.last(), 1.0, x));
+    let name = if y.title.is_empty() { 0.0 } else { LARGE + DESCENT + GAP };
+    let bottom = if !named_x {
+        SMALL / 2.0
+    } else if x.title.is_empty() {
+        GAP + SMALL + GAP
+    } else {
+        GAP + LEADING + 1.25 * LARGE
+    };
+    Insets {
+        left: (name + widest(&ty) + GAP + 1.0).max(first),
+        right: last.max(GAP),
+        top: SMALL / 2.0 + 1.0,
+        bottom,
+    }
+}
+
+/// Draws frame, ticks on all four sides, numbers and names. Over a map the ticks stand outside.
+pub(super) fn draw(canvas: &mut Canvas, place: &Place<'_>, named_x: bool, outside: bool) {
+    let frame = place.frame;
+    let (tx, ty) = (across(place.x, frame.w), upward(place.y, frame.h));
+    let mut lines = Vec::new();
+    let sign = if outside { -1.0 } else { 1.0 };
+    let majors = |t: &Ticks| t.major.iter().map(|m| (m.at, TICK)).collect::<Vec<_>>();
+    let minors = |t: &Ticks| t.minor.iter().map(|m| (*m, TICK / 2.0)).collect::<Vec<_>>();
+    for (u, length) in majors(&tx).into_iter().chain(minors(&tx)) {
+        let x = place.across(place.x.at_scaled(u));
+        lines.push(vec![(x, frame.bottom()), (x, frame.bottom() - sign * length)]);
+        if !outside {
+            lines.push(vec![(x, frame.y), (x, frame.y + length)]);
+        }
+    }
+    for (u, length) in majors(&ty).into_iter().chain(minors(&ty)) {
+        let y = place.up(place.y.at_scaled(u));
+        lines.push(vec![(frame.x, y), (frame.x + sign * length, y)]);
+        if !outside {
+            lines.push(vec![(frame.right(), y), (frame.right() - length, y)]);
+        }
+    }
+    canvas.lines(&lines, TICKS);
+    canvas.outline(frame, FRAME);
+    let away = GAP + if outside { TICK - 1.0 } else { 0.0 };
+    for tick in ty.major.iter().filter(|t| !t.label.is_empty()) {
+        let y = place.up(place.y.at_scaled(tick.at)) + font::DIGIT_HEIGHT * SMALL / 2.0;
+        label(canvas, &tick.label, (frame.x - away, y), SMALL, Anchor::End);
+    }
+    let beside = frame.x - away - widest(&ty) - GAP - DESCENT;
+    along(canvas, &place.y.title, beside, frame, if named_x { 2.0 * LEADING } else { GAP });
+    if named_x {
+        for tick in &tx.major {
+            let x = place.across(place.x.at_scaled(tick.at));
+            label(canvas, &tick.label, (x, frame.bottom() + away + 0.8 * SMALL), SMALL, Anchor::Middle);
+        }
+        let y = frame.bottom() + away + LEADING + 0.8 * LARGE;
+        let (name, size) = fitted(&place.x.title, LARGE, frame.w + 2.0 * LEADING);
+        label(canvas, &name, (frame.x + frame.w / 2.0, y), size, Anchor::Middle);
+    }
+}
+
+/// A name turned to read upwards, its baseline at `x`, beside the middle of `frame` and no longer than fits from
+/// a little above it to `below` its lower edge.
+pub(super) fn along(canvas: &mut Canvas, name: &str, x: f64, frame: Rect, below: f64) {
+    const ABOVE: f64 = 4.0;
+    let (name, size) = fitted(name, LARGE, frame.h + ABOVE + below);
+    let half = font::width(&name, size) / 2.0;
+    let y = frame.middle().1.max(frame.y - ABOVE + half);
+    canvas.text(Text {
+        words: &name,
+        at: (x, y),
+        size,
+        anchor: Anchor::Middle,
+        turn: 90.0,
+        colour: BLACK,
+        halo: false,
+    });
+}
+
+/// Plain black text.
+pub(super) fn label(canvas: &mut Canvas, text: &str, at: Point, size: f64, anchor: Anchor) {
+    canvas.text(Text { words: text, at, size, anchor, turn: 0.0, colour: BLACK, halo: false });
+}
+
+/// A text and its size such that it fits: smaller by a quarter at most, then cut.
+pub(super) fn fitted(text: &str, size: f64, room: f64) -> (String, f64) {
+    let size = (size * room / font::width(text, size).max(1.0)).clamp(0.75 * size, size);
+    (font::fit(text, size, room + 0.01), size)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::axis::{AxisSpec, Extent, Room};
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn numbers_do_not_touch(
+            lo in -1e5..1e5f64, span in 1e-3..1e6f64, log: bool, length in 40.0..500.0f64,
+        ) {
+            let spec = if log { AxisSpec::new("x", "m").log() } else { AxisSpec::new("x", "m") };
+            let lo = if log { lo.abs() + 1e-3 } else { lo };
+            let axis = Axis::new(&spec.limits(lo, lo + span), Extent::NONE, Room::Tight).unwrap();
+            let ticks = across(&axis, length);
+            let ends: Vec<(f64, f64)> = ticks
+                .major
+                .iter()
+                .filter(|t| !t.label.is_empty())
+                .map(|t| (axis.at_scaled(t.at) * length, font::width(&t.label, SMALL) / 2.0))
+                .map(|(at, half)| (at - half, at + half))
+                .collect();
+            prop_assert!(!ends.is_empty());
+            prop_assert!(ends.windows(2).all(|w| w[0].1 < w[1].0), "{ticks:?}");
+        }
+    }
+
+    #[test]
+    fn a_name_too_long_is_made_smaller_and_then_cut() {
+        let name = "Displacement amplitude of the passive mass (mm)";
+        let whole = font::width(name, LARGE);
+        assert_eq!(fitted(name, LARGE, whole), (name.to_owned(), LARGE));
+        let (same, smaller) = fitted(name, LARGE, 0.8 * whole);
+        assert!(same == name && smaller < LARGE && font::width(&same, smaller) <= 0.8 * whole + 0.02);
+        let (cut, size) = fitted(name, LARGE, 0.5 * whole);
+        assert!(cut.ends_with('…') && font::width(&cut, size) <= 0.5 * whole + 0.02);
+    }
+}

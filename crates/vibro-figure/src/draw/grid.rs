@@ -1,0 +1,63 @@
+//! Grids of classes on the page.
+
+use super::canvas::{Anchor, Canvas, Pen};
+use super::frame::label;
+use super::style::{FRAME, GAP, SMALL};
+use crate::colour::{GREY, WHITE};
+use crate::font;
+use crate::grid::{Grid, KEY, ROW};
+use crate::path::Rect;
+
+/// Size of names and letters.
+const SIZE: f64 = 7.4;
+
+/// Least size of the names of columns.
+const LEAST: f64 = 5.5;
+
+/// Draws names, cells and the key into `cell`.
+pub(super) fn draw(canvas: &mut Canvas, grid: &Grid, cell: Rect) {
+    let widest = |names: &mut dyn Iterator<Item = &String>| {
+        names.map(|name| font::width(name, SIZE)).fold(0.0, f64::max)
+    };
+    let groups = widest(&mut grid.rows.iter().map(|r| &r.group)) + 2.0 * GAP;
+    let names = widest(&mut grid.rows.iter().map(|r| &r.name)) + 2.0 * GAP;
+    let heads = grid.heads();
+    let lines = heads.iter().map(Vec::len).max().unwrap_or(0) as f64;
+    let (left, top) = (cell.x + groups + names, cell.y + lines * ROW + GAP);
+    let count = grid.columns.len().max(1) as f64;
+    let width = ((cell.right() - left) / count).clamp(4.0, 60.0);
+    let (places, _) = grid.places();
+    // All heads as large as the widest word lets them be.
+    let word = widest(&mut heads.iter().flatten());
+    let size = (SIZE * (width - 1.0) / word.max(1.0)).clamp(LEAST, SIZE);
+    for (i, words) in heads.iter().enumerate() {
+        let middle = left + (i as f64 + 0.5) * width;
+        for (k, word) in words.iter().rev().enumerate() {
+            let at = (middle, top - GAP - k as f64 * (ROW - 1.0));
+            label(canvas, &font::fit(word, size, width), at, size, Anchor::Middle);
+        }
+    }
+    let base = 0.5 * ROW + font::DIGIT_HEIGHT * SIZE / 2.0;
+    for (i, (row, place)) in grid.rows.iter().zip(&places).enumerate() {
+        let y = top + place;
+        if i == 0 || grid.rows[i - 1].group != row.group {
+            label(canvas, &row.group, (cell.x, y + base), SIZE, Anchor::Start);
+            canvas.line((cell.x, y), (left + count * width, y), Pen::solid(GREY, 0.4));
+        }
+        label(canvas, &row.name, (left - GAP, y + base), SIZE, Anchor::End);
+        for (k, kind) in row.cells.iter().enumerate() {
+            let Some(kind) = kind.and_then(|kind| grid.kinds.get(kind)) else { continue };
+            let area = Rect { x: left + k as f64 * width, y, w: width, h: ROW };
+            canvas.rect(area, kind.colour, Some(Pen::solid(WHITE, 0.6)));
+            label(canvas, &kind.letter, (area.middle().0, y + base), SIZE, Anchor::Middle);
+        }
+    }
+    let (mut x, y) = (cell.x + GAP, cell.bottom() - KEY + 4.0);
+    for kind in &grid.kinds {
+        let area = Rect { x, y, w: 14.0, h: ROW };
+        canvas.rect(area, kind.colour, Some(Pen { width: 0.4, ..FRAME }));
+        label(canvas, &kind.letter, (area.middle().0, y + base), SIZE, Anchor::Middle);
+        label(canvas, &kind.name, (area.right() + GAP, y + base), SMALL, Anchor::Start);
+        x = area.right() + 2.0 * GAP + font::width(&kind.name, SMALL) + 10.0;
+    }
+}

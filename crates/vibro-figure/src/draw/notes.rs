@@ -1,0 +1,194 @@
+//! Words among the data: names of points with leaders, names of reference lines.
+
+use super::canvas::{Anchor, Canvas, Text};
+use super::clutter::Clutter;
+use super::frame::Place;
+use super::style::{LEADER, MARKER, SMALL, TICK};
+use crate::colour::{BLACK, GREY, Rgb};
+use crate::figure::Note;
+use crate::font;
+use crate::path::{Point, Rect};
+use crate::series::{Series, Shape};
+
+/// Part of the height of small text by which its baseline lies over the lower edge of its box.
+const DESCENT: f64 = 0.16;
+
+/// A place for words.
+#[derive(Debug, Clone, Copy)]
+struct Spot {
+    area: Rect,
+    /// Where a leader ends; `None` where the words need none.
+    leader: Option<(Point, Point)>,
+    /// How much is covered there, with small costs for distance.
+    cost: f64,
+}
+
+/// Names reference lines: along themselves where that covers nothing, else from aside.
+pub(super) fn name_lines(canvas: &mut Canvas, series: &[Series], place: &Place<'_>, clutter: &mut Clutter) {
+    for series in series.iter().filter(|s| !s.name.is_empty()) {
+        let frame = place.frame;
+        let (upright, line) = match series.shape {
+            Shape::Vertical { at } => (true, place.across(place.x.at(at))),
+            Shape::Horizontal { at } => (false, place.up(place.y.at(at))),
+            _ => continue,
+        };
+        let (low, high) = if upright { (frame.x, frame.right()) } else { (frame.y, frame.bottom()) };
+        if !(low..=high).contains(&line) {
+            continue;
+        }
+        let name = &series.name;
+        let spot = beside(name, line, upright, frame, clutter);
+        if let Some(spot) = spot.filter(|s| s.cost < 1.0) {
+            write(canvas, name, spot, upright, GREY, clutter);
+        } else if let Some(spot) = best((0..20).filter_map(|i| {
+            let part = 0.05 + 0.045 * f64::from(i);
+            let on = |start: f64, length: f64| start + part * length;
+            let at = if upright { (line, on(frame.y, frame.h)) } else { (on(frame.x, frame.w), line) };
+            around(name, at, 0.0, frame, clutter)
+        })) {
+            write(canvas, name, spot, false, GREY, clutter);
+        }
+    }
+}
+
+/// Writes notes near their points, where they cover least, with a line to the point from those that stand
+/// off.
+pub(super) fn write_notes(canvas: &mut Canvas, notes: &[Note], place: &Place<'_>, clutter: &mut Clutter) {
+    let inside = place.frame.grown(0.01);
+    let points: Vec<(&Note, Point)> = notes
+        .iter()
+        .map(|note| (note, place.at(note.x, note.y)))
+        .filter(|(_, at)| inside.contains(*at))
+        .collect();
+    for (_, at) in &points {
+        clutter.add_box(Rect::around(*at, MARKER));
+    }
+    for (note, at) in points {
+        if let Some(spot) = around(&note.text, at, MARKER, place.frame, clutter) {
+            write(canvas, &note.text, spot, false, BLACK, clutter);
+        }
+    }
+}
+
+fn write(canvas: &mut Canvas, text: &str, spot: Spot, upright: bool, colour: Rgb, clutter: &mut Clutter) {
+    let area = spot.area;
+    clutter.add_box(area);
+    if let Some((from, to)) = spot.leader {
+        canvas.line(from, to, LEADER);
+    }
+    let (at, turn) = if upright {
+        ((area.right() - DESCENT * SMALL, area.bottom()), 90.0)
+    } else {
+        ((area.x, area.bottom() - DESCENT * SMALL), 0.0)
+    };
+    canvas.text(Text { words: text, at, size: SMALL, anchor: Anchor::Start, turn, colour, halo: true });
+}
+
+/// The best place along a line, on either side.
+fn beside(name: &str, line: f64, upright: bool, frame: Rect, clutter: &Clutter) -> Option<Spot> {
+    let length = font::width(name, SMALL);
+    let (start, end) = if upright { (frame.y, frame.bottom()) } else { (frame.x, frame.right()) };
+    let way = end - start - length - 10.0;
+    let steps = (0..=12).flat_map(|i| [(i, true), (i, false)]);
+    best(steps.filter(|_| way >= 0.0).map(|(i, first)| {
+        // The upper end of an upright line and the right end of a level one come first.
+        let part = f64::from(i) / 12.0;
+        let along = start + 5.0 + way * if upright { part } else { 1.0 - part };
+        let side = if first { line - 1.5 - SMALL } else { line + 1.5 };
+        let area = if upright {
+            Rect { x: side, y: along, w: SMALL, h: length }
+        } else {
+            Rect { x: along, y: side, w: length, h: SMALL }
+        };
+        let outside = if frame.holds(area) { 0.0 } else { 1e5 };
+        Spot {
+            area,
+            leader: None,
+            cost: outside + clutter.under(area.grown(0.7)) + 0.1 * part.min(1.1 - part),
+        }
+    }))
+}
+
+/// The best of places all around a point that has something of half width `taken` on it.
+fn around(text: &str, at: Point, taken: f64, frame: Rect, clutter: &Clutter) -> Option<Spot> {
+    let (w, h) = (font::width(text, SMALL), SMALL);
+    let frame = frame.grown(-TICK);
+    let rays = (0..24).flat_map(|i| {
+        // Straight above first, so that it wins among equals.
+        let angle = f64::from(i) * std::f64::consts::TAU / 24.0 - std::f64::consts::FRAC_PI_2;
+        [4.5, 8.0, 13.0, 19.0, 27.0, 37.0, 50.0].map(|distance| (angle, distance))
+    });
+    best(rays.map(|(angle, distance)| {
+        let from = |r: f64| (at.0 + r * angle.cos(), at.1 + r * angle.sin());
+        // The words touch the end of the ray with the side or corner that faces the point, and are moved into
+        // the frame sideways.
+        let end = from(distance);
+        let facing = |c: f64| match c {
+            c if c > 0.3 => 0.0,
+            c if c < -0.3 => 1.0,
+            _ => 0.5,
+        };
+        let x = (end.0 - facing(angle.cos()) * w).clamp(frame.x, (frame.right() - w).max(frame.x));
+        let area = Rect { x, y: end.1 - facing(angle.sin()) * h, w, h };
+        let near = (end.0.clamp(area.x, area.right()), end.1.clamp(area.y, area.bottom()));
+        let leader = (distance > 6.0).then(|| (from(if taken > 0.0 { taken + 1.0 } else { 0.0 }), near));
+        let crossed = leader.map_or(0, |_| clutter.crossed(from(taken + 1.8), near));
+        let outside = if frame.holds(area) { 0.0 } else { 1e5 };
+        let cost = outside + 3.0 * clutter.under(area.grown(1.0)) + 60.0 * crossed as f64 + distance;
+        Spot { area, leader, cost }
+    }))
+}
+
+fn best(spots: impl Iterator<Item = Spot>) -> Option<Spot> {
+    spots.min_by(|a, b| a.cost.total_cmp(&b.cost)).filter(|spot| spot.cost < 1e5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const FRAME: Rect = Rect { x: 0.0, y: 0.0, w: 300.0, h: 200.0 };
+
+    proptest! {
+        /// Four notes anywhere have room in a frame of this size, so none may cover another or leave the frame.
+        #[test]
+        fn notes_stand_clear_of_each_other(points in prop::collection::vec((0.0..300.0f64, 0.0..200.0f64), 1..=4)) {
+            let mut clutter = Clutter::default();
+            for at in &points {
+                clutter.add_box(Rect::around(*at, MARKER));
+            }
+            let mut areas: Vec<Rect> = Vec::new();
+            for at in points {
+                let spot = around("a note of words", at, MARKER, FRAME, &clutter).unwrap();
+                prop_assert!(FRAME.holds(spot.area), "{spot:?}");
+                prop_assert!(areas.iter().all(|a| a.overlap(spot.area) == 0.0), "{areas:?} {spot:?}");
+                clutter.add_box(spot.area);
+                areas.push(spot.area);
+            }
+        }
+    }
+
+    #[test]
+    fn a_note_without_neighbours_stands_right_above_its_point() {
+        let spot = around("peak", (150.0, 100.0), MARKER, FRAME, &Clutter::default()).unwrap();
+        assert!(spot.leader.is_none());
+        assert!((spot.area.middle().0 - 150.0).abs() < 1e-9 && spot.area.bottom() < 100.0 - MARKER);
+    }
+
+    #[test]
+    fn a_note_that_cannot_stand_inside_is_left_out() {
+        let narrow = Rect { w: 12.0, ..FRAME };
+        assert!(around("a note of words", (6.0, 100.0), MARKER, narrow, &Clutter::default()).is_none());
+    }
+
+    #[test]
+    fn a_line_is_named_along_its_free_end() {
+        let mut clutter = Clutter::default();
+        clutter.add_box(Rect { x: 100.0, y: 0.0, w: 200.0, h: 200.0 });
+        let spot = beside("mean", 100.0, false, FRAME, &clutter).unwrap();
+        assert!(spot.cost < 1.0 && spot.area.right() < 100.0, "{spot:?}");
+        let spot = beside("mean", 100.0, true, FRAME, &clutter).unwrap();
+        assert!(spot.cost < 1.0 && spot.area.right() < 100.0 && spot.area.y < 20.0, "{spot:?}");
+    }
+}

@@ -1,0 +1,119 @@
+//! Sizes and pens of every figure, in points at print size.
+
+use super::canvas::Pen;
+use crate::colour::{self, BLACK, GREY, PALE, Rgb, WHITE};
+use crate::series::{Ink, Marker, Series, Shape, Stroke};
+
+/// Numbers at ticks, names in legends, notes.
+pub(super) const SMALL: f64 = 8.0;
+/// Names of axes and panels.
+pub(super) const LARGE: f64 = 9.0;
+/// From one line of small text to the next.
+pub(super) const LEADING: f64 = 11.0;
+/// Long ticks; short ones are half as long.
+pub(super) const TICK: f64 = 3.6;
+/// Least distance between things that must not touch.
+pub(super) const GAP: f64 = 3.0;
+/// What letters such as g and brackets reach below the baseline of a large text.
+pub(super) const DESCENT: f64 = 2.2;
+
+pub(super) const FRAME: Pen = Pen::solid(BLACK, 0.75);
+pub(super) const TICKS: Pen = Pen::solid(BLACK, 0.6);
+pub(super) const LEADER: Pen = Pen::solid(GREY, 0.5);
+pub(super) const FLOOR: Pen = Pen::solid(PALE, 0.4);
+/// Width of data lines, of thin ones, of outlines and error bars.
+pub(super) const LINE: f64 = 1.1;
+pub(super) const THIN: f64 = 0.55;
+pub(super) const OUTLINE: f64 = 0.8;
+/// Half the width of a marker.
+pub(super) const MARKER: f64 = 2.1;
+
+/// How a series looks, with nothing left to choose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Look {
+    pub colour: Rgb,
+    /// Pen of its line; of its outline where it is no line.
+    pub pen: Pen,
+    pub marker: Marker,
+}
+
+/// Chooses what was left to choose: series after series takes the next colour, dashes and marker.
+pub(super) fn looks(series: &[Series]) -> Vec<Look> {
+    let mut next = 0;
+    series
+        .iter()
+        .map(|series| {
+            let (turn, colour) = match series.ink {
+                Ink::Auto => (next, colour::SERIES[next % colour::SERIES.len()]),
+                Ink::Nth(n) => (n, colour::SERIES[n % colour::SERIES.len()]),
+                Ink::Grey => (0, GREY),
+                Ink::Black => (0, BLACK),
+                Ink::White => (0, WHITE),
+            };
+            next += usize::from(series.ink == Ink::Auto);
+            let (stroke, marker) = match &series.shape {
+                Shape::Line { stroke, .. } => (*stroke, Marker::Auto),
+                Shape::Points { joined, marker, .. } => (joined.unwrap_or(Stroke::Thin), *marker),
+                Shape::Vertical { .. } | Shape::Horizontal { .. } => (Stroke::Thin, Marker::Auto),
+                Shape::Band { .. } | Shape::Bars { .. } => (Stroke::Solid, Marker::Auto),
+            };
+            Look { colour, pen: pen(colour, stroke, turn), marker: form(marker, turn) }
+        })
+        .collect()
+}
+
+fn pen(colour: Rgb, stroke: Stroke, turn: usize) -> Pen {
+    const TURNS: [Stroke; 4] = [Stroke::Solid, Stroke::Dashed, Stroke::DashDot, Stroke::Dotted];
+    let stroke = if stroke == Stroke::Auto { TURNS[turn % TURNS.len()] } else { stroke };
+    let (width, dashes): (f64, &'static [f64]) = match stroke {
+        Stroke::Auto | Stroke::Solid => (LINE, &[]),
+        Stroke::Dashed => (LINE, &[4.5, 2.2]),
+        Stroke::DashDot => (LINE, &[6.0, 2.0, 1.2, 2.0]),
+        Stroke::Dotted => (LINE, &[1.2, 1.8]),
+        Stroke::Thin => (THIN, &[]),
+    };
+    Pen { colour, width, dashes }
+}
+
+fn form(marker: Marker, turn: usize) -> Marker {
+    const TURNS: [Marker; 7] = [
+        Marker::Circle,
+        Marker::Square,
+        Marker::Triangle,
+        Marker::Diamond,
+        Marker::OpenCircle,
+        Marker::FilledSquare,
+        Marker::Cross,
+    ];
+    if marker == Marker::Auto { TURNS[turn % TURNS.len()] } else { marker }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbouring_series_differ_without_their_colour() {
+        let lines: Vec<Series> = (0..4).map(|_| Series::line("", [], [])).collect();
+        let points: Vec<Series> = (0..7).map(|_| Series::points("", [], [])).collect();
+        let (lines, points) = (looks(&lines), looks(&points));
+        for (i, a) in lines.iter().enumerate() {
+            assert!(lines[i + 1..].iter().all(|b| a.pen.dashes != b.pen.dashes && a.colour != b.colour));
+        }
+        for (i, a) in points.iter().enumerate() {
+            assert!(points[i + 1..].iter().all(|b| a.marker != b.marker && a.colour != b.colour));
+        }
+    }
+
+    #[test]
+    fn series_that_belong_together_do_not_take_the_next_colour() {
+        let series = [
+            Series::band("", [], [], []).ink(Ink::Nth(0)),
+            Series::line("", [], []),
+            Series::vertical("", 0.0),
+            Series::line("", [], []),
+        ];
+        let colours: Vec<Rgb> = looks(&series).iter().map(|l| l.colour).collect();
+        assert_eq!(colours, [colour::SERIES[0], colour::SERIES[0], GREY, colour::SERIES[1]]);
+    }
+}

@@ -1,0 +1,219 @@
+//! Figures as data: what is shown, with which labels, in which arrangement.
+
+use super::axis::AxisSpec;
+use super::draw::Drawing;
+use super::grid::Grid;
+use super::heatmap::Heatmap;
+use super::series::Series;
+use super::waterfall::Waterfall;
+
+/// Panels in a grid, at the size in which they are printed.
+///
+/// ```
+/// use vibro_figure::{AxisSpec, Figure, Plot, Series};
+/// let plot = Plot::new(AxisSpec::frequency(), AxisSpec::new("Displacement amplitude", "m"))
+///     .with(Series::line("sweeping up", [4.0, 5.0, 6.0], [0.001, 0.004, 0.002]))
+///     .note("grazing 5.58 Hz", 5.0, 0.004);
+/// let drawing = Figure::single("Response of the passive mass").panel(plot).draw();
+/// assert!(drawing.svg().starts_with("<svg"));
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    /// What the figure shows, in a few words. It is not drawn: it is the figure's name for readers that
+    /// cannot see it, and stands over its caption on a page.
+    pub title: String,
+    /// What stands below it; empty for none.
+    pub caption: String,
+    /// Width in mm.
+    pub width: f64,
+    /// Height in mm.
+    pub height: f64,
+    /// Panels beside each other.
+    pub columns: usize,
+    /// Whether the panels of a column have one abscissa, named under the lowest.
+    pub shared_x: bool,
+    /// Whether all frames are square, so that axes of one span show circles as circles.
+    pub square: bool,
+    /// Panels, row by row.
+    pub panels: Vec<Panel>,
+}
+
+/// One part of a figure.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Panel {
+    /// Series over two axes.
+    Plot(Plot),
+    /// Spectra behind each other.
+    Waterfall(Waterfall),
+    /// Classes in rows and columns.
+    Grid(Grid),
+}
+
+/// Series over two axes, on a map where wanted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plot {
+    /// Title over the frame; empty for none.
+    pub title: String,
+    /// Abscissa.
+    pub x: AxisSpec,
+    /// Ordinate.
+    pub y: AxisSpec,
+    /// Map under the series.
+    pub heatmap: Option<Heatmap>,
+    /// Series, the later over the earlier.
+    pub series: Vec<Series>,
+    /// Texts that name points of the data.
+    pub notes: Vec<Note>,
+    /// Where the names of the series stand.
+    pub legend: Legend,
+}
+
+/// A text with a line to the point that it names.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Note {
+    /// The text.
+    pub text: String,
+    /// Abscissa of the point, in the unit of the axis.
+    pub x: f64,
+    /// Ordinate of the point, in the unit of the axis.
+    pub y: f64,
+}
+
+/// Where the names of the series stand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Legend {
+    /// In the frame where no data are; beside or over the frame where there is no such place.
+    #[default]
+    Auto,
+    /// To the right of the frame.
+    Right,
+    /// Over the frame.
+    Above,
+    /// Nowhere.
+    Hidden,
+}
+
+impl Figure {
+    /// A figure as wide as one column of a journal, 86 mm × 62 mm.
+    pub fn single(title: impl Into<String>) -> Figure {
+        Figure {
+            title: title.into(),
+            caption: String::new(),
+            width: 86.0,
+            height: 62.0,
+            columns: 1,
+            shared_x: false,
+            square: false,
+            panels: Vec::new(),
+        }
+    }
+
+    /// A figure as wide as two columns of a journal, 178 mm × 90 mm.
+    pub fn double(title: impl Into<String>) -> Figure {
+        Figure { width: 178.0, height: 90.0, ..Figure::single(title) }
+    }
+
+    /// Sets the caption.
+    pub fn caption(mut self, caption: impl Into<String>) -> Figure {
+        self.caption = caption.into();
+        self
+    }
+
+    /// Sets the height in mm.
+    pub fn height(mut self, millimetres: f64) -> Figure {
+        self.height = millimetres;
+        self
+    }
+
+    /// Sets how many panels stand beside each other.
+    pub fn columns(mut self, columns: usize) -> Figure {
+        self.columns = columns;
+        self
+    }
+
+    /// Gives the panels of a column one abscissa, named under the lowest.
+    pub fn shared_x(mut self) -> Figure {
+        self.shared_x = true;
+        self
+    }
+
+    /// Makes all frames square.
+    pub fn square(mut self) -> Figure {
+        self.square = true;
+        self
+    }
+
+    /// Adds a panel.
+    pub fn panel(mut self, panel: impl Into<Panel>) -> Figure {
+        self.panels.push(panel.into());
+        self
+    }
+
+    /// Draws the figure. Nothing outside is needed, so figures can be drawn at once.
+    pub fn draw(&self) -> Drawing {
+        super::draw::draw(self)
+    }
+}
+
+impl Plot {
+    /// An empty plot over two axes.
+    pub fn new(x: AxisSpec, y: AxisSpec) -> Plot {
+        Plot {
+            title: String::new(),
+            x,
+            y,
+            heatmap: None,
+            series: Vec::new(),
+            notes: Vec::new(),
+            legend: Legend::Auto,
+        }
+    }
+
+    /// Sets the title over the frame.
+    pub fn title(mut self, title: impl Into<String>) -> Plot {
+        self.title = title.into();
+        self
+    }
+
+    /// Adds a series over those before it.
+    pub fn with(mut self, series: Series) -> Plot {
+        self.series.push(series);
+        self
+    }
+
+    /// Names a point of the data, given in the units of the axes.
+    pub fn note(mut self, text: impl Into<String>, x: f64, y: f64) -> Plot {
+        self.notes.push(Note { text: text.into(), x, y });
+        self
+    }
+
+    /// Puts a map under the series.
+    pub fn heatmap(mut self, heatmap: Heatmap) -> Plot {
+        self.heatmap = Some(heatmap);
+        self
+    }
+
+    /// Sets where the names of the series stand.
+    pub fn legend(mut self, legend: Legend) -> Plot {
+        self.legend = legend;
+        self
+    }
+}
+
+impl From<Plot> for Panel {
+    fn from(plot: Plot) -> Panel {
+        Panel::Plot(plot)
+    }
+}
+
+impl From<Waterfall> for Panel {
+    fn from(waterfall: Waterfall) -> Panel {
+        Panel::Waterfall(waterfall)
+    }
+}
+
+impl From<Grid> for Panel {
+    fn from(grid: Grid) -> Panel {
+        Panel::Grid(grid)
+    }
+}

@@ -1,0 +1,253 @@
+//! Maps: a value over two axes, shown by colour.
+
+use super::axis::{Axis, AxisSpec, Extent, Scale};
+use super::colour::{self, Rgb};
+use ndarray::{Array2, ArrayRef2};
+use vibro_record::{Error, Result};
+
+/// Values over a grid, row by row, such as magnitudes over excitation (rows) and frequency (columns).
+///
+/// The cell of a value reaches half way to its neighbours, so that rows and columns may be uneven. Where a step is
+/// more than twice the median one, it reaches half a median step: what lies between was not measured and stays white, as does
+/// a missing value (NaN).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Heatmap {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    values: Array2<f64>,
+    key: Key,
+}
+
+/// What the colours mean.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Key {
+    /// A quantity, on a colour bar.
+    Quantity(AxisSpec),
+    /// One of these classes, by its index.
+    Classes(Vec<String>),
+}
+
+impl Heatmap {
+    /// Map of a quantity in the unit of `spec`; `x` are the positions of the columns, `y` those of the rows,
+    /// each in ascending order.
+    ///
+    /// # Errors
+    /// If the shape of `values` is not (rows, columns), or positions do not ascend.
+    pub fn new(x: &[f64], y: &[f64], values: &ArrayRef2<f64>, spec: AxisSpec) -> Result<Heatmap> {
+        Heatmap::of(x, y, values, Key::Quantity(spec))
+    }
+
+    /// Map of classes: the value k means the k-th name, counted from 0; anything else is missing.
+    ///
+    /// # Errors
+    /// As [`Heatmap::new`].
+    pub fn classes(x: &[f64], y: &[f64], values: &ArrayRef2<f64>, names: &[&str]) -> Result<Heatmap> {
+        Heatmap::of(x, y, values, Key::Classes(names.iter().map(|&n| n.to_owned()).collect()))
+    }
+
+    fn of(x: &[f64], y: &[f64], values: &ArrayRef2<f64>, key: Key) -> Result<Heatmap> {
+        if values.dim() != (y.len(), x.len()) {
+            let (rows, columns) = values.dim();
+            return Err(Error::usage(
+                format!("a map of {rows} × {columns} values"),
+                format!("{} × {}, one for each row and column position", y.len(), x.len()),
+            ));
+        }
+        for (positions, what) in [(x, "column"), (y, "row")] {
+            if let Some(i) = positions.windows(2).position(|w| w[0] >= w[1] || w[0].is_nan() || w[1].is_nan())
+            {
+                let (a, b) = (positions[i], positions[i + 1]);
+                return Err(Error::usage(
+                    format!("{what} positions {a} and {b} of a map"),
+                    "positions in ascending order",
+                ));
+            }
+        }
+        Ok(Heatmap { x: x.to_vec(), y: y.to_vec(), values: values.to_owned(), key })
+    }
+
+    /// What the colours mean.
+    pub fn key(&self) -> &Key {
+        &self.key
+    }
+
+    /// Borders of all columns, to find the limits of the abscissa.
+    pub(super) fn x_borders(&self, scale: Scale) -> Vec<f64> {
+        borders(&self.x, scale)
+    }
+
+    /// Borders of all rows, to find the limits of the ordinate.
+    pub(super) fn y_borders(&self, scale: Scale) -> Vec<f64> {
+        borders(&self.y, scale)
+    }
+
+    /// Axis of the colour bar; `None` for classes, and where no value is finite.
+    pub(super) fn colour_axis(&self) -> Option<Axis> {
+        let Key::Quantity(spec) = &self.key else { return None };
+        let mut extent = Extent::NONE;
+        extent.include(self.values.iter().map(|v| spec.scale.of(*v)));
+        Axis::new(spec, extent, super::axis::Room::Tight)
+    }
+
+    /// Colour of a class.
+    pub(super) fn class_colour(index: usize) -> Rgb {
+        colour::SERIES[index % colour::SERIES.len()].tint(0.25)
+    }
+
+    /// Cells as seen through the limits of two axes: palette indices row by row from the top, their count
+    /// across, and the palette, whose index 0 means missing. At most `most` cells across and down; where
+    /// several values fall in a cell it has the largest, so that no narrow line is lost, or for classes the
+    /// one in its middle.
+    pub(super) fn cells(&self, x: &Axis, y: &Axis, most: (usize, usize)) -> (Vec<u8>, usize, Vec<Rgb>) {
+        let columns = cover(&self.x, x, most.0);
+        let rows = cover(&self.y, y, most.1);
+        let bar = self.colour_axis();
+        let shade = |value: f64| match (&self.key, &bar) {
+            (Key::Quantity(_), Some(bar)) => {
+                let at = bar.at(value);
+                if at.is_nan() { 0 } else { (1.0 + at.clamp(0.0, 1.0) * 254.0).round() as u8 }
+            }
+            (Key::Classes(names), _) if value >= 0.0 && value < names.len().min(255) as f64 => {
+                value as u8 + 1
+            }
+            _ => 0,
+        };
+        let palette = match &self.key {
+            Key::Quantity(_) => bar_palette(),
+            Key::Classes(names) => std::iter::once(colour::WHITE)
+                .chain((0..names.len().min(255)).map(Heatmap::class_colour))
+                .collect(),
+        };
+        let classes = matches!(self.key, Key::Classes(_));
+        let mut cells = Vec::with_capacity(rows.len() * columns.len());
+        for row in rows.iter().rev() {
+            for column in &columns {
+                let block = row.clone().flat_map(|r| column.clone().map(move |c| (r, c)));
+                let mut shades = block.map(|at| self.values.get(at).map_or(0, |v| shade(*v)));
+                let middle = row.len() / 2 * column.len() + column.len() / 2;
+                cells.push(if classes { shades.nth(middle) } else { shades.max() }.unwrap_or(0));
+            }
+        }
+        (cells, columns.len(), palette)
+    }
+}
+
+/// Palette of a quantity: missing, then 255 steps.
+pub(super) fn bar_palette() -> Vec<Rgb> {
+    std::iter::once(colour::WHITE).chain((0..255).map(|i| colour::viridis(f64::from(i) / 254.0))).collect()
+}
+
+fn borders(positions: &[f64], scale: Scale) -> Vec<f64> {
+    let spans = spans(&positions.iter().map(|v| scale.of(*v)).collect::<Vec<_>>());
+    spans.into_iter().flat_map(|(from, to)| [from, to]).collect()
+}
+
+/// From where to where each position has its cell: half way to its neighbours and as far beyond the outer ones, but half the
+/// median step where a step is more than twice as wide as that.
+fn spans(positions: &[f64]) -> Vec<(f64, f64)> {
+    // A step of more than two has room for another position between.
+    const WIDER: f64 = 2.0;
+    let steps: Vec<f64> = positions.windows(2).map(|w| w[1] - w[0]).collect();
+    let mut sorted = steps.clone();
+    sorted.sort_by(f64::total_cmp);
+    let (Some(low), Some(high)) =
+        (sorted.get(steps.len().div_ceil(2).max(1) - 1), sorted.get(steps.len() / 2))
+    else {
+        let half = |at: f64| if at == 0.0 { 0.5 } else { at.abs() * 0.05 };
+        return positions.iter().map(|at| (at - half(*at), at + half(*at))).collect();
+    };
+    let median = low / 2.0 + high / 2.0;
+    let reach = |step: f64| if step > WIDER * median { median / 2.0 } else { step / 2.0 };
+    let below = steps.first().into_iter().chain(&steps);
+    let above = steps.iter().chain(steps.last());
+    let around = below.zip(above).map(|(below, above)| (reach(*below), reach(*above)));
+    positions.iter().zip(around).map(|(at, (below, above))| (at - below, at + above)).collect()
+}
+
+/// For each of the cells along an axis, the positions it shows: one cell a position where these are even and
+/// fill the axis, else as many cells as are allowed.
+fn cover(positions: &[f64], axis: &Axis, most: usize) -> Vec<std::ops::Range<usize>> {
+    let places: Vec<f64> = positions.iter().map(|p| axis.at(*p)).collect();
+    let spans = spans(&places);
+    let n = places.len();
+    let close = |at: f64, i: usize| (at - i as f64 / n as f64).abs() < 0.02 / n as f64;
+    let even = n <= most && spans.iter().enumerate().all(|(i, s)| close(s.0, i) && close(s.1, i + 1));
+    if even {
+        return (0..n).map(|i| i..i + 1).collect();
+    }
+    let count = most.max(1);
+    (0..count)
+        .map(|i| {
+            let [from, to] = [i as f64 / count as f64, (i + 1) as f64 / count as f64];
+            let inside = places.partition_point(|p| *p < from)..places.partition_point(|p| *p < to);
+            if !inside.is_empty() {
+                return inside;
+            }
+            // Between two positions: the one whose cell has the middle.
+            let middle = f64::midpoint(from, to);
+            let at = spans.partition_point(|s| s.1 <= middle);
+            if spans.get(at).is_some_and(|s| s.0 <= middle) { at..at + 1 } else { 0..0 }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::axis::Room;
+    use ndarray::array;
+
+    fn axis(lo: f64, hi: f64) -> Axis {
+        Axis::new(&AxisSpec::new("x", "1").limits(lo, hi), Extent::NONE, Room::Tight).unwrap()
+    }
+
+    #[test]
+    fn even_positions_that_fill_the_axis_have_a_cell_each() {
+        let cells = cover(&[1.0, 2.0, 3.0], &axis(0.5, 3.5), 100);
+        assert_eq!(cells, [0..1, 1..2, 2..3]);
+    }
+
+    #[test]
+    fn uneven_positions_meet_half_way_and_leave_wide_gaps_white() {
+        // The median of the steps 1, 2 and 5 is 2, so the cells of the last two end at 5, 8 and 10: borders at 0.5, 1.5, 3, a
+        // gap from 5 to 8, and 10; a hundred cells over 0 to 10.
+        let cells = cover(&[1.0, 2.0, 4.0, 9.0], &axis(0.0, 10.0), 100);
+        let shown: Vec<_> =
+            [2, 6, 14, 16, 29, 31, 49, 51, 79, 81, 99].iter().map(|&i| cells[i].clone()).collect();
+        assert_eq!(shown, [0..0, 0..1, 0..1, 1..2, 1..2, 2..3, 2..3, 0..0, 0..0, 3..4, 3..4]);
+    }
+
+    #[test]
+    fn a_narrow_line_survives_coarse_cells() {
+        let x: Vec<f64> = (0..1000).map(f64::from).collect();
+        let values = Array2::from_shape_fn((1, 1000), |(_, c)| if c == 617 { 1.0 } else { 0.0 });
+        let map = Heatmap::new(&x, &[1.0], &values, AxisSpec::new("a", "m")).unwrap();
+        let (cells, across, _) = map.cells(&axis(0.0, 999.0), &axis(0.9, 1.1), (50, 1));
+        assert_eq!(across, 50);
+        let marked: Vec<usize> = (0..cells.len()).filter(|i| cells[*i] == 255).collect();
+        // 617 of 0 to 999 lies in the 31st of 50 cells.
+        assert_eq!(marked, [30]);
+    }
+
+    #[test]
+    fn the_first_row_is_at_the_bottom_and_missing_values_are_transparent() {
+        let map = Heatmap::classes(
+            &[0.0, 1.0],
+            &[0.0, 1.0],
+            &array![[0.0, 1.0], [f64::NAN, 7.0]].view(),
+            &["a", "b"],
+        );
+        let (cells, across, palette) = map.unwrap().cells(&axis(-0.5, 1.5), &axis(-0.5, 1.5), (9, 9));
+        assert_eq!((cells, across, palette.len()), (vec![0, 0, 1, 2], 2, 3));
+    }
+
+    #[test]
+    fn shapes_and_orders_that_do_not_fit_are_refused() {
+        let values = Array2::zeros((2, 3));
+        let spec = || AxisSpec::new("a", "m");
+        assert!(Heatmap::new(&[1.0, 2.0, 3.0], &[1.0], &values, spec()).is_err());
+        assert!(Heatmap::new(&[1.0, 3.0, 2.0], &[1.0, 2.0], &values, spec()).is_err());
+        assert!(Heatmap::new(&[1.0, 2.0, 3.0], &[1.0, f64::NAN], &values, spec()).is_err());
+        assert!(Heatmap::new(&[1.0, 2.0, 3.0], &[1.0, 2.0], &values, spec()).is_ok());
+    }
+}

@@ -1,0 +1,29 @@
+//! Figures as data, drawn as SVG and PNG.
+//!
+//! A [`Figure`] is data: panels with axes and series, no drawing. [`Figure::draw`] makes a [`Drawing`] of it,
+//! which is written as SVG or PNG. Drawing needs nothing but the figure, so that many can be drawn at once;
+//! the same figure gives the same bytes on every machine.
+
+pub mod colour;
+
+mod axis;
+mod draw;
+mod figure;
+mod font;
+mod grid;
+mod heatmap;
+mod horizon;
+mod path;
+mod png;
+mod projection;
+mod series;
+mod ticks;
+mod waterfall;
+
+pub use axis::{AxisSpec, Scale};
+pub use draw::{Drawing, escaped};
+pub use figure::{Figure, Legend, Note, Panel, Plot};
+pub use grid::{Grid, Kind, Row};
+pub use heatmap::{Heatmap, Key};
+pub use series::{Ink, Marker, Series, Shape, Stroke};
+pub use waterfall::{Peak, Waterfall};

@@ -1,0 +1,280 @@
+//! Where an axis has its ticks, and what they say.
+
+use vibro_record::units::notation::{engineering, fixed, power_of_ten};
+
+/// A labelled tick at `at` in the axis' own scale (log₁₀ of the value on a logarithmic axis).
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Tick {
+    pub at: f64,
+    pub label: String,
+}
+
+/// Ticks of an axis in ascending order, none outside its limits.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Ticks {
+    pub major: Vec<Tick>,
+    pub minor: Vec<f64>,
+}
+
+/// Step `mantissa`·10^`exponent` that is divided in `parts` by minor ticks.
+#[derive(Debug, Clone, Copy)]
+struct Step {
+    mantissa: i32,
+    exponent: i32,
+    parts: i32,
+}
+
+/// Steps of 1, 2 and 5 times a power of ten.
+const DECIMAL: [(i32, i32); 3] = [(1, 5), (2, 4), (5, 5)];
+/// Steps of angles in degrees, once an axis spans more than a few of them.
+const DEGREES: [(i32, i32); 8] = [(5, 5), (10, 5), (15, 3), (30, 3), (45, 3), (90, 3), (180, 2), (360, 4)];
+
+impl Step {
+    /// `count` steps. Division by a positive power of ten rounds once, so that 3·10⁻¹ is the number nearest
+    /// to 0.3.
+    fn times(self, count: f64) -> f64 {
+        let whole = count * f64::from(self.mantissa);
+        let power = 10f64.powi(self.exponent.abs());
+        if self.exponent < 0 { whole / power } else { whole * power }
+    }
+
+    /// Multiples of the step from `lo` to `hi`, as the first and their count.
+    fn within(self, lo: f64, hi: f64) -> (f64, usize) {
+        // A limit that misses a multiple by rounding only has its tick.
+        let slack = 1e-9;
+        let first = (lo / self.times(1.0) - slack).ceil();
+        let last = (hi / self.times(1.0) + slack).floor();
+        (first, if last < first { 0 } else { (last - first) as usize + 1 })
+    }
+
+    fn minor(self) -> Step {
+        // Every division by `parts` is exact one decade lower: 10/5, 20/4, 50/5, 150/3, …
+        Step { mantissa: self.mantissa * 10 / self.parts, exponent: self.exponent - 1, parts: 1 }
+    }
+}
+
+/// Ticks of a linear axis: at most `most`, and at least two where `most` allows, at multiples of 1, 2 or 5
+/// times a power of ten (of 15°, 30°, 45°, … where `degrees`). Labels are the values divided by 10^`power`.
+pub(super) fn linear(lo: f64, hi: f64, most: usize, power: i32, degrees: bool) -> Ticks {
+    let span = hi - lo;
+    if !(span > 0.0 && span.is_finite()) {
+        return Ticks::default();
+    }
+    let most = most.clamp(2, 10);
+    let decade = (span / most as f64).log10().floor() as i32;
+    let angles = DEGREES.iter().filter(|_| degrees && span > 20.0).map(|&(m, parts)| Step {
+        mantissa: m,
+        exponent: 0,
+        parts,
+    });
+    let decimal = (decade - 1..=decade + 3)
+        .flat_map(|e| DECIMAL.map(|(m, parts)| Step { mantissa: m, exponent: e, parts }));
+    let candidates: Vec<Step> = if degrees && span > 20.0 && span < 3600.0 {
+        angles.chain(Some(Step { mantissa: 720, exponent: 0, parts: 2 })).collect()
+    } else {
+        decimal.collect()
+    };
+    let fits = candidates.iter().position(|s| s.within(lo, hi).1 <= most).unwrap_or(candidates.len() - 1);
+    // The coarsest step that fits may leave a single tick; the next finer one then has two to five.
+    let chosen = if candidates[fits].within(lo, hi).1 < 2 { fits.saturating_sub(1) } else { fits };
+    let step = candidates[chosen];
+    let decimals = usize::try_from(power - step.exponent).unwrap_or(0);
+    let shown = Step { exponent: step.exponent - power, ..step };
+    let (first, count) = step.within(lo, hi);
+    let major = (0..count)
+        .map(|i| first + i as f64)
+        .map(|k| Tick { at: step.times(k).clamp(lo, hi), label: fixed(shown.times(k), decimals) })
+        .collect();
+    let small = step.minor();
+    let (first, count) = small.within(lo, hi);
+    let minor = (0..count)
+        .map(|i| first + i as f64)
+        .filter(|k| k.rem_euclid(f64::from(step.parts)) != 0.0)
+        .map(|k| small.times(k).clamp(lo, hi))
+        .collect();
+    Ticks { major, minor }
+}
+
+/// Ticks of a logarithmic axis between the decades `lo` and `hi` (log₁₀ of its limits): powers of ten, with 2
+/// and 5 between them on a short axis, and round numbers on one that holds no two of these.
+pub(super) fn logarithmic(lo: f64, hi: f64, most: usize) -> Ticks {
+    if !(hi > lo && (hi - lo).is_finite()) {
+        return Ticks::default();
+    }
+    let most = most.clamp(2, 10);
+    let slack = 1e-9;
+    let (first, last) = ((lo - slack).ceil() as i32, (hi + slack).floor() as i32);
+    let decades = (last - first + 1).max(0) as usize;
+    if decades >= 2 {
+        return powers(lo, hi, first, last, most);
+    }
+    let minor = || multiples(lo, hi, &[2, 3, 4, 5, 6, 7, 8, 9]);
+    let short = multiples(lo, hi, &[1, 2, 5]);
+    if (2..=most).contains(&short.len()) {
+        let major = short.into_iter().map(|(e, m)| labelled(e, m, lo, hi, plain(lo, hi))).collect::<Vec<_>>();
+        let minor = minor().into_iter().filter(|(_, m)| ![2, 5].contains(m));
+        return Ticks { minor: minor.map(|(e, m)| at(e, m).clamp(lo, hi)).collect(), major };
+    }
+    // Less than half a decade: round values, at their logarithms.
+    let ten = |u: f64| 10f64.powf(u.clamp(-300.0, 300.0));
+    let power = engineering(ten(hi));
+    let mut ticks = linear(ten(lo), ten(hi), most, power, false);
+    for tick in &mut ticks.major {
+        if power != 0 {
+            tick.label = format!("{}×{}", tick.label, power_of_ten(power));
+        }
+        tick.at = tick.at.log10().clamp(lo, hi);
+    }
+    ticks.minor.iter_mut().for_each(|u| *u = u.log10().clamp(lo, hi));
+    ticks
+}
+
+fn powers(lo: f64, hi: f64, first: i32, last: i32, most: usize) -> Ticks {
+    let decades = last - first + 1;
+    let stride = [1, 2, 3, 5, 10, 20, 50, 100, 200]
+        .into_iter()
+        .find(|s| count_multiples(first, last, *s) <= most as i32)
+        .unwrap_or(500);
+    // A stride may jump over all but one decade: then the two ends are named.
+    let named: Vec<i32> = (first..=last).filter(|e| e % stride == 0).collect();
+    let named = if named.len() < 2 { vec![first, last] } else { named };
+    let plain = plain(lo, hi);
+    let major = named.iter().map(|&e| labelled(e, 1, lo, hi, plain)).collect();
+    let minor = if decades <= 7 && stride == 1 {
+        multiples(lo, hi, &[2, 3, 4, 5, 6, 7, 8, 9])
+            .into_iter()
+            .map(|(e, m)| at(e, m).clamp(lo, hi))
+            .collect()
+    } else if decades <= 60 {
+        (first..=last).filter(|e| !named.contains(e)).map(|e| f64::from(e).clamp(lo, hi)).collect()
+    } else {
+        Vec::new()
+    };
+    Ticks { major, minor }
+}
+
+fn count_multiples(first: i32, last: i32, stride: i32) -> i32 {
+    last.div_euclid(stride) - (first - 1).div_euclid(stride)
+}
+
+/// Decade and digit of every such multiple of a power of ten from `lo` to `hi`.
+fn multiples(lo: f64, hi: f64, digits: &[i32]) -> Vec<(i32, i32)> {
+    let slack = 1e-9;
+    ((lo - slack).floor() as i32..=hi.ceil() as i32)
+        .flat_map(|e| digits.iter().map(move |&m| (e, m)))
+        .filter(|&(e, m)| (lo - slack..=hi + slack).contains(&at(e, m)))
+        .collect()
+}
+
+fn at(decade: i32, digit: i32) -> f64 {
+    f64::from(decade) + f64::from(digit).log10()
+}
+
+/// Whether the labels are plain decimals rather than powers of ten.
+fn plain(lo: f64, hi: f64) -> bool {
+    lo > -3.5 && hi < 4.5
+}
+
+fn labelled(decade: i32, digit: i32, lo: f64, hi: f64, plain: bool) -> Tick {
+    let label = if plain {
+        let decimals = usize::try_from(-decade).unwrap_or(0);
+        fixed(Step { mantissa: digit, exponent: decade, parts: 1 }.times(1.0), decimals)
+    } else if digit == 1 {
+        power_of_ten(decade)
+    } else {
+        format!("{digit}×{}", power_of_ten(decade))
+    };
+    Tick { at: at(decade, digit).clamp(lo, hi), label }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn labels(ticks: &Ticks) -> Vec<&str> {
+        ticks.major.iter().map(|t| t.label.as_str()).collect()
+    }
+
+    /// What holds for the ticks of every axis.
+    fn sound(ticks: &Ticks, lo: f64, hi: f64, most: usize) {
+        let at: Vec<f64> = ticks.major.iter().map(|t| t.at).collect();
+        assert!((2..=most.max(5)).contains(&at.len()), "{at:?} between {lo} and {hi}");
+        assert!(at.iter().chain(&ticks.minor).all(|u| (lo..=hi).contains(u)), "{ticks:?}");
+        assert!(at.windows(2).all(|w| w[0] < w[1]), "{ticks:?}");
+        let mut distinct = labels(ticks);
+        distinct.dedup();
+        assert_eq!(distinct.len(), at.len(), "{ticks:?}");
+        assert!(ticks.minor.windows(2).all(|w| w[0] <= w[1]) && ticks.minor.len() <= 100, "{ticks:?}");
+    }
+
+    proptest! {
+        #[test]
+        fn linear_ticks_are_few_within_and_ascending(
+            mantissa in -10.0..10.0f64, scale in -280..300i32, size in -9.0..0.0f64, most in 2usize..=10,
+        ) {
+            let lo = mantissa * 10f64.powi(scale);
+            let hi = lo + 10f64.powf(size) * lo.abs().max(10f64.powi(scale));
+            let ticks = linear(lo, hi, most, 0, false);
+            sound(&ticks, lo, hi, most);
+        }
+
+        #[test]
+        fn linear_labels_say_the_value(lo in -1e4..1e4f64, span in 1e-3..1e5f64, power in -6..6i32) {
+            for tick in linear(lo, lo + span, 7, power, false).major {
+                let read: f64 = tick.label.replace('−', "-").parse().unwrap();
+                let value = read * 10f64.powi(power);
+                // The label is exact in decimal; the value differs by rounding alone, unless it was clamped
+                // to a limit, which lies within 1e-9 of a step.
+                prop_assert!((value - tick.at).abs() <= 1e-9 * span + 1e-12 * value.abs(), "{tick:?}");
+            }
+        }
+
+        #[test]
+        fn degrees_step_by_parts_of_the_circle(lo in -720.0..720.0f64, span in 20.1..3000.0f64, most in 3usize..=10) {
+            let ticks = linear(lo, lo + span, most, 0, true);
+            sound(&ticks, lo, lo + span, most);
+            let step = ticks.major[1].at - ticks.major[0].at;
+            prop_assert!(DEGREES.iter().any(|d| (f64::from(d.0) - step).abs() < 1e-6) || (step - 720.0).abs() < 1e-6);
+        }
+
+        #[test]
+        fn logarithmic_ticks_are_few_within_and_ascending(
+            lo in -290.0..280.0f64, size in -3.0..2.7f64, most in 2usize..=10,
+        ) {
+            let hi = (lo + 10f64.powf(size)).min(299.0);
+            let ticks = logarithmic(lo, hi, most);
+            sound(&ticks, lo, hi, most);
+        }
+    }
+
+    #[test]
+    fn well_known_axes() {
+        assert_eq!(labels(&linear(0.0, 1.0, 6, 0, false)), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
+        assert_eq!(labels(&linear(-0.003, 0.003, 7, -3, false)), ["−3", "−2", "−1", "0", "1", "2", "3"]);
+        assert_eq!(labels(&linear(3.0, 14.0, 6, 0, false)), ["4", "6", "8", "10", "12", "14"]);
+        assert_eq!(labels(&linear(-180.0, 180.0, 5, 0, true)), ["−180", "−90", "0", "90", "180"]);
+        assert_eq!(labels(&logarithmic(-2.0, 2.0, 8)), ["0.01", "0.1", "1", "10", "100"]);
+        assert_eq!(labels(&logarithmic(-7.0, -3.0, 8)), ["10⁻⁷", "10⁻⁶", "10⁻⁵", "10⁻⁴", "10⁻³"]);
+        assert_eq!(labels(&logarithmic(3f64.log10(), 80f64.log10(), 8)), ["5", "10", "20", "50"]);
+        assert_eq!(labels(&logarithmic(3f64.log10(), 4.5f64.log10(), 5)), ["3.0", "3.5", "4.0", "4.5"]);
+    }
+
+    #[test]
+    fn minor_ticks_divide_the_step() {
+        let ticks = linear(0.0, 1.0, 6, 0, false);
+        let close = |a: f64, b: f64| (a - b).abs() < 1e-12;
+        assert_eq!(ticks.minor.len(), 15);
+        assert!(close(ticks.minor[0], 0.05) && close(ticks.minor[14], 0.95));
+        assert_eq!(logarithmic(0.0, 2.0, 5).minor.len(), 16);
+    }
+
+    #[test]
+    fn impossible_limits_have_no_ticks() {
+        for (lo, hi) in [(1.0, 1.0), (2.0, 1.0), (f64::NAN, 1.0), (0.0, f64::INFINITY), (-f64::MAX, f64::MAX)]
+        {
+            assert_eq!(linear(lo, hi, 5, 0, false), Ticks::default());
+            assert_eq!(logarithmic(lo, hi, 5), Ticks::default());
+        }
+    }
+}

@@ -1,0 +1,219 @@
+//! What header lines state: lines, base band, sampling rate, unit, window, date.
+
+use crate::number;
+use crate::reader::POSSIBLE;
+use vibro_record::Window;
+
+/// Statements of a header that are understood; the rest stays as notes.
+///
+/// Every number here is finite, positive and so far from the ends of what a double holds that its inverse and its quotients
+/// are too.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Stated {
+    /// Number of spectral lines, not counting 0 Hz.
+    pub lines: Option<f64>,
+    /// Upper end of the spectrum in Hz.
+    pub base_band: Option<f64>,
+    /// Sampling rate in Hz.
+    pub rate: Option<f64>,
+    /// Distance of spectral lines in Hz.
+    pub line_width: Option<f64>,
+    /// Unit as written.
+    pub unit: Option<String>,
+    /// Window.
+    pub window: Option<Window>,
+    /// Channel name or title.
+    pub name: Option<String>,
+    /// Header lines as key and value; the key is empty where a line has none.
+    pub notes: Vec<(String, String)>,
+    /// What stands under a key that is understood and is no possible value of it.
+    pub doubts: Vec<String>,
+}
+
+/// More lines than any analyser has.
+const MOST_LINES: f64 = 1e9;
+
+impl Stated {
+    /// Whether `n` values are all lines of the base band: then they are a spectrum, whatever else is stated, since analysers
+    /// print the sampling rate too.
+    pub fn all_lines(&self, n: usize) -> bool {
+        self.base_band.is_some() && self.lines.is_some_and(|lines| lines as usize + 1 == n)
+    }
+
+    /// Distance of `n` lines in Hz, as the header states it.
+    pub fn spacing(&self, n: usize) -> Option<f64> {
+        let band = self.base_band.map(|band| band / self.lines_of(n));
+        if self.all_lines(n) { band } else { self.line_width.or(band) }
+    }
+
+    /// Number of lines, by the header or else by the number of values.
+    pub fn lines_of(&self, n: usize) -> f64 {
+        self.lines.unwrap_or_else(|| n.saturating_sub(1).max(1) as f64)
+    }
+}
+
+/// Reads header lines.
+pub fn read(header: &[(u64, String)]) -> Stated {
+    let mut stated = Stated::default();
+    for (_, line) in header {
+        let (key, value) = split(line);
+        stated.notes.push((key.to_owned(), value.to_owned()));
+        if key.is_empty() {
+            free_text(line, &mut stated);
+        } else if keyed(&key.to_lowercase(), value, &mut stated).is_none() {
+            stated
+                .doubts
+                .push(format!("The header line {line:?} states no possible value and is passed over."));
+        }
+    }
+    stated
+}
+
+/// `key: value` or `key = value`; an empty key where the line is neither. A time of day is no key.
+pub fn split(line: &str) -> (&str, &str) {
+    let at = line.find([':', '=']).filter(|at| {
+        let key = line[..*at].trim();
+        !key.is_empty() && !key.ends_with(|c: char| c.is_ascii_digit()) && key.len() <= 40
+    });
+    at.map_or(("", line.trim()), |at| (line[..at].trim(), line[at + 1..].trim()))
+}
+
+/// `None` where the key is understood and its value is not.
+fn keyed(key: &str, value: &str, stated: &mut Stated) -> Option<()> {
+    let (key, unit_in_key) = match key.find(['[', '(']) {
+        Some(at) => (key[..at].trim(), key[at + 1..].trim_end_matches([']', ')'])),
+        None => (key, ""),
+    };
+    let key: String = key.chars().map(|c| if matches!(c, '_' | '-' | '.') { ' ' } else { c }).collect();
+    let hertz =
+        || quantity(value, unit_in_key, &[("mhz", 1e6), ("khz", 1e3), ("hz", 1.0), ("1/s", 1.0), ("", 1.0)]);
+    // `bandwidth`, `span` and `resolution` are no keys: they also stand over time traces, and for other things.
+    match key.trim() {
+        "lines" | "spectral lines" | "number of lines" | "no of lines" | "fft lines" => {
+            stated.lines = Some(line_count(quantity(value, "", &[("", 1.0), ("lines", 1.0)])?)?);
+        }
+        "base band" | "baseband" | "frequency range" | "frequency span" | "fmax" | "f max" => {
+            stated.base_band = Some(hertz()?);
+        }
+        "sampling rate" | "sample rate" | "sampling frequency" | "sample frequency" | "samplerate" | "fs"
+        | "rate" => {
+            stated.rate = Some(hertz()?);
+        }
+        "dt" | "delta t" | "sampling interval" | "sample interval" | "time step" | "delta time" => {
+            let units = [("us", 1e-6), ("µs", 1e-6), ("ms", 1e-3), ("s", 1.0), ("", 1.0)];
+            stated.rate = Some(checked(1.0 / quantity(value, unit_in_key, &units)?)?);
+        }
+        "df" | "delta f" | "line width" | "frequency resolution" | "line spacing" => {
+            stated.line_width = Some(hertz()?);
+        }
+        "unit" | "units" | "y unit" | "yunit" | "amplitude unit" | "engineering unit" => {
+            stated.unit = Some(value.trim_matches(['[', ']']).to_owned()).filter(|v| !v.is_empty());
+        }
+        "window" | "weighting" | "window type" => {
+            stated.window = Window::from_name(value.split([' ', '(']).next().unwrap_or(""))
+                .or_else(|| Window::from_name(value));
+        }
+        "channel" | "name" | "title" | "channel name" | "signal" => {
+            stated.name = Some(value.to_owned()).filter(|v| !v.is_empty());
+        }
+        _ => {}
+    }
+    Some(())
+}
+
+/// Lines without a key: `20 Hz 400 lines`.
+fn free_text(line: &str, stated: &mut Stated) {
+    let words: Vec<String> = line.split_whitespace().map(str::to_lowercase).collect();
+    let before = |name: &str| {
+        let pair = words.windows(2).find(|w| w[1].trim_end_matches(',') == name)?;
+        pair[0].parse::<f64>().ok()
+    };
+    if let (Some(hz), Some(lines)) = (before("hz"), before("lines")) {
+        match (checked(hz), line_count(lines)) {
+            (Some(hz), Some(lines)) => (stated.base_band, stated.lines) = (Some(hz), Some(lines)),
+            _ => stated
+                .doubts
+                .push(format!("The header line {line:?} states no possible value and is passed over.")),
+        }
+    }
+}
+
+/// A number with one of `units` behind it (or the unit from the key), checked.
+fn quantity(value: &str, unit_in_key: &str, units: &[(&str, f64)]) -> Option<f64> {
+    let value = value.trim();
+    let (number, used) = number::prefix(value.as_bytes(), b'.')?;
+    let rest = value.get(used..)?.trim().trim_matches(['[', ']']).to_lowercase();
+    let unit = if rest.is_empty() { unit_in_key.to_lowercase() } else { rest };
+    let factor = units.iter().find(|u| u.0 == unit)?.1;
+    checked(number * factor)
+}
+
+fn checked(value: f64) -> Option<f64> {
+    POSSIBLE.contains(&value).then_some(value)
+}
+
+fn line_count(lines: f64) -> Option<f64> {
+    ((1.0..=MOST_LINES).contains(&lines) && lines.fract() == 0.0).then_some(lines)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(lines: &[&str]) -> Stated {
+        let header: Vec<_> = lines.iter().enumerate().map(|(i, l)| (i as u64 + 1, (*l).to_owned())).collect();
+        read(&header)
+    }
+
+    #[test]
+    fn keys_in_the_usual_spellings() {
+        let s = of(&[
+            "Lines: 400",
+            "Base band: 0.02 kHz",
+            "Window = Hanning",
+            "Unit: [m/s²]",
+            "Date: 12.03.1999 14:05",
+        ]);
+        assert_eq!((s.lines, s.base_band, s.window), (Some(400.0), Some(20.0), Some(Window::Hann)));
+        assert_eq!(s.unit.as_deref(), Some("m/s²"));
+        assert_eq!(s.notes[4], ("Date".to_owned(), "12.03.1999 14:05".to_owned()));
+        assert_eq!(of(&["Sampling rate [kHz]: 51.2"]).rate, Some(51_200.0));
+        assert!((of(&["dt = 0.5 ms"]).rate.unwrap() - 2000.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn an_analyser_line_without_keys() {
+        let s = of(&["SPS390 SPECTRUM", "20 Hz 400 lines"]);
+        assert_eq!((s.lines, s.base_band), (Some(400.0), Some(20.0)));
+    }
+
+    #[test]
+    fn nonsense_states_nothing() {
+        let lines = [
+            "Lines: many",
+            "Base band: -3 Hz",
+            "rate: 5 apples",
+            "dt: 0 s",
+            "Lines: 1e30",
+            "Lines: 2.5",
+            "dt: 1e-320",
+            "df: 1e-300 Hz",
+            "20 Hz inf lines",
+            "20 Hz 0 lines",
+            "20 Hz -400 lines",
+            "nan Hz 400 lines",
+        ];
+        for line in lines {
+            let s = of(&[line]);
+            assert_eq!((s.lines, s.base_band, s.rate, s.line_width), (None, None, None, None), "{line}");
+            assert!(s.doubts.len() == 1 && s.doubts[0].contains(line), "{line}: {:?}", s.doubts);
+        }
+    }
+
+    #[test]
+    fn keys_with_other_meanings_state_nothing() {
+        let s = of(&["Resolution: 16", "Bandwidth: 20 kHz", "Span: 20 Hz"]);
+        assert_eq!((s.base_band, s.line_width), (None, None));
+        assert!(s.doubts.is_empty(), "{:?}", s.doubts);
+    }
+}

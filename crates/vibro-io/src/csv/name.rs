@@ -1,0 +1,327 @@
+//! What a column's header says: name, unit, abscissa, real or imaginary part.
+
+use vibro_record::AxisKind;
+use vibro_record::units::{Quantity, Unit};
+
+/// Name and unit of a column.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Name {
+    /// Without the unit.
+    pub name: String,
+    /// As written.
+    pub unit: Option<String>,
+}
+
+/// One half of a complex column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    Real,
+    Imaginary,
+}
+
+impl Name {
+    /// Reads `velocity [mm/s]`, `velocity (mm/s)`, `velocity / mm/s`, `velocity, mm/s`, `velocity mm/s` and `velocity_mm/s`.
+    ///
+    /// Text in square brackets is the unit, known or not. In every other spelling it must be a known unit; behind a blank
+    /// or an underscore it must also be one that cannot be part of a name.
+    pub fn parse(text: &str) -> Name {
+        let text = text.trim();
+        if let Some((name, unit)) = bracketed(text, '[', ']') {
+            let unit = Some(symbol(unit.trim()).to_owned()).filter(|u| !u.is_empty());
+            return Name { name: name.trim_end().to_owned(), unit };
+        }
+        let known = |name: &str, unit: &str| {
+            let (name, unit) = (name.trim_end(), symbol(unit.trim()));
+            (!name.is_empty() && (Unit::parse(unit).is_some() || unit == HOUR))
+                .then(|| Name { name: name.to_owned(), unit: Some(unit.to_owned()) })
+        };
+        text.split_once(" / ")
+            .and_then(|(name, unit)| known(name, unit))
+            .or_else(|| bracketed(text, '(', ')').and_then(|(name, unit)| known(name, unit)))
+            .or_else(|| text.split_once(", ").and_then(|(name, unit)| known(name, unit)))
+            .or_else(|| {
+                let (name, unit) = text.rsplit_once([' ', '_'])?;
+                known(name, unit).filter(|_| cannot_be_name(name, symbol(unit)))
+            })
+            .unwrap_or_else(|| Name { name: text.to_owned(), unit: None })
+    }
+
+    /// The same column with the unit that a second header row gives it.
+    pub fn with_unit_row(text: &str, unit: &str) -> Name {
+        match bare_unit(unit) {
+            "" => Name::parse(text),
+            unit => Name { name: text.trim().to_owned(), unit: Some(symbol(unit).to_owned()) },
+        }
+    }
+
+    /// Factor that takes this column as an abscissa to s or Hz, and a sentence where something is assumed.
+    ///
+    /// # Errors
+    /// What was found, where the unit is not understood.
+    pub fn to_axis(&self, kind: &AxisKind, label: &str) -> Result<(f64, Option<String>), String> {
+        let si = if *kind == AxisKind::Time { "seconds" } else { "hertz" };
+        let Some(text) = &self.unit else {
+            let doubt = match bracketed(&self.name, '(', ')') {
+                Some((_, unit)) => format!("{label}: the unit {unit:?} is not understood: {si} are assumed."),
+                None => format!("{label} has no unit: {si} are assumed."),
+            };
+            return Ok((1.0, Some(doubt)));
+        };
+        if text == HOUR {
+            return Ok((3600.0, None));
+        }
+        let unit = Unit::parse(text).ok_or_else(|| format!("the unit {text:?} of the abscissa"))?;
+        if *kind == AxisKind::Frequency && is_angular(text) {
+            let doubt = format!("{label} is an angular frequency: it is divided by 2π to give Hz.");
+            return Ok((unit.factor() / std::f64::consts::TAU, Some(doubt)));
+        }
+        Ok((unit.factor(), None))
+    }
+
+    /// Whether the values are an abscissa: by name, or (only asked of a first column) by unit alone.
+    pub fn axis(&self, first: bool) -> Option<AxisKind> {
+        let unit = self.unit.as_deref().map(Unit::parse_or_opaque);
+        let quantity = unit.as_ref().map(Unit::quantity);
+        // Revolutions have the dimension of a frequency, yet are no frequency axis.
+        let hertz = quantity == Some(Quantity::Frequency)
+            && unit.as_ref().is_some_and(|u| u.symbol().ends_with("Hz"));
+        let known = unit.as_ref().is_some_and(Unit::is_known);
+        let key = self.name.to_lowercase();
+        let angular = self.unit.as_deref().is_some_and(is_angular);
+        let omega = matches!(key.as_str(), "omega" | "ω" | "w" | "angular frequency" | "kreisfrequenz");
+        if first && angular && (omega || begins(&key, "freq") || self.name == "f") {
+            return Some(AxisKind::Frequency);
+        }
+        let time =
+            matches!(key.as_str(), "time" | "timestamp" | "time stamp" | "zeit" | "temps" | "elapsed time")
+                || (self.name == "t" && (first || quantity == Some(Quantity::Time)))
+                || (first && begins(&key, "time"));
+        let frequency = matches!(key.as_str(), "frequency" | "freq" | "freq." | "frequenz" | "fréquence")
+            || (self.name == "f" && (first || hertz))
+            || (first && begins(&key, "freq"));
+        if time && (!known || quantity == Some(Quantity::Time)) {
+            Some(AxisKind::Time)
+        } else if frequency && (!known || hertz) {
+            Some(AxisKind::Frequency)
+        } else if first && quantity == Some(Quantity::Time) {
+            Some(AxisKind::Time)
+        } else if first && hertz {
+            Some(AxisKind::Frequency)
+        } else {
+            None
+        }
+    }
+
+    /// Whether the name is one of a column that only counts.
+    pub fn counts(&self) -> bool {
+        let key = self.name.to_lowercase();
+        let key = key.trim_end_matches('.');
+        self.unit.is_none()
+            && matches!(
+                key,
+                "" | "#" | "index" | "i" | "n" | "no" | "nr" | "sample" | "samples" | "sample no" | "point"
+            )
+    }
+
+    /// Real or imaginary part, and the name of the whole: `H_re`, `H (imag)`, `re(H)`, `Imaginary`, …
+    pub fn part(&self) -> Option<(Part, String)> {
+        let joints = [' ', '_', '.', ':'];
+        let of = |word: &str| match word.to_lowercase().as_str() {
+            "re" | "real" => Some(Part::Real),
+            "im" | "imag" | "imaginary" => Some(Part::Imaginary),
+            _ => None,
+        };
+        let found = |word, rest: &str| Some((of(word)?, rest.trim().to_owned()));
+        let name = self.name.as_str();
+        let brackets = bracketed(name, '(', ')');
+        found(name, "")
+            .or_else(|| brackets.and_then(|(rest, word)| found(word, rest)))
+            .or_else(|| brackets.and_then(|(word, rest)| found(word.trim(), rest)))
+            .or_else(|| name.rsplit_once(joints).and_then(|(rest, word)| found(word, rest)))
+            .or_else(|| name.split_once(joints).and_then(|(word, rest)| found(word, rest)))
+    }
+}
+
+/// Hours have no symbol among the units of values.
+const HOUR: &str = "hour";
+
+/// The symbol of a unit that is written as a word; any other text as it is.
+fn symbol(text: &str) -> &str {
+    let lower = text.to_lowercase();
+    match lower.strip_suffix('s').filter(|t| t.len() > 2).unwrap_or(&lower) {
+        "second" | "sec" | "sekunde" | "sekunden" => "s",
+        "millisecond" | "msec" => "ms",
+        "microsecond" | "usec" | "µsec" => "µs",
+        "minute" => "min",
+        "hour" => HOUR,
+        "hertz" => "Hz",
+        "kilohertz" => "kHz",
+        _ => text,
+    }
+}
+
+/// Radians over a time: hertz only by 1/(2π).
+fn is_angular(unit: &str) -> bool {
+    Unit::parse(unit).is_some_and(|u| u.quantity() == Quantity::AngularVelocity)
+}
+
+/// Whether a row of fields holds units only: all blank, known or in brackets; or, where the first is known, at least
+/// half of them known and the others short, such as `EU`.
+pub fn is_unit_row<'a>(fields: impl Iterator<Item = &'a str>) -> bool {
+    let (mut total, mut known, mut sure, mut short, mut first) = (0, 0, 0, 0, None);
+    for field in fields.filter(|f| !f.trim().is_empty()) {
+        let unit = bare_unit(field);
+        let understood = Unit::parse(unit).is_some();
+        total += 1;
+        known += usize::from(understood);
+        sure += usize::from(understood || unit.len() < field.trim().len());
+        short += usize::from(understood || unit.chars().count() <= 4);
+        first.get_or_insert(understood);
+    }
+    known > 0 && (sure == total || (first == Some(true) && short == total && 2 * known >= total))
+}
+
+fn bare_unit(field: &str) -> &str {
+    let field = field.trim();
+    let inner = |open, close| field.strip_prefix(open).and_then(|f| f.strip_suffix(close));
+    match inner('[', ']').or(inner('(', ')')) {
+        // `(m/s²)/(N)` begins and ends with brackets too.
+        Some(unit) if !unit.contains(['[', ']', '(', ')']) => unit.trim(),
+        _ => field,
+    }
+}
+
+/// Name and content of the brackets that end a text.
+fn bracketed(text: &str, open: char, close: char) -> Option<(&str, &str)> {
+    let inner = text.strip_suffix(close)?;
+    let mut depth = 1;
+    for (at, c) in inner.char_indices().rev() {
+        if c == close {
+            depth += 1;
+        } else if c == open {
+            depth -= 1;
+            if depth == 0 {
+                return Some((&inner[..at], &inner[at + open.len_utf8()..]));
+            }
+        }
+    }
+    None
+}
+
+/// Whether `word` is a name or begins `text` and ends there: `time_abs`, not `timeout`.
+fn begins(text: &str, word: &str) -> bool {
+    text.strip_prefix(word).is_some_and(|rest| !rest.starts_with(char::is_alphabetic))
+}
+
+/// A quotient, hertz, or a unit of the quantity that the name says: `x_m` may be a name, `force_N` is not.
+fn cannot_be_name(name: &str, unit: &str) -> bool {
+    let key = name.to_lowercase();
+    let says = |words: &[&str]| words.iter().any(|w| key.starts_with(w) || key.ends_with(w));
+    let quantity = Unit::parse(unit).map(|u| u.quantity());
+    unit.contains('/')
+        || unit.ends_with("Hz")
+        || match quantity {
+            Some(Quantity::Time) => key == "t" || says(&["time", "zeit"]),
+            Some(Quantity::Force) => says(&["force", "kraft"]),
+            Some(Quantity::Displacement) => says(&["displacement", "position", "distance", "weg"]),
+            Some(Quantity::Acceleration) => says(&["acceleration", "acc"]),
+            Some(Quantity::Voltage) => says(&["voltage", "spannung"]),
+            Some(Quantity::Pressure) => says(&["pressure"]),
+            _ => false,
+        }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn split(text: &str) -> (String, Option<String>) {
+        let n = Name::parse(text);
+        (n.name, n.unit)
+    }
+
+    #[test]
+    fn units_in_the_usual_spellings() {
+        for text in [
+            "velocity [mm/s]",
+            "velocity[mm/s]",
+            "velocity (mm/s)",
+            "velocity / mm/s",
+            "velocity, mm/s",
+            "velocity_mm/s",
+            " velocity mm/s ",
+        ] {
+            assert_eq!(split(text), ("velocity".into(), Some("mm/s".into())), "{text}");
+        }
+        let nested = "H1 ((m/s²)/N)";
+        assert_eq!(split(nested), ("H1".into(), Some("(m/s²)/N".into())));
+        assert_eq!(split("v / (m/s)"), ("v".into(), Some("(m/s)".into())));
+        assert_eq!(split("level [EU]"), ("level".into(), Some("EU".into())));
+        assert_eq!(split("x (mm) []"), ("x (mm)".into(), None));
+        assert_eq!(split("force_N"), ("force".into(), Some("N".into())));
+        assert_eq!(split("time_ms"), ("time".into(), Some("ms".into())));
+        assert_eq!(split("rate_Hz"), ("rate".into(), Some("Hz".into())));
+    }
+
+    #[test]
+    fn a_name_is_not_taken_for_a_unit() {
+        for text in [
+            "channel (left)",
+            "x_m",
+            "x_1",
+            "v_in",
+            "x_min",
+            "signal g",
+            "ch1",
+            "m/s",
+            "",
+            "[",
+            "(m",
+            "A / B",
+        ] {
+            assert_eq!(split(text), (text.to_owned(), None));
+        }
+    }
+
+    #[test]
+    fn abscissae() {
+        let axis = |text: &str, first| Name::parse(text).axis(first);
+        for text in ["time [s]", "Time", "t", "t (ms)", "time_abs", "Zeit [s]", "x [s]", "time [h]"] {
+            assert_eq!(axis(text, true), Some(AxisKind::Time), "{text}");
+        }
+        for text in ["f [Hz]", "Frequency", "freq (kHz)", "f", "line [Hz]"] {
+            assert_eq!(axis(text, true), Some(AxisKind::Frequency), "{text}");
+        }
+        for text in ["T", "F", "timeout", "t [m]", "f [N]", "speed [rpm]", "time [m]"] {
+            assert_eq!(axis(text, true), None, "{text}");
+        }
+        assert_eq!(axis("time [ms]", false), Some(AxisKind::Time));
+        for text in ["t", "interval [s]", "speed [Hz]", "time of flight [s]"] {
+            assert_eq!(axis(text, false), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn parts_of_complex_columns() {
+        let part = |text: &str| Name::parse(text).part();
+        for text in ["H_re", "H (real)", "re(H)", "Re H", "H.re", "H real [m/N]", "real_H"] {
+            assert_eq!(part(text), Some((Part::Real, "H".into())), "{text}");
+        }
+        assert_eq!(part("H 1:im [m/N]"), Some((Part::Imaginary, "H 1".into())));
+        assert_eq!(part("Imag"), Some((Part::Imaginary, String::new())));
+        assert_eq!(part("im(H(2))"), Some((Part::Imaginary, "H(2)".into())));
+        assert_eq!(part("H (2) im"), Some((Part::Imaginary, "H (2)".into())));
+        for text in ["area", "impulse", "H", "", "_", "reim"] {
+            assert_eq!(part(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn rows_of_units() {
+        let row = |text: &str| is_unit_row(text.split(','));
+        assert!(row("s,mm/s") && row("[s],[EU]") && row("(ms),(V),") && row("s,V,EU"));
+        assert!(!row("time,velocity") && !row(",") && !row("a,b") && !row("s,acceleration") && !row("t,N"));
+        assert_eq!(Name::with_unit_row("H", "(m/s²)/(N)").unit.as_deref(), Some("(m/s²)/(N)"));
+        assert_eq!(Name::with_unit_row("a", " [mm/s] ").unit.as_deref(), Some("mm/s"));
+    }
+}

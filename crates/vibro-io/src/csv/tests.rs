@@ -1,0 +1,364 @@
+use super::*;
+use crate::Reader;
+use num_complex::Complex64;
+use proptest::prelude::*;
+use std::fmt::Write as _;
+use vibro_record::units::{Quantity, Unit};
+use vibro_record::{Axis, AxisKind, FrfKind, Record, Scaling, Values};
+
+fn read_with(reader: &Reader, text: impl AsRef<[u8]>) -> Result<Recording> {
+    reader.from_reader("x.csv", text.as_ref())
+}
+
+fn of(text: impl AsRef<[u8]>) -> Recording {
+    let recording = read_with(&Reader::new(), text).unwrap();
+    assert_eq!(recording.format, Format::Csv);
+    recording
+}
+
+fn values(record: &Record) -> &[f64] {
+    match record {
+        Record::Trace(t) => &t.values,
+        Record::Spectrum(s) => match &s.values {
+            Values::Real(v) => v,
+            Values::Complex(v) => panic!("{v:?}"),
+        },
+        Record::Frf(f) => panic!("{f:?}"),
+    }
+}
+
+fn says(doubts: &[String], word: &str) -> bool {
+    doubts.iter().any(|d| d.contains(word))
+}
+
+#[test]
+fn traces_over_a_time_column() {
+    let recording = of("time [ms],velocity [mm/s],Force (N)\n0.0,1.5,-2\n0.5,2.5,3e1\n1.0,0,0\n");
+    assert_eq!(recording.records.len(), 2);
+    assert!(recording.doubts.is_empty());
+    let Record::Trace(velocity) = &recording.records[0] else { panic!() };
+    assert_eq!((velocity.meta.name.as_str(), velocity.meta.quantity), ("velocity", Quantity::Velocity));
+    assert_eq!(velocity.values, [1.5 * 1e-3, 2.5 * 1e-3, 0.0]);
+    assert_eq!(velocity.axis, Axis::time(0.0, 0.5e-3, 3));
+    assert_eq!(values(&recording.records[1]), [-2.0, 30.0, 0.0]);
+    assert!(velocity.meta.doubts.is_empty(), "{:?}", velocity.meta.doubts);
+    let (step, arguments) = (&velocity.meta.history[0].name, &velocity.meta.history[0].arguments);
+    assert_eq!((step.as_str(), arguments[2].1.as_str()), ("read", "2"));
+}
+
+#[test]
+fn a_table_from_a_german_spreadsheet() {
+    let text = "\u{feff}Messung;7\r\nAbtastrate;1000;Hz\r\nZeit [s];Weg [µm]\r\n0,000;1,5\r\n0,001;-2,5\r\n";
+    let utf16: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let latin1: Vec<u8> =
+        text.trim_start_matches('\u{feff}').chars().map(|c| u8::try_from(u32::from(c)).unwrap()).collect();
+    let cr = text.replace("\r\n", "\r");
+    for bytes in [text.as_bytes(), &utf16, &latin1, cr.as_bytes()] {
+        let recording = of(bytes);
+        let Record::Trace(trace) = &recording.records[0] else { panic!() };
+        assert_eq!((trace.meta.name.as_str(), trace.meta.unit.symbol()), ("Weg", "m"));
+        assert_eq!(trace.values, [1.5 * 1e-6, -2.5 * 1e-6]);
+        assert_eq!(trace.axis, Axis::time(0.0, 1e-3, 2));
+        assert_eq!(trace.meta.notes[0], ("Messung".to_owned(), "7".to_owned()));
+    }
+}
+
+#[test]
+fn a_rate_in_the_preamble_or_stated() {
+    let text = "Sampling rate;2;kHz\n# operator: A\na;b\n1;2\n3;4\n";
+    let recording = of(text);
+    assert_eq!(recording.records[1].axis(), &Axis::time(0.0, 1.0 / 2000.0, 2));
+    assert!(says(&recording.records[0].meta().doubts, "no unit"));
+    let stated = read_with(&Reader::new().rate(Some(100.0)).unit(Unit::parse("mm")), text).unwrap();
+    assert_eq!(stated.records[0].axis(), &Axis::time(0.0, 0.01, 2));
+    assert_eq!(values(&stated.records[0]), [1.0 * 1e-3, 3.0 * 1e-3]);
+    let spectrum = read_with(&Reader::new().base_band(Some(100.0)), text).unwrap();
+    assert_eq!(spectrum.records[0].axis(), &Axis::frequency(0.0, 100.0, 2));
+}
+
+/// A spectrum of 0 to 50 Hz; printed with one decimal, 12.5 Hz apart.
+#[test]
+fn a_base_band_must_go_with_the_frequency_column() {
+    let spectrum = |frequencies: &[f64]| {
+        let rows: Vec<String> = frequencies.iter().map(|f| format!("{f:.1},1")).collect();
+        format!("Frequency [Hz],v [m/s]\n{}\n", rows.join("\n"))
+    };
+    let whole = spectrum(&[0.0, 12.5, 25.0, 37.5, 50.0]);
+    let step = |text: &str, band| {
+        read_with(&Reader::new().base_band(Some(band)), text).map(|r| r.records[0].axis().clone())
+    };
+    assert_eq!(step(&whole, 50.0).unwrap(), Axis::frequency(0.0, 12.5, 5));
+    // Half a tenth is what the digits leave open at the end.
+    assert!(step(&whole, 50.04).is_ok() && step(&whole, 50.2).is_err());
+    let error = step(&whole, 100.0).unwrap_err().to_string();
+    assert!(error.contains("from 0 to 50 Hz") && error.contains("base band of 100 Hz"), "{error}");
+    // Lines without 0 Hz end at the base band; a zoomed spectrum does not begin at 0 Hz, nor end there.
+    assert_eq!(step(&spectrum(&[12.5, 25.0, 37.5, 50.0]), 50.0).unwrap(), Axis::frequency(12.5, 12.5, 4));
+    assert!(step(&spectrum(&[100.0, 112.5, 125.0, 137.5, 150.0]), 50.0).is_err());
+    // A transform of n samples ends one line below: the column is believed.
+    let half_open = spectrum(&[0.0, 12.5, 25.0, 37.5]);
+    assert_eq!(step(&half_open, 50.0).unwrap(), Axis::frequency(0.0, 12.5, 4));
+    assert!(step(&half_open, 62.5).is_err() && step(&half_open, 44.0).is_err());
+    // A kilohertz column says so.
+    let kilo = "f [kHz],v [m/s]\n0,1\n0.025,1\n0.05,1\n";
+    assert_eq!(step(kilo, 50.0).unwrap(), Axis::frequency(0.0, 25.0, 3));
+}
+
+#[test]
+fn words_behind_the_rows_are_passed_over_and_quoted() {
+    let rows = "t [s],v [m/s]\n0,1\n1,2\n2,3\n3,4\n";
+    let recording = of(format!("{rows}End of data\n\nbye\n"));
+    assert_eq!(values(&recording.records[0]), [1.0, 2.0, 3.0, 4.0]);
+    assert!(says(&recording.doubts, "2 line(s) that are no rows, passed over: \"End of data\", \"bye\""));
+    // Numbers among words are no row where there are too many fields.
+    let counted = of(format!("{rows}End, of, data, 4 rows, 2 columns\n"));
+    assert_eq!(values(&counted.records[0]).len(), 4);
+    for end in [
+        "End of data\n4,5\n",
+        "4,5x\n",
+        "x,5\n",
+        "\"NaN\",\"NaN\"\n",
+        "\"4\",\"nan\"\n",
+        "Overload,Overload\n",
+        "Overload\nOverload\n",
+        "Overload,\n",
+    ] {
+        assert!(read_with(&Reader::new(), format!("{rows}{end}")).is_err(), "{end}");
+    }
+}
+
+#[test]
+fn what_is_stated_may_refine_a_column_and_not_contradict_it() {
+    let text = "t [s],a [m/s²]\n1.0,1\n1.1,2\n1.2,3\n";
+    let same = read_with(&Reader::new().rate(Some(10.0)), text).unwrap();
+    assert!(same.doubts.is_empty(), "{:?}", same.doubts);
+    assert_eq!(same.records[0].axis(), &Axis::time(1.0, 0.1, 3));
+    let refined = read_with(&Reader::new().rate(Some(9.9)).unit(Unit::parse("g")), text).unwrap();
+    assert_eq!(refined.records[0].axis(), &Axis::time(1.0, 1.0 / 9.9, 3));
+    assert!(says(&refined.records[0].meta().doubts, "\"m/s²\"; g was stated"));
+    let other = read_with(&Reader::new().rate(Some(50.0)), text).unwrap_err().to_string();
+    assert!(other.contains("\"t\" holds a time from 1 to 1.2 s in steps of 0.1 s"), "{other}");
+    assert!(other.contains("sampling rate of 50 Hz"), "{other}");
+    let band = read_with(&Reader::new().base_band(Some(50.0)), text).unwrap_err().to_string();
+    assert!(band.contains("a time from 1 to 1.2 s") && band.contains("base band of 50 Hz"), "{band}");
+    let contradicted = of("fs: 1000\nt [s],a [g]\n0.0,1\n0.1,2\n");
+    assert_eq!(contradicted.records[0].axis().step(), Some(0.1));
+    assert!(says(&contradicted.doubts, "states a step of 0.001"), "{:?}", contradicted.doubts);
+}
+
+#[test]
+fn times_with_too_few_digits() {
+    let dt = 1.0 / 1024.0;
+    let rows: Vec<String> = (0..3000).map(|i| format!("{:.3},{i}", f64::from(i) * dt)).collect();
+    let recording = of(format!("t [s],a [g]\n{}\n", rows.join("\n")));
+    let axis = recording.records[0].axis();
+    // Both ends are rounded by half a millisecond at most, spread over 2999 steps.
+    assert!((axis.step().unwrap() - dt).abs() <= 1e-3 / 2999.0);
+    assert!(says(&recording.doubts, "too few digits"), "{:?}", recording.doubts);
+}
+
+#[test]
+fn uneven_times_are_kept_and_said() {
+    let recording = of("t [s],a [g]\n0.00,1\n0.10,2\n0.20,3\n0.50,4\n");
+    let axis = recording.records[0].axis();
+    assert_eq!((axis.step(), axis.at(3)), (None, 0.5));
+    assert!(says(&recording.doubts, "uneven: steps from 0.1 to 0.3 s"), "{:?}", recording.doubts);
+}
+
+#[test]
+fn a_column_of_intervals_is_no_abscissa() {
+    let recording = of("flight [ms],height [mm]\n30,2\n20,1\n25,1\n");
+    assert_eq!(recording.records.len(), 2);
+    assert_eq!(recording.records[0].meta().quantity, Quantity::Time);
+    assert_eq!(recording.records[0].axis().kind, AxisKind::Index);
+    assert!(says(&recording.doubts, "says nothing of its abscissa"));
+}
+
+#[test]
+fn a_column_that_only_counts_is_left_out() {
+    let recording = of("Sample,a [g]\n1,5\n2,6\n3,7\n");
+    assert_eq!(recording.records.len(), 1);
+    assert_eq!(recording.records[0].axis().values(), [1.0, 2.0, 3.0]);
+    let with_time = of(",t [s],a [g]\n0,0.0,5\n1,0.1,6\n");
+    assert_eq!(with_time.records.len(), 1);
+    assert_eq!(with_time.records[0].axis(), &Axis::time(0.0, 0.1, 2));
+    // Not counting: a record.
+    assert_eq!(of("n,a [g]\n1,5\n3,6\n").records.len(), 2);
+    assert_eq!(of("index\n0\n1\n").records.len(), 1);
+}
+
+#[test]
+fn spectra_and_frequency_responses() {
+    let recording = of("f [Hz],v rms [mm/s],PSD [g²/Hz],H_re [(m/s²)/N],H_im [(m/s²)/N],X_re,X_im\n\
+                        0,1,2,3,4,5,6\n0.5,1,2,3,-4,5,6\n");
+    let kinds: Vec<&str> = recording.records.iter().map(Record::kind).collect();
+    assert_eq!(kinds, ["spectrum", "spectrum", "frf", "spectrum"]);
+    let Record::Spectrum(plain) = &recording.records[0] else { panic!() };
+    assert_eq!((plain.scaling, plain.axis.clone()), (Scaling::Unknown, Axis::frequency(0.0, 0.5, 2)));
+    assert!(says(&plain.meta.doubts, "scaled"));
+    let Record::Spectrum(density) = &recording.records[1] else { panic!() };
+    assert_eq!(density.scaling, Scaling::Psd);
+    let Record::Frf(frf) = &recording.records[2] else { panic!() };
+    assert_eq!((frf.meta.name.as_str(), frf.kind), ("H", FrfKind::Accelerance));
+    assert_eq!(frf.values, [Complex64::new(3.0, 4.0), Complex64::new(3.0, -4.0)]);
+    let Record::Spectrum(complex) = &recording.records[3] else { panic!() };
+    assert_eq!(complex.values, Values::Complex(vec![Complex64::new(5.0, 6.0); 2]));
+}
+
+#[test]
+fn remarks_about_scaling_hold_for_one_column_or_for_all() {
+    let text = "# scaling: peak\n# scaling: rms of b\n# window: hann of b\n# enbw: 1.5 of b\nf [Hz],a [V],b [V]\n0,1,2\n";
+    let recording = of(text);
+    let [Record::Spectrum(a), Record::Spectrum(b)] = recording.records.as_slice() else { panic!() };
+    assert_eq!((a.scaling, b.scaling), (Scaling::Peak, Scaling::Rms));
+    assert_eq!((b.window.map(vibro_record::Window::name), b.enbw), (Some("hann"), Some(1.5)));
+    assert!(b.meta.doubts.is_empty(), "{:?}", b.meta.doubts);
+}
+
+#[test]
+fn parts_must_agree_and_are_apart_over_time() {
+    let error = read_with(&Reader::new(), "f [Hz],H_re [m/N],H_im [mm/N]\n0,1,2\n").unwrap_err();
+    assert!(error.to_string().contains("\"H_re\" and \"H_im\" have different units"), "{error}");
+    assert_eq!(of("t [s],x_re [m],x_im [m]\n0.0,1,2\n0.1,1,2\n").records.len(), 2);
+    let stated = read_with(&Reader::new().complex(true), "f [Hz],a,b\n0,1,2\n1,1,2\n").unwrap();
+    assert!(stated.records.len() == 1 && stated.records[0].is_complex());
+}
+
+#[test]
+fn what_is_assumed_is_said() {
+    let recording = of("time,a [EU]\n0.0,1\n0.1,2\n");
+    assert!(says(&recording.doubts, "\"time\" has no unit: seconds are assumed"), "{:?}", recording.doubts);
+    assert!(says(&recording.records[0].meta().doubts, "\"EU\" is not understood"));
+    let lone = read_with(&Reader::new(), "velocity [mm/s]\n1,5\n2,5\n").unwrap();
+    assert_eq!(values(&lone.records[0]), [1.5 * 1e-3, 2.5 * 1e-3]);
+    assert!(says(&lone.doubts, "decimal mark"));
+    let error = read_with(&Reader::new(), "time [h],a\n0,1\n1,2\n").unwrap_err().to_string();
+    assert!(error.contains("the unit \"h\" of the abscissa"), "{error}");
+    let error = read_with(&Reader::new(), "time [s]\n0\n1\n").unwrap_err().to_string();
+    assert!(error.contains("only an abscissa"), "{error}");
+}
+
+#[test]
+fn units_of_an_abscissa_as_words() {
+    for (unit, step) in [
+        ("second", 1.0),
+        ("Seconds", 1.0),
+        ("sec", 1.0),
+        ("msec", 1e-3),
+        ("milliseconds", 1e-3),
+        ("microsecond", 1e-6),
+        ("minutes", 60.0),
+        ("hours", 3600.0),
+    ] {
+        for text in [format!("time [{unit}],a [g]"), format!("Time ({unit}),a [g]")] {
+            let recording = of(format!("{text}\n0,1\n1,2\n2,3\n"));
+            let axis = recording.records[0].axis();
+            assert_eq!((&axis.kind, axis.step()), (&AxisKind::Time, Some(step)), "{text}");
+            assert!(recording.doubts.is_empty(), "{text}: {:?}", recording.doubts);
+        }
+    }
+    assert_eq!(of("f (Hertz),a [g]\n0,1\n1,2\n").records[0].axis(), &Axis::frequency(0.0, 1.0, 2));
+    let unknown = of("Time (moons),a [g]\n0,1\n1,2\n");
+    assert!(
+        says(&unknown.doubts, "\"moons\" is not understood: seconds are assumed"),
+        "{:?}",
+        unknown.doubts
+    );
+}
+
+#[test]
+fn angular_frequencies_become_hertz() {
+    let recording = of("omega [rad/s],a [g]\n0,1\n1,2\n2,3\n");
+    assert_eq!(recording.records.len(), 1);
+    let axis = recording.records[0].axis();
+    // One division by 2π.
+    assert_eq!((&axis.kind, axis.step()), (&AxisKind::Frequency, Some(1.0 / std::f64::consts::TAU)));
+    assert!(says(&recording.doubts, "divided by 2π"), "{:?}", recording.doubts);
+}
+
+#[test]
+fn missing_values_kept_are_counted() {
+    let text = "t [s],a [g]\n0.0,1\n0.1,\n0.2,3\n";
+    assert!(read_with(&Reader::new(), text).unwrap_err().to_string().contains("line 3"));
+    let kept = read_with(&Reader::new().allow_missing(true), text).unwrap();
+    assert!(values(&kept.records[0])[1].is_nan());
+    assert!(says(&kept.doubts, "1 value(s) are missing"));
+}
+
+/// Which texts are taken for CSV when nobody says so, under a name without an ending.
+#[test]
+fn plain_columns_are_left_to_the_reader_of_plain_columns() {
+    let sniffed = |name: &str, text: &[u8]| {
+        sniff(&text[..text.len().min(1 << 16)], &Source::memory(name, text).unwrap())
+    };
+    assert!(sniffed("x", b"t,a\n0,1\n"));
+    assert!(sniffed("x.csv", b"a\n1\n"));
+    for text in ["a\n1\n", "0,1\n1,2\n", "header\n0,1\n", "t a\n0 1\n", "t,a\n"] {
+        assert!(!sniffed("x", text.as_bytes()), "{text:?}");
+    }
+    assert!(!sniffed("x.csv", b"t,a\n0,\x001\n"));
+    // A head that ends within a row.
+    let long = format!("t,a\n{}", "0.125,1\n".repeat(10_000));
+    assert!(sniffed("x", long.as_bytes()));
+}
+
+#[test]
+fn a_survey_says_what_reading_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.csv");
+    std::fs::write(&path, "t [s],a [g],b [mm/s]\n0.0,1,-9\n0.1,2,3\n").unwrap();
+    let (format, headers, _) = Reader::new().survey(&path).unwrap();
+    assert_eq!((format, headers.len()), (Format::Csv, 2));
+    assert_eq!((headers[1].max_abs, headers[1].max_at, headers[1].n), (Some(9.0 * 1e-3), Some(0.0), 2));
+}
+
+#[test]
+fn two_clocks_in_one_file_are_refused() {
+    let text = |step: f64, from: f64| {
+        let mut text = "Time A (s),A (V),Time B (s),B (V)\n".to_owned();
+        for i in 0..50 {
+            let t = f64::from(i);
+            let _ = writeln!(text, "{:.4},1,{:.4},{}", 1e-4 * t, from + step * t, 2 * i % 5);
+        }
+        text
+    };
+    let read_text =
+        |text: String| read(&Source::memory("x.csv", text.into_bytes()).unwrap(), &Options::default());
+    let why = read_text(text(2e-4, 0.0)).unwrap_err().to_string();
+    assert!(why.contains("\"Time A\" and \"Time B\" run over 0.0049 and 0.0098"), "{why}");
+    // The same clock read elsewhere is no other.
+    assert!(read_text(text(1e-4, 0.0)).is_ok() && read_text(text(1e-4, 7.0)).is_ok());
+}
+
+#[test]
+fn a_time_that_runs_backwards_is_refused_whatever_the_rate() {
+    let mut rows = String::new();
+    for i in 0..50 {
+        let _ = writeln!(rows, "{:.4},{}", 1e-4 * f64::from(if i < 25 { i } else { i - 10 }), i % 3);
+    }
+    let source = Source::memory("x.csv", format!("Time (s),U (V)\n{rows}").into_bytes()).unwrap();
+    let options = Options { rate: Some(10_000.0), ..Options::default() };
+    let why = read(&source, &options).unwrap_err().to_string();
+    assert!(why.contains("runs backwards: value 26 is 0.0015, behind 0.0024"), "{why}");
+}
+
+proptest! {
+    #[test]
+    fn never_panics_on_random_tables(text in "[tf \\[\\]Hzms,;\t\"#%:=\r\n0-9.eE+µ-]{0,120}") {
+        for head in ["", "t,a\n0,1\n", "f [Hz];H_re;H_im\n0,5;1;2\n"] {
+            let bytes = format!("{head}{text}").into_bytes();
+            if !bytes.is_empty() {
+                let source = Source::memory("x.csv", bytes).unwrap();
+                let _ = sniff(&source.head().unwrap(), &source);
+                let _ = read(&source, &Options::default());
+            }
+        }
+    }
+
+    #[test]
+    fn never_panics_on_random_bytes(bytes in prop::collection::vec(any::<u8>(), 1..200)) {
+        let source = Source::memory("x.csv", bytes).unwrap();
+        let _ = sniff(&source.head().unwrap(), &source);
+        let _ = read(&source, &Options { allow_missing: true, ..Options::default() });
+    }
+}

@@ -1,0 +1,59 @@
+//! The complaint about values that are missing.
+
+use std::path::Path;
+use vibro_record::{Error, Place, Result};
+
+/// How many places a complaint lists.
+pub(super) const LISTED: usize = 8;
+
+/// Refuses missing values; `found` says which.
+pub(super) fn refusal(place: Place, found: impl Into<String>) -> Error {
+    Error::input(place, found, "a finite number in every place")
+        .hint("give --allow-missing to keep them as missing")
+}
+
+/// What is said where `count` of them are kept; nothing where there are none.
+pub(super) fn kept(count: usize) -> Option<String> {
+    (count > 0).then(|| format!("{count} value(s) are missing and kept as such."))
+}
+
+/// Values that are missing: how many, and where the first of them stand.
+#[derive(Debug, Default)]
+pub(super) struct Missing {
+    /// Number of values.
+    pub count: usize,
+    places: Vec<(u64, String)>,
+    more: bool,
+}
+
+impl Missing {
+    /// Counts `count` values of a line; `what` says which of the line where that is known.
+    pub fn take(&mut self, line: u64, count: usize, what: impl FnOnce() -> String) {
+        self.count = self.count.saturating_add(count);
+        if self.places.len() < LISTED {
+            self.places.push((line, what()));
+        } else {
+            self.more = true;
+        }
+    }
+
+    /// Refuses all of them at once.
+    ///
+    /// # Errors
+    /// If there are any and they are not `allowed`.
+    pub fn check(&self, path: &Path, allowed: bool) -> Result<()> {
+        let Some((first, _)) = self.places.first().filter(|_| !allowed) else { return Ok(()) };
+        let listed: Vec<String> = self
+            .places
+            .iter()
+            .map(|(line, what)| if what.is_empty() { line.to_string() } else { format!("{line} ({what:?})") })
+            .collect();
+        let more = if self.more { ", …" } else { "" };
+        let found = format!(
+            "{} missing value(s) (NaN, Inf or blank) in line(s) {}{more}",
+            self.count,
+            listed.join(", ")
+        );
+        Err(refusal(Place::line(path, *first), found))
+    }
+}

@@ -1,0 +1,266 @@
+//! The reader: options, then a path or bytes, then records.
+
+use super::format::{Entry, Format, TABLE};
+use super::{Header, Source, SweepList};
+use rayon::prelude::*;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use vibro_record::units::Unit;
+use vibro_record::{Error, Meta, Place, Record, Result};
+
+/// Rates, bands and line widths in Hz of any instrument lie far inside; steps made of them are finite and positive.
+pub(super) const POSSIBLE: std::ops::RangeInclusive<f64> = 1e-12..=1e15;
+
+/// What a person knows of a file that the file does not say. A statement here that contradicts the file wins, with a
+/// doubt in the record.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Keep NaN, Inf and blank values as missing (NaN) instead of refusing them.
+    pub allow_missing: bool,
+    /// Sampling rate in Hz: the values are a time trace.
+    pub rate: Option<f64>,
+    /// Base band in Hz: the values are a spectrum from 0 to it.
+    pub base_band: Option<f64>,
+    /// Unit of the values.
+    pub unit: Option<Unit>,
+    /// Whether a comma is the decimal mark; `None` to find out.
+    pub decimal_comma: Option<bool>,
+    /// Two value columns are real and imaginary part.
+    pub complex: bool,
+}
+
+impl Options {
+    /// Adopts the unit of values: what a person states, else what the file says. Returns the factor to SI.
+    pub(super) fn adopt(&self, meta: &mut Meta, said: Option<&str>) -> f64 {
+        // A coherence beside a function has no unit, whatever that of the function is.
+        let bare = said.is_none_or(|u| matches!(u.trim(), "" | "1"));
+        if self.unit.is_some() && bare && meta.name.to_lowercase().contains("coherence") {
+            return meta.adopt_unit("1");
+        }
+        if let Some(given) = &self.unit {
+            if let Some(said) = said.filter(|u| Unit::parse_or_opaque(u) != *given) {
+                meta.doubt(format!("The file says the unit {said:?}; {given} was stated and is used."));
+            }
+            return meta.adopt_unit(given.symbol());
+        }
+        if let Some(said) = said {
+            return meta.adopt_unit(said);
+        }
+        meta.doubt("The file says no unit: the values are kept as they are.");
+        1.0
+    }
+}
+
+/// Everything a file holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// The file.
+    pub path: PathBuf,
+    /// Its format.
+    pub format: Format,
+    /// Its records in order.
+    pub records: Vec<Record>,
+    /// Sentences about the file as a whole: what was passed over, what was assumed.
+    pub doubts: Vec<String>,
+}
+
+impl Recording {
+    /// All doubts: the file's, then those of the records, see [`gathered`].
+    pub fn all_doubts(&self) -> Vec<String> {
+        let mut all = self.doubts.clone();
+        let records: Vec<_> =
+            self.records.iter().map(|r| (r.meta().name.as_str(), r.meta().doubts.as_slice())).collect();
+        all.extend(gathered(&records));
+        all
+    }
+}
+
+/// Doubts of records, given as name and doubts: one that all share once, any other with the name of its record.
+pub fn gathered(records: &[(&str, &[String])]) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    for (name, doubts) in records {
+        for doubt in *doubts {
+            let shared = records.iter().all(|(_, others)| others.contains(doubt));
+            let said = if shared || name.is_empty() { doubt.clone() } else { format!("{name}: {doubt}") };
+            if !shared || !all.contains(&said) {
+                all.push(said);
+            }
+        }
+    }
+    all
+}
+
+/// Reads measurement files of any known format.
+#[derive(Debug, Clone, Default)]
+pub struct Reader {
+    format: Option<Format>,
+    options: Options,
+}
+
+impl Reader {
+    /// A reader that finds out the format and refuses missing values.
+    pub fn new() -> Reader {
+        Reader::default()
+    }
+
+    /// Forces a format. Default: found out from the first bytes.
+    pub fn format(mut self, format: Option<Format>) -> Reader {
+        self.format = format;
+        self
+    }
+
+    /// Keeps NaN, Inf and blanks as missing values. Default: they are refused with their line numbers.
+    pub fn allow_missing(mut self, allow: bool) -> Reader {
+        self.options.allow_missing = allow;
+        self
+    }
+
+    /// States the sampling rate in Hz. Default: the file says it, or the abscissa is the sample number.
+    pub fn rate(mut self, rate: Option<f64>) -> Reader {
+        self.options.rate = rate;
+        self
+    }
+
+    /// States the base band in Hz of a spectrum. Default: the file says it.
+    pub fn base_band(mut self, base_band: Option<f64>) -> Reader {
+        self.options.base_band = base_band;
+        self
+    }
+
+    /// Takes a stated base band for that of a time trace, which analysers sample at 2.56 times their base band. Default: it is that of a spectrum.
+    pub fn rate_of_base_band(mut self) -> Reader {
+        self.options.rate = self.options.rate.or(self.options.base_band.take().map(|band| 2.56 * band));
+        self
+    }
+
+    /// States the unit of the values. Default: the file says it.
+    pub fn unit(mut self, unit: Option<Unit>) -> Reader {
+        self.options.unit = unit;
+        self
+    }
+
+    /// States whether a comma is the decimal mark. Default: found out, and asked for where it is ambiguous.
+    pub fn decimal_comma(mut self, comma: Option<bool>) -> Reader {
+        self.options.decimal_comma = comma;
+        self
+    }
+
+    /// States that two value columns are real and imaginary part. Default: only where a header says so.
+    pub fn complex(mut self, complex: bool) -> Reader {
+        self.options.complex = complex;
+        self
+    }
+
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// If it cannot be opened, is of no known format, or its content is not what its format requires.
+    pub fn from_path(&self, path: impl AsRef<Path>) -> Result<Recording> {
+        self.from_source(&Source::file(path)?)
+    }
+
+    /// Reads many files, in parallel, in the order given.
+    ///
+    /// # Errors
+    /// As [`Reader::from_path`], for the first file at fault; all others at fault, and all that do not exist, are named too.
+    pub fn from_paths<P: AsRef<Path> + Sync>(&self, paths: &[P]) -> Result<Vec<Recording>> {
+        let results: Vec<Result<Recording>> = paths.par_iter().map(|p| self.from_path(p)).collect();
+        if results.iter().any(Result::is_err) {
+            // Looked for only after a failure: asking for every file beforehand costs as much as opening it.
+            let missing: Vec<&P> = paths.iter().filter(|p| !p.as_ref().exists()).collect();
+            if let [first, _, ..] = missing.as_slice() {
+                let names: Vec<String> = missing.iter().map(|p| p.as_ref().display().to_string()).collect();
+                return Err(Error::input(
+                    Place::file(first.as_ref()),
+                    format!("{} of {} files are missing: {}", names.len(), paths.len(), names.join(", ")),
+                    "every file that is named",
+                )
+                .hint("check the folder and the spelling; on Linux upper and lower case differ"));
+            }
+        }
+        let failed: Vec<&P> =
+            paths.iter().zip(&results).filter(|(_, r)| r.is_err()).map(|(p, _)| p).collect();
+        let many = match failed.len() {
+            all if all == paths.len() && all > 1 => format!("none of the {all} files can be read so"),
+            0 | 1 => String::new(),
+            some => format!("{some} of {} files cannot be read so: {}", paths.len(), listed(&failed)),
+        };
+        let whole: Result<Vec<Recording>> = results.into_iter().collect();
+        whole.map_err(|error| if many.is_empty() { error } else { error.aside(many) })
+    }
+
+    /// Reads bytes; `name` stands for the path in messages and helps to tell the format.
+    ///
+    /// # Errors
+    /// As [`Reader::from_path`].
+    pub fn from_reader(&self, name: impl Into<PathBuf>, mut reader: impl Read) -> Result<Recording> {
+        let name = name.into();
+        let mut bytes = Vec::new();
+        reader.read_to_end(&mut bytes).map_err(|e| Error::io("read", &name, e))?;
+        self.from_source(&Source::memory(name, bytes)?)
+    }
+
+    /// Reads a source.
+    ///
+    /// # Errors
+    /// As [`Reader::from_path`].
+    pub fn from_source(&self, source: &Source) -> Result<Recording> {
+        let (entry, source) = self.entry(source)?;
+        (entry.read)(&source, &self.options).map_err(|e| no_list(&source, e).in_file(source.path()))
+    }
+
+    /// The records of a file without their values; memory does not grow with the file where the format allows.
+    ///
+    /// # Errors
+    /// As [`Reader::from_path`].
+    pub fn survey(&self, path: impl AsRef<Path>) -> Result<(Format, Vec<Header>, Vec<String>)> {
+        let source = Source::file(path)?;
+        let (entry, source) = self.entry(&source)?;
+        let (headers, doubts) =
+            (entry.survey)(&source, &self.options).map_err(|e| no_list(&source, e).in_file(source.path()))?;
+        Ok((entry.format, headers, doubts))
+    }
+
+    pub(super) fn options(&self) -> &Options {
+        &self.options
+    }
+
+    /// The format of a source, and the source itself: in memory where its first bytes are all of it.
+    pub(super) fn entry(&self, source: &Source) -> Result<(&'static Entry, Source)> {
+        for (what, value) in [("sampling rate", self.options.rate), ("base band", self.options.base_band)] {
+            if let Some(value) = value.filter(|v| !POSSIBLE.contains(v)) {
+                let found = format!("a {what} of {value} Hz was stated");
+                return Err(Error::input(Place::file(source.path()), found, "a possible number of hertz"));
+            }
+        }
+        let head = source.head()?;
+        let forced = self.format.and_then(|format| TABLE.iter().find(|e| e.format == format));
+        let entry = forced.or_else(|| TABLE.iter().find(|e| (e.sniff)(&head, source))).ok_or_else(|| {
+            Error::input(
+                Place::file(source.path()),
+                "not a format that is known here",
+                Format::names().join(", "),
+            )
+            .hint("force the format with --format, or export the record as text or UFF-58")
+        })?;
+        let small = head.len() as u64 == source.len();
+        Ok((entry, if small { Source::memory(source.path(), head)? } else { source.clone() }))
+    }
+}
+
+/// Names of files, the first of them where there are many.
+fn listed<P: AsRef<Path>>(paths: &[&P]) -> String {
+    const LISTED: usize = 12;
+    let name = |p: &&P| p.as_ref().file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    let more = if paths.len() > LISTED { ", …" } else { "" };
+    paths.iter().take(LISTED).map(name).collect::<Vec<_>>().join(", ") + more
+}
+
+/// What to say where reading failed with `error`: a list of a sweep is a likely thing to be taken for a measurement.
+fn no_list(source: &Source, error: Error) -> Error {
+    let Some(list) = SweepList::of(source) else { return error };
+    let (points, lines, band) = (list.len(), list.lines, list.base_band);
+    error
+        .aside(format!("this reads as the list of a sweep: {points} points, {lines} lines to {band} Hz"))
+        .hint("give the list to `vibro response`, or name the files that stand in it")
+}

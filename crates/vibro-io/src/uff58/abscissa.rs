@@ -1,0 +1,88 @@
+//! What the abscissa of a data set 58 is: time, frequency or something else.
+
+use super::codes::{self, Domain};
+use super::heading::{self, Heading};
+use crate::Options;
+use vibro_record::units::{Quantity, Unit};
+use vibro_record::{AxisKind, Meta};
+
+/// Kind of the abscissa and factor to s or Hz.
+pub fn kind_and_factor(heading: &Heading, options: &Options, meta: &mut Meta) -> (AxisKind, f64) {
+    let axis = &heading.abscissa;
+    let unit = Unit::parse_or_opaque(&axis.unit);
+    let by_unit = match unit.quantity() {
+        Quantity::Time => Some(AxisKind::Time),
+        Quantity::Frequency | Quantity::AngularVelocity => Some(AxisKind::Frequency),
+        _ => None,
+    };
+    let shown = |kind: &AxisKind| if *kind == AxisKind::Time { "time" } else { "frequency" };
+    let by_type = match axis.data_type {
+        17 => AxisKind::Time,
+        18 => AxisKind::Frequency,
+        0 | 1 => match by_unit {
+            Some(kind) => return (kind, abscissa_factor(&unit, meta)),
+            None if axis.label.is_empty() && axis.unit.is_empty() => {
+                return (by_function(heading, options, meta), 1.0);
+            }
+            None => return (by_label(axis), 1.0),
+        },
+        _ => return (AxisKind::Other(axis.described()), 1.0),
+    };
+    if axis.unit.is_empty() {
+        return (by_type, 1.0);
+    }
+    if let Some(kind) = by_unit {
+        if kind != by_type {
+            meta.doubt(format!(
+                "The data type of the abscissa is {}, but its unit {} is that of {}: the unit is believed.",
+                shown(&by_type),
+                axis.unit,
+                shown(&kind)
+            ));
+        }
+        return (kind, abscissa_factor(&unit, meta));
+    }
+    meta.doubt(format!(
+        "The unit \"{}\" of the abscissa is not one of {}: s or Hz are assumed.",
+        axis.unit,
+        shown(&by_type)
+    ));
+    (by_type, 1.0)
+}
+
+/// Factor of a unit of time to s, of frequency or angular frequency to Hz.
+fn abscissa_factor(unit: &Unit, meta: &mut Meta) -> f64 {
+    if unit.quantity() == Quantity::AngularVelocity {
+        meta.doubt(format!(
+            "The abscissa is an angular frequency in {unit}: it is divided by 2π and stands in Hz."
+        ));
+    }
+    unit.hertz().unwrap_or(unit.factor())
+}
+
+/// Kind of an abscissa without data type or unit.
+fn by_label(axis: &heading::Axis) -> AxisKind {
+    let label = axis.label.to_lowercase();
+    [("time", AxisKind::Time), ("freq", AxisKind::Frequency), ("index", AxisKind::Index)]
+        .into_iter()
+        .find(|(word, _)| axis.unit.is_empty() && label.contains(word))
+        .map_or_else(|| AxisKind::Other(axis.described()), |(_, kind)| kind)
+}
+
+/// Kind of an abscissa of which the file says nothing.
+fn by_function(heading: &Heading, options: &Options, meta: &mut Meta) -> AxisKind {
+    let (name, domain) = codes::function(heading.function);
+    let (kind, shown) = match domain {
+        Domain::Time => (AxisKind::Time, "time in s"),
+        Domain::Frequency => (AxisKind::Frequency, "frequency in Hz"),
+        Domain::Either if options.rate.is_some() => return AxisKind::Time,
+        Domain::Either => {
+            meta.doubt("The file does not say whether the abscissa is time or frequency.");
+            return AxisKind::Index;
+        }
+    };
+    meta.doubt(format!(
+        "The file does not say what its abscissa is; by the function type, {name}, {shown} is assumed."
+    ));
+    kind
+}

@@ -1,0 +1,388 @@
+//! Records 1 to 11 of data set 58: identification, degrees of freedom, data form, axis characteristics.
+
+use super::codes;
+use super::layout::Layout;
+use crate::uff::delimiter::is_delimiter;
+use crate::uff::stream::Stream;
+use crate::{number, text};
+use vibro_record::{Error, Place, Result};
+
+/// Lines before the values.
+pub const LINES: usize = 11;
+
+/// What the header of a data set 58 says.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(test, derive(Default))]
+pub struct Heading {
+    /// Identification lines 1 to 5.
+    pub id: [String; 5],
+    /// Record 6 as it stands.
+    pub record6: String,
+    /// Function type, record 6.
+    pub function: i64,
+    /// Where the response was measured.
+    pub response: Point,
+    /// Where the excitation or reference was.
+    pub reference: Point,
+    /// Storage of the values, record 7.
+    pub layout: Layout,
+    /// Number of values, or of abscissa and value together.
+    pub n: usize,
+    /// First abscissa value of even spacing.
+    pub start: f64,
+    /// Abscissa increment of even spacing.
+    pub step: f64,
+    /// Abscissa, record 8.
+    pub abscissa: Axis,
+    /// Ordinate or its numerator, record 9.
+    pub ordinate: Axis,
+    /// Denominator of the ordinate, record 10.
+    pub denominator: Axis,
+    /// Place of record 7, for complaints about what it declares.
+    pub place: Place,
+}
+
+/// A degree of freedom: entity, node, direction.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Point {
+    /// Name of the component; empty where unused.
+    pub entity: String,
+    /// Node number; 0 where unused.
+    pub node: i64,
+    /// 0 scalar, ±1 to ±3 translation along ±X to ±Z, ±4 to ±6 rotation about them.
+    pub direction: i64,
+}
+
+impl Point {
+    /// `PWL Mic 1+X`: entity, node and direction, as far as they are given and the entity does not hold the rest.
+    pub fn name(&self) -> String {
+        const AXES: [&str; 7] = ["", "X", "Y", "Z", "RX", "RY", "RZ"];
+        let axis = AXES.get(self.direction.unsigned_abs() as usize).copied().unwrap_or_default();
+        let sign = if self.direction < 0 { "-" } else { "+" };
+        let node = if self.node == 0 { String::new() } else { self.node.to_string() };
+        let place = if axis.is_empty() { node } else { format!("{node}{sign}{axis}") };
+        if self.entity.contains(&place) {
+            self.entity.clone()
+        } else {
+            format!("{} {place}", self.entity).trim_start().to_owned()
+        }
+    }
+}
+
+/// Characteristics of an axis.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Axis {
+    /// Specific data type.
+    pub data_type: i64,
+    /// Exponents of length, force and temperature, for the data type "general" only.
+    pub exponents: [i64; 3],
+    /// Label; empty where it is `NONE`.
+    pub label: String,
+    /// Unit; empty where it is `NONE`.
+    pub unit: String,
+}
+
+impl Axis {
+    /// `speed [rpm]`: label, or else the name of the data type, and unit.
+    pub fn described(&self) -> String {
+        let data_type = match self.data_type {
+            19 => "rotational speed",
+            20 => "order",
+            code => codes::data_type(code, false).map_or("", |t| t.0),
+        };
+        let name = if self.label.is_empty() { data_type } else { &self.label };
+        let unit = if self.unit.is_empty() { String::new() } else { format!(" [{}]", self.unit) };
+        format!("{name}{unit}").trim_start().to_owned()
+    }
+}
+
+impl Heading {
+    /// Reads the eleven lines that follow the number of the set. Gives the number of lines found where the set or the
+    /// file ends before the eleventh; the delimiter that ended it is then left in the stream.
+    pub fn read(stream: &mut Stream) -> Result<std::result::Result<Heading, usize>> {
+        let mut id: [String; 5] = Default::default();
+        for (i, line) in id.iter_mut().enumerate() {
+            if !record(stream)? {
+                return Ok(Err(i));
+            }
+            *line = given(&text::decode(stream.text()));
+        }
+        if !record(stream)? {
+            return Ok(Err(5));
+        }
+        let (record6, (function, response, reference)) = dof(stream)?;
+        if !record(stream)? {
+            return Ok(Err(6));
+        }
+        let place = stream.place();
+        let (layout, n, start, step) = form(stream)?;
+        let mut axes: [Axis; 4] = Default::default();
+        for (i, axis) in axes.iter_mut().enumerate() {
+            if !record(stream)? {
+                return Ok(Err(7 + i));
+            }
+            *axis = axis_of(&text::decode(stream.text()));
+        }
+        let [abscissa, ordinate, denominator, _] = axes;
+        Ok(Ok(Heading {
+            id,
+            record6,
+            function,
+            response,
+            reference,
+            layout,
+            n,
+            start,
+            step,
+            abscissa,
+            ordinate,
+            denominator,
+            place,
+        }))
+    }
+}
+
+impl Heading {
+    /// A short name: the response point, for a ratio of two with the reference point, or else the first line.
+    pub fn name(&self) -> String {
+        let response = self.response.name();
+        let ratio = matches!(self.function, 3..=6 | 8);
+        let reference = if ratio { self.reference.name() } else { String::new() };
+        match (response.is_empty(), reference.is_empty()) {
+            (true, _) => self.id[0].clone(),
+            (false, true) => response,
+            (false, false) => format!("{response} / {reference}"),
+        }
+    }
+}
+
+/// Takes the next header line; false where the set or the file ends instead.
+fn record(stream: &mut Stream) -> Result<bool> {
+    if !stream.next_line()? {
+        return Ok(false);
+    }
+    if is_delimiter(stream.text()) {
+        stream.hold();
+        return Ok(false);
+    }
+    Ok(true)
+}
+
+/// Text without surrounding blanks; empty where it is `NONE`, which stands for nothing.
+pub fn given(text: &str) -> String {
+    let text = text.trim();
+    if text.eq_ignore_ascii_case("none") { String::new() } else { text.to_owned() }
+}
+
+/// Characters `from..to` of a line; empty beyond its end.
+fn columns(line: &[char], from: usize, to: usize) -> String {
+    line[from.min(line.len())..to.min(line.len())].iter().collect()
+}
+
+/// A whole number in columns `from..to`; a blank field is 0, as Fortran has it.
+fn whole(line: &[char], from: usize, to: usize) -> Option<i64> {
+    let field = columns(line, from, to);
+    let field = field.trim();
+    if field.is_empty() { Some(0) } else { field.parse().ok() }
+}
+
+/// Record 6, format `2(I5,I10),2(1X,A10,I10,I4)`.
+fn dof(stream: &Stream) -> Result<(String, (i64, Point, Point))> {
+    let text = text::decode(stream.text());
+    let line: Vec<char> = text.trim_end().chars().collect();
+    let point = |from: usize| {
+        Some(Point {
+            entity: given(&columns(&line, from + 1, from + 11)),
+            node: whole(&line, from + 11, from + 21)?,
+            direction: whole(&line, from + 21, from + 25)?,
+        })
+    };
+    let fixed = || Some((whole(&line, 0, 5).filter(|f| (0..100).contains(f))?, point(30)?, point(55)?));
+    let blanks = || {
+        let tokens: Vec<&str> = text.split_whitespace().collect();
+        let function = tokens.first()?.parse().ok().filter(|f| (0..100).contains(f))?;
+        let point = |i: usize| {
+            Some(Point {
+                entity: given(tokens.get(i)?),
+                node: tokens.get(i + 1)?.parse().ok()?,
+                direction: tokens.get(i + 2)?.parse().ok()?,
+            })
+        };
+        // Entity names may hold blanks: only ten tokens are ten fields.
+        let points = (tokens.len() == 10).then(|| Some((point(4)?, point(7)?))).flatten();
+        let (response, reference) = points.unwrap_or_default();
+        Some((function, response, reference))
+    };
+    let parsed = fixed().or_else(blanks).ok_or_else(|| {
+        Error::input(
+            stream.place(),
+            format!("record 6 of data set 58 is {:?}", text.trim_end()),
+            "a function type from 0 to 99, identification numbers, response and reference point",
+        )
+        .hint("the header has 11 lines behind the line with 58: five of text, then this one")
+    })?;
+    Ok((text.trim_end().to_owned(), parsed))
+}
+
+/// Record 7, format `3I10,3E13.5`.
+fn form(stream: &Stream) -> Result<(Layout, usize, f64, f64)> {
+    let text = text::decode(stream.text());
+    let line: Vec<char> = text.trim_end().chars().collect();
+    let real = |from: usize, to: usize| {
+        let field = columns(&line, from, to);
+        if field.trim().is_empty() { Some(0.0) } else { number::parse(field.as_bytes()) }
+    };
+    let fixed = || {
+        let kind = whole(&line, 0, 10)?;
+        let plausible = kind != 0 && line.len() > 20;
+        plausible.then_some(())?;
+        Some((kind, whole(&line, 10, 20)?, whole(&line, 20, 30)?, real(30, 43)?, real(43, 56)?))
+    };
+    let blanks = || {
+        let tokens: Vec<&str> = text.split_whitespace().collect();
+        let whole = |i: usize| tokens.get(i)?.parse::<i64>().ok();
+        let real = |i: usize| number::parse(tokens.get(i)?.as_bytes());
+        Some((whole(0)?, whole(1)?, whole(2)?, real(3)?, real(4)?))
+    };
+    let refuse = |found: String, expected: &str| {
+        Err(Error::input(stream.place(), found, expected)
+            .hint("the sizes of a data set 58 stand here: it cannot be read without them"))
+    };
+    let Some((kind, n, spacing, start, step)) = fixed().or_else(blanks) else {
+        return refuse(
+            format!("record 7 of data set 58 is {:?}", text.trim_end()),
+            "ordinate type, number of values, spacing, abscissa start and increment",
+        );
+    };
+    let (complex, double) = match kind {
+        2 => (false, false),
+        4 => (false, true),
+        5 => (true, false),
+        6 => (true, true),
+        other => {
+            return refuse(
+                format!("ordinate data type {other}"),
+                "2 (real single), 4 (real double), 5 (complex single) or 6 (complex double)",
+            );
+        }
+    };
+    if !matches!(spacing, 0 | 1) {
+        return refuse(format!("abscissa spacing {spacing}"), "0 (uneven) or 1 (even)");
+    }
+    let Ok(n) = usize::try_from(n) else {
+        return refuse(format!("{n} values declared"), "a number of values that is not negative");
+    };
+    Ok((Layout { complex, double, even: spacing == 1 }, n, start, step))
+}
+
+/// Records 8 to 11, format `I10,3I5,2(1X,A20)`.
+fn axis_of(text: &str) -> Axis {
+    let line: Vec<char> = text.trim_end().chars().collect();
+    let numbers = || {
+        Some((whole(&line, 0, 10)?, [whole(&line, 10, 15)?, whole(&line, 15, 20)?, whole(&line, 20, 25)?]))
+    };
+    if let Some((data_type, exponents)) = numbers() {
+        // Some writers count the bytes of UTF-8, some its characters: the column between the two fields tells which.
+        let between = |c: Option<&char>| c.is_none_or(|c| c.is_whitespace());
+        let (label, unit) = if between(line.get(25)) && between(line.get(46)) {
+            (columns(&line, 26, 46), columns(&line, 47, usize::MAX))
+        } else if text.is_char_boundary(46) {
+            (text[..46].chars().skip(25).collect(), text[46..].to_owned())
+        } else {
+            (columns(&line, 25, usize::MAX), String::new())
+        };
+        return Axis { data_type, exponents, label: given(&label), unit: given(&unit) };
+    }
+    // By blanks: four numbers, then two texts with at least two blanks between them.
+    let mut rest = text.trim_start();
+    let mut numbers = [0; 4];
+    for value in &mut numbers {
+        let (token, behind) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
+        let Ok(parsed) = token.parse() else { break };
+        *value = parsed;
+        rest = behind.trim_start();
+    }
+    let (label, unit) = rest.split_once("  ").unwrap_or((rest, ""));
+    Axis {
+        data_type: numbers[0],
+        exponents: [numbers[1], numbers[2], numbers[3]],
+        label: given(label),
+        unit: given(unit),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Source;
+
+    fn heading(text: &str) -> Result<std::result::Result<Heading, usize>> {
+        let source = Source::memory("x.uff", text.as_bytes().to_vec()).unwrap();
+        Heading::read(&mut Stream::open(&source).unwrap())
+    }
+
+    fn header(record6: &str, record7: &str, record9: &str) -> String {
+        format!(
+            "Run -1\nNONE\n18-Apr-16 13:49:58\n\n    -1 of 3\n{record6}\n{record7}\n        17    0    0    0 time                 s\n{record9}\n         0    0    0    0 NONE                 NONE\n         0    0    0    0 NONE                 NONE\n"
+        )
+    }
+
+    const RECORD6: &str = "    4         1    1         0 PWL Mic            7  -3 NONE              22   1";
+    const RECORD7: &str = "         5       801         1  0.00000E+00  2.50000E-01  0.00000E+00";
+    const RECORD9: &str = "        12    0    0    0 Acceleration         m/s2";
+
+    #[test]
+    fn fields_in_their_columns() {
+        let h = heading(&header(RECORD6, RECORD7, RECORD9)).unwrap().unwrap();
+        assert_eq!(h.id, ["Run -1", "", "18-Apr-16 13:49:58", "", "-1 of 3"]);
+        assert_eq!(h.function, 4);
+        assert_eq!(h.response, Point { entity: "PWL Mic".into(), node: 7, direction: -3 });
+        assert_eq!(h.reference, Point { entity: String::new(), node: 22, direction: 1 });
+        assert_eq!(h.layout, Layout { complex: true, double: false, even: true });
+        assert_eq!((h.n, h.start, h.step), (801, 0.0, 0.25));
+        assert_eq!((h.ordinate.data_type, h.ordinate.unit.as_str()), (12, "m/s2"));
+    }
+
+    #[test]
+    fn fields_between_blanks() {
+        let h = heading(&header("4 1 1 0 NONE 7 -3 NONE 22 1", "5 801 1 0.0 .25 0.0", "12 0 0 0 a b  m/s2"));
+        let h = h.unwrap().unwrap();
+        assert_eq!((h.response.node, h.response.direction, h.reference.node), (7, -3, 22));
+        assert_eq!((h.n, h.step), (801, 0.25));
+        assert_eq!((h.ordinate.label.as_str(), h.ordinate.unit.as_str()), ("a b", "m/s2"));
+    }
+
+    #[test]
+    fn units_behind_two_byte_characters_are_found_by_character_and_by_byte() {
+        for padding in [16, 15] {
+            let record9 = format!("        12    0    0    0 Weg µ{:padding$}µm", "");
+            let h = heading(&header(RECORD6, RECORD7, &record9)).unwrap().unwrap();
+            assert_eq!(h.ordinate.unit, "µm", "{padding} blanks");
+        }
+    }
+
+    #[test]
+    fn a_header_cut_short_says_how_many_lines_it_has() {
+        let whole = header(RECORD6, RECORD7, RECORD9);
+        for kept in 0..LINES {
+            let cut: String = whole.split_inclusive('\n').take(kept).collect();
+            let closed = format!("{cut}    -1\n");
+            assert_eq!(heading(&closed).unwrap().unwrap_err(), kept);
+        }
+    }
+
+    #[test]
+    fn garbage_in_record_7_is_refused_with_its_line() {
+        for (record7, found) in [
+            ("garbage", "garbage"),
+            ("         3       801         1  0.00000E+00  2.50000E-01", "ordinate data type 3"),
+            ("         2       801         7  0.00000E+00  2.50000E-01", "spacing 7"),
+            ("         2      -801         1  0.00000E+00  2.50000E-01", "-801 values"),
+            ("         2       801         1  0.00000E+00  2.5000x-01", "record 7"),
+            ("", "record 7"),
+        ] {
+            let message = heading(&header(RECORD6, record7, RECORD9)).unwrap_err().to_string();
+            assert!(message.contains("line 7") && message.contains(found), "{message}");
+        }
+    }
+}

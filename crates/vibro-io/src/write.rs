@@ -1,0 +1,166 @@
+//! Records to files that other programs read.
+//!
+//! Values are written in the SI units that the records hold. What a format has no place for is lost or refused: see each
+//! writer. History, notes and doubts are written by none of them.
+//!
+//! ```
+//! use vibro_io::Reader;
+//! use vibro_io::write::{Storage, Target};
+//! let recording = Reader::new().from_reader("x.csv", "t [ms],v [mm/s]\n0.0,1\n0.5,2\n".as_bytes())?;
+//! let mut out = Vec::new();
+//! Target::of("x.tsv")?.write(&recording.records, Storage::default(), &mut out)?;
+//! assert_eq!(String::from_utf8_lossy(&out), "time [s]\tv [m/s]\n0\t0.001\n0.0005\t0.002\n");
+//! # Ok::<(), vibro_record::Error>(())
+//! ```
+
+pub mod csv;
+pub mod npy;
+pub mod uff58;
+pub mod wav;
+
+use std::io::Write;
+use std::path::Path;
+pub use uff58::{Precision, Storage};
+use vibro_record::{Error, Record, Result};
+
+/// A format to write.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Target {
+    /// Universal file, data set 58: text or, where asked for, binary.
+    Uff,
+    /// Universal file, data set 58b: always binary.
+    UffBinary,
+    /// Columns with names and units between commas.
+    Csv,
+    /// Columns with names and units between tabs.
+    Tsv,
+    /// Wave audio of 64-bit floats, or of 32-bit floats in single precision.
+    Wav,
+    /// numpy's array file.
+    Npy,
+}
+
+impl Target {
+    /// The format that the ending of a file name stands for; upper or lower case does not count.
+    ///
+    /// # Errors
+    /// If no format has this ending.
+    pub fn of(path: impl AsRef<Path>) -> Result<Target> {
+        let path = path.as_ref();
+        let ending = path.extension().map_or_else(String::new, |e| e.to_string_lossy().to_lowercase());
+        Ok(match ending.as_str() {
+            "uff" | "unv" | "58" => Target::Uff,
+            "ufb" => Target::UffBinary,
+            "csv" => Target::Csv,
+            "tsv" => Target::Tsv,
+            "wav" => Target::Wav,
+            "npy" => Target::Npy,
+            _ => {
+                let what =
+                    if ending.is_empty() { "has no ending".into() } else { format!("ends in .{ending}") };
+                return Err(Error::usage(
+                    format!("{} {what}, which stands for no format to write", path.display()),
+                    "a name that ends in .uff, .unv or .58 (UFF-58), .ufb (UFF-58b), .csv, .tsv, .wav or .npy",
+                )
+                .hint("give the file to write one of these endings"));
+            }
+        })
+    }
+
+    /// Name, as in JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            Target::Uff | Target::UffBinary => "uff",
+            Target::Csv => "csv",
+            Target::Tsv => "tsv",
+            Target::Wav => "wav",
+            Target::Npy => "npy",
+        }
+    }
+
+    /// Writes records in this format; `storage` says how a universal file keeps its numbers, and how exact a wave file is.
+    ///
+    /// # Errors
+    /// If the format cannot hold the records together, with the reason, or the output cannot be written.
+    pub fn write(self, records: &[Record], storage: Storage, out: &mut impl Write) -> Result<()> {
+        match self {
+            Target::Uff => uff58::write_uff58(records, out, storage),
+            Target::UffBinary => uff58::write_uff58(records, out, Storage { binary: true, ..storage }),
+            Target::Csv => csv::write(records, ',', out),
+            Target::Tsv => csv::write(records, '\t', out),
+            Target::Wav => {
+                let sample = match storage.precision {
+                    Precision::Single => wav::Sample::Float32,
+                    Precision::Double => wav::Sample::Float64,
+                };
+                wav::write(records, sample, out)
+            }
+            Target::Npy => npy::write(records, out),
+        }
+    }
+}
+
+/// How a record is called in a complaint.
+fn label(record: &Record) -> String {
+    format!("the {} {:?}", record.kind(), record.meta().name)
+}
+
+fn failed(error: std::io::Error) -> Error {
+    Error::io("write", "the output", error)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Format, Reader};
+
+    #[test]
+    fn the_ending_chooses() {
+        assert_eq!(Target::of("a/b.CSV").unwrap(), Target::Csv);
+        assert_eq!(Target::of("b.unv").unwrap(), Target::Uff);
+        assert_eq!(Target::of("b.npy").unwrap(), Target::Npy);
+        for path in ["x", "x.xls", ".csv"] {
+            assert!(Target::of(path).unwrap_err().to_string().contains(path), "{path}");
+        }
+    }
+
+    /// Nothing is lost unless single precision was asked for.
+    #[test]
+    fn a_wave_file_is_as_exact_as_was_asked_for() {
+        let text = "t [s],v [m/s]\n0,0.1\n0.5,-2\n";
+        let records = Reader::new().from_reader("x.csv", text.as_bytes()).unwrap().records;
+        for (precision, kept) in [(Precision::Double, 0.1), (Precision::Single, f64::from(0.1f32))] {
+            let mut out = Vec::new();
+            Target::Wav.write(&records, Storage { binary: false, precision }, &mut out).unwrap();
+            let back = Reader::new().from_reader("x.wav", out.as_slice()).unwrap();
+            let [Record::Trace(trace)] = back.records.as_slice() else { panic!() };
+            assert_eq!(trace.values, [kept, -2.0]);
+        }
+    }
+
+    /// What every target writes, the reader knows again by itself; numpy's arrays it does not read.
+    #[test]
+    fn what_is_written_is_recognised() {
+        let records =
+            Reader::new().from_reader("x.csv", "t [s],v [m/s]\n0,1\n0.5,2\n".as_bytes()).unwrap().records;
+        for (name, format) in [
+            ("x.uff", Format::Uff),
+            ("x.ufb", Format::Uff),
+            ("x.csv", Format::Csv),
+            ("x.tsv", Format::Csv),
+            ("x.wav", Format::Wav),
+        ] {
+            let mut out = Vec::new();
+            Target::of(name).unwrap().write(&records, Storage::default(), &mut out).unwrap();
+            let back = Reader::new().from_reader("unnamed", out.as_slice()).unwrap();
+            assert_eq!(back.format, format, "{name}");
+            let [Record::Trace(trace)] = back.records.as_slice() else { panic!("{name}") };
+            assert_eq!(
+                (trace.values.as_slice(), trace.meta.unit.symbol()),
+                ([1.0, 2.0].as_slice(), "m/s"),
+                "{name}"
+            );
+            assert_eq!(trace.rate(), Some(2.0), "{name}");
+        }
+    }
+}

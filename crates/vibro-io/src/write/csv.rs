@@ -1,0 +1,171 @@
+//! Columns with names and units, which spreadsheets and [`crate::Reader`] read.
+//!
+//! ```text
+//! # scaling: rms of v               remarks about a column, where there is something to say
+//! frequency [Hz],v [m/s],H_re [m/N],H_im [m/N]
+//! 0,0.001,1.5e-7,-2e-9
+//! ```
+//! The first column is the abscissa; a complex record takes two. Numbers have the fewest digits that read back as the
+//! same double; an uneven abscissa has all its digits, so that its values cannot be taken for rounded even ones.
+
+use super::{failed, label};
+use std::fmt::Write as _;
+use std::io::Write;
+use vibro_record::{Axis, AxisKind, Error, FROM_BLOWS, Grid, Record, Result, Scaling, Values};
+
+/// Writes records over one axis, `separator` between the columns (comma, semicolon or tab).
+///
+/// # Errors
+/// If there are none, they have no values, their axes differ, or the output cannot be written.
+pub fn write(records: &[Record], separator: char, out: &mut impl Write) -> Result<()> {
+    let Some(first) = records.first() else {
+        return Err(Error::refused("there is no record to write"));
+    };
+    if let Some(empty) = records.iter().find(|r| r.is_empty()) {
+        return Err(Error::refused(format!("{} has no values to write", label(empty))));
+    }
+    if let Some(other) = records.iter().find(|r| r.axis() != first.axis()) {
+        let why = format!("{} and {} have different abscissae: a table has one", label(first), label(other));
+        return Err(Error::refused(why).hint("write them one by one"));
+    }
+    let mut text = String::new();
+    let columns: Vec<Column> = records.iter().enumerate().map(|(i, r)| Column::of(i, r)).collect();
+    for column in &columns {
+        column.remarks(&mut text);
+    }
+    text.push_str(&field(axis_name(first.axis()), separator));
+    for column in &columns {
+        for part in column.parts() {
+            text.push(separator);
+            text.push_str(&field(&format!("{}{part} [{}]", column.name, column.unit), separator));
+        }
+    }
+    text.push('\n');
+    let uneven = matches!(first.axis().grid, Grid::Uneven(_));
+    for i in 0..first.len() {
+        let x = first.axis().at(i);
+        if uneven {
+            let _ = write!(text, "{x:.16e}");
+        } else {
+            number(x, &mut text);
+        }
+        for column in &columns {
+            column.value(i, separator, &mut text);
+        }
+        text.push('\n');
+        if text.len() > BLOCK {
+            out.write_all(text.as_bytes()).map_err(failed)?;
+            text.clear();
+        }
+    }
+    out.write_all(text.as_bytes()).map_err(failed)
+}
+
+/// Bytes that are written at once.
+const BLOCK: usize = 64 * 1024;
+
+struct Column<'a> {
+    record: &'a Record,
+    name: String,
+    unit: String,
+}
+
+impl Column<'_> {
+    fn of(index: usize, record: &Record) -> Column<'_> {
+        let meta = record.meta();
+        let mut name = plain(&meta.name);
+        if name.is_empty() {
+            name = format!("record {}", index + 1);
+        }
+        // Square brackets end where the unit ends.
+        let unit = plain(meta.unit.symbol()).replace('[', "(").replace(']', ")");
+        Column { record, name, unit }
+    }
+
+    fn remarks(&self, text: &mut String) {
+        let mut remark = |key: &str, value: &str| {
+            let _ = writeln!(text, "# {key}: {value} of {}", self.name);
+        };
+        match self.record {
+            Record::Trace(_) => {}
+            Record::Frf(frf) => {
+                remark("kind", "frf");
+                if let Some(decay) = frf.meta.added_decay() {
+                    remark("added decay", &decay.to_string());
+                }
+                if frf.meta.from_blows() {
+                    remark(FROM_BLOWS, "yes");
+                }
+            }
+            Record::Spectrum(spectrum) => {
+                let complex = matches!(spectrum.values, Values::Complex(_));
+                // A complex one must say that it is no frequency response.
+                if complex || spectrum.scaling != Scaling::Unknown {
+                    remark("scaling", spectrum.scaling.name());
+                }
+                if let Some(window) = spectrum.window {
+                    remark("window", window.name());
+                }
+                if let Some(enbw) = spectrum.enbw {
+                    remark("enbw", &enbw.to_string());
+                }
+            }
+        }
+    }
+
+    fn parts(&self) -> &'static [&'static str] {
+        if self.record.is_complex() { &["_re", "_im"] } else { &[""] }
+    }
+
+    fn value(&self, i: usize, separator: char, text: &mut String) {
+        let mut put = |value: f64| {
+            text.push(separator);
+            number(value, text);
+        };
+        let complex = match self.record {
+            Record::Trace(r) => return put(r.values.get(i).copied().unwrap_or(f64::NAN)),
+            Record::Frf(r) => &r.values,
+            Record::Spectrum(r) => match &r.values {
+                Values::Real(values) => return put(values.get(i).copied().unwrap_or(f64::NAN)),
+                Values::Complex(values) => values,
+            },
+        };
+        put(complex.get(i).map_or(f64::NAN, |v| v.re));
+        put(complex.get(i).map_or(f64::NAN, |v| v.im));
+    }
+}
+
+fn axis_name(axis: &Axis) -> &str {
+    match &axis.kind {
+        AxisKind::Time => "time [s]",
+        AxisKind::Frequency => "frequency [Hz]",
+        AxisKind::Index => "index",
+        AxisKind::Other(name) => name,
+    }
+}
+
+/// Shortest digits that read back as `value`, with an exponent where zeros would fill the place.
+fn number(value: f64, text: &mut String) {
+    let _ = if value == 0.0 || (1e-5..1e16).contains(&value.abs()) || !value.is_finite() {
+        write!(text, "{value}")
+    } else {
+        write!(text, "{value:e}")
+    };
+}
+
+/// One line without blanks at its ends.
+fn plain(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect::<String>().trim().to_owned()
+}
+
+/// Quoted after RFC 4180 where it must be; a comment sign would hide the line.
+fn field(text: &str, separator: char) -> String {
+    if text.contains([separator, '"', '#', '%', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests;

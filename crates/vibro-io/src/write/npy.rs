@@ -1,0 +1,105 @@
+//! numpy's array file, format version 1.0.
+//!
+//! One record gives a vector, several of one length an array of shape (records, values): doubles, or complex doubles where
+//! any record is complex. Names, units and the abscissa have no place in it.
+//!
+//! Source: numpy's own description of the format, `NEP 1`.
+
+use super::{failed, label};
+use num_complex::Complex64;
+use std::io::Write;
+use vibro_record::{Error, Record, Result, Values};
+
+/// Writes `records` as one array, values in SI units.
+///
+/// # Errors
+/// If there are none, their lengths differ, or the output cannot be written.
+pub fn write(records: &[Record], out: &mut impl Write) -> Result<()> {
+    let Some(first) = records.first() else {
+        return Err(Error::refused("there is no record to write"));
+    };
+    let n = first.len();
+    if let Some(other) = records.iter().find(|r| r.len() != n) {
+        let why = format!(
+            "{} has {n} values and {} has {}: one array cannot hold both",
+            label(first),
+            label(other),
+            other.len()
+        );
+        return Err(Error::refused(why).hint("write them one by one, or cut them to one length"));
+    }
+    let complex = records.iter().any(Record::is_complex);
+    let shape = if records.len() == 1 { format!("({n},)") } else { format!("({}, {n})", records.len()) };
+    let kind = if complex { "<c16" } else { "<f8" };
+    let mut header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
+    // Ten bytes of prefix and a line end; values begin at a multiple of 64.
+    let padding = (64 - (10 + header.len() + 1) % 64) % 64;
+    header.extend(std::iter::repeat_n(' ', padding));
+    header.push('\n');
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((header.len() as u16).to_le_bytes());
+    bytes.extend(header.as_bytes());
+    out.write_all(&bytes).map_err(failed)?;
+    for record in records {
+        bytes.clear();
+        let mut put = |value: Complex64| {
+            bytes.extend(value.re.to_le_bytes());
+            if complex {
+                bytes.extend(value.im.to_le_bytes());
+            }
+        };
+        match record {
+            Record::Trace(r) => r.values.iter().for_each(|v| put(Complex64::new(*v, 0.0))),
+            Record::Frf(r) => r.values.iter().for_each(|v| put(*v)),
+            Record::Spectrum(r) => match &r.values {
+                Values::Real(values) => values.iter().for_each(|v| put(Complex64::new(*v, 0.0))),
+                Values::Complex(values) => values.iter().for_each(|v| put(*v)),
+            },
+        }
+        out.write_all(&bytes).map_err(failed)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vibro_record::units::Unit;
+    use vibro_record::{Axis, Frf, FrfKind, Meta, Trace};
+
+    fn trace(values: &[f64]) -> Record {
+        let (meta, axis) = (Meta::new("v", Unit::none()), Axis::index(values.len()));
+        Record::Trace(Trace { meta, axis, values: values.to_vec() })
+    }
+
+    fn bytes(records: &[Record]) -> Vec<u8> {
+        let mut out = Vec::new();
+        write(records, &mut out).unwrap();
+        out
+    }
+
+    /// The files were written by numpy itself: see `fixtures/npy/make.py`.
+    #[test]
+    fn byte_for_byte_what_numpy_writes() {
+        let values = [0.0, -1.5, 1e300, f64::from_bits(1)];
+        assert_eq!(bytes(&[trace(&values)]), include_bytes!("../../../../fixtures/npy/vector.npy"));
+        let rows: Vec<Record> = (0..3).map(|k| trace(&[f64::from(k), 0.1])).collect();
+        assert_eq!(bytes(&rows), include_bytes!("../../../../fixtures/npy/matrix.npy"));
+        let frf = Record::Frf(Frf {
+            meta: Meta::new("H", Unit::none()),
+            axis: Axis::frequency(0.0, 1.0, 2),
+            values: vec![Complex64::new(1.0, -2.0), Complex64::new(0.0, 0.5)],
+            kind: FrfKind::Other,
+        });
+        assert_eq!(bytes(&[frf, trace(&[3.0, 4.0])]), include_bytes!("../../../../fixtures/npy/complex.npy"));
+    }
+
+    #[test]
+    fn what_one_array_cannot_hold_is_refused() {
+        let mut out = Vec::new();
+        let error = write(&[trace(&[1.0]), trace(&[1.0, 2.0])], &mut out).unwrap_err();
+        assert_eq!(error.exit_code(), 1);
+        assert!(error.to_string().contains("1 values and the trace \"v\" has 2"), "{error}");
+        assert!(write(&[], &mut out).is_err() && out.is_empty());
+    }
+}

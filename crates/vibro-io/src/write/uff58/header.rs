@@ -1,0 +1,212 @@
+//! The eleven header lines of a record.
+
+use super::{Layout, field};
+use std::fmt::Write as _;
+use std::io::Write;
+use vibro_record::units::{Quantity, Unit};
+use vibro_record::{ADDED_DECAY, Axis, AxisKind, FROM_BLOWS, Meta, Record, Scaling, Spectrum};
+
+/// What records 1 to 6 say.
+pub struct Header {
+    id: [String; 5],
+    /// Record 6 behind the function type.
+    point: String,
+    function: u8,
+}
+
+/// Record 6 behind the function type, of a record without a degree of freedom.
+const NOWHERE: &str = "         0    0         0 NONE               0   0 NONE               0   0";
+
+impl Header {
+    /// Identification and function type of a record.
+    pub fn of(record: &Record) -> Header {
+        let meta = record.meta();
+        let note = |key: &str| meta.notes.iter().find(|(k, _)| k == key).map(|(_, text)| text.as_str());
+        let mut id: [String; 5] =
+            std::array::from_fn(|i| note(&format!("id line {}", i + 1)).unwrap_or_default().to_owned());
+        // The point that was read still stands, unless the record has another name by now.
+        let read = note("record 6").filter(|line| line.is_ascii() && line.len() > 5).filter(|_| {
+            // Readers number the channels of one name.
+            let first = meta.name.rsplit_once(" #").map(|(name, _)| name);
+            note("point").is_some_and(|point| point == meta.name || Some(point) == first)
+        });
+        if read.is_none() {
+            id[0].clone_from(&meta.name);
+        }
+        if id[4].starts_with("scaling ") {
+            id[4].clear(); // that of the file it was read from
+        }
+        if let Record::Spectrum(spectrum) = record
+            && let Some(line) = scaling_line(spectrum)
+        {
+            id[4] = line;
+        }
+        if let (Record::Frf(_), Some(decay)) = (record, meta.added_decay()) {
+            id[4] = format!("{ADDED_DECAY}{decay}");
+        }
+        if matches!(record, Record::Frf(_)) && meta.from_blows() {
+            FROM_BLOWS.clone_into(&mut id[3]);
+        }
+        let before = read.and_then(|line| line[..5].trim().parse().ok());
+        let point = read.map_or(NOWHERE, |line| &line[5..]).to_owned();
+        Header { id, point, function: function(record, before) }
+    }
+
+    /// Writes delimiter, number line and header; `bytes` is the size of binary values, `start` and `step` stand in record 7.
+    pub fn write(
+        &self,
+        out: &mut impl Write,
+        layout: Layout,
+        bytes: Option<usize>,
+        [start, step]: &[String; 2],
+        record: &Record,
+    ) -> std::io::Result<()> {
+        writeln!(out, "{:80}", "    -1")?;
+        let number = bytes.map_or_else(
+            || "    58".to_owned(),
+            |bytes| format!("    58b{:6}{:6}{:12}{bytes:12}{:6}{:6}{:12}{:12}", 1, 2, 11, 0, 0, 0, 0),
+        );
+        writeln!(out, "{number:80}")?;
+        for line in &self.id {
+            writeln!(out, "{:80}", text(line, 80))?;
+        }
+        writeln!(out, "{:80}", format!("{:5}{}", self.function, self.point))?;
+        let kind = match (layout.complex, layout.double) {
+            (false, false) => 2,
+            (false, true) => 4,
+            (true, false) => 5,
+            (true, true) => 6,
+        };
+        let even = u8::from(layout.even);
+        let form = format!("{kind:10}{:10}{even:10}{start}{step}{}", record.len(), field(0.0, 13, 6));
+        writeln!(out, "{form:80}")?;
+        let [above, below] = ordinate(record.meta());
+        for line in [abscissa(record.axis()), above, below, Characteristics::default()] {
+            writeln!(out, "{:80}", line.line())?;
+        }
+        Ok(())
+    }
+}
+
+/// Function type of record 6; `before` is that of the file the record was read from, and stands where the record still
+/// is what it was.
+fn function(record: &Record, before: Option<u8>) -> u8 {
+    let keep = |same: fn(u8) -> bool, otherwise: u8| before.filter(|code| same(*code)).unwrap_or(otherwise);
+    match record {
+        Record::Trace(_) => keep(|code| matches!(code, 0 | 1 | 7 | 8 | 11 | 13..=17 | 25), 1),
+        Record::Frf(_) => keep(|code| matches!(code, 4 | 5), 4),
+        Record::Spectrum(spectrum) => match spectrum.scaling {
+            Scaling::Psd => 9,
+            Scaling::Energy => 10,
+            Scaling::Coherence => keep(|code| matches!(code, 6 | 21 | 26), 6),
+            Scaling::Power => keep(|code| matches!(code, 2 | 3), 2),
+            Scaling::Peak | Scaling::Rms => 12,
+            Scaling::Unknown => keep(|code| !matches!(code, 1 | 6..=10 | 21 | 25 | 26), 12),
+        },
+    }
+}
+
+/// Fifth identification line, for what the function type does not tell.
+fn scaling_line(spectrum: &Spectrum) -> Option<String> {
+    let told =
+        matches!(spectrum.scaling, Scaling::Psd | Scaling::Energy | Scaling::Coherence | Scaling::Unknown);
+    if told && spectrum.window.is_none() && spectrum.enbw.is_none() {
+        return None;
+    }
+    let mut line = format!("scaling {}", spectrum.scaling.name());
+    if let Some(window) = spectrum.window {
+        let _ = write!(line, "; window {}", window.name());
+    }
+    if let Some(enbw) = spectrum.enbw {
+        let _ = write!(line, "; enbw {enbw}");
+    }
+    Some(line)
+}
+
+/// Records 8 to 11.
+#[derive(Default)]
+struct Characteristics {
+    data_type: u8,
+    label: String,
+    unit: String,
+}
+
+impl Characteristics {
+    fn new(data_type: u8, label: &str, unit: &str) -> Self {
+        Characteristics { data_type, label: label.to_owned(), unit: unit.to_owned() }
+    }
+
+    fn line(&self) -> String {
+        format!(
+            "{:10}{:5}{:5}{:5} {:20} {:20}",
+            self.data_type,
+            0,
+            0,
+            0,
+            text(&self.label, 20),
+            text(&self.unit, 20)
+        )
+    }
+}
+
+fn abscissa(axis: &Axis) -> Characteristics {
+    match &axis.kind {
+        AxisKind::Time => Characteristics::new(17, "time", "s"),
+        AxisKind::Frequency => Characteristics::new(18, "frequency", "Hz"),
+        AxisKind::Index => Characteristics::new(0, "index", ""),
+        AxisKind::Other(name) => Characteristics::new(0, name, ""),
+    }
+}
+
+/// Records 9 and 10.
+fn ordinate(meta: &Meta) -> [Characteristics; 2] {
+    let of = |quantity: Quantity, data_type: u8| {
+        Characteristics::new(data_type, quantity.name(), &unit_text(&Unit::of(quantity)))
+    };
+    let none = Characteristics::default();
+    let over_force = |quantity, data_type| [of(quantity, data_type), of(Quantity::Force, 13)];
+    match meta.unit.quantity() {
+        Quantity::Receptance => over_force(Quantity::Displacement, 8),
+        Quantity::Mobility => over_force(Quantity::Velocity, 11),
+        Quantity::Accelerance => over_force(Quantity::Acceleration, 12),
+        Quantity::Displacement => [of(Quantity::Displacement, 8), none],
+        Quantity::Velocity => [of(Quantity::Velocity, 11), none],
+        Quantity::Acceleration => [of(Quantity::Acceleration, 12), none],
+        Quantity::Force => [of(Quantity::Force, 13), none],
+        Quantity::Pressure => [of(Quantity::Pressure, 15), none],
+        Quantity::Mass => [of(Quantity::Mass, 16), none],
+        Quantity::Other => [Characteristics::new(0, "", &unit_text(&meta.unit)), none],
+        named => [of(named, 0), none],
+    }
+}
+
+/// A unit in at most 20 ASCII characters where that says the same: others count bytes where characters are meant.
+fn unit_text(unit: &Unit) -> String {
+    const PLAIN: [(&str, &str); 8] = [
+        ("²", "^2"),
+        ("³", "^3"),
+        ("⁴", "^4"),
+        ("·", "*"),
+        ("µ", "u"),
+        ("μ", "u"),
+        ("°", "deg"),
+        ("⁻¹", "^-1"),
+    ];
+    let symbol = unit.symbol();
+    let plain = PLAIN.iter().fold(symbol.to_owned(), |text, (from, to)| text.replace(from, to));
+    let same = Unit::parse(&plain).is_some_and(|p| unit.is_known() && p.dimension() == unit.dimension());
+    let chosen = if same { plain } else { symbol.to_owned() };
+    // Half a unit would be another unit.
+    if unit.is_known() && chosen.chars().count() > 20 { String::new() } else { chosen }
+}
+
+/// Text of at most `width` characters on one line; `NONE` for nothing, and never a line that would end the data set.
+fn text(text: &str, width: usize) -> String {
+    let line: String =
+        text.trim().chars().map(|c| if c.is_control() { ' ' } else { c }).take(width).collect();
+    match line.trim() {
+        "" => "NONE".to_owned(),
+        "-1" => "(-1)".to_owned(),
+        line => line.to_owned(),
+    }
+}

@@ -1,0 +1,158 @@
+//! Wave audio of 32- or 64-bit floats.
+//!
+//! Only traces with one even time axis fit, and no missing values. Each channel is divided by its full scale, the power of
+//! two next above its largest magnitude (so that the division is exact), which stands with unit, name, exact sampling
+//! rate and start in a comment (LIST INFO ICMT). [`crate::Reader`] reads the comment and undoes all of it; an audio program
+//! plays the file and ignores it.
+
+use super::{failed, label};
+use crate::wav::{Scale, Scales};
+use std::io::Write;
+use vibro_record::{AxisKind, Error, Record, Result, Trace};
+
+/// How a sample is stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Sample {
+    /// 24 significant bits, which every audio program reads.
+    Float32,
+    /// Exact, read by most programs.
+    #[default]
+    Float64,
+}
+
+impl Sample {
+    fn bytes(self) -> usize {
+        match self {
+            Sample::Float32 => 4,
+            Sample::Float64 => 8,
+        }
+    }
+}
+
+/// Writes traces as the channels of one file.
+///
+/// # Errors
+/// If there are none, one is no trace over evenly sampled time, their axes differ, a sample is missing, the sampling rate is not
+/// between 1 Hz and 4.29 GHz, they take more than 4 GiB, or the output cannot be written.
+pub fn write(records: &[Record], sample: Sample, out: &mut impl Write) -> Result<()> {
+    let traces = records.iter().map(checked).collect::<Result<Vec<&Trace>>>()?;
+    let Some(first) = traces.first() else {
+        return Err(Error::refused("there is no record to write"));
+    };
+    if let Some(other) = traces.iter().find(|t| t.axis != first.axis) {
+        let why = format!(
+            "the traces {:?} and {:?} have different time axes: a wave file has one",
+            first.meta.name, other.meta.name
+        );
+        return Err(Error::refused(why).hint("write them one by one"));
+    }
+    let rate = first.rate().unwrap_or(f64::NAN);
+    let whole_rate = rate.round();
+    if !(1.0..=f64::from(u32::MAX)).contains(&whole_rate) {
+        return Err(Error::refused(format!(
+            "a wave file holds sampling rates from 1 Hz to 4.29 GHz, not {rate} Hz"
+        ))
+        .hint("write .csv or .npy"));
+    }
+    let channels = traces.iter().map(|t| scale(t)).collect();
+    let scales = Scales { rate, start: first.axis.start(), channels };
+    let head = head(&scales, whole_rate as u32, first.values.len(), sample)?;
+    out.write_all(&head).map_err(failed)?;
+    let mut bytes = Vec::new();
+    for block in 0..first.values.len().div_ceil(BLOCK) {
+        bytes.clear();
+        for i in block * BLOCK..((block + 1) * BLOCK).min(first.values.len()) {
+            for (trace, scale) in traces.iter().zip(&scales.channels) {
+                let value = trace.values[i] / scale.factor;
+                match sample {
+                    Sample::Float32 => bytes.extend((value as f32).to_le_bytes()),
+                    Sample::Float64 => bytes.extend(value.to_le_bytes()),
+                }
+            }
+        }
+        out.write_all(&bytes).map_err(failed)?;
+    }
+    Ok(())
+}
+
+/// Frames that are written at once.
+const BLOCK: usize = 4096;
+
+/// The trace in a record, if a wave file can hold it.
+fn checked(record: &Record) -> Result<&Trace> {
+    let refuse = |why: &str| {
+        Err(Error::refused(format!("{} {why}: a wave file cannot hold it", label(record)))
+            .hint("write .csv or .npy"))
+    };
+    let Record::Trace(trace) = record else { return refuse("is not over time") };
+    if trace.axis.kind != AxisKind::Time {
+        return refuse("has no time axis");
+    }
+    if trace.axis.step().is_none_or(|dt| dt.is_nan() || dt <= 0.0) {
+        return refuse("is not evenly sampled");
+    }
+    if trace.values.is_empty() || trace.values.len() != trace.axis.len() {
+        return refuse("has no samples");
+    }
+    match trace.values.iter().position(|v| !v.is_finite()) {
+        Some(at) => refuse(&format!("misses its value {}", at + 1)),
+        None => Ok(trace),
+    }
+}
+
+/// Full scale: the power of two at or next above the largest magnitude.
+fn scale(trace: &Trace) -> Scale {
+    let largest = trace.values.iter().fold(0.0f64, |max, v| max.max(v.abs()));
+    // The exponent bits of a double count from 1, for 2⁻¹⁰²², to 2046, for 2¹⁰²³.
+    let power = |exponent: u64| f64::from_bits(exponent.clamp(1, 2046) << 52);
+    let below = power(largest.to_bits() >> 52);
+    let factor = match largest {
+        0.0 => 1.0,
+        max if max <= below => below,
+        max => power((max.to_bits() >> 52) + 1),
+    };
+    Scale { factor, unit: trace.meta.unit.symbol().to_owned(), name: trace.meta.name.clone() }
+}
+
+/// Everything before the samples.
+fn head(scales: &Scales, rate: u32, frames: usize, sample: Sample) -> Result<Vec<u8>> {
+    let channels = scales.channels.len();
+    let frame = channels * sample.bytes();
+    let too_large = || {
+        Error::refused(format!(
+            "{frames} frames of {channels} channel(s) are more than a wave file holds (4 GiB)"
+        ))
+        .hint("write .npy, or fewer channels")
+    };
+    let short = |value: usize| u16::try_from(value).map_err(|_| too_large());
+    let mut format = Vec::new();
+    format.extend(3u16.to_le_bytes());
+    format.extend(short(channels)?.to_le_bytes());
+    format.extend(rate.to_le_bytes());
+    format.extend(rate.saturating_mul(frame as u32).to_le_bytes());
+    format.extend(short(frame)?.to_le_bytes());
+    format.extend((8 * sample.bytes() as u16).to_le_bytes());
+    format.extend(0u16.to_le_bytes());
+    let mut comment = scales.to_string().into_bytes();
+    comment.push(0);
+    comment.extend(std::iter::repeat_n(0, comment.len() % 2));
+    let mut list = b"INFOICMT".to_vec();
+    list.extend((comment.len() as u32).to_le_bytes());
+    list.extend(comment);
+    let mut body = b"WAVE".to_vec();
+    for (id, content) in
+        [(b"fmt ", format), (b"fact", (frames as u32).to_le_bytes().to_vec()), (b"LIST", list)]
+    {
+        body.extend(id);
+        body.extend((content.len() as u32).to_le_bytes());
+        body.extend(content);
+    }
+    let data = frames.checked_mul(frame).and_then(|n| u32::try_from(n).ok()).ok_or_else(too_large)?;
+    body.extend(b"data");
+    body.extend(data.to_le_bytes());
+    let size = data.checked_add(body.len() as u32).ok_or_else(too_large)?;
+    Ok([b"RIFF".as_slice(), &size.to_le_bytes(), &body].concat())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,355 @@
+//! Nonlinear least squares: the MINPACK algorithm of the crate `levenberg-marquardt`, with what it leaves to its caller:
+//! a Jacobian by central differences, the covariance of the parameters, and the direction that the data do not determine.
+
+use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
+use nalgebra::storage::Owned;
+use nalgebra::{DMatrix, DVector, Dyn};
+use vibro_record::{Error, Result};
+
+/// Parameters that minimise a sum of squared residuals, and how well they are determined.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fit {
+    /// Parameters at the minimum, in the order of the start.
+    pub parameters: Vec<f64>,
+    /// Residuals there, as the model gave them.
+    pub residuals: Vec<f64>,
+    /// (JᵀJ)⁻¹: covariance of the parameters where the residuals have unit variance.
+    pub cofactor: DMatrix<f64>,
+    /// Whether a minimum was reached; else the parameters are the best that were met.
+    pub converged: bool,
+    /// Evaluations of the model.
+    pub evaluations: usize,
+}
+
+impl Fit {
+    /// Sum of squared residuals.
+    pub fn sum_of_squares(&self) -> f64 {
+        self.residuals.iter().map(|r| r * r).sum()
+    }
+
+    /// Residuals less parameters.
+    pub fn degrees_of_freedom(&self) -> usize {
+        self.residuals.len().saturating_sub(self.parameters.len())
+    }
+
+    /// Variance of a residual, s² = Σr²/(n − p); NaN where there are no more residuals than parameters.
+    pub fn variance(&self) -> f64 {
+        match self.degrees_of_freedom() {
+            0 => f64::NAN,
+            free => self.sum_of_squares() / free as f64,
+        }
+    }
+
+    /// Covariance of parameters `i` and `j`, s²(JᵀJ)⁻¹ᵢⱼ: for residuals of one unknown variance, uncorrelated.
+    ///
+    /// # Panics
+    /// If `i` or `j` is no parameter.
+    pub fn covariance(&self, i: usize, j: usize) -> f64 {
+        self.variance() * self.cofactor[(i, j)]
+    }
+
+    /// Standard uncertainty of parameter `i`; as [`Fit::covariance`].
+    ///
+    /// # Panics
+    /// If `i` is no parameter.
+    pub fn std(&self, i: usize) -> f64 {
+        self.covariance(i, i).sqrt()
+    }
+
+    /// Correlation of parameters `i` and `j`.
+    ///
+    /// # Panics
+    /// If `i` or `j` is no parameter.
+    pub fn correlation(&self, i: usize, j: usize) -> f64 {
+        self.cofactor[(i, j)] / (self.cofactor[(i, i)] * self.cofactor[(j, j)]).sqrt()
+    }
+}
+
+/// Minimises Σrᵢ(p)². `residuals(p, r)` fills `r`, of length `n`; `start` holds the first guess, `scale` the size of a
+/// small but significant change of each parameter (its sign and exact size do not matter).
+///
+/// ```
+/// use vibro_math::least_squares;
+/// let times = [0.0, 1.0, 2.0, 3.0, 4.0];
+/// let values = [2.0, 1.213, 0.736, 0.446, 0.271]; // 2 exp(−t/2), rounded
+/// let fit = least_squares(
+///     |p, r| times.iter().zip(&values).zip(r).for_each(|((t, v), r)| *r = v - p[0] * (-p[1] * t).exp()),
+///     times.len(), &[1.0, 1.0], &[0.1, 0.1],
+/// )?;
+/// assert!((fit.parameters[1] - 0.5).abs() < 2.0 * fit.std(1));
+/// # Ok::<(), vibro_record::Error>(())
+/// ```
+///
+/// # Errors
+/// If there is no parameter or not one scale a parameter, a scale is 0 or not finite, there are fewer residuals than
+/// parameters, the model gives a value that is not finite at the start, or the residuals
+/// at the minimum do not depend on some combination of the parameters, which is named by their numbers.
+pub fn least_squares(
+    residuals: impl Fn(&[f64], &mut [f64]),
+    n: usize,
+    start: &[f64],
+    scale: &[f64],
+) -> Result<Fit> {
+    let found = minimise(residuals, n, start, scale)?;
+    Ok(Fit {
+        cofactor: cofactor(found.jacobian)?,
+        parameters: found.parameters,
+        residuals: found.residuals,
+        converged: found.converged,
+        evaluations: found.evaluations,
+    })
+}
+
+/// Parameters that minimise a sum of squared residuals, with no word on how well they are determined.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Minimum {
+    /// Parameters at the minimum, in the order of the start.
+    pub parameters: Vec<f64>,
+    /// Residuals there.
+    pub residuals: Vec<f64>,
+    /// ∂rᵢ/∂pⱼ there.
+    pub jacobian: DMatrix<f64>,
+    /// Whether a minimum was reached; else the parameters are the best that were met.
+    pub converged: bool,
+    /// Evaluations of the model.
+    pub evaluations: usize,
+}
+
+/// As [`least_squares`], for callers that look into the Jacobian themselves: a combination of parameters on which nothing depends is no
+/// error, and stays about where it started.
+///
+/// # Errors
+/// As [`least_squares`], but for that.
+pub fn minimise(
+    residuals: impl Fn(&[f64], &mut [f64]),
+    n: usize,
+    start: &[f64],
+    scale: &[f64],
+) -> Result<Minimum> {
+    run(residuals, n, start, scale, &LevenbergMarquardt::new().with_patience(200))
+}
+
+/// As [`minimise`], but no farther than to the neighbourhood of a minimum: until a step gains less than a thousandth, and over twenty
+/// evaluations a parameter at most. For searches that go on from there.
+///
+/// # Errors
+/// As [`minimise`].
+pub fn approach(
+    residuals: impl Fn(&[f64], &mut [f64]),
+    n: usize,
+    start: &[f64],
+    scale: &[f64],
+) -> Result<Minimum> {
+    const GAIN: f64 = 1e-3;
+    let near = LevenbergMarquardt::new().with_patience(20).with_ftol(GAIN).with_xtol(GAIN);
+    run(residuals, n, start, scale, &near)
+}
+
+fn run(
+    residuals: impl Fn(&[f64], &mut [f64]),
+    n: usize,
+    start: &[f64],
+    scale: &[f64],
+    algorithm: &LevenbergMarquardt<f64>,
+) -> Result<Minimum> {
+    let scaled = scale.iter().all(|s| s.is_finite() && *s != 0.0);
+    if start.is_empty() || scale.len() != start.len() || !scaled {
+        return Err(Error::usage(
+            format!("a fit of {} parameters with the scales {scale:?}", start.len()),
+            "one scale other than 0 a parameter",
+        ));
+    }
+    if n < start.len() {
+        return Err(Error::refused(format!("{n} values do not determine {} parameters", start.len())));
+    }
+    let mut problem = Problem {
+        residuals,
+        n,
+        scale,
+        parameters: DVector::from_column_slice(start),
+        evaluations: std::cell::Cell::new(0),
+    };
+    if problem.at(&problem.parameters).is_none() {
+        return Err(Error::refused("the model gives no finite value at the first guess of a fit"));
+    }
+    let report;
+    (problem, report) = algorithm.minimize(problem);
+    let parameters = problem.parameters.clone();
+    let (Some(residuals), Some(jacobian)) = (problem.at(&parameters), problem.jacobian()) else {
+        return Err(Error::refused("a fit ran to where the model gives no finite value"));
+    };
+    Ok(Minimum {
+        parameters: parameters.as_slice().to_vec(),
+        residuals: residuals.as_slice().to_vec(),
+        jacobian,
+        converged: report.termination.was_successful(),
+        evaluations: problem.evaluations.get(),
+    })
+}
+
+/// (JᵀJ)⁻¹ by the singular values of J with its columns scaled to length 1, so that units do not decide what is small.
+fn cofactor(mut jacobian: DMatrix<f64>) -> Result<DMatrix<f64>> {
+    let lengths: Vec<f64> = jacobian.column_iter().map(|c| c.norm()).collect();
+    if lengths.iter().any(|l| !l.is_finite()) {
+        return Err(Error::refused("the model of a fit changes beyond all numbers at its minimum"));
+    }
+    if let Some(i) = lengths.iter().position(|l| *l == 0.0) {
+        return Err(undetermined(&[i]));
+    }
+    for (mut column, length) in jacobian.column_iter_mut().zip(&lengths) {
+        column /= *length;
+    }
+    let rows = jacobian.nrows() as f64;
+    // Forming JᵀJ would square the condition number. An iteration limit, since the algorithm has no bound of its own.
+    let svd = nalgebra::SVD::try_new(jacobian, false, true, f64::EPSILON, 10_000)
+        .ok_or_else(|| Error::refused("the singular values of a fit were not found"))?;
+    let Some(v_t) = svd.v_t else {
+        return Err(Error::refused("the singular vectors of a fit were not found"));
+    };
+    let largest = svd.singular_values.max();
+    // Central differences are good to about ε^(2/3); below that a singular value is noise.
+    let least = largest * f64::EPSILON.powf(2.0 / 3.0) * rows.sqrt().max(1.0);
+    if let Some((k, _)) = svd.singular_values.iter().enumerate().find(|(_, s)| **s <= least || !s.is_finite())
+    {
+        let part: Vec<usize> =
+            v_t.row(k).iter().enumerate().filter(|(_, v)| v.abs() > 0.3).map(|(i, _)| i).collect();
+        return Err(undetermined(&part));
+    }
+    let n = lengths.len();
+    Ok(DMatrix::from_fn(n, n, |i, j| {
+        let sum: f64 =
+            svd.singular_values.iter().enumerate().map(|(k, s)| v_t[(k, i)] * v_t[(k, j)] / (s * s)).sum();
+        sum / (lengths[i] * lengths[j])
+    }))
+}
+
+fn undetermined(parameters: &[usize]) -> Error {
+    let names: Vec<String> = parameters.iter().map(|i| (i + 1).to_string()).collect();
+    let which = if names.len() == 1 { "parameter" } else { "the combination of parameters" };
+    Error::refused(format!("the data do not determine {which} {} of the fit", names.join(", ")))
+}
+
+struct Problem<'a, F> {
+    residuals: F,
+    n: usize,
+    scale: &'a [f64],
+    parameters: DVector<f64>,
+    evaluations: std::cell::Cell<usize>,
+}
+
+impl<F: Fn(&[f64], &mut [f64])> Problem<'_, F> {
+    fn at(&self, parameters: &DVector<f64>) -> Option<DVector<f64>> {
+        let mut values = DVector::zeros(self.n);
+        (self.residuals)(parameters.as_slice(), values.as_mut_slice());
+        self.evaluations.set(self.evaluations.get() + 1);
+        values.iter().all(|v| v.is_finite()).then_some(values)
+    }
+}
+
+impl<F: Fn(&[f64], &mut [f64])> LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_, F> {
+    type ResidualStorage = Owned<f64, Dyn>;
+    type JacobianStorage = Owned<f64, Dyn, Dyn>;
+    type ParameterStorage = Owned<f64, Dyn>;
+
+    fn set_params(&mut self, parameters: &DVector<f64>) {
+        self.parameters.copy_from(parameters);
+    }
+
+    fn params(&self) -> DVector<f64> {
+        self.parameters.clone()
+    }
+
+    fn residuals(&self) -> Option<DVector<f64>> {
+        // The algorithm gives up on `None`; a large residual makes it shorten its step instead.
+        Some(
+            self.at(&self.parameters)
+                .unwrap_or_else(|| DVector::from_element(self.n, f64::MAX.sqrt().sqrt())),
+        )
+    }
+
+    fn jacobian(&self) -> Option<DMatrix<f64>> {
+        let mut jacobian = DMatrix::zeros(self.n, self.parameters.len());
+        for (i, mut column) in jacobian.column_iter_mut().enumerate() {
+            let here = self.parameters[i];
+            // ε^(1/3) balances rounding ε/h against truncation h² of a central difference (Dennis & Schnabel 1983, 5.6).
+            let step = f64::EPSILON.cbrt() * here.abs().max(self.scale[i].abs());
+            let mut moved = self.parameters.clone();
+            moved[i] = here + step;
+            let above = self.at(&moved)?;
+            let up = moved[i];
+            moved[i] = here - step;
+            let below = self.at(&moved)?;
+            column.copy_from(&((above - below) / (up - moved[i])));
+        }
+        Some(jacobian)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A straight line has a closed form: slope Sxy/Sxx, its variance s²/Sxx.
+    #[test]
+    fn a_line_has_its_closed_form() {
+        let x: Vec<f64> = (0..12).map(f64::from).collect();
+        let y = [3.1, 4.9, 7.2, 8.8, 11.1, 13.0, 14.7, 17.3, 19.0, 21.2, 22.8, 25.1];
+        let fit = least_squares(
+            |p, r| r.iter_mut().zip(x.iter().zip(&y)).for_each(|(r, (x, y))| *r = y - p[0] - p[1] * x),
+            12,
+            &[0.0, 0.0],
+            &[1.0, 1.0],
+        )
+        .unwrap();
+        let (mx, my) = (x.iter().sum::<f64>() / 12.0, y.iter().sum::<f64>() / 12.0);
+        let sxx: f64 = x.iter().map(|x| (x - mx).powi(2)).sum();
+        let slope = x.iter().zip(&y).map(|(x, y)| (x - mx) * (y - my)).sum::<f64>() / sxx;
+        // MINPACK stops at relative changes of about ε^½ in the cost, which for a linear problem is one step to rounding.
+        assert!((fit.parameters[1] - slope).abs() < 1e-9, "{fit:?}");
+        assert!((fit.std(1) / (fit.variance() / sxx).sqrt() - 1.0).abs() < 1e-6, "{fit:?}");
+        // Intercept and slope: −x̄/√(Σx²/n).
+        let expected = -mx / (x.iter().map(|x| x * x).sum::<f64>() / 12.0).sqrt();
+        assert!((fit.correlation(0, 1) - expected).abs() < 1e-6);
+    }
+
+    #[test]
+    fn rosenbrock_is_found_from_afar() {
+        let fit = least_squares(
+            |p, r| {
+                r[0] = 10.0 * (p[1] - p[0] * p[0]);
+                r[1] = 1.0 - p[0];
+            },
+            2,
+            &[-1.2, 1.0],
+            &[1.0, 1.0],
+        )
+        .unwrap();
+        assert!(fit.converged && fit.parameters.iter().all(|p| (p - 1.0).abs() < 1e-6), "{fit:?}");
+        assert!(fit.variance().is_nan());
+    }
+
+    #[test]
+    fn what_the_data_do_not_determine_is_named() {
+        // Only the product of the first two parameters acts.
+        let error = least_squares(
+            |p, r| {
+                for (i, r) in r.iter_mut().enumerate() {
+                    *r = (p[0] * p[1] - 3.0) * i as f64 + p[2] - 1.0;
+                }
+            },
+            9,
+            &[1.0, 2.0, 0.0],
+            &[1.0, 1.0, 1.0],
+        )
+        .unwrap_err()
+        .to_string();
+        assert!(error.contains("1, 2"), "{error}");
+        assert!(least_squares(|_, r| r.fill(1.0), 1, &[1.0, 1.0], &[1.0, 1.0]).is_err());
+        assert!(least_squares(|_, r| r.fill(1.0), 3, &[1.0], &[]).is_err());
+        assert!(least_squares(|_, r| r.fill(1.0), 3, &[1.0], &[0.0]).is_err());
+        assert!(least_squares(|_, r| r.fill(1.0), 3, &[], &[]).is_err());
+        assert!(least_squares(|_, r| r.fill(f64::NAN), 3, &[1.0], &[1.0]).is_err());
+        let flat = least_squares(|p, r| r.fill(p[0]), 3, &[1.0, 1.0], &[1.0, 1.0]).unwrap_err().to_string();
+        assert!(flat.contains("parameter 2"), "{flat}");
+    }
+}

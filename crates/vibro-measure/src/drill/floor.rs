@@ -1,0 +1,117 @@
+//! Motion against the noise of the instrument: averaged spectra of both, in dB.
+
+use vibro_record::units::{Unit, decibel};
+use vibro_record::{Meta, Scaling, Window};
+use vibro_signal::segment::Segments;
+use vibro_signal::spectrum;
+use vibro_signal::welch::{Stream, Welch};
+
+/// Samples of a segment.
+const SEGMENT: usize = 8192;
+
+/// Averages of a velocity that comes in blocks: Hann window, half overlap.
+pub(super) fn averages() -> Stream {
+    let segments = Segments { length: SEGMENT, hop: SEGMENT / 2 };
+    Welch { segments, window: Window::Hann, detrend: true }.stream()
+}
+
+/// RMS value of each line, from the line after 0 Hz on, and their equivalent noise bandwidth in lines; `None` if the signal was
+/// shorter than a segment.
+fn lines(stream: &Stream, rate: f64) -> Option<(Vec<f64>, f64)> {
+    let meta = Meta::new("velocity", Unit::parse_or_opaque("m/s"));
+    let found = spectrum::averaged(&stream.averages(rate)?, 0, &meta, Window::Hann, Scaling::Rms).ok()?;
+    Some((found.values.magnitudes().split_off(1), found.enbw?))
+}
+
+/// Motion and noise over frequency.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct NoiseFloor {
+    /// Frequency in Hz.
+    pub frequency: Vec<f64>,
+    /// Level of the motion in dB: RMS of a line against 1 m/s.
+    pub motion: Vec<f64>,
+    /// Level of the record without motion.
+    pub noise: Vec<f64>,
+    /// Margin in dB that the motion must have.
+    pub margin: f64,
+    /// Bands in Hz, lowest and highest, in which it has that margin.
+    pub bands: Vec<[f64; 2]>,
+    /// Equivalent noise bandwidth of a line, in Hz.
+    pub line_width: f64,
+}
+
+/// Lines over which levels are averaged to tell the bands, on both sides.
+const SMOOTH: usize = 8;
+
+impl NoiseFloor {
+    /// Motion against noise at `rate` samples a second. `None` if one of them is shorter than a segment.
+    pub fn new(motion: &Stream, noise: &Stream, rate: f64, margin: f64) -> Option<NoiseFloor> {
+        let ((motion, width), (noise, _)) = (lines(motion, rate)?, lines(noise, rate)?);
+        let step = rate / SEGMENT as f64;
+        let frequency: Vec<f64> = (1..=motion.len()).map(|k| k as f64 * step).collect();
+        // Single lines scatter, and between the harmonics of the speed there is no motion: means over some lines decide.
+        let mean = |lines: &[f64], k: usize| {
+            let part = &lines[k.saturating_sub(SMOOTH)..(k + SMOOTH + 1).min(lines.len())];
+            (part.iter().map(|v| v * v).sum::<f64>() / part.len() as f64).sqrt()
+        };
+        let above: Vec<bool> =
+            (0..motion.len()).map(|k| decibel(mean(&motion, k), mean(&noise, k)) >= margin).collect();
+        let mut bands: Vec<[f64; 2]> = Vec::new();
+        for (k, f) in frequency.iter().enumerate().filter(|(k, _)| above[*k]) {
+            match bands.last_mut().filter(|_| k > 0 && above[k - 1]) {
+                Some(band) => band[1] = *f,
+                None => bands.push([*f, *f]),
+            }
+        }
+        bands.retain(|b| b[1] - b[0] >= SMOOTH as f64 * step);
+        let level =
+            |lines: Vec<f64>| lines.into_iter().map(|v| decibel(v.max(f64::MIN_POSITIVE), 1.0)).collect();
+        Some(NoiseFloor {
+            frequency,
+            motion: level(motion),
+            noise: level(noise),
+            margin,
+            bands,
+            line_width: width * step,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sine_has_its_rms_and_noise_its_density() {
+        let rate = 8192.0;
+        let mut state = 5u64;
+        let mut uniform = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        };
+        let noise: Vec<f64> = (0..200_000).map(|_| 0.01 * uniform()).collect();
+        let motion: Vec<f64> = noise
+            .iter()
+            .enumerate()
+            .map(|(i, n)| n + 2.0 * (std::f64::consts::TAU * 500.0 * i as f64 / rate).sin())
+            .collect();
+        let spectrum = |v: &[f64], block| {
+            let mut s = averages();
+            v.chunks(block).for_each(|b| s.push(b));
+            s
+        };
+        let floor = NoiseFloor::new(&spectrum(&motion, 1000), &spectrum(&noise, 70_000), rate, 10.0).unwrap();
+        assert_eq!(floor.frequency[499], 500.0);
+        // 2/√2 m/s, noise adds nothing that is seen: 40 dB and more below.
+        assert!((floor.motion[499] - 20.0 * 2f64.sqrt().log10()).abs() < 0.01);
+        // Power of uniform noise, 1e-4/12, over 4096 lines, a line 1.5 wide; 46 segments scatter by 0.7 dB a line, the
+        // mean of 3000 lines by 0.02 dB.
+        let mean = floor.noise[1000..4000].iter().map(|l| 10f64.powf(l / 10.0)).sum::<f64>() / 3000.0;
+        assert!((10.0 * (mean / (1e-4 / 12.0 / 4096.0 * 1.5)).log10()).abs() < 0.1);
+        assert_eq!(floor.bands.len(), 1);
+        assert!(floor.bands[0][0] >= 490.0 && floor.bands[0][1] <= 510.0, "{:?}", floor.bands);
+        assert!(
+            NoiseFloor::new(&spectrum(&motion[..100], 100), &spectrum(&noise, 100), rate, 10.0).is_none()
+        );
+    }
+}

@@ -1,0 +1,148 @@
+//! What a drill's record gave.
+
+use super::{Bandwidth, FaultCount, Group, Impact, NoiseFloor};
+use crate::Estimate;
+use crate::exposure::Exposure;
+use serde::Serialize;
+
+/// Everything found in a record.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Drill {
+    /// Mean speed of the crank in turns a second.
+    pub speed: Estimate,
+    /// Standard deviation of the speed from turn to turn, in Hz.
+    pub speed_variation: f64,
+    /// Whole turns.
+    pub cycles: usize,
+    /// Turns in the average: whole, and with no part of the velocity lost.
+    pub averaged: usize,
+    /// The reference.
+    pub reference: Pulses,
+    /// Every impact.
+    pub impacts: Vec<Impact>,
+    /// Impacts by direction and phase, the strongest group first.
+    pub groups: Vec<Group>,
+    /// Mean velocity before the impacts of the strongest group; so are all means down to the restitution.
+    pub before: Option<Estimate>,
+    /// Mean velocity after the impacts.
+    pub after: Option<Estimate>,
+    /// Mean phase of the impacts in turns after the edge.
+    pub phase: Option<Estimate>,
+    /// Standard deviation of the phase from impact to impact, in turns.
+    pub phase_variation: Option<f64>,
+    /// Mean kinetic energy before the impacts.
+    pub energy: Option<Estimate>,
+    /// Mean energy that the impacts take out of the mass.
+    pub energy_given: Option<Estimate>,
+    /// Restitution from the balance of momentum; without a struck mass that of a struck mass that does not move.
+    pub restitution: Option<Estimate>,
+    /// Impacts that lie in a drop-out.
+    pub hidden: usize,
+    /// Impacts whose fits reach the end of the range; they are in no mean unless there are no others.
+    pub clipped: usize,
+    /// Velocity over the phase.
+    pub average: Phases,
+    /// Displacement over the phase.
+    pub displacement: Displacement,
+    /// Drop-outs of the velocity.
+    pub dropouts: usize,
+    /// Spikes of the velocity.
+    pub spikes: usize,
+    /// Samples bridged, lost and clipped.
+    pub faults: FaultCount,
+    /// How fast the motion changes.
+    pub bandwidth: Bandwidth,
+    /// Motion against the noise of the instrument, where a record without motion was given.
+    pub noise_floor: Option<NoiseFloor>,
+    /// Hand-arm exposure, where a handle was measured.
+    pub exposure: Option<Exposure>,
+    /// Factor of the beam.
+    pub beam: BeamResult,
+    /// Smoothing of average and displacement; `None` where it was switched off.
+    pub smoothing: Option<Corner>,
+    /// Speed of each turn in Hz, for the picture of it.
+    #[serde(skip)]
+    pub speeds: Vec<f64>,
+    /// Time of the beginning of each turn in s.
+    #[serde(skip)]
+    pub times: Vec<f64>,
+    /// Velocity, as it was measured, of a few turns in the middle.
+    #[serde(skip)]
+    pub excerpt: Vec<f64>,
+    /// The reference beside it.
+    #[serde(skip)]
+    pub excerpt_reference: Vec<f64>,
+    /// Time of its first sample in s, and sampling interval.
+    #[serde(skip)]
+    pub excerpt_time: (f64, f64),
+    /// What a person must know.
+    pub warnings: Vec<String>,
+}
+
+/// Edges of the reference.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Pulses {
+    /// Edges found.
+    pub edges: usize,
+    /// Edges that should be there and are not.
+    pub missing: usize,
+    /// Edges that should not be there.
+    pub extra: usize,
+    /// Stretches without edges.
+    pub pauses: usize,
+    /// Standard uncertainty of an edge in s.
+    pub std: f64,
+}
+
+/// The phase-synchronous average.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Phases {
+    /// Phase in turns after the edge.
+    pub phase: Vec<f64>,
+    /// Mean velocity in m/s.
+    pub mean: Vec<f64>,
+    /// Standard deviation from turn to turn, in m/s.
+    pub std: Vec<f64>,
+    /// Lowest and highest velocity of all turns, in m/s, for the picture of it.
+    #[serde(skip)]
+    pub range: Vec<(f64, f64)>,
+}
+
+/// Displacement by integration over whole turns.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Displacement {
+    /// Displacement in m at the phases of the average; its mean is 0.
+    pub value: Vec<f64>,
+    /// Mean peak-to-peak displacement of a turn.
+    pub stroke: Estimate,
+    /// Mean displacement left at the end of a turn, which was taken away.
+    pub drift: Estimate,
+}
+
+impl Displacement {
+    /// Where speeds are too small, so is what they add up to: nothing is stated.
+    pub(super) fn over_range(&mut self) {
+        self.stroke.std = None;
+        self.drift.std = None;
+    }
+}
+
+/// Effect of the beam's angle.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct BeamResult {
+    /// Velocity of the motion over velocity along the beam.
+    pub factor: f64,
+    /// Relative change of velocities for one degree of error in the angle.
+    pub per_degree: f64,
+}
+
+/// A smoothing and its corner.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Corner {
+    /// Kind of smoothing.
+    pub kind: &'static str,
+    /// Corner in Hz: half the amplitude of the zero-phase low-pass, 1/√2 of exponential smoothing.
+    pub corner: f64,
+    /// Why there.
+    pub reason: &'static str,
+}

@@ -1,0 +1,312 @@
+//! From reference edges to turns: which are whole, how fast, how evenly.
+
+use super::survey::median;
+use crate::Estimate;
+use crate::mean::Mean;
+use vibro_record::{Error, Result};
+
+/// Neighbours on each side whose median is the interval to be expected.
+const AROUND: usize = 15;
+/// An interval shorter than this part of its neighbours ends in an edge too many; one longer than the second lacks edges.
+const SHORT: f64 = 0.6;
+const LONG: f64 = 1.5;
+/// Beyond this many intervals the machine stood still.
+const PAUSE: f64 = 4.0;
+
+/// One turn, from an edge to the edge that is as many pulses later as there are in a turn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turn {
+    /// First edge, in samples from the first sample of the record.
+    pub start: f64,
+    /// Last edge.
+    pub end: f64,
+}
+
+/// The whole turns of a record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Turns {
+    /// Turns in which no edge is missing.
+    pub turns: Vec<Turn>,
+    /// Edges that are not there.
+    pub missing: usize,
+    /// Edges that should not be there; they are passed over.
+    pub extra: usize,
+    /// Stretches without an edge in which the machine stood still, or the reference was lost.
+    pub pauses: usize,
+    /// Turns that are left out because a pause lies between them and the rest.
+    pub apart: usize,
+}
+
+/// Edges with their places in an even series.
+pub(crate) struct Numbered {
+    /// Place and time of each edge; a pause begins a new run.
+    pub(crate) runs: Vec<Vec<(usize, f64)>>,
+    /// Edges that are not there.
+    pub(crate) missing: usize,
+    /// Edges that should not be there; they are passed over.
+    pub(crate) extra: usize,
+    /// Stretches without an edge.
+    pub(crate) pauses: usize,
+}
+
+impl Numbered {
+    /// Numbers edges, each by the median interval around it. Of two edges within an interval the one farther from where the edge before lets
+    /// it be expected is passed over; where none is before, the one behind tells.
+    pub(crate) fn new(edges: &[f64]) -> Numbered {
+        let intervals: Vec<f64> = edges.windows(2).map(|e| e[1] - e[0]).collect();
+        let (mut missing, mut extra, mut pauses) = (0, 0, 0);
+        let mut runs: Vec<Vec<(usize, f64)>> = vec![edges.iter().take(1).map(|e| (0, *e)).collect()];
+        for (i, &edge) in edges.iter().enumerate().skip(1) {
+            let near =
+                intervals[(i - 1).saturating_sub(AROUND)..(i + AROUND).min(intervals.len())].iter().copied();
+            let (Some(run), expected) = (runs.last_mut(), median(near)) else { continue };
+            let Some(&(place, last)) = run.last() else { continue };
+            let ratio = (edge - last) / expected;
+            if ratio > PAUSE {
+                pauses += 1;
+                runs.push(vec![(0, edge)]);
+                continue;
+            }
+            if ratio >= SHORT {
+                missing += steps(ratio) - 1;
+                run.push((place + steps(ratio), edge));
+                continue;
+            }
+            extra += 1;
+            let before = run.len().checked_sub(2).and_then(|k| run.get(k)).copied();
+            let Some(beside) = before.map(|b| b.1).or(edges.get(i + 1).copied()) else { continue };
+            let off = |edge: f64| {
+                let ratio = (edge - beside).abs() / expected;
+                (ratio - steps(ratio) as f64).abs()
+            };
+            if off(edge) >= off(last) {
+                continue;
+            }
+            run.pop();
+            let between = before.map_or(0, |b| steps((edge - b.1) / expected));
+            // Edges that were missing before the one passed over are counted already.
+            missing += between.saturating_sub(before.map_or(0, |b| place - b.0));
+            run.push((before.map_or(0, |b| b.0 + between), edge));
+        }
+        Numbered { runs, missing, extra, pauses }
+    }
+}
+
+/// Intervals in a time of so many expected ones.
+fn steps(ratio: f64) -> usize {
+    if ratio > LONG { ratio.round() as usize } else { 1 }
+}
+
+impl Turns {
+    /// Turns of `pulses` edges each. With several pulses nobody knows behind a pause which of them comes first: then the
+    /// longest stretch between pauses is all that is taken.
+    ///
+    /// # Errors
+    /// If there is no whole turn, or no pulse in a turn.
+    pub fn new(edges: &[f64], pulses: usize) -> Result<Turns> {
+        let Some(ends) = pulses.checked_add(1).filter(|n| *n > 1) else {
+            return Err(Error::usage(format!("{pulses} pulses a turn"), "at least 1"));
+        };
+        let needed = format!("a turn needs {ends}");
+        let hint = "check --reference, --edge, --pulses-per-turn and --level, the level of the edge";
+        match edges.len() {
+            0 => return Err(Error::refused("no edge in the reference channel").hint(hint)),
+            1 => {
+                return Err(Error::refused(format!("one edge in the reference channel; {needed}")).hint(hint));
+            }
+            n if n <= pulses => {
+                return Err(
+                    Error::refused(format!("{n} edges in the reference channel; {needed}")).hint(hint)
+                );
+            }
+            _ => {}
+        }
+        let Numbered { runs, missing, extra, pauses } = Numbered::new(edges);
+        let whole = |run: &Vec<(usize, f64)>| -> Vec<Turn> {
+            run.windows(ends)
+                .filter(|w| w[0].0 % pulses == 0 && w[pulses].0 - w[0].0 == pulses)
+                .map(|w| Turn { start: w[0].1, end: w[pulses].1 })
+                .collect()
+        };
+        let stretches: Vec<Vec<Turn>> = runs.iter().map(whole).collect();
+        let all: usize = stretches.iter().map(Vec::len).sum();
+        let turns = if pulses == 1 {
+            stretches.concat()
+        } else {
+            stretches.into_iter().max_by_key(Vec::len).unwrap_or_default()
+        };
+        if turns.is_empty() {
+            return Err(Error::refused("no whole turn between the edges of the reference channel").hint(hint));
+        }
+        Ok(Turns { apart: all - turns.len(), turns, missing, extra, pauses })
+    }
+
+    /// Turns a second at `rate` samples a second: the inverse of the mean duration of a turn.
+    ///
+    /// The standard uncertainty is that of the mean of durations that may depend on each other (U. Müller, J. Econometrics 141
+    /// (2007) 1331), of what they scatter beyond the uncertainty `edge` of an edge, in samples, and of that uncertainty itself: durations
+    /// that follow each other share their edges, so only the first and the last edge of each stretch without a gap count. `None` for
+    /// fewer than four turns.
+    pub fn speed(&self, rate: f64, edge: f64) -> Estimate {
+        let mean = self.mean(edge);
+        let method = "inverse mean duration of whole turns; serial correlation accounted for";
+        let std = mean.std.map(|s| rate / mean.value * s / mean.value);
+        Estimate::new(rate / mean.value, std, "Hz", mean.n, method)
+    }
+
+    /// Whether the durations wander so slowly that the uncertainty of the speed may be too small.
+    pub(super) fn wander(&self, edge: f64) -> bool {
+        self.mean(edge).wanders
+    }
+
+    /// Mean duration in samples.
+    fn mean(&self, edge: f64) -> Mean {
+        let durations: Vec<f64> = self.turns.iter().map(|t| t.end - t.start).collect();
+        let joined: Vec<bool> = self.turns.windows(2).map(|t| t[0].end == t[1].start).collect();
+        // An edge between two turns adds to one what it takes of the other: Σ x_t w_t has the part e (w_t − w_t+1) of it.
+        let known = |w: &[f64]| {
+            let ends = w.first().map_or(0.0, |w| w * w) + w.last().map_or(0.0, |w| w * w);
+            let between = w.windows(2).zip(&joined);
+            let inner: f64 = between
+                .map(|(w, joined)| if *joined { (w[0] - w[1]).powi(2) } else { w[0] * w[0] + w[1] * w[1] })
+                .sum();
+            edge * edge * (ends + inner)
+        };
+        let gaps = joined.iter().filter(|joined| !**joined).count();
+        let least = edge * (2.0 * (gaps + 1) as f64).sqrt() / durations.len().max(1) as f64;
+        Mean::beside(&durations, known, least)
+    }
+
+    /// Speed of each turn in Hz.
+    pub fn speeds(&self, rate: f64) -> impl Iterator<Item = f64> {
+        self.turns.iter().map(move |t| rate / (t.end - t.start))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn missing_and_extra_edges_and_pauses() {
+        let mut edges: Vec<f64> = (0..40).map(|k| f64::from(k) * 100.0).collect();
+        edges.remove(10);
+        edges.insert(20, 2050.0);
+        edges.extend((0..5).map(|k| 9000.0 + f64::from(k) * 100.0));
+        let turns = Turns::new(&edges, 1).unwrap();
+        assert_eq!((turns.missing, turns.extra, turns.pauses), (1, 1, 1));
+        // 39 intervals less the two at the missing edge, and 4 behind the pause.
+        assert_eq!(turns.turns.len(), 37 + 4);
+        assert!(turns.turns.iter().all(|t| t.end - t.start == 100.0));
+        let speed = turns.speed(5000.0, 0.1);
+        // Three stretches without a gap, each with two edges.
+        let std = 50.0 * 6f64.sqrt() * 0.1 / 41.0 / 100.0;
+        assert!(speed.value == 50.0 && (speed.std.unwrap() / std - 1.0).abs() < 1e-12, "{speed:?}");
+        // Two pulses a turn: the turns at the missing edge are lost, the pairs stay as they were, and behind the pause nobody
+        // knows which pulse is the first of a turn.
+        let pairs = Turns::new(&edges, 2).unwrap();
+        assert!(pairs.turns.iter().all(|t| t.end - t.start == 200.0 && t.start % 200.0 == 0.0));
+        // 19 pairs less the two that meet at the missing edge; 2 behind the pause are left out.
+        assert_eq!((pairs.turns.len(), pairs.apart, turns.apart), (17, 2, 0));
+    }
+
+    #[test]
+    fn too_few_edges_are_refused_by_name() {
+        let why = |edges: &[f64], pulses| Turns::new(edges, pulses).unwrap_err().to_string();
+        assert!(why(&[], 1).starts_with("no edge"));
+        assert!(why(&[5.0], 1).starts_with("one edge"));
+        assert!(why(&[5.0, 6.0], 2).starts_with("2 edges"));
+        assert!(why(&[5.0, 6.0], usize::MAX - 1).starts_with("2 edges"));
+        assert!(Turns::new(&[5.0, 6.0], 0).is_err() && Turns::new(&[5.0, 6.0], usize::MAX).is_err());
+    }
+
+    #[test]
+    fn jitter_of_edges_telescopes() {
+        let mut state = 11u64;
+        let mut uniform = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        };
+        // Edges of n turns that jitter by σ = 1/√12: the mean duration by √2 σ/n. Each of K cosines sees the jitter of the first and of
+        // the last edge whole and that between by πj/n: E c_j² = (2/n) σ² (2 + π²j²/(2n)), which is 2 (1 + π²(K + 1)(2K + 1)/(24 n)) times the
+        // true variance, and K/(K − 2) of Student's distribution; K = 6 at 60 and 19 at 1000. Sums of independent durations would be √n, 8 and 32 times the truth.
+        for (n, cosines) in [(60, 6.0), (1000, 19.0)] {
+            let truth = (2.0f64 / 12.0).sqrt() / f64::from(n);
+            let share = 1.0 + PI * PI * (cosines + 1.0) * (2.0 * cosines + 1.0) / (24.0 * f64::from(n));
+            let expected = (2.0 * share * cosines / (cosines - 2.0)).sqrt();
+            let squares: f64 = (0..200)
+                .map(|_| {
+                    let edges: Vec<f64> = (0..=n).map(|k| f64::from(k) * 100.0 + uniform()).collect();
+                    let speed = Turns::new(&edges, 1).unwrap().speed(1e4, 0.0);
+                    (speed.std.unwrap() / truth / (1e4 / 100.0 / 100.0)).powi(2)
+                })
+                .sum();
+            let found = (squares / 200.0).sqrt();
+            println!("{n} turns with edges that jitter: {found:.2} times the truth, {expected:.2} expected");
+            // Where the edges' jitter is known, what is left of it by chance is all that is added: less than half of the squares above,
+            // and in each record at least the truth.
+            let known: Vec<f64> = (0..200)
+                .map(|_| {
+                    let edges: Vec<f64> = (0..=n).map(|k| f64::from(k) * 100.0 + uniform()).collect();
+                    Turns::new(&edges, 1).unwrap().speed(1e4, 12f64.sqrt().recip()).std.unwrap() / truth
+                })
+                .collect();
+            let rms = (known.iter().map(|k| k * k).sum::<f64>() / 200.0).sqrt();
+            println!("{n} turns with edges of known jitter: {rms:.2} times the truth");
+            assert!(rms < 1.8 && known.iter().all(|k| *k > 0.999), "{rms}");
+            // Two edges, the same for all cosines, make the variance of each case scatter by 1; 200 cases: 7 % and half of it in the root;
+            // three times that.
+            assert!((found / expected - 1.0).abs() < 0.11 && found < 2.4, "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn false_edges_anywhere_in_a_turn_are_passed_over() {
+        // Turns of 100 with their third in each place but one half: 148 turns, as without the false edges.
+        for part in [0.05, 0.2, 0.45, 0.55, 0.65, 0.7, 0.8, 0.95] {
+            let mut edges: Vec<f64> =
+                (0..150).map(|k| f64::from(k) * 100.0 + f64::from(k * k % 7) * 0.1).collect();
+            for k in [0.0, 40.0, 90.0, 91.0, 148.0] {
+                edges.push(100.0 * (k + part));
+            }
+            edges.sort_by(f64::total_cmp);
+            let turns = Turns::new(&edges, 1).unwrap();
+            assert_eq!(
+                (turns.turns.len(), turns.extra, turns.missing, turns.pauses),
+                (149, 5, 0, 0),
+                "{part}"
+            );
+            assert!(turns.turns.iter().all(|t| (t.end - t.start - 100.0).abs() < 0.7), "{part}");
+            // Before the first edge, where nothing but the next one tells.
+            let mut edges: Vec<f64> = (1..150).map(|k| f64::from(k) * 100.0).collect();
+            edges.insert(0, 100.0 * part);
+            let first = Turns::new(&edges, 1).unwrap().turns[0];
+            // An edge of 0.6 turns and more before the first may be one.
+            assert!(part < 0.45 || first.start == 100.0, "{part}: {first:?}");
+        }
+        // A false edge at 1.45 where the edge at 1 is missing.
+        let mut edges: Vec<f64> = (0..40).map(|k| f64::from(k) * 100.0).collect();
+        edges[21] = 2145.0;
+        let turns = Turns::new(&edges, 1).unwrap();
+        assert_eq!((turns.turns.len(), turns.extra, turns.missing), (37, 1, 1));
+        assert!(turns.turns.iter().all(|t| t.end - t.start == 100.0));
+    }
+
+    #[test]
+    fn scatter_of_durations_counts_whole() {
+        let mut noise = 7u64;
+        let mut at = 0.0;
+        let edges: Vec<f64> = (0..=1000)
+            .map(|_| {
+                noise = noise.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                at += 100.0 + (noise >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
+                at
+            })
+            .collect();
+        let speed = Turns::new(&edges, 1).unwrap().speed(1e4, 0.0);
+        let expected = (1.0f64 / 12.0 / 1000.0).sqrt() / 100.0 * 100.0 * (19.0f64 / 17.0).sqrt();
+        // 19 squares scatter by √(2/19), half of it in the root; three times that.
+        assert!((speed.std.unwrap() / expected - 1.0).abs() < 0.49, "{speed:?} {expected}");
+    }
+}

@@ -1,0 +1,92 @@
+//! Level and noise of what lies between the impacts of a trace.
+
+/// What a trace does between impacts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Background {
+    /// Its level.
+    pub level: f64,
+    /// Standard deviation of its noise.
+    pub sigma: f64,
+    /// Distance from the level that noise alone reaches once in a thousand such records, or less often.
+    pub reach: f64,
+}
+
+/// Lower quartile of |N(0, 1)|.
+const QUARTILE: f64 = 0.318_639_363_964_375;
+/// Median of |N(0, 1)|.
+const MEDIAN: f64 = 0.674_489_750_196_081_7;
+
+/// Level and noise of the samples between impacts.
+///
+/// Starts from the median and the lower quartile of the distances from it, so that impacts may fill half of the record,
+/// then leaves out what rises out of the noise, and its neighbours, and looks again.
+pub fn background(values: &[f64]) -> Background {
+    let all = |x: f64| values.iter().map(|v| (v - x).abs()).collect::<Vec<f64>>();
+    let level = quantile(&mut values.to_vec(), 0.5);
+    let sigma = quantile(&mut all(level), 0.25) / QUARTILE;
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    // P(|x| > zσ) < exp(−z²/2), for each of n samples.
+    let z = (2.0 * (values.len().max(1) as f64 / 1e-3).ln()).sqrt();
+    // Nothing below a thousandth of the range is looked at: noise without samples (a digital trace) has σ = 0.
+    let reach = |sigma: f64| (z * sigma).max(1e-3 * (high - low));
+    let mut found = Background { level, sigma, reach: reach(sigma) };
+    for _ in 0..4 {
+        let out = |i: usize| values.get(i).is_none_or(|v| (v - found.level).abs() > found.reach);
+        let mut quiet: Vec<f64> = (0..values.len())
+            .filter(|i| !(out(*i) || *i > 0 && out(i - 1) || i + 1 < values.len() && out(i + 1)))
+            .map(|i| values[i])
+            .collect();
+        if quiet.len() < 8 {
+            break;
+        }
+        let level = quantile(&mut quiet, 0.5);
+        for v in &mut quiet {
+            *v = (*v - level).abs();
+        }
+        let sigma = quantile(&mut quiet, 0.5) / MEDIAN;
+        found = Background { level, sigma, reach: reach(sigma) };
+    }
+    found
+}
+
+/// Quantile `q` of values in any order, which it reorders; NaN of none.
+pub fn quantile(values: &mut [f64], q: f64) -> f64 {
+    if values.is_empty() {
+        return f64::NAN;
+    }
+    let place = q * (values.len() - 1) as f64;
+    let (_, low, above) = values.select_nth_unstable_by(place.floor() as usize, f64::total_cmp);
+    let low = *low;
+    let next = above.iter().copied().fold(f64::INFINITY, f64::min);
+    if place.fract() > 0.0 { low + place.fract() * (next - low) } else { low }
+}
+
+/// The median of values in any order; NaN of none.
+pub fn median(values: &[f64]) -> f64 {
+    quantile(&mut values.to_vec(), 0.5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::impacts::tests::Noise;
+
+    #[test]
+    fn impacts_that_fill_two_fifths_of_a_record_do_not_move_its_background() {
+        let mut noise = Noise::new(7);
+        let values: Vec<f64> =
+            (0..4000).map(|i| 3.0 + 0.1 * noise.normal() + if i % 10 < 4 { 5.0 } else { 0.0 }).collect();
+        let found = background(&values);
+        // 1200 quiet samples with quiet neighbours: the median scatters by 1.25·0.1/√1200 = 0.004, its deviation by 3 %.
+        assert!((found.level - 3.0).abs() < 0.02, "{found:?}");
+        assert!((found.sigma / 0.1 - 1.0).abs() < 0.15, "{found:?}");
+    }
+
+    #[test]
+    fn quantiles_interpolate() {
+        assert_eq!(quantile(&mut [4.0, 1.0, 3.0, 2.0], 0.5), 2.5);
+        assert_eq!(quantile(&mut [4.0, 1.0, 3.0], 1.0), 4.0);
+        assert!(quantile(&mut [], 0.5).is_nan());
+    }
+}

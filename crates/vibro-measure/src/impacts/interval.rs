@@ -1,0 +1,385 @@
+//! The mean interval of impacts and its uncertainty, where onsets carry noise and intervals jitter.
+//!
+//! Let the k-th impact be at `t₀ + kT + w_k + e_k` with e white (onset noise, σ) and w a random walk (cycle-to-cycle jitter, s).
+//! Differences d of times `m_j` indices apart then have the covariance Σ with `m_j s² + 2σ²` on the diagonal and −σ² beside it, and
+//! T̂ = mᵀΣ⁻¹d/mᵀΣ⁻¹m with variance 1/mᵀΣ⁻¹m (Aitken 1935). s = 0 gives the straight line through (index, time), σ = 0 the telescoping
+//! mean `(t_last − t_first)/(n − 1)`.
+//!
+//! The ratio r = s/σ is not known, and few intervals say little about it: T̂ and its variance are averaged over it, weighted with the
+//! restricted likelihood (Patterson and Thompson 1971) and a prior: jitter alone with a probability of 3/4, otherwise r half-Cauchy
+//! with scale 1/2 (Gelman 2006). The variance is the mean of the variances and the variance of the means; each is that of a Student
+//! distribution of n − 2 degrees of freedom, as the scale of Σ is estimated too.
+//!
+//! Of intervals ±1.96 u, these parts in per cent hold T (2000 simulated records each, standard error 0.6 or less):
+//!
+//! | n  | r = 0 | 0.1 | 0.3 | 1 | 3 | ∞ |
+//! |----|-------|-----|-----|---|---|---|
+//! | 8  | 100 | 100 | 99.9 | 99.0 | 95.0 | 94.1 |
+//! | 20 | 100 | 100 | 99.9 | 97.6 | 95.8 | 95.2 |
+//! | 60 | 100 | 99.2 | 93.2 | 94.6 | 96.7 | 96.2 |
+//!
+//! Where no jitter is there, u is some three times what a straight line would state, at any n: jitter of r = 7/n, which n impacts hardly
+//! show, more than doubles the uncertainty of a straight line. Where the onsets alone are known to scatter, that line is surer: see
+//! [`Scatter`].
+//!
+//! Neither noise of the onsets nor jitter makes neighbouring intervals positively correlated; a speed that wanders does. Where they are, u is not less
+//! than the standard uncertainty of the mean of values that depend on those before (Müller 2007). Of 60 intervals with a correlation of 0.3, 0.5 and 0.7
+//! ±1.96 u then hold T in 93.8, 93.8 and 92.6 %, with 0.9 in 89 %, most of which are said to wander.
+
+use super::burst::median;
+use crate::mean::Mean;
+use crate::residuals::student;
+use serde::Deserialize;
+use std::f64::consts::FRAC_PI_2;
+
+/// What is known to scatter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Scatter {
+    /// Onsets about even times: the straight line through (index, time).
+    Onsets,
+    /// Intervals, each on its own: the mean of the intervals.
+    Intervals,
+    /// Both may: averaged over what the record says.
+    #[default]
+    Unknown,
+}
+
+/// Interval and what disturbs it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// Mean interval T in s.
+    pub mean: f64,
+    /// Its standard uncertainty; NaN where two impacts only are there.
+    pub std: f64,
+    /// Standard deviation σ of an onset, in s, as the intervals show it.
+    pub onset: f64,
+    /// Standard deviation s of the intervals beside the onset noise, in s.
+    pub jitter: f64,
+    /// Serial correlation of neighbouring intervals: −1/2 for onset noise, 0 for jitter; NaN for fewer than four impacts.
+    pub correlation: f64,
+    /// Whether intervals wander so slowly that the uncertainty may be too small.
+    pub wanders: bool,
+}
+
+/// The mean interval of `times` in s at increasing `indices`, of which those of missed impacts are left out.
+///
+/// `None` for fewer than two.
+pub fn interval(times: &[f64], indices: &[usize], scatter: Scatter) -> Option<Interval> {
+    let d: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+    let m: Vec<f64> = indices.windows(2).map(|w| (w[1] - w[0]) as f64).collect();
+    if d.is_empty() || m.len() != d.len() {
+        return None;
+    }
+    if d.len() == 1 {
+        let mean = d[0] / m[0];
+        return Some(Interval {
+            mean,
+            std: f64::NAN,
+            onset: f64::NAN,
+            jitter: f64::NAN,
+            correlation: f64::NAN,
+            wanders: false,
+        });
+    }
+    let nodes = match scatter {
+        Scatter::Onsets => vec![Node::new(&d, &m, 0.0, 1.0)],
+        Scatter::Intervals => vec![Node::new(&d, &m, f64::INFINITY, 1.0)],
+        Scatter::Unknown => nodes(&d, &m),
+    };
+    let highest = nodes.iter().map(|n| n.weight).fold(f64::NEG_INFINITY, f64::max);
+    let parts: Vec<f64> = nodes.iter().map(|n| (n.weight - highest).exp()).collect();
+    let total: f64 = parts.iter().sum();
+    let over =
+        |f: &dyn Fn(&Gls) -> f64| nodes.iter().zip(&parts).map(|(n, p)| p * f(&n.fit)).sum::<f64>() / total;
+    let mean = over(&|g| g.mean);
+    let widened = widened(d.len() - 1).powi(2);
+    let variance = over(&|g| widened * g.variance * g.cofactor + (g.mean - mean).powi(2));
+    // Jitter alone is named where it is likelier than all else together, otherwise the likeliest ratio.
+    let jitter = nodes.iter().zip(&parts).find(|(n, _)| n.ratio.is_infinite());
+    let jitter_alone = jitter.is_some_and(|(_, p)| *p > 0.5 * total);
+    let named = if jitter_alone {
+        nodes.last()
+    } else {
+        nodes
+            .iter()
+            .rev()
+            .filter(|n| n.ratio.is_finite())
+            .max_by(|a, b| a.fit.likelihood.total_cmp(&b.fit.likelihood))
+    }?;
+    let scale = named.fit.variance.sqrt();
+    let correlation = correlation(&d, &m);
+    let slow = if correlation > 0.0 {
+        Some(Mean::of(&d.iter().zip(&m).map(|(d, m)| d / m).collect::<Vec<f64>>()))
+    } else {
+        None
+    };
+    Some(Interval {
+        mean,
+        std: slow.and_then(|s| s.std).map_or(variance.sqrt(), |s| s.max(variance.sqrt())),
+        onset: if jitter_alone { 0.0 } else { scale * named.ratio.atan().cos() },
+        jitter: scale * named.ratio.atan().sin(),
+        correlation,
+        wanders: slow.is_some_and(|s| s.wanders),
+    })
+}
+
+/// Prior probability that intervals jitter and onsets carry no noise.
+const JITTER_ALONE: f64 = 0.75;
+/// Median of the ratio of jitter to onset noise where both may be.
+const SCALE: f64 = 0.5;
+/// Ratios between the least and the largest.
+const RATIOS: usize = 23;
+/// Beyond it onset noise does not show in the mean.
+const LARGEST: f64 = 30.0;
+/// Ratios whose weight is below e to this beside the largest are left out.
+const NEGLIGIBLE: f64 = -9.0;
+
+/// Steps of the logarithm of the ratio that no record needs finer.
+const FINEST: f64 = 0.005;
+
+/// One ratio of jitter to onset noise.
+struct Node {
+    ratio: f64,
+    fit: Gls,
+    /// Logarithm of prior probability times likelihood.
+    weight: f64,
+}
+
+impl Node {
+    fn new(d: &[f64], m: &[f64], ratio: f64, prior: f64) -> Node {
+        let fit = gls(d, m, ratio.atan());
+        Node { ratio, fit, weight: prior.ln() + fit.likelihood }
+    }
+}
+
+/// Ratios from 0 to ∞, those between evenly spaced in the logarithm where the likelihood is.
+fn nodes(d: &[f64], m: &[f64]) -> Vec<Node> {
+    // Below it the jitter does not show in the mean.
+    let least = 0.3 / (m.iter().sum::<f64>() + 1.0);
+    let below = |ratio: f64| (1.0 - JITTER_ALONE) * (ratio / SCALE).atan() / FRAC_PI_2;
+    let (mut from, mut to) = (least.ln(), LARGEST.ln());
+    let between = loop {
+        let step = (to - from) / (RATIOS - 1) as f64;
+        let at = |i: f64| (from + i * step).exp();
+        let between: Vec<Node> = (0..RATIOS)
+            .map(|i| {
+                let (low, high) = ((i as f64 - 0.5).max(0.0), (i as f64 + 0.5).min((RATIOS - 1) as f64));
+                Node::new(d, m, at(i as f64), below(at(high)) - below(at(low)))
+            })
+            .collect();
+        let highest = between.iter().map(|n| n.weight).fold(f64::NEG_INFINITY, f64::max);
+        let counts = |n: &Node| n.weight > highest + NEGLIGIBLE;
+        let first = between.iter().position(counts).unwrap_or(0).saturating_sub(1);
+        let last = (between.iter().rposition(counts).unwrap_or(RATIOS) + 1).min(RATIOS - 1);
+        // A long record knows its ratio well: it is looked at more closely.
+        if last - first > RATIOS / 2 || step < FINEST {
+            break between;
+        }
+        (from, to) = (from + first as f64 * step, from + last as f64 * step);
+    };
+    let mut all = vec![Node::new(d, m, 0.0, below(least))];
+    all.extend(between);
+    all.push(Node::new(d, m, f64::INFINITY, 1.0 - below(LARGEST)));
+    all
+}
+
+/// What a standard uncertainty of `free` degrees of freedom is multiplied by: the standard deviation of Student's distribution where it has
+/// one, otherwise its quantile of 97.5 % over that of the normal one.
+fn widened(free: usize) -> f64 {
+    student(free).unwrap_or(if free == 2 { 4.303 / 1.960 } else { 12.706 / 1.960 })
+}
+
+/// Correlation of intervals that follow each other, none of them over a missed impact: the mean product of neighbours over the variance. Without a gap
+/// that is the usual quotient of sums, whose neighbours are one fewer than its squares.
+fn correlation(d: &[f64], m: &[f64]) -> f64 {
+    let single: Vec<f64> = d.iter().zip(m).filter(|(_, m)| **m == 1.0).map(|(d, _)| *d).collect();
+    let n = single.len() as f64;
+    let mean = single.iter().sum::<f64>() / n;
+    let squares: f64 = single.iter().map(|d| (d - mean).powi(2)).sum();
+    let neighbours = d.windows(2).zip(m.windows(2)).filter(|(_, m)| m[0] == 1.0 && m[1] == 1.0);
+    let (pairs, products) =
+        neighbours.fold((0.0, 0.0), |(n, sum), (d, _)| (n + 1.0, sum + (d[0] - mean) * (d[1] - mean)));
+    if pairs >= 2.0 && squares > 0.0 { products / squares * (n - 1.0) / pairs } else { f64::NAN }
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Gls {
+    mean: f64,
+    /// 1/mᵀΣ⁻¹m for unit variance.
+    cofactor: f64,
+    /// Scale of Σ.
+    variance: f64,
+    /// Restricted log-likelihood but for a constant.
+    likelihood: f64,
+}
+
+/// Generalised least squares at one ratio of jitter to onset noise, in one pass down the bidiagonal factor of `Σ = LDLᵀ`.
+fn gls(d: &[f64], m: &[f64], angle: f64) -> Gls {
+    let (s2, sigma2) = (angle.sin().powi(2), angle.cos().powi(2));
+    let (mut pivot, mut before) = (f64::INFINITY, (0.0, 0.0));
+    let (mut mm, mut md, mut dd, mut log_det) = (0.0, 0.0, 0.0, 0.0);
+    // Least squares of deviations from a close value, so that long records lose no digits.
+    let near = median(&d.iter().zip(m).map(|(d, m)| d / m).collect::<Vec<f64>>());
+    for (d, m) in d.iter().zip(m) {
+        let l = -sigma2 / pivot;
+        let now = (m - l * before.0, d - near * m - l * before.1);
+        pivot = m * s2 + 2.0 * sigma2 + l * sigma2;
+        mm += now.0 * now.0 / pivot;
+        md += now.0 * now.1 / pivot;
+        dd += now.1 * now.1 / pivot;
+        log_det += pivot.ln();
+        before = now;
+    }
+    let free = d.len() as f64 - 1.0;
+    let variance = ((dd - md * md / mm) / free).max(0.0);
+    // Below the rounding of the interval the variance says nothing of the ratio.
+    let least = (f64::EPSILON * near).powi(2).max(f64::MIN_POSITIVE);
+    let likelihood = -0.5 * (free * variance.max(least).ln() + log_det + mm.ln());
+    Gls { mean: near + md / mm, cofactor: 1.0 / mm, variance, likelihood }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::Noise;
+    use super::*;
+    use nalgebra::{DMatrix, DVector};
+
+    const TIMES: [f64; 6] = [0.1, 1.2, 1.9, 3.05, 3.9, 5.2];
+
+    fn parts() -> (Vec<f64>, Vec<f64>) {
+        (TIMES.windows(2).map(|w| w[1] - w[0]).collect(), vec![1.0; 5])
+    }
+
+    #[test]
+    fn jitter_alone_gives_the_telescoping_mean() {
+        let (d, m) = parts();
+        let fit = gls(&d, &m, FRAC_PI_2);
+        // A few roundings of numbers of size 5.
+        assert!((fit.mean - 5.1 / 5.0).abs() < 1e-14, "{fit:?}");
+        let s2 = d.iter().map(|d| (d - 1.02).powi(2)).sum::<f64>() / 4.0;
+        assert!((fit.variance * fit.cofactor - s2 / 5.0).abs() < 1e-14, "{fit:?}");
+    }
+
+    #[test]
+    fn onset_noise_alone_gives_the_straight_line() {
+        let (d, m) = parts();
+        let fit = gls(&d, &m, 0.0);
+        // The textbook line through (0, t₀) … (5, t₅).
+        let (k, t) = (2.5, TIMES.iter().sum::<f64>() / 6.0);
+        let sxx: f64 = (0..6).map(|i| (f64::from(i) - k).powi(2)).sum();
+        let sxy: f64 = TIMES.iter().enumerate().map(|(i, x)| (i as f64 - k) * (x - t)).sum();
+        let slope = sxy / sxx;
+        let rest: f64 = TIMES.iter().enumerate().map(|(i, x)| (x - t - slope * (i as f64 - k)).powi(2)).sum();
+        assert!((fit.mean - slope).abs() < 1e-14, "{fit:?} {slope}");
+        assert!((fit.variance * fit.cofactor - rest / 4.0 / sxx).abs() < 1e-14, "{fit:?}");
+    }
+
+    #[test]
+    fn a_missed_impact_counts_in_the_index() {
+        let times: Vec<f64> = [0.0, 1.0, 3.0, 4.0, 6.0].iter().map(|k| 2.0 + 0.5 * k).collect();
+        let found = interval(&times, &[0, 1, 3, 4, 6], Scatter::Unknown).unwrap();
+        assert!((found.mean - 0.5).abs() < 1e-15 && found.std < 1e-15, "{found:?}");
+        assert_eq!(interval(&[1.0], &[0], Scatter::Unknown), None);
+    }
+
+    #[test]
+    fn intervals_beside_a_missed_impact_are_no_neighbours() {
+        // Deviations from a mean of 1 of 0.1, 0.2, −0.1, −0.2, a gap before the third.
+        let d = [1.1, 1.2, 3.0, 0.9, 0.8];
+        let m = [1.0, 1.0, 3.0, 1.0, 1.0];
+        // Products 0.02 and 0.02 over squares of 0.1 and three pairs for two; few roundings of numbers near 1.
+        assert!((correlation(&d, &m) - 0.04 / 0.1 * 3.0 / 2.0).abs() < 1e-13);
+        assert!(correlation(&[1.1, 0.9, 2.0, 1.2], &[1.0, 1.0, 2.0, 1.0]).is_nan());
+    }
+
+    #[test]
+    fn what_is_known_to_scatter_is_believed() {
+        let indices: Vec<usize> = (0..6).collect();
+        let (d, m) = parts();
+        for (scatter, angle, onset) in [(Scatter::Onsets, 0.0, true), (Scatter::Intervals, FRAC_PI_2, false)]
+        {
+            let found = interval(&TIMES, &indices, scatter).unwrap();
+            let fit = gls(&d, &m, angle);
+            // Four degrees of freedom: √(4/2).
+            let std = (2.0 * fit.variance * fit.cofactor).sqrt();
+            assert!((found.mean - fit.mean).abs() < 1e-14 && (found.std / std - 1.0).abs() < 1e-12);
+            assert!((found.onset > 0.0) == onset && (found.jitter > 0.0) != onset, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn one_pass_is_aitken_by_whole_matrices() {
+        let d = DVector::from_vec(TIMES.windows(2).map(|w| w[1] - w[0]).collect());
+        // Two impacts are missed.
+        let m = DVector::from_vec(vec![1.0, 2.0, 1.0, 1.0, 2.0]);
+        for ratio in [0.0, 0.2, 1.0, 4.0, f64::INFINITY] {
+            let (s2, sigma2) = (ratio.atan().sin().powi(2), ratio.atan().cos().powi(2));
+            let sigma = DMatrix::from_fn(5, 5, |i, j| match i.abs_diff(j) {
+                0 => m[i] * s2 + 2.0 * sigma2,
+                1 => -sigma2,
+                _ => 0.0,
+            });
+            let inverse = sigma.clone().try_inverse().unwrap();
+            let mm = (m.transpose() * &inverse * &m)[0];
+            let mean = (m.transpose() * &inverse * &d)[0] / mm;
+            let rest = &d - &m * mean;
+            let variance = (rest.transpose() * &inverse * &rest)[0] / 4.0;
+            let likelihood = -0.5 * (4.0 * variance.ln() + sigma.determinant().ln() + mm.ln());
+            let found = gls(d.as_slice(), m.as_slice(), ratio.atan());
+            // Condition numbers are below 20.
+            for (a, b) in [
+                (found.mean, mean),
+                (found.cofactor, 1.0 / mm),
+                (found.variance, variance),
+                (found.likelihood, likelihood),
+            ] {
+                assert!((a - b).abs() < 1e-13 * (1.0 + b.abs()), "{ratio}: {a} {b}");
+            }
+        }
+    }
+
+    /// Mean and standard uncertainty over even steps of the prior probability, ratios from 0 to ∞.
+    fn plain(d: &[f64], m: &[f64], steps: usize) -> (f64, f64) {
+        let mut fits = vec![(0.75, gls(d, m, FRAC_PI_2))];
+        for i in 0..steps {
+            let share = (i as f64 + 0.5) / steps as f64;
+            let ratio = 0.5 * (FRAC_PI_2 * share).tan();
+            fits.push((0.25 / steps as f64, gls(d, m, ratio.atan())));
+        }
+        let most = fits.iter().map(|f| f.1.likelihood).fold(f64::NEG_INFINITY, f64::max);
+        let parts: Vec<f64> = fits.iter().map(|(p, f)| p * (f.likelihood - most).exp()).collect();
+        let total: f64 = parts.iter().sum();
+        let free = d.len() as f64 - 1.0;
+        let mean = fits.iter().zip(&parts).map(|(f, p)| p * f.1.mean).sum::<f64>() / total;
+        let each = |f: &Gls| f.variance * f.cofactor * free / (free - 2.0) + (f.mean - mean).powi(2);
+        let variance = fits.iter().zip(&parts).map(|(f, p)| p * each(&f.1)).sum::<f64>() / total;
+        (mean, variance.sqrt())
+    }
+
+    #[test]
+    fn few_ratios_average_as_many_do() {
+        for (n, seed) in [(8, 1), (20, 2), (60, 3), (2000, 4)] {
+            for (onset, jitter) in [(0.02, 0.0), (0.02, 0.004), (0.02, 0.02), (0.0, 0.02)] {
+                let mut noise = Noise::new(seed);
+                let mut walk = 0.0;
+                let times: Vec<f64> = (0..n)
+                    .map(|_| {
+                        walk += 1.0 + jitter * noise.normal();
+                        walk + onset * noise.normal()
+                    })
+                    .collect();
+                let d: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+                let (mean, plain_std) = plain(&d, &vec![1.0; n - 1], 4000);
+                let found = interval(&times, &(0..n).collect::<Vec<_>>(), Scatter::Unknown).unwrap();
+                // Intervals that chance has correlated have that of a mean of such values at least.
+                let least = if found.correlation > 0.0 { Mean::of(&d).std.unwrap() } else { 0.0 };
+                let std = plain_std.max(least);
+                // Half steps of the logarithm of the ratio, 0.2 or less, squared and over 24, and what lies at the ends.
+                let case = format!("n {n}, seed {seed}, {onset} {jitter}: {found:?}, plain {mean} {std}");
+                assert!((found.mean - mean).abs() < 0.01 * plain_std, "{case}");
+                assert!((found.std / std - 1.0).abs() < 0.01, "{case}");
+            }
+        }
+    }
+}

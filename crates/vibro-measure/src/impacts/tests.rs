@@ -1,0 +1,351 @@
+use super::held::held;
+use super::*;
+use vibro_record::units::Unit;
+use vibro_record::{Axis, Grid, Meta};
+
+/// Normal deviates from a 64-bit mix of a counter (splitmix, Steele et al. 2014) and the polar form of Box and Muller.
+pub struct Noise(u64);
+
+impl Noise {
+    pub fn new(seed: u64) -> Noise {
+        Noise(seed)
+    }
+
+    pub fn uniform(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    pub fn normal(&mut self) -> f64 {
+        (-2.0 * (1.0 - self.uniform()).ln()).sqrt() * (std::f64::consts::TAU * self.uniform()).cos()
+    }
+}
+
+fn trace(values: Vec<f64>, rate: f64) -> Trace {
+    Trace {
+        meta: Meta::new("contact", Unit::parse("V").unwrap()),
+        axis: Axis::time(0.0, 1.0 / rate, values.len()),
+        values,
+    }
+}
+
+/// Decaying pulses at `times`, with a flank of about three samples.
+fn pulses(times: &[f64], n: usize, rate: f64, sigma: f64) -> Trace {
+    let mut noise = Noise::new(11);
+    let values = (0..n)
+        .map(|i| {
+            let t = i as f64 / rate;
+            let pulse = |x: f64| if x > 0.0 { (1.0 - (-x / 1e-3).exp()) * (-x / 4e-3).exp() } else { 0.0 };
+            sigma * noise.normal() + times.iter().map(|at| pulse(t - at)).sum::<f64>()
+        })
+        .collect();
+    trace(values, rate)
+}
+
+#[test]
+fn a_regular_train_with_one_missed_and_one_doubled() {
+    let mut times: Vec<f64> = (0..40).map(|k| 0.05 + 0.1 * f64::from(k)).collect();
+    times.remove(20);
+    times.insert(30, 0.05 + 0.1 * 31.0 - 0.07);
+    times.sort_by(f64::total_cmp);
+    let found = impacts(&pulses(&times, 4200, 1000.0, 0.005), &ImpactsOptions::default()).unwrap();
+    assert_eq!((found.n, found.missed, found.doubled, found.regular), (40, 1, 1, true), "{found:?}");
+    // σ_t = 5e-3/(slope of 150/s) = 3e-5 s, so a line through 40 points has u = 3e-5·√(12/40³) = 4e-7 s; four of these.
+    assert!((found.interval.value - 0.1).abs() < 2e-6, "{found:?}");
+}
+
+#[test]
+fn impacts_of_every_second_cycle_keep_their_phase() {
+    let f = 15.0;
+    let times: Vec<f64> = (0..30).map(|k| (2.0 * f64::from(k) + 1.25) / f).collect();
+    let rate = 2000.0;
+    let mut options = ImpactsOptions { excitation: Some(f), ..ImpactsOptions::default() };
+    let trace = pulses(&times, 8500, rate, 0.002);
+    let stated = impacts(&trace, &options).unwrap();
+    assert_eq!(stated.per_cycle, Some(PerCycle { impacts: 1, cycles: 2 }));
+    options.reference =
+        Some((0..8500).map(|i| (std::f64::consts::TAU * f * f64::from(i) / rate).sin()).collect());
+    options.excitation = None;
+    let measured = impacts(&trace, &options).unwrap();
+    assert_eq!(measured.per_cycle, stated.per_cycle);
+    assert!((measured.excitation.unwrap() - f).abs() < 1e-4);
+    for found in [stated, measured] {
+        // Half height is passed within 1 ms = 0.015 cycles of the onset.
+        // The first edge decides which of two cycles counts as the first.
+        assert!((found.phases[0].mean.fract() - 0.25).abs() < 0.016, "{:?}", found.phases);
+        assert!(found.regular);
+    }
+}
+
+#[test]
+fn pulses_that_point_downwards_are_turned() {
+    let times: Vec<f64> = (0..10).map(|k| 0.05 + 0.1 * f64::from(k)).collect();
+    let mut trace = pulses(&times, 1100, 1000.0, 0.005);
+    trace.values.iter_mut().for_each(|v| *v = 2.0 - *v);
+    let found = impacts(&trace, &ImpactsOptions::default()).unwrap();
+    assert_eq!(found.n, 10);
+    assert!(found.warnings.iter().any(|w| w.contains("downwards")), "{:?}", found.warnings);
+}
+
+#[test]
+fn clipped_pulses_are_said() {
+    let times: Vec<f64> = (0..10).map(|k| 0.05 + 0.1 * f64::from(k)).collect();
+    let mut trace = pulses(&times, 1100, 1000.0, 0.005);
+    trace.values.iter_mut().for_each(|v| *v = v.min(0.3));
+    let found = impacts(&trace, &ImpactsOptions::default()).unwrap();
+    assert_eq!(found.n, 10);
+    assert!(found.warnings.iter().any(|w| w.contains("10 of 10 pulses are clipped")), "{:?}", found.warnings);
+}
+
+#[test]
+fn what_holds_no_impacts_is_refused() {
+    let refused = |trace: &Trace| impacts(trace, &ImpactsOptions::default()).unwrap_err();
+    assert!(refused(&trace(vec![1.0; 100], 100.0)).to_string().contains("equal"));
+    let mut one = pulses(&[0.3], 1000, 1000.0, 0.005);
+    assert!(refused(&one).to_string().contains("1 impact was found"));
+    one.values[7] = f64::NAN;
+    assert!(refused(&one).to_string().contains("missing"));
+    let mut noise = Noise::new(5);
+    let quiet = trace((0..5000).map(|_| noise.normal()).collect(), 1000.0);
+    assert!(refused(&quiet).to_string().contains("0 impacts"), "{}", refused(&quiet));
+    let mut unknown = pulses(&[0.1, 0.2], 400, 1000.0, 0.005);
+    unknown.axis = Axis::index(400);
+    let error = refused(&unknown);
+    assert!(error.to_string().contains("--base-band") && error.exit_code() == 2, "{error}");
+    let one_edge = ImpactsOptions {
+        reference: Some((0..400).map(|i| f64::from(i / 200)).collect()),
+        ..ImpactsOptions::default()
+    };
+    let error = impacts(&pulses(&[0.1, 0.2], 400, 1000.0, 0.005), &one_edge).unwrap_err();
+    assert!(error.to_string().contains("1 rising edge:"), "{error}");
+}
+
+/// Pulses of 4 V and 1 ms, sin² each, over a sine of 50 Hz, at 10 kHz for 2 s.
+fn over_hum(times: &[f64], hum: f64, drift: f64) -> Trace {
+    let mut noise = Noise::new(21);
+    let values = (0..20_000)
+        .map(|i| {
+            let t = f64::from(i) / 1e4;
+            let pulse = |x: f64| {
+                if (0.0..1e-3).contains(&x) { (std::f64::consts::PI * x / 1e-3).sin().powi(2) } else { 0.0 }
+            };
+            0.05 * noise.normal()
+                + hum * (std::f64::consts::TAU * 50.0 * t).sin()
+                + drift * t
+                + 4.0 * times.iter().map(|at| pulse(t - at)).sum::<f64>()
+        })
+        .collect();
+    trace(values, 1e4)
+}
+
+#[test]
+fn no_impact_higher_than_the_hum_is_lost() {
+    for rate in [13.37, 25.0, 50.0, 100.0] {
+        let times: Vec<f64> =
+            (0..1000).map(|k| 0.013 + f64::from(k) / rate).take_while(|t| *t < 1.99).collect();
+        for hum in [0.0, 0.2, 0.4, 0.5, 1.0] {
+            for kept in [false, true] {
+                let options = ImpactsOptions { hum: !kept, ..ImpactsOptions::default() };
+                let found = impacts(&over_hum(&times, hum, 0.0), &options).unwrap();
+                assert_eq!(found.n, times.len(), "{rate} Hz, hum {hum}, kept {kept}: {:?}", found.warnings);
+                // The slope of hum of 1 V is 314 V/s, that of the flanks 2π·10³ V/s or more where the hum shifts them by its 1 V: 0.2 ms at most, and the
+                // same in each of these trains but for those of 13.37 Hz.
+                let off = (found.frequency.value / rate - 1.0).abs();
+                assert!(
+                    off < 2e-4 / found.interval.value / (times.len() - 1) as f64,
+                    "{rate} Hz, hum {hum}: {off}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_level_that_drifts_hides_no_impact() {
+    let times: Vec<f64> = (0..38).map(|k| 0.02 + 0.05 * f64::from(k)).collect();
+    for drift in [0.5, -2.0, 4.0] {
+        let found = impacts(&over_hum(&times, 0.0, drift), &ImpactsOptions::default()).unwrap();
+        assert_eq!(found.n, times.len(), "{drift} V/s: {:?}", found.warnings);
+        let said = found.warnings.iter().any(|w| w.contains("drift of the level"));
+        assert!(said, "{drift} V/s: {:?}", found.warnings);
+    }
+}
+
+#[test]
+fn a_refusal_says_what_hides_impacts_and_what_may_help() {
+    // Impacts as high as the hum, at its rate.
+    let times: Vec<f64> = (0..98).map(|k| 0.013 + 0.02 * f64::from(k)).collect();
+    let mut low = over_hum(&times, 0.0, 0.0);
+    for (i, v) in low.values.iter_mut().enumerate() {
+        *v = *v * 0.05 + (std::f64::consts::TAU * 50.0 * i as f64 / 1e4).sin();
+    }
+    if let Err(error) = impacts(&low, &ImpactsOptions::default()) {
+        assert!(error.to_string().contains("high-pass"), "{error}");
+    }
+    let mut noise = Noise::new(8);
+    let quiet = trace((0..5000).map(|_| noise.normal()).collect(), 1000.0);
+    let error = impacts(&quiet, &ImpactsOptions::default()).unwrap_err().to_string();
+    assert!(error.contains("high-pass") && !error.contains("--threshold"), "{error}");
+}
+
+#[test]
+fn two_unequal_intervals_a_cycle_are_a_pattern_and_miss_nothing() {
+    for (second, excitation) in [(0.03, 8.3333), (0.045, 8.3333), (0.05, 8.3333)] {
+        let times: Vec<f64> =
+            (0..32).map(|k| 0.02 + 0.12 * f64::from(k / 2) + if k % 2 == 1 { second } else { 0.0 }).collect();
+        let trace = over_hum(&times, 0.0, 0.0);
+        let options =
+            ImpactsOptions { excitation: Some(excitation), excitation_std: Some(1e-3), ..Default::default() };
+        let found = impacts(&trace, &options).unwrap();
+        assert_eq!((found.n, found.missed, found.doubled, found.pattern), (32, 0, 0, Some(2)), "{found:?}");
+        // Noise of 0.05 on a slope of 6e3 V/s is 8 µs an onset; a line through 32 of them knows T to 8e-6·√(12/32³) = 0.15 µs; four of these.
+        assert!((found.interval.value - 0.06).abs() < 6e-7, "{:?}", found.interval);
+        assert_eq!(found.per_cycle, Some(PerCycle { impacts: 2, cycles: 1 }), "{:?}", found.warnings);
+        let alone = impacts(&trace, &ImpactsOptions::default()).unwrap();
+        assert!(alone.regular && alone.warnings.iter().any(|w| w.contains("pattern of 2")), "{alone:?}");
+    }
+}
+
+#[test]
+fn what_is_known_to_be_complete_misses_nothing() {
+    let mut times: Vec<f64> = (0..30).map(|k| 0.02 + 0.05 * f64::from(k)).collect();
+    times.remove(12);
+    let trace = over_hum(&times, 0.0, 0.0);
+    let known = ImpactsOptions { complete: true, ..ImpactsOptions::default() };
+    assert_eq!(impacts(&trace, &ImpactsOptions::default()).unwrap().missed, 1);
+    let found = impacts(&trace, &known).unwrap();
+    // 28 intervals in 1.45 s.
+    assert!(found.missed == 0 && (found.interval.value - 1.45 / 28.0).abs() < 2e-3, "{found:?}");
+}
+
+#[test]
+fn two_impacts_are_not_regular() {
+    let found = impacts(&pulses(&[0.1, 0.2], 400, 1000.0, 0.005), &ImpactsOptions::default()).unwrap();
+    assert!(!found.regular && found.warnings.iter().any(|w| w.contains("one interval")), "{found:?}");
+}
+
+/// A contact circuit closes within one sample. Its interval is near a whole number of samples or not, its first edge anywhere: the
+/// truth lies in the interval that is stated, and a train that keeps the rate of the excitation does not drift.
+#[test]
+fn edges_within_one_sample_leave_the_interval_unsure() {
+    let (rate, n, seed) = (1000.0, 40, 21);
+    let mut noise = Noise::new(seed);
+    let (mut inside, mut cases) = (0, 0);
+    for period in [100.0, 100.001, 100.01, 100.02, 99.99, 100.37] {
+        for _ in 0..12 {
+            let first = 200.0 + noise.uniform();
+            let edges: Vec<f64> = (0..n).map(|k| first + period * f64::from(k)).collect();
+            let mut values: Vec<f64> = (0..4400).map(|_| 0.01 * noise.normal()).collect();
+            for edge in &edges {
+                let at = edge.ceil() as usize;
+                values[at..at + 12].iter_mut().for_each(|v| *v += 5.0);
+            }
+            let options = ImpactsOptions {
+                excitation: Some(rate / period),
+                excitation_std: Some(1e-6),
+                hum: false,
+                ..ImpactsOptions::default()
+            };
+            let found = impacts(&trace(values, rate), &options).unwrap();
+            assert!(
+                found.warnings.iter().any(|w| w.contains("rise within one sample")),
+                "{:?}",
+                found.warnings
+            );
+            assert!(found.onset_std.unwrap() > 0.28 / rate, "{:?}", found.onset_std);
+            let error = found.interval.value - period / rate;
+            // The first and last edge are each up to a sample late.
+            assert!(error.abs() <= 1.0 / rate / f64::from(n - 1) + 1e-6, "seed {seed}, {period}: {error}");
+            inside += usize::from(error.abs() < 1.96 * found.interval.std.unwrap());
+            assert_eq!(found.per_cycle, Some(PerCycle { impacts: 1, cycles: 1 }), "{:?}", found.warnings);
+            cases += 1;
+        }
+    }
+    // Of 72 cases, 95 % but for two standard deviations of 1.8.
+    assert!(inside * 100 >= cases * 90, "seed {seed}: {inside} of {cases}");
+    // What is wrong by more than the samples hide does drift, by a beat that is stated.
+    let mut values = vec![0.0; 4400];
+    (0..n as usize).for_each(|k| values[200 + 100 * k..212 + 100 * k].fill(5.0));
+    let options = ImpactsOptions {
+        excitation: Some(10.02),
+        excitation_std: Some(1e-6),
+        hum: false,
+        ..ImpactsOptions::default()
+    };
+    let found = impacts(&trace(values, rate), &options).unwrap();
+    let beat = found.beat.unwrap();
+    assert!((beat.value - 0.02).abs() < 1e-9 && beat.std.is_some(), "{beat:?}");
+    // 12 samples closed and 88 open are multiples of 4, but nothing is held for 4.
+    assert!(found.warnings.iter().all(|w| !w.contains("is held for")), "{:?}", found.warnings);
+}
+
+#[test]
+fn uneven_times_and_missing_values_are_named() {
+    let mut odd = pulses(&[0.1, 0.3], 500, 1000.0, 0.001);
+    odd.values[200..210].fill(f64::NAN);
+    let why = impacts(&odd, &ImpactsOptions::default()).unwrap_err().to_string();
+    assert!(why.contains("10 values of the trace") && why.contains("from 0.2 s to 0.209 s"), "{why}");
+    let mut times: Vec<f64> = (0..500).map(|i| f64::from(i) / 1000.0).collect();
+    times[300..].iter_mut().for_each(|t| *t += 0.03);
+    odd.axis.grid = Grid::Uneven(times);
+    let why = impacts(&odd, &ImpactsOptions::default()).unwrap_err().to_string();
+    assert!(why.contains("from 0.299 s to 0.33 s is a step of 0.031 s"), "{why}");
+}
+
+#[test]
+fn a_held_trace_is_known_to_what_it_was_sampled_at() {
+    for hold in [1, 2, 40] {
+        for seed in 0..20 {
+            let mut noise = Noise::new(seed);
+            let interval = 200.3 + 40.0 * noise.uniform();
+            let train = |i: usize| {
+                let since = (i as f64 + 17.0) % interval;
+                if since < 90.0 { 1.0 } else { 0.0 }
+            };
+            let values: Vec<f64> =
+                (0..12_000).map(|i| train(i / hold * hold) + 0.01 * (i / hold % 7) as f64).collect();
+            assert_eq!(held(&values), hold, "seed {seed}");
+            let axis = Axis::time(0.0, 1e-3, values.len());
+            let trace = Trace { meta: Meta::new("contact", Unit::parse("V").unwrap()), axis, values };
+            let found = impacts(&trace, &ImpactsOptions::default()).unwrap();
+            let off = found.interval.value - interval * 1e-3;
+            // Quantised times are off by evenly spread errors, of which none lies beyond three standard deviations.
+            assert!(
+                off.abs() < 3.0 * found.interval.std.unwrap(),
+                "held {hold}, seed {seed}: {off} {:?}",
+                found.interval
+            );
+            assert_eq!(found.warnings.iter().any(|w| w.contains("is held for")), hold > 1);
+        }
+    }
+    // A contact that closes and opens at any sample is not held, however long it stays.
+    assert_eq!(held(&[0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]), 1);
+}
+
+/// A train that is locked to the sampling clock has few distances between its changes, with a common divisor: it is not held for that.
+#[test]
+fn a_train_locked_to_the_sampling_clock_is_not_held() {
+    let of = |closed: usize, period: usize, height: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        (0..200 * period).map(|i| if i % period < closed { height(i / period) } else { 0.0 }).collect()
+    };
+    let even = |_: usize| 5.0;
+    // Missed by no pattern, as bits of a product of large odd numbers; as high as no other; both half of the time.
+    let gaps = |k: usize| if ((k * k * 2_654_435_761) >> 20).is_multiple_of(4) { 0.0 } else { 5.0 };
+    let heights = |k: usize| 5.0 + (k as f64).sqrt();
+    for (closed, period) in [(12, 100), (12, 96), (4, 8), (10, 100), (40, 120)] {
+        assert_eq!(held(&of(closed, period, &even)), 1, "{closed} of {period}");
+        assert_eq!(held(&of(closed, period, &gaps)), 1, "{closed} of {period}, some missed");
+        assert_eq!(held(&of(closed, period, &heights)), 1, "{closed} of {period}, heights");
+    }
+    // Pulses of stairs, all alike, four samples a stair.
+    let stairs: Vec<f64> = (0..20_000).map(|i| f64::from((i % 100 / 4).min(6))).collect();
+    assert_eq!(held(&stairs), 1);
+    // The same train in noise of which one sample in 40 is kept.
+    let mut noise = Noise::new(3);
+    let kept: Vec<f64> = of(12, 96, &even).iter().step_by(40).map(|v| v + 0.01 * noise.normal()).collect();
+    let values: Vec<f64> = (0..40 * kept.len()).map(|i| kept[i / 40]).collect();
+    assert_eq!(held(&values), 40);
+}

@@ -1,0 +1,111 @@
+//! Jumps of a response curve.
+
+use serde::Serialize;
+use vibro_record::Direction;
+
+/// A sudden change of amplitude from one step of a sweep to the next.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Jump {
+    /// Last excitation frequency before, in Hz.
+    pub from: f64,
+    /// First excitation frequency behind, in Hz.
+    pub to: f64,
+    /// Frequency of the jump in Hz: the middle of the two.
+    pub frequency: f64,
+    /// Its standard uncertainty in Hz: anywhere between the two with equal chance, their distance over √12.
+    pub frequency_std: f64,
+    /// Amplitude before.
+    pub amplitude_before: f64,
+    /// Its standard uncertainty.
+    pub amplitude_before_std: Option<f64>,
+    /// Amplitude behind.
+    pub amplitude_after: f64,
+    /// Its standard uncertainty.
+    pub amplitude_after_std: Option<f64>,
+    /// `rise` or `drop`.
+    pub change: &'static str,
+    /// Direction of the sweep.
+    pub direction: Direction,
+}
+
+/// A jump changes the amplitude by at least this factor …
+const JUMP: f64 = 1.5;
+/// … and in logarithm by this much more than the steps beside it.
+const JUMP_AGAINST_NEIGHBOURS: f64 = 2.5;
+
+pub(super) fn known(std: f64) -> Option<f64> {
+    Some(std).filter(|s| s.is_finite())
+}
+
+/// Differences below this many standard deviations are noise.
+pub(super) const SIGMA: f64 = 4.0;
+
+/// Whether two amplitudes differ by more than noise. Unknown uncertainties count as none.
+pub(super) fn differ(amplitude: &[f64], std: &[f64], i: usize, k: usize) -> bool {
+    let noise = [std[i], std[k]].map(|s| if s.is_finite() { s } else { 0.0 });
+    (amplitude[i] - amplitude[k]).abs() > SIGMA * noise[0].hypot(noise[1])
+}
+
+/// Jumps between neighbouring steps, in the order in which the sweep was run.
+pub fn jumps(frequency: &[f64], amplitude: &[f64], std: &[f64], direction: Direction) -> Vec<Jump> {
+    let n = amplitude.len();
+    let step = |i: usize| (amplitude[i + 1] / amplitude[i]).ln();
+    let width = |i: usize| (frequency[i + 1] - frequency[i]).abs();
+    (0..n.saturating_sub(1))
+        .filter(|&i| {
+            // What the curve does on its own over this distance: the steepest of two steps on each side. Without a step on both sides,
+            // and where a sharp peak stands beside the step, a jump cannot be told from a flank.
+            let sides = [i.saturating_sub(2)..i, i + 1..(i + 3).min(n - 1)];
+            let usual = sides.map(|side| {
+                side.filter(|k| width(*k) > 1e-5 * frequency[*k])
+                    .map(|k| (step(k) * width(i) / width(k)).abs())
+                    .fold(f64::NAN, f64::max)
+            });
+            let s = step(i).abs();
+            s.is_finite()
+                && s > JUMP.ln()
+                && usual.iter().all(|u| s > JUMP_AGAINST_NEIGHBOURS * u)
+                && differ(amplitude, std, i, i + 1)
+        })
+        .map(|i| jump([i, i + 1].map(|k| (frequency[k], amplitude[k], std[k])), direction))
+        .collect()
+}
+
+/// The jump between two neighbouring steps.
+pub(super) fn jump([before, after]: [(f64, f64, f64); 2], direction: Direction) -> Jump {
+    Jump {
+        from: before.0,
+        to: after.0,
+        frequency: f64::midpoint(before.0, after.0),
+        frequency_std: (after.0 - before.0).abs() / f64::sqrt(12.0),
+        amplitude_before: before.1,
+        amplitude_before_std: known(before.2),
+        amplitude_after: after.1,
+        amplitude_after_std: known(after.2),
+        change: if after.1 > before.1 { "rise" } else { "drop" },
+        direction,
+    }
+}
+
+/// Changes beyond what a curve does beside them by more than this many standard deviations are a jump, where the other mass jumps.
+const SIGMA_OF_BOTH: f64 = 5.0;
+
+/// The jump of a rising curve where the other mass of the same sweep has one: the change across it lies outside what the steps on both
+/// sides predict. `None` where it does not, or where there is no step on a side.
+pub(super) fn echo(curve: &[(f64, f64, f64)], other: &Jump) -> Option<Jump> {
+    let high = curve.partition_point(|p| p.0 < other.frequency);
+    let low = high.checked_sub(1)?;
+    let points: [_; 4] = curve.get(low.checked_sub(1)?..=high + 1)?.try_into().ok()?;
+    let [a, b, c, d]: [(f64, f64, f64); 4] = points;
+    // Change from `near` to `across` less what the step from `far` to `near` predicts, if it is beyond noise.
+    let excess = |far: (f64, f64, f64), near: (f64, f64, f64), across: (f64, f64, f64)| {
+        let stretch = (across.0 - near.0) / (near.0 - far.0);
+        let excess = across.1 - near.1 - stretch * (near.1 - far.1);
+        let std = across.2.hypot((1.0 + stretch) * near.2).hypot(stretch * far.2);
+        (excess.abs() > SIGMA_OF_BOTH * std).then_some(excess)
+    };
+    // Seen from the other side a change has the other sign.
+    let outside = excess(a, b, c)? * excess(d, c, b)? < 0.0;
+    let (before, after) = if other.direction == Direction::Up { (b, c) } else { (c, b) };
+    outside.then(|| jump([before, after], other.direction))
+}

@@ -1,0 +1,135 @@
+//! What the thesis' scripts sineswpf, sinesw, sinesw3 and timeav gave, mistakes included, so that old results can be checked.
+//!
+//! They are wrong in known ways: the largest line may be 0 Hz, frequencies and amplitudes are read on the line, and the
+//! first and last search windows are open on one side; timeav takes the mean interval of all that is higher than a quarter of one
+//! early peak. Use [`super::excitation`], [`super::waterfall`], [`super::response`] and [`super::impacts`] for answers.
+
+use std::fmt::Write as _;
+use std::path::Path;
+use vibro_record::{Error, Place, Result, Sweep, Trace};
+
+/// sineswpf: the frequency of the largest line of each force spectrum, 0 Hz included; hand-over frequencies as given.
+///
+/// # Errors
+/// Where two lines are equally large the script stops, and so does this.
+pub fn excitation(sweep: &Sweep) -> Result<Vec<f64>> {
+    sweep
+        .points
+        .iter()
+        .map(|point| {
+            if let Some(given) = point.given {
+                return Ok(given);
+            }
+            let place = || Place::file(point.force_path.clone().unwrap_or_default());
+            let largest = point.force.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let mut at = (0..point.force.len()).filter(|k| point.force[*k] == largest);
+            match (at.next(), at.next()) {
+                (Some(k), None) => Ok(sweep.axis.at(k)),
+                (Some(a), Some(b)) => Err(Error::input(
+                    place(),
+                    format!("lines {a} and {b} of the force are equally large: sineswpf stops here"),
+                    "one largest line",
+                )
+                .hint("leave out --legacy: the frequency between the two lines is found then")),
+                _ => Err(Error::input(place(), "no force spectrum", "one a point")),
+            }
+        })
+        .collect()
+}
+
+/// Frequencies as the hand-over file keeps them: four decimals.
+pub fn rounded(excitation: &[f64]) -> Vec<f64> {
+    excitation.iter().map(|f| format!("{f:7.4}").trim().parse().unwrap_or(*f)).collect()
+}
+
+/// Length of a name in a hand-over file of the script.
+const NAME: usize = 11;
+
+/// The hand-over file: number of points, lines, base band, frequencies, then all names without a separator, as the script
+/// wrote them; names that are not 11 characters long stand one a line.
+pub fn hand_over<P: AsRef<Path>>(lines: usize, base_band: f64, excitation: &[f64], names: &[P]) -> String {
+    let mut text = String::new();
+    for number in [excitation.len() as f64, lines as f64, base_band].iter().chain(excitation) {
+        let _ = writeln!(text, "{number:7.4}");
+    }
+    let names: Vec<String> = names.iter().map(|n| n.as_ref().to_string_lossy().into_owned()).collect();
+    if names.iter().all(|n| n.chars().count() == NAME) {
+        text.extend(names);
+    } else {
+        text += &names.join("\n");
+        text.push('\n');
+    }
+    text
+}
+
+/// sinesw: all stored magnitudes, one row a point; nothing is integrated or cut off.
+pub fn waterfall(sweep: &Sweep) -> Vec<Vec<f64>> {
+    sweep.points.iter().map(|p| p.response.values.magnitudes()).collect()
+}
+
+/// sinesw3: for each point the hand-over frequency and the largest stored line between the midpoints to its neighbours,
+/// the first window open downwards and the last upwards.
+///
+/// # Errors
+/// As [`excitation`].
+pub fn response(sweep: &Sweep) -> Result<Vec<(f64, f64)>> {
+    let x = rounded(&excitation(sweep)?);
+    Ok((0..x.len())
+        .map(|i| {
+            let low = if i == 0 { f64::NEG_INFINITY } else { f64::midpoint(x[i - 1], x[i]) };
+            let high = x.get(i + 1).map_or(f64::INFINITY, |next| f64::midpoint(x[i], *next));
+            let spectrum = &sweep.points[i].response.values;
+            let largest = (0..spectrum.len())
+                .filter(|k| (low..=high).contains(&sweep.axis.at(*k)))
+                .map(|k| spectrum.magnitude(k))
+                .fold(f64::NAN, f64::max);
+            (x[i], largest)
+        })
+        .collect())
+}
+
+/// What timeav printed of a contact trace.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactTimes {
+    /// Local maxima that rise from above 0.
+    pub maxima: usize,
+    /// Times of those above the height rule, in s; the first sample counts as one sampling interval, not 0.
+    pub times: Vec<f64>,
+    /// (last − first)/(k − 1) in s; NaN of one peak, as 0/0.
+    pub interval: f64,
+    /// Its inverse in Hz.
+    pub frequency: f64,
+}
+
+/// timeav: local maxima that rise from above 0 and are higher than a quarter of the first big one.
+///
+/// Its own test of "big" is not kept with its outputs; the larger of the first two maxima reproduces all of them.
+///
+/// # Errors
+/// Where the file has a header, the trace no sampling rate or no maximum: the script stopped there.
+pub fn contact_times(trace: &Trace) -> Result<ContactTimes> {
+    if let Some((key, value)) = trace.meta.notes.first() {
+        return Err(Error::refused(format!(
+            "timeav stops at a file with a header (\"{}\"): it finds no number in the first line",
+            format!("{key} {value}").trim()
+        ))
+        .hint("leave out --legacy: header lines are passed over then"));
+    }
+    let rate = super::impacts::rate_of(trace)?;
+    let s = &trace.values;
+    let maxima: Vec<(usize, f64)> = s
+        .windows(3)
+        .enumerate()
+        .filter(|(_, w)| w[0] > 0.0 && w[1] > w[0] && w[1] > w[2])
+        .map(|(i, w)| (i + 1, w[1]))
+        .collect();
+    let big = maxima.iter().take(2).map(|m| m.1).fold(f64::NEG_INFINITY, f64::max);
+    // Octave counts from 1, and the script took the count for the time.
+    let times: Vec<f64> =
+        maxima.iter().filter(|m| m.1 > 0.25 * big).map(|m| (m.0 + 1) as f64 / rate).collect();
+    let (Some(first), Some(last)) = (times.first(), times.last()) else {
+        return Err(Error::refused("timeav stops at a trace without a maximum that rises from above 0"));
+    };
+    let interval = (last - first) / (times.len() - 1) as f64;
+    Ok(ContactTimes { maxima: maxima.len(), interval, frequency: 1.0 / interval, times })
+}

@@ -1,0 +1,30 @@
+//! Answers from records: every number an [`Estimate`].
+
+pub mod coloured;
+pub mod drill;
+pub mod excitation;
+pub mod exposure;
+mod folded;
+pub mod impacts;
+pub mod jump;
+pub mod legacy;
+pub mod limit;
+pub mod line;
+mod mean;
+pub mod modal;
+pub mod noise;
+pub mod peaks;
+pub mod pulse;
+pub mod residuals;
+pub mod resonance;
+pub mod response;
+pub mod restitution;
+pub mod sine;
+pub mod spectral;
+#[cfg(test)]
+pub(crate) mod synthetic;
+pub mod tones;
+pub mod top;
+pub mod waterfall;
+
+pub use vibro_record::Estimate;

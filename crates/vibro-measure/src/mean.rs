@@ -1,0 +1,175 @@
+//! Mean of values in a row that may depend on those before.
+
+use crate::residuals::student;
+use std::f64::consts::PI;
+
+/// Fewest values whose scatter gives a standard uncertainty.
+const FEWEST: usize = 4;
+/// Most cosines: more gain nothing, the uncertainty of the variance is 26 % then.
+const MOST: usize = 30;
+/// Where the density over the cosines is below this part of that at frequency 0, an uncertainty may be too small by a third or more.
+const STEEP: f64 = 0.5;
+/// Largest dependence on the value before that is reckoned with.
+const CLOSEST: f64 = 0.97;
+
+/// A mean and its standard uncertainty.
+///
+/// Values that follow each other are rarely independent: speed and stroke of a machine wander. The variance of their mean is
+/// taken from the slowest changes that the values show, their projections on K cosines
+/// `c_j = √(2/n) Σ x_t cos(πj(t − ½)/n)`, j = 1 to K, of t = 1 to n: each has the spectral density near zero frequency as its
+/// variance, so that `Σ c_j²/(K n)` is the variance of the mean with K degrees of freedom (U. Müller, J. Econometrics 141
+/// (2007) 1331). K is 1.2 n^0.4, from 3 to 30: few enough that the density hardly changes over them where neighbours are
+/// correlated moderately. The standard uncertainty is that of Student's distribution ([`student`]).
+///
+/// Where values depend on the one before by ρ the density falls over the cosines, to the part (1 − ρ)²/(1 − 2ρ cos ω + ρ²) of that
+/// at frequency 0; the variance is divided by the mean of these parts (prewhitening with a first-order model, D. Andrews and J. Monahan,
+/// Econometrica 60 (1992) 953), ρ from the serial correlation r, whose bias −(1 + 3r)/n is added (M. Kendall, Biometrika 41 (1954) 403).
+/// ± 1.96 standard uncertainties hold the truth in 95 % of sequences that are independent, in 93 % of 20 values or more up to ρ = 0.6;
+/// at ρ = 0.9 in 83 % of 20, 89 % of 60 and 94 % of 300. `wanders` tells of sequences in which the uncertainty may be too small.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Mean {
+    /// Arithmetic mean; NaN where there is no value.
+    pub value: f64,
+    /// Standard uncertainty; `None` for fewer than four values, or where one is missing.
+    pub std: Option<f64>,
+    /// Number of values.
+    pub n: usize,
+    /// Whether values wander so slowly that the uncertainty may be too small.
+    pub wanders: bool,
+}
+
+impl Mean {
+    /// Mean of values in the order of time, as a sequence without gaps; the caller leaves out what is missing.
+    pub fn of(values: &[f64]) -> Mean {
+        Mean::beside(values, |_| 0.0, 0.0)
+    }
+
+    /// As [`Mean::of`], of values that carry noise which is known: `known` gives what it adds to Σ of the square of Σ `x_t w_t`, from
+    /// the weights w, and `least` the standard uncertainty of the mean that comes of it. What the values scatter more than the
+    /// noise explains is added to that.
+    pub fn beside(values: &[f64], known: impl Fn(&[f64]) -> f64, least: f64) -> Mean {
+        let n = values.len();
+        let value = if n == 0 { f64::NAN } else { values.iter().sum::<f64>() / n as f64 };
+        if n < FEWEST {
+            return Mean { value, std: None, n, wanders: false };
+        }
+        let count = cosines(n);
+        let step = PI / n as f64;
+        let squares: f64 = (1..=count)
+            .map(|j| {
+                let weights: Vec<f64> = (0..n).map(|t| (step * j as f64 * (t as f64 + 0.5)).cos()).collect();
+                // The cosines sum to 0; the mean is taken away so that it leaves no rounding.
+                let c: f64 = values.iter().zip(&weights).map(|(x, w)| (x - value) * w).sum();
+                2.0 / n as f64 * (c * c - known(&weights))
+            })
+            .sum();
+        if !squares.is_finite() {
+            return Mean { value, std: None, n, wanders: false };
+        }
+        let (part, chance) = part(values, value, count);
+        let variance = squares.max(0.0) / count as f64 / n as f64 / part;
+        let std = student(count).map(|factor| (factor * factor * variance + least * least).sqrt());
+        Mean { value, std: std.filter(|s| s.is_finite()), n, wanders: part < STEEP && !chance }
+    }
+}
+
+/// Mean density over `count` cosines as a part of that at frequency 0, of a chain as correlated as the values; at most 1. And whether
+/// independent values are as correlated in more than 1 % of cases: r of them is about −1/n ± 1/√n.
+fn part(values: &[f64], mean: f64, count: usize) -> (f64, bool) {
+    let n = values.len() as f64;
+    let squares: f64 = values.iter().map(|x| (x - mean).powi(2)).sum();
+    let products: f64 = values.windows(2).map(|x| (x[0] - mean) * (x[1] - mean)).sum();
+    let r = if squares > 0.0 { products / squares } else { 0.0 };
+    let rho = (r + (1.0 + 3.0 * r) / n).clamp(0.0, CLOSEST);
+    let density = |j: usize| {
+        let cos = (PI * j as f64 / n).cos();
+        (1.0 - rho) * (1.0 - rho) / (1.0 - 2.0 * rho * cos + rho * rho)
+    };
+    ((1..=count).map(density).sum::<f64>() / count as f64, r + 1.0 / n < 2.33 / n.sqrt())
+}
+
+/// Cosines for `n` values.
+fn cosines(n: usize) -> usize {
+    ((1.2 * (n as f64).powf(0.4)).round() as usize).clamp(3, MOST).min(n.saturating_sub(1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::Twelve;
+
+    impl Twelve {
+        /// `n` values of unit variance, each `rho` times the one before and something new.
+        fn chain(&mut self, n: usize, rho: f64) -> Vec<f64> {
+            let mut x = self.next();
+            let new = (1.0 - rho * rho).sqrt();
+            (0..n)
+                .map(|_| {
+                    let now = x;
+                    x = rho * now + new * self.next();
+                    now
+                })
+                .collect()
+        }
+    }
+
+    #[test]
+    fn three_cosines_hold_all_that_four_values_scatter() {
+        let values = [3.0, -1.0, 4.0, 1.5];
+        let mean = Mean::of(&values);
+        let squares: f64 = values.iter().map(|x| (x - 1.875f64).powi(2)).sum();
+        // A complete basis but for the constant: s²/n with 3 degrees of freedom, and √3 of Student's distribution.
+        let expected = 3f64.sqrt() * (squares / 3.0 / 4.0).sqrt();
+        assert!((mean.std.unwrap() / expected - 1.0).abs() < 1e-14, "{mean:?} {expected}");
+        assert!((mean.value, mean.n) == (1.875, 4));
+    }
+
+    #[test]
+    fn few_values_and_equal_ones() {
+        assert!(Mean::of(&[]).value.is_nan() && Mean::of(&[]).std.is_none());
+        assert_eq!(Mean::of(&[1.0, 2.0, 4.0]).std, None);
+        assert_eq!(Mean::of(&[1.0, f64::NAN, 1.0, 2.0]).std, None);
+        assert_eq!(Mean::of(&[0.1; 50]).std.map(|s| s < 1e-16), Some(true));
+    }
+
+    /// Parts of 2000 sequences, seed `n`, of which ± 1.96 standard uncertainties hold the true mean 0, and which are said to wander, in %.
+    fn coverage(n: usize, rho: f64) -> (f64, f64) {
+        let mut noise = Twelve(n as u64);
+        let (mut inside, mut told) = (0, 0);
+        for _ in 0..2000 {
+            let mean = Mean::of(&noise.chain(n, rho));
+            inside += i32::from(mean.value.abs() < 1.96 * mean.std.unwrap_or(f64::NAN));
+            told += i32::from(mean.wanders);
+        }
+        let parts = (0.05 * f64::from(inside), 0.05 * f64::from(told));
+        println!("n = {n}, rho = {rho}: {:.1} %, {:.1} % said to wander", parts.0, parts.1);
+        parts
+    }
+
+    #[test]
+    fn intervals_hold_the_truth_as_often_as_they_say() {
+        for (n, rho) in [
+            (4, 0.0),
+            (8, 0.0),
+            (20, 0.0),
+            (20, 0.3),
+            (60, 0.0),
+            (60, 0.3),
+            (60, 0.6),
+            (300, 0.6),
+            (20, 0.6),
+            (300, 0.9),
+        ] {
+            let (part, told) = coverage(n, rho);
+            assert!((92.0..=98.0).contains(&part), "n = {n}, rho = {rho}: {part} %");
+            // Independent values seem to wander in 1 % of cases, which scatters by 0.2 %; four times that.
+            assert!(rho > 0.0 || told < 1.9, "n = {n}: {told} %");
+        }
+        // Where 20 or 60 values hold only one or six times what a chain of 0.9 remembers, its correlation is known too badly: that is
+        // stated, 83 % and 89 %, and most of them are said to wander. 2000 sequences scatter by 0.8 %, four times that.
+        for (n, stated) in [(20, 83.0), (60, 89.0)] {
+            let (part, told) = coverage(n, 0.9);
+            assert!((part - stated).abs() < 3.2 && told > 50.0, "n = {n}: {part} %, {told} %");
+        }
+    }
+}

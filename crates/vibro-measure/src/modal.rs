@@ -1,0 +1,312 @@
+//! Modes of frequency response functions: natural frequency, damping ratio and modal constant.
+//!
+//! The answer is a rational fit in the complex plane, local to each peak: modes of viscous damping and two residual terms for what
+//! lies below and above, in the kind of the function itself (a receptance times iω for a mobility, −ω² for an accelerance).
+//! Beside it stand the largest line, the half-power bandwidth and the circle fit, to be compared.
+
+mod bands;
+mod choice;
+mod graphic;
+mod hidden;
+mod pole;
+mod rational;
+mod response;
+mod result;
+
+pub use graphic::Circle;
+pub use pole::Pole;
+pub use response::Measured;
+pub use result::{ByMethod, ModalOptions, ModalResult, Mode, ModePicture};
+
+use bands::groups;
+use choice::{chosen, together};
+use rational::{Rational, rational};
+use vibro_record::{Error, FrfKind, Result};
+
+/// Finds the modes of a frequency response function.
+///
+/// Each peak that stands a factor of two above its valleys is a candidate; peaks too near each other to be told apart are fitted
+/// together, and modes of other bands are taken away before the last fit of a band. In a band that is given, the modes that were so
+/// found are then fitted together, to all its lines.
+///
+/// # Errors
+/// If the band is not one, holds no peak or fewer lines than the parameters of a mode, or no line can be used.
+pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult> {
+    let mut warnings = Vec::new();
+    if let Some(mass) = options.mass.filter(|m| !(m.is_finite() && *m > 0.0)) {
+        return Err(Error::usage(format!("a mass of {mass} kg"), "a finite mass above 0"));
+    }
+    if let Some(decay) = options.decay {
+        if !(decay.is_finite() && decay > 0.0) {
+            return Err(Error::usage(format!("an added decay of {decay} 1/s"), "a finite decay above 0"));
+        }
+        warnings.push(format!(
+            "An exponential window added a decay of {decay:.4} 1/s, which is taken off: ζ of a mode at f Hz is smaller by {:.4}/f than the peak shows.",
+            decay / std::f64::consts::TAU
+        ));
+    }
+    let least = options.least_coherence;
+    if !(0.0..1.0).contains(&least) {
+        return Err(Error::usage(format!("a least coherence of {least}"), "a number from 0 to below 1"));
+    }
+    let lines = measured.clone().usable(least, &mut warnings)?;
+    warnings.extend(unknown(&lines).map(str::to_owned));
+    let mut groups = groups(&lines, options.band)?;
+    let mut unsupported = Vec::new();
+    let mut fits: Vec<Result<Rational>> =
+        groups.iter_mut().map(|group| chosen(&lines, group, &mut unsupported)).collect();
+    for _ in 0..2 {
+        for at in 0..groups.len() {
+            let others: Vec<Pole> = fits
+                .iter()
+                .enumerate()
+                .filter(|(other, _)| *other != at)
+                .filter_map(|(_, fit)| fit.as_ref().ok())
+                .flat_map(|fit| fit.modes.iter().copied())
+                .collect();
+            if others.is_empty() {
+                continue;
+            }
+            if let Ok(fit) = &fits[at] {
+                let starts: Vec<(f64, f64)> = fit.modes.iter().map(|m| (m.frequency, m.zeta)).collect();
+                if starts.iter().all(|s| s.0 > 0.0 && s.1 > 0.0)
+                    && let Ok(better) = rational(&lines, groups[at].lines.clone(), &starts, &others)
+                {
+                    fits[at] = Ok(better);
+                }
+            }
+        }
+    }
+    if let Some(band) = options.band {
+        (groups, fits) = together(&lines, band, groups, fits, &mut unsupported, &mut warnings)?;
+    }
+    let mut modes = Vec::new();
+    let mut reversed = 0;
+    let poles: Vec<Vec<Pole>> =
+        fits.iter().map(|f| f.as_ref().map_or_else(|_| Vec::new(), |f| f.modes.clone())).collect();
+    for (at, (group, fit)) in groups.iter().zip(fits).enumerate() {
+        match fit {
+            Ok(fit) => {
+                let others = poles.iter().enumerate().filter(|(other, _)| *other != at);
+                let others: Vec<Pole> = others.flat_map(|(_, poles)| poles).copied().collect();
+                reversed += result::report(&lines, group, &fit, &others, options, &mut modes, &mut warnings);
+            }
+            Err(error) => warnings.push(format!(
+                "The peak at {} Hz is not fitted: {error}.",
+                group.peaks.first().map_or_else(String::new, |p| response::hertz(lines.frequency[p.at]))
+            )),
+        }
+    }
+    if !unsupported.is_empty() {
+        unsupported.sort_by(f64::total_cmp);
+        let named: Vec<String> = unsupported.iter().take(8).map(|f| response::hertz(*f)).collect();
+        let more = if unsupported.len() > 8 { ", …" } else { "" };
+        warnings.push(format!(
+            "{} further peaks of the magnitude are not needed to explain the lines around them, and are taken for noise: {}{more} Hz.",
+            unsupported.len(),
+            named.join(", ")
+        ));
+    }
+    if 2 * reversed > groups.iter().map(|g| g.peaks.len()).sum() {
+        warnings.push(
+            "Most peaks have a phase that rises through the resonance: the sign of the phase is reversed (e^{−iωt}), or response and force are exchanged."
+                .to_owned(),
+        );
+    }
+    if modes.is_empty() {
+        return Err(Error::refused(format!("no peak is supported as a mode. {}", warnings.join(" "))));
+    }
+    modes.sort_by(|a, b| a.frequency.value.total_cmp(&b.frequency.value));
+    Ok(ModalResult { modes, warnings })
+}
+
+/// What is not known of the lines, and what follows.
+fn unknown(lines: &Measured) -> impl Iterator<Item = &'static str> {
+    let unit = (lines.kind == FrfKind::Other).then_some(
+        "The unit is not that of a response over a force: the function is fitted as a receptance, and the modal constants are in its unit times (rad/s)².",
+    );
+    let phase = lines.magnitude_only.then_some(
+        "Only magnitudes are known: modes are fitted to |H| with a constant residual term, and have no uncertainty, since what other modes and residual terms add at unknown phases is not seen in what the fit leaves. A circle fit needs phases and is not made; modal constants have no sign.",
+    );
+    unit.into_iter().chain(phase)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use num_complex::Complex64;
+
+    /// Two modes as an accelerance, lines of 0.5 Hz.
+    fn two() -> Measured {
+        let poles = [(80.3, 0.01), (210.7, 0.004)];
+        let poles =
+            poles.map(|(frequency, zeta)| Pole { frequency, zeta, constant: Complex64::new(2.0, 0.0) });
+        let frequency: Vec<f64> = (0..600).map(|i| f64::from(i) * 0.5).collect();
+        let values = frequency.iter().map(|f| poles.iter().map(|p| p.at(*f, 2)).sum()).collect();
+        Measured { frequency, values, magnitude_only: false, kind: FrfKind::Accelerance, coherence: None }
+    }
+
+    fn found(measured: &Measured, options: &ModalOptions) -> ModalResult {
+        modal(measured, options).unwrap()
+    }
+
+    #[test]
+    fn modes_without_noise_are_exact() {
+        let result = found(&two(), &ModalOptions { mass: Some(0.125), ..ModalOptions::default() });
+        assert_eq!(result.modes.len(), 2, "{result:?}");
+        for (mode, (f, zeta)) in result.modes.iter().zip([(80.3, 0.01), (210.7, 0.004)]) {
+            // The other mode is taken away, up to what its own fit leaves: one part in 1e5 of a bandwidth.
+            assert!((mode.frequency.value - f).abs() < 1e-5 * f * zeta, "{mode:?}");
+            assert!((mode.zeta.value / zeta - 1.0).abs() < 1e-5, "{mode:?}");
+            assert!((mode.modal_constant.value / 2.0 - 1.0).abs() < 1e-4, "{mode:?}");
+            let k = mode.stiffness.as_ref().unwrap();
+            let expected = 0.125 * (std::f64::consts::TAU * mode.frequency.value).powi(2);
+            assert!((k.value / expected - 1.0).abs() < 1e-12);
+            let (of_k, of_f) = (k.std.unwrap() / k.value, mode.frequency.std.unwrap() / mode.frequency.value);
+            assert!((of_k / (2.0 * of_f) - 1.0).abs() < 1e-9);
+        }
+        // A mode of bandwidth 1.6 Hz has seven lines on 270° of its circle. That circle is exact but for the other mode's part.
+        let circle = result.modes[0].by.iter().find(|b| b.method == "circle fit").unwrap();
+        assert!((circle.frequency.value - 80.3).abs() < 0.02, "{circle:?}");
+        assert!((circle.zeta.as_ref().unwrap().value / 0.01 - 1.0).abs() < 0.02, "{circle:?}");
+    }
+
+    /// A mode shape: where two parts move against each other, one of their modal constants is negative.
+    #[test]
+    fn a_modal_constant_has_a_sign_and_a_phase() {
+        let mut measured = two();
+        let poles = [(80.3, 0.01, -0.35), (210.7, 0.004, 2.0)].map(|(frequency, zeta, a)| Pole {
+            frequency,
+            zeta,
+            constant: Complex64::new(a, 0.0),
+        });
+        let sum = |f: &f64| poles.iter().map(|p| p.at(*f, 2)).sum();
+        measured.values = measured.frequency.iter().map(sum).collect();
+        let result = found(&measured, &ModalOptions::default());
+        for (mode, (a, degrees)) in result.modes.iter().zip([(-0.35, 180.0), (2.0, 0.0)]) {
+            assert!((mode.modal_constant.value / a - 1.0).abs() < 1e-3, "{mode:?}");
+            let phase = mode.phase.as_ref().unwrap();
+            assert!((phase.value.abs() - degrees).abs() < 0.1 && phase.unit == "°", "{mode:?}");
+            assert!(phase.std.is_some() && mode.modal_constant.std.is_some());
+            let circle = mode.by.iter().find(|b| b.method == "circle fit").unwrap();
+            assert!(circle.modal_constant.as_ref().is_none_or(|c| c.value * a > 0.0), "{circle:?}");
+        }
+        assert_eq!(result.modes.len(), 2);
+        // A quarter of a turn is neither.
+        measured.values.iter_mut().for_each(|v| *v *= Complex64::i());
+        let result = found(&measured, &ModalOptions::default());
+        assert!(result.warnings.iter().any(|w| w.contains("no sign")), "{result:?}");
+        assert!(result.modes.iter().all(|m| m.modal_constant.value > 0.0));
+    }
+
+    /// Two like modes half a bandwidth of 2 Hz apart show as one peak: what is fitted to it is neither, however well it fits.
+    #[test]
+    fn a_peak_of_two_modes_has_no_uncertainty() {
+        let mut noise = vibro_math::Noise::new(3);
+        let mut with = |modes: &[f64]| {
+            let pole = |f: &f64| Pole { frequency: *f, zeta: 0.01, constant: Complex64::new(2.0, 0.0) };
+            let poles: Vec<Pole> = modes.iter().map(pole).collect();
+            let frequency: Vec<f64> = (1..600).map(|i| f64::from(i) * 0.5).collect();
+            let mut values: Vec<Complex64> =
+                frequency.iter().map(|f| poles.iter().map(|p| p.at(*f, 0)).sum()).collect();
+            let sigma = 0.01 * values.iter().map(|v| v.norm()).fold(0.0, f64::max);
+            for v in &mut values {
+                *v += sigma * Complex64::new(noise.normal(), noise.normal());
+            }
+            let measured = Measured { frequency, values, kind: FrfKind::Receptance, ..two() };
+            found(&measured, &ModalOptions { mass: Some(1.0), ..ModalOptions::default() })
+        };
+        let result = with(&[100.0, 101.0]);
+        let mode = &result.modes[0];
+        let own = [&mode.frequency, &mode.zeta, &mode.modal_constant, &mode.by[0].frequency];
+        let own = own.into_iter().chain(&mode.phase).chain(&mode.stiffness);
+        assert!(result.modes.len() == 1 && own.into_iter().all(|e| e.value.is_finite() && e.std.is_none()));
+        assert!(result.warnings.iter().any(|w| w.contains("no uncertainty")), "{result:?}");
+        let result = with(&[100.0]);
+        assert!(result.modes[0].zeta.std.is_some() && result.modes[0].stiffness.is_some(), "{result:?}");
+    }
+
+    /// An exponential window shifts all poles: the function is taken at iω + σ, and so are the modes that are made here.
+    #[test]
+    fn the_decay_of_an_exponential_window_is_taken_off() {
+        let (own, zeta, decay, measured) = (500.0, 0.01, 3.0, two());
+        let values = measured.frequency.iter().map(|f| {
+            let s = Complex64::new(decay, std::f64::consts::TAU * f);
+            2.0 / (own * own + s * s + 2.0 * zeta * own * s)
+        });
+        let measured = Measured { values: values.collect(), kind: FrfKind::Receptance, ..measured.clone() };
+        let result = found(&measured, &ModalOptions { decay: Some(decay), ..ModalOptions::default() });
+        let mode = &result.modes[0];
+        // Without noise the receptance is a mode exactly; the fit ends within 1e-5 of a bandwidth.
+        assert!((mode.zeta.value / zeta - 1.0).abs() < 1e-4, "{mode:?}");
+        assert!((mode.frequency.value * std::f64::consts::TAU / own - 1.0).abs() < 1e-6, "{mode:?}");
+        assert!((mode.modal_constant.value / 2.0 - 1.0).abs() < 1e-4, "{mode:?}");
+        let circle = mode.by.iter().find(|b| b.method == "circle fit").unwrap();
+        assert!((circle.zeta.as_ref().unwrap().value / zeta - 1.0).abs() < 0.02, "{circle:?}");
+        assert!(result.warnings.iter().any(|w| w.contains("taken off")), "{:?}", result.warnings);
+        let without = found(&measured, &ModalOptions::default());
+        // ζ + σ/ωᵣ, to the square of that.
+        assert!((without.modes[0].zeta.value / (zeta + decay / own) - 1.0).abs() < 1e-3);
+        // As an accelerance, whose constant the correction changes by 2e-4, and its uncertainty by as much.
+        let s = |f: &f64| Complex64::new(decay, std::f64::consts::TAU * f);
+        let values = measured.values.iter().zip(&measured.frequency).map(|(v, f)| v * s(f) * s(f));
+        let measured = Measured { values: values.collect(), kind: FrfKind::Accelerance, ..measured.clone() };
+        let of = |decay| {
+            let result = found(&measured, &ModalOptions { decay, ..ModalOptions::default() });
+            let constant = &result.modes[0].modal_constant;
+            (constant.value, constant.std.unwrap() / constant.value)
+        };
+        let (with, without) = (of(Some(3.0)), of(None));
+        assert!(
+            (with.0 / 2.0 - 1.0).abs() < 1e-4 && (with.1 / without.1 - 1.0).abs() < 1e-9,
+            "{with:?} {without:?}"
+        );
+    }
+
+    #[test]
+    fn magnitudes_alone_give_frequency_and_damping() {
+        let mut measured = two();
+        measured.values.iter_mut().for_each(|v| *v = Complex64::new(v.norm(), 0.0));
+        measured.magnitude_only = true;
+        let result = found(&measured, &ModalOptions { band: Some((76.0, 85.0)), ..ModalOptions::default() });
+        // The other mode is no constant over the band: it bends by (4.5/130)² of itself.
+        assert!((result.modes[0].frequency.value - 80.3).abs() < 0.02, "{result:?}");
+        assert!((result.modes[0].zeta.value / 0.01 - 1.0).abs() < 0.03, "{result:?}");
+        assert!(result.warnings.iter().any(|w| w.contains("no uncertainty")));
+        let mode = &result.modes[0];
+        assert!([&mode.frequency, &mode.zeta, &mode.modal_constant].iter().all(|e| e.std.is_none()));
+        assert!(mode.phase.is_none());
+        assert!(result.modes[0].by.iter().all(|b| b.method != "circle fit"));
+    }
+
+    #[test]
+    fn lines_of_impossible_coherence_are_left_out_and_named() {
+        let mut measured = two();
+        let mut coherence = vec![0.99; measured.frequency.len()];
+        (coherence[158], coherence[162], coherence[420]) = (1.2, 0.2, f64::NAN);
+        measured.values[158] *= 50.0;
+        measured.coherence = Some(coherence);
+        let result = found(&measured, &ModalOptions::default());
+        let said = result.warnings.join(" ");
+        assert!(said.contains("above 1") && said.contains("79 Hz"), "{said}");
+        assert!(said.contains("below 0.5") && said.contains("81 Hz"), "{said}");
+        assert!(said.contains("not a number") && said.contains("210 Hz"), "{said}");
+        assert!((result.modes[0].frequency.value - 80.3).abs() < 1e-3, "{result:?}");
+    }
+
+    #[test]
+    fn what_cannot_be_fitted_is_refused() {
+        let refusal = |measured: &Measured, band| {
+            modal(measured, &ModalOptions { band, ..ModalOptions::default() }).unwrap_err().to_string()
+        };
+        let measured = two();
+        assert!(refusal(&measured, Some((100.0, 130.0))).contains("no peak between"));
+        assert!(refusal(&measured, Some((79.5, 81.0))).contains("4 lines"));
+        assert!(refusal(&measured, Some((90.0, 80.0))).contains("LO below HI"));
+        let with = |value| Measured { values: vec![value; 600], ..two() };
+        assert!(refusal(&with(Complex64::new(1.0, 0.0)), None).contains("no peak"));
+        assert!(refusal(&with(Complex64::new(f64::NAN, 0.0)), None).contains("0 of 600 lines"));
+        let reversed = Measured { values: two().values.iter().map(Complex64::conj).collect(), ..two() };
+        assert!(refusal(&reversed, None).contains("sign of the phase is reversed"));
+    }
+}

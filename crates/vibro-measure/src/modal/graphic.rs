@@ -1,0 +1,150 @@
+//! The methods of paper and pencil: largest line, half-power bandwidth, circle in the Nyquist plane.
+
+use super::{Measured, Pole};
+use num_complex::Complex64;
+use std::f64::consts::{PI, TAU};
+use std::ops::Range;
+use vibro_math::least_squares;
+
+/// Natural frequency and damping from the half-power points of the peak at line `at`, those interpolated between lines on |H|².
+/// `None` where the response does not fall to half its power on both sides inside `part`.
+pub(super) fn half_power(measured: &Measured, at: usize, part: &Range<usize>) -> Option<(f64, f64)> {
+    let power = |i: usize| measured.values[i].norm_sqr();
+    let half = power(at) / 2.0;
+    let cross = |a: usize, b: usize| {
+        let (pa, pb) = (power(a), power(b));
+        let share = (half - pa) / (pb - pa);
+        measured.frequency[a] + share * (measured.frequency[b] - measured.frequency[a])
+    };
+    let left = (part.start..at).rev().find(|i| power(*i) < half)?;
+    let right = (at + 1..part.end).find(|i| power(*i) < half)?;
+    let (low, high) = (cross(left, left + 1), cross(right - 1, right));
+    let f = measured.frequency[at];
+    Some((f, (high - low) / (2.0 * f)))
+}
+
+/// A circle of the mobility in the Nyquist plane and the mode that runs along it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Circle {
+    /// Frequency, damping and modal constant.
+    pub pole: Pole,
+    /// Centre of the circle, (m/s)/N.
+    pub centre: Complex64,
+    /// Its radius.
+    pub radius: f64,
+    /// Frequencies and mobilities that were fitted.
+    pub points: Vec<(f64, Complex64)>,
+}
+
+/// Fewest points of a circle fit.
+pub(super) const POINTS: usize = 6;
+
+/// Largest deviation from a circle, by root mean square over its radius, that is still taken for one.
+const ROUND: f64 = 0.1;
+
+/// Fits a circle to the mobility at the lines within 2.4 half bandwidths of the mode (270° of the circle), by the method of Pratt
+/// (1987), then natural frequency and damping to the angles: tan(θ/2) = (ωᵣ² − ω²)/(2ζωᵣω) from the resonance.
+///
+/// The error is the number of lines where there are fewer than six.
+pub(super) fn circle(measured: &Measured, near: &Pole, part: &Range<usize>) -> Result<Circle, usize> {
+    let reach = 2.4 * near.zeta * near.frequency;
+    let points: Vec<(f64, Complex64)> = part
+        .clone()
+        .filter(|i| (measured.frequency[*i] - near.frequency).abs() <= reach)
+        .map(|i| {
+            let f = measured.frequency[i];
+            (f, measured.values[i] * Complex64::new(0.0, TAU * f).powi(1 - measured.power()))
+        })
+        .collect();
+    if points.len() < POINTS {
+        return Err(points.len());
+    }
+    let failed = Err(points.len());
+    let Some((centre, radius)) = pratt(&points.iter().map(|p| p.1).collect::<Vec<_>>()) else {
+        return failed;
+    };
+    let off: f64 = points.iter().map(|p| ((p.1 - centre).norm() - radius).powi(2)).sum();
+    if (off / points.len() as f64).sqrt() > ROUND * radius {
+        return failed;
+    }
+    let angles: Vec<f64> = points.iter().map(|p| (p.1 - centre).arg()).collect();
+    let nearest = points
+        .iter()
+        .zip(&angles)
+        .min_by(|a, b| (a.0.0 - near.frequency).abs().total_cmp(&(b.0.0 - near.frequency).abs()));
+    let Some((_, at)) = nearest else { return failed };
+    let unit = near.zeta * near.frequency;
+    let residuals = |p: &[f64], out: &mut [f64]| {
+        let (own, zeta, turn) = (near.frequency + p[0] * unit, near.zeta * p[1], at + p[2]);
+        for (out, ((f, _), angle)) in out.iter_mut().zip(points.iter().zip(&angles)) {
+            let expected = turn + 2.0 * ((own * own - f * f) / (2.0 * zeta * own * f)).atan();
+            *out = (angle - expected + PI).rem_euclid(TAU) - PI;
+        }
+    };
+    let Ok(fit) = least_squares(residuals, points.len(), &[0.0, 1.0, 0.0], &[1.0, 1.0, 1.0]) else {
+        return failed;
+    };
+    let (frequency, zeta) = (near.frequency + fit.parameters[0] * unit, near.zeta * fit.parameters[1]);
+    // The mobility at resonance is A/(2ζωᵣ), a diameter.
+    let constant = Complex64::cis(at + fit.parameters[2]) * (2.0 * radius * 2.0 * zeta * TAU * frequency);
+    if !(fit.converged && zeta > 0.0) {
+        return failed;
+    }
+    Ok(Circle { pole: Pole { frequency, zeta, constant }, centre, radius, points })
+}
+
+/// Circle through points by Pratt's algebraic fit: Σ(A|z|² + Bx + Cy + D)² is least under B² + C² − 4AD = 1, here by Newton's
+/// method on the characteristic polynomial (Chernov 2010, 5.9).
+fn pratt(points: &[Complex64]) -> Option<(Complex64, f64)> {
+    let n = points.len() as f64;
+    let mean = points.iter().sum::<Complex64>() / n;
+    let (mut xx, mut yy, mut xy, mut xz, mut yz, mut zz) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    for p in points {
+        let (x, y) = ((p - mean).re, (p - mean).im);
+        let z = x * x + y * y;
+        xx += x * x / n;
+        yy += y * y / n;
+        xy += x * y / n;
+        xz += x * z / n;
+        yz += y * z / n;
+        zz += z * z / n;
+    }
+    let sum = xx + yy;
+    let area = xx * yy - xy * xy;
+    let a2 = 4.0 * area - 3.0 * sum * sum - zz;
+    let spread = zz - sum * sum;
+    let a1 = spread * sum + 4.0 * area * sum - xz * xz - yz * yz;
+    let a0 = xz * (xz * yy - yz * xy) + yz * (yz * xx - xz * xy) - spread * area;
+    // From 0 Newton's method climbs to the smallest root without passing it.
+    let mut root = 0.0_f64;
+    for _ in 0..60 {
+        let value = a0 + root * (a1 + root * (a2 + 4.0 * root * root));
+        let slope = a1 + root * (2.0 * a2 + 16.0 * root * root);
+        let next = root - value / slope;
+        if !next.is_finite() || (next - root).abs() <= 1e-14 * next.abs() {
+            break;
+        }
+        root = next;
+    }
+    let determinant = root * root - root * sum + area;
+    let x = (xz * (yy - root) - yz * xy) / determinant / 2.0;
+    let y = (yz * (xx - root) - xz * xy) / determinant / 2.0;
+    let radius = (x * x + y * y + sum + 2.0 * root).sqrt();
+    radius.is_finite().then(|| (mean + Complex64::new(x, y), radius))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_on_a_circle_give_it_exactly() {
+        let (centre, radius) = (Complex64::new(3.0, -2.0), 0.7);
+        let points: Vec<Complex64> =
+            (0..7).map(|i| centre + Complex64::from_polar(radius, 0.3 + 0.4 * f64::from(i))).collect();
+        let (c, r) = pratt(&points).unwrap();
+        // The moments cancel to squares of the radius; an arc of 2.4 rad is well conditioned.
+        assert!((c - centre).norm() < 1e-10 && (r - radius).abs() < 1e-10, "{c} {r}");
+        assert!(pratt(&[centre; 6]).is_none_or(|(_, r)| r.abs() < 1e-6));
+    }
+}

@@ -1,0 +1,367 @@
+//! Modes and residual terms fitted to a part of a frequency response function in the complex plane.
+
+use super::bands::Peak;
+use super::{Measured, Pole};
+use crate::residuals::{Whiteness, aicc, student};
+use nalgebra::{DMatrix, DVector};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+use vibro_math::{Fit, least_squares};
+use vibro_record::{Error, Result};
+
+/// Modes fitted together.
+pub(super) struct Rational {
+    /// By frequency.
+    pub modes: Vec<Pole>,
+    /// Standard uncertainties of frequency, damping ratio, magnitude and phase in rad of the modal constant; the last is NaN without
+    /// phases.
+    pub std: Vec<[f64; 4]>,
+    /// The fitted response at its lines.
+    pub fitted: Vec<Complex64>,
+    pub whiteness: Whiteness,
+    /// Root mean square of what is left, over the highest line.
+    pub unexplained: f64,
+    /// Akaike's criterion with the weights of the noise, to compare numbers of modes on the same lines.
+    pub aicc: f64,
+    /// How the noise of the lines was weighted.
+    pub noise: &'static str,
+}
+
+/// Lines, scaled: frequency over `unit`, values over `height`.
+struct Scaled<'a> {
+    x: Vec<f64>,
+    values: Vec<Complex64>,
+    /// (ix)^power.
+    factor: Vec<Complex64>,
+    starts: &'a [(f64, f64)],
+    unit: f64,
+    height: f64,
+    power: i32,
+    magnitude_only: bool,
+}
+
+impl Scaled<'_> {
+    /// Frequency and damping of mode `m` from its parameters: in units of the first guess of its half bandwidth and damping.
+    fn shape(&self, p: &[f64], m: usize) -> (f64, f64) {
+        let (f, zeta) = self.starts[m];
+        ((f + p[4 * m] * zeta * f) / self.unit, p[4 * m + 1] * zeta)
+    }
+
+    fn mode(&self, i: usize, (own, zeta): (f64, f64)) -> Complex64 {
+        let x = self.x[i];
+        self.factor[i] / Complex64::new(own * own - x * x, 2.0 * zeta * own * x)
+    }
+
+    /// The model at line `i`: modes, and what lies above (U) and below (L/x²) as receptances.
+    fn at(&self, p: &[f64], i: usize) -> Complex64 {
+        let modes = self.starts.len();
+        let mut sum = Complex64::new(0.0, 0.0);
+        for m in 0..modes {
+            let a = Complex64::new(p[4 * m + 2], if self.magnitude_only { 0.0 } else { p[4 * m + 3] });
+            sum += a * self.mode(i, self.shape(p, m));
+        }
+        let r = &p[4 * modes..];
+        let above = Complex64::new(r[0], r[1]);
+        let below = if self.magnitude_only { Complex64::new(0.0, 0.0) } else { Complex64::new(r[2], r[3]) };
+        sum + self.factor[i] * (above + below / (self.x[i] * self.x[i]))
+    }
+
+    /// The parameters that enter linearly, for given shapes, by least squares; and the sum of squares.
+    fn linear(&self, p: &mut [f64], weight: &[f64]) -> Option<f64> {
+        let modes = self.starts.len();
+        let columns = modes + 2;
+        let mut a = DMatrix::<Complex64>::zeros(self.x.len(), columns);
+        let mut b = DVector::<Complex64>::zeros(self.x.len());
+        for i in 0..self.x.len() {
+            for m in 0..modes {
+                a[(i, m)] = self.mode(i, self.shape(p, m)) / weight[i];
+            }
+            a[(i, modes)] = self.factor[i] / weight[i];
+            a[(i, modes + 1)] = self.factor[i] / (self.x[i] * self.x[i]) / weight[i];
+            b[i] = self.values[i] / weight[i];
+        }
+        let size: Vec<f64> = a.column_iter().map(|c| c.norm()).collect();
+        a.column_iter_mut().zip(&size).for_each(|(mut c, s)| c.unscale_mut(*s));
+        let adjoint = a.adjoint();
+        let solution = (&adjoint * &a).cholesky()?.solve(&(&adjoint * &b));
+        let sum = (&a * &solution - &b).norm_squared();
+        for j in 0..columns {
+            let value = solution[j] / size[j];
+            let at = if j < modes { 4 * j + 2 } else { 4 * modes + 2 * (j - modes) };
+            (p[at], p[at + 1]) = (value.re, value.im);
+        }
+        sum.is_finite().then_some(sum)
+    }
+
+    /// First guess: each mode's frequency and damping in turn on a small grid, all else by linear least squares.
+    fn start(&self, width: f64, weight: &[f64]) -> Option<Vec<f64>> {
+        let mut p = vec![0.0; 4 * self.starts.len() + 4];
+        (0..self.starts.len()).for_each(|m| p[4 * m + 1] = 1.0);
+        for (m, (f, zeta)) in self.starts.iter().enumerate() {
+            let mut least = (f64::INFINITY, p.clone());
+            for shift in [-0.5, -0.25, 0.0, 0.25, 0.5] {
+                for damping in [0.1, 0.3, 0.6, 1.0, 1.6] {
+                    p[4 * m] = shift * width / (zeta * f);
+                    p[4 * m + 1] = damping;
+                    if let Some(sum) = self.linear(&mut p, weight).filter(|s| *s < least.0) {
+                        least = (sum, p.clone());
+                    }
+                }
+            }
+            p = least.1;
+        }
+        self.linear(&mut p, weight)?;
+        Some(p)
+    }
+
+    fn fit(&self, start: &[f64], weight: &[f64]) -> Result<Fit> {
+        let free = self.free();
+        let expand = |q: &[f64]| {
+            let mut p = start.to_vec();
+            free.iter().zip(q).for_each(|(i, v)| p[*i] = *v);
+            p
+        };
+        let n = self.x.len();
+        let residuals = |q: &[f64], out: &mut [f64]| {
+            let p = expand(q);
+            for i in 0..n {
+                let model = self.at(&p, i);
+                if self.magnitude_only {
+                    out[i] = (self.values[i].re - model.norm()) / weight[i];
+                } else {
+                    let left = (self.values[i] - model) / weight[i];
+                    (out[i], out[n + i]) = (left.re, left.im);
+                }
+            }
+        };
+        let q: Vec<f64> = free.iter().map(|i| start[*i]).collect();
+        let largest = q.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+        let scale: Vec<f64> = q.iter().map(|v| v.abs().max(1e-3 * largest.min(1.0))).collect();
+        let rows = if self.magnitude_only { n } else { 2 * n };
+        let mut fit = least_squares(residuals, rows, &q, &scale)?;
+        if !fit.converged {
+            return Err(Error::refused("the fit did not converge"));
+        }
+        fit.parameters = expand(&fit.parameters);
+        Ok(fit)
+    }
+
+    /// Parameters that the values can determine: without phases no phase of the modes, no term from below, and no part of the
+    /// residual term a quarter of a turn ahead, which changes |H| as the modal constant does.
+    fn free(&self) -> Vec<usize> {
+        let modes = 4 * self.starts.len();
+        (0..modes + 4).filter(|i| !self.magnitude_only || (*i < modes && i % 4 != 3) || *i == modes).collect()
+    }
+}
+
+/// Fits modes near the first guesses `starts` (frequency in Hz, damping ratio) to the lines `part` of a function from which
+/// `others` are taken away.
+///
+/// Noise is weighted by the coherence where there is one, its level or its share of the response smoothed over lines; else as equal on all lines or as proportional to the response,
+/// whichever makes the residuals more likely in both cases.
+pub(super) fn rational(
+    measured: &Measured,
+    part: std::ops::Range<usize>,
+    starts: &[(f64, f64)],
+    others: &[Pole],
+) -> Result<Rational> {
+    let power = measured.power();
+    let lines = part.len();
+    let parameters = 4 * starts.len() + 4 - if measured.magnitude_only { starts.len() + 3 } else { 0 };
+    let numbers = if measured.magnitude_only { lines } else { 2 * lines };
+    if numbers < parameters + 3 {
+        return Err(Error::refused(format!(
+            "{lines} lines hold {numbers} numbers, too few for {parameters} parameters and their uncertainty"
+        ))
+        .hint("take a wider band"));
+    }
+    let f = &measured.frequency[part.clone()];
+    // Without phases nothing can be taken away.
+    let others = if measured.magnitude_only { &[] } else { others };
+    let taken = |f: f64| others.iter().map(|o| o.at(f, power)).sum::<Complex64>();
+    let values: Vec<Complex64> =
+        f.iter().zip(&measured.values[part.clone()]).map(|(f, v)| v - taken(*f)).collect();
+    let height = values.iter().map(|v| v.norm()).fold(0.0, f64::max);
+    let unit = starts.iter().map(|s| s.0).sum::<f64>() / starts.len() as f64;
+    let x: Vec<f64> = f.iter().map(|f| f / unit).collect();
+    let scaled = Scaled {
+        factor: x.iter().map(|x| Complex64::new(0.0, *x).powi(power)).collect(),
+        values: values.iter().map(|v| v / height).collect(),
+        x,
+        starts,
+        unit,
+        height,
+        power,
+        magnitude_only: measured.magnitude_only,
+    };
+    let width = (f[f.len() - 1] - f[0]) / (f.len() - 1) as f64;
+    let equal = vec![1.0; lines];
+    let refuse = || Error::refused("no first guess of the modes resembles the lines");
+    let start = if measured.magnitude_only {
+        scaled.guess()
+    } else {
+        scaled.start(width, &equal).ok_or_else(refuse)?
+    };
+    let first = scaled.fit(&start, &equal)?;
+    let height = |i: usize| scaled.at(&first.parameters, i).norm();
+    let unlikely = |fit: &Fit, weight: &[f64]| {
+        let n = fit.residuals.len() as f64;
+        n * (fit.sum_of_squares() / n).ln() + spread(weight, fit.residuals.len())
+    };
+    let (fit, noise, weight) = if let Some(coherence) = &measured.coherence {
+        // Variance of a line: |H|²(1 − γ²)/(2γ²) over the averages (Bendat & Piersol 2010, 9.90), whose number is left to the fit.
+        // That of few averages is hardly known from the line alone, and one that is small by chance would draw the fit to it.
+        let part = part.clone().map(|i| coherence[i]);
+        let share: Vec<f64> = part.map(|c| (1.0 - c).max(1e-5) / c).collect();
+        let level: Vec<f64> =
+            share.iter().zip(&scaled.values).map(|(s, v)| s * v.norm_sqr().max(1e-12)).collect();
+        let level: Vec<f64> = smoothed(&level).into_iter().map(f64::sqrt).collect();
+        let relative: Vec<f64> =
+            smoothed(&share).iter().enumerate().map(|(i, s)| height(i).max(1e-6) * s.sqrt()).collect();
+        let by_level = scaled.fit(&first.parameters, &level);
+        let by_share = scaled.fit(&first.parameters, &relative);
+        let (fit, weight) = match (by_level, by_share) {
+            (Ok(one), Ok(other)) if unlikely(&other, &relative) < unlikely(&one, &level) => (other, relative),
+            (Ok(one), _) => (one, level),
+            (Err(_), other) => (other?, relative),
+        };
+        (fit, "noise by the coherence", weight)
+    } else {
+        let relative: Vec<f64> = (0..lines).map(|i| height(i).max(1e-2)).collect();
+        match scaled.fit(&first.parameters, &relative) {
+            Ok(second) if unlikely(&second, &relative) < unlikely(&first, &equal) => {
+                (second, "noise proportional to the response", relative)
+            }
+            _ => (first, "equal noise on all lines", equal),
+        }
+    };
+    let mut result = scaled.result(&fit, noise, &weight);
+    result.fitted.iter_mut().zip(f).for_each(|(v, f)| *v += taken(*f));
+    Ok(result)
+}
+
+/// Lines on either side over which the noise by the coherence is averaged: with two averages the noise of a line has 2 degrees of
+/// freedom, that of all 31 has 62, and a weight scatters by 9 %.
+const NEAR: usize = 15;
+
+/// Means over each value and those beside it.
+fn smoothed(values: &[f64]) -> Vec<f64> {
+    let near = |i: usize| values.get(i.saturating_sub(NEAR)..(i + NEAR + 1).min(values.len())).unwrap_or(&[]);
+    (0..values.len()).map(|i| near(i).iter().sum::<f64>() / near(i).len() as f64).collect()
+}
+
+/// What the weights of the lines add to minus twice the logarithm of the likelihood of `n` residuals: Σ ln w².
+fn spread(weight: &[f64], n: usize) -> f64 {
+    2.0 * weight.iter().map(|w| w.ln()).sum::<f64>() * n as f64 / weight.len() as f64
+}
+
+/// What a fit leaves, by root mean square, must be less than this part of the highest line; else these are no modes as modelled.
+const EXPLAINED: f64 = 0.1;
+
+/// A mode must be known better than this part of its damping ratio; else the peak may be anything.
+const KNOWN: f64 = 0.5;
+
+impl Rational {
+    /// Whether the modes explain the lines.
+    pub fn explains(&self) -> bool {
+        self.unexplained < EXPLAINED
+    }
+
+    /// Which modes stand: damped, known, and where their peaks, in the same order, are.
+    pub fn sound(&self, measured: &Measured, peaks: &[Peak]) -> Vec<bool> {
+        let stands = |((mode, std), peak): ((&Pole, &[f64; 4]), &Peak)| {
+            let f = &measured.frequency;
+            let lines = f[peak.at + 1] - f[peak.at - 1];
+            mode.zeta > 0.0
+                && std[1] < KNOWN * mode.zeta
+                && std[0] < mode.zeta * mode.frequency
+                && (mode.frequency - f[peak.at]).abs() <= peak.width.max(lines)
+        };
+        self.modes.iter().zip(&self.std).zip(peaks).map(stands).collect()
+    }
+}
+
+impl Scaled<'_> {
+    /// First guess without phases: the modes alone, as high as the response there.
+    fn guess(&self) -> Vec<f64> {
+        let mut p = vec![0.0; 4 * self.starts.len() + 4];
+        for (m, (f, zeta)) in self.starts.iter().enumerate() {
+            let own = f / self.unit;
+            let near = (0..self.x.len())
+                .min_by(|a, b| (self.x[*a] - own).abs().total_cmp(&(self.x[*b] - own).abs()));
+            let height = near.map_or(1.0, |i| self.values[i].norm());
+            p[4 * m + 1] = 1.0;
+            p[4 * m + 2] = height * 2.0 * zeta * own.powi(2 - self.power);
+        }
+        p
+    }
+
+    fn result(&self, fit: &Fit, noise: &'static str, weight: &[f64]) -> Rational {
+        let n = self.x.len();
+        let whiteness = if self.magnitude_only {
+            Whiteness::of(&[&fit.residuals])
+        } else {
+            let (re, im) = fit.residuals.split_at(n);
+            Whiteness::of(&[re, im])
+        };
+        let free = self.free();
+        let place = |i: usize| free.iter().position(|f| *f == i).unwrap_or(0);
+        let p = &fit.parameters;
+        let to_constant = self.height * (TAU * self.unit).powi(2 - self.power);
+        let (mut modes, mut std): (Vec<Pole>, Vec<[f64; 4]>) = (Vec::new(), Vec::new());
+        for (m, (f, zeta)) in self.starts.iter().enumerate() {
+            let (own, damping) = self.shape(p, m);
+            let a = Complex64::new(p[4 * m + 2], if self.magnitude_only { 0.0 } else { p[4 * m + 3] });
+            modes.push(Pole { frequency: own * self.unit, zeta: damping, constant: a * to_constant });
+            // |a| moves with its real part by cos and with its imaginary part by sin of its phase.
+            let (cos, sin) = (a.re / a.norm(), a.im / a.norm());
+            let (re, im) = (place(4 * m + 2), place(4 * m + 3));
+            // The phase, times |a|, moves with its real part by −sin and with its imaginary part by cos.
+            let along = |re_part: f64, im_part: f64| {
+                re_part * re_part * fit.covariance(re, re)
+                    + im_part * im_part * fit.covariance(im, im)
+                    + 2.0 * re_part * im_part * fit.covariance(re, im)
+            };
+            let (variance, across) = if self.magnitude_only {
+                (fit.covariance(re, re), f64::NAN)
+            } else {
+                (along(cos, sin), along(-sin, cos))
+            };
+            // Fits of fewer than three degrees of freedom were refused.
+            let widened = whiteness.inflation * student(fit.degrees_of_freedom()).unwrap_or(f64::NAN);
+            std.push(
+                [
+                    f * zeta * fit.std(place(4 * m)),
+                    zeta * fit.std(place(4 * m + 1)),
+                    to_constant * variance.sqrt(),
+                    across.sqrt() / a.norm(),
+                ]
+                .map(|s| s * widened),
+            );
+        }
+        let mut order: Vec<usize> = (0..modes.len()).collect();
+        order.sort_by(|a, b| modes[*a].frequency.total_cmp(&modes[*b].frequency));
+        let (modes, std) =
+            (order.iter().map(|i| modes[*i]).collect(), order.iter().map(|i| std[*i]).collect());
+        let fitted: Vec<Complex64> = (0..n).map(|i| self.at(p, i)).collect();
+        // Without weights, so that fits with different weights can be compared.
+        let sum: f64 = fitted
+            .iter()
+            .zip(&self.values)
+            .map(|(m, v)| if self.magnitude_only { (v.re - m.norm()).powi(2) } else { (v - m).norm_sqr() })
+            .sum();
+        Rational {
+            unexplained: (sum / n as f64).sqrt(),
+            modes,
+            std,
+            aicc: aicc(fit.sum_of_squares(), fit.residuals.len(), free.len())
+                + spread(weight, fit.residuals.len()),
+            fitted: fitted.iter().map(|v| v * self.height).collect(),
+            whiteness,
+            noise,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,199 @@
+use super::*;
+use vibro_record::units::Unit;
+use vibro_record::{Axis, Meta};
+
+const DT: f64 = 1e-6;
+
+/// A record of 200 samples, a contact of ξ 0.2, 10 kHz and 3 m/s at 80.4 µs on it, and a ripple of 0.1 % for noise.
+fn record() -> Vec<f64> {
+    let contact = KelvinVoigt::new(0.2, 10e3).unwrap();
+    (0..200)
+        .map(|i| {
+            let t = f64::from(i) * DT - 80.4e-6;
+            let pulse = if t >= 0.0 && t <= contact.duration() { contact.unbounded(t) } else { 0.0 };
+            3.0 * pulse + 200.0 * (f64::from(i * i) * 0.7).sin()
+        })
+        .collect()
+}
+
+fn trace(values: Vec<f64>, unit: &str) -> Trace {
+    let axis = Axis::time(0.5, DT, values.len());
+    Trace { meta: Meta::new("bit", Unit::parse(unit).unwrap()), axis, values }
+}
+
+fn found(values: Vec<f64>) -> PulseResult {
+    let result =
+        pulse(&trace(values, "m/s²"), &PulseOptions { mass: Some(0.4), instrument: Instrument::Flat })
+            .unwrap();
+    // Five of the uncertainties that are stated, and those within a hundredth of the value.
+    for (estimate, truth) in [(&result.xi, 0.2), (&result.frequency, 10e3)] {
+        let std = estimate.std.unwrap();
+        assert!((estimate.value - truth).abs() < 5.0 * std && std < 0.02 * truth, "{result:?}");
+    }
+    result
+}
+
+fn says(result: &PulseResult, words: &str) -> bool {
+    result.warnings.iter().any(|w| w.contains(words))
+}
+
+#[test]
+fn all_that_follows_from_a_pulse() {
+    let result = found(record());
+    let velocity = result.initial_velocity.as_ref().unwrap();
+    assert!((velocity.value - 3.0).abs() < 5.0 * velocity.std.unwrap(), "{result:?}");
+    let onset = &result.fits[0].parameters["onset"];
+    assert!((onset.value - 0.5 - 80.4e-6).abs() < 5.0 * onset.std.unwrap(), "{onset:?}");
+    let k = result.stiffness.as_ref().unwrap().value;
+    assert!((k / (0.4 * (std::f64::consts::TAU * result.frequency.value).powi(2)) - 1.0).abs() < 1e-12);
+    let models: Vec<&str> = result.fits.iter().map(|f| f.model).collect();
+    assert_eq!(models, ["kelvin-voigt", "hertz", "hunt-crossley"]);
+    assert!(result.fits[1..].iter().all(|f| f.aicc > result.fits[0].aicc + 10.0), "{:?}", result.fits);
+}
+
+#[test]
+fn an_unknown_instrument_leaves_no_uncertainty() {
+    let result =
+        pulse(&trace(record(), "m/s²"), &PulseOptions { mass: Some(0.4), ..PulseOptions::default() });
+    let result = result.unwrap();
+    assert!(says(&result, "not known whether") && result.xi.value.is_finite(), "{:?}", result.warnings);
+    let all = [&result.xi, &result.frequency, &result.restitution, &result.duration];
+    assert!(all.iter().all(|e| e.std.is_none()) && result.stiffness.unwrap().std.is_none());
+    assert!(result.initial_velocity.unwrap().std.is_none());
+    assert!(result.fits.iter().flat_map(|f| f.parameters.values()).all(|e| e.std.is_none()));
+}
+
+#[test]
+fn without_an_uncertainty_the_borders_of_xi_are_said_from_afar() {
+    let of = |xi: f64| {
+        let contact = KelvinVoigt::new(xi, 10e3).unwrap();
+        let values = (0..200).map(|i| {
+            let t = f64::from(i) * DT - 80.4e-6;
+            let pulse = if t >= 0.0 && t <= contact.duration() { contact.unbounded(t) } else { 0.0 };
+            pulse + 50.0 * (f64::from(i * i) * 0.7).sin()
+        });
+        let record = trace(values.collect(), "m/s²");
+        let known = PulseOptions { instrument: Instrument::Flat, mass: None };
+        [pulse(&record, &PulseOptions::default()).unwrap(), pulse(&record, &known).unwrap()]
+    };
+    // 0.44 and 0.05 are each within 0.1 of a border, and not within the uncertainty of about 0.005 of a known instrument.
+    let [unknown, known] = of(0.44);
+    assert!(says(&unknown, "1/2 or more") && !says(&known, "1/2 or more"), "{:?}", unknown.warnings);
+    let [unknown, known] = of(0.05);
+    assert!(says(&unknown, "no damping is seen") && !says(&known, "no damping"), "{:?}", unknown.warnings);
+}
+
+#[test]
+fn polarity_and_baseline_do_not_matter() {
+    found(record().iter().map(|v| 5e4 - v).collect());
+}
+
+#[test]
+fn a_clipped_top_is_left_out() {
+    let result = found(record().iter().map(|v| v.min(1.2e5)).collect());
+    assert!(says(&result, "clipped"), "{:?}", result.warnings);
+}
+
+#[test]
+fn ringing_after_the_pulse_is_not_fitted() {
+    let end = 80.4e-6 + KelvinVoigt::new(0.2, 10e3).unwrap().duration();
+    let ringing = record().into_iter().enumerate().map(|(i, v)| {
+        let t = i as f64 * DT - end;
+        v + if t > 0.0 { 4e4 * (-t / 30e-6).exp() * (t * 2e5).sin() } else { 0.0 }
+    });
+    let result = found(ringing.collect());
+    assert!(says(&result, "does not rest"), "{:?}", result.warnings);
+}
+
+#[test]
+fn a_sensor_that_droops_leaves_no_uncertainty() {
+    // A first-order high-pass with a time constant of 15 pulses: y' = x' − y/τ.
+    let tau = 15.0 * KelvinVoigt::new(0.2, 10e3).unwrap().duration() / DT;
+    let (mut y, mut before) = (0.0, 0.0);
+    let droops = record().into_iter().map(|x| {
+        y = (y + x - before) * (-1.0 / tau).exp();
+        before = x;
+        y
+    });
+    let options = PulseOptions { instrument: Instrument::Flat, mass: None };
+    let result = pulse(&trace(droops.collect(), "m/s²"), &options).unwrap();
+    assert!(says(&result, "AC coupling") && result.xi.std.is_none(), "{:?}", result.warnings);
+    assert!(result.frequency.std.is_none() && result.restitution.std.is_none());
+}
+
+#[test]
+fn the_contact_of_hunt_and_crossley_is_preferred_where_it_is_one() {
+    let contact = HuntCrossley::new(0.3).unwrap();
+    let times: Vec<f64> = (0..200).map(|i| f64::from(i) * DT - 80.4e-6).collect();
+    let shape = contact.decelerations(45e-6, None, &times);
+    let values = shape
+        .iter()
+        .zip(record())
+        .enumerate()
+        .map(|(i, (v, _))| 3.0 * v + 200.0 * ((i * i) as f64 * 0.7).sin());
+    let options = PulseOptions { instrument: Instrument::Flat, mass: None };
+    let result = pulse(&trace(values.collect(), "m/s²"), &options).unwrap();
+    assert!(says(&result, "prefers the model hunt-crossley"), "{:?}", result.warnings);
+    let alpha = &result.fits[2].parameters["alpha"];
+    assert!((alpha.value - 0.3).abs() < 5.0 * alpha.std.unwrap(), "{alpha:?}");
+}
+
+/// A contact through a low-pass of 30 kHz, fitted without.
+#[test]
+fn without_the_low_pass_that_is_there_nothing_is_stated() {
+    let contact = KelvinVoigt::new(0.15, 6e3).unwrap();
+    let filter = LowPass::new(30e3, 2).unwrap();
+    let values: Vec<f64> = (0..400)
+        .map(|i| {
+            let noise = 100.0 * (f64::from(i * i) * 0.7).sin();
+            contact.filtered(&filter, f64::from(i) * DT - 150.4e-6) + noise
+        })
+        .collect();
+    let fitted = |corner: Option<f64>| {
+        let instrument =
+            corner.map_or(Instrument::Flat, |hz| Instrument::LowPass(LowPass::new(hz, 2).unwrap()));
+        pulse(&trace(values.clone(), "m/s²"), &PulseOptions { instrument, mass: None })
+    };
+    let with = fitted(Some(30e3)).unwrap().xi;
+    assert!((with.value - 0.15).abs() < 5.0 * with.std.unwrap(), "{with:?}");
+    let nothing = |found: &PulseResult| {
+        let own = &found.fits[0].parameters["xi"];
+        [&found.xi, &found.frequency, &found.restitution, &found.duration, own]
+            .iter()
+            .all(|e| e.value.is_nan() && e.std.is_none())
+    };
+    let without = fitted(None).unwrap();
+    assert!(nothing(&without), "{without:?}");
+    assert!(says(&without, "low-pass of the instrument is needed"), "{:?}", without.warnings);
+    // One that is far too high is as good as none, above half the sampling rate as below.
+    let beyond = fitted(Some(600e3)).unwrap();
+    assert!(nothing(&beyond), "{:?} {:?}", beyond.xi, beyond.warnings);
+    let high = fitted(Some(450e3)).unwrap();
+    assert!(nothing(&high), "{:?} {:?}", high.xi, without.xi);
+    assert!(fitted(Some(1e3)).unwrap_err().to_string().contains("low-pass"));
+}
+
+#[test]
+fn a_force_needs_the_mass_and_a_voltage_has_no_velocity() {
+    let options = PulseOptions { mass: Some(0.5), ..PulseOptions::default() };
+    let force = pulse(&trace(record(), "N"), &options).unwrap();
+    // F = ma: half the mass, twice the acceleration.
+    assert!((force.initial_velocity.unwrap().value / 6.0 - 1.0).abs() < 0.02);
+    let bare = pulse(&trace(record(), "N"), &PulseOptions::default()).unwrap();
+    assert!(bare.initial_velocity.is_none() && says(&bare, "needs the mass"));
+    let volts = pulse(&trace(record(), "V"), &PulseOptions::default()).unwrap();
+    assert!(volts.initial_velocity.is_none() && says(&volts, "no acceleration"));
+}
+
+#[test]
+fn what_is_no_pulse_is_refused() {
+    let refusal = |values| pulse(&trace(values, "m/s²"), &PulseOptions::default()).unwrap_err();
+    assert!(refusal(vec![1.0; 80]).to_string().contains("all samples are 1"));
+    let mut spike = vec![0.0; 80];
+    spike[40] = 1.0;
+    assert!(refusal(spike).to_string().contains("sample faster"));
+    let uneven = Trace { axis: Axis::index(200), ..trace(record(), "m/s²") };
+    assert!(pulse(&uneven, &PulseOptions::default()).unwrap_err().to_string().contains("--rate"));
+    let options = PulseOptions { mass: Some(0.0), ..PulseOptions::default() };
+    assert_eq!(pulse(&trace(record(), "m/s²"), &options).unwrap_err().exit_code(), 2);
+}

@@ -1,0 +1,261 @@
+//! A record seen in the units of its pulse, and the way back.
+
+use super::fit::{Fitted, Model, Samples};
+use super::locate::Located;
+use super::result::{PulseCurve, PulseFit, PulsePicture, propagated};
+use super::{HuntCrossley, LowPass};
+use crate::Estimate;
+use crate::residuals::{Whiteness, aicc};
+use std::collections::BTreeMap;
+use std::ops::Range;
+use vibro_record::units::Quantity;
+use vibro_record::units::notation::significant;
+use vibro_record::{Error, Result, Trace};
+
+pub(super) struct View<'a> {
+    trace: &'a Trace,
+    found: &'a Located,
+    /// Sampling interval in s.
+    step: f64,
+    /// Unit of time in s: about the duration of the pulse.
+    pub length: f64,
+    /// Unit of the values.
+    height: f64,
+    filter: Option<LowPass>,
+}
+
+/// A mean of this part of the root mean square is another level; what rings is on both sides of its own.
+const LEVEL: f64 = 0.5;
+
+/// Lengths of the pulse that are fitted before and after it, for the baseline.
+const BESIDE: f64 = 2.0;
+
+impl<'a> View<'a> {
+    pub fn new(
+        trace: &'a Trace,
+        rate: f64,
+        found: &'a Located,
+        filter: Option<&LowPass>,
+    ) -> Result<View<'a>> {
+        let step = 1.0 / rate;
+        // A half sine is above half its height for two thirds of its length.
+        let length = 1.5 * (found.flanks.1 - found.flanks.0) * step;
+        let filter = filter.map(|f| LowPass::new(f.corner() * length, f.order())).transpose()?;
+        Ok(View { trace, found, step, length, height: found.height.abs(), filter })
+    }
+
+    fn time(&self, index: usize) -> f64 {
+        (index as f64 - self.found.flanks.0) * self.step / self.length
+    }
+
+    fn index(&self, time: f64) -> usize {
+        let place = self.found.flanks.0 + time * self.length / self.step;
+        (place.max(0.0).ceil() as usize).min(self.trace.values.len())
+    }
+
+    /// Time in s of the record.
+    fn seconds(&self, time: f64) -> f64 {
+        self.trace.axis.start() + self.found.flanks.0 * self.step + time * self.length
+    }
+
+    fn samples(&self, range: Range<usize>) -> Result<(Samples, Vec<usize>)> {
+        let usable = |i: &usize| self.trace.values[*i].is_finite() && !self.found.clipped.contains(i);
+        let used: Vec<usize> = range.filter(usable).collect();
+        let times = used.iter().map(|i| self.time(*i)).collect();
+        let values = used.iter().map(|i| self.trace.values[*i] / self.height).collect();
+        let samples = Samples::new(
+            times,
+            values,
+            self.step / self.length,
+            self.filter.clone(),
+            self.found.step / self.height,
+        )?;
+        Ok((samples, used))
+    }
+
+    /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record does not rest after it. And whether what follows is about the baseline.
+    pub fn window(
+        &self,
+        warnings: &mut Vec<String>,
+        unlike: impl Fn(Error) -> Error,
+    ) -> Result<(Samples, Vec<usize>, bool)> {
+        let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
+        let from = self.index(-BESIDE - delay);
+        let (first, used) = self.samples(from..self.found.low)?;
+        self.count(&used, from..self.found.low, warnings)?;
+        let fitted = first.fit(Model::KelvinVoigt).map_err(unlike)?;
+        let settled = self.index(fitted.end() + 3.0 * delay);
+        let far = self.index(fitted.end() + 3.0 * delay + BESIDE);
+        let (after, _) = self.samples(settled..far)?;
+        // Mean and root of the mean square of what is left after the pulse.
+        let left = |samples: &Samples| {
+            let model = fitted.at(samples, &samples.times)?;
+            let off = || model.iter().zip(&samples.values).map(|(m, v)| v - m);
+            let n = samples.times.len() as f64;
+            Some((off().sum::<f64>() / n, (off().map(|d| d * d).sum::<f64>() / n).sqrt()))
+        };
+        let rounded = self.found.step / self.height / 12f64.sqrt();
+        let inside = (fitted.fit.sum_of_squares() / used.len() as f64).sqrt().max(rounded).max(1e-6);
+        let behind = left(&after).filter(|(_, rms)| after.times.len() >= 4 && *rms > 4.0 * inside);
+        let Some((mean, rms)) = behind else {
+            let (samples, used) = self.samples(from..far)?;
+            return Ok((samples, used, true));
+        };
+        let end = self.index(fitted.end()).max(self.found.low);
+        if mean.abs() > LEVEL * rms {
+            warnings.push(
+                "The record comes to another level after the pulse than before: AC coupling or another high-pass of the sensor (its time constant is too short for the pulse), or a second contact. The shape of the pulse is bent as well: there is no uncertainty."
+                    .to_owned(),
+            );
+            let (samples, used) = self.samples(from..end)?;
+            return Ok((samples, used, false));
+        }
+        warnings.push(
+            "The record does not rest after the pulse (ringing, or a second contact): only what precedes the end of the pulse is fitted."
+                .to_owned(),
+        );
+        let (samples, used) = self.samples(from..end)?;
+        Ok((samples, used, true))
+    }
+
+    fn count(&self, used: &[usize], range: Range<usize>, warnings: &mut Vec<String>) -> Result<()> {
+        if used.len() < 9 {
+            return Err(Error::refused(format!(
+                "{} usable samples of the pulse do not determine five parameters",
+                used.len()
+            ))
+            .hint("sample faster, and record some of the baseline before the pulse"));
+        }
+        let clipped = self.found.clipped.len();
+        if clipped > 0 {
+            warnings.push(format!(
+                "The top of the pulse is flat over {clipped} samples at {}: they are taken for clipped and left out of the fit.",
+                self.trace.values[self.found.clipped[0]]
+            ));
+        }
+        let missing = range.filter(|i| self.trace.values[*i].is_nan()).count();
+        if missing > 0 {
+            warnings.push(format!("{missing} samples of the pulse are missing and left out of the fit."));
+        }
+        let rest = self.time(0);
+        if rest > -0.5 {
+            warnings.push(format!(
+                "Only {:.2} of the pulse's length is recorded before it: the baseline is hardly known.",
+                -rest
+            ));
+        }
+        let other = (0..self.trace.values.len())
+            .filter(|i| !(-0.5..=2.0).contains(&self.time(*i)))
+            .find(|i| (self.trace.values[*i] - self.found.baseline) / self.found.height > 0.5);
+        if let Some(i) = other {
+            warnings.push(format!(
+                "There is another pulse of more than half the height at {} s: the largest is analysed.",
+                significant(self.trace.axis.at(i), 5)
+            ));
+        }
+        Ok(())
+    }
+
+    /// Factor from the fitted velocity to m/s, and the sentence where there is none.
+    pub fn to_velocity(&self, mass: Option<f64>) -> std::result::Result<f64, String> {
+        let unit = self.height * self.length;
+        match (self.trace.meta.quantity, mass) {
+            (Quantity::Acceleration, _) => Ok(unit),
+            (Quantity::Force, Some(mass)) => Ok(unit / mass),
+            (Quantity::Force, None) => {
+                Err("The record is a force: the velocity of approach needs the mass.".to_owned())
+            }
+            (quantity, _) => Err(format!(
+                "The record is no acceleration ({quantity}, unit {:?}): its shape is used, and there is no velocity of approach.",
+                self.trace.meta.unit.symbol()
+            )),
+        }
+    }
+
+    /// A fit in SI units.
+    pub fn report(
+        &self,
+        samples: &Samples,
+        fitted: &Fitted,
+        whiteness: &Whiteness,
+        mass: Option<f64>,
+        told: bool,
+    ) -> PulseFit {
+        let n = fitted.fit.residuals.len();
+        let method = "least squares";
+        let trust = samples.trust(fitted, whiteness);
+        let widened = if told { trust.factor() } else { f64::NAN };
+        let mut parameters = BTreeMap::new();
+        let mut put = |name, i: usize, factor: f64, shift: f64, unit| {
+            let value = shift + factor * fitted.fit.parameters[i];
+            let std = factor.abs() * samples.std(fitted, i) * widened;
+            parameters.insert(name, Estimate::new(trust.value(value), Some(std), unit, n, method));
+        };
+        put("onset", 0, self.length, self.seconds(0.0), "s");
+        let unit = self.trace.meta.quantity.symbol();
+        put("baseline", 1, self.height, 0.0, unit);
+        if let Ok(factor) = self.to_velocity(mass) {
+            put("initial_velocity", 2, factor * self.found.height.signum(), 0.0, "m/s");
+        }
+        match fitted.model {
+            Model::KelvinVoigt => {
+                put("xi", 3, 1.0, 0.0, "1");
+                put("frequency", 4, 1.0 / self.length, 0.0, "Hz");
+            }
+            Model::Hertz => put("duration", 3, self.length, 0.0, "s"),
+            Model::HuntCrossley => {
+                put("duration", 3, self.length, 0.0, "s");
+                put("alpha", 4, 1.0, 0.0, "1");
+                let restitution = |p: &[f64]| HuntCrossley::new(p[0]).map(|c| c.restitution());
+                let variance = |_, _| (samples.std(fitted, 4) * widened).powi(2);
+                if let Some((r, std)) = propagated(&fitted.fit.parameters[4..], &[1e3], variance, restitution)
+                {
+                    let e = Estimate::new(trust.value(r), Some(std), "1", n, method);
+                    parameters.insert("restitution", e);
+                }
+            }
+        }
+        PulseFit {
+            model: fitted.model.name(),
+            residual: self.height * (fitted.fit.sum_of_squares() / n as f64).sqrt(),
+            aicc: aicc(fitted.fit.sum_of_squares(), n, fitted.fit.parameters.len()),
+            whiteness: whiteness.p_value,
+            n,
+            parameters,
+        }
+    }
+
+    /// What a figure needs.
+    pub fn picture<'f>(
+        &self,
+        samples: &Samples,
+        used: &[usize],
+        fits: impl Iterator<Item = &'f Fitted> + Clone,
+    ) -> PulsePicture {
+        let from = self.index(-1.5);
+        let end = fits.clone().map(Fitted::end).fold(1.0, f64::max);
+        let to = self.index(end + 1.5);
+        let shown = (from..to)
+            .map(|i| (self.seconds(self.time(i)), self.trace.values[i], used.binary_search(&i).is_ok()));
+        let (a, b) = (self.time(from), self.time(to));
+        let times: Vec<f64> = (0..=600).map(|i| a + (b - a) * f64::from(i) / 600.0).collect();
+        let curves = fits.filter_map(|fit| {
+            let values = fit.at(samples, &times)?;
+            Some(PulseCurve {
+                model: fit.model.name(),
+                points: times.iter().zip(values).map(|(t, v)| (self.seconds(*t), v * self.height)).collect(),
+                residuals: samples
+                    .times
+                    .iter()
+                    .zip(&fit.fit.residuals)
+                    .map(|(t, r)| (self.seconds(*t), r * self.height))
+                    .collect(),
+            })
+        });
+        PulsePicture {
+            quantity: (self.trace.meta.quantity.name(), self.trace.meta.unit.symbol().to_owned()),
+            samples: shown.collect(),
+            curves: curves.collect(),
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! Whether what a fit leaves is noise, and what it costs where it is not.
+
+/// What residuals in a row say of the model that left them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Whiteness {
+    /// Probability that white noise shows as much serial correlation (Ljung & Box 1978); `None` for fewer than 12 residuals.
+    pub p_value: Option<f64>,
+    /// Factor by which standard uncertainties that assume white noise are to be multiplied; 1 where it is not rejected.
+    pub inflation: f64,
+}
+
+/// Below this probability residuals are taken for correlated.
+const REJECTED: f64 = 0.01;
+
+impl Whiteness {
+    /// Looks at sequences of residuals together, such as real and imaginary parts over frequency.
+    ///
+    /// Q = N(N + 2) Σ ρₖ²/(N − k) over ten lags (four below 40 residuals) is χ² distributed. A parameter on which the model
+    /// depends smoothly sees the noise density at low frequency, which is 1 + 2Σρₖ times that of white noise of the same
+    /// variance; the sum ends at the first lag that is not positive (Geyer 1992, initial positive sequence).
+    pub fn of(sequences: &[&[f64]]) -> Whiteness {
+        let n: usize = sequences.iter().map(|s| s.len()).sum();
+        let squares: f64 = sequences.iter().flat_map(|s| s.iter()).map(|r| r * r).sum();
+        if n < 12 || squares <= 0.0 || !squares.is_finite() {
+            return Whiteness { p_value: None, inflation: 1.0 };
+        }
+        let correlation = |lag: usize| {
+            let products =
+                sequences.iter().flat_map(|s| s.iter().zip(s.iter().skip(lag)).map(|(a, b)| a * b));
+            products.sum::<f64>() / squares
+        };
+        let lags = if n < 40 { 4 } else { 10 };
+        let total = n as f64;
+        let sum: f64 = (1..=lags).map(|k| correlation(k).powi(2) / (total - k as f64)).sum();
+        let p = chi_squared_above(total * (total + 2.0) * sum, lags);
+        let longest = sequences.iter().map(|s| s.len()).max().unwrap_or(0) / 4;
+        let inflation = if p < REJECTED {
+            let positive = (1..=longest).map(correlation).take_while(|r| *r > 0.0);
+            (1.0 + 2.0 * positive.sum::<f64>()).sqrt()
+        } else {
+            1.0
+        };
+        Whiteness { p_value: Some(p), inflation }
+    }
+
+    /// Whether white noise is rejected.
+    pub fn rejected(&self) -> bool {
+        self.p_value.is_some_and(|p| p < REJECTED)
+    }
+}
+
+/// P(χ² > x) for an even number of degrees of freedom, a finite sum (Abramowitz & Stegun 26.4.21).
+fn chi_squared_above(x: f64, even: usize) -> f64 {
+    let half = x / 2.0;
+    let (mut term, mut sum) = (1.0, 1.0);
+    for j in 1..even / 2 {
+        term *= half / j as f64;
+        sum += term;
+    }
+    (sum * (-half).exp()).clamp(0.0, 1.0)
+}
+
+/// Standard deviation of Student's distribution of `free` degrees of freedom, √(ν/(ν − 2)): what a standard uncertainty from a
+/// variance that was itself estimated is to be multiplied by (JCGM 101:2008, 6.4.9.2). `None` up to two degrees of freedom, where it
+/// has none.
+pub fn student(free: usize) -> Option<f64> {
+    (free > 2).then(|| (free as f64 / (free as f64 - 2.0)).sqrt())
+}
+
+/// Akaike's criterion for a fit of `parameters` (the variance of the noise is one more) to `n` values, corrected for their
+/// number (Hurvich & Tsai 1989); NaN where there are too few values.
+pub fn aicc(sum_of_squares: f64, n: usize, parameters: usize) -> f64 {
+    let (n, k) = (n as f64, parameters as f64 + 1.0);
+    if n - k - 1.0 <= 0.0 {
+        return f64::NAN;
+    }
+    n * (sum_of_squares / n).ln() + 2.0 * k + 2.0 * k * (k + 1.0) / (n - k - 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::Twelve;
+
+    #[test]
+    fn chi_squared_has_its_tabulated_quantiles() {
+        // Abramowitz & Stegun, table 26.8: the quantiles are given to 5 or 6 digits.
+        assert!((chi_squared_above(18.3070, 10) - 0.05).abs() < 1e-5);
+        assert!((chi_squared_above(13.2767, 4) - 0.01).abs() < 1e-6);
+    }
+
+    #[test]
+    fn student_has_a_standard_deviation_from_three_degrees_of_freedom_on() {
+        assert_eq!([0, 1, 2].map(student), [None; 3]);
+        // Variance 3 at ν = 3 and 2 at ν = 4.
+        assert_eq!([3, 4].map(student), [Some(3f64.sqrt()), Some(2f64.sqrt())]);
+    }
+
+    #[test]
+    fn white_noise_is_rejected_as_often_as_stated() {
+        let mut noise = Twelve(11);
+        let trials = 2000;
+        let rejected = (0..trials)
+            .filter(|_| {
+                let r: Vec<f64> = (0..100).map(|_| noise.next()).collect();
+                Whiteness::of(&[&r]).rejected()
+            })
+            .count();
+        // 1 % of 2000 with a standard deviation of 4.4, and Q has a slightly heavier tail than χ² at 100 values.
+        assert!((5..=55).contains(&rejected), "{rejected}");
+    }
+
+    /// y(i) = φ y(i−1) + e has a density at zero frequency of (1 + φ)/(1 − φ) that of white noise of its variance.
+    #[test]
+    fn the_inflation_of_a_first_order_process_is_found() {
+        let mut noise = Twelve(5);
+        let phi = 0.7;
+        let mut y = 0.0;
+        let r: Vec<f64> = (0..20_000)
+            .map(|_| {
+                y = phi * y + noise.next();
+                y
+            })
+            .collect();
+        let w = Whiteness::of(&[&r]);
+        let expected = f64::sqrt((1.0 + phi) / (1.0 - phi));
+        // The sum over some ten lags of correlations good to 1/√20000 each.
+        assert!(w.rejected() && (w.inflation / expected - 1.0).abs() < 0.1, "{w:?} {expected}");
+    }
+}

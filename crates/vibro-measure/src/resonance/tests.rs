@@ -1,0 +1,260 @@
+//! Resonances, jumps and crossings of curves whose answer is known.
+
+use super::*;
+use crate::jump::{jump, jumps};
+use num_complex::Complex64;
+
+#[test]
+fn a_mass_that_moves_alone_does_not_clap() {
+    let resonance = |f, a, kind: &str| Resonance {
+        frequency: f,
+        frequency_std: None,
+        amplitude: a,
+        amplitude_std: None,
+        kind: kind.into(),
+        at_jump: false,
+    };
+    let mut first = vec![
+        resonance(5.5, 10.0, "resonance"),
+        resonance(7.5, 0.1, "antiresonance"),
+        resonance(10.6, 2.0, "resonance"),
+        // A deeper minimum behind both modes, and a bump behind it: no mode.
+        resonance(10.8, 0.05, "antiresonance"),
+        resonance(10.9, 0.06, "resonance"),
+    ];
+    let mut second = vec![resonance(5.5, 9.0, "resonance")];
+    let curve = |above| vec![(4.0, 1.0, 0.0), (5.5, 9.0, 0.0), (9.0, above, 0.0), (13.0, above, 0.0)];
+    for (above, expected) in [(1e-6, "resonance"), (1.0, "clapping")] {
+        first[2].kind = "resonance".into();
+        first[0].kind = "resonance".into();
+        let direction = Direction::Up;
+        name_modes(&mut [
+            NamedCurve {
+                mass: 1,
+                direction,
+                curve: curve(1.0),
+                jumps: &mut Vec::new(),
+                resonances: &mut first,
+            },
+            NamedCurve {
+                mass: 2,
+                direction,
+                curve: curve(above),
+                jumps: &mut Vec::new(),
+                resonances: &mut second,
+            },
+        ]);
+        assert_eq!((first[0].kind.as_str(), first[2].kind.as_str()), ("grazing", expected));
+        assert_eq!(first[4].kind, "resonance");
+        assert_eq!(second[0].kind, "grazing");
+    }
+}
+
+#[test]
+fn curves_cross_where_their_logarithms_do() {
+    // e^f against e^(10−f): they cross at 5.
+    let up = curve(0.0, f64::exp);
+    let down = curve(0.3, |f| (10.0 - f).exp());
+    let found = crossings(up, down, &[]);
+    assert_eq!(found.len(), 1);
+    assert!((found[0].frequency - 5.0).abs() < 1e-12 && !found[0].second_above, "{found:?}");
+}
+
+/// Eleven points one apart, of 1 % uncertainty.
+fn curve(start: f64, height: impl Fn(f64) -> f64) -> Vec<(f64, f64, f64)> {
+    (0..11).map(|i| start + f64::from(i)).map(|f| (f, height(f), 0.01 * height(f))).collect()
+}
+
+#[test]
+fn the_uncertainty_of_a_crossing_is_how_the_amplitudes_move_it() {
+    // Each amplitude moved on its own by its uncertainty: linear to 1 % of itself, as the logarithm is.
+    for offset in [0.0, 0.3, 0.7] {
+        let curves = [curve(0.05, f64::exp), curve(offset, |f| (9.8 - 0.3 * f).exp())];
+        let found = crossings(curves[0].clone(), curves[1].clone(), &[]);
+        let mut variance = 0.0;
+        for which in [0, 1] {
+            for i in 0..11 {
+                let mut moved = curves.clone();
+                moved[which][i].1 += moved[which][i].2;
+                let [first, second] = moved;
+                variance += (crossings(first, second, &[])[0].frequency - found[0].frequency).powi(2);
+            }
+        }
+        let std = found[0].frequency_std.unwrap();
+        assert!((std / variance.sqrt() - 1.0).abs() < 0.02, "{offset}: {std} {}", variance.sqrt());
+    }
+    let unknown: Vec<_> = curve(0.0, f64::exp).iter().map(|p| (p.0, p.1, f64::NAN)).collect();
+    let found = crossings(unknown, curve(0.3, |f| (10.0 - f).exp()), &[]);
+    assert_eq!(found[0].frequency_std, None);
+}
+
+#[test]
+fn a_crossing_at_a_jump_is_as_uncertain_as_the_jump() {
+    let f: Vec<f64> = (0..11).map(f64::from).collect();
+    let a: Vec<f64> = f.iter().map(|f| if *f < 5.5 { 1.0 } else { 9.0 }).collect();
+    let jumps = jumps(&f, &a, &[0.01; 11], Direction::Up);
+    let jumping = f.iter().zip(&a).map(|(f, a)| (*f, *a, 0.01)).collect();
+    let found = crossings(jumping, curve(0.0, |_| 2.0), &jumps);
+    // Between 5 and 6 Hz, as the jump.
+    assert_eq!((found[0].frequency, found[0].frequency_std), (5.5, Some(1.0 / f64::sqrt(12.0))));
+    assert_eq!((jumps[0].frequency, Some(jumps[0].frequency_std)), (5.5, found[0].frequency_std));
+    assert_eq!((jumps[0].amplitude_before_std, jumps[0].amplitude_after_std), (Some(0.01), Some(0.01)));
+}
+
+#[test]
+fn a_crossing_beside_a_jump_keeps_its_place_however_the_frequencies_of_the_masses_differ() {
+    // Steps of half a Hz. The second curve jumps from the point at 6.515 + offset to the next; the first goes on.
+    let grid = |offset: f64| (0..8).map(move |i| 4.515 + 0.5 * f64::from(i) + offset);
+    for offset in [0.0, 1e-9, -1e-9, 0.25, 0.25 + 1e-9, 0.25 - 1e-9, -0.25, -0.1] {
+        // They cross at 6.05 on straight lines in the logarithm; behind the jump the second lies above, or below.
+        for (behind, expected) in [(2.0, vec![6.05]), (-2.0, vec![6.05, 6.765 + offset])] {
+            let first: Vec<_> = grid(0.0).map(|f| (f, (6.05 - f).exp(), 1e-3)).collect();
+            let height = |f: f64| f - 6.05 + if f > 6.6 + offset { 2.0 * behind } else { 0.0 };
+            let second: Vec<_> = grid(offset).map(|f| (f, height(f).exp(), 1e-3)).collect();
+            let jump = jump([second[4], second[5]], Direction::Up);
+            let found = crossings(first, second, &[jump]);
+            let frequencies: Vec<f64> = found.iter().map(|c| c.frequency).collect();
+            // Behind a fall by four the curves meet again at 8.05, where both reach that far.
+            let frequencies: Vec<f64> = frequencies.into_iter().filter(|f| *f < 7.6).collect();
+            assert_eq!(frequencies.len(), expected.len(), "{offset} {behind}: {found:?}");
+            for (found, expected) in frequencies.iter().zip(&expected) {
+                // Rounding over a nanohertz: 1e-16/1e-9 of it at worst.
+                assert!((found - expected).abs() < 1e-9, "{offset} {behind}: {frequencies:?}");
+            }
+            if let Some(at_jump) = found.get(1).filter(|c| c.frequency < 7.6) {
+                let std = 0.5 / f64::sqrt(12.0);
+                assert!((at_jump.frequency_std.unwrap() - std).abs() < 1e-12, "{offset}: {at_jump:?}");
+            }
+            assert!(found[0].frequency_std.unwrap() < 0.01, "{offset}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn a_hardening_peak_ends_in_a_drop() {
+    let f: Vec<f64> = (0..12).map(|i| 8.0 + 0.3 * f64::from(i)).collect();
+    let a: Vec<f64> = f.iter().map(|f| if *f < 10.6 { 1.0 + (f - 8.0) } else { 0.8 }).collect();
+    let jumps = jumps(&f, &a, &[0.01; 12], Direction::Up);
+    assert_eq!(jumps.len(), 1);
+    assert_eq!((jumps[0].change, jumps[0].from), ("drop", f[8]));
+    let peaks = resonances(&f, &a, &[0.01; 12], &jumps, None);
+    assert_eq!(peaks.len(), 1);
+    assert!(peaks[0].at_jump && peaks[0].frequency == f[8]);
+}
+
+#[test]
+fn a_coarse_sweep_of_a_linear_resonance_has_no_jump() {
+    for q in [5.0, 20.0, 50.0, 150.0] {
+        for n in [10, 20, 40, 100] {
+            for offset in 0..25 {
+                let f: Vec<f64> = (0..n)
+                    .map(|i| 4.0 + 4.0 * (f64::from(i) + f64::from(offset) / 25.0) / f64::from(n))
+                    .collect();
+                let a: Vec<f64> =
+                    f.iter().map(|f| 1.0 / (1.0 - (f / 5.6f64).powi(2)).hypot(f / 5.6 / q)).collect();
+                let found = jumps(&f, &a, &vec![1e-6; f.len()], Direction::Up);
+                assert!(found.is_empty(), "Q {q}, {n} points, {offset}: {found:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_smooth_resonance_is_no_jump() {
+    let f: Vec<f64> = (0..40).map(|i| 4.0 + 0.1 * f64::from(i)).collect();
+    let a: Vec<f64> = f.iter().map(|f| 1.0 / (1.0 - (f / 5.6f64).powi(2)).hypot(0.04 * f / 5.6)).collect();
+    assert!(jumps(&f, &a, &[1e-3; 40], Direction::Up).is_empty());
+    let peaks = resonances(&f, &a, &[1e-3; 40], &[], None);
+    assert_eq!(peaks.len(), 1);
+    assert!((peaks[0].frequency - 5.6).abs() < 0.02, "{peaks:?}");
+}
+
+#[test]
+fn noise_has_no_resonances_and_no_jumps() {
+    // Alternating values whose differences are three standard deviations.
+    let f: Vec<f64> = (0..20).map(f64::from).collect();
+    let a: Vec<f64> = (0..20).map(|i| if i % 2 == 0 { 4.0 } else { 1.0 }).collect();
+    assert!(resonances(&f, &a, &[1.0; 20], &[], None).is_empty());
+    assert!(jumps(&f, &a, &[1.0; 20], Direction::Up).is_empty());
+    assert!(!resonances(&f, &a, &[0.1; 20], &[], None).is_empty());
+}
+
+/// Receptance of two modes at 5 and 9 Hz with 1 % damping; the second counts `weight` times.
+fn two_modes(f: f64, weight: f64) -> f64 {
+    let mode = |f0: f64| Complex64::new(f0 * f0 - f * f, 0.02 * f0 * f).inv();
+    (mode(5.0) + weight * mode(9.0)).norm()
+}
+
+#[test]
+fn a_zero_is_an_antiresonance_and_a_sum_of_tails_a_minimum() {
+    let f: Vec<f64> = (0..57).map(|i| 4.0 + 0.1 * f64::from(i)).collect();
+    for (size, mass, expected) in [
+        // Poles of the same sign: a zero between them, whichever the mass.
+        (1.0, None, "antiresonance"),
+        (0.2, Some(2), "antiresonance"),
+        (1.0, Some(1), "antiresonance"),
+        // Opposite signs: none.
+        (-0.2, None, "minimum"),
+        (-1.0, Some(2), "minimum"),
+        (-5.0, Some(2), "minimum"),
+    ] {
+        let a: Vec<f64> = f.iter().map(|f| two_modes(*f, size)).collect();
+        let std: Vec<f64> = a.iter().map(|a| 1e-4 * a).collect();
+        let found = resonances(&f, &a, &std, &[], mass);
+        let kinds: Vec<&str> = found.iter().map(|r| r.kind.as_str()).collect();
+        assert_eq!(kinds, ["resonance", expected, "resonance"], "{size} {mass:?}");
+    }
+}
+
+#[test]
+fn a_minimum_in_the_noise_lies_between_what_stands_out() {
+    let f: Vec<f64> = (0..11).map(f64::from).collect();
+    let a = [4.0, 9.0, 6.0, 3.0, 0.1, 0.02, 0.07, 2.0, 5.0, 8.0, 3.0];
+    let std = [0.1; 11];
+    let found = resonances(&f, &a, &std, &[], Some(1));
+    let minimum = found.iter().find(|r| r.kind == "antiresonance").unwrap();
+    // Point 5; points 3 and 7 stand out.
+    assert_eq!((minimum.frequency, minimum.frequency_std), (5.0, Some(2.0 / f64::sqrt(3.0))));
+    assert_eq!((minimum.amplitude, minimum.amplitude_std), (0.02, Some(0.1)));
+    // Faint points up to the edge of the curve, and behind a jump, are none.
+    assert!(resonances(&f[..7], &a[..7], &std[..7], &[], Some(1)).iter().all(|r| r.kind == "resonance"));
+    let jump = jump([(3.0, 3.0, 0.1), (4.0, 0.1, 0.1)], Direction::Up);
+    assert!(resonances(&f, &a, &std, &[jump], Some(1)).iter().all(|r| r.kind == "resonance"));
+}
+
+/// Going down, mass 2 begins to move at 5.5; mass 1 falls there by less than a jump that stands on its own, or goes on.
+#[test]
+fn where_one_mass_jumps_the_other_does_if_its_slopes_do_not_tell() {
+    let f: Vec<f64> = (0..11).map(f64::from).collect();
+    let second: Vec<_> = f.iter().map(|f| (*f, if *f < 5.5 { 9.0 } else { 1e-3 }, 1e-3)).collect();
+    let down = |c: &[(f64, f64, f64)]| {
+        let of = |g: fn(&(f64, f64, f64)) -> f64| c.iter().rev().map(g).collect::<Vec<f64>>();
+        jumps(&of(|p| p.0), &of(|p| p.1), &of(|p| p.2), Direction::Down)
+    };
+    for (fall, expected) in [(0.8, 1), (0.2, 1), (0.0, 0), (0.02, 0)] {
+        let noise = |f: f64| 0.005 * (7.0 * f).sin();
+        let first: Vec<_> = f
+            .iter()
+            .map(|f| (*f, 3.0 - 0.1 * f - if *f < 5.5 { fall } else { 0.0 } + noise(*f), 0.01))
+            .collect();
+        let mut found = [down(&first), down(&second)];
+        assert_eq!((found[0].len(), found[1].len()), (0, 1), "{fall}");
+        let (mut none, mut nor) = (Vec::new(), Vec::new());
+        let direction = Direction::Down;
+        let [own, other] = &mut found;
+        name_modes(&mut [
+            NamedCurve { mass: 1, direction, curve: first, jumps: own, resonances: &mut none },
+            NamedCurve { mass: 2, direction, curve: second.clone(), jumps: other, resonances: &mut nor },
+        ]);
+        assert_eq!((found[0].len(), found[1].len()), (expected, 1), "{fall}");
+        for jump in &found[0] {
+            assert_eq!((jump.from, jump.to, jump.change), (6.0, 5.0, "drop"));
+        }
+    }
+}
+
+#[test]
+fn nothing_in_short_curves() {
+    assert!(resonances(&[1.0], &[1.0], &[0.0], &[], None).is_empty());
+    assert!(jumps(&[1.0], &[1.0], &[0.0], Direction::Up).is_empty());
+}

@@ -1,0 +1,333 @@
+use super::*;
+
+fn drop(height: f64, interval: f64) -> Drop {
+    Drop { height, intervals: vec![interval], ..Drop::default() }
+}
+
+fn of(measured: &Measured) -> Restitution {
+    restitution(measured).unwrap()
+}
+
+#[test]
+fn the_thesis_drop_and_its_uncertainty() {
+    let one = Drop {
+        height_std: Some(0.005),
+        interval_std: Some(0.004),
+        gravity_std: Some(0.01),
+        ..drop(0.57, 0.144)
+    };
+    let found = of(&Measured { drop: Some(one.clone()), ..Measured::default() });
+    // Printed as 0.2; 0.072·√(9.80665/1.14) = 0.211174.
+    assert!((found.restitution.value - 0.211_174).abs() < 1e-6, "{found:?}");
+    // Against the derivatives by differences.
+    let slope = |change: &dyn Fn(&mut Drop), step: f64| {
+        let mut other = one.clone();
+        change(&mut other);
+        (other.restitution(other.intervals[0]) - one.restitution(0.144)) / step
+    };
+    let by_height = slope(&|d| d.height += 1e-7, 1e-7) * 0.005;
+    let by_gravity = slope(&|d| d.gravity += 1e-7, 1e-7) * 0.01;
+    let by_interval = slope(&|d| d.intervals[0] += 1e-7, 1e-7) * 0.004;
+    let expected = (by_height.powi(2) + by_gravity.powi(2) + by_interval.powi(2)).sqrt();
+    // Differences over 1e-7 lose nine digits of sixteen.
+    assert!((found.restitution.std.unwrap() / expected - 1.0).abs() < 1e-5, "{found:?}");
+}
+
+#[test]
+fn impossible_drops_are_refused() {
+    let why = |d: Drop| restitution(&Measured { drop: Some(d), ..Measured::default() }).unwrap_err();
+    assert!(why(drop(0.0, 0.144)).to_string().contains("height of 0"));
+    assert!(why(drop(-1.0, 0.144)).to_string().contains("height"));
+    // The fall takes 0.341 s, so twice that is the longest flight.
+    assert!(why(drop(0.57, 0.70)).to_string().contains("at most"));
+    assert!(why(drop(0.57, 0.0)).to_string().contains("interval of 0"));
+    assert_eq!(why(drop(0.57, f64::NAN)).exit_code(), 1);
+    assert_eq!(restitution(&Measured::default()).unwrap_err().exit_code(), 2);
+}
+
+#[test]
+fn a_free_struck_mass_is_said_with_its_size() {
+    // m₁ = m₂ and R = 1: the falling mass stops, so R looks like 0; here 0.2 rebound and m₁/m₂ = 1/4.
+    let d = Drop { masses: Some((0.1, 0.4)), ..drop(0.57, 0.2 * 2.0 * (2.0 * 0.57 / GRAVITY).sqrt()) };
+    let found = of(&Measured { drop: Some(d), ..Measured::default() });
+    assert!((found.restitution.value - 0.2).abs() < 1e-12);
+    // v₁⁺ = (m₁ − R m₂)/(m₁ + m₂) v: (0.1 − 0.5·0.4)/0.5 = −0.2.
+    assert!(found.warnings.iter().any(|w| w.contains("R is 0.5000")), "{:?}", found.warnings);
+}
+
+#[test]
+fn a_train_of_bounces_and_one_that_does_not_fit() {
+    let mut intervals: Vec<f64> = (0..7).map(|k| 0.4 * 0.7f64.powi(k)).collect();
+    let clean = of(&Measured {
+        trains: vec![Train { intervals: intervals.clone(), ..Train::default() }],
+        ..Measured::default()
+    });
+    assert!((clean.restitution.value - 0.7).abs() < 1e-12, "{clean:?}");
+    assert!(clean.outliers.is_empty());
+    intervals[3] *= 1.3;
+    let found =
+        of(&Measured { trains: vec![Train { intervals, ..Train::default() }], ..Measured::default() });
+    assert_eq!(found.outliers.iter().map(|o| (o.train, o.flight)).collect::<Vec<_>>(), [(1, 4)]);
+    assert!((found.outliers[0].expected / (0.4 * 0.343) - 1.0).abs() < 1e-9);
+    assert!((found.restitution.value - 0.7).abs() < 1e-9, "{found:?}");
+}
+
+#[test]
+fn two_flights_give_their_ratio_without_an_uncertainty() {
+    let train = Train { intervals: vec![0.3, 0.18], ..Train::default() };
+    let found = of(&Measured { trains: vec![train.clone()], ..Measured::default() });
+    assert!((found.restitution.value - 0.6).abs() < 1e-14 && found.restitution.std.is_none(), "{found:?}");
+    let timed = Train { onset_std: Some(1e-4), ..train };
+    let found = of(&Measured { trains: vec![timed], ..Measured::default() });
+    // y = ln b − ln a over three onsets: derivatives 1/a, −(1/a + 1/b), 1/b. That leaves out the scatter of R, which one ratio does not show.
+    let (a, b): (f64, f64) = (1.0 / 0.3, 1.0 / 0.18);
+    let expected = 0.6 * 1e-4 * (a * a + (a + b).powi(2) + b * b).sqrt();
+    let said = format!("would give {}", quantity(expected, "1", 2));
+    assert!(found.restitution.std.is_none() && found.restitution.method.contains(&said), "{found:?} {said}");
+}
+
+#[test]
+fn growing_flights_are_refused_and_a_bend_is_said() {
+    let train = |intervals: Vec<f64>| Measured {
+        trains: vec![Train { intervals, ..Train::default() }],
+        ..Measured::default()
+    };
+    for grown in [vec![0.1, 0.2, 0.4], vec![0.3, 0.2, 0.25], vec![0.3, 0.2, 0.25, 0.1]] {
+        assert!(restitution(&train(grown)).unwrap_err().to_string().contains("grow"));
+    }
+    // Noise of the onsets explains a growth by less than 4√6 of it.
+    let mut noisy = train(vec![0.3, 0.27, 0.243, 0.245, 0.2]);
+    noisy.trains[0].onset_std = Some(1e-3);
+    assert!(restitution(&noisy).is_ok());
+    noisy.trains[0].onset_std = Some(1e-4);
+    assert!(restitution(&noisy).is_err());
+    // A drop answers whatever follows it.
+    noisy.drop = Some(drop(0.57, 0.3));
+    let found = of(&noisy);
+    assert!(found.by.len() == 1 && found.warnings.iter().any(|w| w.contains("grow")), "{found:?}");
+    // R falls from 0.8 by 0.04 a bounce.
+    let mut flight = 0.5;
+    let bent: Vec<f64> = (0..8)
+        .map(|k| {
+            let now = flight;
+            flight *= 0.8 - 0.04 * f64::from(k);
+            now
+        })
+        .collect();
+    let found = of(&train(bent));
+    assert!(found.warnings.iter().any(|w| w.contains("R falls")), "{:?}", found.warnings);
+}
+
+#[test]
+fn velocities_of_both_masses_and_by_momentum() {
+    // 0.2 kg at 3 m/s on 0.5 kg at rest with R = 0.4.
+    let (m1, m2, v, r) = (0.2, 0.5, 3.0, 0.4);
+    let w1 = v * (m1 - r * m2) / (m1 + m2);
+    let w2 = v * m1 * (1.0 + r) / (m1 + m2);
+    let all = Velocities {
+        before: (v, 0.0),
+        after1: Some(w1),
+        after2: Some(w2),
+        masses: Some((m1, m2)),
+        std: Some(0.01),
+    };
+    let found = of(&Measured { velocities: Some(all.clone()), ..Measured::default() });
+    assert_eq!(found.by.len(), 3);
+    assert!(
+        found.agree == Some(true) && found.by.iter().all(|w| (w.restitution.value - r).abs() < 1e-14),
+        "{found:?}"
+    );
+    // Derivatives by differences for the method by momentum of mass 1.
+    let alone = |v1: f64, v2: f64, w: f64| {
+        let some = Velocities { before: (v1, v2), after1: Some(w), after2: None, ..all.clone() };
+        of(&Measured { velocities: Some(some), ..Measured::default() }).restitution
+    };
+    let (h, u) = (1e-6, 0.01);
+    let base = alone(v, 0.0, w1);
+    let d = [alone(v + h, 0.0, w1), alone(v, h, w1), alone(v, 0.0, w1 + h)]
+        .map(|x| (x.value - base.value) / h * u);
+    let expected = d.iter().map(|d| d * d).sum::<f64>().sqrt();
+    // Differences over 1e-6: truncation of that size.
+    assert!((base.std.unwrap() / expected - 1.0).abs() < 1e-5, "{base:?} {expected}");
+    let why = |before, after1| {
+        let v = Velocities { before, after1: Some(after1), masses: Some((m1, m2)), ..Velocities::default() };
+        restitution(&Measured { velocities: Some(v), ..Measured::default() }).unwrap_err().to_string()
+    };
+    assert!(why((1.0, 2.0), 0.0).contains("do not approach"));
+    assert!(why((3.0, 0.0), -3.0).contains("outside 0 to 1"));
+}
+
+#[test]
+fn a_restitution_outside_its_range_within_its_uncertainty_is_an_answer() {
+    let velocities = |after: (f64, f64), masses, std| Velocities {
+        before: (1.0, 0.0),
+        after1: Some(after.0),
+        after2: Some(after.1),
+        masses,
+        std,
+    };
+    let of_velocities =
+        |v: &Velocities| restitution(&Measured { velocities: Some(v.clone()), ..Measured::default() });
+    // R = 0.005, −0.0004 by mass 1 and 0.27 by mass 2.
+    let plastic = velocities((0.02, 0.025), Some((1.0, 50.0)), Some(0.05));
+    let found = of_velocities(&plastic).unwrap();
+    assert!(found.by.len() == 3 && found.warnings.iter().any(|w| w.contains("R = -0.0004")), "{found:?}");
+    // R = 1.005, u = 0.02·√(2 + 2·1.005²) or less.
+    let elastic = velocities((-0.3, 0.705), None, Some(0.02));
+    assert!((of_velocities(&elastic).unwrap().restitution.value - 1.005).abs() < 1e-12);
+    // Beyond 2 u, or where nothing is known of u: refused, unless another method answers.
+    for std in [Some(0.001), None] {
+        let sure = Velocities { std, ..elastic.clone() };
+        assert!(of_velocities(&sure).unwrap_err().to_string().contains("outside 0 to 1"));
+        let found =
+            of(&Measured { drop: Some(drop(0.57, 0.144)), velocities: Some(sure), ..Measured::default() });
+        assert!(found.by.len() == 1 && found.warnings.iter().any(|w| w.contains("Velocities are left out")));
+    }
+    let found = of_velocities(&Velocities { std: Some(1e-5), ..plastic }).unwrap();
+    assert!(found.by.len() == 2 && found.warnings.iter().any(|w| w.contains("momentum is left out")));
+}
+
+#[test]
+fn methods_that_disagree_are_not_averaged() {
+    let d = Drop { height_std: Some(0.001), interval_std: Some(0.001), ..drop(0.57, 0.144) };
+    let intervals = vec![0.144, 0.072, 0.036, 0.018, 0.009];
+    let train = Train { intervals, onset_std: Some(1e-4), after: Some(0.0025) };
+    let found = of(&Measured { drop: Some(d), trains: vec![train], ..Measured::default() });
+    assert!(
+        found.agree == Some(false) && found.restitution.value.is_nan() && found.by.len() == 2,
+        "{found:?}"
+    );
+    assert!(found.warnings.iter().any(|w| w.contains("disagree")), "{:?}", found.warnings);
+    assert!(found.warnings.iter().any(|w| w.contains("last bounces")), "{:?}", found.warnings);
+}
+
+#[test]
+fn methods_by_velocity_are_compared_with_what_they_share() {
+    // As above, with mass 2 off by δ: only the balance of momentum tests that, with u = σ√(2(m₁² + m₂²)) against m₂δ.
+    let (m1, m2, u) = (0.2f64, 0.5f64, 0.01);
+    let off = |deviates: f64| {
+        let delta = deviates * u * (2.0 * (m1 * m1 + m2 * m2)).sqrt() / m2;
+        let all = Velocities {
+            before: (3.0, 0.0),
+            after1: Some(0.0),
+            after2: Some(1.2 + delta),
+            masses: Some((m1, m2)),
+            std: Some(u),
+        };
+        of(&Measured { velocities: Some(all), ..Measured::default() })
+    };
+    // Three pairs, each at 1 − 0.05/3: 2.394.
+    assert_eq!(off(2.3).agree, Some(true));
+    assert_eq!(off(2.5).agree, Some(false));
+    assert!(off(0.0).by.iter().all(|w| w.restitution.unit == "1"));
+}
+
+#[test]
+fn what_cannot_be_compared_is_left_open() {
+    let train = Train { intervals: vec![0.144, 0.03], ..Train::default() };
+    let d = Drop { interval_std: Some(0.001), height_std: Some(0.001), ..drop(0.57, 0.144) };
+    let found = of(&Measured { drop: Some(d), trains: vec![train], ..Measured::default() });
+    assert!(found.agree.is_none() && found.restitution.value.is_finite(), "{found:?}");
+    assert!(found.warnings.iter().any(|w| w.contains("free fall g")), "{:?}", found.warnings);
+}
+
+#[test]
+fn few_drops_have_no_uncertainty_and_five_a_bootstrap() {
+    let drops = |intervals: &[f64]| {
+        let d =
+            Drop { height: 0.57, height_std: Some(1e-3), intervals: intervals.to_vec(), ..Drop::default() };
+        of(&Measured { drop: Some(d), ..Measured::default() })
+    };
+    let all = [0.140, 0.142, 0.144, 0.146, 0.148];
+    for n in 2..=3 {
+        let found = drops(&all[..n]);
+        assert!(found.restitution.std.is_none() && found.bootstrap_std.is_none(), "{found:?}");
+        assert!(found.warnings.iter().any(|w| w.contains("too few")), "{:?}", found.warnings);
+    }
+    assert!(drops(&all[..4]).restitution.std.is_some());
+    let found = drops(&all);
+    // Variance of the drawn mean: Σd²/n² = 40e-6/25; 2000 drawings scatter by 1/√4000 = 1.6 %, four times that.
+    let expected = (40e-6f64 / 25.0).sqrt() / 0.144 * found.restitution.value;
+    assert!((found.bootstrap_std.unwrap() / expected - 1.0).abs() < 0.064, "{found:?}");
+}
+
+#[test]
+fn two_drops_have_an_uncertainty_only_where_what_is_stated_explains_their_scatter() {
+    let of_two = |stated: f64| {
+        let d = Drop {
+            height: 0.57,
+            height_std: Some(1e-3),
+            intervals: vec![0.142, 0.146],
+            interval_std: Some(stated),
+            ..Drop::default()
+        };
+        of(&Measured { drop: Some(d), ..Measured::default() })
+    };
+    // Σ(d − d̄)² = 8e-6 s²: χ² of one degree of freedom passes 3.841 where the stated one is below 1.443 ms.
+    assert!(of_two(1.45e-3).restitution.std.is_some());
+    let found = of_two(1.43e-3);
+    assert!(found.restitution.std.is_none(), "{found:?}");
+    assert!(found.warnings.iter().any(|w| w.contains("than the 1.4 ms")), "{:?}", found.warnings);
+}
+
+#[test]
+fn there_is_no_uncertainty_without_that_of_the_height_and_of_the_timing() {
+    let of_drops = |height_std: Option<f64>, interval_std: Option<f64>, intervals: &[f64]| {
+        let d =
+            Drop { height: 0.57, height_std, interval_std, intervals: intervals.to_vec(), ..Drop::default() };
+        of(&Measured { drop: Some(d), ..Measured::default() })
+    };
+    let four = [0.140, 0.142, 0.144, 0.146];
+    for intervals in [&four[..1], &four] {
+        let found = of_drops(None, Some(1e-6), intervals);
+        assert!(found.restitution.std.is_none(), "{found:?}");
+        assert!(found.warnings.iter().any(|w| w.contains("--height-std")), "{:?}", found.warnings);
+        assert!(of_drops(Some(1e-3), Some(1e-6), intervals).restitution.std.is_some());
+    }
+    // Σd²/(n(n − 1)) = 20e-6/12, and √3 of Student's distribution.
+    let timing = (20e-6f64 / 12.0 * 3.0).sqrt() / 0.143 * of_drops(None, None, &four).restitution.value;
+    let said = format!("timing alone would give {}", quantity(timing, "1", 2));
+    assert!(of_drops(None, None, &four).restitution.method.contains(&said), "{said}");
+    let found = of_drops(Some(1e-4), None, &four[..1]);
+    assert!(found.restitution.std.is_none(), "{found:?}");
+    assert!(found.warnings.iter().any(|w| w.contains("--interval-std")), "{:?}", found.warnings);
+    assert!(of_drops(Some(1e-4), None, &four).restitution.std.is_some());
+}
+
+/// Five bounces timed as one are from a height that was read 5 mm too high: what is not known cannot disagree.
+#[test]
+fn drops_without_the_uncertainty_of_their_height_do_not_disagree_with_a_train() {
+    let flights = [0.4, 0.248, 0.153_8, 0.095_3, 0.059_1, 0.036_6];
+    let d = |height_std| Drop { height: 0.515, height_std, intervals: vec![0.4; 5], ..Drop::default() };
+    let train = || Train { intervals: flights.to_vec(), ..Train::default() };
+    let found = of(&Measured { drop: Some(d(None)), trains: vec![train(); 2], ..Measured::default() });
+    assert!(found.agree.is_none() && found.restitution.value.is_finite(), "{found:?}");
+    assert_eq!(found.restitution.method, found.by[1].restitution.method);
+    let found = of(&Measured { drop: Some(d(Some(0.01))), trains: vec![train(); 2], ..Measured::default() });
+    assert_eq!(found.agree, Some(true), "{found:?}");
+}
+
+#[test]
+fn a_height_in_millimetres_is_doubted() {
+    let found = of(&Measured { drop: Some(drop(570.0, 0.4)), ..Measured::default() });
+    assert!(found.warnings.iter().any(|w| w.contains("in metres?")), "{:?}", found.warnings);
+    let found = of(&Measured { drop: Some(drop(0.57, 0.144)), ..Measured::default() });
+    assert!(!found.warnings.iter().any(|w| w.contains("in metres?")), "{:?}", found.warnings);
+}
+
+#[test]
+fn bounces_are_told_nothing_of_steady_trains() {
+    use crate::impacts::{ImpactsOptions, impacts};
+    use vibro_record::{Axis, Meta, Trace};
+    let times: Vec<f64> = (0..8).map(|k| 0.1 + 0.4 * (1.0 - 0.7f64.powi(k)) / 0.3).collect();
+    let pulse = |t: f64| (-0.5 * (t / 5e-4).powi(2)).exp();
+    let values = (0..15_000).map(|i| times.iter().map(|at| pulse(f64::from(i) * 1e-4 - at)).sum()).collect();
+    let meta = Meta::new("contact", vibro_record::units::Unit::parse("V").unwrap());
+    let trace = Trace { meta, axis: Axis::time(0.0, 1e-4, 15_000), values };
+    let irregular = |found: &crate::impacts::Impacts| {
+        found.warnings.iter().any(|w| w.contains("irregular") || w.contains("slowly"))
+    };
+    assert!(irregular(&impacts(&trace, &ImpactsOptions::default()).unwrap()));
+    let found = Bounces::default().add(&trace, &ImpactsOptions::default()).unwrap();
+    assert!(found.n == 8 && !irregular(&found), "{:?}", found.warnings);
+}

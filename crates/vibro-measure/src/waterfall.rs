@@ -1,0 +1,73 @@
+//! All response spectra of a sweep as one matrix (the job of the thesis' sinesw).
+
+use super::excitation::excitations;
+use super::response::{ResponseOptions, default_cutoff};
+use ndarray::Array2;
+use std::f64::consts::PI;
+use vibro_record::{Error, Result, Sweep};
+
+/// Spectra over excitation frequency.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Waterfall {
+    /// Name of the sweep.
+    pub name: String,
+    /// Frequencies of the lines in Hz, one a column.
+    pub frequency: Vec<f64>,
+    /// Excitation frequencies in Hz in the order of the sweep, one a row.
+    pub excitation: Vec<f64>,
+    /// Magnitudes, points × lines; NaN below the cut-off.
+    pub magnitude: Array2<f64>,
+    /// Quantity of the magnitudes.
+    pub quantity: vibro_record::units::Quantity,
+    /// SI unit of the magnitudes.
+    pub unit: String,
+    /// Cut-off in Hz; 0 where nothing was cut off.
+    pub fmin: f64,
+    /// What a person must know.
+    pub warnings: Vec<String>,
+}
+
+/// Finds the excitation frequencies and gathers the matrix, as [`gathered`].
+///
+/// # Errors
+/// As [`super::response::response`].
+pub fn waterfall(sweep: &Sweep, options: &ResponseOptions) -> Result<Waterfall> {
+    let df =
+        sweep.line_width().ok_or_else(|| Error::refused("the lines of the sweep are not evenly spaced"))?;
+    let excitations = excitations(sweep, options.fmin.unwrap_or(0.0))?;
+    let cutoff = options.fmin.unwrap_or_else(|| default_cutoff(df, &excitations));
+    Ok(gathered(sweep, options, excitations.iter().map(|e| e.frequency).collect(), cutoff))
+}
+
+/// Gathers the matrix for known excitation frequencies (Hz), one a point. Where the spectra were or are integrated, lines below
+/// `cutoff` (Hz) hold noise divided by frequency and are left out; otherwise all lines are kept unless the options give a
+/// cut-off.
+pub fn gathered(sweep: &Sweep, options: &ResponseOptions, excitation: Vec<f64>, cutoff: f64) -> Waterfall {
+    let integrated = options.integrate > 0 || sweep.analyser_integrated > 0;
+    let fmin = if integrated { cutoff } else { options.fmin.unwrap_or(0.0) };
+    let frequency = sweep.axis.values();
+    let mut magnitude = Array2::from_elem((sweep.points.len(), frequency.len()), f64::NAN);
+    for (mut row, point) in magnitude.rows_mut().into_iter().zip(&sweep.points) {
+        for (k, (cell, f)) in row.iter_mut().zip(&frequency).enumerate() {
+            let divisor = (2.0 * PI * f).powi(i32::from(options.integrate));
+            if *f >= fmin && divisor != 0.0 && k < point.response.values.len() {
+                *cell = point.response.values.magnitude(k) / divisor;
+            }
+        }
+    }
+    let unit = sweep.unit().times_seconds(options.integrate);
+    let mut warnings = sweep.doubts.clone();
+    if fmin > 0.0 {
+        warnings.push(format!("Lines below the cut-off of {fmin:.3} Hz are left out."));
+    }
+    Waterfall {
+        name: sweep.name.clone(),
+        frequency,
+        excitation,
+        magnitude,
+        quantity: unit.quantity(),
+        unit: unit.symbol().to_owned(),
+        fmin,
+        warnings,
+    }
+}

@@ -1,0 +1,146 @@
+//! What events change: the stage of a contact, the velocities, the spring of mass 1.
+
+use super::{Beginning, Contact, Follow, Mark, REST_SPEED, Stage};
+use crate::State;
+use crate::clock::Tick;
+use crate::motion::{Event, Path, Piece};
+use crate::simulate::Impact;
+
+impl Follow {
+    /// What a root changes, and what it is called.
+    pub(super) fn mark(&mut self, mark: Mark) -> Event {
+        match mark {
+            Mark::Meets => match self.contact {
+                Contact::Rebound => self.rebound(),
+                Contact::Law(_) => {
+                    self.touch();
+                    Event::Touch
+                }
+            },
+            Mark::ForceEnds => {
+                // Without a damper the force ends where the surfaces are back at their rest.
+                if self.indentation() <= 0.0 || self.modes.contact_force.weights[1] == 0.0 {
+                    self.separate()
+                } else {
+                    self.stage = Stage::Released;
+                    Event::Part
+                }
+            }
+            Mark::ForceReturns => {
+                self.stage = Stage::Touching;
+                Event::Touch
+            }
+            Mark::Separates => self.separate(),
+            Mark::LetsGo => {
+                self.stage = Stage::Apart;
+                self.slack = self.rounding();
+                Event::Release
+            }
+            Mark::SpringActs => {
+                self.spring_acts = true;
+                Event::Switch
+            }
+            Mark::SpringFree => {
+                self.spring_acts = false;
+                Event::Switch
+            }
+        }
+    }
+
+    pub(super) fn touch(&mut self) {
+        self.stage = Stage::Touching;
+        self.beginning = Beginning {
+            time: self.time,
+            phase: self.drive.phase(),
+            approach: self.state.approach(),
+            impulse: 0.0,
+        };
+        self.within.begin(self.state.approach().abs());
+    }
+
+    pub(super) fn separate(&mut self) -> Event {
+        self.stage = Stage::Apart;
+        let Beginning { time, phase, approach, impulse } = self.beginning;
+        Event::Impact(Impact { time, phase, approach_velocity: approach, impulse })
+    }
+
+    fn rebound(&mut self) -> Event {
+        let approach = self.state.approach();
+        let impulse = self.modes.reduced_mass * (1.0 + self.rig.restitution) * approach;
+        self.slack = 0.0;
+        self.state.v1 -= impulse / self.rig.m1;
+        self.state.v2 += impulse / self.rig.m2;
+        Event::Impact(Impact {
+            time: self.time,
+            phase: self.drive.phase(),
+            approach_velocity: approach,
+            impulse,
+        })
+    }
+
+    /// After a rebound too slow to part the masses against the force that presses them together, they move together.
+    pub(super) fn come_to_rest(&mut self, visit: &mut dyn FnMut(Piece<'_>)) {
+        if self.contact != Contact::Rebound || -self.state.approach() >= REST_SPEED {
+            return;
+        }
+        let pressing = self.modes.pressing(self.spring_acts);
+        let force = self.drive.force(0.0);
+        let w = pressing.weights;
+        let s = &self.state;
+        let size = (w[0] * s.x1).abs() + (w[2] * s.x2).abs() + (pressing.force * force).abs();
+        if pressing.value(s, force) <= 64.0 * f64::EPSILON * size {
+            self.slack = self.rounding();
+            return;
+        }
+        let common = if self.rig.has_wall() {
+            0.0
+        } else {
+            (self.rig.m1 * s.v1 + self.rig.m2 * s.v2) / (self.rig.m1 + self.rig.m2)
+        };
+        self.state.v1 = common;
+        self.state.v2 = common;
+        self.stage = Stage::Together;
+        let end = Still(self.state);
+        visit(Piece { start: self.time, duration: 0.0, path: &end, event: Event::Stick });
+    }
+
+    /// Does what the excitation does now.
+    pub(super) fn tick(&mut self, tick: Tick) -> Event {
+        self.drive.tick(tick);
+        let event = match tick {
+            Tick::Kick(impulse) => {
+                self.state.v1 += impulse / self.rig.m1;
+                Event::Kick
+            }
+            Tick::On | Tick::Off => Event::Switch,
+        };
+        self.settle();
+        event
+    }
+
+    /// Finds the stage of a contact whose force has jumped.
+    pub(super) fn settle(&mut self) {
+        let pulls = self.modes.contact_force.value(&self.state, 0.0) < 0.0;
+        match self.stage {
+            Stage::Touching if pulls && !self.within.integrates() => self.stage = Stage::Released,
+            Stage::Released if !pulls => self.stage = Stage::Touching,
+            Stage::Together => {
+                let force = self.drive.force(0.0);
+                let pressed = self.modes.pressing(self.spring_acts).value(&self.state, force) > 0.0;
+                if !pressed || self.state.approach() != 0.0 {
+                    self.stage = Stage::Apart;
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// A state that lasts no time.
+struct Still(State);
+
+impl Path for Still {
+    fn state(&self, _: f64) -> State {
+        self.0
+    }
+}

@@ -1,0 +1,150 @@
+//! Contact laws.
+
+use super::conversion;
+use serde::Serialize;
+use vibro_record::{Error, Result};
+
+/// Force of a contact from its indentation δ in m and the rate δ̇ in m/s; it never pulls.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(tag = "law", rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Law {
+    /// F = k₃δ + c₃δ̇: a spring and a damper side by side. The contact ends where the force does, not where δ = 0.
+    KelvinVoigt {
+        /// k₃ in N/m.
+        stiffness: f64,
+        /// c₃ in N s/m.
+        damping: f64,
+    },
+    /// F = kδ^{3/2}: two curved elastic bodies (Hertz 1882).
+    Hertz {
+        /// k in N/m^{3/2}.
+        stiffness: f64,
+    },
+    /// F = kδⁿ(1 + αδ̇): losses that grow with the indentation (Hunt & Crossley 1975).
+    HuntCrossley {
+        /// k in N/mⁿ.
+        stiffness: f64,
+        /// n, 1 or more.
+        exponent: f64,
+        /// α in s/m.
+        damping: f64,
+    },
+}
+
+impl Law {
+    /// Kelvin–Voigt contact of a `stiffness` in N/m that rebounds with `restitution` where a reduced mass `mass` (kg) meets it
+    /// free of other forces: c₃ = 2ζ√(k₃M).
+    ///
+    /// # Errors
+    /// If the stiffness or the mass is not above 0, or the restitution is outside 0 < R ≤ 1.
+    pub fn kelvin_voigt(stiffness: f64, restitution: f64, mass: f64) -> Result<Law> {
+        Law::KelvinVoigt { stiffness, damping: 0.0 }.check()?;
+        if !(mass.is_finite() && mass > 0.0) {
+            return Err(Error::usage(format!("reduced mass is {mass} kg"), "a finite value above 0"));
+        }
+        let ratio = conversion::damping_ratio(restitution)?;
+        Ok(Law::KelvinVoigt { stiffness, damping: 2.0 * ratio * (stiffness * mass).sqrt() })
+    }
+
+    /// Hunt–Crossley contact that rebounds with `restitution` where it is met at `speed` (m/s).
+    ///
+    /// # Errors
+    /// If the stiffness or the speed is not above 0, the exponent is below 1, or the restitution is outside 0 < R ≤ 1.
+    pub fn hunt_crossley(stiffness: f64, exponent: f64, restitution: f64, speed: f64) -> Result<Law> {
+        if !(speed.is_finite() && speed > 0.0) {
+            return Err(Error::usage(format!("approach speed is {speed} m/s"), "a finite value above 0"));
+        }
+        let law = Law::HuntCrossley { stiffness, exponent, damping: conversion::loss(restitution)? / speed };
+        law.check().map(|()| law)
+    }
+
+    /// Checks that the numbers can belong to a contact.
+    ///
+    /// # Errors
+    /// If a stiffness is not above 0, a damping is negative, an exponent is outside 1 to 10, or a value is not finite.
+    pub fn check(&self) -> Result<()> {
+        let (stiffness, unit, damping, damping_unit) = match *self {
+            Law::KelvinVoigt { stiffness, damping } => (stiffness, "N/m", damping, "N s/m"),
+            Law::Hertz { stiffness } => (stiffness, "N/m^1.5", 0.0, ""),
+            Law::HuntCrossley { stiffness, damping, .. } => (stiffness, "N/mⁿ", damping, "s/m"),
+        };
+        if !(stiffness.is_finite() && stiffness > 0.0) {
+            return Err(Error::usage(
+                format!("contact stiffness is {stiffness} {unit}"),
+                "a finite value above 0",
+            ));
+        }
+        if !(damping.is_finite() && damping >= 0.0) {
+            let found = format!("contact damping is {damping} {damping_unit}");
+            return Err(Error::usage(found, "a finite value of 0 or more"));
+        }
+        if let Law::HuntCrossley { exponent, .. } = *self
+            && !(1.0..=10.0).contains(&exponent)
+        {
+            return Err(Error::usage(format!("contact exponent is {exponent}"), "a value from 1 to 10"));
+        }
+        Ok(())
+    }
+
+    /// Force in N at an indentation (m) and its rate (m/s); 0 where the masses are apart, and where the law would pull.
+    #[inline]
+    pub fn force(&self, indentation: f64, rate: f64) -> f64 {
+        if indentation <= 0.0 {
+            return 0.0;
+        }
+        let force = match *self {
+            Law::KelvinVoigt { stiffness, damping } => stiffness * indentation + damping * rate,
+            Law::Hertz { stiffness } => stiffness * indentation * indentation.sqrt(),
+            Law::HuntCrossley { stiffness, exponent, damping } => {
+                let spring = if exponent == 1.5 {
+                    indentation * indentation.sqrt()
+                } else {
+                    indentation.powf(exponent)
+                };
+                stiffness * spring * (1.0 + damping * rate)
+            }
+        };
+        force.max(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn impossible_values_are_named() {
+        let cases = [
+            (Law::KelvinVoigt { stiffness: 0.0, damping: 1.0 }, "contact stiffness is 0 N/m"),
+            (Law::KelvinVoigt { stiffness: 1e5, damping: -1.0 }, "contact damping is -1 N s/m"),
+            (Law::KelvinVoigt { stiffness: f64::NAN, damping: 1.0 }, "contact stiffness is NaN N/m"),
+            (Law::Hertz { stiffness: f64::INFINITY }, "contact stiffness is inf N/m^1.5"),
+            (Law::HuntCrossley { stiffness: 1e8, exponent: 0.5, damping: 1.0 }, "contact exponent is 0.5"),
+            (
+                Law::HuntCrossley { stiffness: 1e8, exponent: f64::NAN, damping: 1.0 },
+                "contact exponent is NaN",
+            ),
+        ];
+        for (law, start) in cases {
+            let text = law.check().unwrap_err().to_string();
+            assert!(text.starts_with(start), "{text}");
+        }
+        assert!(Law::kelvin_voigt(1e5, 0.0, 0.05).is_err() && Law::kelvin_voigt(1e5, 0.7, 0.0).is_err());
+        assert!(Law::hunt_crossley(1e8, 1.5, 0.7, 0.0).is_err());
+    }
+
+    #[test]
+    fn no_contact_pulls() {
+        let laws = [
+            Law::KelvinVoigt { stiffness: 1e5, damping: 10.0 },
+            Law::Hertz { stiffness: 1e8 },
+            Law::HuntCrossley { stiffness: 1e8, exponent: 1.3, damping: 0.5 },
+        ];
+        for law in laws {
+            assert_eq!(law.force(-1e-9, 1.0), 0.0);
+            assert_eq!(law.force(0.0, 1.0), 0.0);
+            assert!(law.force(1e-4, -100.0) >= 0.0 && law.force(1e-4, 0.0) > 0.0);
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! The linear modes of a rig: apart, in a contact of spring and damper, or moving together.
+
+use super::Law;
+use crate::Rig;
+use crate::linear::{Linear, Quantity};
+
+/// How the masses stand to each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Between {
+    /// Apart.
+    Apart,
+    /// They push each other by a spring and a damper.
+    Pushing,
+    /// They move together.
+    Together,
+}
+
+/// All linear modes of a rig, each with the spring of mass 1 acting or not.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Modes {
+    /// By [`Between`], then by whether the spring of mass 1 acts.
+    linear: [[Linear; 2]; 3],
+    /// δ = x₁ − x₂ − Δ.
+    pub indentation: Quantity,
+    /// Force of the contact's spring and damper, pulling included.
+    pub contact_force: Quantity,
+    /// How far the spring of mass 1 is compressed; negative where mass 1 is loose.
+    pub compression: Quantity,
+    /// Reduced mass M in kg; m₁ where mass 2 is a wall.
+    pub reduced_mass: f64,
+}
+
+impl Modes {
+    /// Modes of `rig` (m₂ may be infinite) with a contact of spring and damper, the spring of mass 1 acting for
+    /// x₁ < −`buffer`.
+    pub fn new(rig: &Rig, law: Option<Law>, buffer: f64) -> Modes {
+        // A wall has neither spring nor damper.
+        let (k2, c2) = if rig.has_wall() { (0.0, 0.0) } else { (rig.k2, rig.c2) };
+        let inverse = [1.0 / rig.m1, 1.0 / rig.m2];
+        let (k3, c3) = match law {
+            Some(Law::KelvinVoigt { stiffness, damping }) => (stiffness, damping),
+            _ => (0.0, 0.0),
+        };
+        let mode = |between: Between, acting: bool| {
+            let k1 = if acting { rig.k1 } else { 0.0 };
+            let own = [[-k1, -rig.c1, 0.0, 0.0], [0.0, 0.0, -k2, -c2]];
+            let preload = -k1 * buffer;
+            let scaled = |row: [f64; 4], by: f64| row.map(|v| v * by);
+            match between {
+                Between::Apart => Linear::new(
+                    [scaled(own[0], inverse[0]), scaled(own[1], inverse[1])],
+                    [preload * inverse[0], 0.0],
+                    [inverse[0], 0.0],
+                ),
+                Between::Pushing => {
+                    let push = [k3, c3, -k3, -c3];
+                    let with = |i: usize, sign: f64| {
+                        std::array::from_fn(|j| (own[i][j] + sign * push[j]) * inverse[i])
+                    };
+                    Linear::new(
+                        [with(0, -1.0), with(1, 1.0)],
+                        [(preload + k3 * rig.gap) * inverse[0], -k3 * rig.gap * inverse[1]],
+                        [inverse[0], 0.0],
+                    )
+                }
+                Between::Together => {
+                    let total = 1.0 / (rig.m1 + rig.m2);
+                    let both = std::array::from_fn(|j| (own[0][j] + own[1][j]) * total);
+                    Linear::new([both, both], [preload * total; 2], [total; 2])
+                }
+            }
+        };
+        let pair = |between| [mode(between, false), mode(between, true)];
+        Modes {
+            linear: [pair(Between::Apart), pair(Between::Pushing), pair(Between::Together)],
+            indentation: Quantity { weights: [1.0, 0.0, -1.0, 0.0], force: 0.0, offset: -rig.gap },
+            contact_force: Quantity { weights: [k3, c3, -k3, -c3], force: 0.0, offset: -k3 * rig.gap },
+            compression: Quantity { weights: [-1.0, 0.0, 0.0, 0.0], force: 0.0, offset: -buffer },
+            reduced_mass: rig.reduced_mass(),
+        }
+    }
+
+    /// One mode.
+    #[inline]
+    pub fn mode(&self, between: Between, spring_acts: bool) -> &Linear {
+        &self.linear[between as usize][usize::from(spring_acts)]
+    }
+
+    /// Force in N with which the masses would press on each other if they moved together: M(a₁ − a₂), each without the other.
+    #[inline]
+    pub fn pressing(&self, spring_acts: bool) -> Quantity {
+        self.mode(Between::Apart, spring_acts).closing().times(self.reduced_mass)
+    }
+}

@@ -1,0 +1,130 @@
+//! Contacts whose force is not linear, integrated while they last.
+
+use super::Law;
+use crate::forcing::Forcing;
+use crate::linear::Linear;
+use crate::motion::Path;
+use crate::{Rig, State};
+use vibro_math::runge_kutta::{Dop853, Integrator, Step, Tolerance};
+use vibro_record::Result;
+
+/// Relative error of a step; its floor are the indentation and the speed of the contact.
+const RELATIVE: f64 = 1e-13;
+
+/// Displacements, velocities, and the impulse since the step's start.
+const SIZE: usize = 5;
+
+/// Where an integrated contact is.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Within {
+    law: Option<Law>,
+    inverse: [f64; 2],
+    gap: f64,
+    reduced_mass: f64,
+    /// Speed in m/s and time in s of the contact, the latter of a free rebound.
+    speed: f64,
+    scale: f64,
+    /// Step to be tried next, in s.
+    next: f64,
+}
+
+impl Within {
+    pub fn new(rig: &Rig, law: Option<Law>, reduced_mass: f64) -> Within {
+        let law = law.filter(|law| !matches!(law, Law::KelvinVoigt { .. }));
+        let inverse = [1.0 / rig.m1, 1.0 / rig.m2];
+        Within { law, inverse, gap: rig.gap, reduced_mass, speed: 0.0, scale: 0.0, next: 0.0 }
+    }
+
+    /// Whether contacts are integrated.
+    pub fn integrates(&self) -> bool {
+        self.law.is_some()
+    }
+
+    /// A contact begins with an approach at `speed`.
+    pub fn begin(&mut self, speed: f64) {
+        let (stiffness, exponent) = self.spring();
+        // Below 1 nm/s only the size of errors is meant.
+        self.speed = speed.max(1e-9);
+        // T with V² = k(VT)^{n+1}/M.
+        self.scale = (self.reduced_mass / stiffness).powf(1.0 / (exponent + 1.0))
+            * self.speed.powf((1.0 - exponent) / (exponent + 1.0));
+        self.next = 1e-3 * self.scale;
+    }
+
+    /// Stiffness k and exponent n.
+    fn spring(&self) -> (f64, f64) {
+        match self.law {
+            Some(Law::Hertz { stiffness }) => (stiffness, 1.5),
+            Some(Law::HuntCrossley { stiffness, exponent, .. }) => (stiffness, exponent),
+            _ => (0.0, 1.0),
+        }
+    }
+
+    /// Sizes below which errors need not fall: indentation and speed of the contact, and what roundings of the displacements
+    /// allow. An indentation is known to εX, X = |x₁| + |x₂| + |Δ|, so with ω the contact's frequency a speed is known to εωX;
+    /// a fiftieth of X and ωX, times the relative error, is nine times that.
+    fn floor(&self, state: &State) -> [f64; SIZE] {
+        let (stiffness, exponent) = self.spring();
+        let depth = (state.x1 - state.x2 - self.gap).max(self.speed * self.scale);
+        let omega = (exponent * stiffness * depth.powf(exponent - 1.0) / self.reduced_mass).sqrt();
+        let size = (state.x1.abs() + state.x2.abs() + self.gap.abs()) / 50.0;
+        let (way, speed) = (depth.max(size), self.speed.max(omega * size));
+        [way, speed, way, speed, speed * self.reduced_mass]
+    }
+
+    /// One step of at most `span` seconds from `state`; `mode` holds what acts beside the contact.
+    pub fn step(&mut self, mode: &Linear, drive: &Forcing, state: &State, span: f64) -> Result<Bout> {
+        let law = self.law;
+        let [inverse1, inverse2] = self.inverse;
+        let gap = self.gap;
+        let rate = |t: f64, y: &[f64; SIZE]| {
+            let state = State { x1: y[0], v1: y[1], x2: y[2], v2: y[3] };
+            let push = law.map_or(0.0, |law| law.force(y[0] - y[2] - gap, y[1] - y[3]));
+            let [a1, a2] = mode.accelerations(&state, drive.force(t));
+            [y[1], a1 - push * inverse1, y[3], a2 + push * inverse2, push]
+        };
+        let floor = self.floor(state);
+        let tolerance = Tolerance { relative: RELATIVE, floor };
+        let start = [state.x1, state.v1, state.x2, state.v2, 0.0];
+        if span <= 0.0 {
+            return Ok(Bout { step: None, state: *state, gap });
+        }
+        let mut integrator = Integrator::<Dop853, SIZE>::new(rate, 0.0, start, self.next, tolerance);
+        let step = integrator.step(rate, span)?;
+        self.next = integrator.next_step();
+        Ok(Bout { step: Some(step), state: *state, gap })
+    }
+}
+
+/// One step of a contact.
+pub(super) struct Bout {
+    step: Option<Step<SIZE>>,
+    state: State,
+    gap: f64,
+}
+
+impl Bout {
+    /// Duration in s.
+    pub fn duration(&self) -> f64 {
+        self.step.map_or(0.0, |step| step.duration)
+    }
+
+    /// When the surfaces are back at their rest.
+    pub fn first_fall(&self) -> Option<f64> {
+        self.step.and_then(|step| step.first_fall(&[1.0, 0.0, -1.0, 0.0, 0.0], -self.gap))
+    }
+
+    /// Impulse in N s over the first `t` seconds.
+    pub fn impulse(&self, t: f64) -> f64 {
+        self.step.map_or(0.0, |step| step.at(t)[4])
+    }
+}
+
+impl Path for Bout {
+    fn state(&self, t: f64) -> State {
+        self.step.map_or(self.state, |step| {
+            let y = step.at(t);
+            State { x1: y[0], v1: y[1], x2: y[2], v2: y[3] }
+        })
+    }
+}

@@ -1,0 +1,269 @@
+//! A walk along a branch, by predictor and corrector.
+
+use super::border::{Test, clearance, confirmed, flip, pair};
+use super::{End, Mark, MarkKind, Parameter};
+use crate::periodic::{System, ordered};
+use crate::{PeriodicOrbit, Sine};
+use nalgebra::{DMatrix, DVector};
+use vibro_record::{Error, Result};
+
+/// Points at most, each way.
+const POINTS: usize = 20_000;
+/// Newton's steps of a corrector.
+const CORRECTOR: usize = 12;
+/// Where a walk begins, how far it goes, and in what steps.
+pub struct Walk<'a> {
+    pub start: &'a PeriodicOrbit,
+    pub parameter: Parameter,
+    pub low: f64,
+    pub high: f64,
+    pub step: f64,
+}
+
+/// One way along a branch.
+pub struct Way {
+    pub points: Vec<PeriodicOrbit>,
+    pub marks: Vec<Mark>,
+    pub end: End,
+}
+
+/// A point of the extended space: unknowns and the logarithm of the parameter; with its tangent.
+#[derive(Clone)]
+pub struct Spot {
+    z: DVector<f64>,
+    tangent: DVector<f64>,
+}
+
+impl Walk<'_> {
+    fn sine(&self, z: &DVector<f64>) -> Sine {
+        self.parameter.set(&self.start.sine, z[z.len() - 1].exp())
+    }
+
+    fn system(&self, z: &DVector<f64>) -> Result<System> {
+        let mut system = System::new(&self.start.rig, &self.sine(z), self.start.cycles)?;
+        // One unit of impulse along the whole branch: that of the gap and the start's frequency.
+        system.length = self.length();
+        Ok(system)
+    }
+
+    /// Length that the branch is measured with.
+    fn length(&self) -> f64 {
+        let range = self.start.peak_to_peak[0] / 2.0;
+        self.start.rig.gap.abs().max(range)
+    }
+
+    /// Unknowns without the parameter.
+    fn inner(z: &DVector<f64>) -> DVector<f64> {
+        z.rows(0, z.len() - 1).into_owned()
+    }
+
+    /// What is left of the equations, and the Jacobian with the derivative by the logarithm of the parameter as last column.
+    fn evaluate(&self, z: &DVector<f64>) -> Result<(DVector<f64>, DMatrix<f64>)> {
+        let n = z.len() - 1;
+        let (left, jacobian) = self.system(z)?.evaluate(&Self::inner(z));
+        let mut all = DMatrix::zeros(n + 1, n + 1);
+        all.view_mut((0, 0), (n, n)).copy_from(&jacobian);
+        // Central difference; the corrector's answer does not depend on it.
+        let h = 1e-6;
+        let at = |shift: f64| -> Result<DVector<f64>> {
+            let mut moved = z.clone();
+            moved[n] += shift;
+            Ok(self.system(&moved)?.evaluate(&Self::inner(z)).0)
+        };
+        all.view_mut((0, n), (n, 1)).copy_from(&((at(h)? - at(-h)?) / (2.0 * h)));
+        Ok((left, all))
+    }
+
+    /// Direction of the branch at `z`, forward as seen along `along`.
+    fn tangent(&self, z: &DVector<f64>, along: &DVector<f64>) -> Result<Option<DVector<f64>>> {
+        let n = z.len() - 1;
+        let (_, mut all) = self.evaluate(z)?;
+        all.row_mut(n).copy_from(&along.transpose());
+        let mut right = DVector::zeros(n + 1);
+        right[n] = 1.0;
+        let found = all.lu().solve(&right).map(|t| t.normalize());
+        Ok(found.filter(|t| t.iter().all(|v| v.is_finite())))
+    }
+
+    /// The place of `orbit` on the branch, with the direction in which the parameter grows.
+    ///
+    /// # Errors
+    /// If the branch folds there.
+    pub fn point(&self, orbit: &PeriodicOrbit) -> Result<Spot> {
+        let mut z = DVector::zeros(2 * orbit.beats.len() + 1);
+        let n = z.len() - 1;
+        z[n] = self.parameter.of(&orbit.sine).ln();
+        let system = self.system(&z)?;
+        z.rows_mut(0, n).copy_from(&orbit.unknowns(&system));
+        let mut along = DVector::zeros(n + 1);
+        along[n] = 1.0;
+        let tangent = self.tangent(&z, &along)?.ok_or_else(|| {
+            Error::refused("the branch has no direction at its start: it folds there")
+                .hint("start from a motion at another frequency or force")
+        })?;
+        Ok(Spot { z, tangent })
+    }
+
+    /// The point of the branch at the distance `s` along the tangent; `None` where Newton's method does not settle there.
+    fn ahead(&self, from: &Spot, s: f64) -> Option<(Spot, usize)> {
+        let mut z = &from.z + &from.tangent * s;
+        let n = z.len() - 1;
+        for k in 0..CORRECTOR {
+            let (left, mut all) = self.evaluate(&z).ok()?;
+            all.row_mut(n).copy_from(&from.tangent.transpose());
+            let mut right = DVector::zeros(n + 1);
+            right.rows_mut(0, n).copy_from(&left);
+            right[n] = from.tangent.dot(&(&z - &from.z)) - s;
+            let step = all.lu().solve(&right)?;
+            z -= &step;
+            if !z.iter().all(|v| v.is_finite()) {
+                return None;
+            }
+            if step.amax() < 1e-10 {
+                // One more step would double the digits; this one has done so.
+                let tangent = self.tangent(&z, &from.tangent).ok()??;
+                return Some((Spot { z, tangent }, k + 1));
+            }
+        }
+        None
+    }
+
+    fn orbit(&self, z: &DVector<f64>) -> Result<PeriodicOrbit> {
+        let system = self.system(z)?;
+        Ok(PeriodicOrbit::build(&system, self.sine(z), self.start.cycles, &Self::inner(z)))
+    }
+
+    /// From `origin` on, forth (1) or back (−1), to the end of the branch.
+    ///
+    /// # Errors
+    /// If a motion on the way cannot be computed.
+    pub fn run(&self, origin: &Spot, sign: f64) -> Result<Way> {
+        let mut here = Spot { z: origin.z.clone(), tangent: &origin.tangent * sign };
+        let mut way = Way { points: vec![self.orbit(&here.z)?], marks: Vec::new(), end: End::Points };
+        let mut s = self.step / 4.0;
+        let n = here.z.len() - 1;
+        while way.points.len() < POINTS {
+            let Some((next, effort)) = self.ahead(&here, s).filter(|(next, _)| {
+                // A sharp bend: the step may have landed on another branch.
+                next.tangent.dot(&here.tangent) > 0.8
+            }) else {
+                s /= 2.0;
+                if s < 1e-7 {
+                    way.end = End::Lost;
+                    return Ok(way);
+                }
+                continue;
+            };
+            let value = next.z[n].exp();
+            let faded = (n / 2..n).any(|k| next.z[k] <= 0.0);
+            let outside = value < self.low || value > self.high;
+            if faded || outside {
+                // The end is where the impulse is zero or the parameter at its bound.
+                let bound = if value < self.low { self.low.ln() } else { self.high.ln() };
+                let distance = |spot: &Spot| {
+                    if faded {
+                        spot.z.rows(n / 2, n / 2).min()
+                    } else if value < self.low {
+                        spot.z[n] - bound
+                    } else {
+                        bound - spot.z[n]
+                    }
+                };
+                if let Some(last) = self.locate(&here, s, &distance) {
+                    let orbit = self.orbit(&last.z)?;
+                    if faded {
+                        let after = way.points.len() - 1;
+                        way.marks.push(Mark { kind: MarkKind::Grazing, orbit: orbit.clone(), after });
+                    }
+                    way.points.push(orbit);
+                }
+                way.end = if faded { End::Grazing } else { End::Range };
+                return Ok(way);
+            }
+            if !ordered(&self.system(&next.z)?, &Self::inner(&next.z)) {
+                way.end = End::Lost;
+                return Ok(way);
+            }
+            let orbit = self.orbit(&next.z)?;
+            self.mark(&here, &next, s, &mut way, &orbit)?;
+            way.points.push(orbit);
+            let round = (&next.z - &origin.z).norm();
+            if way.points.len() > 8 && round < s && next.tangent.dot(&origin.tangent) * sign > 0.9 {
+                way.end = End::Closed;
+                return Ok(way);
+            }
+            here = next;
+            s = match effort {
+                0..=4 => (s * 1.4).min(self.step),
+                5..=6 => s,
+                _ => s / 2.0,
+            };
+        }
+        Ok(way)
+    }
+
+    /// Enters what changed between two points, in their order.
+    fn mark(&self, here: &Spot, next: &Spot, s: f64, way: &mut Way, orbit: &PeriodicOrbit) -> Result<()> {
+        let n = here.z.len() - 1;
+        let last = &way.points[way.points.len() - 1];
+        let after = way.points.len() - 1;
+        let mut found: Vec<(MarkKind, Spot)> = Vec::new();
+        if here.tangent[n] * next.tangent[n] < 0.0
+            && let Some(spot) = self.locate(here, s, &|spot: &Spot| spot.tangent[n])
+        {
+            found.push((MarkKind::Fold, spot));
+        }
+        let of = |test: fn(&PeriodicOrbit) -> Option<f64>| {
+            move |spot: &Spot| self.orbit(&spot.z).ok().and_then(|o| test(&o)).unwrap_or(f64::NAN)
+        };
+        let tests: [(MarkKind, Test); 3] =
+            [(MarkKind::Flip, flip), (MarkKind::NeimarkSacker, pair), (MarkKind::Grazing, clearance)];
+        for (kind, test) in tests {
+            let (Some(a), Some(b)) = (test(last), test(orbit)) else { continue };
+            if a * b < 0.0
+                && let Some(spot) = self.locate(here, s, &of(test))
+            {
+                found.push((kind, spot));
+            }
+        }
+        found.sort_by(|a, b| {
+            let along = |spot: &Spot| here.tangent.dot(&(&spot.z - &here.z));
+            along(&a.1).total_cmp(&along(&b.1))
+        });
+        for (kind, spot) in found {
+            let orbit = self.orbit(&spot.z)?;
+            if confirmed(kind, &orbit) {
+                way.marks.push(Mark { kind, orbit, after });
+            }
+        }
+        Ok(())
+    }
+
+    /// The point within `s` ahead of `here` where `test` changes its sign, by bisection with false position.
+    fn locate(&self, here: &Spot, s: f64, test: &dyn Fn(&Spot) -> f64) -> Option<Spot> {
+        let (mut low, mut high) = (0.0, s);
+        let (mut at_low, mut at_high) = (test(here), test(&self.ahead(here, s)?.0));
+        let mut best = None;
+        for k in 0..60 {
+            // False position, every third time the middle.
+            let share = at_low / (at_low - at_high);
+            let share = if k % 3 == 2 || !share.is_finite() { 0.5 } else { share.clamp(0.01, 0.99) };
+            let middle = low + share * (high - low);
+            let spot = self.ahead(here, middle)?.0;
+            let value = test(&spot);
+            if !value.is_finite() {
+                return best;
+            }
+            best = Some(spot);
+            if (value < 0.0) == (at_low < 0.0) {
+                (low, at_low) = (middle, value);
+            } else {
+                (high, at_high) = (middle, value);
+            }
+            if value == 0.0 || high - low < 1e-11 {
+                break;
+            }
+        }
+        best
+    }
+}

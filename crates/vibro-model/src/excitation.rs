@@ -1,0 +1,275 @@
+//! What drives mass 1.
+
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+use vibro_record::{Error, Result};
+
+/// The most sines that can act at once.
+pub const MOST_SINES: usize = 4;
+
+/// Excitation of mass 1, told apart by its `kind`.
+///
+/// ```
+/// use vibro_model::{Excitation, Sine};
+/// let e: Excitation = toml::from_str("kind = \"sine\"\nforce = 0.5\nfrequency = 11.0")?;
+/// assert_eq!(e, Excitation::Sine(Sine { force: 0.5, frequency: 11.0 }));
+/// # Ok::<(), toml::de::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Excitation {
+    /// F₀ cos(ωt + θ).
+    Sine(Sine),
+    /// One impulse a cycle.
+    Impulse(Impulses),
+    /// One rectangular pulse a cycle.
+    Pulse(Pulses),
+    /// A sum of sines.
+    Sines(Sines),
+}
+
+/// Sine force F₀ cos(ωt + θ); its phase θ belongs to the motion.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sine {
+    /// Force amplitude F₀ in N.
+    pub force: f64,
+    /// Frequency in Hz.
+    pub frequency: f64,
+}
+
+/// An impulse at the beginning of each cycle (phase 0).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Impulses {
+    /// Impulse F in N s.
+    pub impulse: f64,
+    /// Impulses a second, in Hz.
+    pub frequency: f64,
+}
+
+/// A rectangular pulse that begins with each cycle (phase 0); between the pulses there is no force.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Pulses {
+    /// Force during the pulse, in N.
+    pub force: f64,
+    /// Duration of a pulse in s, shorter than the cycle.
+    pub width: f64,
+    /// Pulses a second, in Hz.
+    pub frequency: f64,
+}
+
+/// The sum of several sine forces.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sines {
+    /// The sines; the first one counts the cycles.
+    pub parts: Vec<Part>,
+}
+
+/// One sine force F cos(ωt + θ) of several.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Part {
+    /// Force amplitude F in N.
+    pub force: f64,
+    /// Frequency in Hz.
+    pub frequency: f64,
+    /// Phase θ at time 0 in rad.
+    #[serde(default)]
+    pub phase: f64,
+}
+
+impl Excitation {
+    /// Checks that the numbers can belong to an excitation.
+    ///
+    /// # Errors
+    /// As [`Sine::check`], [`Impulses::check`], [`Pulses::check`] and [`Sines::check`].
+    pub fn check(&self) -> Result<()> {
+        match self {
+            Excitation::Sine(sine) => sine.check(),
+            Excitation::Impulse(impulses) => impulses.check(),
+            Excitation::Pulse(pulses) => pulses.check(),
+            Excitation::Sines(sines) => sines.check(),
+        }
+    }
+
+    /// Cycles a second, in Hz; of several sines, the first one's. NaN where there is none.
+    pub fn frequency(&self) -> f64 {
+        match self {
+            Excitation::Sine(sine) => sine.frequency,
+            Excitation::Impulse(impulses) => impulses.frequency,
+            Excitation::Pulse(pulses) => pulses.frequency,
+            Excitation::Sines(sines) => sines.parts.first().map_or(f64::NAN, |p| p.frequency),
+        }
+    }
+
+    /// The same excitation at another frequency in Hz; of several sines, the ratios of their frequencies stay.
+    pub fn at_frequency(&self, frequency: f64) -> Excitation {
+        match self {
+            Excitation::Sine(sine) => Excitation::Sine(Sine { frequency, ..*sine }),
+            Excitation::Impulse(impulses) => Excitation::Impulse(Impulses { frequency, ..*impulses }),
+            Excitation::Pulse(pulses) => Excitation::Pulse(Pulses { frequency, ..*pulses }),
+            Excitation::Sines(sines) => {
+                let ratio = frequency / self.frequency();
+                let part = |p: &Part| Part { frequency: p.frequency * ratio, ..*p };
+                Excitation::Sines(Sines { parts: sines.parts.iter().map(part).collect() })
+            }
+        }
+    }
+
+    /// What the excitation is called in a file: `sine`, `impulse`, `pulse` or `sines`.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Excitation::Sine(_) => "sine",
+            Excitation::Impulse(_) => "impulse",
+            Excitation::Pulse(_) => "pulse",
+            Excitation::Sines(_) => "sines",
+        }
+    }
+}
+
+impl From<Sine> for Excitation {
+    fn from(sine: Sine) -> Excitation {
+        Excitation::Sine(sine)
+    }
+}
+
+/// A frequency that is finite and above 0.
+fn rising(frequency: f64) -> Result<()> {
+    if frequency.is_finite() && frequency > 0.0 {
+        return Ok(());
+    }
+    Err(Error::usage(format!("frequency is {frequency} Hz"), "a finite value above 0"))
+}
+
+/// A force that is finite and not negative.
+fn pushing(force: f64) -> Result<()> {
+    if force.is_finite() && force >= 0.0 {
+        return Ok(());
+    }
+    Err(Error::usage(format!("force is {force} N"), "a finite amplitude of 0 or more"))
+}
+
+impl Sine {
+    /// Checks that amplitude and frequency are finite, the amplitude not negative and the frequency above 0.
+    ///
+    /// # Errors
+    /// If one of them is not.
+    pub fn check(&self) -> Result<()> {
+        pushing(self.force)?;
+        rising(self.frequency)
+    }
+
+    /// Angular frequency ω in rad/s.
+    pub fn omega(&self) -> f64 {
+        TAU * self.frequency
+    }
+}
+
+impl Impulses {
+    /// Checks that impulse and frequency are finite and the frequency above 0. An impulse may pull.
+    ///
+    /// # Errors
+    /// If one of them is not.
+    pub fn check(&self) -> Result<()> {
+        if !self.impulse.is_finite() {
+            return Err(Error::usage(format!("impulse is {} N s", self.impulse), "a finite value"));
+        }
+        rising(self.frequency)
+    }
+}
+
+impl Pulses {
+    /// Checks that force, width and frequency are finite, the frequency above 0 and the width above 0 and below the cycle. A force may
+    /// pull.
+    ///
+    /// # Errors
+    /// If one of them is not.
+    pub fn check(&self) -> Result<()> {
+        if !self.force.is_finite() {
+            return Err(Error::usage(format!("force is {} N", self.force), "a finite value"));
+        }
+        rising(self.frequency)?;
+        if !(self.width > 0.0 && self.width < 1.0 / self.frequency) {
+            let expected = format!(
+                "a value above 0 and below the cycle of {} s at {} Hz",
+                1.0 / self.frequency,
+                self.frequency
+            );
+            return Err(Error::usage(format!("width is {} s", self.width), expected));
+        }
+        Ok(())
+    }
+}
+
+impl Sines {
+    /// Checks that there are one to [`MOST_SINES`] sines, and each as [`Sine::check`], with a finite phase.
+    ///
+    /// # Errors
+    /// If it is not so.
+    pub fn check(&self) -> Result<()> {
+        if self.parts.is_empty() {
+            return Err(Error::usage("sines without parts", "parts = [{ force = …, frequency = … }]"));
+        }
+        if self.parts.len() > MOST_SINES {
+            let found = format!("{} sines", self.parts.len());
+            return Err(Error::usage(found, format!("no more than {MOST_SINES}")));
+        }
+        for part in &self.parts {
+            pushing(part.force)?;
+            rising(part.frequency)?;
+            if !part.phase.is_finite() {
+                return Err(Error::usage(format!("phase is {} rad", part.phase), "a finite value"));
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unknown_kinds_and_keys_are_refused() {
+        let text = "kind = \"sine\"\nforce = 0.5\nfrequency = 11.0\nphase = 0.1";
+        assert!(toml::from_str::<Excitation>(text).unwrap_err().to_string().contains("phase"));
+        assert!(toml::from_str::<Excitation>("kind = \"saw\"").unwrap_err().to_string().contains("saw"));
+    }
+
+    #[test]
+    fn impossible_values_are_named() {
+        for (force, frequency, start) in [
+            (-1.0, 5.0, "force is -1 N"),
+            (f64::NAN, 5.0, "force is NaN N"),
+            (1.0, 0.0, "frequency is 0 Hz"),
+            (1.0, f64::INFINITY, "frequency is inf Hz"),
+        ] {
+            let text = Sine { force, frequency }.check().unwrap_err().to_string();
+            assert!(text.starts_with(start), "{text}");
+        }
+        let refused = |e: &Excitation| e.check().unwrap_err().to_string();
+        let pulses = Pulses { force: 0.5, width: 0.2, frequency: 5.0 };
+        assert!(refused(&Excitation::Pulse(pulses)).starts_with("width is 0.2 s"));
+        assert!(Pulses { width: 0.199, ..pulses }.check().is_ok());
+        assert!(refused(&Excitation::Sines(Sines { parts: Vec::new() })).starts_with("sines without parts"));
+        let part = Part { force: 0.1, frequency: 5.0, phase: 0.0 };
+        assert!(Sines { parts: vec![part; MOST_SINES] }.check().is_ok());
+        let many = Excitation::Sines(Sines { parts: vec![part; MOST_SINES + 1] });
+        assert!(refused(&many).starts_with("5 sines"));
+        let impulse = Impulses { impulse: f64::NAN, frequency: 5.0 };
+        assert!(refused(&Excitation::Impulse(impulse)).starts_with("impulse is NaN N s"));
+    }
+
+    #[test]
+    fn another_frequency_keeps_the_rest() {
+        let part = |frequency| Part { force: 0.1, frequency, phase: 0.3 };
+        let sines = Excitation::Sines(Sines { parts: vec![part(4.0), part(6.0)] });
+        assert_eq!(sines.at_frequency(8.0), Excitation::Sines(Sines { parts: vec![part(8.0), part(12.0)] }));
+        let pulses = Excitation::Pulse(Pulses { force: 0.5, width: 0.01, frequency: 5.0 });
+        assert_eq!((pulses.at_frequency(7.0).frequency(), pulses.kind()), (7.0, "pulse"));
+    }
+}

@@ -1,0 +1,319 @@
+//! Exact flight between impacts, and the first contact at its end.
+
+mod hop;
+
+use super::receptance::Steady;
+use super::waves::Waves;
+use num_complex::Complex64;
+use serde::Serialize;
+use vibro_math::Oscillator;
+use vibro_math::root::{Bent, Bounded, each_root, first_landing};
+
+/// Displacements in m and velocities in m/s of both masses, each from its own rest.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct State {
+    /// Displacement of the excited mass in m.
+    pub x1: f64,
+    /// Velocity of the excited mass in m/s.
+    pub v1: f64,
+    /// Displacement of the passive mass in m.
+    pub x2: f64,
+    /// Velocity of the passive mass in m/s.
+    pub v2: f64,
+}
+
+impl State {
+    /// Both masses at rest in their own rest positions.
+    pub const REST: State = State { x1: 0.0, v1: 0.0, x2: 0.0, v2: 0.0 };
+
+    /// Approach speed vᵣ = v₁ − v₂ in m/s.
+    pub fn approach(&self) -> f64 {
+        self.v1 - self.v2
+    }
+}
+
+/// What is looked at in a flight.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Signal {
+    /// g = Δ + x₂ − x₁.
+    Gap,
+    /// x₁.
+    X1,
+    /// x₂.
+    X2,
+}
+
+/// Free part of one mass' motion, by its start.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Free {
+    pub oscillator: Oscillator,
+    pub x: f64,
+    pub v: f64,
+}
+
+impl Free {
+    /// The `order`-th derivative at `t`, the next one, and a bound on the one after for all later times.
+    #[inline]
+    pub(super) fn derivative(&self, order: u32, t: f64) -> (f64, f64, f64) {
+        let (mut x, mut v) = self.oscillator.free(self.x, self.v, t);
+        for _ in 0..order {
+            (x, v) = (v, self.oscillator.acceleration(x, v));
+        }
+        let a = self.oscillator.acceleration(x, v);
+        let jerk = self.oscillator.acceleration(v, a);
+        (x, v, self.oscillator.bound(a, jerk))
+    }
+
+    /// Displacement and its first five derivatives at `t`.
+    #[inline]
+    pub(super) fn series(&self, t: f64) -> [f64; 6] {
+        let (x, v) = if t == 0.0 { (self.x, self.v) } else { self.oscillator.free(self.x, self.v, t) };
+        let a = self.oscillator.acceleration(x, v);
+        let jerk = self.oscillator.acceleration(v, a);
+        let snap = self.oscillator.acceleration(a, jerk);
+        [x, v, a, jerk, snap, self.oscillator.acceleration(jerk, snap)]
+    }
+}
+
+/// Change of a displacement in a step `h`, and the velocity after it, by Taylor's series.
+#[inline]
+fn ahead_of(terms: &[f64; 6], h: f64) -> (f64, f64) {
+    let [_, v, a, jerk, snap, fifth] = *terms;
+    let x = h * (v + h / 2.0 * (a + h / 3.0 * (jerk + h / 4.0 * (snap + h / 5.0 * fifth))));
+    (x, v + h * (a + h / 2.0 * (jerk + h / 3.0 * (snap + h / 4.0 * fifth))))
+}
+
+/// Where a flight meets the other mass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Landing {
+    /// Time in s from the flight's start.
+    pub time: f64,
+    /// State just before the impact.
+    pub state: State,
+}
+
+/// Motion of both masses without contact, in closed form; time counts from the flight's start.
+///
+/// x₁ = P/k₁ + Σ Re(Xe^{iωt}) + free motion, x₂ = free motion, under a constant force P and sine forces. No step size: any time is
+/// evaluated at once.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Flight {
+    /// Forced displacement of mass 1.
+    waves: Waves,
+    /// Where mass 1 would rest under the constant force, in m.
+    rest: f64,
+    gap: f64,
+    free: [Free; 2],
+    /// Time before which the gap is known to be open.
+    open: f64,
+}
+
+impl Flight {
+    /// Flight from `state`, the force being F₀ cos(ωt + `phase`), across a rest gap `gap` in m.
+    pub fn new(oscillators: [Oscillator; 2], steady: &Steady, gap: f64, state: &State, phase: f64) -> Flight {
+        let mut waves = Waves::default();
+        waves.add(steady.response * Complex64::cis(phase), steady.omega, steady.amplitude());
+        Flight::with(oscillators, waves, 0.0, gap, state)
+    }
+
+    /// Flight from `state` with forced motion `waves` about `rest` (m) of mass 1.
+    #[inline]
+    pub(super) fn with(
+        oscillators: [Oscillator; 2],
+        waves: Waves,
+        rest: f64,
+        gap: f64,
+        state: &State,
+    ) -> Flight {
+        let [first, second] = oscillators;
+        let [x, v, ..] = waves.start();
+        Flight {
+            waves,
+            rest,
+            gap,
+            free: [
+                Free { oscillator: first, x: state.x1 - x - rest, v: state.v1 - v },
+                Free { oscillator: second, x: state.x2, v: state.v2 },
+            ],
+            open: 0.0,
+        }
+    }
+
+    /// The same flight of masses that part from rest against each other: no contact is sought where the gap can but open.
+    ///
+    /// With g = ġ = 0 at the start, g ≥ g̈t²/2 + g⃛t³/6 − M₄t⁴/24, which is above 0 up to its root. After a release g̈ is 0 as well,
+    /// the gap opens like t³, and is long smaller than its rounding.
+    pub(super) fn parting(mut self) -> Flight {
+        let [[_, _, a1, j1, ..], [_, _, a2, j2, ..]] = self.series(0.0);
+        let fourth = self.bounded(Signal::Gap, 2, 0.0).curvature;
+        let (bend, jerk) = ((a2 - a1).max(0.0), j2 - j1);
+        let root = (jerk / 6.0 + (jerk * jerk / 36.0 + fourth * bend / 12.0).sqrt()) / (fourth / 12.0);
+        // Half of it, where more than an eighth of the leading term is left.
+        if root.is_finite() {
+            self.open = root / 2.0;
+        }
+        self
+    }
+
+    /// Whether `t` lies in the beginning of a parting, where the gap is known to be open.
+    pub(super) fn is_open(&self, t: f64) -> bool {
+        t < self.open
+    }
+
+    /// Both displacements with their first five derivatives.
+    #[inline]
+    pub(super) fn series(&self, t: f64) -> [[f64; 6]; 2] {
+        let mut first = self.free[0].series(t);
+        let forced = if t == 0.0 { self.waves.start() } else { self.waves.at(t) };
+        for (sum, term) in first.iter_mut().zip(forced) {
+            *sum += term;
+        }
+        first[0] += self.rest;
+        [first, self.free[1].series(t)]
+    }
+
+    /// State at `t` ≥ 0.
+    #[inline]
+    pub fn state(&self, t: f64) -> State {
+        let [[x1, v1, ..], [x2, v2, ..]] = self.series(t);
+        State { x1, v1, x2, v2 }
+    }
+
+    /// Gap in m at `t`; negative where nothing stops the masses from passing through each other.
+    pub fn gap(&self, t: f64) -> f64 {
+        let [[x1, ..], [x2, ..]] = self.series(t);
+        self.gap + x2 - x1
+    }
+
+    /// Rate of change of the state at `t`.
+    pub fn rate(&self, t: f64) -> [f64; 4] {
+        let [[_, v1, a1, ..], [_, v2, a2, ..]] = self.series(t);
+        [v1, a1, v2, a2]
+    }
+
+    /// The `order`-th derivative of a signal with its slope and a bound on its curvature for all later times.
+    ///
+    /// The bound sums the forced amplitudes and the energy bounds of the free parts, so it falls as these die out.
+    #[inline]
+    pub fn bounded(&self, signal: Signal, order: u32, t: f64) -> Bounded {
+        let mut sum = Bounded { value: 0.0, slope: 0.0, curvature: 0.0 };
+        let mut add = |sign: f64, (value, slope, curvature): (f64, f64, f64)| {
+            sum.value += sign * value;
+            sum.slope += sign * slope;
+            sum.curvature += curvature;
+        };
+        let sign = if signal == Signal::Gap { -1.0 } else { 1.0 };
+        if order == 0 {
+            add(1.0, (if signal == Signal::Gap { self.gap } else { 0.0 }, 0.0, 0.0));
+            add(sign, (if signal == Signal::X2 { 0.0 } else { self.rest }, 0.0, 0.0));
+        }
+        if signal != Signal::X1 {
+            add(1.0, self.free[1].derivative(order, t));
+        }
+        if signal != Signal::X2 {
+            add(sign, self.waves.derivative(order, t));
+            add(sign, self.free[0].derivative(order, t));
+        }
+        sum
+    }
+
+    /// Rounding error of a computed gap in m: a few ε of the largest term.
+    pub fn noise(&self) -> f64 {
+        2.0 * f64::EPSILON * (self.gap.abs() + self.rest.abs() + self.reach())
+    }
+
+    /// First contact in `0..=duration`: the gap falls to zero. No contact can be missed (see [`vibro_math::root`]).
+    pub fn first_contact(&self, duration: f64) -> Option<f64> {
+        self.land(duration).map(|landing| landing.time)
+    }
+
+    /// As [`Flight::first_contact`], with the state there.
+    #[inline]
+    pub(super) fn land(&self, duration: f64) -> Option<Landing> {
+        if self.open > duration {
+            return None;
+        }
+        let mut last = [[0.0; 6]; 2];
+        // A quarter ε of the terms that are summed.
+        let rounding = 0.25
+            * f64::EPSILON
+            * (self.gap.abs() + self.waves.amplitude() + self.free[0].x.abs() + self.free[1].x.abs());
+        if self.open == 0.0
+            && let Some(landing) = self.hop(duration, rounding)
+        {
+            return Some(landing);
+        }
+        let (at, mut ahead) = first_landing(
+            self.open,
+            duration,
+            rounding,
+            |t| {
+                last = self.series(t);
+                let [first, second] = &last;
+                Bent {
+                    value: self.gap + second[0] - first[0],
+                    slope: second[1] - first[1],
+                    bend: second[2] - first[2],
+                    jerk: second[3] - first[3],
+                }
+            },
+            |t| {
+                let mut limits = self.waves.limits();
+                let mut reach = self.waves.amplitude();
+                for part in &self.free {
+                    let [x, v, a, jerk, ..] = part.series(t);
+                    let (curvature, gain) = (part.oscillator.bound(a, jerk), part.oscillator.gain());
+                    let snap = curvature * gain * gain;
+                    limits.curvature += curvature;
+                    limits.jerk += curvature * gain;
+                    limits.snap += snap;
+                    limits.sixth += snap * gain * gain;
+                    // At the beginning most flights end in contact.
+                    if t > self.open {
+                        reach += part.oscillator.bound(x, v);
+                    }
+                }
+                (t == self.open || self.gap - self.rest <= reach).then_some(limits)
+            },
+        )?;
+        // Newton's method on the series: a parabola's root is left by the cube of the step.
+        let start = self.gap + (last[1][0] - last[0][0]);
+        for _ in 0..2 {
+            if ahead > 0.0 {
+                let [(x1, v1), (x2, v2)] = last.map(|terms| ahead_of(&terms, ahead));
+                ahead += (start + (x2 - x1)) / (v1 - v2);
+            }
+        }
+        let [(x1, v1), (x2, v2)] = last.map(|terms| ahead_of(&terms, ahead));
+        let state = State { x1: last[0][0] + x1, v1, x2: last[1][0] + x2, v2 };
+        Some(Landing { time: at + ahead, state })
+    }
+
+    /// A bound on |x₁ − x₂| for the whole flight, in m, about the rest positions.
+    fn reach(&self) -> f64 {
+        let free: f64 = self.free.iter().map(|part| part.oscillator.bound(part.x, part.v)).sum();
+        self.waves.amplitude() + free
+    }
+
+    /// Smallest and largest value of a signal in `0..=duration`, found from every stationary point.
+    pub fn range(&self, signal: Signal, duration: f64) -> (f64, f64) {
+        let at = |t: f64| self.bounded(signal, 0, t).value;
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut take = |value: f64| {
+            low = low.min(value);
+            high = high.max(value);
+        };
+        take(at(0.0));
+        take(at(duration));
+        self.each_stationary(signal, duration, |t| take(at(t)));
+        (low, high)
+    }
+
+    /// Visits every time in `0..=duration` at which a signal's rate is zero.
+    pub fn each_stationary(&self, signal: Signal, duration: f64, visit: impl FnMut(f64)) {
+        each_root(0.0, duration, |t| self.bounded(signal, 1, t), visit);
+    }
+}
+
+#[cfg(test)]
+mod tests;

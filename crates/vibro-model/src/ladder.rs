@@ -1,0 +1,194 @@
+//! The ladder: no more model than a scene needs.
+//!
+//! From the simplest model to the richest: the motion without impacts, one impact a cycle in closed form, the same corrected for the
+//! duration of the contact, exact flights between impacts at once, exact flights with a contact of spring and damper, contacts of curved
+//! bodies, a mass that is loose on its spring. Each rung is checked by what its own theory says of it, and by how far its answer moves at
+//! the next rung and at the next one that follows the motion; the lowest that passes is chosen. Time is not the argument, all rungs take
+//! µs to ms: parameters that nobody can identify are. Where one is needed and not known nothing is chosen, and the answer over its range is
+//! given instead.
+//!
+//! ```
+//! use vibro_model::ladder::{Model, Question, choose};
+//! use vibro_model::{Observable, Scene};
+//! let scene = Scene::from_toml("[excitation]\nkind = \"sine\"\nforce = 0.3\nfrequency = 13.6")?;
+//! let choice = choose(&scene, 13.6, &Question::new(Observable::Fundamental))?;
+//! assert_eq!(choice.chosen, Some(Model::Linear));
+//! # Ok::<(), vibro_record::Error>(())
+//! ```
+
+mod axis;
+mod change;
+mod climb;
+mod cost;
+mod history;
+mod laws;
+mod motions;
+mod question;
+mod reading;
+mod reasons;
+mod rung;
+mod sensitivity;
+mod stage;
+mod starts;
+mod tried;
+
+pub use axis::{MOST_POINTS, Stretch, Summary, Survey, choose_over};
+pub use change::Change;
+pub use motions::Known;
+pub use question::Question;
+pub use rung::{Model, Need, Rung};
+pub use sensitivity::Sensitivity;
+pub use starts::Followed;
+
+use super::{Law, Rig, Scene};
+use change::Answer;
+use climb::Climb;
+use serde::Serialize;
+use stage::Stage;
+use vibro_record::units::notation::significant;
+use vibro_record::{Error, Result};
+
+/// The rung that is good enough for a scene, and how that was found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Choice {
+    /// Excitation frequency in Hz.
+    pub frequency: f64,
+    /// The lowest rung that is good enough; `None` where that cannot be told.
+    pub chosen: Option<Model>,
+    /// All rungs, the simplest first.
+    pub rungs: Vec<Rung>,
+    /// What must be known before a rung can be chosen: keys of the scene, or `history`.
+    pub needs: Vec<&'static str>,
+    /// The change of the chosen answer at the next rung that follows the motion.
+    pub audit: Option<Change>,
+    /// What curved bodies (exponent 1.5) that meet for as long and rebound alike would change, where a spring and a damper were chosen, or the
+    /// correction for them, and their law was not stated.
+    pub law: Option<Change>,
+    /// The changes of the chosen answer where the gap is smaller or larger by its uncertainty; `None` where there is then no such answer.
+    pub gap: Vec<Option<Change>>,
+    /// The answer over the contact's stiffness, where that is not known and matters.
+    pub sensitivity: Vec<Sensitivity>,
+    /// Stiffnesses in N/m at which that could not be computed.
+    pub sensitivity_failed: Vec<f64>,
+    /// Motions that the rig can be in, as far as they are known.
+    pub motions: Vec<Known>,
+    /// States that others were looked for from; `None` with a history and for a loose mass.
+    pub followed: Option<Followed>,
+    /// Why, in sentences.
+    pub reasons: Vec<String>,
+}
+
+impl Choice {
+    /// The answer of the chosen rung: of x₁ and x₂; of impacts the same number twice.
+    pub fn answer(&self) -> Option<[f64; 2]> {
+        self.rung(self.chosen?).answer
+    }
+
+    /// What the chosen answer is to be doubted for, in a sentence: the law of the contact, where that moves it beyond what is allowed.
+    pub fn doubt(&self) -> Option<String> {
+        reasons::doubt(self)
+    }
+
+    /// That motions beside the one answered for strike less than once a cycle, in a sentence.
+    pub fn rare(&self, question: &Question) -> Option<String> {
+        reasons::rare(self, question)
+    }
+
+    /// That others were not looked for from all states, in a sentence.
+    pub fn cut(&self) -> Option<String> {
+        reasons::cut(self)
+    }
+
+    /// What was found of a rung.
+    pub fn rung(&self, model: Model) -> &Rung {
+        // All rungs are listed in their order.
+        &self.rungs[model as usize]
+    }
+}
+
+/// The law of the contact that a scene states for a model; `None` where impacts take no time.
+///
+/// # Errors
+/// If the model needs a number that the scene does not state, or one is impossible.
+pub fn law(scene: &Scene, model: Model) -> Result<Option<Law>> {
+    let keys = laws::keys(scene);
+    let missing = |key: &str| {
+        Error::usage(format!("{} without contact.{key}", model.name()), format!("{key} in [contact]"))
+            .hint("no value fits all contacts, and results depend on it")
+    };
+    match model {
+        Model::Linear | Model::ClosedForm | Model::Restitution => Ok(None),
+        Model::SoftCorrected | Model::KelvinVoigt if laws::is_curved(scene) => {
+            Err(Error::usage(format!("{} with contact.exponent", model.name()), "a spring, exponent 1"))
+        }
+        Model::SoftCorrected | Model::KelvinVoigt => {
+            scene.spring(keys.stiffness.ok_or_else(|| missing("stiffness"))?).map(Some)
+        }
+        Model::HuntCrossley => {
+            keys.damping.ok_or_else(|| missing("damping"))?;
+            keys.stiffness.ok_or_else(|| missing("stiffness"))?;
+            // A damping that is stated does not depend on the speed.
+            laws::curved(scene, 1.0).map(Some)
+        }
+        Model::LooseMass => {
+            Err(Error::refused("a loose mass has another law of its spring, not of its contact"))
+        }
+    }
+}
+
+/// Swings of a mass in a cycle of the excitation up to which motions are followed.
+const MOST_SWINGS: f64 = 1000.0;
+
+/// The lowest rung that answers `question` for `scene` at `frequency` (Hz), which replaces that of the excitation.
+///
+/// # Errors
+/// If a parameter or the question is impossible, nothing drives the rig, an undamped mass is driven at resonance, or the excitation is so
+/// slow that the masses swing more than 1000 times in a cycle.
+pub fn choose(scene: &Scene, frequency: f64, question: &Question) -> Result<Choice> {
+    chosen(scene, frequency, question, true)
+}
+
+/// As [`choose`]; `bend` says whether a contact of spring and damper that is chosen is held against curved bodies, and answers are timed
+/// more than once.
+fn chosen(scene: &Scene, frequency: f64, question: &Question, bend: bool) -> Result<Choice> {
+    question.check()?;
+    scene.rig.check()?;
+    let Some(excitation) = &scene.excitation else {
+        return Err(Error::usage("nothing drives the rig", "an excitation"));
+    };
+    let excitation = excitation.at_frequency(frequency);
+    excitation.check()?;
+    let fastest = scene.rig.natural_frequencies().into_iter().filter(|f| f.is_finite()).fold(0.0, f64::max);
+    if fastest > MOST_SWINGS * frequency {
+        return Err(Error::refused(format!(
+            "a mass swings {} times in a cycle of {} Hz: more than {MOST_SWINGS:.0} are not followed",
+            significant(fastest / frequency, 3),
+            significant(frequency, 6)
+        ))
+        .hint("at such frequencies springs alone decide: x₁ = F/k₁ until the masses meet"));
+    }
+    let stage = Stage { scene, excitation: &excitation, question, repeat: bend };
+    let mut choice = Climb::new(stage)?.choose(bend);
+    if bend && question.gap_std > 0.0 {
+        choice.gap = gaps(&choice, &stage);
+        choice.reasons.extend(reasons::gap(&choice, question));
+    }
+    Ok(choice)
+}
+
+/// The changes of the chosen answer at both ends of the gap's uncertainty.
+fn gaps(choice: &Choice, stage: &Stage<'_>) -> Vec<Option<Change>> {
+    let (Some(model), Some(value)) = (choice.chosen, choice.answer()) else { return Vec::new() };
+    let here = Answer { spread: choice.rung(model).spread, ..Answer::exact(value) };
+    let question = Question { gap_std: 0.0, ..*stage.question };
+    let at = |std: f64| {
+        let rig = Rig { gap: stage.scene.rig.gap + std, ..stage.scene.rig };
+        let scene = Scene { rig, ..stage.scene.clone() };
+        let there = Climb::new(Stage { scene: &scene, question: &question, repeat: false, ..*stage }).ok()?;
+        Some(here.change(&there.answer(model)?, model, &question))
+    };
+    [-1.0, 1.0].map(|sign| at(sign * stage.question.gap_std)).to_vec()
+}
+
+#[cfg(test)]
+mod tests;

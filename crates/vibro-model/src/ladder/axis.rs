@@ -1,0 +1,145 @@
+//! The ladder along an axis of frequencies: it may choose differently, and says where.
+
+use super::{Change, Choice, Model, Question, choose, chosen};
+use crate::Scene;
+use rayon::prelude::*;
+use serde::Serialize;
+use vibro_record::{Error, Result};
+
+/// The most points of an axis.
+pub const MOST_POINTS: usize = 2000;
+
+/// Choices along an axis.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Survey {
+    /// The lowest rung that is good enough at every point; `None` where there is none, or nothing is chosen somewhere.
+    pub chosen: Option<Model>,
+    /// Each rung over the whole axis.
+    pub rungs: Vec<Summary>,
+    /// Neighbouring points at which the same was found.
+    pub stretches: Vec<Stretch>,
+    /// The choice at each point, frequencies rising.
+    pub points: Vec<Choice>,
+}
+
+/// A rung over the whole axis.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Summary {
+    /// The model.
+    pub model: Model,
+    /// Median time of an answer in ns.
+    pub cost_ns: Option<f64>,
+    /// Largest change of its answer at the rungs above, over the points at which it is valid.
+    pub error: Option<f64>,
+    /// Whether it is valid at each point.
+    pub valid: bool,
+    /// Where it is valid and chosen, in a sentence.
+    pub why: String,
+}
+
+/// Neighbouring points at which the same was found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Stretch {
+    /// Frequency in Hz of the first point.
+    pub from: f64,
+    /// Frequency in Hz of the last point.
+    pub to: f64,
+    /// Number of points.
+    pub points: usize,
+    /// The rung chosen.
+    pub chosen: Option<Model>,
+    /// What must be known before one can be chosen.
+    pub needs: Vec<&'static str>,
+    /// The largest change of the chosen answer at the next rung that follows the motion.
+    pub audit: Option<Change>,
+    /// Frequency in Hz at which it is so large.
+    pub worst_at: Option<f64>,
+}
+
+/// [`choose`] at `points` frequencies with equal distances between `from` and `to` (Hz), in parallel.
+///
+/// # Errors
+/// As [`choose`]; if the ends are not finite and above 0 with the lower one first, or there are fewer than 2 or more than
+/// [`MOST_POINTS`] points.
+pub fn choose_over(scene: &Scene, from: f64, to: f64, points: usize, question: &Question) -> Result<Survey> {
+    if !(from.is_finite() && to.is_finite() && from > 0.0 && to > from) {
+        return Err(Error::usage(
+            format!("an axis from {from} to {to} Hz"),
+            "finite frequencies above 0, the lower one first",
+        ));
+    }
+    if !(2..=MOST_POINTS).contains(&points) {
+        return Err(Error::usage(format!("{points} points"), format!("2 to {MOST_POINTS}")));
+    }
+    let step = (to - from) / (points - 1) as f64;
+    let mut all: Vec<Choice> = (0..points)
+        .into_par_iter()
+        .map(|i| if i + 1 == points { to } else { from + i as f64 * step })
+        .map(|frequency| chosen(scene, frequency, question, false))
+        .collect::<Result<_>>()?;
+    let held: Vec<(usize, Choice)> = probes(&all)
+        .into_par_iter()
+        .map(|i| choose(scene, all[i].frequency, question).map(|choice| (i, choice)))
+        .collect::<Result<_>>()?;
+    for (i, choice) in held {
+        all[i] = choice;
+    }
+    Ok(Survey {
+        chosen: Model::ALL
+            .into_iter()
+            .find(|model| all.iter().all(|choice| choice.chosen.is_some() && choice.rung(*model).sufficient)),
+        rungs: Model::ALL.iter().map(|model| summary(*model, &all)).collect(),
+        stretches: stretches(&all),
+        points: all,
+    })
+}
+
+/// Points at which a contact of spring and damper that is chosen, or the correction for one, is held against curved bodies: the ends of each stretch and its peak.
+fn probes(all: &[Choice]) -> Vec<usize> {
+    let size = |i: &usize| all[*i].answer().map_or(0.0, |a| a[0].abs().max(a[1].abs()));
+    let mut probes = Vec::new();
+    let mut first = 0;
+    for same in all.chunk_by(|a, b| a.chosen == b.chosen) {
+        let last = first + same.len() - 1;
+        if matches!(same[0].chosen, Some(Model::KelvinVoigt | Model::SoftCorrected)) {
+            let peak = (first..=last).max_by(|a, b| size(a).total_cmp(&size(b)));
+            probes.extend([first, peak.unwrap_or(last), last]);
+        }
+        first = last + 1;
+    }
+    probes.dedup();
+    probes
+}
+
+fn summary(model: Model, all: &[Choice]) -> Summary {
+    let rungs = || all.iter().map(|c| c.rung(model));
+    let mut costs: Vec<f64> = rungs().filter_map(|r| r.cost_ns).collect();
+    costs.sort_by(f64::total_cmp);
+    let valid = rungs().filter(|r| r.valid).count();
+    let chosen = all.iter().filter(|c| c.chosen == Some(model)).count();
+    Summary {
+        model,
+        cost_ns: costs.get(costs.len() / 2).copied(),
+        error: rungs().filter(|r| r.valid).filter_map(|r| r.error).reduce(f64::max),
+        valid: valid == all.len(),
+        why: format!("Valid at {valid} and chosen at {chosen} of {} points.", all.len()),
+    }
+}
+
+fn stretches(all: &[Choice]) -> Vec<Stretch> {
+    all.chunk_by(|a, b| a.chosen == b.chosen && a.needs == b.needs)
+        .map(|same| {
+            let size = |c: &&Choice| c.audit.map_or(0.0, |a| a.change.abs());
+            let worst = same.iter().filter(|c| c.audit.is_some()).max_by(|a, b| size(a).total_cmp(&size(b)));
+            Stretch {
+                from: same[0].frequency,
+                to: same[same.len() - 1].frequency,
+                points: same.len(),
+                chosen: same[0].chosen,
+                needs: same[0].needs.clone(),
+                audit: worst.and_then(|c| c.audit),
+                worst_at: worst.map(|c| c.frequency),
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,315 @@
+//! The motions of a rig at one excitation, as far as they are known, and the one that it is in.
+
+use super::change::{Answer, apart};
+use super::cost::Cost;
+use super::history::{Way, several};
+use super::reading::{End, Reader, Reading};
+use super::stage::Stage;
+use super::starts::{Followed, starts};
+use super::tried::Tried;
+use super::{Model, Question};
+use crate::regime::Strike;
+use crate::{Motion, Orbit, Orbits, Regime, Simulation, State, orbits_of};
+use serde::Serialize;
+use std::f64::consts::{PI, TAU};
+use vibro_record::{Error, Result};
+
+/// Cycles up to which motions with one impact are looked for in closed form.
+pub const MOST_CYCLES: u32 = 6;
+/// Cycles after which no further state is started from.
+pub const MOST_FOLLOWED: u32 = 40_000;
+/// Part of the speeds by which a motion starts beside an orbit.
+const BESIDE: f64 = 0.02;
+
+/// A motion that the rig can be in.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Known {
+    /// Its pattern: `no impact`, impacts/cycles, `chatter` or `irregular`.
+    pub pattern: String,
+    /// The model by which it is known.
+    pub model: Model,
+    /// What is shown of it.
+    pub answer: [f64; 2],
+    /// Standard error of that, where it is a mean over a motion that does not repeat; else 0.
+    pub spread: [f64; 2],
+    /// Whether it lasts. One that does not is listed where it divides the motion without impacts from others with impacts round it.
+    pub stable: bool,
+    /// Whether it strikes less than once a cycle, and was found beside the motion to which the rig comes from rest, or the way it came, and to which
+    /// no contact that gives way comes from rest. It is warned of, and asks for no history.
+    pub rare: bool,
+}
+
+impl Known {
+    /// A motion that was followed, and lasts.
+    fn followed(reading: &Reading, model: Model, rare: bool) -> Known {
+        let Answer { value, spread, .. } = reading.answer;
+        Known { pattern: reading.regime.to_string(), model, answer: value, spread, stable: true, rare }
+    }
+
+    /// Whether it may be the motion that was read: both without impacts, or their answers no farther apart than is allowed.
+    fn may_be(&self, reading: &Reading, question: &Question, errors: f64) -> bool {
+        let still = reading.regime == Regime::NoImpact && self.pattern == Regime::NoImpact.to_string();
+        let own = Answer { spread: self.spread, ..Answer::exact(self.answer) };
+        still || own.agrees(&reading.answer, question, errors)
+    }
+}
+
+/// The motion that the rig is in.
+#[derive(Debug, Clone, PartialEq)]
+pub enum On {
+    Free,
+    Orbit(Box<Orbit>),
+    /// None of those known in closed form.
+    Other,
+    /// Several are known, and nothing says which.
+    Open,
+}
+
+/// What is known of the motions.
+#[derive(Debug)]
+pub struct Motions {
+    /// In closed form.
+    pub closed: Result<Orbits>,
+    /// What that took.
+    pub closed_cost: Cost,
+    /// In closed form with one impact in 2 to [`MOST_CYCLES`] cycles: those whose masses do not pass through each other.
+    longer: Vec<Orbit>,
+    pub known: Vec<Known>,
+    pub on: On,
+    /// How far mass 1 alone stays clear of mass 2, in m; `None` without a closed form.
+    pub clearance: Option<f64>,
+    /// The way the rig came there, where that is known.
+    pub way: Option<Way>,
+    /// States that other motions were looked for from; `None` where none was looked for.
+    pub followed: Option<Followed>,
+    /// Standard errors beyond which means are of two motions.
+    errors: f64,
+    /// The motion followed with impacts at once, from rest or the way it came.
+    pub reading: Reading,
+    /// What that took.
+    pub cost: Cost,
+    /// Where it ended.
+    pub end: Simulation,
+}
+
+/// Whether an orbit can be and stay.
+fn stays(orbit: &Orbit) -> bool {
+    let v = &orbit.validity;
+    v.exists && v.admissible && v.stable == Some(true)
+}
+
+impl Motions {
+    /// Looks for them: in closed form, and by following the rig the way it came, or from rest and other states.
+    pub fn new(stage: &Stage<'_>) -> Result<Motions> {
+        let (rig, excitation, question) = (&stage.scene.rig, stage.excitation, stage.question);
+        let (closed, closed_cost) = stage.timed(|| orbits_of(rig, excitation, 1));
+        let clearance = closed.as_ref().ok().map(|found| rig.gap - found.no_impact.largest);
+        let longer = (2..=MOST_CYCLES).filter_map(|cycles| orbits_of(rig, excitation, cycles).ok());
+        let longer = longer.flat_map(|found| found.orbits).filter(|o| o.validity.admissible).collect();
+        let way = question.history.map(|direction| Way::new(rig, excitation, direction)).transpose()?;
+        let start = match &way {
+            Some(way) => way.rigid()?,
+            None => Simulation::new(rig, excitation)?,
+        };
+        let reader = Reader::new(rig, excitation.frequency(), question).clear_by(clearance);
+        let (followed, cost) = stage.timed(|| {
+            let mut motion = start.clone();
+            reader.read(&mut motion).map(|reading| (reading, motion))
+        });
+        let (reading, end) = followed?;
+        let mut motions = Motions {
+            closed,
+            closed_cost,
+            longer,
+            known: Vec::new(),
+            on: On::Other,
+            clearance,
+            way,
+            followed: None,
+            errors: apart(1),
+            reading,
+            cost,
+            end,
+        };
+        motions.on = motions.which(reader.fine());
+        motions.list(question, reader.fine());
+        if motions.way.is_none() {
+            motions.seek(stage, &reader);
+            if common(&motions.known) > 1 || motions.closed.as_ref().is_ok_and(several) {
+                motions.on = On::Open;
+            }
+        }
+        Ok(motions)
+    }
+
+    /// Looks for a second motion from other states: near orbits that have lost their stability, and those of [`starts`].
+    fn seek(&mut self, stage: &Stage<'_>, reader: &Reader) {
+        let (rig, excitation) = (&stage.scene.rig, stage.excitation);
+        let orbits = self.closed.iter().flat_map(|found| &found.orbits).chain(&self.longer);
+        let lost = orbits.filter(|o| o.validity.admissible && o.validity.stable == Some(false));
+        let round = lost.map(|orbit| (beside(orbit), orbit.force_phase));
+        let states: Vec<_> = round.chain(starts(rig, excitation)).collect();
+        let of = states.len() as u32;
+        // Of each mass, and once more with a contact that gives way.
+        let masses = if stage.question.observable.is_of_impacts() { 1 } else { 2 };
+        self.errors = apart((of + 1) * masses);
+        let (mut followed, mut cycles) = (0, 0);
+        for (state, phase) in states {
+            if common(&self.known) > 1 || cycles > MOST_FOLLOWED {
+                break;
+            }
+            let started = Simulation::from_state(rig, excitation, state, phase).and_then(at_phase_0);
+            // Some states lead beyond what can be followed.
+            let Ok(reading) = started.and_then(|mut motion| reader.read(&mut motion)) else { continue };
+            (followed, cycles) = (followed + 1, cycles + reading.cycles);
+            self.add(&reading, stage.question);
+        }
+        self.followed = Some(Followed { states: followed, of });
+    }
+
+    /// Whether a contact that gives way leads from rest to another motion than the one that its answer is read from.
+    pub fn differs(&mut self, tried: &Tried, model: Model, question: &Question) {
+        let (Some(answer), Some(rest)) = (&tried.answer, &tried.from_rest) else { return };
+        if rest.end == End::Under || !answer.steady || answer.agrees(&rest.answer, question, self.errors) {
+            return;
+        }
+        self.on = On::Open;
+        let (found, errors) = (Known::followed(rest, model, false), self.errors);
+        let same =
+            |known: &&mut Known| known.pattern == found.pattern && known.may_be(rest, question, errors);
+        match self.known.iter_mut().find(same) {
+            // From rest it is come to, if not with impacts at once.
+            Some(known) => known.rare = false,
+            None => self.known.push(found),
+        }
+    }
+
+    /// Adds a motion with impacts at once, where that is not on its way and answers differently from those known.
+    fn add(&mut self, reading: &Reading, question: &Question) {
+        if reading.end == End::Under {
+            return;
+        }
+        let (own, errors) = (&self.reading, self.errors);
+        let own = own.end != End::Under && own.answer.agrees(&reading.answer, question, errors);
+        if !own && !self.known.iter().any(|known| known.may_be(reading, question, errors)) {
+            let rare = matches!(reading.regime, Regime::Periodic { impacts, cycles } if impacts < cycles);
+            self.known.push(Known::followed(reading, Model::Restitution, rare));
+        }
+    }
+
+    /// Orbits with one impact a cycle that can be and stay.
+    fn stable(&self) -> impl Iterator<Item = &Orbit> {
+        self.closed.iter().flat_map(|found| found.orbits.iter().filter(|orbit| stays(orbit)))
+    }
+
+    /// The motion that was followed, among those in closed form; `fine` is the part of its states to which it has settled.
+    fn which(&self, fine: f64) -> On {
+        match self.reading.regime {
+            _ if self.reading.end != End::Settled => On::Other,
+            Regime::NoImpact => On::Free,
+            Regime::Periodic { impacts: 1, cycles: 1 } => {
+                self.near(self.stable(), fine).map_or(On::Other, |orbit| On::Orbit(Box::new(*orbit)))
+            }
+            _ => On::Other,
+        }
+    }
+
+    /// The orbit nearest to the motion that was followed, if that is on it.
+    fn near<'a>(&self, orbits: impl Iterator<Item = &'a Orbit>, fine: f64) -> Option<&'a Orbit> {
+        let strike = self.reading.strike.as_ref()?;
+        let near = orbits.map(|orbit| (distance(strike, orbit), orbit));
+        let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0));
+        nearest.filter(|(far, orbit)| *far <= reach(fine, orbit)).map(|(_, orbit)| orbit)
+    }
+
+    /// The orbit with one impact in several cycles that the motion which was followed is on.
+    fn longer_own(&self, fine: f64) -> Option<&Orbit> {
+        let Regime::Periodic { impacts: 1, cycles } = self.reading.regime else { return None };
+        let alike = self.longer.iter().filter(|o| o.cycles == cycles && stays(o));
+        self.near(alike, fine).filter(|_| self.reading.end == End::Settled)
+    }
+
+    /// Lists the motions known.
+    fn list(&mut self, question: &Question, fine: f64) {
+        let mut known = Vec::new();
+        let (found, own) = (self.closed.as_ref().ok(), self.longer_own(fine));
+        if let Some(free) = found.map(|found| &found.no_impact).filter(|free| free.possible) {
+            let answer = question.observable.of_no_impact(free);
+            let pattern = Regime::NoImpact.to_string();
+            let spread = [0.0; 2];
+            known.push(Known { pattern, model: Model::Linear, answer, spread, stable: true, rare: false });
+        }
+        let known_as = |orbit: &Orbit| Known {
+            pattern: Regime::Periodic { impacts: 1, cycles: orbit.cycles }.to_string(),
+            model: Model::ClosedForm,
+            answer: question.observable.of_orbit(orbit),
+            spread: [0.0; 2],
+            stable: stays(orbit),
+            rare: orbit.cycles > 1 && own.is_none_or(|own| own != orbit),
+        };
+        known.extend(self.stable().chain(self.longer.iter().filter(|o| stays(o))).map(known_as));
+        if self.on == On::Other && self.reading.end != End::Under && own.is_none() {
+            known.push(Known::followed(&self.reading, Model::Restitution, false));
+        }
+        // Where nothing else is known with impacts, orbits that have lost their stability tell of others round them.
+        if let Some(found) = found.filter(|found| common(&known) == 1 && several(found)) {
+            known.extend(found.orbits.iter().filter(|o| o.validity.admissible).map(known_as));
+        }
+        self.known = known;
+    }
+
+    /// The orbit to speak of: the one the rig is in, else the first that can be and stay, else the first that exists.
+    pub fn orbit(&self) -> std::result::Result<Option<&Orbit>, &Error> {
+        if let On::Orbit(orbit) = &self.on {
+            return Ok(Some(orbit));
+        }
+        let found = self.closed.as_ref()?;
+        let existing = found.orbits.iter().find(|o| o.validity.exists);
+        Ok(self.stable().next().or(existing))
+    }
+}
+
+/// Motions between which only the history decides.
+fn common(known: &[Known]) -> usize {
+    known.iter().filter(|m| !m.rare).count()
+}
+
+/// The state after the impact of an orbit, with speeds that are a little less.
+fn beside(orbit: &Orbit) -> State {
+    let state = orbit.state(0.0);
+    State { v1: (1.0 - BESIDE) * state.v1, v2: (1.0 - BESIDE) * state.v2, ..state }
+}
+
+/// The same motion at the next phase 0 of the excitation, where cycles that are read begin.
+fn at_phase_0(mut motion: Simulation) -> Result<Simulation> {
+    let left = (-motion.phase()).rem_euclid(TAU) / (TAU * motion.frequency());
+    motion.advance(motion.time() + left, &mut |_| {})?;
+    Ok(motion)
+}
+
+/// Distance of an impact to that of an orbit: of phases in rad, and of states in units of the largest.
+fn distance(strike: &Strike, orbit: &Orbit) -> f64 {
+    let omega = TAU * orbit.frequency;
+    let (a, b) = (&strike.before, &orbit.before_impact());
+    let turn = (strike.phase - orbit.force_phase + PI).rem_euclid(TAU) - PI;
+    let moved = [(a.x1 - b.x1) * omega, a.v1 - b.v1, (a.x2 - b.x2) * omega, a.v2 - b.v2];
+    moved.iter().fold(turn.abs(), |far, d| far.max(d.abs() / speed(orbit)))
+}
+
+/// The largest of the speeds and ω × displacements at the impact, in m/s.
+fn speed(orbit: &Orbit) -> f64 {
+    let (omega, s) = (TAU * orbit.frequency, orbit.before_impact());
+    [s.x1 * omega, s.v1, s.x2 * omega, s.v2].iter().fold(f64::MIN_POSITIVE, |most, v| most.max(v.abs()))
+}
+
+/// How far from its orbit the impact of a motion may be whose state is off by the part `fine` once a cycle. Both masses are off, by that of
+/// what each moves at most: some twice what they do at the impact. They meet earlier or later by the distance over the approach speed, which turns
+/// the phase, and the speeds by as much again.
+fn reach(fine: f64, orbit: &Orbit) -> f64 {
+    let moves = orbit.peak_to_peak[0].max(orbit.peak_to_peak[1]) * TAU * orbit.frequency;
+    let size = moves.max(speed(orbit));
+    4.0 * fine * (size / speed(orbit)) * (1.0 + size / orbit.approach_velocity)
+}
+
+#[cfg(test)]
+mod tests;

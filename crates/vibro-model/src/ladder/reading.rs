@@ -1,0 +1,276 @@
+//! What a motion shows, followed until it has settled.
+
+mod strobe;
+
+use super::Question;
+use super::change::Answer;
+use crate::regime::{Regime, Strike, Watch};
+use crate::sweep::{self, Gauge};
+use crate::{Event, Motion, Observable, Rig};
+use std::f64::consts::TAU;
+use strobe::Strobe;
+use vibro_record::Result;
+
+/// Cycles read at once, or a multiple of them: whole patterns of 1 to 6, 10, 12, 15, 20 and 30 cycles. Of others several blocks are.
+const BLOCK: u32 = 60;
+/// The multiple at most.
+const MULTIPLE: f64 = 50.0;
+/// A block lasts this part of the longest time in which free motion falls by e, so that the way to the end is seen in it.
+const DECAY: f64 = 0.3;
+/// Blocks at most, and at least where a cycle holds many swings of a mass.
+const BLOCKS: (usize, usize) = (6, 64);
+/// Blocks at most of motions whose contacts are integrated.
+const BRIEF: usize = 12;
+/// Swings of the faster mass that are followed at most, where that leaves enough blocks: as many as with five in a cycle.
+const SWINGS: f64 = 5.0 * 60.0 * 64.0;
+/// The motion has settled where what is left of its way is this part of the tolerance.
+const SETTLED: f64 = 0.02;
+/// No coarser than this.
+const COARSE: f64 = 0.02;
+/// Of both masses, less than this part of what the larger one does is nothing.
+const NOTHING: f64 = 1e-3;
+
+/// What a motion shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    pub answer: Answer,
+    /// Its pattern over the last block.
+    pub regime: Regime,
+    /// The last impact of the pattern.
+    pub strike: Option<Strike>,
+    pub end: End,
+    /// Cycles followed.
+    pub cycles: u32,
+    /// Mean over the cycles with impacts of the fastest one's approach speed in m/s, in the last block; 0 without impacts.
+    pub speed: f64,
+}
+
+/// What a motion that was followed came to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// It repeats.
+    Settled,
+    /// The masses stay in contact, and the motion repeats.
+    Pressed,
+    /// It does not repeat, and its means over long stretches are no different from each other.
+    Steady,
+    /// Neither: it was not followed for long enough.
+    Under,
+}
+
+/// How motions are read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reader {
+    observable: Observable,
+    tolerance: f64,
+    /// Cycles of a block.
+    block: u32,
+    /// Blocks at most.
+    blocks: usize,
+    /// How far the motion without impacts stays clear of the other mass, in m, where that is known: below 0 there is none.
+    clearance: Option<f64>,
+}
+
+impl Reader {
+    /// For motions of `rig` at `frequency` (Hz).
+    pub fn new(rig: &Rig, frequency: f64, question: &Question) -> Reader {
+        let decays = rig.oscillators().map(|o| o.decay()).into_iter().filter(|b| *b > 0.0);
+        let slowest = decays.fold(f64::INFINITY, f64::min);
+        let wanted = (DECAY / slowest * frequency / f64::from(BLOCK)).ceil().clamp(1.0, MULTIPLE);
+        // Under a slow force a motion settles within a few cycles, each of which holds many swings.
+        let swings =
+            rig.natural_frequencies().into_iter().filter(|f| f.is_finite()).fold(0.0, f64::max) / frequency;
+        let block = match swings {
+            s if s <= 5.0 => BLOCK * wanted as u32,
+            s if s <= 25.0 => BLOCK / 5,
+            _ => BLOCK / 10,
+        };
+        let blocks = (SWINGS / (swings * f64::from(block))).clamp(BLOCKS.0 as f64, BLOCKS.1 as f64) as usize;
+        Reader {
+            observable: question.observable,
+            tolerance: question.tolerance,
+            block,
+            blocks,
+            clearance: None,
+        }
+    }
+
+    /// The same, for a rig whose motion without impacts stays clear of the other mass by `clearance` (m): no motion without impacts is
+    /// taken as settled that may yet come nearer.
+    pub fn clear_by(self, clearance: Option<f64>) -> Reader {
+        Reader { clearance, ..self }
+    }
+
+    /// The part of the tolerance to which motions settle.
+    pub fn fine(&self) -> f64 {
+        SETTLED * self.tolerance.min(COARSE)
+    }
+
+    /// The same, for motions whose contacts are integrated: no more blocks than can be had in a second or so.
+    pub fn brief(self) -> Reader {
+        Reader { blocks: self.blocks.min(BRIEF), ..self }
+    }
+
+    /// Follows `motion` until its state, once a cycle, has nearly come to where it goes, and what is shown of it holds still; where it does
+    /// not settle, the second half of all is averaged.
+    pub fn read<M: Motion>(&self, motion: &mut M) -> Result<Reading> {
+        let mut values: Vec<[f64; 2]> = Vec::with_capacity(self.blocks);
+        let mut weights: Vec<f64> = Vec::with_capacity(self.blocks);
+        let mut watch = Watch::new(motion);
+        let mut strobe = Strobe::new(motion, self.block as usize);
+        loop {
+            let (value, weight, speed) = self.block(motion, &mut watch, &mut strobe)?;
+            values.push(value);
+            weights.push(weight);
+            let pattern = watch.pattern();
+            let n = self.blocks_of(pattern.regime);
+            let whole = whole(&values, &weights, n);
+            // Masses that chatter to rest may be in contact at the end of each cycle, too.
+            let pressed = pattern.regime == Regime::NoImpact && strobe.pressed();
+            let left = strobe.left(self.fine());
+            // What repeats is followed until three means hold whole patterns.
+            let most = if left.is_some() { self.blocks.max(n + 2) } else { self.blocks };
+            let left = left.filter(|_| still(&whole, self.fine()));
+            // Without impacts the motion is that of mass 1 alone, of which it is known how far it goes.
+            let free = pattern.regime == Regime::NoImpact && !pressed;
+            let apart = |left: f64| !free || self.clearance.is_none_or(|clear| left < clear);
+            let settled = left.is_some_and(apart);
+            if settled || values.len() >= most {
+                let half = &values[values.len() / 2..];
+                let end = match pattern.regime {
+                    _ if settled && pressed => End::Pressed,
+                    _ if settled => End::Settled,
+                    Regime::Irregular | Regime::Chatter { cycles: None } if !drifts(half) => End::Steady,
+                    _ => End::Under,
+                };
+                let exact = whole.last().filter(|_| settled).map(|value| Answer::exact(*value));
+                let answer = exact.unwrap_or_else(|| mean(half, end == End::Steady));
+                let strike = pattern.strikes.last().copied();
+                let cycles = self.block * values.len() as u32;
+                return Ok(Reading { answer, regime: pattern.regime, strike, end, cycles, speed });
+            }
+        }
+    }
+
+    /// Blocks that hold whole patterns.
+    fn blocks_of(&self, regime: Regime) -> usize {
+        match regime {
+            Regime::Periodic { cycles, .. } | Regime::Chatter { cycles: Some(cycles) } => {
+                (1..=cycles).find(|n| (n * self.block).is_multiple_of(cycles)).unwrap_or(1) as usize
+            }
+            _ => 1,
+        }
+    }
+
+    /// One block: what is shown, what that counts beside other blocks, and the mean approach speed.
+    fn block<M: Motion>(
+        &self,
+        motion: &mut M,
+        watch: &mut Watch,
+        strobe: &mut Strobe,
+    ) -> Result<([f64; 2], f64, f64)> {
+        let observable = self.observable;
+        let frequency = motion.frequency();
+        let omega = TAU * frequency;
+        let read = match observable {
+            Observable::HalfPeakToPeak => sweep::Observable::Peak,
+            _ => sweep::Observable::Fundamental,
+        };
+        let mut gauge = Gauge::new(read, motion.rig());
+        let (mut with, mut speeds, mut impulses) = (0.0, 0.0, 0.0);
+        watch.restart(motion);
+        for _ in 0..self.block {
+            let (start, phase) = (motion.time(), motion.phase());
+            let mut strongest: Option<(f64, f64)> = None;
+            motion.advance(start + 1.0 / frequency, &mut |piece| {
+                watch.take(&piece);
+                if !observable.is_of_impacts() {
+                    gauge.take(piece.path, piece.duration, phase + omega * (piece.start - start), omega);
+                }
+                if let Event::Impact(impact) = piece.event
+                    && strongest.is_none_or(|s| impact.approach_velocity > s.0)
+                {
+                    strongest = Some((impact.approach_velocity, impact.impulse));
+                }
+            })?;
+            gauge.close_cycle();
+            strobe.take(&motion.state());
+            if let Some((speed, impulse)) = strongest {
+                with += 1.0;
+                speeds += speed;
+                impulses += impulse;
+            }
+        }
+        let per = |sum: f64| if with > 0.0 { sum / with } else { 0.0 };
+        let value = match observable {
+            Observable::ImpactSpeed => [per(speeds); 2],
+            Observable::Impulse => [per(impulses); 2],
+            _ => gauge.read().map(|r| r.0),
+        };
+        Ok((value, if observable.is_of_impacts() { with } else { 1.0 }, per(speeds)))
+    }
+}
+
+/// Means over each `n` successive values.
+fn whole(values: &[[f64; 2]], weights: &[f64], n: usize) -> Vec<[f64; 2]> {
+    let mean = |(values, weights): (&[[f64; 2]], &[f64])| {
+        let all: f64 = weights.iter().sum();
+        [0, 1].map(|i| {
+            let sum: f64 = values.iter().zip(weights).map(|(v, w)| v[i] * w).sum();
+            if all > 0.0 { sum / all } else { 0.0 }
+        })
+    };
+    values.windows(n).zip(weights.windows(n)).map(mean).collect()
+}
+
+/// Whether the last of these values is the end of the way: what falls by the ratio ρ a block has ρ/(1 − ρ) of its last step before it.
+fn still(values: &[[f64; 2]], fine: f64) -> bool {
+    let [.., a, b, c] = values else { return false };
+    let largest = c[0].abs().max(c[1].abs());
+    (0..2).all(|i| {
+        let (before, last) = ((b[i] - a[i]).abs(), (c[i] - b[i]).abs());
+        let ratio = if before > 0.0 { (last / before).min(0.999) } else { 0.0 };
+        // Two steps that happen to be small are not yet the end: the larger of both counts.
+        let left = before.max(last) * (ratio / (1.0 - ratio)).max(1.0);
+        left <= fine * c[i].abs().max(NOTHING * largest)
+    })
+}
+
+/// Mean of several blocks with its standard error: s²(1 + ρ)/(1 − ρ)/n, ρ being their correlation with the next one.
+fn mean(values: &[[f64; 2]], steady: bool) -> Answer {
+    let n = values.len() as f64;
+    let mut answer = Answer { steady, ..Answer::exact([0.0; 2]) };
+    for i in 0..2 {
+        let (mean, square, eta) = scatter(values, i);
+        // η = 2(1 − ρ). Blocks that take turns are not trusted to make the mean better than independent ones would.
+        let rho = (1.0 - eta / 2.0).clamp(0.0, 0.99);
+        answer.value[i] = mean;
+        answer.spread[i] = (square / (n - 1.0) / n * (1.0 + rho) / (1.0 - rho)).sqrt();
+    }
+    answer
+}
+
+/// Standard deviations below its expectation from which von Neumann's ratio tells a drift: of a hundred steady motions less than one.
+const TOLD: f64 = 2.5;
+
+/// Whether successive values are nearer to each other than independent ones are: Σ(xᵢ₊₁ − xᵢ)²/Σ(xᵢ − x̄)² has the mean 2 and the variance
+/// 4(n − 2)/(n² − 1) for independent ones (J. von Neumann, 1941).
+fn drifts(values: &[[f64; 2]]) -> bool {
+    let n = values.len() as f64;
+    let least = 2.0 - TOLD * (4.0 * (n - 2.0) / (n * n - 1.0)).sqrt();
+    (0..2).any(|i| {
+        let (_, square, eta) = scatter(values, i);
+        square > 0.0 && eta < least
+    })
+}
+
+/// Mean, sum of squares about it, and von Neumann's ratio.
+fn scatter(values: &[[f64; 2]], i: usize) -> (f64, f64, f64) {
+    let mean = values.iter().map(|v| v[i]).sum::<f64>() / values.len() as f64;
+    let square: f64 = values.iter().map(|v| (v[i] - mean).powi(2)).sum();
+    let steps: f64 = values.windows(2).map(|w| (w[1][i] - w[0][i]).powi(2)).sum();
+    (mean, square, if square > 0.0 { steps / square } else { 2.0 })
+}
+
+#[cfg(test)]
+mod tests;

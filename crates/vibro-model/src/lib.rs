@@ -1,0 +1,71 @@
+//! Models of the two-mass rig: what its motion should be.
+//!
+//! Two oscillators, each on its own spring and damper, face each other across a gap g = Δ + x₂ − x₁ ≥ 0; x₁ (excited)
+//! and x₂ (passive) are displacements from their own rest. Contact is instantaneous: with the reduced mass
+//! M = m₁m₂/(m₁ + m₂) and the approach speed vᵣ = v₁ − v₂, an impact takes J = M(1 + R)vᵣ from the momentum of mass 1
+//! and gives it to mass 2.
+//!
+//! - [`orbits`]: every periodic motion with one impact a period in closed form, each with its verdicts;
+//! - [`Simulation`]: any motion, event by event, on exact flights between guaranteed contacts;
+//! - [`ladder`]: the simplest of these models that is good enough for a scene.
+//!
+//! ```
+//! use vibro_model::{Rig, orbits};
+//! let found = orbits(&Rig::thesis(), 0.5, 11.0)?;
+//! let real = found.orbits.iter().filter(|o| o.validity.admissible && o.validity.stable == Some(true));
+//! assert_eq!(real.count(), 1);
+//! # Ok::<(), vibro_record::Error>(())
+//! ```
+
+pub mod chirp;
+mod clock;
+pub mod contact;
+pub mod continuation;
+mod drive;
+pub mod excitation;
+pub mod floquet;
+pub mod flow;
+mod forcing;
+pub mod green;
+pub mod ladder;
+pub mod linear;
+pub mod loose;
+pub mod map;
+pub mod motion;
+pub mod observable;
+pub mod orbit;
+pub mod periodic;
+pub mod portrait;
+pub mod receptance;
+pub mod regime;
+pub mod response;
+pub mod rig;
+pub mod scene;
+pub mod simulate;
+pub mod stick;
+pub mod sweep;
+pub mod validity;
+mod waves;
+
+pub use chirp::Chirp;
+pub use contact::{Compliant, Law};
+pub use continuation::{Branch, follow};
+pub use excitation::{Excitation, Impulses, Part, Pulses, Sine, Sines};
+pub use flow::{Flight, State};
+pub use green::Green;
+pub use loose::Loose;
+pub use motion::{Event, Motion, Path, Piece};
+pub use observable::Observable;
+pub use orbit::{
+    Compliance, Orbit, Orbits, Shown, Softened, backbone, no_impact, orbits, orbits_of, orbits_over, shown,
+    softened,
+};
+pub use periodic::{Beat, PeriodicOrbit};
+pub use receptance::{NoImpact, Steady};
+pub use regime::{Pattern, Regime, regime};
+pub use response::{Change, Response, ResponsePoint, response};
+pub use rig::Rig;
+pub use scene::{Buffer, ContactKeys, Draft, Scene};
+pub use simulate::{Counts, Course, Impact, Leg, Simulation};
+pub use stick::Pair;
+pub use validity::{Loss, Validity};

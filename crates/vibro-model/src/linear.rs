@@ -1,0 +1,181 @@
+//! One linear mode of the rig, flown in pieces of Taylor series: exact to rounding at any damping, whatever its matrix.
+//!
+//! In a mode both accelerations are linear in the state: a = A(x₁, v₁, x₂, v₂) + constant + gain·F(t). The series of the
+//! motion follows from it term by term (xₖ₊₁ = vₖ/(k + 1), vₖ₊₁ = aₖ/(k + 1)), for a matrix without a full set of
+//! eigenvectors (critical damping) like for any other. In the norm max(s|xᵢ|, |vᵢ|) with s² = Cs + K, K and C being
+//! the largest row sums of stiffness and damping over mass, ‖A‖ ≤ s. A piece lasts at most 1/s and 1/ω, so that the
+//! series, cut after [`ORDER`] terms, leaves out less than e/(ORDER + 1)! = 2.3e-17 of the norm: below rounding.
+
+use super::State;
+use super::motion::Path;
+use vibro_math::Polynomial;
+
+/// Last power of time in a series.
+pub const ORDER: usize = 18;
+
+/// Terms of a series in time over a piece's duration.
+pub type Terms = [f64; ORDER + 1];
+
+/// A linear mode.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Linear {
+    /// Acceleration of each mass for each of x₁, v₁, x₂, v₂.
+    matrix: [[f64; 4]; 2],
+    /// Constant acceleration of each mass in m/s².
+    constant: [f64; 2],
+    /// Acceleration of each mass by the exciting force, in 1/kg.
+    gain: [f64; 2],
+    /// s in 1/s.
+    rate: f64,
+}
+
+impl Linear {
+    /// Mode of these accelerations for each of x₁, v₁, x₂, v₂, these constant ones, and these for each newton of the
+    /// exciting force.
+    pub fn new(matrix: [[f64; 4]; 2], constant: [f64; 2], gain: [f64; 2]) -> Linear {
+        let row_sum = |i: usize| matrix.iter().map(|row| row[i].abs() + row[i + 2].abs()).fold(0.0, f64::max);
+        let (stiffness, damping) = (row_sum(0), row_sum(1));
+        let rate = f64::midpoint(damping, (damping * damping + 4.0 * stiffness).sqrt());
+        Linear { matrix, constant, gain, rate }
+    }
+
+    /// s in 1/s: no part of the motion changes faster.
+    pub fn rate(&self) -> f64 {
+        self.rate
+    }
+
+    /// a₁ − a₂: the acceleration with which the masses approach each other.
+    pub fn closing(&self) -> Quantity {
+        let [first, second] = &self.matrix;
+        let weights = std::array::from_fn(|i| first[i] - second[i]);
+        Quantity { weights, force: self.gain[0] - self.gain[1], offset: self.constant[0] - self.constant[1] }
+    }
+
+    /// Accelerations of both masses in m/s² at a state and an exciting force in N.
+    #[inline]
+    pub fn accelerations(&self, state: &State, force: f64) -> [f64; 2] {
+        std::array::from_fn(|i| {
+            let row = &self.matrix[i];
+            let own = row[0] * state.x1 + row[1] * state.v1 + row[2] * state.x2 + row[3] * state.v2;
+            own + self.gain[i] * force + self.constant[i]
+        })
+    }
+
+    /// The motion from `state` for `duration` seconds, at most 1/s, under a force of these terms.
+    #[inline]
+    pub fn fly(&self, state: &State, force: &Terms, duration: f64) -> Taylor {
+        let mut terms = [[0.0; 4]; ORDER + 1];
+        terms[0] = [state.x1, state.v1, state.x2, state.v2];
+        for k in 0..ORDER {
+            let here = terms[k];
+            let step = duration / (k + 1) as f64;
+            let mut accelerations = [0.0; 2];
+            for (i, a) in accelerations.iter_mut().enumerate() {
+                let row = &self.matrix[i];
+                let own = row[0] * here[0] + row[1] * here[1] + row[2] * here[2] + row[3] * here[3];
+                *a = own + self.gain[i] * force[k] + if k == 0 { self.constant[i] } else { 0.0 };
+            }
+            terms[k + 1] = [step * here[1], step * accelerations[0], step * here[3], step * accelerations[1]];
+        }
+        Taylor { terms, duration }
+    }
+}
+
+/// The motion within one piece.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Taylor {
+    /// Of x₁, v₁, x₂, v₂, in powers of t over the duration.
+    terms: [[f64; 4]; ORDER + 1],
+    duration: f64,
+}
+
+impl Taylor {
+    /// Duration in s.
+    pub fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    /// The course of a quantity that is linear in the state.
+    #[inline]
+    pub fn read(&self, quantity: &Quantity, force: &Terms) -> Course {
+        let mut terms = [0.0; ORDER + 1];
+        let w = &quantity.weights;
+        for ((term, y), force) in terms.iter_mut().zip(&self.terms).zip(force) {
+            *term = w[0] * y[0] + w[1] * y[1] + w[2] * y[2] + w[3] * y[3] + quantity.force * force;
+        }
+        terms[0] += quantity.offset;
+        Course { polynomial: Polynomial::new(terms), duration: self.duration }
+    }
+}
+
+impl Path for Taylor {
+    #[inline]
+    fn state(&self, t: f64) -> State {
+        let part = if self.duration > 0.0 { t / self.duration } else { 0.0 };
+        let mut y = self.terms[ORDER];
+        for term in self.terms[..ORDER].iter().rev() {
+            for (y, term) in y.iter_mut().zip(term) {
+                *y = *y * part + term;
+            }
+        }
+        State { x1: y[0], v1: y[1], x2: y[2], v2: y[3] }
+    }
+}
+
+/// A quantity that is linear in the state and the exciting force: w·(x₁, v₁, x₂, v₂) + w₅F + offset.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quantity {
+    /// Weights of x₁, v₁, x₂, v₂.
+    pub weights: [f64; 4],
+    /// Weight of the exciting force.
+    pub force: f64,
+    /// What is added.
+    pub offset: f64,
+}
+
+impl Quantity {
+    /// Its value now.
+    pub fn value(&self, state: &State, force: f64) -> f64 {
+        let w = &self.weights;
+        w[0] * state.x1
+            + w[1] * state.v1
+            + w[2] * state.x2
+            + w[3] * state.v2
+            + self.force * force
+            + self.offset
+    }
+
+    /// The same quantity with the other sign.
+    pub fn reversed(&self) -> Quantity {
+        Quantity { weights: self.weights.map(|w| -w), force: -self.force, offset: -self.offset }
+    }
+
+    /// The same quantity times a factor.
+    pub fn times(&self, factor: f64) -> Quantity {
+        let scaled = self.weights.map(|w| factor * w);
+        Quantity { weights: scaled, force: factor * self.force, offset: factor * self.offset }
+    }
+}
+
+/// The course of a quantity within one piece.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Course {
+    polynomial: Polynomial<{ ORDER + 1 }>,
+    duration: f64,
+}
+
+impl Course {
+    /// Integral over the first `t` seconds.
+    pub fn integral(&self, t: f64) -> f64 {
+        if self.duration > 0.0 { self.polynomial.integral(t / self.duration) * self.duration } else { 0.0 }
+    }
+
+    /// First time in s at which the quantity, not negative at the beginning, falls to zero. None is missed.
+    #[inline]
+    pub fn first_fall(&self) -> Option<f64> {
+        self.polynomial.first_fall().map(|part| part * self.duration)
+    }
+}
+
+#[cfg(test)]
+mod tests;

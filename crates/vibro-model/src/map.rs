@@ -1,0 +1,391 @@
+//! Regime and stability over two parameters.
+
+mod rows;
+
+pub use rows::Rows;
+
+use super::regime::{Strike, Watch};
+use super::{Excitation, Motion, Pattern, PeriodicOrbit, Regime, Rig, Simulation, State, Steady, floquet};
+use nalgebra::Matrix4;
+use num_complex::Complex64;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+use vibro_record::{Error, Result};
+
+/// Cycles of all cells together beyond which a map is refused: some minutes of work.
+pub const MOST_CYCLES: f64 = 5e8;
+
+/// A parameter that can be varied.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Key {
+    /// m₁ in kg.
+    M1,
+    /// m₂ in kg.
+    M2,
+    /// k₁ in N/m.
+    K1,
+    /// k₂ in N/m.
+    K2,
+    /// c₁ in N s/m.
+    C1,
+    /// c₂ in N s/m.
+    C2,
+    /// Gap in m.
+    Gap,
+    /// Coefficient of restitution.
+    Restitution,
+    /// Frequency in Hz.
+    Frequency,
+    /// Force amplitude of a sine, or force of a pulse, in N.
+    Force,
+    /// Impulse of impulses in N s.
+    Impulse,
+    /// Width of pulses in s.
+    Width,
+}
+
+impl Key {
+    /// All keys with their names and units.
+    pub const ALL: [(Key, &'static str, &'static str); 12] = [
+        (Key::M1, "m1", "kg"),
+        (Key::M2, "m2", "kg"),
+        (Key::K1, "k1", "N/m"),
+        (Key::K2, "k2", "N/m"),
+        (Key::C1, "c1", "N s/m"),
+        (Key::C2, "c2", "N s/m"),
+        (Key::Gap, "gap", "m"),
+        (Key::Restitution, "restitution", ""),
+        (Key::Frequency, "frequency", "Hz"),
+        (Key::Force, "force", "N"),
+        (Key::Impulse, "impulse", "N s"),
+        (Key::Width, "width", "s"),
+    ];
+
+    /// Name and unit.
+    pub fn label(self) -> (&'static str, &'static str) {
+        let (_, name, unit) = Key::ALL[self as usize];
+        (name, unit)
+    }
+
+    /// The key of this name.
+    pub fn named(name: &str) -> Option<Key> {
+        Key::ALL.iter().find(|k| k.1 == name).map(|k| k.0)
+    }
+
+    /// Enters a value; `None` where the excitation has no such number.
+    fn set(self, rig: &mut Rig, excitation: &mut Excitation, value: f64) -> Option<()> {
+        *match self {
+            Key::M1 => &mut rig.m1,
+            Key::M2 => &mut rig.m2,
+            Key::K1 => &mut rig.k1,
+            Key::K2 => &mut rig.k2,
+            Key::C1 => &mut rig.c1,
+            Key::C2 => &mut rig.c2,
+            Key::Gap => &mut rig.gap,
+            Key::Restitution => &mut rig.restitution,
+            Key::Frequency => {
+                *excitation = excitation.at_frequency(value);
+                return Some(());
+            }
+            Key::Force => match excitation {
+                Excitation::Sine(sine) => &mut sine.force,
+                Excitation::Pulse(pulses) => &mut pulses.force,
+                _ => return None,
+            },
+            Key::Impulse => match excitation {
+                Excitation::Impulse(impulses) => &mut impulses.impulse,
+                _ => return None,
+            },
+            Key::Width => match excitation {
+                Excitation::Pulse(pulses) => &mut pulses.width,
+                _ => return None,
+            },
+        } = value;
+        Some(())
+    }
+}
+
+/// Values of one parameter with equal distances.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Axis {
+    /// The parameter.
+    pub key: Key,
+    /// First value.
+    pub low: f64,
+    /// Last value.
+    pub high: f64,
+    /// Number of values.
+    pub n: usize,
+}
+
+impl Axis {
+    /// The `i`-th value.
+    pub fn value(&self, i: usize) -> f64 {
+        if i == 0 { self.low } else { self.low + (self.high - self.low) * (i as f64 / (self.n - 1) as f64) }
+    }
+
+    /// All values.
+    pub fn values(&self) -> Vec<f64> {
+        (0..self.n).map(|i| self.value(i)).collect()
+    }
+}
+
+impl std::str::FromStr for Axis {
+    type Err = Error;
+
+    /// `name:low:high:n`.
+    fn from_str(text: &str) -> Result<Axis> {
+        let parse = || {
+            let mut parts = text.split(':');
+            let key = Key::named(parts.next()?)?;
+            let mut number = || parts.next()?.trim().parse::<f64>().ok().filter(|v| v.is_finite());
+            let (low, high) = (number()?, number()?);
+            let n = parts.next()?.trim().parse().ok()?;
+            (parts.next().is_none() && low < high && n >= 2).then_some(Axis { key, low, high, n })
+        };
+        parse().ok_or_else(|| {
+            let names: Vec<_> = Key::ALL.iter().map(|k| k.1).collect();
+            Error::usage(format!("axis {text:?}"), "NAME:LOW:HIGH:N with LOW below HIGH and N of 2 or more")
+                .hint(format!("NAME is one of {}", names.join(", ")))
+        })
+    }
+}
+
+/// A map to be computed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Plan {
+    /// The rig; what an axis names is overwritten.
+    pub rig: Rig,
+    /// What drives mass 1.
+    pub excitation: Excitation,
+    /// Parameter across.
+    pub x: Axis,
+    /// Parameter upwards.
+    pub y: Axis,
+    /// Cycles a cell, from rest. A cell ends before that where it repeats within 1e-6, where it is within 1e-3 of a stable motion and
+    /// draws nearer, or where the masses cannot meet any more.
+    pub cycles: u32,
+}
+
+/// What one cell of a map holds.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Cell {
+    /// The regime; `None` where the rig cannot be computed there (an undamped mass at its resonance).
+    pub regime: Option<Regime>,
+    /// Largest modulus of the Floquet multipliers over the period of the pattern (of one cycle without impacts); `None` without one.
+    pub spectral_radius: Option<f64>,
+}
+
+/// Share of the cycles that pass before a motion that has not settled is judged.
+const SETTLING: f64 = 0.6;
+/// Differences below this that still fall towards a stable motion end a cell.
+const SOON: f64 = 1e-3;
+/// Cycles between two looks whether a motion has settled.
+const LOOK: u32 = 16;
+
+impl Plan {
+    /// Checks the plan.
+    ///
+    /// # Errors
+    /// If both axes vary the same parameter, a corner of the map is impossible, or there is more work than [`MOST_CYCLES`].
+    pub fn check(&self) -> Result<()> {
+        if self.x.key == self.y.key {
+            return Err(Error::usage(format!("both axes vary {}", self.x.key.label().0), "two parameters"));
+        }
+        for axis in [&self.x, &self.y] {
+            if axis.key.set(&mut self.rig.clone(), &mut self.excitation.clone(), axis.low).is_none() {
+                let (found, kind) = (axis.key.label().0, self.excitation.kind());
+                return Err(Error::usage(
+                    format!("an axis of {found} under an excitation of kind {kind}"),
+                    "a parameter that this excitation has",
+                ));
+            }
+            if axis.n < 2 || !(axis.low.is_finite() && axis.high.is_finite() && axis.low < axis.high) {
+                let found =
+                    format!("{} from {} to {} in {} values", axis.key.label().0, axis.low, axis.high, axis.n);
+                return Err(Error::usage(found, "finite ends, the lower one first, and at least 2 values"));
+            }
+        }
+        if self.cycles < 4 {
+            return Err(Error::usage(format!("{} cycles a cell", self.cycles), "at least 4"));
+        }
+        let work = self.x.n as f64 * self.y.n as f64 * f64::from(self.cycles);
+        if work > MOST_CYCLES {
+            return Err(Error::refused(format!(
+                "the map has {work:.3e} cycles, more than {MOST_CYCLES:.0e}"
+            ))
+            .hint("take fewer cells or fewer cycles a cell"));
+        }
+        for (column, row) in [(0, 0), (self.x.n - 1, 0), (0, self.y.n - 1), (self.x.n - 1, self.y.n - 1)] {
+            let (rig, excitation) = self.at(column, row);
+            rig.check()?;
+            excitation.check()?;
+            if rig.gap < 0.0 {
+                return Err(Error::usage(
+                    format!("gap is {} m", rig.gap),
+                    "0 or more: cells start with both masses at their own rest",
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// Rig and excitation of a cell.
+    pub fn at(&self, column: usize, row: usize) -> (Rig, Excitation) {
+        let (mut rig, mut excitation) = (self.rig, self.excitation.clone());
+        // What an excitation does not have has been refused.
+        let _ = self.x.key.set(&mut rig, &mut excitation, self.x.value(column));
+        let _ = self.y.key.set(&mut rig, &mut excitation, self.y.value(row));
+        (rig, excitation)
+    }
+
+    /// Computes the rows that `rows` does not hold yet, cells in parallel, and shows each with its number as soon as it stands.
+    ///
+    /// # Errors
+    /// As [`Plan::check`], and those of `show`, which end the work.
+    pub fn run(&self, rows: &mut Rows, mut show: impl FnMut(usize, &[Cell]) -> Result<()>) -> Result<()> {
+        self.check()?;
+        for row in 0..self.y.n {
+            if rows.get(row).is_some() {
+                continue;
+            }
+            let cells: Vec<Cell> = (0..self.x.n)
+                .into_par_iter()
+                .map(|column| {
+                    let (rig, excitation) = self.at(column, row);
+                    cell(&rig, &excitation, self.cycles)
+                })
+                .collect();
+            show(row, &cells)?;
+            rows.set(row, cells);
+        }
+        Ok(())
+    }
+}
+
+/// Regime and spectral radius of the motion from rest.
+pub fn cell(rig: &Rig, excitation: &Excitation, cycles: u32) -> Cell {
+    judged(rig, excitation, cycles).unwrap_or(Cell { regime: None, spectral_radius: None })
+}
+
+fn judged(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Cell> {
+    let mut motion = Simulation::new(rig, excitation)?;
+    let frequency = excitation.frequency();
+    let settling = (SETTLING * f64::from(cycles)) as u32;
+    let mut passed = 0;
+    let mut watch = Watch::new(&motion);
+    while passed < settling {
+        let look = LOOK.min(settling - passed);
+        watch.restart(&motion);
+        motion.advance(motion.time() + f64::from(look) / frequency, &mut |piece| watch.take(&piece))?;
+        passed += look;
+        let found = watch.pattern();
+        if let Some(cell) = early(rig, excitation, &watch, &found, look) {
+            return Ok(cell);
+        }
+        if found.regime == Regime::NoImpact && found.settled && clear(rig, excitation, &motion) {
+            break;
+        }
+    }
+    watch.restart(&motion);
+    let rest = f64::from(cycles - passed) / frequency;
+    motion.advance(motion.time() + rest, &mut |piece| watch.take(&piece))?;
+    let found = watch.pattern();
+    Ok(match found.regime {
+        Regime::Periodic { .. } => periodic(rig, excitation, &found)
+            .unwrap_or(Cell { regime: Some(Regime::Irregular), spectral_radius: None }),
+        Regime::NoImpact => {
+            Cell { regime: Some(found.regime), spectral_radius: Some(free_radius(rig, excitation)) }
+        }
+        other => Cell { regime: Some(other), spectral_radius: None },
+    })
+}
+
+/// The cell of a pattern. Under a sine the motion that the pattern is, or settles on, must be there, must not be unstable, and says
+/// what its shortest period is.
+fn periodic(rig: &Rig, excitation: &Excitation, found: &Pattern) -> Option<Cell> {
+    let Regime::Periodic { cycles, .. } = found.regime else { return None };
+    let as_seen = || Cell {
+        regime: Some(found.regime),
+        spectral_radius: radius(rig, excitation, cycles, &found.strikes),
+    };
+    let Excitation::Sine(sine) = excitation else { return Some(as_seen()) };
+    let orbit =
+        PeriodicOrbit::from_strikes(rig, sine, cycles, &found.strikes).and_then(PeriodicOrbit::shortest);
+    match orbit {
+        Ok(orbit) if orbit.validity.admissible && orbit.validity.stable != Some(false) => Some(Cell {
+            regime: Some(Regime::Periodic { impacts: orbit.impacts(), cycles: orbit.cycles }),
+            spectral_radius: orbit.spectral_radius(),
+        }),
+        _ => found.settled.then(as_seen),
+    }
+}
+
+/// The cell of a pattern that has settled, or draws near a stable motion, before all cycles have passed.
+fn early(rig: &Rig, excitation: &Excitation, watch: &Watch, found: &Pattern, look: u32) -> Option<Cell> {
+    let Regime::Periodic { impacts, cycles } = found.regime else { return None };
+    // Seen at least three times.
+    if watch.strikes().len() < 3 * impacts as usize || 3 * cycles > look {
+        return None;
+    }
+    let near = found.settled || (matches!(excitation, Excitation::Sine(_)) && found.distance? < SOON);
+    let cell = if near { periodic(rig, excitation, found)? } else { return None };
+    cell.spectral_radius.is_some_and(|r| r < 1.0).then_some(cell)
+}
+
+/// Whether a motion under a sine cannot meet the other mass any more: forced and free parts together stay below the gap.
+fn clear(rig: &Rig, excitation: &Excitation, motion: &Simulation) -> bool {
+    let Excitation::Sine(sine) = excitation else { return false };
+    let Ok(steady) = Steady::new(rig, sine) else { return false };
+    let (state, forced) = (motion.state(), steady.response * Complex64::cis(motion.phase()));
+    let [first, second] = rig.oscillators();
+    let free = first.bound(state.x1 - forced.re, state.v1 + steady.omega * forced.im)
+        + second.bound(state.x2, state.v2);
+    forced.norm() + free < rig.gap
+}
+
+/// Spectral radius along a pattern of impacts; `None` under several sines, whose force is not told by the phase of one.
+fn radius(rig: &Rig, excitation: &Excitation, cycles: u32, strikes: &[Strike]) -> Option<f64> {
+    let share = rig.reduced_mass() * (1.0 + rig.restitution);
+    let force = |phase: f64| match excitation {
+        Excitation::Sine(sine) => Some(sine.force * phase.cos()),
+        Excitation::Impulse(_) => Some(0.0),
+        Excitation::Pulse(p) => Some(if phase < TAU * p.width * p.frequency { p.force } else { 0.0 }),
+        _ => None,
+    };
+    let rate = |s: &State, force: f64| {
+        [
+            s.v1,
+            (force - rig.c1 * s.v1 - rig.k1 * s.x1) / rig.m1,
+            s.v2,
+            (-rig.c2 * s.v2 - rig.k2 * s.x2) / rig.m2,
+        ]
+    };
+    let mut whole = Matrix4::identity();
+    for (i, strike) in strikes.iter().enumerate() {
+        let impulse = share * strike.approach_velocity;
+        let before = strike.before;
+        let after = State { v1: before.v1 - impulse / rig.m1, v2: before.v2 + impulse / rig.m2, ..before };
+        let end = strikes
+            .get(i + 1)
+            .map_or_else(|| strikes[0].time + f64::from(cycles) / excitation.frequency(), |next| next.time);
+        let force = force(strike.phase)?;
+        whole =
+            floquet::monodromy(rig, end - strike.time, &rate(&before, force), &rate(&after, force)) * whole;
+    }
+    floquet::multipliers(&whole).ok().map(|m| m[0].norm())
+}
+
+/// Spectral radius of a cycle without impacts: e^{−bT}, or that of the slower decay above critical damping.
+fn free_radius(rig: &Rig, excitation: &Excitation) -> f64 {
+    let decay = rig.oscillators().map(|o| {
+        let (b, inside) = (o.decay(), o.decay().powi(2) - o.omega2());
+        if inside > 0.0 { o.omega2() / (b + inside.sqrt()) } else { b }
+    });
+    (-decay[0].min(decay[1]) / excitation.frequency()).exp()
+}
+
+#[cfg(test)]
+mod tests;

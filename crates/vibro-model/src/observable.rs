@@ -1,0 +1,95 @@
+//! What an instrument shows of a motion.
+//!
+//! A measured displacement spectrum is compared with the complex fundamental |X| of the predicted motion, a displacement
+//! trace with half its peak-to-peak. The two differ by all harmonics that impacts make; one is never compared with the
+//! other.
+
+use super::{NoImpact, Orbit, Softened};
+use num_complex::Complex64;
+use serde::Serialize;
+
+/// How a motion was measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Observable {
+    /// Line at the excitation of a displacement spectrum, peak amplitude in m.
+    Fundamental,
+    /// Half the peak-to-peak of a displacement trace in m.
+    #[serde(rename = "peak")]
+    HalfPeakToPeak,
+    /// Speed in m/s with which the masses meet: of several impacts in a cycle the fastest, the mean over the cycles that have one; 0
+    /// without impacts.
+    ImpactSpeed,
+    /// Impulse in N s of that impact.
+    Impulse,
+}
+
+impl Observable {
+    /// `fundamental`, `peak`, `impact-speed` or `impulse`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Observable::Fundamental => "fundamental",
+            Observable::HalfPeakToPeak => "peak",
+            Observable::ImpactSpeed => "impact-speed",
+            Observable::Impulse => "impulse",
+        }
+    }
+
+    /// Its unit: `m`, `m/s` or `N s`.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Observable::Fundamental | Observable::HalfPeakToPeak => "m",
+            Observable::ImpactSpeed => "m/s",
+            Observable::Impulse => "N s",
+        }
+    }
+
+    /// Whether it is one number of both masses instead of one of each.
+    pub fn is_of_impacts(self) -> bool {
+        matches!(self, Observable::ImpactSpeed | Observable::Impulse)
+    }
+
+    /// What it shows of an orbit: x₁ and x₂ in m; of its impacts, which both masses share, the same number twice.
+    pub fn of_orbit(self, orbit: &Orbit) -> [f64; 2] {
+        match self {
+            Observable::Fundamental => orbit.fundamental.map(Complex64::norm),
+            Observable::HalfPeakToPeak => orbit.peak_to_peak.map(|p| p / 2.0),
+            Observable::ImpactSpeed => [orbit.approach_velocity; 2],
+            Observable::Impulse => [orbit.impulse; 2],
+        }
+    }
+
+    /// What it shows of an orbit with the duration of its contact taken into account.
+    pub fn of_softened(self, orbit: &Softened) -> [f64; 2] {
+        match self {
+            Observable::Fundamental => orbit.fundamental,
+            Observable::HalfPeakToPeak => orbit.peak_to_peak.map(|p| p / 2.0),
+            Observable::ImpactSpeed => [orbit.approach_velocity; 2],
+            Observable::Impulse => [orbit.impulse; 2],
+        }
+    }
+
+    /// What it shows of the motion without impacts: a motion of mass 1, while mass 2 rests.
+    ///
+    /// Half the peak-to-peak of a train of impulses or pulses is given for its fundamental too.
+    pub fn of_no_impact(self, motion: &NoImpact) -> [f64; 2] {
+        if self.is_of_impacts() { [0.0; 2] } else { [motion.amplitude, 0.0] }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Rig, orbits};
+
+    #[test]
+    fn an_impacting_motion_shows_more_in_a_trace_than_in_its_fundamental() {
+        // Harmonics of an impact train add in phase at the impact, so half the peak-to-peak is the larger one here.
+        let found = orbits(&Rig::thesis(), 0.5, 11.0).unwrap();
+        let [line, _] = Observable::Fundamental.of_orbit(&found.orbits[0]);
+        let [trace, _] = Observable::HalfPeakToPeak.of_orbit(&found.orbits[0]);
+        assert!(trace > line, "{trace} against {line}");
+        assert_eq!(Observable::Fundamental.of_no_impact(&found.no_impact)[1], 0.0);
+        assert_eq!(Observable::ImpactSpeed.of_no_impact(&found.no_impact), [0.0; 2]);
+    }
+}

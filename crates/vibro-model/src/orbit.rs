@@ -1,0 +1,256 @@
+//! Periodic motions with one impact a period, in closed form.
+
+mod backbone;
+mod conditions;
+mod course;
+mod drive;
+mod response;
+mod shown;
+mod sine;
+mod soft;
+mod stretch;
+mod told;
+mod train;
+
+pub use backbone::backbone;
+pub use shown::{Shown, shown};
+pub use soft::{Compliance, LONGEST_CONTACT, Softened, softened};
+
+pub(super) use conditions::Root;
+pub(super) use course::Course;
+
+use super::{Excitation, NoImpact, Rig, Sine, State, Steady, Validity};
+use conditions::Conditions;
+use drive::Drive;
+use num_complex::Complex64;
+use response::Response;
+use std::f64::consts::TAU;
+use vibro_record::{Error, Result};
+
+/// One periodic motion with one impact a period; its time counts from the impact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Orbit {
+    /// Excitation frequency in Hz.
+    pub frequency: f64,
+    /// Cycles of the excitation from impact to impact.
+    pub cycles: u32,
+    /// Impulse J in N s.
+    pub impulse: f64,
+    /// Under a sine force φ in 0..2π of the forced part A cos(ωt + φ) of x₁; under impulses or pulses the time τ in s from the
+    /// beginning of the last one to the impact.
+    pub timing: f64,
+    /// Phase in 0..2π of the excitation's cycle at the impact: of the force F₀ cos(ωt + θ), or 2πτ/T.
+    pub force_phase: f64,
+    /// Approach speed vᵣ in m/s.
+    pub approach_velocity: f64,
+    /// Complex amplitudes X₁, X₂ in m at the excitation frequency: what a spectrum shows of x₁ and x₂, its phase counted
+    /// from the impact.
+    pub fundamental: [Complex64; 2],
+    /// Largest minus smallest x₁ and x₂ in m: what a displacement trace shows.
+    pub peak_to_peak: [f64; 2],
+    /// Floquet multipliers, largest first; `None` where the motion does not exist or grazes.
+    pub multipliers: Option<[Complex64; 4]>,
+    /// Is it real?
+    pub validity: Validity,
+    upper: bool,
+    rig: Rig,
+    drive: Drive,
+    course: Course,
+}
+
+impl Orbit {
+    /// Period in s.
+    pub fn period(&self) -> f64 {
+        f64::from(self.cycles) / self.frequency
+    }
+
+    /// State at `t` seconds after an impact, any `t`; at the impact itself, the state after it.
+    pub fn state(&self, t: f64) -> State {
+        self.course.state(t.rem_euclid(self.course.period()))
+    }
+
+    /// State just before the impact.
+    pub fn before_impact(&self) -> State {
+        self.course.state(self.course.period())
+    }
+
+    /// Complex amplitudes X₁, X₂ in m of the line at `n`/T, n ≥ 1, T being the time from impact to impact: the line n = `cycles` lies
+    /// at the excitation frequency.
+    ///
+    /// X₁ = (F − 2J/T)L₁(iω), X₂ = (2J/T)L₂(iω), F the force's own line.
+    pub fn line(&self, n: u32) -> [Complex64; 2] {
+        let period = self.period();
+        let [l1, l2] = self.rig.receptances(TAU * f64::from(n) / period);
+        // Every line of a train of impulses J is 2J/T high.
+        let train = 2.0 * self.impulse / period;
+        let force = if n.is_multiple_of(self.cycles) {
+            self.drive.harmonic(n / self.cycles, self.frequency, self.force_phase)
+        } else {
+            Complex64::ZERO
+        };
+        [(force - train) * l1, l2 * train]
+    }
+
+    /// The orbit among `others`, of the same excitation at a frequency (or with a contact) nearby, that this one goes over into: on the
+    /// same side of the fold, and within a sixth of a cycle in timing.
+    pub fn continued<'a>(&self, others: &'a [Orbit]) -> Option<&'a Orbit> {
+        let same = others.iter().filter(|other| other.upper == self.upper);
+        match self.course {
+            // One on each side of the fold.
+            Course::Smooth { .. } => same.min_by(|a, b| a.impulse.total_cmp(&b.impulse)),
+            Course::Broken { .. } => {
+                let apart = |other: &Orbit| {
+                    let way = (other.force_phase - self.force_phase).rem_euclid(TAU);
+                    way.min(TAU - way)
+                };
+                same.filter(|other| apart(other) < TAU / 6.0).min_by(|a, b| apart(a).total_cmp(&apart(b)))
+            }
+        }
+    }
+
+    /// Whether the motion is real, and stays so where the gap differs by up to `gap_uncertainty` (m): farther from grazing than that by
+    /// [`Validity::grazing_distance`], and real when solved again at the ends and half-way to them.
+    pub fn robust(&self, gap_uncertainty: f64) -> bool {
+        if !self.validity.real() || self.validity.grazing_distance <= gap_uncertainty {
+            return false;
+        }
+        let Some(excitation) = self.drive.excitation(self.frequency) else { return false };
+        gap_uncertainty == 0.0
+            || [-1.0, -0.5, 0.5, 1.0].iter().all(|part| {
+                let rig = Rig { gap: self.rig.gap + part * gap_uncertainty, ..self.rig };
+                orbits_of(&rig, &excitation, self.cycles)
+                    .is_ok_and(|found| self.continued(&found.orbits).is_some_and(|o| o.validity.real()))
+            })
+    }
+
+    /// Whether the orbit lies on that side of the fold where a larger impulse would take more energy than the force then gives.
+    pub fn is_upper(&self) -> bool {
+        self.upper
+    }
+
+    /// Unit of [`Orbit::timing`]: `rad` or `s`.
+    pub fn timing_unit(&self) -> &'static str {
+        match self.course {
+            Course::Smooth { .. } => "rad",
+            Course::Broken { .. } => "s",
+        }
+    }
+
+    /// Largest modulus of the multipliers.
+    pub fn spectral_radius(&self) -> Option<f64> {
+        self.multipliers.map(|m| m[0].norm())
+    }
+}
+
+/// All answers at one frequency.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Orbits {
+    /// One for each real root, the larger impulse first; each says whether it is real.
+    pub orbits: Vec<Orbit>,
+    /// The motion without impacts.
+    pub no_impact: NoImpact,
+}
+
+/// All motions with one impact each cycle of the force `force` cos ωt (N) at `frequency` (Hz), and the one without impacts.
+///
+/// # Errors
+/// If a parameter is impossible, or an undamped mass is driven at resonance.
+pub fn orbits(rig: &Rig, force: f64, frequency: f64) -> Result<Orbits> {
+    orbits_over(rig, &Sine { force, frequency }, 1)
+}
+
+/// As [`orbits`], with one impact in `cycles` cycles.
+///
+/// # Errors
+/// As [`orbits`], and if `cycles` is 0 or the force is 0.
+pub fn orbits_over(rig: &Rig, sine: &Sine, cycles: u32) -> Result<Orbits> {
+    under_sine(rig, sine, cycles, 0.0)
+}
+
+fn under_sine(rig: &Rig, sine: &Sine, cycles: u32, delay: f64) -> Result<Orbits> {
+    let steady = Steady::new(rig, sine)?;
+    driven(sine.force)?;
+    let conditions = Conditions::new(rig, sine.frequency, cycles)?.delayed(delay);
+    Ok(Orbits {
+        orbits: sine::orbits(&conditions, &steady, sine.force).collect(),
+        no_impact: NoImpact::new(&steady, rig.gap),
+    })
+}
+
+/// All motions with one impact in `cycles` cycles of the excitation, and the one without impacts.
+///
+/// Under a sine force the larger impulse comes first, under impulses and pulses the earlier impact.
+///
+/// # Errors
+/// If a parameter is impossible, an undamped mass is driven at resonance, there is no excitation to speak of, or it is a sum of several
+/// sines, for which there is no closed form.
+pub fn orbits_of(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Orbits> {
+    solve(rig, excitation, cycles, 0.0)
+}
+
+/// The motion without impacts.
+///
+/// # Errors
+/// As [`orbits_of`].
+pub fn no_impact(rig: &Rig, excitation: &Excitation) -> Result<NoImpact> {
+    rig.check()?;
+    excitation.check()?;
+    if let Excitation::Sine(sine) = excitation {
+        return Ok(NoImpact::new(&Steady::new(rig, sine)?, rig.gap));
+    }
+    Ok(train(rig, excitation)?.0.no_impact(rig.gap))
+}
+
+/// As [`orbits_of`], the impact following the first touch by `delay` (s).
+fn solve(rig: &Rig, excitation: &Excitation, cycles: u32, delay: f64) -> Result<Orbits> {
+    rig.check()?;
+    excitation.check()?;
+    if let Excitation::Sine(sine) = excitation {
+        return under_sine(rig, sine, cycles, delay);
+    }
+    let (response, drive) = train(rig, excitation)?;
+    let conditions = Conditions::new(rig, excitation.frequency(), cycles)?.delayed(delay);
+    Ok(Orbits {
+        orbits: train::orbits(&conditions, &response, drive),
+        no_impact: response.no_impact(rig.gap),
+    })
+}
+
+/// Response of mass 1 alone to a train of impulses or pulses.
+fn train(rig: &Rig, excitation: &Excitation) -> Result<(Response, Drive)> {
+    let oscillator = rig.oscillators()[0];
+    let cycle = 1.0 / excitation.frequency();
+    match *excitation {
+        Excitation::Impulse(train) => {
+            driven(train.impulse)?;
+            let response = Response::impulse(rig.m1, oscillator, cycle, train.impulse)?;
+            Ok((response, Drive::Impulse(train.impulse)))
+        }
+        Excitation::Pulse(train) => {
+            driven(train.force)?;
+            let response = Response::pulse(rig.m1, oscillator, cycle, train.force, train.width)?;
+            Ok((response, Drive::Pulse(train.force, train.width)))
+        }
+        Excitation::Sine(_) | Excitation::Sines(_) => {
+            Err(Error::refused("several sines at once have no closed form")
+                .hint("`vibro model simulate` follows the motion"))
+        }
+    }
+}
+
+/// An excitation that drives.
+fn driven(size: f64) -> Result<()> {
+    if size == 0.0 {
+        return Err(Error::usage(
+            "a force or impulse of 0",
+            "a value other than 0: nothing moves the masses",
+        ));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests;
+
+#[cfg(test)]
+mod limits_tests;

@@ -1,0 +1,127 @@
+//! Steady motion of mass 1 alone under impulses or rectangular pulses, once a cycle.
+
+use crate::{Green, NoImpact};
+use vibro_math::Oscillator;
+use vibro_math::swing::passages;
+use vibro_record::Result;
+
+/// The steady motion, piece by piece free: during the pulse about f/k₁, after it about 0. An impulse is a pulse of no width.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Response {
+    pub oscillator: Oscillator,
+    /// Cycle of the excitation in s.
+    pub cycle: f64,
+    /// Duration of the pulse in s; 0 for an impulse.
+    pub width: f64,
+    /// Force during the pulse over k₁, in m; 0 for an impulse.
+    pub rest: f64,
+    /// Free part at the beginning of the pulse.
+    on: (f64, f64),
+    /// Displacement and velocity after the pulse (or impulse).
+    off: (f64, f64),
+}
+
+/// A piece of the steady motion.
+#[derive(Debug, Clone, Copy)]
+pub struct Piece {
+    /// Time from the beginning of the pulse to that of the piece, in s.
+    pub start: f64,
+    pub duration: f64,
+    /// Where mass 1 would rest.
+    pub rest: f64,
+    /// Free displacement and velocity at the piece's start.
+    pub free: (f64, f64),
+}
+
+impl Response {
+    /// Steady motion under an impulse (N s) once a cycle: F times the periodic Green's function.
+    ///
+    /// # Errors
+    /// As [`Green::new`].
+    pub fn impulse(m: f64, oscillator: Oscillator, cycle: f64, impulse: f64) -> Result<Response> {
+        let green = Green::new(m, oscillator, cycle)?;
+        let off = (impulse * green.start, impulse * green.slope_after);
+        Ok(Response { oscillator, cycle, width: 0.0, rest: 0.0, on: (0.0, 0.0), off })
+    }
+
+    /// Steady motion under a force (N) that acts for `width` seconds of each cycle.
+    ///
+    /// After the pulse u = (I − Φ(T))⁻¹ (f/m) ∫₀ʷ Φ(s)(0, 1) ds, the Green's function summed over the pulse.
+    ///
+    /// # Errors
+    /// As [`Green::new`].
+    pub fn pulse(m: f64, oscillator: Oscillator, cycle: f64, force: f64, width: f64) -> Result<Response> {
+        let unit = Green::new(m, oscillator, cycle)?;
+        let (c, s) = oscillator.kernels(width);
+        // (I − Φ)⁻¹ of (0, S(w)) is that of the Green's function, of (∫S, 0) its companion.
+        let area = ramp(&oscillator, width, c, s);
+        let (less, determinant) = oscillator.closing(cycle);
+        let (_, sine) = oscillator.kernels(cycle);
+        let (b, omega2) = (oscillator.decay(), oscillator.omega2());
+        let off = (
+            force * (unit.start * s + (less + b * sine) * area / (m * determinant)),
+            force * (unit.slope_after * s - omega2 * sine * area / (m * determinant)),
+        );
+        let rest = force / (m * omega2);
+        let before = oscillator.free(off.0, off.1, cycle - width);
+        Ok(Response { oscillator, cycle, width, rest, on: (before.0 - rest, before.1), off })
+    }
+
+    /// The piece at the time `at` after the beginning of the pulse, 0 ≤ `at` ≤ cycle, and the time within it.
+    pub fn piece(&self, at: f64) -> (Piece, f64) {
+        let [on, off] = self.pieces();
+        if at < self.width { (on, at) } else { (off, at - self.width) }
+    }
+
+    /// Pulse and pause; of an impulse the first has no duration.
+    pub fn pieces(&self) -> [Piece; 2] {
+        [
+            Piece { start: 0.0, duration: self.width, rest: self.rest, free: self.on },
+            Piece { start: self.width, duration: self.cycle - self.width, rest: 0.0, free: self.off },
+        ]
+    }
+
+    /// Displacement, velocity and acceleration at the time `at` after the beginning of the pulse.
+    pub fn at(&self, at: f64) -> [f64; 3] {
+        let (piece, t) = self.piece(at);
+        let (x, v) = self.oscillator.free(piece.free.0, piece.free.1, t);
+        [x + piece.rest, v, self.oscillator.acceleration(x, v)]
+    }
+
+    /// Smallest and largest displacement in m.
+    pub fn range(&self) -> (f64, f64) {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for piece in self.pieces().iter().filter(|p| p.duration > 0.0) {
+            let (x, v) = piece.free;
+            let inner = passages(&self.oscillator, v, self.oscillator.acceleration(x, v), piece.duration);
+            for t in [0.0, piece.duration].into_iter().chain(inner) {
+                let at = piece.rest + self.oscillator.free(x, v, t).0;
+                (low, high) = (low.min(at), high.max(at));
+            }
+        }
+        (low, high)
+    }
+
+    /// The motion as one without impacts on a rig with this `gap` in m.
+    pub fn no_impact(&self, gap: f64) -> NoImpact {
+        let (low, high) = self.range();
+        NoImpact { possible: high < gap, amplitude: (high - low) / 2.0, largest: high }
+    }
+}
+
+/// ∫₀ʷ S(s) ds = (1 − C(w) − bS(w))/Ω², as a power series where that would cancel.
+fn ramp(oscillator: &Oscillator, width: f64, c: f64, s: f64) -> f64 {
+    let (b, omega2) = (oscillator.decay(), oscillator.omega2());
+    if omega2.sqrt() * width > 0.5 || b * width > 0.25 {
+        return (1.0 - c - b * s) / omega2;
+    }
+    // S = Σ sₙtⁿ with s₀ = 0, s₁ = 1, (n + 1)(n + 2)sₙ₊₂ = −2b(n + 1)sₙ₊₁ − Ω²sₙ. Terms fall faster than 0.5ⁿ/n!.
+    let (mut before, mut term, mut sum) = (0.0, width, 0.0);
+    for n in 1..20_u32 {
+        let n = f64::from(n);
+        sum += term * width / (n + 1.0);
+        (before, term) =
+            (term, -(2.0 * b * n * term * width + omega2 * before * width * width) / (n * (n + 1.0)));
+    }
+    sum
+}

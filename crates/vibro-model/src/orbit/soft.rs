@@ -1,0 +1,206 @@
+//! What a contact that gives way changes in an orbit, to first order in the duration of the contact.
+
+use super::{Orbit, Orbits};
+use crate::{Excitation, Rig};
+use serde::Serialize;
+use std::f64::consts::PI;
+use vibro_record::{Error, Result};
+
+/// The longest part of the period in contact for which the correction was checked.
+pub const LONGEST_CONTACT: f64 = 0.025;
+
+/// A contact of spring k₃ and damper c₃ (Kelvin and Voigt) that cannot pull, as two masses M meet it alone.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Compliance {
+    /// k₃ in N/m.
+    pub stiffness: f64,
+    /// c₃ in N s/m.
+    pub damping: f64,
+    /// ζ = c₃/(2√(k₃M)).
+    pub damping_ratio: f64,
+    /// Restitution of this spring and damper.
+    pub restitution: f64,
+    /// Duration of the contact in s.
+    pub duration: f64,
+    /// Time t* in s by which an impact without duration would follow the first touch, to leave the masses on the same ways.
+    pub delay: f64,
+    /// Change of the restitution in s by the acceleration a that presses the masses together, per a/v: `(1 − R)t_c − 2d_r/v`.
+    #[serde(skip)]
+    pressed: f64,
+}
+
+impl Compliance {
+    /// Contact of stiffness k₃ (N/m) on a rig; without `damping` (N s/m) the damper is the one that gives the rig's restitution.
+    ///
+    /// With ψ = asin ζ: `t_c = (π − 2ψ)/ω_d`, `R = e^{−ζω₀t_c}`; the masses part at the indentation `d_r = vR sin(2ψ)/ω_d`, where the
+    /// force vanishes, and `t* = (d_r/v + Rt_c)/(1 + R)`.
+    ///
+    /// # Errors
+    /// If stiffness or damping are impossible, the damper is critical or more, or no damper gives the rig's restitution.
+    pub fn new(rig: &Rig, stiffness: f64, damping: Option<f64>) -> Result<Compliance> {
+        rig.check()?;
+        if !(stiffness.is_finite() && stiffness > 0.0) {
+            return Err(Error::usage(
+                format!("contact stiffness is {stiffness} N/m"),
+                "a finite value above 0",
+            ));
+        }
+        let mass = rig.reduced_mass();
+        let omega = (stiffness / mass).sqrt();
+        let ratio = match damping {
+            Some(c) if c.is_finite() && c >= 0.0 => c / (2.0 * mass * omega),
+            Some(c) => {
+                return Err(Error::usage(
+                    format!("contact damping is {c} N s/m"),
+                    "a finite value of 0 or more",
+                ));
+            }
+            None => ratio_of(rig.restitution)?,
+        };
+        if ratio >= 1.0 {
+            return Err(Error::refused(format!(
+                "the contact's damper is {ratio:.3} of the critical one: it creeps apart, and has no correction"
+            ))
+            .hint("follow the motion: `vibro model simulate --model kelvin-voigt`"));
+        }
+        let (decay, turn) = swing(ratio);
+        let damped = omega * (1.0 - ratio * ratio).sqrt();
+        let (restitution, duration) = ((-decay).exp(), turn / damped);
+        let left = restitution * (2.0 * ratio.asin()).sin() / damped;
+        Ok(Compliance {
+            stiffness,
+            damping: 2.0 * ratio * mass * omega,
+            damping_ratio: ratio,
+            restitution,
+            duration,
+            delay: (left + restitution * duration) / (1.0 + restitution),
+            pressed: (1.0 - restitution) * duration - 2.0 * left,
+        })
+    }
+}
+
+/// `ζω₀t_c` and `ω_d t_c` at damping ratio ζ below 1.
+fn swing(ratio: f64) -> (f64, f64) {
+    let turn = PI - 2.0 * ratio.asin();
+    (ratio * turn / (1.0 - ratio * ratio).sqrt(), turn)
+}
+
+/// ζ of a restitution, by halving: `ζω₀t_c` rises from 0 to 2 with ζ.
+fn ratio_of(restitution: f64) -> Result<f64> {
+    let wanted = -restitution.ln();
+    // NaN cannot be; above critical damping R falls below e⁻².
+    if wanted >= 2.0 {
+        return Err(Error::refused(format!(
+            "a restitution of {restitution} needs a damper beyond the critical one, which the correction does not know"
+        ))
+        .hint("follow the motion: `vibro model simulate --model kelvin-voigt`"));
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..60 {
+        let middle = f64::midpoint(low, high);
+        if swing(middle).0 < wanted { low = middle } else { high = middle }
+    }
+    Ok(low)
+}
+
+/// An orbit with the duration of its contact taken into account.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Softened {
+    /// Impulse in N s.
+    pub impulse: f64,
+    /// φ in rad or τ in s of the impact without duration, `delay` after the first touch.
+    pub timing: f64,
+    /// Approach speed in m/s at the first touch.
+    pub approach_velocity: f64,
+    /// Restitution in m/s over m/s of the impact without duration: that of the contact, changed by what presses the masses together.
+    pub restitution: f64,
+    /// Largest minus smallest x₁ and x₂ in m; the way within the contact is not in it.
+    pub peak_to_peak: [f64; 2],
+    /// Amplitudes of x₁ and x₂ in m at the excitation frequency.
+    pub fundamental: [f64; 2],
+    /// Relative change of the impulse. Where it matters, so does the contact's stiffness.
+    pub change: f64,
+    /// Part of the period in contact.
+    pub share: f64,
+}
+
+/// What `compliance` changes in each of the orbits `found` of this rig and excitation; `None` where the orbit has no counterpart left, or only one whose restitution
+/// is none (above 1 or below 0).
+///
+/// The contact's force f over the masses' reduced one gives I = ∫f dt at the time t* = ∫tf dt/I after the touch: an impact without
+/// duration then and of that size leaves the masses on the same ways. At that time the ways already overlap by vt*, so C + t*/(M(1+R))
+/// takes the place of C = χ₁(0) + χ₂(0). An acceleration a that presses the masses together (to first order) lets them meet at the speed
+/// v + at* then, and makes the restitution `R + (a/v)((1 − R)t_c − 2d_r/v)`. The rig's own dampers slow a relative speed u by κu, κ = M(c₁/m₁² + c₂/m₂²): between
+/// touch and parting the two ways without duration lose `κt_c` of it, while in the contact, where it turns round, its envelope falls by
+/// `κt_c/2`; so `R(1 + κt_c/2)` takes the place of R, and a is what presses without the dampers.
+///
+/// # Errors
+/// If the contact lasts longer than [`LONGEST_CONTACT`] of the period.
+pub fn softened(
+    rig: &Rig,
+    excitation: &Excitation,
+    found: &Orbits,
+    compliance: &Compliance,
+) -> Result<Vec<Option<Softened>>> {
+    let Some(first) = found.orbits.first() else { return Ok(Vec::new()) };
+    let share = compliance.duration / first.period();
+    if share > LONGEST_CONTACT {
+        return Err(Error::refused(format!(
+            "the contact lasts {:.1} % of the period; its correction is good up to {:.1} %",
+            100.0 * share,
+            100.0 * LONGEST_CONTACT
+        ))
+        .hint("follow the motion: `vibro model simulate --model kelvin-voigt`"));
+    }
+    found.orbits.iter().map(|orbit| soften(rig, excitation, orbit, compliance)).collect()
+}
+
+fn soften(
+    rig: &Rig,
+    excitation: &Excitation,
+    orbit: &Orbit,
+    compliance: &Compliance,
+) -> Result<Option<Softened>> {
+    if orbit.impulse <= 0.0 {
+        return Ok(None);
+    }
+    let (mut at, mut restitution) = (*orbit, rig.restitution);
+    // κ = M(c₁/m₁² + c₂/m₂²): the rig's own dampers slow the masses' approach by κ times its speed.
+    let second = if rig.has_wall() { 0.0 } else { rig.c2 / (rig.m2 * rig.m2) };
+    let drag = rig.reduced_mass() * (rig.c1 / (rig.m1 * rig.m1) + second);
+    // Each round leaves about the share in contact of the change that is left: 0.025⁸ is nothing.
+    for _ in 0..8 {
+        // The flights take κt_c off a relative speed that in the contact, where it turns round, falls by half of that.
+        let turned = rig.restitution * (1.0 + 0.5 * drag * compliance.duration);
+        let [_, steady] = pressing(&at, drag);
+        let changed = turned + compliance.pressed * steady / at.approach_velocity;
+        if !(0.0..=1.0).contains(&changed) {
+            return Ok(None);
+        }
+        restitution = changed;
+        let soft = super::solve(&Rig { restitution, ..*rig }, excitation, orbit.cycles, compliance.delay)?;
+        match orbit.continued(&soft.orbits) {
+            Some(next) if next.impulse > 0.0 => at = *next,
+            _ => return Ok(None),
+        }
+    }
+    Ok(Some(Softened {
+        impulse: at.impulse,
+        timing: at.timing,
+        approach_velocity: at.approach_velocity - pressing(&at, drag)[0] * compliance.delay,
+        restitution,
+        peak_to_peak: at.peak_to_peak,
+        fundamental: at.fundamental.map(num_complex::Complex::norm),
+        change: at.impulse / orbit.impulse - 1.0,
+        share: compliance.duration / orbit.period(),
+    }))
+}
+
+/// Accelerations in m/s² that would press the masses together if they did not meet: just before the impact, and that part of it
+/// that their approach, slowed by `drag` (1/s), does not change.
+fn pressing(orbit: &Orbit, drag: f64) -> [f64; 2] {
+    let (before, after) = orbit.course.rates();
+    let [first, last] = [before, after].map(|rate| rate[1] - rate[3]);
+    let speeds = before[0] - before[2] + (after[0] - after[2]);
+    [first, f64::midpoint(first, last) + 0.5 * drag * speeds]
+}

@@ -1,0 +1,288 @@
+//! Periodic motions with any number of impacts p in any number of cycles q under a sine force, stable or not.
+//!
+//! Phases and impulses of the impacts are found by Newton's method with the exact Jacobian; between the impacts everything is closed
+//! form. Each motion comes with the verdicts of those with one impact ([`Validity`]).
+
+mod system;
+mod verdict;
+
+pub(super) use system::System;
+
+use super::flow::Signal;
+use super::regime::Strike;
+use super::{Flight, Rig, Sine, State, Validity, floquet};
+use nalgebra::{DVector, Matrix4};
+use num_complex::Complex64;
+use serde::Serialize;
+use std::f64::consts::TAU;
+use vibro_record::{Error, Result};
+
+/// One impact of a periodic motion.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Beat {
+    /// Phase θ in rad of the force F₀ cos θ; rises from impact to impact over all cycles of the period.
+    pub phase: f64,
+    /// Impulse J in N s.
+    pub impulse: f64,
+    /// Approach speed in m/s.
+    pub approach_velocity: f64,
+    /// Time to the next impact in s.
+    pub interval: f64,
+}
+
+/// A periodic motion with p impacts in q cycles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PeriodicOrbit {
+    /// The rig.
+    pub rig: Rig,
+    /// The force.
+    pub sine: Sine,
+    /// Cycles q of the force in a period.
+    pub cycles: u32,
+    /// The p impacts of a period.
+    pub beats: Vec<Beat>,
+    /// Complex amplitudes X₁, X₂ in m at the excitation frequency, phase counted from the first impact.
+    pub fundamental: [Complex64; 2],
+    /// Largest minus smallest x₁ and x₂ in m.
+    pub peak_to_peak: [f64; 2],
+    /// Floquet multipliers over the whole period, largest first; `None` where an impact grazes or does not exist.
+    pub multipliers: Option<[Complex64; 4]>,
+    /// Is it real? Each verdict covers all impacts and all flights.
+    pub validity: Validity,
+    /// Monodromy matrix, from just before the first impact.
+    pub(super) monodromy: Option<Matrix4<f64>>,
+    flights: Vec<Flight>,
+}
+
+/// Newton's steps before it gives up.
+const STEPS: usize = 40;
+/// Newton has settled when its step (rad and shares of an impulse) is below this.
+const SETTLED: f64 = 1e-11;
+/// Impacts of one motion whose phases (rad) and impulses (relatively) differ by less are the same impact.
+const REPEATED: f64 = 1e-7;
+
+impl PeriodicOrbit {
+    /// The motion near `impacts`, pairs of phase (rad, over all `cycles`) and impulse (N s).
+    ///
+    /// # Errors
+    /// If a parameter is impossible, there are no cycles or impacts, or no periodic motion is near.
+    pub fn near(rig: &Rig, sine: &Sine, cycles: u32, impacts: &[(f64, f64)]) -> Result<PeriodicOrbit> {
+        if cycles == 0 || impacts.is_empty() || sine.force == 0.0 {
+            return Err(Error::usage(
+                format!("{} impacts in {cycles} cycles under {} N", impacts.len(), sine.force),
+                "at least one of each and a force above 0",
+            ));
+        }
+        let system = System::new(rig, sine, cycles)?;
+        let (p, unit) = (impacts.len(), system.impulse());
+        let guess =
+            DVector::from_fn(2 * p, |k, _| if k < p { impacts[k].0 } else { impacts[k - p].1 / unit });
+        let u = settle(&system, guess).ok_or_else(|| {
+            Error::refused(format!(
+                "no motion with {p} impacts in {cycles} cycles was found near the impacts given, at {} Hz",
+                sine.frequency
+            ))
+            .hint("start from impacts of a settled simulation, or from an orbit at a nearby frequency")
+        })?;
+        Ok(PeriodicOrbit::build(&system, *sine, cycles, &u))
+    }
+
+    /// The motion near a pattern that a simulation has settled on.
+    ///
+    /// # Errors
+    /// As [`PeriodicOrbit::near`].
+    pub fn from_strikes(rig: &Rig, sine: &Sine, cycles: u32, strikes: &[Strike]) -> Result<PeriodicOrbit> {
+        let phase = |s: &Strike| strikes[0].phase + sine.omega() * (s.time - strikes[0].time);
+        let impacts: Vec<_> = strikes.iter().map(|s| (phase(s), s.impulse)).collect();
+        PeriodicOrbit::near(rig, sine, cycles, &impacts)
+    }
+
+    /// The same motion over its shortest period: impacts that repeat within the period count once.
+    ///
+    /// # Errors
+    /// As [`PeriodicOrbit::near`].
+    pub fn shortest(self) -> Result<PeriodicOrbit> {
+        let p = self.beats.len();
+        let cycles =
+            |d: usize| (self.cycles as usize * d).is_multiple_of(p).then(|| self.cycles as usize * d / p);
+        let repeats = |d: usize, q: usize| {
+            (0..p - d).all(|i| {
+                let (a, b) = (self.beats[i], self.beats[i + d]);
+                (b.phase - a.phase - TAU * q as f64).abs() < REPEATED
+                    && (b.impulse - a.impulse).abs() < REPEATED * a.impulse
+            })
+        };
+        let shorter = (1..p)
+            .filter(|d| p.is_multiple_of(*d))
+            .find_map(|d| Some((d, cycles(d)?)).filter(|(d, q)| repeats(*d, *q)));
+        let Some((d, q)) = shorter else { return Ok(self) };
+        let impacts: Vec<_> = self.beats[..d].iter().map(|b| (b.phase, b.impulse)).collect();
+        PeriodicOrbit::near(&self.rig, &self.sine, q as u32, &impacts)
+    }
+
+    /// Impacts p in a period.
+    pub fn impacts(&self) -> u32 {
+        self.beats.len() as u32
+    }
+
+    /// Period in s.
+    pub fn period(&self) -> f64 {
+        f64::from(self.cycles) / self.sine.frequency
+    }
+
+    /// State at `t` seconds after the first impact, any `t`; at an impact, the state after it.
+    pub fn state(&self, t: f64) -> State {
+        let mut t = t.rem_euclid(self.period());
+        let last = self.flights.len() - 1;
+        for (flight, beat) in self.flights.iter().zip(&self.beats).take(last) {
+            if t < beat.interval {
+                return flight.state(t);
+            }
+            t -= beat.interval;
+        }
+        self.flights[last].state(t)
+    }
+
+    /// Largest modulus of the multipliers over the period.
+    pub fn spectral_radius(&self) -> Option<f64> {
+        self.multipliers.map(|m| m[0].norm())
+    }
+
+    /// Unknowns as [`System`] takes them.
+    pub(super) fn unknowns(&self, system: &System) -> DVector<f64> {
+        let (p, unit) = (self.beats.len(), system.impulse());
+        DVector::from_fn(
+            2 * p,
+            |k, _| {
+                if k < p { self.beats[k].phase } else { self.beats[k - p].impulse / unit }
+            },
+        )
+    }
+
+    /// All about the motion whose unknowns are `u`, phases rising within the period.
+    pub(super) fn build(system: &System, sine: Sine, cycles: u32, u: &DVector<f64>) -> PeriodicOrbit {
+        let (rig, p, unit, omega) = (&system.rig, u.len() / 2, system.impulse(), system.omega);
+        let round = TAU * f64::from(cycles);
+        let interval = |i: usize| {
+            let next = if i + 1 < p { u[i + 1] } else { u[0] + round };
+            (next - u[i]) / omega
+        };
+        let beats: Vec<Beat> = (0..p)
+            .map(|i| {
+                let impulse = u[p + i] * unit;
+                let approach_velocity = impulse * system.contact;
+                Beat { phase: u[i], impulse, approach_velocity, interval: interval(i) }
+            })
+            .collect();
+        let flights: Vec<Flight> = (0..p)
+            .map(|i| {
+                let forced = system.response * Complex64::cis(u[i]);
+                let [(x1, v1), (x2, v2)] = system.free_after(u, i);
+                let state = State { x1: x1 + forced.re, v1: v1 - omega * forced.im, x2, v2 };
+                Flight::new(rig.oscillators(), &system.steady, rig.gap, &state, u[i])
+            })
+            .collect();
+        let sensitivity = sensitivity(system, u);
+        let reach = rig.gap.abs() + system.response.norm();
+        let amplified = beats
+            .iter()
+            .zip(&sensitivity)
+            .fold(1.0_f64, |most, (b, s)| most.max(1.0 + reach * s.abs() / b.impulse.abs()));
+        let exists = beats.iter().all(|b| b.impulse > 0.0 && b.interval > 0.0);
+        let (mut monodromy, mut multipliers, mut stable) = (None, None, Some(false));
+        if exists {
+            let (whole, rounding) = product(rig, &flights, &beats);
+            multipliers = floquet::multipliers(&whole).ok();
+            stable =
+                multipliers.as_ref().map_or(stable, |m| floquet::inside(&whole, m, amplified * rounding));
+            monodromy = Some(whole);
+        }
+        let own = beats
+            .iter()
+            .zip(&sensitivity)
+            .map(|(beat, s)| beat.impulse.abs() / s.abs())
+            .fold(f64::INFINITY, f64::min);
+        let validity =
+            verdict::judge(&flights, &beats, own, stable, multipliers.as_ref(), monodromy.as_ref());
+        let spread = |signal| {
+            let ranges = flights.iter().zip(&beats).map(|(f, b)| f.range(signal, b.interval.max(0.0)));
+            let (low, high) =
+                ranges.fold((f64::INFINITY, f64::NEG_INFINITY), |r, x| (r.0.min(x.0), r.1.max(x.1)));
+            high - low
+        };
+        // Every harmonic of a train of impulses has the amplitude 2/T times their sum with their phases.
+        let train: Complex64 = beats.iter().map(|b| Complex64::from_polar(b.impulse, u[0] - b.phase)).sum();
+        let [l1, l2] = rig.receptances(omega);
+        let train = train * (2.0 / system.period);
+        PeriodicOrbit {
+            rig: *rig,
+            sine,
+            cycles,
+            fundamental: [system.response * Complex64::cis(u[0]) - l1 * train, l2 * train],
+            peak_to_peak: [spread(Signal::X1), spread(Signal::X2)],
+            multipliers,
+            validity,
+            monodromy,
+            beats,
+            flights,
+        }
+    }
+}
+
+/// Newton's method from `u`; `None` where it does not settle on impacts in the same order.
+pub(super) fn settle(system: &System, mut u: DVector<f64>) -> Option<DVector<f64>> {
+    for _ in 0..STEPS {
+        let (left, jacobian) = system.evaluate(&u);
+        let mut step = jacobian.lu().solve(&left)?;
+        let size = step.amax();
+        if !size.is_finite() {
+            return None;
+        }
+        // No more than a fifth of a radian or of an impulse at once, so that far guesses do not leap onto other motions.
+        if size > 0.2 {
+            step *= 0.2 / size;
+        }
+        u -= step;
+        if size < SETTLED {
+            return ordered(system, &u).then_some(u);
+        }
+    }
+    None
+}
+
+/// Whether the phases rise within one period.
+pub(super) fn ordered(system: &System, u: &DVector<f64>) -> bool {
+    let p = u.len() / 2;
+    let round = system.omega * system.period;
+    (1..p).all(|i| u[i] > u[i - 1]) && (p < 2 || u[p - 1] < u[0] + round)
+}
+
+/// dJᵢ/dΔ in N s/m of each impact; infinite at a fold.
+fn sensitivity(system: &System, u: &DVector<f64>) -> Vec<f64> {
+    let p = u.len() / 2;
+    let (_, jacobian) = system.evaluate(u);
+    let pull = DVector::from_fn(2 * p, |k, _| if k < p { -1.0 / system.length } else { 0.0 });
+    jacobian
+        .lu()
+        .solve(&pull)
+        .map_or_else(|| vec![f64::INFINITY; p], |d| (0..p).map(|i| d[p + i] * system.impulse()).collect())
+}
+
+/// Monodromy as the product over the impacts of Φ(τ)S, and a bound on its rounding.
+fn product(rig: &Rig, flights: &[Flight], beats: &[Beat]) -> (Matrix4<f64>, f64) {
+    let p = flights.len();
+    let (mut whole, mut norms, mut relative) = (Matrix4::identity(), 1.0, 0.0);
+    for i in 0..p {
+        let into = (i + p - 1) % p;
+        let before = flights[into].rate(beats[into].interval);
+        let after = flights[i].rate(0.0);
+        let part = floquet::monodromy(rig, beats[i].interval, &before, &after);
+        relative += floquet::rounding(rig, beats[i].interval, &before, &after) / part.norm();
+        norms *= part.norm();
+        whole = part * whole;
+    }
+    (whole, norms * relative)
+}
+
+#[cfg(test)]
+mod tests;

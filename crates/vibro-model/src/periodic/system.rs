@@ -1,0 +1,125 @@
+//! The equations of a motion with p impacts in q cycles, and their exact Jacobian.
+
+use crate::{Green, Rig, Sine, Steady};
+use nalgebra::{DMatrix, DVector};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+use vibro_math::Oscillator;
+use vibro_record::Result;
+
+/// What impacts at the phases θᵢ with the impulses Jᵢ must fulfil, tᵢ = θᵢ/ω, T = 2πq/ω:
+///
+/// gap Eᵢ = Δ − Re(Xe^{iθᵢ}) + Σⱼ Jⱼχ(tᵢ − tⱼ) = 0 and velocity Fᵢ = Jᵢ/M(1+R) − ȧ(tᵢ) + Σⱼ Jⱼχ̇(tᵢ − tⱼ, before) = 0,
+///
+/// where a = Re(Xe^{iωt}), χ = χ₁ + χ₂ (periodic Green's functions over T; Babitsky 1998). For p = 1 these are the two conditions of
+/// the closed form. Impacts are linear in the impulses, so nothing is flown and every derivative is known.
+pub(crate) struct System {
+    pub rig: Rig,
+    pub omega: f64,
+    pub period: f64,
+    pub response: Complex64,
+    pub steady: Steady,
+    pub greens: [Green; 2],
+    oscillators: [Oscillator; 2],
+    /// 1/M(1 + R) in 1/kg.
+    pub contact: f64,
+    /// Length that equations and impulses are measured with, in m.
+    pub length: f64,
+}
+
+impl System {
+    pub fn new(rig: &Rig, sine: &Sine, cycles: u32) -> Result<System> {
+        let steady = Steady::new(rig, sine)?;
+        let period = f64::from(cycles) * TAU / steady.omega;
+        let oscillators = rig.oscillators();
+        let [first, second] = oscillators;
+        Ok(System {
+            rig: *rig,
+            omega: steady.omega,
+            period,
+            response: steady.response,
+            steady,
+            greens: [Green::new(rig.m1, first, period)?, Green::new(rig.m2, second, period)?],
+            oscillators,
+            contact: 1.0 / (rig.reduced_mass() * (1.0 + rig.restitution)),
+            length: rig.gap.abs().max(steady.amplitude()).max(f64::MIN_POSITIVE),
+        })
+    }
+
+    /// Impulse in N s of which an unknown is 1.
+    pub fn impulse(&self) -> f64 {
+        self.length * self.omega / self.contact
+    }
+
+    /// χ, χ̇, χ̈ of both masses together, `t` in 0..T.
+    fn chi(&self, t: f64) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for (green, oscillator) in self.greens.iter().zip(&self.oscillators) {
+            let (x, v) = green.at(t);
+            sum[0] += x;
+            sum[1] += v;
+            sum[2] += oscillator.acceleration(x, v);
+        }
+        sum
+    }
+
+    /// What is left of the 2p equations at `u` = (θ₁ … θₚ, J₁ … Jₚ in units of [`System::impulse`]), and the Jacobian.
+    pub fn evaluate(&self, u: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
+        let p = u.len() / 2;
+        let unit = self.impulse();
+        let (far, fast) = (1.0 / self.length, 1.0 / (self.length * self.omega));
+        let mut left = DVector::zeros(2 * p);
+        let mut jacobian = DMatrix::zeros(2 * p, 2 * p);
+        let start: f64 = self.greens.iter().map(|g| g.start).sum();
+        let slope: f64 = self.greens.iter().map(|g| g.slope_before).sum();
+        for i in 0..p {
+            let wave = self.response * Complex64::cis(u[i]);
+            let own = u[p + i] * unit;
+            // a, ȧ, ä.
+            let forced = [wave.re, -self.omega * wave.im, -self.omega.powi(2) * wave.re];
+            let (mut gap, mut speed) =
+                (self.rig.gap - forced[0] + own * start, own * (self.contact + slope) - forced[1]);
+            let (mut gap_turn, mut speed_turn) = (-forced[1], -forced[2]);
+            jacobian[(i, p + i)] = start * unit * far;
+            jacobian[(p + i, p + i)] = (self.contact + slope) * unit * fast;
+            for j in (0..p).filter(|j| *j != i) {
+                let t = ((u[i] - u[j]) / self.omega).rem_euclid(self.period);
+                let [x, v, a] = self.chi(t).map(|c| c * u[p + j] * unit);
+                gap += x;
+                speed += v;
+                gap_turn += v;
+                speed_turn += a;
+                jacobian[(i, j)] = -v / self.omega * far;
+                jacobian[(p + i, j)] = -a / self.omega * fast;
+                let [x, v, _] = self.chi(t);
+                jacobian[(i, p + j)] = x * unit * far;
+                jacobian[(p + i, p + j)] = v * unit * fast;
+            }
+            left[i] = gap * far;
+            left[p + i] = speed * fast;
+            jacobian[(i, i)] = gap_turn / self.omega * far;
+            jacobian[(p + i, i)] = speed_turn / self.omega * fast;
+        }
+        (left, jacobian)
+    }
+
+    /// Free parts (displacement, velocity) of both masses just after impact `i`.
+    pub fn free_after(&self, u: &DVector<f64>, i: usize) -> [(f64, f64); 2] {
+        let p = u.len() / 2;
+        let unit = self.impulse();
+        let mut free = [(0.0, 0.0); 2];
+        for j in 0..p {
+            let impulse = u[p + j] * unit;
+            for ((free, green), sign) in free.iter_mut().zip(&self.greens).zip([-1.0, 1.0]) {
+                let (x, v) = if i == j {
+                    (green.start, green.slope_after)
+                } else {
+                    green.at(((u[i] - u[j]) / self.omega).rem_euclid(self.period))
+                };
+                free.0 += sign * impulse * x;
+                free.1 += sign * impulse * v;
+            }
+        }
+        free
+    }
+}

@@ -1,0 +1,119 @@
+//! Receptance of one mass, and the motion without impacts.
+
+use super::{Rig, Sine};
+use num_complex::Complex64;
+use serde::Serialize;
+use vibro_record::{Error, Result};
+
+/// Receptance L(iω) = 1/(k − mω² + icω) in m/N, for motion Re(X e^{iωt}).
+pub fn receptance(m: f64, c: f64, k: f64, omega: f64) -> Complex64 {
+    Complex64::new(k - m * omega * omega, c * omega).inv()
+}
+
+impl Rig {
+    /// Receptances L₁(iω), L₂(iω) of the masses, each alone, in m/N.
+    pub fn receptances(&self, omega: f64) -> [Complex64; 2] {
+        let second =
+            if self.has_wall() { Complex64::ZERO } else { receptance(self.m2, self.c2, self.k2, omega) };
+        [receptance(self.m1, self.c1, self.k1, omega), second]
+    }
+}
+
+/// Forced motion of mass 1 without impacts: x₁ = Re(X e^{iωt}) under the force F₀ cos ωt; mass 2 rests.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Steady {
+    /// X = F₀ L₁(iω) in m.
+    pub response: Complex64,
+    /// ω in rad/s.
+    pub omega: f64,
+}
+
+impl Steady {
+    /// Forced motion of `rig` under `sine`.
+    ///
+    /// # Errors
+    /// If a parameter is impossible, or mass 1 has no damper and is driven at its natural frequency.
+    pub fn new(rig: &Rig, sine: &Sine) -> Result<Steady> {
+        rig.check()?;
+        sine.check()?;
+        let omega = sine.omega();
+        // k − mω² is a difference of numbers rounded to about 2ε of k: below that it is no number.
+        if rig.c1 == 0.0 && (rig.k1 - rig.m1 * omega * omega).abs() <= 4.0 * f64::EPSILON * rig.k1 {
+            return Err(Error::refused(format!(
+                "mass 1 has no damper and is driven at its natural frequency, {} Hz: its amplitude grows without end",
+                sine.frequency
+            ))
+            .hint("give c1 a value above 0, or move the frequency"));
+        }
+        let [l1, _] = rig.receptances(omega);
+        Ok(Steady { response: l1 * sine.force, omega })
+    }
+
+    /// A in m.
+    pub fn amplitude(&self) -> f64 {
+        self.response.norm()
+    }
+}
+
+/// Motion without impacts.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct NoImpact {
+    /// Whether it stays clear of the other mass: the largest x₁ is below the gap.
+    pub possible: bool,
+    /// Amplitude A of x₁ in m: half its peak-to-peak value.
+    pub amplitude: f64,
+    /// Largest x₁ in m, counted from its rest; under a sine force the amplitude.
+    pub largest: f64,
+}
+
+impl NoImpact {
+    /// Motion without impacts on a rig with this `gap` in m.
+    pub fn new(steady: &Steady, gap: f64) -> NoImpact {
+        let amplitude = steady.amplitude();
+        NoImpact { possible: amplitude < gap, amplitude, largest: amplitude }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_of_the_receptance() {
+        // Far below resonance 1/k, at it 1/(icω), far above −1/(mω²).
+        let (m, c, k) = (0.125, 0.1, 135.0);
+        let at = |omega| receptance(m, c, k, omega);
+        assert!((at(1e-9) * k - 1.0).norm() < 1e-12);
+        let resonance = f64::sqrt(k / m);
+        let expected = Complex64::new(0.0, -1.0 / (c * resonance));
+        // k − mω² is left with a rounding of k where c·ω should stand alone.
+        assert!((at(resonance) / expected - 1.0).norm() < 4.0 * f64::EPSILON * k / (c * resonance));
+        let high: f64 = 1e6;
+        // What is left out is k/(mω²) and c/(mω).
+        assert!((at(high) * (-m * high * high) - 1.0).norm() < 2.0 * (c / (m * high)));
+    }
+
+    #[test]
+    fn undamped_resonance_is_refused() {
+        // √(k/m) = 2π exactly as rounded.
+        let omega = std::f64::consts::TAU;
+        let rig = Rig { m1: 1.0, k1: omega * omega, c1: 0.0, ..Rig::thesis() };
+        let text = Steady::new(&rig, &Sine { force: 1.0, frequency: 1.0 }).unwrap_err().to_string();
+        assert!(text.contains("natural frequency"), "{text}");
+        assert!(Steady::new(&Rig { c1: 1e-3, ..rig }, &Sine { force: 1.0, frequency: 1.0 }).is_ok());
+        assert!(Steady::new(&rig, &Sine { force: 1.0, frequency: 1.001 }).is_ok());
+    }
+
+    #[test]
+    fn the_linear_motion_grazes_where_it_should() {
+        // Independent number: A = Δ at ν = 2.168715614919 for 0.5 N.
+        let rig = Rig::thesis();
+        let unit = (rig.k1 / rig.m1).sqrt() / std::f64::consts::TAU;
+        let possible = |nu: f64| {
+            let steady = Steady::new(&rig, &Sine { force: 0.5, frequency: nu * unit }).unwrap();
+            NoImpact::new(&steady, rig.gap).possible
+        };
+        assert!(!possible(2.168_715_614_918));
+        assert!(possible(2.168_715_614_920));
+    }
+}

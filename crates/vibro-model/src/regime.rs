@@ -1,0 +1,347 @@
+//! Regime of a motion: how many impacts in how many cycles its repeating pattern has.
+//!
+//! Patterns are found by comparing states: p impacts repeat if each impact meets the masses where, and at the phase at which, the
+//! p-th impact before it did. Counting impacts would call two impacts in two cycles a pattern of one.
+
+use super::{Event, Motion, Piece, State};
+use serde::Serialize;
+use serde::ser::{SerializeStruct, Serializer};
+use std::collections::VecDeque;
+use std::f64::consts::{PI, TAU};
+use std::fmt;
+use std::ops::Range;
+use vibro_record::Result;
+
+/// Longest pattern looked for, in impacts and in cycles.
+pub const LONGEST: u32 = 32;
+/// Two impacts are the same where phases (in cycles) and states (in units of the largest speed, displacements times ω) differ by less.
+pub const SAME: f64 = 1e-6;
+/// Differences that still fall count as a pattern that settles, once they are below this.
+const NEAR: f64 = 1e-2;
+/// From one third of what was watched to the next the differences must fall to this fraction or less.
+const FALLING: f64 = 0.95;
+/// A pattern is clearly off where its differences are larger than those of a longer one by this factor.
+const OFF: f64 = 100.0;
+/// Impacts kept: nine blocks of the longest pattern and more.
+const KEPT: usize = 320;
+
+/// What a motion does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Regime {
+    /// `impacts` impacts repeat every `cycles` cycles.
+    Periodic {
+        /// Impacts in the pattern.
+        impacts: u32,
+        /// Cycles of the excitation in the pattern.
+        cycles: u32,
+    },
+    /// The masses do not meet.
+    NoImpact,
+    /// The masses come to rest against each other by ever smaller impacts, and part again.
+    Chatter {
+        /// Cycles after which this repeats; `None` where it does not.
+        cycles: Option<u32>,
+    },
+    /// No pattern of up to [`LONGEST`] impacts or cycles.
+    Irregular,
+}
+
+impl fmt::Display for Regime {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Regime::Periodic { impacts, cycles } => write!(f, "{impacts}/{cycles}"),
+            Regime::NoImpact => f.write_str("no impact"),
+            Regime::Chatter { cycles: Some(cycles) } => write!(f, "chatter/{cycles}"),
+            Regime::Chatter { cycles: None } => f.write_str("chatter"),
+            Regime::Irregular => f.write_str("irregular"),
+        }
+    }
+}
+
+impl std::str::FromStr for Regime {
+    type Err = ();
+
+    fn from_str(text: &str) -> std::result::Result<Regime, ()> {
+        let number = |text: &str| text.parse::<u32>().map_err(|_| ());
+        match text {
+            "no impact" => Ok(Regime::NoImpact),
+            "chatter" => Ok(Regime::Chatter { cycles: None }),
+            "irregular" => Ok(Regime::Irregular),
+            _ => match text.split_once('/').ok_or(())? {
+                ("chatter", cycles) => Ok(Regime::Chatter { cycles: Some(number(cycles)?) }),
+                (impacts, cycles) => {
+                    Ok(Regime::Periodic { impacts: number(impacts)?, cycles: number(cycles)? })
+                }
+            },
+        }
+    }
+}
+
+/// `{"impacts": p, "cycles": q}` for a pattern, else a word.
+impl Serialize for Regime {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        match self {
+            Regime::Periodic { impacts, cycles } => {
+                let mut s = serializer.serialize_struct("Regime", 2)?;
+                s.serialize_field("impacts", impacts)?;
+                s.serialize_field("cycles", cycles)?;
+                s.end()
+            }
+            other => serializer.collect_str(other),
+        }
+    }
+}
+
+/// One impact as it is compared.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Strike {
+    /// Time in s.
+    pub time: f64,
+    /// Phase of the excitation in rad.
+    pub phase: f64,
+    /// State just before an impact at once; of a contact that gives way, at its end.
+    pub before: State,
+    /// Impulse in N s; 0 where the masses begin to move together.
+    pub impulse: f64,
+    /// Approach speed in m/s.
+    pub approach_velocity: f64,
+}
+
+impl Strike {
+    /// Distance to another: the largest difference of phase in cycles, and of speeds and ω × displacements in units of `speed`.
+    fn distance(&self, other: &Strike, omega: f64, speed: f64) -> f64 {
+        let turn = (self.phase - other.phase + PI).rem_euclid(TAU) - PI;
+        let (a, b) = (&self.before, &other.before);
+        let moved = [(a.x1 - b.x1) * omega, a.v1 - b.v1, a.v2 - b.v2];
+        moved.iter().fold(turn.abs() / TAU, |far, d| far.max(d.abs() / speed))
+    }
+}
+
+/// A regime and how surely it was found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pattern {
+    /// The regime.
+    pub regime: Regime,
+    /// Whether the pattern repeats within [`SAME`]. A pattern whose differences are below 1e-2 and still fall is named before it
+    /// has settled: near the border of stability this takes thousands of cycles.
+    pub settled: bool,
+    /// Largest difference between the last two repetitions; `None` without a pattern.
+    pub distance: Option<f64>,
+    /// The impacts of the last repetition.
+    pub strikes: Vec<Strike>,
+}
+
+impl Pattern {
+    fn without(regime: Regime, settled: bool) -> Pattern {
+        Pattern { regime, settled, distance: None, strikes: Vec::new() }
+    }
+}
+
+/// Gathers the impacts of a motion under an excitation of one frequency.
+#[derive(Debug, Clone)]
+pub struct Watch {
+    frequency: f64,
+    start: f64,
+    now: f64,
+    phase: f64,
+    strikes: VecDeque<Strike>,
+    sticks: VecDeque<Strike>,
+}
+
+impl Watch {
+    /// Watches `motion` from now on.
+    pub fn new(motion: &impl Motion) -> Watch {
+        Watch {
+            frequency: motion.frequency(),
+            start: motion.time(),
+            now: motion.time(),
+            phase: motion.phase(),
+            strikes: VecDeque::with_capacity(KEPT),
+            sticks: VecDeque::new(),
+        }
+    }
+
+    /// Forgets what was watched and watches `motion` from now on.
+    pub fn restart(&mut self, motion: &impl Motion) {
+        self.frequency = motion.frequency();
+        (self.start, self.now, self.phase) = (motion.time(), motion.time(), motion.phase());
+        self.strikes.clear();
+        self.sticks.clear();
+    }
+
+    /// Takes the next piece of the motion.
+    pub fn take(&mut self, piece: &Piece<'_>) {
+        self.now = piece.start + piece.duration;
+        match piece.event {
+            Event::Impact(impact) => {
+                keep(
+                    &mut self.strikes,
+                    Strike {
+                        time: impact.time,
+                        phase: impact.phase,
+                        before: piece.path.state(piece.duration),
+                        impulse: impact.impulse,
+                        approach_velocity: impact.approach_velocity,
+                    },
+                );
+            }
+            Event::Stick => {
+                let phase = self.phase + TAU * self.frequency * (self.now - self.start);
+                let before = piece.path.state(piece.duration);
+                keep(
+                    &mut self.sticks,
+                    Strike { time: self.now, phase, before, impulse: 0.0, approach_velocity: 0.0 },
+                );
+            }
+            _ => {}
+        }
+    }
+
+    /// Impacts kept, oldest first.
+    pub fn strikes(&self) -> &VecDeque<Strike> {
+        &self.strikes
+    }
+
+    /// What the motion does, from all that was watched.
+    pub fn pattern(&self) -> Pattern {
+        let watched = self.now - self.start;
+        let quiet = |strikes: &VecDeque<Strike>| {
+            strikes.back().is_none_or(|last| self.now - last.time > watched / 2.0)
+        };
+        if !quiet(&self.sticks) {
+            let repeated = self.repeated(&self.sticks);
+            let cycles = repeated.as_ref().map(|r| r.cycles);
+            return Pattern {
+                regime: Regime::Chatter { cycles },
+                settled: repeated.as_ref().is_some_and(|r| r.distance <= SAME),
+                distance: repeated.map(|r| r.distance),
+                strikes: Vec::new(),
+            };
+        }
+        if quiet(&self.strikes) {
+            return Pattern::without(Regime::NoImpact, self.strikes.is_empty());
+        }
+        self.repeated(&self.strikes).map_or_else(
+            || Pattern::without(Regime::Irregular, true),
+            |r| Pattern {
+                regime: Regime::Periodic { impacts: r.impacts as u32, cycles: r.cycles },
+                settled: r.distance <= SAME,
+                distance: Some(r.distance),
+                strikes: self.strikes.range(self.strikes.len() - r.impacts..).copied().collect(),
+            },
+        )
+    }
+
+    /// The shortest pattern that repeats.
+    fn repeated(&self, strikes: &VecDeque<Strike>) -> Option<Repeated> {
+        let compared = Compared::new(strikes, self.frequency);
+        (1..=(LONGEST as usize).min(strikes.len() / 2)).find_map(|p| {
+            let found = compared.last(p)?;
+            if found.distance > SAME && !compared.falls(p) {
+                return None;
+            }
+            // Impacts that take turns about a single one draw near each other in pairs before they do one by one: a longer pattern
+            // counts only where the shorter one is clearly off, and stays so.
+            let draws = |d: &usize| compared.near(*d, OFF * found.distance) || compared.vanishes(*d, p);
+            let shorter = (1..p).filter(|d| p.is_multiple_of(*d)).find(draws);
+            shorter.and_then(|d| compared.counted(d)).or(Some(found))
+        })
+    }
+}
+
+/// Impacts to be compared.
+struct Compared<'a> {
+    strikes: &'a VecDeque<Strike>,
+    frequency: f64,
+    speed: f64,
+}
+
+impl Compared<'_> {
+    fn new(strikes: &VecDeque<Strike>, frequency: f64) -> Compared<'_> {
+        let fastest = |v: f64, s: &Strike| v.max(s.before.v1.abs()).max(s.before.v2.abs());
+        Compared { strikes, frequency, speed: strikes.iter().fold(f64::MIN_POSITIVE, fastest) }
+    }
+
+    /// Largest distance of the impacts in `range` to those `p` before.
+    fn largest(&self, range: Range<usize>, p: usize) -> f64 {
+        let omega = TAU * self.frequency;
+        let far = |i: usize| self.strikes[i].distance(&self.strikes[i - p], omega, self.speed);
+        range.map(far).fold(0.0, f64::max)
+    }
+
+    /// The last `p` impacts against those before; `None` where they differ by more than [`NEAR`], or as [`Compared::counted`].
+    fn last(&self, p: usize) -> Option<Repeated> {
+        let n = self.strikes.len();
+        // Most patterns are turned down by the last impact alone.
+        (self.largest(n - 1..n, p) <= NEAR).then(|| self.counted(p)).flatten().filter(|r| r.distance <= NEAR)
+    }
+
+    /// Whether the last `p` impacts are within `distance` of those before.
+    fn near(&self, p: usize, distance: f64) -> bool {
+        let n = self.strikes.len();
+        distance < NEAR && self.largest(n - p..n, p) <= distance
+    }
+
+    /// The last `p` impacts against those before; `None` where they do not take whole cycles, or too many.
+    fn counted(&self, p: usize) -> Option<Repeated> {
+        let n = self.strikes.len();
+        let cycles = ((self.strikes[n - 1].time - self.strikes[n - 1 - p].time) * self.frequency).round();
+        (1.0..=f64::from(LONGEST)).contains(&cycles).then(|| Repeated {
+            impacts: p,
+            cycles: cycles as u32,
+            distance: self.largest(n - p..n, p),
+        })
+    }
+
+    /// The largest differences over `p` impacts in each third of what was watched, so that complex multipliers do no harm; `None`
+    /// where that is too short.
+    fn thirds(&self, p: usize, reach: usize) -> Option<[f64; 3]> {
+        let n = self.strikes.len();
+        let third = (n - reach) / 3;
+        (third >= reach.max(3))
+            .then(|| [3, 2, 1].map(|k| self.largest(n - k * third..n - (k - 1) * third, p)))
+    }
+
+    /// Whether the differences over `p` impacts fall.
+    fn falls(&self, p: usize) -> bool {
+        self.thirds(p, p).is_some_and(|[a, b, c]| b <= FALLING * a && c <= FALLING * b)
+    }
+
+    /// Whether differences over `short` impacts tend to nothing at the rate at which those over `long` fall: a geometric sequence
+    /// that falls from b to c with the ratio ρ ends at c − (b − c)ρ/(1 − ρ).
+    fn vanishes(&self, short: usize, long: usize) -> bool {
+        let thirds = [short, long].map(|p| self.thirds(p, long));
+        let [Some([_, b, c]), Some([_, slow, slower])] = thirds else { return false };
+        let ratio = (slower / slow).clamp(0.0, 0.9999);
+        c - (b - c) * ratio / (1.0 - ratio) <= 0.3 * c
+    }
+}
+
+fn keep(strikes: &mut VecDeque<Strike>, strike: Strike) {
+    if strikes.len() == KEPT {
+        strikes.pop_front();
+    }
+    strikes.push_back(strike);
+}
+
+/// A pattern that repeats.
+struct Repeated {
+    impacts: usize,
+    cycles: u32,
+    distance: f64,
+}
+
+/// Lets `motion` settle for `settle` cycles, watches it for `cycles` more and says what it does.
+///
+/// # Errors
+/// As [`Motion::advance`].
+pub fn regime(motion: &mut impl Motion, settle: u32, cycles: u32) -> Result<Pattern> {
+    motion.advance(motion.time() + f64::from(settle) / motion.frequency(), &mut |_| {})?;
+    let mut watch = Watch::new(motion);
+    motion
+        .advance(motion.time() + f64::from(cycles) / motion.frequency(), &mut |piece| watch.take(&piece))?;
+    Ok(watch.pattern())
+}
+
+#[cfg(test)]
+mod tests;

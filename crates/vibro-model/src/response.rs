@@ -1,0 +1,310 @@
+//! Response curves: all motions with one impact a period over a range of frequencies, and where they change.
+
+use super::orbit::{backbone, orbits_of};
+use super::{Excitation, NoImpact, Orbit, Rig};
+use rayon::prelude::*;
+use serde::Serialize;
+use vibro_record::{Error, Result};
+
+/// The most frequencies of a response.
+pub const MOST_POINTS: usize = 1_000_000;
+
+/// Motions over frequency.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Response {
+    /// Point by point, the frequency rising.
+    pub points: Vec<ResponsePoint>,
+    /// Where motions appear, vanish or change their verdict, the frequency rising.
+    pub changes: Vec<Change>,
+}
+
+/// All motions at one frequency.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResponsePoint {
+    /// Frequency in Hz.
+    pub frequency: f64,
+    /// Motions with one impact a period.
+    pub orbits: Vec<Orbit>,
+    /// Motion without impacts; `None` where there is no steady one.
+    pub no_impact: Option<NoImpact>,
+    /// Free motion without losses at this frequency, where there is one.
+    pub backbone: Option<Orbit>,
+    /// Why there is no answer, where there is none.
+    pub refused: Option<String>,
+}
+
+/// Where a motion changes.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Change {
+    /// Frequency in Hz.
+    pub frequency: f64,
+    /// `fold`: two motions meet and vanish; `flip`, `neimark-sacker`: stability is lost or gained; `grazing`: the impact vanishes;
+    /// `second contact`: the masses begin or cease to meet a second time; `no impact`: the motion without impacts begins or ceases to touch.
+    pub kind: &'static str,
+    /// Half the peak-to-peak values of x₁ and x₂ in m there.
+    pub amplitude: [f64; 2],
+}
+
+/// Motions of the `rig` under the `excitation` at `points` equidistant frequencies from `from` to `to` (Hz), with one impact in `cycles`
+/// cycles; changes are located between the points to a millionth of their distance.
+///
+/// A frequency at which an undamped mass resonates gives a point without motions that says so.
+///
+/// # Errors
+/// If the frequencies are none, or a parameter is impossible at all of them.
+pub fn response(
+    rig: &Rig,
+    excitation: &Excitation,
+    from: f64,
+    to: f64,
+    points: usize,
+    cycles: u32,
+) -> Result<Response> {
+    if !(from.is_finite() && to.is_finite() && from > 0.0 && to > from) {
+        return Err(Error::usage(
+            format!("frequencies from {from} to {to} Hz"),
+            "0 < from < to, both finite",
+        ));
+    }
+    if !(2..=MOST_POINTS).contains(&points) {
+        return Err(Error::usage(format!("{points} points"), format!("2 to {MOST_POINTS}")));
+    }
+    rig.check()?;
+    let step = (to - from) / (points - 1) as f64;
+    let at = |i: usize| if i + 1 == points { to } else { from + i as f64 * step };
+    let points: Vec<ResponsePoint> =
+        (0..points).into_par_iter().with_min_len(64).map(|i| point(rig, excitation, at(i), cycles)).collect();
+    if let Some(ResponsePoint { frequency, .. }) =
+        points.first().filter(|_| points.iter().all(|p| p.refused.is_some()))
+    {
+        // The reason as it stands at the first.
+        orbits_of(rig, &excitation.at_frequency(*frequency), cycles)?;
+    }
+    let mut changes = Vec::new();
+    let solve = |frequency: f64| point(rig, excitation, frequency, cycles);
+    for pair in points.windows(2) {
+        if let [a, b] = pair
+            && a.refused.is_none()
+            && b.refused.is_none()
+        {
+            between(a, b, &solve, &mut changes);
+        }
+    }
+    changes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+    Ok(Response { points, changes })
+}
+
+fn point(rig: &Rig, excitation: &Excitation, frequency: f64, cycles: u32) -> ResponsePoint {
+    let mut point =
+        ResponsePoint { frequency, orbits: Vec::new(), no_impact: None, backbone: None, refused: None };
+    match orbits_of(rig, &excitation.at_frequency(frequency), cycles) {
+        Ok(found) => {
+            point.orbits = found.orbits;
+            point.no_impact = Some(found.no_impact);
+        }
+        Err(error) => point.refused = Some(error.to_string()),
+    }
+    if cycles == 1 {
+        point.backbone = backbone(rig, frequency).ok().flatten();
+    }
+    point
+}
+
+/// What a motion is at a frequency.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Standing {
+    Gone,
+    Parted,
+    Passing,
+    Unstable,
+    Stable,
+}
+
+fn standing(orbit: Option<&Orbit>) -> Standing {
+    let Some(orbit) = orbit else { return Standing::Gone };
+    let v = &orbit.validity;
+    match (v.exists, v.admissible, v.stable) {
+        (false, ..) => Standing::Parted,
+        (_, false, _) => Standing::Passing,
+        (.., Some(false)) => Standing::Unstable,
+        _ => Standing::Stable,
+    }
+}
+
+/// Changes between two neighbouring points.
+fn between(
+    a: &ResponsePoint,
+    b: &ResponsePoint,
+    solve: &impl Fn(f64) -> ResponsePoint,
+    changes: &mut Vec<Change>,
+) {
+    // From the left, then what appears from the right; of a fold both motions are gone, the upper one tells it.
+    for (here, there) in [(a, b), (b, a)] {
+        for orbit in &here.orbits {
+            let next = orbit.continued(&there.orbits);
+            let (was, is) = (standing(Some(orbit)), standing(next));
+            let seen_from_left = here.frequency > there.frequency && next.is_some();
+            if was == is || seen_from_left || was == Standing::Parted && is == Standing::Gone {
+                continue;
+            }
+            let fold = is == Standing::Gone;
+            if fold && !orbit.is_upper() {
+                continue;
+            }
+            let Some((frequency, before, after)) = locate(orbit, here.frequency, there.frequency, solve)
+            else {
+                continue;
+            };
+            let kind = match (was, standing(after.as_ref())) {
+                (_, Standing::Gone) => "fold",
+                (Standing::Parted, _) | (_, Standing::Parted) => "grazing",
+                (Standing::Passing, _) | (_, Standing::Passing) => "second contact",
+                _ => {
+                    let lost =
+                        [Some(before), after].into_iter().flatten().find_map(|o| o.validity.instability);
+                    match lost {
+                        Some(super::Loss::Flip) => "flip",
+                        Some(super::Loss::NeimarkSacker) => "neimark-sacker",
+                        Some(super::Loss::Fold) => "fold",
+                        _ => "grazing",
+                    }
+                }
+            };
+            changes.push(Change { frequency, kind, amplitude: before.peak_to_peak.map(|p| p / 2.0) });
+        }
+    }
+    if let (Some(here), Some(there)) = (a.no_impact, b.no_impact)
+        && here.possible != there.possible
+    {
+        let (mut low, mut high, mut amplitude) = (a.frequency, b.frequency, here.amplitude);
+        for _ in 0..20 {
+            let middle = f64::midpoint(low, high);
+            let Some(there) = solve(middle).no_impact else { break };
+            if there.possible == here.possible {
+                low = middle;
+            } else {
+                high = middle;
+            }
+            amplitude = there.amplitude;
+        }
+        changes.push(Change {
+            frequency: f64::midpoint(low, high),
+            kind: "no impact",
+            amplitude: [amplitude, 0.0],
+        });
+    }
+}
+
+/// Frequency of the change of the standing of `orbit` between `from` and `to`, with the orbit on this side of it and, if it is there, on
+/// the other.
+fn locate(
+    orbit: &Orbit,
+    from: f64,
+    to: f64,
+    solve: &impl Fn(f64) -> ResponsePoint,
+) -> Option<(f64, Orbit, Option<Orbit>)> {
+    let was = standing(Some(orbit));
+    let (mut near, mut far, mut here) = (from, to, *orbit);
+    let mut there = orbit.continued(&solve(to).orbits).copied();
+    for _ in 0..20 {
+        let middle = f64::midpoint(near, far);
+        let found = solve(middle);
+        if found.refused.is_some() {
+            return None;
+        }
+        match here.continued(&found.orbits) {
+            Some(next) if standing(Some(next)) == was => (near, here) = (middle, *next),
+            other => (far, there) = (middle, other.copied()),
+        }
+    }
+    Some((f64::midpoint(near, far), here, there))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Impulses, Sine};
+
+    #[test]
+    fn changes_lie_where_the_conditions_say() {
+        let rig = Rig::thesis();
+        let unit = rig.natural_frequencies()[0];
+        let sine = Excitation::Sine(Sine { force: 0.5, frequency: 1.0 });
+        let found = response(&rig, &sine, 1.9 * unit, 2.3 * unit, 400, 1).unwrap();
+        assert_eq!(found.points.len(), 400);
+        let of = |kind: &str| {
+            found.changes.iter().filter(|c| c.kind == kind).map(|c| c.frequency / unit).collect::<Vec<_>>()
+        };
+        // Independent number: A = Δ at ν = 2.168715614919, where the smaller root passes through zero, too.
+        let step = 0.4 / 399.0;
+        for kind in ["no impact", "grazing"] {
+            let near: Vec<_> =
+                of(kind).into_iter().filter(|nu| (nu - 2.168_715_614_919).abs() < step * 2e-6).collect();
+            assert_eq!(near.len(), 1, "{kind}: {:?}", found.changes);
+        }
+    }
+
+    #[test]
+    fn a_fold_is_where_two_motions_meet() {
+        let rig = Rig::thesis();
+        let sine = Excitation::Sine(Sine { force: 0.1, frequency: 1.0 });
+        let found = response(&rig, &sine, 4.0, 13.0, 300, 1).unwrap();
+        let folds: Vec<_> = found.changes.iter().filter(|c| c.kind == "fold").map(|c| c.frequency).collect();
+        assert!(!folds.is_empty(), "{:?}", found.changes);
+        for fold in folds {
+            let count = |f: f64| {
+                orbits_of(&rig, &sine.at_frequency(f), 1)
+                    .unwrap()
+                    .orbits
+                    .iter()
+                    .filter(|o| o.impulse > 0.0)
+                    .count()
+            };
+            // Located to a millionth of 0.03 Hz.
+            let (below, above) = (count(fold - 6e-8), count(fold + 6e-8));
+            assert!(below.abs_diff(above) == 2, "{fold}: {below} {above}, {:?}", found.changes);
+        }
+    }
+
+    #[test]
+    fn a_flip_is_located() {
+        // Unstable by a flip at ν = 1.2, F₀ 0.9 N, R = 1: where it begins, a multiplier is −1.
+        let rig = Rig { restitution: 1.0, ..Rig::thesis() };
+        let unit = rig.natural_frequencies()[0];
+        let sine = Excitation::Sine(Sine { force: 0.9, frequency: 1.0 });
+        let found = response(&rig, &sine, 1.0 * unit, 1.4 * unit, 200, 1).unwrap();
+        let flips: Vec<_> = found.changes.iter().filter(|c| c.kind == "flip").collect();
+        assert!(!flips.is_empty(), "{:?}", found.changes);
+        for flip in flips {
+            let orbit = orbits_of(&rig, &sine.at_frequency(flip.frequency), 1).unwrap().orbits[0];
+            let nearest =
+                orbit.multipliers.unwrap().iter().map(|z| (z + 1.0).norm()).fold(f64::INFINITY, f64::min);
+            // Frequency to 1e-6 of 0.01 Hz, multipliers change by some tens a Hz.
+            assert!(nearest < 1e-5, "{nearest}");
+        }
+    }
+
+    #[test]
+    fn impulses_have_their_gap_without_motions() {
+        // Independent: no one-impact orbit for F = 0.009 N s between ν ≈ 1.17 and 1.88 (R = 0.7).
+        let rig = Rig::thesis();
+        let unit = rig.natural_frequencies()[0];
+        let train = Excitation::Impulse(Impulses { impulse: 0.009, frequency: 1.0 });
+        let found = response(&rig, &train, 1.2 * unit, 1.85 * unit, 50, 1).unwrap();
+        assert!(found.points.iter().all(|p| p.orbits.iter().all(|o| !o.validity.exists)));
+        assert!(response(&rig, &train, 5.0, 4.0, 50, 1).is_err());
+        assert!(response(&rig, &train, 5.0, 6.0, 1, 1).is_err());
+        assert!(response(&rig, &train, f64::NAN, 6.0, 10, 1).is_err());
+        assert!(response(&rig, &train, 1e-9, 2e-9, 10, 1).is_err());
+    }
+
+    #[test]
+    fn a_resonance_without_damper_is_one_point_without_motions() {
+        let omega = std::f64::consts::TAU;
+        let rig = Rig { m1: 1.0, k1: omega * omega, c1: 0.0, ..Rig::thesis() };
+        let sine = Excitation::Sine(Sine { force: 0.5, frequency: 1.0 });
+        let found = response(&rig, &sine, 0.7, 1.3, 3, 1).unwrap();
+        assert!(found.points[1].refused.as_ref().is_some_and(|why| why.contains("natural frequency")));
+        assert!(found.points[0].refused.is_none() && found.points[2].refused.is_none());
+    }
+}

@@ -1,0 +1,181 @@
+//! The rig: two masses on springs and dampers, a gap and a restitution.
+
+use super::State;
+use serde::{Deserialize, Serialize};
+use vibro_math::Oscillator;
+use vibro_record::{Error, Result};
+
+/// Two-mass rig in SI units. Keys that are left out take the values of [`Rig::thesis`].
+///
+/// ```
+/// let rig: vibro_model::Rig = toml::from_str("gap = 0.5e-3\nrestitution = 0.9")?;
+/// assert_eq!((rig.gap, rig.m1), (0.5e-3, 0.125));
+/// # Ok::<(), toml::de::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Rig {
+    /// Excited mass in kg.
+    pub m1: f64,
+    /// Passive mass in kg. Infinite for a wall: the rig is then an impact oscillator, and `k2` and `c2` do not count.
+    pub m2: f64,
+    /// Stiffness of the excited mass' spring in N/m.
+    pub k1: f64,
+    /// Stiffness of the passive mass' spring in N/m.
+    pub k2: f64,
+    /// Damping of the excited mass in N s/m.
+    pub c1: f64,
+    /// Damping of the passive mass in N s/m.
+    pub c2: f64,
+    /// Gap at rest in m; negative where the masses are pressed together.
+    pub gap: f64,
+    /// Coefficient of restitution R, 0 to 1.
+    pub restitution: f64,
+}
+
+impl Default for Rig {
+    fn default() -> Rig {
+        Rig::thesis()
+    }
+}
+
+impl Rig {
+    /// Names of its values in files.
+    pub const KEYS: [&str; 8] = ["m1", "m2", "k1", "k2", "c1", "c2", "gap", "restitution"];
+
+    /// The thesis' rig; its damping was estimated, its restitution is the one of its closed-form examples.
+    pub fn thesis() -> Rig {
+        Rig { m1: 0.125, m2: 0.094, k1: 135.0, k2: 128.0, c1: 0.1, c2: 0.1, gap: 1e-3, restitution: 0.7 }
+    }
+
+    /// Checks that the numbers can belong to a rig.
+    ///
+    /// # Errors
+    /// If a mass or stiffness is not above 0, a damping is negative, the restitution is outside 0 to 1, or a value is
+    /// not finite; `m2` may be infinite.
+    pub fn check(&self) -> Result<()> {
+        self.fault().map_or(Ok(()), |(_, error)| Err(error))
+    }
+
+    /// The first value that no rig can have: its key, and the complaint.
+    pub fn fault(&self) -> Option<(&'static str, Error)> {
+        let above_zero =
+            [("m1", self.m1, "kg"), ("m2", self.m2, "kg"), ("k1", self.k1, "N/m"), ("k2", self.k2, "N/m")];
+        for (name, value, unit) in above_zero {
+            if self.has_wall() && matches!(name, "m2" | "k2") {
+                continue;
+            }
+            if !(value.is_finite() && value > 0.0) {
+                return Some((
+                    name,
+                    Error::usage(format!("{name} is {value} {unit}"), "a finite value above 0"),
+                ));
+            }
+        }
+        for (name, value) in [("c1", self.c1), ("c2", self.c2)] {
+            if self.has_wall() && name == "c2" {
+                continue;
+            }
+            if !(value.is_finite() && value >= 0.0) {
+                let expected =
+                    "a finite value of 0 or more: a damper that feeds energy in has no steady motion";
+                return Some((name, Error::usage(format!("{name} is {value} N s/m"), expected)));
+            }
+        }
+        if !self.gap.is_finite() {
+            return Some(("gap", Error::usage(format!("gap is {} m", self.gap), "a finite value")));
+        }
+        if !(0.0..=1.0).contains(&self.restitution) {
+            let expected = "a value from 0 (no rebound) to 1 (no loss)";
+            let found = format!("restitution is {}", self.restitution);
+            return Some(("restitution", Error::usage(found, expected)));
+        }
+        None
+    }
+
+    /// Whether the passive mass is infinite: a wall.
+    pub fn has_wall(&self) -> bool {
+        self.m2 == f64::INFINITY
+    }
+
+    /// Checks that a start leaves a wall where it is.
+    pub(super) fn check_wall(&self, state: &State) -> Result<()> {
+        let State { x2, v2, .. } = *state;
+        if !self.has_wall() || x2 == 0.0 && v2 == 0.0 {
+            return Ok(());
+        }
+        let found = format!("mass 2 is a wall (m2 is infinite) and starts at {x2} m with {v2} m/s");
+        Err(Error::usage(found, "0 m and 0 m/s"))
+    }
+
+    /// Reduced mass M = m₁m₂/(m₁ + m₂) in kg.
+    pub fn reduced_mass(&self) -> f64 {
+        if self.has_wall() {
+            return self.m1;
+        }
+        self.m1 * self.m2 / (self.m1 + self.m2)
+    }
+
+    /// Impulse of an impact over its approach speed, M(1 + R) in kg.
+    pub fn exchange(&self) -> f64 {
+        self.reduced_mass() * (1.0 + self.restitution)
+    }
+
+    /// Natural frequencies in Hz of each mass alone, without its damper.
+    pub fn natural_frequencies(&self) -> [f64; 2] {
+        [(self.k1 / self.m1).sqrt(), (self.k2 / self.m2).sqrt()].map(|omega| omega / std::f64::consts::TAU)
+    }
+
+    /// Free motion of each mass; a wall is free and rests.
+    pub fn oscillators(&self) -> [Oscillator; 2] {
+        let second = if self.has_wall() {
+            Oscillator::new(1.0, 0.0, 0.0)
+        } else {
+            Oscillator::new(self.m2, self.c2, self.k2)
+        };
+        [Oscillator::new(self.m1, self.c1, self.k1), second]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_impossible_value_is_named() {
+        let t = Rig::thesis();
+        let cases = [
+            (Rig { m1: -0.1, ..t }, "m1 is -0.1 kg"),
+            (Rig { m2: 0.0, ..t }, "m2 is 0 kg"),
+            (Rig { k1: f64::NAN, ..t }, "k1 is NaN N/m"),
+            (Rig { k2: f64::INFINITY, ..t }, "k2 is inf N/m"),
+            (Rig { m1: f64::INFINITY, ..t }, "m1 is inf kg"),
+            (Rig { m2: f64::NEG_INFINITY, ..t }, "m2 is -inf kg"),
+            (Rig { c1: -1e-9, ..t }, "c1 is -0.000000001 N s/m"),
+            (Rig { c2: f64::NAN, ..t }, "c2 is NaN N s/m"),
+            (Rig { gap: f64::NAN, ..t }, "gap is NaN m"),
+            (Rig { restitution: 1.01, ..t }, "restitution is 1.01"),
+            (Rig { restitution: f64::NAN, ..t }, "restitution is NaN"),
+        ];
+        for (rig, start) in cases {
+            let text = rig.check().unwrap_err().to_string();
+            assert!(text.starts_with(start), "{text}");
+        }
+        assert!(t.check().is_ok());
+        assert!(Rig { m2: f64::INFINITY, k2: 0.0, c2: f64::NAN, ..t }.check().is_ok());
+        assert!(Rig { c1: 0.0, c2: 0.0, gap: -5e-4, restitution: 0.0, ..t }.check().is_ok());
+    }
+
+    #[test]
+    fn an_unknown_key_is_refused() {
+        let error = toml::from_str::<Rig>("mass1 = 0.1").unwrap_err().to_string();
+        assert!(error.contains("unknown field `mass1`"), "{error}");
+    }
+
+    #[test]
+    fn natural_frequencies_are_the_measured_ones() {
+        // Printed as 5.23 and 5.87 Hz.
+        let [f1, f2] = Rig::thesis().natural_frequencies();
+        assert!((f1 - 5.23).abs() < 0.005 && (f2 - 5.87).abs() < 0.005);
+    }
+}

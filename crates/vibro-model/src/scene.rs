@@ -1,0 +1,93 @@
+//! A scene: the rig, what drives it, and how its contact is made.
+
+mod draft;
+mod given;
+
+pub use draft::Draft;
+
+use super::{Excitation, Law, Rig};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use vibro_record::Result;
+
+/// All that a computation of the rig's motion starts from.
+///
+/// As a TOML file: the keys of [`Rig`] at the top, `[excitation]` with `kind` and the keys of that kind, `[contact]` with `stiffness`,
+/// `damping`, `exponent`, and `[buffer]` with `gap`. Keys of the rig that are left out take the values of [`Rig::thesis`].
+///
+/// ```
+/// use vibro_model::{Excitation, Scene, Sine};
+/// let scene = Scene::from_toml("gap = 2e-3\n[excitation]\nkind = \"sine\"\nforce = 0.5\nfrequency = 11")?;
+/// assert_eq!(scene.rig.gap, 2e-3);
+/// assert_eq!(scene.excitation, Some(Excitation::Sine(Sine { force: 0.5, frequency: 11.0 })));
+/// # Ok::<(), vibro_record::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Scene {
+    /// The rig.
+    #[serde(flatten)]
+    pub rig: Rig,
+    /// What drives mass 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub excitation: Option<Excitation>,
+    /// A contact that gives way.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact: Option<ContactKeys>,
+    /// The spring of mass 1 acts beyond a gap of its own: a loose mass.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub buffer: Option<Buffer>,
+}
+
+/// Numbers of a contact that gives way; which are needed depends on its law.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ContactKeys {
+    /// Stiffness k of the force kδⁿ, in N/mⁿ.
+    pub stiffness: Option<f64>,
+    /// Damping: c in N s/m beside a spring, α in s/m in Hunt and Crossley's law.
+    pub damping: Option<f64>,
+    /// Exponent n.
+    pub exponent: Option<f64>,
+}
+
+/// Stop behind the loose mass 1.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Buffer {
+    /// Way in m that mass 1 can go freely before its spring acts.
+    pub gap: f64,
+}
+
+impl Scene {
+    /// The thesis' rig, driven by nothing.
+    pub fn thesis() -> Scene {
+        Scene { rig: Rig::thesis(), excitation: None, contact: None, buffer: None }
+    }
+
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// As [`Draft::from_path`] and [`Draft::scene`].
+    pub fn from_path(path: impl AsRef<Path>) -> Result<Scene> {
+        Draft::from_path(path)?.scene()
+    }
+
+    /// Reads the text of a file.
+    ///
+    /// # Errors
+    /// As [`Draft::from_toml`] and [`Draft::scene`].
+    pub fn from_toml(text: &str) -> Result<Scene> {
+        Draft::from_toml(text)?.scene()
+    }
+
+    /// Spring and damper of this stiffness (N/m) between the masses: the damper stated, or that which gives the rig's restitution.
+    ///
+    /// # Errors
+    /// As [`Law::kelvin_voigt`] and [`Law::check`].
+    pub fn spring(&self, stiffness: f64) -> Result<Law> {
+        let law = match self.contact.and_then(|keys| keys.damping) {
+            Some(damping) => Law::KelvinVoigt { stiffness, damping },
+            None => Law::kelvin_voigt(stiffness, self.rig.restitution, self.rig.reduced_mass())?,
+        };
+        law.check().map(|()| law)
+    }
+}

@@ -1,0 +1,400 @@
+//! Any motion of the rig, event by event: exact flights between guaranteed contacts.
+//!
+//! Nothing is integrated in steps. Each flight is a closed form; it ends at the first root of the gap; the impact
+//! changes the velocities; the next flight starts from the state found there, so errors do not grow with a flight's
+//! length. Where impacts accumulate, their end is computed ([`super::stick`]); from there both masses move together, again in
+//! closed form, up to the first root of the force between them. The phase is kept within 2π and runs on when the frequency is
+//! changed.
+
+mod leg;
+mod meet;
+
+pub use leg::{Counts, Course, Impact, Leg, Recorded};
+
+use super::drive::Drive;
+use super::stick::Pair;
+use super::{Event, Excitation, Flight, Motion, Piece, Rig, State};
+use vibro_math::Oscillator;
+use vibro_record::units::notation::significant;
+use vibro_record::{Error, Result};
+
+/// Approach speed in m/s below which an impact after which the masses part by themselves is counted as grazing, unless
+/// [`Simulation::grazing_below`] says otherwise.
+pub const GRAZING_SPEED: f64 = 1e-3;
+
+/// The most cycles of the excitation, and pieces, that one call follows: some ten seconds of work.
+const MOST_CYCLES: f64 = 2e7;
+
+/// How the masses are to each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Hold {
+    Apart,
+    /// They have just parted from rest against each other.
+    Parting,
+    /// A chatter that ends in so many seconds.
+    Settling(f64),
+    Together,
+}
+
+/// A simulated motion: where it is now, and what drives it on.
+///
+/// ```
+/// use vibro_model::{Rig, Simulation, Sine};
+/// let mut motion = Simulation::new(&Rig::thesis(), &Sine { force: 0.5, frequency: 11.0 })?;
+/// motion.run(20.0, |_| {})?;
+/// let mut impacts = 0;
+/// motion.run(21.0, |leg| impacts += usize::from(leg.impact().is_some()))?;
+/// assert_eq!(impacts, 11);
+/// # Ok::<(), vibro_record::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Simulation {
+    rig: Rig,
+    drive: Drive,
+    oscillators: [Oscillator; 2],
+    /// M(1 + R).
+    exchange: f64,
+    time: f64,
+    /// What the rounding of `time` has left out, in s.
+    carry: f64,
+    state: State,
+    hold: Hold,
+    counts: Counts,
+    grazing_speed: f64,
+}
+
+impl Simulation {
+    /// Both masses at rest at time 0 and phase 0 of the excitation: the crest of a sine, the instant of an impulse, the beginning of a
+    /// pulse. With a negative gap they rest pressed together, at x₁ = k₂Δ/(k₁ + k₂), or at x₁ = Δ against a wall.
+    ///
+    /// # Errors
+    /// If a parameter is impossible, there are more than four sines, or mass 1 is undamped and driven at resonance.
+    pub fn new(rig: &Rig, excitation: &(impl Clone + Into<Excitation>)) -> Result<Simulation> {
+        Simulation::from_state(rig, excitation, Simulation::at_rest(rig), 0.0)
+    }
+
+    /// Both masses at rest without a force: pressed together where the gap is negative.
+    pub fn at_rest(rig: &Rig) -> State {
+        if rig.gap >= 0.0 {
+            return State::REST;
+        }
+        if rig.has_wall() {
+            return State { x1: rig.gap, ..State::REST };
+        }
+        let x1 = rig.k2 * rig.gap / (rig.k1 + rig.k2);
+        State { x1, x2: x1 - rig.gap, ..State::REST }
+    }
+
+    /// A motion that starts from `state` at time 0 and at `phase` (rad) of the excitation's cycle: a sine force is F₀ cos(ωt + phase),
+    /// each of several sines has its own phase at phase 0, an impulse falls on phase 0 and a pulse begins there.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`], and if the state is not finite, the masses overlap in it or it moves a wall.
+    pub fn from_state(
+        rig: &Rig,
+        excitation: &(impl Clone + Into<Excitation>),
+        state: State,
+        phase: f64,
+    ) -> Result<Simulation> {
+        rig.check()?;
+        rig.check_wall(&state)?;
+        let State { x1, v1, x2, v2 } = state;
+        if ![x1, v1, x2, v2, phase].iter().all(|v| v.is_finite()) {
+            return Err(Error::usage(
+                format!("initial state {x1}, {v1}, {x2}, {v2} with phase {phase}"),
+                "finite values",
+            ));
+        }
+        let drive = Drive::new(rig, &excitation.clone().into(), phase)?;
+        let overlap = x1 - x2 - rig.gap;
+        // A state left behind by an impact overlaps by its rounding.
+        let rounding = 4.0 * f64::EPSILON * (x1.abs() + x2.abs() + rig.gap.abs());
+        if overlap > rounding {
+            return Err(Error::usage(
+                format!("the masses overlap by {overlap} m at the start"),
+                "x1 − x2 of at most the gap; give an initial state in which they are apart",
+            ));
+        }
+        let mut motion = Simulation {
+            rig: *rig,
+            drive,
+            oscillators: rig.oscillators(),
+            exchange: rig.reduced_mass() * (1.0 + rig.restitution),
+            time: 0.0,
+            carry: 0.0,
+            state,
+            hold: Hold::Apart,
+            counts: Counts::default(),
+            grazing_speed: GRAZING_SPEED,
+        };
+        if overlap >= -rounding && (v1 - v2).abs() <= 4.0 * f64::EPSILON * (v1.abs() + v2.abs()) {
+            motion.rest()?;
+            if motion.hold != Hold::Parting {
+                motion.hold = Hold::Together;
+            }
+            motion.counts = Counts::default();
+        }
+        Ok(motion)
+    }
+
+    /// Counts as grazing what approaches with less than `speed` (m/s) instead of [`GRAZING_SPEED`].
+    pub fn grazing_below(mut self, speed: f64) -> Simulation {
+        self.grazing_speed = speed;
+        self
+    }
+
+    /// Time in s.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// State now; after an impact, if one happens now.
+    pub fn state(&self) -> State {
+        self.state
+    }
+
+    /// Phase in 0..2π of the excitation's cycle now; above 0 once the cycle's impulse has come or its pulse has begun.
+    pub fn phase(&self) -> f64 {
+        self.drive.phase()
+    }
+
+    /// Frequency of the excitation in Hz; of several sines, the first one's.
+    pub fn frequency(&self) -> f64 {
+        self.drive.frequency()
+    }
+
+    /// The rig.
+    pub fn rig(&self) -> &Rig {
+        &self.rig
+    }
+
+    /// What the motion has met so far.
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// Whether the masses are in contact now, at rest against each other.
+    pub fn together(&self) -> bool {
+        self.hold == Hold::Together
+    }
+
+    /// Changes the frequency (Hz) from now on; phase, state and time go on without a step, several sines keep the ratios of their
+    /// frequencies, and a pulse under way keeps its width.
+    ///
+    /// # Errors
+    /// If the frequency is impossible, pulses would not end within their cycle, or mass 1 is undamped and would be driven at
+    /// resonance.
+    pub fn set_frequency(&mut self, frequency: f64) -> Result<()> {
+        self.drive.set_frequency(&self.rig, frequency)
+    }
+
+    /// Goes on under an excitation of another size or frequency and of the same kind; phases, state and time go on without a step, and
+    /// a pulse under way keeps its width.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`], and if the excitation is of another kind or has another number of sines.
+    pub fn set_excitation(&mut self, excitation: &(impl Clone + Into<Excitation>)) -> Result<()> {
+        self.drive.set_excitation(&self.rig, &excitation.clone().into())?;
+        self.look_again()
+    }
+
+    /// Goes to the next event, or to the time `until` if that comes before; an impulse or a step of force at `until` itself is left to
+    /// what follows. Does not allocate.
+    ///
+    /// # Errors
+    /// If `until` is not finite or in the past, or the motion grows beyond all numbers.
+    pub fn fly(&mut self, until: f64) -> Result<Leg> {
+        if !(until.is_finite() && until >= self.time) {
+            return Err(Error::usage(
+                format!("a flight until {until} s from {} s", self.time),
+                "a finite time that is not in the past",
+            ));
+        }
+        let remaining = ((until - self.time) - self.carry).max(0.0);
+        let (wait, tick) = self.drive.next(remaining, until);
+        let ahead = remaining.min(wait);
+        let start = self.time;
+        self.counts.flights += 1;
+        let (course, duration, event) = match self.hold {
+            Hold::Apart | Hold::Parting => {
+                let mut flight = self.flight();
+                if self.hold == Hold::Parting {
+                    flight = flight.parting();
+                }
+                let landing = flight.land(ahead);
+                let duration = landing.map_or(ahead, |l| l.time);
+                self.state = landing.map_or_else(|| flight.state(ahead), |l| l.state);
+                self.go(duration);
+                if !flight.is_open(duration) {
+                    self.hold = Hold::Apart;
+                }
+                let event = landing.map(|_| self.collide()).transpose()?.map(Event::Impact);
+                (Course::Apart(flight), duration, event)
+            }
+            Hold::Settling(left) => {
+                let pair = self.pair()?;
+                let duration = ahead.min(left);
+                self.state = pair.state(duration);
+                self.go(duration);
+                let ends = left <= ahead;
+                self.hold = if ends { Hold::Together } else { Hold::Settling(left - duration) };
+                (Course::Together(pair), duration, ends.then_some(Event::Stick))
+            }
+            Hold::Together => {
+                let pair = self.pair()?;
+                let release = pair.release(ahead);
+                let duration = release.unwrap_or(ahead);
+                self.state = pair.state(duration);
+                self.go(duration);
+                if release.is_some() {
+                    self.hold = Hold::Parting;
+                }
+                (Course::Together(pair), duration, release.map(|_| Event::Release))
+            }
+        };
+        let event = match (event, tick) {
+            (Some(event), _) => event,
+            (None, Some(tick)) => self.tick(tick)?,
+            _ => {
+                (self.time, self.carry) = (until, 0.0);
+                Event::Reached
+            }
+        };
+        let State { x1, v1, x2, v2 } = self.state;
+        if !(x1 + v1 + x2 + v2).is_finite() {
+            return Err(Error::refused(format!(
+                "at {} s the motion exceeds all numbers",
+                significant(self.time, 6)
+            )));
+        }
+        Ok(Leg { start, duration, course, event })
+    }
+
+    /// Lets time and phase go on. Time is summed with what its rounding leaves out (W. Kahan, 1965).
+    #[inline]
+    fn go(&mut self, duration: f64) {
+        let step = duration + self.carry;
+        let time = self.time + step;
+        self.carry = step - (time - self.time);
+        self.time = time;
+        self.drive.advance(duration);
+    }
+
+    /// Motion of masses that are apart, from now on.
+    #[inline]
+    fn flight(&self) -> Flight {
+        let rest = self.drive.constant() / self.rig.k1;
+        Flight::with(self.oscillators, self.drive.alone(), rest, self.rig.gap, &self.state)
+    }
+
+    /// Motion of both masses together from now on, with their common momentum.
+    fn pair(&self) -> Result<Pair> {
+        let (rig, state) = (&self.rig, &self.state);
+        let v =
+            if rig.has_wall() { 0.0 } else { (rig.m1 * state.v1 + rig.m2 * state.v2) / (rig.m1 + rig.m2) };
+        let pair = Pair::new(rig, self.drive.together(), self.drive.constant(), state.x1, v);
+        if pair.is_finite() {
+            return Ok(pair);
+        }
+        Err(Error::refused(format!(
+            "at {} s the masses move together without a damper and are driven at their natural frequency",
+            self.time
+        ))
+        .hint("give c1 or c2 a value above 0, or move the frequency"))
+    }
+
+    /// Follows the motion to the time `until`, showing each leg, the last with [`Event::Reached`].
+    ///
+    /// # Errors
+    /// As [`Simulation::fly`]; if more than 20 million cycles are asked for, or as many legs are needed.
+    pub fn run(&mut self, until: f64, mut visit: impl FnMut(&Leg)) -> Result<()> {
+        let cycles = (until - self.time) * self.frequency();
+        if cycles > MOST_CYCLES {
+            return Err(Error::usage(
+                format!("{cycles:.0} cycles of the excitation"),
+                format!("at most {MOST_CYCLES:.0} at a time: a motion that has not settled by then will not"),
+            ));
+        }
+        let mut legs = 0.0;
+        loop {
+            let leg = self.fly(until)?;
+            visit(&leg);
+            if leg.event == Event::Reached {
+                return Ok(());
+            }
+            legs += 1.0;
+            if legs > MOST_CYCLES {
+                return Err(Error::refused(format!(
+                    "more than {MOST_CYCLES:.0} impacts and other events before {} s of {} s",
+                    significant(self.time, 6),
+                    significant(until, 6)
+                ))
+                .hint("ask for less time, or give the impacts some loss: restitution below 1"));
+            }
+        }
+    }
+
+    /// Goes on for `n` intervals of `interval` seconds and takes the state at the start of each.
+    ///
+    /// # Errors
+    /// As [`Simulation::run`], and if there is no memory for so many.
+    pub fn record(&mut self, interval: f64, n: usize) -> Result<Recorded> {
+        let start = self.time;
+        let mut recorded = Recorded::default();
+        if recorded.states.try_reserve_exact(n).is_err() {
+            return Err(Error::usage(format!("{n} samples"), "as many as the memory holds"));
+        }
+        self.run(start + n as f64 * interval, |leg| {
+            let end = leg.start + leg.duration;
+            while recorded.states.len() < n {
+                let time = start + recorded.states.len() as f64 * interval;
+                // A sample at the very end belongs to what follows: to the state after the impact.
+                if time >= end {
+                    break;
+                }
+                recorded.states.push(leg.state((time - leg.start).max(0.0)));
+            }
+            recorded.impacts.extend(leg.impact());
+        })?;
+        Ok(recorded)
+    }
+}
+
+impl Motion for Simulation {
+    fn rig(&self) -> &Rig {
+        Simulation::rig(self)
+    }
+
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn state(&self) -> State {
+        self.state
+    }
+
+    fn phase(&self) -> f64 {
+        self.drive.phase()
+    }
+
+    fn frequency(&self) -> f64 {
+        self.drive.frequency()
+    }
+
+    fn set_frequency(&mut self, hz: f64) -> Result<()> {
+        Simulation::set_frequency(self, hz)
+    }
+
+    fn set_excitation(&mut self, excitation: &Excitation) -> Result<()> {
+        Simulation::set_excitation(self, excitation)
+    }
+
+    fn advance(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<()> {
+        self.run(until, |leg| {
+            visit(Piece { start: leg.start, duration: leg.duration, path: &leg.course, event: leg.event });
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,172 @@
+//! Both masses together: their motion, the force between them, and how a chatter ends in it.
+
+use super::flow::Free;
+use super::waves::Waves;
+use super::{Flight, Rig, State};
+use vibro_math::Oscillator;
+use vibro_math::root::{Bounded, first_fall};
+
+/// Motion of both masses in contact, in closed form; time counts from its start.
+///
+/// One oscillator of m₁ + m₂, c₁ + c₂ and K = k₁ + k₂: x₁ = (P + k₂Δ)/K + Σ Re(Ye^{iωt}) + free motion under a constant force P and
+/// sine forces, x₂ = x₁ − Δ. The contact force on mass 2 is N = m₂ẍ₂ + c₂ẋ₂ + k₂x₂; the masses part where it vanishes.
+///
+/// Against a wall (m₂ infinite) mass 1 stays at x₁ = Δ, and N = P + Σ Re(Fe^{iωt}) − k₁Δ is what the forces press with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pair {
+    /// Forced motion in m, or the sine forces in N on a wall.
+    waves: Waves,
+    gap: f64,
+    course: Course,
+}
+
+/// How a pair moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Course {
+    Moving {
+        /// Where x₁ would rest, in m.
+        rest: f64,
+        free: Free,
+        /// m₂, c₂, k₂.
+        passive: [f64; 3],
+    },
+    /// Held against a wall.
+    Still {
+        /// Constant force P in N and k₁.
+        force: f64,
+        stiffness: f64,
+    },
+}
+
+impl Pair {
+    /// Motion from displacement `x1` (m) of mass 1 and the common velocity `v` (m/s), under a constant force (N) and with forced
+    /// motion `waves` of the pair (m; against a wall, the sine forces in N).
+    pub(super) fn new(rig: &Rig, waves: Waves, force: f64, x1: f64, v: f64) -> Pair {
+        if rig.has_wall() {
+            return Pair { waves, gap: rig.gap, course: Course::Still { force, stiffness: rig.k1 } };
+        }
+        let [x, slope, ..] = waves.start();
+        let rest = (force + rig.k2 * rig.gap) / (rig.k1 + rig.k2);
+        let oscillator = Oscillator::new(rig.m1 + rig.m2, rig.c1 + rig.c2, rig.k1 + rig.k2);
+        let free = Free { oscillator, x: x1 - rest - x, v: v - slope };
+        let course = Course::Moving { rest, free, passive: [rig.m2, rig.c2, rig.k2] };
+        Pair { waves, gap: rig.gap, course }
+    }
+
+    /// State at `t` ≥ 0.
+    pub fn state(&self, t: f64) -> State {
+        match &self.course {
+            Course::Still { .. } => State { x1: self.gap, ..State::REST },
+            Course::Moving { rest, free, .. } => {
+                let [x, v, ..] = self.series(*rest, free, t).0;
+                State { x1: x, v1: v, x2: x - self.gap, v2: v }
+            }
+        }
+    }
+
+    /// Contact force N in N at `t`, its rate, and a bound on its second derivative for all later times.
+    pub fn force(&self, t: f64) -> Bounded {
+        match &self.course {
+            Course::Still { force, stiffness } => {
+                let (sines, slope, curvature) = self.waves.derivative(0, t);
+                Bounded { value: sines + force - stiffness * self.gap, slope, curvature }
+            }
+            Course::Moving { rest, free, passive: [m, c, k] } => {
+                let ([x, v, a, jerk, ..], [bend, third, fourth]) = self.series(*rest, free, t);
+                Bounded {
+                    value: m * a + c * v + k * (x - self.gap),
+                    slope: m * jerk + c * a + k * v,
+                    curvature: m * fourth + c * third + k * bend,
+                }
+            }
+        }
+    }
+
+    /// Rounding error of the contact force in N: a few ε of the largest term.
+    pub(super) fn noise(&self) -> f64 {
+        let size = match &self.course {
+            Course::Still { force, stiffness } => {
+                self.waves.amplitude() + force.abs() + stiffness * self.gap.abs()
+            }
+            Course::Moving { rest, free, passive: [m, _, k] } => {
+                let ([x, ..], [bend, ..]) = self.series(*rest, free, 0.0);
+                m * bend + k * (x.abs() + rest.abs() + self.gap.abs())
+            }
+        };
+        8.0 * f64::EPSILON * size
+    }
+
+    /// Time in `0..=duration` at which the contact force vanishes; at once where it pulls at the start.
+    pub fn release(&self, duration: f64) -> Option<f64> {
+        if self.force(0.0).value < -self.noise() {
+            return Some(0.0);
+        }
+        first_fall(0.0, duration, 0.0, |t| self.force(t))
+    }
+
+    /// x₁ with its first five derivatives at `t`, and bounds on the second to the fourth for all later times.
+    fn series(&self, rest: f64, free: &Free, t: f64) -> ([f64; 6], [f64; 3]) {
+        let mut terms = free.series(t);
+        let limits = self.waves.limits();
+        let bound = |n: usize| free.oscillator.bound(terms[n], terms[n + 1]);
+        let bounds = [limits.curvature + bound(2), limits.jerk + bound(3), limits.snap + bound(4)];
+        let forced = if t == 0.0 { self.waves.start() } else { self.waves.at(t) };
+        for (sum, term) in terms.iter_mut().zip(forced) {
+            *sum += term;
+        }
+        terms[0] += rest;
+        (terms, bounds)
+    }
+
+    /// Whether the motion is a number: not where the pair is driven at its undamped resonance.
+    pub(super) fn is_finite(&self) -> bool {
+        let free = match &self.course {
+            Course::Still { .. } => true,
+            Course::Moving { free, .. } => free.x.is_finite() && free.v.is_finite(),
+        };
+        self.waves.amplitude().is_finite() && free
+    }
+}
+
+/// How a flight from contact would go on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Press {
+    /// Acceleration a in m/s² with which free motion presses the masses together.
+    pub acceleration: f64,
+    /// Rate of the gap's acceleration in m/s³.
+    jerk: f64,
+    /// Rounding error of the gap in m.
+    noise: f64,
+}
+
+impl Press {
+    /// What `flight` does at its start.
+    pub fn of(flight: &Flight) -> Press {
+        let [[_, _, a1, j1, ..], [_, _, a2, j2, ..]] = flight.series(0.0);
+        Press { acceleration: a1 - a2, jerk: j2 - j1, noise: flight.noise() }
+    }
+
+    /// Whether a separation with speed `w` (m/s) rises no higher than the rounding of the gap.
+    pub fn is_rest(&self, w: f64) -> bool {
+        w * w <= 8.0 * self.acceleration * self.noise
+    }
+
+    /// Seconds in which the impacts that follow a separation with speed `w` (m/s) accumulate; `None` where that cannot be told closely.
+    ///
+    /// With a flight of 2w/a + 4jw²/3a³, an approach at w − 2jw²/3a², and a pressing acceleration that changes by −2jw/a over the
+    /// flight and by κ(1 + R) times the approach at the impact, where κ = 2M(b₁/m₁ + b₂/m₂), the sum over all flights is
+    /// T = 2w/(a(1 − R)) + [4j/3a³ − 2Rκ/a²] w²/(1 − R)² + O(w³), j being the rate of the gap's acceleration. The second term has
+    /// to be below a ten thousandth of the first, and the first below a ten thousandth of the rig's time scale; then what is left
+    /// out is below 1e-8 T.
+    pub fn accumulation(&self, rig: &Rig, w: f64) -> Option<f64> {
+        let (a, r) = (self.acceleration, rig.restitution);
+        let lost = 1.0 - r;
+        let [first, second] = rig.oscillators();
+        let kappa = 2.0 * rig.reduced_mass() * (first.decay() / rig.m1 + second.decay() / rig.m2);
+        let leading = 2.0 * w / (a * lost);
+        let correction = (4.0 / 3.0 * self.jerk / a - 2.0 * r * kappa) / (a * a) * (w / lost) * (w / lost);
+        let scale = first.omega2().sqrt() + second.omega2().sqrt() + first.decay() + second.decay();
+        let close = correction.abs() <= 1e-4 * leading && leading * scale <= 1e-4;
+        if w == 0.0 { Some(0.0) } else { close.then_some(leading + correction) }
+    }
+}

@@ -1,0 +1,258 @@
+//! Sweeps: a motion whose excitation changes in steps or slowly, up and down, its state carried on all the way.
+
+mod gauge;
+mod size;
+
+pub use gauge::Gauge;
+pub use gauge::{LOW_PASS, Observable};
+pub use size::{at_size, size};
+
+use super::Motion;
+use serde::Serialize;
+use std::f64::consts::TAU;
+use vibro_record::{Direction, Error, Result};
+
+/// Cycles beyond which a sweep is refused: about a minute of work.
+pub const MOST_CYCLES: f64 = 1e8;
+
+/// Steps a cycle of a continuous sweep. A step has the frequency of its middle, so the phase is exact at its ends and errs by at
+/// most 2πrh²/8 inside, r being the rate in Hz/s and h the step in s: 7e-6 rad at 3 Hz and 0.02 Hz/s.
+const STEPS: u32 = 16;
+
+/// How a sweep passes from one value to the next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Pace {
+    /// `points` values with equal distances; at each `settle` cycles pass before `measure` cycles are read.
+    Steps {
+        /// Values, both ends included.
+        points: usize,
+        /// Cycles before reading.
+        settle: u32,
+        /// Cycles read.
+        measure: u32,
+    },
+    /// Frequency changes by `rate` Hz/s; whole cycles are read, about `points` groups of them.
+    Rate {
+        /// Rate in Hz/s, above 0 in both directions.
+        rate: f64,
+        /// Points wanted; never more than cycles.
+        points: usize,
+    },
+}
+
+/// What a sweep does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plan {
+    /// Lower end (Hz, or N for a sweep of the force).
+    pub from: f64,
+    /// Upper end.
+    pub to: f64,
+    /// How fast.
+    pub pace: Pace,
+    /// What is read.
+    pub observable: Observable,
+}
+
+/// One point of a sweep.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Point {
+    /// Excitation frequency in Hz: the mean over the cycles read.
+    pub frequency: f64,
+    /// Force amplitude in N, or whatever the excitation's size is.
+    pub force: f64,
+    /// The observable of x₁ in m.
+    pub x1: f64,
+    /// The observable of x₂ in m.
+    pub x2: f64,
+    /// Standard deviation of x₁'s from cycle to cycle in m: 0 where every cycle is the same.
+    pub x1_scatter: f64,
+    /// The same of x₂.
+    pub x2_scatter: f64,
+}
+
+impl Plan {
+    /// Checks the plan.
+    ///
+    /// # Errors
+    /// If an end is not a value that can be swept, no points or cycles are asked for, or more than [`MOST_CYCLES`] cycles.
+    pub fn check(&self) -> Result<()> {
+        let Plan { from, to, .. } = *self;
+        if !(from.is_finite() && to.is_finite() && from >= 0.0 && to > from) {
+            return Err(Error::usage(
+                format!("a sweep between {from} and {to}"),
+                "finite ends, the lower one first and not negative",
+            ));
+        }
+        let cycles = match self.pace {
+            Pace::Steps { points, settle, measure } => {
+                if points < 2 || measure == 0 {
+                    let found = format!("{points} points of {measure} cycles each");
+                    return Err(Error::usage(found, "at least 2 points and 1 cycle read at each"));
+                }
+                points as f64 * (f64::from(settle) + f64::from(measure))
+            }
+            Pace::Rate { rate, points } => {
+                if !(rate.is_finite() && rate > 0.0 && from > 0.0 && points > 0) {
+                    let found = format!("a rate of {rate} Hz/s from {from} Hz with {points} points");
+                    return Err(Error::usage(found, "a rate and a lower end above 0, and at least 1 point"));
+                }
+                (to * to - from * from) / (2.0 * rate)
+            }
+        };
+        if cycles <= MOST_CYCLES {
+            return Ok(());
+        }
+        Err(Error::refused(format!("the sweep has {cycles:.3e} cycles, more than {MOST_CYCLES:.0e}"))
+            .hint("take fewer points, fewer settling cycles, a faster rate or a shorter range"))
+    }
+
+    /// Sweeps the frequency of `motion` (driven with `force`) from one end to the other.
+    ///
+    /// # Errors
+    /// As [`Plan::check`] and [`Motion::advance`].
+    pub fn frequency<M: Motion>(
+        &self,
+        motion: &mut M,
+        force: f64,
+        direction: Direction,
+    ) -> Result<Vec<Point>> {
+        self.check()?;
+        match self.pace {
+            Pace::Steps { .. } => self.steps(motion, direction, |motion, value| {
+                motion.set_frequency(value)?;
+                Ok((value, force))
+            }),
+            Pace::Rate { rate, points } => self.rate(motion, force, direction, rate, points),
+        }
+    }
+
+    /// Sweeps anything in steps: `set` changes it and says the frequency (Hz) and the force (N) that then hold.
+    ///
+    /// # Errors
+    /// As [`Plan::check`] and [`Motion::advance`], if the pace is a rate, and what `set` complains of.
+    pub fn steps<M: Motion>(
+        &self,
+        motion: &mut M,
+        direction: Direction,
+        mut set: impl FnMut(&mut M, f64) -> Result<(f64, f64)>,
+    ) -> Result<Vec<Point>> {
+        self.check()?;
+        let Pace::Steps { points, settle, measure } = self.pace else {
+            return Err(Error::usage("a sweep of the force with a rate", "steps"));
+        };
+        let mut gauge = Gauge::new(self.observable, motion.rig());
+        let last = (points - 1) as f64;
+        (0..points)
+            .map(|i| {
+                let share = i as f64 / last;
+                let share = if direction == Direction::Up { share } else { 1.0 - share };
+                let (frequency, force) = set(motion, self.from + share * (self.to - self.from))?;
+                if gauge.needs_all() {
+                    for _ in 0..settle {
+                        pass(motion, 1.0, &mut gauge)?;
+                    }
+                } else if settle > 0 {
+                    motion.advance(motion.time() + f64::from(settle) / frequency, &mut |_| {})?;
+                }
+                gauge.clear();
+                for _ in 0..measure {
+                    pass(motion, 1.0, &mut gauge)?;
+                    gauge.close_cycle();
+                }
+                Ok(point(&gauge, frequency, force))
+            })
+            .collect()
+    }
+
+    /// A continuous sweep: each cycle in [`STEPS`] steps of constant frequency.
+    fn rate<M: Motion>(
+        &self,
+        motion: &mut M,
+        force: f64,
+        direction: Direction,
+        rate: f64,
+        points: usize,
+    ) -> Result<Vec<Point>> {
+        let (start, end, rate) = match direction {
+            Direction::Up => (self.from, self.to, rate),
+            Direction::Down => (self.to, self.from, -rate),
+        };
+        // Phase in cycles after t: f₀t + rt²/2, so a frequency f is reached after (f² − f₀²)/2r cycles.
+        let all = ((end * end - start * start) / (2.0 * rate)).floor().max(1.0) as u64;
+        let group = all.div_ceil(points as u64);
+        let at = |cycle: f64| (start * start + 2.0 * rate * cycle).max(0.0).sqrt();
+        let mut gauge = Gauge::new(self.observable, motion.rig());
+        let mut found = Vec::with_capacity((all / group) as usize + 1);
+        let mut cycle = 0;
+        while cycle < all {
+            let until = (cycle + group).min(all);
+            gauge.clear();
+            for c in cycle..until {
+                for step in 0..STEPS {
+                    let begun = c as f64 + f64::from(step) / f64::from(STEPS);
+                    // The step's mean frequency: its ends are 1/STEPS cycles apart in phase.
+                    let ends = [at(begun), at(begun + 1.0 / f64::from(STEPS))];
+                    motion.set_frequency(f64::midpoint(ends[0], ends[1]))?;
+                    pass(motion, 1.0 / f64::from(STEPS), &mut gauge)?;
+                }
+                gauge.close_cycle();
+            }
+            let (first, last) = (at(cycle as f64), at(until as f64));
+            found.push(point(&gauge, f64::midpoint(first, last), force));
+            cycle = until;
+        }
+        Ok(found)
+    }
+}
+
+/// Goes on by `cycles` of the present frequency and reads.
+fn pass<M: Motion>(motion: &mut M, cycles: f64, gauge: &mut Gauge) -> Result<()> {
+    let (start, phase, frequency) = (motion.time(), motion.phase(), motion.frequency());
+    let omega = TAU * frequency;
+    motion.advance(start + cycles / frequency, &mut |piece| {
+        gauge.take(piece.path, piece.duration, phase + omega * (piece.start - start), omega);
+    })
+}
+
+fn point(gauge: &Gauge, frequency: f64, force: f64) -> Point {
+    let [(x1, x1_scatter), (x2, x2_scatter)] = gauge.read();
+    Point { frequency, force, x1, x2, x1_scatter, x2_scatter }
+}
+
+/// A sweep up and one down.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Swept {
+    /// Points in the order in which they were passed, values rising; empty where not asked for.
+    pub up: Vec<Point>,
+    /// The same with falling values.
+    pub down: Vec<Point>,
+}
+
+/// Sweeps of the frequency in the `directions` asked for, each from a copy of `motion`, at the same time.
+///
+/// # Errors
+/// As [`Plan::frequency`].
+pub fn both<M: Motion + Sync>(
+    plan: &Plan,
+    motion: &M,
+    force: f64,
+    directions: &[Direction],
+) -> Result<Swept> {
+    apart(directions, |direction| plan.frequency(&mut motion.clone(), force, direction))
+}
+
+/// Does `one` for each direction asked for, at the same time.
+///
+/// # Errors
+/// Those of `one`.
+pub fn apart(
+    directions: &[Direction],
+    one: impl Fn(Direction) -> Result<Vec<Point>> + Sync,
+) -> Result<Swept> {
+    let wanted = |direction| if directions.contains(&direction) { one(direction) } else { Ok(Vec::new()) };
+    let (up, down) = rayon::join(|| wanted(Direction::Up), || wanted(Direction::Down));
+    Ok(Swept { up: up?, down: down? })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,129 @@
+//! Forced motion of a mass under a sum of sines.
+
+use super::excitation::MOST_SINES;
+use num_complex::Complex64;
+use vibro_math::cis::sin_cos;
+use vibro_math::root::Limits;
+
+/// One term Re(Xe^{iωt}).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Wave {
+    /// Re X in m.
+    re: f64,
+    /// Im X in m.
+    im: f64,
+    /// ω in rad/s.
+    omega: f64,
+}
+
+/// x(t) = Σ Re(Xe^{iωt}), of no more than [`MOST_SINES`] terms.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Waves {
+    terms: [Wave; MOST_SINES],
+    count: usize,
+    /// Σ|X| in m.
+    amplitude: f64,
+    /// Σωⁿ|X|.
+    limits: Limits,
+}
+
+impl Waves {
+    /// Adds Re(Xe^{iωt}) with X = `start` in m and |X| = `amplitude`.
+    #[inline]
+    pub fn add(&mut self, start: Complex64, omega: f64, amplitude: f64) {
+        let Some(free) = self.terms.get_mut(self.count) else { return };
+        *free = Wave { re: start.re, im: start.im, omega };
+        self.count += 1;
+        let square = omega * omega;
+        self.amplitude += amplitude;
+        let (curvature, snap) = (amplitude * square, amplitude * square * square);
+        self.limits.curvature += curvature;
+        self.limits.jerk += curvature * omega;
+        self.limits.snap += snap;
+        self.limits.sixth += snap * square;
+    }
+
+    /// Bounds on derivatives.
+    #[inline]
+    pub fn limits(&self) -> Limits {
+        self.limits
+    }
+
+    /// Bound on |x| in m.
+    #[inline]
+    pub fn amplitude(&self) -> f64 {
+        self.amplitude
+    }
+
+    /// x and its first five derivatives at time 0.
+    #[inline]
+    pub fn start(&self) -> [f64; 6] {
+        self.sum(|wave| (wave.re, wave.im))
+    }
+
+    /// x and its first five derivatives at `t`.
+    #[inline]
+    pub fn at(&self, t: f64) -> [f64; 6] {
+        self.sum(|wave| turned(wave, t))
+    }
+
+    /// Largest ω in rad/s.
+    #[inline]
+    pub fn fastest(&self) -> f64 {
+        self.terms.iter().take(self.count).fold(0.0, |most, wave| most.max(wave.omega))
+    }
+
+    /// Adds x and its derivatives at time 0, each times its weight, to `terms`; gives a bound on the next derivative.
+    #[inline]
+    pub fn terms<const N: usize>(&self, weights: &[f64; N], terms: &mut [f64; N]) -> f64 {
+        for wave in self.terms.iter().take(self.count) {
+            let (square, mut last) = (wave.omega * wave.omega, [wave.re, -wave.omega * wave.im]);
+            for (term, weight) in terms.iter_mut().zip(weights) {
+                *term += last[0] * weight;
+                last = [last[1], -square * last[0]];
+            }
+        }
+        self.limits.sixth * self.fastest().powi(N as i32 - 6)
+    }
+
+    #[inline]
+    fn sum(&self, turn: impl Fn(&Wave) -> (f64, f64)) -> [f64; 6] {
+        let mut sum = [0.0; 6];
+        for wave in self.terms.iter().take(self.count) {
+            let (re, im) = turn(wave);
+            let omega = wave.omega;
+            let (v, a) = (omega * im, omega * (omega * re));
+            sum[0] += re;
+            sum[1] -= v;
+            sum[2] -= a;
+            let square = omega * omega;
+            sum[3] += square * v;
+            sum[4] += square * a;
+            sum[5] -= square * (square * v);
+        }
+        sum
+    }
+
+    /// The `order`-th derivative at `t`, the next one, and a bound on the one after.
+    #[inline]
+    pub fn derivative(&self, order: u32, t: f64) -> (f64, f64, f64) {
+        let mut sum = (0.0, 0.0, 0.0);
+        for wave in self.terms.iter().take(self.count) {
+            let (mut re, mut im) = turned(wave, t);
+            for _ in 0..order {
+                (re, im) = (-wave.omega * im, wave.omega * re);
+            }
+            sum.0 += re;
+            sum.1 -= wave.omega * im;
+            sum.2 += wave.re.hypot(wave.im) * wave.omega.powi(order as i32 + 2);
+        }
+        sum
+    }
+}
+
+/// Xe^{iωt}.
+#[inline]
+fn turned(wave: &Wave, t: f64) -> (f64, f64) {
+    let (sin, cos) = sin_cos(wave.omega * t);
+    (wave.re * cos - wave.im * sin, wave.re * sin + wave.im * cos)
+}

@@ -1,0 +1,162 @@
+//! Damping ratio from a frequency response function.
+
+use super::bound::bounds;
+use super::rivals;
+use super::trial::{Answer, Case, Kind, Method, Task, cells, measured};
+use crate::{Family, Scene};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+use vibro_math::Noise;
+use vibro_measure::modal::{Measured, ModalOptions, Pole, modal};
+use vibro_record::{Error, FrfKind, Result};
+
+/// The mode: natural frequency in Hz and damping ratio, a bandwidth of 0.36 Hz.
+const OWN: f64 = 100.0;
+const ZETA: f64 = 0.0018;
+
+const METHODS: [Method<Measured>; 4] = [
+    Method {
+        name: "half power, lines",
+        ours: false,
+        estimate: |m| Ok(Answer::bare(rivals::half_power(&m.frequency, &m.values, false))),
+    },
+    Method {
+        name: "half power, between",
+        ours: false,
+        estimate: |m| Ok(Answer::bare(rivals::half_power(&m.frequency, &m.values, true))),
+    },
+    Method {
+        name: "circle",
+        ours: false,
+        estimate: |m| Ok(Answer::bare(rivals::circle(&m.frequency, &m.values))),
+    },
+    Method { name: "rational fit", ours: true, estimate: rational },
+];
+
+/// The strongest mode's ζ, as `vibro modal` gives it.
+fn rational(measured: &Measured) -> Result<Answer> {
+    let found = modal(measured, &ModalOptions::default())?;
+    let height = |m: &&vibro_measure::modal::Mode| m.modal_constant.value.abs() / m.zeta.value;
+    let strongest = found.modes.iter().max_by(|a, b| height(a).total_cmp(&height(b)));
+    let mode = strongest.ok_or_else(|| Error::refused("no mode"))?;
+    Ok(Answer::stated(&mode.zeta, &found.warnings))
+}
+
+/// A receptance of modes on lines `step` Hz apart from `from` Hz to `to` Hz, in noise of this part of the highest line.
+fn function(modes: &[Pole], (from, to, step): (f64, f64, f64), part: f64, noise: &mut Noise) -> Measured {
+    let count = ((to - from) / step) as usize;
+    let frequency: Vec<f64> = (0..count).map(|i| from + i as f64 * step).collect();
+    let sum = |f: &f64| modes.iter().map(|m| m.at(*f, 0)).sum::<Complex64>();
+    let clean: Vec<Complex64> = frequency.iter().map(sum).collect();
+    let sigma = part * clean.iter().map(|v| v.norm()).fold(0.0, f64::max);
+    let mut add = |v: &Complex64| v + Complex64::new(sigma * noise.normal(), sigma * noise.normal());
+    let values = clean.iter().map(&mut add).collect();
+    Measured { frequency, values, magnitude_only: false, kind: FrfKind::Receptance, coherence: None }
+}
+
+fn mode(frequency: f64, zeta: f64) -> Pole {
+    Pole { frequency, zeta, constant: Complex64::new(1.0, 0.0) }
+}
+
+/// So many lines in the bandwidth, the mode anywhere between two, in a band of 24 Hz or 24 lines about it as far as there are any above 0 Hz;
+/// noise of this part of the highest line.
+fn lines(in_bandwidth: f64, part: f64) -> impl Fn(&mut Noise) -> Case<Measured> {
+    move |noise| {
+        let step = 2.0 * ZETA * OWN / in_bandwidth;
+        let reach = (12.0 * step).max(12.0);
+        let from = (OWN - reach).max(0.0) + step * noise.uniform();
+        let data = function(&[mode(OWN, ZETA)], (from, OWN + reach, step), part, noise);
+        Case { data, truth: ZETA, unit: ZETA, tolerance: 0.1 * ZETA }
+    }
+}
+
+/// Bound of the relative error of ζ from the lines within six bandwidths, beyond which other modes would be: a complex modal constant and
+/// two complex residual terms are not known either.
+fn bound(in_bandwidth: f64, part: f64) -> f64 {
+    let width = 2.0 * ZETA * OWN;
+    let stiffness = (TAU * OWN).powi(2);
+    let reach = (6.0 * in_bandwidth).max(16.0) as i32;
+    let model = |p: &[f64]| {
+        let pole = Pole { frequency: p[0], zeta: p[1], constant: Complex64::new(p[2], p[3]) };
+        let at = |k: i32| {
+            let f = OWN + (f64::from(k) + 0.25) * width / in_bandwidth;
+            let rest = Complex64::new(p[4], p[5]) + Complex64::new(p[6], p[7]) * (OWN / f).powi(2);
+            let v = pole.at(f, 0) * stiffness + rest;
+            [v.re, v.im]
+        };
+        (-reach..=reach).flat_map(at).collect()
+    };
+    let p = [OWN, ZETA, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let steps = [1e-4 * width, 1e-4 * ZETA, 1e-4, 1e-4, 1e-3, 1e-3, 1e-3, 1e-3];
+    bounds(&p, &steps, part / (2.0 * ZETA), model)[1] / ZETA
+}
+
+/// The scene of damping.
+pub fn scenes(quick: bool) -> Vec<Scene> {
+    let settings = [1.16, 2.0, 4.0, 8.0, 16.0]
+        .map(|n| Kind::new(format!("{n} lines in the bandwidth"), 20_000, lines(n, 0.01)));
+    vec![Scene {
+        name: "damping".to_owned(),
+        family: Family::Estimators,
+        says: "The damping ratio of a mode at 100 Hz whose bandwidth of 0.36 Hz holds 1.16 lines (0.31 Hz apart) to 16 lines, in noise of 1 % of the peak; the bound is that of 16 lines.".to_owned(),
+        error_of: "damping ratio: relative error (rms)".to_owned(),
+        truth: "the pole that the receptance was made of".to_owned(),
+        bound: Some(bound(16.0, 0.01)),
+        methods: measured(&METHODS, &settings, quick),
+    }]
+}
+
+/// One mode on lines of 0.5 Hz up to 300 Hz.
+fn one(
+    name: &str,
+    frequency: f64,
+    zeta: f64,
+    change: impl Fn(&mut Measured) + Send + Sync + 'static,
+) -> Kind<Measured> {
+    many(name, vec![mode(frequency, zeta)], change)
+}
+
+/// Modes of which the first is asked for.
+fn many(
+    name: &str,
+    modes: Vec<Pole>,
+    change: impl Fn(&mut Measured) + Send + Sync + 'static,
+) -> Kind<Measured> {
+    Kind::new(name, 21_000, move |noise: &mut Noise| {
+        let mut data = function(&modes, (1.0, 300.0, 0.5), 0.01, noise);
+        change(&mut data);
+        let zeta = modes[0].zeta;
+        Case { data, truth: zeta, unit: zeta, tolerance: 0.1 * zeta }
+    })
+}
+
+/// What methods for damping do at their borders.
+pub fn cells_of_damping(quick: bool) -> Vec<Task> {
+    let narrow = [0.01, 0.1, 0.3, 0.5, 1.0]
+        .map(|n| Kind::new(format!("bandwidth of {n} lines"), 22_000, lines(n, 0.01)));
+    let noise = [0.1, 0.3, 1.0]
+        .map(|part| Kind::new(format!("noise of {} % of the peak", 100.0 * part), 23_000, lines(4.0, part)));
+    let heavy = [0.1, 0.3, 0.5, 0.7, 0.9, 1.5].map(|z| one(&format!("ζ = {z}"), 100.0, z, |_| ()));
+    let beside = [
+        many("equal mode half a bandwidth beside", vec![mode(100.0, 0.01), mode(101.0, 0.01)], |_| ()),
+        many("equal mode two bandwidths beside", vec![mode(100.0, 0.01), mode(104.0, 0.01)], |_| ()),
+        many(
+            "antiresonance a bandwidth above",
+            vec![mode(100.0, 0.01), Pole { constant: Complex64::new(1.5, 0.0), ..mode(107.0, 0.02) }],
+            |_| (),
+        ),
+        one("peak 2 lines from the first", 2.2, 0.1, |_| ()),
+        one("phase reversed", 100.0, 0.01, |m| m.values.iter_mut().for_each(|v| *v = v.conj())),
+        one("magnitudes alone", 100.0, 0.01, |m| {
+            m.magnitude_only = true;
+            m.values.iter_mut().for_each(|v| *v = Complex64::new(v.norm(), 0.0));
+        }),
+        one("one line missing", 100.0, 0.01, |m| m.values[190] = Complex64::new(f64::NAN, f64::NAN)),
+        one("all lines zero", 100.0, 0.01, |m| m.values.fill(Complex64::new(0.0, 0.0))),
+    ];
+    let mut all = cells("damping: narrow peak", &METHODS, narrow, quick);
+    all.extend(cells("damping: noise", &METHODS, noise, quick));
+    all.extend(cells("damping: heavy", &METHODS, heavy, quick));
+    all.extend(cells("damping: faults", &METHODS, beside, quick));
+    all
+}

@@ -1,0 +1,214 @@
+//! Damping ratio of a contact from the pulse of its force.
+
+use super::bound::bounds;
+use super::rivals;
+use super::trial::{Answer, Case, Kind, Method, Task, cells, measured};
+use crate::{Family, Scene};
+use std::f64::consts::{PI, TAU};
+use vibro_math::Noise;
+use vibro_measure::pulse::{Instrument, KelvinVoigt, PulseOptions, pulse, two_times};
+use vibro_record::units::Unit;
+use vibro_record::{Axis, Meta, Result, Trace};
+
+/// Contact frequency in Hz, as in the runs of the thesis.
+const FREQUENCY: f64 = 25e3;
+
+/// A pulse, what is known of the instrument, and its two times as read elsewhere: to the peak, the duration, and their standard
+/// uncertainty, in s.
+struct Pulse {
+    trace: Trace,
+    instrument: Instrument,
+    times: [f64; 3],
+}
+
+const BY_HAND: Method<Pulse> = Method {
+    name: "two instants",
+    ours: false,
+    estimate: |p| {
+        let (peak, end) = rivals::instants(&p.trace.values);
+        Ok(Answer::bare(closed_form(peak / end)))
+    },
+};
+
+const WHOLE: Method<Pulse> = Method { name: "whole pulse", ours: true, estimate: whole };
+
+fn whole(p: &Pulse) -> Result<Answer> {
+    let found = pulse(&p.trace, &PulseOptions { instrument: p.instrument.clone(), mass: None })?;
+    Ok(Answer::stated(&found.xi, &found.warnings))
+}
+
+/// ξ from two times that come with an uncertainty, as `vibro pulse --peak --end` gives it.
+const TWO_TIMES: Method<Pulse> = Method {
+    name: "two times",
+    ours: true,
+    estimate: |p| {
+        let [peak, end, std] = p.times;
+        let found = two_times(peak, end, Some(std), None)?;
+        Ok(Answer::stated(&found.xi, &found.warnings))
+    },
+};
+
+/// The same from a spreadsheet, which asks for no domain.
+const FORMULA: Method<Pulse> = Method {
+    name: "formula of ρ",
+    ours: false,
+    estimate: |p| Ok(Answer::bare(closed_form(p.times[0] / p.times[1]))),
+};
+
+const METHODS: [Method<Pulse>; 2] = [BY_HAND, WHOLE];
+const FOUR: [Method<Pulse>; 4] = [FORMULA, BY_HAND, TWO_TIMES, WHOLE];
+
+/// ξ from ρ = time to peak / duration, for any ρ.
+fn closed_form(rho: f64) -> f64 {
+    (PI * (1.0 - 2.0 * rho) / (2.0 * (3.0 - 2.0 * rho))).sin()
+}
+
+/// Deceleration of a contact of spring and damper: −ẍ of x = e^{−ht} sin(Ωt)/Ω, differentiated twice.
+fn contact(xi: f64, t: f64) -> f64 {
+    let omega = TAU * FREQUENCY;
+    let (h, turn) = (xi * omega, omega * (1.0 - xi * xi).sqrt());
+    let (sin, cos) = (turn * t).sin_cos();
+    (-h * t).exp() * ((turn * turn - h * h) * sin + 2.0 * h * turn * cos) / turn
+}
+
+/// Its end, where the force is zero.
+fn duration(xi: f64) -> f64 {
+    let turn = (1.0 - xi * xi).sqrt();
+    (2.0 * xi * turn).atan2(xi * xi - turn * turn) / (TAU * FREQUENCY * turn)
+}
+
+/// Samples of a record of `n`, sampled every `dt` seconds, of a pulse that begins at `onset`; `first` is its first sample.
+fn clean(xi: f64, onset: f64, (n, dt, first): (usize, f64, usize)) -> Vec<f64> {
+    let at = |i: usize| {
+        let t = i as f64 * dt - onset;
+        if i >= first && t <= duration(xi) { contact(xi, t) } else { 0.0 }
+    };
+    (0..n).map(at).collect()
+}
+
+/// Pulses of this ξ with so many samples, in noise of this part of their height.
+fn pulses(xi: f64, samples: f64, part: f64) -> impl Fn(&mut Noise) -> Case<Pulse> {
+    move |noise| {
+        let length = duration(xi);
+        let dt = length / samples;
+        let onset = 2.3 * length + dt * noise.uniform();
+        let n = (5.8 * samples) as usize;
+        let shape = clean(xi, onset, (n, dt, (onset / dt).ceil() as usize));
+        let height = shape.iter().copied().fold(0.0, f64::max);
+        let values = shape.iter().map(|v| 3.0 * (v + part * height * noise.normal())).collect();
+        let meta = Meta::new("bit", Unit::parse_or_opaque("m/s²"));
+        let std = 0.005 * length;
+        let peak = KelvinVoigt::new(xi, FREQUENCY).and_then(|k| k.time_to_peak()).unwrap_or(0.0);
+        Case {
+            data: Pulse {
+                trace: Trace { meta, axis: Axis::time(0.0, dt, n), values },
+                instrument: Instrument::Flat,
+                times: [peak + std * noise.normal(), length + std * noise.normal(), std],
+            },
+            truth: xi,
+            unit: 1.0,
+            tolerance: 0.02,
+        }
+    }
+}
+
+/// Bound of ξ with onset, level, height and frequency unknown, for an onset in the middle between two samples.
+fn bound(xi: f64, samples: f64, part: f64) -> f64 {
+    let length = duration(xi);
+    let (dt, n) = (length / samples, (5.8 * samples) as usize);
+    let first = (2.3 * samples).ceil() as usize;
+    let onset = (first as f64 - 0.5) * dt;
+    let own = KelvinVoigt::new(xi, FREQUENCY).map_or(f64::NAN, |k| k.frequency());
+    // A lower frequency stretches time and lowers the deceleration.
+    let model = |p: &[f64]| {
+        let stretch = p[4] / own;
+        let grid = (n, dt * stretch, first);
+        clean(p[3], p[0] * stretch, grid).iter().map(|v| p[1] + p[2] * stretch * v).collect()
+    };
+    let height = clean(xi, onset, (n, dt, first)).into_iter().fold(0.0, f64::max);
+    bounds(&[onset, 0.0, 1.0, xi, own], &[1e-6 * dt, 1e-6, 1e-6, 1e-6, 1e-6 * own], part * height, model)[3]
+}
+
+/// The scene of pulses.
+pub fn scenes(quick: bool) -> Vec<Scene> {
+    let settings = [8.0, 16.0, 32.0, 64.0, 128.0]
+        .map(|n| Kind::new(format!("{n} samples in the pulse"), 50_000, pulses(0.2, n, 0.01)));
+    vec![Scene {
+        name: "pulse".to_owned(),
+        family: Family::Estimators,
+        says: "The damping ratio ξ of a contact from its pulse of deceleration, 8 to 128 samples long, in noise of 1 % of its height; the bound is that of 128 samples.".to_owned(),
+        error_of: "damping ratio ξ of the contact: error (rms)".to_owned(),
+        truth: "the contact of spring and damper, ξ = 0.2, in closed form".to_owned(),
+        bound: Some(bound(0.2, 128.0, 0.01)),
+        methods: measured(&METHODS, &settings, quick),
+    }]
+}
+
+/// Pulses that are changed after they were made.
+fn changed(name: &str, change: impl Fn(&mut Pulse, &mut Noise) + Send + Sync + 'static) -> Kind<Pulse> {
+    let make = pulses(0.2, 40.0, 0.01);
+    Kind::new(name, 51_000, move |noise: &mut Noise| {
+        let mut case = make(noise);
+        change(&mut case.data, noise);
+        case
+    })
+}
+
+/// What methods for pulses do at their borders.
+pub fn cells_of_pulses(quick: bool) -> Vec<Task> {
+    let damped = |xi: f64| {
+        let rho = KelvinVoigt::new(xi, FREQUENCY).and_then(|k| Some(k.time_to_peak()? / k.duration()));
+        let rho = rho.map_or("no peak".to_owned(), |r| format!("ρ = {r:.3}"));
+        Kind::new(format!("ξ = {xi}, {rho}"), 52_000, pulses(xi, 40.0, 0.01))
+    };
+    let light = [0.0, 0.003, 0.02].map(damped);
+    let heavy = [0.4, 0.45, 0.49, 0.6].map(damped);
+    let noise = [0.1, 0.3, 1.0, 3.0].map(|part| {
+        Kind::new(format!("noise of {} % of the height", 100.0 * part), 53_000, pulses(0.2, 40.0, part))
+    });
+    let few = [2.0, 4.0, 6.0, 8.0]
+        .map(|n| Kind::new(format!("{n} samples in the pulse"), 54_000, pulses(0.2, n, 0.01)));
+    let faults = [
+        changed("clipped at 80 % of the height", |p, _| {
+            let high = p.trace.values.iter().copied().fold(0.0, f64::max);
+            p.trace.values.iter_mut().for_each(|v| *v = v.min(0.8 * high));
+        }),
+        changed("ringing of 30 % afterwards", |p, _| {
+            let high = p.trace.values.iter().copied().fold(0.0, f64::max);
+            // The pulse ends 3.3 durations of 40 samples after the beginning.
+            for (i, v) in p.trace.values.iter_mut().enumerate().skip(133) {
+                let x = (i - 133) as f64;
+                *v += 0.3 * high * (-x / 20.0).exp() * (x / 2.0).sin();
+            }
+        }),
+        changed("level of 1000 heights", |p, _| {
+            let high = p.trace.values.iter().copied().fold(0.0, f64::max);
+            p.trace.values.iter_mut().for_each(|v| *v += 1e3 * high);
+        }),
+        changed("level drifts by the height", |p, _| {
+            let high = p.trace.values.iter().copied().fold(0.0, f64::max);
+            let n = p.trace.values.len() as f64;
+            p.trace.values.iter_mut().enumerate().for_each(|(i, v)| *v += high * i as f64 / n);
+        }),
+        changed("points downwards", |p, _| p.trace.values.iter_mut().for_each(|v| *v = -*v)),
+        changed("cut off at the top", |p, _| {
+            p.trace.values.truncate(108);
+            p.trace.axis = Axis::time(0.0, p.trace.axis.step().unwrap_or(1.0), 108);
+        }),
+        changed("low-pass not stated", |p, _| p.instrument = Instrument::Unknown),
+        changed("a second, lower pulse", |p, _| {
+            let copy: Vec<f64> = p.trace.values.clone();
+            p.trace.values.iter_mut().skip(60).zip(copy).for_each(|(v, c)| *v += 0.5 * c);
+        }),
+        changed("one sample missing", |p, _| p.trace.values[100] = f64::NAN),
+        changed("all equal", |p, _| p.trace.values.fill(1.0)),
+    ];
+    let swapped = [changed("the two times swapped", |p, _| p.times.swap(0, 1))];
+    let mut all = cells("contact ξ: ρ → 1/2", &FOUR, light, quick);
+    all.extend(cells("contact ξ: ρ → 0", &FOUR, heavy, quick));
+    all.extend(cells("contact ξ: noise", &METHODS, noise, quick));
+    all.extend(cells("contact ξ: few samples", &METHODS, few, quick));
+    all.extend(cells("contact ξ: faults", &METHODS, faults, quick));
+    all.extend(cells("contact ξ: two times", &[FORMULA, TWO_TIMES], swapped, quick));
+    all
+}

@@ -1,0 +1,212 @@
+//! What people write by hand, and the toolkit replaces: a few lines each, as they stand in scripts and spreadsheets.
+
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+use vibro_math::least_squares;
+use vibro_record::{Trace, Window};
+use vibro_signal::fft::Transform;
+use vibro_signal::window;
+
+/// Peak amplitudes of the lines, by a transform of the record under a window.
+pub fn lines(trace: &Trace, shape: Window) -> Vec<f64> {
+    let n = trace.values.len();
+    let weights = window::samples(shape, n);
+    let weighted: Vec<f64> = trace.values.iter().zip(&weights).map(|(v, w)| v * w).collect();
+    let sum: f64 = weights.iter().sum();
+    Transform::new(n).forward(&weighted).iter().map(|x| 2.0 * x.norm() / sum).collect()
+}
+
+/// Distance of the lines in Hz.
+pub fn spacing(trace: &Trace) -> f64 {
+    trace.rate().unwrap_or(f64::NAN) / trace.values.len() as f64
+}
+
+/// The largest of the lines, 0 Hz included.
+pub fn largest(lines: &[f64]) -> usize {
+    (0..lines.len()).max_by(|a, b| lines[*a].total_cmp(&lines[*b])).unwrap_or(0)
+}
+
+/// The second largest line that is higher than both beside it.
+pub fn second(lines: &[f64]) -> Option<usize> {
+    let mut peaks: Vec<usize> = (1..lines.len().saturating_sub(1))
+        .filter(|k| lines[*k] > lines[k - 1] && lines[*k] >= lines[k + 1])
+        .collect();
+    peaks.sort_by(|a, b| lines[*b].total_cmp(&lines[*a]));
+    peaks.get(1).copied()
+}
+
+/// Place and height of the top of a parabola through line `k` and both beside it; the line itself at the ends.
+pub fn parabola(lines: &[f64], k: usize) -> (f64, f64) {
+    let (Some(left), Some(right)) = (k.checked_sub(1).map(|i| lines[i]), lines.get(k + 1)) else {
+        return (k as f64, lines[k]);
+    };
+    let (sum, difference) = (left + right - 2.0 * lines[k], right - left);
+    let part = -0.5 * difference / sum;
+    (k as f64 + part, lines[k] + 0.25 * difference * part)
+}
+
+/// Frequency in Hz from the first and the last passage through the mean, and their number.
+pub fn crossings(trace: &Trace) -> f64 {
+    let n = trace.values.len() as f64;
+    let mean = trace.values.iter().sum::<f64>() / n;
+    let at: Vec<f64> = trace
+        .values
+        .windows(2)
+        .enumerate()
+        .filter(|(_, w)| w[0] < mean && w[1] >= mean)
+        .map(|(i, w)| i as f64 + (mean - w[0]) / (w[1] - w[0]))
+        .collect();
+    match (at.first(), at.last()) {
+        (Some(first), Some(last)) => {
+            (at.len() - 1) as f64 / (last - first) * trace.rate().unwrap_or(f64::NAN)
+        }
+        _ => f64::NAN,
+    }
+}
+
+/// Running sums over the rate: an integral without a word on its constant.
+pub fn sums(trace: &Trace) -> Vec<f64> {
+    let (rate, mut sum) = (trace.rate().unwrap_or(f64::NAN), 0.0);
+    let add = |v: &f64| {
+        sum += v / rate;
+        sum
+    };
+    trace.values.iter().map(add).collect()
+}
+
+/// Without the mean.
+pub fn centred(values: &[f64]) -> Vec<f64> {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    values.iter().map(|v| v - mean).collect()
+}
+
+/// Without the straight line of least squares (`detrend`).
+pub fn detrended(values: &[f64]) -> Vec<f64> {
+    let n = values.len() as f64;
+    let middle = 0.5 * (n - 1.0);
+    let plain = centred(values);
+    let slope = plain.iter().enumerate().map(|(i, v)| (i as f64 - middle) * v).sum::<f64>()
+        / (n * (n * n - 1.0) / 12.0);
+    plain.iter().enumerate().map(|(i, v)| v - slope * (i as f64 - middle)).collect()
+}
+
+/// Half of the distance from the lowest to the highest value.
+pub fn half_swing(values: &[f64]) -> f64 {
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    0.5 * (high - low)
+}
+
+/// ζ from the lines nearest to the half-power points of the largest line, or from points interpolated between lines.
+pub fn half_power(frequency: &[f64], values: &[Complex64], between: bool) -> f64 {
+    let size: Vec<f64> = values.iter().map(|v| v.norm()).collect();
+    let at = largest(&size);
+    let Some(top) = size.get(at) else { return f64::NAN };
+    let level = top / f64::sqrt(2.0);
+    let under = |i: &usize| size[*i] < level;
+    let (Some(left), Some(right)) = ((0..at).rev().find(under), (at + 1..size.len()).find(under)) else {
+        return f64::NAN;
+    };
+    let cross = |out: usize, inside: usize| {
+        let part = if between { (level - size[out]) / (size[inside] - size[out]) } else { 0.0 };
+        frequency[out] + part * (frequency[inside] - frequency[out])
+    };
+    (cross(right, right - 1) - cross(left, left + 1)) / (2.0 * frequency[at])
+}
+
+/// ζ from a circle through the mobility at the lines above half power and two more on either side (Kåsa 1976), by the angle that the lines
+/// below and above the largest one turn: ζ = (ω₂² − ω₁²)/(2ωᵣ(ω₁ tan(α₁/2) + ω₂ tan(α₂/2))).
+pub fn circle(frequency: &[f64], values: &[Complex64]) -> f64 {
+    let size: Vec<f64> = values.iter().map(|v| v.norm()).collect();
+    let at = largest(&size);
+    let Some(top) = size.get(at) else { return f64::NAN };
+    let level = top / f64::sqrt(2.0);
+    let low = (0..at).rev().find(|i| size[*i] < level).unwrap_or(0).saturating_sub(1);
+    let high = ((at + 1..size.len()).find(|i| size[*i] < level).unwrap_or(at) + 1).min(size.len() - 1);
+    let points: Vec<Complex64> = (low..=high)
+        .map(|i| values[i] * Complex64::new(0.0, TAU * frequency[i]) / size[at] / (TAU * frequency[at]))
+        .collect();
+    // x² + y² = 2ax + 2by + c is linear in a, b and c.
+    let residuals = |p: &[f64], out: &mut [f64]| {
+        for (out, z) in out.iter_mut().zip(&points) {
+            *out = z.norm_sqr() - 2.0 * (p[0] * z.re + p[1] * z.im) - p[2];
+        }
+    };
+    let Ok(fit) = least_squares(residuals, points.len(), &[0.5, 0.0, 0.0], &[1.0; 3]) else {
+        return f64::NAN;
+    };
+    let centre = Complex64::new(fit.parameters[0], fit.parameters[1]);
+    let turn = |i: usize| ((points[i] - centre) / (points[at - low] - centre)).arg().abs();
+    let (below, above) = (turn(0), turn(points.len() - 1));
+    let [w1, w2, own] = [frequency[low], frequency[high], frequency[at]];
+    (w2 * w2 - w1 * w1) / (2.0 * own * (w1 * (0.5 * below).tan() + w2 * (0.5 * above).tan()))
+}
+
+/// Times in samples at which half of the highest value is passed upwards: the first sample above it, or between both.
+pub fn passages(values: &[f64], between: bool) -> Vec<f64> {
+    let level = 0.5 * values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    values
+        .windows(2)
+        .enumerate()
+        .filter(|(_, w)| w[0] < level && w[1] >= level)
+        .map(|(i, w)| i as f64 + if between { (level - w[0]) / (w[1] - w[0]) } else { 1.0 })
+        .collect()
+}
+
+/// Times in samples of the highest value after each passage of half the highest, until it is passed downwards.
+pub fn tops(values: &[f64]) -> Vec<f64> {
+    let level = 0.5 * values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let end = |from: usize| (from..values.len()).find(|i| values[*i] < level).unwrap_or(values.len());
+    passages(values, false)
+        .iter()
+        .map(|t| {
+            let from = *t as usize;
+            let part = from..end(from);
+            part.max_by(|a, b| values[*a].total_cmp(&values[*b])).unwrap_or(from) as f64
+        })
+        .collect()
+}
+
+/// Time to the peak and duration of a pulse in samples, read as on a screen: level of the first tenth of the record, highest sample,
+/// and where 3 % of its height is passed before and after.
+pub fn instants(values: &[f64]) -> (f64, f64) {
+    let quiet = (values.len() / 10).max(1);
+    let level = values[..quiet].iter().sum::<f64>() / quiet as f64;
+    let above: Vec<f64> = values.iter().map(|v| v - level).collect();
+    let peak = largest(&above);
+    let foot = 0.03 * above[peak];
+    let start = (0..peak).rev().find(|i| above[*i] < foot).unwrap_or(0);
+    let end = (peak..above.len()).find(|i| above[*i] < foot).unwrap_or(above.len());
+    ((peak - start) as f64, (end - start) as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A mode of ζ = 0.01 without noise, 20 lines in its bandwidth: half power is good to the lines, the circle of one mode exact but
+    /// for the place of the largest line.
+    #[test]
+    fn methods_of_paper_and_pencil_find_a_clean_mode() {
+        let (own, zeta) = (100.0, 0.01);
+        let frequency: Vec<f64> = (0..800).map(|i| 60.0 + 0.1 * f64::from(i)).collect();
+        let mode = |f: &f64| 1.0 / Complex64::new(own * own - f * f, 2.0 * zeta * own * f);
+        let values: Vec<Complex64> = frequency.iter().map(mode).collect();
+        let near = |found: f64, within: f64| assert!((found / zeta - 1.0).abs() < within, "{found}");
+        near(half_power(&frequency, &values, true), 0.02);
+        near(half_power(&frequency, &values, false), 0.15);
+        near(circle(&frequency, &values), 1e-6);
+    }
+
+    #[test]
+    fn no_line_has_no_damping() {
+        assert!(half_power(&[], &[], true).is_nan() && circle(&[], &[]).is_nan());
+    }
+
+    #[test]
+    fn a_parabola_is_found_exactly() {
+        let lines: Vec<f64> = (0..9).map(|k| 5.0 - (f64::from(k) - 4.3).powi(2)).collect();
+        let (place, height) = parabola(&lines, largest(&lines));
+        assert!((place - 4.3).abs() < 1e-12 && (height - 5.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,111 @@
+//! Records: samples with their axis, quantity, unit and history.
+//!
+//! A record is a [`Trace`] (samples over time), a [`Spectrum`] (lines over frequency, with its scaling) or an [`Frf`]
+//! (receptance, mobility or accelerance). Values are SI. Each record carries its [`Meta`]: the channel, every step that
+//! made it, and the doubts that a person must hear before trusting it.
+
+mod axis;
+mod error;
+mod estimate;
+mod frf;
+mod meta;
+mod spectrum;
+mod sweep;
+mod trace;
+mod traces;
+pub mod units;
+mod window;
+
+pub use axis::{Axis, AxisKind, Grid};
+pub use error::{Error, ErrorKind, Fault, Place, Result};
+pub use estimate::Estimate;
+pub use frf::{Frf, FrfKind};
+pub use meta::{ADDED_DECAY, FROM_BLOWS, Meta, Step};
+pub use spectrum::{Scaling, Spectrum, Values};
+pub use sweep::{Direction, Sweep, SweepPoint};
+pub use trace::Trace;
+pub use traces::{Stream, Traces, find_channel};
+pub use window::Window;
+
+/// Anything a file can hold.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Record {
+    /// Samples over time.
+    Trace(Trace),
+    /// Lines over frequency.
+    Spectrum(Spectrum),
+    /// Response over excitation.
+    Frf(Frf),
+}
+
+impl Record {
+    /// `trace`, `spectrum` or `frf`, as in JSON.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Record::Trace(_) => "trace",
+            Record::Spectrum(_) => "spectrum",
+            Record::Frf(_) => "frf",
+        }
+    }
+
+    /// Channel, unit, history.
+    pub fn meta(&self) -> &Meta {
+        match self {
+            Record::Trace(r) => &r.meta,
+            Record::Spectrum(r) => &r.meta,
+            Record::Frf(r) => &r.meta,
+        }
+    }
+
+    /// Channel, unit, history, to be changed.
+    pub fn meta_mut(&mut self) -> &mut Meta {
+        match self {
+            Record::Trace(r) => &mut r.meta,
+            Record::Spectrum(r) => &mut r.meta,
+            Record::Frf(r) => &mut r.meta,
+        }
+    }
+
+    /// The abscissa.
+    pub fn axis(&self) -> &Axis {
+        match self {
+            Record::Trace(r) => &r.axis,
+            Record::Spectrum(r) => &r.axis,
+            Record::Frf(r) => &r.axis,
+        }
+    }
+
+    /// Number of values.
+    pub fn len(&self) -> usize {
+        self.axis().len()
+    }
+
+    /// Whether there are no values.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Whether the values are complex.
+    pub fn is_complex(&self) -> bool {
+        match self {
+            Record::Trace(_) => false,
+            Record::Spectrum(r) => matches!(r.values, Values::Complex(_)),
+            Record::Frf(_) => true,
+        }
+    }
+
+    /// Largest magnitude and its index; `None` for no values or only missing ones.
+    pub fn max_abs(&self) -> Option<(usize, f64)> {
+        fn largest(magnitudes: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
+            magnitudes.enumerate().filter(|(_, m)| !m.is_nan()).fold(None, |best, (i, m)| match best {
+                Some((_, b)) if b >= m => best,
+                _ => Some((i, m)),
+            })
+        }
+        match self {
+            Record::Trace(r) => largest(r.values.iter().map(|v| v.abs())),
+            Record::Spectrum(r) => largest((0..r.values.len()).map(|i| r.values.magnitude(i))),
+            Record::Frf(r) => largest(r.values.iter().map(|v| v.norm())),
+        }
+    }
+}

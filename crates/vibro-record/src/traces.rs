@@ -1,0 +1,319 @@
+//! Time traces block by block.
+
+use crate::{Error, Meta, Place, Result, Trace, units};
+use std::path::{Path, PathBuf};
+
+/// Frames of a block from memory.
+const BLOCK: usize = 16 * 1024;
+
+/// How far two channels of one record may be apart in time, in sampling intervals.
+const APART: f64 = 0.01;
+
+/// Samples that come block by block, in SI units.
+pub trait Stream: Send {
+    /// Adds the next samples behind what `block` holds, one `Vec` a channel, and returns how many there are of each; 0 at the end.
+    ///
+    /// # Errors
+    /// If the source cannot be read, or a sample is missing and that is not allowed.
+    fn append(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize>;
+
+    /// Hands out these of the channels handed out so far, in this order.
+    fn keep(&mut self, channels: &[usize]);
+
+    /// Adds to the channels what only their values show, once all have been read.
+    fn finish(&self, channels: &mut [Meta]);
+}
+
+/// Time traces of one sampling rate and length, handed out block by block in SI units.
+///
+/// ```
+/// use vibro_record::{Axis, Meta, Trace, Traces, units::Unit};
+/// let meta = Meta::new("velocity", Unit::parse("m/s").unwrap());
+/// let trace = Trace { meta, axis: Axis::time(0.0, 0.5, 2), values: vec![0.002, 0.004] };
+/// let mut traces = Traces::from_memory(vec![trace])?;
+/// let velocity = traces.channel("velocity")?;
+/// let (mut block, mut sum) = (Vec::new(), 0.0);
+/// while traces.next_block(&mut block)? > 0 {
+///     sum += block[velocity].iter().sum::<f64>();
+/// }
+/// assert_eq!((traces.rate(), traces.frames(), sum), (2.0, 2, 0.006));
+/// # Ok::<(), vibro_record::Error>(())
+/// ```
+pub struct Traces {
+    path: PathBuf,
+    channels: Vec<Meta>,
+    doubts: Vec<String>,
+    rate: f64,
+    start: f64,
+    frames: usize,
+    /// Factor of each channel on top of what its reader applied.
+    factors: Vec<f64>,
+    origin: Origin,
+}
+
+enum Origin {
+    Stream(Box<dyn Stream>),
+    Memory { values: Vec<Vec<f64>>, at: usize },
+}
+
+impl Traces {
+    /// Traces that are in memory already.
+    ///
+    /// # Errors
+    /// If there are none, or they have no sampling rate, or different rates, lengths or start times.
+    pub fn from_memory(traces: Vec<Trace>) -> Result<Traces> {
+        Traces::of_file(PathBuf::new(), Vec::new(), traces)
+    }
+
+    /// Traces in memory that were read from a file, with what there is to say of it.
+    ///
+    /// # Errors
+    /// As [`Traces::from_memory`].
+    pub fn of_file(path: PathBuf, doubts: Vec<String>, mut traces: Vec<Trace>) -> Result<Traces> {
+        check_lengths(&path, &traces)?;
+        let values: Vec<Vec<f64>> = traces.iter_mut().map(|t| std::mem::take(&mut t.values)).collect();
+        let frames = values.first().map_or(0, Vec::len);
+        Traces::of(path, doubts, &traces, frames, Origin::Memory { values, at: 0 })
+    }
+
+    /// Traces that come from a stream; the values of `traces` do not count.
+    ///
+    /// # Errors
+    /// As [`Traces::from_memory`].
+    pub fn of_stream(
+        path: PathBuf,
+        doubts: Vec<String>,
+        traces: &[Trace],
+        frames: usize,
+        stream: Box<dyn Stream>,
+    ) -> Result<Traces> {
+        Traces::of(path, doubts, traces, frames, Origin::Stream(stream))
+    }
+
+    fn of(
+        path: PathBuf,
+        doubts: Vec<String>,
+        traces: &[Trace],
+        frames: usize,
+        origin: Origin,
+    ) -> Result<Traces> {
+        let (rate, start) = clock(&path, traces, frames)?;
+        let channels: Vec<Meta> = traces.iter().map(|t| t.meta.clone()).collect();
+        let factors = vec![1.0; channels.len()];
+        Ok(Traces { path, channels, doubts, rate, start, frames, factors, origin })
+    }
+
+    /// File.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Name, unit, doubts and history of each channel; the values are in its unit.
+    pub fn channels(&self) -> &[Meta] {
+        &self.channels
+    }
+
+    /// Index of a channel by its name or by its number from 1.
+    ///
+    /// # Errors
+    /// If there is none, or two have this name.
+    pub fn channel(&self, channel: &str) -> Result<usize> {
+        find_channel(&self.path, channel, self.channels.iter())
+    }
+
+    /// Sampling rate in Hz.
+    pub fn rate(&self) -> f64 {
+        self.rate
+    }
+
+    /// Time of the first sample in s.
+    pub fn start(&self) -> f64 {
+        self.start
+    }
+
+    /// Samples of each channel.
+    pub fn frames(&self) -> usize {
+        self.frames
+    }
+
+    /// Sentences about the file and its channels, these with their names where there are several. What only the values
+    /// show is among them once all have been read.
+    pub fn doubts(&self) -> Vec<String> {
+        self.doubts_but(|_| false)
+    }
+
+    /// As [`Traces::doubts`], without those of the channels that are `known`.
+    pub fn doubts_but(&self, known: impl Fn(&str) -> bool) -> Vec<String> {
+        let several = self.channels.len() > 1;
+        let mut all = self.doubts.clone();
+        for meta in &self.channels {
+            let named = several && !meta.name.is_empty();
+            let said = meta.doubts.iter().filter(|d| !known(d.as_str()));
+            all.extend(said.map(|d| if named { format!("{}: {d}", meta.name) } else { d.clone() }));
+        }
+        all
+    }
+
+    /// Replaces the content of `block` by the next samples, one `Vec` a channel in SI units, and returns how many there
+    /// are of each; 0 at the end. Missing samples are NaN, where they are allowed.
+    ///
+    /// # Errors
+    /// If the file cannot be read, or a sample is missing (or beyond all numbers in its unit) and that is not allowed.
+    pub fn next_block(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize> {
+        block.iter_mut().for_each(Vec::clear);
+        self.append(block)
+    }
+
+    /// As [`Traces::next_block`], but adds the samples behind what `block` holds, which saves a copy where they are collected.
+    ///
+    /// # Errors
+    /// As [`Traces::next_block`].
+    pub fn append(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize> {
+        let frames = match &mut self.origin {
+            Origin::Stream(stream) => {
+                let frames = stream.append(block)?;
+                if frames == 0 {
+                    stream.finish(&mut self.channels);
+                }
+                frames
+            }
+            Origin::Memory { values, at } => {
+                let end = at.saturating_add(BLOCK).min(self.frames);
+                block.resize_with(values.len(), Vec::new);
+                for (out, column) in block.iter_mut().zip(values) {
+                    out.extend_from_slice(column.get(*at..end).unwrap_or_default());
+                }
+                let frames = end - *at;
+                *at = end;
+                frames
+            }
+        };
+        for (column, factor) in block.iter_mut().zip(&self.factors).filter(|(_, factor)| **factor != 1.0) {
+            let from = column.len() - frames;
+            units::scale(&mut column[from..], *factor)?;
+        }
+        Ok(frames)
+    }
+
+    /// Hands out these channels only from here on, in this order; an index that does not exist is passed over.
+    pub fn keep(&mut self, channels: &[usize]) {
+        fn picked<T: Clone>(all: &[T], indices: &[usize]) -> Vec<T> {
+            indices.iter().filter_map(|i| all.get(*i).cloned()).collect()
+        }
+        match &mut self.origin {
+            Origin::Stream(stream) => stream.keep(channels),
+            Origin::Memory { values, .. } => *values = picked(values, channels),
+        }
+        self.factors = picked(&self.factors, channels);
+        self.channels = picked(&self.channels, channels);
+    }
+
+    /// Multiplies a channel by a factor from here on.
+    ///
+    /// # Errors
+    /// If there is no such channel, the factor is 0 or not finite, or the channel is in fractions of full scale and no unit was
+    /// stated.
+    pub fn calibrate(&mut self, channel: usize, factor: f64) -> Result<()> {
+        let (Some(meta), Some(known)) = (self.channels.get_mut(channel), self.factors.get_mut(channel))
+        else {
+            return Err(Error::usage(format!("channel {}", channel + 1), "a channel of the file"));
+        };
+        if factor == 0.0 || !factor.is_finite() {
+            return Err(Error::usage(format!("a calibration of {factor}"), "a number that is not 0"));
+        }
+        if meta.doubts.iter().any(|d| d == Trace::UNCALIBRATED) {
+            let found = format!("a calibration of {factor} without a unit");
+            return Err(Error::usage(found, "the unit, too: --unit, or unit = \"…\" in a campaign"));
+        }
+        *known *= factor;
+        meta.step("calibrate", &[("factor", &factor)]);
+        Ok(())
+    }
+}
+
+/// Index of a channel by its name or by its number from 1; `path` is for the complaint.
+///
+/// # Errors
+/// If there is none, or two have this name.
+pub fn find_channel<'a>(
+    path: &Path,
+    wanted: &str,
+    all: impl Iterator<Item = &'a Meta> + Clone,
+) -> Result<usize> {
+    let same: Vec<usize> =
+        all.clone().enumerate().filter(|(_, m)| m.name == wanted).map(|(i, _)| i).collect();
+    let n = all.clone().count();
+    let number = wanted.parse::<usize>().ok().filter(|i| (1..=n).contains(i));
+    let list: Vec<String> =
+        all.take(20).enumerate().map(|(i, m)| format!("{} {:?}", i + 1, m.name)).collect();
+    match (same.as_slice(), number) {
+        ([one], _) => Ok(*one),
+        ([], Some(number)) => Ok(number - 1),
+        ([], None) => Err(Error::input(
+            place(path),
+            format!("no channel {wanted:?}"),
+            format!("one of the {n}: {}", list.join(", ")),
+        )),
+        (several, _) => Err(Error::input(
+            place(path),
+            format!("{} channels are called {wanted:?}", several.len()),
+            format!("the number of one: {}", list.join(", ")),
+        )),
+    }
+}
+
+/// The file, where there is one.
+fn place(path: &Path) -> Place {
+    if path.as_os_str().is_empty() { Place::default() } else { Place::file(path) }
+}
+
+fn check_lengths(path: &Path, traces: &[Trace]) -> Result<()> {
+    let Some((first, rest)) = traces.split_first() else { return Ok(()) };
+    let n = first.values.len();
+    match rest.iter().find(|t| t.values.len() != n) {
+        None => Ok(()),
+        Some(other) => {
+            Err(apart(path, [first, other], &format!("{n} samples"), &other.values.len().to_string()))
+        }
+    }
+}
+
+fn apart(path: &Path, [a, b]: [&Trace; 2], of_a: &str, of_b: &str) -> Error {
+    let found = format!("channel {:?} has {of_a} and channel {:?} {of_b}", a.meta.name, b.meta.name);
+    Error::input(place(path), found, "channels that were sampled together")
+        .hint("name the channels that belong together")
+}
+
+/// The sampling rate and the start that all traces have.
+fn clock(path: &Path, traces: &[Trace], frames: usize) -> Result<(f64, f64)> {
+    let mut common: Option<(&Trace, f64)> = None;
+    for trace in traces {
+        let Some(rate) = trace.rate().filter(|r| r.is_finite() && *r > 0.0) else {
+            let found = format!("the sampling rate of channel {:?} is not known", trace.meta.name);
+            return Err(Error::input(place(path), found, "samples at even distances in time")
+                .hint("state the sampling rate with --rate"));
+        };
+        let Some((first, known)) = common else {
+            common = Some((trace, rate));
+            continue;
+        };
+        if (rate / known - 1.0).abs() * frames as f64 > APART {
+            return Err(apart(path, [first, trace], &format!("a rate of {known} Hz"), &format!("{rate} Hz")));
+        }
+        let (a, b) = (first.axis.start(), trace.axis.start());
+        if (a - b).abs() * known > APART {
+            return Err(apart(
+                path,
+                [first, trace],
+                &format!("its first sample at {a} s"),
+                &format!("{b} s"),
+            ));
+        }
+    }
+    common
+        .map(|(trace, rate)| (rate, trace.axis.start()))
+        .ok_or_else(|| Error::input(place(path), "no channel", "at least one"))
+}
+
+#[cfg(test)]
+mod tests;

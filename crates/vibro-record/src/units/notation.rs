@@ -1,0 +1,351 @@
+//! How numbers, uncertainties and units are written.
+
+/// Minus sign, as wide as a digit.
+const MINUS: &str = "\u{2212}";
+
+/// A number with a fixed count of decimals and a true minus sign; never `−0`.
+pub fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(digits) if digits.bytes().all(|b| matches!(b, b'0' | b'.')) => digits.to_owned(),
+        Some(digits) => format!("{MINUS}{digits}"),
+        None => text,
+    }
+}
+
+/// `10ⁿ` in superscript digits.
+pub fn power_of_ten(exponent: i32) -> String {
+    let mut text = String::from("10");
+    for c in exponent.to_string().chars() {
+        text.push(match c {
+            '-' => '⁻',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            '4'..='9' => char::from_u32(c as u32 - '4' as u32 + '⁴' as u32).unwrap_or(c),
+            _ => '⁰',
+        });
+    }
+    text
+}
+
+/// A text whose numbers are written as programs write them, with powers of ten and true minus signs: `1e-9 m` becomes `10⁻⁹ m`.
+pub fn typeset(text: &str) -> String {
+    let word = |word: &str| {
+        let number = word.trim_end_matches([',', ';', ':']);
+        if number.parse::<f64>().is_err() || !number.ends_with(|c: char| c.is_ascii_digit()) {
+            return word.to_owned();
+        }
+        let rest = &word[number.len()..];
+        let power = number.split_once('e').and_then(|(m, e)| Some((m, power_of_ten(e.parse().ok()?))));
+        match power {
+            Some(("1", power)) => format!("{power}{rest}"),
+            Some((mantissa, power)) => format!("{}×{power}{rest}", mantissa.replace('-', MINUS)),
+            None => word.replace('-', MINUS),
+        }
+    };
+    text.split(' ').map(word).collect::<Vec<_>>().join(" ")
+}
+
+/// A number with so many significant digits, as a plain decimal between 10⁻⁴ and 10⁷, else with a power of
+/// ten.
+///
+/// Infinite values are written `∞`, a missing one (NaN) as a dash.
+pub fn significant(value: f64, digits: usize) -> String {
+    if !value.is_finite() {
+        return match value {
+            v if v.is_nan() => "–".to_owned(),
+            v if v > 0.0 => "∞".to_owned(),
+            _ => format!("{MINUS}∞"),
+        };
+    }
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let (exponent, places) = (decade(value, digits), digits.max(1) as i32 - 1);
+    if (-4..7).contains(&exponent) {
+        return rounded(value, places - exponent);
+    }
+    let (mantissa, _) = scientific(value, digits);
+    format!("{}×{}", mantissa.replace('-', MINUS), power_of_ten(exponent))
+}
+
+/// The shortest text of a number to twelve significant digits: what computing leaves in the last ones is no one's input.
+pub fn shortest(value: f64) -> String {
+    format!("{value:.11e}").parse().unwrap_or(value).to_string()
+}
+
+/// Digits that a value with an uncertainty has at most.
+const DIGITS: i32 = 10;
+
+/// A value with its standard uncertainty, both rounded to two significant digits of the uncertainty (GUM,
+/// 7.2.6).
+///
+/// Without a usable uncertainty the value is given to five significant digits, beside a very small one to ten.
+///
+/// ```
+/// use vibro_record::units::notation::estimate;
+/// assert_eq!(estimate(7.489_51, Some(0.012_34)), "7.490 ± 0.012");
+/// assert_eq!(estimate(-3.2e-9, Some(1.1e-10)), "(−3.20 ± 0.11)×10⁻⁹");
+/// assert_eq!(estimate(7.489_51, None), "7.4895");
+/// ```
+pub fn estimate(value: f64, std: Option<f64>) -> String {
+    let Some(std) = std.filter(|s| s.is_finite() && *s > 0.0 && value.is_finite()) else {
+        return significant(value, 5);
+    };
+    let exponent = engineering(value.abs().max(std));
+    if value != 0.0 && std < 10f64.powi(decade(value, 1) - DIGITS) {
+        // No number of a measurement has more digits.
+        return format!("{} ± {}", significant(value, DIGITS as usize), significant(std, 2));
+    }
+    if (-3..=3).contains(&exponent) {
+        let places = 1 - decade(std, 2);
+        return format!("{} ± {}", rounded(value, places), rounded(std, places));
+    }
+    let scale = 10f64.powi(-exponent);
+    let places = 1 - decade(std * scale, 2);
+    format!(
+        "({} ± {})×{}",
+        rounded(value * scale, places),
+        rounded(std * scale, places),
+        power_of_ten(exponent)
+    )
+}
+
+/// Decimals that show `value` to `digits` significant digits, none of them a trailing zero.
+pub fn decimals_needed(value: f64, digits: usize) -> usize {
+    let (mantissa, exponent) = scientific(value, digits);
+    let kept = mantissa.trim_start_matches('-').trim_end_matches('0').len().saturating_sub(2) as i32;
+    usize::try_from(kept - exponent).unwrap_or(0)
+}
+
+/// The power of ten, a multiple of three, that brings `largest` to between 1 and 1000; 0 where a number from
+/// 0.1 to below 10 000 needs none.
+pub fn engineering(largest: f64) -> i32 {
+    if !largest.is_finite() || largest == 0.0 || (0.1..1e4).contains(&largest.abs()) {
+        return 0;
+    }
+    // Ten digits, so that 999.999 999 999 9 counts as 1000.
+    decade(largest, 10).div_euclid(3) * 3
+}
+
+/// A quantity in a sentence, with an SI prefix where one fits.
+///
+/// ```
+/// use vibro_record::units::notation::quantity;
+/// assert_eq!(quantity(0.018_34, "s", 3), "18.3 ms");
+/// assert_eq!(quantity(-0.25, "m/s", 2), "−0.25 m/s");
+/// assert_eq!(quantity(3e-6, "1", 2), "3.0×10⁻⁶");
+/// ```
+pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
+    let exponent = engineering(value);
+    let unit = if unit == "1" { "" } else { unit };
+    if exponent == 0 || unit.is_empty() || !value.is_finite() {
+        return format!("{} {unit}", significant(value, digits)).trim_end().to_owned();
+    }
+    format!("{} {}", significant(value / 10f64.powi(exponent), digits), scaled_unit(unit, exponent))
+}
+
+/// A quantity with its standard uncertainty, `8.63 Hz ± 2.9 mHz`; with three digits where that is not known.
+pub fn with_std(value: f64, std: Option<f64>, unit: &str) -> String {
+    let Some(std) = std.filter(|s| s.is_finite() && *s > 0.0 && value.is_finite()) else {
+        return quantity(value, unit, 3);
+    };
+    // Digits down to the second of the uncertainty.
+    let digits = (value.abs() / std).max(1.0).log10().floor() as usize + 2;
+    format!("{} ± {}", quantity(value, unit, digits.min(DIGITS as usize)), quantity(std, unit, 2))
+}
+
+/// The reference of a level: a number from 1 to below 1000 in a unit with a prefix, as `1 µm/s`; 0.1 is 100 of the smaller unit.
+///
+/// ```
+/// use vibro_record::units::notation::reference;
+/// assert_eq!(reference(1e-9, "m/s"), "1 nm/s");
+/// assert_eq!(reference(0.1, "V"), "100 mV");
+/// ```
+pub fn reference(value: f64, unit: &str) -> String {
+    let power = if value > 0.0 && value.is_finite() { (value.log10() + 1e-9).floor() as i32 } else { 0 };
+    let power = power.div_euclid(3) * 3;
+    let number = value / 10f64.powi(power);
+    format!("{} {}", fixed(number, decimals_needed(number, 3)), scaled_unit(unit, power))
+}
+
+/// A unit multiplied by a power of ten, with an SI prefix where one fits (`m` and −3 give `mm`).
+///
+/// Only coherent units take a prefix, in first place and to the first power, and metres and seconds only that
+/// of a part; any other unit is preceded by the power itself.
+pub fn scaled_unit(unit: &str, exponent: i32) -> String {
+    const PREFIXES: [(i32, &str); 8] =
+        [(-12, "p"), (-9, "n"), (-6, "µ"), (-3, "m"), (3, "k"), (6, "M"), (9, "G"), (12, "T")];
+    const PARTS: [&str; 2] = ["m", "s"];
+    const COHERENT: [&str; 9] = ["N", "V", "A", "K", "W", "J", "Pa", "Hz", "Ω"];
+    let unit = if unit == "1" { "" } else { unit };
+    if exponent == 0 {
+        return unit.to_owned();
+    }
+    let start = unit.find(|c| c != '(').unwrap_or(0);
+    let (opening, rest) = unit.split_at(start);
+    let end = rest.find(|c: char| !c.is_alphabetic()).unwrap_or(rest.len());
+    let (symbol, tail) = rest.split_at(end);
+    let first_power = !tail.starts_with(['²', '³', '⁴', '⁻', '^', '·']);
+    let (symbol, total) = if symbol == "kg" { ("g", exponent + 3) } else { (symbol, exponent) };
+    let takes = COHERENT.contains(&symbol) || PARTS.contains(&symbol) && total < 0 || rest.starts_with("kg");
+    if first_power && takes {
+        if total == 0 {
+            return format!("{opening}{symbol}{tail}");
+        }
+        if let Some((_, prefix)) = PREFIXES.iter().find(|p| p.0 == total) {
+            return format!("{opening}{prefix}{symbol}{tail}");
+        }
+    }
+    if unit.is_empty() { power_of_ten(exponent) } else { format!("{} {unit}", power_of_ten(exponent)) }
+}
+
+/// Label of an axis or a column: `Displacement amplitude (mm)`. A quotient in a unit is written as a product, so that no brackets
+/// stand in brackets: `(m/s²)/N` as `m s⁻²/N`.
+pub fn labelled(label: &str, unit: &str) -> String {
+    match (label.is_empty(), unit.is_empty() || unit == "1") {
+        (_, true) => label.to_owned(),
+        (true, false) => unit.to_owned(),
+        (false, false) => format!("{label} ({})", unbracketed(unit)),
+    }
+}
+
+fn unbracketed(unit: &str) -> String {
+    let product = || {
+        let (before, rest) = unit.split_once('(')?;
+        let (quotient, after) = rest.split_once(')')?;
+        let (over, under) = quotient.split_once('/')?;
+        let (symbol, power) = match under.strip_suffix(['²', '³']) {
+            Some(symbol) => (symbol, &under[symbol.len()..]),
+            None => (under, "¹"),
+        };
+        let plain = symbol.chars().all(char::is_alphabetic);
+        // A square of the whole is one of its parts.
+        let (square, power, after) = match (after.strip_prefix('²'), power) {
+            (Some(after), "¹") => ("²", "²", after),
+            (Some(after), "²") => ("²", "⁴", after),
+            (Some(_), _) => return None,
+            (None, power) => ("", power, after),
+        };
+        plain.then(|| format!("{before}{over}{square} {symbol}⁻{power}{after}"))
+    };
+    product().unwrap_or_else(|| unit.to_owned())
+}
+
+/// Rounds to `places` decimals, or to tens, hundreds, … where negative.
+fn rounded(value: f64, places: i32) -> String {
+    if places >= 0 {
+        return fixed(value, places as usize);
+    }
+    let unit = 10f64.powi(-places);
+    fixed((value / unit).round() * unit, 0)
+}
+
+/// Decade of the first digit once rounded to `digits` significant ones.
+fn decade(value: f64, digits: usize) -> i32 {
+    scientific(value, digits).1
+}
+
+fn scientific(value: f64, digits: usize) -> (String, i32) {
+    let text = format!("{:.*e}", digits.max(1) - 1, value);
+    match text.split_once('e') {
+        Some((mantissa, exponent)) => (mantissa.to_owned(), exponent.parse().unwrap_or(0)),
+        None => (text, 0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quantity_has_the_digits_that_its_uncertainty_leaves() {
+        assert_eq!(with_std(8.63, Some(2.9e-3), "Hz"), "8.6300 Hz ± 2.9 mHz");
+        assert_eq!(with_std(0.071, Some(0.003), "Hz"), "71.0 mHz ± 3.0 mHz");
+        assert_eq!(with_std(0.071, None, "Hz"), "71.0 mHz");
+    }
+
+    #[test]
+    fn the_uncertainty_has_two_digits_and_sets_those_of_the_value() {
+        assert_eq!(estimate(5.583_4, Some(0.012)), "5.583 ± 0.012");
+        assert_eq!(estimate(5.583_4, Some(0.099_6)), "5.58 ± 0.10");
+        assert_eq!(estimate(149_876.0, Some(2_345.0)), "149900 ± 2300");
+        assert_eq!(estimate(0.0, Some(3.0)), "0.0 ± 3.0");
+        assert_eq!(estimate(-0.04, Some(2.0)), "0.0 ± 2.0");
+        assert_eq!(estimate(0.211_2, Some(0.0)), "0.21120");
+        assert_eq!(estimate(2.0 - 4e-14, Some(7.8e-31)), "2.000000000 ± 7.8×10⁻³¹");
+        assert_eq!(estimate(29.999_986, Some(0.000_052)), "29.999986 ± 0.000052");
+        assert_eq!(estimate(f64::NAN, Some(1.0)), "–");
+        assert_eq!(estimate(25.0e6, Some(0.4e6)), "(25.00 ± 0.40)×10⁶");
+    }
+
+    #[test]
+    fn numbers_have_a_true_minus_and_no_negative_zero() {
+        assert_eq!(fixed(-0.04, 1), "0.0");
+        assert_eq!(fixed(-1.25, 2), "−1.25");
+        assert_eq!(significant(-6.9e9, 3), "−6.90×10⁹");
+        assert_eq!(significant(0.21117, 3), "0.211");
+        assert_eq!(significant(f64::NEG_INFINITY, 3), "−∞");
+        assert_eq!(power_of_ten(-120), "10⁻¹²⁰");
+        assert_eq!(power_of_ten(456_789), "10⁴⁵⁶⁷⁸⁹");
+    }
+
+    #[test]
+    fn numbers_in_a_text_are_set_as_numbers() {
+        for (text, set) in [
+            ("-10 dB", "−10 dB"),
+            ("R 0.75 + 1e-3, where rest begins", "R 0.75 + 10⁻³, where rest begins"),
+            ("-2.5e8 N/m", "−2.5×10⁸ N/m"),
+            ("soft-corrected form", "soft-corrected form"),
+            ("a level of inf, e-mail", "a level of inf, e-mail"),
+        ] {
+            assert_eq!(typeset(text), set);
+        }
+    }
+
+    #[test]
+    fn prefixes_go_only_where_they_may() {
+        assert_eq!(scaled_unit("m", -3), "mm");
+        assert_eq!(scaled_unit("m/s²", -6), "µm/s²");
+        assert_eq!(scaled_unit("(m/s²)/N", -3), "(mm/s²)/N");
+        assert_eq!(scaled_unit("m/s²", 3), "10³ m/s²");
+        assert_eq!(scaled_unit("N/m", 3), "kN/m");
+        assert_eq!(scaled_unit("kg", -3), "g");
+        assert_eq!(scaled_unit("kg", -6), "mg");
+        assert_eq!(scaled_unit("N s", -3), "mN s");
+        assert_eq!(scaled_unit("m²/Hz", -6), "10⁻⁶ m²/Hz");
+        assert_eq!(scaled_unit("mm", 3), "10³ mm");
+        assert_eq!(scaled_unit("1", -3), "10⁻³");
+        assert_eq!(scaled_unit("m", 21), "10²¹ m");
+        assert_eq!(scaled_unit("", 0), "");
+    }
+
+    #[test]
+    fn engineering_powers_leave_ordinary_numbers_alone() {
+        let cases = [(0.5, 0), (9_999.0, 0), (10_000.0, 3), (0.02, -3), (0.099_9, -3), (3e-7, -9), (0.0, 0)];
+        for (value, power) in cases {
+            assert_eq!(engineering(value), power, "{value}");
+        }
+        assert_eq!(engineering(f64::INFINITY), 0);
+    }
+
+    #[test]
+    fn labels_carry_their_unit() {
+        assert_eq!(labelled("Frequency", "Hz"), "Frequency (Hz)");
+        assert_eq!(labelled("Accelerance", "(m/s²)/N"), "Accelerance (m s⁻²/N)");
+        assert_eq!(labelled("Mobility", "10⁻³ (m/s)/N"), "Mobility (10⁻³ m s⁻¹/N)");
+        assert_eq!(labelled("Density", "(m/s²)²/Hz"), "Density (m² s⁻⁴/Hz)");
+        assert_eq!(labelled("Density", "(m/s)²/Hz"), "Density (m² s⁻²/Hz)");
+        assert_eq!(labelled("Ratio", "(m/(s A))/N"), "Ratio ((m/(s A))/N)");
+        assert_eq!(labelled("Coherence", "1"), "Coherence");
+    }
+
+    #[test]
+    fn decimals_do_not_trail_zeros() {
+        assert_eq!(decimals_needed(5.5, 5), 1);
+        assert_eq!(decimals_needed(60.0, 5), 0);
+        assert_eq!(decimals_needed(0.012_345_678, 5), 6);
+        assert_eq!(decimals_needed(1.0 / 3.0, 5), 5);
+    }
+}

@@ -1,0 +1,88 @@
+//! Windows of spectra.
+//!
+//! Coefficients: F. J. Harris, "On the use of windows for harmonic analysis with the discrete Fourier transform",
+//! Proc. IEEE 66 (1978), table I; flat top: the five-term window of ISO 18431-2, as in scipy's `flattop`.
+
+use serde::{Deserialize, Serialize};
+
+/// Windows by name; their samples and line shapes are in [`vibro_signal::window`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Window {
+    /// No window.
+    #[serde(alias = "none", alias = "boxcar", alias = "uniform")]
+    Rectangular,
+    /// Raised cosine.
+    #[serde(alias = "hanning")]
+    Hann,
+    /// 0.54 − 0.46 cos.
+    Hamming,
+    /// Three-term Blackman (exact coefficients 0.42, 0.5, 0.08).
+    Blackman,
+    /// Four-term Blackman–Harris, −92 dB.
+    BlackmanHarris,
+    /// Five-term flat top (ISO 18431-2, as in scipy's `flattop`).
+    #[serde(alias = "flattop")]
+    FlatTop,
+}
+
+impl Window {
+    /// Name, as in JSON and in `campaign.toml`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Window::Rectangular => "rectangular",
+            Window::Hann => "hann",
+            Window::Hamming => "hamming",
+            Window::Blackman => "blackman",
+            Window::BlackmanHarris => "blackman-harris",
+            Window::FlatTop => "flat-top",
+        }
+    }
+
+    /// Every window.
+    pub const ALL: [Window; 6] = [
+        Window::Rectangular,
+        Window::Hann,
+        Window::Hamming,
+        Window::Blackman,
+        Window::BlackmanHarris,
+        Window::FlatTop,
+    ];
+
+    /// The window with this name, in the spellings analysers use; case, blanks, `-` and `_` do not count.
+    pub fn from_name(name: &str) -> Option<Window> {
+        let key: String = name.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect();
+        Some(match key.as_str() {
+            "none" | "rectangular" | "rect" | "boxcar" | "uniform" => Window::Rectangular,
+            "hann" | "hanning" => Window::Hann,
+            "hamming" => Window::Hamming,
+            "blackman" => Window::Blackman,
+            "blackmanharris" => Window::BlackmanHarris,
+            "flattop" => Window::FlatTop,
+            _ => return None,
+        })
+    }
+
+    /// Cosine coefficients a₀, a₁, … of w(n) = Σ (−1)ᵏ aₖ cos(2πkn/N).
+    pub fn coefficients(self) -> &'static [f64] {
+        match self {
+            Window::Rectangular => &[1.0],
+            Window::Hann => &[0.5, 0.5],
+            Window::Hamming => &[0.54, 0.46],
+            Window::Blackman => &[0.42, 0.5, 0.08],
+            Window::BlackmanHarris => &[0.358_75, 0.488_29, 0.141_28, 0.011_68],
+            Window::FlatTop => &[0.215_578_95, 0.416_631_58, 0.277_263_158, 0.083_578_947, 0.006_947_368],
+        }
+    }
+
+    /// Mean of the samples: the factor by which a sine's line is too small before correction.
+    pub fn coherent_gain(self) -> f64 {
+        self.coefficients()[0]
+    }
+
+    /// Equivalent noise bandwidth in lines, Σw²·N/(Σw)² = 1 + Σₖ aₖ²/(2a₀²): 1 for none, 1.5 for Hann.
+    pub fn enbw(self) -> f64 {
+        let a = self.coefficients();
+        1.0 + a[1..].iter().map(|ak| ak * ak / (2.0 * a[0] * a[0])).sum::<f64>()
+    }
+}

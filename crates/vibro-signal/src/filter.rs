@@ -1,0 +1,342 @@
+//! Filters: Butterworth as second-order sections, causal or without phase, and exponential smoothing.
+//!
+//! Analogue Butterworth poles lie on a half circle; the bilinear transform with pre-warped corners takes them to the z plane
+//! (Oppenheim & Schafer, Discrete-Time Signal Processing, 3rd ed., sections 7.2 and 7.3). Each section holds one pair of
+//! poles, so that high orders keep their digits.
+
+use num_complex::Complex64;
+use std::f64::consts::PI;
+use vibro_record::units::notation::shortest;
+use vibro_record::{Error, Result};
+
+/// Highest order: beyond it rounding and ringing, not the corner, decide what comes out.
+const MOST: usize = 16;
+
+/// One section, H(z) = (b₀ + b₁z⁻¹ + b₂z⁻²)/(1 + a₁z⁻¹ + a₂z⁻²).
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Section {
+    b: [f64; 3],
+    a: [f64; 2],
+}
+
+/// What a filter lets pass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    LowPass(f64),
+    HighPass(f64),
+    BandPass(f64, f64),
+    Smoothing(f64),
+    Analogue,
+}
+
+/// A section of a filter in the analogue plane, (b₀ + b₁s + b₂s²)/(a₀ + a₁s + a₂s²), s in rad/s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Analogue {
+    /// Numerator in rising powers of s.
+    pub b: [f64; 3],
+    /// Denominator in rising powers of s.
+    pub a: [f64; 3],
+    /// Frequency in Hz at which the digital section shall be exact.
+    pub exact: f64,
+}
+
+/// A filter for one sampling rate.
+///
+/// Corners are where one pass lets through 1/√2 of the amplitude. [`Filter::zero_phase`] passes twice, so that the corner
+/// is then at one half, and the order counts twice.
+///
+/// ```
+/// use vibro_signal::filter::Filter;
+/// let filter = Filter::low_pass(100.0, 4, 1000.0)?;
+/// assert!((filter.response(100.0).norm() - 0.5f64.sqrt()).abs() < 1e-12);
+/// let step: Vec<f64> = (0..200).map(|i| if i < 100 { 0.0 } else { 1.0 }).collect();
+/// let smooth = filter.zero_phase(&step)?;
+/// assert!((smooth[99] + smooth[100] - 1.0).abs() < 1e-6); // half way in the middle: no delay
+/// # Ok::<(), vibro_record::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Filter {
+    kind: Kind,
+    order: usize,
+    rate: f64,
+    sections: Vec<Section>,
+}
+
+impl Filter {
+    /// Butterworth low-pass of this corner and sampling rate in Hz.
+    ///
+    /// # Errors
+    /// If the corner does not lie between 0 and half the sampling rate, or the order is not 1 to 16.
+    pub fn low_pass(corner: f64, order: usize, rate: f64) -> Result<Filter> {
+        let w = warped(corner, rate)?;
+        let sections = pairs(order)?
+            .map(|pole| match pole {
+                Pole::Pair(p) => section([w * w, 0.0, 0.0], [w * w, -2.0 * p.re * w, 1.0]),
+                Pole::Real => first([w, 0.0], [w, 1.0]),
+            })
+            .collect();
+        Ok(Filter { kind: Kind::LowPass(corner), order, rate, sections })
+    }
+
+    /// Butterworth high-pass of this corner and sampling rate in Hz.
+    ///
+    /// # Errors
+    /// As [`Filter::low_pass`].
+    pub fn high_pass(corner: f64, order: usize, rate: f64) -> Result<Filter> {
+        let w = warped(corner, rate)?;
+        let sections = pairs(order)?
+            .map(|pole| match pole {
+                Pole::Pair(p) => section([0.0, 0.0, 1.0], [w * w, -2.0 * p.re * w, 1.0]),
+                Pole::Real => first([0.0, 1.0], [w, 1.0]),
+            })
+            .collect();
+        Ok(Filter { kind: Kind::HighPass(corner), order, rate, sections })
+    }
+
+    /// Butterworth band-pass between two corners in Hz: `order` counts for each flank.
+    ///
+    /// # Errors
+    /// As [`Filter::low_pass`], and if the corners are not in rising order.
+    pub fn band_pass(low: f64, high: f64, order: usize, rate: f64) -> Result<Filter> {
+        let (w1, w2) = (warped(low, rate)?, warped(high, rate)?);
+        if low >= high {
+            return Err(Error::usage(
+                format!("a band from {low} to {high} Hz"),
+                "a lower corner below the upper one",
+            ));
+        }
+        let (width, middle) = (w2 - w1, w1 * w2);
+        let mut sections = Vec::with_capacity(order.min(MOST));
+        for pole in pairs(order)? {
+            match pole {
+                // s² − pBs + ω₀² = 0: one pole of the low-pass becomes two of the band, each with its conjugate.
+                Pole::Pair(p) => {
+                    let half = 0.5 * width * p;
+                    let root = (half * half - middle).sqrt();
+                    for s in [half + root, half - root] {
+                        sections.push(section([0.0, width, 0.0], [s.norm_sqr(), -2.0 * s.re, 1.0]));
+                    }
+                }
+                Pole::Real => sections.push(section([0.0, width, 0.0], [middle, width, 1.0])),
+            }
+        }
+        Ok(Filter { kind: Kind::BandPass(low, high), order, rate, sections })
+    }
+
+    /// Exponential smoothing yₙ = yₙ₋₁ + α(xₙ − yₙ₋₁), α such that the corner lies at `corner` Hz exactly.
+    ///
+    /// # Errors
+    /// As [`Filter::low_pass`].
+    pub fn smoothing(corner: f64, rate: f64) -> Result<Filter> {
+        warped(corner, rate)?;
+        // |H|² = α²/(α² + 2(1 − α)(1 − cos ω)) = 1/2, solved for α; 1 − cos ω = 2 sin²(ω/2).
+        let c = 2.0 * (PI * corner / rate).sin().powi(2);
+        let alpha = (c * c + 2.0 * c).sqrt() - c;
+        let sections = vec![Section { b: [alpha, 0.0, 0.0], a: [alpha - 1.0, 0.0] }];
+        Ok(Filter { kind: Kind::Smoothing(corner), order: 1, rate, sections })
+    }
+
+    /// Sections of second order one behind the other, each transformed bilinearly such that it is exact at one frequency:
+    /// s = c(1 − z⁻¹)/(1 + z⁻¹) with c = 2πf/tan(πf/rate).
+    ///
+    /// # Errors
+    /// If one of these frequencies does not lie between 0 and half the sampling rate.
+    pub fn analogue(sections: &[Analogue], rate: f64) -> Result<Filter> {
+        let digital = |part: &Analogue| {
+            let c = 2.0 * PI * part.exact / warped(part.exact, rate)?;
+            let scaled = |p: [f64; 3]| [p[0], p[1] * c, p[2] * c * c];
+            Ok(section(scaled(part.b), scaled(part.a)))
+        };
+        let sections = sections.iter().map(digital).collect::<Result<Vec<Section>>>()?;
+        Ok(Filter { kind: Kind::Analogue, order: 2 * sections.len(), rate, sections })
+    }
+
+    /// The factor α of exponential smoothing; `None` for any other filter.
+    pub fn alpha(&self) -> Option<f64> {
+        match (self.kind, self.sections.as_slice()) {
+            (Kind::Smoothing(_), [section]) => Some(section.b[0]),
+            _ => None,
+        }
+    }
+
+    /// Complex factor of one pass on a sine of `frequency` Hz.
+    pub fn response(&self, frequency: f64) -> Complex64 {
+        let z = Complex64::cis(-2.0 * PI * frequency / self.rate);
+        self.sections
+            .iter()
+            .map(|s| (s.b[0] + z * (s.b[1] + z * s.b[2])) / (1.0 + z * (s.a[0] + z * s.a[1])))
+            .product()
+    }
+
+    /// Filters as an instrument does, from rest: what comes out is late.
+    pub fn causal(&self, values: &[f64]) -> Vec<f64> {
+        let mut out = values.to_vec();
+        self.from_rest().apply(&mut out);
+        out
+    }
+
+    /// The filter at rest, to be given samples block by block.
+    pub fn from_rest(&self) -> Running {
+        Running { sections: self.sections.clone(), states: vec![[0.0; 2]; self.sections.len()] }
+    }
+
+    /// The filter as if the input had had this value for ever.
+    pub fn settled_at(&self, value: f64) -> Running {
+        let mut level = value;
+        let states = self
+            .sections
+            .iter()
+            .map(|s| {
+                let out = level * (s.b[0] + s.b[1] + s.b[2]) / (1.0 + s.a[0] + s.a[1]);
+                let second = s.b[2] * level - s.a[1] * out;
+                let first = s.b[1] * level - s.a[0] * out + second;
+                level = out;
+                [first, second]
+            })
+            .collect();
+        Running { sections: self.sections.clone(), states }
+    }
+
+    /// Filters forwards and backwards, so that nothing is delayed. Both ends are continued by their mirror image about the
+    /// end point, as scipy's `sosfiltfilt` does (Gustafsson, IEEE Trans. Signal Process. 44 (1996) 988 on why ends matter).
+    ///
+    /// # Errors
+    /// If the trace is not longer than [`Filter::padding`] samples, or one of them is missing.
+    pub fn zero_phase(&self, values: &[f64]) -> Result<Vec<f64>> {
+        let pad = self.padding();
+        let n = values.len();
+        if n <= pad {
+            return Err(Error::refused(format!(
+                "{n} samples are too few for the zero-phase {self}: more than {pad} are needed"
+            ))
+            .hint("filter a longer record, or with a lower order"));
+        }
+        if let Some(i) = values.iter().position(|v| !v.is_finite()) {
+            return Err(Error::refused(format!(
+                "sample {i} is missing: a filter would spread it over the rest"
+            ))
+            .hint("bridge the gap, or filter the parts between gaps"));
+        }
+        let (first, last) = (values[0], values[n - 1]);
+        let mut out = Vec::with_capacity(n + 2 * pad);
+        out.extend(values[1..=pad].iter().rev().map(|v| 2.0 * first - v));
+        out.extend_from_slice(values);
+        out.extend(values[n - 1 - pad..n - 1].iter().rev().map(|v| 2.0 * last - v));
+        for _ in 0..2 {
+            self.settled_at(out[0]).apply(&mut out);
+            out.reverse();
+        }
+        out.truncate(n + pad);
+        out.drain(..pad);
+        Ok(out)
+    }
+
+    /// Samples by which [`Filter::zero_phase`] continues both ends: three times the number of coefficients.
+    pub fn padding(&self) -> usize {
+        let zeros = |zero: fn(&Section) -> bool| self.sections.iter().filter(|s| zero(s)).count();
+        let spare = zeros(|s| s.b[2] == 0.0).min(zeros(|s| s.a[1] == 0.0));
+        3 * (2 * self.sections.len() + 1 - spare)
+    }
+
+    /// Corners in Hz; none for [`Filter::analogue`].
+    pub fn corners(&self) -> Vec<f64> {
+        match self.kind {
+            Kind::LowPass(f) | Kind::HighPass(f) | Kind::Smoothing(f) => vec![f],
+            Kind::BandPass(low, high) => vec![low, high],
+            Kind::Analogue => Vec::new(),
+        }
+    }
+
+    /// Order of one pass.
+    pub fn order(&self) -> usize {
+        self.order
+    }
+}
+
+impl std::fmt::Display for Filter {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let order = self.order;
+        match self.kind {
+            Kind::LowPass(corner) => {
+                write!(f, "Butterworth low-pass of order {order}, corner {} Hz", shortest(corner))
+            }
+            Kind::HighPass(corner) => {
+                write!(f, "Butterworth high-pass of order {order}, corner {} Hz", shortest(corner))
+            }
+            Kind::BandPass(low, high) => {
+                write!(f, "Butterworth band-pass of order {order}, corners {low} and {high} Hz")
+            }
+            Kind::Smoothing(corner) => write!(f, "exponential smoothing, corner {} Hz", shortest(corner)),
+            Kind::Analogue => write!(f, "filter of order {order} from analogue sections"),
+        }
+    }
+}
+
+/// A causal filter between two blocks: what it remembers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Running {
+    sections: Vec<Section>,
+    states: Vec<[f64; 2]>,
+}
+
+impl Running {
+    /// Filters the next samples in place.
+    pub fn apply(&mut self, values: &mut [f64]) {
+        for (s, state) in self.sections.iter().zip(&mut self.states) {
+            let [mut first, mut second] = *state;
+            for v in &mut *values {
+                let out = s.b[0] * *v + first;
+                first = s.b[1] * *v - s.a[0] * out + second;
+                second = s.b[2] * *v - s.a[1] * out;
+                *v = out;
+            }
+            *state = [first, second];
+        }
+    }
+}
+
+/// Pole of the analogue low-pass with corner 1.
+enum Pole {
+    /// This one (upper half plane) and its conjugate.
+    Pair(Complex64),
+    /// −1.
+    Real,
+}
+
+/// Poles exp(iπ(2k + N − 1)/2N), the real one first: the sharpest pair filters last.
+fn pairs(order: usize) -> Result<impl Iterator<Item = Pole>> {
+    if !(1..=MOST).contains(&order) {
+        return Err(Error::usage(format!("a filter of order {order}"), format!("an order of 1 to {MOST}")));
+    }
+    let real = (order % 2 == 1).then_some(Pole::Real);
+    let angle = move |k: usize| PI * (2 * k + order - 1) as f64 / (2 * order) as f64;
+    Ok(real.into_iter().chain((1..=order / 2).rev().map(move |k| Pole::Pair(Complex64::cis(angle(k))))))
+}
+
+/// Corner in the analogue plane, s = (1 − z⁻¹)/(1 + z⁻¹).
+fn warped(corner: f64, rate: f64) -> Result<f64> {
+    if !(corner > 0.0 && corner < rate / 2.0 && rate.is_finite()) {
+        return Err(Error::usage(
+            format!("a corner of {} Hz at a sampling rate of {} Hz", shortest(corner), shortest(rate)),
+            format!("a corner above 0 and below {} Hz", shortest(rate / 2.0)),
+        ));
+    }
+    Ok((PI * corner / rate).tan())
+}
+
+/// Bilinear transform of (b₀ + b₁s + b₂s²)/(a₀ + a₁s + a₂s²).
+fn section(b: [f64; 3], a: [f64; 3]) -> Section {
+    let gain = 1.0 / (a[0] + a[1] + a[2]);
+    let z = |c: [f64; 3]| [c[0] + c[1] + c[2], 2.0 * (c[0] - c[2]), c[0] - c[1] + c[2]].map(|v| v * gain);
+    let [_, a1, a2] = z(a);
+    Section { b: z(b), a: [a1, a2] }
+}
+
+/// Bilinear transform of (b₀ + b₁s)/(a₀ + a₁s).
+fn first(b: [f64; 2], a: [f64; 2]) -> Section {
+    let gain = 1.0 / (a[0] + a[1]);
+    Section { b: [(b[0] + b[1]) * gain, (b[0] - b[1]) * gain, 0.0], a: [(a[0] - a[1]) * gain, 0.0] }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,363 @@
+//! Frequency response functions from hammer blows: one record a blow, of the force and of the response that rings down.
+//!
+//! The force counts only while the hammer touches (force window); a response that has not died away when the record ends is
+//! made to (exponential window, on the force, too). That adds damping, by an amount that is known and reported.
+
+mod left;
+
+use super::fft::Transform;
+use super::segment::Segments;
+use super::transfer::{Estimator, Transfer, transfer};
+use super::welch::Sums;
+use left::Left;
+use serde::Serialize;
+use std::f64::consts::PI;
+use vibro_record::units::notation::{shortest, significant};
+use vibro_record::{Error, Meta, Result, Trace};
+
+/// Part of the largest force, above the level before it, at which a blow is noticed, and of a blow's own peak at which a second one is.
+const TRIGGER: f64 = 0.2;
+/// A blow has ended below this part of its peak, or below so many standard deviations of the noise before it.
+const ENDED: f64 = 0.05;
+const SIGMAS: f64 = 3.0;
+/// So many samples in a row at the very extreme are a clipped signal.
+const CLIPPED: usize = 3;
+/// Two in a row are where both neighbours are more steps of the converter away: the two highest samples of a round top are the same
+/// step once in half as many blows.
+const PAIR: f64 = 200.0;
+/// An extreme nearer the quiet level than this part of the other one is no rail: a force does not go below zero.
+const RAIL: f64 = 0.1;
+/// Steps of the converter by which a round top of three equal samples or more may fall to the next: (5/3)² for three, and noise.
+const ROUNDED: f64 = 8.0;
+/// Steps in a record of which only few different values are known: at least so many up to its extreme.
+const COARSEST: f64 = 250.0;
+
+/// Blows left out that a sentence names.
+const NAMED: usize = 8;
+/// Less than this part of a response at the end of its record is not worth a sentence: sensors are not as good.
+const TOLD: f64 = 1e-3;
+
+/// How blows are taken out of a long record.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Blows {
+    /// Samples of one record.
+    pub length: usize,
+    /// Samples before the blow.
+    pub before: usize,
+    /// Width in s of the force window from the blow on; the whole record where `None`.
+    pub force_window: Option<f64>,
+    /// What the exponential window leaves at the end of the record, e.g. 0.01; none where `None`.
+    pub left_at_end: Option<f64>,
+}
+
+/// One blow.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Blow {
+    /// Time in s at which the force passes the trigger.
+    pub time: f64,
+    /// Largest force.
+    pub peak: f64,
+    /// Why it was left out; `None` where it counts.
+    pub rejected: Option<&'static str>,
+}
+
+/// A function from blows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BlowTransfer {
+    /// The function; an exponential window has not been corrected for.
+    pub transfer: Transfer,
+    /// Every blow.
+    pub blows: Vec<Blow>,
+    /// Decay in 1/s that the exponential window adds: a mode of f Hz seems to have a damping ratio that is this over 2πf larger.
+    pub added_decay: f64,
+    /// The windows that were applied: `rectangular` for none, `force`, `exponential`, or `force and exponential`.
+    pub window: &'static str,
+    /// Equivalent noise bandwidth in lines of the response's window, NΣw²/(Σw)².
+    pub enbw: f64,
+}
+
+/// Finds the blows in a force, averages those that are clean, and relates the response to the force.
+///
+/// # Errors
+/// If the traces are of different rate or length or shorter than one record of a blow, samples are missing, or fewer than two
+/// blows are clean.
+pub fn from_blows(
+    force: &Trace,
+    response: &Trace,
+    how: &Blows,
+    estimator: Estimator,
+) -> Result<BlowTransfer> {
+    let (Some(rate), Some(other)) = (force.rate(), response.rate()) else {
+        return Err(Error::refused("the sampling rate is not known").hint("state it with --rate"));
+    };
+    let n = force.values.len();
+    if rate != other || n != response.values.len() {
+        return Err(Error::refused(format!(
+            "the force has {n} samples at {} Hz, the response {} at {} Hz",
+            shortest(rate),
+            response.values.len(),
+            shortest(other)
+        )));
+    }
+    if let Some(i) =
+        force.values.iter().zip(&response.values).position(|(f, r)| !(f.is_finite() && r.is_finite()))
+    {
+        return Err(Error::refused(format!("sample {i} is missing")).hint("cut the record before the gap"));
+    }
+    if how.length < 8 || how.before >= how.length {
+        return Err(Error::usage(
+            format!("records of {} samples, {} of them before the blow", how.length, how.before),
+            "at least 8 samples, and the blow among them",
+        ));
+    }
+    if how.length > n {
+        return Err(Error::refused(format!(
+            "blows of {} samples each in a record of {n} samples",
+            how.length
+        ))
+        .hint("take shorter records, or measure longer"));
+    }
+    let blows = find(force, response, how, rate);
+    let kept: Vec<usize> =
+        blows.iter().filter(|(_, b)| b.rejected.is_none()).map(|(start, _)| *start).collect();
+    if kept.len() < 2 {
+        let why: Vec<String> = blows
+            .iter()
+            .filter_map(|(_, b)| b.rejected.map(|why| format!("{:.3} s: {why}", b.time)))
+            .take(8)
+            .collect();
+        return Err(Error::refused(format!(
+            "{} of {} blows are clean, two are needed at least{}{}",
+            kept.len(),
+            blows.len(),
+            if why.is_empty() { "" } else { ": " },
+            why.join(", ")
+        )));
+    }
+    let (decay, weights) = windows(how, rate)?;
+    let transform = Transform::new(how.length);
+    let mut work = [transform.workspace(), transform.workspace()];
+    let mut sums = Sums::new(2, true, transform.lines());
+    for start in &kept {
+        for ((work, weights), trace) in work.iter_mut().zip(&weights).zip([force, response]) {
+            let part = trace.values.get(*start..start + how.length).unwrap_or_default();
+            // The level before the blow is the zero of this record.
+            let level = part[..how.before].iter().sum::<f64>() / how.before.max(1) as f64;
+            for ((to, v), w) in work.input.iter_mut().zip(part).zip(weights) {
+                *to = (v - level) * w;
+            }
+            transform.run(work);
+        }
+        sums.add(&work);
+    }
+    let apart = Segments { length: how.length, hop: how.length };
+    let averages = sums.mean(&vec![1.0; how.length], apart, rate, true);
+    let metas: [Meta; 2] = [force.meta.clone(), response.meta.clone()];
+    let mut transfer = transfer(&averages, 1, &metas, estimator)?;
+    transfer.frf.meta.step("blows", &[("length", &how.length), ("before", &how.before)]);
+    transfer.warnings.extend(left_out(&blows));
+    if let Some(left) = Left::of(&response.values, &kept, how, &weights[1]) {
+        unfinished(&mut transfer, &left);
+    }
+    if decay > 0.0 {
+        transfer.warnings.push(format!(
+            "The exponential window adds a decay of {decay:.4} 1/s: the damping ratio of a mode at f Hz is too large by {:.4}/f.",
+            decay / (2.0 * PI)
+        ));
+        transfer.frf.meta.step("exponential_window", &[("decay", &decay)]);
+    }
+    let [sum, squares] = weights[1].iter().fold([0.0, 0.0], |[s, q], w| [s + w, q + w * w]);
+    Ok(BlowTransfer {
+        transfer,
+        blows: blows.into_iter().map(|(_, b)| b).collect(),
+        added_decay: decay,
+        window: match (how.force_window.is_some(), how.left_at_end.is_some()) {
+            (false, false) => "rectangular",
+            (true, false) => "force",
+            (false, true) => "exponential",
+            (true, true) => "force and exponential",
+        },
+        enbw: how.length as f64 * squares / (sum * sum),
+    })
+}
+
+/// Which blows are left out, and why.
+fn left_out(blows: &[(usize, Blow)]) -> Option<String> {
+    let named: Vec<String> =
+        blows.iter().filter_map(|(_, b)| b.rejected.map(|why| format!("{:.3} s, {why}", b.time))).collect();
+    let more = if named.len() > NAMED { "; …" } else { "" };
+    let are = if named.len() == 1 { "is" } else { "are" };
+    (!named.is_empty()).then(|| {
+        let shown = named[..named.len().min(NAMED)].join("; ");
+        format!("{} of {} blows {are} left out: {shown}{more}.", named.len(), blows.len())
+    })
+}
+
+/// Takes what is left of the response into the standard deviations, and says so where it is most.
+fn unfinished(transfer: &mut Transfer, left: &Left) {
+    let mut most = (0.0, 0);
+    for (k, h) in transfer.frf.values.iter().enumerate() {
+        // The first line of a function is one above 0 Hz.
+        let part = left.at(k + 1);
+        transfer.magnitude_std[k] = transfer.magnitude_std[k].hypot(part * h.norm());
+        transfer.phase_std[k] = transfer.phase_std[k].hypot(part);
+        if part > TOLD && left.strong(k + 1) && part * h.norm() > most.0 {
+            most = (part * h.norm(), k);
+        }
+    }
+    if most.0 > 0.0 {
+        let part = left.at(most.1 + 1);
+        transfer.warnings.push(format!(
+            "Around {} Hz {} % of the response are left when the record of a blow ends: |H| may be off by as much there, its phase by {}°, which is in the standard deviations but not in the coherence. Longer records (--segment) or an exponential window (--left-at-end) help.",
+            significant(transfer.frf.axis.at(most.1), 3),
+            significant(100.0 * part, 2),
+            significant(part.to_degrees(), 2)
+        ));
+    }
+}
+
+/// First sample of each record, and its blow.
+fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<(usize, Blow)> {
+    let values = &force.values;
+    // Blows are short: what the force is most of the time is its zero, whatever the amplifier adds.
+    let rest = Quiet::of(values);
+    let zero = rest.level;
+    let extreme = values.iter().map(|v| v - zero).fold(0.0f64, |m, v| if v.abs() > m.abs() { v } else { m });
+    let sign = if extreme < 0.0 { -1.0 } else { 1.0 };
+    let trigger_level = TRIGGER * extreme.abs();
+    let channels = [values, &response.values];
+    let mut rails = [Vec::new(), Vec::new()];
+    let (mut found, mut i) = (Vec::new(), 0);
+    while i < values.len() {
+        if sign * (values[i] - zero) <= trigger_level {
+            i += 1;
+            continue;
+        }
+        let (trigger, end) = (i, i.saturating_add(how.length - how.before).min(values.len()));
+        let start = trigger.saturating_sub(how.before);
+        // The zero may wander from blow to blow.
+        let quiet = if trigger > start { Quiet::of(&values[start..trigger]) } else { rest };
+        let push = |j: usize| sign * (values[j] - quiet.level);
+        let (mut peak, mut first_end) = (0.0f64, end);
+        for j in trigger..end {
+            peak = peak.max(push(j));
+            // Noise must not prolong a blow, nor may much of it hide that there was one.
+            if push(j) <= (SIGMAS * quiet.sigma).clamp(ENDED * peak, TRIGGER * peak) {
+                first_end = j;
+                break;
+            }
+        }
+        let second = (first_end..end).any(|j| push(j) > TRIGGER * peak);
+        let mut clipped = false;
+        for (channel, rails) in channels.iter().zip(&mut rails) {
+            let rail = overloaded(&channel[start..end], trigger - start);
+            clipped |= rail.is_some();
+            rails.extend(rail);
+        }
+        let rejected = if trigger < how.before || end - trigger < how.length - how.before {
+            Some("the record cuts it off")
+        } else if second {
+            Some("double hit")
+        } else if clipped {
+            Some("overload")
+        } else {
+            None
+        };
+        let time = force.axis.start() + trigger as f64 / rate;
+        found.push((start, Blow { time, peak: sign * peak, rejected }));
+        i = end.max(trigger + 1);
+    }
+    // One sample at the value where another blow was clipped is clipped as well.
+    for (start, blow) in &mut found {
+        let reaches = |(channel, rails): (&&Vec<f64>, &Vec<f64>)| {
+            let (lowest, highest) = extremes(&channel[*start..*start + how.length]);
+            rails.iter().any(|rail| *rail == lowest || *rail == highest)
+        };
+        if blow.rejected.is_none() && channels.iter().zip(&rails).any(reaches) {
+            blow.rejected = Some("overload");
+        }
+    }
+    found
+}
+
+/// Level and noise of samples of which most are quiet.
+#[derive(Clone, Copy)]
+struct Quiet {
+    level: f64,
+    sigma: f64,
+}
+
+impl Quiet {
+    /// Median, and the standard deviation of the normal distribution that has the same median deviation.
+    fn of(values: &[f64]) -> Quiet {
+        let level = median(values.to_vec());
+        Quiet { level, sigma: 1.4826 * median(values.iter().map(|v| (v - level).abs()).collect()) }
+    }
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    let middle = values.len() / 2;
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
+}
+
+/// Lowest and highest value.
+fn extremes(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)))
+}
+
+/// The highest or lowest value of a record, quiet in its first `before` samples, where it stays there: each rail on its own, since
+/// an offset takes a signal to one of them first.
+///
+/// A slow vibration in coarse steps stays at its extreme, too, but leaves it by a few steps; a clipped one leaves it as steeply
+/// as it came.
+fn overloaded(values: &[f64], before: usize) -> Option<f64> {
+    let level = Quiet::of(if before > 0 { &values[..before] } else { values }).level;
+    let (lowest, highest) = extremes(values);
+    let reach = (highest - level).max(level - lowest);
+    let step =
+        values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|d| *d > 0.0).fold(reach / COARSEST, f64::min);
+    [highest, lowest].into_iter().filter(|rail| (rail - level).abs() > RAIL * reach).find(|rail| {
+        let mut at = 0;
+        values.chunk_by(|a, b| a == b).any(|run| {
+            let (first, next) = (at, at + run.len());
+            at = next;
+            let beside = [first.checked_sub(1).and_then(|i| values.get(i)), values.get(next)];
+            let falls = |by: f64| move |v: &f64| (v - rail).abs() > by * step;
+            run[0] == *rail
+                && match run.len() {
+                    0 | 1 => false,
+                    n if n < CLIPPED => beside.into_iter().flatten().all(falls(PAIR)),
+                    _ => beside.into_iter().flatten().any(falls(ROUNDED)),
+                }
+        })
+    })
+}
+
+/// Decay in 1/s, and the weights of force and response.
+fn windows(how: &Blows, rate: f64) -> Result<(f64, [Vec<f64>; 2])> {
+    let after = (how.length - how.before) as f64 / rate;
+    let decay = match how.left_at_end {
+        Some(left) if left > 0.0 && left <= 1.0 => -left.ln() / after,
+        Some(left) => {
+            return Err(Error::usage(format!("an exponential window that leaves {left}"), "above 0 to 1"));
+        }
+        None => 0.0,
+    };
+    let width = match how.force_window {
+        Some(width) if width > 0.0 => width,
+        Some(width) => return Err(Error::usage(format!("a force window of {width} s"), "a width above 0")),
+        None => f64::INFINITY,
+    };
+    let exponential: Vec<f64> =
+        (0..how.length).map(|i| (-decay * (i as f64 - how.before as f64).max(0.0) / rate).exp()).collect();
+    let force = exponential.iter().enumerate().map(|(i, weight)| {
+        let t = (i as f64 - how.before as f64) / rate;
+        // A quarter of its width to come down, so that the window itself rings little.
+        let down = if width.is_finite() { ((t - width) / (0.25 * width)).clamp(0.0, 1.0) } else { 0.0 };
+        weight * 0.5 * (1.0 + (PI * down).cos())
+    });
+    Ok((decay, [force.collect(), exponential]))
+}
+
+#[cfg(test)]
+mod tests;

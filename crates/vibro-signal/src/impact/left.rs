@@ -1,0 +1,92 @@
+//! What is left of a response when the record of a blow ends.
+
+use super::Blows;
+use crate::fft::Transform;
+use std::f64::consts::TAU;
+
+/// Parts of a record after the blow; the first and the last are compared.
+const PARTS: usize = 4;
+/// Fewest samples of a part.
+const FEWEST: usize = 16;
+/// So many times the scatter of a mean power is no noise: in white noise less than one record in a hundred is then said to ring on.
+const BEYOND: f64 = 6.0;
+/// Lines with less than this part of the highest power are not those of the response.
+const STRONG: f64 = 0.01;
+
+/// Line by line, what is left of a response when its weighted record ends, relative to its beginning.
+pub(super) struct Left {
+    /// From 0 Hz on, in steps of `samples of a part / samples of a record` lines; 0 where it is within the noise.
+    parts: Vec<f64>,
+    strong: Vec<bool>,
+    step: f64,
+}
+
+impl Left {
+    /// From the blows that begin at `kept`; `None` for records too short to tell.
+    ///
+    /// The last quarter of a mode that decays as e^(−σt) has the transform of the first one times r = e^(−3σT/4); what is left
+    /// at T is r^(4/3). A mode whose record ends there has lost e^((s − iω)T) of its transform, s its pole: that is also the size of the
+    /// relative error of its part of H. The noise is that before the quietest blow, taken for white; before the others the blow
+    /// before may still ring.
+    pub fn of(values: &[f64], kept: &[usize], how: &Blows, weights: &[f64]) -> Option<Left> {
+        let quarter = (how.length - how.before) / PARTS;
+        if quarter < FEWEST || how.before < 2 || kept.is_empty() {
+            return None;
+        }
+        let transform = Transform::new(quarter);
+        let mut work = transform.workspace();
+        let hann: Vec<f64> =
+            (0..quarter).map(|i| 0.5 - 0.5 * (TAU * (i as f64 + 0.5) / quarter as f64).cos()).collect();
+        let mut powers = [how.before, how.length - quarter].map(|from| (from, vec![0.0; transform.lines()]));
+        let mut noise = f64::INFINITY;
+        for start in kept {
+            let part = values.get(*start..start + how.length)?;
+            let quiet = &part[..how.before];
+            let level = quiet.iter().sum::<f64>() / how.before as f64;
+            let variance = quiet.iter().map(|v| (v - level).powi(2)).sum::<f64>() / (how.before - 1) as f64;
+            noise = noise.min(variance);
+            for (from, power) in &mut powers {
+                let seen = part[*from..].iter().zip(&weights[*from..]).zip(&hann);
+                work.input.iter_mut().zip(seen).for_each(|(to, ((v, w), h))| *to = (v - level) * w * h);
+                transform.run(&mut work);
+                power.iter_mut().zip(&work.output).for_each(|(sum, x)| *sum += x.norm_sqr());
+            }
+        }
+        let n = kept.len() as f64;
+        let [(_, head), (from, tail)] = powers;
+        let weight = weights.get(from).copied().unwrap_or(1.0);
+        let (squares, sum) = hann.iter().fold((0.0, 0.0), |(q, s), h| (q + h * h, s + h));
+        let highest = head.iter().copied().fold(0.0, f64::max);
+        let left = |(k, (head, tail)): (usize, (&f64, &f64))| {
+            // The level that was taken off is uncertain, which a Hann window spreads over two lines.
+            let level = if k < 2 { sum * sum / how.before as f64 } else { 0.0 };
+            let noise = noise * weight * weight * (squares + level);
+            let scatter = noise * (n.recip().sqrt() + (2.0 / how.before as f64).sqrt());
+            let excess = tail / n - noise;
+            if excess <= BEYOND * scatter || *head <= 0.0 {
+                return 0.0;
+            }
+            let whole = PARTS as f64 / (PARTS - 1) as f64;
+            (excess * n / head).sqrt().powf(whole).min(1.0)
+        };
+        Some(Left {
+            parts: head.iter().zip(&tail).enumerate().map(left).collect(),
+            strong: head.iter().map(|p| *p > STRONG * highest).collect(),
+            step: how.length as f64 / quarter as f64,
+        })
+    }
+
+    fn place(&self, line: usize) -> usize {
+        ((line as f64 / self.step).round() as usize).min(self.parts.len().saturating_sub(1))
+    }
+
+    /// At a line of the whole record, counted from 0 Hz.
+    pub fn at(&self, line: usize) -> f64 {
+        self.parts.get(self.place(line)).copied().unwrap_or(0.0)
+    }
+
+    /// Whether a line is one of the response, no noise and no hum.
+    pub fn strong(&self, line: usize) -> bool {
+        self.strong.get(self.place(line)).copied().unwrap_or(false)
+    }
+}

@@ -1,0 +1,289 @@
+use super::*;
+use num_complex::Complex64;
+use vibro_record::units::Unit;
+use vibro_record::{Axis, FrfKind};
+
+const RATE: f64 = 4096.0;
+/// One mode: mass in kg, frequency in Hz, damping ratio.
+const MODE: (f64, f64, f64) = (2.0, 60.0, 0.01);
+
+fn trace(unit: &str, values: Vec<f64>) -> Trace {
+    let meta = Meta::new(unit, Unit::parse(unit).unwrap());
+    Trace { meta, axis: Axis::time(0.0, 1.0 / RATE, values.len()), values }
+}
+
+/// Half-sine blows of 1 ms, and the displacement of the mode by the exact impulse response, sample by sample.
+fn bench(blows: &[(usize, f64)], n: usize) -> [Trace; 2] {
+    let (m, f, zeta) = MODE;
+    let (omega, width) = (2.0 * PI * f, 5);
+    let damped = omega * (1.0 - zeta * zeta).sqrt();
+    let mut force = vec![0.0; n];
+    for (at, peak) in blows {
+        for i in 0..width {
+            force[at + i] += peak * (PI * (i as f64 + 0.5) / width as f64).sin();
+        }
+    }
+    let mut response = vec![0.0; n];
+    // z is the rotating amplitude of the free motion; each sample of force is a small impulse.
+    let (mut z, turn) = (Complex64::ZERO, (Complex64::new(-zeta * omega, damped) / RATE).exp());
+    for i in 0..n {
+        response[i] = z.im / (m * damped);
+        z = (z + force[i] / RATE) * turn;
+    }
+    [trace("N", force), trace("m", response)]
+}
+
+/// Receptance of the mode with some decay more.
+fn truth(f: f64, added: f64) -> Complex64 {
+    let (m, f0, zeta) = MODE;
+    let omega = 2.0 * PI * f0;
+    let (damped, decay) = (omega * (1.0 - zeta * zeta).sqrt(), zeta * omega + added);
+    let s = Complex64::new(decay, 2.0 * PI * f);
+    1.0 / (m * (s * s + damped * damped))
+}
+
+fn near(found: &BlowTransfer, tolerance: f64) {
+    for (k, h) in found.transfer.frf.values.iter().enumerate() {
+        let f = found.transfer.frf.axis.at(k);
+        if (20.0..200.0).contains(&f) {
+            let expected = truth(f, found.added_decay);
+            assert!((h / expected - 1.0).norm() < tolerance, "{f} Hz: {h} against {expected}");
+        }
+    }
+}
+
+#[test]
+fn blows_give_the_receptance_and_the_decay_that_the_window_adds() {
+    let [force, response] = bench(&[(500, 100.0), (18_000, 80.0), (36_000, 120.0)], 53_000);
+    let how = Blows { length: 16_384, before: 100, force_window: Some(0.01), left_at_end: None };
+    let plain = from_blows(&force, &response, &how, Estimator::H1).unwrap();
+    assert_eq!(
+        (plain.transfer.frf.kind, plain.transfer.averages, plain.added_decay),
+        (FrfKind::Receptance, 3, 0.0)
+    );
+    // Sampled impulses against a continuous system: half a sample of delay and (ωΔt)²/12, at 200 Hz below 1 %; what the last
+    // blow left is e^(−ζωt) of it after four seconds.
+    near(&plain, 0.01);
+    // A quarter of the time: the response has not died away, the window sees to it.
+    let how = Blows { length: 2048, left_at_end: Some(0.001), ..how };
+    let short = from_blows(&force, &response, &how, Estimator::H1).unwrap();
+    let expected = -0.001f64.ln() / ((2048.0 - 100.0) / RATE);
+    assert!((short.added_decay / expected - 1.0).abs() < 1e-12);
+    assert!(short.transfer.warnings.iter().any(|w| w.contains("adds a decay")));
+    // The part cut off is 0.001·e^(−ζωt) of the whole, over the damped peak of the mode.
+    near(&short, 0.015);
+}
+
+#[test]
+fn double_hits_and_overload_are_left_out_by_name() {
+    let blows =
+        [(500, 100.0), (18_000, 80.0), (18_200, 40.0), (36_000, 120.0), (54_000, 90.0), (69_900, 90.0)];
+    let [mut force, response] = bench(&blows, 70_000);
+    force.values.iter_mut().for_each(|v| *v = v.min(78.0));
+    let how = Blows { length: 8192, before: 100, force_window: None, left_at_end: None };
+    // The blows of 100 and 120 N pass 78 N with the sample in the middle and both its neighbours: three equal ones.
+    let found = from_blows(&force, &response, &how, Estimator::H1).err().unwrap().to_string();
+    assert!(
+        found.contains("double hit") && found.contains("overload") && found.contains("cuts it off"),
+        "{found}"
+    );
+    let [force, response] = bench(&blows, 70_000);
+    let found = from_blows(&force, &response, &how, Estimator::H1).unwrap();
+    let rejected: Vec<Option<&str>> = found.blows.iter().map(|b| b.rejected).collect();
+    assert_eq!(rejected, [None, Some("double hit"), None, None, Some("the record cuts it off")]);
+    assert!((found.blows[2].time - 36_000.0 / RATE).abs() < 3.0 / RATE);
+    assert!((found.blows[2].peak - 120.0).abs() < 1e-9);
+    assert_eq!(found.transfer.averages, 3);
+}
+
+#[test]
+fn records_longer_than_the_record_are_refused() {
+    let [force, response] = bench(&[(500, 100.0), (2000, 80.0)], 4000);
+    for (length, before) in
+        [(usize::MAX, 100), (usize::MAX, usize::MAX - 1), (usize::MAX - 100, 0), (4001, 0)]
+    {
+        let how = Blows { length, before, force_window: None, left_at_end: None };
+        let why = from_blows(&force, &response, &how, Estimator::H1).unwrap_err();
+        assert!(why.exit_code() == 1 && why.to_string().contains("of 4000 samples"), "{why}");
+    }
+}
+
+#[test]
+fn impossible_windows_are_refused() {
+    let [force, response] = bench(&[(500, 100.0), (5000, 80.0)], 20_000);
+    let how = Blows { length: 1024, before: 100, force_window: None, left_at_end: None };
+    for bad in [
+        Blows { length: 4, ..how },
+        Blows { before: 1024, ..how },
+        Blows { left_at_end: Some(0.0), ..how },
+        Blows { left_at_end: Some(2.0), ..how },
+        Blows { force_window: Some(0.0), ..how },
+    ] {
+        assert!(from_blows(&force, &response, &bad, Estimator::H1).is_err(), "{bad:?}");
+    }
+    let short = trace("m", vec![0.0; 10]);
+    assert!(from_blows(&force, &short, &how, Estimator::H1).err().unwrap().to_string().contains("10 at"));
+}
+
+/// Eight blows of 80 to 115 N, every other one with a second hit of 40 N after 50 ms.
+fn half_double() -> [Trace; 2] {
+    let mut blows = Vec::new();
+    for i in 0..8 {
+        blows.push((500 + 5000 * i, 80.0 + 5.0 * i as f64));
+        if i % 2 == 1 {
+            blows.push((700 + 5000 * i, 40.0));
+        }
+    }
+    bench(&blows, 41_000)
+}
+
+#[test]
+fn double_hits_are_found_whatever_the_offset_and_the_sign() {
+    let how = Blows { length: 4096, before: 100, force_window: None, left_at_end: None };
+    for offset in [0.0, 0.5, -0.5, 5.0, -30.0, 200.0] {
+        for sign in [1.0, -1.0] {
+            let [mut force, response] = half_double();
+            let mut state = 11u64;
+            for v in &mut force.values {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                // Noise of 0.2 N, uniform.
+                *v = sign * *v + offset + 0.4 * ((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5);
+            }
+            let found = from_blows(&force, &response, &how, Estimator::H1).unwrap();
+            let rejected: Vec<Option<&str>> = found.blows.iter().map(|b| b.rejected).collect();
+            let expected = [None, Some("double hit")].repeat(4);
+            assert_eq!(rejected, expected, "offset {offset} N, sign {sign}");
+            for (i, blow) in found.blows.iter().enumerate() {
+                // The noise of one sample and of the level.
+                assert!((sign * blow.peak - (80.0 + 5.0 * i as f64)).abs() < 0.4, "{offset}: {blow:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn each_rail_of_the_response_is_watched_on_its_own() {
+    let how = Blows { length: 4096, before: 100, force_window: None, left_at_end: None };
+    let blows = [(500, 100.0), (8000, 40.0), (15_500, 100.0), (23_000, 40.0)];
+    let [force, clean] = bench(&blows, 31_000);
+    let largest = clean.values.iter().copied().fold(0.0, f64::max);
+    let rejected = |response: &Trace| {
+        from_blows(&force, response, &how, Estimator::H1)
+            .unwrap()
+            .blows
+            .iter()
+            .map(|b| b.rejected)
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(rejected(&clean), [None; 4]);
+    // Only the strong blows pass 60 % of the largest value; the other side goes further than the rail.
+    for (low, high) in [(-1e9, 0.6 * largest), (-0.6 * largest, 1e9), (-0.6 * largest, 0.6 * largest)] {
+        for offset in [0.0, 0.3 * largest] {
+            let mut response = clean.clone();
+            response.values.iter_mut().for_each(|v| *v = v.clamp(low, high) + offset);
+            let strong = Some("overload");
+            assert_eq!(rejected(&response), [strong, None, strong, None], "{low} to {high} + {offset}");
+        }
+    }
+}
+
+/// 60 Hz at 4096 Hz in steps of 1/100 of the peak stays up to five samples at its extreme, but nothing is clipped.
+#[test]
+fn coarse_steps_are_no_overload() {
+    let [force, mut response] = bench(&[(500, 100.0), (8000, 100.0), (15_500, 100.0)], 23_000);
+    let step = response.values.iter().copied().fold(0.0, f64::max) / 100.0;
+    response.values.iter_mut().for_each(|v| *v = (*v / step).round() * step);
+    let how = Blows { length: 4096, before: 100, force_window: None, left_at_end: None };
+    let found = from_blows(&force, &response, &how, Estimator::H1).unwrap();
+    let extreme = response.values[..4596].iter().copied().fold(0.0, f64::max);
+    let longest = response.values.chunk_by(|a, b| a == b).filter(|r| r[0] == extreme).map(<[f64]>::len).max();
+    assert!(longest >= Some(3), "{longest:?} equal samples: the case shows nothing");
+    assert!(found.blows.iter().all(|b| b.rejected.is_none()), "{:?}", found.blows);
+}
+
+#[test]
+fn the_windows_applied_are_named() {
+    let [force, response] = bench(&[(500, 100.0), (8000, 80.0)], 15_000);
+    let how = Blows { length: 4096, before: 0, force_window: None, left_at_end: None };
+    let with = |force_window, left_at_end| {
+        let how = Blows { force_window, left_at_end, ..how };
+        let found = from_blows(&force, &response, &how, Estimator::H1).unwrap();
+        (found.window, found.enbw)
+    };
+    assert_eq!(with(None, None), ("rectangular", 1.0));
+    assert_eq!(with(Some(0.01), None), ("force", 1.0));
+    // e^(−at) to L = e^(−aT) at the end: T∫e^(−2at)/(∫e^(−at))² = ln(1/L)/2 · (1 + L)/(1 − L); sampled, a/N² less.
+    let closed = 0.5 * 100f64.ln() * 1.01 / 0.99;
+    for (force_window, name) in [(None, "exponential"), (Some(0.01), "force and exponential")] {
+        let (found, enbw) = with(force_window, Some(0.01));
+        assert_eq!(found, name);
+        assert!((enbw / closed - 1.0).abs() < 1e-6, "{enbw} {closed}");
+    }
+}
+
+/// A record that ends too early: the error near the resonance is what is left of the response, which is measured and in the
+/// standard deviations.
+#[test]
+fn what_is_left_at_the_end_of_a_record_is_said() {
+    let [force, response] = bench(&[(500, 100.0), (18_000, 80.0), (36_000, 120.0)], 53_000);
+    let (_, f0, zeta) = MODE;
+    for length in [1024usize, 2048, 3000] {
+        let how = Blows { length, before: length / 50, force_window: None, left_at_end: None };
+        let found = from_blows(&force, &response, &how, Estimator::H1).unwrap();
+        let left = (-2.0 * PI * f0 * zeta * (length - how.before) as f64 / RATE).exp();
+        let said = found.transfer.warnings.join(" ");
+        assert!(said.contains("are left when the record"), "{length}: {said}");
+        for (k, h) in found.transfer.frf.values.iter().enumerate() {
+            let f = found.transfer.frf.axis.at(k);
+            // Where the mode is most of the response; sampled impulses are within 1 %.
+            if (f - f0).abs() < 8.0 {
+                let error = (h.norm() / truth(f, 0.0).norm() - 1.0).abs();
+                let std = found.transfer.magnitude_std[k] / h.norm();
+                assert!(error < 2.0 * std + 0.01, "{length}, {f} Hz: {error} against {std}");
+                // A few periods in a quarter of the shortest record: its line at −60 Hz adds a few per cent.
+                assert!(std > 0.8 * left && std < 1.25 * left, "{length}: {std} against {left}");
+            }
+        }
+    }
+    // Noise that stays is nothing left.
+    let mut state = 3u64;
+    let mut noise = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+    };
+    let top = response.values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    let values = response.values.iter().map(|v| v + 0.05 * top * noise()).collect();
+    let how = Blows { length: 16_384, before: 327, force_window: None, left_at_end: None };
+    let found = from_blows(&force, &trace("m", values), &how, Estimator::H1).unwrap();
+    assert!(!found.transfer.warnings.join(" ").contains("left when"), "{:?}", found.transfer.warnings);
+}
+
+/// A short blow has four or five samples: cut at its ceiling it stays there for two, or one.
+#[test]
+fn short_blows_at_the_ceiling_are_overloads() {
+    let blows = [(500, 100.0), (8000, 130.0), (15_500, 160.0), (23_000, 90.0), (30_500, 121.0)];
+    let [mut force, response] = bench(&blows, 38_000);
+    // Not symmetric about a sample, as no blow is.
+    for (k, (at, peak)) in blows.iter().enumerate() {
+        let width = 4.6;
+        for i in 0..6 {
+            let phase = (i as f64 + 0.13 + 0.05 * k as f64) / width;
+            force.values[at + i] = if phase < 1.0 { peak * (PI * phase).sin() } else { 0.0 };
+        }
+    }
+    let how = Blows { length: 4096, before: 100, force_window: None, left_at_end: None };
+    let rejected = |force: &Trace| {
+        let found = from_blows(force, &response, &how, Estimator::H1).unwrap();
+        found.blows.iter().map(|b| b.rejected).collect::<Vec<_>>()
+    };
+    assert_eq!(rejected(&force), [None; 5]);
+    let tops: Vec<Vec<f64>> = blows.iter().map(|(at, _)| force.values[*at..at + 6].to_vec()).collect();
+    let over = |limit: f64| tops.iter().map(|t| t.iter().filter(|v| **v > limit).count()).collect::<Vec<_>>();
+    let ceiling = 105.0;
+    // Two samples of the second blow, three of the third and one of the last lie above it.
+    assert_eq!(over(ceiling), [0, 2, 3, 0, 1], "{tops:?}");
+    let mut cut = force.clone();
+    cut.values.iter_mut().for_each(|v| *v = v.min(ceiling));
+    let strong = Some("overload");
+    assert_eq!(rejected(&cut), [None, strong, strong, None, strong]);
+}

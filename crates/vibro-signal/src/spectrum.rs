@@ -1,0 +1,204 @@
+//! Lines of a record with a named scaling.
+//!
+//! One-sided: a line stands for its frequency and the negative one, so that powers are doubled, but for zero and, at an even
+//! number of samples, half the sampling rate f, which stand for themselves. With Σw the sum of the window's samples and c = 2 (or
+//! 1 for those two): power c|X|²/(Σw)², RMS its root, peak amplitude c|X|/Σw, density c|X|²/(f Σw²)
+//! (Heinzel, Rüdiger & Schilling, Spectrum and spectral density estimation by the DFT, 2002, section 9).
+
+use super::fft::Transform;
+use super::welch::Averages;
+use super::window;
+use num_complex::Complex64;
+use vibro_record::units::Unit;
+use vibro_record::{Axis, Error, Meta, Result, Scaling, Spectrum, Trace, Values, Window};
+
+/// The spectrum of a whole trace, lines complex where the scaling keeps their phase (peak and RMS).
+///
+/// The phase is that of A cos(ωt + φ) at the first sample. With `detrend` the mean is taken out first, and the line at 0 Hz, which
+/// would be what a window leaves of nothing, is NaN.
+///
+/// ```
+/// use vibro_record::{Axis, Meta, Scaling, Trace, Window};
+/// use vibro_signal::spectrum;
+/// use vibro_record::units::Unit;
+/// let values = (0..64).map(|i| 0.5 + 3.0 * (std::f64::consts::TAU * i as f64 / 8.0).cos()).collect();
+/// let meta = Meta::new("laser", Unit::parse("m/s").unwrap());
+/// let trace = Trace { meta, axis: Axis::time(0.0, 1.0 / 64.0, 64), values };
+/// let lines = spectrum::plain(&trace, Window::Hann, Scaling::Peak, false)?;
+/// assert!((lines.values.magnitude(8) - 3.0).abs() < 1e-12); // 8 Hz
+/// assert!((lines.values.magnitude(0) - 0.5).abs() < 1e-12); // the mean
+/// # Ok::<(), vibro_record::Error>(())
+/// ```
+///
+/// # Errors
+/// If the trace has no sampling rate, fewer than 8 samples, missing ones or a single value, or the scaling is not one that a
+/// transform gives.
+pub fn plain(trace: &Trace, window: Window, scaling: Scaling, detrend: bool) -> Result<Spectrum> {
+    let Some(rate) = trace.rate() else {
+        return Err(Error::refused(format!("the sampling rate of {:?} is not known", trace.meta.name))
+            .hint("state it with --rate"));
+    };
+    let n = trace.values.len();
+    if n < 8 {
+        return Err(Error::refused(format!("{n} samples are too few for a spectrum: at least 8 are needed")));
+    }
+    if let Some(i) = trace.values.iter().position(|v| !v.is_finite()) {
+        return Err(Error::refused(format!(
+            "sample {i} of channel {:?} is missing: a transform would spread it over all lines",
+            trace.meta.name
+        ))
+        .hint("cut the record before the gap, or bridge it"));
+    }
+    if trace.values.iter().all(|v| *v == trace.values[0]) {
+        return Err(Error::refused(format!(
+            "channel {:?} holds nothing but the value {}: there is no spectrum of it",
+            trace.meta.name, trace.values[0]
+        ))
+        .hint("check the sensor, its cable and the range of the input"));
+    }
+    let mean = if detrend { trace.values.iter().sum::<f64>() / n as f64 } else { 0.0 };
+    let weights = window::samples(window, n);
+    let transform = Transform::new(n);
+    let mut work = transform.workspace();
+    for ((to, v), w) in work.input.iter_mut().zip(&trace.values).zip(&weights) {
+        *to = (v - mean) * w;
+    }
+    transform.run(&mut work);
+    let (sum, squares) = (weights.iter().sum::<f64>(), weights.iter().map(|w| w * w).sum::<f64>());
+    let mut values = match scaling {
+        Scaling::Peak | Scaling::Rms => {
+            let lines = work.output.iter().enumerate();
+            let c = |k| if scaling == Scaling::Peak { sides(k, n) } else { sides(k, n).sqrt() };
+            Values::Complex(lines.map(|(k, x)| x * (c(k) / sum)).collect())
+        }
+        _ => {
+            let squared: Vec<f64> = work.output.iter().map(Complex64::norm_sqr).collect();
+            Values::Real(scaled(&squared, n, scaling, rate, sum, squares)?)
+        }
+    };
+    if detrend {
+        without_mean(&mut values);
+    }
+    let (mut meta, enbw) = (trace.meta.clone(), n as f64 * squares / (sum * sum));
+    meta.step("spectrum", &[("window", &window.name()), ("scaling", &scaling.name()), ("detrend", &detrend)]);
+    finished(meta, rate / n as f64, values, scaling, window, enbw)
+}
+
+/// The spectrum of one channel from averaged squares. The line at 0 Hz is NaN where segments lost their mean.
+///
+/// # Errors
+/// If there is no such channel, or the scaling is not one that a transform gives.
+pub fn averaged(
+    averages: &Averages,
+    channel: usize,
+    meta: &Meta,
+    window: Window,
+    scaling: Scaling,
+) -> Result<Spectrum> {
+    let Some(squared) = averages.auto.get(channel) else {
+        return Err(Error::usage(
+            format!("channel {}", channel + 1),
+            format!("1 to {}", averages.auto.len()),
+        ));
+    };
+    let Averages { length, rate, sum, squares, .. } = *averages;
+    let mut values = Values::Real(scaled(squared, length, scaling, rate, sum, squares)?);
+    if averages.detrended {
+        without_mean(&mut values);
+    }
+    let mut meta = meta.clone();
+    meta.step(
+        "welch",
+        &[
+            ("segment", &length),
+            ("averages", &averages.count),
+            ("window", &window.name()),
+            ("scaling", &scaling.name()),
+            ("detrend", &averages.detrended),
+        ],
+    );
+    finished(meta, averages.step(), values, scaling, window, length as f64 * squares / (sum * sum))
+}
+
+/// So many independent segments are needed before the scatter of a line is stated.
+const FEWEST: f64 = 17.0;
+
+/// Standard deviation of each averaged line over its value, for noise: 1/√n for powers of n independent segments, half of that
+/// for amplitudes, and √2 times as much for the two lines that are real (Bendat & Piersol, Random Data, 4th ed. 2010, eq. 8.158).
+/// A sine that stands out of the noise scatters less. NaN for fewer than 17 independent segments: by the gamma distribution of
+/// their mean, ± 1.96 of what is stated around a power that was found would hold the truth in less than 92 %.
+pub fn scatter(averages: &Averages, scaling: Scaling) -> Vec<f64> {
+    let n = if averages.effective < FEWEST { f64::NAN } else { averages.effective };
+    let order = if matches!(scaling, Scaling::Peak | Scaling::Rms) { 0.5 } else { 1.0 };
+    let lines = averages.auto.first().map_or(0, Vec::len);
+    (0..lines).map(|k| order * (2.0 / sides(k, averages.length) / n).sqrt()).collect()
+}
+
+/// The line at 0 Hz of a record whose mean was taken out says nothing.
+fn without_mean(values: &mut Values) {
+    match values {
+        Values::Real(v) => v.iter_mut().take(1).for_each(|v| *v = f64::NAN),
+        Values::Complex(v) => v.iter_mut().take(1).for_each(|v| *v = Complex64::new(f64::NAN, f64::NAN)),
+    }
+}
+
+fn finished(
+    mut meta: Meta,
+    step: f64,
+    values: Values,
+    scaling: Scaling,
+    window: Window,
+    enbw: f64,
+) -> Result<Spectrum> {
+    meta.unit = unit(&meta.unit, scaling)?;
+    meta.declared_n = None;
+    let axis = Axis::frequency(0.0, step, values.len());
+    Ok(Spectrum { meta, axis, values, scaling, window: Some(window), enbw: Some(enbw) })
+}
+
+/// Line values from |X|².
+fn scaled(
+    squared: &[f64],
+    n: usize,
+    scaling: Scaling,
+    rate: f64,
+    sum: f64,
+    squares: f64,
+) -> Result<Vec<f64>> {
+    let lines = squared.iter().enumerate();
+    Ok(match scaling {
+        Scaling::Peak => lines.map(|(k, x)| sides(k, n) * x.sqrt() / sum).collect(),
+        Scaling::Rms => lines.map(|(k, x)| (sides(k, n) * x).sqrt() / sum).collect(),
+        Scaling::Power => lines.map(|(k, x)| sides(k, n) * x / (sum * sum)).collect(),
+        Scaling::Psd => lines.map(|(k, x)| sides(k, n) * x / (rate * squares)).collect(),
+        Scaling::Energy | Scaling::Coherence | Scaling::Unknown => return Err(no_scaling(scaling)),
+    })
+}
+
+/// How many lines of a two-sided spectrum of `n` samples line `k` stands for.
+fn sides(k: usize, n: usize) -> f64 {
+    if k == 0 || 2 * k == n { 1.0 } else { 2.0 }
+}
+
+/// Unit of a line value of a record in `unit`.
+///
+/// # Errors
+/// If the scaling is not one that a transform gives.
+pub fn unit(unit: &Unit, scaling: Scaling) -> Result<Unit> {
+    let symbol = unit.symbol();
+    let base =
+        if symbol.chars().all(char::is_alphanumeric) { symbol.to_owned() } else { format!("({symbol})") };
+    match scaling {
+        Scaling::Peak | Scaling::Rms => Ok(unit.clone()),
+        Scaling::Power => Ok(Unit::parse_or_opaque(&format!("{base}²"))),
+        Scaling::Psd => Ok(Unit::parse_or_opaque(&format!("{base}²/Hz"))),
+        Scaling::Energy | Scaling::Coherence | Scaling::Unknown => Err(no_scaling(scaling)),
+    }
+}
+
+fn no_scaling(scaling: Scaling) -> Error {
+    Error::usage(format!("the scaling {:?}", scaling.name()), "peak, rms, power or psd")
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,221 @@
+//! Frequency response functions from averaged spectra, with coherence and random error.
+//!
+//! With the averages A = ⟨|X|²⟩, B = ⟨|Y|²⟩ and C = ⟨conj(X) Y⟩ of excitation x and response y: H1 = C/A (not biased by noise in
+//! the response), H2 = B/conj(C) (not by noise in the excitation), Hv = √(B/A) with the phase of C, the geometric mean of both
+//! (Rocklin, Crowley & Vold 1985); γ² = |C|²/(AB). A response that lags has a negative phase.
+
+use super::integrate;
+use super::welch::Averages;
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+use vibro_record::units::Unit;
+use vibro_record::{Axis, Error, Frf, FrfKind, Meta, Result, Scaling, Spectrum, Values};
+
+/// Below this share of the largest line there is no excitation, only rounding.
+const NOTHING: f64 = 1e-28;
+
+/// From so many independent averages on, 1.96 standard deviations of the band hold the truth in 92 to 98 % of all cases. The
+/// deviation is an estimate of 2(n − 1) degrees of freedom: Student's t gives 81 % for two averages, 88 % for three.
+const ENOUGH: f64 = 7.0;
+/// With fewer independent averages the coherence is near 1 whatever was measured.
+const LEAST: f64 = 2.0;
+
+/// What cannot be told.
+const NOWHERE: Complex64 = Complex64::new(f64::NAN, f64::NAN);
+
+/// Which noise a frequency response function does not mind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Estimator {
+    /// Noise in the response averages out.
+    H1,
+    /// Noise in the excitation averages out.
+    H2,
+    /// Geometric mean of both.
+    Hv,
+}
+
+impl Estimator {
+    /// Name, as in JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            Estimator::H1 => "h1",
+            Estimator::H2 => "h2",
+            Estimator::Hv => "hv",
+        }
+    }
+}
+
+/// A frequency response function and how far it can be trusted, line by line from the first above 0 Hz.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Transfer {
+    /// The function; NaN where excitation or response is empty.
+    pub frf: Frf,
+    /// Coherence γ²; NaN where there is no function.
+    pub coherence: Vec<f64>,
+    /// Standard deviation of the magnitude, in its unit; NaN where the coherence is too low for one.
+    pub magnitude_std: Vec<f64>,
+    /// Standard deviation of the phase in rad; NaN where the coherence is too low for one.
+    pub phase_std: Vec<f64>,
+    /// Segments averaged.
+    pub averages: usize,
+    /// What a person must know.
+    pub warnings: Vec<String>,
+}
+
+impl Transfer {
+    /// The function of the response integrated `times` times (mobility becomes receptance with 1, accelerance with 2), from
+    /// `fmin` Hz on; uncertainties and coherence go along.
+    ///
+    /// # Errors
+    /// If `times` is not −2 to 2, or no line is left.
+    pub fn integrated(mut self, times: i8, fmin: f64) -> Result<Transfer> {
+        let spectrum = Spectrum {
+            meta: self.frf.meta,
+            axis: self.frf.axis,
+            values: Values::Complex(self.frf.values),
+            scaling: Scaling::Unknown,
+            window: None,
+            enbw: None,
+        };
+        let result = integrate::in_frequency(&spectrum, times, fmin)?;
+        let gone = spectrum.axis.len() - result.axis.len();
+        self.coherence.drain(..gone);
+        self.phase_std.drain(..gone);
+        self.magnitude_std.drain(..gone);
+        for (k, std) in self.magnitude_std.iter_mut().enumerate() {
+            *std *= (TAU * result.axis.at(k)).powi(-i32::from(times));
+        }
+        let values = match result.values {
+            Values::Complex(values) => values,
+            Values::Real(values) => values.into_iter().map(Complex64::from).collect(),
+        };
+        let kind = FrfKind::of(result.meta.quantity);
+        self.frf = Frf { meta: result.meta, axis: result.axis, values, kind };
+        Ok(self)
+    }
+}
+
+/// The function from the first channel of `averages` to another.
+///
+/// Random errors as in Bendat & Piersol, Random Data (4th ed. 2010), table 9.6: ε(|H|) = √(1−γ²)/(|γ|√(2n)), and the phase's
+/// arcsin ε. The magnitude of Hv is a root of B/A without C, and with the variances of A and B (1/n) and their covariance (γ²/n)
+/// from the same table ε(|Hv|) = √(1−γ²)/√(2n). One of the n averages is spent on H itself; n counts independent segments. Few
+/// averages (below 7) keep their standard deviations, with a warning: they are right, but are themselves known poorly.
+///
+/// # Errors
+/// For fewer than two independent averages (the coherence of one is always 1; segments that overlap count for less), and if there
+/// are no products with that channel or the excitation is empty.
+pub fn transfer(
+    averages: &Averages,
+    channel: usize,
+    metas: &[Meta],
+    estimator: Estimator,
+) -> Result<Transfer> {
+    // Sums of squares may take two segments that do not overlap a hair below.
+    if averages.effective < LEAST - 1e-9 {
+        return Err(Error::refused(format!(
+            "{} averages are as good as {:.2} independent ones, two are needed at least: the coherence of one is 1 whatever was measured, and says nothing",
+            averages.count, averages.effective
+        ))
+        .hint("a longer record or shorter segments: ten averages or more"));
+    }
+    let (Some(reference), Some(response)) = (metas.first(), metas.get(channel)) else {
+        return Err(Error::usage(format!("channel {}", channel + 1), "a channel of the record"));
+    };
+    let products = channel.checked_sub(1).and_then(|i| averages.cross.get(i));
+    let (Some(xx), Some(yy), Some(xy)) = (averages.auto.first(), averages.auto.get(channel), products) else {
+        return Err(Error::usage("averages without products", "products with the first channel"));
+    };
+    let (most, loudest) = (largest(xx), largest(yy));
+    if most == 0.0 {
+        return Err(Error::refused(format!("the excitation {:?} is empty", reference.name)));
+    }
+    let degrees = averages.effective - 1.0;
+    let lines = xx.len().saturating_sub(1);
+    let mut result = Transfer {
+        frf: Frf {
+            meta: named(reference, response),
+            axis: Axis::frequency(averages.step(), averages.step(), lines),
+            values: Vec::with_capacity(lines),
+            kind: FrfKind::Other,
+        },
+        coherence: Vec::with_capacity(lines),
+        magnitude_std: Vec::with_capacity(lines),
+        phase_std: Vec::with_capacity(lines),
+        averages: averages.count,
+        warnings: Vec::new(),
+    };
+    result.frf.kind = FrfKind::of(result.frf.meta.quantity);
+    let mut silent = 0;
+    for ((xx, yy), xy) in xx.iter().zip(yy).zip(xy).skip(1) {
+        let (h, coherence) = if *xx <= NOTHING * most || *yy <= NOTHING * loudest {
+            silent += 1;
+            (NOWHERE, f64::NAN)
+        } else {
+            // Rounding may take it a hair above 1.
+            let coherence = (xy.norm_sqr() / (xx * yy)).min(1.0);
+            let h = match estimator {
+                Estimator::H1 => xy / xx,
+                Estimator::H2 => yy / xy.conj(),
+                Estimator::Hv => xy / xy.norm() * (yy / xx).sqrt(),
+            };
+            if h.is_finite() { (h, coherence) } else { (NOWHERE, f64::NAN) }
+        };
+        let error = ((1.0 - coherence) / (2.0 * degrees * coherence)).sqrt();
+        let error = if error < 1.0 { error } else { f64::NAN };
+        let of_magnitude = if estimator == Estimator::Hv { error * coherence.sqrt() } else { error };
+        result.frf.values.push(h);
+        result.coherence.push(coherence);
+        result.magnitude_std.push(h.norm() * of_magnitude);
+        result.phase_std.push(error.asin());
+    }
+    if silent > 0 {
+        result.warnings.push(format!(
+            "On {silent} of {lines} lines excitation or response is empty: there is no function there."
+        ));
+    }
+    if averages.effective < ENOUGH {
+        result.warnings.push(format!(
+            "{} averages (as good as {:.1} independent ones) are few: the coherence is too high, and the standard deviations are themselves uncertain.",
+            averages.count, averages.effective
+        ));
+    }
+    let poor = result.coherence.iter().filter(|c| **c < 0.5).count();
+    if 2 * poor > lines {
+        result.warnings.push(format!("The coherence is below 0.5 on {poor} of {lines} lines."));
+    }
+    result.frf.meta.step(
+        "transfer",
+        &[
+            ("estimator", &estimator.name()),
+            ("reference", &reference.name),
+            ("averages", &averages.count),
+            ("segment", &averages.length),
+        ],
+    );
+    Ok(result)
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().copied().fold(0.0, f64::max)
+}
+
+/// Name, unit and history of a response over an excitation.
+fn named(reference: &Meta, response: &Meta) -> Meta {
+    let (x, y) = (&reference.unit, &response.unit);
+    let unit = if x == y {
+        Unit::parse("1").unwrap_or_else(|| Unit::opaque("1"))
+    } else {
+        Unit::parse_or_opaque(&format!("({y})/({x})")).si()
+    };
+    let mut meta = Meta::new(format!("{} / {}", response.name, reference.name), unit);
+    meta.doubts.clone_from(&response.doubts);
+    reference.doubts.iter().for_each(|d| meta.doubt(d.clone()));
+    meta.history.clone_from(&response.history);
+    meta
+}
+
+#[cfg(test)]
+mod tests;

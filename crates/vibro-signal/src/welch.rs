@@ -1,0 +1,240 @@
+//! Averaged spectra of long records: P. D. Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70.
+//!
+//! Segments are read, transformed on all cores and averaged as they come, so that memory does not grow with the record. Sums
+//! are formed in a fixed order: the same record gives the same digits on any number of cores.
+
+mod stream;
+
+pub use stream::Stream;
+
+use super::fft::{Transform, Workspace};
+use super::segment::{Batches, Segments};
+use super::window;
+use num_complex::Complex64;
+use rayon::prelude::*;
+use vibro_math::lanes;
+use vibro_record::{Error, Result, Traces, Window};
+
+/// Segments that one core sums up at a time.
+const GROUP: usize = 8;
+
+/// How a record is cut and weighted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Welch {
+    /// Length and distance of the segments.
+    pub segments: Segments,
+    /// Window of each segment.
+    pub window: Window,
+    /// Whether each segment loses its mean before it is windowed, as scipy's `detrend="constant"` has it.
+    pub detrend: bool,
+}
+
+/// Mean squares and products of the lines of all segments, windowed, without any further scaling.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Averages {
+    /// Number of segments.
+    pub count: usize,
+    /// Number of independent segments that would scatter as little; fewer than `count` where segments overlap.
+    pub effective: f64,
+    /// Samples of a segment.
+    pub length: usize,
+    /// Sampling rate in Hz.
+    pub rate: f64,
+    /// Whether each segment lost its mean: then the line at 0 Hz holds none of it.
+    pub detrended: bool,
+    /// Sum of the window's samples.
+    pub sum: f64,
+    /// Sum of their squares.
+    pub squares: f64,
+    /// Mean of |X|² for each channel.
+    pub auto: Vec<Vec<f64>>,
+    /// Mean of conj(X₀) X for each channel behind the first, where products were asked for.
+    pub cross: Vec<Vec<Complex64>>,
+}
+
+impl Averages {
+    /// Distance of lines in Hz.
+    pub fn step(&self) -> f64 {
+        self.rate / self.length as f64
+    }
+}
+
+impl Welch {
+    /// Averages over all segments of all channels of `traces`; with `products` against the first of them, too. `progress`
+    /// is told how many samples of each channel have been read.
+    ///
+    /// # Errors
+    /// If the record is shorter than a segment, a sample is missing or a channel is constant, or the file cannot be read.
+    pub fn average(
+        &self,
+        traces: &mut Traces,
+        products: bool,
+        mut progress: impl FnMut(usize) + Send,
+    ) -> Result<Averages> {
+        let Segments { length, hop } = self.segments;
+        let (frames, rate) = (traces.frames(), traces.rate());
+        if frames < length {
+            return Err(Error::refused(format!(
+                "the record has {frames} samples: not one segment of {length} fits into it"
+            ))
+            .hint(format!("give segments of at most {frames} samples")));
+        }
+        let names: Vec<String> = traces.channels().iter().map(|m| m.name.clone()).collect();
+        let kernel = Kernel::new(*self);
+        let mut total = Sums::new(names.len(), products, kernel.transform.lines());
+        let mut batches = Batches::new(traces, self.segments);
+        let (mut batch, mut next) = (Vec::new(), Vec::new());
+        let mut count = batches.fill(&mut batch)?;
+        while count > 0 {
+            batches.carry(&batch, count, &mut next);
+            // The next batch is read while this one is transformed.
+            let (read, sums) =
+                rayon::join(|| batches.fill(&mut next), || kernel.batch(&batch, count, hop, products));
+            total.add_all(&sums);
+            progress(batches.frames());
+            std::mem::swap(&mut batch, &mut next);
+            count = read?;
+        }
+        for (name, range) in names.iter().zip(batches.ranges()) {
+            if range.low == range.high {
+                return Err(Error::refused(format!(
+                    "channel {name:?} holds nothing but the value {}: there is no spectrum of it",
+                    range.low
+                ))
+                .hint("check the sensor, its cable and the range of the input"));
+            }
+        }
+        Ok(total.mean(&kernel.weights, self.segments, rate, self.detrend))
+    }
+}
+
+/// Sums over segments.
+#[derive(Clone)]
+pub(super) struct Sums {
+    count: usize,
+    auto: Vec<Vec<f64>>,
+    cross: Vec<Vec<Complex64>>,
+}
+
+impl Sums {
+    pub(super) fn new(channels: usize, products: bool, lines: usize) -> Sums {
+        let pairs = if products { channels.saturating_sub(1) } else { 0 };
+        Sums {
+            count: 0,
+            auto: vec![vec![0.0; lines]; channels],
+            cross: vec![vec![Complex64::ZERO; lines]; pairs],
+        }
+    }
+
+    /// Adds the lines of one segment of all channels.
+    pub(super) fn add(&mut self, lines: &[Workspace]) {
+        self.count += 1;
+        for (sum, work) in self.auto.iter_mut().zip(lines) {
+            sum.iter_mut().zip(&work.output).for_each(|(s, x)| *s += x.norm_sqr());
+        }
+        let Some((first, rest)) = lines.split_first() else { return };
+        for (sum, work) in self.cross.iter_mut().zip(rest) {
+            let pairs = first.output.iter().zip(&work.output);
+            sum.iter_mut().zip(pairs).for_each(|(s, (a, b))| *s += a.conj() * b);
+        }
+    }
+
+    fn add_all(&mut self, parts: &[Sums]) {
+        for part in parts {
+            self.count += part.count;
+            for (sum, more) in self.auto.iter_mut().zip(&part.auto) {
+                sum.iter_mut().zip(more).for_each(|(s, m)| *s += m);
+            }
+            for (sum, more) in self.cross.iter_mut().zip(&part.cross) {
+                sum.iter_mut().zip(more).for_each(|(s, m)| *s += m);
+            }
+        }
+    }
+
+    /// The means, of segments with these weights.
+    pub(super) fn mean(
+        mut self,
+        weights: &[f64],
+        segments: Segments,
+        rate: f64,
+        detrended: bool,
+    ) -> Averages {
+        let factor = 1.0 / self.count.max(1) as f64;
+        self.auto.iter_mut().flatten().for_each(|v| *v *= factor);
+        self.cross.iter_mut().flatten().for_each(|v| *v *= factor);
+        Averages {
+            count: self.count,
+            effective: effective(weights, segments.hop, self.count),
+            length: segments.length,
+            rate,
+            detrended,
+            sum: weights.iter().sum(),
+            squares: weights.iter().map(|w| w * w).sum(),
+            auto: self.auto,
+            cross: self.cross,
+        }
+    }
+}
+
+/// What is done to each segment.
+struct Kernel {
+    transform: Transform,
+    weights: Vec<f64>,
+    detrend: bool,
+}
+
+impl Kernel {
+    fn new(welch: Welch) -> Kernel {
+        let length = welch.segments.length;
+        Kernel {
+            transform: Transform::new(length),
+            weights: window::samples(welch.window, length),
+            detrend: welch.detrend,
+        }
+    }
+
+    /// Sums of the segments of a batch, a few a core, in their order.
+    fn batch(&self, batch: &[Vec<f64>], count: usize, hop: usize, products: bool) -> Vec<Sums> {
+        let n = self.weights.len();
+        (0..count.div_ceil(GROUP))
+            .into_par_iter()
+            .map_init(
+                || batch.iter().map(|_| self.transform.workspace()).collect::<Vec<_>>(),
+                |work, group| {
+                    let mut sums = Sums::new(batch.len(), products, self.transform.lines());
+                    for i in group * GROUP..count.min((group + 1) * GROUP) {
+                        for (work, column) in work.iter_mut().zip(batch) {
+                            self.one(column.get(i * hop..i * hop + n).unwrap_or_default(), work);
+                        }
+                        sums.add(work);
+                    }
+                    sums
+                },
+            )
+            .collect()
+    }
+
+    fn one(&self, segment: &[f64], work: &mut Workspace) {
+        let mean = if self.detrend { lanes::sum(segment) / segment.len().max(1) as f64 } else { 0.0 };
+        for ((to, v), w) in work.input.iter_mut().zip(segment).zip(&self.weights) {
+            *to = (v - mean) * w;
+        }
+        self.transform.run(work);
+    }
+}
+
+/// Independent segments that scatter as little as `count` overlapping ones: count/(1 + 2 Σⱼ (1 − j/K) ρⱼ), ρⱼ the squared
+/// correlation of the windows of segments that are j apart (Welch 1967, section "Application to Gaussian noise").
+fn effective(weights: &[f64], hop: usize, count: usize) -> f64 {
+    let squares: f64 = weights.iter().map(|w| w * w).sum();
+    let mut inflation = 1.0;
+    for j in 1..count {
+        let Some(shifted) = weights.get(j * hop..).filter(|s| !s.is_empty()) else { break };
+        let product: f64 = weights.iter().zip(shifted).map(|(a, b)| a * b).sum();
+        inflation += 2.0 * (1.0 - j as f64 / count as f64) * (product / squares).powi(2);
+    }
+    count as f64 / inflation
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,101 @@
+//! Resonances and jumps of a sweep, by the rules that name those of a measured one.
+
+use crate::model::sweep::{Point, Swept};
+use serde::Serialize;
+use vibro_measure::jump::{Jump, jumps};
+use vibro_measure::resonance::{NamedCurve, Resonance, name_modes, resonances};
+use vibro_record::Direction;
+
+/// Something found on the curve of one mass.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Named<T> {
+    /// 1 excited, 2 passive.
+    pub mass: u8,
+    /// Direction of the sweep.
+    pub direction: Direction,
+    /// What was found.
+    #[serde(flatten)]
+    pub found: T,
+}
+
+/// Resonances and jumps of a sweep of the frequency, both masses and directions together.
+///
+/// The scatter from cycle to cycle counts as the uncertainty of a point, so that irregular stretches are not full of peaks.
+pub fn named(swept: &Swept) -> (Vec<Named<Resonance>>, Vec<Named<Jump>>) {
+    let sides = [(&swept.up, Direction::Up), (&swept.down, Direction::Down)];
+    let mut curves: Vec<Found> = sides
+        .into_iter()
+        .filter(|(points, _)| points.len() > 2)
+        .flat_map(|(points, direction)| [1, 2].map(|mass| Found::on(points, mass, direction)))
+        .collect();
+    let mut named: Vec<NamedCurve<'_>> = curves
+        .iter_mut()
+        .map(|c| NamedCurve {
+            mass: c.mass,
+            direction: c.direction,
+            curve: c.curve.clone(),
+            jumps: &mut c.jumps,
+            resonances: &mut c.resonances,
+        })
+        .collect();
+    name_modes(&mut named);
+    let mut all = (Vec::new(), Vec::new());
+    for Found { mass, direction, resonances, jumps, .. } in curves {
+        let tops = resonances.into_iter().filter(|r| r.kind != "minimum");
+        all.0.extend(tops.map(|found| Named { mass, direction, found }));
+        all.1.extend(jumps.into_iter().map(|found| Named { mass, direction, found }));
+    }
+    all
+}
+
+/// One mass in one direction.
+struct Found {
+    mass: u8,
+    direction: Direction,
+    curve: Vec<(f64, f64, f64)>,
+    jumps: Vec<Jump>,
+    resonances: Vec<Resonance>,
+}
+
+impl Found {
+    fn on(points: &[Point], mass: u8, direction: Direction) -> Found {
+        let read = |p: &Point| match mass {
+            1 => (p.frequency, p.x1, p.x1_scatter),
+            _ => (p.frequency, p.x2, p.x2_scatter),
+        };
+        let mut curve: Vec<_> = points.iter().map(read).collect();
+        let columns = |curve: &[(f64, f64, f64)]| -> [Vec<f64>; 3] {
+            [
+                curve.iter().map(|p| p.0).collect(),
+                curve.iter().map(|p| p.1).collect(),
+                curve.iter().map(|p| p.2).collect(),
+            ]
+        };
+        let [f, a, std] = columns(&curve);
+        let jumps = jumps(&f, &a, &std, direction);
+        curve.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let [f, a, std] = columns(&curve);
+        let resonances = resonances(&f, &a, &std, &jumps, Some(mass));
+        Found { mass, direction, curve, jumps, resonances }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::sweep::{Observable, Pace, Plan, both};
+    use crate::model::{Rig, Simulation, Sine};
+
+    /// The sweep of the thesis up has a peak of each kind: 5.58 Hz where the masses begin to meet, 10.59 Hz where they clap.
+    #[test]
+    fn the_peaks_of_the_thesis_are_named() {
+        let pace = Pace::Rate { rate: 0.02, points: 1100 };
+        let plan = Plan { from: 3.0, to: 14.0, pace, observable: Observable::Rms };
+        let motion = Simulation::new(&Rig::thesis(), &Sine { force: 0.1, frequency: 3.0 }).unwrap();
+        let swept = both(&plan, &motion, 0.1, &[Direction::Up]).unwrap();
+        let (resonances, _) = named(&swept);
+        let of = |kind: &str| resonances.iter().find(|r| r.mass == 1 && r.found.kind == kind);
+        let [grazing, clapping] = ["grazing", "clapping"].map(|kind| of(kind).unwrap().found.frequency);
+        assert!((grazing - 5.58).abs() < 0.1 && (10.4..11.2).contains(&clapping), "{grazing} {clapping}");
+    }
+}
