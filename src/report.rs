@@ -10,6 +10,7 @@ mod growing;
 mod html;
 mod output;
 mod table;
+pub mod words;
 
 pub use growing::Growing;
 pub use html::Page;

@@ -1,6 +1,7 @@
 //! Complaints go to standard error, in one form. A closed standard error is no reason to fail.
 
 use crate::error::Error;
+use crate::report::words::Voice;
 use clap::error::{ContextKind, ErrorKind};
 use serde::Serialize;
 use std::io::Write;
@@ -15,9 +16,10 @@ struct Failure {
 
 /// Prints an error, with `json` as an object on standard output as well, and gives its exit code.
 pub fn error(error: &Error, json: bool) -> u8 {
-    line(&format!("vibro: {error}"));
+    let text = error.spoken(|key| Voice::Command.setting(key));
+    line(&format!("vibro: {text}"));
     if json {
-        object(error.to_string(), error.exit_code());
+        object(text, error.exit_code());
     }
     error.exit_code()
 }

@@ -1,6 +1,7 @@
 //! Standard output: one JSON object, or text.
 
 use crate::error::{Error, Result};
+use crate::report::words::{Voice, add_warnings};
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
 
@@ -9,9 +10,10 @@ use std::io::{ErrorKind, Write};
 /// # Errors
 /// If standard output cannot be written; a closed pipe is no error.
 pub fn json(value: &impl Serialize) -> Result<()> {
-    let text = serde_json::to_string_pretty(value)
-        .map_err(|e| Error::refused(format!("the result cannot be written as JSON: {e}")))?;
-    self::text(&(text + "\n"))
+    let unwritten = |e| Error::refused(format!("the result cannot be written as JSON: {e}"));
+    let mut value = serde_json::to_value(value).map_err(unwritten)?;
+    add_warnings(&mut value, Voice::Command);
+    text(&(serde_json::to_string_pretty(&value).map_err(unwritten)? + "\n"))
 }
 
 /// Prints text.

@@ -34,6 +34,8 @@ pub enum ErrorKind {
         why: String,
         /// What to try instead; empty where nothing would help.
         hint: String,
+        /// Keys of the settings that the hint is about.
+        settings: Vec<&'static str>,
     },
 }
 
@@ -48,6 +50,8 @@ pub struct Fault {
     pub expected: String,
     /// What to try; empty where nothing would help.
     pub hint: String,
+    /// Keys of the settings that the hint is about.
+    pub settings: Vec<&'static str>,
     /// The line at fault with a caret under it, ready to print.
     pub excerpt: String,
 }
@@ -106,12 +110,35 @@ impl Error {
 
     /// The data or the parameters do not allow an answer.
     pub fn refused(why: impl Into<String>) -> Self {
-        Error(Box::new(ErrorKind::Refused { why: why.into(), hint: String::new() }))
+        Error(Box::new(ErrorKind::Refused { why: why.into(), hint: String::new(), settings: Vec::new() }))
     }
 
     /// The system refused `action` on `path`.
     pub fn io(action: &'static str, path: impl AsRef<Path>, source: std::io::Error) -> Self {
         Error(Box::new(ErrorKind::Io { path: path.as_ref().to_owned(), action, source }))
+    }
+
+    /// Names the setting that helps, as the key of a campaign: `low_pass`. The command line shows it as its option.
+    pub fn setting(mut self, key: &'static str) -> Self {
+        match &mut *self.0 {
+            ErrorKind::Input(Fault { settings, .. }) | ErrorKind::Refused { settings, .. } => {
+                settings.push(key);
+            }
+            ErrorKind::Io { .. } => {}
+        }
+        self
+    }
+
+    /// The text of the error with settings named as `typed` says, such as `low_pass` as `--low-pass`.
+    pub fn spoken(&self, typed: impl Fn(&str) -> String) -> String {
+        let settings = match &*self.0 {
+            ErrorKind::Input(Fault { settings, .. }) | ErrorKind::Refused { settings, .. } => {
+                settings.as_slice()
+            }
+            ErrorKind::Io { .. } => &[],
+        };
+        let named: Vec<String> = settings.iter().map(|key| typed(key)).collect();
+        if named.is_empty() { format!("{self:#}") } else { format!("{self:#} ({})", named.join(", ")) }
     }
 
     /// Adds what to try.
@@ -243,11 +270,11 @@ impl fmt::Display for Error {
                 if !fault.excerpt.is_empty() {
                     write!(f, "\n{}", fault.excerpt)?;
                 }
-                write_hint(f, &fault.hint)
+                write_hint(f, &fault.hint, &fault.settings)
             }
-            ErrorKind::Refused { why, hint } => {
+            ErrorKind::Refused { why, hint, settings } => {
                 f.write_str(why)?;
-                write_hint(f, hint)
+                write_hint(f, hint, settings)
             }
         }
     }
@@ -259,8 +286,13 @@ fn plain_io(error: &std::io::Error) -> String {
     text.split(" (os error").next().unwrap_or(&text).to_lowercase()
 }
 
-fn write_hint(f: &mut fmt::Formatter<'_>, hint: &str) -> fmt::Result {
-    if hint.is_empty() { Ok(()) } else { write!(f, "\n  try: {hint}") }
+/// The hint and, but in the alternate form, the settings that it is about.
+fn write_hint(f: &mut fmt::Formatter<'_>, hint: &str, settings: &[&str]) -> fmt::Result {
+    if hint.is_empty() {
+        return Ok(());
+    }
+    write!(f, "\n  try: {hint}")?;
+    if settings.is_empty() || f.alternate() { Ok(()) } else { write!(f, " ({})", settings.join(", ")) }
 }
 
 impl std::error::Error for Error {
@@ -288,6 +320,14 @@ mod tests {
     fn a_span_outside_the_text_does_not_panic() {
         let error = Error::usage("x", "").excerpt("µ", 1..99);
         assert!(error.to_string().contains('^'));
+    }
+
+    #[test]
+    fn a_setting_is_shown_as_it_is_typed() {
+        let error = Error::refused("no rate").hint("state the sampling rate").setting("base_band");
+        assert_eq!(error.to_string(), "no rate\n  try: state the sampling rate (base_band)");
+        let option = |key: &str| format!("--{}", key.replace('_', "-"));
+        assert_eq!(error.spoken(option), "no rate\n  try: state the sampling rate (--base-band)");
     }
 
     #[test]

@@ -7,6 +7,7 @@
 mod axis;
 mod error;
 mod estimate;
+mod finding;
 mod frf;
 mod meta;
 mod spectrum;
@@ -19,6 +20,7 @@ mod window;
 pub use axis::{Axis, AxisKind, Grid};
 pub use error::{Error, ErrorKind, Fault, Place, Result};
 pub use estimate::Estimate;
+pub use finding::{Fact, Finding, Severity};
 pub use frf::{Frf, FrfKind};
 pub use meta::{ADDED_DECAY, FROM_BLOWS, Meta, Step};
 pub use spectrum::{Scaling, Spectrum, Values};

@@ -1,0 +1,119 @@
+//! What an analysis, a model or a reader found that a person should know, as data.
+
+use serde::{Serialize, Serializer, ser::SerializeMap};
+
+/// How much a finding weighs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Severity {
+    /// What was done or assumed, as it should be.
+    Note,
+    /// A number is less certain than it looks, or was corrected; its uncertainty allows for it.
+    Caution,
+    /// A number may be wrong by more than its uncertainty says.
+    Doubt,
+}
+
+/// A fact of a finding: a number in SI units, several, or a name.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Fact {
+    /// A number in SI units, or a count.
+    Number(f64),
+    /// Several numbers in SI units.
+    Numbers(Vec<f64>),
+    /// A name: of a method, a unit, a channel; never a sentence.
+    Name(String),
+}
+
+/// A code with its numbers; no sentence. Programs, tests and estimators read the code, people the words that the report has for it.
+///
+/// ```
+/// use vibro_record::{Finding, Severity};
+/// let hum = Finding::note("mains-hum-removed").number("frequency", 50.0).number("amplitude", 0.3).name("unit", "V");
+/// assert_eq!((hum.code, hum.severity), ("mains-hum-removed", Severity::Note));
+/// assert_eq!(hum.get("frequency"), Some(50.0));
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Finding {
+    /// Stable code in kebab-case, listed in the documentation.
+    pub code: &'static str,
+    /// How much it weighs.
+    pub severity: Severity,
+    /// What it is about: a channel, a file, a sweep; `None` for the whole answer.
+    pub subject: Option<String>,
+    /// Numbers in SI units and names, in the order in which they were added.
+    #[serde(rename = "numbers", serialize_with = "as_map")]
+    pub facts: Vec<(&'static str, Fact)>,
+}
+
+fn as_map<S: Serializer>(facts: &[(&'static str, Fact)], serializer: S) -> Result<S::Ok, S::Error> {
+    let mut map = serializer.serialize_map(Some(facts.len()))?;
+    for (name, fact) in facts {
+        map.serialize_entry(name, fact)?;
+    }
+    map.end()
+}
+
+impl Finding {
+    fn new(code: &'static str, severity: Severity) -> Finding {
+        Finding { code, severity, subject: None, facts: Vec::new() }
+    }
+
+    /// What was done or assumed.
+    pub fn note(code: &'static str) -> Finding {
+        Finding::new(code, Severity::Note)
+    }
+
+    /// What makes a number less certain than it looks.
+    pub fn caution(code: &'static str) -> Finding {
+        Finding::new(code, Severity::Caution)
+    }
+
+    /// What may make a number wrong.
+    pub fn doubt(code: &'static str) -> Finding {
+        Finding::new(code, Severity::Doubt)
+    }
+
+    /// Adds a number in SI units, or a count.
+    pub fn number(mut self, name: &'static str, value: f64) -> Finding {
+        self.facts.push((name, Fact::Number(value)));
+        self
+    }
+
+    /// Adds a count.
+    pub fn count(self, name: &'static str, n: usize) -> Finding {
+        self.number(name, n as f64)
+    }
+
+    /// Adds several numbers in SI units.
+    pub fn numbers(mut self, name: &'static str, values: impl Into<Vec<f64>>) -> Finding {
+        self.facts.push((name, Fact::Numbers(values.into())));
+        self
+    }
+
+    /// Adds a name.
+    pub fn name(mut self, name: &'static str, text: impl Into<String>) -> Finding {
+        self.facts.push((name, Fact::Name(text.into())));
+        self
+    }
+
+    /// Says what it is about.
+    pub fn about(mut self, subject: impl Into<String>) -> Finding {
+        self.subject = Some(subject.into());
+        self
+    }
+
+    /// A fact by its name.
+    pub fn fact(&self, name: &str) -> Option<&Fact> {
+        self.facts.iter().find(|(known, _)| *known == name).map(|(_, fact)| fact)
+    }
+
+    /// A number by its name.
+    pub fn get(&self, name: &str) -> Option<f64> {
+        match self.fact(name)? {
+            Fact::Number(value) => Some(*value),
+            Fact::Numbers(_) | Fact::Name(_) => None,
+        }
+    }
+}

@@ -1,0 +1,317 @@
+//! The only place where findings become sentences.
+//!
+//! One sentence a code, in the tables of this folder. A sentence is a template; in braces stands a fact of the finding:
+//!
+//! | written | shown |
+//! |---|---|
+//! | `{gap m}` | the number `gap` with its unit, three digits: `0.6 mm` |
+//! | `{gap.6 m}` | six digits |
+//! | `{level @unit}` | with the unit that the fact `unit` names |
+//! | `{part %}` | a part of one as a percentage |
+//! | `{n}` | the number, whole or with three digits; a name as it is; several numbers between commas |
+//! | `{n:impact}`, `{n:entry/entries}` | a count with its noun: `1 impact`, `3 impacts` |
+//! | `{n?is/are}` | the first word for one, the second for several |
+//! | `{subject}` | what the finding is about |
+//! | `[refractory]` | a setting: `--refractory` for the command, `refractory` for a campaign |
+//! | `<, at {time s}>` | left out where the fact is missing |
+
+mod drill;
+mod files;
+mod fit;
+mod impacts;
+mod modal;
+mod model;
+mod pulse;
+mod restitution;
+mod signal;
+mod sweep;
+
+use crate::record::{Fact, Finding, Severity};
+use crate::units::notation::{quantity, significant};
+use serde_json::Value;
+
+/// All sentences by the code of their finding.
+const TABLES: [&[(&str, &str)]; 10] = [
+    drill::WORDS,
+    files::WORDS,
+    fit::WORDS,
+    impacts::WORDS,
+    modal::WORDS,
+    model::WORDS,
+    pulse::WORDS,
+    restitution::WORDS,
+    signal::WORDS,
+    sweep::WORDS,
+];
+
+/// Who reads the sentence, and so how settings are named.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Voice {
+    /// A person at the command line: `--low-pass`.
+    Command,
+    /// The author of a campaign: `low_pass`.
+    Campaign,
+}
+
+impl Voice {
+    /// A setting, named by its key in a campaign, as this reader types it.
+    pub fn setting(self, key: &str) -> String {
+        match self {
+            Voice::Command => format!("--{}", key.replace('_', "-")),
+            Voice::Campaign => format!("`{key}`"),
+        }
+    }
+}
+
+/// The sentence of a finding. A code without a sentence shows itself.
+pub fn sentence(finding: &Finding, voice: Voice) -> String {
+    let facts = |name: &str| finding.fact(name).cloned();
+    said(finding.code, &Told { subject: finding.subject.as_deref(), facts: &facts, voice })
+}
+
+fn said(code: &str, told: &Told<'_>) -> String {
+    let template = TABLES.iter().flat_map(|table| table.iter()).find(|(known, _)| *known == code);
+    template.map_or_else(|| code.to_owned(), |(_, text)| told.filled(text))
+}
+
+/// Adds `warnings` to each object of an answer that has `findings`: the sentences of those that are not notes.
+pub fn add_warnings(answer: &mut Value, voice: Voice) {
+    match answer {
+        Value::Object(object) => {
+            if let Some(Value::Array(findings)) = object.get("findings") {
+                let mut all: Vec<Value> = Vec::new();
+                for severity in ["doubt", "caution"] {
+                    for finding in findings.iter().filter(|f| f["severity"] == severity) {
+                        let facts = |name: &str| fact(finding.get("numbers")?.get(name)?);
+                        let told = Told { subject: finding["subject"].as_str(), facts: &facts, voice };
+                        let sentence = Value::String(said(finding["code"].as_str().unwrap_or(""), &told));
+                        if !all.contains(&sentence) {
+                            all.push(sentence);
+                        }
+                    }
+                }
+                match object.entry("warnings").or_insert_with(|| Value::Array(Vec::new())) {
+                    Value::Array(known) => known.extend(all),
+                    other => *other = Value::Array(all),
+                }
+            }
+            object.values_mut().for_each(|value| add_warnings(value, voice));
+        }
+        Value::Array(all) => all.iter_mut().for_each(|value| add_warnings(value, voice)),
+        _ => {}
+    }
+}
+
+fn fact(value: &Value) -> Option<Fact> {
+    Some(match value {
+        Value::Array(all) => Fact::Numbers(all.iter().map(|v| v.as_f64().unwrap_or(f64::NAN)).collect()),
+        Value::String(name) => Fact::Name(name.clone()),
+        number => Fact::Number(number.as_f64()?),
+    })
+}
+
+/// The sentences of findings that are not notes, once each, doubts first.
+pub fn warnings(findings: &[Finding], voice: Voice) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    for severity in [Severity::Doubt, Severity::Caution] {
+        for finding in findings.iter().filter(|f| f.severity == severity) {
+            let text = sentence(finding, voice);
+            if !all.contains(&text) {
+                all.push(text);
+            }
+        }
+    }
+    all
+}
+
+/// The sentences of all findings, once each, doubts first and notes last.
+pub fn sentences(findings: &[Finding], voice: Voice) -> Vec<String> {
+    let mut all = warnings(findings, voice);
+    for finding in findings.iter().filter(|f| f.severity == Severity::Note) {
+        let text = sentence(finding, voice);
+        if !all.contains(&text) {
+            all.push(text);
+        }
+    }
+    all
+}
+
+/// What a finding says, and to whom.
+struct Told<'a> {
+    subject: Option<&'a str>,
+    facts: &'a dyn Fn(&str) -> Option<Fact>,
+    voice: Voice,
+}
+
+impl Told<'_> {
+    /// A template with the facts in place.
+    fn filled(&self, template: &str) -> String {
+        let mut out = String::new();
+        let mut rest = template;
+        while let Some(at) = rest.find(['{', '[', '<']) {
+            out.push_str(&rest[..at]);
+            let (close, inner) = match rest.as_bytes()[at] {
+                b'{' => ('}', &rest[at + 1..]),
+                b'[' => (']', &rest[at + 1..]),
+                _ => ('>', &rest[at + 1..]),
+            };
+            let Some(end) = inner.find(close) else {
+                out.push_str(&rest[at..]);
+                return out;
+            };
+            let inside = &inner[..end];
+            match close {
+                '}' => out.push_str(&self.shown(inside).unwrap_or_else(|| "?".to_owned())),
+                ']' => out.push_str(&self.voice.setting(inside)),
+                _ if self.known(inside) => out.push_str(&self.filled(inside)),
+                _ => {}
+            }
+            rest = &inner[end + 1..];
+        }
+        out + rest
+    }
+
+    /// Whether all facts of an optional part are there.
+    fn known(&self, part: &str) -> bool {
+        part.split('{').skip(1).filter_map(|p| p.split('}').next()).all(|p| self.shown(p).is_some())
+    }
+
+    /// What stands for a pair of braces; `None` where the fact is missing.
+    fn shown(&self, inside: &str) -> Option<String> {
+        let (name, how) = inside.split_at(inside.find([' ', '.', ':', '?']).unwrap_or(inside.len()));
+        if name == "subject" {
+            return self.subject.map(str::to_owned);
+        }
+        let (digits, how) = match how.strip_prefix('.') {
+            Some(rest) => {
+                let (digits, how) = rest.split_at(rest.find(' ').unwrap_or(rest.len()));
+                (digits.parse().ok()?, how)
+            }
+            None => (3, how),
+        };
+        let all = match (self.facts)(name)? {
+            Fact::Name(text) => return Some(text),
+            Fact::Number(value) => vec![value],
+            Fact::Numbers(values) => values,
+        };
+        let one = all.first() == Some(&1.0);
+        if let Some(nouns) = how.strip_prefix(':') {
+            let (singular, plural) =
+                nouns.split_once('/').map_or((nouns, format!("{nouns}s")), |(s, p)| (s, p.to_owned()));
+            return Some(format!("{} {}", all.first()?, if one { singular } else { &plural }));
+        }
+        if let Some((singular, plural)) = how.strip_prefix('?').and_then(|words| words.split_once('/')) {
+            return Some(if one { singular } else { plural }.to_owned());
+        }
+        let unit = match how.trim_start() {
+            "%" => return Some(joined(&all, |v| format!("{} %", significant(100.0 * v, digits)))),
+            at if at.starts_with('@') => match (self.facts)(&at[1..]) {
+                Some(Fact::Name(unit)) => unit,
+                _ => String::new(),
+            },
+            unit => unit.to_owned(),
+        };
+        let show = |v: f64| match unit.as_str() {
+            "" if v.fract() == 0.0 && v.abs() < 1e6 => v.to_string(),
+            "" => significant(v, digits),
+            unit => quantity(v, unit, digits),
+        };
+        Some(joined(&all, show))
+    }
+}
+
+fn joined(values: &[f64], show: impl Fn(f64) -> String) -> String {
+    values.iter().map(|v| show(*v)).collect::<Vec<String>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn filled(template: &str, finding: &Finding, voice: Voice) -> String {
+        let facts = |name: &str| finding.fact(name).cloned();
+        Told { subject: finding.subject.as_deref(), facts: &facts, voice }.filled(template)
+    }
+
+    fn said(template: &str, finding: &Finding) -> String {
+        filled(template, finding, Voice::Command)
+    }
+
+    #[test]
+    fn facts_stand_where_the_template_has_them() {
+        let found = Finding::note("x").number("gap", 0.0006).name("unit", "V").count("n", 1).about("laser");
+        assert_eq!(said("gap {gap m}, {gap.1 m}", &found), "gap 600 µm, 600 µm");
+        assert_eq!(said("{n:impact} {n?is/are} at {subject}", &found), "1 impact is at laser");
+        assert_eq!(
+            said("level {gap @unit}<, at {time s}>; set [low_pass]", &found),
+            "level 600 µV; set --low-pass"
+        );
+        assert_eq!(filled("set [low_pass]", &found, Voice::Campaign), "set `low_pass`");
+    }
+
+    #[test]
+    fn parts_and_lists_are_shown() {
+        let found = Finding::doubt("x").number("part", 0.0312).numbers("lines", [5.0, 10.5]).count("n", 3);
+        assert_eq!(
+            said("{part %} on {lines Hz}: {n:entry/entries}", &found),
+            "3.12 % on 5.00 Hz, 10.5 Hz: 3 entries"
+        );
+    }
+
+    #[test]
+    fn doubts_come_first_and_each_sentence_once() {
+        let found = [Finding::note("a"), Finding::caution("b"), Finding::doubt("c"), Finding::doubt("c")];
+        assert_eq!(sentences(&found, Voice::Command), ["c", "b", "a"]);
+        assert_eq!(warnings(&found, Voice::Command), ["c", "b"]);
+    }
+
+    #[test]
+    fn no_code_has_two_sentences() {
+        let mut codes: Vec<&str> = TABLES.iter().flat_map(|t| t.iter()).map(|(code, _)| *code).collect();
+        codes.sort_unstable();
+        let twice: Vec<&&str> = codes.windows(2).filter(|w| w[0] == w[1]).map(|w| &w[0]).collect();
+        assert!(twice.is_empty(), "{twice:?}");
+    }
+
+    #[test]
+    fn an_answer_says_its_findings_in_words() {
+        let found = Finding::doubt("a-code").number("gap", 1e-3);
+        let mut answer = serde_json::json!({ "inner": { "findings": [found, Finding::note("b-code")] } });
+        add_warnings(&mut answer, Voice::Command);
+        assert_eq!(answer["inner"]["warnings"], serde_json::json!(["a-code"]));
+        assert_eq!(answer["inner"]["findings"][0]["numbers"]["gap"], 1e-3);
+    }
+
+    /// Codes that the sources of all crates make.
+    fn made(folder: &std::path::Path, codes: &mut Vec<String>) {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                made(&path, codes);
+            } else if path.extension().is_some_and(|e| e == "rs") && !path.ends_with("words.rs") {
+                let text = std::fs::read_to_string(&path).unwrap();
+                let text = text.split("#[cfg(test)]\nmod tests {").next().unwrap();
+                let code: String = text.lines().filter(|l| !l.trim_start().starts_with("//")).collect();
+                for maker in ["Finding::note(", "Finding::caution(", "Finding::doubt("] {
+                    let behind = code.split(maker).skip(1).map(str::trim_start);
+                    codes.extend(
+                        behind.filter_map(|c| Some(c.strip_prefix('"')?.split('"').next()?.to_owned())),
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_code_has_its_sentence_and_every_sentence_its_code() {
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let mut codes = Vec::new();
+        made(&root.join("src"), &mut codes);
+        made(&root.join("crates"), &mut codes);
+        let known: Vec<&str> = TABLES.iter().flat_map(|t| t.iter()).map(|(code, _)| *code).collect();
+        let silent: Vec<&String> = codes.iter().filter(|c| !known.contains(&c.as_str())).collect();
+        assert!(silent.is_empty(), "no sentence for {silent:?}");
+        let unused: Vec<&&str> = known.iter().filter(|c| !codes.iter().any(|made| made == *c)).collect();
+        assert!(unused.is_empty(), "no finding for {unused:?}");
+    }
+}

@@ -1,0 +1,3 @@
+//! Sentences of findings of reading and writing files, by code.
+
+pub(super) const WORDS: &[(&str, &str)] = &[];

@@ -1,0 +1,3 @@
+//! Sentences of findings of fits and comparisons, by code.
+
+pub(super) const WORDS: &[(&str, &str)] = &[];

@@ -1,0 +1,3 @@
+//! Sentences of findings of modes, by code.
+
+pub(super) const WORDS: &[(&str, &str)] = &[];

@@ -1,0 +1,3 @@
+//! Sentences of findings of models and their ladder, by code.
+
+pub(super) const WORDS: &[(&str, &str)] = &[];

@@ -1,0 +1,3 @@
+//! Sentences of findings of contact pulses, by code.
+
+pub(super) const WORDS: &[(&str, &str)] = &[];

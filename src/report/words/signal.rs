@@ -1,0 +1,3 @@
+//! Sentences of findings of spectra, filters and transfer functions, by code.
+
+pub(super) const WORDS: &[(&str, &str)] = &[];
