@@ -1,8 +1,8 @@
 //! Contact pulses in white noise. The pulse is made by formulas written here, and what a low-pass makes of it by integrating the
 //! filter's differential equation: nothing is taken from the code under test.
 
-use crate::noise::Noise;
-use crate::score::{Score, bounds};
+use super::noise::Noise;
+use super::score::{Score, bounds};
 use std::f64::consts::{PI, TAU};
 use vibroimpact::measure::pulse::{Instrument, LowPass, PulseOptions, pulse, two_times};
 use vibroimpact::record::{Axis, Meta, Trace};

@@ -1,6 +1,6 @@
 //! Hand-arm exposure of handles whose vibration is known.
 
-use super::drill::noise::Noise;
+use crate::drill::noise::Noise;
 use super::score::Score;
 use vibroimpact::measure::exposure::{Handle, exposure, weighting};
 

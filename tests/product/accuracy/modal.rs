@@ -1,7 +1,7 @@
 //! Modes of frequency response functions in noise. The functions are written here as sums of modes.
 
-use crate::noise::Noise;
-use crate::score::{Score, bounds};
+use super::noise::Noise;
+use super::score::{Score, bounds};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibroimpact::measure::modal::{Measured, ModalOptions, modal};

@@ -1,6 +1,6 @@
 //! Frequency and amplitude of a sine in white and in coloured noise.
 
-use crate::noise::Noise;
+use super::noise::Noise;
 use std::f64::consts::TAU;
 use vibroimpact::measure::sine::sine;
 use vibroimpact::measure::tones::tones;

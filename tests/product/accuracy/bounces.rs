@@ -1,7 +1,7 @@
 //! Trains of bounces in which scatter of R rules the first flights and noise of the onsets the last.
 
-use crate::noise::Noise;
-use crate::restitution::train;
+use super::noise::Noise;
+use super::restitution::train;
 use vibroimpact::measure::restitution::{Measured, restitution};
 
 const CASES: u64 = 600;

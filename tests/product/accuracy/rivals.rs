@@ -1,9 +1,9 @@
 //! Coverage of all that a pulse prints beside ξ and frequency: stiffness, damping, velocity from a force, and the parameters of
 //! the contacts of Hertz and of Hunt and Crossley, integrated here.
 
-use crate::noise::Noise;
-use crate::pulse::{Case, trace};
-use crate::score::Score;
+use super::noise::Noise;
+use super::pulse::{Case, trace};
+use super::score::Score;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use vibroimpact::measure::pulse::{Instrument, LowPass, PulseOptions, PulseResult, pulse};

@@ -1,6 +1,6 @@
 //! Impacts and bounces that ring: each is found once, or a doubt is said.
 
-use crate::noise::Noise;
+use super::noise::Noise;
 use std::f64::consts::TAU;
 use vibroimpact::measure::impacts::{Impacts, ImpactsOptions, impacts};
 use vibroimpact::measure::restitution::{Bounces, GRAVITY};

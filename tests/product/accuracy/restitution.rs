@@ -1,6 +1,6 @@
 //! Restitution: its stated uncertainty against what repeated measurements show, and against a bootstrap.
 
-use crate::noise::Noise;
+use super::noise::Noise;
 use vibroimpact::measure::restitution::{Drop, Measured, Train, Velocities, restitution};
 
 const CASES: u64 = 1000;

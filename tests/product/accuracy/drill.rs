@@ -1,13 +1,7 @@
 //! Drill records made up from a machine that is known.
 
-#[path = "../../examples/hammer_drill/noise.rs"]
-pub mod noise;
-#[allow(dead_code)]
-#[path = "../../examples/hammer_drill/stroke.rs"]
-mod stroke;
-
-use noise::Noise;
-use stroke::{Machine, Run};
+use crate::drill::noise::Noise;
+use crate::drill::stroke::{Machine, Run, Struck};
 use vibroimpact::measure::Estimate;
 use vibroimpact::measure::drill::{Beam, Drill, DrillOptions, Edge, From, Slices, drill};
 
@@ -193,7 +187,7 @@ fn uncertainties_of_a_drill_are_true() {
         impacts += whole;
         found_impacts += found.impacts.len() + found.hidden;
         for impact in &found.impacts {
-            let near = |s: &&stroke::Struck| (s.time - impact.time).abs() < 1e-4;
+            let near = |s: &&Struck| (s.time - impact.time).abs() < 1e-4;
             let truth = run.impacts.iter().find(near).unwrap_or_else(|| panic!("seed {seed}: {impact:?}"));
             single[0].take(impact.before, impact.before_std, truth.before);
             single[1].take(impact.after, impact.after_std, truth.after);
