@@ -1,7 +1,7 @@
 //! What a header or a person states of analyser text: abscissa, unit, names.
 
-use crate::others_files;
 use super::ascii_rows::{complaint, read, values};
+use crate::others_files;
 use proptest::prelude::*;
 use vibroimpact::read::{Format, Reader, Recording};
 use vibroimpact::record::{AxisKind, Record};
