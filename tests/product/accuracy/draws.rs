@@ -40,9 +40,9 @@ impl Draws {
             Draws::All => all,
         }
     }
+}
 
-    /// Fails where the largest error of a few cases is far outside of its uncertainty.
-    pub fn none_far(self, what: &str, worst: f64) {
-        assert!(worst <= FAR, "{what}: {worst} standard uncertainties off");
-    }
+/// Fails where the largest error of a few cases is far outside of its uncertainty.
+pub fn none_far(what: &str, worst: f64) {
+    assert!(worst <= FAR, "{what}: {worst} standard uncertainties off");
 }

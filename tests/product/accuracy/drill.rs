@@ -1,6 +1,6 @@
 //! Drill records made up from a machine that is known.
 
-use super::draws::Draws;
+use super::draws::{Draws, none_far};
 use crate::drill::noise::Noise;
 use crate::drill::stroke::{Machine, Run, Struck};
 use vibroimpact::measure::Estimate;
@@ -65,7 +65,7 @@ impl Coverage {
             self.name, self.all
         );
         match draws {
-            Draws::Few => draws.none_far(self.name, self.worst),
+            Draws::Few => none_far(self.name, self.worst),
             Draws::All => assert!((92.0..=98.0).contains(&part), "{}: {part} %", self.name),
         }
         self.mostly_stated();
@@ -324,7 +324,7 @@ fn covered(turns: usize, rho: f64, draws: Draws) {
         coverage.mostly_stated();
     }
     if draws == Draws::Few {
-        return all.iter().for_each(|c| draws.none_far(c.name, c.worst));
+        return all.iter().for_each(|c| none_far(c.name, c.worst));
     }
     assert!((92.0..=98.0).contains(&part), "{part}");
     assert!(all.iter().all(|c| (c.part() - part).abs() < 4.0 * 1.6), "{each:?}");

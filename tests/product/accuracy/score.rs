@@ -1,6 +1,6 @@
 //! What is counted over many cases.
 
-use super::draws::Draws;
+use super::draws::{Draws, none_far};
 use vibroimpact::measure::Estimate;
 
 /// Errors of one estimate over many cases, each in units of its bound and of its stated uncertainty.
@@ -50,7 +50,7 @@ impl Score {
             self.n, self.unstated
         );
         if draws == Draws::Few {
-            return self.few(draws, what);
+            return self.few(what);
         }
         assert!(50 * self.unstated <= self.n, "{what}: {} without an uncertainty", self.unstated);
         assert!(self.n >= 200, "{what}: {} cases", self.n);
@@ -67,7 +67,7 @@ impl Score {
             self.n, self.unstated
         );
         if draws == Draws::Few {
-            return self.few(draws, what);
+            return self.few(what);
         }
         assert!(50 * self.unstated <= self.n, "{what}: {} without an uncertainty", self.unstated);
         assert!(self.n >= 196, "{what}: {} cases", self.n);
@@ -75,14 +75,14 @@ impl Score {
     }
 
     /// Of a few cases most state an uncertainty, and none is far outside of it.
-    fn few(&self, draws: Draws, what: &str) {
+    fn few(&self, what: &str) {
         assert!(
             self.unstated < self.n,
             "{what}: {} of {} state an uncertainty",
             self.n,
             self.n + self.unstated
         );
-        draws.none_far(what, self.worst);
+        none_far(what, self.worst);
     }
 
     /// Prints the coverage; fails where it lies outside 92…98 %, or an uncertainty is not stated.
@@ -90,7 +90,7 @@ impl Score {
         let coverage = 100.0 * self.covered as f64 / self.n as f64;
         println!("{what}: {} cases, coverage {coverage:.1} %", self.n);
         if draws == Draws::Few {
-            return self.few(draws, what);
+            return self.few(what);
         }
         assert!(self.unstated == 0 && self.n >= 200, "{what}: {} cases, {} without", self.n, self.unstated);
         assert!((92.0..=98.0).contains(&coverage), "{what}: coverage {coverage} %");
