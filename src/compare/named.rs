@@ -94,8 +94,11 @@ mod tests {
         let motion = Simulation::new(&Rig::thesis(), &Sine { force: 0.1, frequency: 3.0 }).unwrap();
         let swept = both(&plan, &motion, 0.1, &[Direction::Up]).unwrap();
         let (resonances, _) = named(&swept);
-        let of = |kind: &str| resonances.iter().find(|r| r.mass == 1 && r.found.kind == kind);
-        let [grazing, clapping] = ["grazing", "clapping"].map(|kind| of(kind).unwrap().found.frequency);
+        let highest = |kind: &str| {
+            let of_kind = resonances.iter().filter(|r| r.mass == 1 && r.found.kind == kind);
+            of_kind.max_by(|a, b| a.found.amplitude.total_cmp(&b.found.amplitude)).unwrap().found.frequency
+        };
+        let [grazing, clapping] = ["grazing", "clapping"].map(highest);
         assert!((grazing - 5.58).abs() < 0.1 && (10.4..11.2).contains(&clapping), "{grazing} {clapping}");
     }
 }
