@@ -12,7 +12,7 @@ pub enum Edge {
     Falling,
 }
 
-/// Part of the height by which the signal must pass the middle on both sides before an edge counts.
+/// Part of the height by which the signal must pass the middle on both sides before an edge counts: ringing of a pick-up stays below.
 const HYSTERESIS: f64 = 0.2;
 
 /// Samples kept from the block before, for the cubic around a crossing.
@@ -33,7 +33,7 @@ struct Crossings {
 /// height on one side and goes beyond a fifth on the other. Noise may make it cross several times: then the mean of the
 /// first and the last crossing is taken.
 #[derive(Debug, Clone)]
-pub struct Edges {
+pub(crate) struct Edges {
     sign: f64,
     middle: f64,
     margin: f64,
@@ -118,10 +118,10 @@ impl Edges {
 
 /// Edges of a reference signal.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Found {
+pub(crate) struct Found {
     /// Places in samples from the first.
     pub edges: Vec<f64>,
-    /// Whether most edges go from one level to the other within one sample, so that nothing between samples is known.
+    /// Whether most edges rise within one sample, so that nothing between samples is known.
     pub sharp: bool,
     /// Mean rise a sample at the edges.
     pub slope: f64,

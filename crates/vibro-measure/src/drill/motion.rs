@@ -6,7 +6,7 @@ use super::survey::median;
 
 /// Largest speed, acceleration and jerk, and displacement over whole turns.
 #[derive(Debug, Clone, Default)]
-pub struct Motion {
+pub(super) struct Motion {
     speed: Vec<f64>,
     acceleration: Vec<f64>,
     jerk: Vec<f64>,
@@ -110,7 +110,7 @@ impl Motion {
 
 /// Displacement over the phase of a turn of `period` seconds, from velocities at equal phases: its mean is 0, and so is what
 /// it gains over a turn.
-pub fn displacement(velocity: &[f64], period: f64) -> Vec<f64> {
+pub(super) fn displacement(velocity: &[f64], period: f64) -> Vec<f64> {
     let n = velocity.len();
     let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len().max(1) as f64;
     let drift = mean(velocity);

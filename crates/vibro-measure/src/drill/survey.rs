@@ -11,7 +11,7 @@ const NORMAL_MEDIAN: f64 = 0.674_489_750_196_081_7;
 
 /// What a channel looks like, found in one pass.
 #[derive(Debug, Clone)]
-pub struct Survey {
+pub(crate) struct Survey {
     samples: u64,
     missing: u64,
     low: f64,
@@ -100,7 +100,7 @@ impl Survey {
     }
 
     /// Median of the values.
-    pub fn middle(&self) -> f64 {
+    pub fn median(&self) -> f64 {
         median(self.differences.kept.iter().map(|d| d.value))
     }
 
@@ -207,7 +207,7 @@ impl Differences {
 }
 
 /// Median of some values; 0 where there are none.
-pub(super) fn median(values: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.filter(|v| v.is_finite()).collect();
     let middle = values.len() / 2;
     if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
