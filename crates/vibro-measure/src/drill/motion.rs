@@ -38,7 +38,7 @@ pub struct Bandwidth {
 }
 
 impl Motion {
-    /// Takes the turn from `start` to `end`, in samples of `values` at `rate` samples a second: how fast the motion changes.
+    /// Takes the turn from `start` to `end`, in samples of `values` at `rate` samples a second: central differences of measured samples.
     pub fn push(&mut self, values: &[f64], states: &[State], start: f64, end: f64, rate: f64) {
         let (from, to) = (start.ceil() as usize, end.ceil() as usize);
         let mut top = [0.0f64; 3];
@@ -63,18 +63,16 @@ impl Motion {
         };
         let inside = start.ceil() as usize..=end.floor() as usize;
         let Some(inner) = values.get(inside.clone()) else { return };
-        let places = inside.map(|i| i as f64).zip(inner.iter().copied());
-        let nodes = places.chain([(end, last)]);
         let (mut at, mut v, mut x) = (start, first, 0.0);
         let mut path = vec![(0.0, 0.0)];
-        for (next, w) in nodes {
+        for (next, w) in inside.map(|i| i as f64).zip(inner.iter().copied()).chain([(end, last)]) {
             x += 0.5 * (v + w) * (next - at) / rate;
             (at, v) = (next, w);
             path.push((at - start, x));
         }
         let slope = x / (end - start);
-        let (low, high) =
-            path.iter().map(|(t, x)| x - slope * t).fold((0.0f64, 0.0f64), |(l, h), x| (l.min(x), h.max(x)));
+        let level = path.iter().map(|(t, x)| x - slope * t);
+        let (low, high) = level.fold((0.0f64, 0.0f64), |(l, h), x| (l.min(x), h.max(x)));
         self.drift.push(x);
         self.stroke.push(high - low);
     }

@@ -7,6 +7,8 @@ use vibro_record::{Error, Result};
 
 /// More pulses in a turn than any encoder on a crank gives.
 const MOST_PULSES: usize = 10_000;
+/// More phases than any record fills.
+const MOST_POINTS: usize = 100_000;
 /// Longest turn in samples: a few turns are kept in memory; at 100 kHz these are 40 s.
 pub(super) const LONGEST_TURN: f64 = 4e6;
 
@@ -72,48 +74,48 @@ impl DrillOptions {
 
     /// Checks every number.
     pub(super) fn check(&self) -> Result<()> {
-        if self.sensitivity == 0.0 || !self.sensitivity.is_finite() {
-            return Err(Error::usage(format!("a sensitivity of {}", self.sensitivity), "m/s a unit, not 0")
-                .setting("sensitivity"));
-        }
-        if self.pulses_per_turn == 0 || self.pulses_per_turn > MOST_PULSES {
-            let found = format!("{} pulses a turn", self.pulses_per_turn);
-            return Err(Error::usage(found, format!("1 to {MOST_PULSES}")).setting("pulses_per_turn"));
-        }
-        if self.points < 2 || self.points > 100_000 {
-            return Err(Error::usage(format!("an average at {} phases", self.points), "2 to 100000")
-                .setting("points"));
-        }
-        for (key, value, unit) in [("delay", self.delay, "s"), ("margin", self.margin, "dB")] {
-            if !value.is_finite() {
-                let found = format!("a {key} of {value} {unit}");
-                return Err(Error::usage(found, "a finite number").setting(key));
-            }
-        }
-        let smoothing = match self.smoothing {
-            Smoothing::LowPass(corner) => ("low_pass", Some(corner), "Hz"),
-            Smoothing::Exponential(time) => ("smoothing", Some(time), "s"),
-            Smoothing::Phases | Smoothing::Off => ("smoothing", None, "s"),
+        let (low_pass, smoothing) = match self.smoothing {
+            Smoothing::LowPass(corner) => (Some(corner), None),
+            Smoothing::Exponential(time) => (None, Some(time)),
+            Smoothing::Phases | Smoothing::Off => (None, None),
         };
         let positive = [
-            ("mass", self.mass, "kg"),
-            ("struck_mass", self.struck_mass, "kg"),
-            ("contact", Some(self.contact), "s"),
-            ("fit", Some(self.fit), "s"),
-            ("longest_dropout", Some(self.longest_dropout), "s"),
-            ("instrument", self.instrument, "Hz"),
-            smoothing,
+            ("mass", self.mass),
+            ("struck_mass", self.struck_mass),
+            ("contact", Some(self.contact)),
+            ("fit", Some(self.fit)),
+            ("longest_dropout", Some(self.longest_dropout)),
+            ("low_pass", low_pass),
+            ("smoothing", smoothing),
+            ("instrument", self.instrument),
         ];
-        for (key, value, unit) in positive {
-            if let Some(v) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
-                let found = format!("{} = {v} {unit}", key.replace('_', " "));
-                return Err(Error::usage(found, "a finite number above 0").setting(key));
+        let above = |(key, value): (&'static str, Option<f64>)| {
+            value.map(|v| (key, v, v.is_finite() && v > 0.0, "a finite number above 0"))
+        };
+        let finite = |v: f64| v.is_finite();
+        let (pulses, points) = (self.pulses_per_turn, self.points);
+        let others = [
+            (
+                "sensitivity",
+                self.sensitivity,
+                finite(self.sensitivity) && self.sensitivity != 0.0,
+                "a finite number, not 0",
+            ),
+            ("delay", self.delay, finite(self.delay), "a finite number"),
+            ("margin", self.margin, finite(self.margin), "a finite number"),
+            ("pulses_per_turn", pulses as f64, (1..=MOST_PULSES).contains(&pulses), "1 to 10000"),
+            ("points", points as f64, (2..=MOST_POINTS).contains(&points), "2 to 100000"),
+        ];
+        for (key, value, holds, expected) in others.into_iter().chain(positive.into_iter().filter_map(above))
+        {
+            if !holds {
+                let found = format!("{} = {value}", key.replace('_', " "));
+                return Err(Error::usage(found, expected).setting(key));
             }
         }
         if self.struck_mass.is_some() && self.mass.is_none() {
-            return Err(
-                Error::usage("a struck mass without the mass that strikes it", "both masses").setting("mass")
-            );
+            let found = "a struck mass without the mass that strikes it";
+            return Err(Error::usage(found, "both masses").setting("mass"));
         }
         check_hours(self.hours)
     }
