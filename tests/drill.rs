@@ -156,7 +156,11 @@ fn a_campaign_measures_both_channels() {
     // The bit strikes nothing: what it moves before the impacts cannot be told from rest.
     assert!(drills[1]["restitution"].is_null() && drills[0]["restitution"]["value"].as_f64().unwrap() < 1.0);
     assert!(found["warnings"].to_string().contains("bit: No restitution"), "{}", found["warnings"]);
-    assert!(finding(&drills[1], "drill-not-striking")["numbers"]["speed"].is_f64(), "{}", drills[1]["findings"]);
+    assert!(
+        finding(&drills[1], "drill-not-striking")["numbers"]["speed"].is_f64(),
+        "{}",
+        drills[1]["findings"]
+    );
     assert!(folder.path().join("results/drill_average_striker.svg").exists());
     // A key without a default that is left out is named.
     std::fs::write(&campaign, text.replace("from = \"normal\"", "")).unwrap();

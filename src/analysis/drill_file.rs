@@ -34,13 +34,13 @@ struct Played<'a> {
     findings: Vec<Finding>,
     rate: f64,
     factors: Vec<f64>,
-    /// Samples gone over, of as many as there are in all passes.
+    /// Hears how many samples were read, of all passes.
     progress: &'a dyn Fn(usize, usize),
     done: usize,
     all: usize,
 }
 
-/// Times that [`crate::measure::drill::drill`] goes over a record.
+/// Times that [`crate::measure::drill::drill`] reads a record.
 const PASSES: usize = 3;
 
 impl DrillFile {

@@ -2,7 +2,7 @@
 //!
 //! The velocity is what the laser shows times its sensitivity over cos α, α the angle between beam and motion. Edges of the
 //! reference cut the record into turns; phases are parts of a turn after the edge, which for a pulse at the upper end of
-//! the piston's stroke is the phase after top dead centre. The record is gone over three times block by block, so that
+//! the piston's stroke is the phase after top dead centre. The record is read three times block by block, so that
 //! memory grows with the number of turns (some hundred bytes each) but not with the number of samples.
 //!
 //! ```

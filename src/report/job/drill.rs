@@ -34,10 +34,10 @@ pub(super) fn drills(
         let asked = or_left_out(campaign.drill(entry, options.allow_outside), &name, warnings)?;
         let Some((file, how)) = asked else { continue };
         progress.start(&format!("drill {name}"), PARTS);
-        let told = Cell::new(0);
+        let shown = Cell::new(0);
         let drill = file.measure(&how, &|done, all| {
             let parts = (PARTS * done).checked_div(all).unwrap_or(0);
-            (told.replace(parts)..parts).for_each(|_| progress.step());
+            (shown.replace(parts)..parts).for_each(|_| progress.step());
         });
         let Some(drill) = or_left_out(drill, &name, warnings)? else { continue };
         merge(warnings, &name, &sentences(&drill.findings, Voice::Campaign));

@@ -39,14 +39,17 @@ pub(super) const WORDS: &[(&str, &str)] = &[
         "{n:sample} over-range, at {low m/s} or {high m/s}; speeds there are biased low. Choose a larger range.",
     ),
     ("drill-impacts-hidden", "{n:turn} without an impact, which a fault of the velocity hides."),
-    ("drill-impacts-over-range", "{n} of {all:impact} over-range and left out of the means."),
+    (
+        "drill-impacts-over-range",
+        "<Group {group}: >{n} of {all:impact} over-range and left out of the means.",
+    ),
     (
         "drill-impacts-over-range-biased",
-        "{n} of {all:impact} over-range and left out; the means are biased low and have no uncertainty.",
+        "<Group {group}: >{n} of {all:impact} over-range and left out; the means are biased low and have no uncertainty.",
     ),
     (
         "drill-all-impacts-over-range",
-        "{n} of {all:impact} over-range; the means are biased low and have no uncertainty.",
+        "<Group {group}: >{n} of {all:impact} over-range; the means are biased low and have no uncertainty.",
     ),
     (
         "drill-drift",

@@ -52,12 +52,6 @@ pub(super) fn velocity(
     let (low, high) = surveyed.velocity.range().unwrap_or((0.0, 0.0));
     let over_range =
         Finding::doubt("drill-over-range").count("n", f.clipped).number("low", low).number("high", high);
-    let (clipped, impacts) = (result.clipped, result.impacts.len());
-    let of_impacts = match (clipped == impacts, result.groups.first().is_some_and(|g| g.range_biased)) {
-        (true, _) => Finding::doubt("drill-all-impacts-over-range"),
-        (_, true) => Finding::doubt("drill-impacts-over-range-biased"),
-        _ => Finding::caution("drill-impacts-over-range"),
-    };
     let [stroke, drift] = [&result.displacement.stroke, &result.displacement.drift].map(|e| e.value);
     let drifts = Finding::caution("drill-drift").number("drift", drift).number("stroke", stroke);
     let no_impact = Finding::caution("drill-no-impact").number("contact", options.contact);
@@ -67,9 +61,8 @@ pub(super) fn velocity(
         (left_out > 0 && f.lost == 0, Finding::caution("drill-turns-cut-off").count("n", left_out)),
         (f.clipped > 0, over_range),
         (result.hidden > 0, Finding::caution("drill-impacts-hidden").count("n", result.hidden)),
-        (clipped > 0, of_impacts.count("n", clipped).count("all", impacts)),
         (drift.abs() > DRIFTING * stroke, drifts),
-        (impacts == 0, no_impact),
+        (result.impacts.is_empty(), no_impact),
     ];
     holding(found).collect()
 }

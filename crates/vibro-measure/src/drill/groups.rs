@@ -53,9 +53,6 @@ pub struct Group {
     /// Whether velocities or phase change so slowly that uncertainties may be too small.
     #[serde(skip)]
     pub(super) wanders: bool,
-    /// Whether so many impacts were left out as over-range that the means are biased low.
-    #[serde(skip)]
-    pub(super) range_biased: bool,
 }
 
 /// Impacts in the order of time, by number, of phases without a gap.
@@ -151,7 +148,7 @@ fn arcs(impacts: &[Impact], mut members: Vec<usize>) -> Vec<(Option<f64>, Vec<us
 }
 
 impl Group {
-    /// Means over `own` impacts, those of `arc` within the range; `front` tells that they go the way of the strongest group, towards the
+    /// Means over `own` impacts, those of `arc` within the range; `front`: they go the way of the strongest group, towards the
     /// struck mass.
     fn new(
         own: &[Impact],
@@ -182,6 +179,14 @@ impl Group {
             found.std = None;
         }
         let mut findings: Vec<Finding> = doubt.into_iter().collect();
+        if clipped > 0 {
+            let found = match (clipped == n, range_biased) {
+                (true, _) => Finding::doubt("drill-all-impacts-over-range"),
+                (_, true) => Finding::doubt("drill-impacts-over-range-biased"),
+                _ => Finding::caution("drill-impacts-over-range"),
+            };
+            findings.push(found.count("n", clipped).count("all", n));
+        }
         if arc.start.is_none() {
             findings.push(Finding::doubt("drill-phase-undirected"));
         }
@@ -208,7 +213,6 @@ impl Group {
             restitution,
             findings,
             wanders: before.wanders || after.wanders || phase_wanders,
-            range_biased,
         }
     }
 }

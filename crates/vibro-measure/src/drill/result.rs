@@ -86,9 +86,9 @@ pub struct Drill {
 pub struct Pulses {
     /// Edges found.
     pub edges: usize,
-    /// Edges that should be there and are not.
+    /// Missing edges.
     pub missing: usize,
-    /// Edges that should not be there.
+    /// False edges, which were ignored.
     pub extra: usize,
     /// Stretches without edges.
     pub pauses: usize,

@@ -27,9 +27,9 @@ pub(crate) struct Turn {
 pub(crate) struct Turns {
     /// Turns in which no edge is missing.
     pub turns: Vec<Turn>,
-    /// Edges that are not there.
+    /// Missing edges.
     pub missing: usize,
-    /// Edges that should not be there; they are passed over.
+    /// False edges, which are ignored.
     pub extra: usize,
     /// Stretches without an edge in which the machine stood still, or the reference was lost.
     pub pauses: usize,
@@ -41,9 +41,9 @@ pub(crate) struct Turns {
 pub(crate) struct Numbered {
     /// Place and time of each edge; a pause begins a new run.
     pub(crate) runs: Vec<Vec<(usize, f64)>>,
-    /// Edges that are not there.
+    /// Missing edges.
     pub(crate) missing: usize,
-    /// Edges that should not be there; they are passed over.
+    /// False edges, which are ignored.
     pub(crate) extra: usize,
     /// Stretches without an edge.
     pub(crate) pauses: usize,
@@ -51,7 +51,7 @@ pub(crate) struct Numbered {
 
 impl Numbered {
     /// Numbers edges, each by the median interval around it. Of two edges within an interval the one farther from where the edge before lets
-    /// it be expected is passed over; where none is before, the one behind tells.
+    /// it be expected is ignored; where none is before, the one behind decides.
     pub(crate) fn new(edges: &[f64]) -> Numbered {
         let intervals: Vec<f64> = edges.windows(2).map(|e| e[1] - e[0]).collect();
         let (mut missing, mut extra, mut pauses) = (0, 0, 0);
