@@ -114,8 +114,8 @@ pub fn drill_each(
         edges.edges.retain(|edge| (0.0..=last).contains(edge));
     }
     let turns = Turns::new(&edges.edges, options.pulses_per_turn)?;
-    let mut pass = Pass::new(options, rate, &turns.turns, &surveyed.velocity, still.is_some())?;
-    let mut excerpts = [0.0, delay].map(|delay| Excerpt::new(&turns.turns, delay));
+    let mut pass = Pass::new(options, rate, &turns.whole, &surveyed.velocity, still.is_some())?;
+    let mut excerpts = [0.0, delay].map(|delay| Excerpt::new(&turns.whole, delay));
     let mut scaled = Vec::new();
     channels.play(&mut |block| {
         let [velocity, reference, ..] = block else { return Ok(()) };

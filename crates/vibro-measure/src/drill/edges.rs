@@ -64,7 +64,9 @@ impl Edges {
 
     /// Takes the next samples.
     pub fn push(&mut self, block: &[f64]) {
-        block.iter().for_each(|v| self.next(self.sign * v));
+        for v in block {
+            self.next(self.sign * v);
+        }
     }
 
     /// Takes a sample and looks at the step before the last one.

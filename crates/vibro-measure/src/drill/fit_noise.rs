@@ -58,7 +58,9 @@ fn taken_by_fits(n: usize) -> [f64; LAGS] {
             v.iter_mut().zip(u).for_each(|(v, u)| *v -= along * u);
         }
         let norm = v.iter().map(|x| x * x).sum::<f64>().sqrt();
-        v.iter_mut().for_each(|x| *x /= norm);
+        for x in &mut v {
+            *x /= norm;
+        }
         basis.push(v);
     }
     std::array::from_fn(|k| {

@@ -28,7 +28,9 @@ pub(super) fn restitution(
     options: &DrillOptions,
 ) -> (Option<Estimate>, Option<Finding>) {
     let mut approach = Running::default();
-    impacts.iter().for_each(|i| approach.push(i.before));
+    for impact in impacts {
+        approach.push(impact.before);
+    }
     let unclear = impacts.iter().filter(|i| i.before.abs() < CLEAR * i.before_std).count();
     if 2 * unclear > impacts.len() {
         let found = Finding::caution("drill-not-striking");

@@ -34,11 +34,13 @@ pub(super) fn summary(m: Measured<'_>) -> Result<Drill> {
     let groups = groups::groups(&mut impacts, &jumps.residuals, pass.averaged, options);
     let strongest = groups.first();
     let average = pass.average.phases();
-    let period = turns.turns.iter().map(|t| t.end - t.start).sum::<f64>() / turns.turns.len() as f64 / rate;
+    let period = turns.whole.iter().map(|t| t.end - t.start).sum::<f64>() / turns.whole.len() as f64 / rate;
     let (speed, speed_wanders) = turns.speed(rate, edge);
     let speeds: Vec<f64> = turns.speeds(rate).collect();
     let mut spread = Running::default();
-    speeds.iter().for_each(|s| spread.push(*s));
+    for speed in &speeds {
+        spread.push(*speed);
+    }
     let [stroke, drift] = [pass.motion.stroke(), pass.motion.drift()].map(Mean::of);
     // Where speeds are too small, so is what they add up to: no uncertainty is stated.
     let metres = |mean: Mean, method| {
@@ -58,7 +60,7 @@ pub(super) fn summary(m: Measured<'_>) -> Result<Drill> {
     let mut result = Drill {
         speed,
         speed_variation: spread.std(),
-        cycles: turns.turns.len(),
+        cycles: turns.whole.len(),
         averaged: pass.averaged,
         reference: Pulses {
             edges: edges.edges.len(),
@@ -93,7 +95,7 @@ pub(super) fn summary(m: Measured<'_>) -> Result<Drill> {
         beam: BeamResult { factor: options.beam.factor(), per_degree: options.beam.per_degree() },
         smoothing: pass.corner.map(|corner| options.smoothing.stated(corner, rate)),
         speeds,
-        times: turns.turns.iter().map(|t| t.start / rate).collect(),
+        times: turns.whole.iter().map(|t| t.start / rate).collect(),
         excerpt_time: (velocity.start() as f64 / rate, 1.0 / rate),
         excerpt: velocity.values,
         excerpt_reference: reference.values,
@@ -103,6 +105,7 @@ pub(super) fn summary(m: Measured<'_>) -> Result<Drill> {
     findings.extend(findings::velocity(&result, surveyed, pass.left_out, options));
     findings.extend(findings::means(&result, options));
     findings.extend(findings::bandwidth(&result, options, still.is_some()));
+    findings.extend(result.exposure.iter().flat_map(|e| e.findings.iter().cloned()));
     if !slow.is_empty() {
         findings.push(Finding::caution("drill-slow-changes").name("quantities", slow.join(", ")));
     }

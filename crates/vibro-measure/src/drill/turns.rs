@@ -26,7 +26,7 @@ pub(crate) struct Turn {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Turns {
     /// Turns in which no edge is missing.
-    pub turns: Vec<Turn>,
+    pub whole: Vec<Turn>,
     /// Missing edges.
     pub missing: usize,
     /// False edges, which are ignored.
@@ -136,7 +136,7 @@ impl Turns {
         if turns.is_empty() {
             return refused("no whole turn between the edges of the reference channel".to_owned());
         }
-        Ok(Turns { apart: all - turns.len(), turns, missing, extra, pauses })
+        Ok(Turns { apart: all - turns.len(), whole: turns, missing, extra, pauses })
     }
 
     /// Turns a second at `rate` samples a second, the inverse of the mean duration of a turn; and whether the durations change so slowly
@@ -155,8 +155,8 @@ impl Turns {
 
     /// Mean duration in samples.
     fn mean(&self, edge: f64) -> Mean {
-        let durations: Vec<f64> = self.turns.iter().map(|t| t.end - t.start).collect();
-        let joined: Vec<bool> = self.turns.windows(2).map(|t| t[0].end == t[1].start).collect();
+        let durations: Vec<f64> = self.whole.iter().map(|t| t.end - t.start).collect();
+        let joined: Vec<bool> = self.whole.windows(2).map(|t| t[0].end == t[1].start).collect();
         // An edge between two turns adds to one what it takes of the other: Σ x_t w_t has the part e (w_t − w_t+1) of it.
         let known = |w: &[f64]| {
             let ends = w.first().map_or(0.0, |w| w * w) + w.last().map_or(0.0, |w| w * w);
@@ -173,7 +173,7 @@ impl Turns {
 
     /// Speed of each turn in Hz.
     pub fn speeds(&self, rate: f64) -> impl Iterator<Item = f64> {
-        self.turns.iter().map(move |t| rate / (t.end - t.start))
+        self.whole.iter().map(move |t| rate / (t.end - t.start))
     }
 }
 
@@ -191,8 +191,8 @@ mod tests {
         let turns = Turns::new(&edges, 1).unwrap();
         assert_eq!((turns.missing, turns.extra, turns.pauses), (1, 1, 1));
         // 39 intervals less the two at the missing edge, and 4 behind the pause.
-        assert_eq!(turns.turns.len(), 37 + 4);
-        assert!(turns.turns.iter().all(|t| t.end - t.start == 100.0));
+        assert_eq!(turns.whole.len(), 37 + 4);
+        assert!(turns.whole.iter().all(|t| t.end - t.start == 100.0));
         let speed = turns.speed(5000.0, 0.1).0;
         // Three stretches without a gap, each with two edges.
         let std = 50.0 * 6f64.sqrt() * 0.1 / 41.0 / 100.0;
@@ -200,9 +200,9 @@ mod tests {
         // Two pulses a turn: the turns at the missing edge are lost, the pairs stay as they were, and behind the pause nobody
         // knows which pulse is the first of a turn.
         let pairs = Turns::new(&edges, 2).unwrap();
-        assert!(pairs.turns.iter().all(|t| t.end - t.start == 200.0 && t.start % 200.0 == 0.0));
+        assert!(pairs.whole.iter().all(|t| t.end - t.start == 200.0 && t.start % 200.0 == 0.0));
         // 19 pairs less the two that meet at the missing edge; 2 behind the pause are left out.
-        assert_eq!((pairs.turns.len(), pairs.apart, turns.apart), (17, 2, 0));
+        assert_eq!((pairs.whole.len(), pairs.apart, turns.apart), (17, 2, 0));
     }
 
     #[test]
@@ -267,15 +267,15 @@ mod tests {
             edges.sort_by(f64::total_cmp);
             let turns = Turns::new(&edges, 1).unwrap();
             assert_eq!(
-                (turns.turns.len(), turns.extra, turns.missing, turns.pauses),
+                (turns.whole.len(), turns.extra, turns.missing, turns.pauses),
                 (149, 5, 0, 0),
                 "{part}"
             );
-            assert!(turns.turns.iter().all(|t| (t.end - t.start - 100.0).abs() < 0.7), "{part}");
+            assert!(turns.whole.iter().all(|t| (t.end - t.start - 100.0).abs() < 0.7), "{part}");
             // Before the first edge, where nothing but the next one tells.
             let mut edges: Vec<f64> = (1..150).map(|k| f64::from(k) * 100.0).collect();
             edges.insert(0, 100.0 * part);
-            let first = Turns::new(&edges, 1).unwrap().turns[0];
+            let first = Turns::new(&edges, 1).unwrap().whole[0];
             // An edge of 0.6 turns and more before the first may be one.
             assert!(part < 0.45 || first.start == 100.0, "{part}: {first:?}");
         }
@@ -283,8 +283,8 @@ mod tests {
         let mut edges: Vec<f64> = (0..40).map(|k| f64::from(k) * 100.0).collect();
         edges[21] = 2145.0;
         let turns = Turns::new(&edges, 1).unwrap();
-        assert_eq!((turns.turns.len(), turns.extra, turns.missing), (37, 1, 1));
-        assert!(turns.turns.iter().all(|t| t.end - t.start == 100.0));
+        assert_eq!((turns.whole.len(), turns.extra, turns.missing), (37, 1, 1));
+        assert!(turns.whole.iter().all(|t| t.end - t.start == 100.0));
     }
 
     #[test]
