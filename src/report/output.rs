@@ -1,4 +1,4 @@
-//! A folder of results, each file of which appears whole or not at all.
+//! A folder of results, each file of which appears whole or not at all, and a set of them together.
 
 use super::Growing;
 use crate::error::{Error, Place, Result};
@@ -11,10 +11,17 @@ use std::path::{Component, Path, PathBuf};
 /// A file is written beside its place under a temporary name and then renamed, so that a reader sees the old
 /// file or the new one, never a part. This holds against failures and interruptions of this program; nothing
 /// is forced to the disk, so a power failure in the seconds after may still lose the new content.
+///
+/// The files of a set ([`Output::set`]) get their names together in [`Output::commit`]: a program that is killed before leaves the old
+/// set as it was, and one that is killed in between leaves the file [`Output::INCOMPLETE`].
 #[derive(Debug)]
 pub struct Output {
     folder: PathBuf,
     written: Vec<String>,
+    /// Files of a set that wait for their names: temporary and final path.
+    waiting: Option<Vec<(PathBuf, PathBuf)>>,
+    /// Whether leftovers of killed programs have been removed.
+    swept: bool,
 }
 
 impl Output {
@@ -28,7 +35,40 @@ impl Output {
             return Err(Error::input(Place::file(&folder), "this is a file", "a folder for results")
                 .hint("name another folder"));
         }
-        Ok(Output { folder, written: Vec::new() })
+        Ok(Output { folder, written: Vec::new(), waiting: None, swept: false })
+    }
+
+    /// The file that marks a folder in which old and new results stand side by side.
+    pub const INCOMPLETE: &str = "INCOMPLETE.txt";
+
+    /// A folder whose files replace the old ones together, in [`Output::commit`].
+    ///
+    /// # Errors
+    /// As [`Output::new`].
+    pub fn set(folder: impl Into<PathBuf>) -> Result<Output> {
+        let mut output = Output::new(folder)?;
+        output.waiting = Some(Vec::new());
+        Ok(output)
+    }
+
+    /// Gives the files of a set their names.
+    ///
+    /// # Errors
+    /// If the system refuses; then the folder is marked as incomplete.
+    pub fn commit(&mut self) -> Result<()> {
+        let Some(waiting) = self.waiting.as_mut().map(std::mem::take) else { return Ok(()) };
+        let mark = self.folder.join(Self::INCOMPLETE);
+        if !waiting.is_empty() {
+            let text = "Old and new results stand side by side here: run the same command again.\n";
+            fs::write(&mark, text).map_err(|e| Error::io("write", &mark, e))?;
+        }
+        for (temporary, path) in &waiting {
+            fs::rename(temporary, path).map_err(|e| Error::io("write", path, e))?;
+        }
+        match fs::remove_file(&mark) {
+            Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(Error::io("remove", &mark, e)),
+            _ => Ok(()),
+        }
     }
 
     /// The folder.
@@ -49,7 +89,15 @@ impl Output {
     pub fn write(&mut self, name: &str, bytes: impl AsRef<[u8]>) -> Result<PathBuf> {
         let path = self.place(name)?;
         let temporary = temporary_beside(&path);
-        let replaced = fill(&temporary, bytes.as_ref()).and_then(|()| fs::rename(&temporary, &path));
+        let named = |()| match &mut self.waiting {
+            Some(waiting) => {
+                waiting.retain(|(_, known)| *known != path);
+                waiting.push((temporary.clone(), path.clone()));
+                Ok(())
+            }
+            None => fs::rename(&temporary, &path),
+        };
+        let replaced = fill(&temporary, bytes.as_ref()).and_then(named);
         if let Err(error) = replaced {
             // The first failure is the one to report; a leftover that cannot be removed either has the same
             // cause.
@@ -64,7 +112,7 @@ impl Output {
     ///
     /// # Errors
     /// As [`Output::write`].
-    pub fn growing(&self, name: &str) -> Result<Growing> {
+    pub fn growing(&mut self, name: &str) -> Result<Growing> {
         let path = self.place(name)?;
         Growing::new(name, temporary_beside(&path), path)
     }
@@ -86,9 +134,12 @@ impl Output {
     }
 
     /// Path of a file in this folder, whose folders are made.
-    fn place(&self, name: &str) -> Result<PathBuf> {
+    fn place(&mut self, name: &str) -> Result<PathBuf> {
         let path = self.folder.join(checked(name)?);
         fs::create_dir_all(&self.folder).map_err(|e| Error::io("make the folder", &self.folder, e))?;
+        if !std::mem::replace(&mut self.swept, true) {
+            sweep(&self.folder);
+        }
         let parent = path.parent().unwrap_or(&self.folder).to_owned();
         self.make_inside(&parent, name)?;
         if path.is_dir() {
@@ -107,6 +158,37 @@ impl Output {
         }
         fs::create_dir_all(parent).map_err(|e| Error::io("make the folder", parent, e))
     }
+}
+
+impl Drop for Output {
+    /// A set that was given up leaves nothing.
+    fn drop(&mut self) {
+        for (temporary, _) in self.waiting.iter().flatten() {
+            let _ = fs::remove_file(temporary);
+        }
+    }
+}
+
+/// Removes temporary files of programs that no longer run.
+fn sweep(folder: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let writer = name.to_str().and_then(|n| n.strip_prefix('.')?.strip_suffix(".part")?.rsplit_once('.'));
+        let Some(Ok(writer)) = writer.map(|(_, number)| number.parse::<u32>()) else { continue };
+        if writer != std::process::id() && !runs(writer, &entry) {
+            // It is in nobody's way: a leftover that cannot be removed is no failure.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// Whether the program of this number still runs; where the system does not show it, whether it wrote within the last hour.
+fn runs(process: u32, entry: &fs::DirEntry) -> bool {
+    if Path::new("/proc/self").exists() {
+        return Path::new("/proc").join(process.to_string()).exists();
+    }
+    let written = entry.metadata().and_then(|m| m.modified());
+    written.is_ok_and(|t| t.elapsed().is_ok_and(|age| age.as_secs() < 3600))
 }
 
 /// The name as a path of plain parts. A backslash or a colon would mean something else on another system, so
@@ -180,6 +262,41 @@ mod tests {
         assert_eq!(out.written(), ["z.txt", "figures/x.svg"]);
         assert_eq!(fs::read_to_string(out.folder().join("z.txt")).unwrap(), "two");
         assert_eq!(names(out.folder()), ["figures", "z.txt"]);
+    }
+
+    #[test]
+    fn a_set_appears_as_one_or_leaves_the_old_one() {
+        let dir = tempfile::tempdir().unwrap();
+        fs::write(dir.path().join("a"), "old").unwrap();
+        let mut out = Output::set(dir.path()).unwrap();
+        out.write("a", "new").unwrap();
+        out.write("deep/b", "first").unwrap();
+        out.write("deep/b", "new").unwrap();
+        assert_eq!(fs::read_to_string(dir.path().join("a")).unwrap(), "old");
+        out.commit().unwrap();
+        assert_eq!(fs::read_to_string(dir.path().join("a")).unwrap(), "new");
+        assert_eq!(fs::read_to_string(dir.path().join("deep/b")).unwrap(), "new");
+        assert_eq!(names(dir.path()), ["a", "deep"]);
+        let mut given_up = Output::set(dir.path()).unwrap();
+        given_up.write("a", "never").unwrap();
+        drop(given_up);
+        assert_eq!(
+            (names(dir.path()), names(&dir.path().join("deep"))),
+            (vec!["a".into(), "deep".into()], vec!["b".into()])
+        );
+        assert_eq!(fs::read_to_string(dir.path().join("a")).unwrap(), "new");
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn leftovers_of_killed_programs_are_removed() {
+        let dir = tempfile::tempdir().unwrap();
+        // Process numbers end at 2^22.
+        for name in [".a.csv.4194999.part", ".a.csv.1.part", ".mine.part", "b.4194999.part"] {
+            fs::write(dir.path().join(name), "x").unwrap();
+        }
+        Output::new(dir.path()).unwrap().write("a.csv", "x").unwrap();
+        assert_eq!(names(dir.path()), [".a.csv.1.part", ".mine.part", "a.csv", "b.4194999.part"]);
     }
 
     #[test]

@@ -98,11 +98,38 @@ fn tasks(quick: bool) -> Vec<Task> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Outcome;
     use super::*;
 
     #[test]
     fn the_limits_of_the_map_are_made_for_as_many_cells_as_it_has() {
         let cells = tasks(false).len();
         assert!(cells <= trial::CELLS && 2 * cells > trial::CELLS, "{cells}");
+    }
+
+    /// The whole map takes long: here the borders of one quantity stand for it.
+    #[test]
+    fn displacements_are_right_or_refused_at_their_borders() {
+        let tried = side_by_side(integration::cells_of_integration(true));
+        let ours: Vec<_> = tried.iter().map(|t| &t.cell).filter(|c| c.ours).collect();
+        let kept = |c: &super::super::Cell| {
+            matches!(c.outcome, Outcome::Right | Outcome::Refused | Outcome::NotAsked)
+        };
+        assert!(ours.iter().all(|c| kept(c)), "{ours:?}");
+        let right = |ours: bool| {
+            tried.iter().filter(|t| t.cell.ours == ours && t.cell.outcome == Outcome::Right).count()
+        };
+        // Neither a map of refusals nor a check that all methods pass.
+        assert!(right(true) > 10, "{ours:?}");
+        assert!(tried.iter().any(|t| !t.cell.ours && t.cell.outcome == Outcome::Wrong));
+    }
+
+    #[test]
+    fn a_scene_is_measured_with_its_bound() {
+        for scene in integration::scenes(true) {
+            assert!(scene.bound.is_some_and(|b| b > 0.0), "{}", scene.name);
+            assert!(scene.methods.iter().all(|m| m.time_ns > 0.0 && m.error.is_some() != m.failed));
+            assert!(scene.methods.iter().any(|m| m.ours && !m.failed));
+        }
     }
 }

@@ -60,7 +60,7 @@ impl Handle {
     /// An axis at `rate` samples a second.
     ///
     /// # Errors
-    /// As [`Weighting::new`].
+    /// If the rate is below four times the upper corner of the weighting.
     pub fn new(rate: f64) -> Result<Handle> {
         let settle = (SETTLED * rate).ceil() as usize;
         Ok(Handle {

@@ -143,7 +143,17 @@ fn over_hum(times: &[f64], hum: f64, drift: f64) -> Trace {
 
 #[test]
 fn no_impact_higher_than_the_hum_is_lost() {
-    for rate in [13.37, 25.0, 50.0, 100.0] {
+    none_lost(&[13.37]);
+}
+
+#[test]
+#[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+fn no_impact_higher_than_the_hum_is_lost_at_any_rate() {
+    none_lost(&[13.37, 25.0, 50.0, 100.0]);
+}
+
+fn none_lost(rates: &[f64]) {
+    for &rate in rates {
         let times: Vec<f64> =
             (0..1000).map(|k| 0.013 + f64::from(k) / rate).take_while(|t| *t < 1.99).collect();
         for hum in [0.0, 0.2, 0.4, 0.5, 1.0] {
@@ -297,8 +307,18 @@ fn uneven_times_and_missing_values_are_named() {
 
 #[test]
 fn a_held_trace_is_known_to_what_it_was_sampled_at() {
+    held_traces(2);
+}
+
+#[test]
+#[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+fn a_held_trace_is_known_to_what_it_was_sampled_at_in_all_draws() {
+    held_traces(20);
+}
+
+fn held_traces(seeds: u64) {
     for hold in [1, 2, 40] {
-        for seed in 0..20 {
+        for seed in 0..seeds {
             let mut noise = Noise::new(seed);
             let interval = 200.3 + 40.0 * noise.uniform();
             let train = |i: usize| {

@@ -1,6 +1,5 @@
 use super::*;
 use crate::{PeriodicOrbit, Sine, orbits, regime};
-use std::time::Instant;
 
 fn plan(n: usize) -> Plan {
     Plan {
@@ -104,22 +103,5 @@ fn impossible_maps_are_refused() {
     ] {
         let text = plan.check().unwrap_err().to_string();
         assert!(text.contains(word), "{text}");
-    }
-}
-
-/// Seconds for a map of 300 × 300 cells of 200 cycles, from a ninth of it. `cargo test --release -- --ignored --nocapture`.
-#[test]
-#[ignore = "a measurement"]
-fn speed() {
-    for (y, n) in [("restitution:0.3:0.95:100", 100), ("force:0.05:1:100", 100)] {
-        let plan = Plan { y: y.parse().unwrap(), ..plan(n) };
-        let start = Instant::now();
-        let mut rows = Rows::none(&plan);
-        plan.run(&mut rows, |_, _| Ok(())).unwrap();
-        println!("{y}: {:.2} s for 300 × 300", 9.0 * start.elapsed().as_secs_f64());
-        let cells = (0..n).flat_map(|r| rows.get(r).unwrap().to_vec());
-        let mut counts = std::collections::BTreeMap::new();
-        cells.for_each(|c| *counts.entry(c.regime.map(|r| r.to_string())).or_insert(0) += 1);
-        println!("{counts:?}");
     }
 }

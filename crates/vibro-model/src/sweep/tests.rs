@@ -1,6 +1,5 @@
 use super::*;
 use crate::{Compliant, Excitation, Law, Loose, Pulses, Rig, Simulation, Sine, State, orbits, orbits_of};
-use std::time::Instant;
 
 const BOTH: [Direction; 2] = [Direction::Up, Direction::Down];
 
@@ -206,22 +205,5 @@ fn slow_pulses_are_read_like_fast_ones() {
         assert!((found.x1 - expected).abs() < 1e-5 * peak, "{frequency} Hz: {found:?} {expected} {peak}");
         let exact = orbits_of(&rig, &pulses, 1).unwrap().no_impact.amplitude;
         assert!((peak / exact - 1.0).abs() < 1e-5, "{frequency} Hz: {peak} {exact}");
-    }
-}
-
-/// Seconds for 136 000 cycles up and down. `cargo test --release -- --ignored --nocapture`.
-#[test]
-#[ignore = "a measurement"]
-fn speed() {
-    let motion = Simulation::new(&thesis(), &Sine { force: 0.1, frequency: 3.0 }).unwrap();
-    for (name, pace, observable) in [
-        ("steps", Pace::Steps { points: 400, settle: 160, measure: 10 }, Observable::Fundamental),
-        ("steps, peak", Pace::Steps { points: 400, settle: 160, measure: 10 }, Observable::Peak),
-        ("steps, rms", Pace::Steps { points: 400, settle: 160, measure: 10 }, Observable::Rms),
-        ("rate", Pace::Rate { rate: 0.02, points: 1000 }, Observable::Fundamental),
-    ] {
-        let start = Instant::now();
-        both(&Plan { from: 3.0, to: 14.0, pace, observable }, &motion, 0.1, &BOTH).unwrap();
-        println!("{name}: {:?}", start.elapsed());
     }
 }

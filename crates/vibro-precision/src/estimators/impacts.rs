@@ -308,10 +308,20 @@ mod tests {
     /// In noise of a tenth no impact is lost; where noise hides them no uncertainty is stated, whatever the intervals seem to say.
     #[test]
     fn impacts_in_noise_are_all_found_or_no_uncertainty_is_stated() {
+        in_noise(4);
+    }
+
+    #[test]
+    #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+    fn impacts_in_noise_are_all_found_or_no_uncertainty_is_stated_in_all_draws() {
+        in_noise(100);
+    }
+
+    fn in_noise(cases: u64) {
         for sigma in [0.1, 0.12, 0.15, 0.2] {
             let make = Train { noise: sigma, ..Train::default() }.rate();
             let (mut right, mut withheld, mut refused) = (0, 0, 0);
-            for seed in 30_000..30_100 {
+            for seed in 30_000..30_000 + cases {
                 let case = make(&mut Noise::new(seed));
                 let Ok(found) = impacts(&case.data, &ImpactsOptions::default()) else {
                     refused += 1;
@@ -331,10 +341,10 @@ mod tests {
                 right += 1;
             }
             println!(
-                "noise of {sigma}, seeds 30000 to 30099: {right} right, {withheld} without an uncertainty, {refused} refused"
+                "noise of {sigma}, {cases} seeds from 30000: {right} right, {withheld} without an uncertainty, {refused} refused"
             );
-            assert!(sigma > 0.1 || right == 100, "{right}");
-            assert!(sigma < 0.15 || right < 10, "{right}");
+            assert!(sigma > 0.1 || right == cases, "{right}");
+            assert!(sigma < 0.15 || 10 * right < cases, "{right}");
         }
     }
 }

@@ -1,8 +1,8 @@
 //! What a header or a person states of analyser text: abscissa, unit, names.
 
 use super::ascii_rows::{complaint, read, values};
+use crate::others_files;
 use proptest::prelude::*;
-use std::path::Path;
 use vibroimpact::read::{Format, Reader, Recording};
 use vibroimpact::record::{AxisKind, Record};
 use vibroimpact::units::Unit;
@@ -179,11 +179,7 @@ fn a_blank_line_leaves_the_time_column_in_place() {
 
 #[test]
 fn the_measured_accelerances() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/analyser");
-    if !folder.is_dir() {
-        eprintln!("skipped: ../shared/data/analyser is absent");
-        return;
-    }
+    let Some(folder) = others_files::folder("analyser") else { return };
     // 1001 complex lines of 1 Hz; peaks near 52, 142, 279, 460, 687 and 959 Hz in their maximum over the three points.
     let mut largest = vec![0.0f64; 1001];
     for i in 1..=3 {

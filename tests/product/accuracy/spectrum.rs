@@ -1,6 +1,6 @@
 //! The scatter of averaged spectra, and displacements by integration in time.
 
-use crate::noise::Noise;
+use super::noise::Noise;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibroimpact::record::Traces;

@@ -1,6 +1,7 @@
 //! Restitution: its stated uncertainty against what repeated measurements show, and against a bootstrap.
 
-use crate::noise::Noise;
+use super::draws::Draws;
+use super::noise::Noise;
 use vibroimpact::measure::restitution::{Drop, Measured, Train, Velocities, restitution};
 
 const CASES: u64 = 1000;
@@ -77,8 +78,7 @@ fn trains_of_bounces_are_covered_whether_impacts_or_clock_scatter() {
 }
 
 /// Two to four trains of one R, of three to six flights each, started at different speeds.
-#[test]
-fn trains_together_are_covered() {
+fn trains_together_are_covered(draws: Draws) {
     let truth: f64 = 0.6;
     for (name, per_bounce, timing, stated) in [
         ("scatter of R", 0.02, 0.0, false),
@@ -88,7 +88,7 @@ fn trains_together_are_covered() {
         ("both, noise not stated", 0.02, 2e-4, false),
     ] {
         let (mut inside, mut n_out, mut open) = (0, 0, 0);
-        for seed in 0..CASES {
+        for seed in 0..draws.of(CASES) {
             let mut noise = Noise::new(115_000 + seed);
             let trains: Vec<Train> = (0..2 + seed % 3)
                 .map(|_| {
@@ -107,20 +107,20 @@ fn trains_together_are_covered() {
             n_out += found.outliers.len();
             let off = (found.restitution.value - truth).abs();
             match found.restitution.std {
-                Some(u) => inside += usize::from(off < 1.96 * u),
+                Some(u) => inside += usize::from(off < draws.reach() * u),
                 None => open += 1,
             }
         }
-        let coverage = inside as f64 / (CASES - open) as f64;
+        let coverage = inside as f64 / (draws.of(CASES) - open) as f64;
         println!(
-            "restitution, trains together with {name}: {CASES} cases, seeds 115000.., 95 % coverage {:.1} %, {n_out} outliers, {open} without uncertainty",
+            "restitution, trains together with {name}: seeds 115000.., 95 % coverage {:.1} %, {n_out} outliers, {open} without uncertainty",
             100.0 * coverage
         );
         // Two or three trains that by chance differ as if R did have none.
-        assert!(open * 20 < CASES, "{name}: {open}");
+        assert!(open * 20 < draws.of(CASES), "{name}: {open}");
         // 1000 cases scatter the coverage by 0.7 %. That R does not scatter at all these flights do not show: it errs to the safe side.
         let most = if per_bounce == 0.0 { 1.0 } else { 0.98 };
-        assert!((0.92..=most).contains(&coverage), "{name}: {coverage}");
+        assert!(draws.part(0.92..=most).contains(&coverage), "{name}: {coverage}");
     }
 }
 
@@ -138,13 +138,12 @@ pub fn train(noise: &mut Noise, r: f64, n: usize, per_bounce: f64, timing: f64) 
 }
 
 /// R scatters by 1 % from bounce to bounce, however surely the onsets are timed.
-#[test]
-fn scatter_of_bounces_is_covered_whatever_is_stated_of_the_onsets() {
+fn scatter_of_bounces_is_covered_whatever_is_stated_of_the_onsets(draws: Draws) {
     let truth: f64 = 0.62;
     for timing in [1e-7, 1e-6, 1e-5, 1e-4] {
         for (flights, trains) in [(6, 1), (12, 1), (5, 5)] {
             let (mut inside, mut open, mut squares) = (0, 0, 0.0);
-            for seed in 0..CASES {
+            for seed in 0..draws.of(CASES) {
                 let mut noise = Noise::new(130_000 + seed);
                 let trains = (0..trains).map(|_| train(&mut noise, truth, flights, 0.01, timing)).collect();
                 let found = restitution(&Measured { trains, ..Measured::default() }).unwrap().restitution;
@@ -153,37 +152,39 @@ fn scatter_of_bounces_is_covered_whatever_is_stated_of_the_onsets() {
                     continue;
                 };
                 let score = (found.value - truth) / std;
-                inside += usize::from(score.abs() < 1.96);
+                inside += usize::from(score.abs() < draws.reach());
                 squares += score * score;
             }
             // One train always has an uncertainty; five may by chance differ as if R did.
             assert!(
-                open * 20 <= if trains > 1 { CASES } else { 0 },
+                open * 20 <= if trains > 1 { draws.of(CASES) } else { 0 },
                 "{timing}, {trains} of {flights}: {open}"
             );
-            let stated = CASES - open;
+            let stated = draws.of(CASES) - open;
             let coverage = inside as f64 / stated as f64;
             println!(
-                "restitution, scatter 1 %, onsets {timing:e} s, {trains} trains of {flights}: {CASES} cases, seeds 130000.., 95 % coverage {:.1} % of {stated}, rms z {:.2}",
+                "restitution, scatter 1 %, onsets {timing:e} s, {trains} trains of {flights}: seeds 130000.., 95 % coverage {:.1} % of {stated}, rms z {:.2}",
                 100.0 * coverage,
                 (squares / stated as f64).sqrt()
             );
             // As above; between trains a scatter is allowed for that is not there, which errs to the safe side.
             let most = if trains > 1 { 0.995 } else { 0.985 };
-            assert!((0.92..=most).contains(&coverage), "{timing}, {trains} of {flights}: {coverage}");
+            assert!(
+                draws.part(0.92..=most).contains(&coverage),
+                "{timing}, {trains} of {flights}: {coverage}"
+            );
         }
     }
 }
 
 /// R differs by 1 % from train to train: their number counts, not that of the flights.
-#[test]
-fn scatter_between_trains_is_covered_or_refused() {
+fn scatter_between_trains_is_covered_or_refused(draws: Draws) {
     let truth: f64 = 0.62;
     for (per_bounce, trains) in
         [(0.0, 2), (0.0, 3), (0.0, 4), (0.0, 6), (0.0, 12), (0.005, 4), (0.005, 6), (0.005, 12)]
     {
         let (mut inside, mut open) = (0, 0);
-        for seed in 0..CASES {
+        for seed in 0..draws.of(CASES) {
             let mut noise = Noise::new(140_000 + seed);
             let trains = (0..trains)
                 .map(|_| {
@@ -193,18 +194,20 @@ fn scatter_between_trains_is_covered_or_refused() {
                 .collect();
             let found = restitution(&Measured { trains, ..Measured::default() }).unwrap().restitution;
             match found.std {
-                Some(u) => inside += usize::from((found.value - truth).abs() < 1.96 * u),
+                Some(u) => inside += usize::from((found.value - truth).abs() < draws.reach() * u),
                 None => open += 1,
             }
         }
-        let stated = CASES - open;
+        let stated = draws.of(CASES) - open;
         println!(
-            "restitution, {trains} trains that differ by 1 %, bounces by {per_bounce}: {CASES} cases, seeds 140000.., 95 % coverage {:.1} % of {stated}",
+            "restitution, {trains} trains that differ by 1 %, bounces by {per_bounce}: seeds 140000.., 95 % coverage {:.1} % of {stated}",
             100.0 * inside as f64 / stated as f64
         );
         // Fewer than six trains that clearly differ have no uncertainty: by 1 % where timing scatters by 1e-5 all but a few per cent of them,
         // fewer where the bounces scatter, too.
-        if trains < 6 {
+        if draws == Draws::Few {
+            assert!(inside as u64 == stated && (trains < 6 || open == 0), "{trains}: {inside} of {stated}");
+        } else if trains < 6 {
             let least = if per_bounce == 0.0 { 0.97 } else { 0.5 };
             assert!(open as f64 > least * CASES as f64, "{trains}: {open}");
         } else {
@@ -270,5 +273,48 @@ fn velocities_are_covered_by_every_method() {
         );
         // 1000 cases scatter the coverage by 0.7 %.
         assert!((0.92..=0.98).contains(&coverage), "{method}: {coverage}");
+    }
+}
+
+/// Few draws: no truth lies far outside.
+mod few {
+    use super::Draws;
+
+    #[test]
+    fn trains_together_are_covered() {
+        super::trains_together_are_covered(Draws::Few);
+    }
+
+    #[test]
+    fn scatter_of_bounces_is_covered_whatever_is_stated_of_the_onsets() {
+        super::scatter_of_bounces_is_covered_whatever_is_stated_of_the_onsets(Draws::Few);
+    }
+
+    #[test]
+    fn scatter_between_trains_is_covered_or_refused() {
+        super::scatter_between_trains_is_covered_or_refused(Draws::Few);
+    }
+}
+
+/// All draws: the statistic.
+mod all {
+    use super::Draws;
+
+    #[test]
+    #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+    fn trains_together_are_covered() {
+        super::trains_together_are_covered(Draws::All);
+    }
+
+    #[test]
+    #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+    fn scatter_of_bounces_is_covered_whatever_is_stated_of_the_onsets() {
+        super::scatter_of_bounces_is_covered_whatever_is_stated_of_the_onsets(Draws::All);
+    }
+
+    #[test]
+    #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+    fn scatter_between_trains_is_covered_or_refused() {
+        super::scatter_between_trains_is_covered_or_refused(Draws::All);
     }
 }

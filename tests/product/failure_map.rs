@@ -231,6 +231,7 @@ const NEAR: [Near; 29] = [
 ];
 
 #[test]
+#[ignore = "a full map: cargo test --release -- --ignored"]
 fn estimators_are_right_or_refuse_at_their_borders() {
     let (map, rates) = estimators::failures_and_rates(true).unwrap();
     check(&map);

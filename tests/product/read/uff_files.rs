@@ -10,12 +10,7 @@ use vibroimpact::record::{Axis, Frf, FrfKind, Record, Scaling, Spectrum, Trace};
 const G: f64 = 9.806_65;
 
 fn folder() -> Option<PathBuf> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/uff");
-    if !path.is_dir() {
-        eprintln!("skipped: ../shared/data is absent");
-        return None;
-    }
-    Some(path)
+    crate::others_files::folder("uff")
 }
 
 /// Reads a file, and checks that a survey of it says the same as its records.

@@ -1,8 +1,8 @@
 //! What is written as data set 58 or 58b is read again as it was, as far as the format has room for it.
 
+use crate::others_files;
 use num_complex::Complex64;
 use proptest::prelude::*;
-use std::path::Path;
 use vibroimpact::read::Reader;
 use vibroimpact::record::{
     Axis, AxisKind, Frf, FrfKind, Grid, Meta, Record, Scaling, Spectrum, Trace, Values, Window,
@@ -313,11 +313,7 @@ fn the_layout_is_that_of_the_standard() {
 
 #[test]
 fn files_of_instruments_survive_a_second_writing() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/uff");
-    if !folder.is_dir() {
-        eprintln!("skipped: ../shared/data is absent");
-        return;
-    }
+    let Some(folder) = others_files::folder("uff") else { return };
     let (mut records, mut refused) = (0, 0);
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();

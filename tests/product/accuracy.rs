@@ -1,8 +1,10 @@
 //! Estimators against truths: how near they come to the Cramér–Rao bound, and how often the truth lies in their intervals.
-//! Many random cases with fixed seeds; run with `--nocapture` to see the figures.
+//! Random cases with fixed seeds: a few in the quick tests, all in those that `cargo test --release -- --ignored` runs;
+//! `--nocapture` shows the figures.
 
 mod bounces;
 mod contact;
+mod draws;
 mod drill;
 mod exposure;
 mod impacts;

@@ -1,6 +1,6 @@
 //! The example drop test: its data are what its generator makes, and its campaign gives back the truth.
 
-#[path = "../examples/drop_test/records.rs"]
+#[path = "../../examples/drop_test/records.rs"]
 mod records;
 
 use serde_json::Value;

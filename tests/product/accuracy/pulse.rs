@@ -1,8 +1,9 @@
 //! Contact pulses in white noise. The pulse is made by formulas written here, and what a low-pass makes of it by integrating the
 //! filter's differential equation: nothing is taken from the code under test.
 
-use crate::noise::Noise;
-use crate::score::{Score, bounds};
+use super::draws::Draws;
+use super::noise::Noise;
+use super::score::{Score, bounds};
 use std::f64::consts::{PI, TAU};
 use vibroimpact::measure::pulse::{Instrument, LowPass, PulseOptions, pulse, two_times};
 use vibroimpact::record::{Axis, Meta, Trace};
@@ -144,12 +145,11 @@ pub fn trace(values: Vec<f64>, dt: f64) -> Trace {
     Trace { meta: Meta::new("bit", Unit::parse("m/s²").expect("a unit")), axis, values }
 }
 
-#[test]
-fn a_sampled_pulse() {
+fn a_sampled_pulse(draws: Draws) {
     let (mut xi, mut frequency, mut velocity, mut restitution, mut duration) =
         <(Score, Score, Score, Score, Score)>::default();
-    println!("seeds 0 to {CASES}");
-    for seed in 0..CASES {
+    println!("seeds 0 to {}", draws.of(CASES));
+    for seed in 0..draws.of(CASES) {
         let mut noise = Noise::new(seed);
         let case = Case::new(&mut noise);
         let p = case.parameters();
@@ -174,18 +174,17 @@ fn a_sampled_pulse() {
         );
         duration.add(&found.duration, end(case.xi, TAU * case.frequency), found.duration.std.unwrap_or(1.0));
     }
-    xi.judge("pulse, ξ", 1.3);
-    frequency.judge("pulse, frequency", 1.3);
-    velocity.judge("pulse, initial velocity", 1.3);
-    restitution.judge("pulse, restitution", 1.3);
-    duration.judge("pulse, duration (against its own uncertainty)", 1.3);
+    xi.judge(draws, "pulse, ξ", 1.3);
+    frequency.judge(draws, "pulse, frequency", 1.3);
+    velocity.judge(draws, "pulse, initial velocity", 1.3);
+    restitution.judge(draws, "pulse, restitution", 1.3);
+    duration.judge(draws, "pulse, duration (against its own uncertainty)", 1.3);
 }
 
-#[test]
-fn a_sampled_pulse_behind_a_low_pass() {
+fn a_sampled_pulse_behind_a_low_pass(draws: Draws) {
     let (mut xi, mut frequency, mut velocity) = <(Score, Score, Score)>::default();
-    println!("seeds 1000 to {}", 1000 + FILTERED);
-    for seed in 1000..1000 + FILTERED {
+    println!("seeds 1000 to {}", 1000 + draws.of(FILTERED));
+    for seed in 1000..1000 + draws.of(FILTERED) {
         let mut noise = Noise::new(seed);
         let case = Case::new(&mut noise);
         // From the corner of the thesis' instrument, 30 kHz for a contact of 25 kHz, to where a filter hardly matters.
@@ -206,16 +205,15 @@ fn a_sampled_pulse_behind_a_low_pass() {
         frequency.add(&found.frequency, case.frequency, bound[4]);
         velocity.add(&found.initial_velocity.expect("an acceleration"), case.velocity.abs(), bound[2]);
     }
-    xi.judge("pulse behind a low-pass, ξ", 1.3);
-    frequency.judge("pulse behind a low-pass, frequency", 1.3);
-    velocity.judge("pulse behind a low-pass, initial velocity", 1.3);
+    xi.judge(draws, "pulse behind a low-pass, ξ", 1.3);
+    frequency.judge(draws, "pulse behind a low-pass, frequency", 1.3);
+    velocity.judge(draws, "pulse behind a low-pass, initial velocity", 1.3);
 }
 
 /// Corners from just above half the sampling rate up: the rise lies between two samples, and several onsets fit.
-#[test]
-fn a_low_pass_above_half_the_sampling_rate_leaves_no_uncertainty() {
-    println!("seeds 5000 to 5020");
-    for seed in 5000..5020 {
+fn a_low_pass_above_half_the_sampling_rate_leaves_no_uncertainty(draws: Draws) {
+    println!("seeds 5000 to {}", 5000 + draws.of(20));
+    for seed in 5000..5000 + draws.of(20) {
         let mut noise = Noise::new(seed);
         let case = Case::new(&mut noise);
         let (corner, order) = (noise.between(0.51, 2.0) / case.dt, 1 + (seed % 4) as usize);
@@ -255,7 +253,50 @@ fn two_times_with_their_uncertainty() {
         let r = (-(PI - 2.0 * theta) * theta.tan()).exp();
         restitution.add(&found.restitution, r, found.restitution.std.expect("a std"));
     }
-    xi.judge("two times, ξ", 1.3);
-    frequency.judge("two times, frequency", 1.3);
-    restitution.judge("two times, restitution", 1.3);
+    xi.judge(Draws::All, "two times, ξ", 1.3);
+    frequency.judge(Draws::All, "two times, frequency", 1.3);
+    restitution.judge(Draws::All, "two times, restitution", 1.3);
+}
+
+/// Few draws: no truth lies far outside.
+mod few {
+    use super::Draws;
+
+    #[test]
+    fn a_sampled_pulse() {
+        super::a_sampled_pulse(Draws::Few);
+    }
+
+    #[test]
+    fn a_sampled_pulse_behind_a_low_pass() {
+        super::a_sampled_pulse_behind_a_low_pass(Draws::Few);
+    }
+
+    #[test]
+    fn a_low_pass_above_half_the_sampling_rate_leaves_no_uncertainty() {
+        super::a_low_pass_above_half_the_sampling_rate_leaves_no_uncertainty(Draws::Few);
+    }
+}
+
+/// All draws: the statistic.
+mod all {
+    use super::Draws;
+
+    #[test]
+    #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+    fn a_sampled_pulse() {
+        super::a_sampled_pulse(Draws::All);
+    }
+
+    #[test]
+    #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+    fn a_sampled_pulse_behind_a_low_pass() {
+        super::a_sampled_pulse_behind_a_low_pass(Draws::All);
+    }
+
+    #[test]
+    #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+    fn a_low_pass_above_half_the_sampling_rate_leaves_no_uncertainty() {
+        super::a_low_pass_above_half_the_sampling_rate_leaves_no_uncertainty(Draws::All);
+    }
 }

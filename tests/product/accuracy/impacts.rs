@@ -1,6 +1,6 @@
 //! Impact times and intervals against their bounds.
 
-use crate::noise::Noise;
+use super::noise::Noise;
 use vibroimpact::measure::impacts::{ImpactsOptions, Scatter, Shape, impacts, interval};
 use vibroimpact::record::{Axis, Meta, Trace};
 use vibroimpact::units::Unit;

@@ -1,5 +1,6 @@
 //! Wave files, MAT-files and tables that other programs wrote.
 
+use crate::others_files;
 use std::path::PathBuf;
 use vibroimpact::read::{Format, Reader, Recording};
 use vibroimpact::record::{Axis, AxisKind, Record, Values};
@@ -191,11 +192,7 @@ fn csv_quoted_names_and_numbers() {
 /// What other people's analysers export as plain numbers is not taken for named columns.
 #[test]
 fn plain_exports_stay_plain() {
-    let folder: PathBuf = [env!("CARGO_MANIFEST_DIR"), "..", "shared", "data", "analyser"].iter().collect();
-    if !folder.exists() {
-        eprintln!("skipped: ../shared/data is absent");
-        return;
-    }
+    let Some(folder) = others_files::folder("analyser") else { return };
     for k in 1..=3 {
         let recording = Reader::new().from_path(folder.join(format!("accelerance_point_{k}.txt"))).unwrap();
         assert_eq!(recording.format, Format::Ascii);

@@ -1,5 +1,6 @@
 //! Impacts of a drill beside which the velocity is no parabola: what rings, lasts too long or comes through a slow instrument.
 
+use super::draws::Draws;
 use super::noise::Noise;
 use super::score::Score;
 use vibroimpact::measure::drill::{Beam, Drill, DrillOptions, Edge, From, Slices, drill};
@@ -103,11 +104,10 @@ fn lacking(found: &Drill) -> Vec<&str> {
         .collect()
 }
 
-#[test]
-fn parabolas_in_noise_keep_their_intervals() {
+fn parabolas_in_noise_keep_their_intervals(draws: Draws) {
     for rho in [0.0, 0.7] {
         let mut scores = [(); 3].map(|()| Score::default());
-        for seed in 1..=CASES {
+        for seed in 1..=draws.of(CASES) {
             let found = case(Spoilt::Noise(rho), seed);
             let all = [found.before, found.after, found.restitution].map(Option::unwrap);
             // The quotient of means is that of the sums.
@@ -118,13 +118,12 @@ fn parabolas_in_noise_keep_their_intervals() {
             }
         }
         for (score, name) in scores.iter().zip(["before", "after", "restitution"]) {
-            score.mostly(&format!("{name}, noise of rho {rho}"));
+            score.mostly(draws, &format!("{name}, noise of rho {rho}"));
         }
     }
 }
 
-#[test]
-fn what_is_no_parabola_has_no_uncertainty_and_a_finding() {
+fn what_is_no_parabola_has_no_uncertainty_and_a_finding(draws: Draws) {
     // Rings from a tenth of the jump down to twice the noise, below, at and above the inverse of the fit's 0.5 ms.
     let rings = [
         (3000.0, 0.3, 3e-4),
@@ -141,7 +140,7 @@ fn what_is_no_parabola_has_no_uncertainty_and_a_finding() {
     spoilt.push((Spoilt::Slow(5000.0), behind));
     let mut score = Score::default();
     for (number, (spoilt, sides)) in spoilt.into_iter().enumerate() {
-        for seed in 1..=CASES / 4 {
+        for seed in 1..=draws.of(CASES / 4) {
             let found = case(spoilt, 1000 * number as u64 + seed);
             let (before, after) = (found.before.as_ref().unwrap(), found.after.as_ref().unwrap());
             assert_eq!(lacking(&found), sides, "case {number}, seed {seed}");
@@ -154,7 +153,7 @@ fn what_is_no_parabola_has_no_uncertainty_and_a_finding() {
         }
     }
     // What rings behind says nothing of the speed before.
-    score.covers("before, with rings behind");
+    score.covers(draws, "before, with rings behind");
 }
 
 #[test]
@@ -165,4 +164,36 @@ fn a_contact_too_long_to_be_found_names_what_allows_it() {
         "{:?}",
         found.findings
     );
+}
+
+/// Few draws: no truth lies far outside.
+mod few {
+    use super::Draws;
+
+    #[test]
+    fn parabolas_in_noise_keep_their_intervals() {
+        super::parabolas_in_noise_keep_their_intervals(Draws::Few);
+    }
+
+    #[test]
+    fn what_is_no_parabola_has_no_uncertainty_and_a_finding() {
+        super::what_is_no_parabola_has_no_uncertainty_and_a_finding(Draws::Few);
+    }
+}
+
+/// All draws: the statistic.
+mod all {
+    use super::Draws;
+
+    #[test]
+    #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+    fn parabolas_in_noise_keep_their_intervals() {
+        super::parabolas_in_noise_keep_their_intervals(Draws::All);
+    }
+
+    #[test]
+    #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+    fn what_is_no_parabola_has_no_uncertainty_and_a_finding() {
+        super::what_is_no_parabola_has_no_uncertainty_and_a_finding(Draws::All);
+    }
 }

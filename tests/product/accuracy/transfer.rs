@@ -1,6 +1,6 @@
 //! The band of a frequency response function.
 
-use crate::noise::Noise;
+use super::noise::Noise;
 use vibroimpact::record::Traces;
 use vibroimpact::record::{Axis, Meta, Trace, Window};
 use vibroimpact::signal::segment::Segments;

@@ -2,19 +2,14 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use vibroimpact::campaign::Campaign;
 use vibroimpact::read::Reader;
 use vibroimpact::report::Output;
 use vibroimpact::report::job::{JobOptions, Results, run};
 
 fn data() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    eprintln!("skipped: ../shared/data is absent");
-    None
+    crate::others_files::folder("")
 }
 
 fn results(campaign: &str) -> (Results, tempfile::TempDir) {

@@ -1,13 +1,13 @@
 //! `vibro drill` from the command line: the example's record against its truth, and input that allows no answer.
 
 #[allow(dead_code)]
-#[path = "../examples/hammer_drill/noise.rs"]
-mod noise;
-#[path = "../examples/hammer_drill/record.rs"]
+#[path = "../../examples/hammer_drill/noise.rs"]
+pub mod noise;
+#[path = "../../examples/hammer_drill/record.rs"]
 mod record;
 #[allow(dead_code)]
-#[path = "../examples/hammer_drill/stroke.rs"]
-mod stroke;
+#[path = "../../examples/hammer_drill/stroke.rs"]
+pub mod stroke;
 
 use serde_json::Value;
 use std::fmt::Write as _;

@@ -1,7 +1,8 @@
 //! Hand-arm exposure of handles whose vibration is known.
 
-use super::drill::noise::Noise;
+use super::draws::Draws;
 use super::score::Score;
+use crate::drill::noise::Noise;
 use vibroimpact::measure::exposure::{Handle, exposure, weighting};
 
 const CASES: u64 = 240;
@@ -23,11 +24,10 @@ fn knots(count: usize, scatter: f64, rho: f64, noise: &mut Noise) -> Vec<f64> {
         .collect()
 }
 
-#[test]
-fn uncertainties_of_an_exposure_are_true() {
+fn uncertainties_of_an_exposure_are_true(draws: Draws) {
     let mut axis = [Score::default(), Score::default(), Score::default()];
     let (mut total, mut daily) = (Score::default(), Score::default());
-    for seed in 1..=CASES {
+    for seed in 1..=draws.of(CASES) {
         let mut noise = Noise::new(seed);
         let seconds = 20.0 + 40.0 * noise.uniform();
         // From axes that know nothing of each other to axes that rise and fall as one.
@@ -70,8 +70,29 @@ fn uncertainties_of_an_exposure_are_true() {
         total.add(&found.a_hv, truth, 1.0);
         daily.add(found.a8.as_ref().unwrap(), 0.5 * truth, 1.0);
     }
-    println!("{CASES} cases, seeds 1 to {CASES}");
-    axis.iter().zip(["axis 1", "axis 2", "axis 3"]).for_each(|(score, name)| score.covers(name));
-    total.covers("a_hv");
-    daily.covers("A(8)");
+    println!("seeds 1 to {}", draws.of(CASES));
+    axis.iter().zip(["axis 1", "axis 2", "axis 3"]).for_each(|(score, name)| score.covers(draws, name));
+    total.covers(draws, "a_hv");
+    daily.covers(draws, "A(8)");
+}
+
+/// Few draws: no truth lies far outside.
+mod few {
+    use super::Draws;
+
+    #[test]
+    fn uncertainties_of_an_exposure_are_true() {
+        super::uncertainties_of_an_exposure_are_true(Draws::Few);
+    }
+}
+
+/// All draws: the statistic.
+mod all {
+    use super::Draws;
+
+    #[test]
+    #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+    fn uncertainties_of_an_exposure_are_true() {
+        super::uncertainties_of_an_exposure_are_true(Draws::All);
+    }
 }

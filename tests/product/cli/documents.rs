@@ -20,8 +20,8 @@ fn commands(text: &str) -> Vec<(String, String)> {
     found
 }
 
-/// Sections whose commands run elsewhere: the record of the first is made by a program of twenty seconds (`tests/drill.rs`); the second measures every method,
-/// a minute in a build for development (`tests/failure_map.rs`, `tests/cli/precision.rs`).
+/// Sections whose commands run elsewhere: the record of the first is made by a program of twenty seconds (`tests/product/drill.rs`); the second measures every method,
+/// a minute in a build for development (`tests/product/failure_map.rs`, `tests/product/cli/precision.rs`).
 #[cfg(unix)]
 const ELSEWHERE: [&str; 2] = ["vibro drill", "vibro precision"];
 

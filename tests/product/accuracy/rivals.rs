@@ -1,9 +1,10 @@
 //! Coverage of all that a pulse prints beside ξ and frequency: stiffness, damping, velocity from a force, and the parameters of
 //! the contacts of Hertz and of Hunt and Crossley, integrated here.
 
-use crate::noise::Noise;
-use crate::pulse::{Case, trace};
-use crate::score::Score;
+use super::draws::Draws;
+use super::noise::Noise;
+use super::pulse::{Case, trace};
+use super::score::Score;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use vibroimpact::measure::pulse::{Instrument, LowPass, PulseOptions, PulseResult, pulse};
@@ -28,9 +29,9 @@ fn add(scores: &mut BTreeMap<&'static str, Score>, found: &PulseResult, case: &C
     assert!(velocity.value.is_nan() || (force.abs() - velocity.value).abs() <= 1e-12 * velocity.value);
 }
 
-fn judge(what: &str, scores: &BTreeMap<&'static str, Score>) {
+fn judge(draws: Draws, what: &str, scores: &BTreeMap<&'static str, Score>) {
     for (name, score) in scores {
-        score.judge(&format!("{what}, {name} (against its own uncertainty)"), 1.3);
+        score.judge(draws, &format!("{what}, {name} (against its own uncertainty)"), 1.3);
     }
 }
 
@@ -40,11 +41,10 @@ fn force(values: &[f64], dt: f64, mass: f64) -> Trace {
     Trace { meta, ..trace(values.iter().map(|v| mass * v).collect(), dt) }
 }
 
-#[test]
-fn what_follows_from_a_pulse_and_a_mass() {
+fn what_follows_from_a_pulse_and_a_mass(draws: Draws) {
     let mut scores = BTreeMap::new();
-    println!("seeds 3000 to {}", 3000 + CASES);
-    for seed in 3000..3000 + CASES {
+    println!("seeds 3000 to {}", 3000 + draws.of(CASES));
+    for seed in 3000..3000 + draws.of(CASES) {
         let mut noise = Noise::new(seed);
         let (case, mass) = (Case::within(&mut noise, (0.08, 0.4)), noise.between(0.05, 5.0));
         let first = (case.onset / case.dt).ceil() as usize;
@@ -55,14 +55,13 @@ fn what_follows_from_a_pulse_and_a_mass() {
             pulse(&force(&values, case.dt, mass), &options).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
         add(&mut scores, &found, &case, mass);
     }
-    judge("pulse with a mass", &scores);
+    judge(draws, "pulse with a mass", &scores);
 }
 
-#[test]
-fn what_follows_from_a_pulse_behind_a_low_pass() {
+fn what_follows_from_a_pulse_behind_a_low_pass(draws: Draws) {
     let mut scores = BTreeMap::new();
-    println!("seeds 4000 to {}", 4000 + CASES);
-    for seed in 4000..4000 + CASES {
+    println!("seeds 4000 to {}", 4000 + draws.of(CASES));
+    for seed in 4000..4000 + draws.of(CASES) {
         let mut noise = Noise::new(seed);
         let (case, mass) = (Case::within(&mut noise, (0.08, 0.35)), noise.between(0.05, 5.0));
         // Corners that leave the jump to be seen; lower ones are judged with their bounds in `pulse`.
@@ -75,7 +74,7 @@ fn what_follows_from_a_pulse_behind_a_low_pass() {
             pulse(&force(&values, case.dt, mass), &options).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
         add(&mut scores, &found, &case, mass);
     }
-    judge("pulse with a mass behind a low-pass", &scores);
+    judge(draws, "pulse with a mass behind a low-pass", &scores);
 }
 
 /// −z″ of z″ = −z^{3/2}(1 + α z′), z(0) = 0, z′(0) = 1, at every step up to where z is 0 again, by Runge and Kutta; its end,
@@ -102,11 +101,11 @@ fn losses(alpha: f64, step: f64) -> (Vec<f64>, f64, f64) {
 }
 
 /// The parameters of the contact that a rival is, losses α of 0 for that of Hertz.
-fn rival(model: usize, from: u64, alphas: (f64, f64)) {
+fn rival(model: usize, from: u64, alphas: (f64, f64), draws: Draws) {
     const STEP: f64 = 1.0 / 512.0;
     let mut scores: BTreeMap<&str, Score> = BTreeMap::new();
-    println!("seeds {from} to {}", from + CASES);
-    for seed in from..from + CASES {
+    println!("seeds {from} to {}", from + draws.of(CASES));
+    for seed in from..from + draws.of(CASES) {
         let mut noise = Noise::new(seed);
         let alpha = if model == 1 { 0.0 } else { noise.between(alphas.0, alphas.1) };
         let (shape, end, restitution) = losses(alpha, STEP);
@@ -144,15 +143,67 @@ fn rival(model: usize, from: u64, alphas: (f64, f64)) {
             scores.entry(name).or_default().own(&fit.parameters[name], *truth);
         }
     }
-    judge(["", "contact of Hertz", "contact of Hunt and Crossley"][model], &scores);
+    judge(draws, ["", "contact of Hertz", "contact of Hunt and Crossley"][model], &scores);
 }
 
-#[test]
-fn the_contact_of_hertz() {
-    rival(1, 6000, (0.0, 0.0));
+fn the_contact_of_hertz(draws: Draws) {
+    rival(1, 6000, (0.0, 0.0), draws);
 }
 
-#[test]
-fn the_contact_of_hunt_and_crossley() {
-    rival(2, 7000, (0.05, 1.0));
+fn the_contact_of_hunt_and_crossley(draws: Draws) {
+    rival(2, 7000, (0.05, 1.0), draws);
+}
+
+/// Few draws: no truth lies far outside.
+mod few {
+    use super::Draws;
+
+    #[test]
+    fn what_follows_from_a_pulse_and_a_mass() {
+        super::what_follows_from_a_pulse_and_a_mass(Draws::Few);
+    }
+
+    #[test]
+    fn what_follows_from_a_pulse_behind_a_low_pass() {
+        super::what_follows_from_a_pulse_behind_a_low_pass(Draws::Few);
+    }
+
+    #[test]
+    fn the_contact_of_hertz() {
+        super::the_contact_of_hertz(Draws::Few);
+    }
+
+    #[test]
+    fn the_contact_of_hunt_and_crossley() {
+        super::the_contact_of_hunt_and_crossley(Draws::Few);
+    }
+}
+
+/// All draws: the statistic.
+mod all {
+    use super::Draws;
+
+    #[test]
+    #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+    fn what_follows_from_a_pulse_and_a_mass() {
+        super::what_follows_from_a_pulse_and_a_mass(Draws::All);
+    }
+
+    #[test]
+    #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+    fn what_follows_from_a_pulse_behind_a_low_pass() {
+        super::what_follows_from_a_pulse_behind_a_low_pass(Draws::All);
+    }
+
+    #[test]
+    #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+    fn the_contact_of_hertz() {
+        super::the_contact_of_hertz(Draws::All);
+    }
+
+    #[test]
+    #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+    fn the_contact_of_hunt_and_crossley() {
+        super::the_contact_of_hunt_and_crossley(Draws::All);
+    }
 }
