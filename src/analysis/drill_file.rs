@@ -4,7 +4,7 @@ use crate::measure::drill::{Channels, Cycle, Drill, DrillOptions, drill_each, st
 use std::path::{Path, PathBuf};
 use vibro_io::Reader;
 use vibro_record::units::Quantity;
-use vibro_record::{Error, Meta, Place, Result, Trace};
+use vibro_record::{Error, Finding, Meta, Place, Result, Trace};
 
 /// A file with the channels of a drill, by name or number from 1.
 #[derive(Debug, Clone)]
@@ -31,22 +31,22 @@ struct Played<'a> {
     path: &'a Path,
     names: Vec<&'a str>,
     metas: Vec<Meta>,
-    doubts: Vec<String>,
+    findings: Vec<Finding>,
     rate: f64,
     factors: Vec<f64>,
-    /// Samples gone over, of as many as there are in all passes.
+    /// Hears how many samples were read, of all passes.
     progress: &'a dyn Fn(usize, usize),
     done: usize,
     all: usize,
 }
 
-/// Times that [`crate::measure::drill::drill`] goes over a record.
+/// Times that [`crate::measure::drill::drill`] reads a record.
 const PASSES: usize = 3;
 
 impl DrillFile {
     /// Opens the file once to learn its rate, and measures. `sensitivity` may stay NaN in the options where the velocity
-    /// channel is a velocity already. `progress` is told after every block how many samples were gone over, of how many: each
-    /// comes three times.
+    /// channel is a velocity already. `progress` hears after every block how many samples were read, of how many: each is read
+    /// three times.
     ///
     /// # Errors
     /// As [`crate::measure::drill::drill`]; if a file cannot be read, a channel does not exist or is named twice, or has another rate; if a channel
@@ -67,21 +67,21 @@ impl DrillFile {
     ) -> Result<Drill> {
         let mut names = vec![self.velocity.as_str(), self.reference.as_str()];
         names.extend(self.handle.iter().map(String::as_str));
-        let mut doubts = Vec::new();
+        let mut findings = Vec::new();
         let mut channels = self.open(&self.path, names, progress)?;
         let mut options = options.clone();
         let is = |i: usize, quantity| channels.metas.get(i).is_some_and(|m: &Meta| m.quantity == quantity);
         match (is(0, Quantity::Velocity), options.sensitivity.is_nan()) {
             (true, true) => options.sensitivity = 1.0,
-            (true, false) if options.sensitivity != 1.0 => doubts.push(
-                "The velocity channel is in m/s already and is multiplied by the sensitivity all the same."
-                    .to_owned(),
+            (true, false) if options.sensitivity != 1.0 => findings.push(
+                Finding::doubt("drill-velocity-scaled-twice").number("sensitivity", options.sensitivity),
             ),
             (false, true) => {
                 return Err(Error::usage(
                     "no sensitivity",
                     "the sensitivity in m/s for one unit of the velocity channel",
-                ));
+                )
+                .setting("sensitivity"));
             }
             _ => {}
         }
@@ -91,7 +91,7 @@ impl DrillFile {
         {
             let found = format!("the handle channel {:?} in {}", meta.name, meta.unit);
             let expected = "an acceleration, or the sensitivity of the handle in m/s² a unit";
-            return Err(Error::input(Place::file(&self.path), found, expected));
+            return Err(Error::input(Place::file(&self.path), found, expected).setting("handle_sensitivity"));
         }
         if let Some(factor) = self.handle_sensitivity {
             channels.factors.iter_mut().skip(2).for_each(|f| *f = factor);
@@ -109,9 +109,9 @@ impl DrillFile {
             }
         };
         let mut found = drill_each(&mut channels, &options, noise.as_ref(), each)?;
-        doubts.append(&mut channels.doubts);
-        doubts.append(&mut found.warnings);
-        found.warnings = doubts;
+        findings.append(&mut channels.findings);
+        findings.append(&mut found.findings);
+        found.findings = findings;
         Ok(found)
     }
 
@@ -124,7 +124,9 @@ impl DrillFile {
         for (i, name) in names.iter().enumerate() {
             if names[..i].contains(name) {
                 return Err(Error::refused(format!("the channel {name:?} is named twice"))
-                    .hint("velocity, reference and handle are different channels; `vibro info` lists them"));
+                    .hint("velocity, reference and handle are different channels; `vibro info` lists them")
+                    .setting("velocity")
+                    .setting("reference"));
             }
         }
         let reader = self.reader.clone().allow_missing(true);
@@ -134,7 +136,7 @@ impl DrillFile {
         }
         let (rate, factors) = (traces.rate(), vec![1.0; names.len()]);
         let (metas, all) = (traces.channels().to_vec(), PASSES * traces.frames());
-        Ok(Played { reader, path, names, metas, doubts: Vec::new(), rate, factors, progress, done: 0, all })
+        Ok(Played { reader, path, names, metas, findings: Vec::new(), rate, factors, progress, done: 0, all })
     }
 }
 
@@ -161,8 +163,10 @@ impl Channels for Played<'_> {
             self.done += n;
             (self.progress)(self.done, self.all);
         }
-        // What only the values show is known now. Sensitivities are stated: that a file knows none is no doubt.
-        self.doubts = traces.doubts_but(|doubt| doubt == Trace::UNCALIBRATED);
+        // What only the values show is known now. Sensitivities are stated: that a file knows none is no finding.
+        let doubts = traces.doubts_but(|doubt| doubt == Trace::UNCALIBRATED);
+        self.findings =
+            doubts.iter().map(|d| Finding::caution("drill-file-doubt").name("doubt", d)).collect();
         Ok(())
     }
 }

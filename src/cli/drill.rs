@@ -4,6 +4,7 @@ use super::{args, complain, print, progress, settings};
 use crate::analysis::DrillFile;
 use crate::error::{Error, Result};
 use crate::measure::drill::{Beam, Cycle, Drill, DrillOptions, Edge, From, Smoothing};
+use crate::report::words::{Voice, sentences};
 use crate::report::{Growing, Output, files, pictures, tables};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -58,7 +59,7 @@ pub fn run(typed: &args::Drill, json: bool) -> Result<()> {
     if json {
         return print::json(&Answer { drill, files: written });
     }
-    complain::warn(&drill.warnings);
+    complain::warn(&sentences(&drill.findings, Voice::Command));
     let mut text = tables::drill(std::slice::from_ref(&("", &drill))).text();
     text.push_str("\neach impact and the average turn: --json, or files with --out\n");
     for file in written {

@@ -2,7 +2,7 @@
 //!
 //! The velocity is what the laser shows times its sensitivity over cos α, α the angle between beam and motion. Edges of the
 //! reference cut the record into turns; phases are parts of a turn after the edge, which for a pulse at the upper end of
-//! the piston's stroke is the phase after top dead centre. The record is gone over three times block by block, so that
+//! the piston's stroke is the phase after top dead centre. The record is read three times block by block, so that
 //! memory grows with the number of turns (some hundred bytes each) but not with the number of samples.
 //!
 //! ```
@@ -23,62 +23,59 @@ mod average;
 mod beam;
 mod channels;
 mod crossing;
-mod cycle;
 mod edges;
+mod excerpt;
 mod faults;
+mod findings;
+mod fit_noise;
 mod floor;
 mod groups;
 mod impact;
 mod jumps;
-mod misfit;
+mod lack_of_fit;
 mod motion;
 mod options;
-mod passing;
-mod rebound;
-mod residue;
+mod parabola;
+mod pass;
+mod reference;
+mod restitution;
 mod result;
 mod running;
-mod side;
 mod smoothing;
 mod summary;
 mod survey;
-mod suspect;
 mod turns;
 
-use average::Average;
+pub use average::Cycle;
 pub use beam::{Beam, From};
 pub use channels::{Channels, Slices};
-pub use cycle::Cycle;
 pub use edges::Edge;
 pub(crate) use edges::{Edges, Found};
+use excerpt::Excerpt;
 pub use faults::FaultCount;
 pub use floor::NoiseFloor;
 pub use groups::Group;
 pub use impact::Impact;
-use jumps::Jumps;
 pub use motion::Bandwidth;
-use motion::{Motion, displacement};
 pub use options::DrillOptions;
-pub use result::{BeamResult, Corner, Displacement, Drill, Phases, Pulses};
-pub(crate) use running::Running;
-pub use smoothing::Smoothing;
+pub use result::{BeamResult, Displacement, Drill, Phases, Pulses};
+use running::Running;
+pub use smoothing::{Corner, CornerReason, Smoothing, SmoothingKind};
 pub(crate) use survey::Survey;
-pub(crate) use turns::Numbered;
-pub use turns::{Turn, Turns};
+pub(crate) use turns::{Numbered, Turns};
 
-use super::exposure::{Handle, exposure};
-use passing::Pass;
+use super::exposure::Handle;
+use pass::Pass;
+use summary::Measured;
 use vibro_record::{Error, Result};
 use vibro_signal::welch::Stream;
-
-/// Samples of the end and the middle of a part of the record that are kept to be drawn.
-const EXCERPT: usize = 1 << 16;
 
 /// Measures the turns and impacts of a drill; `still` is a record of the same velocity channel without motion, in m/s.
 ///
 /// # Errors
 /// If the parameters cannot be; if the velocity is constant or missing; if velocity and reference are the same or look swapped; if the
-/// reference has not two levels nor even edges, or no whole turn between its edges; if a channel cannot be read.
+/// reference has not two levels nor even edges, or no whole turn between its edges; if a channel cannot be read; if a handle allows no
+/// exposure.
 pub fn drill(channels: &mut dyn Channels, options: &DrillOptions, still: Option<&Stream>) -> Result<Drill> {
     drill_each(channels, options, still, &mut |_| Ok(()))
 }
@@ -96,65 +93,40 @@ pub fn drill_each(
     options.check()?;
     let rate = channels.rate();
     if !(rate.is_finite() && rate > 0.0) {
-        return Err(Error::usage(format!("a sampling rate of {rate} Hz"), "a finite number above 0"));
+        return Err(
+            Error::usage(format!("a sampling rate of {rate} Hz"), "a finite number above 0").setting("rate")
+        );
     }
-    let factor = options.sensitivity * options.beam.factor();
-    let (mut velocity, mut reference) = (Survey::default(), Survey::default());
-    let mut handles: Vec<Handle> = Vec::new();
-    let (mut same, mut frames) = (true, 0);
-    let mut scaled: Vec<f64> = Vec::new();
-    channels.play(&mut |block| {
-        let [v, r, axes @ ..] = block else {
-            return Err(Error::usage(format!("{} channels", block.len()), "a velocity and a reference"));
-        };
-        same = same && v.iter().zip(*r).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()));
-        scale(v, factor, &mut scaled);
-        frames += scaled.len();
-        velocity.push(&scaled);
-        reference.push(r);
-        while handles.len() < axes.len() {
-            handles.push(Handle::new(rate)?);
-        }
-        handles.iter_mut().zip(axes).for_each(|(handle, axis)| handle.push(axis));
-        Ok(())
-    })?;
-    let levels = check(&velocity, &reference, same, options)?;
-    let mut edges = Edges::new(levels.0, levels.1, options.edge);
+    let surveyed = Surveyed::of(channels, options)?;
+    let (low, high) = reference::levels(&surveyed, options)?;
+    let mut edges = Edges::new(low, high, options.edge);
     channels.play(&mut |block| {
         edges.push(block.get(1).copied().unwrap_or_default());
         Ok(())
     })?;
-    let mut found = edges.finish();
-    suspect::reference(&velocity, &reference, &found.edges)?;
-    if options.delay != 0.0 {
+    let mut edges = edges.finish();
+    reference::check_pulses(&surveyed.velocity, &surveyed.reference, &edges.edges)?;
+    let delay = options.delay * rate;
+    if delay != 0.0 {
         // Turns are counted in the clock of the velocity.
-        found.edges.iter_mut().for_each(|edge| *edge += options.delay * rate);
-        found.edges.retain(|edge| *edge >= 0.0 && *edge <= frames.saturating_sub(1) as f64);
+        let last = surveyed.velocity.samples().saturating_sub(1) as f64;
+        edges.edges.iter_mut().for_each(|edge| *edge += delay);
+        edges.edges.retain(|edge| (0.0..=last).contains(edge));
     }
-    let turns = Turns::new(&found.edges, options.pulses_per_turn)?;
-    let mut pass = Pass::new(options, rate, &turns.turns, &velocity, still.is_some())?;
-    let mut excerpt = Excerpt::new(&turns.turns, options.delay * rate);
+    let turns = Turns::new(&edges.edges, options.pulses_per_turn)?;
+    let mut pass = Pass::new(options, rate, &turns.whole, &surveyed.velocity, still.is_some())?;
+    let mut excerpts = [0.0, delay].map(|delay| Excerpt::new(&turns.whole, delay));
+    let mut scaled = Vec::new();
     channels.play(&mut |block| {
-        scale(block.first().copied().unwrap_or_default(), factor, &mut scaled);
-        excerpt.push(&scaled, block.get(1).copied().unwrap_or_default());
+        let [velocity, reference, ..] = block else { return Ok(()) };
+        scale(velocity, options, &mut scaled);
+        excerpts[0].push(&scaled);
+        excerpts[1].push(reference);
         pass.push(&scaled, each)
     })?;
     let pass = pass.finish(each)?;
-    let exposure = if handles.is_empty() { None } else { Some(exposure(&handles, options.hours)?) };
-    let edge = found.std(reference.noise());
-    Ok(summary::summary(summary::Measured {
-        options,
-        rate,
-        velocity: &velocity,
-        reference: &reference,
-        found: &found,
-        edge,
-        turns: &turns,
-        pass,
-        still,
-        exposure,
-        excerpt: (excerpt.from, excerpt.velocity, excerpt.reference),
-    }))
+    let (surveyed, edges, turns) = (&surveyed, &edges, &turns);
+    summary::summary(Measured { options, rate, surveyed, edges, turns, pass, still, excerpts })
 }
 
 /// The averaged spectrum of a record without motion, from the blocks of its velocity channel alone.
@@ -162,10 +134,9 @@ pub fn drill_each(
 /// # Errors
 /// If it cannot be read.
 pub fn still(channels: &mut dyn Channels, options: &DrillOptions) -> Result<Stream> {
-    let factor = options.sensitivity * options.beam.factor();
     let (mut spectrum, mut scaled) = (floor::averages(), Vec::new());
     channels.play(&mut |block| {
-        scale(block.first().copied().unwrap_or_default(), factor, &mut scaled);
+        scale(block.first().copied().unwrap_or_default(), options, &mut scaled);
         scaled.retain(|v| v.is_finite());
         spectrum.push(&scaled);
         Ok(())
@@ -173,80 +144,43 @@ pub fn still(channels: &mut dyn Channels, options: &DrillOptions) -> Result<Stre
     Ok(spectrum)
 }
 
-fn scale(values: &[f64], factor: f64, scaled: &mut Vec<f64>) {
+/// Velocities of the motion in m/s from the values of their channel.
+fn scale(values: &[f64], options: &DrillOptions, scaled: &mut Vec<f64>) {
+    let factor = options.sensitivity * options.beam.factor();
     scaled.clear();
     scaled.extend(values.iter().map(|v| factor * v));
 }
 
-/// Levels of the reference, once both channels are what they must be.
-fn check(velocity: &Survey, reference: &Survey, same: bool, options: &DrillOptions) -> Result<(f64, f64)> {
-    let Some((low, high)) = velocity.range() else {
-        return Err(Error::refused("the velocity channel holds no value"));
-    };
-    if same {
-        return Err(Error::refused("velocity and reference are the same channel")
-            .hint("name two channels with --velocity and --reference; `vibro info` lists them"));
-    }
-    if low == high {
-        return Err(Error::refused(format!("the velocity is constant, {low} m/s: the laser saw nothing")));
-    }
-    let Some((low, high)) = reference.levels() else {
-        let what = reference.range().map_or("without a value".to_owned(), |(v, _)| format!("constant, {v}"));
-        return Err(Error::refused(format!("no edge: the reference channel is {what}")));
-    };
-    match options.level {
-        None => Ok((low, high)),
-        // The level stands in the middle; the nearer of both levels gives the height.
-        Some(level) if level > low && level < high => {
-            let half = (level - low).min(high - level);
-            Ok((level - half, level + half))
-        }
-        Some(level) => Err(Error::refused(format!(
-            "the reference lies between {low:.4} and {high:.4}: it does not cross the level {level}"
-        ))),
-    }
+/// What the first pass shows: what the channels look like, and the vibration of the handle.
+struct Surveyed {
+    velocity: Survey,
+    reference: Survey,
+    handles: Vec<Handle>,
+    /// Whether both channels hold the same values.
+    same: bool,
 }
 
-/// A few turns of the middle of a record, to be drawn in the clock of the velocity.
-struct Excerpt {
-    at: usize,
-    from: usize,
-    to: usize,
-    /// Samples by which the reference is earlier than the velocity.
-    delay: isize,
-    velocity: Vec<f64>,
-    reference: Vec<f64>,
-}
-
-/// Turns that are drawn.
-const DRAWN: usize = 3;
-
-impl Excerpt {
-    fn new(turns: &[Turn], delay: f64) -> Excerpt {
-        let first = turns.len().saturating_sub(DRAWN) / 2;
-        let shown = turns.get(first..(first + DRAWN).min(turns.len())).unwrap_or(&[]);
-        let from = shown.first().map_or(0, |t| t.start as usize);
-        let to = shown.last().map_or(0, |t| t.end as usize + 1).min(from + EXCERPT);
-        let delay = delay.round() as isize;
-        // What would lie before or behind the record is not there.
-        let velocity = Vec::new();
-        Excerpt { at: 0, from, to, delay, velocity, reference: vec![f64::NAN; to - from] }
-    }
-
-    fn push(&mut self, velocity: &[f64], reference: &[f64]) {
-        let (from, to) = (self.from.saturating_sub(self.at), self.to.saturating_sub(self.at));
-        self.velocity.extend(&velocity[from.min(velocity.len())..to.min(velocity.len())]);
-        // Sample i of the reference belongs to sample i + delay of the velocity.
-        let first = self.from.saturating_add_signed(self.delay.saturating_neg()).max(self.at);
-        for (i, v) in (self.at..).zip(reference).skip(first - self.at) {
-            let place = i.checked_add_signed(self.delay).and_then(|k| k.checked_sub(self.from));
-            match place.map(|k| self.reference.get_mut(k)) {
-                Some(Some(to)) => *to = *v,
-                Some(None) => break,
-                None => {}
+impl Surveyed {
+    fn of(channels: &mut dyn Channels, options: &DrillOptions) -> Result<Surveyed> {
+        let rate = channels.rate();
+        let (velocity, reference) = (Survey::default(), Survey::default());
+        let mut all = Surveyed { velocity, reference, handles: Vec::new(), same: true };
+        let mut scaled = Vec::new();
+        channels.play(&mut |block| {
+            let [v, r, axes @ ..] = block else {
+                return Err(Error::usage(format!("{} channels", block.len()), "a velocity and a reference"));
+            };
+            all.same = all.same && v.iter().zip(*r).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()));
+            scale(v, options, &mut scaled);
+            all.velocity.push(&scaled);
+            all.reference.push(r);
+            while all.handles.len() < axes.len() {
+                all.handles.push(Handle::new(rate)?);
             }
-        }
-        self.at += velocity.len();
+            all.handles.iter_mut().zip(axes).for_each(|(handle, axis)| handle.push(axis));
+            Ok(())
+        })?;
+        Ok(all)
     }
 }
 

@@ -8,8 +8,7 @@ use super::Estimate;
 use super::mean::Mean;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
-use vibro_record::units::notation::significant;
-use vibro_record::{Error, Result};
+use vibro_record::{Error, Finding, Result};
 use vibro_signal::filter::{Analogue, Filter, Running};
 
 /// Corners of the band limitation in Hz and their quality (ISO 5349-1:2001, table A.1, where it is
@@ -47,7 +46,7 @@ fn analogue() -> [([f64; 3], [f64; 3]); 3] {
 
 /// The weighting as a digital filter. Each section is transformed bilinearly so that it is exact at its own corner.
 #[derive(Debug, Clone)]
-pub struct Weighting {
+struct Weighting {
     filter: Filter,
     running: Option<Running>,
 }
@@ -57,11 +56,12 @@ impl Weighting {
     ///
     /// # Errors
     /// If the rate is below four times the upper corner of the weighting.
-    pub fn new(rate: f64) -> Result<Weighting> {
+    fn new(rate: f64) -> Result<Weighting> {
         if !(rate >= LOWEST_RATE && rate.is_finite()) {
             return Err(Error::refused(format!(
-                "the weighting W_h reaches to 1259 Hz: a rate of {rate} Hz is too low, {LOWEST_RATE:.0} Hz are needed"
-            )));
+                "a rate of {rate} Hz is too low for the weighting W_h, which reaches to 1259 Hz"
+            ))
+            .hint(format!("sample the handle at {LOWEST_RATE:.0} Hz or more")));
         }
         let corners = [BAND[0], BAND[1], TRANSITION];
         let sections: Vec<Analogue> =
@@ -71,7 +71,7 @@ impl Weighting {
 
     /// Weights the next samples in place. The filter begins as if the first value had been there for ever: an offset of the
     /// sensor is no shock.
-    pub fn apply(&mut self, values: &mut [f64]) {
+    fn apply(&mut self, values: &mut [f64]) {
         let Some(first) = values.first() else { return };
         let filter = &self.filter;
         self.running.get_or_insert_with(|| filter.settled_at(*first)).apply(values);
@@ -83,6 +83,7 @@ const SHORT: f64 = 8.0;
 
 /// Exposure of a hand.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Exposure {
     /// Weighted RMS acceleration of each axis.
     pub axes: Vec<Estimate>,
@@ -97,7 +98,7 @@ pub struct Exposure {
     /// Largest unweighted deviation of any axis from its mean, in m/s².
     pub unweighted_peak: f64,
     /// What must be known with these numbers.
-    pub warnings: Vec<String>,
+    pub findings: Vec<Finding>,
 }
 
 /// Exposure from one to three axes of a handle; `hours` of it a day.
@@ -114,41 +115,35 @@ pub fn exposure(handles: &[Handle], hours: Option<f64>) -> Result<Exposure> {
     if handles.is_empty() || handles.len() > 3 {
         return Err(Error::usage(format!("{} axes of a handle", handles.len()), "one to three"));
     }
-    if let Some(h) = hours.filter(|h| !(*h > 0.0 && *h <= 24.0)) {
-        return Err(Error::usage(format!("an exposure of {h} hours a day"), "a number above 0, at most 24"));
-    }
+    check_hours(hours)?;
     for handle in handles {
-        let part = handle.missing as f64 / handle.samples().max(1) as f64;
-        if part > MISSING {
+        let part = 100.0 * handle.missing as f64 / handle.samples().max(1) as f64;
+        if part > 100.0 * MISSING {
+            let limit = 100.0 * MISSING;
             return Err(Error::refused(format!(
-                "{:.1} % of the accelerations of the handle are missing, more than {:.0} %: what was lost with them nobody knows",
-                100.0 * part,
-                100.0 * MISSING
+                "{part:.1} % of the accelerations of the handle are missing, more than {limit:.0} %"
             ))
-            .hint("mend the cable or the sensor, cut the record, or leave the handle out"));
+            .hint("mend the cable or the sensor, cut the record, or leave the handle out")
+            .setting("handle"));
         }
     }
     if handles.iter().any(|h| h.counted() == 0) {
         return Err(Error::refused(format!(
-            "the record of the handle is nowhere without a gap for longer than {SETTLED} s, in which the weighting W_h settles"
+            "the handle has no stretch without a gap for {SETTLED} s, in which the weighting W_h settles"
         ))
-        .hint("measure longer, or leave the handle out"));
+        .hint("measure longer, or leave the handle out")
+        .setting("handle"));
     }
     // Of y = x²: u_x = u_y/(2x).
     let root = |square: f64, seconds: &[f64], method: &str| {
         let (rms, mean) = (square.sqrt(), Mean::of(seconds));
         Estimate::new(rms, mean.std.map(|s| s / (2.0 * rms)), "m/s²", mean.n, method)
     };
-    let axes: Vec<Estimate> = handles
-        .iter()
-        .map(|h| {
-            root(
-                h.mean_square(),
-                &h.seconds().flatten().collect::<Vec<f64>>(),
-                "RMS weighted by W_h, ISO 5349-1",
-            )
-        })
-        .collect();
+    let axis = |h: &Handle| {
+        let seconds: Vec<f64> = h.seconds().flatten().collect();
+        root(h.mean_square(), &seconds, "RMS weighted by W_h, ISO 5349-1")
+    };
+    let axes: Vec<Estimate> = handles.iter().map(axis).collect();
     let total: f64 = handles.iter().map(Handle::mean_square).sum();
     if total <= 0.0 {
         return Err(Error::refused("the handle does not vibrate: its acceleration does not change"));
@@ -158,7 +153,6 @@ pub fn exposure(handles: &[Handle], hours: Option<f64>) -> Result<Exposure> {
         sums = sums.iter().zip(handle.seconds()).map(|(a, b)| Some((*a)? + b?)).collect();
     }
     let together: Vec<f64> = sums.into_iter().flatten().collect();
-    let wanders = Mean::of(&together).wanders;
     let a_hv = root(total, &together, "root of the sum of squares of the axes");
     let a8 = hours.map(|h| {
         let part = (h / 8.0).sqrt();
@@ -166,40 +160,41 @@ pub fn exposure(handles: &[Handle], hours: Option<f64>) -> Result<Exposure> {
     });
     let crest = |h: &Handle| h.peak / h.mean_square().sqrt();
     let crest_factor = handles.iter().map(crest).filter(|c| c.is_finite()).fold(0.0, f64::max);
-    let mut warnings = vec![
-        "W_h understates the shocks of percussive tools: see the crest factor and the unweighted peak beside a_hv."
-            .to_owned(),
-    ];
+    let mut findings = vec![Finding::note("exposure-understates-shocks")];
     if handles.len() < 3 {
-        warnings.push(format!(
-            "a_hv rests on {} of three axes: the true value is larger, up to 1.7 times with one axis.",
-            handles.len()
-        ));
+        findings.push(Finding::caution("exposure-axes-missing").count("axes", handles.len()));
     }
-    if wanders {
-        warnings.push(
-            "The vibration of the handle changes slowly along the record: the uncertainty of a_hv may be too small; measure longer."
-                .to_owned(),
-        );
+    if Mean::of(&together).wanders {
+        findings.push(Finding::caution("exposure-slow-changes"));
     }
-    let measured = handles.iter().map(Handle::duration).fold(f64::INFINITY, f64::min);
-    if measured < SHORT {
-        warnings.push(format!(
-            "a_hv rests on {} s of the record: below {SHORT} s it is unlikely to be that of the work, of which a minute in all should be measured (ISO 5349-2).",
-            significant(measured, 2)
-        ));
+    let duration = handles.iter().map(Handle::duration).fold(f64::INFINITY, f64::min);
+    if duration < SHORT {
+        findings.push(Finding::caution("exposure-record-short").number("duration", duration));
     }
     let missing: usize = handles.iter().map(|h| h.missing).sum();
     if missing > 0 {
         let counted: usize = handles.iter().map(Handle::counted).sum();
         let all: usize = handles.iter().map(Handle::samples).sum();
-        warnings.push(format!(
-            "{missing} accelerations of the handle are missing: they and the half second behind each are left out, a_hv rests on {:.1} % of the record.",
-            100.0 * counted as f64 / all as f64
-        ));
+        let share = counted as f64 / all as f64;
+        findings
+            .push(Finding::caution("exposure-samples-missing").count("n", missing).number("counted", share));
     }
     let unweighted_peak = handles.iter().map(Handle::unweighted_peak).fold(0.0, f64::max);
-    Ok(Exposure { axes, a_hv, a8, hours, crest_factor, unweighted_peak, warnings })
+    Ok(Exposure { axes, a_hv, a8, hours, crest_factor, unweighted_peak, findings })
+}
+
+/// Hours a day of an exposure.
+///
+/// # Errors
+/// If they are not above 0 and at most 24.
+pub(crate) fn check_hours(hours: Option<f64>) -> Result<()> {
+    match hours.filter(|h| !(*h > 0.0 && *h <= 24.0)) {
+        Some(h) => {
+            Err(Error::usage(format!("an exposure of {h} hours a day"), "a number above 0, at most 24")
+                .setting("exposure"))
+        }
+        None => Ok(()),
+    }
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use super::{JobOptions, PARTS, Progress, file_name, merge, or_left_out, slugs};
 use crate::campaign::Campaign;
 use crate::error::Result;
 use crate::measure::drill::Drill;
+use crate::report::words::{Voice, sentences};
 use crate::report::{Figure, Output, pictures, tables};
 use serde::Serialize;
 use std::cell::Cell;
@@ -33,13 +34,13 @@ pub(super) fn drills(
         let asked = or_left_out(campaign.drill(entry, options.allow_outside), &name, warnings)?;
         let Some((file, how)) = asked else { continue };
         progress.start(&format!("drill {name}"), PARTS);
-        let told = Cell::new(0);
+        let shown = Cell::new(0);
         let drill = file.measure(&how, &|done, all| {
             let parts = (PARTS * done).checked_div(all).unwrap_or(0);
-            (told.replace(parts)..parts).for_each(|_| progress.step());
+            (shown.replace(parts)..parts).for_each(|_| progress.step());
         });
         let Some(drill) = or_left_out(drill, &name, warnings)? else { continue };
-        merge(warnings, &name, &drill.warnings);
+        merge(warnings, &name, &sentences(&drill.findings, Voice::Campaign));
         results.push(DrillResult { name, file: file_name(&file.path), drill });
     }
     for (slug, result) in slugs(results.iter().map(|r| r.name.as_str())).iter().zip(&results) {

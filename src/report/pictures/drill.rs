@@ -1,7 +1,7 @@
 //! Hammer drills: the average turn, a few turns as measured, motion against noise, speed over time.
 
 use super::lettered;
-use crate::measure::drill::{Drill, Impact};
+use crate::measure::drill::{Drill, Impact, SmoothingKind};
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 
 /// Most points of a line: more are not seen in print.
@@ -58,7 +58,13 @@ fn average(name: &str, drill: &Drill) -> Figure {
             .stroke(Stroke::Solid),
     );
     let smoothed = match &drill.smoothing {
-        Some(s) => format!("{}, corner {:.0} Hz", s.kind, s.corner),
+        Some(s) => {
+            let kind = match s.kind {
+                SmoothingKind::ZeroPhaseLowPass => "zero-phase low-pass of second order, twice",
+                SmoothingKind::Exponential => "exponential smoothing",
+            };
+            format!("{kind}, corner {:.0} Hz", s.corner)
+        }
         None => "not smoothed".to_owned(),
     };
     lettered(Figure::double(format!("Average turn, {name}")).height(130.0).shared_x().panel(above).panel(below)).caption(format!(

@@ -2,7 +2,7 @@
 
 use super::headed;
 use crate::measure::Estimate;
-use crate::measure::drill::Drill;
+use crate::measure::drill::{Drill, SmoothingKind};
 use crate::report::{Cell, Table};
 
 /// What was found, one row a number; records by name.
@@ -50,7 +50,10 @@ pub fn drill(drills: &[(&str, &Drill)]) -> Table {
         row("f2", Cell::Number(d.bandwidth.f2), "Hz", d.averaged);
         if let Some(s) = &d.smoothing {
             row(
-                if s.kind == "exponential" { "smoothing of the average" } else { "low-pass of the average" },
+                match s.kind {
+                    SmoothingKind::Exponential => "smoothing of the average",
+                    SmoothingKind::ZeroPhaseLowPass => "low-pass of the average",
+                },
                 Cell::Number(s.corner),
                 "Hz",
                 d.averaged,

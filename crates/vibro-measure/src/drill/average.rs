@@ -1,12 +1,28 @@
-//! The phase-synchronous average: all turns over the phase of the turn.
+//! The time-synchronous average: all turns over the phase of the turn.
 
-use super::crossing;
 use super::faults::State;
 use super::running::Running;
+use super::{Phases, crossing};
+
+/// The velocity of one turn at the phases of the average.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cycle<'a> {
+    /// Turn, counted from 0 among the whole turns.
+    pub number: usize,
+    /// Time of its first edge from the first sample, in s.
+    pub time: f64,
+    /// Turns a second.
+    pub speed: f64,
+    /// Velocity in m/s at equal steps of the phase from 0 on, smoothed as the average is; NaN where it was not measured.
+    pub velocity: &'a [f64],
+}
+
+/// What is done with each turn.
+pub(super) type Each<'e> = dyn FnMut(&Cycle<'_>) -> vibro_record::Result<()> + 'e;
 
 /// Mean and scatter of a signal at equal phases of the turn.
 #[derive(Debug, Clone)]
-pub struct Average {
+pub(super) struct Average {
     points: Vec<Running>,
     /// Lowest and highest value at each phase.
     range: Vec<(f64, f64)>,
@@ -42,24 +58,15 @@ impl Average {
         &self.row
     }
 
-    /// Phases in turns, from 0 on.
-    pub fn phase(&self) -> Vec<f64> {
-        (0..self.points.len()).map(|k| k as f64 / self.points.len() as f64).collect()
-    }
-
-    /// Mean at each phase.
-    pub fn mean(&self) -> Vec<f64> {
-        self.points.iter().map(Running::mean).collect()
-    }
-
-    /// Lowest and highest value at each phase; the first is above the second where there is none.
-    pub fn range(&self) -> Vec<(f64, f64)> {
-        self.range.clone()
-    }
-
-    /// Standard deviation from turn to turn at each phase.
-    pub fn std(&self) -> Vec<f64> {
-        self.points.iter().map(Running::std).collect()
+    /// What was averaged.
+    pub fn phases(self) -> Phases {
+        let n = self.points.len() as f64;
+        Phases {
+            phase: (0..self.points.len()).map(|k| k as f64 / n).collect(),
+            mean: self.points.iter().map(Running::mean).collect(),
+            std: self.points.iter().map(Running::std).collect(),
+            range: self.range,
+        }
     }
 }
 
@@ -86,12 +93,13 @@ mod tests {
         for w in edges.windows(2) {
             average.push(&values, &states, w[0], w[1]);
         }
-        for (k, (phase, (mean, std))) in
-            average.phase().iter().zip(average.mean().iter().zip(average.std())).enumerate()
+        let counts: Vec<usize> = average.points.iter().map(Running::n).collect();
+        let found = average.phases();
+        for (k, (phase, (mean, std))) in found.phase.iter().zip(found.mean.iter().zip(&found.std)).enumerate()
         {
             let sine = (TAU * phase).sin();
-            let gap = (1002.0..1112.0).contains(&(edges[1] + phase * (edges[2] - edges[1])))
-                && average.points[k].n() == 2;
+            let gap =
+                (1002.0..1112.0).contains(&(edges[1] + phase * (edges[2] - edges[1]))) && counts[k] == 2;
             let (truth, scatter) =
                 if gap { (1.1 * sine, 0.02f64.sqrt() * sine) } else { (1.1 * sine, 0.1 * sine) };
             // A cubic between samples 2π/900 of a period apart: 1e-9, and kinks of the slope where turns meet, 0.4·2π/900/8.
@@ -99,6 +107,6 @@ mod tests {
             assert!((mean - truth).abs() < near, "{phase}: {mean} {truth}");
             assert!((std - scatter.abs()).abs() < near, "{phase}: {std} {scatter}");
         }
-        assert!(average.points.iter().any(|p| p.n() == 2));
+        assert!(counts.contains(&2));
     }
 }

@@ -26,7 +26,7 @@ pub struct Beam {
     alpha: f64,
 }
 
-/// Below this cosine a tenth of a degree changes the velocity by a tenth.
+/// Cosine of 89°: nearer to square a tenth of a degree changes the velocity by a tenth.
 const SQUARE: f64 = 0.0175;
 
 impl Beam {
@@ -36,7 +36,9 @@ impl Beam {
     /// If the angle is not between 0° and 90°, or the beam stands square to the motion and sees nothing of it.
     pub fn new(degrees: f64, from: From) -> Result<Beam> {
         if !(0.0..=90.0).contains(&degrees) {
-            return Err(Error::usage(format!("a beam angle of {degrees}°"), "0° to 90°"));
+            return Err(
+                Error::usage(format!("a beam angle of {degrees}°"), "0° to 90°").setting("beam_angle")
+            );
         }
         let alpha = match from {
             From::Axis => degrees,
@@ -44,14 +46,11 @@ impl Beam {
         }
         .to_radians();
         if alpha.cos() < SQUARE {
-            let counted = match from {
-                From::Axis => "the axis of the",
-                From::Normal => "the normal to the",
-            };
             return Err(Error::refused(format!(
-                "a beam at {degrees}° from {counted} motion is square to it and sees nothing of it"
+                "a beam at {degrees}° is square to the motion: it sees no velocity"
             ))
-            .hint("check from where the angle is counted: --from normal or --from axis"));
+            .hint("check whether the angle counts from the normal or from the axis of the motion")
+            .setting("from"));
         }
         Ok(Beam { alpha })
     }

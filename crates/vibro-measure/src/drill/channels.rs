@@ -2,7 +2,7 @@
 
 use vibro_record::Result;
 
-/// Channels of one record that can be gone over several times, block by block.
+/// Channels of one record that can be read several times, block by block.
 pub trait Channels {
     /// Sampling rate in Hz.
     fn rate(&self) -> f64;

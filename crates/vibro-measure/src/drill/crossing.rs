@@ -1,47 +1,50 @@
-//! Where a sampled signal crosses a level, between samples.
+//! Where a sampled signal crosses a level, and its value, between samples.
+
+/// Lagrange's cubic through four samples at −1, 0, 1 and 2.
+fn cubic([before, a, b, after]: [f64; 4], s: f64) -> f64 {
+    let (m, p, q) = (s + 1.0, s - 1.0, s - 2.0);
+    -before * s * p * q / 6.0 + a * m * p * q / 2.0 - b * m * s * q / 2.0 + after * m * s * p / 6.0
+}
+
+/// The four samples around the step from sample `i`; `None` at the ends of the record.
+fn around(values: &[f64], i: usize) -> Option<[f64; 4]> {
+    values.get(i.checked_sub(1)?..i + 3)?.try_into().ok()
+}
 
 /// Place of the crossing of `level` between samples `i` and `i + 1`, on the cubic through the four samples around it (a
-/// straight line at the ends of the record). `None` unless the level lies between the two samples.
-pub fn between(values: &[f64], i: usize, level: f64) -> Option<f64> {
+/// straight line beside the ends of the record and missing samples). `None` unless the level lies between the two samples.
+pub(super) fn between(values: &[f64], i: usize, level: f64) -> Option<f64> {
     let (a, b) = (values.get(i)? - level, values.get(i + 1)? - level);
     if !(a.is_finite() && b.is_finite()) || a == b || a * b > 0.0 {
         return None;
     }
-    let around = i.checked_sub(1).and_then(|before| Some((values.get(before)?, values.get(i + 2)?)));
-    let Some((before, after)) = around.filter(|(b, a)| b.is_finite() && a.is_finite()) else {
+    let Some(four) = around(values, i).filter(|four| four.iter().all(|v| v.is_finite())) else {
         return Some(i as f64 + a / (a - b));
     };
-    let (before, after) = (before - level, after - level);
-    // Lagrange's cubic at the nodes −1, 0, 1, 2.
-    let cubic = |s: f64| {
-        let (m, p, q) = (s + 1.0, s - 1.0, s - 2.0);
-        -before * s * p * q / 6.0 + a * m * p * q / 2.0 - b * m * s * q / 2.0 + after * m * s * p / 6.0
-    };
+    let four = four.map(|v| v - level);
     let (mut low, mut high) = (0.0f64, 1.0f64);
     // Halved to 1e-9 of a sample, far below any noise; a change of sign between 0 and 1 is certain.
     for _ in 0..30 {
         let middle = 0.5 * (low + high);
-        if cubic(middle) * a > 0.0 { low = middle } else { high = middle }
+        if cubic(four, middle) * a > 0.0 { low = middle } else { high = middle }
     }
     Some(i as f64 + 0.5 * (low + high))
 }
 
 /// Value at a place between samples, on the cubic through the four samples around it; a straight line at the ends. `None`
 /// outside the record.
-pub fn value(values: &[f64], at: f64) -> Option<f64> {
+pub(super) fn value(values: &[f64], at: f64) -> Option<f64> {
     let i = at.floor();
     if i < 0.0 {
         return None;
     }
     let (i, s) = (i as usize, at - i);
-    let (a, b) = (*values.get(i)?, values.get(i + 1).copied());
-    let Some(b) = b else { return (s == 0.0).then_some(a) };
-    let Some((before, after)) = i.checked_sub(1).and_then(|k| Some((values.get(k)?, values.get(i + 2)?)))
-    else {
-        return Some(a + s * (b - a));
-    };
-    let (m, p, q) = (s + 1.0, s - 1.0, s - 2.0);
-    Some(-before * s * p * q / 6.0 + a * m * p * q / 2.0 - b * m * s * q / 2.0 + after * m * s * p / 6.0)
+    let a = *values.get(i)?;
+    match (around(values, i), values.get(i + 1)) {
+        (Some(four), _) => Some(cubic(four, s)),
+        (None, Some(b)) => Some(a + s * (b - a)),
+        (None, None) => (s == 0.0).then_some(a),
+    }
 }
 
 #[cfg(test)]

@@ -12,11 +12,8 @@ pub enum Edge {
     Falling,
 }
 
-/// Part of the height by which the signal must pass the middle on both sides before an edge counts.
+/// Part of the height by which the signal must pass the middle on both sides before an edge counts: ringing of a pick-up stays below.
 const HYSTERESIS: f64 = 0.2;
-
-/// Samples kept from the block before, for the cubic around a crossing.
-const KEPT: usize = 4;
 
 /// First and last crossing of the middle, and the samples around the last.
 #[derive(Debug, Clone, Copy)]
@@ -33,13 +30,13 @@ struct Crossings {
 /// height on one side and goes beyond a fifth on the other. Noise may make it cross several times: then the mean of the
 /// first and the last crossing is taken.
 #[derive(Debug, Clone)]
-pub struct Edges {
+pub(crate) struct Edges {
     sign: f64,
     middle: f64,
     margin: f64,
-    tail: Vec<f64>,
-    seen: u64,
-    scanned: u64,
+    /// The last four samples; the step in their middle is looked at.
+    window: [f64; 4],
+    seen: usize,
     armed: bool,
     crossings: Option<Crossings>,
     found: Vec<f64>,
@@ -55,9 +52,8 @@ impl Edges {
             sign,
             middle: sign * 0.5 * (low + high),
             margin: HYSTERESIS * (high - low).abs(),
-            tail: Vec::new(),
+            window: [f64::NAN; 4],
             seen: 0,
-            scanned: 0,
             armed: false,
             crossings: None,
             found: Vec::new(),
@@ -68,49 +64,47 @@ impl Edges {
 
     /// Takes the next samples.
     pub fn push(&mut self, block: &[f64]) {
-        let mut values = std::mem::take(&mut self.tail);
-        values.extend(block.iter().map(|v| self.sign * v));
-        self.seen += block.len() as u64;
-        // The last steps wait for the samples behind them, which the cubic needs.
-        self.scan(&values, values.len().saturating_sub(2));
-        self.tail = values.split_off(values.len().saturating_sub(KEPT));
+        for v in block {
+            self.next(self.sign * v);
+        }
     }
 
-    /// Looks at the steps from a sample to the next, up to the one from sample `to` − 1.
-    fn scan(&mut self, values: &[f64], to: usize) {
-        let base = self.seen - values.len() as u64;
-        let from = (self.scanned - base) as usize;
-        self.scanned = self.scanned.max(base + to as u64);
-        for i in from..to {
-            let (v, next) = (values[i], values[i + 1]);
-            if !v.is_finite() || !next.is_finite() {
-                (self.armed, self.crossings) = (false, None);
-                continue;
+    /// Takes a sample and looks at the step before the last one.
+    fn next(&mut self, sample: f64) {
+        let [_, from, to, last] = self.window;
+        self.window = [from, to, last, sample];
+        self.seen += 1;
+        let [_, from, to, _] = self.window;
+        if !from.is_finite() || !to.is_finite() {
+            (self.armed, self.crossings) = (false, None);
+            return;
+        }
+        if from < self.middle - self.margin {
+            (self.armed, self.crossings) = (true, None);
+        }
+        if self.armed
+            && from < self.middle
+            && let Some(place) = crossing::between(&self.window, 1, self.middle)
+        {
+            let at = place + self.seen as f64 - 4.0;
+            let first = self.crossings.map_or(at, |c| c.first);
+            self.crossings = Some(Crossings { first, last: at, from, to });
+        }
+        if self.armed && to > self.middle + self.margin {
+            if let Some(c) = self.crossings.take() {
+                let margin = 1.5 * self.margin;
+                self.sharp += usize::from(c.from < self.middle - margin && c.to > self.middle + margin);
+                self.slopes += c.to - c.from;
+                self.found.push(0.5 * (c.first + c.last));
             }
-            if v < self.middle - self.margin {
-                (self.armed, self.crossings) = (true, None);
-            }
-            if self.armed && v < self.middle && next >= self.middle {
-                let at = crossing::between(values, i, self.middle).unwrap_or(i as f64 + 1.0) + base as f64;
-                let first = self.crossings.map_or(at, |c| c.first);
-                self.crossings = Some(Crossings { first, last: at, from: v, to: next });
-            }
-            if self.armed && next > self.middle + self.margin {
-                if let Some(c) = self.crossings.take() {
-                    let margin = 1.5 * self.margin;
-                    self.sharp += usize::from(c.from < self.middle - margin && c.to > self.middle + margin);
-                    self.slopes += c.to - c.from;
-                    self.found.push(0.5 * (c.first + c.last));
-                }
-                self.armed = false;
-            }
+            self.armed = false;
         }
     }
 
     /// The edges, in samples from the first, and what is known of their times.
     pub fn finish(mut self) -> Found {
-        let values = std::mem::take(&mut self.tail);
-        self.scan(&values, values.len().saturating_sub(1));
+        // The last step has no sample behind it.
+        self.next(f64::NAN);
         let n = self.found.len().max(1) as f64;
         Found { sharp: 2 * self.sharp > self.found.len(), slope: self.slopes / n, edges: self.found }
     }
@@ -118,10 +112,10 @@ impl Edges {
 
 /// Edges of a reference signal.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Found {
+pub(crate) struct Found {
     /// Places in samples from the first.
     pub edges: Vec<f64>,
-    /// Whether most edges go from one level to the other within one sample, so that nothing between samples is known.
+    /// Whether most edges rise within one sample, so that nothing between samples is known.
     pub sharp: bool,
     /// Mean rise a sample at the edges.
     pub slope: f64,

@@ -1,10 +1,10 @@
-//! Faults of a laser vibrometer: drop-outs and speckle spikes, found and bridged.
+//! Faults of a laser vibrometer: drop-outs and speckle spikes, found and bridged; over-range, found.
 
 use super::survey::Survey;
 
 /// What is known of a repaired sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum State {
+pub(super) enum State {
     /// As it was measured.
     Good,
     /// As it was measured, but at the end of the range: over-range.
@@ -37,70 +37,71 @@ pub struct FaultCount {
     pub clipped: usize,
 }
 
-/// Neighbours that are looked at to tell a drop-out from a signal at rest.
+/// Neighbours that tell a drop-out in a motion from a signal at rest.
 const AROUND: usize = 16;
-/// Longest spike in samples.
+/// Longest speckle spike in samples.
 const SPIKE: usize = 3;
-/// Samples on both sides of a spike that must be calm.
+/// Samples on both sides of a spike that must be calm: an impact is followed by ringing.
 const CALM: usize = 4;
-/// Samples between two faults that are one.
+/// A laser that comes back for fewer samples than these has not come back.
 const JOIN: usize = 3;
-/// A spike stands this many standard deviations of the noise off its neighbours.
+/// A spike stands this many standard deviations of the noise off its neighbours, which normal noise never does.
 const SPIKE_NOISE: f64 = 10.0;
-/// … and this part of the range of the channel.
+/// … and this part of the range of the channel; smaller ones move neither impacts nor averages.
 const SPIKE_RANGE: f64 = 0.02;
-/// An extreme nearer to the median than this part of the reach is where the signal rests.
+/// An extreme nearer to the median than this part of the reach is where the signal rests, not the end of the range.
 const RAIL: f64 = 0.1;
-/// Samples gathered before they are looked at.
-const CHUNK: usize = 1 << 14;
-/// Samples after which a fault without an end is given out as lost.
-const ENDLESS: usize = 1 << 20;
+/// Most samples looked ahead, whatever is to be bridged: memory is bounded.
+const FARTHEST: usize = 1 << 20;
 
 /// Finds and bridges faults in blocks of samples.
 ///
-/// A *drop-out* is a stretch of missing values, or of equal values longer than chance gives, with moving neighbours; a *spike*
-/// is one to three samples that stand off both neighbours while these agree. Neither a turning point of a coarsely digitised
-/// signal nor an impact is one.
+/// A *drop-out* is a stretch of missing values, or of equal values longer than chance gives, entered or left by a step amid
+/// neighbours that move; a *spike* is one to three samples that stand off both neighbours while these agree; *over-range* are two or
+/// more samples at the largest or smallest value, entered or left by a step. Neither a turning point of a coarsely digitised signal nor
+/// an impact is a fault.
 #[derive(Debug, Clone)]
-pub struct Faults {
+pub(super) struct Faults {
     equal: usize,
     longest: usize,
+    /// Samples that are known behind each that is judged.
+    ahead: usize,
     quantum: f64,
     height: f64,
-    limits: (f64, f64),
-    /// Extremes that may be the end of the range: those far from where the signal is most of the time.
+    limits: [f64; 2],
+    /// Those of the limits that may be the end of the range: far from where the signal is most of the time.
     rails: [f64; 2],
     raw: Vec<f64>,
     done: usize,
-    endless: bool,
-    /// Whether the equal samples that are gone over were entered by a step.
-    entered: bool,
-    /// Whether the sample before was over-range.
-    over: bool,
+    /// Kind of the stretch that was longer than could be looked ahead and may go on.
+    open: Option<Kind>,
     count: FaultCount,
 }
 
+#[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
     Dropout,
     Spike,
+    OverRange,
 }
 
 impl Faults {
     /// Faults in a channel that looks like `survey`; those longer than `longest` samples are not bridged.
     pub fn new(survey: &Survey, longest: usize) -> Faults {
         let (low, high) = survey.range().unwrap_or((0.0, 0.0));
+        let middle = survey.median();
+        let reach = (middle - low).max(high - middle);
         Faults {
             equal: survey.longest_by_chance(),
             longest,
+            ahead: longest.min(FARTHEST) + 2 * AROUND,
             quantum: survey.quantum(),
             height: (SPIKE_NOISE * survey.noise().max(survey.quantum())).max(SPIKE_RANGE * (high - low)),
-            limits: (low, high),
-            rails: rails(survey.middle(), low, high),
+            limits: [low, high],
+            rails: [low, high].map(|v| if (v - middle).abs() > RAIL * reach { v } else { f64::NAN }),
             raw: Vec::new(),
             done: 0,
-            endless: false,
-            entered: false,
-            over: false,
+            open: None,
             count: FaultCount::default(),
         }
     }
@@ -108,46 +109,46 @@ impl Faults {
     /// Takes the next samples and gives out those that are certain, after those that are in `values` already.
     pub fn push(&mut self, block: &[f64], values: &mut Vec<f64>, states: &mut Vec<State>) {
         self.raw.extend(block);
-        if self.raw.len() - self.done >= CHUNK {
-            self.repair(false, values, states);
-        }
+        self.repair(self.raw.len().saturating_sub(self.ahead), values, states);
     }
 
     /// Gives out the rest.
-    pub fn finish(mut self, values: &mut Vec<f64>, states: &mut Vec<State>) -> FaultCount {
-        self.repair(true, values, states);
+    pub fn finish(&mut self, values: &mut Vec<f64>, states: &mut Vec<State>) -> FaultCount {
+        self.repair(self.raw.len(), values, states);
         self.count
     }
 
-    fn repair(&mut self, last: bool, values: &mut Vec<f64>, states: &mut Vec<State>) {
+    fn repair(&mut self, to: usize, values: &mut Vec<f64>, states: &mut Vec<State>) {
         let mut at = self.done;
-        // A fault may begin at any sample whose neighbours are known.
-        let certain = if last { self.raw.len() } else { self.raw.len().saturating_sub(2 * AROUND) };
-        while at < certain {
-            let Some((kind, mut end)) = self.fault(at) else {
-                let clipped = self.clipped(at);
-                self.over = clipped;
-                self.count.clipped += usize::from(clipped);
+        while at < to {
+            let open = self.open.take();
+            let Some((mut kind, mut end)) = self.stretch(at, open) else {
                 values.push(self.raw[at]);
-                states.push(if clipped { State::Clipped } else { State::Good });
+                states.push(State::Good);
                 at += 1;
-                self.endless = false;
                 continue;
             };
-            let mut kind = kind;
-            while let Some((joined, further)) = (end..end + JOIN).find_map(|i| self.fault(i)) {
-                end = further;
-                if matches!(joined, Kind::Dropout) {
-                    kind = joined;
+            if kind == Kind::OverRange {
+                values.extend(&self.raw[at..end]);
+                states.extend(std::iter::repeat_n(State::Clipped, end - at));
+                self.count.clipped += end - at;
+            } else {
+                let near = |end: usize| (end..end + JOIN).find_map(|i| self.stretch(i, None));
+                while let Some((joined, further)) = near(end).filter(|(k, _)| *k != Kind::OverRange) {
+                    end = further;
+                    if joined == Kind::Dropout {
+                        kind = joined;
+                    }
+                }
+                let lost = end - at > self.longest || open.is_some();
+                self.bridge(at, end, lost, values, states);
+                match kind {
+                    _ if open.is_some() => {}
+                    Kind::Spike => self.count.spikes += 1,
+                    _ => self.count.dropouts += 1,
                 }
             }
-            let open = end + 2 * AROUND > self.raw.len() && !last;
-            if open && end - at < ENDLESS {
-                break;
-            }
-            self.bridge(at, end, &kind, values, states);
-            self.endless = open;
-            (self.entered, self.over) = (false, false);
+            self.open = (end - at >= self.ahead || end == self.raw.len()).then_some(kind);
             at = end;
         }
         let keep = at.saturating_sub(AROUND + SPIKE);
@@ -155,11 +156,11 @@ impl Faults {
         self.done = at - keep;
     }
 
-    fn bridge(&mut self, at: usize, end: usize, kind: &Kind, values: &mut Vec<f64>, states: &mut Vec<State>) {
+    fn bridge(&mut self, at: usize, end: usize, lost: bool, values: &mut Vec<f64>, states: &mut Vec<State>) {
         let n = end - at;
         let before = at.checked_sub(1).map(|i| self.raw[i]).filter(|v| v.is_finite());
         let after = self.raw.get(end).copied().filter(|v| v.is_finite());
-        let lost = n > self.longest || self.endless || before.or(after).is_none();
+        let lost = lost || before.or(after).is_none();
         let (a, b) = (before.or(after).unwrap_or(0.0), after.or(before).unwrap_or(0.0));
         values.extend((1..=n).map(|k| a + (b - a) * k as f64 / (n + 1) as f64));
         states.extend(std::iter::repeat_n(if lost { State::Lost } else { State::Bridged }, n));
@@ -168,58 +169,46 @@ impl Faults {
         } else {
             self.count.bridged += n;
         }
-        if self.endless {
-            return;
-        }
-        match kind {
-            Kind::Dropout => self.count.dropouts += 1,
-            Kind::Spike => self.count.spikes += 1,
-        }
     }
 
-    /// The fault that begins at sample `i`, and the sample behind it.
-    fn fault(&self, i: usize) -> Option<(Kind, usize)> {
+    /// The fault that begins at sample `i` or goes on there from an `open` one, and the sample behind it.
+    fn stretch(&self, i: usize, open: Option<Kind>) -> Option<(Kind, usize)> {
         let v = *self.raw.get(i)?;
-        if !v.is_finite() {
-            let n = self.raw[i..].iter().take_while(|v| !v.is_finite()).count();
-            return Some((Kind::Dropout, i + n));
+        let same = |x: &f64| *x == v || !(x.is_finite() || v.is_finite());
+        let before = i.checked_sub(1).map(|k| self.raw[k]);
+        let goes_on = before.is_some_and(|b| same(&b));
+        if goes_on && v.is_finite() && open.is_none() {
+            // Judged where it began.
+            return None;
         }
-        let next = *self.raw.get(i + 1)?;
-        if next == v {
-            return self.flat(i).map(|end| (Kind::Dropout, end));
-        }
-        let before = *self.raw.get(i.checked_sub(1)?)?;
-        if (v - before).abs() < 0.7 * self.height {
-            None
-        } else {
-            self.spike(i).map(|end| (Kind::Spike, end))
+        let end = i + self.raw[i..].iter().take(self.ahead).take_while(|x| same(x)).count();
+        match open {
+            Some(kind) if goes_on => Some((kind, end)),
+            _ if !v.is_finite() => Some((Kind::Dropout, end)),
+            _ if end - i > 1 => self.flat(i, end).map(|kind| (kind, end)),
+            _ if (v - before?).abs() < 0.7 * self.height => None,
+            _ => self.spike(i).map(|end| (Kind::Spike, end)),
         }
     }
 
-    /// Equal values, more than chance gives, that the signal enters or leaves by a step, or amid neighbours that move.
-    fn flat(&self, i: usize) -> Option<usize> {
+    /// What a stretch of equal values is.
+    fn flat(&self, i: usize, end: usize) -> Option<Kind> {
         let v = self.raw[i];
-        if !self.endless && i > 0 && self.raw[i - 1] == v {
-            return None;
-        }
-        let end = i + self.raw[i..].iter().take_while(|x| **x == v).count();
-        if end - i < self.equal {
-            return None;
-        }
         let before = &self.raw[i.saturating_sub(AROUND)..i];
         let after = &self.raw[end..(end + AROUND).min(self.raw.len())];
         let step = |x: Option<&f64>| x.is_some_and(|x| (x - v).abs() > 1.5 * self.quantum);
-        let steps = step(before.last()) || step(after.first());
-        let limit = v <= self.limits.0 || v >= self.limits.1;
-        if !steps || limit {
+        if !(step(before.last()) || step(after.first())) {
             return None;
+        }
+        if self.limits.contains(&v) {
+            return self.rails.contains(&v).then_some(Kind::OverRange);
         }
         let pairs = before.windows(2).chain(after.windows(2));
         let (equal, all) = pairs.fold((0, 0), |(e, n), p| (e + usize::from(p[0] == p[1]), n + 1));
-        (2 * equal <= all).then_some(end)
+        (end - i >= self.equal && 2 * equal <= all).then_some(Kind::Dropout)
     }
 
-    /// One to three samples off the line between their neighbours, while the signal there is calm.
+    /// The sample behind one to three that stand off the line between their neighbours, while the signal there is calm.
     fn spike(&self, i: usize) -> Option<usize> {
         let a = self.raw[i - 1];
         let spread = |x: f64, around: &[f64]| around.iter().map(|y| (x - y).abs()).fold(0.0, f64::max);
@@ -234,28 +223,6 @@ impl Faults {
             (0..n).all(|k| off(k) > enough).then_some(i + n)
         })
     }
-
-    /// Whether a sample stands at the end of the range, equals a neighbour, and was not reached by resolution.
-    fn clipped(&mut self, i: usize) -> bool {
-        let v = self.raw[i];
-        let before = i.checked_sub(1).and_then(|k| self.raw.get(k));
-        let step = |x: &f64| (x - v).abs() > 1.5 * self.quantum;
-        let goes_on = before == Some(&v);
-        let entered = if goes_on { self.entered } else { before.is_some_and(step) };
-        self.entered = entered;
-        if !self.rails.contains(&v) || !(goes_on || self.raw.get(i + 1) == Some(&v)) {
-            return false;
-        }
-        let near = (i + 1 + 2 * AROUND).min(self.raw.len());
-        let left = || self.raw[i + 1..near].iter().find(|x| **x != v).is_some_and(step);
-        entered || (goes_on && self.over) || left()
-    }
-}
-
-/// Extremes farther from the `middle` of a signal than a part of the farther one; not a number where the signal rests.
-fn rails(middle: f64, low: f64, high: f64) -> [f64; 2] {
-    let reach = (middle - low).max(high - middle);
-    [low, high].map(|v| if (v - middle).abs() > RAIL * reach { v } else { f64::NAN })
 }
 
 #[cfg(test)]

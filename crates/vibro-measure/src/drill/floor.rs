@@ -45,7 +45,7 @@ const SMOOTH: usize = 8;
 
 impl NoiseFloor {
     /// Motion against noise at `rate` samples a second. `None` if one of them is shorter than a segment.
-    pub fn new(motion: &Stream, noise: &Stream, rate: f64, margin: f64) -> Option<NoiseFloor> {
+    pub(super) fn new(motion: &Stream, noise: &Stream, rate: f64, margin: f64) -> Option<NoiseFloor> {
         let ((motion, width), (noise, _)) = (lines(motion, rate)?, lines(noise, rate)?);
         let step = rate / SEGMENT as f64;
         let frequency: Vec<f64> = (1..=motion.len()).map(|k| k as f64 * step).collect();

@@ -21,7 +21,6 @@ pub struct Impact {
     pub after: f64,
     /// Its standard uncertainty.
     pub after_std: f64,
-    /// Whether samples of the fits or of the contact stand at the end of the range: then the speeds are too small, and the
-    /// impact is in no mean.
+    /// Whether samples of the fits or of the contact are over-range: then the speeds are too small, and the impact is in no mean.
     pub clipped: bool,
 }

@@ -6,43 +6,58 @@
 //! the striker: over 0.5 ms of a 7.5 m/s stroke at 50 Hz by 0.04 m/s.
 
 use super::faults::State;
-use super::misfit::{Misfits, Shape};
-use super::residue::{Noise, taken_by_fits};
-use super::side::{FEWEST, Side};
+use super::fit_noise::FitNoise;
+use super::lack_of_fit::Residuals;
+use super::parabola::{FEWEST, Parabola};
+use super::survey::median;
 use super::turns::Turn;
 use super::{Impact, crossing};
 
-/// Most impacts that are looked for in a turn.
+/// Most impacts in a turn: two, in front and behind, where two pulses of a turn are counted as one.
 const MOST: usize = 4;
-/// Smaller jumps of the same turn count down to this part of the largest.
+/// Smaller jumps count down to this part of the largest of a turn, and of the median turn.
 const PART: f64 = 0.25;
-/// A jump must be this many times its own uncertainty.
+/// A jump must be this many times its own uncertainty: of some thousand places a turn none is one by chance.
 const CLEAR: f64 = 6.0;
 
-/// What is kept of a jump until all are known.
+/// A jump, kept until all are known.
 #[derive(Debug, Clone, Copy)]
 struct Jump {
     cycle: usize,
-    at: f64,
     turn: Turn,
-    before: f64,
-    after: f64,
-    leverage: [f64; 2],
-    shapes: [Shape; 2],
-    slope: f64,
-    weight: f64,
-    sharp: bool,
+    /// Place in samples from the first of the record.
+    at: f64,
+    sides: [Parabola; 2],
+    /// Step between the samples around the place, and the part of it that lies before.
+    step: f64,
+    share: f64,
     clipped: bool,
+}
+
+impl Jump {
+    fn height(&self) -> f64 {
+        (self.sides[1].value - self.sides[0].value).abs()
+    }
+}
+
+/// What the turns gave.
+pub(super) struct Found {
+    /// Impacts in the order of time.
+    pub impacts: Vec<Impact>,
+    /// Residuals of their fits.
+    pub residuals: Residuals,
+    /// Turns whose impact lies in a fault of the velocity.
+    pub hidden: usize,
 }
 
 /// Finds the jumps of one turn after the other.
 #[derive(Debug, Clone)]
-pub struct Jumps {
+pub(super) struct Jumps {
     gap: usize,
     length: usize,
     found: Vec<Jump>,
     largest: Vec<f64>,
-    noise: [Noise; 2],
+    noise: [FitNoise; 2],
     hidden: usize,
 }
 
@@ -51,7 +66,8 @@ impl Jumps {
     pub fn new(contact: f64, fit: f64) -> Jumps {
         let gap = ((0.5 * contact).ceil() as usize).max(1);
         let length = (fit.round() as usize).max(FEWEST);
-        Jumps { gap, length, found: Vec::new(), largest: Vec::new(), noise: [Noise::default(); 2], hidden: 0 }
+        let noise = [FitNoise::default(); 2];
+        Jumps { gap, length, found: Vec::new(), largest: Vec::new(), noise, hidden: 0 }
     }
 
     /// Samples that must be there before and after a turn.
@@ -61,39 +77,39 @@ impl Jumps {
 
     /// Takes turn number `cycle`, which lies at `turn` in the record; `values` begins at sample `base` of it.
     pub fn push(&mut self, cycle: usize, turn: Turn, values: &[f64], states: &[State], base: f64) {
-        let (from, to) =
-            ((turn.start - base).ceil().max(0.0) as usize, (turn.end - base).ceil().max(0.0) as usize);
+        let [from, to] = [turn.start, turn.end].map(|edge| (edge - base).ceil().max(0.0) as usize);
         let steps = self.steps(values, from, to);
         let mut open = vec![true; steps.len()];
         let top = steps.iter().fold(0.0f64, |a, b| a.max(b.abs()));
-        let (mut first, mut disturbed) = (None, false);
+        let (mut largest, mut disturbed) = (None, false);
         for _ in 0..MOST {
-            let largest = steps
+            let next = steps
                 .iter()
                 .enumerate()
                 .filter(|(k, s)| open[*k] && s.abs() > PART * top)
                 .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-            let Some((k, _)) = largest else { break };
+            let Some((k, _)) = next else { break };
             let reach = 2 * self.gap + self.averaged();
             open[k.saturating_sub(reach)..(k + reach).min(steps.len())].fill(false);
-            let Some((jump, sides)) = self.refine(values, states, from + k) else {
+            let Some((mut jump, residuals)) = self.refine(values, states, from + k) else {
                 disturbed = disturbed || self.disturbed(states, from + k);
                 continue;
             };
-            let at = jump.at + base;
-            if !(turn.start..turn.end).contains(&at) {
+            jump.at += base;
+            if !(turn.start..turn.end).contains(&jump.at) {
                 continue;
             }
-            if first.is_none() {
-                first = Some((jump.after - jump.before).abs());
-                self.noise.iter_mut().zip(&sides).for_each(|(noise, side)| noise.push(&side.residuals));
+            if largest.is_none() {
+                largest = Some(jump.height());
+                self.noise.iter_mut().zip(&residuals).for_each(|(noise, own)| noise.push(own));
             }
-            self.found.push(Jump { cycle, at, turn, ..jump });
+            self.found.push(Jump { cycle, turn, ..jump });
         }
-        self.hidden += usize::from(first.is_none() && disturbed);
-        self.largest.extend(first);
+        self.hidden += usize::from(largest.is_none() && disturbed);
+        self.largest.extend(largest);
     }
 
+    /// Samples of the means whose difference is looked at first.
     fn averaged(&self) -> usize {
         (self.length / 4).max(3)
     }
@@ -103,12 +119,10 @@ impl Jumps {
         let (m, gap) = (self.averaged(), self.gap);
         let low = from.saturating_sub(gap + m);
         let Some(part) = values.get(low..(to + gap + m + 1).min(values.len())) else { return Vec::new() };
-        let mut sums = Vec::with_capacity(part.len() + 1);
-        let mut sum = 0.0;
-        sums.push(sum);
-        sums.extend(part.iter().map(|v| {
-            sum += v;
-            sum
+        let mut sums = vec![0.0];
+        sums.extend(part.iter().scan(0.0, |sum, v| {
+            *sum += v;
+            Some(*sum)
         }));
         let mean = |a: usize| Some((sums.get(a + m)? - sums.get(a)?) / m as f64);
         (from..to)
@@ -120,93 +134,82 @@ impl Jumps {
             .collect()
     }
 
+    /// Whether a fault lies within the contact at sample `at`.
     fn disturbed(&self, states: &[State], at: usize) -> bool {
         let near = states.get(at.saturating_sub(self.gap)..(at + self.gap + 1).min(states.len()));
         near.is_some_and(|s| s.iter().any(|s| !s.measured()))
     }
 
-    /// The jump near sample `near`: fits and crossing, twice, so that the fits stand around the crossing.
-    fn refine(&self, values: &[f64], states: &[State], near: usize) -> Option<(Jump, [Side; 2])> {
+    /// The jump near sample `near` and the residuals of its fits, which are taken three times so that they stand around the crossing.
+    fn refine(&self, values: &[f64], states: &[State], near: usize) -> Option<(Jump, [Vec<f64>; 2])> {
         let mut at = near as f64;
-        let mut result = None;
+        let mut found = None;
         for _ in 0..3 {
             let left = (at - self.gap as f64).floor() as isize;
             let right = (at + self.gap as f64).ceil() as isize;
             let length = self.length as isize - 1;
-            let before = Side::through(values, states, at, left - length..=left)?;
-            let after = Side::through(values, states, at, right..=right + length)?;
+            let (before, residuals_before) = Parabola::through(values, states, at, left - length..=left)?;
+            let (after, residuals_after) = Parabola::through(values, states, at, right..=right + length)?;
             let middle = 0.5 * (before.value + after.value);
             let crossings: Vec<(usize, f64)> = (left.max(0) as usize..right as usize)
                 .filter_map(|i| crossing::between(values, i, middle).map(|t| (i, t)))
                 .collect();
             let (&(i, first), &(_, last)) = (crossings.first()?, crossings.last()?);
             at = 0.5 * (first + last);
-            let (step, jump) = (values[i + 1] - values[i], after.value - before.value);
-            let share = at - i as f64;
-            let found = Jump {
+            let reached = [left - length, right + length].map(|k| k.max(0) as usize);
+            let jump = Jump {
                 cycle: 0,
-                at,
                 turn: Turn { start: 0.0, end: 0.0 },
-                before: before.value,
-                after: after.value,
-                leverage: [before.leverage, after.leverage],
-                shapes: [before.shape, after.shape],
-                slope: step,
-                weight: (1.0 - share).powi(2) + share * share,
-                sharp: step.abs() > 0.8 * jump.abs(),
-                clipped: over_range(states, left - length, right + length),
+                at,
+                sides: [before, after],
+                step: values[i + 1] - values[i],
+                share: at - i as f64,
+                clipped: states.get(reached[0]..=reached[1]).is_some_and(|s| s.contains(&State::Clipped)),
             };
-            result = Some((found, [before, after]));
+            found = Some((jump, [residuals_before, residuals_after]));
         }
-        let (jump, sides) = result?;
-        let scatter: f64 = sides.iter().map(Side::variance).sum();
-        let clear = (jump.after - jump.before).abs() > CLEAR * scatter.sqrt();
-        (clear && !self.disturbed(states, jump.at.round() as usize)).then_some((jump, sides))
+        let variance = |jump: &Jump| jump.sides.iter().map(|side| side.variance).sum::<f64>();
+        found.filter(|(jump, _)| {
+            jump.height() > CLEAR * variance(jump).sqrt() && !self.disturbed(states, jump.at.round() as usize)
+        })
     }
 
-    /// All impacts, at `rate` samples a second, with reference edges of standard uncertainty `edge` samples; what their fits leave; and
-    /// the number of impacts hidden in a fault of the velocity.
-    pub fn finish(mut self, rate: f64, edge: f64) -> (Vec<Impact>, Misfits, usize) {
-        let typical = super::survey::median(self.largest.iter().copied());
-        let variance = self.noise.map(|n| n.variance());
-        let taken = taken_by_fits(self.length);
-        let correlated = self.noise.map(|n| n.inflation(&taken));
-        self.found.retain(|j| (j.after - j.before).abs() >= PART * typical);
+    /// All impacts, at `rate` samples a second, with reference edges of standard uncertainty `edge` samples.
+    pub fn finish(mut self, rate: f64, edge: f64) -> Found {
+        let typical = median(self.largest.iter().copied());
+        self.found.retain(|j| j.height() >= PART * typical);
         self.found.sort_by(|a, b| a.at.total_cmp(&b.at));
-        let impacts = self
-            .found
-            .iter()
-            .map(|j| {
-                let fitted = [0, 1].map(|k| variance[k] * correlated[k] * j.leverage[k]);
-                let length = j.turn.end - j.turn.start;
-                let phase = (j.at - j.turn.start) / length;
-                let noise = 0.5 * (variance[0] + variance[1]);
-                let time = (noise * j.weight + 0.25 * (fitted[0] + fitted[1])) / (j.slope * j.slope)
-                    + if j.sharp { 1.0 / 12.0 } else { 0.0 };
-                let edges = edge * edge * ((1.0 - phase).powi(2) + phase * phase);
-                Impact {
-                    cycle: j.cycle,
-                    group: 0,
-                    time: j.at / rate,
-                    phase,
-                    phase_std: (time + edges).sqrt() / length,
-                    before: j.before,
-                    before_std: fitted[0].sqrt(),
-                    after: j.after,
-                    after_std: fitted[1].sqrt(),
-                    clipped: j.clipped,
-                }
-            })
-            .collect();
-        let shapes = self.found.iter().map(|j| j.shapes).collect();
-        (impacts, Misfits { shapes, length: self.length, gap: self.gap }, self.hidden)
+        let noise = self.noise.map(|n| n.variance());
+        let inflation = self.noise.map(|n| n.inflation(self.length));
+        let impact = |j: &Jump| {
+            let [before, after] = [0, 1].map(|k| noise[k] * inflation[k] * j.sides[k].leverage);
+            let length = j.turn.end - j.turn.start;
+            let phase = (j.at - j.turn.start) / length;
+            // The crossing lies between two samples; the level that is crossed is the mean of both values.
+            let weight = (1.0 - j.share).powi(2) + j.share * j.share;
+            let crossed = 0.5 * (noise[0] + noise[1]) * weight + 0.25 * (before + after);
+            // A jump within one sample may lie anywhere in it.
+            let sampling = if j.step.abs() > 0.8 * j.height() { 1.0 / 12.0 } else { 0.0 };
+            let time = crossed / (j.step * j.step) + sampling;
+            let edges = edge * edge * ((1.0 - phase).powi(2) + phase * phase);
+            Impact {
+                cycle: j.cycle,
+                group: 0,
+                time: j.at / rate,
+                phase,
+                phase_std: (time + edges).sqrt() / length,
+                before: j.sides[0].value,
+                before_std: before.sqrt(),
+                after: j.sides[1].value,
+                after_std: after.sqrt(),
+                clipped: j.clipped,
+            }
+        };
+        let impacts = self.found.iter().map(impact).collect();
+        let shapes = self.found.iter().map(|j| j.sides.map(|side| side.shape)).collect();
+        let residuals = Residuals { shapes, length: self.length, gap: self.gap };
+        Found { impacts, residuals, hidden: self.hidden }
     }
-}
-
-/// Whether a sample from `from` to `to` stands at the end of the range.
-fn over_range(states: &[State], from: isize, to: isize) -> bool {
-    let [from, to] = [from, to].map(|i| i.max(0) as usize);
-    states.get(from..=to).is_some_and(|s| s.contains(&State::Clipped))
 }
 
 #[cfg(test)]
@@ -230,8 +233,8 @@ mod tests {
     fn one(values: &[f64], states: &[State]) -> (Vec<Impact>, usize) {
         let mut jumps = Jumps::new(20.0, 50.0);
         jumps.push(4, Turn { start: 100.0, end: 1900.0 }, values, states, 0.0);
-        let (impacts, _, hidden) = jumps.finish(1e5, 0.0);
-        (impacts, hidden)
+        let found = jumps.finish(1e5, 0.0);
+        (found.impacts, found.hidden)
     }
 
     #[test]
@@ -262,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn an_impact_whose_fits_reach_the_end_of_the_range_is_said() {
+    fn an_impact_whose_fits_reach_the_end_of_the_range_is_clipped() {
         let values = trace(700.0);
         let mut states = vec![State::Good; values.len()];
         states[685..688].fill(State::Clipped);

@@ -6,7 +6,7 @@ use super::survey::median;
 
 /// Largest speed, acceleration and jerk, and displacement over whole turns.
 #[derive(Debug, Clone, Default)]
-pub struct Motion {
+pub(super) struct Motion {
     speed: Vec<f64>,
     acceleration: Vec<f64>,
     jerk: Vec<f64>,
@@ -38,7 +38,7 @@ pub struct Bandwidth {
 }
 
 impl Motion {
-    /// Takes the turn from `start` to `end`, in samples of `values` at `rate` samples a second: how fast the motion changes.
+    /// Takes the turn from `start` to `end`, in samples of `values` at `rate` samples a second: central differences of measured samples.
     pub fn push(&mut self, values: &[f64], states: &[State], start: f64, end: f64, rate: f64) {
         let (from, to) = (start.ceil() as usize, end.ceil() as usize);
         let mut top = [0.0f64; 3];
@@ -63,18 +63,16 @@ impl Motion {
         };
         let inside = start.ceil() as usize..=end.floor() as usize;
         let Some(inner) = values.get(inside.clone()) else { return };
-        let places = inside.map(|i| i as f64).zip(inner.iter().copied());
-        let nodes = places.chain([(end, last)]);
         let (mut at, mut v, mut x) = (start, first, 0.0);
         let mut path = vec![(0.0, 0.0)];
-        for (next, w) in nodes {
+        for (next, w) in inside.map(|i| i as f64).zip(inner.iter().copied()).chain([(end, last)]) {
             x += 0.5 * (v + w) * (next - at) / rate;
             (at, v) = (next, w);
             path.push((at - start, x));
         }
         let slope = x / (end - start);
-        let (low, high) =
-            path.iter().map(|(t, x)| x - slope * t).fold((0.0f64, 0.0f64), |(l, h), x| (l.min(x), h.max(x)));
+        let level = path.iter().map(|(t, x)| x - slope * t);
+        let (low, high) = level.fold((0.0f64, 0.0f64), |(l, h), x| (l.min(x), h.max(x)));
         self.drift.push(x);
         self.stroke.push(high - low);
     }
@@ -110,7 +108,7 @@ impl Motion {
 
 /// Displacement over the phase of a turn of `period` seconds, from velocities at equal phases: its mean is 0, and so is what
 /// it gains over a turn.
-pub fn displacement(velocity: &[f64], period: f64) -> Vec<f64> {
+pub(super) fn displacement(velocity: &[f64], period: f64) -> Vec<f64> {
     let n = velocity.len();
     let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len().max(1) as f64;
     let drift = mean(velocity);

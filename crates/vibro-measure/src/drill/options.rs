@@ -1,11 +1,16 @@
 //! What must be known of a drill's record, and how it is taken.
 
 use super::{Beam, Edge, Smoothing};
+use crate::exposure::check_hours;
 use vibro_record::units::notation::quantity;
 use vibro_record::{Error, Result};
 
 /// More pulses in a turn than any encoder on a crank gives.
 const MOST_PULSES: usize = 10_000;
+/// More phases than any record fills.
+const MOST_POINTS: usize = 100_000;
+/// Longest turn in samples: a few turns are kept in memory; at 100 kHz these are 40 s.
+pub(super) const LONGEST_TURN: f64 = 4e6;
 
 /// Parameters of [`super::drill`]. There is no default for those of which a wrong guess gives a plausible wrong answer.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,7 +35,7 @@ pub struct DrillOptions {
     pub fit: f64,
     /// Longest drop-out in s that is bridged. Default 2 ms.
     pub longest_dropout: f64,
-    /// Time in s by which the velocity was recorded later than the reference, as the decoder of a vibrometer does. Default 0.
+    /// Delay in s of the velocity channel against the reference, such as of a vibrometer's decoder; it is removed. Default 0.
     pub delay: f64,
     /// Phases of the average. Default 720.
     pub points: usize,
@@ -69,62 +74,71 @@ impl DrillOptions {
 
     /// Checks every number.
     pub(super) fn check(&self) -> Result<()> {
-        if self.sensitivity == 0.0 || !self.sensitivity.is_finite() {
-            return Err(Error::usage(format!("a sensitivity of {}", self.sensitivity), "m/s a unit, not 0"));
-        }
-        if self.pulses_per_turn == 0 || self.pulses_per_turn > MOST_PULSES {
-            let expected = format!("1 to {MOST_PULSES}");
-            return Err(Error::usage(format!("{} pulses a turn", self.pulses_per_turn), expected));
-        }
-        if !self.delay.is_finite() {
-            return Err(Error::usage(format!("a delay of {} s", self.delay), "a finite number"));
-        }
-        if !self.margin.is_finite() {
-            return Err(Error::usage(format!("a margin of {} dB", self.margin), "a finite number"));
-        }
-        if let Some(h) = self.hours.filter(|h| !(*h > 0.0 && *h <= 24.0)) {
-            return Err(Error::usage(
-                format!("an exposure of {h} hours a day"),
-                "a number above 0, at most 24",
-            ));
-        }
-        if self.points < 2 || self.points > 100_000 {
-            return Err(Error::usage(format!("an average at {} phases", self.points), "2 to 100000"));
-        }
-        let smoothing = match self.smoothing {
-            Smoothing::LowPass(v) | Smoothing::Exponential(v) => Some(v),
-            Smoothing::Phases | Smoothing::Off => None,
+        let (low_pass, smoothing) = match self.smoothing {
+            Smoothing::LowPass(corner) => (Some(corner), None),
+            Smoothing::Exponential(time) => (None, Some(time)),
+            Smoothing::Phases | Smoothing::Off => (None, None),
         };
-        let numbers = [
+        let positive = [
             ("mass", self.mass),
-            ("struck mass", self.struck_mass),
-            ("contact time", Some(self.contact)),
-            ("fit time", Some(self.fit)),
-            ("longest drop-out", Some(self.longest_dropout)),
+            ("struck_mass", self.struck_mass),
+            ("contact", Some(self.contact)),
+            ("fit", Some(self.fit)),
+            ("longest_dropout", Some(self.longest_dropout)),
+            ("low_pass", low_pass),
             ("smoothing", smoothing),
-            ("bandwidth of the instrument", self.instrument),
+            ("instrument", self.instrument),
         ];
-        for (name, value) in numbers {
-            if let Some(v) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
-                return Err(Error::usage(format!("a {name} of {v}"), "a finite number above 0"));
+        let above = |(key, value): (&'static str, Option<f64>)| {
+            value.map(|v| (key, v, v.is_finite() && v > 0.0, "a finite number above 0"))
+        };
+        let finite = |v: f64| v.is_finite();
+        let (pulses, points) = (self.pulses_per_turn, self.points);
+        let others = [
+            (
+                "sensitivity",
+                self.sensitivity,
+                finite(self.sensitivity) && self.sensitivity != 0.0,
+                "a finite number, not 0",
+            ),
+            ("delay", self.delay, finite(self.delay), "a finite number"),
+            ("margin", self.margin, finite(self.margin), "a finite number"),
+            ("pulses_per_turn", pulses as f64, (1..=MOST_PULSES).contains(&pulses), "1 to 10000"),
+            ("points", points as f64, (2..=MOST_POINTS).contains(&points), "2 to 100000"),
+        ];
+        for (key, value, holds, expected) in others.into_iter().chain(positive.into_iter().filter_map(above))
+        {
+            if !holds {
+                let found = format!("{} = {value}", key.replace('_', " "));
+                return Err(Error::usage(found, expected).setting(key));
             }
         }
         if self.struck_mass.is_some() && self.mass.is_none() {
-            return Err(Error::usage("a struck mass without the mass that strikes it", "both masses"));
+            let found = "a struck mass without the mass that strikes it";
+            return Err(Error::usage(found, "both masses").setting("mass"));
         }
-        Ok(())
+        check_hours(self.hours)
     }
 
-    /// Checks the times that must fit into a turn of `turn` seconds.
-    pub(super) fn check_turn(&self, turn: f64) -> Result<()> {
-        for (name, time) in [("contact", self.contact), ("fit", self.fit)] {
+    /// Checks what must fit into a turn of `turn` seconds at `rate` samples a second.
+    pub(super) fn check_turn(&self, turn: f64, rate: f64) -> Result<()> {
+        if turn * rate > LONGEST_TURN {
+            return Err(Error::refused(format!(
+                "a turn of {} is longer than {LONGEST_TURN:.0} samples",
+                quantity(turn, "s", 3)
+            ))
+            .hint("resample the record, or check the pulses of a turn")
+            .setting("pulses_per_turn"));
+        }
+        for (key, time) in [("contact", self.contact), ("fit", self.fit)] {
             if time > 0.5 * turn {
-                let why = format!(
-                    "a {name} time of {time} s is longer than half a turn, {}",
-                    quantity(0.5 * turn, "s", 3)
-                );
-                return Err(Error::refused(why)
-                    .hint(format!("state --{name} in seconds; if it is right, check --pulses-per-turn")));
+                let half = quantity(0.5 * turn, "s", 3);
+                return Err(Error::refused(format!(
+                    "a {key} time of {time} s is longer than half a turn, {half}"
+                ))
+                .hint("state a shorter time in seconds; if it is right, check the pulses of a turn")
+                .setting(key)
+                .setting("pulses_per_turn"));
             }
         }
         Ok(())

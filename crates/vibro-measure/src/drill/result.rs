@@ -1,12 +1,14 @@
 //! What a drill's record gave.
 
-use super::{Bandwidth, FaultCount, Group, Impact, NoiseFloor};
+use super::{Bandwidth, Corner, FaultCount, Group, Impact, NoiseFloor};
 use crate::Estimate;
 use crate::exposure::Exposure;
 use serde::Serialize;
+use vibro_record::Finding;
 
 /// Everything found in a record.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Drill {
     /// Mean speed of the crank in turns a second.
     pub speed: Estimate,
@@ -36,7 +38,7 @@ pub struct Drill {
     pub energy_given: Option<Estimate>,
     /// Restitution from the balance of momentum; without a struck mass that of a struck mass that does not move.
     pub restitution: Option<Estimate>,
-    /// Impacts that lie in a drop-out.
+    /// Turns whose impact lies in a drop-out.
     pub hidden: usize,
     /// Impacts whose fits reach the end of the range; they are in no mean unless there are no others.
     pub clipped: usize,
@@ -75,8 +77,8 @@ pub struct Drill {
     /// Time of its first sample in s, and sampling interval.
     #[serde(skip)]
     pub excerpt_time: (f64, f64),
-    /// What a person must know.
-    pub warnings: Vec<String>,
+    /// What was found, assumed or left out.
+    pub findings: Vec<Finding>,
 }
 
 /// Edges of the reference.
@@ -84,9 +86,9 @@ pub struct Drill {
 pub struct Pulses {
     /// Edges found.
     pub edges: usize,
-    /// Edges that should be there and are not.
+    /// Missing edges.
     pub missing: usize,
-    /// Edges that should not be there.
+    /// False edges, which were ignored.
     pub extra: usize,
     /// Stretches without edges.
     pub pauses: usize,
@@ -94,7 +96,7 @@ pub struct Pulses {
     pub std: f64,
 }
 
-/// The phase-synchronous average.
+/// The time-synchronous average.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Phases {
     /// Phase in turns after the edge.
@@ -119,14 +121,6 @@ pub struct Displacement {
     pub drift: Estimate,
 }
 
-impl Displacement {
-    /// Where speeds are too small, so is what they add up to: nothing is stated.
-    pub(super) fn over_range(&mut self) {
-        self.stroke.std = None;
-        self.drift.std = None;
-    }
-}
-
 /// Effect of the beam's angle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct BeamResult {
@@ -134,15 +128,4 @@ pub struct BeamResult {
     pub factor: f64,
     /// Relative change of velocities for one degree of error in the angle.
     pub per_degree: f64,
-}
-
-/// A smoothing and its corner.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Corner {
-    /// Kind of smoothing.
-    pub kind: &'static str,
-    /// Corner in Hz: half the amplitude of the zero-phase low-pass, 1/√2 of exponential smoothing.
-    pub corner: f64,
-    /// Why there.
-    pub reason: &'static str,
 }

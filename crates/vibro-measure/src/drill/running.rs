@@ -2,7 +2,7 @@
 
 /// Count, mean and sum of squared deviations (B. Welford, Technometrics 4 (1962) 419).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Running {
+pub(super) struct Running {
     n: usize,
     mean: f64,
     squares: f64,

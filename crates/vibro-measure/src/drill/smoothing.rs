@@ -1,6 +1,5 @@
 //! How the velocity is smoothed before it is averaged and integrated.
 
-use super::Corner;
 use vibro_record::Result;
 use vibro_signal::filter::Filter;
 
@@ -56,17 +55,48 @@ impl Smoothing {
 
     /// What was done, for the result.
     pub(super) fn stated(self, corner: f64, rate: f64) -> Corner {
-        let (kind, reason) = match self {
-            Smoothing::Exponential(_) => ("exponential", "as stated"),
-            Smoothing::Phases if corner < HIGHEST * rate => (
-                "zero-phase low-pass of second order, twice",
-                "the highest frequency that the phases of the average show",
-            ),
-            Smoothing::Phases => {
-                ("zero-phase low-pass of second order, twice", "a quarter of the sampling rate")
-            }
-            _ => ("zero-phase low-pass of second order, twice", "as stated"),
+        let kind = match self {
+            Smoothing::Exponential(_) => SmoothingKind::Exponential,
+            _ => SmoothingKind::ZeroPhaseLowPass,
+        };
+        let reason = match self {
+            Smoothing::Phases if corner < HIGHEST * rate => CornerReason::Phases,
+            Smoothing::Phases => CornerReason::SamplingRate,
+            _ => CornerReason::Stated,
         };
         Corner { kind, corner, reason }
     }
+}
+
+/// A smoothing and its corner.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct Corner {
+    /// Kind of smoothing.
+    pub kind: SmoothingKind,
+    /// Corner in Hz: half the amplitude of the zero-phase low-pass, 1/√2 of exponential smoothing.
+    pub corner: f64,
+    /// Why there.
+    pub reason: CornerReason,
+}
+
+/// Kind of a smoothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SmoothingKind {
+    /// Butterworth low-pass of second order, forward and backward.
+    ZeroPhaseLowPass,
+    /// First-order low-pass, forward only.
+    Exponential,
+}
+
+/// Why a corner is where it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CornerReason {
+    /// It was stated.
+    Stated,
+    /// The highest frequency that the phases of the average show.
+    Phases,
+    /// A quarter of the sampling rate.
+    SamplingRate,
 }

@@ -5,17 +5,17 @@ use crate::Estimate;
 use crate::mean::Mean;
 use vibro_record::{Error, Result};
 
-/// Neighbours on each side whose median is the interval to be expected.
+/// Neighbours on each side whose median is the expected interval: a machine that runs up changes little over them.
 const AROUND: usize = 15;
-/// An interval shorter than this part of its neighbours ends in an edge too many; one longer than the second lacks edges.
+/// An interval shorter than this part of the expected one ends in a false edge; one longer than the second lacks edges.
 const SHORT: f64 = 0.6;
 const LONG: f64 = 1.5;
-/// Beyond this many intervals the machine stood still.
+/// Beyond this many intervals the machine stood still, and edges cannot be counted on.
 const PAUSE: f64 = 4.0;
 
 /// One turn, from an edge to the edge that is as many pulses later as there are in a turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Turn {
+pub(crate) struct Turn {
     /// First edge, in samples from the first sample of the record.
     pub start: f64,
     /// Last edge.
@@ -24,12 +24,12 @@ pub struct Turn {
 
 /// The whole turns of a record.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Turns {
+pub(crate) struct Turns {
     /// Turns in which no edge is missing.
-    pub turns: Vec<Turn>,
-    /// Edges that are not there.
+    pub whole: Vec<Turn>,
+    /// Missing edges.
     pub missing: usize,
-    /// Edges that should not be there; they are passed over.
+    /// False edges, which are ignored.
     pub extra: usize,
     /// Stretches without an edge in which the machine stood still, or the reference was lost.
     pub pauses: usize,
@@ -37,13 +37,13 @@ pub struct Turns {
     pub apart: usize,
 }
 
-/// Edges with their places in an even series.
+/// Edges with their places in an even series: a pick-up misses pulses and catches sparks.
 pub(crate) struct Numbered {
     /// Place and time of each edge; a pause begins a new run.
     pub(crate) runs: Vec<Vec<(usize, f64)>>,
-    /// Edges that are not there.
+    /// Missing edges.
     pub(crate) missing: usize,
-    /// Edges that should not be there; they are passed over.
+    /// False edges, which are ignored.
     pub(crate) extra: usize,
     /// Stretches without an edge.
     pub(crate) pauses: usize,
@@ -51,7 +51,7 @@ pub(crate) struct Numbered {
 
 impl Numbered {
     /// Numbers edges, each by the median interval around it. Of two edges within an interval the one farther from where the edge before lets
-    /// it be expected is passed over; where none is before, the one behind tells.
+    /// it be expected is ignored; where none is before, the one behind decides.
     pub(crate) fn new(edges: &[f64]) -> Numbered {
         let intervals: Vec<f64> = edges.windows(2).map(|e| e[1] - e[0]).collect();
         let (mut missing, mut extra, mut pauses) = (0, 0, 0);
@@ -98,28 +98,26 @@ fn steps(ratio: f64) -> usize {
 }
 
 impl Turns {
-    /// Turns of `pulses` edges each. With several pulses nobody knows behind a pause which of them comes first: then the
-    /// longest stretch between pauses is all that is taken.
+    /// Turns of `pulses` edges each. With several pulses a pause loses which of them comes first: then the longest stretch between
+    /// pauses is all that is taken.
     ///
     /// # Errors
-    /// If there is no whole turn, or no pulse in a turn.
+    /// If there are fewer edges than a turn needs, or no whole turn between them.
     pub fn new(edges: &[f64], pulses: usize) -> Result<Turns> {
         let Some(ends) = pulses.checked_add(1).filter(|n| *n > 1) else {
             return Err(Error::usage(format!("{pulses} pulses a turn"), "at least 1"));
         };
-        let needed = format!("a turn needs {ends}");
-        let hint = "check --reference, --edge, --pulses-per-turn and --level, the level of the edge";
-        match edges.len() {
-            0 => return Err(Error::refused("no edge in the reference channel").hint(hint)),
-            1 => {
-                return Err(Error::refused(format!("one edge in the reference channel; {needed}")).hint(hint));
-            }
-            n if n <= pulses => {
-                return Err(
-                    Error::refused(format!("{n} edges in the reference channel; {needed}")).hint(hint)
-                );
-            }
-            _ => {}
+        let refused = |why: String| {
+            let error = Error::refused(why).hint("check the reference channel, its edge and its level");
+            Err(["reference", "edge", "pulses_per_turn", "level"].into_iter().fold(error, Error::setting))
+        };
+        if edges.len() < ends {
+            let found = match edges.len() {
+                0 => "no edge".to_owned(),
+                1 => "one edge".to_owned(),
+                n => format!("{n} edges"),
+            };
+            return refused(format!("{found} in the reference channel; a turn needs {ends}"));
         }
         let Numbered { runs, missing, extra, pauses } = Numbered::new(edges);
         let whole = |run: &Vec<(usize, f64)>| -> Vec<Turn> {
@@ -136,33 +134,29 @@ impl Turns {
             stretches.into_iter().max_by_key(Vec::len).unwrap_or_default()
         };
         if turns.is_empty() {
-            return Err(Error::refused("no whole turn between the edges of the reference channel").hint(hint));
+            return refused("no whole turn between the edges of the reference channel".to_owned());
         }
-        Ok(Turns { apart: all - turns.len(), turns, missing, extra, pauses })
+        Ok(Turns { apart: all - turns.len(), whole: turns, missing, extra, pauses })
     }
 
-    /// Turns a second at `rate` samples a second: the inverse of the mean duration of a turn.
+    /// Turns a second at `rate` samples a second, the inverse of the mean duration of a turn; and whether the durations change so slowly
+    /// that its uncertainty may be too small.
     ///
     /// The standard uncertainty is that of the mean of durations that may depend on each other (U. Müller, J. Econometrics 141
     /// (2007) 1331), of what they scatter beyond the uncertainty `edge` of an edge, in samples, and of that uncertainty itself: durations
     /// that follow each other share their edges, so only the first and the last edge of each stretch without a gap count. `None` for
     /// fewer than four turns.
-    pub fn speed(&self, rate: f64, edge: f64) -> Estimate {
+    pub fn speed(&self, rate: f64, edge: f64) -> (Estimate, bool) {
         let mean = self.mean(edge);
         let method = "inverse mean duration of whole turns; serial correlation accounted for";
         let std = mean.std.map(|s| rate / mean.value * s / mean.value);
-        Estimate::new(rate / mean.value, std, "Hz", mean.n, method)
-    }
-
-    /// Whether the durations wander so slowly that the uncertainty of the speed may be too small.
-    pub(super) fn wander(&self, edge: f64) -> bool {
-        self.mean(edge).wanders
+        (Estimate::new(rate / mean.value, std, "Hz", mean.n, method), mean.wanders)
     }
 
     /// Mean duration in samples.
     fn mean(&self, edge: f64) -> Mean {
-        let durations: Vec<f64> = self.turns.iter().map(|t| t.end - t.start).collect();
-        let joined: Vec<bool> = self.turns.windows(2).map(|t| t[0].end == t[1].start).collect();
+        let durations: Vec<f64> = self.whole.iter().map(|t| t.end - t.start).collect();
+        let joined: Vec<bool> = self.whole.windows(2).map(|t| t[0].end == t[1].start).collect();
         // An edge between two turns adds to one what it takes of the other: Σ x_t w_t has the part e (w_t − w_t+1) of it.
         let known = |w: &[f64]| {
             let ends = w.first().map_or(0.0, |w| w * w) + w.last().map_or(0.0, |w| w * w);
@@ -179,7 +173,7 @@ impl Turns {
 
     /// Speed of each turn in Hz.
     pub fn speeds(&self, rate: f64) -> impl Iterator<Item = f64> {
-        self.turns.iter().map(move |t| rate / (t.end - t.start))
+        self.whole.iter().map(move |t| rate / (t.end - t.start))
     }
 }
 
@@ -197,18 +191,18 @@ mod tests {
         let turns = Turns::new(&edges, 1).unwrap();
         assert_eq!((turns.missing, turns.extra, turns.pauses), (1, 1, 1));
         // 39 intervals less the two at the missing edge, and 4 behind the pause.
-        assert_eq!(turns.turns.len(), 37 + 4);
-        assert!(turns.turns.iter().all(|t| t.end - t.start == 100.0));
-        let speed = turns.speed(5000.0, 0.1);
+        assert_eq!(turns.whole.len(), 37 + 4);
+        assert!(turns.whole.iter().all(|t| t.end - t.start == 100.0));
+        let speed = turns.speed(5000.0, 0.1).0;
         // Three stretches without a gap, each with two edges.
         let std = 50.0 * 6f64.sqrt() * 0.1 / 41.0 / 100.0;
         assert!(speed.value == 50.0 && (speed.std.unwrap() / std - 1.0).abs() < 1e-12, "{speed:?}");
         // Two pulses a turn: the turns at the missing edge are lost, the pairs stay as they were, and behind the pause nobody
         // knows which pulse is the first of a turn.
         let pairs = Turns::new(&edges, 2).unwrap();
-        assert!(pairs.turns.iter().all(|t| t.end - t.start == 200.0 && t.start % 200.0 == 0.0));
+        assert!(pairs.whole.iter().all(|t| t.end - t.start == 200.0 && t.start % 200.0 == 0.0));
         // 19 pairs less the two that meet at the missing edge; 2 behind the pause are left out.
-        assert_eq!((pairs.turns.len(), pairs.apart, turns.apart), (17, 2, 0));
+        assert_eq!((pairs.whole.len(), pairs.apart, turns.apart), (17, 2, 0));
     }
 
     #[test]
@@ -238,7 +232,7 @@ mod tests {
             let squares: f64 = (0..200)
                 .map(|_| {
                     let edges: Vec<f64> = (0..=n).map(|k| f64::from(k) * 100.0 + uniform()).collect();
-                    let speed = Turns::new(&edges, 1).unwrap().speed(1e4, 0.0);
+                    let speed = Turns::new(&edges, 1).unwrap().speed(1e4, 0.0).0;
                     (speed.std.unwrap() / truth / (1e4 / 100.0 / 100.0)).powi(2)
                 })
                 .sum();
@@ -249,7 +243,7 @@ mod tests {
             let known: Vec<f64> = (0..200)
                 .map(|_| {
                     let edges: Vec<f64> = (0..=n).map(|k| f64::from(k) * 100.0 + uniform()).collect();
-                    Turns::new(&edges, 1).unwrap().speed(1e4, 12f64.sqrt().recip()).std.unwrap() / truth
+                    Turns::new(&edges, 1).unwrap().speed(1e4, 12f64.sqrt().recip()).0.std.unwrap() / truth
                 })
                 .collect();
             let rms = (known.iter().map(|k| k * k).sum::<f64>() / 200.0).sqrt();
@@ -273,15 +267,15 @@ mod tests {
             edges.sort_by(f64::total_cmp);
             let turns = Turns::new(&edges, 1).unwrap();
             assert_eq!(
-                (turns.turns.len(), turns.extra, turns.missing, turns.pauses),
+                (turns.whole.len(), turns.extra, turns.missing, turns.pauses),
                 (149, 5, 0, 0),
                 "{part}"
             );
-            assert!(turns.turns.iter().all(|t| (t.end - t.start - 100.0).abs() < 0.7), "{part}");
+            assert!(turns.whole.iter().all(|t| (t.end - t.start - 100.0).abs() < 0.7), "{part}");
             // Before the first edge, where nothing but the next one tells.
             let mut edges: Vec<f64> = (1..150).map(|k| f64::from(k) * 100.0).collect();
             edges.insert(0, 100.0 * part);
-            let first = Turns::new(&edges, 1).unwrap().turns[0];
+            let first = Turns::new(&edges, 1).unwrap().whole[0];
             // An edge of 0.6 turns and more before the first may be one.
             assert!(part < 0.45 || first.start == 100.0, "{part}: {first:?}");
         }
@@ -289,8 +283,8 @@ mod tests {
         let mut edges: Vec<f64> = (0..40).map(|k| f64::from(k) * 100.0).collect();
         edges[21] = 2145.0;
         let turns = Turns::new(&edges, 1).unwrap();
-        assert_eq!((turns.turns.len(), turns.extra, turns.missing), (37, 1, 1));
-        assert!(turns.turns.iter().all(|t| t.end - t.start == 100.0));
+        assert_eq!((turns.whole.len(), turns.extra, turns.missing), (37, 1, 1));
+        assert!(turns.whole.iter().all(|t| t.end - t.start == 100.0));
     }
 
     #[test]
@@ -304,7 +298,7 @@ mod tests {
                 at
             })
             .collect();
-        let speed = Turns::new(&edges, 1).unwrap().speed(1e4, 0.0);
+        let speed = Turns::new(&edges, 1).unwrap().speed(1e4, 0.0).0;
         let expected = (1.0f64 / 12.0 / 1000.0).sqrt() / 100.0 * 100.0 * (19.0f64 / 17.0).sqrt();
         // 19 squares scatter by √(2/19), half of it in the root; three times that.
         assert!((speed.std.unwrap() / expected - 1.0).abs() < 0.49, "{speed:?} {expected}");

@@ -5,7 +5,7 @@ use vibro_record::Result;
 
 /// Takes one axis of the acceleration of a handle, block by block.
 ///
-/// The half second in which the weighting settles counts for nothing: after the first value and behind every missing one. Nor do missing
+/// The half second in which the weighting settles is left out: after the first value and behind every missing one. So are missing
 /// samples themselves, over which the value before is held.
 #[derive(Debug, Clone)]
 pub struct Handle {
@@ -60,7 +60,7 @@ impl Handle {
     /// An axis at `rate` samples a second.
     ///
     /// # Errors
-    /// As [`Weighting::new`].
+    /// If the rate is below four times the upper corner of the weighting.
     pub fn new(rate: f64) -> Result<Handle> {
         let settle = (SETTLED * rate).ceil() as usize;
         Ok(Handle {

@@ -1,11 +1,11 @@
-//! Noise of the fits beside impacts, by what they leave.
+//! Noise of the fits beside impacts, by their residuals.
 
 /// Lags over which the noise may depend on itself.
 const LAGS: usize = 6;
 
 /// Residuals of all fits on one side.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Noise {
+pub(super) struct FitNoise {
     squares: f64,
     freedom: f64,
     lagged: [f64; LAGS],
@@ -13,7 +13,8 @@ pub(super) struct Noise {
     fits: f64,
 }
 
-impl Noise {
+impl FitNoise {
+    /// Takes the residuals of one parabola.
     pub fn push(&mut self, residuals: &[f64]) {
         self.squares += residuals.iter().map(|r| r * r).sum::<f64>();
         self.freedom += residuals.len() as f64 - 3.0;
@@ -25,14 +26,18 @@ impl Noise {
         }
     }
 
+    /// Variance of the noise.
     pub fn variance(&self) -> f64 {
         self.squares / self.freedom
     }
 
-    /// How much larger the variance of a mean is than in white noise: 1 + 2Σρ, with the part given back that fits take
-    /// out of every lagged sum.
-    pub fn inflation(&self, taken: &[f64; LAGS]) -> f64 {
+    /// How much larger the variance of a fitted value is than in white noise, 1 + 2Σρ, after fits over `length` samples.
+    ///
+    /// A laser's decoder limits the bandwidth of its noise, so neighbours depend on each other. What the fits themselves take out of
+    /// every lagged sum is given back.
+    pub fn inflation(&self, length: usize) -> f64 {
         let variance = self.variance();
+        let taken = taken_by_fits(length);
         let lagged = self.lagged.iter().zip(&self.pairs).zip(taken);
         let rho = lagged
             .map(|((sum, pairs), taken)| (sum + taken * variance * self.fits) / (variance * pairs.max(1.0)));
@@ -43,7 +48,7 @@ impl Noise {
 
 /// What a parabola fitted to `n` samples of white noise of unit variance takes out of the sum of products of residuals at
 /// each lag: the trace of the hat matrix on its side diagonals.
-pub(super) fn taken_by_fits(n: usize) -> [f64; LAGS] {
+fn taken_by_fits(n: usize) -> [f64; LAGS] {
     // Orthonormal polynomials on the samples, by Gram and Schmidt.
     let mut basis: Vec<Vec<f64>> = Vec::with_capacity(3);
     for power in 0..3 {

@@ -1,17 +1,18 @@
 //! One pass over the velocity: repaired, cut into turns, and each turn handed to what measures it.
 
-use super::cycle::{Cycle, Each};
+use super::average::{Average, Cycle, Each};
 use super::faults::{FaultCount, Faults, State};
-use super::survey::median;
+use super::jumps::Jumps;
+use super::motion::Motion;
+use super::options::LONGEST_TURN;
+use super::survey::{Survey, median};
 use super::turns::Turn;
-use super::{Average, DrillOptions, Jumps, Motion, Survey, floor};
+use super::{DrillOptions, floor};
 use vibro_record::Result;
 use vibro_signal::filter::Filter;
 use vibro_signal::welch::Stream;
 
-/// Longest turn in samples; a turn that takes longer is passed over.
-const LONGEST: f64 = 4e6;
-/// Time constants of a filter after which it has settled.
+/// Time constants of a filter after which it has settled to e⁻⁸.
 const SETTLED: f64 = 8.0;
 
 /// What the turns are handed to.
@@ -24,6 +25,8 @@ pub(super) struct Pass<'a> {
     filter: Option<(Filter, bool)>,
     /// Its corner in Hz.
     pub corner: Option<f64>,
+    /// Samples that must be known before and after a turn.
+    margin: usize,
     /// Repaired velocity from sample `base` on.
     values: Vec<f64>,
     states: Vec<State>,
@@ -31,15 +34,20 @@ pub(super) struct Pass<'a> {
     pub jumps: Jumps,
     pub average: Average,
     pub motion: Motion,
+    /// Averaged spectrum of the motion, where it is to be compared with a noise floor.
     pub spectrum: Option<Stream>,
     /// Turns in the average.
     pub averaged: usize,
-    /// Turns with a part of the velocity lost, or too long.
+    /// Turns with a part of the velocity lost, or cut off by an end of the record.
     pub left_out: usize,
     pub count: FaultCount,
 }
 
 impl<'a> Pass<'a> {
+    /// A pass over a velocity that looks like `survey`.
+    ///
+    /// # Errors
+    /// If a time of the options does not fit into a turn, or a corner into the sampling rate.
     pub fn new(
         options: &DrillOptions,
         rate: f64,
@@ -47,22 +55,23 @@ impl<'a> Pass<'a> {
         survey: &Survey,
         spectrum: bool,
     ) -> Result<Pass<'a>> {
-        let durations = turns.iter().map(|t| (t.end - t.start) / rate);
-        let typical = median(durations);
-        options.check_turn(typical)?;
+        let typical = median(turns.iter().map(|t| (t.end - t.start) / rate));
+        options.check_turn(typical, rate)?;
         let corner = options.smoothing.corner(options.points, typical, rate);
-        let filter = corner.map(|c| options.smoothing.filter(c, rate)).transpose()?;
+        let jumps = Jumps::new(options.contact * rate, options.fit * rate);
+        let settle = corner.map_or(0.0, |corner| SETTLED * rate / corner);
         Ok(Pass {
             rate,
             turns,
             next: 0,
             faults: Faults::new(survey, (options.longest_dropout * rate) as usize),
-            filter,
+            filter: corner.map(|c| options.smoothing.filter(c, rate)).transpose()?,
             corner,
+            margin: jumps.margin().max(settle.min(LONGEST_TURN) as usize) + 4,
             values: Vec::new(),
             states: Vec::new(),
             base: 0,
-            jumps: Jumps::new(options.contact * rate, options.fit * rate),
+            jumps,
             average: Average::new(options.points),
             motion: Motion::default(),
             spectrum: spectrum.then(floor::averages),
@@ -72,45 +81,36 @@ impl<'a> Pass<'a> {
         })
     }
 
-    /// Takes the next samples of the velocity channel, multiplied by `factor` to m/s.
+    /// Takes the next samples of the velocity in m/s.
     pub fn push(&mut self, block: &[f64], each: &mut Each<'_>) -> Result<()> {
         let known = self.values.len();
         self.faults.push(block, &mut self.values, &mut self.states);
-        if let Some(spectrum) = &mut self.spectrum {
-            spectrum.push(&self.values[known..]);
-        }
-        self.measure(false, each)
+        self.measure(known, false, each)
     }
 
+    /// Measures what is left.
     pub fn finish(mut self, each: &mut Each<'_>) -> Result<Pass<'a>> {
         let known = self.values.len();
-        self.count = self.faults.clone().finish(&mut self.values, &mut self.states);
-        if let Some(spectrum) = &mut self.spectrum {
-            spectrum.push(&self.values[known..]);
-        }
-        self.measure(true, each)?;
+        self.count = self.faults.finish(&mut self.values, &mut self.states);
+        self.measure(known, true, each)?;
         Ok(self)
     }
 
-    /// Samples that must be known before and after a turn.
-    fn margin(&self) -> usize {
-        let settle = self.corner.map_or(0.0, |corner| SETTLED * self.rate / corner);
-        self.jumps.margin().max(settle.min(LONGEST) as usize) + 4
-    }
-
-    fn measure(&mut self, last: bool, each: &mut Each<'_>) -> Result<()> {
-        let margin = self.margin();
+    /// Measures the turns that are known whole; values from `new` on were not seen before.
+    fn measure(&mut self, new: usize, last: bool, each: &mut Each<'_>) -> Result<()> {
+        if let Some(spectrum) = &mut self.spectrum {
+            spectrum.push(&self.values[new..]);
+        }
+        let end = self.base + self.values.len();
         while let Some(&turn) = self.turns.get(self.next) {
-            let known = self.base + self.values.len();
-            if turn.end + margin as f64 > known as f64 && !last {
+            if turn.end + self.margin as f64 > end as f64 && !last {
                 break;
             }
-            self.turn(turn, margin, each)?;
+            self.turn(turn, each)?;
             self.next += 1;
         }
         // What the next turn does not need goes; without turns ahead nothing is needed.
-        let needed = self.turns.get(self.next).map_or(f64::INFINITY, |t| t.start - margin as f64);
-        let end = self.base + self.values.len();
+        let needed = self.turns.get(self.next).map_or(f64::INFINITY, |t| t.start - self.margin as f64);
         let drop = (needed.max(0.0).min(end as f64) as usize).saturating_sub(self.base);
         // Moving the rest is dear: only when half of it goes.
         if 2 * drop > self.values.len() {
@@ -121,24 +121,19 @@ impl<'a> Pass<'a> {
         Ok(())
     }
 
-    fn turn(&mut self, turn: Turn, margin: usize, each: &mut Each<'_>) -> Result<()> {
-        let from = (turn.start as usize).saturating_sub(margin + self.base);
-        let to = ((turn.end.ceil() as usize + margin).saturating_sub(self.base)).min(self.values.len());
+    fn turn(&mut self, turn: Turn, each: &mut Each<'_>) -> Result<()> {
+        let from = (turn.start as usize).saturating_sub(self.margin + self.base);
+        let to = (turn.end.ceil() as usize + self.margin).saturating_sub(self.base).min(self.values.len());
         let base = (self.base + from) as f64;
         let (start, end) = (turn.start - base, turn.end - base);
-        let (Some(values), Some(states)) = (self.values.get(from..to), self.states.get(from..to)) else {
-            self.left_out += 1;
-            return Ok(());
-        };
+        let (values, states) = (&self.values[from.min(to)..to], &self.states[from.min(to)..to]);
         let inside = states.get(start as usize..(end.ceil() as usize + 1).min(states.len()));
-        let whole = inside.is_some_and(|s| s.len() as f64 >= end - start && !s.contains(&State::Lost));
-        if !whole || end - start > LONGEST {
+        if !inside.is_some_and(|s| s.len() as f64 >= end - start && !s.contains(&State::Lost)) {
             self.left_out += 1;
             return Ok(());
         }
         self.jumps.push(self.next, turn, values, states, base);
         self.motion.push(values, states, start, end, self.rate);
-        // Nothing is missing here: faults are bridged, and only whole turns come so far.
         let smooth = match &self.filter {
             Some((filter, true)) => Some(filter.zero_phase(values)?),
             Some((filter, false)) => {
