@@ -24,9 +24,9 @@
 //!
 //! Neither noise of the onsets nor jitter makes neighbouring intervals positively correlated; a speed that wanders does. Where they are, u is not less
 //! than the standard uncertainty of the mean of values that depend on those before (Müller 2007). Of 60 intervals with a correlation of 0.3, 0.5 and 0.7
-//! ±1.96 u then hold T in 93.8, 93.8 and 92.6 %, with 0.9 in 89 %, most of which are said to wander.
+//! ±1.96 u then hold T in 93.8, 93.8 and 92.6 %, with 0.9 in 89 %, most of which are found to wander.
 
-use super::burst::median;
+use super::background::median;
 use crate::mean::Mean;
 use crate::residuals::student;
 use serde::Deserialize;
@@ -241,9 +241,9 @@ fn gls(d: &[f64], m: &[f64], angle: f64) -> Gls {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::Noise;
     use super::*;
     use nalgebra::{DMatrix, DVector};
+    use vibro_math::Noise;
 
     const TIMES: [f64; 6] = [0.1, 1.2, 1.9, 3.05, 3.9, 5.2];
 
