@@ -37,7 +37,6 @@ use super::Estimate;
 use background::median;
 use count::{Counted, count};
 use onset::Timing;
-use vibro_record::units::notation::quantity;
 use vibro_record::{Error, Finding, Result, Severity, Trace};
 
 /// Intervals that spread by less than this part of their median are regular.
@@ -76,9 +75,7 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     let std = (widened * fitted.std).hypot(sampled * fitted.mean);
     let std = Some(std).filter(|s| s.is_finite() && !doubted);
     let median_interval = median(&steps);
-    let of = |value, std, unit| {
-        Estimate::new(value, std, unit, kept.len(), described(&fitted, kept.len(), timing))
-    };
+    let of = |value, std, unit| Estimate::new(value, std, unit, kept.len(), described(kept.len(), timing));
     let mut answer = Impacts {
         n: times.len(),
         interval: of(fitted.mean, std, "s"),
@@ -103,7 +100,7 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     };
     let rate = rate_of(trace)?;
     excitation::compare(&mut answer, &counted, (trace.axis.start(), rate, sampled), options)?;
-    let of_train = of_train(&answer);
+    let of_train = of_train(&answer, counted.unsure.is_none());
     answer.findings.extend(of_train);
     Ok(answer)
 }
@@ -121,34 +118,36 @@ fn deviation(values: &[f64]) -> Option<f64> {
     (values.len() >= 2).then(|| (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt())
 }
 
-/// What the count and the spread of the intervals say.
-fn of_train(found: &Impacts) -> Vec<Finding> {
-    let counted = |code: fn() -> Finding, n: usize| (n > 0).then(|| code().count("n", n));
-    let spread = found.spread.filter(|_| !found.regular && found.excitation.is_none());
-    [
-        counted(|| Finding::note("interval-pattern"), found.pattern.unwrap_or(0)),
-        (found.n == 2).then(|| Finding::note("one-interval")),
-        counted(|| Finding::caution("impacts-missed"), found.missed),
-        counted(|| Finding::caution("impacts-doubled"), found.doubled),
-        spread.map(|s| Finding::caution("impacts-irregular").number("spread", s / found.median_interval)),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+/// Findings on the spread of the intervals and, where it is `sure`, on their count.
+fn of_train(found: &Impacts, sure: bool) -> Vec<Finding> {
+    let mut all = Vec::new();
+    if let Some(length) = found.pattern {
+        all.push(Finding::note("interval-pattern").count("n", length));
+    }
+    if found.n == 2 {
+        all.push(Finding::note("one-interval"));
+    }
+    if sure && found.missed > 0 {
+        all.push(Finding::caution("impacts-missed").count("n", found.missed));
+    }
+    if sure && found.doubled > 0 {
+        all.push(Finding::caution("impacts-doubled").count("n", found.doubled));
+    }
+    if let Some(spread) = found.spread.filter(|_| !found.regular && found.excitation.is_none()) {
+        all.push(Finding::caution("impacts-irregular").number("spread", spread / found.median_interval));
+    }
+    all
 }
 
 /// How the interval of `n` impacts was found.
-fn described(found: &Interval, n: usize, timing: Timing) -> String {
+fn described(n: usize, timing: Timing) -> String {
+    let fit = if n < 3 { "difference of two onsets" } else { "generalised least squares of the intervals" };
     let onsets = match timing {
         Timing::Flank => "onsets at half height of the rising flanks",
         Timing::Average => "onsets by matching each pulse to the average pulse",
         Timing::Known => "onsets by matching each pulse to its known shape",
     };
-    if n < 3 {
-        return format!("difference of two onsets; {onsets}");
-    }
-    let [onset, jitter] = [found.onset, found.jitter].map(|s| quantity(s, "s", 3));
-    format!("generalised least squares: onset noise {onset}, cycle-to-cycle jitter {jitter}; {onsets}")
+    format!("{fit}; {onsets}")
 }
 
 #[cfg(test)]

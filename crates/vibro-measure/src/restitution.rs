@@ -59,6 +59,7 @@ impl Serialize for Method {
 
 /// One method's answer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Way {
     /// The method.
     pub method: Method,
@@ -79,6 +80,7 @@ enum Shares {
 
 /// The coefficient of restitution by every method that the data allow.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Restitution {
     /// The answer with the smallest uncertainty; null where methods disagree.
     pub restitution: Estimate,

@@ -5,7 +5,7 @@ pub(super) const WORDS: &[(&str, &str)] = &[
     ("drift-removed", "A linear drift of {slope @unit} per second was removed."),
     (
         "mains-hum-removed",
-        "Mains hum of {frequency.4 Hz} and {amplitude @unit} was fitted with {harmonics:harmonic} and removed.",
+        "Mains hum of {frequency.4 Hz}, amplitude {amplitude @unit}, was removed with {harmonics:harmonic}.",
     ),
     (
         "hum-or-impacts",

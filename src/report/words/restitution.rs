@@ -59,7 +59,7 @@ pub(super) const WORDS: &[(&str, &str)] = &[
     // Velocities.
     (
         "restitution-out-of-range",
-        "The {method} gives R = {value.4}, outside 0 to 1: left out. Check signs, masses and their order.",
+        "R = {value.4} by the {method} is outside 0 to 1: left out. Check signs, masses and their order.",
     ),
     (
         "velocities-ignored",

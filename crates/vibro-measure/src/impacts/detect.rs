@@ -21,6 +21,7 @@ const LOST: f64 = 3.0;
 
 /// Impacts of a trace: when and how high.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Detected {
     /// Times of the impacts in s; two at least.
     pub times: Vec<f64>,
@@ -61,14 +62,18 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
         );
     }
     let found = background(&values);
-    values.iter_mut().for_each(|v| *v -= found.level);
+    for v in &mut values {
+        *v -= found.level;
+    }
     let level = Background { level: 0.0, reach: bound.map_or(found.reach, |b| b.min(found.reach)), ..found };
     let pause = options.refractory.map(|s| ((s * rate) as usize).max(1));
     let bursts = bursts(&values, level.reach, pause);
     let mut each = bursts.each;
     if median(&extremes(&values, &each, -1.0)) > INVERTED * median(&extremes(&values, &each, 1.0)) {
         findings.push(Finding::note("pulses-inverted"));
-        values.iter_mut().for_each(|v| *v = -*v);
+        for v in &mut values {
+            *v = -*v;
+        }
     }
     let mut heights = extremes(&values, &each, 1.0);
     let least = (options.threshold * median(&heights)).max(level.reach);
@@ -105,13 +110,13 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
         // Anywhere within a step (JCGM 100:2008, 4.3.7).
         let std = step / 12f64.sqrt();
         findings.push(Finding::caution("onset-within-sample").number("std", std));
-        found.onsets.iter_mut().flatten().for_each(|o| o.std = o.std.hypot(std * rate));
+        found.each.iter_mut().flatten().for_each(|o| o.std = o.std.hypot(std * rate));
     }
-    let cut = found.onsets.iter().filter(|o| o.is_none()).count();
+    let cut = found.each.iter().filter(|o| o.is_none()).count();
     if cut > 0 {
         findings.push(Finding::note("pulses-cut").count("n", cut));
     }
-    let onsets: Vec<_> = found.onsets.into_iter().flatten().collect();
+    let onsets: Vec<_> = found.each.into_iter().flatten().collect();
     if onsets.len() < 2 {
         let highest = values.iter().fold(0.0f64, |h, v| h.max(v.abs()));
         return Err(too_few(onsets.len(), [level.reach, highest].map(|v| quantity(v, unit, 3)), hum, low));

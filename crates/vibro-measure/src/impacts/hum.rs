@@ -9,6 +9,7 @@ use vibro_record::Finding;
 
 /// A fitted mains sine.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Hum {
     /// Frequency in Hz, the mean where the record was fitted in pieces.
     pub frequency: f64,

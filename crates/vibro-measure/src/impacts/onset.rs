@@ -53,7 +53,7 @@ impl Lobe {
 /// Onsets of all bursts.
 pub struct Onsets {
     /// One a burst; `None` where no rising flank shows it.
-    pub onsets: Vec<Option<Onset>>,
+    pub each: Vec<Option<Onset>>,
     /// How they were timed.
     pub timing: Timing,
     /// Whether most pulses rise within one sample: nothing is known of their times between samples.
@@ -65,14 +65,14 @@ pub fn onsets(values: &[f64], bursts: &[Range<usize>], sigma: f64, known: Option
     let lobes: Vec<Lobe> = bursts.iter().filter_map(|b| lobe(values, b, sigma)).collect();
     let whole: Vec<&Lobe> = lobes.iter().filter(|l| l.onset.is_finite()).collect();
     let sharp = 2 * lobes.iter().filter(|l| l.sharp).count() > whole.len();
-    let (onsets, timing) = if let Some(shape) = known {
+    let (each, timing) = if let Some(shape) = known {
         (by_shape(values, &lobes, sigma, shape), Timing::Known)
     } else if let Some(onsets) = by_average(values, &lobes, &whole, sigma) {
         (onsets, Timing::Average)
     } else {
         (lobes.iter().map(Lobe::flank).collect(), Timing::Flank)
     };
-    Onsets { onsets, timing, sharp }
+    Onsets { each, timing, sharp }
 }
 
 fn by_shape(values: &[f64], lobes: &[Lobe], sigma: f64, shape: &Shape) -> Vec<Option<Onset>> {

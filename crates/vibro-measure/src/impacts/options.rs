@@ -85,7 +85,7 @@ pub(super) fn check(trace: &Trace, options: &ImpactsOptions) -> Result<f64> {
 pub(crate) fn rate_of(trace: &Trace) -> Result<f64> {
     trace.rate().filter(|r| r.is_finite() && *r > 0.0).ok_or_else(|| {
         uneven_sampling(trace).unwrap_or_else(|| {
-            Error::usage("the sampling rate of the trace is not known", "a sampling rate")
+            Error::usage("the sampling rate of the trace is not known", "")
                 .hint("state the sampling rate in Hz, or the base band of an analyser: it samples at 2.56 times that")
                 .setting("rate")
                 .setting("base_band")

@@ -7,6 +7,7 @@ use vibro_record::Finding;
 
 /// Impacts of a trace.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Impacts {
     /// Impacts that were found.
     pub n: usize,

@@ -7,7 +7,6 @@ use super::ratios::{TRAINS, fit};
 use super::{Method, Shares, Way, above_zero, not_negative};
 use crate::Estimate;
 use serde::Serialize;
-use vibro_record::units::notation::quantity;
 use vibro_record::{Error, Finding, Result};
 
 /// Flight times of one train of bounces.
@@ -21,6 +20,7 @@ pub struct Train {
 
 /// A flight time that does not fit the train.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Outlier {
     /// Train, counted from 1.
     pub train: usize,
@@ -106,27 +106,18 @@ pub(super) fn answer(
     let std = Some(value * fit.std).filter(|s| s.is_finite());
     let n = flights.len();
     if std.is_none() {
-        let without = match fit.between {
-            Some(_) => Finding::caution("trains-differ").count("n", fit.trains).count("needed", TRAINS),
-            None => Finding::caution("too-few-flights").count("n", n),
+        let without = if fit.trains_differ {
+            Finding::caution("trains-differ").count("n", fit.trains).count("needed", TRAINS)
+        } else {
+            Finding::caution("too-few-flights").count("n", n)
         };
         let onsets = value * fit.onsets_alone;
         findings.push(if onsets.is_finite() { without.number("onsets", onsets) } else { without });
     }
     findings.push(Finding::note("flight-times-assume"));
-    let [scatter, between] = [fit.scatter, fit.between.unwrap_or(0.0)].map(|s| quantity(s, "1", 2));
-    let onset = quantity(fit.onset, "s", 2);
-    let scattering = match (std, fit.between) {
-        (None, _) => String::new(),
-        (_, None) => format!(": ln R scatters by {scatter} from bounce to bounce, onsets by {onset}"),
-        _ => format!(
-            ": ln R scatters by {scatter} from bounce to bounce, {between} from train to train, onsets by {onset}"
-        ),
-    };
-    let method = format!("log-linear fit of {n} flight times{scattering}");
     Ok(Some(Way {
         method: Method::FlightTimes,
-        restitution: Estimate::new(value, std, "1", n, method),
+        restitution: Estimate::new(value, std, "1", n, format!("log-linear fit of {n} flight times")),
         shares: Shares::Flights,
     }))
 }
@@ -146,68 +137,42 @@ fn growing(flights: &[Flight], trains: &[Train], value: f64) -> Option<(usize, u
     one.or(flights.last().copied().filter(|_| value >= 1.0)).map(|f| (f.train + 1, f.place + 1))
 }
 
-/// The straight line through the logarithms of trains: one slope, an offset each.
-struct Line {
-    slope: f64,
-    /// Sum of the weights, and weighted means of place and logarithm, of each train.
-    means: Vec<(f64, f64, f64)>,
-    /// Weighted sum of squares of the places about their means.
-    sxx: f64,
-    /// Degrees of freedom of the residuals.
-    free: usize,
-}
-
-impl Line {
-    /// Least squares with the weights `weight` of the flights.
-    fn new(flights: &[Flight], weight: impl Fn(&Flight) -> f64) -> Line {
-        let trains = flights.iter().map(|f| f.train + 1).max().unwrap_or(0);
-        let mut means = vec![(0.0, 0.0, 0.0); trains];
-        for f in flights {
-            let (m, w) = (&mut means[f.train], weight(f));
-            *m = (m.0 + w, m.1 + w * f.place as f64, m.2 + w * f.log);
-        }
-        for m in &mut means {
-            *m = (m.0, m.1 / m.0, m.2 / m.0);
-        }
-        let (mut sxx, mut sxy) = (0.0, 0.0);
-        for f in flights {
-            let (m, w) = (means[f.train], weight(f));
-            let x = f.place as f64 - m.1;
-            (sxx, sxy) = (sxx + w * x * x, sxy + w * x * (f.log - m.2));
-        }
-        let used = means.iter().filter(|m| m.0 > 0.0).count();
-        Line { slope: sxy / sxx, means, sxx, free: flights.len().saturating_sub(used + 1) }
-    }
-
-    fn at(&self, f: &Flight) -> f64 {
-        let (_, place, log) = self.means[f.train];
-        log + self.slope * (f.place as f64 - place)
-    }
-
-    fn residuals(&self, flights: &[Flight]) -> Vec<f64> {
-        flights.iter().map(|f| f.log - self.at(f)).collect()
-    }
-}
-
 /// Quantile 0.9995 of Student's t from 2 degrees of freedom on: what lies beyond is an outlier.
 const OUTSIDE: [f64; 9] = [31.6, 12.92, 8.61, 6.87, 5.96, 5.41, 5.04, 4.78, 4.59];
 
-/// How far the flight `one` is from what the `others` expect, in parts of the quantile, and that logarithm; the variance of the logarithm goes as Δt to
-/// `power`.
+/// How far the flight `one` is from what the `others` expect, in parts of the quantile, and that logarithm: by the straight line through the
+/// logarithms, one slope and an offset each train, where the variance of a logarithm goes as Δt to `power`.
 fn off(one: &Flight, others: &[Flight], power: f64) -> Option<(f64, f64)> {
-    let weight = |log: f64| (-power * log).exp();
-    let line = Line::new(others, |f| weight(f.log));
-    if others.iter().filter(|f| f.train == one.train).count() < 2 || line.free < 2 {
+    if others.iter().filter(|f| f.train == one.train).count() < 2 {
         return None;
     }
-    let expected = line.at(one);
-    let (sum, place, _) = line.means[one.train];
-    let x = one.place as f64 - place;
-    let squares: f64 = others.iter().zip(line.residuals(others)).map(|(f, r)| weight(f.log) * r * r).sum();
-    let variance = squares / line.free as f64 * (weight(expected).recip() + sum.recip() + x * x / line.sxx);
+    let weight = |log: f64| (-power * log).exp();
+    // Sum of the weights, and weighted means of place and logarithm, of each train.
+    let mut means = vec![[0.0; 3]; others.iter().map(|f| f.train + 1).max()?];
+    for f in others {
+        let w = weight(f.log);
+        let m = &mut means[f.train];
+        *m = [m[0] + w, m[1] + w * f.place as f64, m[2] + w * f.log];
+    }
+    for m in &mut means {
+        *m = [m[0], m[1] / m[0], m[2] / m[0]];
+    }
+    let centred = |f: &Flight| (f.place as f64 - means[f.train][1], f.log - means[f.train][2]);
+    let (mut sxx, mut sxy) = (0.0, 0.0);
+    for f in others {
+        let (w, (x, y)) = (weight(f.log), centred(f));
+        (sxx, sxy) = (sxx + w * x * x, sxy + w * x * y);
+    }
+    let slope = sxy / sxx;
+    let residual = |f: &Flight| centred(f).1 - slope * centred(f).0;
+    let free = others.len().checked_sub(3 + means.iter().filter(|m| m[0] > 0.0).count())?;
+    let squares: f64 = others.iter().map(|f| weight(f.log) * residual(f).powi(2)).sum();
+    let (x, expected) = (centred(one).0, one.log - residual(one));
+    let leverage = weight(expected).recip() + means[one.train][0].recip() + x * x / sxx;
+    let variance = squares / (free + 2) as f64 * leverage;
     // Numbers that were typed have three digits at least: half a unit of the last is 1e-3 of a flight.
-    let score = (one.log - expected).abs() / variance.max(1e-6).sqrt();
-    Some((score / OUTSIDE[(line.free - 2).min(OUTSIDE.len() - 1)], expected))
+    let score = residual(one).abs() / variance.max(1e-6).sqrt();
+    Some((score / OUTSIDE[free.min(OUTSIDE.len() - 1)], expected))
 }
 
 /// The flight that fits the others worst, where it is an outlier, and what they expect of it: one whether R scatters, which makes the variances of
