@@ -1,7 +1,7 @@
 //! Impacts against their excitation: phases, the fraction that they keep, or the beat by which they miss it.
 
 use super::count::Counted;
-use super::locking::{Locking, locking, of_digits, phases};
+use super::locking::{Locking, locking, phases, typed};
 use super::reference::Reference;
 use super::{Impacts, ImpactsOptions};
 use crate::Estimate;
@@ -73,7 +73,7 @@ fn cycles(answer: &mut Impacts, start: f64, rate: f64, options: &ImpactsOptions)
     }
     Ok(options.excitation.map(|frequency| Cycles {
         frequency,
-        std: options.excitation_std.unwrap_or_else(|| of_digits(frequency)),
+        std: options.excitation_std.or(typed(&frequency.to_string()).map(|t| t.1)).unwrap_or(0.0),
         at: answer.times.iter().map(|t| t * frequency).collect(),
     }))
 }

@@ -96,20 +96,14 @@ pub fn locking(cycles: &[f64], index: &[usize], std: f64) -> Locking {
     }
 }
 
-/// A number as it was typed, and its standard uncertainty by its digits, zeros at its end included: 8.400 is surer than 8.4. `None` where `text` is
-/// no number.
+/// A number as it was typed, and its standard uncertainty by its digits, zeros at its end included: half a unit of the last, evenly
+/// spread (JCGM 100:2008, 4.3.7). `None` where `text` is no number.
 pub fn typed(text: &str) -> Option<(f64, f64)> {
     let value: f64 = text.trim().parse().ok().filter(|v: &f64| v.is_finite())?;
     let (digits, power) = text.trim().split_once(['e', 'E']).unwrap_or((text.trim(), "0"));
     let behind = digits.split_once('.').map_or(0, |(_, d)| d.len());
     let last = power.parse::<i32>().ok()?.checked_sub(i32::try_from(behind).ok()?)?;
     Some((value, 0.5 * 10f64.powi(last) / 3f64.sqrt()))
-}
-
-/// Standard uncertainty of a number that was typed: half a unit of its last digit, evenly spread (JCGM 100:2008, 4.3.7).
-pub fn of_digits(value: f64) -> f64 {
-    let digits = value.to_string().split_once('.').map_or(0, |(_, d)| d.len());
-    0.5 * 10f64.powi(-i32::try_from(digits).unwrap_or(i32::MAX)) / 3f64.sqrt()
 }
 
 /// Phases of the impacts in a pattern of `pattern.cycles` cycles, one a place of the pattern.
@@ -198,7 +192,7 @@ mod tests {
         let one = PerCycle { impacts: 1, cycles: 1 };
         for frequency in [14.75, 14.85, 15.15] {
             let cycles: Vec<f64> = (0..150).map(|k| 0.2 + 15.0 / frequency * f64::from(k)).collect();
-            for std in [1e-6, of_digits(15.0) / 15.0] {
+            for std in [1e-6, typed("15").unwrap().1 / 15.0] {
                 let Locking::Drifting(near, slip) = locking(&cycles, &index, std) else {
                     panic!("{frequency} Hz is not seen to drift")
                 };
@@ -220,6 +214,6 @@ mod tests {
             assert!((std / (0.5 * unit / 3f64.sqrt()) - 1.0).abs() < 1e-12, "{text}: {value} ± {std}");
         }
         assert!(typed("inf").is_none() && typed("fast").is_none() && typed("1e999999999999").is_none());
-        assert!((of_digits(15.0) - 0.288_675).abs() < 1e-6 && (of_digits(11.25) - 0.002_886_75).abs() < 1e-8);
+        assert!((typed("11.25").unwrap().1 - 0.002_886_75).abs() < 1e-8);
     }
 }
