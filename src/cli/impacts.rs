@@ -6,6 +6,7 @@ use crate::measure::impacts::{Impacts, ImpactsOptions, Scatter, Shape, impacts};
 use crate::measure::{Estimate, legacy};
 use crate::read::Reader;
 use crate::record::Trace;
+use crate::report::words::{Voice, sentences};
 use crate::report::{Output, files, pictures, tables};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -14,6 +15,7 @@ use std::fmt::Write as _;
 struct Answer {
     #[serde(flatten)]
     impacts: Impacts,
+    warnings: Vec<String>,
     files: Vec<String>,
 }
 
@@ -71,8 +73,8 @@ pub fn run(typed: &args::Impacts, json: bool) -> Result<()> {
         },
         ..settings::finding(&typed.finding, None)
     };
-    let mut found = impacts(&trace, &options).map_err(|e| e.of_record(&typed.file.display().to_string()))?;
-    found.warnings.extend(recording.doubts.iter().chain(&trace.meta.doubts).cloned());
+    let found = impacts(&trace, &options).map_err(|e| e.of_record(&typed.file.display().to_string()))?;
+    let mut warnings: Vec<String> = recording.doubts.iter().chain(&trace.meta.doubts).cloned().collect();
     let mut written = Vec::new();
     if let Some(folder) = &typed.out {
         let mut output = Output::new(folder)?;
@@ -82,9 +84,10 @@ pub fn run(typed: &args::Impacts, json: bool) -> Result<()> {
         written = output.written().to_vec();
     }
     if json {
-        return print::json(&Answer { impacts: found, files: written });
+        return print::json(&Answer { impacts: found, warnings, files: written });
     }
-    complain::warn(&found.warnings);
+    warnings.extend(sentences(&found.findings, Voice::Command));
+    complain::warn(&warnings);
     let mut text = tables::impacts(&[(String::new(), &found)]).text();
     let _ = writeln!(text, "\n{}\ntimes: --json, or impacts.csv with --out", found.interval.method);
     for file in written {

@@ -3,6 +3,7 @@
 use super::{args, complain, print, settings};
 use crate::error::{Error, Result};
 use crate::measure::restitution::{Bounces, Drop, GRAVITY, Restitution, Train, Velocities, restitution};
+use crate::report::words::{self, Voice};
 use crate::report::{Output, files, pictures, tables};
 use crate::units::notation::quantity;
 use serde::Serialize;
@@ -12,6 +13,7 @@ use std::fmt::Write as _;
 struct Answer {
     #[serde(flatten)]
     restitution: Restitution,
+    warnings: Vec<String>,
     files: Vec<String>,
 }
 
@@ -28,15 +30,15 @@ pub fn run(typed: &args::Restitution, json: bool) -> Result<()> {
     let mut warnings = Vec::new();
     for (i, file) in typed.files.iter().enumerate() {
         let (trace, doubts) = settings::trace(file, &typed.reading, &typed.channel)?;
-        for doubt in doubts {
+        let found = bounces.add(&trace, &settings::finding(&typed.finding, Some(Bounces::THRESHOLD)))?;
+        for doubt in doubts.into_iter().chain(words::warnings(&found.findings, Voice::Command)) {
             match warnings.iter_mut().find(|w: &&mut (String, usize)| w.0 == doubt) {
                 Some(known) => known.1 += 1,
                 None => warnings.push((doubt, 1)),
             }
         }
-        let found = bounces.add(&trace, &settings::finding(&typed.finding, Some(Bounces::THRESHOLD)))?;
         let name = file.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-        figures.push((format!("drop_{}", i + 1), pictures::drop(&name, &trace, &found)));
+        figures.push((format!("drop_{}", i + 1), pictures::drop(&name, &trace, &found.times)));
     }
     let drop = Drop {
         height: typed.height.unwrap_or(f64::NAN),
@@ -53,10 +55,10 @@ pub fn run(typed: &args::Restitution, json: bool) -> Result<()> {
     let mut measured = bounces.measured(drop, typed.height.is_some());
     if !typed.intervals.is_empty() {
         let onset_std = typed.interval_std.map(|s| s / 2f64.sqrt());
-        measured.trains.push(Train { intervals: typed.intervals.clone(), onset_std, after: None });
+        measured.trains.push(Train { intervals: typed.intervals.clone(), onset_std });
     }
     measured.velocities = velocities(typed, masses)?;
-    let mut found = restitution(&measured)?;
+    let found = restitution(&measured)?;
     let all = typed.files.len();
     let counted = |(doubt, n): (String, usize)| match n {
         _ if all == 1 => doubt,
@@ -64,8 +66,6 @@ pub fn run(typed: &args::Restitution, json: bool) -> Result<()> {
         n => format!("{n} of {all} files: {doubt}"),
     };
     let mut warnings: Vec<String> = warnings.into_iter().map(counted).collect();
-    warnings.append(&mut found.warnings);
-    found.warnings = warnings;
     let mut written = Vec::new();
     if let Some(folder) = &typed.out {
         let mut output = Output::new(folder)?;
@@ -74,9 +74,10 @@ pub fn run(typed: &args::Restitution, json: bool) -> Result<()> {
         written = output.written().to_vec();
     }
     if json {
-        return print::json(&Answer { restitution: found, files: written });
+        return print::json(&Answer { restitution: found, warnings, files: written });
     }
-    complain::warn(&found.warnings);
+    warnings.extend(words::sentences(&found.findings, Voice::Command));
+    complain::warn(&warnings);
     let mut text = tables::restitution(&[(String::new(), &found)]).text();
     if found.by.len() > 1 {
         let said = match found.agree {

@@ -1,198 +1,154 @@
 //! Impacts in a trace: a contact circuit, or any signal that jumps at each of them.
 //!
-//! A burst over the background is one impact, ringing included; its time is that at which the first rising flank passes half its
-//! height, below a sample. What is counted, what is left out and what was assumed is in [`Impacts::warnings`].
+//! One pipeline: [`detect`] removes drift and mains hum and times each burst above the noise once, ringing included, below a sample;
+//! [`impacts`] numbers the impacts, missed and doubled ones allowed for, fits their mean interval, and compares them with the
+//! excitation. What was assumed and what is doubtful is in [`Impacts::findings`].
 
-mod burst;
+mod background;
 mod count;
-mod cycle;
-mod cycles;
-mod doubts;
+mod detect;
 mod drift;
-mod excited;
-mod found;
-mod held;
+mod excitation;
 mod hum;
 mod interval;
+mod locking;
 mod multiples;
 mod onset;
 mod options;
 mod pattern;
+mod recorder;
+mod reference;
 mod result;
 mod ringing;
 mod shape;
-mod unfit;
+mod spline;
 
-pub use cycle::{PerCycle, Phase, typed};
+pub use detect::{Detected, detect};
 pub use hum::Hum;
 pub use interval::{Interval, Scatter, interval};
-pub use onset::Timing;
+pub use locking::{PerCycle, Phase, typed};
 pub use options::ImpactsOptions;
 pub use result::Impacts;
-pub use shape::{Matched, Shape};
+pub use shape::Shape;
+
+pub(crate) use options::rate_of;
 
 use super::Estimate;
-use burst::median;
-use count::count;
-use doubts::doubts;
-use found::{Found, find};
-use options::check;
-use std::fmt::Write as _;
-use vibro_record::units::notation::quantity;
-use vibro_record::{Error, Result, Trace};
+use background::median;
+use count::{Counted, count};
+use onset::Timing;
+use vibro_record::{Error, Finding, Result, Severity, Trace};
 
 /// Intervals that spread by less than this part of their median are regular.
-pub const REGULAR: f64 = 0.05;
+const REGULAR: f64 = 0.05;
 
-/// Finds the impacts of `trace` and what they repeat.
+/// Finds the impacts of `trace`, their mean interval, and what they repeat.
 ///
 /// # Errors
 /// Where the trace has no sampling rate, missing or equal values, or fewer than two impacts; where the reference channel has fewer than two
-/// edges; on options that cannot be.
+/// edges; on impossible options.
 pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
-    let (mut found, of_train) = with_train(trace, options)?;
-    found.warnings.extend(of_train);
-    Ok(found)
-}
-
-/// As [`impacts`], with what there is to say of them as a steady train beside the warnings.
-pub(super) fn with_train(trace: &Trace, options: &ImpactsOptions) -> Result<(Impacts, Vec<String>)> {
-    let rate = rate_of(trace)?;
-    check(trace, options)?;
-    let found = find(trace, rate, options);
-    if found.onsets.len() < 2 {
-        return Err(found.too_few(trace.meta.unit.symbol()));
-    }
-    let Found { onsets, timing, sharp, held, hum, lost, mut warnings, .. } = found;
-    let start = trace.axis.start();
-    let times: Vec<f64> = onsets.iter().map(|o| start + o.time / rate).collect();
+    let Detected { times, heights, onset_std, hum, mut findings, timing, resolution } =
+        detect(trace, options)?;
     let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
     let counted = count(&times, &steps, options.complete);
     let kept: Vec<f64> = counted.kept.iter().map(|i| times[*i]).collect();
-    let even = if counted.length > 1 {
-        pattern::evened(&kept, &counted.index, &counted.place, counted.length)
+    let length = counted.length;
+    let even = if length > 1 {
+        pattern::evened(&kept, &counted.index, &counted.place, length)
     } else {
         kept.clone()
     };
-    let found = interval(&even, &counted.index, options.scatter)
+    let fitted = interval(&even, &counted.index, options.scatter)
         .ok_or_else(|| Error::refused("one impact alone counts: an interval needs two"))?;
-    // The shifts of the places are fitted, too.
-    let free = |n: usize| even.len().saturating_sub(n) as f64;
-    let mut of_train = Vec::new();
-    if found.wanders {
-        of_train.push(
-            "Intervals change slowly along the record: the uncertainty of their mean may be too small; measure longer.".to_owned(),
-        );
+    if fitted.wanders {
+        findings.push(Finding::caution("intervals-drift"));
     }
-    let widened = if counted.length > 1 { (free(2) / free(1 + counted.length)).sqrt() } else { 1.0 };
-    // What the samples hide of first and last, as a part of the interval.
-    let span = counted.index.last().zip(counted.index.first()).map_or(0, |(l, f)| l - f) as f64;
-    let hidden = if sharp { cycle::quantised(span * found.mean * rate / held as f64) } else { 0.0 };
-    let std = Some((widened * found.std).hypot(hidden * found.mean))
-        .filter(|s| s.is_finite() && !lost && counted.unsure.is_none());
-    if sharp {
-        warnings.push(format!(
-            "The pulses rise within one sample: onsets are known to {} only.",
-            quantity(held as f64 / (12f64.sqrt() * rate), "s", 2)
-        ));
-    }
-    let single = |times: &[f64]| -> Vec<f64> {
-        let next = |k: &[usize]| k[1] - k[0] == 1;
-        let both = times.windows(2).zip(counted.index.windows(2));
-        both.filter(|(_, k)| next(k)).map(|(t, _)| t[1] - t[0]).collect()
-    };
+    findings.extend(counted.unsure.clone());
+    // What onsets anywhere within a sample leave open, as a part of the interval.
+    let span = counted.index.last().copied().unwrap_or(0) as f64;
+    let sampled = resolution.map_or(0.0, |step| reference::quantised(span * fitted.mean / step));
+    // The shifts of the places of a pattern are fitted with the interval.
+    let free = |parameters: usize| even.len().saturating_sub(parameters) as f64;
+    let widened = if length > 1 { (free(2) / free(1 + length)).sqrt() } else { 1.0 };
+    let doubted = findings.iter().any(|f| f.severity == Severity::Doubt);
+    let std = (widened * fitted.std).hypot(sampled * fitted.mean);
+    let std = Some(std).filter(|s| s.is_finite() && !doubted);
     let median_interval = median(&steps);
-    let spread = deviation(&single(&kept));
-    let regular = deviation(&single(&even)).is_some_and(|s| s < REGULAR * median_interval);
-    let mut method = described(&found, kept.len(), timing);
-    if sharp {
-        method.push_str("; first and last onset anywhere within a sample");
-    }
-    if counted.length > 1 {
-        let _ = write!(method, "; a pattern of {} impacts fitted with it", counted.length);
-    }
+    let of = |value, std, unit| Estimate::new(value, std, unit, kept.len(), described(kept.len(), timing));
     let mut answer = Impacts {
         n: times.len(),
-        interval: Estimate::new(found.mean, std, "s", kept.len(), method.as_str()),
-        frequency: Estimate::new(
-            1.0 / found.mean,
-            std.map(|s| s / found.mean.powi(2)),
-            "Hz",
-            kept.len(),
-            method,
-        ),
+        interval: of(fitted.mean, std, "s"),
+        frequency: of(1.0 / fitted.mean, std.map(|s| s / fitted.mean.powi(2)), "Hz"),
         median_interval,
-        spread,
-        serial_correlation: Some(found.correlation).filter(|r| r.is_finite()),
-        pattern: (counted.length > 1).then_some(counted.length),
+        spread: deviation(&single(&kept, &counted)),
+        serial_correlation: Some(fitted.correlation).filter(|r| r.is_finite()),
+        pattern: (length > 1).then_some(length),
         missed: counted.missed,
         doubled: counted.doubled,
         excitation: None,
         per_cycle: None,
         beat: None,
-        regular,
+        regular: deviation(&single(&even, &counted)).is_some_and(|s| s < REGULAR * median_interval),
         phases: Vec::new(),
-        onset_std: Some(median(&onsets.iter().map(|o| o.std).collect::<Vec<f64>>()) / rate)
-            .filter(|s| s.is_finite()),
-        heights: onsets.iter().map(|o| o.height).collect(),
+        onset_std,
+        heights,
         phase: Vec::new(),
         hum,
         times,
-        warnings: Vec::new(),
+        findings,
     };
-    excited::compare(&mut answer, &counted, (start, rate, hidden), options, &mut of_train)?;
-    doubts(&answer, &mut of_train);
-    of_train.extend(counted.unsure);
-    answer.warnings = warnings;
-    Ok((answer, of_train))
+    let rate = rate_of(trace)?;
+    excitation::compare(&mut answer, &counted, (trace.axis.start(), rate, sampled), options)?;
+    let of_train = of_train(&answer, counted.unsure.is_none());
+    answer.findings.extend(of_train);
+    Ok(answer)
 }
 
-/// Sampling rate of a trace.
-///
-/// # Errors
-/// Where it has none.
-pub(super) fn rate_of(trace: &Trace) -> Result<f64> {
-    trace.rate().filter(|r| r.is_finite() && *r > 0.0).ok_or_else(|| {
-        unfit::uneven(trace).unwrap_or_else(|| {
-            Error::usage("the file does not say at which even rate the trace was sampled", "a sampling rate")
-                .hint("--rate HZ, or --base-band HZ for an analyser that samples at 2.56 times its base band")
-        })
-    })
+/// Intervals between neighbours without a missed impact between them.
+fn single(times: &[f64], counted: &Counted) -> Vec<f64> {
+    let pairs = times.windows(2).zip(counted.index.windows(2));
+    pairs.filter(|(_, k)| k[1] - k[0] == 1).map(|(t, _)| t[1] - t[0]).collect()
 }
 
+/// Standard deviation; `None` of fewer than two values.
 fn deviation(values: &[f64]) -> Option<f64> {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
     (values.len() >= 2).then(|| (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt())
 }
 
-fn described(found: &Interval, n: usize, timing: Timing) -> String {
+/// Findings on the spread of the intervals and, where it is `sure`, on their count.
+fn of_train(found: &Impacts, sure: bool) -> Vec<Finding> {
+    let mut all = Vec::new();
+    if let Some(length) = found.pattern {
+        all.push(Finding::note("interval-pattern").count("n", length));
+    }
+    if found.n == 2 {
+        all.push(Finding::note("one-interval"));
+    }
+    if sure && found.missed > 0 {
+        all.push(Finding::caution("impacts-missed").count("n", found.missed));
+    }
+    if sure && found.doubled > 0 {
+        all.push(Finding::caution("impacts-doubled").count("n", found.doubled));
+    }
+    if let Some(spread) = found.spread.filter(|_| !found.regular && found.excitation.is_none()) {
+        all.push(Finding::caution("impacts-irregular").number("spread", spread / found.median_interval));
+    }
+    all
+}
+
+/// How the interval of `n` impacts was found.
+fn described(n: usize, timing: Timing) -> String {
+    let fit = if n < 3 { "difference of two onsets" } else { "generalised least squares of the intervals" };
     let onsets = match timing {
         Timing::Flank => "onsets at half height of the rising flanks",
         Timing::Average => "onsets by matching each pulse to the average pulse",
         Timing::Known => "onsets by matching each pulse to its known shape",
     };
-    if n < 3 {
-        return format!("difference of two onsets; {onsets}");
-    }
-    let line = match (found.onset > 0.0, found.jitter > 0.0) {
-        (_, false) => {
-            "generalised least squares, nearest the straight line through index and time (onset noise alone)"
-        }
-        (false, true) => "generalised least squares, nearest (t_last − t_first)/(n − 1) (jitter alone)",
-        (true, true) => "generalised least squares of the intervals (onset noise and jitter)",
-    };
-    let correlation = if found.correlation.is_finite() {
-        format!(", serial correlation of intervals {:.2}", found.correlation)
-    } else {
-        String::new()
-    };
-    format!(
-        "{line}: onset noise {}, cycle-to-cycle jitter {}{correlation}; {onsets}",
-        quantity(found.onset, "s", 3),
-        quantity(found.jitter, "s", 3)
-    )
+    format!("{fit}; {onsets}")
 }
 
 #[cfg(test)]
-pub(super) mod tests;
+mod tests;

@@ -19,7 +19,7 @@ pub struct Impacts {
     /// Record of the same file that rises once a cycle of the excitation, by name or by number from 1
     #[arg(long, value_name = "NAME")]
     pub reference: Option<String>,
-    /// Record of one pulse of the shape that all have: each impact is matched to it
+    /// Record of one pulse, 5 to 10000 samples: each impact is matched to its shape
     #[arg(long, value_name = "FILE", conflicts_with = "legacy")]
     pub shape: Option<PathBuf>,
     /// Sampling rate of that record in Hz, where its file does not say

@@ -6,6 +6,7 @@ use crate::campaign::{Campaign, DropEntry};
 use crate::error::Result;
 use crate::measure::impacts::ImpactsOptions;
 use crate::measure::restitution::{Bounces, Drop, GRAVITY, Restitution, Train, Velocities, restitution};
+use crate::report::words::{Voice, sentences};
 use crate::report::{Figure, pictures};
 use serde::Serialize;
 
@@ -78,15 +79,15 @@ pub(super) fn drops(
                 ..ImpactsOptions::default()
             };
             if let Some(found) = or_left_out(series.bounces.add(&trace, &how), &file, warnings)? {
-                merge(warnings, &file, &found.warnings);
+                merge(warnings, &file, &sentences(&found.findings, Voice::Campaign));
                 series.files.push(file);
-                figures.push((format!("drop_{}", i + 1), pictures::drop(&name, &trace, &found)));
+                figures.push((format!("drop_{}", i + 1), pictures::drop(&name, &trace, &found.times)));
             }
         }
         series.drop.intervals.extend(entry.interval.or(entry.intervals.first().copied()));
         if !entry.intervals.is_empty() {
             let onset_std = entry.interval_std.map(|s| s / 2f64.sqrt());
-            series.trains.push(Train { intervals: entry.intervals.clone(), onset_std, after: None });
+            series.trains.push(Train { intervals: entry.intervals.clone(), onset_std });
         }
         series.velocities = series.velocities.take().or_else(|| entry.velocities());
     }
@@ -101,7 +102,7 @@ pub(super) fn drops(
         measured.trains.extend(trains);
         measured.velocities = velocities;
         let Some(found) = or_left_out(restitution(&measured), &name, warnings)? else { continue };
-        merge(warnings, &name, &found.warnings);
+        merge(warnings, &name, &sentences(&found.findings, Voice::Campaign));
         results.push(DropResult { name, files, restitution: found });
     }
     Ok(results)

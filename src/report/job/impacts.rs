@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::measure::impacts::{Impacts, ImpactsOptions, Shape, impacts as find};
 use crate::read::{Reader, Recording};
 use crate::record::Trace;
+use crate::report::words::{Voice, sentences};
 use crate::report::{Figure, pictures};
 use serde::Serialize;
 
@@ -74,7 +75,7 @@ pub(super) fn impacts(
             complete: entry.none_missed,
         };
         let Some(found) = or_left_out(find(&trace, &how), &name, warnings)? else { continue };
-        merge(warnings, &name, &found.warnings);
+        merge(warnings, &name, &sentences(&found.findings, Voice::Campaign));
         figures.push((format!("impacts_{}", results.len() + 1), pictures::impacts(&name, &trace, &found)));
         results.push(ImpactsResult { name, file, impacts: found });
     }

@@ -43,23 +43,23 @@ pub fn impacts(title: &str, trace: &Trace, found: &Impacts) -> Figure {
     let figure = Figure::double(title)
         .height(130.0)
         .columns(2)
-        .panel(marked(trace, found, all))
-        .panel(marked(trace, found, near))
+        .panel(marked(trace, &found.times, all))
+        .panel(marked(trace, &found.times, near))
         .panel(histogram)
         .panel(map)
         .caption("(a) The trace with the impacts that were found, (b) about ten intervals of it. (c) Intervals between successive impacts, (d) each over the one before; a periodic motion is a point there, or a few. Intervals far outside the others, as a missed impact makes them, are counted and not shown.");
     lettered(figure)
 }
 
-/// The trace of a drop with its impacts.
-pub fn drop(title: &str, trace: &Trace, found: &Impacts) -> Figure {
-    let first = found.times.first().copied().unwrap_or(0.0);
-    let last = found.times.last().copied().unwrap_or(first);
+/// The trace of a drop with its impacts at `times`.
+pub fn drop(title: &str, trace: &Trace, times: &[f64]) -> Figure {
+    let first = times.first().copied().unwrap_or(0.0);
+    let last = times.last().copied().unwrap_or(first);
     let margin = 0.15 * (last - first);
     let end = trace.axis.at(trace.values.len().saturating_sub(1));
     let (from, to) = ((first - margin).max(trace.axis.start()), (last + 2.0 * margin).min(end));
-    let mut plot = marked(trace, found, (from, to));
-    if let Some(second) = found.times.get(1) {
+    let mut plot = marked(trace, times, (from, to));
+    if let Some(second) = times.get(1) {
         plot = plot.title(format!("first flight {:.2} ms", 1e3 * (second - first)));
     }
     Figure::double(title)
@@ -69,11 +69,11 @@ pub fn drop(title: &str, trace: &Trace, found: &Impacts) -> Figure {
 }
 
 /// The part of a trace between two times, with its impacts marked over it.
-fn marked(trace: &Trace, found: &Impacts, (from, to): (f64, f64)) -> Plot {
+fn marked(trace: &Trace, times: &[f64], (from, to): (f64, f64)) -> Plot {
     let (x, y) = outline(trace, from, to);
     let low = y.iter().copied().fold(f64::INFINITY, f64::min);
     let high = y.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let times: Vec<f64> = found.times.iter().copied().filter(|t| (from..=to).contains(t)).collect();
+    let times: Vec<f64> = times.iter().copied().filter(|t| (from..=to).contains(t)).collect();
     let over = vec![high + 0.07 * (high - low); times.len()];
     let name = if trace.meta.name.is_empty() { "Trace" } else { &trace.meta.name };
     Plot::new(

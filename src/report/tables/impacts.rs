@@ -63,7 +63,7 @@ pub fn restitution(all: &[(String, &Restitution)]) -> Table {
         for way in &found.by {
             table.push([
                 Cell::from(name.as_str()),
-                Cell::from(way.method),
+                Cell::from(way.method.name()),
                 Cell::from(&way.restitution),
                 Cell::from(way.restitution.n),
                 Cell::from(way.restitution.method.as_str()),

@@ -56,7 +56,7 @@ fn onset_times_reach_their_bound() {
             let at: Vec<f64> = (0..per_record).map(|k| 100.0 + 150.0 * k as f64 + noise.uniform()).collect();
             let heights: Vec<f64> = at.iter().map(|_| 0.8 + 0.4 * noise.uniform()).collect();
             let found = impacts(&trace(&mut noise, &at, &heights, 3200, sigma), &options).unwrap();
-            assert_eq!(found.n, at.len(), "seed {seed}: {:?}", found.warnings);
+            assert_eq!(found.n, at.len(), "seed {seed}: {:?}", found.findings);
             // An average knows no origin: what is common to a record is taken out, with its one degree of freedom.
             let off: Vec<f64> = found.times.iter().zip(&at).map(|(a, b)| a - b).collect();
             let common =
@@ -219,7 +219,7 @@ fn onsets_of_single_flanks_are_covered() {
         let heights: Vec<f64> = at.iter().map(|_| 0.8 + 0.4 * noise.uniform()).collect();
         let options = ImpactsOptions { hum: false, ..ImpactsOptions::default() };
         let found = impacts(&trace(&mut noise, &at, &heights, 1100, sigma), &options).unwrap();
-        assert_eq!(found.n, at.len(), "seed {seed}: {:?}", found.warnings);
+        assert_eq!(found.n, at.len(), "seed {seed}: {:?}", found.findings);
         assert!(
             found.interval.method.contains("half height of the rising flanks"),
             "{}",
@@ -261,7 +261,7 @@ fn phases_of_impacts_are_covered() {
             ..ImpactsOptions::default()
         };
         let found = impacts(&trace(&mut noise, &at, &heights, 3500, sigma), &options).unwrap();
-        assert_eq!((found.n, found.phases.len()), (at.len(), 1), "seed {seed}: {:?}", found.warnings);
+        assert_eq!((found.n, found.phases.len()), (at.len(), 1), "seed {seed}: {:?}", found.findings);
         let u = found.onset_std.unwrap() / period;
         single += found
             .phase

@@ -1,4 +1,4 @@
-//! Impacts and bounces that ring: each is found once, or a doubt is said.
+//! Impacts and bounces that ring: each is found once, or a finding says that the count is doubtful.
 
 use super::draws::Draws;
 use super::noise::Noise;
@@ -56,10 +56,10 @@ impl Ring {
     }
 }
 
-/// Whether a person is told that the number of impacts is not to be trusted.
+/// Whether a finding says that the number of impacts is doubtful.
 fn doubted(found: &Impacts) -> bool {
-    found.missed > 0
-        || found.warnings.iter().any(|w| w.contains("--refractory") || w.contains("fills the pauses"))
+    let doubts = ["count-depends-on-ringing", "impacts-near-noise", "impacts-lost-in-noise"];
+    found.missed > 0 || found.findings.iter().any(|f| doubts.contains(&f.code))
 }
 
 fn ringing_impacts_are_counted_once(draws: Draws) {
@@ -77,7 +77,7 @@ fn ringing_impacts_are_counted_once(draws: Draws) {
         let doubt = found.as_ref().map_or(true, doubted);
         // A ring that decays by less than e⁴ from impact to impact has no pauses.
         let apart = ring.decay() < 0.25 / 30.0;
-        assert!(good || doubt, "seed {seed}: {:?}", found.map(|f| (f.n, f.warnings)));
+        assert!(good || doubt, "seed {seed}: {:?}", found.map(|f| (f.n, f.findings)));
         clear += usize::from(apart);
         right += usize::from(good && apart);
         told += usize::from(!good);
@@ -111,10 +111,11 @@ fn ringing_bounces_are_counted_once(draws: Draws) {
             ImpactsOptions { hum: false, threshold: Bounces::THRESHOLD, ..ImpactsOptions::default() };
         let found = Bounces::default().add(&trace, &options);
         // Bounces that are lost are the last.
-        let good = found.as_ref().is_ok_and(|f| f.n <= times.len() && ring.fits(&f.times, &times));
-        let doubt = found.as_ref().map_or(true, |f| f.warnings.iter().any(|w| w.contains("--refractory")));
+        let good = found.as_ref().is_ok_and(|f| f.times.len() <= times.len() && ring.fits(&f.times, &times));
+        let doubt =
+            found.as_ref().map_or(true, |f| f.findings.iter().any(|f| f.code == "count-depends-on-ringing"));
         if !good && !doubt {
-            println!("seed {seed}, R {r}: wrong without a doubt, {:?}", found.map(|f| (f.times, f.warnings)));
+            println!("seed {seed}, R {r}: wrong without a doubt, {:?}", found.map(|f| (f.times, f.findings)));
             silent += 1;
         }
         right += usize::from(good);

@@ -64,7 +64,10 @@ fn numbers_that_are_not_written_as_expected() {
         &complaint(&["impacts", "a.csv", "--excitation", "-3"], 2),
         &["-3", "try: a number that is not negative"],
     );
-    has(&complaint(&["restitution", "--intervals", "0.3"], 1), &["one flight time", "try: --intervals A,B"]);
+    has(
+        &complaint(&["restitution", "--intervals", "0.3"], 1),
+        &["one flight time", "try: state two", "--intervals"],
+    );
     let long = complaint(&["restitution", "--height", "0.15", "--interval", "0.427172953818325"], 1);
     has(&long, &["drop 1, 0.4272 s, gives R = 1.221"]);
 }

@@ -1,9 +1,9 @@
 //! Missed and doubled impacts: which place in a series each impact has.
 
-use super::burst::median;
+use super::background::median;
 use super::multiples::multiples;
-use super::pattern::{Pattern, Step, pattern};
-use vibro_record::units::notation::quantity;
+use super::pattern::{Step, pattern};
+use vibro_record::Finding;
 
 /// Which impacts count, and their indices in a series without missed ones.
 pub struct Counted {
@@ -19,58 +19,54 @@ pub struct Counted {
     pub missed: usize,
     /// Impacts that follow another too soon.
     pub doubled: usize,
-    /// Why it is not known how many there are, as a sentence.
-    pub unsure: Option<String>,
+    /// Why it is not known how many there are.
+    pub unsure: Option<Finding>,
 }
 
-/// Five times the robust spread of intervals is no chance.
+/// Robust standard deviations of the intervals beyond which one is no chance.
 const OUTSIDE: f64 = 5.0;
 
 /// Numbers the impacts at `times`, which are `steps` apart. With `complete` none is missed and none is too many.
 pub fn count(times: &[f64], steps: &[f64], complete: bool) -> Counted {
-    let repeated = pattern(steps);
-    if complete {
-        let n = times.len();
-        let (length, first) = repeated.map_or((1, 0), |p| (p.intervals.len(), p.first));
-        return Counted {
-            kept: (0..n).collect(),
-            index: (0..n).collect(),
-            place: (0..n).map(|i| (first + i) % length).collect(),
-            length,
-            missed: 0,
-            doubled: 0,
-            unsure: None,
-        };
-    }
-    match repeated {
-        Some(pattern) => of_pattern(times, &pattern),
+    match pattern(steps) {
+        repeated if complete => {
+            let (length, first) = repeated.map_or((1, 0), |p| (p.intervals.len(), p.first));
+            numbered(times, length, first, |_, _, _| Step::Several(1))
+        }
+        Some(pattern) => {
+            let step = |place, d, later| pattern.step(place, d, later);
+            numbered(times, pattern.intervals.len(), pattern.first, step)
+        }
         None => even(times, steps),
     }
 }
 
-fn of_pattern(times: &[f64], pattern: &Pattern) -> Counted {
-    let length = pattern.intervals.len();
-    let mut place = pattern.first;
+/// Numbers impacts by what each interval is to the train, from the place of the first; an interval after it is given, too.
+fn numbered(
+    times: &[f64],
+    length: usize,
+    first: usize,
+    step: impl Fn(usize, f64, Option<f64>) -> Step,
+) -> Counted {
     let mut counted = Counted {
         kept: vec![0],
         index: vec![0],
-        place: vec![place],
+        place: vec![first],
         length,
         missed: 0,
         doubled: 0,
         unsure: None,
     };
-    let (mut last, mut at) = (0, 0);
+    let (mut last, mut at, mut place) = (0, 0, first);
     for i in 1..times.len() {
-        let d = times[i] - times[last];
-        let steps = match pattern.step(place, d, times.get(i + 1).map(|t| t - times[i])) {
+        let later = times.get(i + 1).map(|t| t - times[i]);
+        let steps = match step(place, times[i] - times[last], later) {
             Step::Part => {
                 counted.doubled += 1;
                 continue;
             }
-            Step::Next => 1,
             Step::Several(n) => n,
-            Step::From(other) => {
+            Step::At(other) => {
                 place = other;
                 1
             }
@@ -84,61 +80,42 @@ fn of_pattern(times: &[f64], pattern: &Pattern) -> Counted {
     counted
 }
 
+/// Numbers impacts of equal intervals, or of intervals that repeat nothing.
 fn even(times: &[f64], steps: &[f64]) -> Counted {
     let typical = median(steps);
     let spread = median(&steps.iter().map(|d| (d - typical).abs()).collect::<Vec<f64>>()) / 0.674_5;
     let short = |d: f64| d < 0.5 * typical && typical - d > OUTSIDE * spread;
     // As many short intervals as a fifth of all are no accident.
     let many = steps.iter().filter(|d| short(**d)).count() * 5 > steps.len();
-    let mut counted = Counted {
-        kept: vec![0],
-        index: vec![0],
-        place: vec![0],
-        length: 1,
-        missed: 0,
-        doubled: 0,
-        unsure: None,
-    };
-    for i in 1..times.len() {
-        let (last, at) =
-            (counted.kept.last().copied().unwrap_or(0), counted.index.last().copied().unwrap_or(0));
-        let d = times[i] - times[last];
+    let mut counted = numbered(times, 1, 0, |_, d, _| {
         if !many && short(d) {
-            counted.doubled += 1;
-            continue;
+            return Step::Part;
         }
         let long = d > 1.5 * typical && d - typical > OUTSIDE * spread;
-        let step = if long { (d / typical).round().clamp(1.0, 1e9) as usize } else { 1 };
-        counted.missed += step - 1;
-        counted.kept.push(i);
-        counted.index.push(at + step);
-        counted.place.push(0);
-    }
+        Step::Several(if long { (d / typical).round().clamp(1.0, 1e9) as usize } else { 1 })
+    });
     counted.unsure = unsure(steps, &counted, OUTSIDE * spread > 0.5 * typical);
     counted
 }
 
-/// Why the count of even intervals may be another: all of them are multiples of a common one and were counted otherwise, or impacts were counted
-/// though the intervals `scatter` as far as one more or less would change them.
-fn unsure(steps: &[f64], counted: &Counted, scatter: bool) -> Option<String> {
+/// Why the count of even intervals may be another: all of them are multiples of a common one and were counted otherwise, or impacts
+/// count as missed or doubled though the intervals `scatter` as far as one more or less would change them.
+fn unsure(steps: &[f64], counted: &Counted, scatter: bool) -> Option<Finding> {
     let span = counted.index.last().copied().unwrap_or(0);
     let other = multiples(steps).map(|m| (m.interval, m.counts.iter().sum::<usize>()));
     if let Some((interval, all)) = other.filter(|(_, all)| *all != span) {
-        return Some(format!(
-            "All intervals are near whole multiples of {}: either {} impacts are missed, or the train skips cycles. Which of them is not known, and the mean interval has no uncertainty. If none is missed: --none-missed.",
-            quantity(interval, "s", 4),
-            all - steps.len().min(all)
-        ));
+        let missed = all - steps.len().min(all);
+        return Some(
+            Finding::doubt("missed-or-skipped").number("interval", interval).count("missed", missed),
+        );
     }
-    (scatter && counted.missed + counted.doubled > 0).then(|| {
-        "Intervals scatter as far as an impact more or less would change them: which of them miss an impact or have one too many is not known, and the mean interval has no uncertainty. If none is missed or too many: --none-missed.".to_owned()
-    })
+    (scatter && counted.missed + counted.doubled > 0).then(|| Finding::doubt("count-within-scatter"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::impacts::tests::Noise;
+    use vibro_math::Noise;
 
     #[test]
     fn a_missed_and_a_doubled_impact_of_a_pattern() {

@@ -1,13 +1,13 @@
-//! A level that drifts: a straight line through the medians of pieces of the trace, taken away.
+//! Linear drift of the level, from the medians of pieces of the trace.
 
-use super::burst::{background, median};
+use super::background::{background, median};
 
 /// Pieces of a trace.
 const PIECES: usize = 24;
 /// The noise between impacts must fall to this part of what it was.
 const WORTH: f64 = 0.8;
 
-/// Takes a straight line out of `values` and gives its slope in units a sample, where that lowers the noise between impacts by a fifth.
+/// Removes a straight line from `values` and gives its slope in units a sample, where that lowers the noise between impacts by a fifth.
 ///
 /// The slope is the median of those between the medians of any two pieces (Theil 1950, Sen 1968): impacts that fill less than half of a piece do
 /// not move it.
@@ -34,7 +34,7 @@ pub fn remove(values: &mut [f64]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::impacts::tests::Noise;
+    use vibro_math::Noise;
 
     #[test]
     fn a_straight_drift_goes_and_impacts_stay() {

@@ -1,13 +1,15 @@
-//! Mains hum: a sine of 50 or 60 Hz with its harmonics, fitted to what lies between the impacts and taken away.
+//! Mains hum: a sine of 50 or 60 Hz with its harmonics, fitted between the impacts and removed.
 
-use super::burst::{background, median};
+use super::background::{background, median};
 use super::ringing::bursts;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 use std::f64::consts::TAU;
+use vibro_record::Finding;
 
 /// A fitted mains sine.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Hum {
     /// Frequency in Hz, the mean where the record was fitted in pieces.
     pub frequency: f64,
@@ -17,7 +19,7 @@ pub struct Hum {
     pub harmonics: usize,
 }
 
-/// Harmonics up to this one are taken.
+/// Highest harmonic that is fitted.
 const HARMONICS: usize = 7;
 /// Mains frequencies stay within this of their nominal value, in Hz.
 const TOLERANCE: f64 = 0.5;
@@ -29,20 +31,18 @@ const WORTH: f64 = 0.8;
 /// What was done about hum.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Treated {
-    /// Hum that was taken away.
-    pub taken: Option<Hum>,
-    /// How far what was left in the trace and its noise reach from the level, where that is known.
+    /// Hum that was removed.
+    pub removed: Option<Hum>,
+    /// How far hum that was kept and noise reach from the level.
     pub reach: Option<f64>,
 }
 
-/// Takes the hum out of `values`, sampled at `rate` in Hz, where there is any that matters; with `keep` it is left, and how far it reaches is said.
+/// Removes the hum from `values`, sampled at `rate` in Hz, where there is any that matters; with `keep` it stays, and its reach is given.
 ///
 /// Each piece of at least five cycles is fitted by least squares with bisquare weights (Beaton and Tukey 1974), so impacts do not
-/// count; nothing is taken where that does not lower the noise between impacts by a fifth.
-///
-/// Nothing is taken, and that is said in `warnings`, where what is left comes as often as the hum or every second time: a sine with its
-/// harmonics fits such a train as well, so that the two cannot be told apart.
-pub fn remove(values: &mut [f64], rate: f64, keep: bool, warnings: &mut Vec<String>) -> Treated {
+/// count; nothing is removed where that does not lower the noise between impacts by a fifth. Where impacts come as often as the hum
+/// or half as often, a sine with its harmonics fits them as well: the hum stays, and a finding says so.
+pub fn remove(values: &mut [f64], rate: f64, keep: bool, findings: &mut Vec<Finding>) -> Treated {
     let piece = (PIECE * rate).min(values.len() as f64) as usize;
     if (piece as f64) < 0.1 * rate || piece < 32 {
         return Treated::default();
@@ -68,30 +68,27 @@ pub fn remove(values: &mut [f64], rate: f64, keep: bool, warnings: &mut Vec<Stri
     if hums.is_empty() {
         return Treated::default();
     }
-    // A sine ends at its amplitude: what stands out of both is no noise.
-    let left_in = Treated { taken: None, reach: Some(highest + background(&cleaned).reach) };
+    // A sine ends at its amplitude: what exceeds hum and noise together is neither.
+    let kept = Treated { removed: None, reach: Some(highest + background(&cleaned).reach) };
     let mean = |f: &dyn Fn(&Hum) -> f64| hums.iter().map(f).sum::<f64>() / hums.len() as f64;
     let frequency = mean(&|h| h.frequency);
     if keep {
-        return left_in;
+        return kept;
     }
-    if let Some(left) = left(&cleaned, rate).filter(|left| alike(*left, frequency)) {
-        warnings.push(format!(
-            "What comes at {frequency:.2} Hz may be mains hum, but the impacts come about as often ({left:.1} Hz), or half as often: the two cannot be told apart, and nothing was taken away. If it is hum, a high-pass takes it: vibro convert --high-pass HZ."
-        ));
-        return left_in;
+    if let Some(impacts) = burst_rate(&cleaned, rate).filter(|r| shares_lines(*r, frequency)) {
+        findings.push(
+            Finding::caution("hum-or-impacts").number("frequency", frequency).number("impacts", impacts),
+        );
+        return kept;
     }
     values.copy_from_slice(&cleaned);
-    let taken = Hum {
-        frequency,
-        amplitude: mean(&|h| h.amplitude),
-        harmonics: hums.iter().map(|h| h.harmonics).max().unwrap_or(1),
-    };
-    Treated { taken: Some(taken), reach: None }
+    let harmonics = hums.iter().map(|h| h.harmonics).max().unwrap_or(1);
+    let removed = Hum { frequency, amplitude: mean(&|h| h.amplitude), harmonics };
+    Treated { removed: Some(removed), reach: None }
 }
 
-/// Bursts a second that stand out of what is left, from the median of their distances.
-fn left(cleaned: &[f64], rate: f64) -> Option<f64> {
+/// Bursts a second in what remains without the hum, from the median of their distances.
+fn burst_rate(cleaned: &[f64], rate: f64) -> Option<f64> {
     let found = background(cleaned);
     let centred: Vec<f64> = cleaned.iter().map(|v| v - found.level).collect();
     let starts: Vec<f64> = bursts(&centred, found.reach, None).each.iter().map(|b| b.start as f64).collect();
@@ -99,15 +96,15 @@ fn left(cleaned: &[f64], rate: f64) -> Option<f64> {
     (steps.len() > 1).then(|| rate / median(&steps))
 }
 
-/// Whether a train of `left` a second has lines where the hum has its own.
-fn alike(left: f64, hum: f64) -> bool {
-    left > 0.9 * hum || (left / hum - 0.5).abs() < 0.01
+/// Whether a train of so many impacts a second has spectral lines where the hum has its own.
+fn shares_lines(impacts: f64, hum: f64) -> bool {
+    impacts > 0.9 * hum || (impacts / hum - 0.5).abs() < 0.01
 }
 
 /// The sine that lowers the noise most, and its samples without the offset.
 fn fitted(values: &[f64], rate: f64) -> Option<(Hum, Vec<f64>)> {
     let before = background(values);
-    let held: Vec<f64> =
+    let limited: Vec<f64> =
         values.iter().map(|v| (v - before.level).clamp(-3.0 * before.sigma, 3.0 * before.sigma)).collect();
     let length = values.len() as f64 / rate;
     let (frequency, power) = [50.0, 60.0]
@@ -117,11 +114,11 @@ fn fitted(values: &[f64], rate: f64) -> Option<(Hum, Vec<f64>)> {
             let steps = (TOLERANCE * 4.0 * length).ceil().max(1.0) as i64;
             (-steps..=steps).map(move |k| nominal + TOLERANCE * k as f64 / steps as f64)
         })
-        .map(|f| (f, power(&held, f / rate)))
+        .map(|f| (f, power(&limited, f / rate)))
         .max_by(|a, b| a.1.total_cmp(&b.1))?;
-    // Half the squared amplitude 2√power/n is what a sine has of the variance; too little of it cannot be worth its fit.
+    // A sine of amplitude 2√power/n has half its square of the variance; a tenth cannot lower the noise by a fifth.
     let n = values.len() as f64;
-    if 2.0 * power / n < 0.1 * held.iter().map(|v| v * v).sum::<f64>() {
+    if 2.0 * power / n < 0.1 * limited.iter().map(|v| v * v).sum::<f64>() {
         return None;
     }
     let orders = HARMONICS.min((0.5 * rate / frequency * 0.98) as usize).max(1);
@@ -201,7 +198,7 @@ fn refined(values: &[f64], mut frequency: f64, rate: f64, orders: usize) -> Opti
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::impacts::tests::Noise;
+    use vibro_math::Noise;
 
     #[test]
     fn hum_larger_than_the_impacts_goes_and_the_impacts_stay() {
@@ -214,7 +211,7 @@ mod tests {
             1.5 * (x + 0.4).sin() + 0.3 * (3.0 * x).cos()
         };
         let mut values: Vec<f64> = clean.iter().enumerate().map(|(i, v)| v + hum(i)).collect();
-        let found = remove(&mut values, rate, false, &mut Vec::new()).taken.unwrap();
+        let found = remove(&mut values, rate, false, &mut Vec::new()).removed.unwrap();
         // A sine of amplitude A in N samples of noise σ: u(f) = √6 σ/(π A T √N) = 2e-5 Hz, u(A) = σ√(2/N) = 2.2e-4.
         // Bisquare weights cost 5 %, impacts in the tails of the weights more: five times as much.
         assert!((found.frequency - 50.07).abs() < 1e-4, "{found:?}");
@@ -241,9 +238,9 @@ mod tests {
         let mut noise = Noise::new(6);
         let values: Vec<f64> =
             (0..10_000).map(|i| 0.01 * noise.normal() + (-f64::from(i % 100) / 20.0).exp()).collect();
-        let (mut after, mut warnings) = (values.clone(), Vec::new());
-        assert_eq!(remove(&mut after, rate, false, &mut warnings).taken, None);
+        let (mut after, mut findings) = (values.clone(), Vec::new());
+        assert_eq!(remove(&mut after, rate, false, &mut findings).removed, None);
         assert_eq!(values, after);
-        assert!(warnings.iter().any(|w| w.contains("cannot be told apart")), "{warnings:?}");
+        assert!(findings.iter().any(|f| f.code == "hum-or-impacts"), "{findings:?}");
     }
 }

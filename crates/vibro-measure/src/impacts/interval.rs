@@ -24,9 +24,9 @@
 //!
 //! Neither noise of the onsets nor jitter makes neighbouring intervals positively correlated; a speed that wanders does. Where they are, u is not less
 //! than the standard uncertainty of the mean of values that depend on those before (Müller 2007). Of 60 intervals with a correlation of 0.3, 0.5 and 0.7
-//! ±1.96 u then hold T in 93.8, 93.8 and 92.6 %, with 0.9 in 89 %, most of which are said to wander.
+//! ±1.96 u then hold T in 93.8, 93.8 and 92.6 %, with 0.9 in 89 %, most of which are found to wander.
 
-use super::burst::median;
+use super::background::median;
 use crate::mean::Mean;
 use crate::residuals::student;
 use serde::Deserialize;
@@ -47,15 +47,12 @@ pub enum Scatter {
 
 /// Interval and what disturbs it.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Interval {
     /// Mean interval T in s.
     pub mean: f64,
     /// Its standard uncertainty; NaN where two impacts only are there.
     pub std: f64,
-    /// Standard deviation σ of an onset, in s, as the intervals show it.
-    pub onset: f64,
-    /// Standard deviation s of the intervals beside the onset noise, in s.
-    pub jitter: f64,
     /// Serial correlation of neighbouring intervals: −1/2 for onset noise, 0 for jitter; NaN for fewer than four impacts.
     pub correlation: f64,
     /// Whether intervals wander so slowly that the uncertainty may be too small.
@@ -73,14 +70,7 @@ pub fn interval(times: &[f64], indices: &[usize], scatter: Scatter) -> Option<In
     }
     if d.len() == 1 {
         let mean = d[0] / m[0];
-        return Some(Interval {
-            mean,
-            std: f64::NAN,
-            onset: f64::NAN,
-            jitter: f64::NAN,
-            correlation: f64::NAN,
-            wanders: false,
-        });
+        return Some(Interval { mean, std: f64::NAN, correlation: f64::NAN, wanders: false });
     }
     let nodes = match scatter {
         Scatter::Onsets => vec![Node::new(&d, &m, 0.0, 1.0)],
@@ -95,19 +85,6 @@ pub fn interval(times: &[f64], indices: &[usize], scatter: Scatter) -> Option<In
     let mean = over(&|g| g.mean);
     let widened = widened(d.len() - 1).powi(2);
     let variance = over(&|g| widened * g.variance * g.cofactor + (g.mean - mean).powi(2));
-    // Jitter alone is named where it is likelier than all else together, otherwise the likeliest ratio.
-    let jitter = nodes.iter().zip(&parts).find(|(n, _)| n.ratio.is_infinite());
-    let jitter_alone = jitter.is_some_and(|(_, p)| *p > 0.5 * total);
-    let named = if jitter_alone {
-        nodes.last()
-    } else {
-        nodes
-            .iter()
-            .rev()
-            .filter(|n| n.ratio.is_finite())
-            .max_by(|a, b| a.fit.likelihood.total_cmp(&b.fit.likelihood))
-    }?;
-    let scale = named.fit.variance.sqrt();
     let correlation = correlation(&d, &m);
     let slow = if correlation > 0.0 {
         Some(Mean::of(&d.iter().zip(&m).map(|(d, m)| d / m).collect::<Vec<f64>>()))
@@ -117,8 +94,6 @@ pub fn interval(times: &[f64], indices: &[usize], scatter: Scatter) -> Option<In
     Some(Interval {
         mean,
         std: slow.and_then(|s| s.std).map_or(variance.sqrt(), |s| s.max(variance.sqrt())),
-        onset: if jitter_alone { 0.0 } else { scale * named.ratio.atan().cos() },
-        jitter: scale * named.ratio.atan().sin(),
         correlation,
         wanders: slow.is_some_and(|s| s.wanders),
     })
@@ -140,7 +115,6 @@ const FINEST: f64 = 0.005;
 
 /// One ratio of jitter to onset noise.
 struct Node {
-    ratio: f64,
     fit: Gls,
     /// Logarithm of prior probability times likelihood.
     weight: f64,
@@ -149,7 +123,7 @@ struct Node {
 impl Node {
     fn new(d: &[f64], m: &[f64], ratio: f64, prior: f64) -> Node {
         let fit = gls(d, m, ratio.atan());
-        Node { ratio, fit, weight: prior.ln() + fit.likelihood }
+        Node { fit, weight: prior.ln() + fit.likelihood }
     }
 }
 
@@ -241,9 +215,9 @@ fn gls(d: &[f64], m: &[f64], angle: f64) -> Gls {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::Noise;
     use super::*;
     use nalgebra::{DMatrix, DVector};
+    use vibro_math::Noise;
 
     const TIMES: [f64; 6] = [0.1, 1.2, 1.9, 3.05, 3.9, 5.2];
 
@@ -297,14 +271,12 @@ mod tests {
     fn what_is_known_to_scatter_is_believed() {
         let indices: Vec<usize> = (0..6).collect();
         let (d, m) = parts();
-        for (scatter, angle, onset) in [(Scatter::Onsets, 0.0, true), (Scatter::Intervals, FRAC_PI_2, false)]
-        {
+        for (scatter, angle) in [(Scatter::Onsets, 0.0), (Scatter::Intervals, FRAC_PI_2)] {
             let found = interval(&TIMES, &indices, scatter).unwrap();
             let fit = gls(&d, &m, angle);
             // Four degrees of freedom: √(4/2).
             let std = (2.0 * fit.variance * fit.cofactor).sqrt();
             assert!((found.mean - fit.mean).abs() < 1e-14 && (found.std / std - 1.0).abs() < 1e-12);
-            assert!((found.onset > 0.0) == onset && (found.jitter > 0.0) != onset, "{found:?}");
         }
     }
 

@@ -45,8 +45,8 @@ mod tests {
     use vibro_math::Noise;
 
     #[test]
-    fn a_train_of_which_most_are_missed_is_told_and_intervals_of_any_length_are_not() {
-        let mut told = 0;
+    fn a_train_of_which_most_are_missed_is_found_and_intervals_of_any_length_are_not() {
+        let mut found_by_chance = 0;
         for seed in 0..2000 {
             let mut noise = Noise::new(seed);
             // Each impact comes in one of two cycles; intervals are off by 1 % of a cycle.
@@ -60,10 +60,10 @@ mod tests {
                 assert!((found.interval / 0.13 - 1.0).abs() < 5.0 * 0.01 / 20f64.sqrt(), "seed {seed}");
             }
             let any: Vec<f64> = (0..FEWEST).map(|_| noise.between(1.0, 9.0)).collect();
-            told += usize::from(multiples(&any).is_some());
+            found_by_chance += usize::from(multiples(&any).is_some());
         }
         // 1.5e-4 of them, 0.3 of 2000: more than 4 are met in one run of 60 000.
-        assert!(told <= 4, "{told}");
+        assert!(found_by_chance <= 4, "{found_by_chance}");
         assert!(multiples(&[0.1; 11]).is_none());
     }
 }

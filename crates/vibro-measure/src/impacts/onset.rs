@@ -1,6 +1,6 @@
-//! When each burst begins: below a sample.
+//! When each burst begins, below a sample.
 
-use super::burst::{Background, median};
+use super::background::median;
 use super::shape::{Matched, Shape};
 use std::ops::Range;
 
@@ -15,18 +15,18 @@ pub struct Onset {
     pub height: f64,
 }
 
-/// How the onsets were found.
+/// How onsets were timed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Timing {
     /// Each rising flank interpolated at half its height.
     Flank,
     /// Each pulse matched to the average pulse of the record.
     Average,
-    /// Each pulse matched to a shape that was given.
+    /// Each pulse matched to a known shape.
     Known,
 }
 
-/// A flank goes from the background to the top within one sample where both samples are within this part of the height of them.
+/// A flank rises within one sample where both samples are within this part of the height of background and top.
 const SHARP: f64 = 0.1;
 
 /// Fewer impacts than this are not averaged.
@@ -43,98 +43,88 @@ struct Lobe {
     sharp: bool,
 }
 
-/// Onsets, and how they were found.
-pub struct Found {
-    /// One a burst.
-    pub onsets: Vec<Option<Onset>>,
+impl Lobe {
+    /// The onset by the flank; `None` where that lies before the record.
+    fn flank(&self) -> Option<Onset> {
+        self.onset.is_finite().then_some(Onset { time: self.onset, std: self.std, height: self.height })
+    }
+}
+
+/// Onsets of all bursts.
+pub struct Onsets {
+    /// One a burst; `None` where no rising flank shows it.
+    pub each: Vec<Option<Onset>>,
+    /// How they were timed.
     pub timing: Timing,
     /// Whether most pulses rise within one sample: nothing is known of their times between samples.
     pub sharp: bool,
 }
 
-/// Onsets of the bursts of `values`, whose background level is 0, by the best method that the record allows; `None` stands for a
-/// burst whose rising flank lies before the record.
-pub fn onsets(
-    values: &[f64],
-    bursts: &[Range<usize>],
-    background: Background,
-    known: Option<&Shape>,
-) -> Found {
-    let lobes: Vec<Lobe> = bursts.iter().filter_map(|b| lobe(values, b, background.sigma)).collect();
-    let (mut onsets, timing) = timed_lobes(values, &lobes, background, known);
-    let sharp =
-        2 * lobes.iter().filter(|l| l.sharp).count() > lobes.iter().filter(|l| l.onset.is_finite()).count();
-    if sharp {
-        // Anywhere between two samples (JCGM 100:2008, 4.3.7).
-        onsets.iter_mut().flatten().for_each(|o| o.std = o.std.hypot(1.0 / 12f64.sqrt()));
-    }
-    Found { onsets, timing, sharp }
+/// Onsets of the bursts of `values`, whose background has the level 0 and the noise `sigma`, by the best method that the record allows.
+pub fn onsets(values: &[f64], bursts: &[Range<usize>], sigma: f64, known: Option<&Shape>) -> Onsets {
+    let lobes: Vec<Lobe> = bursts.iter().filter_map(|b| lobe(values, b, sigma)).collect();
+    let whole: Vec<&Lobe> = lobes.iter().filter(|l| l.onset.is_finite()).collect();
+    let sharp = 2 * lobes.iter().filter(|l| l.sharp).count() > whole.len();
+    let (each, timing) = if let Some(shape) = known {
+        (by_shape(values, &lobes, sigma, shape), Timing::Known)
+    } else if let Some(onsets) = by_average(values, &lobes, &whole, sigma) {
+        (onsets, Timing::Average)
+    } else {
+        (lobes.iter().map(Lobe::flank).collect(), Timing::Flank)
+    };
+    Onsets { each, timing, sharp }
 }
 
-fn timed_lobes(
-    values: &[f64],
-    lobes: &[Lobe],
-    background: Background,
-    known: Option<&Shape>,
-) -> (Vec<Option<Onset>>, Timing) {
-    let flanks = || {
-        lobes
-            .iter()
-            .map(|l| l.onset.is_finite().then_some(Onset { time: l.onset, std: l.std, height: l.height }))
-            .collect::<Vec<_>>()
-    };
-    let sigma2 = background.sigma.powi(2);
-    if let Some(shape) = known {
-        let start = |l: &Lobe| if l.onset.is_finite() { l.onset } else { l.peak as f64 - 1.0 };
-        let matched: Vec<Option<Matched>> =
-            lobes.iter().map(|l| shape.matched(values, start(l), l.height)).collect();
-        return (matched.iter().map(|m| Some(timed((*m)?, &matched, sigma2))).collect(), Timing::Known);
-    }
+fn by_shape(values: &[f64], lobes: &[Lobe], sigma: f64, shape: &Shape) -> Vec<Option<Onset>> {
+    let start = |l: &Lobe| if l.onset.is_finite() { l.onset } else { l.peak as f64 - 1.0 };
+    let matched: Vec<Option<Matched>> =
+        lobes.iter().map(|l| shape.matched(values, start(l), l.height)).collect();
+    matched.iter().map(|m| Some(timed((*m)?, &matched, sigma))).collect()
+}
+
+/// By the average pulse; `None` where there are too few pulses, or most differ from their average.
+fn by_average(values: &[f64], lobes: &[Lobe], whole: &[&Lobe], sigma: f64) -> Option<Vec<Option<Onset>>> {
     let widths: Vec<f64> = lobes.iter().map(|l| l.width).filter(|w| w.is_finite()).collect();
-    let whole = lobes.iter().filter(|l| l.onset.is_finite()).count();
-    if whole < ENOUGH || widths.is_empty() {
-        return (flanks(), Timing::Flank);
+    if whole.len() < ENOUGH || widths.is_empty() {
+        return None;
     }
     let width = median(&widths).max(1.0);
     let span = -2.0 * width.max(1.5)..1.5 * width.max(1.5);
-    // A flank before the record is looked for where the others have theirs.
-    let before = median(
-        &lobes.iter().map(|l| l.peak as f64 - l.onset).filter(|d| d.is_finite()).collect::<Vec<f64>>(),
-    );
+    // A flank before the record is expected where the others have theirs.
+    let rise = median(&whole.iter().map(|l| l.peak as f64 - l.onset).collect::<Vec<f64>>());
     let times: Vec<f64> =
-        lobes.iter().map(|l| if l.onset.is_finite() { l.onset } else { l.peak as f64 - before }).collect();
+        lobes.iter().map(|l| if l.onset.is_finite() { l.onset } else { l.peak as f64 - rise }).collect();
     let heights: Vec<f64> = lobes.iter().map(|l| l.height).collect();
-    let Some((_, matched)) = Shape::averaged(values, &times, &heights, &span) else {
-        return (flanks(), Timing::Flank);
-    };
-    // Pulses are alike where what is left of them is noise, or little beside their height.
-    let left = |m: &Matched| {
-        (m.variance.sqrt() / (2.0 * background.sigma)).min(m.variance.sqrt() / (0.1 * m.height))
-    };
-    let misfit: Vec<f64> = matched
+    let matched = Shape::averaged(values, &times, &heights, &span)?;
+    // A pulse is alike where its residual is noise, or little beside its height.
+    let residual =
+        |m: &Matched| (m.variance.sqrt() / (2.0 * sigma)).min(m.variance.sqrt() / (0.1 * m.height));
+    let residuals: Vec<f64> = matched
         .iter()
         .zip(&times)
-        .map(|(m, t)| m.filter(|m| (m.time - t).abs() < width).map_or(f64::INFINITY, |m| left(&m)))
+        .map(|(m, t)| m.filter(|m| (m.time - t).abs() < width).map_or(f64::INFINITY, |m| residual(&m)))
         .collect();
-    if median(&misfit) > 1.0 {
-        return (flanks(), Timing::Flank);
+    if median(&residuals) > 1.0 {
+        return None;
     }
-    let rest = flanks().into_iter().zip(misfit).zip(lobes.iter().zip(&times));
-    let chosen = matched.iter().zip(rest).map(|(m, ((flank, misfit), (lobe, t)))| match m {
-        Some(m) if misfit.is_finite() => Some(timed(*m, &matched, sigma2)),
-        // A cut pulse that cannot be matched stands where its highest sample says, half a sample more or less; where the record
-        // begins with that sample it may be the ringing of an impact before.
-        _ => flank.or_else(|| (lobe.peak > 0).then_some(Onset { time: *t, std: 0.5, height: lobe.height })),
+    let all = matched.iter().zip(residuals).zip(lobes.iter().zip(&times));
+    let onsets = all.map(|((m, residual), (lobe, t))| match m {
+        Some(m) if residual.is_finite() => Some(timed(*m, &matched, sigma)),
+        // A cut pulse without a match stands where its highest sample says, half a sample more or less; where the record begins with
+        // that sample it may be the ringing of an impact before.
+        _ => lobe
+            .flank()
+            .or_else(|| (lobe.peak > 0).then_some(Onset { time: *t, std: 0.5, height: lobe.height })),
     });
-    (chosen.collect(), Timing::Average)
+    Some(onsets.collect())
 }
 
-/// An onset with the uncertainty that follows from what the match leaves of all pulses, but for a few that fit badly.
-fn timed(m: Matched, all: &[Option<Matched>], sigma2: f64) -> Onset {
+/// An onset with the uncertainty that follows from the residuals of all pulses, but for a few outliers.
+fn timed(m: Matched, all: &[Option<Matched>], sigma: f64) -> Onset {
     let mut left: Vec<f64> = all.iter().flatten().map(|m| m.variance).collect();
     let most = 4.0 * median(&left);
     left.retain(|v| *v <= most);
-    let left = if left.is_empty() { sigma2 } else { left.iter().sum::<f64>() / left.len() as f64 };
+    let left = if left.is_empty() { sigma * sigma } else { left.iter().sum::<f64>() / left.len() as f64 };
     Onset { time: m.time, std: (m.cofactor * left).sqrt(), height: m.height }
 }
 

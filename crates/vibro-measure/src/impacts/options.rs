@@ -1,29 +1,30 @@
-//! How impacts are found.
+//! How impacts are found, and whether a trace allows it.
 
-use super::unfit;
+use super::background::median;
 use super::{Scatter, Shape};
-use vibro_record::{Error, Result, Trace};
+use vibro_record::units::notation::shortest;
+use vibro_record::{AxisKind, Error, Grid, Result, Trace};
 
 /// How impacts are found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImpactsOptions {
-    /// Bursts lower than this part of the median burst are no impacts. Default 1/8.
+    /// Lowest impact as a part of the median one. Default 1/8.
     pub threshold: f64,
-    /// Pause in s that parts two impacts. Default: found from the pauses of the trace.
+    /// Pause in s that separates two impacts. Default: from the pauses of the trace.
     pub refractory: Option<f64>,
-    /// Whether mains hum is looked for and taken away. Default true.
+    /// Whether mains hum is removed. Default true.
     pub hum: bool,
-    /// Whether it is known that no impact is missed and none is too many, however uneven the intervals. Default false.
+    /// Whether no impact is missed and none is too many, however uneven the intervals. Default false.
     pub complete: bool,
     /// Frequency of the excitation in Hz, for impacts per cycle.
     pub excitation: Option<f64>,
     /// Its standard uncertainty in Hz. Default: that of the digits it is written with.
     pub excitation_std: Option<f64>,
-    /// Samples of a channel that rises once a cycle of the excitation, taken together with the trace.
+    /// Samples of a channel that rises once a cycle of the excitation, recorded with the trace.
     pub reference: Option<Vec<f64>>,
-    /// Shape of the pulses over time in samples, where it is known; its origin is the time of the impact.
+    /// Known shape of the pulses; its origin is the time of the impact.
     pub shape: Option<Shape>,
-    /// Whether onsets or intervals are known to scatter. Default: unknown.
+    /// Whether onsets or intervals scatter. Default: unknown.
     pub scatter: Scatter,
 }
 
@@ -43,33 +44,76 @@ impl Default for ImpactsOptions {
     }
 }
 
-/// Whether the options can be, and the trace can be looked at.
-///
-/// # Errors
-/// Where they or it cannot.
-pub fn check(trace: &Trace, options: &ImpactsOptions) -> Result<()> {
+/// Checks options and trace, and gives the sampling rate in Hz.
+pub(super) fn check(trace: &Trace, options: &ImpactsOptions) -> Result<f64> {
+    let rate = rate_of(trace)?;
     if !(0.0..1.0).contains(&options.threshold) {
         return Err(Error::usage(
             format!("a threshold of {}", options.threshold),
-            "0 to 1, of the median height",
+            "a part of the median height, from 0 to 1",
         ));
     }
-    for (what, value) in [
+    for (name, value) in [
         ("a refractory time", options.refractory),
         ("an excitation", options.excitation),
         ("an uncertainty of the excitation", options.excitation_std),
     ] {
         if let Some(v) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
-            return Err(Error::usage(format!("{what} of {v}"), "a finite number above 0"));
+            return Err(Error::usage(format!("{name} of {v}"), "a finite number above 0"));
         }
     }
-    unfit::lost(trace, &trace.values, "the trace", "an impact may stand in any of them")?;
+    missing_values(trace, &trace.values, "the trace")?;
     if trace.values.iter().all(|v| Some(v) == trace.values.first()) {
-        return Err(Error::refused("all values of the trace are equal: there are no impacts in it"));
-    }
-    if options.reference.as_ref().is_some_and(|r| r.len() != trace.values.len()) {
-        return Err(Error::refused("the reference channel has another number of samples than the trace"));
+        return Err(Error::refused("all values of the trace are equal: it has no impacts"));
     }
     let reference = options.reference.as_deref().unwrap_or_default();
-    unfit::lost(trace, reference, "the reference channel", "a cycle may begin in any of them")
+    if options.reference.is_some() && reference.len() != trace.values.len() {
+        return Err(Error::refused(format!(
+            "the reference channel has {} samples, the trace {}",
+            reference.len(),
+            trace.values.len()
+        )));
+    }
+    missing_values(trace, reference, "the reference channel")?;
+    Ok(rate)
+}
+
+/// Sampling rate of a trace in Hz.
+///
+/// # Errors
+/// Where it has none.
+pub(crate) fn rate_of(trace: &Trace) -> Result<f64> {
+    trace.rate().filter(|r| r.is_finite() && *r > 0.0).ok_or_else(|| {
+        uneven_sampling(trace).unwrap_or_else(|| {
+            Error::usage("the sampling rate of the trace is not known", "")
+                .hint("state the sampling rate in Hz, or the base band of an analyser: it samples at 2.56 times that")
+                .setting("rate")
+                .setting("base_band")
+        })
+    })
+}
+
+/// Where times first differ by another step than most; `None` for an even axis.
+fn uneven_sampling(trace: &Trace) -> Option<Error> {
+    let (AxisKind::Time, Grid::Uneven(times)) = (&trace.axis.kind, &trace.axis.grid) else { return None };
+    let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+    let usual = median(&steps);
+    let off = |i: &usize| (steps[*i] - usual).abs();
+    let first = (0..steps.len()).find(|i| off(i) > 0.5 * usual.abs());
+    let odd = first.or_else(|| (0..steps.len()).max_by(|a, b| off(a).total_cmp(&off(b))))?;
+    let [from, to, step, usual] = [times[odd], times[odd + 1], steps[odd], usual].map(shortest);
+    let why = format!(
+        "the trace is sampled unevenly: from {from} s to {to} s is a step of {step} s, most are {usual} s"
+    );
+    Some(Error::refused(why).hint("cut the file there, or write the lost samples"))
+}
+
+/// Refuses missing values: an impact, or the begin of a cycle, may stand in any of them.
+fn missing_values(trace: &Trace, values: &[f64], name: &str) -> Result<()> {
+    let missing: Vec<usize> = (0..values.len()).filter(|i| !values[*i].is_finite()).collect();
+    let (Some(first), Some(last)) = (missing.first(), missing.last()) else { return Ok(()) };
+    let [first, last] = [first, last].map(|i| shortest(trace.axis.at(*i)));
+    let n = missing.len();
+    let why = format!("{n} values of {name} are missing or infinite, from {first} s to {last} s");
+    Err(Error::refused(why).hint("cut the file before or behind them"))
 }

@@ -1,6 +1,6 @@
 //! Impacts that come in a pattern: intervals that repeat after a few impacts, and are unlike within them.
 
-use super::burst::median;
+use super::background::median;
 
 /// Intervals that repeat.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,16 +56,14 @@ pub fn pattern(steps: &[f64]) -> Option<Pattern> {
     Some(Pattern { intervals, first })
 }
 
-/// What an interval is to a pattern.
+/// What an interval is to a train.
 pub enum Step {
-    /// That of the pattern.
-    Next,
-    /// As many of the pattern as this together: impacts between are missed.
+    /// So many intervals of the train: all but one of their impacts are missed.
     Several(usize),
     /// The first part of one: the impact at its end is one too many.
     Part,
-    /// One of another place of the pattern.
-    From(usize),
+    /// The interval at another place of the pattern.
+    At(usize),
 }
 
 impl Pattern {
@@ -74,7 +72,7 @@ impl Pattern {
         let p = self.intervals.len();
         let at = |k: usize| self.intervals[k % p];
         if alike(d, at(place)) {
-            return Step::Next;
+            return Step::Several(1);
         }
         if later.is_some_and(|l| alike(d + l, at(place))) {
             return Step::Part;
@@ -96,7 +94,7 @@ impl Pattern {
         if nearest.1 <= (ALIKE * (nearest.0 as f64).sqrt()).min(0.5) * shortest {
             return Step::Several(nearest.0);
         }
-        (0..p).find(|k| alike(d, at(*k))).map_or(Step::Next, Step::From)
+        (0..p).find(|k| alike(d, at(*k))).map_or(Step::Several(1), Step::At)
     }
 }
 
@@ -127,7 +125,7 @@ pub fn evened(times: &[f64], index: &[usize], place: &[usize], length: usize) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::impacts::tests::Noise;
+    use vibro_math::Noise;
 
     #[test]
     fn intervals_that_repeat_are_a_pattern_and_chance_is_none() {

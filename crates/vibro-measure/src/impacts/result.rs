@@ -1,11 +1,13 @@
-//! What the impacts of a trace say.
+//! Impacts of a trace: their interval, what they repeat, and when they stand.
 
 use super::{Hum, PerCycle, Phase};
 use crate::Estimate;
 use serde::Serialize;
+use vibro_record::Finding;
 
 /// Impacts of a trace.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Impacts {
     /// Impacts that were found.
     pub n: usize,
@@ -45,8 +47,8 @@ pub struct Impacts {
     pub heights: Vec<f64>,
     /// Phase of each impact in its excitation cycle, 0 to 1; empty where no excitation is known.
     pub phase: Vec<f64>,
-    /// Hum that was taken away.
+    /// Mains hum that was removed.
     pub hum: Option<Hum>,
-    /// What a person must know.
-    pub warnings: Vec<String>,
+    /// What was done to the trace, and what is doubtful.
+    pub findings: Vec<Finding>,
 }

@@ -8,26 +8,26 @@ pub struct Bursts {
     pub each: Vec<Range<usize>>,
     /// Factor by which the decay that is assumed of the ringing may change without another number of bursts; `None` where a pause was
     /// given instead.
-    pub steady: Option<f64>,
+    pub stable: Option<f64>,
 }
 
 /// An impact rises above what is left of the ringing before it by this factor.
 const RISE: f64 = 2.0;
-/// Ratio of the decay times that are tried.
+/// Ratio of one candidate decay time to the one before.
 const STEP: f64 = 1.25;
 /// Numbers of bursts that differ by less than this part are the same.
 const SAME: f64 = 0.02;
 
-/// Bursts of samples further than `reach` from 0, joined over pauses of up to `quiet` samples; without `quiet`, a burst goes on until
+/// Bursts of samples further than `reach` from 0, joined over pauses of up to `pause` samples; without `pause`, a burst goes on until
 /// something rises above the envelope of its ringing.
-pub fn bursts(values: &[f64], reach: f64, quiet: Option<usize>) -> Bursts {
+pub fn bursts(values: &[f64], reach: f64, pause: Option<usize>) -> Bursts {
     let runs = runs(values, reach);
-    let (firsts, steady) = match quiet {
-        Some(quiet) => {
-            let apart = |j: &usize| *j == 0 || runs[*j].samples.start + 1 - runs[j - 1].samples.end >= quiet;
+    let (firsts, stable) = match pause {
+        Some(pause) => {
+            let apart = |j: &usize| *j == 0 || runs[*j].samples.start + 1 - runs[j - 1].samples.end >= pause;
             ((0..runs.len()).filter(apart).collect(), None)
         }
-        None => settled(values, &runs),
+        None => most_stable(values, &runs),
     };
     let ends = firsts.iter().skip(1).copied().chain([runs.len()]);
     let each = firsts
@@ -35,7 +35,7 @@ pub fn bursts(values: &[f64], reach: f64, quiet: Option<usize>) -> Bursts {
         .zip(ends)
         .map(|(first, next)| runs[*first].samples.start..runs[next - 1].samples.end)
         .collect();
-    Bursts { each, steady }
+    Bursts { each, stable }
 }
 
 /// Neighbouring samples beyond the noise.
@@ -86,7 +86,7 @@ fn firsts(values: &[f64], runs: &[Run], decay: f64) -> Vec<usize> {
 /// The envelope follows each peak of the ringing, so that it need not fall as slowly as the ringing does: from a few half waves on, and up
 /// to the pause between impacts, the number of bursts stays the same. A decay that first parts bursts as it should far beyond the half waves
 /// belongs to a rest in the record.
-fn settled(values: &[f64], runs: &[Run]) -> (Vec<usize>, Option<f64>) {
+fn most_stable(values: &[f64], runs: &[Run]) -> (Vec<usize>, Option<f64>) {
     // Length of a half wave, or of a pulse: half of all samples beyond the noise lie in runs no longer.
     let mut lengths: Vec<usize> = runs.iter().map(|r| r.samples.len()).collect();
     lengths.sort_unstable();
@@ -97,16 +97,16 @@ fn settled(values: &[f64], runs: &[Run]) -> (Vec<usize>, Option<f64>) {
         2 * sum >= total
     });
     let Some(length) = typical.map(|n| n as f64) else { return (Vec::new(), Some(1.0)) };
-    let tried: Vec<(f64, usize)> =
+    let counts: Vec<(f64, usize)> =
         std::iter::successors(Some((0.5 * length).max(1.0)), |decay| Some(decay * STEP))
             .take_while(|decay| *decay < 0.5 * values.len() as f64)
             .map(|decay| (decay, firsts(values, runs, decay).len()))
             .take_while(|(_, n)| *n > 1)
             .collect();
     let mut best = (0.0, 0.5 * length.max(2.0));
-    for (i, (from, n)) in tried.iter().enumerate().take_while(|(_, (from, _))| *from <= 8.0 * length + 4.0) {
+    for (i, (from, n)) in counts.iter().enumerate().take_while(|(_, (from, _))| *from <= 8.0 * length + 4.0) {
         let same = |m: &usize| m.abs_diff(*n) as f64 <= SAME * *n as f64;
-        let to = tried[i..].iter().take_while(|(_, m)| same(m)).last().map_or(*from, |t| t.0);
+        let to = counts[i..].iter().take_while(|(_, m)| same(m)).last().map_or(*from, |t| t.0);
         if to / from > best.0 {
             best = (to / from, (from * to).sqrt());
         }

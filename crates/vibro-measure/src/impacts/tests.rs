@@ -1,27 +1,11 @@
-use super::held::held;
+use super::recorder::sample_and_hold;
 use super::*;
+use vibro_math::Noise;
 use vibro_record::units::Unit;
 use vibro_record::{Axis, Grid, Meta};
 
-/// Normal deviates from a 64-bit mix of a counter (splitmix, Steele et al. 2014) and the polar form of Box and Muller.
-pub struct Noise(u64);
-
-impl Noise {
-    pub fn new(seed: u64) -> Noise {
-        Noise(seed)
-    }
-
-    pub fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    pub fn normal(&mut self) -> f64 {
-        (-2.0 * (1.0 - self.uniform()).ln()).sqrt() * (std::f64::consts::TAU * self.uniform()).cos()
-    }
+fn has(found: &Impacts, code: &str) -> bool {
+    found.findings.iter().any(|f| f.code == code)
 }
 
 fn trace(values: Vec<f64>, rate: f64) -> Trace {
@@ -87,17 +71,18 @@ fn pulses_that_point_downwards_are_turned() {
     trace.values.iter_mut().for_each(|v| *v = 2.0 - *v);
     let found = impacts(&trace, &ImpactsOptions::default()).unwrap();
     assert_eq!(found.n, 10);
-    assert!(found.warnings.iter().any(|w| w.contains("downwards")), "{:?}", found.warnings);
+    assert!(has(&found, "pulses-inverted"), "{:?}", found.findings);
 }
 
 #[test]
-fn clipped_pulses_are_said() {
+fn clipped_pulses_are_found() {
     let times: Vec<f64> = (0..10).map(|k| 0.05 + 0.1 * f64::from(k)).collect();
     let mut trace = pulses(&times, 1100, 1000.0, 0.005);
     trace.values.iter_mut().for_each(|v| *v = v.min(0.3));
     let found = impacts(&trace, &ImpactsOptions::default()).unwrap();
     assert_eq!(found.n, 10);
-    assert!(found.warnings.iter().any(|w| w.contains("10 of 10 pulses are clipped")), "{:?}", found.warnings);
+    let clipped = found.findings.iter().find(|f| f.code == "pulses-clipped").unwrap();
+    assert_eq!((clipped.get("n"), clipped.get("of")), (Some(10.0), Some(10.0)));
 }
 
 #[test]
@@ -105,22 +90,22 @@ fn what_holds_no_impacts_is_refused() {
     let refused = |trace: &Trace| impacts(trace, &ImpactsOptions::default()).unwrap_err();
     assert!(refused(&trace(vec![1.0; 100], 100.0)).to_string().contains("equal"));
     let mut one = pulses(&[0.3], 1000, 1000.0, 0.005);
-    assert!(refused(&one).to_string().contains("1 impact was found"));
+    assert!(refused(&one).to_string().contains("1 impact found"));
     one.values[7] = f64::NAN;
     assert!(refused(&one).to_string().contains("missing"));
     let mut noise = Noise::new(5);
     let quiet = trace((0..5000).map(|_| noise.normal()).collect(), 1000.0);
-    assert!(refused(&quiet).to_string().contains("0 impacts"), "{}", refused(&quiet));
+    assert!(refused(&quiet).to_string().contains("0 impacts found"), "{}", refused(&quiet));
     let mut unknown = pulses(&[0.1, 0.2], 400, 1000.0, 0.005);
     unknown.axis = Axis::index(400);
     let error = refused(&unknown);
-    assert!(error.to_string().contains("--base-band") && error.exit_code() == 2, "{error}");
+    assert!(error.to_string().contains("base_band") && error.exit_code() == 2, "{error}");
     let one_edge = ImpactsOptions {
         reference: Some((0..400).map(|i| f64::from(i / 200)).collect()),
         ..ImpactsOptions::default()
     };
     let error = impacts(&pulses(&[0.1, 0.2], 400, 1000.0, 0.005), &one_edge).unwrap_err();
-    assert!(error.to_string().contains("1 rising edge:"), "{error}");
+    assert!(error.to_string().contains("rising edges of the reference channel: 1"), "{error}");
 }
 
 /// Pulses of 4 V and 1 ms, sin² each, over a sine of 50 Hz, at 10 kHz for 2 s.
@@ -160,7 +145,7 @@ fn none_lost(rates: &[f64]) {
             for kept in [false, true] {
                 let options = ImpactsOptions { hum: !kept, ..ImpactsOptions::default() };
                 let found = impacts(&over_hum(&times, hum, 0.0), &options).unwrap();
-                assert_eq!(found.n, times.len(), "{rate} Hz, hum {hum}, kept {kept}: {:?}", found.warnings);
+                assert_eq!(found.n, times.len(), "{rate} Hz, hum {hum}, kept {kept}: {:?}", found.findings);
                 // The slope of hum of 1 V is 314 V/s, that of the flanks 2π·10³ V/s or more where the hum shifts them by its 1 V: 0.2 ms at most, and the
                 // same in each of these trains but for those of 13.37 Hz.
                 let off = (found.frequency.value / rate - 1.0).abs();
@@ -174,18 +159,17 @@ fn none_lost(rates: &[f64]) {
 }
 
 #[test]
-fn a_level_that_drifts_hides_no_impact() {
+fn impacts_on_a_drifting_level_are_found() {
     let times: Vec<f64> = (0..38).map(|k| 0.02 + 0.05 * f64::from(k)).collect();
     for drift in [0.5, -2.0, 4.0] {
         let found = impacts(&over_hum(&times, 0.0, drift), &ImpactsOptions::default()).unwrap();
-        assert_eq!(found.n, times.len(), "{drift} V/s: {:?}", found.warnings);
-        let said = found.warnings.iter().any(|w| w.contains("drift of the level"));
-        assert!(said, "{drift} V/s: {:?}", found.warnings);
+        assert_eq!(found.n, times.len(), "{drift} V/s: {:?}", found.findings);
+        assert!(has(&found, "drift-removed"), "{drift} V/s: {:?}", found.findings);
     }
 }
 
 #[test]
-fn a_refusal_says_what_hides_impacts_and_what_may_help() {
+fn a_refusal_says_what_may_help() {
     // Impacts as high as the hum, at its rate.
     let times: Vec<f64> = (0..98).map(|k| 0.013 + 0.02 * f64::from(k)).collect();
     let mut low = over_hum(&times, 0.0, 0.0);
@@ -198,7 +182,7 @@ fn a_refusal_says_what_hides_impacts_and_what_may_help() {
     let mut noise = Noise::new(8);
     let quiet = trace((0..5000).map(|_| noise.normal()).collect(), 1000.0);
     let error = impacts(&quiet, &ImpactsOptions::default()).unwrap_err().to_string();
-    assert!(error.contains("high-pass") && !error.contains("--threshold"), "{error}");
+    assert!(error.contains("high-pass") && !error.contains("threshold"), "{error}");
 }
 
 #[test]
@@ -213,9 +197,9 @@ fn two_unequal_intervals_a_cycle_are_a_pattern_and_miss_nothing() {
         assert_eq!((found.n, found.missed, found.doubled, found.pattern), (32, 0, 0, Some(2)), "{found:?}");
         // Noise of 0.05 on a slope of 6e3 V/s is 8 µs an onset; a line through 32 of them knows T to 8e-6·√(12/32³) = 0.15 µs; four of these.
         assert!((found.interval.value - 0.06).abs() < 6e-7, "{:?}", found.interval);
-        assert_eq!(found.per_cycle, Some(PerCycle { impacts: 2, cycles: 1 }), "{:?}", found.warnings);
+        assert_eq!(found.per_cycle, Some(PerCycle { impacts: 2, cycles: 1 }), "{:?}", found.findings);
         let alone = impacts(&trace, &ImpactsOptions::default()).unwrap();
-        assert!(alone.regular && alone.warnings.iter().any(|w| w.contains("pattern of 2")), "{alone:?}");
+        assert!(alone.regular && has(&alone, "interval-pattern"), "{alone:?}");
     }
 }
 
@@ -234,7 +218,7 @@ fn what_is_known_to_be_complete_misses_nothing() {
 #[test]
 fn two_impacts_are_not_regular() {
     let found = impacts(&pulses(&[0.1, 0.2], 400, 1000.0, 0.005), &ImpactsOptions::default()).unwrap();
-    assert!(!found.regular && found.warnings.iter().any(|w| w.contains("one interval")), "{found:?}");
+    assert!(!found.regular && has(&found, "one-interval"), "{found:?}");
 }
 
 /// A contact circuit closes within one sample. Its interval is near a whole number of samples or not, its first edge anywhere: the
@@ -260,17 +244,13 @@ fn edges_within_one_sample_leave_the_interval_unsure() {
                 ..ImpactsOptions::default()
             };
             let found = impacts(&trace(values, rate), &options).unwrap();
-            assert!(
-                found.warnings.iter().any(|w| w.contains("rise within one sample")),
-                "{:?}",
-                found.warnings
-            );
+            assert!(has(&found, "onset-within-sample"), "{:?}", found.findings);
             assert!(found.onset_std.unwrap() > 0.28 / rate, "{:?}", found.onset_std);
             let error = found.interval.value - period / rate;
             // The first and last edge are each up to a sample late.
             assert!(error.abs() <= 1.0 / rate / f64::from(n - 1) + 1e-6, "seed {seed}, {period}: {error}");
             inside += usize::from(error.abs() < 1.96 * found.interval.std.unwrap());
-            assert_eq!(found.per_cycle, Some(PerCycle { impacts: 1, cycles: 1 }), "{:?}", found.warnings);
+            assert_eq!(found.per_cycle, Some(PerCycle { impacts: 1, cycles: 1 }), "{:?}", found.findings);
             cases += 1;
         }
     }
@@ -286,10 +266,10 @@ fn edges_within_one_sample_leave_the_interval_unsure() {
         ..ImpactsOptions::default()
     };
     let found = impacts(&trace(values, rate), &options).unwrap();
-    let beat = found.beat.unwrap();
+    let beat = found.beat.as_ref().unwrap();
     assert!((beat.value - 0.02).abs() < 1e-9 && beat.std.is_some(), "{beat:?}");
-    // 12 samples closed and 88 open are multiples of 4, but nothing is held for 4.
-    assert!(found.warnings.iter().all(|w| !w.contains("is held for")), "{:?}", found.warnings);
+    // 12 samples closed and 88 open are multiples of 4, but nothing repeats for 4.
+    assert!(!has(&found, "sample-and-hold"), "{:?}", found.findings);
 }
 
 #[test]
@@ -306,13 +286,13 @@ fn uneven_times_and_missing_values_are_named() {
 }
 
 #[test]
-fn a_held_trace_is_known_to_what_it_was_sampled_at() {
+fn a_sample_and_hold_is_known_to_what_it_was_sampled_at() {
     held_traces(2);
 }
 
 #[test]
 #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
-fn a_held_trace_is_known_to_what_it_was_sampled_at_in_all_draws() {
+fn a_sample_and_hold_is_known_to_what_it_was_sampled_at_in_all_draws() {
     held_traces(20);
 }
 
@@ -327,7 +307,7 @@ fn held_traces(seeds: u64) {
             };
             let values: Vec<f64> =
                 (0..12_000).map(|i| train(i / hold * hold) + 0.01 * (i / hold % 7) as f64).collect();
-            assert_eq!(held(&values), hold, "seed {seed}");
+            assert_eq!(sample_and_hold(&values), hold, "seed {seed}");
             let axis = Axis::time(0.0, 1e-3, values.len());
             let trace = Trace { meta: Meta::new("contact", Unit::parse("V").unwrap()), axis, values };
             let found = impacts(&trace, &ImpactsOptions::default()).unwrap();
@@ -335,19 +315,19 @@ fn held_traces(seeds: u64) {
             // Quantised times are off by evenly spread errors, of which none lies beyond three standard deviations.
             assert!(
                 off.abs() < 3.0 * found.interval.std.unwrap(),
-                "held {hold}, seed {seed}: {off} {:?}",
+                "hold {hold}, seed {seed}: {off} {:?}",
                 found.interval
             );
-            assert_eq!(found.warnings.iter().any(|w| w.contains("is held for")), hold > 1);
+            assert_eq!(has(&found, "sample-and-hold"), hold > 1);
         }
     }
-    // A contact that closes and opens at any sample is not held, however long it stays.
-    assert_eq!(held(&[0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]), 1);
+    // A contact that closes and opens at any sample is no sample-and-hold, however long it stays.
+    assert_eq!(sample_and_hold(&[0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]), 1);
 }
 
-/// A train that is locked to the sampling clock has few distances between its changes, with a common divisor: it is not held for that.
+/// A train that is locked to the sampling clock has few distances between its changes, with a common divisor: it is no sample-and-hold.
 #[test]
-fn a_train_locked_to_the_sampling_clock_is_not_held() {
+fn a_train_locked_to_the_sampling_clock_is_no_sample_and_hold() {
     let of = |closed: usize, period: usize, height: &dyn Fn(usize) -> f64| -> Vec<f64> {
         (0..200 * period).map(|i| if i % period < closed { height(i / period) } else { 0.0 }).collect()
     };
@@ -356,16 +336,16 @@ fn a_train_locked_to_the_sampling_clock_is_not_held() {
     let gaps = |k: usize| if ((k * k * 2_654_435_761) >> 20).is_multiple_of(4) { 0.0 } else { 5.0 };
     let heights = |k: usize| 5.0 + (k as f64).sqrt();
     for (closed, period) in [(12, 100), (12, 96), (4, 8), (10, 100), (40, 120)] {
-        assert_eq!(held(&of(closed, period, &even)), 1, "{closed} of {period}");
-        assert_eq!(held(&of(closed, period, &gaps)), 1, "{closed} of {period}, some missed");
-        assert_eq!(held(&of(closed, period, &heights)), 1, "{closed} of {period}, heights");
+        assert_eq!(sample_and_hold(&of(closed, period, &even)), 1, "{closed} of {period}");
+        assert_eq!(sample_and_hold(&of(closed, period, &gaps)), 1, "{closed} of {period}, some missed");
+        assert_eq!(sample_and_hold(&of(closed, period, &heights)), 1, "{closed} of {period}, heights");
     }
     // Pulses of stairs, all alike, four samples a stair.
     let stairs: Vec<f64> = (0..20_000).map(|i| f64::from((i % 100 / 4).min(6))).collect();
-    assert_eq!(held(&stairs), 1);
+    assert_eq!(sample_and_hold(&stairs), 1);
     // The same train in noise of which one sample in 40 is kept.
     let mut noise = Noise::new(3);
     let kept: Vec<f64> = of(12, 96, &even).iter().step_by(40).map(|v| v + 0.01 * noise.normal()).collect();
     let values: Vec<f64> = (0..40 * kept.len()).map(|i| kept[i / 40]).collect();
-    assert_eq!(held(&values), 40);
+    assert_eq!(sample_and_hold(&values), 40);
 }

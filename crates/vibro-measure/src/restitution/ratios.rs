@@ -1,4 +1,4 @@
-//! ln R from ratios of successive flights, whatever scatters: R from bounce to bounce, R from train to train, the onsets.
+//! ln R from ratios of successive flights where R scatters from bounce to bounce and from train to train, and the onsets carry noise.
 //!
 //! Ratios `y = ln(Δt_b/Δt_a)` of one train have the covariance `s²·(b − a) + σ²AAᵀ + τ²mmᵀ` with `m = b − a`, A the derivative of y by the onsets,
 //! s the scatter of ln R from bounce to bounce, σ that of an onset, and τ that of ln R from train to train (random effects: Rao, *Linear Statistical
@@ -18,7 +18,7 @@ use nalgebra::{DMatrix, DVector};
 /// Variances between trains that are averaged over.
 const STEPS: usize = 40;
 
-/// ln R, and what the flights say of its scatter.
+/// ln R of trains of bounces.
 #[derive(Debug, Clone, Copy)]
 pub struct Fitted {
     pub log_r: f64,
@@ -26,12 +26,8 @@ pub struct Fitted {
     pub std: f64,
     /// What the stated onsets alone would make of it; NaN where none are stated.
     pub onsets_alone: f64,
-    /// Likeliest standard deviation of ln R from bounce to bounce.
-    pub scatter: f64,
-    /// Likeliest standard deviation of an onset, in s.
-    pub onset: f64,
-    /// Likeliest standard deviation of ln R from train to train, where it is likelier than none.
-    pub between: Option<f64>,
+    /// Whether a scatter from train to train is likelier than none.
+    pub trains_differ: bool,
     /// Trains behind it.
     pub trains: usize,
 }
@@ -55,23 +51,30 @@ pub fn fit(flights: &[Flight], trains: &[Train]) -> Option<Fitted> {
     let stated: Option<Vec<f64>> = trains.iter().map(|t| t.onset_std.filter(|s| *s > 0.0)).collect();
     // Of several trains, the root mean square.
     let stated = stated.map(|s| s.iter().map(|s| s * s).sum::<f64>() / s.len() as f64);
-    let few = |node: Node| Fitted { std: f64::NAN, ..node.named(blocks.len()) };
+    let trains = blocks.len();
+    let few = |n: &Node| Fitted {
+        log_r: n.log_r,
+        std: f64::NAN,
+        onsets_alone: f64::NAN,
+        trains_differ: false,
+        trains,
+    };
     let Some(sigma2) = stated else {
         let mut nodes = Node::all(&blocks, 1.0, 0.0, true, free)?;
         if free < 3 {
-            return nodes.first().map(|n| few(*n));
+            return nodes.first().map(few);
         }
         for node in &mut nodes {
             node.weight += SCATTER_ALONE.ln();
         }
         nodes.extend(over_scatter(&blocks, unit.recip(), true, free, 1.0 - SCATTER_ALONE)?);
-        return average(&nodes, blocks.len());
+        return average(&nodes, trains);
     };
     let alone = *Node::all(&blocks, 0.0, sigma2, false, free)?.first()?;
     let found = if free < 3 {
-        few(alone)
+        few(&alone)
     } else {
-        average(&over_scatter(&blocks, sigma2, false, free, 1.0)?, blocks.len())?
+        average(&over_scatter(&blocks, sigma2, false, free, 1.0)?, trains)?
     };
     Some(Fitted { onsets_alone: alone.std, ..found })
 }
@@ -216,9 +219,6 @@ struct Node {
     log_r: f64,
     /// Standard uncertainty, Student's where the scale is that of the residuals.
     std: f64,
-    scatter: f64,
-    onset: f64,
-    between: f64,
     /// τ² over the variance that ln R of one train has without it.
     ratio: f64,
     /// Logarithm of prior probability times likelihood.
@@ -249,9 +249,6 @@ impl Node {
             Node {
                 log_r,
                 std: factor * (scale / all.mm).sqrt(),
-                scatter: (scale * s2).sqrt(),
-                onset: (scale * sigma2).sqrt(),
-                between: (scale * tau2).sqrt(),
                 ratio,
                 weight: prior.ln() - 0.5 * (all.log_det + all.mm.ln() + misfit),
             }
@@ -268,18 +265,6 @@ impl Node {
         }));
         Some(nodes)
     }
-
-    fn named(self, trains: usize) -> Fitted {
-        Fitted {
-            log_r: self.log_r,
-            std: self.std,
-            onsets_alone: f64::NAN,
-            scatter: self.scatter,
-            onset: self.onset,
-            between: None,
-            trains,
-        }
-    }
 }
 
 /// Logarithm of the probability of all nodes together.
@@ -292,26 +277,16 @@ fn evidence(nodes: &[Node]) -> f64 {
 fn average(nodes: &[Node], trains: usize) -> Option<Fitted> {
     let total = evidence(nodes);
     let with: f64 = nodes.iter().filter(|n| n.ratio > 0.0).map(|n| (n.weight - total).exp()).sum();
-    let scattered = with > 0.5;
+    let trains_differ = with > 0.5;
     // Few trains that do not show a scatter between them have little of it, if any.
-    let counts = |n: &&Node| trains >= TRAINS || scattered || n.ratio <= 1.0;
+    let counts = |n: &&Node| trains >= TRAINS || trains_differ || n.ratio <= 1.0;
     let used: Vec<&Node> = nodes.iter().filter(counts).collect();
-    let best = **used.iter().max_by(|a, b| a.weight.total_cmp(&b.weight))?;
-    let parts: Vec<f64> = used.iter().map(|n| (n.weight - best.weight).exp()).collect();
+    let best = used.iter().map(|n| n.weight).max_by(f64::total_cmp)?;
+    let parts: Vec<f64> = used.iter().map(|n| (n.weight - best).exp()).collect();
     let sum: f64 = parts.iter().sum();
     let over = |f: &dyn Fn(&Node) -> f64| used.iter().zip(&parts).map(|(n, p)| p * f(n)).sum::<f64>() / sum;
     let log_r = over(&|n| n.log_r);
     let std = over(&|n| n.std.powi(2) + (n.log_r - log_r).powi(2)).sqrt();
-    let likeliest = used
-        .iter()
-        .filter(|n| n.ratio > 0.0)
-        .max_by(|a, b| a.weight.total_cmp(&b.weight))
-        .map(|n| n.between)
-        .filter(|_| scattered);
-    Some(Fitted {
-        log_r,
-        std: if scattered && trains < TRAINS { f64::NAN } else { std },
-        between: likeliest,
-        ..best.named(trains)
-    })
+    let std = if trains_differ && trains < TRAINS { f64::NAN } else { std };
+    Some(Fitted { log_r, std, onsets_alone: f64::NAN, trains_differ, trains })
 }

@@ -9,7 +9,7 @@ use vibro_math::Noise;
 use vibro_measure::impacts::{Impacts, ImpactsOptions, Shape, impacts};
 use vibro_measure::legacy::contact_times;
 use vibro_record::units::Unit;
-use vibro_record::{Axis, Error, Meta, Result, Trace};
+use vibro_record::{Axis, Error, Meta, Result, Severity, Trace};
 
 /// Samples a second of the contact trace.
 const RATE: f64 = 2000.0;
@@ -97,7 +97,9 @@ fn onset_bound(noise: f64) -> f64 {
 
 fn frequency(trace: &Trace) -> Result<Answer> {
     let found = impacts(trace, &ImpactsOptions::default())?;
-    Ok(Answer::stated(&found.frequency, &found.warnings))
+    let doubts = found.findings.iter().filter(|f| f.severity == Severity::Doubt);
+    let said = doubts.map(|f| format!("no uncertainty: {}", f.code)).collect();
+    Ok(Answer { value: found.frequency.value, std: found.frequency.std, said })
 }
 
 /// Mean frequency from the first and the last of these times in samples.
@@ -336,7 +338,7 @@ mod tests {
                 assert!(
                     off < 4.0,
                     "noise of {sigma}, seed {seed}: {off:.1} standard uncertainties, {:?}",
-                    found.warnings
+                    found.findings
                 );
                 right += 1;
             }

@@ -1,13 +1,13 @@
-//! Level and noise of what lies between the impacts of a trace.
+//! Level and noise of a trace between its impacts.
 
-/// What a trace does between impacts.
+/// Level and noise between impacts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Background {
     /// Its level.
     pub level: f64,
     /// Standard deviation of its noise.
     pub sigma: f64,
-    /// Distance from the level that noise alone reaches once in a thousand such records, or less often.
+    /// Noise limit: the distance from the level that noise alone reaches in fewer than one of a thousand such records.
     pub reach: f64,
 }
 
@@ -18,8 +18,8 @@ const MEDIAN: f64 = 0.674_489_750_196_081_7;
 
 /// Level and noise of the samples between impacts.
 ///
-/// Starts from the median and the lower quartile of the distances from it, so that impacts may fill half of the record,
-/// then leaves out what rises out of the noise, and its neighbours, and looks again.
+/// Starts from the median and the lower quartile of the distances from it, so that impacts may fill half of the record; then
+/// leaves out the samples beyond the noise limit with their neighbours, and repeats.
 pub fn background(values: &[f64]) -> Background {
     let all = |x: f64| values.iter().map(|v| (v - x).abs()).collect::<Vec<f64>>();
     let level = quantile(&mut values.to_vec(), 0.5);
@@ -28,7 +28,7 @@ pub fn background(values: &[f64]) -> Background {
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
     // P(|x| > zσ) < exp(−z²/2), for each of n samples.
     let z = (2.0 * (values.len().max(1) as f64 / 1e-3).ln()).sqrt();
-    // Nothing below a thousandth of the range is looked at: noise without samples (a digital trace) has σ = 0.
+    // A digital trace has σ = 0: the limit is at least a thousandth of the range.
     let reach = |sigma: f64| (z * sigma).max(1e-3 * (high - low));
     let mut found = Background { level, sigma, reach: reach(sigma) };
     for _ in 0..4 {
@@ -70,7 +70,7 @@ pub fn median(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::impacts::tests::Noise;
+    use vibro_math::Noise;
 
     #[test]
     fn impacts_that_fill_two_fifths_of_a_record_do_not_move_its_background() {
