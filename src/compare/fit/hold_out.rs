@@ -125,7 +125,7 @@ fn rung(
     problem: &Problem<'_>,
     from: &Setting,
     answer: &Problem<'_>,
-    blocks: &[Held],
+    blocks: &[HeldOut],
     pace: Pace,
 ) -> Option<Rung> {
     let (own, u) = fitted(problem.clone(), from)?;
@@ -144,7 +144,7 @@ fn rung(
     });
     let sum = off.iter().map(|r| r * r).sum();
     let (_, whiteness) = goodness(&own, &own.at(&u));
-    let judged = |held: &Held| {
+    let judged = |held: &HeldOut| {
         let mut rest = problem.clone();
         for i in &held.steps {
             rest.kinds[*i] = None;
@@ -204,18 +204,18 @@ fn error(data: &Data, setting: &Setting, model: FitModel, steps: &[usize], pace:
 }
 
 /// Steps that are held out together.
-struct Held {
+struct HeldOut {
     feature: String,
     frequency: f64,
     steps: Vec<usize>,
 }
 
 /// Features with their frequency and the steps of all sweeps around them; between them pieces of as many steps.
-fn blocks(data: &Data, responses: &[Response]) -> Vec<Held> {
+fn blocks(data: &Data, responses: &[Response]) -> Vec<HeldOut> {
     let mut used: Vec<usize> = (0..data.steps.len()).filter(|i| data.steps[*i].clear().count() > 0).collect();
     let at = |i: &usize| data.steps[*i].frequency;
     used.sort_by(|a, b| at(a).total_cmp(&at(b)));
-    let mut blocks: Vec<Held> = Vec::new();
+    let mut blocks: Vec<HeldOut> = Vec::new();
     let mut ranges: Vec<(String, RangeInclusive<f64>)> = Vec::new();
     for sequence in &data.sequences {
         let own: Vec<usize> = used.iter().copied().filter(|i| sequence.contains(i)).collect();
@@ -236,9 +236,9 @@ fn blocks(data: &Data, responses: &[Response]) -> Vec<Held> {
                 let range = at(&own[low]) * (1.0 - SAME)..=at(&own[high]) * (1.0 + SAME);
                 let steps: Vec<usize> = used.iter().copied().filter(|i| range.contains(&at(i))).collect();
                 // Two features in the same steps are one block.
-                let shared = |b: &Held| steps.iter().filter(|i| b.steps.contains(i)).count();
+                let shared = |b: &HeldOut| steps.iter().filter(|i| b.steps.contains(i)).count();
                 if blocks.iter().all(|b| 2 * shared(b) <= steps.len()) {
-                    blocks.push(Held { feature: feature.clone(), frequency, steps });
+                    blocks.push(HeldOut { feature: feature.clone(), frequency, steps });
                 }
                 ranges.push((feature, range));
             }
@@ -249,7 +249,7 @@ fn blocks(data: &Data, responses: &[Response]) -> Vec<Held> {
     let piece = (2 * BESIDE + 1) * data.sequences.len();
     for steps in open.chunk_by(|a, b| b - a == 1).flat_map(|s| s.chunks_exact(piece)) {
         let steps: Vec<usize> = steps.iter().map(|k| used[*k]).collect();
-        blocks.push(Held { feature: "amplitude".to_owned(), frequency: at(&steps[piece / 2]), steps });
+        blocks.push(HeldOut { feature: "amplitude".to_owned(), frequency: at(&steps[piece / 2]), steps });
     }
     blocks
 }
