@@ -1,26 +1,26 @@
-//! Measured results on model predictions, through the same measurement.
+//! Measured results against model predictions, through the same measurement.
 
 mod course;
-pub mod fit;
-pub mod forcing;
-pub mod named;
-pub mod overlay;
-pub mod pair;
-pub mod peak_pair;
-pub mod prediction;
-pub mod rungs;
-pub mod score;
-pub mod simulated;
+mod fit;
+mod forcing;
+mod named;
+mod overlay;
+mod pair;
+mod peak_pair;
+mod prediction;
+mod rungs;
+mod score;
+mod simulated;
 
-pub use fit::{Fit, fit};
+pub use fit::{Block, Fit, FitModel, FitPoint, Fitted, LeftOut, Profile, Rung, Unidentified, fit};
 pub use forcing::{Forcing, levels};
+pub use named::{Named, named};
 pub use overlay::{Level, Overlay, overlay};
 pub use pair::Pair;
 pub use peak_pair::PeakPair;
-pub use prediction::{Kind, Prediction, Verdict};
-pub use rungs::{Predicting, Rungs, rungs};
+pub use prediction::{Kind, Motion, Prediction, Verdict};
+pub use rungs::{Predicting, Rungs};
 pub use score::Score;
-pub use simulated::{Pace, Simulated, simulated};
+pub use simulated::Pace;
 
-pub use crate::model::observable;
 pub use vibro_precision as precision;

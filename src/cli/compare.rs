@@ -5,6 +5,7 @@ use crate::campaign::{Campaign, Parameter};
 use crate::compare::{Fit, Overlay, Predicting, overlay};
 use crate::error::{Error, Place, Result};
 use crate::report::job::{self, JobOptions};
+use crate::report::words::{self, Voice};
 use crate::report::{Output, files, pictures, tables};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -13,6 +14,8 @@ use std::fmt::Write as _;
 struct Answer {
     #[serde(flatten)]
     overlay: Overlay,
+    /// Of the campaign, the sweeps and the fit; those of the overlay are added.
+    warnings: Vec<String>,
     /// Parameters found from the data.
     fit: Option<Fit>,
     files: Vec<String>,
@@ -31,9 +34,9 @@ pub fn run(typed: &args::Compare, json: bool) -> Result<()> {
     let options = JobOptions { allow_outside: typed.allow_outside };
     let responses = job::responses(&campaign, options, &progress::bar(json))?;
     let force = campaign.excitation.and_then(|e| e.force);
-    let mut overlay = overlay(&rig, force, &Predicting::from(&campaign), &responses)?;
-    overlay.warnings.splice(0..0, campaign.rig_left_out());
-    overlay.warnings.extend(job::common(&responses));
+    let overlay = overlay(&rig, force, &Predicting::from(&campaign), &responses)?;
+    let mut warnings: Vec<String> = campaign.rig_left_out().into_iter().collect();
+    warnings.extend(job::common(&responses));
     let fit = job::fit(&campaign, &rig, &responses)?;
     let mut written = Vec::new();
     if let Some(folder) = &typed.out {
@@ -49,17 +52,17 @@ pub fn run(typed: &args::Compare, json: bool) -> Result<()> {
         }
         written = output.written().to_vec();
     }
+    warnings.extend(fit.iter().flat_map(|fit| words::warnings(&fit.findings, Voice::Command)));
     if json {
-        overlay.warnings.extend(fit.iter().flat_map(|f| f.warnings.iter().cloned()));
-        return print::json(&Answer { overlay, fit, files: written });
+        return print::json(&Answer { overlay, warnings, fit, files: written });
     }
-    complain::warn(&overlay.warnings);
+    complain::warn(&words::warnings(&overlay.findings, Voice::Command));
+    complain::warn(&warnings);
     let mut text = format!("{}\n{}", tables::peaks(&overlay).text(), tables::scores(&overlay).text());
     if !overlay.rungs.is_empty() {
         let _ = write!(text, "\n{}", tables::climbed(&overlay).text());
     }
     if let Some(fit) = &fit {
-        complain::warn(&fit.warnings);
         let _ = write!(text, "\n{}\n{}", tables::fitted(fit).text(), tables::fit_rungs(fit).text());
     }
     for file in written {

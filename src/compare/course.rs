@@ -1,4 +1,4 @@
-//! The way in which a sweep is predicted.
+//! How sweeps are predicted.
 
 use super::forcing::Forcing;
 use super::prediction::{Kind, Prediction};
@@ -16,7 +16,7 @@ pub(super) struct Swept<'a> {
     pub forcing: Forcing,
 }
 
-/// The way in which all sweeps are predicted.
+/// How all sweeps are predicted.
 #[derive(Clone, Copy)]
 pub(super) struct Course<'a> {
     pub rig: &'a Rig,
@@ -25,8 +25,9 @@ pub(super) struct Course<'a> {
     pub pace: Pace,
 }
 
-/// Points of a curve that is simulated, and cycles at each: fewer than at a measured point, since the motion goes on from one to the next.
+/// Points of a simulated curve: their distance is far below the width of a resonance.
 const FOLLOWED: usize = 400;
+/// Cycles at each: fewer than at a measured point, since the motion goes on from one to the next.
 const PASSING: Pace = Pace { settle: 100, measure: 16 };
 
 /// A predicted curve as a sweep follows it.
@@ -55,16 +56,16 @@ impl Course<'_> {
         if sweep.direction == Direction::Down {
             points.reverse();
         }
-        let mut came: Vec<(f64, Option<Simulated>)> = points
+        let mut curve: Vec<(f64, Option<Simulated>)> = points
             .iter()
             .map(|p| p.0)
             .zip(simulated(self.rig, self.law, &points, PASSING).into_iter().map(Result::ok))
             .collect();
-        came.sort_by(|a, b| a.0.total_cmp(&b.0));
+        curve.sort_by(|a, b| a.0.total_cmp(&b.0));
         Followed {
-            frequency: came.iter().map(|c| c.0).collect(),
-            amplitude: came.iter().map(|c| c.1.map_or(f64::NAN, |c| c.amplitude[of])).collect(),
-            impacting: came
+            frequency: curve.iter().map(|c| c.0).collect(),
+            amplitude: curve.iter().map(|c| c.1.map_or(f64::NAN, |c| c.amplitude[of])).collect(),
+            impacting: curve
                 .iter()
                 .map(|c| c.1.is_some_and(|c| Kind::of(c.regime) == Kind::Impacting))
                 .collect(),

@@ -1,62 +1,53 @@
 //! Parameters of the rig from measured responses.
 //!
-//! Amplitudes of both masses and directions are compared with what a spectrum would show of the closed-form motions (one impact a cycle,
-//! or none). Which motion a step shows, a simulated sweep with the parameters found so far decides; parameters and motions are found in
-//! turn until both stay. Steps of any other pattern are left out and counted.
+//! Amplitudes of both masses and directions are compared with what a spectrum shows of the closed-form motions (one impact a cycle, or
+//! none). Which motion a step shows, a simulated sweep with the parameters found so far decides; parameters and motions are found in turn
+//! until both stay. Steps of any other pattern are left out and counted.
+//!
+//! [`data`] → [`problem`] (weighted residuals) → [`search`] (starting points) → [`settle`] (motions and parameters in turn) → [`answer`].
 
 mod answer;
-mod calibration;
+mod compliance;
 mod coordinate;
 mod data;
-mod edge;
-mod held;
+mod findings;
+mod hold_out;
 mod motion;
-mod prior;
 mod problem;
 mod profile;
-mod rung;
 mod search;
 mod setting;
 mod settle;
-mod shared;
-mod stiff;
-mod told;
+mod shared_errors;
+mod uncertainty;
 mod unknown;
 
 pub use answer::{Fit, FitPoint, Fitted, LeftOut};
+pub use hold_out::{Block, FitModel, Rung};
 pub use profile::Profile;
-pub use rung::{Block, Rung};
+pub use uncertainty::Unidentified;
 
 use super::simulated::Pace;
 use crate::campaign::FitEntry;
 use crate::error::{Error, Result};
 use crate::measure::response::Response;
 use crate::model::Rig;
-use answer::gathered;
+use answer::Answer;
+use compliance::corrected;
 use data::Data;
-use held::Held;
+use hold_out::rungs;
 use rayon::prelude::*;
-use search::{Led, around, search};
+use search::{End, search};
 use setting::Setting;
-use settle::{Settled, settle};
-use stiff::stiff;
+use settle::{Settled, enough, settle};
+use uncertainty::Uncertainty;
 use unknown::{Unknown, coordinates};
 
 /// Starting points where none are asked for.
 const STARTS: usize = 8;
-/// Relative standard uncertainty of calibrations where none is stated: that of a good sensor. Amplitudes alone cannot tell it, and all that
-/// grows with them (gap, force, masses) is as uncertain.
+/// Relative standard uncertainty of calibrations where none is stated: that of a good sensor. Amplitudes do not show it, and all that grows
+/// with them (gap, force, masses) is as uncertain.
 const ASSUMED: f64 = 0.01;
-/// Turns of looking around the best answer.
-const TURNS: usize = 6;
-/// So many turns in which no answer came nearer by [`BETTER`] are the last.
-const IDLE: usize = 2;
-/// Part of what all points can miss below which there is nothing better to be found.
-const EXPLAINED: f64 = 0.1;
-/// One point more within one κ.
-const BETTER: f64 = 1.0;
-/// Times that the least is looked for from where a profile falls below it.
-const AGAIN: usize = 3;
 
 /// Finds the parameters that `entry` asks for from displacement responses, beginning with `rig` and the stated `force` (N; `None`: each
 /// point its measured one). With the stiffness of the `contact` (N/m) its compliance is taken out of the points.
@@ -91,58 +82,24 @@ fn found(
     let unknowns = Unknown::all(entry, base)?;
     let starts = entry.starts.unwrap_or(STARTS);
     let (rigid, ends) = identify(data, base, &unknowns, starts, pace)?;
-    let stiff = contact.map(|stiffness| stiff(&rigid, stiffness, pace)).transpose()?;
-    let settled = match &stiff {
-        None => rigid.clone(),
-        Some(stiff) => settle(&stiff.data, base, &unknowns, &stiff.u, pace)?,
+    let corrected = contact.map(|stiffness| corrected(&rigid, stiffness, pace)).transpose()?;
+    let (answer, rungs) = match &corrected {
+        None => (Answer::new(rigid.clone(), None)?, rungs(&rigid, None, responses, pace)),
+        Some(soft) => {
+            let settled = settle(&soft.data, base, &unknowns, &soft.u, pace)?;
+            let rungs = rungs(&rigid, Some(&settled), responses, pace);
+            (Answer::new(settled, Some(soft.lost))?, rungs)
+        }
     };
-    let (mut settled, held, profile) = profiled(settled, pace)?;
-    settled.contradictions.extend(profile.as_ref().and_then(Profile::missed));
-    settled.contradictions.extend(prior::contradictions(&settled, starts, pace));
-    settled.contradictions.extend(settled.pulled(&held));
-    settled.lost = stiff.as_ref().map_or(0, |s| s.lost);
-    let mut fit = gathered(&settled, &held, base, profile);
-    (fit.starts, fit.agreeing) = (starts, agreeing(&ends, &rigid.minimum.parameters, &rigid.held()?));
-    fit.rungs = match stiff {
-        None => rung::rungs(&settled, None, responses, pace),
-        Some(_) => rung::rungs(&rigid, Some(&settled), responses, pace),
-    };
-    fit.warnings = told::warnings(&fit, &settled);
-    if fit.doubt.is_some() {
-        fit.warnings.extend(told::scarce(data, motion::assigned(data, base, pace)?.amplitudes(data)));
-    } else if contact.is_none() {
-        fit.warnings.extend(stiff::untold(&settled, &held, pace));
-    }
-    if entry.calibration.is_none() {
-        // Nothing is more important but that there is no uncertainty.
-        fit.warnings.insert(usize::from(fit.doubt.is_some()), told::assumed(data.calibration, entry));
-    }
-    fit.warnings.extend(told::unused(entry));
+    let doubts = answer.doubts();
+    let mut fit = answer.fit(base, doubts.first().map(|doubt| doubt.code));
+    (fit.starts, fit.agreeing, fit.rungs) = (starts, agreeing(&ends, &rigid)?, rungs);
+    let rest = answer.cautions(&fit, entry);
+    fit.findings = doubts.into_iter().chain(rest).collect();
     Ok(fit)
 }
 
-/// An answer with how well it is held and the profile of the parameter known worst. Where that falls below the answer, the least was not
-/// found: it is looked for from there.
-fn profiled(mut best: Settled<'_>, pace: Pace) -> Result<(Settled<'_>, Held, Option<Profile>)> {
-    let of = |settled: &Settled<'_>| -> Result<(Held, Option<Profile>)> {
-        let held = settled.held()?;
-        let profile = profile::profile(settled, &held, held.worst());
-        Ok((held, profile))
-    };
-    let (mut held, mut profile) = of(&best)?;
-    for _ in 0..AGAIN {
-        let Some(u) = profile.as_ref().and_then(Profile::lower) else { break };
-        let next = settle(best.problem.data, &best.problem.base, &best.problem.unknowns, u, pace)?;
-        if next.missed > best.missed + BETTER {
-            break;
-        }
-        (held, profile) = of(&next)?;
-        best = next;
-    }
-    Ok((best, held, profile))
-}
-
-/// The best answer of several starts, and where each start led that led anywhere.
+/// The best answer of several starts, and where each start ended.
 fn identify<'a>(
     data: &'a Data,
     base: &Setting,
@@ -150,59 +107,33 @@ fn identify<'a>(
     starts: usize,
     pace: Pace,
 ) -> Result<(Settled<'a>, Vec<Vec<f64>>)> {
-    let clear = data.steps.iter().flat_map(data::Step::clear).count();
-    let priors = unknowns.iter().filter(|u| u.prior.is_some()).count();
-    if clear + priors < unknowns.len() || clear == 0 {
-        return Err(Error::refused(format!(
-            "{clear} amplitude(s) do not determine {} parameters",
-            unknowns.len()
-        ))
-        .hint("fit fewer parameters, or give priors"));
-    }
-    let all = |places: &[Vec<f64>]| -> Vec<Result<Settled<'a>>> {
-        places.par_iter().map(|u| settle(data, base, unknowns, u, pace)).collect()
-    };
-    let led = search(data, base, unknowns, starts.max(1));
-    let mut found = all(&led.iter().map(|l| l.u.clone()).collect::<Vec<_>>());
-    let end = |(settled, led): (&Result<Settled<'a>>, &Led)| {
-        Some(vec![settled.as_ref().ok()?.minimum.parameters.clone(); led.starts])
-    };
-    let ends = found.iter().zip(&led).filter_map(end).flatten().collect();
-    // Where the rig is known well, no search is nearer than the rig itself.
-    found.extend(all(&[coordinates(base, unknowns)]));
-    let (mut best, mut idle) = (nearest(found)?, 0);
-    let most = search::MOST * clear as f64;
-    for turn in 0..TURNS {
-        if idle == IDLE || best.missed < EXPLAINED * most {
-            break;
-        }
-        let around = around(base, unknowns, &best.minimum.parameters, turn);
-        match nearest(all(&around)) {
-            Ok(next) if next.missed < best.missed - BETTER => (best, idle) = (next, 0),
-            _ => idle += 1,
-        }
-    }
-    Ok((best, ends))
-}
-
-/// The answer nearest to the points; the first refusal where there is none.
-fn nearest(found: Vec<Result<Settled<'_>>>) -> Result<Settled<'_>> {
-    let mut best: Option<Settled<'_>> = None;
-    let mut refusal = None;
-    for one in found {
-        match one {
-            Ok(one) if best.as_ref().is_none_or(|b| one.missed < b.missed) => best = Some(one),
-            Ok(_) => {}
+    enough(data.clear(), unknowns)?;
+    // Where the rig is known well, no search is nearer than the rig itself: it counts as an end that no start reached.
+    let stated = End { u: coordinates(base, unknowns), starts: 0 };
+    let reached: Vec<End> = search(data, base, unknowns, starts).into_iter().chain([stated]).collect();
+    let found: Vec<Result<Settled<'a>>> =
+        reached.par_iter().map(|end| settle(data, base, unknowns, &end.u, pace)).collect();
+    let (mut best, mut refusal, mut ends) = (None::<Settled<'a>>, None, Vec::new());
+    for (found, end) in found.into_iter().zip(&reached) {
+        match found {
+            Ok(found) => {
+                ends.extend(vec![found.least.minimum.parameters.clone(); end.starts]);
+                if best.as_ref().is_none_or(|best| found.unexplained < best.unexplained) {
+                    best = Some(found);
+                }
+            }
             Err(error) => refusal = refusal.or(Some(error)),
         }
     }
-    best.ok_or_else(|| refusal.unwrap_or_else(|| Error::refused("no starting point led to an answer")))
+    let best = best.ok_or_else(|| refusal.unwrap_or_else(|| Error::refused("no start led to an answer")))?;
+    Ok((best, ends))
 }
 
-/// How many starts led within one standard uncertainty of the answer in every parameter.
-fn agreeing(ends: &[Vec<f64>], best: &[f64], held: &Held) -> usize {
-    let near = |i: usize, u: f64| (u - best[i]).abs() <= held.covariance[(i, i)].sqrt();
-    ends.iter().filter(|end| end.iter().enumerate().all(|(i, u)| near(i, *u))).count()
+/// How many starts ended within one standard uncertainty of the answer in every parameter.
+fn agreeing(ends: &[Vec<f64>], answer: &Settled<'_>) -> Result<usize> {
+    let (best, uncertainty) = (&answer.least.minimum.parameters, Uncertainty::new(&answer.least)?);
+    let near = |(i, u): (usize, &f64)| (u - best[i]).abs() <= uncertainty.std(i);
+    Ok(ends.iter().filter(|end| end.iter().enumerate().all(near)).count())
 }
 
 #[cfg(test)]

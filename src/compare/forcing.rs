@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::measure::response::{Response, ResponsePoint};
+use crate::record::Finding;
 
 /// Force amplitude in N over excitation frequency.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,10 +16,8 @@ pub enum Forcing {
 /// Neighbouring forces within this ratio are one level: a shaker's force drops by less at a resonance, and levels that are chosen differ by
 /// more.
 const LEVEL: f64 = 1.2;
-/// A stated force that the measured one leaves by more than this is doubted.
-const STRAYS: f64 = 0.05;
-/// A median that differs by more than this from the stated force is said.
-const DIFFERS: f64 = 0.02;
+/// Part by which the measured force may differ from the stated one: a load cell is calibrated to 1 or 2 %.
+const DIFFERS: f64 = 0.05;
 
 impl Forcing {
     /// The measured force of a sweep, where it was measured.
@@ -29,51 +28,40 @@ impl Forcing {
         (!points.is_empty()).then_some(Forcing::Measured(points))
     }
 
-    /// The force of each of these responses: the stated one for all, else each its own. A sweep without one takes the median
+    /// The force of each of these responses, with findings: the stated one for all, else each its own. A sweep without one takes the median
     /// of the others.
     ///
     /// # Errors
     /// If no force is stated and none was measured.
-    pub fn of_all(
+    pub(super) fn of_all(
         stated: Option<f64>,
         responses: &[&Response],
-        warnings: &mut Vec<String>,
-    ) -> Result<Vec<Forcing>> {
+    ) -> Result<(Vec<Forcing>, Vec<Finding>)> {
         let mut all: Vec<f64> = responses.iter().flat_map(|r| &r.points).filter_map(|p| p.force).collect();
         all.sort_by(f64::total_cmp);
         let median = median(&all);
+        let mut findings = Vec::new();
         if let Some(stated) = stated {
             let worst = all.iter().map(|m| (m / stated - 1.0).abs()).fold(0.0, f64::max);
-            if worst > STRAYS {
-                warnings.push(format!(
-                    "The measured force strays by up to {:.0} % from the stated {stated} N, which the prediction holds for all points; without `force` in [excitation] each point is predicted for its own.",
-                    100.0 * worst
-                ));
+            if let Some(median) = median.filter(|_| worst > DIFFERS) {
+                let differs = Finding::caution("stated-force-differs").number("stated", stated);
+                findings.push(differs.number("median", median).number("part", worst));
             }
-            if let Some(median) = median.filter(|m| (m / stated - 1.0).abs() > DIFFERS) {
-                warnings.push(format!(
-                    "The force is stated as {stated} N, but its measured median is {median:.4} N; the stated one is used."
-                ));
-            }
-            return Ok(vec![Forcing::Constant(stated); responses.len()]);
+            return Ok((vec![Forcing::Constant(stated); responses.len()], findings));
         }
         let (Some(median), Some(low), Some(high)) = (median, all.first(), all.last()) else {
             return Err(Error::refused("the force is neither stated nor measured")
-                .hint("give [excitation] force = … in N in the campaign"));
+                .hint("state `excitation.force` in N in the campaign"));
         };
-        warnings.push(format!(
-            "No force is stated: each point is predicted for its own measured one, {low:.4} to {high:.4} N."
-        ));
+        findings.push(Finding::note("force-as-measured").number("low", *low).number("high", *high));
         let own = |r: &&Response| {
             Forcing::measured(r).unwrap_or_else(|| {
-                warnings.push(format!(
-                    "\"{}\" has no measured force: it is predicted for the median of the others, {median:.4} N.",
-                    r.name
-                ));
+                findings.push(Finding::caution("force-not-measured").about(&r.name).number("median", median));
                 Forcing::Constant(median)
             })
         };
-        Ok(responses.iter().map(own).collect())
+        let forcings = responses.iter().map(own).collect();
+        Ok((forcings, findings))
     }
 
     /// The mean of several; `None` of none.

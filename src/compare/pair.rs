@@ -26,7 +26,7 @@ pub struct Pair {
     pub force: f64,
     /// Measured amplitude in m.
     pub measured: Estimate,
-    /// What the true amplitude stays below with 95 % confidence, in m, where it does not stand out of the noise.
+    /// 95 % upper limit in m of an amplitude below the noise floor.
     pub upper_limit: Option<f64>,
     /// Predicted amplitude in m; `None` where the motion cannot be followed.
     pub predicted: Option<f64>,
@@ -36,9 +36,8 @@ pub struct Pair {
     pub motion: Option<Kind>,
     /// Impacts/cycles of its pattern, or a word.
     pub regime: Option<String>,
-    /// What predicted the amplitude: `closed-form` where it has the motion that the simulated sweep comes to, else the model that was
-    /// simulated: `restitution`, `kelvin-voigt` or `hunt-crossley`.
-    pub model: &'static str,
+    /// What predicted the amplitude: the closed form where it has the motion of the simulated sweep, else the model that was simulated.
+    pub model: Model,
     /// Stable motions of the closed form at this point: with more than one, history decides.
     pub choices: usize,
     /// Measured minus predicted in m.
@@ -60,12 +59,12 @@ impl Course<'_> {
             motions.reverse();
         }
         let passed: Vec<(f64, f64)> = points.iter().map(driven).collect();
-        let came = simulated(rig, law, &passed, pace);
+        let simulated = simulated(rig, law, &passed, pace);
         let of = usize::from(mass) - 1;
-        let pair = |((point, motions), came): ((&&ResponsePoint, &Vec<Motion>), &Result<Simulated>)| {
-            let came = came.as_ref().ok();
-            let closed = came.filter(|_| law.is_none()).and_then(|came| came_to(came, motions));
-            let amplitude = closed.map(|m| m.amplitude).or(came.map(|c| c.amplitude));
+        let pair = |((point, motions), simulated): ((&&ResponsePoint, &Vec<Motion>), &Result<Simulated>)| {
+            let simulated = simulated.as_ref().ok();
+            let closed = simulated.filter(|_| law.is_none()).and_then(|s| reached(s, motions));
+            let amplitude = closed.map(|m| m.amplitude).or(simulated.map(|s| s.amplitude));
             let predicted = amplitude.map(|a| a[of]).filter(|p| p.is_finite());
             Pair {
                 sweep: response.name.clone(),
@@ -76,15 +75,15 @@ impl Course<'_> {
                 measured: point.amplitude.clone(),
                 upper_limit: point.upper_limit,
                 predicted,
-                scatter: came.map(|c| if closed.is_some() { 0.0 } else { c.scatter[of] }),
-                motion: came.map(|c| Kind::of(c.regime)),
-                regime: came.map(|c| c.regime.to_string()),
-                model: if closed.is_some() { Model::ClosedForm.name() } else { model.name() },
+                scatter: simulated.map(|s| if closed.is_some() { 0.0 } else { s.scatter[of] }),
+                motion: simulated.map(|s| Kind::of(s.regime)),
+                regime: simulated.map(|s| s.regime.to_string()),
+                model: if closed.is_some() { Model::ClosedForm } else { model },
                 choices: motions.iter().filter(|m| m.is_seen()).count(),
                 residual: predicted.map(|p| point.amplitude.value - p).filter(|r| r.is_finite()),
             }
         };
-        Ok(points.iter().zip(&motions).zip(&came).map(pair).collect())
+        Ok(points.iter().zip(&motions).zip(&simulated).map(pair).collect())
     }
 }
 
@@ -92,12 +91,12 @@ impl Course<'_> {
 /// of stability.
 const SETTLED: f64 = 0.02;
 
-/// The motion of the closed form that a simulation came to.
-pub(super) fn came_to<'a>(came: &Simulated, motions: &'a [Motion]) -> Option<&'a Motion> {
-    let kind = Kind::of(came.regime);
+/// The motion of the closed form that a simulation reached.
+pub(super) fn reached<'a>(simulated: &Simulated, motions: &'a [Motion]) -> Option<&'a Motion> {
+    let kind = Kind::of(simulated.regime);
     motions.iter().filter(|m| m.is_seen() && m.kind == kind).find(|m| {
-        // What rings on in a mass that comes to rest is held against the other's amplitude.
+        // The ringing of a mass that comes to rest is compared with the other's amplitude.
         let size = |i: usize| if m.amplitude[i] > 0.0 { m.amplitude[i] } else { m.amplitude[1 - i] };
-        (0..2).all(|i| (came.amplitude[i] - m.amplitude[i]).abs() <= SETTLED * size(i))
+        (0..2).all(|i| (simulated.amplitude[i] - m.amplitude[i]).abs() <= SETTLED * size(i))
     })
 }

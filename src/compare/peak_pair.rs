@@ -32,7 +32,7 @@ pub struct PeakPair {
     pub amplitude_difference: Option<f64>,
 }
 
-/// A predicted peak belongs to a measured one within this ratio of frequencies.
+/// A predicted peak belongs to a measured one within this ratio of frequencies: a stiffness is known to a fifth.
 const NEAR: f64 = 1.1;
 
 /// Each measured resonance of a sweep with the predicted one nearest to it.

@@ -1,8 +1,8 @@
 //! The closed-form prediction over frequency, and which of its motions a sweep would follow.
 
 use super::forcing::Forcing;
-use super::observable::Observable;
 use crate::error::Result;
+use crate::model::Observable;
 use crate::model::{Regime, Rig, orbits};
 use crate::record::Direction;
 use rayon::prelude::*;

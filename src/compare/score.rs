@@ -2,6 +2,7 @@
 
 use super::forcing::median;
 use super::pair::Pair;
+use crate::record::Finding;
 use serde::Serialize;
 
 /// How well one sweep is predicted.
@@ -13,7 +14,7 @@ pub struct Score {
     pub n: usize,
     /// Points without.
     pub without: usize,
-    /// Predicted points with nothing to compare: neither amplitude stands out of the noise.
+    /// Predicted points with nothing to compare: both amplitudes are below the noise floor.
     pub faint: usize,
     /// Median of |measured − predicted| over the larger of both, at points that are not faint; `None` without such points.
     pub median_relative: Option<f64>,
@@ -55,38 +56,23 @@ pub(super) fn score(sweep: &str, pairs: &[Pair]) -> Score {
     }
 }
 
-/// A point is far off beyond this part of the larger amplitude, where that is also beyond so many standard uncertainties.
+/// A point is an outlier beyond this part of the larger amplitude: a sensor's calibration and its mounting stay below …
 const FAR: f64 = 0.05;
+/// … where it is also beyond so many standard uncertainties: chance takes one point of 1.7 million there.
 const SIGMAS: f64 = 5.0;
-/// So many of the points that are far off are named.
-const NAMED: usize = 3;
 
-/// A median hides single points, so those far off the prediction are said.
-pub(super) fn far_off(sweep: &str, pairs: &[Pair]) -> Option<String> {
+/// Points far off the prediction, which a median hides.
+pub(super) fn outliers(sweep: &str, pairs: &[Pair]) -> Option<Finding> {
     let certain =
-        |p: &Pair| p.measured.std.is_none_or(|std| p.residual.is_some_and(|r| r.abs() > SIGMAS * std));
-    let far = pairs.iter().filter(|p| certain(p)).filter_map(|p| Some((p.deviation()?, p)));
-    let mut far: Vec<(f64, &Pair)> = far.filter(|f| f.0 > FAR).collect();
-    far.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let named: Vec<String> = far
-        .iter()
-        .take(NAMED)
-        .map(|(_, p)| {
-            let predicted = 1e3 * p.predicted.unwrap_or(f64::NAN);
-            format!(
-                "{:.2} Hz ({:.3} mm measured, {predicted:.3} mm predicted)",
-                p.frequency,
-                1e3 * p.measured.value
-            )
-        })
-        .collect();
-    let which = if far.len() > NAMED { "the worst at" } else { "at" };
-    (!far.is_empty()).then(|| {
-        format!(
-            "{sweep}: {} point(s) lie more than {:.0} % and {SIGMAS:.0} standard uncertainties off the prediction, {which} {}.",
-            far.len(),
-            100.0 * FAR,
-            named.join(", ")
-        )
-    })
+        |p: &&Pair| p.measured.std.is_none_or(|std| p.residual.is_some_and(|r| r.abs() > SIGMAS * std));
+    let far = pairs.iter().filter(certain).filter_map(|p| Some((p.deviation()?, p))).filter(|f| f.0 > FAR);
+    let (_, worst) = far.clone().max_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(
+        Finding::caution("points-off-prediction")
+            .about(sweep)
+            .count("n", far.count())
+            .number("frequency", worst.frequency)
+            .number("measured", worst.measured.value)
+            .number("predicted", worst.predicted?),
+    )
 }

@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 pub struct Pace {
     /// Cycles before reading.
     pub settle: u32,
-    /// Cycles read; patterns longer than a ninth of them are not told.
+    /// Cycles read; patterns longer than a ninth of them count as irregular.
     pub measure: u32,
 }
 
@@ -33,20 +33,20 @@ pub struct Simulated {
     pub regime: Regime,
 }
 
-/// Leads a rig whose masses meet by this `law` of force, or at once with the rig's restitution, through `points` (frequency in Hz, force amplitude in N) in this order, from rest at the first; state and phase of
-/// the force go on from point to point.
+/// A rig through `points` (frequency in Hz, force amplitude in N) in this order, from rest at the first; state and phase of the force go on
+/// from point to point. Its contact follows `law`, or is rigid with the rig's restitution.
 ///
 /// Each point has its own answer: an error where a parameter is impossible or the motion needs more events than can be followed, behind
 /// which the rig starts from rest again.
 pub fn simulated(rig: &Rig, law: Option<Law>, points: &[(f64, f64)], pace: Pace) -> Vec<Result<Simulated>> {
     match law {
-        None => led(
+        None => swept(
             rig,
             points,
             |motion| read(motion, pace),
             |sine, state, phase| Simulation::from_state(rig, &sine, state, phase),
         ),
-        Some(law) => led(
+        Some(law) => swept(
             rig,
             points,
             |motion| read(motion, pace),
@@ -55,31 +55,31 @@ pub fn simulated(rig: &Rig, law: Option<Law>, points: &[(f64, f64)], pace: Pace)
     }
 }
 
-/// As [`simulated`] with impacts that take no time, but a point with more impacts than a plain pattern has is given up, where a rig of wrong
-/// parameters could take minutes.
-pub fn simulated_plain(rig: &Rig, points: &[(f64, f64)], pace: Pace) -> Vec<Result<Simulated>> {
+/// As [`simulated`] with rigid contacts, but a point with more impacts than a plain pattern has is given up: a rig of wrong parameters could
+/// take minutes.
+pub fn simulated_briefly(rig: &Rig, points: &[(f64, f64)], pace: Pace) -> Vec<Result<Simulated>> {
     let plain = |motion: &mut Simulation| {
         if is_busy(motion)? {
             return Err(Error::refused(format!("the masses meet more than {BUSY} times a cycle")));
         }
         read(motion, pace)
     };
-    led(rig, points, plain, |sine, state, phase| Simulation::from_state(rig, &sine, state, phase))
+    swept(rig, points, plain, |sine, state, phase| Simulation::from_state(rig, &sine, state, phase))
 }
 
-/// Cycles that are looked at for many impacts, twice: at first, and when what there was at first may have died away.
-const LOOKED_AT: u32 = 8;
-/// Flights a cycle that no plain pattern has.
+/// Cycles that are checked for many impacts, twice: at first, and when the transient may have died away.
+const CHECKED: u32 = 8;
+/// Flights a cycle that no plain pattern has: more is chatter, or the rig of wrong parameters.
 const BUSY: u32 = 100;
 
 /// Whether a motion has more flights than a plain pattern.
 fn is_busy(motion: &mut Simulation) -> Result<bool> {
     for _ in 0..2 {
-        let until = motion.time() + f64::from(LOOKED_AT) / motion.frequency();
+        let until = motion.time() + f64::from(CHECKED) / motion.frequency();
         let mut flights = 0;
         while motion.fly(until)?.event != Event::Reached {
             flights += 1;
-            if flights > BUSY * LOOKED_AT {
+            if flights > BUSY * CHECKED {
                 return Ok(true);
             }
         }
@@ -87,7 +87,7 @@ fn is_busy(motion: &mut Simulation) -> Result<bool> {
     Ok(false)
 }
 
-fn led<M: Motion>(
+fn swept<M: Motion>(
     rig: &Rig,
     points: &[(f64, f64)],
     read: impl Fn(&mut M) -> Result<Simulated>,
@@ -99,7 +99,7 @@ fn led<M: Motion>(
         let (state, phase) = std::mem::replace(&mut now, rest);
         let mut motion = make(Sine { force, frequency }, state, phase)?;
         let found = read(&mut motion);
-        // A point without an answer is passed all the same.
+        // A sweep goes on behind a point without an answer.
         let state = motion.state();
         if [state.x1, state.v1, state.x2, state.v2].iter().all(|v| v.is_finite()) {
             now = (state, motion.phase());
@@ -133,7 +133,7 @@ mod tests {
     use crate::model::orbits;
 
     #[test]
-    fn a_sweep_up_comes_to_the_motions_of_the_closed_form() {
+    fn a_sweep_up_reaches_the_motions_of_the_closed_form() {
         let rig = Rig::thesis();
         let points: Vec<(f64, f64)> = (0..8).map(|i| (10.5 + 0.25 * f64::from(i), 0.5)).collect();
         let found = simulated(&rig, None, &points, Pace::default());

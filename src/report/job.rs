@@ -16,6 +16,7 @@ pub use pairing::Crossing;
 pub use pulse::NamedPulse;
 pub use spectral::SpectrumResult;
 
+use super::words::{self, Voice};
 use super::{Figure, Output, files, page, pictures, tables};
 use crate::campaign::Campaign;
 use crate::compare::{Fit, Overlay, overlay};
@@ -23,7 +24,7 @@ use crate::error::{Error, Result};
 use crate::measure::response::{Response, ResponseOptions, response, to_displacement};
 use crate::measure::waterfall::{Waterfall, gathered};
 use crate::model::Rig;
-use crate::record::Sweep;
+use crate::record::{Severity, Sweep};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -345,7 +346,7 @@ fn model(campaign: &Campaign, responses: &[Response], warnings: &mut Vec<String>
         return Ok(None);
     }
     let overlay = overlay(&rig, campaign.excitation.and_then(|e| e.force), &campaign.into(), responses)?;
-    merge(warnings, "", &overlay.warnings);
+    merge(warnings, "", &words::sentences(&overlay.findings, Voice::Campaign));
     Ok(Some(overlay))
 }
 
@@ -370,11 +371,11 @@ fn fitted(campaign: &Campaign, responses: &[Response], warnings: &mut Vec<String
     let Some(rig) = &campaign.rig else { return Ok(None) };
     let found = or_left_out(fit(campaign, rig, responses), "fit", warnings)?.flatten();
     if let Some(fit) = &found {
-        // That nothing has an uncertainty comes before all else.
-        let doubted = usize::from(fit.parameters.iter().all(|p| p.estimate.std.is_none()));
-        let (first, rest) = fit.warnings.split_at(doubted.min(fit.warnings.len()));
-        warnings.splice(0..0, first.iter().cloned());
-        merge(warnings, "", rest);
+        // Doubts come before all else.
+        let (doubts, rest): (Vec<_>, Vec<_>) =
+            fit.findings.iter().cloned().partition(|f| f.severity == Severity::Doubt);
+        warnings.splice(0..0, words::sentences(&doubts, Voice::Campaign));
+        merge(warnings, "", &words::sentences(&rest, Voice::Campaign));
     }
     Ok(found)
 }

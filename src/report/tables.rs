@@ -144,7 +144,7 @@ pub fn pairs(overlay: &Overlay) -> Table {
             ("predicted", "m", &|p| Cell::from(p.predicted)),
             ("residual", "m", &|p| Cell::from(p.residual)),
             ("scatter of the prediction", "m", &|p| Cell::from(p.scatter)),
-            ("predicted by", "", &|p| Cell::from(p.model)),
+            ("predicted by", "", &|p| Cell::from(p.model.name())),
             ("impacts/cycles", "", &|p| Cell::from(p.regime.as_deref().unwrap_or("-"))),
             ("predicted motion", "", &|p| {
                 Cell::from(match p.motion {

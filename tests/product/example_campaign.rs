@@ -11,7 +11,7 @@ use campaign::{Direction, list, measure, truth_header};
 use rayon::prelude::*;
 use std::path::Path;
 use vibroimpact::campaign::{Campaign, FitEntry, Parameter};
-use vibroimpact::compare::fit::Fit;
+use vibroimpact::compare::Fit;
 use vibroimpact::report::job::{JobOptions, fit, responses};
 
 fn committed(name: &str) -> String {

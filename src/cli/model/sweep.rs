@@ -3,7 +3,7 @@
 use super::contact;
 use crate::cli::args::{self, Law, Over, Way};
 use crate::cli::{complain, print};
-use crate::compare::named::{Named, named};
+use crate::compare::{Named, named};
 use crate::error::{Error, Result};
 use crate::measure::jump::Jump;
 use crate::measure::resonance::Resonance;

@@ -1,17 +1,17 @@
 //! What a fit says of the rig.
 
 use super::super::prediction::Kind;
-use super::data::Step;
-use super::held::{Held, NORMAL};
-use super::profile::Profile;
-use super::rung::Rung;
+use super::hold_out::Rung;
+use super::profile::{Profile, profile};
 use super::setting::Setting;
 use super::settle::Settled;
+use super::uncertainty::{NORMAL, Uncertainty, Unidentified};
 use super::unknown::Unknown;
 use crate::campaign::Parameter;
+use crate::error::Result;
 use crate::measure::Estimate;
 use crate::model::Rig;
-use crate::record::Direction;
+use crate::record::{Direction, Finding};
 use serde::Serialize;
 
 /// A parameter as it was found.
@@ -19,16 +19,16 @@ use serde::Serialize;
 pub struct Fitted {
     /// Parameter.
     pub parameter: Parameter,
-    /// Value with its standard uncertainty, `None` where the points do not hold it or the answer contradicts them.
+    /// Value with its standard uncertainty, `None` where it is not identifiable.
     pub estimate: Estimate,
     /// Where it started.
     pub start: f64,
-    /// Within these it lies with 95 % confidence, all other parameters free; `None` where the points do not hold it.
+    /// 95 % confidence interval, all other parameters free; `None` where it is not identifiable.
     pub interval: Option<[f64; 2]>,
-    /// Whether the points hold it.
+    /// Whether the points determine it.
     pub identifiable: bool,
     /// Why not.
-    pub reason: Option<String>,
+    pub reason: Option<Unidentified>,
     /// What was known of it: value and standard uncertainty.
     pub prior: Option<[f64; 2]>,
     /// Whether that says more of it than the points.
@@ -52,23 +52,30 @@ pub struct FitPoint {
     pub measured: f64,
     /// Amplitude in m by the parameters found.
     pub fitted: f64,
-    /// Residual in stated standard deviations; in those that the residuals tell, where none are stated.
+    /// Residual in stated standard deviations; in those of the residuals themselves, where none are stated.
     pub residual: f64,
 }
 
 /// Amplitudes that took no part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct LeftOut {
-    /// They do not stand out of the noise.
+    /// Below the noise floor.
     pub faint: usize,
-    /// The simulated sweep comes to another pattern than one impact a cycle or none.
+    /// The simulated sweep shows another pattern than one impact a cycle or none.
     pub other_motion: usize,
-    /// The simulated sweep comes to one of these, but they lie five standard deviations from it, and five times the median scatter.
+    /// Outliers: five standard deviations, and five times the median scatter, from the motion of the simulated sweep.
     pub far: usize,
     /// Their motion changed with the parameters from round to round.
     pub wavering: usize,
     /// The contact lasts too long there for the correction of its compliance.
     pub soft: usize,
+}
+
+impl LeftOut {
+    /// All that lie above the noise floor.
+    pub fn clear(&self) -> usize {
+        self.other_motion + self.far + self.wavering + self.soft
+    }
 }
 
 /// What the responses say of the rig.
@@ -78,16 +85,16 @@ pub struct Fit {
     pub parameters: Vec<Fitted>,
     /// Correlations of the same, row by row.
     pub correlations: Vec<Vec<f64>>,
-    /// The rig found.
+    /// The rig found. The overlay and its scores are of the rig as it was stated.
     pub rig: Rig,
-    /// Force amplitude in N found or held; the median where each point has its own.
+    /// Force amplitude in N, found or fixed; the median where each point has its own.
     pub force: f64,
     /// Amplitudes in the fit.
     pub n: usize,
     /// Amplitudes left out.
     pub left_out: LeftOut,
-    /// Sum of squared residuals over amplitudes less parameters, by the stated uncertainties: about 1 where model and uncertainties are right;
-    /// NaN (null) with no more amplitudes than parameters.
+    /// Sum of squared residuals over degrees of freedom, by the stated uncertainties: about 1 where model and uncertainties are right;
+    /// NaN (null) without degrees of freedom.
     pub reduced_chi_squared: f64,
     /// Factor on the standard deviations of the data, by which the residuals are larger than stated.
     pub widened: f64,
@@ -97,122 +104,126 @@ pub struct Fit {
     pub starts: usize,
     /// Of these, how many led to this answer.
     pub agreeing: usize,
-    /// Profile of the parameter known worst.
+    /// Profile of the parameter with the largest relative uncertainty.
     pub profile: Option<Profile>,
     /// Models of rising order, by what they predict of points that they were not fitted to.
     pub rungs: Vec<Rung>,
     /// Points of the fit.
     pub points: Vec<FitPoint>,
-    /// Why no parameter has an uncertainty, where none has: the answer as a whole may be wrong.
-    pub doubt: Option<String>,
-    /// What a person must know.
-    pub warnings: Vec<String>,
+    /// Code of the first finding that takes the uncertainty of all parameters away, where there is one.
+    pub doubt: Option<&'static str>,
+    /// What a person must know; doubts of the whole answer come first.
+    pub findings: Vec<Finding>,
 }
 
-/// The answer of a settled search.
-pub fn gathered(settled: &Settled<'_>, held: &Held, base: &Setting, profile: Option<Profile>) -> Fit {
-    let (problem, u) = (&settled.problem, &settled.minimum.parameters);
-    let setting = settled.setting();
-    // What the profile says of its parameter is nearer to the truth than the slopes at the least.
-    let profiled = |i: usize| {
-        let profile = profile.as_ref().filter(|p| p.parameter == problem.unknowns[i].parameter)?;
-        Some([profile.interval[0]?, profile.interval[1]?])
-    };
-    let method = method(settled);
-    let parameters = (0..u.len()).map(|i| fitted(settled, held, base, i, profiled(i), &method)).collect();
-    let row = |i: usize| (0..u.len()).map(|j| held.correlation(i, j)).collect();
-    let used: Vec<(usize, usize)> = problem.used().collect();
-    let stated = if problem.data.guessed { 1.0 } else { problem.scale.sqrt() };
-    let points = used.iter().zip(&settled.minimum.residuals).filter_map(|((i, mass), residual)| {
-        let step = &problem.data.steps[*i];
-        let (kind, seen) = (problem.kinds[*i]?, step.seen[*mass].as_ref()?);
-        let (sweep, direction) = &problem.data.sweeps[seen.sweep];
-        Some(FitPoint {
-            sweep: sweep.clone(),
-            mass: *mass as u8 + 1,
-            direction: *direction,
-            frequency: step.frequency,
-            motion: kind,
-            measured: seen.amplitude * seen.soft,
-            fitted: setting.shows(kind, setting.force_at(problem.data, step), step.frequency)[*mass]
-                * seen.soft,
-            residual: *residual * stated,
-        })
-    });
-    let clear = problem.data.steps.iter().flat_map(Step::clear).count();
-    Fit {
-        parameters,
-        correlations: (0..u.len()).map(row).collect(),
-        rig: setting.rig,
-        force: setting.force,
-        n: used.len(),
-        left_out: LeftOut {
-            faint: problem.data.faint,
-            other_motion: (clear - used.len()).saturating_sub(settled.wavering + settled.far),
-            far: settled.far,
-            wavering: settled.wavering,
-            soft: settled.lost,
-        },
-        reduced_chi_squared: settled.reduced,
-        widened: problem.scale.sqrt(),
-        whiteness: settled.whiteness.p_value,
-        starts: 0,
-        agreeing: 0,
-        profile,
-        rungs: Vec::new(),
-        points: points.collect(),
-        doubt: settled.doubt(),
-        warnings: Vec::new(),
+/// A settled search with what its sum of squares says.
+pub struct Answer<'a> {
+    pub settled: Settled<'a>,
+    pub uncertainty: Uncertainty,
+    pub profile: Option<Profile>,
+    /// Amplitudes for which the contact lasts too long; `None` with rigid impacts.
+    pub lost: Option<usize>,
+}
+
+impl<'a> Answer<'a> {
+    /// Of a search in which `lost` amplitudes were no longer seen.
+    ///
+    /// # Errors
+    /// As [`Uncertainty::new`].
+    pub fn new(settled: Settled<'a>, lost: Option<usize>) -> Result<Answer<'a>> {
+        let uncertainty = Uncertainty::new(&settled.least)?;
+        let profile = profile(&settled.least, &uncertainty, uncertainty.worst());
+        Ok(Answer { settled, uncertainty, profile, lost })
     }
 }
 
-/// How the parameters were found, and what is taken as exact.
-fn method(settled: &Settled<'_>) -> String {
-    let problem = &settled.problem;
-    let exact = |p: &Parameter| problem.unknowns.iter().all(|u| u.parameter != *p);
-    let masses = [Parameter::M1, Parameter::M2].into_iter().filter(exact);
-    let mut exact: Vec<&str> = masses.map(Parameter::name).collect();
-    if problem.data.corrected() {
-        exact.push("the stiffness of the contact");
-    }
-    let method = "least squares of both masses and directions by the closed form";
-    if exact.is_empty() {
-        method.to_owned()
-    } else {
-        format!("{method}, {} taken as exact", exact.join(", "))
-    }
-}
+/// How the parameters are found; all that is not fitted is taken as exact.
+const METHOD: &str = "least squares of both masses and directions by the closed form";
 
-/// Parameter number `i`, with the interval that its profile shows.
-pub fn fitted(
-    settled: &Settled<'_>,
-    held: &Held,
-    base: &Setting,
-    i: usize,
-    interval: Option<[f64; 2]>,
-    method: &str,
-) -> Fitted {
-    let u = settled.minimum.parameters[i];
-    let Unknown { parameter, coordinate, prior } = settled.problem.unknowns[i];
-    let std = held.covariance[(i, i)].sqrt();
-    let reason = settled.doubt().or_else(|| held.loose[i].clone());
-    let slope = coordinate.slope(u).abs();
-    // A prior adds 1/s² to the reciprocal of the variance that all else leaves, exactly where the model is linear.
-    let rests = prior.is_some_and(|[_, s]| (std * slope).powi(2) > 0.5 * s * s);
-    Fitted {
-        parameter,
-        estimate: Estimate::new(
-            settled.setting().get(parameter),
-            reason.is_none().then_some(std * slope),
-            parameter.unit(),
-            settled.problem.rows().0,
-            method.to_owned(),
-        ),
-        start: base.get(parameter),
-        interval: reason.is_none().then(|| interval.unwrap_or_else(|| coordinate.interval(u, NORMAL * std))),
-        identifiable: reason.is_none(),
-        reason,
-        prior,
-        rests_on_prior: rests,
+impl Answer<'_> {
+    /// The result, but for starts, rungs and findings.
+    pub fn fit(&self, base: &Setting, doubt: Option<&'static str>) -> Fit {
+        let (least, setting) = (&self.settled.least, self.settled.setting());
+        let (problem, n) = (&least.problem, least.minimum.parameters.len());
+        let row = |i: usize| (0..n).map(|j| self.uncertainty.correlation(i, j)).collect();
+        let used: Vec<(usize, usize)> = problem.used().collect();
+        let stated = if problem.data.guessed { 1.0 } else { problem.scale.sqrt() };
+        let points = used.iter().zip(&least.minimum.residuals).filter_map(|((i, mass), residual)| {
+            let step = &problem.data.steps[*i];
+            let (kind, reading) = (problem.kinds[*i]?, step.readings[*mass].as_ref()?);
+            let (sweep, direction) = &problem.data.sweeps[reading.sweep];
+            Some(FitPoint {
+                sweep: sweep.clone(),
+                mass: *mass as u8 + 1,
+                direction: *direction,
+                frequency: step.frequency,
+                motion: kind,
+                measured: reading.amplitude * reading.compliance,
+                fitted: setting.shows(kind, setting.force_at(problem.data, step), step.frequency)[*mass]
+                    * reading.compliance,
+                residual: *residual * stated,
+            })
+        });
+        let (far, wavering) = (self.settled.far, self.settled.wavering);
+        Fit {
+            parameters: (0..n).map(|i| self.fitted(base, i, doubt.is_some())).collect(),
+            correlations: (0..n).map(row).collect(),
+            rig: setting.rig,
+            force: setting.force,
+            n: used.len(),
+            left_out: LeftOut {
+                faint: problem.data.faint(),
+                other_motion: (problem.data.clear() - used.len()).saturating_sub(wavering + far),
+                far,
+                wavering,
+                soft: self.lost.unwrap_or(0),
+            },
+            reduced_chi_squared: least.reduced,
+            widened: problem.scale.sqrt(),
+            whiteness: least.whiteness.p_value,
+            starts: 0,
+            agreeing: 0,
+            profile: self.profile.clone(),
+            rungs: Vec::new(),
+            points: points.collect(),
+            doubt,
+            findings: Vec::new(),
+        }
+    }
+
+    /// The parameter number `i`.
+    pub fn fitted(&self, base: &Setting, i: usize, in_doubt: bool) -> Fitted {
+        let (problem, u) = (&self.settled.least.problem, self.settled.least.minimum.parameters[i]);
+        let Unknown { parameter, coordinate, prior } = problem.unknowns[i];
+        let reason = if in_doubt { Some(Unidentified::InDoubt) } else { self.uncertainty.unidentified[i] };
+        let std = self.std(i);
+        // The profile of its parameter is nearer to the truth than the slopes at the least.
+        let profile = self.profile.as_ref().filter(|p| p.parameter == parameter);
+        let profiled = profile.and_then(|p| Some([p.interval[0]?, p.interval[1]?]));
+        let sloped = || coordinate.interval(u, NORMAL * self.uncertainty.std(i));
+        Fitted {
+            parameter,
+            estimate: Estimate::new(
+                self.settled.setting().get(parameter),
+                reason.is_none().then_some(std),
+                parameter.unit(),
+                problem.rows().0,
+                METHOD,
+            ),
+            start: base.get(parameter),
+            interval: reason.is_none().then(|| profiled.unwrap_or_else(sloped)),
+            identifiable: reason.is_none(),
+            reason,
+            prior,
+            // A prior adds 1/s² to the reciprocal of the variance that all else leaves, exactly where the model is linear.
+            rests_on_prior: prior.is_some_and(|[_, s]| std.powi(2) > 0.5 * s * s),
+        }
+    }
+
+    /// Standard uncertainty of a parameter in its unit.
+    pub fn std(&self, i: usize) -> f64 {
+        let least = &self.settled.least;
+        self.uncertainty.std(i)
+            * least.problem.unknowns[i].coordinate.slope(least.minimum.parameters[i]).abs()
     }
 }

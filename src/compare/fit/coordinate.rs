@@ -1,8 +1,9 @@
-//! Parameters without bounds in the place of those with bounds.
+//! Coordinates without bounds for parameters with bounds.
 
-/// A parameter θ between two bounds by a coordinate u that runs from −∞ to ∞: √(θ − low), or logit of its place between both.
+/// A parameter θ from `low` to `high` by a coordinate u from −∞ to ∞: √(θ − low) without an upper bound, else the logit of its place
+/// between both.
 ///
-/// A logarithm in the place of the root would never come back from θ = low, where all its slopes vanish: a damper may be 0.
+/// A logarithm instead of the root would never come back from θ = low, where all slopes vanish: a damper may be 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coordinate {
     pub low: f64,
@@ -10,14 +11,16 @@ pub struct Coordinate {
     pub high: f64,
 }
 
+/// A parameter between two bounds comes no nearer to either than this part of the way: a loss 1 − R of 1e-6 is below what any sweep shows.
+const NEAREST: f64 = 1e-6;
+
 impl Coordinate {
     /// u of θ; θ at a bound or beyond it counts as just inside.
     pub fn of(self, value: f64) -> f64 {
-        const INSIDE: f64 = 1e-9;
         if self.high.is_infinite() {
             return (value - self.low).max(0.0).sqrt();
         }
-        let part = ((value - self.low) / (self.high - self.low)).clamp(INSIDE, 1.0 - INSIDE);
+        let part = ((value - self.low) / (self.high - self.low)).clamp(NEAREST, 1.0 - NEAREST);
         (part / (1.0 - part)).ln()
     }
 
@@ -26,9 +29,13 @@ impl Coordinate {
         if self.high.is_infinite() {
             return self.low + u * u;
         }
-        // Beyond these the exponential leaves the numbers.
-        let u = u.clamp(-600.0, 600.0);
         self.low + (self.high - self.low) / (1.0 + (-u).exp())
+    }
+
+    /// The values nearest to both bounds.
+    pub fn limits(self) -> [f64; 2] {
+        let inside = NEAREST * (self.high - self.low);
+        if inside.is_finite() { [self.low + inside, self.high - inside] } else { [self.low, self.high] }
     }
 
     /// Least and largest θ from u − `away` to u + `away`.

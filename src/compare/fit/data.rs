@@ -7,19 +7,17 @@ use crate::record::Direction;
 
 /// The amplitude of one mass at one step.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Seen {
+pub struct Reading {
     /// Index of the sweep.
     pub sweep: usize,
     /// Amplitude in m; above 0.
     pub amplitude: f64,
     /// Standard uncertainty in m.
     pub std: f64,
-    /// What the true amplitude stays below, where it does not stand out of the noise.
-    pub limit: Option<f64>,
-    /// What the compliance of the contact has made of the amplitude; amplitude and uncertainty are those divided by it.
-    pub soft: f64,
-    /// Part of the amplitude by which that may be off; it is in the uncertainty.
-    pub left: f64,
+    /// Upper limit of an amplitude below the noise floor, in m.
+    pub upper_limit: Option<f64>,
+    /// Factor by which the contact's compliance changed the amplitude; amplitude and uncertainty are those divided by it.
+    pub compliance: f64,
 }
 
 /// One step of a sweep: both masses where they were measured under the very same force.
@@ -34,13 +32,15 @@ pub struct Step {
     /// Its standard uncertainty in N; 0 where it is not known.
     pub force_std: f64,
     /// Mass 1 and mass 2.
-    pub seen: [Option<Seen>; 2],
+    pub readings: [Option<Reading>; 2],
 }
 
 impl Step {
-    /// Amplitudes that stand out of the noise, with the index of their mass.
-    pub fn clear(&self) -> impl Iterator<Item = (usize, &Seen)> {
-        (0..2).filter_map(|mass| Some((mass, self.seen[mass].as_ref()?))).filter(|(_, s)| s.limit.is_none())
+    /// Amplitudes above the noise floor, with the index of their mass.
+    pub fn clear(&self) -> impl Iterator<Item = (usize, &Reading)> {
+        (0..2)
+            .filter_map(|mass| Some((mass, self.readings[mass].as_ref()?)))
+            .filter(|(_, reading)| reading.upper_limit.is_none())
     }
 }
 
@@ -55,95 +55,86 @@ pub struct Data {
     pub sequences: Vec<Vec<usize>>,
     /// Reference of the forces in N: the stated one, or the median of the measured ones.
     pub force: f64,
-    /// Whether standard uncertainties are relative guesses: the residuals then tell their size.
-    pub guessed: bool,
-    /// Points that do not stand out of the noise.
-    pub faint: usize,
     /// Relative standard uncertainty that all amplitudes of a mass share.
     pub calibration: f64,
-    /// What was assumed.
-    pub warnings: Vec<String>,
+    /// Amplitudes without a standard uncertainty of their own.
+    pub without_std: usize,
+    /// Whether none has one: the residuals then tell its size.
+    pub guessed: bool,
 }
 
-/// Part of an amplitude that stands for its uncertainty where none is known; the residuals scale it.
+/// Part of an amplitude that stands for its standard uncertainty where none is known. It is only a weight: the residuals scale it.
 pub const GUESS: f64 = 1e-2;
 
 impl Data {
-    /// Whether a contact's compliance was taken out of amplitudes.
-    pub fn corrected(&self) -> bool {
-        self.steps.iter().flat_map(|step| step.seen.iter().flatten()).any(|seen| seen.soft != 1.0)
-    }
-
     /// The points of displacement responses that name their mass and direction. `force` in N is the stated one.
     ///
     /// # Errors
     /// If there is no such response, or no force is known.
     pub fn new(force: Option<f64>, responses: &[Response]) -> Result<Data> {
-        let usable: Vec<(&Response, u8, Direction)> = responses
+        let usable: Vec<(&Response, usize, Direction)> = responses
             .iter()
-            .filter(|r| r.quantity == "displacement")
-            .filter_map(|r| Some((r, r.mass?, r.direction?)))
-            .filter(|(_, mass, _)| matches!(mass, 1 | 2))
+            .filter(|r| r.quantity == "displacement" && matches!(r.mass, Some(1 | 2)))
+            .filter_map(|r| Some((r, usize::from(r.mass? - 1), r.direction?)))
             .collect();
         if usable.is_empty() {
             return Err(Error::refused("no response can be fitted")
-                .hint("give `mass = 1` or `2` for each sweep, and three or more points in one direction"));
+                .hint("state `mass = 1` or `2` for each sweep, with three or more points in one direction"));
         }
-        let mut warnings = Vec::new();
-        // What is assumed of the force, the overlay of the same responses says.
-        let forcings =
-            Forcing::of_all(force, &usable.iter().map(|u| u.0).collect::<Vec<_>>(), &mut Vec::new())?;
+        // The overlay of the same responses has the findings of their force.
+        let sweeps: Vec<&Response> = usable.iter().map(|u| u.0).collect();
+        let (forcings, _) = Forcing::of_all(force, &sweeps)?;
         let mut medians: Vec<f64> = forcings.iter().map(Forcing::median).collect();
         medians.sort_by(f64::total_cmp);
+        let known = relative_std(sweeps.iter().flat_map(|r| &r.points));
         let mut data = Data {
             sweeps: Vec::new(),
             steps: Vec::new(),
             sequences: Vec::new(),
             force: force.or(median(&medians)).unwrap_or(f64::NAN),
-            guessed: false,
-            faint: 0,
             calibration: 0.0,
-            warnings: Vec::new(),
+            without_std: sweeps.iter().flat_map(|r| &r.points).filter(|p| p.amplitude.std.is_none()).count(),
+            guessed: known.is_none(),
         };
-        let known = relative(usable.iter().flat_map(|u| &u.0.points));
         for ((response, mass, direction), forcing) in usable.into_iter().zip(&forcings) {
-            data.add(response, usize::from(mass) - 1, direction, forcing, known);
+            data.add(response, mass, direction, forcing, known.unwrap_or(GUESS));
         }
-        let clear = data.steps.iter().flat_map(Step::clear).count();
-        let all = responses.iter().flat_map(|r| &r.points).filter(|p| p.amplitude.std.is_none()).count();
-        data.guessed = known.is_none();
-        if data.guessed {
-            warnings.push("No amplitude has a standard uncertainty: all are taken for equal parts of the amplitude, and the residuals say how large.".to_owned());
-        } else if all > 0 {
-            warnings.push(format!("{all} amplitude(s) have no standard uncertainty: they take the median relative one of the others."));
-        }
-        data.faint = data.steps.iter().flat_map(|s| s.seen.iter().flatten()).count() - clear;
-        data.warnings = warnings;
         Ok(data)
     }
 
-    /// Amplitudes stray by this part of each, beside what is known of them; with it none is guessed.
+    /// Adds the relative standard uncertainty `part` to each amplitude; with it none is guessed.
     pub fn scattered(&mut self, part: f64) {
         if part == 0.0 {
             return;
         }
-        for seen in self.steps.iter_mut().flat_map(|s| s.seen.iter_mut().flatten()) {
-            let known = if self.guessed { 0.0 } else { seen.std };
-            seen.std = known.hypot(part * seen.amplitude);
+        for reading in self.steps.iter_mut().flat_map(|s| s.readings.iter_mut().flatten()) {
+            let known = if self.guessed { 0.0 } else { reading.std };
+            reading.std = known.hypot(part * reading.amplitude);
         }
         if std::mem::take(&mut self.guessed) {
-            self.warnings.clear();
+            self.without_std = 0;
         }
     }
 
-    /// Adds a sweep: beside the other mass, where that passed the very same steps.
+    /// Amplitudes above the noise floor.
+    pub fn clear(&self) -> usize {
+        self.steps.iter().flat_map(Step::clear).count()
+    }
+
+    /// Amplitudes below the noise floor.
+    pub fn faint(&self) -> usize {
+        self.steps.iter().flat_map(|s| s.readings.iter().flatten()).count() - self.clear()
+    }
+
+    /// Adds a sweep: beside the other mass, where that passed the very same steps. `relative` is the standard uncertainty of amplitudes
+    /// without one.
     fn add(
         &mut self,
         response: &Response,
         mass: usize,
         direction: Direction,
         forcing: &Forcing,
-        known: Option<f64>,
+        relative: f64,
     ) {
         let sweep = self.sweeps.len();
         self.sweeps.push((response.name.clone(), direction));
@@ -157,14 +148,14 @@ impl Data {
             frequency_std: p.excitation_std.unwrap_or(0.0),
             force: forcing.of(p),
             force_std: forcing.std_of(p),
-            seen: [None, None],
+            readings: [None, None],
         };
         let new: Vec<Step> = points.iter().map(step).collect();
         let beside = |sequence: &&Vec<usize>| {
             sequence.len() == new.len()
                 && sequence.iter().zip(&new).all(|(i, n)| {
                     let s = &self.steps[*i];
-                    s.seen[mass].is_none() && (s.frequency, s.force) == (n.frequency, n.force)
+                    s.readings[mass].is_none() && (s.frequency, s.force) == (n.frequency, n.force)
                 })
         };
         let places = if let Some(places) = self.sequences.iter().find(beside) {
@@ -177,18 +168,18 @@ impl Data {
         };
         for (place, point) in places.into_iter().zip(points) {
             let amplitude = point.amplitude.value;
-            if !(amplitude.is_finite() && amplitude > 0.0) {
-                continue;
+            if amplitude.is_finite() && amplitude > 0.0 {
+                let std = point.amplitude.std.filter(|s| *s > 0.0).unwrap_or(relative * amplitude);
+                let upper_limit = point.upper_limit;
+                self.steps[place].readings[mass] =
+                    Some(Reading { sweep, amplitude, std, upper_limit, compliance: 1.0 });
             }
-            let std = point.amplitude.std.filter(|s| *s > 0.0).unwrap_or(known.unwrap_or(GUESS) * amplitude);
-            self.steps[place].seen[mass] =
-                Some(Seen { sweep, amplitude, std, limit: point.upper_limit, soft: 1.0, left: 0.0 });
         }
     }
 }
 
-/// Median relative uncertainty of the points that have one and stand out of the noise.
-fn relative<'a>(points: impl Iterator<Item = &'a ResponsePoint>) -> Option<f64> {
+/// Median relative standard uncertainty of the amplitudes above the noise floor that have one.
+fn relative_std<'a>(points: impl Iterator<Item = &'a ResponsePoint>) -> Option<f64> {
     let mut known: Vec<f64> = points
         .filter(|p| p.upper_limit.is_none() && p.amplitude.value > 0.0)
         .filter_map(|p| Some(p.amplitude.std.filter(|s| *s > 0.0)? / p.amplitude.value))

@@ -1,23 +1,19 @@
 //! Weighted residuals of the steps whose motion is known.
 
 use super::super::prediction::Kind;
-use super::calibration::Calibration;
-use super::data::{Data, Step};
+use super::data::{Data, Reading, Step};
 use super::setting::Setting;
-use super::shared::Shared;
+use super::shared_errors::SharedErrors;
 use super::unknown::{Unknown, at, fold};
 use crate::campaign::Parameter;
 use crate::error::Result;
 use crate::math::{Minimum, minimise};
 
-/// Relative step of a difference.
-const NEAR: f64 = 1e-6;
-
 /// A sum of squares to be minimised: data with weights, and priors.
 ///
-/// Frequency and force of a step err by `σ_f` and `σ_F` for both masses alike, so their amplitudes have the covariance
-/// `diag(σ²) + σ_f²aaᵀ + σ_F²bbᵀ`, a and b the slopes of the predicted amplitudes over frequency and force. The residuals, over σ, are
-/// multiplied by the inverse square root of what that leaves ([`Shared`]).
+/// Frequency and force of a step err for both masses alike, and calibrations for all points of a mass; each amplitude has its own
+/// uncertainty beside these. The residuals are whitened with what such errors make of them ([`SharedErrors`]): first step by step, then all
+/// together.
 #[derive(Debug, Clone)]
 pub struct Problem<'a> {
     pub data: &'a Data,
@@ -25,12 +21,12 @@ pub struct Problem<'a> {
     pub unknowns: Vec<Unknown>,
     /// Motion of each step; `None` leaves it out.
     pub kinds: Vec<Option<Kind>>,
-    /// Errors that both masses of a step share.
-    pub shared: Vec<Shared>,
+    /// Errors of frequency and force, by step.
+    step_errors: Vec<SharedErrors>,
+    /// Errors of the calibrations.
+    calibrations: SharedErrors,
     /// Variances of the data are so much larger than stated.
     pub scale: f64,
-    /// Errors shared by all points of a mass.
-    pub calibration: Calibration,
 }
 
 impl<'a> Problem<'a> {
@@ -41,9 +37,9 @@ impl<'a> Problem<'a> {
             base: *base,
             unknowns: unknowns.to_vec(),
             kinds: kinds.to_vec(),
-            shared: Vec::new(),
+            step_errors: Vec::new(),
+            calibrations: SharedErrors::default(),
             scale: 1.0,
-            calibration: Calibration::default(),
         }
     }
 }
@@ -51,19 +47,19 @@ impl<'a> Problem<'a> {
 impl Problem<'_> {
     /// Amplitudes that take part: index of the step and of the mass.
     pub fn used(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        self.data.steps.iter().zip(&self.kinds).enumerate().filter(|(_, (_, kind))| kind.is_some()).flat_map(
-            |(i, (step, kind))| {
-                step.clear()
-                    .map(|(mass, _)| mass)
-                    .filter(|mass| counts(*kind, *mass))
-                    .map(move |mass| (i, mass))
-            },
-        )
+        let steps = self.data.steps.iter().zip(&self.kinds).enumerate();
+        steps.flat_map(|(i, (step, kind))| shown(step, *kind).map(move |(mass, _)| (i, mass)))
     }
 
-    /// Number of residuals: data, then one for each prior.
+    /// Number of residuals: data, and priors behind them.
     pub fn rows(&self) -> (usize, usize) {
         (self.used().count(), self.unknowns.iter().filter(|u| u.prior.is_some()).count())
+    }
+
+    /// Degrees of freedom: amplitudes and priors less parameters.
+    pub fn freedom(&self) -> usize {
+        let (data, priors) = self.rows();
+        (data + priors).saturating_sub(self.unknowns.len())
     }
 
     /// The setting at these coordinates.
@@ -71,130 +67,115 @@ impl Problem<'_> {
         at(&self.base, &self.unknowns, u)
     }
 
-    /// Takes the shares of frequencies, forces and calibrations from the setting at `u`.
+    /// Takes what errors of frequencies, forces and calibrations make of the residuals from the setting at `u`.
     pub fn weigh(&mut self, u: &[f64]) {
         let setting = self.setting(u);
-        let shared = |(step, kind): (&Step, &Option<Kind>)| {
-            let Some(kind) = *kind else { return Shared::default() };
+        let errors = |(step, kind): (&Step, &Option<Kind>)| {
+            let Some(kind) = *kind else { return SharedErrors::default() };
             let force = setting.force_at(self.data, step);
-            // By so many standard uncertainties the amplitudes change with a relative change of frequency or force, which errs by `std`.
-            let error = |std: f64, shows: &dyn Fn(f64) -> [f64; 2]| {
-                let mut w = [0.0; 2];
+            let column = |std: f64, shows: &dyn Fn(f64) -> [f64; 2]| {
+                let mut column = vec![0.0; 2];
                 if std > 0.0 {
                     let slopes = slopes(shows);
-                    for (mass, seen) in step.clear().filter(|(mass, _)| counts(Some(kind), *mass)) {
-                        w[mass] = slopes[mass] * std / seen.std;
+                    for (mass, reading) in shown(step, Some(kind)) {
+                        column[mass] = slopes[mass] * std / reading.std;
                     }
                 }
-                w
+                column
             };
-            Shared::new([
-                error(step.frequency_std / step.frequency, &|by| {
+            SharedErrors::new(&[
+                column(step.frequency_std / step.frequency, &|by| {
                     setting.shows(kind, force, step.frequency * by)
                 }),
-                error(step.force_std / step.force, &|by| setting.shows(kind, force * by, step.frequency)),
+                column(step.force_std / step.force, &|by| setting.shows(kind, force * by, step.frequency)),
             ])
         };
-        self.shared = self.data.steps.iter().zip(&self.kinds).map(shared).collect();
-        self.calibration = Calibration::new(&self.shares(&setting));
+        self.step_errors = self.data.steps.iter().zip(&self.kinds).map(errors).collect();
+        self.calibrations = SharedErrors::new(&self.calibration_columns(&setting));
     }
 
-    /// By how much each residual changes by one standard uncertainty of the calibrations: of each mass' factor, of its slope, 1 at the ends of
-    /// the frequencies, and of the force where it is not looked for. That moves gap and amplitudes alike, and no amplitude tells it.
-    fn shares(&self, setting: &Setting) -> Vec<Vec<f64>> {
-        if self.data.calibration == 0.0 {
+    /// Change of each residual by one standard uncertainty of the calibrations: of each mass' factor, of its slope, 1 at the ends of the
+    /// frequencies, and of the force where it is not looked for. That moves gap and amplitudes alike, and no amplitude tells it.
+    fn calibration_columns(&self, setting: &Setting) -> Vec<Vec<f64>> {
+        let std = self.data.calibration;
+        if std == 0.0 {
             return Vec::new();
         }
         let frequencies = self.data.steps.iter().map(|s| s.frequency);
         let (low, high) =
             frequencies.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), f| (l.min(f), h.max(f)));
-        let share = |mass: usize, sloped: bool| {
-            self.scaled(|step, kind| {
-                let along = match sloped {
-                    false => 1.0,
-                    true if high > low => (2.0 * step.frequency - low - high) / (high - low),
-                    true => 0.0,
-                };
-                let shows = setting.shows(kind, setting.force_at(self.data, step), step.frequency);
+        let along = |f: f64| if high > low { (2.0 * f - low - high) / (high - low) } else { 0.0 };
+        let column = |mass: usize, sloped: bool| {
+            self.whitened(|step, kind| {
                 let mut error = [0.0; 2];
-                error[mass] = shows[mass] * self.data.calibration * along;
+                error[mass] = setting.shows(kind, setting.force_at(self.data, step), step.frequency)[mass]
+                    * std
+                    * if sloped { along(step.frequency) } else { 1.0 };
                 error
             })
         };
-        let mut shares =
-            [(0, false), (1, false), (0, true), (1, true)].map(|(mass, sloped)| share(mass, sloped)).to_vec();
+        let mut columns = [(0, false), (1, false), (0, true), (1, true)]
+            .map(|(mass, sloped)| column(mass, sloped))
+            .to_vec();
         if self.unknowns.iter().all(|u| u.parameter != Parameter::Force) {
-            shares.push(self.scaled(|step, kind| {
+            columns.push(self.whitened(|step, kind| {
                 let force = setting.force_at(self.data, step);
-                slopes(|by| setting.shows(kind, force * by, step.frequency))
-                    .map(|s| s * self.data.calibration)
+                slopes(|by| setting.shows(kind, force * by, step.frequency)).map(|s| s * std)
             }));
         }
-        shares
+        columns
     }
 
     /// What `of` makes of each step and its motion, in m for both masses, over their standard deviations.
-    fn scaled(&self, of: impl Fn(&Step, Kind) -> [f64; 2]) -> Vec<f64> {
+    fn whitened(&self, of: impl Fn(&Step, Kind) -> [f64; 2]) -> Vec<f64> {
         let mut all = Vec::new();
-        for ((step, kind), shared) in self.data.steps.iter().zip(&self.kinds).zip(&self.shared) {
+        for ((step, kind), errors) in self.data.steps.iter().zip(&self.kinds).zip(&self.step_errors) {
             let Some(kind) = *kind else { continue };
-            let of = of(step, kind);
-            let mut s = [None; 2];
-            for (mass, seen) in step.clear().filter(|(mass, _)| counts(Some(kind), *mass)) {
-                s[mass] = Some(of[mass] / seen.std);
+            let (of, mut row) = (of(step, kind), [0.0; 2]);
+            for (mass, reading) in shown(step, Some(kind)) {
+                row[mass] = of[mass] / reading.std;
             }
-            // What does not count has no share, and leaves the other as it is.
-            let allowed = shared.allow(s.map(|s| s.unwrap_or(0.0)));
-            all.extend(s.iter().zip(allowed).filter_map(|(s, allowed)| s.and(Some(allowed))));
+            errors.whiten(&mut row, 1.0);
+            all.extend(shown(step, Some(kind)).map(|(mass, _)| row[mass]));
         }
         all
     }
 
-    /// Measured less what `shown` makes of each step and its motion, in units of their standard deviation.
-    pub fn off(&self, shown: impl Fn(&Step, Kind) -> [f64; 2]) -> Vec<f64> {
+    /// Measured less what `shows` gives for each step and its motion, in standard deviations.
+    pub fn off(&self, shows: impl Fn(&Step, Kind) -> [f64; 2]) -> Vec<f64> {
         let widened = self.scale.sqrt();
-        let mut all = self.scaled(|step, kind| {
-            let shown = shown(step, kind);
-            [0, 1].map(|mass: usize| step.seen[mass].as_ref().map_or(0.0, |s| s.amplitude) - shown[mass])
+        let mut all = self.whitened(|step, kind| {
+            let shows = shows(step, kind);
+            [0, 1].map(|mass: usize| step.readings[mass].as_ref().map_or(0.0, |r| r.amplitude) - shows[mass])
         });
         for r in &mut all {
             *r /= widened;
         }
-        self.calibration.allow(&mut all, widened);
+        self.calibrations.whiten(&mut all, widened);
         all
     }
 
-    /// Residuals at `u` in units of their standard deviation.
-    pub fn residuals(&self, u: &[f64], r: &mut [f64]) {
+    /// Residuals at `u` in standard deviations, data and priors.
+    pub fn at(&self, u: &[f64]) -> Vec<f64> {
         let setting = self.setting(u);
         let mut all =
             self.off(|step, kind| setting.shows(kind, setting.force_at(self.data, step), step.frequency));
         for unknown in &self.unknowns {
-            if let Some([value, std]) = unknown.prior {
-                all.push((setting.get(unknown.parameter) - value) / std);
-            }
+            all.extend(unknown.prior.map(|[value, std]| (setting.get(unknown.parameter) - value) / std));
         }
-        r.iter_mut().zip(all).for_each(|(r, value)| *r = value);
+        all
     }
 
-    /// Residuals at `u`, data and priors.
-    pub fn at(&self, u: &[f64]) -> Vec<f64> {
-        let (data, priors) = self.rows();
-        let mut r = vec![0.0; data + priors];
-        self.residuals(u, &mut r);
-        r
-    }
-
-    /// The minimum from `start` on.
+    /// The least sum of squares from `start` on.
     ///
     /// # Errors
     /// As [`minimise`].
     pub fn solve(&self, start: &[f64]) -> Result<Minimum> {
         let (data, priors) = self.rows();
-        let mut minimum =
-            minimise(|u, r| self.residuals(u, r), data + priors, start, &vec![0.1; start.len()])?;
-        for (i, lower) in fold(&self.unknowns, &mut minimum.parameters).into_iter().enumerate() {
-            if lower {
+        let residuals = |u: &[f64], r: &mut [f64]| r.copy_from_slice(&self.at(u));
+        let mut minimum = minimise(residuals, data + priors, start, &vec![0.1; start.len()])?;
+        for (i, turned) in fold(&self.unknowns, &mut minimum.parameters).into_iter().enumerate() {
+            if turned {
                 minimum.jacobian.column_mut(i).neg_mut();
             }
         }
@@ -202,15 +183,20 @@ impl Problem<'_> {
     }
 }
 
-/// Change of both amplitudes by a relative change of what `shows` multiplies by its argument; 0 at the end of a motion, where there is none.
-///
-/// A central difference over a millionth errs by 1e-12 of the third derivative and 1e-10 of the value.
-fn slopes(shows: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
-    let [above, below] = [1.0 + NEAR, 1.0 - NEAR].map(shows);
-    [0, 1].map(|mass| (above[mass] - below[mass]) / (2.0 * NEAR)).map(|s| if s.is_finite() { s } else { 0.0 })
+/// Clear amplitudes that depend on the parameters in a motion of this kind: a mass at rest shows none.
+pub fn shown(step: &Step, kind: Option<Kind>) -> impl Iterator<Item = (usize, &Reading)> {
+    step.clear().filter(move |(mass, _)| match kind {
+        Some(Kind::Impacting) => true,
+        Some(_) => *mass == 0,
+        None => false,
+    })
 }
 
-/// Whether the amplitude of a mass counts in a motion of this kind: a mass at rest shows no parameter.
-pub fn counts(kind: Option<Kind>, mass: usize) -> bool {
-    mass == 0 || kind == Some(Kind::Impacting)
+/// Change of both amplitudes by a relative change of what `shows` multiplies by its argument; 0 at the end of a motion, where there is none.
+///
+/// A central difference over h = 1e-6 errs by h²/6 of the third derivative and by ε/h = 2e-10 of the value.
+fn slopes(shows: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
+    const H: f64 = 1e-6;
+    let [above, below] = [1.0 + H, 1.0 - H].map(shows);
+    [0, 1].map(|mass| (above[mass] - below[mass]) / (2.0 * H)).map(|s| if s.is_finite() { s } else { 0.0 })
 }

@@ -1,7 +1,7 @@
 //! The sum of squares over one parameter, all others free.
 
-use super::held::Held;
-use super::settle::Settled;
+use super::settle::Least;
+use super::uncertainty::Uncertainty;
 use super::unknown::Unknown;
 use crate::campaign::Parameter;
 use rayon::prelude::*;
@@ -9,8 +9,10 @@ use serde::Serialize;
 
 /// χ² of one degree of freedom that is exceeded in 5 % of cases (Abramowitz & Stegun, table 26.8).
 const ONE: f64 = 3.841;
-/// Values on each side of the minimum.
+/// Values on each side of the least.
 const SIDE: i32 = 12;
+/// They reach so many standard uncertainties, twice what the interval needs.
+const REACH: f64 = 4.0;
 
 /// Profile of a parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -27,50 +29,25 @@ pub struct Profile {
     pub limit: f64,
     /// Values within which the rise stays below it. `None` for a side on which it is not reached in the values.
     pub interval: [Option<f64>; 2],
-    /// Coordinates of all unknowns where the rise is least.
-    #[serde(skip)]
-    pub lowest: Vec<f64>,
 }
-
-/// A profile that falls so far below the answer has found a better one.
-const LOWER: f64 = 0.1;
-/// By one the sum rises within one standard uncertainty.
-const MISSED: f64 = 1.0;
 
 impl Profile {
-    /// How far the profile falls below the answer.
-    fn fall(&self) -> f64 {
+    /// How far it falls below the answer: 0 where that is the least sum of squares.
+    pub fn fall(&self) -> f64 {
         -self.rise.iter().copied().fold(0.0, f64::min)
-    }
-
-    /// Coordinates of a better answer, where the profile has found one.
-    pub fn lower(&self) -> Option<&[f64]> {
-        (self.fall() > LOWER).then_some(self.lowest.as_slice())
-    }
-
-    /// That the answer is not the least sum of squares, where it is not.
-    pub fn missed(&self) -> Option<String> {
-        (self.fall() > MISSED).then(|| {
-            format!(
-                "beside the answer {} has values of a smaller sum of squares, by {:.1}: the least was not found",
-                self.parameter.name(),
-                self.fall()
-            )
-        })
     }
 }
 
-/// Profile of the unknown number `which`, over four standard uncertainties on both sides, but not beyond a bound.
-pub fn profile(settled: &Settled<'_>, held: &Held, which: usize) -> Option<Profile> {
-    let problem = &settled.problem;
-    let best = &settled.minimum.parameters;
+/// Profile of the unknown number `which`, but not beyond a bound (D. J. Venzon & S. H. Moolgavkar 1988).
+pub fn profile(least: &Least<'_>, uncertainty: &Uncertainty, which: usize) -> Option<Profile> {
+    let (problem, best) = (&least.problem, &least.minimum.parameters);
     let unknown = *problem.unknowns.get(which)?;
-    let std = held.covariance[(which, which)].sqrt();
+    let sum = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
+    let lowest = sum(&least.minimum.residuals);
     // Down to the lower bound, or a factor of ten in the odds between two.
     let most =
         if unknown.coordinate.high.is_infinite() { best[which].abs() } else { std::f64::consts::LN_10 };
-    let reach = (4.0 * std).min(most);
-    let least: f64 = settled.minimum.residuals.iter().map(|r| r * r).sum();
+    let reach = (REACH * uncertainty.std(which)).min(most);
     let others: Vec<Unknown> =
         problem.unknowns.iter().enumerate().filter(|(i, _)| *i != which).map(|(_, k)| *k).collect();
     let rise = |step: i32| {
@@ -81,23 +58,15 @@ pub fn profile(settled: &Settled<'_>, held: &Held, which: usize) -> Option<Profi
         rest.unknowns.clone_from(&others);
         let prior = unknown.prior.map_or(0.0, |[v, s]| ((value - v) / s).powi(2));
         // Along the valley, as far as it is straight.
+        let covariance = &uncertainty.covariance;
         let start: Vec<f64> = (0..best.len())
             .filter(|j| *j != which)
-            .map(|j| best[j] + away * (held.covariance[(j, which)] / held.covariance[(which, which)]))
+            .map(|j| best[j] + away * (covariance[(j, which)] / covariance[(which, which)]))
             .collect();
-        let sum = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
-        let (sum, mut u) = if others.is_empty() {
-            (sum(&rest.at(&[])), Vec::new())
-        } else {
-            let minimum = rest.solve(&start).ok()?;
-            (sum(&minimum.residuals), minimum.parameters)
-        };
-        u.insert(which, best[which] + away);
-        Some((value, sum + prior - least, u))
+        let data = if others.is_empty() { rest.at(&[]) } else { rest.solve(&start).ok()?.residuals };
+        Some((value, sum(&data) + prior - lowest))
     };
-    let points: Vec<(f64, f64, Vec<f64>)> = (-SIDE..=SIDE).into_par_iter().filter_map(rise).collect();
-    let lowest = points.iter().min_by(|a, b| a.1.total_cmp(&b.1)).map(|p| p.2.clone())?;
-    let (value, rise): (Vec<f64>, Vec<f64>) = points.into_iter().map(|p| (p.0, p.1)).unzip();
+    let (value, rise): (Vec<f64>, Vec<f64>) = (-SIDE..=SIDE).into_par_iter().filter_map(rise).unzip();
     let middle = value.iter().position(|v| *v >= unknown.coordinate.value(best[which]))?;
     let below = crossing(value[..=middle].iter().zip(&rise[..=middle]).rev());
     let above = crossing(value[middle..].iter().zip(&rise[middle..]));
@@ -108,7 +77,6 @@ pub fn profile(settled: &Settled<'_>, held: &Held, which: usize) -> Option<Profi
         rise,
         limit: ONE,
         interval: [below, above],
-        lowest,
     })
 }
 

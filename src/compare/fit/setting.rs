@@ -5,7 +5,7 @@ use super::data::{Data, Step};
 use crate::campaign::Parameter;
 use crate::model::{Rig, Sine, Steady, shown};
 
-/// A rig and the reference of the forces on it.
+/// A rig and the reference force on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setting {
     pub rig: Rig,

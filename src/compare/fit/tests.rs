@@ -1,8 +1,8 @@
 use super::super::prediction::Kind;
-use super::data::{Seen, Step};
-use super::held::NORMAL;
+use super::data::{Reading, Step};
 use super::motion::assigned;
-use super::unknown::coordinates;
+use super::settle::Least;
+use super::uncertainty::NORMAL;
 use super::*;
 use crate::campaign::Parameter;
 use crate::math::Noise;
@@ -39,10 +39,9 @@ fn swept(setting: &Setting, pace: Pace, frequencies: &[f64], noise: f64) -> (Dat
         steps: Vec::new(),
         sequences: Vec::new(),
         force: setting.force,
-        guessed: false,
-        faint: 0,
         calibration: 0.0,
-        warnings: Vec::new(),
+        without_std: 0,
+        guessed: false,
     };
     for down in [false, true] {
         let mut frequencies = frequencies.to_vec();
@@ -50,7 +49,7 @@ fn swept(setting: &Setting, pace: Pace, frequencies: &[f64], noise: f64) -> (Dat
             frequencies.reverse();
         }
         let points: Vec<(f64, f64)> = frequencies.iter().map(|f| (*f, setting.force)).collect();
-        let came = super::super::simulated(&setting.rig, None, &points, pace);
+        let came = crate::compare::simulated::simulated(&setting.rig, None, &points, pace);
         let from = data.steps.len();
         for ((frequency, force), came) in points.iter().zip(&came) {
             let amplitude = came.as_ref().unwrap().amplitude;
@@ -58,28 +57,27 @@ fn swept(setting: &Setting, pace: Pace, frequencies: &[f64], noise: f64) -> (Dat
                 let limit = (amplitude[mass] < FAINT * noise).then_some(3.0 * noise);
                 // A mass at rest shows the noise.
                 let amplitude = amplitude[mass].max(noise);
-                Some(Seen {
+                Some(Reading {
                     sweep: mass + 2 * usize::from(down),
                     amplitude,
                     std: noise,
-                    limit,
-                    soft: 1.0,
-                    left: 0.0,
+                    upper_limit: limit,
+                    compliance: 1.0,
                 })
             };
-            let seen = [seen(0), seen(1)];
+            let readings = [seen(0), seen(1)];
             data.steps.push(Step {
                 frequency: *frequency,
                 frequency_std: 1.5e-4,
                 force: *force,
                 force_std: 0.0,
-                seen,
+                readings,
             });
         }
         data.sequences.push((from..data.steps.len()).collect());
     }
     let kinds = assigned(&data, setting, pace).unwrap().kinds;
-    let kinds = motion::without_far(&data, setting, kinds);
+    let kinds = motion::without_outliers(&data, setting, kinds);
     (data, kinds)
 }
 
@@ -97,15 +95,13 @@ fn noisy(truth: &Data, kinds: &[Option<Kind>], setting: &Setting, seed: u64) -> 
             step.force += step.force_std * normal.normal();
         }
         let shows = kind.map(|kind| setting.shows(kind, force, meant));
-        for (mass, seen) in step.seen.iter_mut().enumerate() {
+        for (mass, seen) in step.readings.iter_mut().enumerate() {
             let Some(seen) = seen else { continue };
-            if seen.limit.is_none() {
+            if seen.upper_limit.is_none() {
                 seen.amplitude = shows.map_or(seen.amplitude, |s| s[mass]) + seen.std * normal.normal();
             }
         }
     }
-    data.faint =
-        data.steps.iter().flat_map(|s| s.seen.iter().flatten()).filter(|s| s.limit.is_some()).count();
     data
 }
 
@@ -132,8 +128,8 @@ fn miscalibrated(mut data: Data, std: f64, seed: u64) -> Data {
     let (low, high) = (FREQUENCIES[0], FREQUENCIES[39]);
     for step in &mut data.steps {
         let along = (2.0 * step.frequency - low - high) / (high - low);
-        for (seen, [factor, slope]) in step.seen.iter_mut().zip(errors) {
-            if let Some(seen) = seen.as_mut().filter(|s| s.limit.is_none()) {
+        for (seen, [factor, slope]) in step.readings.iter_mut().zip(errors) {
+            if let Some(seen) = seen.as_mut().filter(|s| s.upper_limit.is_none()) {
                 seen.amplitude *= 1.0 + factor + slope * along;
             }
         }
@@ -162,13 +158,14 @@ fn covered(
         .map(|seed| {
             let (data, unknowns) = drawn(seed);
             let true_u = coordinates(setting, &unknowns);
-            let (problem, minimum, ..) = settle::least(&data, setting, &unknowns, kinds, &true_u).unwrap();
+            let least = Least::new(&data, setting, &unknowns, kinds, &true_u).unwrap();
+            let (problem, minimum) = (&least.problem, &least.minimum);
             let sum = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
             let rise = sum(&problem.at(&true_u)) - sum(&minimum.residuals);
             let n = unknowns.len();
-            let held = Held::new(&problem, &minimum.parameters, &minimum.jacobian, vec![None; n]).unwrap();
-            assert!(held.loose.iter().all(Option::is_none), "seed {seed}: {:?}", held.loose);
-            let off = |i: usize| (minimum.parameters[i] - true_u[i]).abs() / held.covariance[(i, i)].sqrt();
+            let found = Uncertainty::new(&least).unwrap();
+            assert!(found.unidentified.iter().all(Option::is_none), "seed {seed}: {:?}", found.unidentified);
+            let off = |i: usize| (minimum.parameters[i] - true_u[i]).abs() / found.std(i);
             // Five standard deviations are passed by one of two million, in however few draws.
             assert!((0..n).all(|i| off(i) < 5.0), "seed {seed}");
             let own = (0..n).map(|i| off(i) <= NORMAL);
@@ -274,18 +271,12 @@ fn wrong_starts_come_back() {
             });
         let unknowns = unknowns(&ALL, &start);
         let (settled, found) = identify(&data, &start, &unknowns, STARTS, PACE).unwrap();
-        let held = settled.held().unwrap();
-        println!(
-            "{} of {STARTS} agree, {} points",
-            agreeing(&found, &settled.minimum.parameters, &held),
-            settled.problem.rows().0
-        );
-        for (i, unknown) in unknowns.iter().enumerate() {
-            let away = settled.minimum.parameters[i] - unknown.coordinate.of(setting.get(unknown.parameter));
-            // Seven parameters, twice: four standard deviations are left in one of a thousand cases.
-            assert!(away.abs() < 4.0 * held.covariance[(i, i)].sqrt(), "{:?} {away}", unknown.parameter);
-        }
-        assert!(settled.reduced < 1.6 && settled.problem.rows().0 > 100, "{}", settled.reduced);
+        let points = settled.least.problem.rows().0;
+        println!("{} of {STARTS} agree, {points} points", agreeing(&found, &settled).unwrap());
+        // Seven parameters, twice: four standard deviations are exceeded in one of a thousand cases.
+        let away = away(&settled, &setting);
+        assert!(away.iter().all(|a| *a < 4.0), "{away:?}");
+        assert!(settled.least.reduced < 1.6 && points > 100, "{}", settled.least.reduced);
     }
 }
 
@@ -297,67 +288,56 @@ fn least_from<'a>(
     kinds: &[Option<Kind>],
 ) -> Settled<'a> {
     let u = coordinates(setting, unknowns);
-    let (problem, minimum, reduced, whiteness) = settle::least(data, setting, unknowns, kinds, &u).unwrap();
-    Settled {
-        problem,
-        minimum,
-        reduced,
-        whiteness,
-        wavering: 0,
-        agreed: true,
-        far: 0,
-        missed: 0.0,
-        contradictions: Vec::new(),
-        lost: 0,
-    }
+    let least = Least::new(data, setting, unknowns, kinds, &u).unwrap();
+    Settled { least, wavering: 0, far: 0, agreed: true, unexplained: 0.0 }
 }
 
 /// How many of its standard deviations each parameter lies off `truth`.
 fn away(settled: &Settled<'_>, truth: &Setting) -> Vec<f64> {
-    let held = settled.held().unwrap();
+    let found = Uncertainty::new(&settled.least).unwrap();
     let off = |(i, unknown): (usize, &Unknown)| {
         let expected = unknown.coordinate.of(truth.get(unknown.parameter));
-        (settled.minimum.parameters[i] - expected).abs() / held.covariance[(i, i)].sqrt()
+        (settled.least.minimum.parameters[i] - expected).abs() / found.std(i)
     };
-    settled.problem.unknowns.iter().enumerate().map(off).collect()
+    settled.least.problem.unknowns.iter().enumerate().map(off).collect()
 }
 
-/// Held of these parameters, with the steps and masses that `keep` lets through.
-fn held(names: &[&str], keep: impl Fn(usize, &Step, Option<Kind>) -> bool) -> Held {
+/// Why these parameters are not identifiable, with the steps and masses that `keep` lets through.
+fn unidentified(
+    names: &[&str],
+    keep: impl Fn(usize, &Step, Option<Kind>) -> bool,
+) -> Vec<Option<Unidentified>> {
     let setting = example();
     let (clean, kinds) = truth(&setting, PACE);
     let mut data = noisy(&clean, &kinds, &setting, 3);
     for (step, kind) in data.steps.iter_mut().zip(&kinds) {
         for mass in 0..2 {
             if !keep(mass, step, *kind) {
-                step.seen[mass] = None;
+                step.readings[mass] = None;
             }
         }
     }
     let kinds: Vec<Option<Kind>> =
         kinds.iter().zip(&data.steps).map(|(kind, step)| kind.filter(|_| step.clear().count() > 0)).collect();
     let unknowns = unknowns(names, &setting);
-    let u = coordinates(&setting, &unknowns);
-    let (problem, minimum, ..) = settle::least(&data, &setting, &unknowns, &kinds, &u).unwrap();
-    Held::new(&problem, &minimum.parameters, &minimum.jacobian, vec![None; unknowns.len()]).unwrap()
+    let settled = least_from(&data, &setting, &unknowns, &kinds);
+    Uncertainty::new(&settled.least).unwrap().unidentified
 }
 
 #[test]
-fn what_the_points_do_not_hold_is_named() {
+fn what_the_points_do_not_determine_is_named() {
     // Free motions of mass 1 say nothing of mass 2, of the gap, or of impacts.
     let free = |mass: usize, _: &Step, kind: Option<Kind>| mass == 0 && kind == Some(Kind::Free);
-    let found = held(&["force", "c2", "k2", "restitution"], free);
-    assert!(found.loose[0].is_none(), "{found:?}");
-    for reason in &found.loose[1..] {
-        assert!(reason.as_ref().is_some_and(|r| r.contains("motion with impacts")), "{found:?}");
-    }
+    let found = unidentified(&["force", "c2", "k2", "restitution"], free);
+    let needs = Some(Unidentified::NeedsImpacts);
+    assert_eq!(found, [None, needs, needs, needs]);
     // Far above resonance the amplitude is F₀/|k − mω²| but for (ωc/(k − mω²))²/2, 2e-4 of it, where the noise is 1e-3 of 20 points.
-    let found = held(&["force", "c1"], |mass, step, kind| free(mass, step, kind) && step.frequency > 9.5);
-    assert!(found.loose[0].is_none(), "{found:?}");
-    let named = |r: &String| r.contains("twice or half") || r.contains("do not tell it from 0");
-    assert!(found.loose[1].as_ref().is_some_and(named), "{found:?}");
-    // Both masses through the resonances hold all.
-    assert!(held(&ALL, |_, _, _| true).loose.iter().all(Option::is_none));
+    let found =
+        unidentified(&["force", "c1"], |mass, step, kind| free(mass, step, kind) && step.frequency > 9.5);
+    assert!(found[0].is_none(), "{found:?}");
+    assert!(matches!(found[1], Some(Unidentified::TooUncertain | Unidentified::AtLimit)), "{found:?}");
+    // Both masses through the resonances determine all.
+    assert_eq!(unidentified(&ALL, |_, _, _| true), [None; 7]);
 }
 
 #[test]
@@ -392,11 +372,14 @@ fn what_cannot_be_is_refused() {
     let data = noisy(&clean, &kinds, &setting, 1);
     let said =
         identify(&data, &setting, &unknowns(&ALL, &setting), 2, PACE).map(|_| ()).unwrap_err().to_string();
-    assert!(said.contains("4 amplitude(s) do not determine 7 parameters"), "{said}");
+    assert!(
+        said.contains("4 amplitudes with one impact a cycle or none do not determine 7 parameters"),
+        "{said}"
+    );
 }
 
 #[test]
-fn a_prior_is_used_and_said_where_it_holds_the_parameter() {
+fn a_prior_is_used_and_named_where_it_determines_the_parameter() {
     let setting = example();
     let (clean, kinds) = truth(&setting, PACE);
     let data = noisy(&clean, &kinds, &setting, 5);
@@ -404,14 +387,14 @@ fn a_prior_is_used_and_said_where_it_holds_the_parameter() {
         toml::from_str("parameters = [\"gap\", \"c1\"]\nprior.c1 = [0.1, 1e-7]\nprior.gap = [1e-3, 1e-4]")
             .unwrap();
     let unknowns = Unknown::all(&entry, &setting).unwrap();
-    let settled = least_from(&data, &setting, &unknowns, &kinds);
-    let held = settled.held().unwrap();
-    let [gap, c1] = [0, 1].map(|i| answer::fitted(&settled, &held, &setting, i, None, ""));
+    let answer = Answer::new(least_from(&data, &setting, &unknowns, &kinds), None).unwrap();
+    assert_eq!(answer.doubts(), []);
+    let [gap, c1] = [0, 1].map(|i| answer.fitted(&setting, i, false));
     assert!(!gap.rests_on_prior && gap.identifiable, "{gap:?}");
     // The points know c1 to some 1e-5: all but the hundredth part squared is the prior's.
     assert!(c1.rests_on_prior && (c1.estimate.std.unwrap() / 1e-7 - 1.0).abs() < 1e-3, "{c1:?}");
     // The profile of one parameter of a straight problem is a parabola: its interval is ±1.96 standard deviations.
-    let profile = profile::profile(&settled, &held, 0).unwrap();
+    let profile = profile::profile(&answer.settled.least, &answer.uncertainty, 0).unwrap();
     let [low, high] = profile.interval.map(Option::unwrap);
     let width = 2.0 * NORMAL * gap.estimate.std.unwrap();
     assert!(((high - low) / width - 1.0).abs() < 0.02, "{profile:?} {gap:?}");
@@ -425,16 +408,17 @@ fn the_simplest_model_that_predicts_what_it_has_not_seen_is_chosen() {
     let free: Vec<Option<Kind>> = kinds.iter().map(|k| k.filter(|k| *k == Kind::Free)).collect();
     let mut still = data.clone();
     for (step, _) in still.steps.iter_mut().zip(&free).filter(|(_, kind)| kind.is_none()) {
-        step.seen = [None, None];
+        step.readings = [None, None];
     }
-    for (data, names, kinds, expected) in
-        [(&data, &ALL[1..], kinds, "closed form"), (&still, &["force", "k1"][..], free, "linear")]
-    {
+    for (data, names, kinds, expected) in [
+        (&data, &ALL[1..], kinds, FitModel::ClosedForm),
+        (&still, &["force", "k1"][..], free, FitModel::Linear),
+    ] {
         let unknowns = unknowns(names, &setting);
         let settled = least_from(data, &setting, &unknowns, &kinds);
         // Without named features all steps are held out in turn, ten at a time.
-        let rungs = rung::rungs(&settled, None, &[], PACE);
-        let chosen: Vec<&str> = rungs.iter().filter(|r| r.chosen).map(|r| r.model).collect();
+        let rungs = rungs(&settled, None, &[], PACE);
+        let chosen: Vec<FitModel> = rungs.iter().filter(|r| r.chosen).map(|r| r.model).collect();
         assert_eq!(chosen, [expected], "{rungs:?}");
         // The noise is 0.3 µm of 0.15 mm or more, and the parameters are better known.
         let right = rungs.iter().find(|r| r.chosen).unwrap();

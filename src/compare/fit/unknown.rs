@@ -1,4 +1,4 @@
-//! What is to be found.
+//! The parameters that a fit looks for.
 
 use super::coordinate::Coordinate;
 use super::setting::Setting;
@@ -14,6 +14,10 @@ pub struct Unknown {
     pub prior: Option<[f64; 2]>,
 }
 
+/// A parameter without an upper bound goes no farther than this factor from where it started, ten times a mistaken milli: beyond, nothing
+/// pulls it back, and a rig without dampers or gap takes for ever to simulate.
+const FARTHEST: f64 = 1e4;
+
 impl Unknown {
     /// All that an entry asks for, from these values on.
     ///
@@ -26,28 +30,19 @@ impl Unknown {
         }
         let one = |parameter: &Parameter| {
             let (low, high) = entry.range(*parameter);
-            let value = from.get(*parameter);
+            let (value, name) = (from.get(*parameter), parameter.name());
             if !(value >= low && value <= high) {
+                let pressed =
+                    if *parameter == Parameter::Gap { ", below 0 for masses pressed together" } else { "" };
                 return Err(Error::usage(
-                    format!("{} starts at {value}, outside its bounds {low} to {high}", parameter.name()),
-                    "bounds that hold the rig's own value, from which the fit starts",
+                    format!("{name} starts at {value}, outside its bounds {low} to {high}"),
+                    "bounds around the rig's own value, from which the fit starts",
                 )
-                .hint(format!(
-                    "give `bounds.{} = [lowest, highest]` in [fit]{}",
-                    parameter.name(),
-                    if *parameter == Parameter::Gap {
-                        ", below 0 for masses that are pressed together"
-                    } else {
-                        ""
-                    }
-                )));
+                .hint(format!("state `bounds.{name} = [lowest, highest]` of the fit{pressed}")));
             }
             if high.is_infinite() && value == low {
                 return Err(Error::usage(
-                    format!(
-                        "{} starts at {value}, where nothing says how large a change of it is",
-                        parameter.name()
-                    ),
+                    format!("{name} starts at {value}, which gives no scale for its changes"),
                     format!("a value above {low} in the rig, roughly right"),
                 ));
             }
@@ -56,48 +51,40 @@ impl Unknown {
         };
         entry.parameters.iter().map(one).collect()
     }
-}
 
-/// A parameter without an upper bound goes no farther than this factor from where it started, more than a mistaken unit: beyond, nothing pulls it back, and motions
-/// of a rig without dampers, or without a gap, take for ever to simulate.
-const LEASH: f64 = 1e4;
-/// A parameter between two bounds comes no nearer to either than this part of the way between.
-const NEAREST: f64 = 1e-6;
+    /// Lowest and highest value that it takes.
+    pub fn limits(&self, base: &Setting) -> [f64; 2] {
+        let Coordinate { low, high } = self.coordinate;
+        let start = base.get(self.parameter) - low;
+        if high.is_infinite() && start > 0.0 {
+            [low + start / FARTHEST, low + start * FARTHEST]
+        } else {
+            self.coordinate.limits()
+        }
+    }
+}
 
 /// `base` with these unknowns at these coordinates.
 pub fn at(base: &Setting, unknowns: &[Unknown], u: &[f64]) -> Setting {
     unknowns.iter().zip(u).fold(*base, |setting, (unknown, u)| {
-        let [low, high] = limits(base, unknown);
+        let [low, high] = unknown.limits(base);
         setting.with(unknown.parameter, unknown.coordinate.value(*u).clamp(low, high))
     })
-}
-
-/// Where a parameter may go.
-pub fn limits(base: &Setting, unknown: &Unknown) -> [f64; 2] {
-    let Coordinate { low, high } = unknown.coordinate;
-    let start = base.get(unknown.parameter) - low;
-    if high.is_finite() {
-        [low + NEAREST * (high - low), high - NEAREST * (high - low)]
-    } else if start > 0.0 {
-        [low + start / LEASH, low + start * LEASH]
-    } else {
-        [low, f64::INFINITY]
-    }
-}
-
-/// Which coordinates are the lower of the two that give the same value; they are turned into the upper.
-pub fn fold(unknowns: &[Unknown], u: &mut [f64]) -> Vec<bool> {
-    let one = |(unknown, u): (&Unknown, &mut f64)| {
-        let lower = unknown.coordinate.high.is_infinite() && *u < 0.0;
-        if lower {
-            *u = -*u;
-        }
-        lower
-    };
-    unknowns.iter().zip(u).map(one).collect()
 }
 
 /// Coordinates of the unknowns' values in `setting`.
 pub fn coordinates(setting: &Setting, unknowns: &[Unknown]) -> Vec<f64> {
     unknowns.iter().map(|unknown| unknown.coordinate.of(setting.get(unknown.parameter))).collect()
+}
+
+/// Turns coordinates below 0 of unknowns without an upper bound into those above with the same value; says which were turned.
+pub fn fold(unknowns: &[Unknown], u: &mut [f64]) -> Vec<bool> {
+    let one = |(unknown, u): (&Unknown, &mut f64)| {
+        let below = unknown.coordinate.high.is_infinite() && *u < 0.0;
+        if below {
+            *u = -*u;
+        }
+        below
+    };
+    unknowns.iter().zip(u).map(one).collect()
 }

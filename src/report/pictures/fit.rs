@@ -1,13 +1,12 @@
-//! What a fit leaves, and how well it holds the parameter known worst.
+//! Residuals of a fit, and the profile of its least certain parameter.
 
 use super::lettered;
-use crate::compare::Fit;
-use crate::compare::fit::Profile;
+use crate::compare::{Fit, Profile};
 use crate::record::Direction;
 use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
 use std::fmt::Write as _;
 
-/// Residuals over frequency, by mass and direction, and the profile of the parameter known worst.
+/// Residuals over frequency, by mass and direction, and the profile of the parameter with the largest relative uncertainty.
 pub fn fit(title: &str, fit: &Fit) -> Figure {
     let mut above =
         Plot::new(AxisSpec::new("Excitation frequency", "Hz"), AxisSpec::new("Residual / stated std", ""))
@@ -27,13 +26,12 @@ pub fn fit(title: &str, fit: &Fit) -> Figure {
         }
     }
     above = above.with(Series::horizontal("", 0.0));
-    let mut figure = Figure::double(title).panel(above.title("What the fit leaves")).height(80.0);
+    let mut figure = Figure::double(title).panel(above.title("Residuals")).height(80.0);
     let left = fit.left_out;
     let mut caption = format!(
-        "Residuals of {} amplitudes in units of the standard uncertainties that they were stated with; {} of other motions, or far from theirs, are \
-         left out.",
+        "Residuals of {} amplitudes in units of their stated standard uncertainties; {} of other motions, and outliers, are left out.",
         fit.n,
-        left.other_motion + left.far + left.wavering + left.soft
+        left.clear()
     );
     if let Some(profile) = &fit.profile {
         let sure = fit.doubt.is_none();
@@ -41,12 +39,12 @@ pub fn fit(title: &str, fit: &Fit) -> Figure {
         let name = profile.parameter.name();
         let _ = write!(
             caption,
-            " Below: the least sum of squares over {name}, the parameter known worst, all others free; "
+            " Below: the least sum of squares over {name}, the least certain parameter, all others free; "
         );
         let _ = if sure {
-            write!(caption, "under the grey line ({}) it lies with 95 % confidence.", profile.limit)
+            write!(caption, "the 95 % confidence interval lies below the grey line ({}).", profile.limit)
         } else {
-            write!(caption, "the answer is in doubt, and this says nothing of the truth.")
+            write!(caption, "the answer is in doubt, so it gives no interval.")
         };
     }
     lettered(figure).caption(caption)

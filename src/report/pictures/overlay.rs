@@ -2,8 +2,7 @@
 
 use super::lettered;
 use super::response::{MARKS, log_limits, rank, series, shown};
-use crate::compare::prediction::{Kind, Motion, Prediction};
-use crate::compare::{Level, Overlay, Pair, Verdict};
+use crate::compare::{Kind, Level, Motion, Overlay, Pair, Prediction, Verdict};
 use crate::measure::response::Response;
 use crate::model::ladder::Model;
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
@@ -57,7 +56,7 @@ fn panel(mass: u8, curve: &Prediction, pairs: &[Pair], measured: &[(usize, &Resp
     };
     let mut plot = Plot::new(AxisSpec::new("Excitation frequency", "Hz"), y);
     let swept = |p: &&Pair| p.mass == mass && measured.iter().any(|(_, r)| r.name == p.sweep);
-    let lasting = [Model::KelvinVoigt, Model::HuntCrossley].map(Model::name);
+    let lasting = [Model::KelvinVoigt, Model::HuntCrossley];
     let lasts = pairs.iter().filter(swept).any(|p| lasting.contains(&p.model));
     for (verdict, name, stroke) in [
         (
@@ -91,7 +90,7 @@ fn panel(mass: u8, curve: &Prediction, pairs: &[Pair], measured: &[(usize, &Resp
         let [points, faint] = series(response, *rank, &[], limits);
         plot = plot.with(faint).with(points);
     }
-    let other = pairs.iter().filter(swept).filter(|p| p.model != Model::ClosedForm.name());
+    let other = pairs.iter().filter(swept).filter(|p| p.model != Model::ClosedForm);
     let (x, y): (Vec<f64>, Vec<f64>) =
         other.filter_map(|p| Some((p.frequency, factor * p.predicted?))).unzip();
     if !x.is_empty() {

@@ -1,7 +1,7 @@
 //! Sweeps of a model: both masses, up and down, with jumps and branches.
 
 use super::lettered;
-use crate::compare::named::Named;
+use crate::compare::Named;
 use crate::measure::jump::Jump;
 use crate::measure::resonance::Resonance;
 use crate::model::continuation::Branch;

@@ -21,10 +21,10 @@ pub fn fitted(fit: &Fit) -> Table {
             ("found", "", &|p| pair(p.estimate.value, p.estimate.std)),
             ("from", "", &|p| end(p.interval, 0)),
             ("to (95 %)", "", &|p| end(p.interval, 1)),
-            ("held by", "", &|p| {
+            ("determined by", "", &|p| {
                 Cell::from(match (p.identifiable, p.rests_on_prior) {
-                    _ if fit.doubt.is_some() => "not told: the answer is in doubt",
-                    (false, _) => "nothing: not identifiable",
+                    _ if fit.doubt.is_some() => "–: the answer is in doubt",
+                    (false, _) => "–: not identifiable",
                     (true, true) => "its prior",
                     (true, false) => "the points",
                 })
@@ -53,10 +53,10 @@ pub fn fit_points(fit: &Fit) -> Table {
 pub fn fit_rungs(fit: &Fit) -> Table {
     let percent = |value: Option<f64>| Cell::from(value.map(|v| 100.0 * v));
     table(
-        "Models by points held out",
+        "Models by hold-out error",
         &fit.rungs,
         &[
-            ("model", "", &|r| Cell::from(r.model)),
+            ("model", "", &|r| Cell::from(r.model.name())),
             ("parameters", "", &|r| Cell::from(r.parameters.len())),
             ("error", "%", &|r| percent(r.held_out)),
             ("standard error", "%", &|r| percent(r.held_out_std)),

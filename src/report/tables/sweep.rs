@@ -1,7 +1,7 @@
 //! Tables of sweeps of a model, and of the branches beside them.
 
 use super::{headed, pair};
-use crate::compare::named::Named;
+use crate::compare::Named;
 use crate::measure::jump::Jump;
 use crate::measure::resonance::Resonance;
 use crate::model::PeriodicOrbit;

@@ -20,10 +20,10 @@ fn soft(setting: &Setting, stiffness: f64, seed: u64) -> Data {
         let came = simulated(&setting.rig, Some(law), &points, PACE);
         for (i, came) in sequence.iter().zip(&came) {
             let Ok(came) = came else { continue };
-            for (seen, amplitude) in data.steps[*i].seen.iter_mut().zip(came.amplitude) {
+            for (seen, amplitude) in data.steps[*i].readings.iter_mut().zip(came.amplitude) {
                 if let Some(seen) = seen {
                     seen.amplitude = (amplitude + seen.std * normal.normal()).abs().max(seen.std);
-                    seen.limit = (amplitude < FAINT * seen.std).then_some(3.0 * seen.std);
+                    seen.upper_limit = (amplitude < FAINT * seen.std).then_some(3.0 * seen.std);
                 }
             }
         }
@@ -57,9 +57,6 @@ fn allowed_for(contacts: &[(f64, u64)], starts: Option<usize>) {
     assert!(blind.parameters.iter().all(|p| p.estimate.std.is_none()), "{:?}", blind.parameters);
     for (stiffness, data) in drawn {
         let fit = found(&data, &start, Some(stiffness), &[], &entry, PACE).unwrap();
-        // (ωt)² is 1e-3 and 1e-4 of amplitudes of 1 mm, in noise of 0.3 µm.
-        let said = fit.warnings.iter().any(|w| w.contains("taken out to first order"));
-        assert_eq!(said, stiffness == 1e6, "{:?}", fit.warnings);
         for found in &fit.parameters {
             let Estimate { value, std, .. } = found.estimate;
             let away = (value - setting.get(found.parameter)) / std.unwrap_or(f64::NAN);
@@ -67,19 +64,4 @@ fn allowed_for(contacts: &[(f64, u64)], starts: Option<usize>) {
             assert!(away.abs() < 4.0, "{stiffness:e}: {found:?} lies {away} off");
         }
     }
-}
-
-/// Impacts without duration, where nothing is said of the contact: what one of a thousandth of the period would change, is said.
-#[test]
-fn an_unknown_compliance_is_spoken_of() {
-    let setting = example();
-    let (clean, kinds) = truth(&setting, PACE);
-    println!("seed 44");
-    let data = noisy(&clean, &kinds, &setting, 44);
-    let entry: FitEntry = toml::from_str(NAMES).unwrap();
-    let fit = found(&data, &setting, None, &[], &entry, PACE).unwrap();
-    let said =
-        fit.warnings.iter().find(|w| w.contains("no time")).unwrap_or_else(|| panic!("{:?}", fit.warnings));
-    // The compliance of the contact is not there for what rebounds slower than it does: R would have to be higher.
-    assert!(said.contains("restitution 0.99") && said.contains("gap 9") && said.contains("N/m"), "{said}");
 }

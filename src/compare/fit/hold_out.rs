@@ -2,11 +2,11 @@
 
 use super::super::prediction::Kind;
 use super::super::simulated::Pace;
-use super::data::{Data, Seen, Step};
+use super::data::{Data, Reading};
 use super::motion::assigned;
 use super::problem::Problem;
 use super::setting::Setting;
-use super::settle::{Settled, left};
+use super::settle::{Settled, goodness};
 use super::unknown::coordinates;
 use crate::campaign::Parameter;
 use crate::measure::residuals::aicc;
@@ -15,15 +15,37 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::ops::RangeInclusive;
 
-/// Steps on both sides of a feature that are held out with it.
+/// Steps on both sides of a feature that are held out with it: neighbours tell its height.
 const BESIDE: usize = 2;
-
 /// Part of a frequency by which steps of two sweeps may differ and be the same.
 const SAME: f64 = 1e-3;
-/// Models that miss what was held out by a half of it are not chosen among.
+/// No model is chosen where the best is off by half of what was held out.
 const NONSENSE: f64 = 0.5;
-/// The model without impacts.
-const LINEAR: &str = "linear";
+
+/// A model of the ladder that a fit climbs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub enum FitModel {
+    /// No impacts.
+    #[serde(rename = "linear")]
+    Linear,
+    /// Rigid impacts.
+    #[serde(rename = "closed form")]
+    ClosedForm,
+    /// Impacts with the compliance of the contact taken out to first order.
+    #[serde(rename = "soft-corrected closed form")]
+    SoftCorrected,
+}
+
+impl FitModel {
+    /// Its name in results and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            FitModel::Linear => "linear",
+            FitModel::ClosedForm => "closed form",
+            FitModel::SoftCorrected => "soft-corrected closed form",
+        }
+    }
+}
 
 /// A stretch of steps that was held out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -39,8 +61,8 @@ pub struct Block {
 /// A model, and how well it predicts what it was not shown.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Rung {
-    /// `linear` (no impacts), `closed form`, or `soft-corrected closed form`.
-    pub model: &'static str,
+    /// Model.
+    pub model: FitModel,
     /// Parameters that it was fitted with.
     pub parameters: Vec<Parameter>,
     /// Their values by this model.
@@ -59,33 +81,32 @@ pub struct Rung {
     pub blocks: Vec<Block>,
 }
 
-/// Judges the rungs by the answer without compliance, `rigid`, and that with it, where it is known.
+/// Judges the models by the answer with rigid contacts and that with compliance, where it is known.
 ///
-/// Steps around each resonance, antiresonance and jump, and a stretch away from them, are left out in turn, in all sweeps; the rest is
-/// fitted, and what was left out predicted (blocked cross-validation: D. R. Roberts et al., *Ecography* 40 (2017) 913). No measured
-/// amplitude tells a model which motion a step left out shows: the simulated sweep of its own rig does. The simplest model within one
-/// standard error of the best is chosen (L. Breiman et al., *Classification and Regression Trees* (1984), 3.4.3).
+/// Steps around each resonance, antiresonance and jump, and a stretch away from them, are held out in turn, in all sweeps; the rest is
+/// fitted, and what was held out predicted (blocked cross-validation: D. R. Roberts et al., *Ecography* 40 (2017) 913). Which motion such a
+/// step shows, the simulated sweep of the model's own rig decides. The simplest model within one standard error of the best is chosen
+/// (L. Breiman et al., *Classification and Regression Trees* (1984), 3.4.3).
 pub fn rungs(
     rigid: &Settled<'_>,
     soft: Option<&Settled<'_>>,
     responses: &[Response],
     pace: Pace,
 ) -> Vec<Rung> {
-    let full = &rigid.problem;
+    let full = &rigid.least.problem;
     let blocks = blocks(full.data, responses);
     let mut linear = full.clone();
     for (kind, step) in linear.kinds.iter_mut().zip(&full.data.steps) {
         *kind = kind.filter(|_| step.clear().any(|(mass, _)| mass == 0)).map(|_| Kind::Free);
     }
-    let alone = |p| matches!(p, Parameter::Force | Parameter::C1 | Parameter::K1 | Parameter::M1);
-    linear.unknowns.retain(|u| alone(u.parameter));
-    let mut models = vec![(LINEAR, linear, rigid), ("closed form", full.clone(), rigid)];
-    if let Some(soft) = soft {
-        models.push(("soft-corrected closed form", soft.problem.clone(), soft));
-    }
-    let answer = soft.unwrap_or(rigid);
-    let judged = |(name, problem, own): &(&'static str, Problem<'_>, &Settled<'_>)| {
-        rung(name, problem, &own.setting(), answer, &blocks, pace)
+    linear
+        .unknowns
+        .retain(|u| matches!(u.parameter, Parameter::Force | Parameter::C1 | Parameter::K1 | Parameter::M1));
+    let mut models = vec![(FitModel::Linear, linear, rigid), (FitModel::ClosedForm, full.clone(), rigid)];
+    models.extend(soft.map(|soft| (FitModel::SoftCorrected, soft.least.problem.clone(), soft)));
+    let answer = &soft.unwrap_or(rigid).least.problem;
+    let judged = |(model, problem, own): &(FitModel, Problem<'_>, &Settled<'_>)| {
+        rung(*model, problem, &own.setting(), answer, &blocks, pace)
     };
     let mut rungs: Vec<Rung> = models.iter().filter_map(judged).collect();
     let best =
@@ -100,47 +121,43 @@ pub fn rungs(
 }
 
 fn rung(
-    model: &'static str,
+    model: FitModel,
     problem: &Problem<'_>,
     from: &Setting,
-    answer: &Settled<'_>,
-    blocks: &[(String, f64, Vec<usize>)],
+    answer: &Problem<'_>,
+    blocks: &[HeldOut],
     pace: Pace,
 ) -> Option<Rung> {
-    let full = &answer.problem;
     let (own, u) = fitted(problem.clone(), from)?;
     let setting = own.setting(&u);
     // One set of weights, that of the answer, for all models: sums of squares over different ones cannot be compared.
-    let linear = model == LINEAR;
-    let off = full.off(|step, kind| {
-        let kind = if linear { Kind::Free } else { kind };
-        let mut shows = setting.shows(kind, setting.force_at(full.data, step), step.frequency);
-        // A model without compliance is held against what was measured with it.
-        if !std::ptr::eq(problem.data, full.data) {
-            for (shows, seen) in shows.iter_mut().zip(&step.seen) {
-                *shows /= seen.as_ref().map_or(1.0, |s| s.soft);
+    let off = answer.off(|step, kind| {
+        let kind = if model == FitModel::Linear { Kind::Free } else { kind };
+        let mut shows = setting.shows(kind, setting.force_at(answer.data, step), step.frequency);
+        // A rigid model is compared with what was measured.
+        if !std::ptr::eq(problem.data, answer.data) {
+            for (shows, reading) in shows.iter_mut().zip(&step.readings) {
+                *shows /= reading.as_ref().map_or(1.0, |r| r.compliance);
             }
         }
         shows
     });
     let sum = off.iter().map(|r| r * r).sum();
-    let (_, whiteness) = left(&own, &own.at(&u));
-    let judged: Vec<Block> = blocks
-        .par_iter()
-        .filter_map(|(feature, frequency, steps)| {
-            let mut rest = problem.clone();
-            for i in steps {
-                rest.kinds[*i] = None;
-            }
-            let (rest, u) = fitted(rest, from)?;
-            let error = missed(problem.data, &rest.setting(&u), linear, steps, pace)?;
-            Some(Block { feature: feature.clone(), frequency: *frequency, error })
-        })
-        .collect();
-    let n = judged.len() as f64;
-    let mean = judged.iter().map(|b| b.error).sum::<f64>() / n;
-    let variance = judged.iter().map(|b| (b.error - mean).powi(2)).sum::<f64>() / (n - 1.0);
-    let several = judged.len() > 1;
+    let (_, whiteness) = goodness(&own, &own.at(&u));
+    let judged = |held: &HeldOut| {
+        let mut rest = problem.clone();
+        for i in &held.steps {
+            rest.kinds[*i] = None;
+        }
+        let (rest, u) = fitted(rest, from)?;
+        let error = error(problem.data, &rest.setting(&u), model, &held.steps, pace)?;
+        Some(Block { feature: held.feature.clone(), frequency: held.frequency, error })
+    };
+    let blocks: Vec<Block> = blocks.par_iter().filter_map(judged).collect();
+    let n = blocks.len() as f64;
+    let mean = blocks.iter().map(|b| b.error).sum::<f64>() / n;
+    let variance = blocks.iter().map(|b| (b.error - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    let several = blocks.len() > 1;
     Some(Rung {
         model,
         parameters: problem.unknowns.iter().map(|u| u.parameter).collect(),
@@ -150,7 +167,7 @@ fn rung(
         aicc: Some(aicc(sum, off.len(), problem.unknowns.len())).filter(|a| a.is_finite()),
         whiteness: whiteness.p_value,
         chosen: false,
-        blocks: judged,
+        blocks,
     })
 }
 
@@ -167,72 +184,72 @@ fn fitted<'a>(mut problem: Problem<'a>, from: &Setting) -> Option<(Problem<'a>, 
 }
 
 /// Mean of |ln (measured/predicted)|, 1 at most, of all amplitudes at these steps; `None` where there is none.
-fn missed(data: &Data, setting: &Setting, linear: bool, steps: &[usize], pace: Pace) -> Option<f64> {
-    let motions = if linear { None } else { Some(assigned(data, setting, pace).ok()?) };
-    let one = |i: &usize| -> Vec<f64> {
+fn error(data: &Data, setting: &Setting, model: FitModel, steps: &[usize], pace: Pace) -> Option<f64> {
+    let impacts = model != FitModel::Linear;
+    let motions = if impacts { Some(assigned(data, setting, pace).ok()?) } else { None };
+    let one = |i: &usize| {
         let step = &data.steps[*i];
         let of = |kind| setting.shows(kind, setting.force_at(data, step), step.frequency);
         let predicted = match &motions {
             None => of(Kind::Free),
-            Some(motions) => motions.history[*i].map(of).or(motions.came[*i]).unwrap_or([f64::NAN; 2]),
+            Some(motions) => motions.history[*i].map(of).or(motions.simulated[*i]).unwrap_or([f64::NAN; 2]),
         };
-        let error = |(mass, seen): (usize, &Seen)| {
-            let r = (seen.amplitude / predicted[mass]).ln().abs();
+        step.clear().map(move |(mass, reading): (usize, &Reading)| {
+            let r = (reading.amplitude / predicted[mass]).ln().abs();
             if r.is_finite() { r.min(1.0) } else { 1.0 }
-        };
-        step.clear().map(error).collect()
+        })
     };
     let errors: Vec<f64> = steps.iter().flat_map(one).collect();
     (!errors.is_empty()).then(|| errors.iter().sum::<f64>() / errors.len() as f64)
 }
 
+/// Steps that are held out together.
+struct HeldOut {
+    feature: String,
+    frequency: f64,
+    steps: Vec<usize>,
+}
+
 /// Features with their frequency and the steps of all sweeps around them; between them pieces of as many steps.
-fn blocks(data: &Data, responses: &[Response]) -> Vec<(String, f64, Vec<usize>)> {
+fn blocks(data: &Data, responses: &[Response]) -> Vec<HeldOut> {
     let mut used: Vec<usize> = (0..data.steps.len()).filter(|i| data.steps[*i].clear().count() > 0).collect();
     let at = |i: &usize| data.steps[*i].frequency;
     used.sort_by(|a, b| at(a).total_cmp(&at(b)));
-    let mut ranges: Vec<(String, f64, RangeInclusive<f64>)> = Vec::new();
+    let mut blocks: Vec<HeldOut> = Vec::new();
+    let mut ranges: Vec<(String, RangeInclusive<f64>)> = Vec::new();
     for sequence in &data.sequences {
         let own: Vec<usize> = used.iter().copied().filter(|i| sequence.contains(i)).collect();
-        let mine =
-            |r: &&Response| sequence.iter().any(|i| sweeps(data, &data.steps[*i]).any(|name| name == r.name));
-        for response in responses.iter().filter(mine) {
+        let measures = |r: &&Response| {
+            let readings = sequence.iter().flat_map(|i| data.steps[*i].readings.iter().flatten());
+            readings.map(|reading| &data.sweeps[reading.sweep].0).any(|name| *name == r.name)
+        };
+        for response in responses.iter().filter(measures) {
             let named = response.resonances.iter().map(|r| (r.kind.clone(), r.frequency));
             let jumps = response.jumps.iter().map(|j| ("jump".to_owned(), j.frequency));
             for (feature, frequency) in named.chain(jumps) {
                 let away = |k: &usize| (at(&own[*k]) - frequency).abs();
                 let Some(k) = (0..own.len()).min_by(|a, b| away(a).total_cmp(&away(b))) else { continue };
-                if ranges.iter().any(|(name, _, range)| *name == feature && range.contains(&frequency)) {
+                if ranges.iter().any(|(name, range)| *name == feature && range.contains(&frequency)) {
                     continue;
                 }
                 let (low, high) = (k.saturating_sub(BESIDE), (k + BESIDE).min(own.len() - 1));
                 let range = at(&own[low]) * (1.0 - SAME)..=at(&own[high]) * (1.0 + SAME);
-                ranges.push((feature, frequency, range));
+                let steps: Vec<usize> = used.iter().copied().filter(|i| range.contains(&at(i))).collect();
+                // Two features in the same steps are one block.
+                let shared = |b: &HeldOut| steps.iter().filter(|i| b.steps.contains(i)).count();
+                if blocks.iter().all(|b| 2 * shared(b) <= steps.len()) {
+                    blocks.push(HeldOut { feature: feature.clone(), frequency, steps });
+                }
+                ranges.push((feature, range));
             }
         }
     }
-    let within =
-        |range: &RangeInclusive<f64>| used.iter().copied().filter(|i| range.contains(&at(i))).collect();
-    let mut blocks: Vec<(String, f64, Vec<usize>)> = Vec::new();
-    for (name, frequency, range) in &ranges {
-        let steps: Vec<usize> = within(range);
-        // Two features in the same steps are one block.
-        let shared = |b: &(String, f64, Vec<usize>)| steps.iter().filter(|i| b.2.contains(i)).count();
-        if blocks.iter().all(|b| 2 * shared(b) <= steps.len()) {
-            blocks.push((name.clone(), *frequency, steps));
-        }
-    }
     let open: Vec<usize> =
-        (0..used.len()).filter(|k| !ranges.iter().any(|r| r.2.contains(&at(&used[*k])))).collect();
+        (0..used.len()).filter(|k| !ranges.iter().any(|r| r.1.contains(&at(&used[*k])))).collect();
     let piece = (2 * BESIDE + 1) * data.sequences.len();
     for steps in open.chunk_by(|a, b| b - a == 1).flat_map(|s| s.chunks_exact(piece)) {
         let steps: Vec<usize> = steps.iter().map(|k| used[*k]).collect();
-        blocks.push(("amplitude".to_owned(), at(&steps[piece / 2]), steps));
+        blocks.push(HeldOut { feature: "amplitude".to_owned(), frequency: at(&steps[piece / 2]), steps });
     }
     blocks
-}
-
-/// Names of the sweeps of a step.
-fn sweeps<'a>(data: &'a Data, step: &'a Step) -> impl Iterator<Item = &'a str> {
-    step.seen.iter().flatten().map(|s| data.sweeps[s.sweep].0.as_str())
 }

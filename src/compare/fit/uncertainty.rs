@@ -1,0 +1,187 @@
+//! How well the points determine each parameter.
+
+use super::super::prediction::Kind;
+use super::problem::Problem;
+use super::settle::Least;
+use super::unknown::Unknown;
+use crate::campaign::Parameter;
+use crate::error::{Error, Result};
+use nalgebra::{DMatrix, DVector, SVD};
+use serde::Serialize;
+
+/// Normal deviate that is exceeded on both sides together in 5 % of cases (Abramowitz & Stegun, table 26.1).
+pub const NORMAL: f64 = 1.959_964;
+/// Relative standard uncertainty beyond which a parameter is not identifiable: twice or half its value would do. Between two bounds the same
+/// part of what is between them, for its interval of 95 %.
+const LOOSE: f64 = 0.5;
+/// Parameters of a larger correlation are known only together: 1/√(1 − r²) = 3 times better where one of them is known.
+const TIED: f64 = 0.95;
+/// Smallest singular value over the largest that a Jacobian by central differences can tell from 0, ε^(2/3).
+const RESOLVED: f64 = 4e-11;
+/// How near to its limit, in u, a parameter lies at it: far below what any point could tell.
+const AT_LIMIT: f64 = 1e-6;
+/// Step inwards for the slopes at a limit, as a part of u.
+const INWARDS: f64 = 1e-2;
+
+/// Why a parameter is not identifiable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Unidentified {
+    /// No point shows a motion with impacts, and the others do not depend on it.
+    NeedsImpacts,
+    /// The points do not tell it from the limit at which it lies.
+    AtLimit,
+    /// The points determine only a combination with others.
+    Combination,
+    /// Half or twice its value, or most values between its bounds, would do.
+    TooUncertain,
+    /// The whole answer is in doubt.
+    InDoubt,
+}
+
+/// A parameter at the end of where it may lie.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limit {
+    /// The bound itself.
+    pub value: f64,
+    /// Standard deviations by which the points would have it beyond.
+    pub pull: f64,
+}
+
+/// What the Jacobian at the least sum of squares says.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Uncertainty {
+    /// Covariance of the coordinates u; directions that are not determined have a large variance, not an infinite one.
+    pub covariance: DMatrix<f64>,
+    /// Relative standard uncertainty of each parameter.
+    pub relative: Vec<f64>,
+    /// Why a parameter is not identifiable; `None` for those that are.
+    pub unidentified: Vec<Option<Unidentified>>,
+    /// The limits at which parameters lie.
+    pub limits: Vec<Option<Limit>>,
+}
+
+impl Uncertainty {
+    /// Of an answer.
+    ///
+    /// The columns of ∂r/∂u are taken for relative changes of the parameters, ∂r/∂ln θ, so that units do not decide what is small. With
+    /// singular values s and right vectors v the variance of ln θᵢ is Σ vᵢ²/s².
+    ///
+    /// # Errors
+    /// If the singular values cannot be found.
+    pub fn new(least: &Least<'_>) -> Result<Uncertainty> {
+        let (problem, u) = (&least.problem, &least.minimum.parameters);
+        let setting = problem.setting(u);
+        let n = u.len();
+        let mut jacobian = least.minimum.jacobian.clone();
+        let sides: Vec<Option<f64>> = (0..n).map(|i| side(problem, u, i, &mut jacobian)).collect();
+        // d ln θ/du.
+        let rate = |(unknown, u): (&Unknown, &f64)| {
+            let rate = unknown.coordinate.slope(*u) / setting.get(unknown.parameter).abs();
+            if rate.is_finite() && rate > 0.0 { rate } else { f64::MIN_POSITIVE.sqrt() }
+        };
+        let rates: Vec<f64> = problem.unknowns.iter().zip(u).map(rate).collect();
+        let scaled = DMatrix::from_fn(jacobian.nrows().max(n), n, |row, i| {
+            if row < jacobian.nrows() { jacobian[(row, i)] / rates[i] } else { 0.0 }
+        });
+        let unfound = || Error::refused("the singular values of the fit were not found");
+        if scaled.iter().any(|v| !v.is_finite()) {
+            return Err(unfound());
+        }
+        // With an iteration limit, since the algorithm has no bound of its own.
+        let svd = SVD::try_new(scaled, false, true, f64::EPSILON, 10_000).ok_or_else(unfound)?;
+        let v = svd.v_t.ok_or_else(unfound)?;
+        let floor = (svd.singular_values.max() * RESOLVED).max(1e-12);
+        let s: Vec<f64> = svd.singular_values.iter().map(|s| s.max(floor)).collect();
+        let covariance = DMatrix::from_fn(n, n, |i, j| {
+            let sum: f64 = s.iter().enumerate().map(|(k, s)| v[(k, i)] * v[(k, j)] / (s * s)).sum();
+            sum / (rates[i] * rates[j])
+        });
+        // A step of Gauss and Newton over its standard deviation.
+        let step = -(&covariance * jacobian.tr_mul(&DVector::from_column_slice(&least.minimum.residuals)));
+        let limit = |i: usize| {
+            let (outwards, coordinate) = (sides[i]?, problem.unknowns[i].coordinate);
+            let bound = if outwards < 0.0 { coordinate.low } else { coordinate.high };
+            let value = if bound.is_finite() { bound } else { problem.unknowns[i].limits(&problem.base)[1] };
+            Some(Limit { value, pull: outwards * step[i] / covariance[(i, i)].sqrt() })
+        };
+        let mut found = Uncertainty {
+            relative: (0..n).map(|i| covariance[(i, i)].sqrt() * rates[i]).collect(),
+            limits: (0..n).map(limit).collect(),
+            unidentified: Vec::new(),
+            covariance,
+        };
+        found.unidentified = (0..n).map(|i| found.reason(problem, u, i)).collect();
+        Ok(found)
+    }
+
+    /// Why the points do not determine the parameter number `i`.
+    fn reason(&self, problem: &Problem<'_>, u: &[f64], i: usize) -> Option<Unidentified> {
+        let Unknown { parameter, coordinate, .. } = problem.unknowns[i];
+        let part = if coordinate.high.is_finite() {
+            let [low, high] = coordinate.interval(u[i], NORMAL * self.std(i));
+            (high - low) / (coordinate.high - coordinate.low)
+        } else {
+            self.relative[i]
+        };
+        if part <= LOOSE && self.limits[i].is_none() {
+            return None;
+        }
+        let of_impacts = matches!(
+            parameter,
+            Parameter::Restitution | Parameter::C2 | Parameter::K2 | Parameter::Gap | Parameter::M2
+        );
+        Some(if of_impacts && !problem.kinds.contains(&Some(Kind::Impacting)) {
+            Unidentified::NeedsImpacts
+        } else if self.limits[i].is_some() {
+            Unidentified::AtLimit
+        } else if (0..u.len()).any(|j| j != i && self.is_tied(i, j)) {
+            Unidentified::Combination
+        } else {
+            Unidentified::TooUncertain
+        })
+    }
+
+    /// Standard uncertainty of a coordinate.
+    pub fn std(&self, i: usize) -> f64 {
+        self.covariance[(i, i)].sqrt()
+    }
+
+    /// Correlation of two parameters.
+    pub fn correlation(&self, i: usize, j: usize) -> f64 {
+        self.covariance[(i, j)] / (self.covariance[(i, i)] * self.covariance[(j, j)]).sqrt()
+    }
+
+    /// Whether two parameters are known only together.
+    pub fn is_tied(&self, i: usize, j: usize) -> bool {
+        self.correlation(i, j).abs() > TIED
+    }
+
+    /// The parameter with the largest relative uncertainty.
+    pub fn worst(&self) -> usize {
+        (0..self.relative.len()).max_by(|a, b| self.relative[*a].total_cmp(&self.relative[*b])).unwrap_or(0)
+    }
+}
+
+/// The way outwards, 1 or −1, where the parameter number `i` lies at a limit. Beyond it nothing changes any more, so its column of the
+/// Jacobian becomes that from the limit inwards.
+fn side(problem: &Problem<'_>, u: &[f64], i: usize, jacobian: &mut DMatrix<f64>) -> Option<f64> {
+    let unknown = &problem.unknowns[i];
+    let [least, most] = unknown.limits(&problem.base).map(|v| unknown.coordinate.of(v));
+    let span = AT_LIMIT * (1.0 + u[i].abs());
+    let (limit, outwards) = if u[i] <= least + span {
+        (least, -1.0)
+    } else if u[i] >= most - span {
+        (most, 1.0)
+    } else {
+        return None;
+    };
+    let h = -outwards * INWARDS * limit.abs().max(AT_LIMIT);
+    let at = |v: f64| {
+        let mut u = u.to_vec();
+        u[i] = v;
+        DVector::from_vec(problem.at(&u))
+    };
+    jacobian.set_column(i, &((at(limit + h) - at(limit)) / h));
+    Some(outwards)
+}
