@@ -1,6 +1,7 @@
 //! Answers from records: every number an [`Estimate`].
 
 pub mod coloured;
+pub mod crossing;
 pub mod drill;
 pub mod excitation;
 pub mod exposure;
@@ -8,11 +9,12 @@ mod folded;
 pub mod impacts;
 pub mod jump;
 pub mod legacy;
-pub mod limit;
-pub mod line;
+mod limit;
+mod line;
 mod mean;
+mod median;
 pub mod modal;
-pub mod noise;
+mod noise;
 pub mod peaks;
 pub mod pulse;
 pub mod residuals;
@@ -20,11 +22,12 @@ pub mod resonance;
 pub mod response;
 pub mod restitution;
 pub mod sine;
+mod sinusoids;
 pub mod spectral;
 #[cfg(test)]
 pub(crate) mod synthetic;
 pub mod tones;
-pub mod top;
+mod top;
 pub mod waterfall;
 
 pub use vibro_record::Estimate;

@@ -91,7 +91,7 @@ fn lines(
         traces.doubts(),
     );
     if let Some(tones) = tones {
-        found.warnings.extend(tones.warnings);
+        found.findings.extend(tones.findings);
         found.tones = tones.tones;
     }
     found.left_out(options.integrate, fmin);

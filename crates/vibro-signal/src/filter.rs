@@ -212,10 +212,8 @@ impl Filter {
             .hint("filter a longer record, or with a lower order"));
         }
         if let Some(i) = values.iter().position(|v| !v.is_finite()) {
-            return Err(Error::refused(format!(
-                "sample {i} is missing: a filter would spread it over the rest"
-            ))
-            .hint("bridge the gap, or filter the parts between gaps"));
+            return Err(Error::refused(format!("sample {i} is missing: a filter would spread it"))
+                .hint("bridge the gap, or filter the parts between gaps"));
         }
         let (first, last) = (values[0], values[n - 1]);
         let mut out = Vec::with_capacity(n + 2 * pad);

@@ -197,7 +197,7 @@ fn blocks(data: &Data, responses: &[Response]) -> Vec<(String, f64, Vec<usize>)>
         let mine =
             |r: &&Response| sequence.iter().any(|i| sweeps(data, &data.steps[*i]).any(|name| name == r.name));
         for response in responses.iter().filter(mine) {
-            let named = response.resonances.iter().map(|r| (r.kind.clone(), r.frequency));
+            let named = response.resonances.iter().map(|r| (r.kind.name().to_owned(), r.frequency));
             let jumps = response.jumps.iter().map(|j| ("jump".to_owned(), j.frequency));
             for (feature, frequency) in named.chain(jumps) {
                 let away = |k: &usize| (at(&own[*k]) - frequency).abs();
