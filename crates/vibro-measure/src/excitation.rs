@@ -29,7 +29,7 @@ const ABOVE_FLOOR: f64 = 8.0;
 /// Excitation of every step, in the order of the sweep.
 ///
 /// The largest line of the force spectrum, interpolated below the line distance; 0 Hz, the line beside it and lines
-/// below `fmin` (Hz) are not looked at, so an offset of the force does no harm.
+/// below `fmin` (Hz) are skipped, so an offset of the force does no harm.
 ///
 /// # Errors
 /// If a force spectrum is zero, holds no line above its noise, or has its largest line at the end of the base band.

@@ -74,7 +74,7 @@ pub fn jumps(frequency: &[f64], amplitude: &[f64], std: &[f64], direction: Direc
     (0..n.saturating_sub(1))
         .filter(|&i| {
             // What the curve does on its own over this distance: the steepest of two steps on each side. Without a step on both sides,
-            // and where a sharp peak stands beside the step, a jump cannot be told from a flank.
+            // and where a sharp peak stands beside the step, a jump cannot be parted from a flank.
             let sides = [i.saturating_sub(2)..i, i + 1..(i + 3).min(n - 1)];
             let usual = sides.map(|side| {
                 side.filter(|k| width(*k) > 1e-5 * frequency[*k])

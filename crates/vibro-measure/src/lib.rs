@@ -1,5 +1,6 @@
 //! Answers from records: every number an [`Estimate`].
 
+mod apex;
 pub mod coloured;
 pub mod crossing;
 pub mod drill;
@@ -27,7 +28,6 @@ pub mod spectral;
 #[cfg(test)]
 pub(crate) mod synthetic;
 pub mod tones;
-mod top;
 pub mod waterfall;
 
 pub use vibro_record::Estimate;

@@ -1,9 +1,9 @@
 //! Resonances and antiresonances of a response curve.
 
+use super::apex::apex;
 use super::crossing::at;
 use super::jump::{Jump, SIGMA, differ, echo, known};
 use super::peaks::{Maximum, Vertex, local_maxima};
-use super::top::top;
 use serde::Serialize;
 use std::ops::RangeInclusive;
 use vibro_record::Direction;
@@ -127,7 +127,7 @@ impl Curve<'_> {
         low..=high
     }
 
-    /// Frequency, height and their uncertainties between the points around the highest, `i`; `None` where it cannot be told.
+    /// Frequency, height and their uncertainties between the points around the highest, `i`; `None` where the points do not determine it.
     fn interpolated(&self, values: &[f64], i: usize) -> Option<Vertex> {
         let range = self.flanks(values, i);
         let stretch = self.frequency.get(range.clone())?;
@@ -137,7 +137,7 @@ impl Curve<'_> {
         // Relative uncertainties are the same for a value and its inverse.
         let std: Vec<f64> =
             values.iter().zip(self.std).zip(self.amplitude).map(|((v, s), a)| v * s / a).collect();
-        top(self.frequency, values, &std, i, range)
+        apex(self.frequency, values, &std, i, range)
     }
 
     fn maximum(&self, i: usize) -> Resonance {

@@ -8,7 +8,7 @@ use super::limit::upper_limit;
 use super::line::{amplitude_at, interpolate, nearest};
 use super::resonance::{Resonance, resonances};
 use super::{Estimate, noise};
-use findings::{direction, hidden, repeated, wrong_window};
+use findings::{direction, hidden_by_lines, repeated, wrong_window};
 use serde::Serialize;
 use std::f64::consts::PI;
 use vibro_record::units::Quantity;
@@ -22,7 +22,7 @@ pub struct ResponseOptions {
     pub band: usize,
     /// Integrations in frequency from the stored quantity: 1 takes velocity to displacement. Default 0.
     pub integrate: i8,
-    /// Lowest frequency in Hz that is looked at. Default: the larger of two lines and a quarter of the lowest
+    /// Lowest frequency in Hz that is read. Default: the larger of two lines and a quarter of the lowest
     /// excitation frequency.
     pub fmin: Option<f64>,
 }
@@ -98,7 +98,7 @@ pub struct Response {
     pub quantity: &'static str,
     /// Unit of the amplitudes.
     pub unit: &'static str,
-    /// Cut-off in Hz: lines below were not looked at.
+    /// Cut-off in Hz: lines below were left out.
     pub fmin: f64,
     /// Steps, in the order in which they were taken.
     pub points: Vec<ResponsePoint>,
@@ -116,7 +116,7 @@ pub struct Response {
 
 /// The cut-off below which a spectrum that was divided by frequency is noise: the larger of two lines and a quarter of
 /// the lowest excitation frequency.
-pub fn default_cutoff(line_width: f64, excitations: &[Excitation]) -> f64 {
+pub(crate) fn default_cutoff(line_width: f64, excitations: &[Excitation]) -> f64 {
     let lowest = excitations.iter().map(|e| e.frequency).fold(f64::INFINITY, f64::min);
     (2.0 * line_width).max(if lowest.is_finite() { lowest / 4.0 } else { 0.0 })
 }
@@ -160,7 +160,7 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
     if faint > 0 {
         findings.push(Finding::caution("sweep-below-noise").count("n", faint));
     }
-    findings.extend(hidden(&frequency, &hiders));
+    findings.extend(hidden_by_lines(&frequency, &hiders));
     let below = amplitude.iter().filter(|a| a.is_nan()).count();
     if below > 0 {
         findings.push(Finding::caution("sweep-below-cutoff").count("n", below).number("fmin", fmin));

@@ -51,7 +51,7 @@ impl Segments {
 
 /// What a channel was seen to hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Range {
+pub(crate) struct Range {
     /// Smallest value.
     pub low: f64,
     /// Largest value.
@@ -59,7 +59,7 @@ pub struct Range {
 }
 
 /// Reads a file's channels and hands out as many whole segments at a time as fill a batch.
-pub struct Batches<'a> {
+pub(crate) struct Batches<'a> {
     traces: &'a mut Traces,
     segments: Segments,
     frames: usize,

@@ -62,7 +62,7 @@ impl Averages {
 
 impl Welch {
     /// Averages over all segments of all channels of `traces`; with `products` against the first of them, too. `progress`
-    /// is told how many samples of each channel have been read.
+    /// gets the number of samples of each channel that have been read.
     ///
     /// # Errors
     /// If the record is shorter than a segment, a sample is missing or a channel is constant, or the file cannot be read.

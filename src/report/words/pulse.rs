@@ -65,7 +65,6 @@ pub(super) const WORDS: &[(&str, &str)] = &[
         "pulse-other-model",
         "The record prefers the contact model {model} (AICc lower by {ahead}); ξ and frequency are those of spring and damper.",
     ),
-    ("pulse-models-alike", "The record does not distinguish the contact models (AICc within 2)."),
     ("pulse-two-instants", "Two instants cannot test the contact model: fit the whole pulse."),
     (
         "pulse-ratio-near-zero",

@@ -177,7 +177,7 @@ pub(super) fn rational(
         .setting("band"));
     }
     let f = &measured.frequency[part.clone()];
-    // Without phases nothing can be taken away.
+    // Without phases nothing can be subtracted.
     let others = if measured.magnitude_only { &[] } else { others };
     let taken = |f: f64| others.iter().map(|o| o.at(f, power)).sum::<Complex64>();
     let values: Vec<Complex64> =

@@ -5,10 +5,9 @@ use super::{Instrument, PulseFit, PulseOptions, PulseResult};
 use crate::residuals::Whiteness;
 use vibro_record::Finding;
 
-/// A difference of Akaike's criterion that leaves no support for the worse model, and one that leaves both (Burnham & Anderson,
-/// Model Selection and Multimodel Inference, 2002, section 2.6).
+/// A difference of Akaike's criterion that leaves no support for the worse model (Burnham & Anderson, Model Selection and Multimodel
+/// Inference, 2002, section 2.6).
 const NO_SUPPORT: f64 = 10.0;
-const ALIKE: f64 = 2.0;
 
 /// Half of the interval in which ξ lies where it has no uncertainty, as behind an unknown instrument.
 const UNKNOWN: f64 = 0.1;
@@ -61,8 +60,6 @@ pub(super) fn findings(
                 .name("model", best.model.name())
                 .number("ahead", own - best.aicc),
         );
-    } else if fits.iter().any(|f| f.model != main.model && f.aicc < own + ALIKE) {
-        found.push(Finding::caution("pulse-models-alike"));
     }
     found
 }

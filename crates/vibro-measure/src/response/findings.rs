@@ -48,7 +48,7 @@ pub fn repeated(sweep: &Sweep) -> Option<Finding> {
 }
 
 /// Where lines at the frequencies of `hiders` hide the responses at `excitation`, both in Hz.
-pub fn hidden(excitation: &[f64], hiders: &[Option<f64>]) -> Option<Finding> {
+pub fn hidden_by_lines(excitation: &[f64], hiders: &[Option<f64>]) -> Option<Finding> {
     let pairs = excitation.iter().zip(hiders).filter_map(|(at, hider)| Some((*at, (*hider)?)));
     let (responses, lines): (Vec<f64>, Vec<f64>) = pairs.unzip();
     let first = |all: &[f64]| all.iter().copied().take(NAMED).collect::<Vec<f64>>();
