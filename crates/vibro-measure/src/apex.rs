@@ -1,5 +1,6 @@
 //! The apex of a resonance between the points of a response curve.
 
+use super::bisection::border;
 use super::peaks::{Vertex, vertex};
 use std::ops::RangeInclusive;
 
@@ -127,19 +128,11 @@ fn extremum(points: &[Point]) -> Option<[f64; 2]> {
         c.iter().zip(&x).rev().fold((0.0, 0.0), |(p, slope), (c, x)| (p * (t - x) + c, slope * (t - x) + p))
     };
     let mut beside = points.iter().filter(|p| p.beside).map(|p| p.x);
-    let (mut low, mut high) = (beside.next()?, beside.next_back()?);
+    let (low, high) = (beside.next()?, beside.next_back()?);
     if !(at(low).1 < 0.0 && at(high).1 > 0.0) {
         return None;
     }
-    for _ in 0..60 {
-        let middle = f64::midpoint(low, high);
-        if at(middle).1 < 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    let place = f64::midpoint(low, high);
+    let place = border(low, high, |t| at(t).1 < 0.0);
     let inverse = at(place).0;
     (inverse > 0.0).then(|| [place, 1.0 / inverse.sqrt()])
 }

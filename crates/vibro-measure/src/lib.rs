@@ -1,6 +1,7 @@
 //! Answers from records: every number an [`Estimate`].
 
 mod apex;
+mod bisection;
 pub mod coloured;
 pub mod crossing;
 pub mod drill;

@@ -1,5 +1,6 @@
 //! A spectral line below the line distance: frequency and amplitude of a sine between lines.
 
+use super::bisection::border;
 use super::peaks::parabola;
 use vibro_record::Window;
 use vibro_signal::window::{line_shape, noise_correlation};
@@ -140,29 +141,15 @@ fn solve(lines: [f64; 3], window: Window) -> (f64, f64) {
         Window::Rectangular => -left / (middle + left),
         _ => {
             let target = (right - left) / (left + 2.0 * middle + right);
-            bisect(|delta| {
+            border(-LIMIT, LIMIT, |delta| {
                 let [l, m, r] = shapes(window, delta);
-                (r - l) / (l + 2.0 * m + r) - target
+                (r - l) / (l + 2.0 * m + r) < target
             })
         }
     };
     let delta = delta.clamp(-LIMIT, LIMIT);
     let weights = weights(window);
     (delta, dot(weights, lines) / dot(weights, shapes(window, delta)))
-}
-
-/// Root of a rising function within the limit, to rounding.
-fn bisect(f: impl Fn(f64) -> f64) -> f64 {
-    let (mut low, mut high) = (-LIMIT, LIMIT);
-    for _ in 0..60 {
-        let middle = f64::midpoint(low, high);
-        if f(middle) < 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    f64::midpoint(low, high)
 }
 
 /// First-order propagation of the noise of three correlated lines.

@@ -51,7 +51,7 @@ pub struct Harmonic {
     pub frequency: f64,
     /// Amplitude; no value where the frequency lies outside the lines or below the cut-off. In the noise the nearest line as it is.
     pub amplitude: Estimate,
-    /// 95 % upper limit of the true amplitude, where it does not stand out of the noise or leakage: see [`upper_limit`].
+    /// 95 % upper limit of the true amplitude, where it does not stand out of the noise or leakage (Read 2002).
     pub upper_limit: Option<f64>,
 }
 
@@ -73,7 +73,7 @@ pub struct ResponsePoint {
     /// Peak amplitude at the excitation. Where the response does not stand out of the noise, the line nearest to the excitation
     /// as it is: noise lifts it, so a faint amplitude is more likely too large than too small.
     pub amplitude: Estimate,
-    /// 95 % upper limit of the true amplitude, where it does not stand out of the noise or leakage: see [`upper_limit`].
+    /// 95 % upper limit of the true amplitude, where it does not stand out of the noise or leakage (Read 2002).
     pub upper_limit: Option<f64>,
     /// Orders 2 to 5.
     pub harmonics: Vec<Harmonic>,

@@ -1,6 +1,6 @@
 //! The frequency and amplitude of one sine.
 //!
-//! The least-squares fit of [`super::sinusoids`] reaches the Cramér–Rao bound in white noise,
+//! The least-squares fit of `sinusoids` reaches the Cramér–Rao bound in white noise,
 //! var(f) ≥ 12/((2πΔt)² η N(N²−1)), η = A²/(2σ²) (S. M. Kay, Fundamentals of Statistical Signal Processing: Estimation
 //! Theory, 1993, eq. 3.41), where the lines of a windowed spectrum lie a third above it.
 

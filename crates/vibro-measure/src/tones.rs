@@ -1,6 +1,6 @@
 //! Several sines of one record, fitted together.
 //!
-//! The strongest line of what is left gives the next sine; all that are known are then fitted together ([`super::sinusoids`]).
+//! The strongest line of what is left gives the next sine; all that are known are then fitted together (`sinusoids`).
 
 use super::Estimate;
 use super::sine::Lines;
