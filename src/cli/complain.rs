@@ -1,7 +1,8 @@
 //! Complaints go to standard error, in one form. A closed standard error is no reason to fail.
 
 use crate::error::Error;
-use crate::report::words::Voice;
+use crate::record::Finding;
+use crate::report::words::{Voice, sentences};
 use clap::error::{ContextKind, ErrorKind};
 use serde::Serialize;
 use std::io::Write;
@@ -106,6 +107,11 @@ pub fn warn(sentences: &[String]) {
     for sentence in sentences {
         line(&format!("note: {sentence}"));
     }
+}
+
+/// Prints findings for a person, doubts first; JSON carries them itself.
+pub fn found(findings: &[Finding]) {
+    warn(&sentences(findings, Voice::Command));
 }
 
 /// One line on standard error.

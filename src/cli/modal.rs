@@ -11,6 +11,7 @@ use std::fmt::Write as _;
 struct Answer {
     #[serde(flatten)]
     result: ModalResult,
+    warnings: Vec<String>,
     files: Vec<String>,
 }
 
@@ -43,9 +44,8 @@ pub fn run(typed: &args::Modal, json: bool) -> Result<()> {
         decay: meta.added_decay(),
         from_blows: meta.from_blows(),
     };
-    let mut result = modal(&measured, &options)?;
-    let doubts: Vec<String> = recording.doubts.iter().chain(&meta.doubts).cloned().collect();
-    result.warnings.splice(0..0, doubts);
+    let result = modal(&measured, &options)?;
+    let warnings: Vec<String> = recording.doubts.iter().chain(&meta.doubts).cloned().collect();
     let title = typed.file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let mut written = Vec::new();
     if let Some(folder) = &typed.out {
@@ -58,9 +58,10 @@ pub fn run(typed: &args::Modal, json: bool) -> Result<()> {
         written = output.written().to_vec();
     }
     if json {
-        return print::json(&Answer { result, files: written });
+        return print::json(&Answer { result, warnings, files: written });
     }
-    complain::warn(&result.warnings);
+    complain::warn(&warnings);
+    complain::found(&result.findings);
     let mut text = tables::modes([("", &result)]).text();
     let _ = write!(text, "\n{}", tables::modal_methods(&result).text());
     for file in written {

@@ -11,17 +11,19 @@ use std::fmt::Write as _;
 struct Answer {
     #[serde(flatten)]
     result: PulseResult,
+    warnings: Vec<String>,
     files: Vec<String>,
 }
 
 pub fn run(typed: &args::Pulse, json: bool) -> Result<()> {
     settings::above_zero("--mass", typed.mass)?;
+    let mut warnings = Vec::new();
     let (title, result) = match (&typed.file, typed.time_to_peak, typed.duration) {
         (Some(file), ..) => {
             let (trace, doubts) = settings::trace(file, &typed.reading, &typed.channel)?;
             let instrument = Instrument::stated(typed.low_pass.map(args::LowPass::corner), typed.order)?;
-            let mut result = pulse(&trace, &PulseOptions { instrument, mass: typed.mass })?;
-            result.warnings.splice(0..0, doubts);
+            let result = pulse(&trace, &PulseOptions { instrument, mass: typed.mass })?;
+            warnings = doubts;
             (file.file_stem().unwrap_or_default().to_string_lossy().into_owned(), result)
         }
         (None, Some(peak), Some(duration)) => {
@@ -45,9 +47,10 @@ pub fn run(typed: &args::Pulse, json: bool) -> Result<()> {
         written = output.written().to_vec();
     }
     if json {
-        return print::json(&Answer { result, files: written });
+        return print::json(&Answer { result, warnings, files: written });
     }
-    complain::warn(&result.warnings);
+    complain::warn(&warnings);
+    complain::found(&result.findings);
     let mut text = tables::pulse(&title, &result).text();
     if !result.fits.is_empty() {
         let _ = write!(text, "\n{}", tables::pulse_fits(&title, &result).text());

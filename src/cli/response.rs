@@ -61,6 +61,7 @@ pub fn run(typed: &args::Response, json: bool) -> Result<()> {
         return print::json(&Answer { response, files: written });
     }
     complain::warn(&response.warnings);
+    complain::found(&response.findings);
     let mut text = tables::curve(&response).text();
     let all = std::slice::from_ref(&response);
     for table in [tables::resonances(all), tables::jumps(all)] {

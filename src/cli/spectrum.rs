@@ -81,6 +81,7 @@ pub fn run(typed: &args::Spectrum, json: bool) -> Result<()> {
         return print::json(&answer);
     }
     complain::warn(&answer.result.warnings);
+    complain::found(&answer.result.findings);
     print::text(&answer.text())
 }
 

@@ -4,6 +4,7 @@ use super::{args, complain, print, settings};
 use crate::error::Result;
 use crate::measure::legacy;
 use crate::measure::waterfall::{Waterfall, waterfall};
+use crate::record::Finding;
 use crate::report::{Output, files, pictures};
 use ndarray::Array2;
 use serde::Serialize;
@@ -18,6 +19,7 @@ struct Answer<'a> {
     unit: &'a str,
     fmin: f64,
     warnings: &'a [String],
+    findings: &'a [Finding],
     files: Vec<String>,
 }
 
@@ -38,6 +40,7 @@ pub fn run(typed: &args::Waterfall, json: bool) -> Result<()> {
             unit: sweep.unit().symbol().to_owned(),
             fmin: 0.0,
             warnings: vec!["This is the matrix of the script sinesw, mistakes included.".to_owned()],
+            findings: Vec::new(),
         }
     } else {
         waterfall(&sweep, &settings::taking(&typed.taking, typed.sweep.fmin, sweep.unit().quantity()))?
@@ -61,10 +64,12 @@ pub fn run(typed: &args::Waterfall, json: bool) -> Result<()> {
             unit: &matrix.unit,
             fmin: matrix.fmin,
             warnings: &matrix.warnings,
+            findings: &matrix.findings,
             files,
         });
     }
     complain::warn(&matrix.warnings);
+    complain::found(&matrix.findings);
     let (points, lines) = matrix.magnitude.dim();
     let mut text = format!("{points} spectra of {lines} lines, {} in {}\n", matrix.quantity, matrix.unit);
     if typed.out.is_none() {

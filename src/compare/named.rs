@@ -3,7 +3,7 @@
 use crate::model::sweep::{Point, Swept};
 use serde::Serialize;
 use vibro_measure::jump::{Jump, jumps};
-use vibro_measure::resonance::{NamedCurve, Resonance, name_modes, resonances};
+use vibro_measure::resonance::{NamedCurve, Resonance, ResonanceKind, name_modes, resonances};
 use vibro_record::Direction;
 
 /// Something found on the curve of one mass.
@@ -41,7 +41,7 @@ pub fn named(swept: &Swept) -> (Vec<Named<Resonance>>, Vec<Named<Jump>>) {
     name_modes(&mut named);
     let mut all = (Vec::new(), Vec::new());
     for Found { mass, direction, resonances, jumps, .. } in curves {
-        let tops = resonances.into_iter().filter(|r| r.kind != "minimum");
+        let tops = resonances.into_iter().filter(|r| r.kind != ResonanceKind::Minimum);
         all.0.extend(tops.map(|found| Named { mass, direction, found }));
         all.1.extend(jumps.into_iter().map(|found| Named { mass, direction, found }));
     }
@@ -94,11 +94,11 @@ mod tests {
         let motion = Simulation::new(&Rig::thesis(), &Sine { force: 0.1, frequency: 3.0 }).unwrap();
         let swept = both(&plan, &motion, 0.1, &[Direction::Up]).unwrap();
         let (resonances, _) = named(&swept);
-        let highest = |kind: &str| {
+        let highest = |kind: ResonanceKind| {
             let of_kind = resonances.iter().filter(|r| r.mass == 1 && r.found.kind == kind);
             of_kind.max_by(|a, b| a.found.amplitude.total_cmp(&b.found.amplitude)).unwrap().found.frequency
         };
-        let [grazing, clapping] = ["grazing", "clapping"].map(highest);
+        let [grazing, clapping] = [ResonanceKind::Grazing, ResonanceKind::Clapping].map(highest);
         assert!((grazing - 5.58).abs() < 0.1 && (10.4..11.2).contains(&clapping), "{grazing} {clapping}");
     }
 }

@@ -207,6 +207,7 @@ mod tests {
             resonances: Vec::new(),
             jumps: Vec::new(),
             warnings: Vec::new(),
+            findings: Vec::new(),
             history: Vec::new(),
         }
     }

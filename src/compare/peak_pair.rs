@@ -3,7 +3,7 @@
 use super::course::{Followed, Swept};
 use crate::measure::Estimate;
 use crate::measure::peaks::{local_maxima, vertex};
-use crate::measure::resonance::Resonance;
+use crate::measure::resonance::{Resonance, ResonanceKind};
 use crate::record::Direction;
 use serde::Serialize;
 
@@ -16,8 +16,8 @@ pub struct PeakPair {
     pub mass: u8,
     /// Direction of the sweep.
     pub direction: Direction,
-    /// `grazing`, `clapping` or `resonance`.
-    pub kind: String,
+    /// What the measured one is.
+    pub kind: ResonanceKind,
     /// Measured frequency in Hz, with its uncertainty.
     pub measured_frequency: Estimate,
     /// Predicted frequency in Hz.
@@ -46,8 +46,7 @@ pub(super) fn peaks(sweep: &Swept<'_>, curve: &Followed) -> Vec<PeakPair> {
         .filter(|m| curve.impacting[m.at])
         .map(|m| top(curve, &closed, m.at))
         .collect();
-    let found =
-        response.resonances.iter().filter(|r| !["antiresonance", "minimum"].contains(&r.kind.as_str()));
+    let found = response.resonances.iter().filter(|r| r.kind.is_maximum());
     found
         .map(|r: &Resonance| {
             let ratio = |f: f64| (f / r.frequency).max(r.frequency / f);
@@ -65,7 +64,7 @@ pub(super) fn peaks(sweep: &Swept<'_>, curve: &Followed) -> Vec<PeakPair> {
                 sweep: response.name.clone(),
                 mass,
                 direction,
-                kind: r.kind.clone(),
+                kind: r.kind,
                 measured_frequency: Estimate::new(r.frequency, r.frequency_std, "Hz", 3, method),
                 predicted_frequency: near.map(|p| p.0),
                 frequency_difference: near.map(|p| r.frequency - p.0),

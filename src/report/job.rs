@@ -16,7 +16,7 @@ pub use pairing::Crossing;
 pub use pulse::NamedPulse;
 pub use spectral::SpectrumResult;
 
-use super::words::{self, Voice};
+use super::words::{self, Voice, sentences};
 use super::{Figure, Output, files, page, pictures, tables};
 use crate::campaign::Campaign;
 use crate::compare::{Fit, Overlay, overlay};
@@ -247,20 +247,21 @@ pub fn run(
 
 /// The warnings of all sweeps, once each, with the names of the sweeps that they hold for where these are not all.
 pub(crate) fn common(responses: &[Response]) -> Vec<String> {
-    let mut found: Vec<(&str, Vec<&str>)> = Vec::new();
+    let mut found: Vec<(String, Vec<&str>)> = Vec::new();
     for response in responses {
-        for sentence in &response.warnings {
+        let own = sentences(&response.findings, Voice::Campaign);
+        for sentence in response.warnings.iter().cloned().chain(own) {
             match found.iter_mut().find(|f| f.0 == sentence) {
                 Some(known) => known.1.push(&response.name),
                 None => found.push((sentence, vec![&response.name])),
             }
         }
     }
-    let said = |(sentence, names): (&str, Vec<&str>)| {
+    let said = |(sentence, names): (String, Vec<&str>)| {
         if responses.len() > 1 && names.len() < responses.len() {
             format!("{}: {sentence}", names.join("; "))
         } else {
-            sentence.to_owned()
+            sentence
         }
     };
     found.into_iter().map(said).collect()

@@ -2,6 +2,7 @@
 
 use super::job::{Crossing, Results};
 use super::{Drawing, Figure, Page, tables};
+use crate::measure::resonance::ResonanceKind;
 use crate::model::Rig;
 use crate::record::Step;
 use crate::units::notation::{shortest, significant};
@@ -44,7 +45,7 @@ pub fn page(results: &Results, figures: &[(String, Figure)], drawings: &[Drawing
 /// One sentence for each named resonance, and one for each direction in which both masses were measured.
 fn summary(results: &Results) -> Vec<String> {
     let mut sentences = Vec::new();
-    for kind in ["grazing", "clapping"] {
+    for kind in [ResonanceKind::Grazing, ResonanceKind::Clapping] {
         // Sweeps by the frequency as it is printed.
         let mut found: Vec<(String, Vec<&str>)> = Vec::new();
         for response in &results.responses {
@@ -59,7 +60,7 @@ fn summary(results: &Results) -> Vec<String> {
         if !found.is_empty() {
             let places: Vec<String> =
                 found.iter().map(|(f, sweeps)| format!("{f} ({})", sweeps.join("; "))).collect();
-            sentences.push(format!("The {kind} resonance lies at {}.", places.join(", ")));
+            sentences.push(format!("The {} resonance lies at {}.", kind.name(), places.join(", ")));
         }
     }
     let same = |a: &Crossing, b: &Crossing| (a.direction, a.force) == (b.direction, b.force);

@@ -105,7 +105,7 @@ pub fn resonances(responses: &[Response]) -> Table {
         responses.iter().flat_map(|sweep| sweep.resonances.iter().map(move |r| (sweep, r))),
         &[
             ("sweep", "", &|(sweep, _)| Cell::from(sweep.name.as_str())),
-            ("kind", "", &|(_, r)| Cell::from(r.kind.as_str())),
+            ("kind", "", &|(_, r)| Cell::from(r.kind.name())),
             ("frequency", "Hz", &|(_, r)| pair(r.frequency, r.frequency_std)),
             ("amplitude", unit, &|(_, r)| pair(r.amplitude, r.amplitude_std)),
             ("ends in a jump", "", &|(_, r)| Cell::from(if r.at_jump { "yes" } else { "no" })),
@@ -121,7 +121,7 @@ pub fn jumps(responses: &[Response]) -> Table {
         responses.iter().flat_map(|sweep| sweep.jumps.iter().map(move |j| (sweep, j))),
         &[
             ("sweep", "", &|(sweep, _)| Cell::from(sweep.name.as_str())),
-            ("change", "", &|(_, j)| Cell::from(j.change)),
+            ("change", "", &|(_, j)| Cell::from(j.change.name())),
             ("at", "Hz", &|(_, j)| pair(j.frequency, Some(j.frequency_std))),
             ("before", unit, &|(_, j)| pair(j.amplitude_before, j.amplitude_before_std)),
             ("after", unit, &|(_, j)| pair(j.amplitude_after, j.amplitude_after_std)),
@@ -167,7 +167,7 @@ pub fn peaks(overlay: &Overlay) -> Table {
         &overlay.peaks,
         &[
             ("sweep", "", &|p| Cell::from(p.sweep.as_str())),
-            ("kind", "", &|p| Cell::from(p.kind.as_str())),
+            ("kind", "", &|p| Cell::from(p.kind.name())),
             ("measured", "Hz", &|p| Cell::from(&p.measured_frequency)),
             ("predicted", "Hz", &|p| Cell::from(p.predicted_frequency)),
             ("off by", "Hz", &|p| difference(p.frequency_difference, p.measured_frequency.std)),

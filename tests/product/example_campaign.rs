@@ -79,7 +79,7 @@ fn the_rig_is_found_again_in_its_spectra() {
     for response in &found {
         let mass = usize::from(response.mass.unwrap());
         let direction = response.direction.unwrap().name();
-        let resonance = response.resonances.iter().find(|r| r.kind == "grazing").unwrap();
+        let resonance = response.resonances.iter().find(|r| r.kind.name() == "grazing").unwrap();
         let (frequency, height) = grazing[mass - 1];
         let off = [
             (resonance.frequency - frequency) / resonance.frequency_std.unwrap(),
@@ -102,12 +102,8 @@ fn the_rig_is_found_again_in_its_spectra() {
                 assert!(true_amplitude <= limit, "{} {}", response.name, point.excitation);
             }
         }
-        let minima: Vec<&str> = response
-            .resonances
-            .iter()
-            .map(|r| r.kind.as_str())
-            .filter(|k| k.starts_with(['a', 'm']))
-            .collect();
+        let minima: Vec<&str> =
+            response.resonances.iter().map(|r| r.kind.name()).filter(|k| k.starts_with(['a', 'm'])).collect();
         let expected = match (mass, direction) {
             (1, "up") => vec!["antiresonance"],
             (2, "up") => vec!["minimum"],

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
 use vibroimpact::campaign::Campaign;
+use vibroimpact::measure::modal::ModalMethod;
 use vibroimpact::read::Reader;
 use vibroimpact::report::Output;
 use vibroimpact::report::job::{JobOptions, Results, run};
@@ -37,11 +38,14 @@ fn resonances_of_a_hammer_test() {
         results(&format!("name = \"hammer test\"\n[[frf]]\nfile = {:?}\n", file.display().to_string()));
     // Lines are 0.5 Hz apart and the stated figures are lines: interpolated peaks lie within one line.
     for f in [62.0, 81.5, 96.5, 125.0, 140.5, 175.0] {
-        assert!(near(&found, 0, f, 0.5), "{f}: {:?}", found.frf[0].modal.warnings);
+        assert!(near(&found, 0, f, 0.5), "{f}: {:?}", found.frf[0].modal.findings);
     }
     // Beside the peak at 41 Hz lies a dip that no single mode explains: it is named, and no mode is made of it.
-    let unexplained =
-        found.warnings.iter().any(|w| w.contains("The peak at 41 Hz is not supported as a mode"));
+    let unexplained = found.frf[0]
+        .modal
+        .findings
+        .iter()
+        .any(|f| f.code == "modal-peak-unsupported" && f.get("frequency") == Some(41.0));
     assert!(unexplained && !near(&found, 0, 41.0, 3.0), "{:?}", found.warnings);
     // Label and unit of that file contradict each other, and the report says so.
     assert!(found.warnings.iter().any(|w| w.contains("eceptance")), "{:?}", found.warnings);
@@ -80,9 +84,9 @@ fn three_methods_agree_on_measured_modes() {
             mode.by
                 .iter()
                 .find(|b| b.method == method)
-                .filter(|b| b.frequency.value.is_finite() && b.note.is_empty())
+                .filter(|b| b.frequency.value.is_finite() && b.note.is_none())
         };
-        for method in ["circle fit", "half power"] {
+        for method in [ModalMethod::CircleFit, ModalMethod::HalfPower] {
             let Some(by) = of(method) else { continue };
             // The peak at 81.5 Hz has no uncertainty, since two modes explain it better; the methods agree on its one.
             let std = mode.zeta.std.unwrap_or(0.0);
@@ -90,7 +94,7 @@ fn three_methods_agree_on_measured_modes() {
                 continue;
             }
             println!(
-                "{method} {:.3} {:.3}, ζ {:.5} {:.5} ± {std:.5}",
+                "{method:?} {:.3} {:.3}, ζ {:.5} {:.5} ± {std:.5}",
                 mode.frequency.value,
                 by.frequency.value,
                 mode.zeta.value,

@@ -1,7 +1,7 @@
 //! The excitation frequency of each step of a sweep, from its force spectrum (the job of the thesis' sineswpf).
 
 use super::folded::folded;
-use super::line::{SubLine, beside, interpolate};
+use super::line::{SubLine, deviation, interpolate};
 use super::noise;
 use serde::Serialize;
 use vibro_record::units::notation::quantity;
@@ -29,7 +29,7 @@ const ABOVE_FLOOR: f64 = 8.0;
 /// Excitation of every step, in the order of the sweep.
 ///
 /// The largest line of the force spectrum, interpolated below the line distance; 0 Hz, the line beside it and lines
-/// below `fmin` (Hz) are not looked at, so an offset of the force does no harm.
+/// below `fmin` (Hz) are skipped, so an offset of the force does no harm.
 ///
 /// # Errors
 /// If a force spectrum is zero, holds no line above its noise, or has its largest line at the end of the base band.
@@ -39,9 +39,10 @@ pub fn excitations(sweep: &Sweep, fmin: f64) -> Result<Vec<Excitation>> {
     let last = sweep.axis.at(sweep.axis.len().saturating_sub(1));
     if fmin >= last {
         return Err(Error::usage(
-            format!("the cut-off of {fmin} Hz lies above the last line, {last} Hz"),
-            "a lower one",
-        ));
+            format!("a cut-off of {fmin} Hz, above the last line at {last} Hz"),
+            "a cut-off below the last line",
+        )
+        .setting("fmin"));
     }
     sweep.points.iter().map(|point| one(point, sweep.axis.start(), df, fmin, last)).collect()
 }
@@ -62,9 +63,9 @@ fn one(point: &SweepPoint, start: f64, df: f64, fmin: f64, last: f64) -> Result<
     let path = point.force_path.clone().unwrap_or_default();
     let peak = largest(&point.force, point.response.window, ((fmin - start) / df).ceil().max(0.0) as usize)
         .map_err(|why| {
-            Error::input(Place::file(path), why, "one line that stands out: the excitation")
-                .hint("check that this is the force channel and that the shaker ran; take the point out of the list if not")
-        })?;
+        Error::input(Place::file(path), why, "one line above the noise: the excitation")
+            .hint("check the force channel and that the shaker ran; else take the point out of the list")
+    })?;
     Ok(Excitation {
         file: point.name(),
         frequency: start + peak.position * df,
@@ -92,14 +93,13 @@ fn largest(force: &[f64], window: Option<Window>, first: usize) -> std::result::
     // The lines of an offset end with its lobe, where nobody has cut off what is larger.
     if !cut && force[first] > force[k] {
         return Err(format!(
-            "what lies below line {first}, where a sine is not told from an offset, reaches higher there than any line above"
+            "the lines below line {first}, where a sine cannot be parted from an offset, are higher than any above"
         ));
     }
     if k + 2 >= n {
         let which = if k + 1 == n { "last one" } else { "last but one" };
         return Err(format!(
-            "the largest line of the force is the {which}: the excitation may lie above the base band, or so near to half the sampling rate that \
-             its image moves it"
+            "the largest line of the force is the {which}: the excitation may lie above the base band, or its image moves it"
         ));
     }
     let floor = noise::around(force, k, window);
@@ -107,14 +107,14 @@ fn largest(force: &[f64], window: Option<Window>, first: usize) -> std::result::
         && force[k] < ABOVE_FLOOR * floor
     {
         return Err(format!(
-            "no line of the force stands above its noise (largest {})",
+            "no line of the force stands out of its noise (largest {})",
             quantity(force[k], "N", 3)
         ));
     }
     let found = interpolate(force, k, window, floor)
         .ok_or_else(|| "the lines beside the largest are missing".to_owned())?;
     let (Some(window), Some(floor)) = (window, floor) else { return Ok(found) };
-    let off = beside(force, k, window).filter(|off| *off > BY_NOISE * floor).unwrap_or(0.0);
+    let off = deviation(force, k, 2, window).filter(|off| *off > BY_NOISE * floor).unwrap_or(0.0);
     let hidden = folded(force, found.position, window, floor);
     Ok(if off + hidden > 0.0 { bent(found, off + hidden) } else { found })
 }

@@ -22,10 +22,30 @@ pub struct Jump {
     pub amplitude_after: f64,
     /// Its standard uncertainty.
     pub amplitude_after_std: Option<f64>,
-    /// `rise` or `drop`.
-    pub change: &'static str,
+    /// Whether the amplitude rises.
+    pub change: Change,
     /// Direction of the sweep.
     pub direction: Direction,
+}
+
+/// Which way an amplitude jumps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Change {
+    /// It rises.
+    Rise,
+    /// It drops.
+    Drop,
+}
+
+impl Change {
+    /// Its name, as in JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            Change::Rise => "rise",
+            Change::Drop => "drop",
+        }
+    }
 }
 
 /// A jump changes the amplitude by at least this factor …
@@ -54,7 +74,7 @@ pub fn jumps(frequency: &[f64], amplitude: &[f64], std: &[f64], direction: Direc
     (0..n.saturating_sub(1))
         .filter(|&i| {
             // What the curve does on its own over this distance: the steepest of two steps on each side. Without a step on both sides,
-            // and where a sharp peak stands beside the step, a jump cannot be told from a flank.
+            // and where a sharp peak stands beside the step, a jump cannot be parted from a flank.
             let sides = [i.saturating_sub(2)..i, i + 1..(i + 3).min(n - 1)];
             let usual = sides.map(|side| {
                 side.filter(|k| width(*k) > 1e-5 * frequency[*k])
@@ -82,7 +102,7 @@ pub(super) fn jump([before, after]: [(f64, f64, f64); 2], direction: Direction) 
         amplitude_before_std: known(before.2),
         amplitude_after: after.1,
         amplitude_after_std: known(after.2),
-        change: if after.1 > before.1 { "rise" } else { "drop" },
+        change: if after.1 > before.1 { Change::Rise } else { Change::Drop },
         direction,
     }
 }

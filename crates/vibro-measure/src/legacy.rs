@@ -30,7 +30,7 @@ pub fn excitation(sweep: &Sweep) -> Result<Vec<f64>> {
                     format!("lines {a} and {b} of the force are equally large: sineswpf stops here"),
                     "one largest line",
                 )
-                .hint("leave out --legacy: the frequency between the two lines is found then")),
+                .hint("without `legacy` the frequency between the two lines is found")),
                 _ => Err(Error::input(place(), "no force spectrum", "one a point")),
             }
         })
@@ -113,7 +113,7 @@ pub fn contact_times(trace: &Trace) -> Result<ContactTimes> {
             "timeav stops at a file with a header (\"{}\"): it finds no number in the first line",
             format!("{key} {value}").trim()
         ))
-        .hint("leave out --legacy: header lines are passed over then"));
+        .hint("without `legacy` header lines are skipped"));
     }
     let rate = super::impacts::rate_of(trace)?;
     let s = &trace.values;

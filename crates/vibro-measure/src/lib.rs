@@ -1,6 +1,9 @@
 //! Answers from records: every number an [`Estimate`].
 
+mod apex;
+mod bisection;
 pub mod coloured;
+pub mod crossing;
 pub mod drill;
 pub mod excitation;
 pub mod exposure;
@@ -8,11 +11,12 @@ mod folded;
 pub mod impacts;
 pub mod jump;
 pub mod legacy;
-pub mod limit;
-pub mod line;
+mod limit;
+mod line;
 mod mean;
+mod median;
 pub mod modal;
-pub mod noise;
+mod noise;
 pub mod peaks;
 pub mod pulse;
 pub mod residuals;
@@ -20,11 +24,11 @@ pub mod resonance;
 pub mod response;
 pub mod restitution;
 pub mod sine;
+mod sinusoids;
 pub mod spectral;
 #[cfg(test)]
 pub(crate) mod synthetic;
 pub mod tones;
-pub mod top;
 pub mod waterfall;
 
 pub use vibro_record::Estimate;

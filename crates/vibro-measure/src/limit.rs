@@ -1,5 +1,7 @@
 //! An upper limit for a sine that noise hides.
 
+use super::bisection::border;
+
 /// Chance that the true amplitude lies above the limit, at most.
 const MISSED: f64 = 0.05;
 
@@ -11,7 +13,8 @@ const MISSED: f64 = 0.05;
 /// all cases.
 ///
 /// All cases are faint and strong readings together. Where only faint readings are given a limit, no more than 5 % of all
-/// readings lie above theirs; but a strong sine that noise made faint lies above its limit more often than that. `None` where one of the two is not a number or there is no noise.
+/// readings lie above theirs; but a strong sine that noise made faint lies above its limit more often than that. `None` where one of
+/// the two is not a number or there is no noise.
 pub fn upper_limit(magnitude: f64, noise: f64) -> Option<f64> {
     let m = magnitude / noise;
     // Far above the noise there is nothing to limit, and the series below would be long.
@@ -22,16 +25,7 @@ pub fn upper_limit(magnitude: f64, noise: f64) -> Option<f64> {
     let m = m.max(1e-3);
     let wanted = MISSED * below(m, 0.0);
     // Ten standard deviations above the magnitude nothing is left.
-    let (mut low, mut high) = (0.0, m + 10.0);
-    for _ in 0..60 {
-        let middle = f64::midpoint(low, high);
-        if below(m, middle) > wanted {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    Some(noise * f64::midpoint(low, high))
+    Some(noise * border(0.0, m + 10.0, |height| below(m, height) > wanted))
 }
 
 /// P(M ≤ m) of a Rice distributed magnitude of height ν in noise of one unit a component: a sum of gamma distributions

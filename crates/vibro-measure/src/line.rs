@@ -1,5 +1,7 @@
 //! A spectral line below the line distance: frequency and amplitude of a sine between lines.
 
+use super::bisection::border;
+use super::peaks::parabola;
 use vibro_record::Window;
 use vibro_signal::window::{line_shape, noise_correlation};
 
@@ -41,7 +43,7 @@ pub fn interpolate(
         return None;
     }
     let Some(window) = window else {
-        let (delta, amplitude) = log_parabola(left, middle, right);
+        let (delta, amplitude) = log_parabola(lines);
         return Some(SubLine {
             position: k as f64 + delta,
             position_std: None,
@@ -61,30 +63,18 @@ pub fn interpolate(
     Some(SubLine { position: k as f64 + delta, position_std, amplitude, amplitude_std })
 }
 
-/// How far the three lines are from the shape of one sine under `window`, in parts of the largest: 0 for a clean one. `None` as
-/// in [`interpolate`].
-pub fn misfit(magnitudes: &[f64], k: usize, window: Window) -> Option<f64> {
-    let lines: [f64; 3] = magnitudes.get(k.checked_sub(1)?..=k + 1)?.try_into().ok()?;
-    if !lines.iter().all(|m| m.is_finite()) || lines[1] <= 0.0 {
-        return None;
-    }
-    let (delta, amplitude) = solve(lines, window);
-    let off = lines.iter().zip(shapes(window, delta)).map(|(m, w)| (m - amplitude * w).abs());
-    Some(off.fold(0.0, f64::max) / lines[1])
-}
-
-/// The largest deviation of the lines within two of line `k` from the shape of the sine that the three in the middle show: what noise, another sine
-/// near by or the sine's own image at the ends of the band add. `None` as in [`interpolate`].
-pub fn beside(magnitudes: &[f64], k: usize, window: Window) -> Option<f64> {
+/// The largest deviation of the lines within `reach` of line `k` from the shape of the sine that the three in the middle show: what
+/// noise, another sine near by, the sine's own image at the ends of the band or a wrong window add. `None` as in [`interpolate`].
+pub fn deviation(magnitudes: &[f64], k: usize, reach: usize, window: Window) -> Option<f64> {
     let lines: [f64; 3] = magnitudes.get(k.checked_sub(1)?..=k + 1)?.try_into().ok()?;
     let (delta, amplitude) = solve(lines, window);
-    let near = k.saturating_sub(2)..(k + 3).min(magnitudes.len());
     let off = |i: usize| {
         let shape = line_shape(window, i as f64 - k as f64 - delta).abs();
         (magnitudes[i] - amplitude * shape).abs()
     };
+    let near = k.saturating_sub(reach)..(k + reach + 1).min(magnitudes.len());
     let largest = near.map(off).fold(0.0, f64::max);
-    (lines[1] > 0.0 && largest.is_finite()).then_some(largest)
+    (lines[1] > 0.0 && lines.iter().all(|m| m.is_finite()) && largest.is_finite()).then_some(largest)
 }
 
 /// Amplitude of a sine at a known `position` in lines, with its standard uncertainty: the three nearest lines against
@@ -151,29 +141,15 @@ fn solve(lines: [f64; 3], window: Window) -> (f64, f64) {
         Window::Rectangular => -left / (middle + left),
         _ => {
             let target = (right - left) / (left + 2.0 * middle + right);
-            bisect(|delta| {
+            border(-LIMIT, LIMIT, |delta| {
                 let [l, m, r] = shapes(window, delta);
-                (r - l) / (l + 2.0 * m + r) - target
+                (r - l) / (l + 2.0 * m + r) < target
             })
         }
     };
     let delta = delta.clamp(-LIMIT, LIMIT);
     let weights = weights(window);
     (delta, dot(weights, lines) / dot(weights, shapes(window, delta)))
-}
-
-/// Root of a rising function within the limit, to rounding.
-fn bisect(f: impl Fn(f64) -> f64) -> f64 {
-    let (mut low, mut high) = (-LIMIT, LIMIT);
-    for _ in 0..60 {
-        let middle = f64::midpoint(low, high);
-        if f(middle) < 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    f64::midpoint(low, high)
 }
 
 /// First-order propagation of the noise of three correlated lines.
@@ -195,17 +171,10 @@ fn propagate(lines: [f64; 3], window: Window, noise: f64) -> (Option<f64>, Optio
     (position, amplitude)
 }
 
-fn log_parabola(left: f64, middle: f64, right: f64) -> (f64, f64) {
-    if left <= 0.0 || right <= 0.0 {
-        return (0.0, middle);
-    }
-    let (l, m, r) = (left.ln(), middle.ln(), right.ln());
-    let curvature = l - 2.0 * m + r;
-    if curvature >= 0.0 {
-        return (0.0, middle);
-    }
-    let delta = (0.5 * (l - r) / curvature).clamp(-0.5, 0.5);
-    (delta, (m - 0.25 * (l - r) * delta).exp())
+/// Vertex of the parabola through the logarithms of three lines: its distance from the middle one, and its height.
+fn log_parabola(lines: [f64; 3]) -> (f64, f64) {
+    let vertex = parabola([-1.0, 0.0, 1.0], lines.map(f64::ln)).filter(|v| v.1.is_finite());
+    vertex.map_or((0.0, lines[1]), |(delta, height)| (delta.clamp(-0.5, 0.5), height.exp()))
 }
 
 #[cfg(test)]
@@ -243,9 +212,9 @@ mod tests {
     fn the_wrong_window_does_not_fit() {
         for truth in [30.0, 30.2, 30.45] {
             let lines = clean(Window::Hann, truth, 1.0);
-            assert!(misfit(&lines, 30, Window::Hann).unwrap() < 1e-12);
+            assert!(deviation(&lines, 30, 1, Window::Hann).unwrap() < 1e-12 * lines[30]);
             for window in [Window::Rectangular, Window::FlatTop, Window::BlackmanHarris] {
-                assert!(misfit(&lines, 30, window).unwrap() > 0.02, "{window:?} {truth}");
+                assert!(deviation(&lines, 30, 1, window).unwrap() > 0.02 * lines[30], "{window:?} {truth}");
             }
         }
     }

@@ -5,136 +5,134 @@
 //! Beside it stand the largest line, the half-power bandwidth and the circle fit, to be compared.
 
 mod bands;
-mod choice;
-mod graphic;
-mod hidden;
+mod classical;
 mod pole;
 mod rational;
+mod report;
 mod response;
 mod result;
+mod selection;
+mod unresolved;
 
-pub use graphic::Circle;
+pub use classical::Circle;
 pub use pole::Pole;
 pub use response::Measured;
-pub use result::{ByMethod, ModalOptions, ModalResult, Mode, ModePicture};
+pub use result::{ByMethod, ModalMethod, ModalOptions, ModalResult, Mode, ModePicture};
 
-use bands::groups;
-use choice::{chosen, together};
+use bands::{Group, groups};
 use rational::{Rational, rational};
-use vibro_record::{Error, FrfKind, Result};
+use report::Report;
+use selection::{chosen, together};
+use vibro_record::{Error, Finding, FrfKind, Result};
 
 /// Finds the modes of a frequency response function.
 ///
-/// Each peak that stands a factor of two above its valleys is a candidate; peaks too near each other to be told apart are fitted
-/// together, and modes of other bands are taken away before the last fit of a band. In a band that is given, the modes that were so
+/// Each peak that stands a factor of two above its valleys is a candidate; peaks too near each other to be parted are fitted
+/// together, and modes of other bands are subtracted before the last fit of a band. In a band that is given, the modes that were so
 /// found are then fitted together, to all its lines.
 ///
 /// # Errors
 /// If the band is not one, holds no peak or fewer lines than the parameters of a mode, or no line can be used.
 pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult> {
-    let mut warnings = Vec::new();
+    check(options)?;
+    let mut findings = Vec::new();
+    if let Some(decay) = options.decay {
+        findings.push(Finding::note("modal-window-decay").number("decay", decay));
+    }
+    let lines = measured.clone().usable(options.least_coherence, &mut findings)?;
+    if lines.kind == FrfKind::Other {
+        findings.push(Finding::caution("modal-unit-unknown"));
+    }
+    if lines.magnitude_only {
+        findings.push(Finding::doubt("modal-magnitudes-only"));
+    }
+    let mut groups = groups(&lines, options.band)?;
+    let mut unsupported = Vec::new();
+    let mut fits: Vec<Result<Rational>> =
+        groups.iter_mut().map(|group| chosen(&lines, group, &mut unsupported)).collect();
+    refine(&lines, &groups, &mut fits);
+    if let Some(band) = options.band {
+        (groups, fits) = together(&lines, band, groups, fits, &mut unsupported, &mut findings)?;
+    }
+    let mut report = Report { measured: &lines, options, modes: Vec::new(), findings, reversed: 0 };
+    for (at, (group, fit)) in groups.iter().zip(&fits).enumerate() {
+        let others = poles_beside(&fits, at);
+        match (fit, group.peaks.first()) {
+            (Ok(fit), _) => report.add(group, fit, &others),
+            (Err(_), Some(peak)) => report.findings.push(
+                Finding::caution("modal-peak-not-fitted").number("frequency", lines.frequency[peak.at]),
+            ),
+            (Err(_), None) => {}
+        }
+    }
+    let Report { mut modes, mut findings, reversed, .. } = report;
+    if !unsupported.is_empty() {
+        unsupported.sort_by(f64::total_cmp);
+        let n = unsupported.len();
+        unsupported.truncate(NAMED);
+        findings.push(Finding::caution("modal-peaks-of-noise").count("n", n).numbers("lines", unsupported));
+    }
+    let against = 2 * reversed > groups.iter().map(|g| g.peaks.len()).sum();
+    if modes.is_empty() {
+        let refused = Error::refused("no peak of the function is supported as a mode");
+        return Err(if against {
+            refused.hint("most phases rise through the peak: check the sign of the phase, and that response and force are not exchanged")
+        } else {
+            refused.hint("choose a band around one peak").setting("band")
+        });
+    }
+    if against {
+        findings.push(Finding::doubt("modal-phase-reversed"));
+    }
+    modes.sort_by(|a, b| a.frequency.value.total_cmp(&b.frequency.value));
+    Ok(ModalResult { modes, findings })
+}
+
+/// Most lines that a finding names.
+const NAMED: usize = 8;
+
+fn check(options: &ModalOptions) -> Result<()> {
     if let Some(mass) = options.mass.filter(|m| !(m.is_finite() && *m > 0.0)) {
         return Err(Error::usage(format!("a mass of {mass} kg"), "a finite mass above 0"));
     }
-    if let Some(decay) = options.decay {
-        if !(decay.is_finite() && decay > 0.0) {
-            return Err(Error::usage(format!("an added decay of {decay} 1/s"), "a finite decay above 0"));
-        }
-        warnings.push(format!(
-            "An exponential window added a decay of {decay:.4} 1/s, which is taken off: ζ of a mode at f Hz is smaller by {:.4}/f than the peak shows.",
-            decay / std::f64::consts::TAU
-        ));
+    if let Some(decay) = options.decay.filter(|d| !(d.is_finite() && *d > 0.0)) {
+        return Err(Error::usage(format!("an added decay of {decay} 1/s"), "a finite decay above 0"));
     }
     let least = options.least_coherence;
     if !(0.0..1.0).contains(&least) {
         return Err(Error::usage(format!("a least coherence of {least}"), "a number from 0 to below 1"));
     }
-    let lines = measured.clone().usable(least, &mut warnings)?;
-    warnings.extend(unknown(&lines).map(str::to_owned));
-    let mut groups = groups(&lines, options.band)?;
-    let mut unsupported = Vec::new();
-    let mut fits: Vec<Result<Rational>> =
-        groups.iter_mut().map(|group| chosen(&lines, group, &mut unsupported)).collect();
-    for _ in 0..2 {
-        for at in 0..groups.len() {
-            let others: Vec<Pole> = fits
-                .iter()
-                .enumerate()
-                .filter(|(other, _)| *other != at)
-                .filter_map(|(_, fit)| fit.as_ref().ok())
-                .flat_map(|fit| fit.modes.iter().copied())
-                .collect();
-            if others.is_empty() {
-                continue;
-            }
-            if let Ok(fit) = &fits[at] {
-                let starts: Vec<(f64, f64)> = fit.modes.iter().map(|m| (m.frequency, m.zeta)).collect();
-                if starts.iter().all(|s| s.0 > 0.0 && s.1 > 0.0)
-                    && let Ok(better) = rational(&lines, groups[at].lines.clone(), &starts, &others)
-                {
-                    fits[at] = Ok(better);
-                }
-            }
-        }
-    }
-    if let Some(band) = options.band {
-        (groups, fits) = together(&lines, band, groups, fits, &mut unsupported, &mut warnings)?;
-    }
-    let mut modes = Vec::new();
-    let mut reversed = 0;
-    let poles: Vec<Vec<Pole>> =
-        fits.iter().map(|f| f.as_ref().map_or_else(|_| Vec::new(), |f| f.modes.clone())).collect();
-    for (at, (group, fit)) in groups.iter().zip(fits).enumerate() {
-        match fit {
-            Ok(fit) => {
-                let others = poles.iter().enumerate().filter(|(other, _)| *other != at);
-                let others: Vec<Pole> = others.flat_map(|(_, poles)| poles).copied().collect();
-                reversed += result::report(&lines, group, &fit, &others, options, &mut modes, &mut warnings);
-            }
-            Err(error) => warnings.push(format!(
-                "The peak at {} Hz is not fitted: {error}.",
-                group.peaks.first().map_or_else(String::new, |p| response::hertz(lines.frequency[p.at]))
-            )),
-        }
-    }
-    if !unsupported.is_empty() {
-        unsupported.sort_by(f64::total_cmp);
-        let named: Vec<String> = unsupported.iter().take(8).map(|f| response::hertz(*f)).collect();
-        let more = if unsupported.len() > 8 { ", …" } else { "" };
-        warnings.push(format!(
-            "{} further peaks of the magnitude are not needed to explain the lines around them, and are taken for noise: {}{more} Hz.",
-            unsupported.len(),
-            named.join(", ")
-        ));
-    }
-    if 2 * reversed > groups.iter().map(|g| g.peaks.len()).sum() {
-        warnings.push(
-            "Most peaks have a phase that rises through the resonance: the sign of the phase is reversed (e^{−iωt}), or response and force are exchanged."
-                .to_owned(),
-        );
-    }
-    if modes.is_empty() {
-        return Err(Error::refused(format!("no peak is supported as a mode. {}", warnings.join(" "))));
-    }
-    modes.sort_by(|a, b| a.frequency.value.total_cmp(&b.frequency.value));
-    Ok(ModalResult { modes, warnings })
+    Ok(())
 }
 
-/// What is not known of the lines, and what follows.
-fn unknown(lines: &Measured) -> impl Iterator<Item = &'static str> {
-    let unit = (lines.kind == FrfKind::Other).then_some(
-        "The unit is not that of a response over a force: the function is fitted as a receptance, and the modal constants are in its unit times (rad/s)².",
-    );
-    let phase = lines.magnitude_only.then_some(
-        "Only magnitudes are known: modes are fitted to |H| with a constant residual term, and have no uncertainty, since what other modes and residual terms add at unknown phases is not seen in what the fit leaves. A circle fit needs phases and is not made; modal constants have no sign.",
-    );
-    unit.into_iter().chain(phase)
+/// The modes of all groups but one.
+fn poles_beside(fits: &[Result<Rational>], at: usize) -> Vec<Pole> {
+    let others = fits.iter().enumerate().filter(|(other, _)| *other != at);
+    others.filter_map(|(_, fit)| fit.as_ref().ok()).flat_map(|fit| fit.modes.iter().copied()).collect()
+}
+
+/// Fits each group again with the modes of the others subtracted, twice.
+fn refine(lines: &Measured, groups: &[Group], fits: &mut [Result<Rational>]) {
+    for _ in 0..2 {
+        for (at, group) in groups.iter().enumerate() {
+            let others = poles_beside(fits, at);
+            let Ok(fit) = &fits[at] else { continue };
+            let starts: Vec<(f64, f64)> = fit.modes.iter().map(|m| (m.frequency, m.zeta)).collect();
+            if !others.is_empty()
+                && starts.iter().all(|s| s.0 > 0.0 && s.1 > 0.0)
+                && let Ok(better) = rational(lines, group.lines.clone(), &starts, &others)
+            {
+                fits[at] = Ok(better);
+            }
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use num_complex::Complex64;
+    use vibro_record::Fact;
 
     /// Two modes as an accelerance, lines of 0.5 Hz.
     fn two() -> Measured {
@@ -144,6 +142,10 @@ mod tests {
         let frequency: Vec<f64> = (0..600).map(|i| f64::from(i) * 0.5).collect();
         let values = frequency.iter().map(|f| poles.iter().map(|p| p.at(*f, 2)).sum()).collect();
         Measured { frequency, values, magnitude_only: false, kind: FrfKind::Accelerance, coherence: None }
+    }
+
+    fn says(result: &ModalResult, code: &str) -> bool {
+        result.findings.iter().any(|f| f.code == code)
     }
 
     fn found(measured: &Measured, options: &ModalOptions) -> ModalResult {
@@ -166,7 +168,7 @@ mod tests {
             assert!((of_k / (2.0 * of_f) - 1.0).abs() < 1e-9);
         }
         // A mode of bandwidth 1.6 Hz has seven lines on 270° of its circle. That circle is exact but for the other mode's part.
-        let circle = result.modes[0].by.iter().find(|b| b.method == "circle fit").unwrap();
+        let circle = result.modes[0].by.iter().find(|b| b.method == ModalMethod::CircleFit).unwrap();
         assert!((circle.frequency.value - 80.3).abs() < 0.02, "{circle:?}");
         assert!((circle.zeta.as_ref().unwrap().value / 0.01 - 1.0).abs() < 0.02, "{circle:?}");
     }
@@ -188,14 +190,14 @@ mod tests {
             let phase = mode.phase.as_ref().unwrap();
             assert!((phase.value.abs() - degrees).abs() < 0.1 && phase.unit == "°", "{mode:?}");
             assert!(phase.std.is_some() && mode.modal_constant.std.is_some());
-            let circle = mode.by.iter().find(|b| b.method == "circle fit").unwrap();
+            let circle = mode.by.iter().find(|b| b.method == ModalMethod::CircleFit).unwrap();
             assert!(circle.modal_constant.as_ref().is_none_or(|c| c.value * a > 0.0), "{circle:?}");
         }
         assert_eq!(result.modes.len(), 2);
         // A quarter of a turn is neither.
         measured.values.iter_mut().for_each(|v| *v *= Complex64::i());
         let result = found(&measured, &ModalOptions::default());
-        assert!(result.warnings.iter().any(|w| w.contains("no sign")), "{result:?}");
+        assert!(says(&result, "modal-constant-no-sign"), "{result:?}");
         assert!(result.modes.iter().all(|m| m.modal_constant.value > 0.0));
     }
 
@@ -221,7 +223,7 @@ mod tests {
         let own = [&mode.frequency, &mode.zeta, &mode.modal_constant, &mode.by[0].frequency];
         let own = own.into_iter().chain(&mode.phase).chain(&mode.stiffness);
         assert!(result.modes.len() == 1 && own.into_iter().all(|e| e.value.is_finite() && e.std.is_none()));
-        assert!(result.warnings.iter().any(|w| w.contains("no uncertainty")), "{result:?}");
+        assert!(says(&result, "modal-two-modes"), "{result:?}");
         let result = with(&[100.0]);
         assert!(result.modes[0].zeta.std.is_some() && result.modes[0].stiffness.is_some(), "{result:?}");
     }
@@ -241,9 +243,9 @@ mod tests {
         assert!((mode.zeta.value / zeta - 1.0).abs() < 1e-4, "{mode:?}");
         assert!((mode.frequency.value * std::f64::consts::TAU / own - 1.0).abs() < 1e-6, "{mode:?}");
         assert!((mode.modal_constant.value / 2.0 - 1.0).abs() < 1e-4, "{mode:?}");
-        let circle = mode.by.iter().find(|b| b.method == "circle fit").unwrap();
+        let circle = mode.by.iter().find(|b| b.method == ModalMethod::CircleFit).unwrap();
         assert!((circle.zeta.as_ref().unwrap().value / zeta - 1.0).abs() < 0.02, "{circle:?}");
-        assert!(result.warnings.iter().any(|w| w.contains("taken off")), "{:?}", result.warnings);
+        assert!(says(&result, "modal-window-decay"), "{:?}", result.findings);
         let without = found(&measured, &ModalOptions::default());
         // ζ + σ/ωᵣ, to the square of that.
         assert!((without.modes[0].zeta.value / (zeta + decay / own) - 1.0).abs() < 1e-3);
@@ -272,11 +274,11 @@ mod tests {
         // The other mode is no constant over the band: it bends by (4.5/130)² of itself.
         assert!((result.modes[0].frequency.value - 80.3).abs() < 0.02, "{result:?}");
         assert!((result.modes[0].zeta.value / 0.01 - 1.0).abs() < 0.03, "{result:?}");
-        assert!(result.warnings.iter().any(|w| w.contains("no uncertainty")));
+        assert!(says(&result, "modal-magnitudes-only"));
         let mode = &result.modes[0];
         assert!([&mode.frequency, &mode.zeta, &mode.modal_constant].iter().all(|e| e.std.is_none()));
         assert!(mode.phase.is_none());
-        assert!(result.modes[0].by.iter().all(|b| b.method != "circle fit"));
+        assert!(result.modes[0].by.iter().all(|b| b.method != ModalMethod::CircleFit));
     }
 
     #[test]
@@ -287,17 +289,21 @@ mod tests {
         measured.values[158] *= 50.0;
         measured.coherence = Some(coherence);
         let result = found(&measured, &ModalOptions::default());
-        let said = result.warnings.join(" ");
-        assert!(said.contains("above 1") && said.contains("79 Hz"), "{said}");
-        assert!(said.contains("below 0.5") && said.contains("81 Hz"), "{said}");
-        assert!(said.contains("not a number") && said.contains("210 Hz"), "{said}");
+        for (code, line) in [
+            ("frf-lines-impossible-coherence", 79.0),
+            ("frf-lines-low-coherence", 81.0),
+            ("frf-lines-missing", 210.0),
+        ] {
+            let found = result.findings.iter().find(|f| f.code == code).unwrap();
+            assert_eq!(found.fact("lines"), Some(&Fact::Numbers(vec![line])), "{code}");
+        }
         assert!((result.modes[0].frequency.value - 80.3).abs() < 1e-3, "{result:?}");
     }
 
     #[test]
     fn what_cannot_be_fitted_is_refused() {
         let refusal = |measured: &Measured, band| {
-            modal(measured, &ModalOptions { band, ..ModalOptions::default() }).unwrap_err().to_string()
+            format!("{:#}", modal(measured, &ModalOptions { band, ..ModalOptions::default() }).unwrap_err())
         };
         let measured = two();
         assert!(refusal(&measured, Some((100.0, 130.0))).contains("no peak between"));
@@ -307,6 +313,6 @@ mod tests {
         assert!(refusal(&with(Complex64::new(1.0, 0.0)), None).contains("no peak"));
         assert!(refusal(&with(Complex64::new(f64::NAN, 0.0)), None).contains("0 of 600 lines"));
         let reversed = Measured { values: two().values.iter().map(Complex64::conj).collect(), ..two() };
-        assert!(refusal(&reversed, None).contains("sign of the phase is reversed"));
+        assert!(refusal(&reversed, None).contains("check the sign of the phase"));
     }
 }

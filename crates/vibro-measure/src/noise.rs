@@ -4,7 +4,7 @@ use super::line::interpolate;
 use vibro_record::Window;
 use vibro_signal::window::line_shape;
 
-/// Lines on either side that are looked at.
+/// Lines on either side that are read.
 const REACH: usize = 40;
 
 /// Lines next to the peak that are left out: they belong to it.

@@ -1,8 +1,9 @@
 //! Resonances and antiresonances of a response curve.
 
+use super::apex::apex;
+use super::crossing::at;
 use super::jump::{Jump, SIGMA, differ, echo, known};
 use super::peaks::{Maximum, Vertex, local_maxima};
-use super::top::top;
 use serde::Serialize;
 use std::ops::RangeInclusive;
 use vibro_record::Direction;
@@ -18,10 +19,44 @@ pub struct Resonance {
     pub amplitude: f64,
     /// Its standard uncertainty.
     pub amplitude_std: Option<f64>,
-    /// `resonance`, `antiresonance`, `minimum`; `grazing` or `clapping` where both masses were measured.
-    pub kind: String,
+    /// Maximum or minimum, by its name where both masses were measured.
+    pub kind: ResonanceKind,
     /// Whether the curve ends in a jump there, so that the true maximum may lie between the points.
     pub at_jump: bool,
+}
+
+/// What a maximum or minimum of a response curve is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ResonanceKind {
+    /// A maximum.
+    Resonance,
+    /// The resonance in phase, in which the masses graze.
+    Grazing,
+    /// The resonance out of phase, in which the masses clap.
+    Clapping,
+    /// A deep minimum between two resonances.
+    Antiresonance,
+    /// Any other minimum.
+    Minimum,
+}
+
+impl ResonanceKind {
+    /// Its name, as in JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            ResonanceKind::Resonance => "resonance",
+            ResonanceKind::Grazing => "grazing",
+            ResonanceKind::Clapping => "clapping",
+            ResonanceKind::Antiresonance => "antiresonance",
+            ResonanceKind::Minimum => "minimum",
+        }
+    }
+
+    /// Whether it is a maximum.
+    pub fn is_maximum(self) -> bool {
+        !matches!(self, ResonanceKind::Antiresonance | ResonanceKind::Minimum)
+    }
 }
 
 /// A maximum must stand this factor above its valleys.
@@ -47,7 +82,8 @@ pub fn resonances(
     let minima = local_maxima(&inverse, PROMINENCE).into_iter().filter(rising);
     found.extend(minima.filter_map(|m| {
         let antiresonance = mass == Some(1) || curve.is_deep(&m);
-        curve.minimum(m.at, &inverse, if antiresonance { "antiresonance" } else { "minimum" })
+        let kind = if antiresonance { ResonanceKind::Antiresonance } else { ResonanceKind::Minimum };
+        curve.minimum(m.at, &inverse, kind)
     }));
     found.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
     found
@@ -91,7 +127,7 @@ impl Curve<'_> {
         low..=high
     }
 
-    /// Frequency, height and their uncertainties between the points around the highest, `i`; `None` where it cannot be told.
+    /// Frequency, height and their uncertainties between the points around the highest, `i`; `None` where the points do not determine it.
     fn interpolated(&self, values: &[f64], i: usize) -> Option<Vertex> {
         let range = self.flanks(values, i);
         let stretch = self.frequency.get(range.clone())?;
@@ -101,62 +137,70 @@ impl Curve<'_> {
         // Relative uncertainties are the same for a value and its inverse.
         let std: Vec<f64> =
             values.iter().zip(self.std).zip(self.amplitude).map(|((v, s), a)| v * s / a).collect();
-        top(self.frequency, values, &std, i, range)
+        apex(self.frequency, values, &std, i, range)
     }
 
     fn maximum(&self, i: usize) -> Resonance {
         let jump = self.jump_at(i);
-        let found = jump.map_or_else(|| self.interpolated(self.amplitude, i), |_| None);
-        let kind = "resonance".to_owned();
-        match found {
-            Some(v) => Resonance {
-                frequency: v.frequency,
-                frequency_std: known(v.frequency_std),
-                amplitude: v.height,
-                amplitude_std: known(v.height_std),
+        let kind = ResonanceKind::Resonance;
+        if jump.is_none()
+            && let Some(vertex) = self.interpolated(self.amplitude, i)
+        {
+            return Resonance {
+                frequency: vertex.frequency,
+                frequency_std: known(vertex.frequency_std),
+                amplitude: vertex.height,
+                amplitude_std: known(vertex.height_std),
                 kind,
                 at_jump: false,
-            },
-            None => Resonance {
-                frequency: self.frequency[i],
-                frequency_std: Some(anywhere(self.frequency, i, [i - 1, i + 1])),
-                amplitude: self.amplitude[i],
-                amplitude_std: jump.and_then(|j| at_a_jump(self.frequency, self.amplitude, self.std, i, j)),
-                kind,
-                at_jump: jump.is_some(),
-            },
+            };
+        }
+        let amplitude_std = jump.and_then(|j| at_a_jump(self.frequency, self.amplitude, self.std, i, j));
+        Resonance { at_jump: jump.is_some(), ..self.point(i, [i - 1, i + 1], kind, amplitude_std) }
+    }
+
+    /// The maximum or minimum at point `i`, which lies anywhere between those on its two `sides`.
+    fn point(
+        &self,
+        i: usize,
+        sides: [usize; 2],
+        kind: ResonanceKind,
+        amplitude_std: Option<f64>,
+    ) -> Resonance {
+        let reach = sides.map(|k| (self.frequency[k] - self.frequency[i]).abs());
+        Resonance {
+            frequency: self.frequency[i],
+            frequency_std: Some(reach[0].max(reach[1]) / f64::sqrt(3.0)),
+            amplitude: self.amplitude[i],
+            amplitude_std,
+            kind,
+            at_jump: false,
         }
     }
 
     /// `None` at the foot of a jump.
-    fn minimum(&self, i: usize, inverse: &[f64], kind: &str) -> Option<Resonance> {
-        let single = |sides: [usize; 2]| Resonance {
-            frequency: self.frequency[i],
-            frequency_std: Some(anywhere(self.frequency, i, sides)),
-            amplitude: self.amplitude[i],
-            amplitude_std: known(self.std[i]),
-            kind: kind.to_owned(),
-            at_jump: false,
-        };
+    fn minimum(&self, i: usize, inverse: &[f64], kind: ResonanceKind) -> Option<Resonance> {
         if self.amplitude[i] < SIGMA * self.std[i] {
             // In the noise its place is not known: between the points that stand out on both sides.
             let out = |k: &usize| differ(self.amplitude, self.std, i, *k);
             let sides = [(0..i).rev().find(out)?, (i + 1..self.amplitude.len()).find(out)?];
-            return (!self.jump_between(sides[0], sides[1])).then(|| single(sides));
+            let here = self.point(i, sides, kind, known(self.std[i]));
+            return (!self.jump_between(sides[0], sides[1])).then_some(here);
         }
         if self.jump_at(i).is_some() {
             return None;
         }
-        Some(self.interpolated(inverse, i).map_or_else(
-            || Resonance { amplitude_std: None, ..single([i - 1, i + 1]) },
-            |v| Resonance {
+        let here = self.point(i, [i - 1, i + 1], kind, None);
+        Some(match self.interpolated(inverse, i) {
+            None => here,
+            Some(v) => Resonance {
                 frequency: v.frequency,
                 frequency_std: known(v.frequency_std),
                 amplitude: 1.0 / v.height,
                 amplitude_std: known(v.height_std / (v.height * v.height)),
-                ..single([i - 1, i + 1])
+                ..here
             },
-        ))
+        })
     }
 
     /// Whether the curve stands [`DEEP`] above a minimum at the last point before half-way to its neighbours, on both sides.
@@ -170,11 +214,6 @@ impl Curve<'_> {
             highest > DEEP * self.amplitude[minimum.at]
         })
     }
-}
-
-/// Uncertainty of a place that lies anywhere from point `i` to those on its two sides with equal chance.
-fn anywhere(frequency: &[f64], i: usize, sides: [usize; 2]) -> f64 {
-    sides.map(|k| (frequency[k] - frequency[i]).abs()).into_iter().fold(0.0, f64::max) / f64::sqrt(3.0)
 }
 
 /// Uncertainty of the height of a branch that ends in a jump beside point `i`: the slope towards it, carried on over the
@@ -237,19 +276,19 @@ pub fn name_modes(curves: &mut [NamedCurve<'_>]) {
         let partner = curves.iter().find(|c| c.mass != mass && c.direction == direction);
         let partner = partner.map(|p| p.curve.clone());
         let (Some(between), Some(partner)) = (between, partner) else { continue };
-        for (name, below) in [("grazing", true), ("clapping", false)] {
+        for (kind, below) in [(ResonanceKind::Grazing, true), (ResonanceKind::Clapping, false)] {
             let largest = curves[i]
                 .resonances
                 .iter_mut()
-                .filter(|r| r.kind == "resonance" && (r.frequency < between) == below)
+                .filter(|r| r.kind == ResonanceKind::Resonance && (r.frequency < between) == below)
                 .filter(|r| at(&partner, r.frequency).is_some_and(|other| other >= TOGETHER * r.amplitude))
                 .max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
             if let Some(largest) = largest {
-                name.clone_into(&mut largest.kind);
+                largest.kind = kind;
             }
         }
         // A maximum at a jump of one mass alone is the jump's edge.
-        curves[i].resonances.retain(|r| !(r.at_jump && r.kind == "resonance"));
+        curves[i].resonances.retain(|r| !(r.at_jump && r.kind == ResonanceKind::Resonance));
     }
 }
 
@@ -258,121 +297,21 @@ pub fn name_modes(curves: &mut [NamedCurve<'_>]) {
 fn antiresonance(curves: &[NamedCurve<'_>], direction: Direction) -> Option<f64> {
     let found: &[Resonance] = curves.iter().find(|c| c.mass == 1 && c.direction == direction)?.resonances;
     let largest = |side: &dyn Fn(f64) -> bool| {
-        let tops =
-            found.iter().filter(|r| r.kind != "antiresonance" && r.kind != "minimum" && side(r.frequency));
+        let tops = found.iter().filter(|r| r.kind.is_maximum() && side(r.frequency));
         tops.map(|r| r.amplitude).fold(0.0, f64::max)
     };
     let depth =
         |m: &Resonance| largest(&|f| f < m.frequency).min(largest(&|f| f > m.frequency)) / m.amplitude;
-    let between = found.iter().filter(|r| r.kind == "antiresonance").map(|m| (depth(m), m.frequency));
+    let between =
+        found.iter().filter(|r| r.kind == ResonanceKind::Antiresonance).map(|m| (depth(m), m.frequency));
     let between = between.filter(|m| m.0 > 0.0).max_by(|a, b| a.0.total_cmp(&b.0));
     between.map(|m| m.1).or_else(|| deepest(found))
 }
 
 /// Frequency of the deepest antiresonance of a curve.
 pub fn deepest(resonances: &[Resonance]) -> Option<f64> {
-    let minima = resonances.iter().filter(|r| r.kind == "antiresonance");
+    let minima = resonances.iter().filter(|r| r.kind == ResonanceKind::Antiresonance);
     minima.min_by(|a, b| a.amplitude.total_cmp(&b.amplitude)).map(|r| r.frequency)
-}
-
-/// Two points of a curve, and their weights in its logarithm between them.
-type Between = [(usize, f64); 2];
-
-/// The points between which `f` lies in a rising curve; `None` outside.
-fn between(curve: &[(f64, f64, f64)], f: f64) -> Option<Between> {
-    let i = curve.partition_point(|p| p.0 < f);
-    let b = curve.get(i)?;
-    if b.0 == f {
-        return Some([(i, 1.0), (i, 0.0)]);
-    }
-    let a = curve.get(i.checked_sub(1)?)?;
-    let t = (f - a.0) / (b.0 - a.0);
-    Some([(i - 1, 1.0 - t), (i, t)])
-}
-
-/// A curve between its points, linear in the logarithm; `None` outside.
-fn at(curve: &[(f64, f64, f64)], f: f64) -> Option<f64> {
-    Some(between(curve, f)?.iter().map(|(i, weight)| weight * curve[*i].1.ln()).sum::<f64>().exp())
-}
-
-/// Where two curves cross.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Crossing {
-    /// Frequency in Hz.
-    pub frequency: f64,
-    /// Its standard uncertainty in Hz; `None` where that of an amplitude is not known.
-    pub frequency_std: Option<f64>,
-    /// Whether the second curve is the larger one above.
-    pub second_above: bool,
-}
-
-/// Where two curves over frequency cross. Each is given as (frequency, amplitude, its standard uncertainty) in any order;
-/// between its points it is a straight line in the logarithm, but not across a jump of its own.
-///
-/// The uncertainty is that of the amplitudes, carried through the interpolation. Where the curves change places at a jump, the
-/// crossing is that jump: it lies anywhere between the points beside it with equal chance.
-pub fn crossings(
-    mut first: Vec<(f64, f64, f64)>,
-    mut second: Vec<(f64, f64, f64)>,
-    jumps: &[Jump],
-) -> Vec<Crossing> {
-    first.sort_by(|a, b| a.0.total_cmp(&b.0));
-    second.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let curves = [&first, &second];
-    let mut frequencies: Vec<f64> = curves.iter().flat_map(|c| c.iter().map(|p| p.0)).collect();
-    frequencies.sort_by(f64::total_cmp);
-    frequencies.dedup();
-    let range = |j: &Jump| (j.from.min(j.to), j.from.max(j.to));
-    // The points of both curves behind a frequency. Within a jump of its own a curve has no value.
-    let places = |f: f64| -> Option<[Between; 2]> {
-        let places = [between(&first, f)?, between(&second, f)?];
-        let within = |(curve, [a, b]): (&&Vec<(f64, f64, f64)>, &Between)| {
-            jumps.iter().any(|j| range(j) == (curve[a.0].0, curve[b.0].0))
-        };
-        (!curves.iter().zip(&places).any(within)).then_some(places)
-    };
-    // Frequency, logarithm of second over first, and where both come from.
-    let ratios: Vec<_> = frequencies
-        .into_iter()
-        .filter_map(|f| Some((f, (at(&second, f)? / at(&first, f)?).ln(), places(f)?)))
-        .filter(|r| r.1.is_finite())
-        .collect();
-    ratios
-        .windows(2)
-        .filter(|w| (w[0].1 > 0.0) != (w[1].1 > 0.0))
-        .map(|w| {
-            let (low, high) = (&w[0], &w[1]);
-            let (width, turn) = (high.0 - low.0, low.1 - high.1);
-            let second_above = high.1 > 0.0;
-            // A jump belongs to the stretch that holds more than half of its step: both masses seldom have quite the same frequencies.
-            let held =
-                jumps.iter().map(range).filter(|j| j.1.min(high.0) - j.0.max(low.0) > 0.5 * (j.1 - j.0));
-            if let Some(jump) = held.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) {
-                let frequency_std = Some((jump.1 - jump.0) / f64::sqrt(12.0));
-                return Crossing { frequency: f64::midpoint(jump.0, jump.1), frequency_std, second_above };
-            }
-            // Slopes of the crossing over the two logarithms.
-            let slopes = [-width * high.1 / (turn * turn), width * low.1 / (turn * turn)];
-            let mut variance = 0.0;
-            for (which, curve) in curves.iter().enumerate() {
-                // One point may stand behind both.
-                let parts: Vec<(usize, f64)> = [(slopes[0], low.2[which]), (slopes[1], high.2[which])]
-                    .iter()
-                    .flat_map(|(slope, points)| points.map(|(i, weight)| (i, slope * weight)))
-                    .filter(|part| part.1 != 0.0)
-                    .collect();
-                for (i, a) in &parts {
-                    let shared: f64 = parts.iter().filter(|p| p.0 == *i).map(|p| p.1).sum();
-                    variance += a * shared * (curve[*i].2 / curve[*i].1).powi(2);
-                }
-            }
-            Crossing {
-                frequency: low.0 + width * low.1 / turn,
-                frequency_std: known(variance.sqrt()),
-                second_above,
-            }
-        })
-        .collect()
 }
 
 #[cfg(test)]

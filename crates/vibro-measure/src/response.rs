@@ -1,6 +1,6 @@
 //! Response at the excitation, step by step (the job of the thesis' sinesw3).
 
-mod doubts;
+mod findings;
 
 use super::excitation::{Excitation, excitations};
 use super::jump::{Jump, jumps};
@@ -8,11 +8,11 @@ use super::limit::upper_limit;
 use super::line::{amplitude_at, interpolate, nearest};
 use super::resonance::{Resonance, resonances};
 use super::{Estimate, noise};
-use doubts::{alone, direction, hidden, twice, wrong_window};
+use findings::{direction, hidden_by_lines, repeated, wrong_window};
 use serde::Serialize;
 use std::f64::consts::PI;
 use vibro_record::units::Quantity;
-use vibro_record::{Direction, Error, Result, Step, Sweep, SweepPoint, Window};
+use vibro_record::{Direction, Error, Finding, Result, Step, Sweep, SweepPoint, Window};
 use vibro_signal::window::line_shape;
 
 /// How a response is to be taken.
@@ -22,7 +22,7 @@ pub struct ResponseOptions {
     pub band: usize,
     /// Integrations in frequency from the stored quantity: 1 takes velocity to displacement. Default 0.
     pub integrate: i8,
-    /// Lowest frequency in Hz that is looked at. Default: the larger of two lines and a quarter of the lowest
+    /// Lowest frequency in Hz that is read. Default: the larger of two lines and a quarter of the lowest
     /// excitation frequency.
     pub fmin: Option<f64>,
 }
@@ -51,7 +51,7 @@ pub struct Harmonic {
     pub frequency: f64,
     /// Amplitude; no value where the frequency lies outside the lines or below the cut-off. In the noise the nearest line as it is.
     pub amplitude: Estimate,
-    /// 95 % upper limit of the true amplitude, where it does not stand out of the noise or leakage: see [`upper_limit`].
+    /// 95 % upper limit of the true amplitude, where it does not stand out of the noise or leakage (Read 2002).
     pub upper_limit: Option<f64>,
 }
 
@@ -73,7 +73,7 @@ pub struct ResponsePoint {
     /// Peak amplitude at the excitation. Where the response does not stand out of the noise, the line nearest to the excitation
     /// as it is: noise lifts it, so a faint amplitude is more likely too large than too small.
     pub amplitude: Estimate,
-    /// 95 % upper limit of the true amplitude, where it does not stand out of the noise or leakage: see [`upper_limit`].
+    /// 95 % upper limit of the true amplitude, where it does not stand out of the noise or leakage (Read 2002).
     pub upper_limit: Option<f64>,
     /// Orders 2 to 5.
     pub harmonics: Vec<Harmonic>,
@@ -98,7 +98,7 @@ pub struct Response {
     pub quantity: &'static str,
     /// Unit of the amplitudes.
     pub unit: &'static str,
-    /// Cut-off in Hz: lines below were not looked at.
+    /// Cut-off in Hz: lines below were left out.
     pub fmin: f64,
     /// Steps, in the order in which they were taken.
     pub points: Vec<ResponsePoint>,
@@ -106,15 +106,17 @@ pub struct Response {
     pub resonances: Vec<Resonance>,
     /// Sudden changes.
     pub jumps: Vec<Jump>,
-    /// What a person must know.
+    /// What the reader of the sweep doubts, in words.
     pub warnings: Vec<String>,
+    /// What limits the curve.
+    pub findings: Vec<Finding>,
     /// Every step from file to curve.
     pub history: Vec<Step>,
 }
 
 /// The cut-off below which a spectrum that was divided by frequency is noise: the larger of two lines and a quarter of
 /// the lowest excitation frequency.
-pub fn default_cutoff(line_width: f64, excitations: &[Excitation]) -> f64 {
+pub(crate) fn default_cutoff(line_width: f64, excitations: &[Excitation]) -> f64 {
     let lowest = excitations.iter().map(|e| e.frequency).fold(f64::INFINITY, f64::min);
     (2.0 * line_width).max(if lowest.is_finite() { lowest / 4.0 } else { 0.0 })
 }
@@ -132,55 +134,60 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
         sweep.line_width().ok_or_else(|| Error::refused("the lines of the sweep are not evenly spaced"))?;
     let excitations = excitations(sweep, options.fmin.unwrap_or(0.0))?;
     let fmin = options.fmin.unwrap_or_else(|| default_cutoff(df, &excitations));
-    let mut warnings = sweep.doubts.clone();
+    let mut findings = Vec::new();
     let quantity = sweep.unit().times_seconds(options.integrate).quantity();
     if quantity == Quantity::Other {
         return Err(Error::refused(format!(
-            "{} integration(s) of values in {} give no displacement, velocity or acceleration",
-            options.integrate,
-            sweep.unit()
+            "values in {}, integrated {} times, are no displacement, velocity or acceleration",
+            sweep.unit(),
+            options.integrate
         ))
-        .hint("1 takes velocity to displacement, 2 acceleration to displacement"));
+        .hint("integrate once from velocity to displacement, twice from acceleration")
+        .setting("integrate"));
     }
     let unit = quantity.symbol();
-    warnings.extend(wrong_window(sweep, &excitations, df));
-    warnings.extend(twice(sweep));
+    let wrong = wrong_window(sweep, &excitations, df);
+    findings.extend(repeated(sweep));
     let taker = Taker { sweep, options, df, fmin, unit };
-    let (points, hiders): (Vec<ResponsePoint>, Vec<Option<f64>>) =
+    let (mut points, hiders): (Vec<ResponsePoint>, Vec<Option<f64>>) =
         sweep.points.iter().zip(&excitations).map(|(p, e)| taker.point(p, e)).unzip();
 
     let frequency: Vec<f64> = excitations.iter().map(|e| e.frequency).collect();
-    let direction = direction(&frequency, sweep.direction, &mut warnings);
+    let direction = direction(&frequency, sweep.direction, &mut findings);
     let amplitude: Vec<f64> = points.iter().map(|p| p.amplitude.value).collect();
     let std: Vec<f64> = points.iter().map(|p| p.amplitude.std.unwrap_or(f64::NAN)).collect();
     let faint = points.iter().zip(&hiders).filter(|(p, h)| p.upper_limit.is_some() && h.is_none()).count();
     if faint > 0 {
-        warnings.push(format!(
-            "{faint} amplitude(s) do not stand out of the noise, which lifts them: of all points of a sweep no more than one in twenty is expected to lie above its upper limit."
-        ));
+        findings.push(Finding::caution("sweep-below-noise").count("n", faint));
     }
-    warnings.extend(hidden(&frequency, &hiders));
-    if points.iter().any(|p| p.amplitude.value.is_nan()) {
-        warnings.push(format!(
-            "Points whose excitation lies below the cut-off of {fmin:.3} Hz have no amplitude."
-        ));
+    findings.extend(hidden_by_lines(&frequency, &hiders));
+    let below = amplitude.iter().filter(|a| a.is_nan()).count();
+    if below > 0 {
+        findings.push(Finding::caution("sweep-below-cutoff").count("n", below).number("fmin", fmin));
     }
-    let (jumps, resonances) = match direction {
+    let (mut jumps, mut resonances) = match direction {
         Some(direction) if points.len() >= 3 => {
             let jumps = jumps(&frequency, &amplitude, &std, direction);
             let mut order: Vec<usize> = (0..points.len()).collect();
             order.sort_by(|a, b| frequency[*a].total_cmp(&frequency[*b]));
             let sorted = |v: &[f64]| -> Vec<f64> { order.iter().map(|i| v[*i]).collect() };
-            let (rising, height) = (sorted(&frequency), sorted(&amplitude));
-            let found = resonances(&rising, &height, &sorted(&std), &jumps, sweep.mass);
-            warnings.extend(alone(&rising, &height, &found));
-            (jumps, found)
+            let [rising, height, std] = [&frequency, &amplitude, &std].map(|v| sorted(v));
+            let resonances = resonances(&rising, &height, &std, &jumps, sweep.mass);
+            (jumps, resonances)
         }
         _ => {
-            warnings.push("Resonances and jumps need three or more points in one direction.".to_owned());
+            findings.push(Finding::caution("sweep-too-few-points").count("n", points.len()));
             (Vec::new(), Vec::new())
         }
     };
+    if let Some(wrong) = wrong {
+        findings.insert(0, wrong);
+        for point in &mut points {
+            (point.frequency_std, point.amplitude.std) = (None, None);
+        }
+        jumps.iter_mut().for_each(|j| (j.amplitude_before_std, j.amplitude_after_std) = (None, None));
+        resonances.iter_mut().for_each(|r| (r.frequency_std, r.amplitude_std) = (None, None));
+    }
     let mut history = sweep.history().to_vec();
     history.push(Step::new(
         "response",
@@ -201,7 +208,8 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
         points,
         resonances,
         jumps,
-        warnings,
+        warnings: sweep.doubts.clone(),
+        findings,
         history,
     })
 }

@@ -19,12 +19,12 @@ use vibro_signal::transfer::{Estimator, transfer};
 use vibro_signal::welch::{Averages, Welch};
 
 /// Samples of a segment where none is stated.
-pub const SEGMENT: usize = 8192;
+const SEGMENT: usize = 8192;
 /// One part in so many of a hammer record stands before the blow.
 pub(crate) const BEFORE: usize = 50;
 
 /// The spectrum of the only channel, or with an estimator the frequency response function from the first channel to the second.
-/// `progress` is told how many samples were gone over.
+/// `progress` gets the number of samples read.
 ///
 /// ```
 /// use vibro_measure::spectral::{SpectralOptions, spectral};
@@ -91,7 +91,7 @@ fn lines(
         traces.doubts(),
     );
     if let Some(tones) = tones {
-        found.warnings.extend(tones.warnings);
+        found.findings.extend(tones.findings);
         found.tones = tones.tones;
     }
     found.left_out(options.integrate, fmin);

@@ -4,7 +4,7 @@ use super::excitation::excitations;
 use super::response::{ResponseOptions, default_cutoff};
 use ndarray::Array2;
 use std::f64::consts::PI;
-use vibro_record::{Error, Result, Sweep};
+use vibro_record::{Error, Finding, Result, Sweep};
 
 /// Spectra over excitation frequency.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,8 +23,10 @@ pub struct Waterfall {
     pub unit: String,
     /// Cut-off in Hz; 0 where nothing was cut off.
     pub fmin: f64,
-    /// What a person must know.
+    /// What the reader of the sweep doubts, in words.
     pub warnings: Vec<String>,
+    /// What was left out.
+    pub findings: Vec<Finding>,
 }
 
 /// Finds the excitation frequencies and gathers the matrix, as [`gathered`].
@@ -56,10 +58,7 @@ pub fn gathered(sweep: &Sweep, options: &ResponseOptions, excitation: Vec<f64>, 
         }
     }
     let unit = sweep.unit().times_seconds(options.integrate);
-    let mut warnings = sweep.doubts.clone();
-    if fmin > 0.0 {
-        warnings.push(format!("Lines below the cut-off of {fmin:.3} Hz are left out."));
-    }
+    let cut = (fmin > 0.0).then(|| Finding::note("lines-below-cutoff").number("fmin", fmin));
     Waterfall {
         name: sweep.name.clone(),
         frequency,
@@ -68,6 +67,7 @@ pub fn gathered(sweep: &Sweep, options: &ResponseOptions, excitation: Vec<f64>, 
         quantity: unit.quantity(),
         unit: unit.symbol().to_owned(),
         fmin,
-        warnings,
+        warnings: sweep.doubts.clone(),
+        findings: cut.into_iter().collect(),
     }
 }

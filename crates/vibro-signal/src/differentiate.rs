@@ -1,5 +1,6 @@
 //! From displacement to velocity, in time.
 
+use super::sound::{no_gaps, rate_of};
 use std::f64::consts::TAU;
 use vibro_record::{Error, Result, Trace};
 
@@ -25,21 +26,14 @@ pub fn in_time(trace: &Trace, times: u8) -> Result<Differentiated> {
     if !(1..=2).contains(&times) {
         return Err(Error::usage(format!("{times} differentiations"), "1 or 2"));
     }
-    let name = &trace.meta.name;
-    let Some(rate) = trace.rate() else {
-        return Err(Error::refused(format!("the sampling rate of {name:?} is not known"))
-            .hint("state it with --rate"));
-    };
+    let rate = rate_of(trace)?;
     if trace.values.len() < 5 {
         return Err(Error::refused(format!(
             "{} samples are too few to differentiate: at least 5 are needed",
             trace.values.len()
         )));
     }
-    if let Some(i) = trace.values.iter().position(|v| !v.is_finite()) {
-        return Err(Error::refused(format!("sample {i} of channel {name:?} is missing"))
-            .hint("cut the record before the gap, or bridge it"));
-    }
+    no_gaps(&trace.values, &trace.meta.name, 0)?;
     let mut values = trace.values.clone();
     for _ in 0..times {
         values = once(&values, rate / 12.0);

@@ -151,14 +151,6 @@ impl Filter {
         Ok(Filter { kind: Kind::Analogue, order: 2 * sections.len(), rate, sections })
     }
 
-    /// The factor α of exponential smoothing; `None` for any other filter.
-    pub fn alpha(&self) -> Option<f64> {
-        match (self.kind, self.sections.as_slice()) {
-            (Kind::Smoothing(_), [section]) => Some(section.b[0]),
-            _ => None,
-        }
-    }
-
     /// Complex factor of one pass on a sine of `frequency` Hz.
     pub fn response(&self, frequency: f64) -> Complex64 {
         let z = Complex64::cis(-2.0 * PI * frequency / self.rate);
@@ -201,7 +193,7 @@ impl Filter {
     /// end point, as scipy's `sosfiltfilt` does (Gustafsson, IEEE Trans. Signal Process. 44 (1996) 988 on why ends matter).
     ///
     /// # Errors
-    /// If the trace is not longer than [`Filter::padding`] samples, or one of them is missing.
+    /// If the trace is not longer than three times the number of coefficients, or a sample is missing.
     pub fn zero_phase(&self, values: &[f64]) -> Result<Vec<f64>> {
         let pad = self.padding();
         let n = values.len();
@@ -212,10 +204,8 @@ impl Filter {
             .hint("filter a longer record, or with a lower order"));
         }
         if let Some(i) = values.iter().position(|v| !v.is_finite()) {
-            return Err(Error::refused(format!(
-                "sample {i} is missing: a filter would spread it over the rest"
-            ))
-            .hint("bridge the gap, or filter the parts between gaps"));
+            return Err(Error::refused(format!("sample {i} is missing: a filter would spread it"))
+                .hint("bridge the gap, or filter the parts between gaps"));
         }
         let (first, last) = (values[0], values[n - 1]);
         let mut out = Vec::with_capacity(n + 2 * pad);
@@ -232,24 +222,10 @@ impl Filter {
     }
 
     /// Samples by which [`Filter::zero_phase`] continues both ends: three times the number of coefficients.
-    pub fn padding(&self) -> usize {
+    fn padding(&self) -> usize {
         let zeros = |zero: fn(&Section) -> bool| self.sections.iter().filter(|s| zero(s)).count();
         let spare = zeros(|s| s.b[2] == 0.0).min(zeros(|s| s.a[1] == 0.0));
         3 * (2 * self.sections.len() + 1 - spare)
-    }
-
-    /// Corners in Hz; none for [`Filter::analogue`].
-    pub fn corners(&self) -> Vec<f64> {
-        match self.kind {
-            Kind::LowPass(f) | Kind::HighPass(f) | Kind::Smoothing(f) => vec![f],
-            Kind::BandPass(low, high) => vec![low, high],
-            Kind::Analogue => Vec::new(),
-        }
-    }
-
-    /// Order of one pass.
-    pub fn order(&self) -> usize {
-        self.order
     }
 }
 

@@ -1,6 +1,7 @@
 //! From velocity to displacement and back: in frequency line by line, in time with a high-pass.
 
 use super::filter::Filter;
+use super::sound::rate_of;
 use super::spectrum;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -119,10 +120,7 @@ pub struct Integrated {
 /// band.
 pub fn in_time(trace: &Trace, how: &InTime) -> Result<Integrated> {
     check(how.times, 1)?;
-    let Some(rate) = trace.rate() else {
-        return Err(Error::refused(format!("the sampling rate of {:?} is not known", trace.meta.name))
-            .hint("state it with --rate"));
-    };
+    let rate = rate_of(trace)?;
     let filter = Filter::high_pass(how.corner, how.order, rate)?;
     let band = band(how, rate);
     if band[0] >= band[1] {

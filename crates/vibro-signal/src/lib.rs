@@ -6,6 +6,7 @@ pub mod filter;
 pub mod impact;
 pub mod integrate;
 pub mod segment;
+mod sound;
 pub mod spectrum;
 pub mod transfer;
 pub mod welch;

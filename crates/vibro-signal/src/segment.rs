@@ -1,5 +1,6 @@
 //! Records cut into overlapping segments, a batch of them at a time.
 
+use super::sound::no_gaps;
 use vibro_math::lanes;
 use vibro_record::{Error, Result, Traces};
 
@@ -22,13 +23,15 @@ impl Segments {
     /// If the length is below 8 samples, or the overlap leaves no step from one segment to the next.
     pub fn new(length: usize, overlap: f64) -> Result<Segments> {
         if length < 8 {
-            return Err(Error::usage(format!("segments of {length} samples"), "at least 8 samples"));
+            return Err(Error::usage(format!("segments of {length} samples"), "at least 8 samples")
+                .setting("segment"));
         }
         if !(0.0..1.0).contains(&overlap) {
             return Err(Error::usage(
                 format!("an overlap of {overlap}"),
                 "a part of the segment from 0 to below 1",
             )
+            .setting("overlap")
             .hint("0.5 for Hann, 0.75 for a flat top, 0 without a window"));
         }
         let shared = (overlap * length as f64).floor() as usize;
@@ -48,7 +51,7 @@ impl Segments {
 
 /// What a channel was seen to hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Range {
+pub(crate) struct Range {
     /// Smallest value.
     pub low: f64,
     /// Largest value.
@@ -56,7 +59,7 @@ pub struct Range {
 }
 
 /// Reads a file's channels and hands out as many whole segments at a time as fill a batch.
-pub struct Batches<'a> {
+pub(crate) struct Batches<'a> {
     traces: &'a mut Traces,
     segments: Segments,
     frames: usize,
@@ -114,13 +117,8 @@ impl<'a> Batches<'a> {
             let seen = lanes::survey(values);
             (range.low, range.high) = (range.low.min(seen.low), range.high.max(seen.high));
             if !seen.finite {
-                let at = values.iter().position(|v| !v.is_finite()).unwrap_or(0);
                 let name = self.traces.channels().get(channel).map_or("", |m| m.name.as_str());
-                return Err(Error::refused(format!(
-                    "sample {} of channel {name:?} is missing: a transform would spread it over all lines",
-                    self.frames + at
-                ))
-                .hint("cut the record before the gap, or bridge it"));
+                no_gaps(values, name, self.frames)?;
             }
         }
         self.frames += new;

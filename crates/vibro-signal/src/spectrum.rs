@@ -6,6 +6,7 @@
 //! (Heinzel, Rüdiger & Schilling, Spectrum and spectral density estimation by the DFT, 2002, section 9).
 
 use super::fft::Transform;
+use super::sound::{constant, no_gaps, rate_of};
 use super::welch::Averages;
 use super::window;
 use num_complex::Complex64;
@@ -34,27 +35,14 @@ use vibro_record::{Axis, Error, Meta, Result, Scaling, Spectrum, Trace, Values, 
 /// If the trace has no sampling rate, fewer than 8 samples, missing ones or a single value, or the scaling is not one that a
 /// transform gives.
 pub fn plain(trace: &Trace, window: Window, scaling: Scaling, detrend: bool) -> Result<Spectrum> {
-    let Some(rate) = trace.rate() else {
-        return Err(Error::refused(format!("the sampling rate of {:?} is not known", trace.meta.name))
-            .hint("state it with --rate"));
-    };
+    let rate = rate_of(trace)?;
     let n = trace.values.len();
     if n < 8 {
         return Err(Error::refused(format!("{n} samples are too few for a spectrum: at least 8 are needed")));
     }
-    if let Some(i) = trace.values.iter().position(|v| !v.is_finite()) {
-        return Err(Error::refused(format!(
-            "sample {i} of channel {:?} is missing: a transform would spread it over all lines",
-            trace.meta.name
-        ))
-        .hint("cut the record before the gap, or bridge it"));
-    }
+    no_gaps(&trace.values, &trace.meta.name, 0)?;
     if trace.values.iter().all(|v| *v == trace.values[0]) {
-        return Err(Error::refused(format!(
-            "channel {:?} holds nothing but the value {}: there is no spectrum of it",
-            trace.meta.name, trace.values[0]
-        ))
-        .hint("check the sensor, its cable and the range of the input"));
+        return Err(constant(&trace.meta.name, trace.values[0]));
     }
     let mean = if detrend { trace.values.iter().sum::<f64>() / n as f64 } else { 0.0 };
     let weights = window::samples(window, n);

@@ -10,7 +10,7 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use vibro_record::units::Unit;
-use vibro_record::{Axis, Error, Frf, FrfKind, Meta, Result, Scaling, Spectrum, Values};
+use vibro_record::{Axis, Error, Finding, Frf, FrfKind, Meta, Result, Scaling, Spectrum, Values};
 
 /// Below this share of the largest line there is no excitation, only rounding.
 const NOTHING: f64 = 1e-28;
@@ -21,10 +21,10 @@ const ENOUGH: f64 = 7.0;
 /// With fewer independent averages the coherence is near 1 whatever was measured.
 const LEAST: f64 = 2.0;
 
-/// What cannot be told.
+/// No function.
 const NOWHERE: Complex64 = Complex64::new(f64::NAN, f64::NAN);
 
-/// Which noise a frequency response function does not mind.
+/// Estimator of a frequency response function: H1 for noise in the response, H2 for noise in the excitation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Estimator {
@@ -60,8 +60,10 @@ pub struct Transfer {
     pub phase_std: Vec<f64>,
     /// Segments averaged.
     pub averages: usize,
-    /// What a person must know.
+    /// Sentences on the blows of a hammer.
     pub warnings: Vec<String>,
+    /// What limits the function.
+    pub findings: Vec<Finding>,
 }
 
 impl Transfer {
@@ -102,7 +104,7 @@ impl Transfer {
 /// Random errors as in Bendat & Piersol, Random Data (4th ed. 2010), table 9.6: ε(|H|) = √(1−γ²)/(|γ|√(2n)), and the phase's
 /// arcsin ε. The magnitude of Hv is a root of B/A without C, and with the variances of A and B (1/n) and their covariance (γ²/n)
 /// from the same table ε(|Hv|) = √(1−γ²)/√(2n). One of the n averages is spent on H itself; n counts independent segments. Few
-/// averages (below 7) keep their standard deviations, with a warning: they are right, but are themselves known poorly.
+/// averages (below 7) keep their standard deviations, with a finding: they are right, but are themselves known poorly.
 ///
 /// # Errors
 /// For fewer than two independent averages (the coherence of one is always 1; segments that overlap count for less), and if there
@@ -116,10 +118,11 @@ pub fn transfer(
     // Sums of squares may take two segments that do not overlap a hair below.
     if averages.effective < LEAST - 1e-9 {
         return Err(Error::refused(format!(
-            "{} averages are as good as {:.2} independent ones, two are needed at least: the coherence of one is 1 whatever was measured, and says nothing",
+            "{} averages are as good as {:.2} independent ones, two are needed: the coherence of one is always 1",
             averages.count, averages.effective
         ))
-        .hint("a longer record or shorter segments: ten averages or more"));
+        .hint("take a longer record or shorter segments, for ten averages or more")
+        .setting("segment"));
     }
     let (Some(reference), Some(response)) = (metas.first(), metas.get(channel)) else {
         return Err(Error::usage(format!("channel {}", channel + 1), "a channel of the record"));
@@ -146,6 +149,7 @@ pub fn transfer(
         phase_std: Vec::with_capacity(lines),
         averages: averages.count,
         warnings: Vec::new(),
+        findings: Vec::new(),
     };
     result.frf.kind = FrfKind::of(result.frf.meta.quantity);
     let mut silent = 0;
@@ -172,19 +176,18 @@ pub fn transfer(
         result.phase_std.push(error.asin());
     }
     if silent > 0 {
-        result.warnings.push(format!(
-            "On {silent} of {lines} lines excitation or response is empty: there is no function there."
-        ));
+        result.findings.push(Finding::caution("frf-lines-empty").count("n", silent).count("lines", lines));
     }
     if averages.effective < ENOUGH {
-        result.warnings.push(format!(
-            "{} averages (as good as {:.1} independent ones) are few: the coherence is too high, and the standard deviations are themselves uncertain.",
-            averages.count, averages.effective
-        ));
+        result.findings.push(
+            Finding::caution("frf-few-averages")
+                .count("averages", averages.count)
+                .number("independent", averages.effective),
+        );
     }
     let poor = result.coherence.iter().filter(|c| **c < 0.5).count();
     if 2 * poor > lines {
-        result.warnings.push(format!("The coherence is below 0.5 on {poor} of {lines} lines."));
+        result.findings.push(Finding::caution("frf-low-coherence").count("n", poor).count("lines", lines));
     }
     result.frf.meta.step(
         "transfer",

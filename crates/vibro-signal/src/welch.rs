@@ -9,6 +9,7 @@ pub use stream::Stream;
 
 use super::fft::{Transform, Workspace};
 use super::segment::{Batches, Segments};
+use super::sound::constant;
 use super::window;
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -61,7 +62,7 @@ impl Averages {
 
 impl Welch {
     /// Averages over all segments of all channels of `traces`; with `products` against the first of them, too. `progress`
-    /// is told how many samples of each channel have been read.
+    /// gets the number of samples of each channel that have been read.
     ///
     /// # Errors
     /// If the record is shorter than a segment, a sample is missing or a channel is constant, or the file cannot be read.
@@ -77,7 +78,8 @@ impl Welch {
             return Err(Error::refused(format!(
                 "the record has {frames} samples: not one segment of {length} fits into it"
             ))
-            .hint(format!("give segments of at most {frames} samples")));
+            .hint(format!("take segments of at most {frames} samples"))
+            .setting("segment"));
         }
         let names: Vec<String> = traces.channels().iter().map(|m| m.name.clone()).collect();
         let kernel = Kernel::new(*self);
@@ -97,11 +99,7 @@ impl Welch {
         }
         for (name, range) in names.iter().zip(batches.ranges()) {
             if range.low == range.high {
-                return Err(Error::refused(format!(
-                    "channel {name:?} holds nothing but the value {}: there is no spectrum of it",
-                    range.low
-                ))
-                .hint("check the sensor, its cable and the range of the input"));
+                return Err(constant(name, range.low));
             }
         }
         Ok(total.mean(&kernel.weights, self.segments, rate, self.detrend))

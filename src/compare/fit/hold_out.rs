@@ -224,7 +224,7 @@ fn blocks(data: &Data, responses: &[Response]) -> Vec<HeldOut> {
             readings.map(|reading| &data.sweeps[reading.sweep].0).any(|name| *name == r.name)
         };
         for response in responses.iter().filter(measures) {
-            let named = response.resonances.iter().map(|r| (r.kind.clone(), r.frequency));
+            let named = response.resonances.iter().map(|r| (r.kind.name().to_owned(), r.frequency));
             let jumps = response.jumps.iter().map(|j| ("jump".to_owned(), j.frequency));
             for (feature, frequency) in named.chain(jumps) {
                 let away = |k: &usize| (at(&own[*k]) - frequency).abs();

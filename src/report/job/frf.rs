@@ -5,6 +5,7 @@ use crate::campaign::{Campaign, FrfEntry};
 use crate::error::Result;
 use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal};
 use crate::record::{Meta, Record};
+use crate::report::words::{Voice, sentences};
 use crate::report::{Figure, Output, files, pictures, tables};
 use serde::Serialize;
 
@@ -22,6 +23,8 @@ pub struct FrfResult {
     /// Its modes.
     #[serde(flatten)]
     pub modal: ModalResult,
+    /// What a person must know, in words.
+    pub warnings: Vec<String>,
 }
 
 /// Lines that were computed, with the number of their function.
@@ -57,9 +60,11 @@ pub(super) fn frfs(
                 from_blows: meta.from_blows(),
             };
             // A function without a mode is no reason to give up the rest of a campaign.
-            let mut found = match modal(&measured, &wanted) {
+            let mut doubts = meta.doubts.clone();
+            let found = match modal(&measured, &wanted) {
                 Err(error) if error.exit_code() == 1 => {
-                    ModalResult { modes: Vec::new(), warnings: vec![format!("No modes: {error}.")] }
+                    doubts.push(format!("No modes: {error}."));
+                    ModalResult { modes: Vec::new(), findings: Vec::new() }
                 }
                 found => found?,
             };
@@ -67,14 +72,15 @@ pub(super) fn frfs(
             if let Some(figure) = pictures::nyquist(&name, &measured, &found.modes) {
                 figures.push((format!("nyquist_{number}"), figure));
             }
-            found.warnings.splice(0..0, meta.doubts.iter().cloned());
-            merge(warnings, &name, &found.warnings);
+            doubts.extend(sentences(&found.findings, Voice::Campaign));
+            merge(warnings, &name, &doubts);
             results.push(FrfResult {
                 name: name.clone(),
                 file,
                 quantity: meta.quantity.name(),
                 unit: meta.unit.symbol().to_owned(),
                 modal: found,
+                warnings: doubts,
             });
         }
     }
@@ -122,6 +128,7 @@ fn functions(
         let name = entry.name.clone().unwrap_or_else(|| file.clone());
         let Some(found) = or_left_out(found, &name, warnings)? else { return Ok(Vec::new()) };
         merge(warnings, &name, &found.warnings);
+        merge(warnings, &name, &sentences(&found.findings, Voice::Campaign));
         let records = found.records();
         let [Record::Frf(frf), Record::Spectrum(coherence)] = records.as_slice() else {
             return Ok(Vec::new());

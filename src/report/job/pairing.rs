@@ -1,7 +1,8 @@
 //! Sweeps that belong together: both masses, both directions, one level of force.
 
 use crate::compare::{Forcing, levels};
-use crate::measure::resonance::{NamedCurve, crossings, deepest, name_modes};
+use crate::measure::crossing::crossings;
+use crate::measure::resonance::{NamedCurve, deepest, name_modes};
 use crate::measure::response::Response;
 use crate::record::Direction;
 use serde::Serialize;

@@ -4,6 +4,7 @@ use super::{JobOptions, file_name, merge, or_left_out};
 use crate::campaign::Campaign;
 use crate::error::Result;
 use crate::measure::pulse::{PulseOptions, PulseResult, pulse, two_times};
+use crate::report::words::{Voice, sentences};
 use crate::report::{Figure, pictures};
 use serde::Serialize;
 
@@ -51,7 +52,7 @@ pub(super) fn pulses(
         if let Some(figure) = pictures::pulse(&name, &result) {
             figures.push((format!("pulse_{}", found.len() + 1), figure));
         }
-        merge(warnings, &name, &result.warnings);
+        merge(warnings, &name, &sentences(&result.findings, Voice::Campaign));
         found.push(NamedPulse { name, file, result });
     }
     Ok(found)

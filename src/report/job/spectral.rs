@@ -5,6 +5,7 @@ use crate::campaign::{Campaign, RecordEntry};
 use crate::error::Result;
 use crate::measure::spectral::{SpectralOptions, SpectralResult, spectral};
 use crate::record::Traces;
+use crate::report::words::{Voice, sentences};
 use crate::report::{Figure, Output, files, pictures};
 use serde::Serialize;
 
@@ -68,6 +69,7 @@ pub(super) fn spectra(
         let name = entry.name.clone().unwrap_or_else(|| file.clone());
         let Some(result) = or_left_out(found, &name, warnings)? else { continue };
         merge(warnings, &name, &result.warnings);
+        merge(warnings, &name, &sentences(&result.findings, Voice::Campaign));
         let channel = result.name.clone();
         results.push(SpectrumResult { channel, file, result: SpectralResult { name, ..result } });
     }

@@ -2,7 +2,7 @@
 
 use super::lettered;
 use super::response::capital;
-use crate::measure::pulse::PulseResult;
+use crate::measure::pulse::{ContactModel, PulseResult};
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 use crate::units::notation::significant;
 
@@ -57,9 +57,9 @@ pub fn pulse(title: &str, result: &PulseResult) -> Option<Figure> {
             points.iter().map(|p| (p.0 - start, p.1)).unzip()
         };
         let name = match curve.model {
-            "kelvin-voigt" => format!("spring and damper{rejected}"),
-            "hertz" => "Hertz".to_owned(),
-            _ => "Hunt and Crossley".to_owned(),
+            ContactModel::KelvinVoigt => format!("spring and damper{rejected}"),
+            ContactModel::Hertz => "Hertz".to_owned(),
+            ContactModel::HuntCrossley => "Hunt and Crossley".to_owned(),
         };
         let (t, v) = shifted(&curve.points);
         above = above.with(Series::line(name, t, v).ink(Ink::Nth(i)).stroke(stroke));

@@ -2,6 +2,7 @@
 
 use super::lettered;
 use crate::measure::jump::Jump;
+use crate::measure::resonance::{Resonance, ResonanceKind};
 use crate::measure::response::Response;
 use crate::record::Direction;
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
@@ -133,9 +134,10 @@ fn names(responses: &[Response]) -> Vec<(String, f64, f64)> {
     let mut found: Vec<(String, Vec<Direction>, f64, f64)> = Vec::new();
     for response in responses {
         let Some(direction) = response.direction else { continue };
-        for r in response.resonances.iter().filter(|r| r.kind == "grazing" || r.kind == "clapping") {
+        let named = |r: &&Resonance| matches!(r.kind, ResonanceKind::Grazing | ResonanceKind::Clapping);
+        for r in response.resonances.iter().filter(named) {
             // Equal to what the label prints.
-            match found.iter_mut().find(|f| f.0 == r.kind && (f.2 - r.frequency).abs() < 0.01) {
+            match found.iter_mut().find(|f| f.0 == r.kind.name() && (f.2 - r.frequency).abs() < 0.01) {
                 Some(known) => {
                     if !known.1.contains(&direction) {
                         known.1.push(direction);
@@ -144,7 +146,7 @@ fn names(responses: &[Response]) -> Vec<(String, f64, f64)> {
                         (known.2, known.3) = (r.frequency, r.amplitude);
                     }
                 }
-                None => found.push((r.kind.clone(), vec![direction], r.frequency, r.amplitude)),
+                None => found.push((r.kind.name().to_owned(), vec![direction], r.frequency, r.amplitude)),
             }
         }
     }

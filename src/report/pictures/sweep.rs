@@ -3,7 +3,7 @@
 use super::lettered;
 use crate::compare::Named;
 use crate::measure::jump::Jump;
-use crate::measure::resonance::Resonance;
+use crate::measure::resonance::{Resonance, ResonanceKind};
 use crate::model::continuation::Branch;
 use crate::model::sweep::{Observable, Point, Swept};
 use crate::record::Direction;
@@ -78,8 +78,8 @@ fn plot(
         }
     }
     for r in resonances.iter().filter(|r| r.mass == mass) {
-        if matches!(r.found.kind.as_str(), "grazing" | "clapping") {
-            let text = format!("{} {:.2} Hz, {}", r.found.kind, r.found.frequency, r.direction.name());
+        if matches!(r.found.kind, ResonanceKind::Grazing | ResonanceKind::Clapping) {
+            let text = format!("{} {:.2} Hz, {}", r.found.kind.name(), r.found.frequency, r.direction.name());
             plot = plot.note(text, r.found.frequency, r.found.amplitude);
         }
     }

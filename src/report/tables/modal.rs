@@ -2,6 +2,7 @@
 
 use super::headed;
 use crate::measure::modal::ModalResult;
+use crate::report::words::{Voice, sentence};
 use crate::report::{Cell, Table};
 
 /// Modes of frequency response functions, each with its name.
@@ -50,11 +51,11 @@ pub fn modal_methods(result: &ModalResult) -> Table {
     let mut table = headed("By method", &columns);
     for by in result.modes.iter().flat_map(|m| &m.by) {
         table.push([
-            Cell::from(by.method),
+            Cell::from(by.method.name()),
             Cell::from(&by.frequency),
             by.zeta.as_ref().map_or(Cell::Missing, Cell::from),
             by.modal_constant.as_ref().map_or(Cell::Missing, Cell::from),
-            Cell::from(by.note.as_str()),
+            Cell::from(by.note.as_ref().map_or_else(String::new, |n| sentence(n, Voice::Campaign))),
         ]);
     }
     table

@@ -50,7 +50,7 @@ pub fn pulse_fits(title: &str, result: &PulseResult) -> Table {
             p => Cell::from(p),
         };
         let known = [
-            Cell::from(fit.model),
+            Cell::from(fit.model.name()),
             Cell::Number(fit.residual),
             Cell::Number(fit.aicc),
             whiteness,

@@ -40,7 +40,7 @@ pub fn sweep_named(resonances: &[Named<Resonance>], jumps: &[Named<Jump>]) -> Ta
         table.push([
             usize::from(r.mass).into(),
             r.direction.name().into(),
-            r.found.kind.as_str().into(),
+            r.found.kind.name().into(),
             pair(r.found.frequency, r.found.frequency_std),
             r.found.amplitude.into(),
         ]);
@@ -49,7 +49,7 @@ pub fn sweep_named(resonances: &[Named<Resonance>], jumps: &[Named<Jump>]) -> Ta
         table.push([
             usize::from(j.mass).into(),
             j.direction.name().into(),
-            format!("jump, {}", j.found.change).into(),
+            format!("jump, {}", j.found.change.name()).into(),
             pair(j.found.frequency, Some(j.found.frequency_std)),
             j.found.amplitude_after.into(),
         ]);

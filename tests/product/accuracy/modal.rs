@@ -79,7 +79,7 @@ fn a_mode_one_line_wide(proportional: bool, from: u64, draws: Draws) {
             .iter()
             .min_by(|a, b| (a.frequency.value - f0).abs().total_cmp(&(b.frequency.value - f0).abs()))
             .unwrap_or_else(|| panic!("seed {seed}: no mode"));
-        assert!(mode.frequency.std.is_some(), "seed {seed}: {:?}", found.warnings);
+        assert!(mode.frequency.std.is_some(), "seed {seed}: {:?}", found.findings);
         frequency.add(&mode.frequency, f0, bound[0]);
         zeta.add(&mode.zeta, damping, bound[1]);
         // |A| moves with its real part by cos of its phase; the imaginary part's share is left to the coverage.
@@ -265,7 +265,7 @@ fn structures_in_a_band(with_coherence: bool, banded: bool, from: u64, draws: Dr
                 }
                 None if !seen => {}
                 None => {
-                    println!("seed {seed} γ² {gamma:.5}: no {t:?} of {truth:?}: {:?}", found.warnings);
+                    println!("seed {seed} γ² {gamma:.5}: no {t:?} of {truth:?}: {:?}", found.findings);
                     missed += 1;
                 }
             }

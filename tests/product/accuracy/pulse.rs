@@ -223,7 +223,7 @@ fn a_low_pass_above_half_the_sampling_rate_leaves_no_uncertainty(draws: Draws) {
         let found = pulse(&trace(values, case.dt), &PulseOptions { instrument, mass: None })
             .unwrap_or_else(|e| panic!("seed {seed}: {e}"));
         assert!(found.xi.std.is_none() && found.frequency.std.is_none(), "seed {seed}: {found:?}");
-        assert!(found.warnings.iter().any(|w| w.contains("half the sampling rate")), "seed {seed}");
+        assert!(found.findings.iter().any(|f| f.code == "pulse-corner-above-half-rate"), "seed {seed}");
     }
 }
 

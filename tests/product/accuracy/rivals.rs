@@ -128,8 +128,9 @@ fn rival(model: usize, from: u64, alphas: (f64, f64), draws: Draws) {
             .collect();
         let found = pulse(&trace(values, dt), &PulseOptions { instrument: Instrument::Flat, mass: None })
             .unwrap_or_else(|e| panic!("seed {seed}, alpha {alpha}: {e}"));
-        let Some(fit) = found.fits.iter().find(|f| f.model == ["", "hertz", "hunt-crossley"][model]) else {
-            panic!("seed {seed}: {:?}", found.warnings);
+        let Some(fit) = found.fits.iter().find(|f| f.model.name() == ["", "hertz", "hunt-crossley"][model])
+        else {
+            panic!("seed {seed}: {:?}", found.findings);
         };
         let truths = [
             ("onset", onset),

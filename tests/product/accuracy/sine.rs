@@ -161,7 +161,9 @@ fn coloured_noise_is_counted_where_the_sine_is(draws: Draws) {
         let trace = Trace { meta, axis: Axis::time(0.0, 1.0 / RATE, n), values };
         let one = sine(&trace, None).unwrap();
         let several = tones(&trace, 1).unwrap();
-        said += usize::from(one.warnings.iter().chain(&several.warnings).any(|w| w.contains("not white")));
+        said += usize::from(
+            one.findings.iter().chain(&several.findings).any(|f| f.code == "sine-noise-coloured"),
+        );
         let of_tones = (&several.tones[0].frequency, &several.tones[0].amplitude);
         for (k, (frequency, size)) in [(&one.frequency, &one.amplitude), of_tones].into_iter().enumerate() {
             let (Some(f_std), Some(size_std)) = (frequency.std, size.std) else { continue };

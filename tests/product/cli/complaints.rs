@@ -242,17 +242,18 @@ fn odd_sweeps_are_answered_with_a_warning() {
     let folder = tempfile::tempdir().unwrap();
     let mut shuffled = frequencies();
     shuffled.swap(3, 4);
-    let warned = |frequencies: &[f64], word: &str| {
+    let warned = |frequencies: &[f64], code: &str| {
         let list = sweep(folder.path(), frequencies);
         let value = json(&["response", text(&list), "--unit", "m/s"]);
         assert_eq!(value["points"].as_array().unwrap().len(), frequencies.len());
-        assert!(value["warnings"].to_string().contains(word), "{}", value["warnings"]);
+        let findings = value["findings"].as_array().unwrap();
+        assert!(findings.iter().any(|f| f["code"] == code), "{}", value["findings"]);
     };
-    warned(&shuffled, "not in order");
+    warned(&shuffled, "sweep-out-of-order");
     let mut doubled = frequencies();
     doubled[5] = doubled[4];
-    warned(&doubled, "repeat");
-    warned(&[5.03], "one point");
+    warned(&doubled, "sweep-steps-repeated");
+    warned(&[5.03], "sweep-too-few-points");
     // A map of repeated excitations has one row each.
     let list = sweep(folder.path(), &doubled);
     let out = folder.path().join("out");
@@ -265,8 +266,10 @@ fn a_window_that_does_not_fit_is_said() {
     let list = sweep(folder.path(), &frequencies());
     for (window, said) in [("hann", false), ("rectangular", true), ("flat-top", true)] {
         let value = json(&["response", text(&list), "--unit", "m/s", "--window", window]);
-        assert_eq!(value["warnings"].to_string().contains("off the shape"), said, "{window}");
-        assert_eq!(value["warnings"].to_string().contains("hann would fit"), said, "{window}");
+        let finding =
+            &value["findings"].as_array().unwrap().iter().find(|f| f["code"] == "sweep-window-unlike");
+        assert_eq!(finding.map(|f| f["numbers"]["better"].clone()), said.then(|| "hann".into()), "{window}");
+        assert_eq!(value["points"][0]["amplitude"]["std"].is_null(), said, "{window}");
     }
 }
 

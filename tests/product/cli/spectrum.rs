@@ -45,7 +45,7 @@ fn lines_of_a_channel() {
     // Two lines and above; the first is named.
     assert_eq!(numbers(&once, "frequency")[0], 2.0);
     assert!((numbers(&once, "value")[62] / (v[64] / (TAU * 64.0)) - 1.0).abs() < 1e-9);
-    assert!(once["warnings"][0].as_str().unwrap().contains("left out"));
+    assert_eq!(once["findings"][0]["code"], "lines-below-cutoff");
     let whole = json(&[
         "spectrum",
         text(&path),
@@ -237,9 +237,9 @@ fn a_hammer_names_the_windows_applied() {
         let zeta = value["modes"][0]["zeta"]["value"].as_f64().unwrap();
         // What the end of a record leaves is 0.01 e⁻³ of the response; with the window's decay ζ would be 0.026.
         assert!((zeta / 0.01 - 1.0).abs() < 0.05, "{file:?}: {value}");
-        assert!(value["warnings"].to_string().contains("taken off"), "{value}");
+        assert!(value["findings"].to_string().contains("modal-window-decay"), "{value}");
         // The file says that it came from blows, not from a lasting excitation.
-        assert!(!value["warnings"].to_string().contains("lasting excitation"), "{value}");
+        assert!(!value["findings"].to_string().contains("modal-leakage"), "{value}");
     }
     for (option, value) in [
         ("--window", "hann"),
@@ -330,7 +330,7 @@ fn blows_left_out_are_named_and_records_too_short_are_said() {
         {
             assert!(z(key, truth).abs() < 2.5, "{name}, {key}: {} from {truth}: {mode}", z(key, truth));
         }
-        assert!(value["warnings"].to_string().contains("is left when the record of a blow ends"), "{value}");
+        assert!(value["findings"].to_string().contains("modal-blow-cut-off"), "{value}");
         // The unit of the function is not that of the coherence beside it.
         let scaled = json(&["modal", text(&file), "--band", "40:58", "--channel", "1", "--unit", "(mm/s)/N"]);
         let ratio = scaled["modes"][0]["modal_constant"]["value"].as_f64().unwrap()

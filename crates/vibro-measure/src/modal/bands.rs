@@ -1,9 +1,10 @@
 //! Which lines belong to which peak.
 
 use super::Measured;
-use super::response::hertz;
+use crate::median::upper_median;
 use crate::peaks::local_maxima;
 use std::ops::Range;
+use vibro_record::units::notation::significant;
 use vibro_record::{Error, Result};
 
 /// A peak: its line, its bandwidth in Hz as far as the lines show it, and its height above the higher of its valleys.
@@ -55,24 +56,27 @@ pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Ve
     let mut within = 0..f.len();
     if let Some((low, high)) = band {
         if !(low >= 0.0 && high > low && high.is_finite()) {
-            return Err(Error::usage(format!("a band from {low} to {high} Hz"), "LO:HI in Hz, LO below HI"));
+            return Err(Error::usage(format!("a band from {low} to {high} Hz"), "LO:HI in Hz, LO below HI")
+                .setting("band"));
         }
         within = f.partition_point(|f| *f < low)..f.partition_point(|f| *f <= high);
         peaks.retain(|p| within.contains(&p.at));
         if within.is_empty() {
             return Err(Error::refused(format!(
                 "no line between {low} and {high} Hz: the function runs from {} to {} Hz",
-                hertz(f[0]),
-                hertz(f[f.len() - 1])
+                significant(f[0], 6),
+                significant(f[f.len() - 1], 6)
             ))
-            .hint("choose a band within it"));
+            .hint("choose a band within it")
+            .setting("band"));
         }
         if peaks.is_empty() {
             return Err(Error::refused(format!(
                 "no peak between {low} and {high} Hz stands a factor of {PROMINENCE} above its valleys and clear of the noise ({} lines)",
                 within.len()
             ))
-            .hint("a mode without a peak cannot be told from noise here; choose a band around a peak"));
+            .hint("choose a band around a peak")
+            .setting("band"));
         }
     }
     if peaks.is_empty() {
@@ -115,13 +119,11 @@ pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Ve
 /// vanishes; 0 where there are too few lines.
 fn noise(measured: &Measured, at: usize) -> f64 {
     let around = at.saturating_sub(LINES)..(at + LINES + 1).min(measured.values.len());
-    let mut differences: Vec<f64> =
-        measured.values[around].windows(3).map(|v| (v[0] - 2.0 * v[1] + v[2]).norm()).collect();
-    differences.sort_by(f64::total_cmp);
+    let differences = measured.values[around].windows(3).map(|v| (v[0] - 2.0 * v[1] + v[2]).norm());
     // A second difference of lines of σ has 6σ² a component. The median of a Rayleigh variable is √(2 ln 2) of its scale; that of the size of a
     // normal one 0.6745, and magnitudes of noise alone scatter by 0.655σ.
     let median = if measured.magnitude_only { 0.6745 * 0.655 } else { (2.0 * f64::ln(2.0)).sqrt() };
-    differences.get(differences.len() / 2).map_or(0.0, |d| d / (median * f64::sqrt(6.0)))
+    upper_median(differences).map_or(0.0, |d| d / (median * f64::sqrt(6.0)))
 }
 
 /// Whether there are too few lines, or bandwidths, between two peaks to fit each alone.

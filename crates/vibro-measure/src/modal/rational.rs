@@ -155,10 +155,10 @@ impl Scaled<'_> {
 }
 
 /// Fits modes near the first guesses `starts` (frequency in Hz, damping ratio) to the lines `part` of a function from which
-/// `others` are taken away.
+/// `others` are subtracted.
 ///
-/// Noise is weighted by the coherence where there is one, its level or its share of the response smoothed over lines; else as equal on all lines or as proportional to the response,
-/// whichever makes the residuals more likely in both cases.
+/// Noise is weighted by the coherence where there is one, its level or its share of the response smoothed over lines; else as equal
+/// on all lines or as proportional to the response. In both cases the more likely of the two is taken.
 pub(super) fn rational(
     measured: &Measured,
     part: std::ops::Range<usize>,
@@ -173,10 +173,11 @@ pub(super) fn rational(
         return Err(Error::refused(format!(
             "{lines} lines hold {numbers} numbers, too few for {parameters} parameters and their uncertainty"
         ))
-        .hint("take a wider band"));
+        .hint("take a wider band")
+        .setting("band"));
     }
     let f = &measured.frequency[part.clone()];
-    // Without phases nothing can be taken away.
+    // Without phases nothing can be subtracted.
     let others = if measured.magnitude_only { &[] } else { others };
     let taken = |f: f64| others.iter().map(|o| o.at(f, power)).sum::<Complex64>();
     let values: Vec<Complex64> =
@@ -196,7 +197,7 @@ pub(super) fn rational(
     };
     let width = (f[f.len() - 1] - f[0]) / (f.len() - 1) as f64;
     let equal = vec![1.0; lines];
-    let refuse = || Error::refused("no first guess of the modes resembles the lines");
+    let refuse = || Error::refused("no first guess of the modes fits the lines");
     let start = if measured.magnitude_only {
         scaled.guess()
     } else {

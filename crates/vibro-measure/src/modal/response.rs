@@ -2,12 +2,7 @@
 
 use num_complex::Complex64;
 use vibro_record::units::notation::significant;
-use vibro_record::{Error, Frf, FrfKind, Meta, Place, Record, Result, Scaling, Spectrum, Values};
-
-/// A frequency to six digits, as in a sentence.
-pub(super) fn hertz(f: f64) -> String {
-    format!("{f:.5e}").parse::<f64>().unwrap_or(f).to_string()
-}
+use vibro_record::{Error, Finding, Frf, FrfKind, Meta, Place, Record, Result, Scaling, Spectrum, Values};
 
 /// A frequency response function as the estimates of modes take it, complex or in magnitude only, with its coherence where known.
 #[derive(Debug, Clone, PartialEq)]
@@ -105,24 +100,6 @@ impl Measured {
         let all: Vec<&Record> = records.iter().filter(|r| is_coherence(r)).collect();
         match all.as_slice() {
             [Record::Spectrum(coherence)] => self.with_coherence(coherence),
-            [] if records.iter().any(names_coherence) => {
-                let values = records.iter().filter(|r| names_coherence(r)).flat_map(real_values);
-                let (mut above, mut below, mut largest) = (0, 0, f64::NEG_INFINITY);
-                for v in values {
-                    above += usize::from(*v > 1.0 + 1e-6);
-                    below += usize::from(*v < -1e-6);
-                    largest = largest.max(*v);
-                }
-                Err(Error::input(
-                    Place::default(),
-                    format!(
-                        "{above} values of the coherence are above 1 and {below} below 0, the largest is {}",
-                        significant(largest, 4)
-                    ),
-                    "values between 0 and 1",
-                )
-                .hint("a coherence in per cent is to be divided by 100; leave --coherence out if it is none"))
-            }
             _ => Err(Error::input(
                 Place::default(),
                 format!("{} coherences", all.len()),
@@ -140,6 +117,16 @@ impl Measured {
         let Values::Real(values) = &coherence.values else {
             return Err(Error::refused("the coherence is complex: it is no coherence"));
         };
+        if 2 * values.iter().filter(|c| is_impossible(**c)).count() > values.len() {
+            let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            return Err(Error::input(
+                Place::default(),
+                format!("a coherence up to {}", significant(largest, 4)),
+                "values between 0 and 1",
+            )
+            .hint("divide a coherence in per cent by 100, or leave it out")
+            .setting("coherence"));
+        }
         let width = self.frequency.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
         let same = values.len() == self.frequency.len()
             && self
@@ -167,42 +154,30 @@ impl Measured {
         }
     }
 
-    /// Without the lines that cannot be used; those are named in `warnings`.
-    pub(super) fn usable(mut self, least: f64, warnings: &mut Vec<String>) -> Result<Measured> {
+    /// Without the lines that cannot be used, each kind of which is a finding.
+    ///
+    /// # Errors
+    /// If fewer than five lines are left.
+    pub(super) fn usable(mut self, least: f64, findings: &mut Vec<Finding>) -> Result<Measured> {
         let coherence = self.coherence.take();
         let n = self.frequency.len();
         let of = |i: usize| coherence.as_ref().and_then(|c| c.get(i)).copied();
-        let missing: Vec<usize> = (0..n)
-            .filter(|i| {
-                let c = of(*i);
-                !(self.values[*i].re.is_finite() && self.values[*i].im.is_finite())
-                    || c.is_some_and(f64::is_nan)
-            })
-            .collect();
-        // Rounding takes a coherence of 1 a little beyond.
-        let impossible: Vec<usize> = (0..n)
-            .filter(|i| of(*i).is_some_and(|c| !c.is_nan() && !(-1e-6..=1.0 + 1e-6).contains(&c)))
-            .collect();
-        let low: Vec<usize> =
-            (0..n).filter(|i| of(*i).is_some_and(|c| (-1e-6..least).contains(&c))).collect();
-        for (which, why) in [
-            (&missing, "missing (not a number)".to_owned()),
-            (&impossible, "of a coherence above 1 or below 0, which no measurement has".to_owned()),
-            (&low, format!("of a coherence below {least}")),
-        ] {
-            if !which.is_empty() {
-                let named: Vec<String> = which.iter().take(6).map(|i| hertz(self.frequency[*i])).collect();
-                let more = if which.len() > 6 { ", …" } else { "" };
-                warnings.push(format!(
-                    "{} lines are left out, {why}: {}{more} Hz.",
-                    which.len(),
-                    named.join(", ")
-                ));
-            }
-        }
+        let missing = |i: usize| !self.values[i].is_finite() || of(i).is_some_and(f64::is_nan);
+        let impossible = |i: usize| !missing(i) && of(i).is_some_and(is_impossible);
+        let low = |i: usize| !missing(i) && !impossible(i) && of(i).is_some_and(|c| c < least);
+        let left_out: [(Finding, &dyn Fn(usize) -> bool); 3] = [
+            (Finding::caution("frf-lines-missing"), &missing),
+            (Finding::caution("frf-lines-impossible-coherence"), &impossible),
+            (Finding::caution("frf-lines-low-coherence").number("least", least), &low),
+        ];
         let mut good: Vec<bool> = self.frequency.iter().map(|f| *f > 0.0).collect();
-        for i in missing.iter().chain(&impossible).chain(&low) {
-            good[*i] = false;
+        for (finding, is_left_out) in left_out {
+            let lines: Vec<usize> = (0..n).filter(|i| is_left_out(*i)).collect();
+            lines.iter().for_each(|i| good[*i] = false);
+            if !lines.is_empty() {
+                let first: Vec<f64> = lines.iter().take(NAMED).map(|i| self.frequency[*i]).collect();
+                findings.push(finding.count("n", lines.len()).numbers("lines", first));
+            }
         }
         let kept: Vec<usize> = (0..n).filter(|i| good[*i]).collect();
         if kept.len() < 5 {
@@ -221,29 +196,18 @@ impl Measured {
     }
 }
 
-/// Whether a record says that it is a coherence, or is named so and has the values of one, but for some that are impossible.
+/// Most lines that a finding names.
+const NAMED: usize = 6;
+
+/// Whether no measurement has this coherence. Rounding takes one of 1 a little beyond.
+fn is_impossible(coherence: f64) -> bool {
+    !coherence.is_nan() && !(-1e-6..=1.0 + 1e-6).contains(&coherence)
+}
+
+/// Whether a record says that it is a coherence, or is named so and has no unit.
 fn is_coherence(record: &Record) -> bool {
     let Record::Spectrum(s) = record else { return false };
-    let like = || {
-        let values = real_values(record);
-        let possible = values.iter().filter(|v| v.is_nan() || (-1e-6..=1.0 + 1e-6).contains(*v)).count();
-        2 * possible > values.len()
-    };
-    s.scaling == Scaling::Coherence || (names_coherence(record) && like())
-}
-
-/// Whether a record is named a coherence and has no unit, whatever its values.
-fn names_coherence(record: &Record) -> bool {
-    let Record::Spectrum(s) = record else { return false };
-    s.scaling == Scaling::Unknown
-        && matches!(s.values, Values::Real(_))
-        && s.meta.name.to_lowercase().contains("coherence")
-        && matches!(s.meta.unit.symbol(), "" | "1")
-}
-
-fn real_values(record: &Record) -> &[f64] {
-    match record {
-        Record::Spectrum(Spectrum { values: Values::Real(values), .. }) => values,
-        _ => &[],
-    }
+    let named = s.meta.name.to_lowercase().contains("coherence") && matches!(s.meta.unit.symbol(), "" | "1");
+    let real = matches!(s.values, Values::Real(_));
+    s.scaling == Scaling::Coherence || (s.scaling == Scaling::Unknown && named && real)
 }

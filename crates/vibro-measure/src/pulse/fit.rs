@@ -1,28 +1,10 @@
 //! Models of a contact fitted to the samples of a pulse.
 
-use super::{HuntCrossley, KelvinVoigt, LowPass};
+use super::{ContactModel, HuntCrossley, KelvinVoigt, LowPass};
 use crate::residuals::{Whiteness, student};
 use std::f64::consts::PI;
 use vibro_math::{Fit, least_squares};
 use vibro_record::{Error, Result};
-
-/// What a pulse may be.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Model {
-    KelvinVoigt,
-    Hertz,
-    HuntCrossley,
-}
-
-impl Model {
-    pub fn name(self) -> &'static str {
-        match self {
-            Model::KelvinVoigt => "kelvin-voigt",
-            Model::Hertz => "hertz",
-            Model::HuntCrossley => "hunt-crossley",
-        }
-    }
-}
 
 /// Samples in units of about the pulse: time from its rising flank over its length, value over its height.
 pub(super) struct Samples {
@@ -40,36 +22,14 @@ pub(super) struct Samples {
 /// A model at its best, its parameters onset, baseline, velocity of approach, and those of its shape: ξ and f, duration, or
 /// duration and α.
 pub(super) struct Fitted {
-    pub model: Model,
+    pub model: ContactModel,
     pub fit: Fit,
     /// First sample inside the contact, where the model begins with a jump.
     first: Option<usize>,
 }
 
-/// How far the numbers of a fit may be trusted.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Trust {
-    /// Uncertainties by the fit's covariance are to be enlarged by this factor; not a number where too few samples are left
-    /// to know their scatter.
-    Widened(f64),
-    /// The pulse begins otherwise than the model can: the parameters may be anything.
-    Refused,
-}
-
-impl Trust {
-    /// A value, where it may be given at all.
-    pub fn value(self, value: f64) -> f64 {
-        if self == Trust::Refused { f64::NAN } else { value }
-    }
-
-    /// The factor for uncertainties; not a number where none may be stated.
-    pub fn factor(self) -> f64 {
-        if let Trust::Widened(factor) = self { factor } else { f64::NAN }
-    }
-}
-
-/// Samples that the search for a first guess looks at.
-const GLANCE: usize = 48;
+/// Samples that the search for a first guess uses.
+const COARSE: usize = 48;
 
 /// Corner of a low-pass over the sampling rate from which on its rise takes fewer than about four samples.
 const FAST: f64 = 0.1;
@@ -84,7 +44,7 @@ const BASELINE: usize = 1;
 const AROUND: f64 = 0.1;
 
 impl Samples {
-    /// Samples whose values a converter rounded to whole numbers of `code`, which may be 0.
+    /// Samples of a converter of this step, which may be 0.
     pub fn new(
         times: Vec<f64>,
         values: Vec<f64>,
@@ -121,11 +81,17 @@ impl Samples {
     }
 
     /// The model at these rising times; `first` is the first time inside the contact where that is settled.
-    pub fn model(&self, model: Model, p: &[f64], times: &[f64], first: Option<usize>) -> Option<Vec<f64>> {
+    pub fn model(
+        &self,
+        model: ContactModel,
+        p: &[f64],
+        times: &[f64],
+        first: Option<usize>,
+    ) -> Option<Vec<f64>> {
         let filter = self.filter.as_ref();
         let since = times.iter().map(|t| t - p[0]);
         let shape: Vec<f64> = match model {
-            Model::KelvinVoigt => {
+            ContactModel::KelvinVoigt => {
                 let contact = KelvinVoigt::new(p[3], p[4])?;
                 let end = contact.duration();
                 match filter {
@@ -139,8 +105,10 @@ impl Samples {
                         .collect(),
                 }
             }
-            Model::Hertz if p[3] > 0.0 => self.hertz.decelerations(p[3], filter, &since.collect::<Vec<_>>()),
-            Model::HuntCrossley if p[3] > 0.0 => {
+            ContactModel::Hertz if p[3] > 0.0 => {
+                self.hertz.decelerations(p[3], filter, &since.collect::<Vec<_>>())
+            }
+            ContactModel::HuntCrossley if p[3] > 0.0 => {
                 HuntCrossley::new(p[4])?.decelerations(p[3], filter, &since.collect::<Vec<_>>())
             }
             _ => return None,
@@ -149,9 +117,9 @@ impl Samples {
     }
 
     /// The best fit of a model, from a coarse search over onset and shape.
-    pub fn fit(&self, model: Model) -> Result<Fitted> {
+    pub fn fit(&self, model: ContactModel) -> Result<Fitted> {
         let starts = self.starts(model)?;
-        if model != Model::KelvinVoigt || self.filter.is_some() {
+        if model != ContactModel::KelvinVoigt || self.filter.is_some() {
             let guesses = starts.iter().take(3).cloned().chain(self.stepped(model, &starts));
             return best(guesses.map(|p| self.from(model, &p, None)));
         }
@@ -183,9 +151,9 @@ impl Samples {
 
     /// More guesses for a contact through a low-pass so fast that its rise, like a jump, falls between a few samples: each of
     /// them then holds a minimum of its own.
-    fn stepped(&self, model: Model, starts: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    fn stepped(&self, model: ContactModel, starts: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let fast = self.filter.as_ref().is_some_and(|f| f.corner() * self.step > FAST);
-        if model != Model::KelvinVoigt || !fast {
+        if model != ContactModel::KelvinVoigt || !fast {
             return Vec::new();
         }
         let near = self.nearer(&starts[0]);
@@ -197,15 +165,17 @@ impl Samples {
         (-3..=3).map(moved).collect()
     }
 
-    /// How far a fit may be trusted: not at all where more is left around the onset than elsewhere, and is not white noise.
-    pub fn trust(&self, fitted: &Fitted, whiteness: &Whiteness) -> Trust {
+    /// Factor for the uncertainties by the fit's covariance. `None` where more is left around the onset than elsewhere, and is not
+    /// white noise: the pulse begins otherwise than the model can, and the parameters may be anything.
+    pub fn widening(&self, fitted: &Fitted, whiteness: &Whiteness) -> Option<f64> {
         let onset = fitted.fit.parameters[0];
         let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
         let around = onset - AROUND..=onset + AROUND + delay;
         if whiteness.rejected() && self.more_left(fitted, |t| around.contains(&t)) {
-            return Trust::Refused;
+            return None;
         }
-        Trust::Widened(whiteness.inflation * student(fitted.fit.degrees_of_freedom()).unwrap_or(f64::NAN))
+        // At least nine samples leave four degrees of freedom.
+        Some(whiteness.inflation * student(fitted.fit.degrees_of_freedom()).unwrap_or(f64::NAN))
     }
 
     /// Whether the residuals at some times have more than twice the variance of the others, and more than chance gives: the
@@ -220,7 +190,7 @@ impl Samples {
         near.0 / near.1 > limit * (far.0 / far.1).max(self.rounding.0.powi(2))
     }
 
-    fn from(&self, model: Model, start: &[f64], first: Option<usize>) -> Result<Fitted> {
+    fn from(&self, model: ContactModel, start: &[f64], first: Option<usize>) -> Result<Fitted> {
         let scale: Vec<f64> = start.iter().map(|p| p.abs().max(0.1)).collect();
         let residuals = |p: &[f64], out: &mut [f64]| match self.model(model, p, &self.times, first) {
             Some(values) => {
@@ -230,7 +200,7 @@ impl Samples {
         };
         let fit = least_squares(residuals, self.times.len(), start, &scale)?;
         if !fit.converged {
-            return Err(Error::refused(format!("the fit of the model {} did not converge", model.name())));
+            return Err(Error::refused(format!("the fit of the model {} does not converge", model.name())));
         }
         Ok(Fitted { model, fit, first })
     }
@@ -250,7 +220,7 @@ impl Samples {
                     let Some(contact) = KelvinVoigt::lasting(duration, xi) else { continue };
                     let onset = guess[0] + reach * f64::from(onset) / steps;
                     let mut p = vec![onset, 0.0, 1.0, xi, contact.frequency()];
-                    let curve = self.model(Model::KelvinVoigt, &p, &self.times, None);
+                    let curve = self.model(ContactModel::KelvinVoigt, &p, &self.times, None);
                     let Some((base, velocity, sum)) = curve.and_then(|c| line(&c, &self.values)) else {
                         continue;
                     };
@@ -266,15 +236,15 @@ impl Samples {
 
     /// First guesses, the best first, one for each shape: durations and onsets on a grid, baseline and velocity by linear least
     /// squares.
-    fn starts(&self, model: Model) -> Result<Vec<Vec<f64>>> {
-        let stride = self.times.len().div_ceil(GLANCE).max(1);
+    fn starts(&self, model: ContactModel) -> Result<Vec<Vec<f64>>> {
+        let stride = self.times.len().div_ceil(COARSE).max(1);
         let thin = |all: &[f64]| all.iter().copied().step_by(stride).collect::<Vec<f64>>();
         let (times, values) = (thin(&self.times), thin(&self.values));
         let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
         let shapes: &[f64] = match model {
-            Model::KelvinVoigt => &[0.03, 0.15, 0.3, 0.5, 0.75],
-            Model::Hertz => &[0.0],
-            Model::HuntCrossley => &[0.1, 0.6, 2.0],
+            ContactModel::KelvinVoigt => &[0.03, 0.15, 0.3, 0.5, 0.75],
+            ContactModel::Hertz => &[0.0],
+            ContactModel::HuntCrossley => &[0.1, 0.6, 2.0],
         };
         let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
         for shape in shapes {
@@ -284,12 +254,12 @@ impl Samples {
                     let onset = -delay - 0.08 * f64::from(lead) * duration;
                     let mut p = vec![onset, 0.0, 1.0];
                     match model {
-                        Model::KelvinVoigt => match KelvinVoigt::lasting(duration, *shape) {
+                        ContactModel::KelvinVoigt => match KelvinVoigt::lasting(duration, *shape) {
                             Some(contact) => p.extend([*shape, contact.frequency()]),
                             None => continue,
                         },
-                        Model::Hertz => p.push(duration),
-                        Model::HuntCrossley => p.extend([duration, *shape]),
+                        ContactModel::Hertz => p.push(duration),
+                        ContactModel::HuntCrossley => p.extend([duration, *shape]),
                     }
                     let Some(curve) = self.model(model, &p, &times, None) else { continue };
                     let Some((base, velocity, sum)) = line(&curve, &values) else { continue };
@@ -323,7 +293,7 @@ impl Fitted {
     pub fn end(&self) -> f64 {
         let p = &self.fit.parameters;
         p[0] + match self.model {
-            Model::KelvinVoigt => KelvinVoigt::new(p[3], p[4]).map_or(f64::NAN, |c| c.duration()),
+            ContactModel::KelvinVoigt => KelvinVoigt::new(p[3], p[4]).map_or(f64::NAN, |c| c.duration()),
             _ => p[3],
         }
     }

@@ -1,5 +1,6 @@
 //! Where in a record the pulse is.
 
+use crate::median::upper_median;
 use vibro_record::{Error, Result};
 
 /// The largest pulse of a record.
@@ -9,8 +10,6 @@ pub(super) struct Located {
     pub baseline: f64,
     /// Largest excursion from it, with its sign.
     pub height: f64,
-    /// Standard deviation of the noise, from neighbours: too small where the noise is not white; that of rounding at least.
-    pub noise: f64,
     /// Step of the converter; 0 where none shows.
     pub step: f64,
     /// Places, in samples, where the flanks cross half the height.
@@ -21,22 +20,22 @@ pub(super) struct Located {
     pub clipped: Vec<usize>,
 }
 
-/// Equal samples in a row at the largest value from which on a top is taken for clipped.
-const FLAT: usize = 3;
+/// Fewest samples of a flat top.
+const FLAT: f64 = 3.0;
 
-/// A flat top that begins and ends by more steps of the converter than these was cut off while the pulse rose and fell; a contact begins
-/// by a jump, and may be round behind it.
-const ROUNDED: f64 = 8.0;
-
-/// Most steps in the height of a pulse that matter: with more, rounding is a ten-thousandth of the height.
+/// Most converter steps in the height of a pulse that matter: with more, rounding is a ten-thousandth of the height.
 const STEPS: f64 = 4096.0;
 
-/// Noise deviations within which samples count as equal to the largest.
+/// Standard deviations of the noise within which samples count as equal to the largest.
 const BAND: f64 = 8.0;
 
-/// Noise deviations that a pulse must stand above the baseline.
+/// Standard deviations of the noise that a pulse must stand above the baseline: white noise of 10⁶ samples reaches 5.
 const LEAST: f64 = 6.0;
 
+/// Finds the largest pulse.
+///
+/// # Errors
+/// If no pulse stands out of the noise, or its onset or end is not in the record.
 pub(super) fn locate(values: &[f64]) -> Result<Located> {
     let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);
@@ -45,26 +44,24 @@ pub(super) fn locate(values: &[f64]) -> Result<Located> {
     };
     if least == most {
         return Err(Error::refused(format!("all samples are {least}: there is no pulse"))
-            .hint("check the channel: `vibro info` lists all"));
+            .hint("choose the channel that holds the pulse")
+            .setting("channel"));
     }
     let baseline = mode(&sorted);
     let step = quantum(&sorted);
-    let white = {
-        let mut steps: Vec<f64> =
-            values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|d| d.is_finite()).collect();
-        steps.sort_by(f64::total_cmp);
-        // Median to standard deviation of a normal distribution, and of a difference to that of a value.
-        1.4826 * steps.get(steps.len() / 2).copied().unwrap_or(0.0) / f64::sqrt(2.0)
-    };
+    // Median to standard deviation of a normal distribution, and of a difference to that of a value.
+    let differences = values.windows(2).map(|w| (w[1] - w[0]).abs());
+    let white = 1.4826 * upper_median(differences).unwrap_or(0.0) / f64::sqrt(2.0);
     let noise = white.max(step / f64::sqrt(12.0));
     let far = |v: &f64| if v.is_finite() { (v - baseline).abs() } else { -1.0 };
     let peak = (0..values.len()).max_by(|a, b| far(&values[*a]).total_cmp(&far(&values[*b]))).unwrap_or(0);
     let height = values[peak] - baseline;
     if height.abs() < LEAST * white {
         return Err(Error::refused(format!(
-            "no pulse stands out: the largest excursion is {:.1} times the noise between neighbours, {LEAST} are needed",
+            "no pulse stands out: the largest excursion is {:.1} times the noise, {LEAST} times are needed",
             height.abs() / white
-        )));
+        ))
+        .hint("choose a record with one clean pulse and its baseline"));
     }
     let part = |i: usize| (values[i] - baseline) / height;
     let before = (0..peak).rev().find(|i| part(*i) < 0.5);
@@ -77,29 +74,17 @@ pub(super) fn locate(values: &[f64]) -> Result<Located> {
     let Some(after) = after else { return Err(missing("stops", "end")) };
     let cross = |a: usize, b: usize| a as f64 + (0.5 - part(a)) / (part(b) - part(a)) * (b as f64 - a as f64);
     let low = (after..values.len()).find(|i| part(*i) < 0.2).unwrap_or(after);
-    let top = values[peak];
-    let mut clipped = Vec::new();
-    let mut i = before;
-    while i < after {
-        let run = values[i..after].iter().take_while(|v| **v == top).count();
-        let mut left = [i.checked_sub(1), Some(i + run)].into_iter().flatten().filter_map(|k| values.get(k));
-        let cut = left.all(|v| (v - top).abs() > ROUNDED * step)
-            || flat(run as f64, (after - before) as f64, step / height.abs());
-        if run >= FLAT && cut {
-            clipped.extend(i..i + run);
-        }
-        i += run.max(1);
-    }
     let flanks = (cross(before, before + 1), cross(after - 1, after));
-    if clipped.is_empty() {
-        let near = |i: &usize| height.abs() * (1.0 - part(*i)) < BAND * noise;
-        let from = (before..=peak).rev().take_while(near).last().unwrap_or(peak);
-        let to = (peak..after).take_while(near).last().unwrap_or(peak);
-        if flat((to + 1 - from) as f64, flanks.1 - flanks.0, BAND * noise / height.abs()) {
-            clipped.extend(from..=to);
-        }
-    }
-    Ok(Located { baseline, height, noise, step, flanks, low, clipped })
+    // At a converter's step, or within the noise: each sees tops that the other does not.
+    let clipped = [step, BAND * noise].into_iter().find_map(|depth| {
+        let near = |i: &usize| height.abs() * (1.0 - part(*i)) <= depth;
+        let from = (before..=peak).rev().take_while(near).last()?;
+        let to = (peak..after).take_while(near).last()?;
+        let run = (to + 1 - from) as f64;
+        flat(run, flanks.1 - flanks.0, depth / height.abs()).then(|| (from..=to).collect())
+    });
+    let clipped = clipped.unwrap_or_default();
+    Ok(Located { baseline, height, step, flanks, low, clipped })
 }
 
 /// Step of a converter with few bits: the smallest between rising values, where all are whole numbers of it apart.
@@ -116,16 +101,17 @@ fn quantum(sorted: &[f64]) -> f64 {
     if step > 2.0 * least && step.is_finite() && sorted.iter().all(whole) { step } else { 0.0 }
 }
 
-/// Whether `run` samples within `depth`, a part of the height, of the largest are a flat top of a pulse that is `width` samples wide at half its height. The top
-/// of a half sine, 1.5 widths long, is within a part x of its height for (3/π) acos(1 − x) of these; three times that, and an eighth
-/// of the width at least, is no shape of a contact.
+/// Whether `run` samples within `depth` (a part of the height) of the largest are a flat top of a pulse `width` samples wide at half
+/// its height.
+///
+/// The top of a half sine, 1.5 widths long, is within a part x of its height for (3/π) acos(1 − x) widths. Three times that, and an
+/// eighth of the width at least, is the shape of no contact.
 fn flat(run: f64, width: f64, depth: f64) -> bool {
     let round = 3.0 / std::f64::consts::PI * (1.0 - depth).max(-1.0).acos() * width;
-    run > 3.0 * round + FLAT as f64 && run > width / 8.0
+    run > 3.0 * round + FLAT && run > width / 8.0
 }
 
-/// Middle of the shortest interval that holds a quarter of the values: where most of them are, unlike the median of a record
-/// that is mostly pulse.
+/// Middle of the shortest interval that holds a quarter of the values: the baseline, also of a record that is mostly pulse.
 fn mode(sorted: &[f64]) -> f64 {
     let quarter = (sorted.len() / 4).clamp(1, sorted.len().max(2) - 1);
     sorted

@@ -4,6 +4,30 @@ use super::KelvinVoigt;
 use crate::Estimate;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use vibro_record::Finding;
+
+/// A model of a contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ContactModel {
+    /// Spring and damper side by side.
+    KelvinVoigt,
+    /// Two curved bodies without losses.
+    Hertz,
+    /// Two curved bodies with losses that grow with the indentation.
+    HuntCrossley,
+}
+
+impl ContactModel {
+    /// Its name, as in JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            ContactModel::KelvinVoigt => "kelvin-voigt",
+            ContactModel::Hertz => "hertz",
+            ContactModel::HuntCrossley => "hunt-crossley",
+        }
+    }
+}
 
 /// Damping and frequency of a contact, what follows from them, and the models that were fitted.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -24,21 +48,21 @@ pub struct PulseResult {
     pub duration: Estimate,
     /// Every model fitted to the whole pulse; the first is the one of spring and damper.
     pub fits: Vec<PulseFit>,
-    /// What a person must know.
-    pub warnings: Vec<String>,
+    /// What was assumed, and what the record leaves open.
+    pub findings: Vec<Finding>,
     /// Curves for a figure.
     #[serde(skip)]
     pub picture: Option<PulsePicture>,
 }
 
 impl PulseResult {
-    /// The same without the numbers of a contact that was not the one measured.
+    /// The same without values: the record is no such contact.
     pub(super) fn refused(mut self) -> PulseResult {
         let contact = [&mut self.xi, &mut self.frequency, &mut self.restitution, &mut self.duration];
         let more = [&mut self.stiffness, &mut self.damping, &mut self.initial_velocity];
         for estimate in contact.into_iter().chain(more.into_iter().flatten()) {
             (estimate.value, estimate.std) = (f64::NAN, None);
-            estimate.method.push_str(", refused: see the warnings");
+            estimate.method.push_str(", refused: see the findings");
         }
         self
     }
@@ -47,8 +71,8 @@ impl PulseResult {
 /// A model fitted to a pulse.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PulseFit {
-    /// `kelvin-voigt`, `hertz` or `hunt-crossley`.
-    pub model: &'static str,
+    /// The model.
+    pub model: ContactModel,
     /// Root mean square of what is left, in the unit of the record.
     pub residual: f64,
     /// Akaike's criterion, corrected; the smaller the better, and only differences count.
@@ -75,8 +99,8 @@ pub struct PulsePicture {
 /// One model over the pulse.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PulseCurve {
-    /// `kelvin-voigt`, `hertz` or `hunt-crossley`.
-    pub model: &'static str,
+    /// The model.
+    pub model: ContactModel,
     /// Time in s and value, closely spaced.
     pub points: Vec<(f64, f64)>,
     /// Time in s and residual of every sample that was fitted.
@@ -110,7 +134,7 @@ pub(super) fn propagated(
     Some((value, variance.sqrt()))
 }
 
-/// All that follows from the parameters of a contact of spring and damper, without fits and warnings.
+/// All that follows from the parameters of a contact of spring and damper, without fits and findings.
 pub(super) fn contact_estimates(
     (parameters, scale): (&[f64], &[f64]),
     covariance: impl Fn(usize, usize) -> f64,
@@ -133,7 +157,7 @@ pub(super) fn contact_estimates(
         initial_velocity: None,
         duration: estimate("s", &|c| c.duration())?,
         fits: Vec::new(),
-        warnings: Vec::new(),
+        findings: Vec::new(),
         picture: None,
     })
 }

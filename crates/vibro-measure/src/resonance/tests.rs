@@ -1,32 +1,34 @@
 //! Resonances, jumps and crossings of curves whose answer is known.
 
 use super::*;
+use crate::crossing::crossings;
+use crate::jump::Change;
 use crate::jump::{jump, jumps};
 use num_complex::Complex64;
 
 #[test]
 fn a_mass_that_moves_alone_does_not_clap() {
-    let resonance = |f, a, kind: &str| Resonance {
+    let resonance = |f, a, kind: ResonanceKind| Resonance {
         frequency: f,
         frequency_std: None,
         amplitude: a,
         amplitude_std: None,
-        kind: kind.into(),
+        kind,
         at_jump: false,
     };
     let mut first = vec![
-        resonance(5.5, 10.0, "resonance"),
-        resonance(7.5, 0.1, "antiresonance"),
-        resonance(10.6, 2.0, "resonance"),
+        resonance(5.5, 10.0, ResonanceKind::Resonance),
+        resonance(7.5, 0.1, ResonanceKind::Antiresonance),
+        resonance(10.6, 2.0, ResonanceKind::Resonance),
         // A deeper minimum behind both modes, and a bump behind it: no mode.
-        resonance(10.8, 0.05, "antiresonance"),
-        resonance(10.9, 0.06, "resonance"),
+        resonance(10.8, 0.05, ResonanceKind::Antiresonance),
+        resonance(10.9, 0.06, ResonanceKind::Resonance),
     ];
-    let mut second = vec![resonance(5.5, 9.0, "resonance")];
+    let mut second = vec![resonance(5.5, 9.0, ResonanceKind::Resonance)];
     let curve = |above| vec![(4.0, 1.0, 0.0), (5.5, 9.0, 0.0), (9.0, above, 0.0), (13.0, above, 0.0)];
-    for (above, expected) in [(1e-6, "resonance"), (1.0, "clapping")] {
-        first[2].kind = "resonance".into();
-        first[0].kind = "resonance".into();
+    for (above, expected) in [(1e-6, ResonanceKind::Resonance), (1.0, ResonanceKind::Clapping)] {
+        first[2].kind = ResonanceKind::Resonance;
+        first[0].kind = ResonanceKind::Resonance;
         let direction = Direction::Up;
         name_modes(&mut [
             NamedCurve {
@@ -44,9 +46,9 @@ fn a_mass_that_moves_alone_does_not_clap() {
                 resonances: &mut second,
             },
         ]);
-        assert_eq!((first[0].kind.as_str(), first[2].kind.as_str()), ("grazing", expected));
-        assert_eq!(first[4].kind, "resonance");
-        assert_eq!(second[0].kind, "grazing");
+        assert_eq!((first[0].kind, first[2].kind), (ResonanceKind::Grazing, expected));
+        assert_eq!(first[4].kind, ResonanceKind::Resonance);
+        assert_eq!(second[0].kind, ResonanceKind::Grazing);
     }
 }
 
@@ -136,7 +138,7 @@ fn a_hardening_peak_ends_in_a_drop() {
     let a: Vec<f64> = f.iter().map(|f| if *f < 10.6 { 1.0 + (f - 8.0) } else { 0.8 }).collect();
     let jumps = jumps(&f, &a, &[0.01; 12], Direction::Up);
     assert_eq!(jumps.len(), 1);
-    assert_eq!((jumps[0].change, jumps[0].from), ("drop", f[8]));
+    assert_eq!((jumps[0].change, jumps[0].from), (Change::Drop, f[8]));
     let peaks = resonances(&f, &a, &[0.01; 12], &jumps, None);
     assert_eq!(peaks.len(), 1);
     assert!(peaks[0].at_jump && peaks[0].frequency == f[8]);
@@ -190,19 +192,19 @@ fn a_zero_is_an_antiresonance_and_a_sum_of_tails_a_minimum() {
     let f: Vec<f64> = (0..57).map(|i| 4.0 + 0.1 * f64::from(i)).collect();
     for (size, mass, expected) in [
         // Poles of the same sign: a zero between them, whichever the mass.
-        (1.0, None, "antiresonance"),
-        (0.2, Some(2), "antiresonance"),
-        (1.0, Some(1), "antiresonance"),
+        (1.0, None, ResonanceKind::Antiresonance),
+        (0.2, Some(2), ResonanceKind::Antiresonance),
+        (1.0, Some(1), ResonanceKind::Antiresonance),
         // Opposite signs: none.
-        (-0.2, None, "minimum"),
-        (-1.0, Some(2), "minimum"),
-        (-5.0, Some(2), "minimum"),
+        (-0.2, None, ResonanceKind::Minimum),
+        (-1.0, Some(2), ResonanceKind::Minimum),
+        (-5.0, Some(2), ResonanceKind::Minimum),
     ] {
         let a: Vec<f64> = f.iter().map(|f| two_modes(*f, size)).collect();
         let std: Vec<f64> = a.iter().map(|a| 1e-4 * a).collect();
         let found = resonances(&f, &a, &std, &[], mass);
-        let kinds: Vec<&str> = found.iter().map(|r| r.kind.as_str()).collect();
-        assert_eq!(kinds, ["resonance", expected, "resonance"], "{size} {mass:?}");
+        let kinds: Vec<ResonanceKind> = found.iter().map(|r| r.kind).collect();
+        assert_eq!(kinds, [ResonanceKind::Resonance, expected, ResonanceKind::Resonance], "{size} {mass:?}");
     }
 }
 
@@ -212,14 +214,18 @@ fn a_minimum_in_the_noise_lies_between_what_stands_out() {
     let a = [4.0, 9.0, 6.0, 3.0, 0.1, 0.02, 0.07, 2.0, 5.0, 8.0, 3.0];
     let std = [0.1; 11];
     let found = resonances(&f, &a, &std, &[], Some(1));
-    let minimum = found.iter().find(|r| r.kind == "antiresonance").unwrap();
+    let minimum = found.iter().find(|r| r.kind == ResonanceKind::Antiresonance).unwrap();
     // Point 5; points 3 and 7 stand out.
     assert_eq!((minimum.frequency, minimum.frequency_std), (5.0, Some(2.0 / f64::sqrt(3.0))));
     assert_eq!((minimum.amplitude, minimum.amplitude_std), (0.02, Some(0.1)));
     // Faint points up to the edge of the curve, and behind a jump, are none.
-    assert!(resonances(&f[..7], &a[..7], &std[..7], &[], Some(1)).iter().all(|r| r.kind == "resonance"));
+    assert!(
+        resonances(&f[..7], &a[..7], &std[..7], &[], Some(1))
+            .iter()
+            .all(|r| r.kind == ResonanceKind::Resonance)
+    );
     let jump = jump([(3.0, 3.0, 0.1), (4.0, 0.1, 0.1)], Direction::Up);
-    assert!(resonances(&f, &a, &std, &[jump], Some(1)).iter().all(|r| r.kind == "resonance"));
+    assert!(resonances(&f, &a, &std, &[jump], Some(1)).iter().all(|r| r.kind == ResonanceKind::Resonance));
 }
 
 /// Going down, mass 2 begins to move at 5.5; mass 1 falls there by less than a jump that stands on its own, or goes on.
@@ -248,7 +254,7 @@ fn where_one_mass_jumps_the_other_does_if_its_slopes_do_not_tell() {
         ]);
         assert_eq!((found[0].len(), found[1].len()), (expected, 1), "{fall}");
         for jump in &found[0] {
-            assert_eq!((jump.from, jump.to, jump.change), (6.0, 5.0, "drop"));
+            assert_eq!((jump.from, jump.to, jump.change), (6.0, 5.0, Change::Drop));
         }
     }
 }

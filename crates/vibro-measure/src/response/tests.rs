@@ -4,7 +4,7 @@ use super::*;
 use crate::synthetic::{LINES, Normal, spectrum};
 use num_complex::Complex64;
 use vibro_record::units::Unit;
-use vibro_record::{Axis, Meta, Scaling, Spectrum, Values};
+use vibro_record::{Axis, Fact, Meta, Scaling, Spectrum, Values};
 
 /// A response to a given excitation.
 fn step(name: &str, excitation: f64, window: Window, lines: Vec<f64>) -> SweepPoint {
@@ -36,6 +36,10 @@ fn sweep(points: Vec<SweepPoint>) -> Sweep {
     }
 }
 
+fn finding<'a>(found: &'a Response, code: &str) -> Option<&'a Finding> {
+    found.findings.iter().find(|f| f.code == code)
+}
+
 #[test]
 fn upper_limits_are_passed_by_no_more_than_one_in_twenty_and_by_no_fewer_than_the_noise_asks() {
     let mut normal = Normal(0xfa17);
@@ -65,10 +69,9 @@ fn upper_limits_are_passed_by_no_more_than_one_in_twenty_and_by_no_fewer_than_th
         // below 3, and one of 3 reads so in 3 % of all cases. Limits that are much too wide are never passed.
         assert!((20..=63).contains(&missed), "{window:?}: {missed} of {limited}");
         // A peak that noise pushes further than a line away counts as another one.
-        let hidden = found.warnings.iter().flat_map(|w| w.matches("hides the response")).count();
-        assert!(hidden <= 5, "{window:?}: {hidden}");
-        let said = |w: &String| w.contains("amplitude(s) do not stand out");
-        assert!(found.warnings.iter().any(said), "{:?}", found.warnings);
+        let hidden = finding(&found, "sweep-hidden-by-lines").map_or(0.0, |f| f.get("n").unwrap());
+        assert!(hidden <= 5.0, "{window:?}: {hidden}");
+        assert!(finding(&found, "sweep-below-noise").is_some(), "{:?}", found.findings);
     }
 }
 
@@ -101,18 +104,22 @@ fn a_line_beside_the_excitation_widens_limit_and_uncertainty() {
         assert!(missed <= 16, "{truth} {other}: {missed}");
         // Leakage moves the magnitude by its whole at most and by 1/√2 of it at strong responses; it is found to a few percent.
         assert!((0.5..1.2).contains(&ratio), "{truth} {other}: {ratio}");
-        let told = found.warnings.iter().find(|w| w.contains("hides the response at 80.3000 Hz")).unwrap();
-        let at = told.split("another line at ").nth(1).and_then(|w| w.split(' ').next()).unwrap();
+        let hidden = finding(&found, "sweep-hidden-by-lines").unwrap();
+        let numbers = |name| match hidden.fact(name) {
+            Some(Fact::Numbers(values)) => values.clone(),
+            other => panic!("{name}: {other:?}"),
+        };
+        assert!(numbers("responses").iter().all(|f| *f == 80.3), "{hidden:?}");
         // The response bends it by about the ratio of the two.
-        assert!((at.parse::<f64>().unwrap() - 80.3 - apart).abs() < 0.1, "{told}");
-        assert!(!found.warnings.iter().any(|w| w.contains("do not stand out")), "{:?}", found.warnings);
+        assert!(numbers("lines").iter().all(|f| (f - 80.3 - apart).abs() < 0.1), "{hidden:?}");
+        assert!(finding(&found, "sweep-below-noise").is_none(), "{:?}", found.findings);
     }
     // A line that lies too far to reach the response does not touch its limit.
     let sines = [(80.3, Complex64::new(1.0, 0.0)), (110.0, Complex64::new(500.0, 0.0))];
     let point = step("response", 80.3, Window::Hann, spectrum(Window::Hann, &sines, 1.0, &mut normal));
     let found = response(&sweep(vec![point]), &ResponseOptions::default()).unwrap();
     assert!(found.points[0].upper_limit.unwrap() < 10.0, "{:?}", found.points[0]);
-    assert!(!found.warnings.iter().any(|w| w.contains("hides")), "{:?}", found.warnings);
+    assert!(finding(&found, "sweep-hidden-by-lines").is_none(), "{:?}", found.findings);
 }
 
 #[test]
@@ -140,35 +147,17 @@ fn harmonics_in_the_noise_have_a_limit_and_no_others() {
 }
 
 #[test]
-fn a_file_that_is_named_twice_is_told() {
+fn a_file_that_is_named_twice_is_found() {
     let point = |name: &str, height: f64| {
         let lines = (0..LINES).map(|k| if k == 80 { height } else { 0.01 * height }).collect();
         step(name, 80.0, Window::Hann, lines)
     };
-    let told = |points: Vec<SweepPoint>| {
+    let steps = |points: Vec<SweepPoint>| {
         let found = response(&sweep(points), &ResponseOptions::default()).unwrap();
-        found.warnings.into_iter().find(|w| w.contains("may stand twice"))
+        finding(&found, "sweep-steps-repeated").map(|f| ["first", "second"].map(|name| f.get(name).unwrap()))
     };
-    assert_eq!(told(vec![point("a", 1.0), point("b", 2.0), point("c", 3.0)]), None);
-    assert!(told(vec![point("a", 1.0), point("b", 2.0), point("a", 1.0)]).unwrap().contains("1 and 3"));
+    assert_eq!(steps(vec![point("a", 1.0), point("b", 2.0), point("c", 3.0)]), None);
+    assert_eq!(steps(vec![point("a", 1.0), point("b", 2.0), point("a", 1.0)]), Some([1.0, 3.0]));
     // A copy under another name.
-    assert!(told(vec![point("a", 1.0), point("b", 2.0), point("c", 2.0)]).unwrap().contains("2 and 3"));
-}
-
-#[test]
-fn a_point_that_stands_alone_is_told() {
-    let mut normal = Normal(0xa10e);
-    let mut told = |heights: [f64; 7]| {
-        let steps = heights.iter().zip(0..).map(|(height, i)| {
-            let at = 40.3 + f64::from(i);
-            let lines = spectrum(Window::Hann, &[(at, Complex64::new(*height, 0.0))], 1e-3, &mut normal);
-            step(&format!("{i}"), at, Window::Hann, lines)
-        });
-        let found = response(&sweep(steps.collect()), &ResponseOptions::default()).unwrap();
-        found.warnings.into_iter().find(|w| w.contains("One point alone"))
-    };
-    // The middle one in another range, and a top that the steps resolve.
-    let said = told([1.0, 1.1, 1.2, 3.9, 1.3, 1.2, 1.1]).unwrap();
-    assert!(said.contains("43.3000 Hz (3.0 times its neighbours)"), "{said}");
-    assert_eq!(told([1.0, 1.4, 2.0, 2.4, 2.1, 1.5, 1.1]), None);
+    assert_eq!(steps(vec![point("a", 1.0), point("b", 2.0), point("c", 2.0)]), Some([2.0, 3.0]));
 }

@@ -4,7 +4,7 @@ use super::coherence;
 use crate::tones::Tone;
 use serde::Serialize;
 use vibro_record::units::notation;
-use vibro_record::{Axis, Frf, Grid, Record, Scaling, Spectrum, Values, Window};
+use vibro_record::{Axis, Finding, Frf, Grid, Record, Scaling, Spectrum, Values, Window};
 use vibro_signal::impact::Blow;
 use vibro_signal::transfer::{Estimator, Transfer};
 
@@ -42,8 +42,10 @@ pub struct SpectralResult {
     pub response: Option<Response>,
     /// Sines fitted to the whole record, the strongest first; empty where none were asked for.
     pub tones: Vec<Tone>,
-    /// What a person must know.
+    /// What the reader of the channels doubts, and what was found of a hammer's blows, in words.
     pub warnings: Vec<String>,
+    /// What was left out, and what limits the lines.
+    pub findings: Vec<Finding>,
     /// The lines as they were found.
     #[serde(skip)]
     pub found: Lines,
@@ -100,6 +102,7 @@ impl SpectralResult {
             response: None,
             tones: Vec::new(),
             warnings,
+            findings: Vec::new(),
             found: Lines::Spectrum(spectrum),
         }
     }
@@ -137,6 +140,7 @@ impl SpectralResult {
             }),
             tones: Vec::new(),
             warnings,
+            findings: found.findings.clone(),
             found: Lines::Transfer(found),
         }
     }
@@ -167,12 +171,11 @@ impl SpectralResult {
         self.level_unit = Some(format!("dB re {unit}"));
     }
 
-    /// Says which lines an integration leaves out.
+    /// Notes which lines an integration leaves out.
     pub(super) fn left_out(&mut self, integrated: i8, fmin: f64) {
         if integrated > 0 {
-            self.warnings.push(format!(
-                "Lines below {fmin:.6} Hz are left out: integrated, they would be noise divided by the frequency. Choose with --fmin."
-            ));
+            // Integrated they would be noise divided by the frequency.
+            self.findings.push(Finding::note("lines-below-cutoff").number("fmin", fmin));
         }
     }
 

@@ -39,7 +39,7 @@ fn rational(measured: &Measured) -> Result<Answer> {
     let height = |m: &&vibro_measure::modal::Mode| m.modal_constant.value.abs() / m.zeta.value;
     let strongest = found.modes.iter().max_by(|a, b| height(a).total_cmp(&height(b)));
     let mode = strongest.ok_or_else(|| Error::refused("no mode"))?;
-    Ok(Answer::stated(&mode.zeta, &found.warnings))
+    Ok(Answer::found(&mode.zeta, &found.findings))
 }
 
 /// A receptance of modes on lines `step` Hz apart from `from` Hz to `to` Hz, in noise of this part of the highest line.

@@ -5,10 +5,11 @@ use super::trial::{Answer, Case, Kind, Method, Task, cells, measured};
 use crate::{Family, Scene};
 use std::f64::consts::TAU;
 use vibro_math::Noise;
+use vibro_measure::Estimate;
 use vibro_measure::response::{ResponseOptions, response};
 use vibro_measure::sine::sine;
 use vibro_record::units::Unit;
-use vibro_record::{Axis, Error, Meta, Result, Scaling, Sweep, SweepPoint, Trace, Window};
+use vibro_record::{Axis, Error, Finding, Meta, Result, Scaling, Sweep, SweepPoint, Trace, Window};
 use vibro_signal::integrate::{InTime, in_time};
 use vibro_signal::spectrum;
 
@@ -88,10 +89,10 @@ fn with_cut_off(v: &Vibration) -> Result<Answer> {
     if let Some(limit) = point.upper_limit {
         return Err(Error::refused(format!("the amplitude does not stand out; it is below {limit:.3e} m")));
     }
-    // What is said of the sweep as such is nothing on its one point.
-    let of_sweep = |s: &&String| s.contains("one point only") || s.contains("Resonances and jumps");
-    let said: Vec<String> = found.warnings.iter().filter(|s| !of_sweep(s)).cloned().collect();
-    Ok(Answer::stated(&point.amplitude, &said))
+    // One point has no direction.
+    let findings: Vec<Finding> =
+        found.findings.into_iter().filter(|f| f.code != "sweep-too-few-points").collect();
+    Ok(Answer::found(&point.amplitude, &findings))
 }
 
 /// `vibro convert --integrate 1 --fmin f/2 --excitation f`, then the sine of what lies between the edges, over the gain of filter and trapezoid.
@@ -112,7 +113,9 @@ fn filtered(v: &Vibration) -> Result<Answer> {
     let sine = sine(&Trace { values: inner.to_vec(), axis, meta: found.trace.meta.clone() }, Some(f))?;
     let gain = how.gain(f, RATE)?;
     let amplitude = &sine.amplitude;
-    Ok(Answer { value: amplitude.value / gain, std: amplitude.std.map(|s| s / gain), said: sine.warnings })
+    let stated =
+        Estimate { value: amplitude.value / gain, std: amplitude.std.map(|s| s / gain), ..amplitude.clone() };
+    Ok(Answer::found(&stated, &sine.findings))
 }
 
 /// What lies on the velocity beside its noise, in amplitudes of the velocity: a level, and a slope over the whole record.

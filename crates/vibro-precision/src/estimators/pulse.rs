@@ -34,7 +34,7 @@ const WHOLE: Method<Pulse> = Method { name: "whole pulse", ours: true, estimate:
 
 fn whole(p: &Pulse) -> Result<Answer> {
     let found = pulse(&p.trace, &PulseOptions { instrument: p.instrument.clone(), mass: None })?;
-    Ok(Answer::stated(&found.xi, &found.warnings))
+    Ok(Answer::found(&found.xi, &found.findings))
 }
 
 /// ξ from two times that come with an uncertainty, as `vibro pulse --peak --end` gives it.
@@ -44,7 +44,7 @@ const TWO_TIMES: Method<Pulse> = Method {
     estimate: |p| {
         let [peak, end, std] = p.times;
         let found = two_times(peak, end, Some(std), None)?;
-        Ok(Answer::stated(&found.xi, &found.warnings))
+        Ok(Answer::found(&found.xi, &found.findings))
     },
 };
 

@@ -70,7 +70,7 @@ fn silent(value: f64, std: Option<f64>) -> Answer {
 }
 
 fn of_sine(found: &Sine) -> Answer {
-    Answer::stated(&found.frequency, &found.warnings)
+    Answer::found(&found.frequency, &found.findings)
 }
 
 const FREQUENCY: [Method<Trace>; 5] = [
@@ -124,7 +124,7 @@ const AMPLITUDE: [Method<Trace>; 6] = [
     Method {
         name: "least squares",
         ours: true,
-        estimate: |t| sine(t, None).map(|s| Answer::stated(&s.amplitude, &s.warnings)),
+        estimate: |t| sine(t, None).map(|s| Answer::found(&s.amplitude, &s.findings)),
     },
 ];
 
@@ -158,8 +158,8 @@ const WEAKER: [Method<Trace>; 3] = [
 fn weaker(trace: &Trace) -> Result<Answer> {
     let found = tones(trace, 2)?;
     match found.tones.get(1) {
-        Some(tone) => Ok(Answer::stated(&tone.frequency, &found.warnings)),
-        None => Err(Error::refused(found.warnings.join(" "))),
+        Some(tone) => Ok(Answer::found(&tone.frequency, &found.findings)),
+        None => Err(Error::refused("no second tone stands out of the noise")),
     }
 }
 

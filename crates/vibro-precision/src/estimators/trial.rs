@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use vibro_math::Noise;
 use vibro_measure::Estimate;
-use vibro_record::Result;
+use vibro_record::{Finding, Result, Severity};
 
 /// What a method says.
 pub struct Answer {
@@ -30,6 +30,15 @@ impl Answer {
     /// An estimate with its warnings.
     pub fn stated(estimate: &Estimate, warnings: &[String]) -> Answer {
         Answer { value: estimate.value, std: estimate.std, said: warnings.to_vec() }
+    }
+
+    /// An estimate with its findings by their codes; a doubt takes the uncertainty away.
+    pub fn found(estimate: &Estimate, findings: &[Finding]) -> Answer {
+        let said = |f: &Finding| match f.severity {
+            Severity::Doubt => format!("{}: no uncertainty", f.code),
+            Severity::Note | Severity::Caution => f.code.to_owned(),
+        };
+        Answer { value: estimate.value, std: estimate.std, said: findings.iter().map(said).collect() }
     }
 
     /// The first sentence that says that there is no uncertainty, or why.

@@ -96,8 +96,8 @@ fn what_has_no_spectrum_is_refused() {
         plain(&trace, Window::Hann, Scaling::Peak, false).unwrap_err().to_string()
     };
     assert!(error(|t| t.values[7] = f64::NAN).contains("sample 7"));
-    assert!(error(|t| t.values.fill(2.5)).contains("nothing but the value 2.5"));
-    assert!(error(|t| t.axis = Axis::index(N)).contains("--rate"));
+    assert!(error(|t| t.values.fill(2.5)).contains("constant at 2.5"));
+    assert!(error(|t| t.axis = Axis::index(N)).contains("sampling rate"));
     assert!(error(|t| t.values.truncate(5)).contains("5 samples"));
     assert!(plain(&trace(), Window::Hann, Scaling::Energy, false).is_err());
 }

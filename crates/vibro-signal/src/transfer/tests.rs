@@ -115,7 +115,7 @@ fn one_average_and_an_empty_excitation_are_refused() {
     assert!(transfer(&averages, 2, &metas, Estimator::H1).is_err());
     assert!(transfer(&averages, 0, &metas, Estimator::H1).is_err());
     let few = transfer(&averages, 1, &metas, Estimator::H1).unwrap();
-    assert!(few.warnings[0].contains("few"), "{:?}", few.warnings);
+    assert!(few.findings[0].code == "frf-few-averages", "{:?}", few.findings);
 }
 
 #[test]
@@ -168,5 +168,9 @@ fn lines_without_excitation_have_no_function() {
             assert!(found.magnitude_std[i].is_nan() && found.phase_std[i].is_nan());
         }
     }
-    assert!(found.warnings.iter().any(|w| w.contains("On 41 of 50 lines")), "{:?}", found.warnings);
+    assert!(
+        found.findings.iter().any(|f| f.code == "frf-lines-empty" && f.get("n") == Some(41.0)),
+        "{:?}",
+        found.findings
+    );
 }

@@ -1,4 +1,4 @@
-//! The methods of paper and pencil: largest line, half-power bandwidth, circle in the Nyquist plane.
+//! The classical methods: half-power bandwidth, and circle in the Nyquist plane.
 
 use super::{Measured, Pole};
 use num_complex::Complex64;
@@ -36,7 +36,16 @@ pub struct Circle {
     pub points: Vec<(f64, Complex64)>,
 }
 
-/// Fewest points of a circle fit.
+/// Why there is no circle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum NoCircle {
+    /// So many lines lie around the mode.
+    FewLines(usize),
+    /// The lines lie on no circle.
+    NotRound,
+}
+
+/// Fewest points of a circle fit: twice the three parameters of a circle.
 pub(super) const POINTS: usize = 6;
 
 /// Largest deviation from a circle, by root mean square over its radius, that is still taken for one.
@@ -45,8 +54,9 @@ const ROUND: f64 = 0.1;
 /// Fits a circle to the mobility at the lines within 2.4 half bandwidths of the mode (270° of the circle), by the method of Pratt
 /// (1987), then natural frequency and damping to the angles: tan(θ/2) = (ωᵣ² − ω²)/(2ζωᵣω) from the resonance.
 ///
-/// The error is the number of lines where there are fewer than six.
-pub(super) fn circle(measured: &Measured, near: &Pole, part: &Range<usize>) -> Result<Circle, usize> {
+/// # Errors
+/// If there are fewer than six such lines, or they lie on no circle.
+pub(super) fn circle(measured: &Measured, near: &Pole, part: &Range<usize>) -> Result<Circle, NoCircle> {
     let reach = 2.4 * near.zeta * near.frequency;
     let points: Vec<(f64, Complex64)> = part
         .clone()
@@ -57,9 +67,9 @@ pub(super) fn circle(measured: &Measured, near: &Pole, part: &Range<usize>) -> R
         })
         .collect();
     if points.len() < POINTS {
-        return Err(points.len());
+        return Err(NoCircle::FewLines(points.len()));
     }
-    let failed = Err(points.len());
+    let failed = Err(NoCircle::NotRound);
     let Some((centre, radius)) = pratt(&points.iter().map(|p| p.1).collect::<Vec<_>>()) else {
         return failed;
     };

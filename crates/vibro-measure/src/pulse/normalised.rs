@@ -1,18 +1,18 @@
-//! A record seen in the units of its pulse, and the way back.
+//! A record in units of its pulse, and the way back.
 
-use super::fit::{Fitted, Model, Samples};
+use super::fit::{Fitted, Samples};
 use super::locate::Located;
 use super::result::{PulseCurve, PulseFit, PulsePicture, propagated};
-use super::{HuntCrossley, LowPass};
+use super::{ContactModel, HuntCrossley, LowPass};
 use crate::Estimate;
 use crate::residuals::{Whiteness, aicc};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use vibro_record::units::Quantity;
-use vibro_record::units::notation::significant;
-use vibro_record::{Error, Result, Trace};
+use vibro_record::{Error, Finding, Result, Trace};
 
-pub(super) struct View<'a> {
+/// A record with time over the length of its pulse, from half the height of the rising flank, and values over its height.
+pub(super) struct Normalised<'a> {
     trace: &'a Trace,
     found: &'a Located,
     /// Sampling interval in s.
@@ -24,24 +24,37 @@ pub(super) struct View<'a> {
     filter: Option<LowPass>,
 }
 
+/// What is fitted of a record.
+pub(super) struct Window {
+    /// The samples.
+    pub samples: Samples,
+    /// Their places in the record.
+    pub used: Vec<usize>,
+    /// Whether the record comes back to the level before the pulse.
+    pub level: bool,
+}
+
 /// A mean of this part of the root mean square is another level; what rings is on both sides of its own.
 const LEVEL: f64 = 0.5;
 
 /// Lengths of the pulse that are fitted before and after it, for the baseline.
 const BESIDE: f64 = 2.0;
 
-impl<'a> View<'a> {
+/// Fewest samples up to the falling flank: five parameters and four degrees of freedom.
+const FEWEST: usize = 9;
+
+impl<'a> Normalised<'a> {
     pub fn new(
         trace: &'a Trace,
         rate: f64,
         found: &'a Located,
         filter: Option<&LowPass>,
-    ) -> Result<View<'a>> {
+    ) -> Result<Normalised<'a>> {
         let step = 1.0 / rate;
         // A half sine is above half its height for two thirds of its length.
         let length = 1.5 * (found.flanks.1 - found.flanks.0) * step;
         let filter = filter.map(|f| LowPass::new(f.corner() * length, f.order())).transpose()?;
-        Ok(View { trace, found, step, length, height: found.height.abs(), filter })
+        Ok(Normalised { trace, found, step, length, height: found.height.abs(), filter })
     }
 
     fn time(&self, index: usize) -> f64 {
@@ -73,17 +86,23 @@ impl<'a> View<'a> {
         Ok((samples, used))
     }
 
-    /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record does not rest after it. And whether what follows is about the baseline.
-    pub fn window(
-        &self,
-        warnings: &mut Vec<String>,
-        unlike: impl Fn(Error) -> Error,
-    ) -> Result<(Samples, Vec<usize>, bool)> {
+    /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record does not rest after it.
+    ///
+    /// # Errors
+    /// If there are too few samples, or no contact of spring and damper fits the pulse, as `unlike` says.
+    pub fn window(&self, findings: &mut Vec<Finding>, unlike: impl Fn(Error) -> Error) -> Result<Window> {
         let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
         let from = self.index(-BESIDE - delay);
         let (first, used) = self.samples(from..self.found.low)?;
-        self.count(&used, from..self.found.low, warnings)?;
-        let fitted = first.fit(Model::KelvinVoigt).map_err(unlike)?;
+        if used.len() < FEWEST {
+            return Err(Error::refused(format!(
+                "the pulse has {} usable samples, and {FEWEST} are needed for five parameters",
+                used.len()
+            ))
+            .hint("sample faster, and record some of the baseline before the pulse"));
+        }
+        self.faults(from..self.found.low, findings);
+        let fitted = first.fit(ContactModel::KelvinVoigt).map_err(unlike)?;
         let settled = self.index(fitted.end() + 3.0 * delay);
         let far = self.index(fitted.end() + 3.0 * delay + BESIDE);
         let (after, _) = self.samples(settled..far)?;
@@ -97,99 +116,75 @@ impl<'a> View<'a> {
         let rounded = self.found.step / self.height / 12f64.sqrt();
         let inside = (fitted.fit.sum_of_squares() / used.len() as f64).sqrt().max(rounded).max(1e-6);
         let behind = left(&after).filter(|(_, rms)| after.times.len() >= 4 && *rms > 4.0 * inside);
-        let Some((mean, rms)) = behind else {
-            let (samples, used) = self.samples(from..far)?;
-            return Ok((samples, used, true));
-        };
-        let end = self.index(fitted.end()).max(self.found.low);
-        if mean.abs() > LEVEL * rms {
-            warnings.push(
-                "The record comes to another level after the pulse than before: AC coupling or another high-pass of the sensor (its time constant is too short for the pulse), or a second contact. The shape of the pulse is bent as well: there is no uncertainty."
-                    .to_owned(),
-            );
-            let (samples, used) = self.samples(from..end)?;
-            return Ok((samples, used, false));
+        let level = behind.is_none_or(|(mean, rms)| mean.abs() <= LEVEL * rms);
+        if behind.is_some() {
+            findings.push(if level {
+                Finding::caution("pulse-no-rest-after")
+            } else {
+                Finding::doubt("pulse-level-changes")
+            });
         }
-        warnings.push(
-            "The record does not rest after the pulse (ringing, or a second contact): only what precedes the end of the pulse is fitted."
-                .to_owned(),
-        );
+        let end = if behind.is_some() { self.index(fitted.end()).max(self.found.low) } else { far };
         let (samples, used) = self.samples(from..end)?;
-        Ok((samples, used, true))
+        Ok(Window { samples, used, level })
     }
 
-    fn count(&self, used: &[usize], range: Range<usize>, warnings: &mut Vec<String>) -> Result<()> {
-        if used.len() < 9 {
-            return Err(Error::refused(format!(
-                "{} usable samples of the pulse do not determine five parameters",
-                used.len()
-            ))
-            .hint("sample faster, and record some of the baseline before the pulse"));
-        }
-        let clipped = self.found.clipped.len();
-        if clipped > 0 {
-            warnings.push(format!(
-                "The top of the pulse is flat over {clipped} samples at {}: they are taken for clipped and left out of the fit.",
-                self.trace.values[self.found.clipped[0]]
-            ));
+    /// What is wrong with the record around the pulse.
+    fn faults(&self, range: Range<usize>, findings: &mut Vec<Finding>) {
+        if let Some(first) = self.found.clipped.first() {
+            findings.push(
+                Finding::caution("pulse-clipped")
+                    .count("n", self.found.clipped.len())
+                    .number("level", self.trace.values[*first])
+                    .name("unit", self.trace.meta.unit.symbol()),
+            );
         }
         let missing = range.filter(|i| self.trace.values[*i].is_nan()).count();
         if missing > 0 {
-            warnings.push(format!("{missing} samples of the pulse are missing and left out of the fit."));
+            findings.push(Finding::caution("pulse-samples-missing").count("n", missing));
         }
-        let rest = self.time(0);
-        if rest > -0.5 {
-            warnings.push(format!(
-                "Only {:.2} of the pulse's length is recorded before it: the baseline is hardly known.",
-                -rest
-            ));
+        let before = -self.time(0);
+        if before < 0.5 {
+            findings.push(Finding::caution("pulse-baseline-short").number("lengths", before));
         }
         let other = (0..self.trace.values.len())
             .filter(|i| !(-0.5..=2.0).contains(&self.time(*i)))
             .find(|i| (self.trace.values[*i] - self.found.baseline) / self.found.height > 0.5);
         if let Some(i) = other {
-            warnings.push(format!(
-                "There is another pulse of more than half the height at {} s: the largest is analysed.",
-                significant(self.trace.axis.at(i), 5)
-            ));
+            findings.push(Finding::caution("pulse-not-alone").number("time", self.trace.axis.at(i)));
         }
-        Ok(())
     }
 
-    /// Factor from the fitted velocity to m/s, and the sentence where there is none.
-    pub fn to_velocity(&self, mass: Option<f64>) -> std::result::Result<f64, String> {
+    /// Factor from the fitted velocity to m/s, or why there is none.
+    pub fn to_velocity(&self, mass: Option<f64>) -> std::result::Result<f64, Finding> {
         let unit = self.height * self.length;
         match (self.trace.meta.quantity, mass) {
             (Quantity::Acceleration, _) => Ok(unit),
             (Quantity::Force, Some(mass)) => Ok(unit / mass),
-            (Quantity::Force, None) => {
-                Err("The record is a force: the velocity of approach needs the mass.".to_owned())
-            }
-            (quantity, _) => Err(format!(
-                "The record is no acceleration ({quantity}, unit {:?}): its shape is used, and there is no velocity of approach.",
-                self.trace.meta.unit.symbol()
-            )),
+            (Quantity::Force, None) => Err(Finding::caution("pulse-velocity-needs-mass")),
+            (quantity, _) => Err(Finding::caution("pulse-no-acceleration").name("quantity", quantity.name())),
         }
     }
 
-    /// A fit in SI units.
+    /// A fit in SI units; without uncertainties unless the instrument is `known`.
     pub fn report(
         &self,
         samples: &Samples,
         fitted: &Fitted,
         whiteness: &Whiteness,
         mass: Option<f64>,
-        told: bool,
+        known: bool,
     ) -> PulseFit {
         let n = fitted.fit.residuals.len();
         let method = "least squares";
-        let trust = samples.trust(fitted, whiteness);
-        let widened = if told { trust.factor() } else { f64::NAN };
+        let widening = samples.widening(fitted, whiteness);
+        let valued = |value: f64| widening.map_or(f64::NAN, |_| value);
+        let widened = widening.filter(|_| known).unwrap_or(f64::NAN);
         let mut parameters = BTreeMap::new();
         let mut put = |name, i: usize, factor: f64, shift: f64, unit| {
             let value = shift + factor * fitted.fit.parameters[i];
             let std = factor.abs() * samples.std(fitted, i) * widened;
-            parameters.insert(name, Estimate::new(trust.value(value), Some(std), unit, n, method));
+            parameters.insert(name, Estimate::new(valued(value), Some(std), unit, n, method));
         };
         put("onset", 0, self.length, self.seconds(0.0), "s");
         let unit = self.trace.meta.quantity.symbol();
@@ -198,25 +193,25 @@ impl<'a> View<'a> {
             put("initial_velocity", 2, factor * self.found.height.signum(), 0.0, "m/s");
         }
         match fitted.model {
-            Model::KelvinVoigt => {
+            ContactModel::KelvinVoigt => {
                 put("xi", 3, 1.0, 0.0, "1");
                 put("frequency", 4, 1.0 / self.length, 0.0, "Hz");
             }
-            Model::Hertz => put("duration", 3, self.length, 0.0, "s"),
-            Model::HuntCrossley => {
+            ContactModel::Hertz => put("duration", 3, self.length, 0.0, "s"),
+            ContactModel::HuntCrossley => {
                 put("duration", 3, self.length, 0.0, "s");
                 put("alpha", 4, 1.0, 0.0, "1");
                 let restitution = |p: &[f64]| HuntCrossley::new(p[0]).map(|c| c.restitution());
                 let variance = |_, _| (samples.std(fitted, 4) * widened).powi(2);
                 if let Some((r, std)) = propagated(&fitted.fit.parameters[4..], &[1e3], variance, restitution)
                 {
-                    let e = Estimate::new(trust.value(r), Some(std), "1", n, method);
+                    let e = Estimate::new(valued(r), Some(std), "1", n, method);
                     parameters.insert("restitution", e);
                 }
             }
         }
         PulseFit {
-            model: fitted.model.name(),
+            model: fitted.model,
             residual: self.height * (fitted.fit.sum_of_squares() / n as f64).sqrt(),
             aicc: aicc(fitted.fit.sum_of_squares(), n, fitted.fit.parameters.len()),
             whiteness: whiteness.p_value,
@@ -242,7 +237,7 @@ impl<'a> View<'a> {
         let curves = fits.filter_map(|fit| {
             let values = fit.at(samples, &times)?;
             Some(PulseCurve {
-                model: fit.model.name(),
+                model: fit.model,
                 points: times.iter().zip(values).map(|(t, v)| (self.seconds(*t), v * self.height)).collect(),
                 residuals: samples
                     .times

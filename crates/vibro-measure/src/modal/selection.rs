@@ -1,9 +1,9 @@
 //! Which peaks are modes, and on which lines they are fitted.
 
+use super::Measured;
 use super::bands::{Group, Peak};
 use super::rational::{Rational, rational};
-use super::{Measured, response};
-use vibro_record::{Error, Result};
+use vibro_record::{Error, Finding, Result};
 
 /// Modes of one group at most: beyond, parameters outgrow the lines.
 const TOGETHER: usize = 6;
@@ -102,14 +102,14 @@ pub(super) fn together(
     groups: Vec<Group>,
     fits: Vec<Result<Rational>>,
     unsupported: &mut Vec<f64>,
-    warnings: &mut Vec<String>,
+    findings: &mut Vec<Finding>,
 ) -> Result<(Vec<Group>, Vec<Result<Rational>>)> {
     if let [Err(error)] = fits.as_slice() {
         return Err(Error::refused(error.to_string()));
     }
     let f = &lines.frequency;
     let part = f.partition_point(|f| *f < low)..f.partition_point(|f| *f <= high);
-    // What is no mode by itself stays by itself, to be reported so.
+    // What is no mode by itself is not fitted together with the others.
     let (mut found, mut left) = (Vec::new(), Vec::new());
     for (group, fit) in groups.into_iter().zip(fits) {
         match fit {
@@ -131,12 +131,10 @@ pub(super) fn together(
     let alone = found.iter().all(|(group, _)| group.lines == part);
     let all = if alone { None } else { Some(rational(lines, part.clone(), &guess, &[])) };
     match all {
-        Some(Ok(fit)) if fit.whiteness.rejected() && found.iter().any(|(_, fit)| !fit.whiteness.rejected()) => {
-            warnings.push(format!(
-                "The modes that were found do not explain all lines from {} to {} Hz: there may be one without a peak of its own. Each is fitted to the lines around its peak.",
-                response::hertz(low),
-                response::hertz(high)
-            ));
+        Some(Ok(fit))
+            if fit.whiteness.rejected() && found.iter().any(|(_, fit)| !fit.whiteness.rejected()) =>
+        {
+            findings.push(Finding::caution("modal-band-unexplained").number("low", low).number("high", high));
         }
         Some(Ok(fit)) => {
             for peak in found.iter().flat_map(|(group, _)| &group.peaks).filter(|p| !peaks.contains(p)) {
@@ -147,11 +145,9 @@ pub(super) fn together(
             unsupported.extend(dropped.iter().map(|p| f[p.at]));
             found = vec![(all, fit)];
         }
-        Some(Err(error)) => warnings.push(format!(
-            "The modes from {} to {} Hz could not be fitted together ({error}); each is fitted to the lines around its peak.",
-            response::hertz(low),
-            response::hertz(high)
-        )),
+        Some(Err(_)) => {
+            findings.push(Finding::caution("modal-band-not-fitted").number("low", low).number("high", high));
+        }
         None => {}
     }
     Ok(found.into_iter().map(|(group, fit)| (group, Ok(fit))).chain(left).unzip())

@@ -1,5 +1,6 @@
-//! The top of a resonance between the points of a response curve.
+//! The apex of a resonance between the points of a response curve.
 
+use super::bisection::border;
 use super::peaks::{Vertex, vertex};
 use std::ops::RangeInclusive;
 
@@ -13,7 +14,7 @@ use std::ops::RangeInclusive;
 /// lean, and what is beyond a polynomial then falls off slowly: two orders that happen to agree prove nothing.) Where the points
 /// beside `i` are below half of it, where there are three only, or where the polynomial has no single top, the answer is that
 /// of [`vertex`], with the uncertainty of a lean that three points cannot show.
-pub fn top(
+pub fn apex(
     frequency: &[f64],
     heights: &[f64],
     std: &[f64],
@@ -127,19 +128,11 @@ fn extremum(points: &[Point]) -> Option<[f64; 2]> {
         c.iter().zip(&x).rev().fold((0.0, 0.0), |(p, slope), (c, x)| (p * (t - x) + c, slope * (t - x) + p))
     };
     let mut beside = points.iter().filter(|p| p.beside).map(|p| p.x);
-    let (mut low, mut high) = (beside.next()?, beside.next_back()?);
+    let (low, high) = (beside.next()?, beside.next_back()?);
     if !(at(low).1 < 0.0 && at(high).1 > 0.0) {
         return None;
     }
-    for _ in 0..60 {
-        let middle = f64::midpoint(low, high);
-        if at(middle).1 < 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    let place = f64::midpoint(low, high);
+    let place = border(low, high, |t| at(t).1 < 0.0);
     let inverse = at(place).0;
     (inverse > 0.0).then(|| [place, 1.0 / inverse.sqrt()])
 }
@@ -228,7 +221,7 @@ mod tests {
             }
             let Some(truth) = highest(&*height, f[i - 2], f[i + 2]) else { continue };
             let reach = points / 2;
-            let Some(found) = top(&f, &a, &std, i, i - reach..=i + points - 1 - reach) else { continue };
+            let Some(found) = apex(&f, &a, &std, i, i - reach..=i + points - 1 - reach) else { continue };
             n += 1;
             let off = [(found.frequency - truth.0).abs(), (found.height - truth.1).abs()];
             // The search for the truth ends where rounding of a flat top does.
@@ -258,7 +251,7 @@ mod tests {
         let modes = Modes { f: [5.6, 9.0], zeta: [0.02, 0.02], weight: 0.0 };
         let f = [5.40, 5.51, 5.63, 5.69, 5.80];
         let a = f.map(|f| modes.at(f));
-        let found = top(&f, &a, &[0.0; 5], 2, 0..=4).unwrap();
+        let found = apex(&f, &a, &[0.0; 5], 2, 0..=4).unwrap();
         let truth = 5.6 * f64::sqrt(1.0 - 2.0 * 0.02f64.powi(2));
         // Rounding, divided by the spacing of the points to the fourth power of the polynomial.
         assert!((found.frequency - truth).abs() < 1e-11, "{}", found.frequency - truth);

@@ -1,0 +1,103 @@
+//! Where two response curves cross.
+
+use super::jump::{Jump, known};
+
+/// Two points of a curve, and their weights in its logarithm between them.
+type Between = [(usize, f64); 2];
+
+/// The points between which `f` lies in a rising curve; `None` outside.
+fn between(curve: &[(f64, f64, f64)], f: f64) -> Option<Between> {
+    let i = curve.partition_point(|p| p.0 < f);
+    let b = curve.get(i)?;
+    if b.0 == f {
+        return Some([(i, 1.0), (i, 0.0)]);
+    }
+    let a = curve.get(i.checked_sub(1)?)?;
+    let t = (f - a.0) / (b.0 - a.0);
+    Some([(i - 1, 1.0 - t), (i, t)])
+}
+
+/// A curve between its points, linear in the logarithm; `None` outside.
+pub(super) fn at(curve: &[(f64, f64, f64)], f: f64) -> Option<f64> {
+    Some(between(curve, f)?.iter().map(|(i, weight)| weight * curve[*i].1.ln()).sum::<f64>().exp())
+}
+
+/// Where two curves cross.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crossing {
+    /// Frequency in Hz.
+    pub frequency: f64,
+    /// Its standard uncertainty in Hz; `None` where that of an amplitude is not known.
+    pub frequency_std: Option<f64>,
+    /// Whether the second curve is the larger one above.
+    pub second_above: bool,
+}
+
+/// Where two curves over frequency cross. Each is given as (frequency, amplitude, its standard uncertainty) in any order;
+/// between its points it is a straight line in the logarithm, but not across a jump of its own.
+///
+/// The uncertainty is that of the amplitudes, carried through the interpolation. Where the curves change places at a jump, the
+/// crossing is that jump: it lies anywhere between the points beside it with equal chance.
+pub fn crossings(
+    mut first: Vec<(f64, f64, f64)>,
+    mut second: Vec<(f64, f64, f64)>,
+    jumps: &[Jump],
+) -> Vec<Crossing> {
+    first.sort_by(|a, b| a.0.total_cmp(&b.0));
+    second.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let curves = [&first, &second];
+    let mut frequencies: Vec<f64> = curves.iter().flat_map(|c| c.iter().map(|p| p.0)).collect();
+    frequencies.sort_by(f64::total_cmp);
+    frequencies.dedup();
+    let range = |j: &Jump| (j.from.min(j.to), j.from.max(j.to));
+    // The points of both curves behind a frequency. Within a jump of its own a curve has no value.
+    let places = |f: f64| -> Option<[Between; 2]> {
+        let places = [between(&first, f)?, between(&second, f)?];
+        let within = |(curve, [a, b]): (&&Vec<(f64, f64, f64)>, &Between)| {
+            jumps.iter().any(|j| range(j) == (curve[a.0].0, curve[b.0].0))
+        };
+        (!curves.iter().zip(&places).any(within)).then_some(places)
+    };
+    // Frequency, logarithm of second over first, and where both come from.
+    let ratios: Vec<_> = frequencies
+        .into_iter()
+        .filter_map(|f| Some((f, (at(&second, f)? / at(&first, f)?).ln(), places(f)?)))
+        .filter(|r| r.1.is_finite())
+        .collect();
+    ratios
+        .windows(2)
+        .filter(|w| (w[0].1 > 0.0) != (w[1].1 > 0.0))
+        .map(|w| {
+            let (low, high) = (&w[0], &w[1]);
+            let (width, turn) = (high.0 - low.0, low.1 - high.1);
+            let second_above = high.1 > 0.0;
+            // A jump belongs to the stretch that holds more than half of its step: both masses seldom have quite the same frequencies.
+            let held =
+                jumps.iter().map(range).filter(|j| j.1.min(high.0) - j.0.max(low.0) > 0.5 * (j.1 - j.0));
+            if let Some(jump) = held.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) {
+                let frequency_std = Some((jump.1 - jump.0) / f64::sqrt(12.0));
+                return Crossing { frequency: f64::midpoint(jump.0, jump.1), frequency_std, second_above };
+            }
+            // Slopes of the crossing over the two logarithms.
+            let slopes = [-width * high.1 / (turn * turn), width * low.1 / (turn * turn)];
+            let mut variance = 0.0;
+            for (which, curve) in curves.iter().enumerate() {
+                // One point may stand behind both.
+                let parts: Vec<(usize, f64)> = [(slopes[0], low.2[which]), (slopes[1], high.2[which])]
+                    .iter()
+                    .flat_map(|(slope, points)| points.map(|(i, weight)| (i, slope * weight)))
+                    .filter(|part| part.1 != 0.0)
+                    .collect();
+                for (i, a) in &parts {
+                    let shared: f64 = parts.iter().filter(|p| p.0 == *i).map(|p| p.1).sum();
+                    variance += a * shared * (curve[*i].2 / curve[*i].1).powi(2);
+                }
+            }
+            Crossing {
+                frequency: low.0 + width * low.1 / turn,
+                frequency_std: known(variance.sqrt()),
+                second_above,
+            }
+        })
+        .collect()
+}
