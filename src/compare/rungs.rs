@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::model::ladder::{self, Choice, Model, Question, Stretch, choose_over};
 use crate::model::{ContactKeys, Excitation, Law, Observable, Rig, Scene, Sine};
 use crate::record::Direction;
+use crate::report::words::{Voice, sentences};
 use serde::Serialize;
 
 /// How predictions are made.
@@ -81,7 +82,8 @@ pub fn rungs(
     let moves = |p: &&Choice| p.sensitivity.iter().map(|s| s.change.abs()).fold(0.0, f64::max);
     let open = survey.points.iter().filter(|p| p.chosen.is_none());
     let open = open.max_by(|a, b| moves(a).total_cmp(&moves(b)));
-    let open = open.and_then(|p| Some(format!("At {:.2} Hz: {}", p.frequency, p.reasons.last()?)));
+    let why = |p: &Choice| sentences(&p.findings, Voice::Campaign).into_iter().next();
+    let open = open.and_then(|p| Some(format!("At {:.2} Hz: {}", p.frequency, why(p)?)));
     Ok(Rungs { force, direction, stretches: survey.stretches, open })
 }
 

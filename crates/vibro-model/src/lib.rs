@@ -68,4 +68,4 @@ pub use rig::Rig;
 pub use scene::{Buffer, ContactKeys, Draft, Scene};
 pub use simulate::{Counts, Course, Impact, Leg, Simulation};
 pub use stick::Pair;
-pub use validity::{Loss, Validity};
+pub use validity::{Loss, Stability, Validity};

@@ -33,8 +33,10 @@ pub struct Summary {
     pub error: Option<f64>,
     /// Whether it is valid at each point.
     pub valid: bool,
-    /// Where it is valid and chosen, in a sentence.
-    pub why: String,
+    /// Number of points at which it is valid.
+    pub valid_at: usize,
+    /// Number of points at which it is chosen.
+    pub chosen_at: usize,
 }
 
 /// Neighbouring points at which the same was found.
@@ -115,14 +117,14 @@ fn summary(model: Model, all: &[Choice]) -> Summary {
     let rungs = || all.iter().map(|c| c.rung(model));
     let mut costs: Vec<f64> = rungs().filter_map(|r| r.cost_ns).collect();
     costs.sort_by(f64::total_cmp);
-    let valid = rungs().filter(|r| r.valid).count();
-    let chosen = all.iter().filter(|c| c.chosen == Some(model)).count();
+    let valid_at = rungs().filter(|r| r.valid).count();
     Summary {
         model,
         cost_ns: costs.get(costs.len() / 2).copied(),
         error: rungs().filter(|r| r.valid).filter_map(|r| r.error).reduce(f64::max),
-        valid: valid == all.len(),
-        why: format!("Valid at {valid} and chosen at {chosen} of {} points.", all.len()),
+        valid: valid_at == all.len(),
+        valid_at,
+        chosen_at: all.iter().filter(|c| c.chosen == Some(model)).count(),
     }
 }
 

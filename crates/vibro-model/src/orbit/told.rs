@@ -50,7 +50,7 @@ impl Serialize for Orbit {
             admissible: v.admissible,
             // Neutral is not stable.
             stable: v.stable == Some(true),
-            stability: v.stability,
+            stability: v.stability.name(),
             instability: v.instability,
             energy_rule: v.energy_rule,
             grazing_distance: v.grazing_distance,
