@@ -39,7 +39,7 @@ pub use rung::{Model, Need, Rung};
 pub use sensitivity::Sensitivity;
 pub use starts::Followed;
 
-use super::{Law, Rig, Scene};
+use super::{Law, Rig, Scene, scales};
 use change::Answer;
 use climb::Climb;
 use serde::Serialize;
@@ -136,12 +136,17 @@ pub fn choose(scene: &Scene, frequency: f64, question: &Question) -> Result<Choi
 /// those at both ends of the gap's uncertainty.
 fn chosen(scene: &Scene, frequency: f64, question: &Question, bend: bool) -> Result<Choice> {
     question.check()?;
-    scene.rig.check()?;
     let Some(excitation) = &scene.excitation else {
         return Err(Error::usage("nothing drives the rig", "an excitation"));
     };
     let excitation = excitation.at_frequency(frequency);
-    excitation.check()?;
+    scales::check(&scene.rig, &excitation)?;
+    if excitation.is_idle() {
+        return Err(Error::usage(
+            "nothing drives the rig: its excitation is 0",
+            "a force or impulse above 0",
+        ));
+    }
     let fastest = scene.rig.natural_frequencies().into_iter().filter(|f| f.is_finite()).fold(0.0, f64::max);
     if fastest > MOST_SWINGS * frequency {
         return Err(Error::refused(format!(

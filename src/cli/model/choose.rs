@@ -1,6 +1,7 @@
 //! `vibro model choose`: the simplest model that is good enough.
 
 use crate::cli::args::{self, Came, Looked};
+use crate::cli::progress::Busy;
 use crate::cli::{complain, print};
 use crate::error::{Error, Result};
 use crate::model::ladder::{Choice, Question, Rung, Survey, choose, choose_over};
@@ -66,14 +67,18 @@ pub fn run(typed: &args::ModelChoose, json: bool) -> Result<()> {
     let (scene, warnings) = super::scene(&typed.scene, typed.frequency.or(typed.from))?;
     let excitation = super::excitation(&scene)?;
     if let (Some(from), Some(to)) = (typed.from, typed.to) {
+        let busy = Busy::with(json, "choosing a model at each frequency");
         let survey = choose_over(&scene, from, to, typed.points, &question)?;
+        drop(busy);
         return along(typed, json, &scene, &question, &survey, warnings);
     }
     let frequency = typed.frequency.unwrap_or(excitation.frequency());
     if frequency.is_nan() {
         return Err(Error::usage("no frequency", "--frequency HZ, or --from HZ --to HZ for an axis"));
     }
+    let busy = Busy::with(json, "choosing a model");
     let choice = choose(&scene, frequency, &question)?;
+    drop(busy);
     single(typed, json, &scene, &question, &choice, warnings)
 }
 

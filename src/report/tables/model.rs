@@ -110,7 +110,7 @@ pub fn changes(response: &Response) -> Table {
         &response.changes,
         &[
             ("frequency", "Hz", &|c| Cell::from(c.frequency)),
-            ("change", "", &|c| Cell::from(c.kind)),
+            ("change", "", &|c| Cell::from(c.kind.name())),
             ("x1 amplitude", "m", &|c| Cell::from(c.amplitude[0])),
             ("x2 amplitude", "m", &|c| Cell::from(c.amplitude[1])),
         ],

@@ -3,6 +3,7 @@
 use super::change::{Answer, Change};
 use super::motions::{Motions, On};
 use super::outcome::Outcome;
+use super::reading::End;
 use super::sensitivity::sensitivity;
 use super::stage::Stage;
 use super::{Choice, Model, Need, Rung, laws};
@@ -128,10 +129,14 @@ impl<'a> Climb<'a> {
         rung.changes.iter().filter(|c| c.at != Model::HuntCrossley).map(moved).collect()
     }
 
-    /// Whether a curved contact is stated, but there are no impacts for its law to act in.
+    /// Whether no law of the contact matters: masses stay in contact, and no spring between them is stated, or a curved contact is stated and
+    /// nothing strikes.
     fn is_lawless(&self) -> bool {
-        let curved = self.stiffness.is_some() && laws::is_curved(self.stage.scene);
-        curved && self.motions.as_ref().is_some_and(|m| m.reading.speed == 0.0)
+        let Some(reading) = self.motions.as_ref().map(|m| &m.reading) else { return false };
+        match self.stiffness {
+            None => reading.end == End::Pressed,
+            Some(_) => laws::is_curved(self.stage.scene) && reading.speed == 0.0,
+        }
     }
 
     /// Whether the answer of a rung comes from a motion that has settled, or is a mean that is known as exactly as is asked for.

@@ -94,12 +94,6 @@ pub struct Motions {
     pub end: Simulation,
 }
 
-/// Whether an orbit can be and stay.
-fn stays(orbit: &Orbit) -> bool {
-    let v = &orbit.validity;
-    v.exists && v.admissible && v.stable == Some(true)
-}
-
 impl Motions {
     /// Looks for them: in closed form, and by following the rig the way it came, or from rest and other states.
     pub fn new(stage: &Stage<'_>) -> Result<Motions> {
@@ -196,7 +190,7 @@ impl Motions {
 
     /// Orbits with one impact a cycle that can be and stay.
     fn stable(&self) -> impl Iterator<Item = &Orbit> {
-        self.closed.iter().flat_map(|found| found.orbits.iter().filter(|orbit| stays(orbit)))
+        self.closed.iter().flat_map(|found| found.orbits.iter().filter(|orbit| orbit.validity.real()))
     }
 
     /// The motion that was followed, among those in closed form; `fine` is the part of its states to which it has settled.
@@ -222,7 +216,7 @@ impl Motions {
     /// The orbit with one impact in several cycles that the motion which was followed is on.
     fn longer_own(&self, fine: f64) -> Option<&Orbit> {
         let Regime::Periodic { impacts: 1, cycles } = self.reading.regime else { return None };
-        let alike = self.longer.iter().filter(|o| o.cycles == cycles && stays(o));
+        let alike = self.longer.iter().filter(|o| o.cycles == cycles && o.validity.real());
         self.near(alike, fine).filter(|_| self.reading.end == End::Settled)
     }
 
@@ -240,10 +234,10 @@ impl Motions {
             model: Model::ClosedForm,
             answer: question.observable.of_orbit(orbit),
             spread: [0.0; 2],
-            stable: stays(orbit),
+            stable: orbit.validity.real(),
             rare: orbit.cycles > 1 && own.is_none_or(|own| own != orbit),
         };
-        known.extend(self.stable().chain(self.longer.iter().filter(|o| stays(o))).map(known_as));
+        known.extend(self.stable().chain(self.longer.iter().filter(|o| o.validity.real())).map(known_as));
         if self.on == On::Other && self.reading.end != End::Under && own.is_none() {
             known.push(Known::followed(&self.reading, Model::Restitution, false));
         }
