@@ -2,6 +2,7 @@
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
+use std::time::Duration;
 
 /// A bar on standard error where that is a terminal and no JSON was asked for.
 pub fn bar(json: bool) -> ProgressBar {
@@ -14,6 +15,28 @@ pub fn bar(json: bool) -> ProgressBar {
         bar.set_style(style);
     }
     bar
+}
+
+/// A sign on standard error, on the same terms as [`bar`], that work of unknown length goes on. It goes when it is dropped.
+pub struct Busy(ProgressBar);
+
+impl Busy {
+    /// Shows `what` is done.
+    pub fn with(json: bool, what: &'static str) -> Busy {
+        let bar = bar(json);
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}, {elapsed}") {
+            bar.set_style(style);
+        }
+        bar.set_message(what);
+        bar.enable_steady_tick(Duration::from_millis(200));
+        Busy(bar)
+    }
+}
+
+impl Drop for Busy {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
 }
 
 impl crate::report::job::Progress for ProgressBar {

@@ -16,7 +16,7 @@ pub use cycles::{drill_cycles_head, drill_cycles_row};
 pub use drill::{drill, drill_average, drill_impacts};
 pub use fit::{fit_points, fit_rungs, fitted};
 pub use impacts::{impact_times, impacts, restitution};
-pub use ladder::{chosen, climbed, rungs, sensitivity, stretches, summaries};
+pub use ladder::{chosen, climbed, motions, rungs, sensitivity, stretches, summaries, where_chosen, why};
 pub use modal::{modal_methods, modes};
 pub use model::{branches, changes, course, no_impact, orbits, soft, verdicts};
 pub use precision::{borders, failures, precision, scene};

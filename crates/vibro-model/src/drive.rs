@@ -5,7 +5,7 @@ use super::clock::{Clock, within};
 use super::excitation::MOST_SINES;
 use super::receptance::receptance;
 use super::waves::Waves;
-use super::{Excitation, Rig, Sine, Steady};
+use super::{Excitation, Rig, Sine, Steady, scales};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibro_record::Result;
@@ -36,7 +36,7 @@ pub(super) struct Drive {
 impl Drive {
     /// Excitation of `rig` at `phase` of its cycle; each of several sines has its own phase at phase 0 and has gone on since.
     pub fn new(rig: &Rig, excitation: &Excitation, phase: f64) -> Result<Drive> {
-        rig.check()?;
+        scales::check(rig, excitation)?;
         let clock = Clock::new(excitation, phase)?;
         let single = matches!(excitation, Excitation::Sine(_));
         let mut drive = Drive { lines: [None; MOST_SINES], single, clock };

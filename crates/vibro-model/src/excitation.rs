@@ -120,6 +120,16 @@ impl Excitation {
         }
     }
 
+    /// Whether it does nothing.
+    pub(super) fn is_idle(&self) -> bool {
+        match self {
+            Excitation::Sine(sine) => sine.force == 0.0,
+            Excitation::Impulse(train) => train.impulse == 0.0,
+            Excitation::Pulse(train) => train.force == 0.0,
+            Excitation::Sines(sines) => sines.parts.iter().all(|part| part.force == 0.0),
+        }
+    }
+
     /// What the excitation is called in a file: `sine`, `impulse`, `pulse` or `sines`.
     pub fn kind(&self) -> &'static str {
         match self {

@@ -19,18 +19,17 @@
 mod axis;
 mod change;
 mod climb;
-mod cost;
+mod findings;
 mod history;
 mod laws;
 mod motions;
+mod outcome;
 mod question;
 mod reading;
-mod reasons;
 mod rung;
 mod sensitivity;
 mod stage;
 mod starts;
-mod tried;
 
 pub use axis::{MOST_POINTS, Stretch, Summary, Survey, choose_over};
 pub use change::Change;
@@ -40,13 +39,13 @@ pub use rung::{Model, Need, Rung};
 pub use sensitivity::Sensitivity;
 pub use starts::Followed;
 
-use super::{Law, Rig, Scene};
+use super::{Law, Rig, Scene, scales};
 use change::Answer;
 use climb::Climb;
 use serde::Serialize;
 use stage::Stage;
 use vibro_record::units::notation::significant;
-use vibro_record::{Error, Result};
+use vibro_record::{Error, Finding, Result};
 
 /// The rung that is good enough for a scene, and how that was found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -74,29 +73,14 @@ pub struct Choice {
     pub motions: Vec<Known>,
     /// States that others were looked for from; `None` with a history and for a loose mass.
     pub followed: Option<Followed>,
-    /// Why, in sentences.
-    pub reasons: Vec<String>,
+    /// What is to be known of it; why a rung is passed over stands with the rung.
+    pub findings: Vec<Finding>,
 }
 
 impl Choice {
     /// The answer of the chosen rung: of x₁ and x₂; of impacts the same number twice.
     pub fn answer(&self) -> Option<[f64; 2]> {
         self.rung(self.chosen?).answer
-    }
-
-    /// What the chosen answer is to be doubted for, in a sentence: the law of the contact, where that moves it beyond what is allowed.
-    pub fn doubt(&self) -> Option<String> {
-        reasons::doubt(self)
-    }
-
-    /// That motions beside the one answered for strike less than once a cycle, in a sentence.
-    pub fn rare(&self, question: &Question) -> Option<String> {
-        reasons::rare(self, question)
-    }
-
-    /// That others were not looked for from all states, in a sentence.
-    pub fn cut(&self) -> Option<String> {
-        reasons::cut(self)
     }
 
     /// What was found of a rung.
@@ -114,7 +98,7 @@ pub fn law(scene: &Scene, model: Model) -> Result<Option<Law>> {
     let keys = laws::keys(scene);
     let missing = |key: &str| {
         Error::usage(format!("{} without contact.{key}", model.name()), format!("{key} in [contact]"))
-            .hint("no value fits all contacts, and results depend on it")
+            .hint("measure it: no value fits all contacts, and results depend on it")
     };
     match model {
         Model::Linear | Model::ClosedForm | Model::Restitution => Ok(None),
@@ -148,16 +132,21 @@ pub fn choose(scene: &Scene, frequency: f64, question: &Question) -> Result<Choi
     chosen(scene, frequency, question, true)
 }
 
-/// As [`choose`]; `bend` says whether a contact of spring and damper that is chosen is held against curved bodies, and answers are timed
-/// more than once.
+/// As [`choose`]; `bend` says whether a contact of spring and damper that is chosen is compared with curved bodies, and the answer with
+/// those at both ends of the gap's uncertainty.
 fn chosen(scene: &Scene, frequency: f64, question: &Question, bend: bool) -> Result<Choice> {
     question.check()?;
-    scene.rig.check()?;
     let Some(excitation) = &scene.excitation else {
         return Err(Error::usage("nothing drives the rig", "an excitation"));
     };
     let excitation = excitation.at_frequency(frequency);
-    excitation.check()?;
+    scales::check(&scene.rig, &excitation)?;
+    if excitation.is_idle() {
+        return Err(Error::usage(
+            "nothing drives the rig: its excitation is 0",
+            "a force or impulse above 0",
+        ));
+    }
     let fastest = scene.rig.natural_frequencies().into_iter().filter(|f| f.is_finite()).fold(0.0, f64::max);
     if fastest > MOST_SWINGS * frequency {
         return Err(Error::refused(format!(
@@ -167,12 +156,12 @@ fn chosen(scene: &Scene, frequency: f64, question: &Question, bend: bool) -> Res
         ))
         .hint("at such frequencies springs alone decide: x₁ = F/k₁ until the masses meet"));
     }
-    let stage = Stage { scene, excitation: &excitation, question, repeat: bend };
+    let stage = Stage { scene, excitation: &excitation, question };
     let mut choice = Climb::new(stage)?.choose(bend);
     if bend && question.gap_std > 0.0 {
         choice.gap = gaps(&choice, &stage);
-        choice.reasons.extend(reasons::gap(&choice, question));
     }
+    choice.findings = findings::findings(&choice, question);
     Ok(choice)
 }
 
@@ -184,7 +173,7 @@ fn gaps(choice: &Choice, stage: &Stage<'_>) -> Vec<Option<Change>> {
     let at = |std: f64| {
         let rig = Rig { gap: stage.scene.rig.gap + std, ..stage.scene.rig };
         let scene = Scene { rig, ..stage.scene.clone() };
-        let there = Climb::new(Stage { scene: &scene, question: &question, repeat: false, ..*stage }).ok()?;
+        let there = Climb::new(Stage { scene: &scene, question: &question, ..*stage }).ok()?;
         Some(here.change(&there.answer(model)?, model, &question))
     };
     [-1.0, 1.0].map(|sign| at(sign * stage.question.gap_std)).to_vec()

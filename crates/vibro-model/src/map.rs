@@ -5,10 +5,12 @@ mod rows;
 pub use rows::Rows;
 
 use super::regime::{Strike, Watch};
-use super::{Excitation, Motion, Pattern, PeriodicOrbit, Regime, Rig, Simulation, State, Steady, floquet};
+use super::{
+    Excitation, Motion, Pattern, PeriodicOrbit, Regime, Rig, Simulation, State, Steady, floquet, parallel,
+    scales,
+};
 use nalgebra::Matrix4;
 use num_complex::Complex64;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use vibro_record::{Error, Result};
@@ -220,8 +222,7 @@ impl Plan {
         }
         for (column, row) in [(0, 0), (self.x.n - 1, 0), (0, self.y.n - 1), (self.x.n - 1, self.y.n - 1)] {
             let (rig, excitation) = self.at(column, row);
-            rig.check()?;
-            excitation.check()?;
+            scales::check(&rig, &excitation)?;
             if rig.gap < 0.0 {
                 return Err(Error::usage(
                     format!("gap is {} m", rig.gap),
@@ -251,13 +252,10 @@ impl Plan {
             if rows.get(row).is_some() {
                 continue;
             }
-            let cells: Vec<Cell> = (0..self.x.n)
-                .into_par_iter()
-                .map(|column| {
-                    let (rig, excitation) = self.at(column, row);
-                    cell(&rig, &excitation, self.cycles)
-                })
-                .collect();
+            let cells = parallel::each(self.x.n, |column| {
+                let (rig, excitation) = self.at(column, row);
+                cell(&rig, &excitation, self.cycles)
+            });
             show(row, &cells)?;
             rows.set(row, cells);
         }

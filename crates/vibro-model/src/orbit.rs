@@ -4,12 +4,13 @@ mod backbone;
 mod conditions;
 mod course;
 mod drive;
+mod listed;
 mod response;
 mod shown;
 mod sine;
 mod soft;
 mod stretch;
-mod told;
+
 mod train;
 
 pub use backbone::backbone;
@@ -19,7 +20,7 @@ pub use soft::{Compliance, LONGEST_CONTACT, Softened, softened};
 pub(super) use conditions::Root;
 pub(super) use course::Course;
 
-use super::{Excitation, NoImpact, Rig, Sine, State, Steady, Validity};
+use super::{Excitation, NoImpact, Rig, Sine, State, Steady, Validity, scales};
 use conditions::Conditions;
 use drive::Drive;
 use num_complex::Complex64;
@@ -193,8 +194,7 @@ pub fn orbits_of(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Orbi
 /// # Errors
 /// As [`orbits_of`].
 pub fn no_impact(rig: &Rig, excitation: &Excitation) -> Result<NoImpact> {
-    rig.check()?;
-    excitation.check()?;
+    scales::check(rig, excitation)?;
     if let Excitation::Sine(sine) = excitation {
         return Ok(NoImpact::new(&Steady::new(rig, sine)?, rig.gap));
     }
@@ -203,8 +203,7 @@ pub fn no_impact(rig: &Rig, excitation: &Excitation) -> Result<NoImpact> {
 
 /// As [`orbits_of`], the impact following the first touch by `delay` (s).
 fn solve(rig: &Rig, excitation: &Excitation, cycles: u32, delay: f64) -> Result<Orbits> {
-    rig.check()?;
-    excitation.check()?;
+    scales::check(rig, excitation)?;
     if let Excitation::Sine(sine) = excitation {
         return under_sine(rig, sine, cycles, delay);
     }

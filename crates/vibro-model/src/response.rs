@@ -1,8 +1,7 @@
 //! Response curves: all motions with one impact a period over a range of frequencies, and where they change.
 
 use super::orbit::{backbone, orbits_of};
-use super::{Excitation, NoImpact, Orbit, Rig};
-use rayon::prelude::*;
+use super::{Excitation, NoImpact, Orbit, Rig, parallel};
 use serde::Serialize;
 use vibro_record::{Error, Result};
 
@@ -33,14 +32,47 @@ pub struct ResponsePoint {
     pub refused: Option<String>,
 }
 
+/// How a motion changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ChangeKind {
+    /// Two motions meet and vanish.
+    Fold,
+    /// Stability is lost or gained; the period doubles.
+    Flip,
+    /// Stability is lost or gained; a slow beat grows.
+    NeimarkSacker,
+    /// The impact vanishes.
+    Grazing,
+    /// The masses begin or cease to meet a second time.
+    #[serde(rename = "second contact")]
+    SecondContact,
+    /// The motion without impacts begins or ceases to touch.
+    #[serde(rename = "no impact")]
+    NoImpact,
+}
+
+impl ChangeKind {
+    /// Name as it is printed.
+    pub fn name(self) -> &'static str {
+        match self {
+            ChangeKind::Fold => "fold",
+            ChangeKind::Flip => "flip",
+            ChangeKind::NeimarkSacker => "neimark-sacker",
+            ChangeKind::Grazing => "grazing",
+            ChangeKind::SecondContact => "second contact",
+            ChangeKind::NoImpact => "no impact",
+        }
+    }
+}
+
 /// Where a motion changes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Change {
     /// Frequency in Hz.
     pub frequency: f64,
-    /// `fold`: two motions meet and vanish; `flip`, `neimark-sacker`: stability is lost or gained; `grazing`: the impact vanishes;
-    /// `second contact`: the masses begin or cease to meet a second time; `no impact`: the motion without impacts begins or ceases to touch.
-    pub kind: &'static str,
+    /// What happens there.
+    pub kind: ChangeKind,
     /// Half the peak-to-peak values of x₁ and x₂ in m there.
     pub amplitude: [f64; 2],
 }
@@ -72,8 +104,7 @@ pub fn response(
     rig.check()?;
     let step = (to - from) / (points - 1) as f64;
     let at = |i: usize| if i + 1 == points { to } else { from + i as f64 * step };
-    let points: Vec<ResponsePoint> =
-        (0..points).into_par_iter().with_min_len(64).map(|i| point(rig, excitation, at(i), cycles)).collect();
+    let points = parallel::each(points, |i| point(rig, excitation, at(i), cycles));
     if let Some(ResponsePoint { frequency, .. }) =
         points.first().filter(|_| points.iter().all(|p| p.refused.is_some()))
     {
@@ -156,17 +187,17 @@ fn between(
                 continue;
             };
             let kind = match (was, standing(after.as_ref())) {
-                (_, Standing::Gone) => "fold",
-                (Standing::Parted, _) | (_, Standing::Parted) => "grazing",
-                (Standing::Passing, _) | (_, Standing::Passing) => "second contact",
+                (_, Standing::Gone) => ChangeKind::Fold,
+                (Standing::Parted, _) | (_, Standing::Parted) => ChangeKind::Grazing,
+                (Standing::Passing, _) | (_, Standing::Passing) => ChangeKind::SecondContact,
                 _ => {
                     let lost =
                         [Some(before), after].into_iter().flatten().find_map(|o| o.validity.instability);
                     match lost {
-                        Some(super::Loss::Flip) => "flip",
-                        Some(super::Loss::NeimarkSacker) => "neimark-sacker",
-                        Some(super::Loss::Fold) => "fold",
-                        _ => "grazing",
+                        Some(super::Loss::Flip) => ChangeKind::Flip,
+                        Some(super::Loss::NeimarkSacker) => ChangeKind::NeimarkSacker,
+                        Some(super::Loss::Fold) => ChangeKind::Fold,
+                        _ => ChangeKind::Grazing,
                     }
                 }
             };
@@ -189,7 +220,7 @@ fn between(
         }
         changes.push(Change {
             frequency: f64::midpoint(low, high),
-            kind: "no impact",
+            kind: ChangeKind::NoImpact,
             amplitude: [amplitude, 0.0],
         });
     }
@@ -232,15 +263,15 @@ mod tests {
         let sine = Excitation::Sine(Sine { force: 0.5, frequency: 1.0 });
         let found = response(&rig, &sine, 1.9 * unit, 2.3 * unit, 400, 1).unwrap();
         assert_eq!(found.points.len(), 400);
-        let of = |kind: &str| {
+        let of = |kind: ChangeKind| {
             found.changes.iter().filter(|c| c.kind == kind).map(|c| c.frequency / unit).collect::<Vec<_>>()
         };
         // Independent number: A = Δ at ν = 2.168715614919, where the smaller root passes through zero, too.
         let step = 0.4 / 399.0;
-        for kind in ["no impact", "grazing"] {
+        for kind in [ChangeKind::NoImpact, ChangeKind::Grazing] {
             let near: Vec<_> =
                 of(kind).into_iter().filter(|nu| (nu - 2.168_715_614_919).abs() < step * 2e-6).collect();
-            assert_eq!(near.len(), 1, "{kind}: {:?}", found.changes);
+            assert_eq!(near.len(), 1, "{kind:?}: {:?}", found.changes);
         }
     }
 
@@ -249,7 +280,8 @@ mod tests {
         let rig = Rig::thesis();
         let sine = Excitation::Sine(Sine { force: 0.1, frequency: 1.0 });
         let found = response(&rig, &sine, 4.0, 13.0, 300, 1).unwrap();
-        let folds: Vec<_> = found.changes.iter().filter(|c| c.kind == "fold").map(|c| c.frequency).collect();
+        let folds: Vec<_> =
+            found.changes.iter().filter(|c| c.kind == ChangeKind::Fold).map(|c| c.frequency).collect();
         assert!(!folds.is_empty(), "{:?}", found.changes);
         for fold in folds {
             let count = |f: f64| {
@@ -273,7 +305,7 @@ mod tests {
         let unit = rig.natural_frequencies()[0];
         let sine = Excitation::Sine(Sine { force: 0.9, frequency: 1.0 });
         let found = response(&rig, &sine, 1.0 * unit, 1.4 * unit, 200, 1).unwrap();
-        let flips: Vec<_> = found.changes.iter().filter(|c| c.kind == "flip").collect();
+        let flips: Vec<_> = found.changes.iter().filter(|c| c.kind == ChangeKind::Flip).collect();
         assert!(!flips.is_empty(), "{:?}", found.changes);
         for flip in flips {
             let orbit = orbits_of(&rig, &sine.at_frequency(flip.frequency), 1).unwrap().orbits[0];

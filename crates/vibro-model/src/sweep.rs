@@ -7,7 +7,7 @@ pub use gauge::Gauge;
 pub use gauge::{LOW_PASS, Observable};
 pub use size::{at_size, size};
 
-use super::Motion;
+use super::{Motion, parallel};
 use serde::Serialize;
 use std::f64::consts::TAU;
 use vibro_record::{Direction, Error, Result};
@@ -250,7 +250,7 @@ pub fn apart(
     one: impl Fn(Direction) -> Result<Vec<Point>> + Sync,
 ) -> Result<Swept> {
     let wanted = |direction| if directions.contains(&direction) { one(direction) } else { Ok(Vec::new()) };
-    let (up, down) = rayon::join(|| wanted(Direction::Up), || wanted(Direction::Down));
+    let (up, down) = parallel::both(|| wanted(Direction::Up), || wanted(Direction::Down));
     Ok(Swept { up: up?, down: down? })
 }
 

@@ -15,9 +15,8 @@ pub struct Validity {
     /// Every Floquet multiplier lies inside the unit circle; `None` where rounding cannot tell the largest from 1. False
     /// where there are no multipliers.
     pub stable: Option<bool>,
-    /// The same in a word: `stable`, `unstable` or `neutral`. A neutral motion neither dies away after a disturbance nor is left: that of a
-    /// rig without losses, or one at the border of stability.
-    pub stability: &'static str,
+    /// The same in a word.
+    pub stability: Stability,
     /// How an unstable motion has lost its stability; `None` for any other.
     pub instability: Option<Loss>,
     /// The energy rule: a larger impulse would take more energy than the force then gives. "The positive root is stable" is this rule for
@@ -33,6 +32,29 @@ pub struct Validity {
     /// appear; the motion may lose its stability before. Where this is not larger than the uncertainty of the gap, the verdicts and the
     /// multipliers are not to be relied on: near grazing the multipliers grow like the reciprocal of the approach speed.
     pub grazing_distance: f64,
+}
+
+/// Whether disturbances of a periodic motion die away.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stability {
+    /// They die away.
+    Stable,
+    /// They grow.
+    Unstable,
+    /// Neither: the motion of a rig without losses, or one at the border of stability.
+    Neutral,
+}
+
+impl Stability {
+    /// `stable`, `unstable` or `neutral`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Stability::Stable => "stable",
+            Stability::Unstable => "unstable",
+            Stability::Neutral => "neutral",
+        }
+    }
 }
 
 /// How a periodic motion loses its stability, by the multiplier farthest outside the unit circle.
@@ -91,9 +113,9 @@ impl Validity {
             admissible: exists && min_gap == 0.0,
             stable,
             stability: match stable {
-                Some(true) => "stable",
-                Some(false) => "unstable",
-                None => "neutral",
+                Some(true) => Stability::Stable,
+                Some(false) => Stability::Unstable,
+                None => Stability::Neutral,
             },
             instability: (exists && stable == Some(false)).then(|| Loss::of(multipliers)),
             energy_rule: exists && root.upper,

@@ -1,27 +1,64 @@
 //! `vibro model choose`: the simplest model that is good enough.
 
 use crate::cli::args::{self, Came, Looked};
+use crate::cli::progress::Busy;
 use crate::cli::{complain, print};
 use crate::error::{Error, Result};
-use crate::model::ladder::{Choice, Question, Survey, choose, choose_over};
+use crate::model::ladder::{Choice, Question, Rung, Survey, choose, choose_over};
 use crate::model::{Observable, Scene};
-use crate::record::Direction;
+use crate::record::{Direction, Finding, Severity};
+use crate::report::words::{self, Voice, sentences};
 use crate::report::{Figure, Output, Table, files, pictures, tables};
 use crate::units::notation::significant;
 use serde::Serialize;
+use serde_json::Value;
 use std::fmt::Write as _;
 use std::path::Path;
 
 /// What was asked, and the answer.
 #[derive(Serialize)]
-struct Answer<'a, T> {
+struct Answer<'a> {
     scene: &'a Scene,
     #[serde(flatten)]
     question: &'a Question,
     #[serde(flatten)]
-    found: &'a T,
+    found: Value,
     warnings: &'a [String],
     files: Vec<String>,
+}
+
+/// A choice as JSON, with `why` of each rung and `reasons` in words.
+fn worded(choice: &Choice) -> Result<Value> {
+    let mut value = to_value(choice)?;
+    for (rung, found) in choice.rungs.iter().enumerate() {
+        value["rungs"][rung]["why"] = tables::why(found, Voice::Command).into();
+    }
+    value["reasons"] = reasons(choice).into();
+    Ok(value)
+}
+
+fn to_value(found: &impl Serialize) -> Result<Value> {
+    serde_json::to_value(found)
+        .map_err(|e| Error::refused(format!("the result cannot be written as JSON: {e}")))
+}
+
+/// Why the rungs below the chosen one are passed over, why that one is chosen, and what was found beside.
+fn reasons(choice: &Choice) -> Vec<String> {
+    let top = choice.chosen.map_or(choice.rungs.len(), |model| model as usize + 1);
+    let mut said: Vec<String> = Vec::new();
+    let told = |rung: &Rung| (rung.valid, tables::why(rung, Voice::Command));
+    for alike in choice.rungs[..top].chunk_by(|a, b| told(a) == told(b)) {
+        let names: Vec<&str> = alike.iter().map(|r| r.model.name()).collect();
+        let (valid, why) = told(&alike[0]);
+        let fate = match valid {
+            _ if choice.chosen == Some(alike[0].model) => "chosen",
+            true => "valid",
+            false => "not valid",
+        };
+        said.push(format!("{}: {fate}. {why}", names.join(", ")));
+    }
+    said.extend(sentences(&choice.findings, Voice::Command));
+    said
 }
 
 pub fn run(typed: &args::ModelChoose, json: bool) -> Result<()> {
@@ -30,14 +67,18 @@ pub fn run(typed: &args::ModelChoose, json: bool) -> Result<()> {
     let (scene, warnings) = super::scene(&typed.scene, typed.frequency.or(typed.from))?;
     let excitation = super::excitation(&scene)?;
     if let (Some(from), Some(to)) = (typed.from, typed.to) {
+        let busy = Busy::with(json, "choosing a model at each frequency");
         let survey = choose_over(&scene, from, to, typed.points, &question)?;
+        drop(busy);
         return along(typed, json, &scene, &question, &survey, warnings);
     }
     let frequency = typed.frequency.unwrap_or(excitation.frequency());
     if frequency.is_nan() {
         return Err(Error::usage("no frequency", "--frequency HZ, or --from HZ --to HZ for an axis"));
     }
+    let busy = Busy::with(json, "choosing a model");
     let choice = choose(&scene, frequency, &question)?;
+    drop(busy);
     single(typed, json, &scene, &question, &choice, warnings)
 }
 
@@ -76,33 +117,42 @@ fn single(
             write(folder, pictures::ladder(choice, question), &tables)?
         }
     };
-    warnings.extend(choice.doubt());
-    warnings.extend(choice.rare(question));
-    warnings.extend(choice.cut());
-    if choice.chosen.is_none() {
-        warnings.extend(choice.reasons.last().cloned());
-    }
     if json {
-        return print::json(&Answer { scene, question, found: choice, warnings: &warnings, files: written });
+        let found = worded(choice)?;
+        return print::json(&Answer { scene, question, found, warnings: &warnings, files: written });
     }
-    // What is not chosen is said below.
-    complain::warn(&warnings[..warnings.len() - usize::from(choice.chosen.is_none())]);
+    warnings.extend(words::warnings(&choice.findings, Voice::Command));
+    complain::warn(&warnings);
     let mut text = format!("{}\n", rungs.text());
+    if choice.motions.len() > 1 {
+        let _ = writeln!(text, "{}", tables::motions(&choice.motions, question).text());
+    }
     if !choice.sensitivity.is_empty() {
         let _ = writeln!(text, "{}", sensitivity.text());
     }
-    for sentence in &choice.reasons {
+    for sentence in reasons(choice).iter().filter(|said| !warnings.contains(said)) {
         let _ = writeln!(text, "{sentence}");
     }
     told(text, written)
 }
 
-/// What `say` says of the first of these points of which it says anything, and of how many it does.
-fn at_first(points: &[Choice], say: impl Fn(&Choice) -> Option<String>) -> Option<String> {
-    let said: Vec<(f64, String)> = points.iter().filter_map(|c| Some((c.frequency, say(c)?))).collect();
-    let (first, what) = said.first()?;
-    let (n, all, first) = (said.len(), points.len(), significant(*first, 6));
-    Some(format!("At {n} of {all} points, the first at {first} Hz: {what}"))
+/// The findings of an axis that are not notes: of each code the first, and at how many points it was found.
+fn over(points: &[Choice]) -> Vec<String> {
+    let mut seen: Vec<(&Finding, f64, usize)> = Vec::new();
+    for choice in points {
+        for finding in choice.findings.iter().filter(|f| f.severity != Severity::Note) {
+            match seen.iter_mut().find(|known| known.0.code == finding.code) {
+                Some(known) => known.2 += 1,
+                None => seen.push((finding, choice.frequency, 1)),
+            }
+        }
+    }
+    let said = |(finding, first, n): &(&Finding, f64, usize)| {
+        let (all, first) = (points.len(), significant(*first, 6));
+        let sentence = words::sentence(finding, Voice::Command);
+        format!("At {n} of {all} frequencies, first at {first} Hz: {sentence}")
+    };
+    seen.iter().map(said).collect()
 }
 
 fn along(
@@ -117,49 +167,24 @@ fn along(
     let written = match &typed.out {
         None => Vec::new(),
         Some(folder) => {
-            let (points, rungs) =
-                (tables::chosen(&survey.points, question), tables::summaries(&survey.rungs));
+            let (points, rungs) = (tables::chosen(&survey.points, question), tables::summaries(survey));
             let tables = [("points.csv", &points), ("rungs.csv", &rungs), ("stretches.csv", &stretches)];
             write(folder, pictures::ladder_over(survey, question)?, &tables)?
         }
     };
-    let open = survey.points.iter().filter(|c| c.chosen.is_none()).count();
-    if let Some(first) = survey.points.iter().find(|c| c.chosen.is_none()) {
-        warnings.push(format!(
-            "At {open} of {} frequencies no rung can be chosen, the first of them {} Hz: {}",
-            survey.points.len(),
-            significant(first.frequency, 6),
-            first.reasons.last().map_or("", String::as_str)
-        ));
-    }
-    warnings.extend(at_first(&survey.points, |c| c.rare(question)));
-    warnings.extend(at_first(&survey.points, Choice::cut));
-    let size = |c: &&Choice| c.law.map_or(0.0, |law| law.change.abs());
-    let doubted = survey.points.iter().filter(|c| c.doubt().is_some());
-    if let Some(worst) = doubted.max_by(|a, b| size(a).total_cmp(&size(b))) {
-        let at = significant(worst.frequency, 6);
-        warnings.push(format!("At {at} Hz: {}", worst.doubt().unwrap_or_default()));
-    }
+    warnings.extend(over(&survey.points));
     if json {
-        return print::json(&Answer { scene, question, found: survey, warnings: &warnings, files: written });
+        let mut found = to_value(survey)?;
+        for (rung, summary) in survey.rungs.iter().enumerate() {
+            found["rungs"][rung]["why"] = tables::where_chosen(summary, survey.points.len()).into();
+        }
+        found["points"] = survey.points.iter().map(worded).collect::<Result<Vec<Value>>>()?.into();
+        return print::json(&Answer { scene, question, found, warnings: &warnings, files: written });
     }
     complain::warn(&warnings);
-    let mut text = format!("{}\n{}", stretches.text(), tables::summaries(&survey.rungs).text());
+    let mut text = format!("{}\n{}", stretches.text(), tables::summaries(survey).text());
     let _ = match survey.chosen {
-        Some(model) => {
-            let beyond = survey.points.iter().filter_map(|p| p.law).filter(|c| !c.enough);
-            match beyond.max_by(|a, b| a.change.abs().total_cmp(&b.change.abs())) {
-                Some(c) => writeln!(
-                    text,
-                    "\n{} is good enough at all of these frequencies if its law of the contact is: at {} the answer moves by up to {:.1} %. \
-                     The law should be measured.",
-                    model.name(),
-                    c.at.name(),
-                    100.0 * c.change.abs()
-                ),
-                None => writeln!(text, "\n{} is good enough at all of these frequencies.", model.name()),
-            }
-        }
+        Some(model) => writeln!(text, "\n{} is good enough at all of these frequencies.", model.name()),
         None => writeln!(text, "\nNo single model was found good enough at all of these frequencies."),
     };
     told(text, written)

@@ -1,6 +1,7 @@
 //! `vibro model response`: motions over frequency.
 
 use super::{Judged, gap_std, judged};
+use crate::cli::progress::Busy;
 use crate::cli::{args, complain, print, settings};
 use crate::error::Result;
 use crate::model::{Change, NoImpact, ResponsePoint, Scene, response};
@@ -56,7 +57,9 @@ pub fn run(typed: &args::ModelResponse, json: bool) -> Result<()> {
     let gap_std = gap_std(typed.gap_std)?;
     let (scene, mut warnings) = super::scene(&typed.scene, Some(typed.from))?;
     let excitation = super::excitation(&scene)?;
+    let busy = Busy::with(json, "solving at each frequency");
     let found = response(&scene.rig, excitation, typed.from, typed.to, typed.points, typed.cycles)?;
+    drop(busy);
     let refused: Vec<_> = found.points.iter().filter_map(|p| p.refused.as_ref()).collect();
     if let Some(why) = refused.first() {
         warnings.push(format!("{} frequencies have no answer, the first of them: {why}", refused.len()));

@@ -2,6 +2,7 @@
 
 use super::contact;
 use crate::cli::args::{self, Law};
+use crate::cli::progress::Busy;
 use crate::cli::{complain, print, settings};
 use crate::error::{Error, Result};
 use crate::model::portrait::{Portrait, Sitting};
@@ -49,6 +50,7 @@ struct Seen {
 
 pub fn run(typed: &args::Simulate, json: bool) -> Result<()> {
     let (scene, mut warnings) = super::scene(&typed.scene, typed.frequency)?;
+    let busy = Busy::with(json, "simulating");
     let seen = match typed.model {
         Law::Restitution => {
             let mut motion = restitution(&scene, typed)?;
@@ -77,6 +79,7 @@ pub fn run(typed: &args::Simulate, json: bool) -> Result<()> {
             whole(motion, typed)?
         }
     };
+    drop(busy);
     warnings.extend(contact::buffer(&scene, typed.model));
     warnings.extend(doubts(&seen, typed));
     if typed.model == Law::Hertz && scene.rig.restitution < 1.0 {

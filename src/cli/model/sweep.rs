@@ -2,6 +2,7 @@
 
 use super::contact;
 use crate::cli::args::{self, Law, Over, Way};
+use crate::cli::progress::Busy;
 use crate::cli::{complain, print};
 use crate::compare::{Named, named};
 use crate::error::{Error, Result};
@@ -45,7 +46,9 @@ pub fn run(typed: &args::ModelSweep, json: bool) -> Result<()> {
     }
     let plan = plan(typed);
     plan.check()?;
+    let busy = Busy::with(json, "sweeping");
     let swept = sweep(&scene, &excitation, &plan, typed)?;
+    drop(busy);
     let (resonances, jumps) = if over_force { (Vec::new(), Vec::new()) } else { named(&swept) };
     warnings.extend(contact::buffer(&scene, typed.model));
     warnings.extend(scattered(&swept));

@@ -1,7 +1,7 @@
 //! Response curves with all branches.
 
 use super::lettered;
-use crate::model::{Orbit, Response};
+use crate::model::{ChangeKind, Orbit, Response};
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 
 /// How a motion is drawn.
@@ -120,10 +120,10 @@ fn panel(response: &Response, mass: usize) -> Plot {
         }
     }
     for (kinds, name, marker) in [
-        (&["fold"][..], "fold", Marker::FilledSquare),
-        (&["flip"], "flip", Marker::Diamond),
-        (&["neimark-sacker"], "Neimark–Sacker", Marker::Triangle),
-        (&["grazing", "second contact"], "grazing", Marker::OpenCircle),
+        (&[ChangeKind::Fold][..], "fold", Marker::FilledSquare),
+        (&[ChangeKind::Flip], "flip", Marker::Diamond),
+        (&[ChangeKind::NeimarkSacker], "Neimark–Sacker", Marker::Triangle),
+        (&[ChangeKind::Grazing, ChangeKind::SecondContact], "grazing", Marker::OpenCircle),
     ] {
         let at = response.changes.iter().filter(|c| {
             kinds.contains(&c.kind) && c.amplitude[mass] < 2.0 * top && c.amplitude[mass] > 1e-3 * top

@@ -2,7 +2,8 @@
 
 use super::table;
 use crate::compare::{Overlay, Rungs};
-use crate::model::ladder::{Choice, Question, Rung, Sensitivity, Stretch, Summary};
+use crate::model::ladder::{Choice, Known, Question, Rung, Sensitivity, Stretch, Summary, Survey};
+use crate::report::words::{Voice, sentence};
 use crate::report::{Cell, Table};
 
 fn word(yes: bool) -> Cell {
@@ -50,6 +51,27 @@ pub fn rungs(choice: &Choice, question: &Question) -> Table {
         ],
     );
     answered(found, question, choice.rungs.iter().map(|r| r.answer))
+}
+
+/// Why a rung answers for its scene, or does not.
+pub fn why(rung: &Rung, voice: Voice) -> String {
+    let refused = rung.refused.as_ref().map(|why| format!("Not computed: {why}."));
+    let reasons = rung.reasons.iter().map(|reason| sentence(reason, voice));
+    refused.into_iter().chain(reasons).collect::<Vec<String>>().join(" ")
+}
+
+/// The motions that are possible at one excitation.
+pub fn motions(motions: &[Known], question: &Question) -> Table {
+    let found = table(
+        "Motions",
+        motions,
+        &[
+            ("impacts/cycles", "", &|m| Cell::from(m.pattern.to_string())),
+            ("known by", "", &|m| Cell::from(m.model.name())),
+            ("stable", "", &|m| word(m.stable)),
+        ],
+    );
+    answered(found, question, motions.iter().map(|m| Some(m.answer)))
 }
 
 /// The answer over an unknown stiffness of the contact.
@@ -109,17 +131,22 @@ pub fn climbed(overlay: &Overlay) -> Table {
     )
 }
 
+/// Where a rung is valid and chosen.
+pub fn where_chosen(rung: &Summary, points: usize) -> String {
+    format!("Valid at {} and chosen at {} of {points} points.", rung.valid_at, rung.chosen_at)
+}
+
 /// Each rung over the whole axis.
-pub fn summaries(rungs: &[Summary]) -> Table {
+pub fn summaries(survey: &Survey) -> Table {
     table(
         "Rungs",
-        rungs,
+        &survey.rungs,
         &[
             ("rung", "", &|r| Cell::from(r.model.name())),
             ("valid everywhere", "", &|r| word(r.valid)),
             ("moves at most by", "%", &|r| percent(r.error)),
             ("median time in µs", "", &|r| Cell::from(r.cost_ns.map(|t| t / 1000.0))),
-            ("where", "", &|r| Cell::from(r.why.as_str())),
+            ("where", "", &|r| Cell::from(where_chosen(r, survey.points.len()))),
         ],
     )
 }

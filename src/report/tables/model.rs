@@ -37,8 +37,8 @@ pub fn verdicts(orbits: &[Orbit], gap_std: Option<f64>) -> Table {
             ("exists", "", &|(_, o)| word(o.validity.exists)),
             ("admissible", "", &|(_, o)| word(o.validity.admissible)),
             ("stability", "", &|(_, o)| match o.validity.instability {
-                Some(loss) => Cell::from(format!("{}: {}", o.validity.stability, loss.name())),
-                None if o.validity.exists => Cell::from(o.validity.stability),
+                Some(loss) => Cell::from(format!("{}: {}", o.validity.stability.name(), loss.name())),
+                None if o.validity.exists => Cell::from(o.validity.stability.name()),
                 None => Cell::Missing,
             }),
             ("robust", "", &|(_, o)| gap_std.map_or(Cell::Missing, |std| word(o.robust(std)))),
@@ -95,7 +95,7 @@ pub fn branches(response: &Response) -> Table {
             ("x1 fundamental", "m", &|o| Cell::from(o.fundamental[0].norm())),
             ("x2 fundamental", "m", &|o| Cell::from(o.fundamental[1].norm())),
             ("admissible", "", &|o| word(o.validity.admissible)),
-            ("stability", "", &|o| Cell::from(o.validity.stability)),
+            ("stability", "", &|o| Cell::from(o.validity.stability.name())),
             ("largest multiplier", "", &|o| Cell::from(o.spectral_radius())),
             ("least gap", "m", &|o| Cell::from(o.validity.min_gap)),
             ("grazing distance, first order", "m", &|o| Cell::from(o.validity.grazing_distance)),
@@ -110,7 +110,7 @@ pub fn changes(response: &Response) -> Table {
         &response.changes,
         &[
             ("frequency", "Hz", &|c| Cell::from(c.frequency)),
-            ("change", "", &|c| Cell::from(c.kind)),
+            ("change", "", &|c| Cell::from(c.kind.name())),
             ("x1 amplitude", "m", &|c| Cell::from(c.amplitude[0])),
             ("x2 amplitude", "m", &|c| Cell::from(c.amplitude[1])),
         ],

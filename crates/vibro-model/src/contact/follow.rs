@@ -8,7 +8,7 @@ use super::within::Within;
 use crate::forcing::Forcing;
 use crate::linear::{Course, Linear, Quantity};
 use crate::motion::{Event, Motion, Path, Piece};
-use crate::{Excitation, Rig, State};
+use crate::{Excitation, Rig, State, scales};
 use vibro_record::{Error, Result};
 
 /// Work of one call at most, a linear piece being 1 and an integrated one [`INTEGRATED`]: some minutes.
@@ -95,7 +95,7 @@ impl Follow {
         state: State,
         phase: f64,
     ) -> Result<Follow> {
-        rig.check()?;
+        scales::check(rig, excitation)?;
         rig.check_wall(&state)?;
         let law = match contact {
             Contact::Rebound => None,

@@ -1,8 +1,7 @@
 //! The ladder along an axis of frequencies: it may choose differently, and says where.
 
 use super::{Change, Choice, Model, Question, choose, chosen};
-use crate::Scene;
-use rayon::prelude::*;
+use crate::{Scene, parallel};
 use serde::Serialize;
 use vibro_record::{Error, Result};
 
@@ -33,8 +32,10 @@ pub struct Summary {
     pub error: Option<f64>,
     /// Whether it is valid at each point.
     pub valid: bool,
-    /// Where it is valid and chosen, in a sentence.
-    pub why: String,
+    /// Number of points at which it is valid.
+    pub valid_at: usize,
+    /// Number of points at which it is chosen.
+    pub chosen_at: usize,
 }
 
 /// Neighbouring points at which the same was found.
@@ -72,17 +73,14 @@ pub fn choose_over(scene: &Scene, from: f64, to: f64, points: usize, question: &
         return Err(Error::usage(format!("{points} points"), format!("2 to {MOST_POINTS}")));
     }
     let step = (to - from) / (points - 1) as f64;
-    let mut all: Vec<Choice> = (0..points)
-        .into_par_iter()
-        .map(|i| if i + 1 == points { to } else { from + i as f64 * step })
-        .map(|frequency| chosen(scene, frequency, question, false))
+    let at = |i: usize| if i + 1 == points { to } else { from + i as f64 * step };
+    let mut all: Vec<Choice> = parallel::each(points, |i| chosen(scene, at(i), question, false))
+        .into_iter()
         .collect::<Result<_>>()?;
-    let held: Vec<(usize, Choice)> = probes(&all)
-        .into_par_iter()
-        .map(|i| choose(scene, all[i].frequency, question).map(|choice| (i, choice)))
-        .collect::<Result<_>>()?;
-    for (i, choice) in held {
-        all[i] = choice;
+    let probes = probes(&all);
+    let bent = parallel::each(probes.len(), |i| choose(scene, all[probes[i]].frequency, question));
+    for (i, choice) in probes.into_iter().zip(bent) {
+        all[i] = choice?;
     }
     Ok(Survey {
         chosen: Model::ALL
@@ -115,14 +113,14 @@ fn summary(model: Model, all: &[Choice]) -> Summary {
     let rungs = || all.iter().map(|c| c.rung(model));
     let mut costs: Vec<f64> = rungs().filter_map(|r| r.cost_ns).collect();
     costs.sort_by(f64::total_cmp);
-    let valid = rungs().filter(|r| r.valid).count();
-    let chosen = all.iter().filter(|c| c.chosen == Some(model)).count();
+    let valid_at = rungs().filter(|r| r.valid).count();
     Summary {
         model,
         cost_ns: costs.get(costs.len() / 2).copied(),
         error: rungs().filter(|r| r.valid).filter_map(|r| r.error).reduce(f64::max),
-        valid: valid == all.len(),
-        why: format!("Valid at {valid} and chosen at {chosen} of {} points.", all.len()),
+        valid: valid_at == all.len(),
+        valid_at,
+        chosen_at: all.iter().filter(|c| c.chosen == Some(model)).count(),
     }
 }
 

@@ -9,14 +9,9 @@ const STILL: f64 = 1e-3;
 /// Standard errors by which a change between two rungs may be due to means over motions that do not repeat.
 const TOLD: f64 = 2.0;
 
-/// Chance at most that means over one motion are taken for those of two.
-const CHANCE: f64 = 0.01;
-
-/// Standard errors beyond which two means are of two motions, where `n` pairs are compared: of a normal distribution less than e^{−z²/2} lies
-/// farther than z on either side, and n pairs have n times that chance. So z = √(2 ln(n/chance)).
-pub fn apart(n: u32) -> f64 {
-    (2.0 * (f64::from(n.max(1)) / CHANCE).ln()).sqrt()
-}
+/// Standard errors beyond which two means are of two motions. Of a normal distribution less than e^{−z²/2} lies farther than z on either
+/// side; a search compares some thirty pairs, so that one motion is taken for two in 1 % of the searches at most.
+pub const APART: f64 = 4.0;
 
 /// How far an answer moves at another rung.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -1,19 +1,20 @@
-//! From rung to rung.
+//! From rung to rung: what each answers, how far that moves at the rungs above, and which one is good enough.
 
 use super::change::{Answer, Change};
 use super::motions::{Motions, On};
+use super::outcome::Outcome;
+use super::reading::End;
 use super::sensitivity::sensitivity;
-use super::stage::{Stage, restitution};
-use super::tried::Tried;
-use super::{Choice, Model, Need, Rung, laws, reasons};
-use vibro_record::Result;
+use super::stage::Stage;
+use super::{Choice, Model, Need, Rung, laws};
+use vibro_record::{Finding, Result};
 
-/// All rungs tried for a scene.
+/// All rungs of a scene.
 pub struct Climb<'a> {
     stage: Stage<'a>,
     /// `None` for a mass that is loose on its spring, of which no motion is known before.
     motions: Option<Motions>,
-    tried: [Tried; 7],
+    outcomes: [Outcome; 7],
     stiffness: Option<f64>,
 }
 
@@ -21,36 +22,36 @@ impl<'a> Climb<'a> {
     pub fn new(stage: Stage<'a>) -> Result<Climb<'a>> {
         let stiffness = laws::keys(stage.scene).stiffness;
         if stage.scene.buffer.is_some() {
-            let held = || Tried::not("The spring of mass 1 only pushes; this rung lets it hold both ways.");
-            let mut tried = [(); 7].map(|()| held());
-            let spring = stiffness.filter(|_| !laws::is_curved(stage.scene));
-            tried[Model::LooseMass as usize] = stage.loose_mass(spring);
-            return Ok(Climb { stage, motions: None, tried, stiffness: spring });
+            let stiffness = stiffness.filter(|_| !laws::is_curved(stage.scene));
+            let mut outcomes = [(); 7].map(|()| Outcome::not(Finding::note("spring-loose")));
+            outcomes[Model::LooseMass as usize] = stage.loose_mass(stiffness);
+            return Ok(Climb { stage, motions: None, outcomes, stiffness });
         }
         let mut motions = Motions::new(&stage)?;
         let closed = stage.closed_form(&motions);
         let soft = stage.soft_corrected(&motions, &closed);
-        let tried = [
+        let outcomes = [
             stage.linear(&motions),
             closed,
             soft,
-            restitution(&motions),
+            Stage::restitution(&motions),
             stage.kelvin_voigt(&motions),
-            if laws::is_curved(stage.scene) {
-                stage.hunt_crossley(&motions)
-            } else {
-                Tried::not("The scene states no exponent of the contact.")
-            },
+            stage.hunt_crossley(&motions),
             stage.loose_mass(None),
         ];
         for model in [Model::KelvinVoigt, Model::HuntCrossley] {
-            motions.differs(&tried[model as usize], model, stage.question);
+            motions.differs(&outcomes[model as usize], model, stage.question);
         }
-        Ok(Climb { stage, motions: Some(motions), tried, stiffness })
+        Ok(Climb { stage, motions: Some(motions), outcomes, stiffness })
     }
 
-    fn of(&self, model: Model) -> &Tried {
-        &self.tried[model as usize]
+    fn of(&self, model: Model) -> &Outcome {
+        &self.outcomes[model as usize]
+    }
+
+    /// What a rung answers.
+    pub fn answer(&self, model: Model) -> Option<Answer> {
+        self.of(model).answer
     }
 
     /// Rungs at which the answer of `model` is looked at again: the next one that knows more, and the next one that follows the motion.
@@ -68,11 +69,8 @@ impl<'a> Climb<'a> {
     }
 
     fn changes(&self, model: Model) -> Vec<Change> {
-        let Some(answer) = &self.of(model).answer else { return Vec::new() };
-        let changed = |at: Model| {
-            let other = self.of(at).answer.as_ref()?;
-            Some(answer.change(other, at, self.stage.question))
-        };
+        let Some(answer) = self.answer(model) else { return Vec::new() };
+        let changed = |at: Model| Some(answer.change(&self.answer(at)?, at, self.stage.question));
         self.above(model).into_iter().filter_map(changed).collect()
     }
 
@@ -91,29 +89,54 @@ impl<'a> Climb<'a> {
     }
 
     fn rung(&self, model: Model) -> Rung {
-        let tried = self.of(model);
+        let outcome = self.of(model);
         let changes = self.changes(model);
         let mut rung = Rung {
             model,
-            cost_ns: tried.cost.map(|c| c.ns),
-            cost_runs: tried.cost.map(|c| c.runs),
+            cost_ns: outcome.cost,
             error: changes.iter().map(|c| c.change.abs()).reduce(f64::max),
-            valid: tried.valid,
-            why: tried.why.clone(),
+            valid: outcome.valid,
+            settled: outcome.answer.is_some_and(|a| a.steady),
+            reasons: outcome.reasons.clone(),
+            refused: outcome.refused.clone(),
             needs: self.needs(model),
-            answer: tried.answer.map(|a| a.value),
-            spread: tried.answer.map_or([0.0; 2], |a| a.spread),
+            answer: outcome.answer.map(|a| a.value),
+            spread: outcome.answer.map_or([0.0; 2], |a| a.spread),
             changes,
             sufficient: false,
         };
         rung.sufficient = self.is_enough(&rung);
+        if rung.valid {
+            rung.reasons.extend(self.audit(&rung));
+        }
         rung
     }
 
-    /// Whether a curved contact is stated, but there are no impacts for its law to act in.
+    /// What the rungs above say of the answer of a rung that is valid.
+    fn audit(&self, rung: &Rung) -> Vec<Finding> {
+        let unsure = self.answer(rung.model).map_or(0.0, |a| a.unsure(self.stage.question));
+        if unsure > 1.0 {
+            return vec![Finding::caution("mean-not-known").number("ratio", unsure)];
+        }
+        if rung.changes.is_empty() && !rung.sufficient {
+            return vec![Finding::caution("answer-not-checked")];
+        }
+        let moved = |c: &Change| {
+            let found = if c.enough { Finding::note("answer-holds") } else { Finding::note("answer-moves") };
+            found.number("change", c.change).name("rung", c.at.name())
+        };
+        // What curved bodies change is said of the choice.
+        rung.changes.iter().filter(|c| c.at != Model::HuntCrossley).map(moved).collect()
+    }
+
+    /// Whether no law of the contact matters: masses stay in contact, and no spring between them is stated, or a curved contact is stated and
+    /// nothing strikes.
     fn is_lawless(&self) -> bool {
-        let curved = self.stiffness.is_some() && laws::is_curved(self.stage.scene);
-        curved && self.motions.as_ref().is_some_and(|m| m.reading.speed == 0.0)
+        let Some(reading) = self.motions.as_ref().map(|m| &m.reading) else { return false };
+        match self.stiffness {
+            None => reading.end == End::Pressed,
+            Some(_) => laws::is_curved(self.stage.scene) && reading.speed == 0.0,
+        }
     }
 
     /// Whether the answer of a rung comes from a motion that has settled, or is a mean that is known as exactly as is asked for.
@@ -137,10 +160,45 @@ impl<'a> Climb<'a> {
             }
     }
 
-    /// Holds a spring that was chosen against curved bodies that meet for as long.
+    /// Chooses. Where `bend` says so, a contact of spring and damper that is chosen is compared with curved bodies that meet for as long.
+    pub fn choose(mut self, bend: bool) -> Choice {
+        let (motions, followed) =
+            self.motions.as_ref().map_or((Vec::new(), None), |m| (m.known.clone(), m.followed));
+        let mut choice = Choice {
+            frequency: self.stage.excitation.frequency(),
+            chosen: None,
+            rungs: Model::ALL.iter().map(|model| self.rung(*model)).collect(),
+            needs: Vec::new(),
+            audit: None,
+            law: None,
+            gap: Vec::new(),
+            sensitivity: Vec::new(),
+            sensitivity_failed: Vec::new(),
+            motions,
+            followed,
+            findings: Vec::new(),
+        };
+        if self.motions.as_ref().is_some_and(|m| m.on == On::Open) {
+            choice.needs.push("history");
+            return choice;
+        }
+        choice.chosen = choice.rungs.iter().find(|r| r.sufficient).map(|r| r.model);
+        if choice.chosen.is_none() && self.stiffness.is_none() {
+            self.without_stiffness(&mut choice);
+        }
+        match choice.chosen {
+            None => choice.needs = self.missing(),
+            Some(Model::KelvinVoigt | Model::SoftCorrected) if bend => self.bend(&mut choice),
+            Some(_) => {}
+        }
+        choice.audit = choice.chosen.and_then(|model| choice.rung(model).changes.last().copied());
+        choice
+    }
+
+    /// Compares a spring that was chosen with curved bodies.
     fn bend(&mut self, choice: &mut Choice) {
         let Some(motions) = &self.motions else { return };
-        self.tried[Model::HuntCrossley as usize] = self.stage.hunt_crossley(motions);
+        self.outcomes[Model::HuntCrossley as usize] = self.stage.curved_alike(motions);
         for model in [Model::KelvinVoigt, Model::HuntCrossley] {
             choice.rungs[model as usize] = self.rung(model);
         }
@@ -150,61 +208,13 @@ impl<'a> Climb<'a> {
         }
     }
 
-    /// What a rung answers.
-    pub fn answer(&self, model: Model) -> Option<Answer> {
-        self.of(model).answer
-    }
-
-    /// Chooses; a contact of spring and damper that is chosen is held against curved bodies where `bend` says so.
-    pub fn choose(mut self, bend: bool) -> Choice {
-        let rungs: Vec<Rung> = Model::ALL.iter().map(|model| self.rung(*model)).collect();
-        let open = self.motions.as_ref().is_some_and(|m| m.on == On::Open);
-        let mut choice = Choice {
-            frequency: self.stage.excitation.frequency(),
-            chosen: None,
-            needs: Vec::new(),
-            audit: None,
-            law: None,
-            gap: Vec::new(),
-            sensitivity: Vec::new(),
-            sensitivity_failed: Vec::new(),
-            motions: self.motions.as_ref().map_or_else(Vec::new, |m| m.known.clone()),
-            followed: self.motions.as_ref().and_then(|m| m.followed),
-            reasons: Vec::new(),
-            rungs,
-        };
-        if open {
-            choice.needs.push("history");
-        } else {
-            choice.chosen = choice.rungs.iter().find(|r| r.sufficient).map(|r| r.model);
-            if choice.chosen.is_none() {
-                self.without_stiffness(&mut choice);
-            }
-            if choice.chosen.is_none() {
-                choice.needs = self.missing();
-            }
-        }
-        if bend && matches!(choice.chosen, Some(Model::KelvinVoigt | Model::SoftCorrected)) {
-            self.bend(&mut choice);
-        }
-        choice.audit = choice.chosen.and_then(|model| choice.rung(model).changes.last().copied());
-        choice.reasons = reasons::sentences(&choice, self.stage.question);
-        choice
-    }
-
     /// The answer over the stiffness, and the rung that holds whatever it is.
     fn without_stiffness(&self, choice: &mut Choice) {
-        if self.stiffness.is_some() {
-            return;
-        }
         let lowest = [Model::ClosedForm, Model::Restitution, Model::LooseMass];
         let base = lowest.into_iter().find(|model| self.of(*model).valid).filter(|m| self.is_known(*m));
-        let Some((model, answer)) = base.and_then(|m| Some((m, self.of(m).answer?))) else {
-            return;
-        };
+        let Some((model, answer)) = base.and_then(|m| Some((m, self.answer(m)?))) else { return };
         let (rows, failed) = sensitivity(&self.stage, self.motions.as_ref(), &answer);
-        let all = !rows.is_empty() && failed.is_empty() && rows.iter().all(|row| row.enough);
-        if all {
+        if !rows.is_empty() && failed.is_empty() && rows.iter().all(|row| row.enough) {
             choice.chosen = Some(model);
             choice.rungs[model as usize].sufficient = true;
         }

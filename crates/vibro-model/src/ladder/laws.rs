@@ -5,7 +5,7 @@ use crate::{ContactKeys, Law, Rig, Scene};
 use vibro_record::{Error, Result};
 
 /// Exponent of two curved bodies.
-const HERTZ: f64 = 1.5;
+pub const HERTZ: f64 = 1.5;
 
 /// Keys of the contact; all unknown where there is none.
 pub fn keys(scene: &Scene) -> ContactKeys {

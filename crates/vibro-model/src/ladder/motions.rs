@@ -1,12 +1,11 @@
 //! The motions of a rig at one excitation, as far as they are known, and the one that it is in.
 
-use super::change::{Answer, apart};
-use super::cost::Cost;
+use super::change::{APART, Answer};
 use super::history::{Way, several};
+use super::outcome::Outcome;
 use super::reading::{End, Reader, Reading};
-use super::stage::Stage;
+use super::stage::{Stage, timed};
 use super::starts::{Followed, starts};
-use super::tried::Tried;
 use super::{Model, Question};
 use crate::regime::Strike;
 use crate::{Motion, Orbit, Orbits, Regime, Simulation, State, orbits_of};
@@ -24,8 +23,9 @@ const BESIDE: f64 = 0.02;
 /// A motion that the rig can be in.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Known {
-    /// Its pattern: `no impact`, impacts/cycles, `chatter` or `irregular`.
-    pub pattern: String,
+    /// Its pattern; in JSON `no impact`, impacts/cycles, `chatter` or `irregular`.
+    #[serde(serialize_with = "as_text")]
+    pub pattern: Regime,
     /// The model by which it is known.
     pub model: Model,
     /// What is shown of it.
@@ -39,18 +39,22 @@ pub struct Known {
     pub rare: bool,
 }
 
+fn as_text<S: serde::Serializer>(pattern: &Regime, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+    serializer.collect_str(pattern)
+}
+
 impl Known {
     /// A motion that was followed, and lasts.
     fn followed(reading: &Reading, model: Model, rare: bool) -> Known {
         let Answer { value, spread, .. } = reading.answer;
-        Known { pattern: reading.regime.to_string(), model, answer: value, spread, stable: true, rare }
+        Known { pattern: reading.regime, model, answer: value, spread, stable: true, rare }
     }
 
     /// Whether it may be the motion that was read: both without impacts, or their answers no farther apart than is allowed.
-    fn may_be(&self, reading: &Reading, question: &Question, errors: f64) -> bool {
-        let still = reading.regime == Regime::NoImpact && self.pattern == Regime::NoImpact.to_string();
+    fn may_be(&self, reading: &Reading, question: &Question) -> bool {
+        let still = reading.regime == Regime::NoImpact && self.pattern == Regime::NoImpact;
         let own = Answer { spread: self.spread, ..Answer::exact(self.answer) };
-        still || own.agrees(&reading.answer, question, errors)
+        still || own.agrees(&reading.answer, question, APART)
     }
 }
 
@@ -70,8 +74,8 @@ pub enum On {
 pub struct Motions {
     /// In closed form.
     pub closed: Result<Orbits>,
-    /// What that took.
-    pub closed_cost: Cost,
+    /// Time in ns that that took.
+    pub closed_cost: f64,
     /// In closed form with one impact in 2 to [`MOST_CYCLES`] cycles: those whose masses do not pass through each other.
     longer: Vec<Orbit>,
     pub known: Vec<Known>,
@@ -82,27 +86,19 @@ pub struct Motions {
     pub way: Option<Way>,
     /// States that other motions were looked for from; `None` where none was looked for.
     pub followed: Option<Followed>,
-    /// Standard errors beyond which means are of two motions.
-    errors: f64,
     /// The motion followed with impacts at once, from rest or the way it came.
     pub reading: Reading,
-    /// What that took.
-    pub cost: Cost,
+    /// Time in ns that that took.
+    pub cost: f64,
     /// Where it ended.
     pub end: Simulation,
-}
-
-/// Whether an orbit can be and stay.
-fn stays(orbit: &Orbit) -> bool {
-    let v = &orbit.validity;
-    v.exists && v.admissible && v.stable == Some(true)
 }
 
 impl Motions {
     /// Looks for them: in closed form, and by following the rig the way it came, or from rest and other states.
     pub fn new(stage: &Stage<'_>) -> Result<Motions> {
         let (rig, excitation, question) = (&stage.scene.rig, stage.excitation, stage.question);
-        let (closed, closed_cost) = stage.timed(|| orbits_of(rig, excitation, 1));
+        let (closed, closed_cost) = timed(|| orbits_of(rig, excitation, 1));
         let clearance = closed.as_ref().ok().map(|found| rig.gap - found.no_impact.largest);
         let longer = (2..=MOST_CYCLES).filter_map(|cycles| orbits_of(rig, excitation, cycles).ok());
         let longer = longer.flat_map(|found| found.orbits).filter(|o| o.validity.admissible).collect();
@@ -112,7 +108,7 @@ impl Motions {
             None => Simulation::new(rig, excitation)?,
         };
         let reader = Reader::new(rig, excitation.frequency(), question).clear_by(clearance);
-        let (followed, cost) = stage.timed(|| {
+        let (followed, cost) = timed(|| {
             let mut motion = start.clone();
             reader.read(&mut motion).map(|reading| (reading, motion))
         });
@@ -126,7 +122,6 @@ impl Motions {
             clearance,
             way,
             followed: None,
-            errors: apart(1),
             reading,
             cost,
             end,
@@ -150,9 +145,6 @@ impl Motions {
         let round = lost.map(|orbit| (beside(orbit), orbit.force_phase));
         let states: Vec<_> = round.chain(starts(rig, excitation)).collect();
         let of = states.len() as u32;
-        // Of each mass, and once more with a contact that gives way.
-        let masses = if stage.question.observable.is_of_impacts() { 1 } else { 2 };
-        self.errors = apart((of + 1) * masses);
         let (mut followed, mut cycles) = (0, 0);
         for (state, phase) in states {
             if common(&self.known) > 1 || cycles > MOST_FOLLOWED {
@@ -168,15 +160,14 @@ impl Motions {
     }
 
     /// Whether a contact that gives way leads from rest to another motion than the one that its answer is read from.
-    pub fn differs(&mut self, tried: &Tried, model: Model, question: &Question) {
-        let (Some(answer), Some(rest)) = (&tried.answer, &tried.from_rest) else { return };
-        if rest.end == End::Under || !answer.steady || answer.agrees(&rest.answer, question, self.errors) {
+    pub fn differs(&mut self, outcome: &Outcome, model: Model, question: &Question) {
+        let (Some(answer), Some(rest)) = (&outcome.answer, &outcome.from_rest) else { return };
+        if rest.end == End::Under || !answer.steady || answer.agrees(&rest.answer, question, APART) {
             return;
         }
         self.on = On::Open;
-        let (found, errors) = (Known::followed(rest, model, false), self.errors);
-        let same =
-            |known: &&mut Known| known.pattern == found.pattern && known.may_be(rest, question, errors);
+        let found = Known::followed(rest, model, false);
+        let same = |known: &&mut Known| known.pattern == found.pattern && known.may_be(rest, question);
         match self.known.iter_mut().find(same) {
             // From rest it is come to, if not with impacts at once.
             Some(known) => known.rare = false,
@@ -189,9 +180,9 @@ impl Motions {
         if reading.end == End::Under {
             return;
         }
-        let (own, errors) = (&self.reading, self.errors);
-        let own = own.end != End::Under && own.answer.agrees(&reading.answer, question, errors);
-        if !own && !self.known.iter().any(|known| known.may_be(reading, question, errors)) {
+        let own = &self.reading;
+        let own = own.end != End::Under && own.answer.agrees(&reading.answer, question, APART);
+        if !own && !self.known.iter().any(|known| known.may_be(reading, question)) {
             let rare = matches!(reading.regime, Regime::Periodic { impacts, cycles } if impacts < cycles);
             self.known.push(Known::followed(reading, Model::Restitution, rare));
         }
@@ -199,7 +190,7 @@ impl Motions {
 
     /// Orbits with one impact a cycle that can be and stay.
     fn stable(&self) -> impl Iterator<Item = &Orbit> {
-        self.closed.iter().flat_map(|found| found.orbits.iter().filter(|orbit| stays(orbit)))
+        self.closed.iter().flat_map(|found| found.orbits.iter().filter(|orbit| orbit.validity.real()))
     }
 
     /// The motion that was followed, among those in closed form; `fine` is the part of its states to which it has settled.
@@ -225,7 +216,7 @@ impl Motions {
     /// The orbit with one impact in several cycles that the motion which was followed is on.
     fn longer_own(&self, fine: f64) -> Option<&Orbit> {
         let Regime::Periodic { impacts: 1, cycles } = self.reading.regime else { return None };
-        let alike = self.longer.iter().filter(|o| o.cycles == cycles && stays(o));
+        let alike = self.longer.iter().filter(|o| o.cycles == cycles && o.validity.real());
         self.near(alike, fine).filter(|_| self.reading.end == End::Settled)
     }
 
@@ -235,19 +226,18 @@ impl Motions {
         let (found, own) = (self.closed.as_ref().ok(), self.longer_own(fine));
         if let Some(free) = found.map(|found| &found.no_impact).filter(|free| free.possible) {
             let answer = question.observable.of_no_impact(free);
-            let pattern = Regime::NoImpact.to_string();
-            let spread = [0.0; 2];
-            known.push(Known { pattern, model: Model::Linear, answer, spread, stable: true, rare: false });
+            let (pattern, model, spread) = (Regime::NoImpact, Model::Linear, [0.0; 2]);
+            known.push(Known { pattern, model, answer, spread, stable: true, rare: false });
         }
         let known_as = |orbit: &Orbit| Known {
-            pattern: Regime::Periodic { impacts: 1, cycles: orbit.cycles }.to_string(),
+            pattern: Regime::Periodic { impacts: 1, cycles: orbit.cycles },
             model: Model::ClosedForm,
             answer: question.observable.of_orbit(orbit),
             spread: [0.0; 2],
-            stable: stays(orbit),
+            stable: orbit.validity.real(),
             rare: orbit.cycles > 1 && own.is_none_or(|own| own != orbit),
         };
-        known.extend(self.stable().chain(self.longer.iter().filter(|o| stays(o))).map(known_as));
+        known.extend(self.stable().chain(self.longer.iter().filter(|o| o.validity.real())).map(known_as));
         if self.on == On::Other && self.reading.end != End::Under && own.is_none() {
             known.push(Known::followed(&self.reading, Model::Restitution, false));
         }

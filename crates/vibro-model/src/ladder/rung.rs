@@ -2,6 +2,7 @@
 
 use super::Change;
 use serde::Serialize;
+use vibro_record::Finding;
 
 /// A model of the rig, from the least to the most that it knows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
@@ -72,8 +73,6 @@ pub struct Rung {
     /// Time in ns that its answer took on this machine; of models that are followed until they settle, all of it. `None` where it was
     /// not asked.
     pub cost_ns: Option<f64>,
-    /// Times that the answer was timed; `cost_ns` is the shortest. 1 where it takes long, and along an axis.
-    pub cost_runs: Option<u32>,
     /// Largest change of its answer at the rungs above that answer, over the answer: at the next one, and at the next one that follows
     /// the motion. `None` where there is none.
     pub error: Option<f64>,
@@ -82,8 +81,12 @@ pub struct Rung {
     /// Whether it is good enough: valid, its answer known as exactly as is asked for, and within what is allowed at the rungs above, or over all
     /// stiffnesses of a contact of which nothing is known.
     pub sufficient: bool,
-    /// Why, in sentences.
-    pub why: String,
+    /// Whether its answer comes from a motion that has settled, or is a mean over one that does not repeat.
+    pub settled: bool,
+    /// Why.
+    pub reasons: Vec<Finding>,
+    /// The error that left it without an answer.
+    pub refused: Option<String>,
     /// Parameters it needs beside those of mass 1, the gap and the excitation, and whether the scene has them.
     pub needs: Vec<Need>,
     /// Its answer: of x₁ and x₂; of impacts the same number twice.

@@ -57,7 +57,7 @@ pub fn sensitivity(
     for decade in low..=(high.floor() as i32).min(low + DECADES - 1) {
         let stiffness = 10_f64.powi(decade);
         let answer = match motions {
-            Some(motions) => stage.with_spring(motions, stiffness).ok().map(|(reading, _)| reading.answer),
+            Some(motions) => stage.with_spring(motions, stiffness).ok(),
             None => stage.loose_mass(Some(stiffness)).answer,
         };
         let Some(answer) = answer else {

@@ -2,19 +2,24 @@
 
 use super::Question;
 use super::change::Answer;
-use super::cost::{self, Cost};
 use super::laws;
 use super::motions::{Motions, On};
+use super::outcome::{Outcome, into};
 use super::reading::{End, Reader, Reading};
-use super::tried::{Tried, capital, into, pattern, told};
 use crate::{
     Compliance, Compliant, Excitation, Law, Loose, Observable, Orbit, Rig, Scene, Simulation, no_impact,
     softened,
 };
 use std::f64::consts::{PI, TAU};
-use std::fmt::Write as _;
-use vibro_record::Result;
-use vibro_record::units::notation::quantity;
+use std::time::Instant;
+use vibro_record::{Finding, Result};
+
+/// What `work` gives, and the time in ns that it takes; NaN where there is no clock.
+pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
+    let begun = (!cfg!(target_family = "wasm")).then(Instant::now);
+    let done = work();
+    (done, begun.map_or(f64::NAN, |begun| begun.elapsed().as_nanos() as f64))
+}
 
 /// A scene at one excitation.
 #[derive(Debug, Clone, Copy)]
@@ -22,23 +27,16 @@ pub struct Stage<'a> {
     pub scene: &'a Scene,
     pub excitation: &'a Excitation,
     pub question: &'a Question,
-    /// Whether answers are timed more than once.
-    pub repeat: bool,
 }
 
 impl Stage<'_> {
-    /// What `work` gives and the time it takes.
-    pub fn timed<T>(&self, work: impl FnMut() -> T) -> (T, Cost) {
-        cost::timed(self.repeat, work)
-    }
-
     fn rig(&self) -> &Rig {
         &self.scene.rig
     }
 
     /// Mass 1 alone.
-    pub fn linear(&self, motions: &Motions) -> Tried {
-        let (found, cost) = self.timed(|| {
+    pub fn linear(&self, motions: &Motions) -> Outcome {
+        let (found, cost) = timed(|| {
             let found = no_impact(self.rig(), self.excitation)?;
             let value = match self.question.observable {
                 Observable::Fundamental => [self.alone(), 0.0],
@@ -48,36 +46,24 @@ impl Stage<'_> {
         });
         let (found, value) = match found {
             Ok(found) => found,
-            Err(error) => return Tried::refused(&error),
+            Err(error) => return Outcome::refused(&error),
         };
-        let (gap, sure) = (self.rig().gap, self.question.gap_std);
-        let [size, width] = [found.largest, gap].map(|v| quantity(v, "m", 4));
-        let way = if found.largest == 0.0 {
-            "Nothing moves mass 1".to_owned()
-        } else {
-            format!("Mass 1 alone moves up to {size}")
-        };
-        let (valid, why) = match motions.on {
-            _ if !found.possible => (false, format!("{way}, the gap is {width}: the masses meet.")),
-            _ if gap - found.largest <= sure => {
-                let left = quantity(gap - found.largest, "m", 2);
-                let clear =
-                    format!("{way}, the gap is {width}: the masses stay clear by {left}, no more than");
-                (false, format!("{clear} the gap's uncertainty of {}.", quantity(sure, "m", 2)))
+        let (gap, std) = (self.rig().gap, self.question.gap_std);
+        let clear = gap - found.largest;
+        let sized = |reason: Finding| reason.number("largest", found.largest).number("gap", gap);
+        let met = sized(Finding::note("masses-stay-clear"));
+        let (valid, reasons) = match motions.on {
+            _ if !found.possible => (false, vec![sized(Finding::note("masses-meet"))]),
+            _ if clear <= std => {
+                let unsure = sized(Finding::note("clearance-not-sure"));
+                (false, vec![unsure.number("clearance", clear).number("std", std)])
             }
-            On::Free => {
-                (true, format!("{way}, the gap is {width}: the masses do not meet, and {}.", into(motions)))
-            }
-            On::Open => (true, format!("{way}, the gap is {width}: the masses need not meet.")),
-            On::Orbit(_) | On::Other => (
-                false,
-                format!(
-                    "{way} and need not meet mass 2, but the rig is not in this motion: {}.",
-                    into(motions)
-                ),
-            ),
+            On::Free => (true, vec![met, into(motions)]),
+            On::Open => (true, vec![met]),
+            On::Orbit(_) | On::Other => (false, vec![met, Finding::note("other-motion"), into(motions)]),
         };
-        Tried { valid, answer: Some(Answer::exact(value)), cost: Some(cost), why, from_rest: None }
+        let answer = Some(Answer::exact(value));
+        Outcome { valid, answer, cost: Some(cost), reasons, ..Outcome::default() }
     }
 
     /// Amplitude in m of mass 1 alone at the excitation frequency: |F L₁(iω)|, F being the force's own line, 2J/T of impulses and
@@ -96,98 +82,64 @@ impl Stage<'_> {
     }
 
     /// One impact a cycle.
-    pub fn closed_form(&self, motions: &Motions) -> Tried {
+    pub fn closed_form(&self, motions: &Motions) -> Outcome {
         let orbit = match motions.orbit() {
-            Err(error) => return Tried::refused(error),
-            Ok(None) => {
-                return Tried::not(
-                    "There is no motion with one impact a cycle: no impulse above 0 satisfies its equations.",
-                );
-            }
+            Err(error) => return Outcome::refused(error),
+            Ok(None) => return Outcome::not(Finding::note("orbit-missing")),
             Ok(Some(orbit)) => orbit,
         };
         let v = &orbit.validity;
         let radius = orbit.spectral_radius().unwrap_or(f64::NAN);
-        let (valid, why) = if !v.admissible {
-            let deep = 1e3 * v.min_gap.abs();
-            (
-                false,
-                format!(
-                    "The masses would pass through each other by {deep:.3} mm between the impacts of the solution with one impact a cycle."
-                ),
-            )
+        let std = self.question.gap_std;
+        let mut reasons = vec![if !v.admissible {
+            Finding::note("orbit-overlaps").number("depth", v.min_gap.abs())
         } else if v.stable != Some(true) {
-            (
-                false,
-                format!(
-                    "The motion with one impact a cycle is {} (largest multiplier {radius:.4}).",
-                    v.stability
-                ),
-            )
-        } else if !orbit.robust(self.question.gap_std) {
-            let why = if v.grazing_distance <= self.question.gap_std {
-                format!("is {} from grazing, no more than", quantity(v.grazing_distance, "m", 2))
-            } else {
-                "is not stable at all gaps within".to_owned()
-            };
-            (
-                false,
-                format!(
-                    "The motion with one impact a cycle {why} the gap's uncertainty of {}.",
-                    quantity(self.question.gap_std, "m", 2)
-                ),
-            )
+            Finding::note("orbit-not-stable").name("stability", v.stability.name()).number("radius", radius)
+        } else if v.grazing_distance <= std {
+            Finding::note("orbit-near-grazing").number("distance", v.grazing_distance).number("std", std)
+        } else if !orbit.robust(std) {
+            Finding::note("orbit-not-robust").number("std", std)
         } else {
-            let real = format!(
-                "The motion with one impact a cycle exists, is admissible, stable (largest multiplier {radius:.4}) and to first order {} from grazing",
-                quantity(v.grazing_distance, "m", 2)
-            );
-            match motions.on {
-                On::Orbit(_) => (true, format!("{real}; {}.", into(motions))),
-                On::Open => (true, format!("{real}.")),
-                On::Free | On::Other => {
-                    (false, format!("{real}, but the rig is not in it: {}.", into(motions)))
-                }
-            }
-        };
-        let answer = Answer::exact(self.question.observable.of_orbit(orbit));
-        Tried { valid, answer: Some(answer), cost: Some(motions.closed_cost), why, from_rest: None }
+            Finding::note("orbit-real").number("radius", radius).number("distance", v.grazing_distance)
+        }];
+        let real = reasons[0].code == "orbit-real";
+        match motions.on {
+            On::Orbit(_) if real => reasons.push(into(motions)),
+            On::Free | On::Other if real => reasons.extend([Finding::note("other-motion"), into(motions)]),
+            _ => {}
+        }
+        let valid = real && matches!(motions.on, On::Orbit(_) | On::Open);
+        let answer = Some(Answer::exact(self.question.observable.of_orbit(orbit)));
+        Outcome { valid, answer, cost: Some(motions.closed_cost), reasons, ..Outcome::default() }
     }
 
     /// The same with the contact's duration.
-    pub fn soft_corrected(&self, motions: &Motions, closed: &Tried) -> Tried {
+    pub fn soft_corrected(&self, motions: &Motions, closed: &Outcome) -> Outcome {
         if laws::is_curved(self.scene) {
-            return Tried::not("The correction knows springs only, and the contact's exponent is not 1.");
+            return Outcome::not(Finding::note("spring-needed"));
         }
         let Some(stiffness) = laws::keys(self.scene).stiffness else {
-            return Tried::not("The contact's stiffness is not known.");
+            return Outcome::not(Finding::note("stiffness-unknown"));
         };
-        if !closed.valid {
-            return Tried::not("There is nothing to correct: the closed form does not hold.");
-        }
-        let Ok(Some(orbit)) = motions.orbit() else { return Tried::not("There is nothing to correct.") };
-        let (soft, cost) = self.timed(|| self.soften(orbit, stiffness));
+        let orbit = match motions.orbit() {
+            Ok(Some(orbit)) if closed.valid => orbit,
+            _ => return Outcome::not(Finding::note("nothing-to-correct")),
+        };
+        let (soft, cost) = timed(|| self.soften(orbit, stiffness));
         match soft {
-            Err(error) => Tried { cost: Some(cost), ..Tried::refused(&error) },
-            Ok(None) => Tried {
-                cost: Some(cost),
-                ..Tried::not(
-                    "The correction finds no motion: with a contact of this duration the masses would have to rebound faster than they meet, or none is left.",
-                )
-            },
+            Err(error) => Outcome { cost: Some(cost), ..Outcome::refused(&error) },
+            Ok(None) => {
+                Outcome { cost: Some(cost), ..Outcome::not(Finding::note("corrected-motion-missing")) }
+            }
             Ok(Some((answer, share, restitution))) => {
-                let mut why = format!(
-                    "The contact lasts {:.2} % of the cycle, within the 2.5 % to which its correction is good.",
-                    100.0 * share
-                );
-                let of_rig = self.rig().restitution;
-                if (restitution - of_rig).abs() > 1e-3 {
-                    let _ = write!(
-                        why,
-                        " Its spring and damper rebound with {restitution:.3}, the rig says {of_rig}: theirs counts."
-                    );
+                let mut reasons = vec![Finding::note("contact-short-enough").number("share", share)];
+                let stated = self.rig().restitution;
+                if (restitution - stated).abs() > 1e-3 {
+                    let other = Finding::note("damper-sets-restitution");
+                    reasons.push(other.number("restitution", restitution).number("stated", stated));
                 }
-                Tried { valid: true, answer: Some(answer), cost: Some(cost), why, from_rest: None }
+                let answer = Some(answer);
+                Outcome { valid: true, answer, cost: Some(cost), reasons, ..Outcome::default() }
             }
         }
     }
@@ -205,54 +157,84 @@ impl Stage<'_> {
         }))
     }
 
+    /// Impacts at once.
+    pub fn restitution(motions: &Motions) -> Outcome {
+        Outcome::read(&motions.reading, motions.cost, vec![into(motions)])
+    }
+
     /// Spring and damper.
-    pub fn kelvin_voigt(&self, motions: &Motions) -> Tried {
+    pub fn kelvin_voigt(&self, motions: &Motions) -> Outcome {
         if laws::is_curved(self.scene) {
-            return Tried::not("The contact's exponent is not 1: its stiffness is that of no spring.");
+            return Outcome::not(Finding::note("spring-needed"));
         }
         let Some(stiffness) = laws::keys(self.scene).stiffness else {
-            return Tried::not("The contact's stiffness is not known.");
+            return Outcome::not(Finding::note("stiffness-unknown"));
         };
-        let said = format!("The contact's stiffness is known: {stiffness:.3e} N/m.");
-        self.scene
-            .spring(stiffness)
-            .map_or_else(|e| Tried::refused(&e), |law| self.contact(motions, law, &said))
+        let known = Finding::note("stiffness-known").number("stiffness", stiffness);
+        let law = self.scene.spring(stiffness);
+        law.and_then(|law| self.contact(motions, law, known)).unwrap_or_else(|e| Outcome::refused(&e))
+    }
+
+    /// A curved contact that is stated.
+    pub fn hunt_crossley(&self, motions: &Motions) -> Outcome {
+        if !laws::is_curved(self.scene) {
+            return Outcome::not(Finding::note("exponent-unknown"));
+        }
+        if motions.reading.speed <= 0.0 {
+            return Outcome::not(Finding::note("impacts-missing"));
+        }
+        laws::curved(self.scene, motions.reading.speed)
+            .and_then(|law| self.contact(motions, law, Finding::note("law-known")))
+            .unwrap_or_else(|e| Outcome::refused(&e))
+    }
+
+    /// Curved bodies that meet for as long as the spring that is stated and rebound alike, in place of an exponent that is not stated.
+    pub fn curved_alike(&self, motions: &Motions) -> Outcome {
+        let speed = motions.reading.speed;
+        let Some(stiffness) = laws::keys(self.scene).stiffness.filter(|_| speed > 0.0) else {
+            return Outcome::not(Finding::note("impacts-missing"));
+        };
+        let law = self.scene.spring(stiffness).and_then(|law| laws::alike(self.rig(), law, speed));
+        match law.and_then(|law| self.with(motions, law)) {
+            Err(error) => Outcome::refused(&error),
+            Ok((reading, cost)) => Outcome {
+                answer: Some(reading.answer),
+                cost: Some(cost),
+                ..Outcome::not(Finding::note("exponent-assumed").number("exponent", laws::HERTZ))
+            },
+        }
     }
 
     /// A contact whose law is known: followed the way the rig came, else from where the motion with impacts at once had settled and from rest.
-    fn contact(&self, motions: &Motions, law: Law, said: &str) -> Tried {
-        let run = || -> Result<Tried> {
-            let rig = self.rig();
-            let ((reading, cost), from_rest) = if let Some(way) = &motions.way {
-                (self.follow(motions, &way.with(law)?)?, None)
-            } else {
-                let own = self.with(motions, law)?;
-                let rest = Simulation::at_rest(rig);
-                let mut rest = Compliant::new(rig, self.excitation, law, rest, 0.0)?;
-                (own, Some(self.watching(motions, law).read(&mut rest)?))
-            };
-            let mut why = format!("{said} {}", told(&reading));
-            if from_rest.as_ref().is_some_and(|rest| rest.end == End::Under) {
-                why.push_str(" From rest it has not settled, and may come to another motion.");
-            }
-            Ok(Tried { valid: true, answer: Some(reading.answer), cost: Some(cost), why, from_rest })
-        };
-        run().unwrap_or_else(|error| Tried::refused(&error))
+    fn contact(&self, motions: &Motions, law: Law, known: Finding) -> Result<Outcome> {
+        if let Some(way) = &motions.way {
+            let (reading, cost) = self.follow(motions, &way.with(law)?)?;
+            return Ok(Outcome::read(&reading, cost, vec![known]));
+        }
+        let (reading, cost) = self.with(motions, law)?;
+        let rest = Simulation::at_rest(self.rig());
+        let mut rest = Compliant::new(self.rig(), self.excitation, law, rest, 0.0)?;
+        let rest = self.watching(motions, law).read(&mut rest)?;
+        let mut found = Outcome::read(&reading, cost, vec![known]);
+        if rest.end == End::Under {
+            found.reasons.push(Finding::caution("rest-unclear").count("cycles", rest.cycles as usize));
+        }
+        Ok(Outcome { from_rest: Some(rest), ..found })
     }
 
     /// What a spring and damper of this stiffness (N/m) gives, from where the motion with impacts at once had settled.
-    pub fn with_spring(&self, motions: &Motions, stiffness: f64) -> Result<(Reading, Cost)> {
-        self.with(motions, self.scene.spring(stiffness)?)
+    pub fn with_spring(&self, motions: &Motions, stiffness: f64) -> Result<Answer> {
+        Ok(self.with(motions, self.scene.spring(stiffness)?)?.0.answer)
     }
 
-    fn with(&self, motions: &Motions, law: Law) -> Result<(Reading, Cost)> {
+    fn with(&self, motions: &Motions, law: Law) -> Result<(Reading, f64)> {
         let end = &motions.end;
         self.follow(motions, &Compliant::new(self.rig(), self.excitation, law, end.state(), end.phase())?)
     }
 
-    fn follow(&self, motions: &Motions, start: &Compliant) -> Result<(Reading, Cost)> {
+    fn follow(&self, motions: &Motions, start: &Compliant) -> Result<(Reading, f64)> {
         let reader = self.watching(motions, start.law());
-        let (reading, cost) = self.timed(|| reader.read(&mut start.clone()));
+        let (reading, cost) = timed(|| reader.read(&mut start.clone()));
         Ok((reading?, cost))
     }
 
@@ -266,81 +248,32 @@ impl Stage<'_> {
         Reader::new(self.rig(), self.excitation.frequency(), self.question)
     }
 
-    /// A curved contact: the one stated, or one like the spring stated.
-    pub fn hunt_crossley(&self, motions: &Motions) -> Tried {
-        let speed = motions.reading.speed;
-        let stated = laws::is_curved(self.scene);
-        let Some(stiffness) = laws::keys(self.scene).stiffness else {
-            return Tried::not("The contact's stiffness is not known.");
-        };
-        if speed <= 0.0 {
-            return Tried::not("There are no impacts whose law could matter.");
-        }
-        if stated {
-            return match laws::curved(self.scene, speed) {
-                Ok(law) => self.contact(motions, law, "The contact's law is known."),
-                Err(error) => Tried::refused(&error),
-            };
-        }
-        let law = self.scene.spring(stiffness).and_then(|law| laws::alike(self.rig(), law, speed));
-        match law.and_then(|law| self.with(motions, law)) {
-            Err(error) => Tried::refused(&error),
-            Ok((reading, cost)) => Tried {
-                answer: Some(reading.answer),
-                cost: Some(cost),
-                ..Tried::not(
-                    "The contact's exponent is not known; curved bodies (exponent 1.5) of the same duration and rebound stand in for it.",
-                )
-            },
-        }
-    }
-
     /// A mass 1 loose on its spring, from rest; with the contact's spring and damper where they are known.
-    pub fn loose_mass(&self, stiffness: Option<f64>) -> Tried {
+    pub fn loose_mass(&self, stiffness: Option<f64>) -> Outcome {
         let Some(buffer) = self.scene.buffer else {
-            return Tried::not("The spring holds mass 1 both ways: the scene has no buffer.");
+            return Outcome::not(Finding::note("buffer-missing"));
         };
-        let run = || -> Result<(Reading, Cost)> {
+        let run = || -> Result<(Reading, f64)> {
             let (rig, rest) = (self.rig(), Simulation::at_rest(self.rig()));
-            let start = match stiffness {
+            let mut motion = match stiffness {
                 Some(k) => {
                     let law = self.scene.spring(k)?;
                     Loose::with_law(rig, self.excitation, buffer.gap, law, rest, 0.0)?
                 }
                 None => Loose::new(rig, self.excitation, buffer.gap, rest, 0.0)?,
             };
-            let (reading, cost) = self.timed(|| self.reader().read(&mut start.clone()));
+            let (reading, cost) = timed(|| self.reader().read(&mut motion));
             Ok((reading?, cost))
         };
         match run() {
-            Err(error) => Tried::refused(&error),
-            Ok((reading, cost)) => Tried {
-                valid: true,
-                answer: Some(reading.answer),
-                cost: Some(cost),
-                why: format!(
-                    "The spring of mass 1 only pushes, beyond {}; from rest, {}. {} {ALONE}{}",
-                    quantity(buffer.gap, "m", 4),
-                    pattern(&reading),
-                    told(&reading),
-                    self.question.history.map_or("", |_| " The history is not followed.")
-                ),
-                from_rest: None,
-            },
+            Err(error) => Outcome::refused(&error),
+            Ok((reading, cost)) => {
+                let mut reasons = vec![Finding::note("spring-only-pushes").number("gap", buffer.gap)];
+                if self.question.history.is_some() {
+                    reasons.push(Finding::caution("history-not-followed"));
+                }
+                Outcome::read(&reading, cost, reasons)
+            }
         }
-    }
-}
-
-/// What is not done for a loose mass.
-const ALONE: &str = "Other motions are not looked for, and no richer model checks the answer.";
-
-/// Impacts at once.
-pub fn restitution(motions: &Motions) -> Tried {
-    Tried {
-        valid: true,
-        answer: Some(motions.reading.answer),
-        cost: Some(motions.cost),
-        why: format!("{} {}", capital(&into(motions)), told(&motions.reading)),
-        from_rest: None,
     }
 }

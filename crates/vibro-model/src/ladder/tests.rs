@@ -1,10 +1,10 @@
-use super::{Choice, Model, Question, choose, choose_over};
+use super::{Choice, Model, Question, Rung, choose, choose_over};
 use crate::{
     Buffer, Compliance, ContactKeys, Excitation, Green, Impulses, Observable, Rig, Scene, Simulation, Sine,
     orbits,
 };
 use std::f64::consts::TAU;
-use vibro_record::Direction;
+use vibro_record::{Direction, Fact, Finding, Severity};
 
 /// Hz of a frequency over the natural one of mass 1.
 fn hz(nu: f64) -> f64 {
@@ -28,6 +28,16 @@ fn scene(force: f64, stiffness: Option<f64>) -> Scene {
         contact: stiffness.map(|k| ContactKeys { stiffness: Some(k), ..ContactKeys::default() }),
         ..Scene::thesis()
     }
+}
+
+fn finding<'a>(choice: &'a Choice, code: &str) -> &'a Finding {
+    let found = choice.findings.iter().find(|f| f.code == code);
+    found.unwrap_or_else(|| panic!("no {code} in {:?}", choice.findings))
+}
+
+fn reason<'a>(rung: &'a Rung, code: &str) -> &'a Finding {
+    let found = rung.reasons.iter().find(|f| f.code == code);
+    found.unwrap_or_else(|| panic!("no {code} in {:?}", rung.reasons))
 }
 
 /// The thesis' rig at ν 2.1 under 0.5 N, by its impact speed.
@@ -70,8 +80,8 @@ fn scene_b_takes_the_corrected_closed_form() {
     let audit = choice.audit.unwrap();
     assert_eq!(audit.at, Model::KelvinVoigt);
     assert!(audit.change.abs() < 0.003 && audit.enough, "{audit:?}");
-    let said = choice.reasons.join("\n");
-    assert!(said.contains("soft-corrected is chosen") && said.contains("closed-form: valid, but"), "{said}");
+    let closed = choice.rung(Model::ClosedForm);
+    assert!(closed.reasons.iter().any(|r| r.code == "answer-moves"), "{closed:?}");
 }
 
 #[test]
@@ -91,7 +101,8 @@ fn a_soft_contact_is_followed() {
     let choice = scene_b(Some(1e4));
     assert_eq!(choice.chosen, Some(Model::KelvinVoigt));
     let soft = choice.rung(Model::SoftCorrected);
-    assert!(!soft.valid && soft.why.contains("2.5 %") && !soft.why.contains('\n'), "{}", soft.why);
+    let why = soft.refused.as_ref().unwrap();
+    assert!(!soft.valid && why.contains("2.5 %") && !why.contains('\n'), "{why}");
     assert!(choice.rung(Model::HuntCrossley).answer.is_some());
 }
 
@@ -102,7 +113,7 @@ fn the_law_of_a_contact_is_asked_for_wherever_its_duration_counts() {
         let law = choice.law.unwrap();
         let [own, curved] = [choice.answer(), choice.rung(Model::HuntCrossley).answer].map(|a| a.unwrap()[0]);
         assert!(((curved / own - 1.0) / law.change - 1.0).abs() < 1e-9 && !law.enough, "{law:?}");
-        assert!(choice.reasons.iter().any(|r| r.contains("should be measured")), "{:?}", choice.reasons);
+        assert_eq!(choice.law.map(|l| l.change), finding(&choice, "law-matters").get("change"));
     }
     // A contact of 0.07 % of the cycle, whatever its law.
     assert!(scene_b(Some(1e8)).law.is_none_or(|law| law.enough));
@@ -121,7 +132,7 @@ fn an_uncertain_gap_is_carried_to_the_answer() {
     let there = at(9e-4, 0.0).rung(Model::SoftCorrected).answer.unwrap()[0];
     let smaller = choice.gap[0].unwrap();
     assert!((smaller.change - (there / here - 1.0)).abs() < 1e-9 && !smaller.enough, "{smaller:?}");
-    assert!(choice.reasons.last().unwrap().contains("no better than the gap"), "{:?}", choice.reasons);
+    assert_eq!(finding(&choice, "gap-matters").get("smaller"), Some(smaller.change));
     assert!(at(1e-3, 0.0).gap.is_empty());
 }
 
@@ -139,7 +150,8 @@ fn without_a_stiffness_it_refuses_and_gives_the_sensitivity() {
     let known = scene_b(Some(1e6)).rung(Model::KelvinVoigt).answer.unwrap();
     assert!((at.answer[0] / known[0] - 1.0).abs() < 1e-4);
     assert!(!at.enough && rows.last().unwrap().enough);
-    assert!(choice.reasons.last().unwrap().contains("contact.stiffness"), "{:?}", choice.reasons);
+    let needed = finding(&choice, "stiffness-needed");
+    assert_eq!(needed.fact("needs"), Some(&Fact::Name("contact.stiffness".to_owned())));
     // The share in contact is that of the law.
     let duration = Compliance::new(&Rig::thesis(), 1e6, None).unwrap().duration;
     assert!((at.share - duration * hz(2.1)).abs() < 1e-9, "{at:?}");
@@ -147,7 +159,8 @@ fn without_a_stiffness_it_refuses_and_gives_the_sensitivity() {
     let coarse = Question { tolerance: 0.99, ..Question::new(Observable::ImpactSpeed) };
     let choice = choose(&scene(0.5, None), hz(2.1), &coarse).unwrap();
     assert_eq!(choice.chosen, Some(Model::ClosedForm));
-    assert!(choice.needs.is_empty() && choice.reasons.last().unwrap().contains("need not be"));
+    let needless = finding(&choice, "stiffness-not-needed");
+    assert!(choice.needs.is_empty() && needless.get("low") < needless.get("high"));
 }
 
 #[test]
@@ -158,7 +171,7 @@ fn where_the_masses_do_not_meet_nothing_more_than_linear_is_needed() {
         (None, Observable::HalfPeakToPeak),
     ] {
         let choice = choose(&scene(0.3, stiffness), hz(2.6), &Question::new(observable)).unwrap();
-        assert_eq!(choice.chosen, Some(Model::Linear), "{:?}", choice.reasons);
+        assert_eq!(choice.chosen, Some(Model::Linear), "{:?}", choice.findings);
         assert!(!choice.rung(Model::ClosedForm).valid && choice.sensitivity.is_empty());
         let expected = if observable.is_of_impacts() {
             0.0
@@ -177,14 +190,15 @@ fn two_motions_ask_for_the_history() {
     assert_eq!((open.chosen, open.needs.as_slice()), (None, &["history"][..]));
     let (linear, closed) = (open.rung(Model::Linear), open.rung(Model::ClosedForm));
     assert!(linear.valid && closed.valid && open.motions.len() == 2);
-    assert!(open.reasons[0].contains("no impact") && open.reasons[0].contains("1/1"), "{:?}", open.reasons);
+    let several = finding(&open, "several-motions");
+    assert_eq!(several.fact("motions"), Some(&Fact::Name("no impact, 1/1".to_owned())));
     // A falling frequency comes from where the masses do not meet, a rising one from where they must.
     let came =
         |direction| choose(&scene, hz(1.5), &Question { history: Some(direction), ..question }).unwrap();
     assert_eq!(came(Direction::Down).chosen, Some(Model::Linear));
     let up = came(Direction::Up);
     // As the correction says (3 % of x₁): the closed form alone is not enough.
-    assert_eq!(up.chosen, Some(Model::SoftCorrected), "{:?}", up.reasons);
+    assert_eq!(up.chosen, Some(Model::SoftCorrected), "{:?}", up.findings);
     assert_eq!(came(Direction::Up).rung(Model::ClosedForm).answer, closed.answer);
 }
 
@@ -192,14 +206,13 @@ fn two_motions_ask_for_the_history() {
 fn an_inadmissible_orbit_is_followed_event_by_event() {
     let question = Question::new(Observable::ImpactSpeed);
     let choice = choose(&scene(0.5, Some(1e6)), hz(0.8), &question).unwrap();
-    assert_eq!(choice.chosen, Some(Model::Restitution), "{:?}", choice.reasons);
+    assert_eq!(choice.chosen, Some(Model::Restitution), "{:?}", choice.findings);
     let closed = choice.rung(Model::ClosedForm);
     // The depth by which they would pass through each other is known independently.
-    let depth: f64 =
-        closed.why.split("by ").nth(1).and_then(|t| t.split(' ').next()).unwrap().parse().unwrap();
-    assert!(!closed.valid && (depth - 6.2).abs() < 0.05, "{}", closed.why);
-    assert!(choice.reasons.iter().any(|r| r.starts_with("closed-form: not valid")), "{:?}", choice.reasons);
-    assert!(choice.rung(Model::Restitution).why.contains("2 impact(s) in 1 cycle(s)"));
+    let depth = reason(closed, "orbit-overlaps").get("depth").unwrap();
+    assert!(!closed.valid && (depth - 6.2e-3).abs() < 0.05e-3, "{depth}");
+    let motion = reason(choice.rung(Model::Restitution), "rest-leads-to").fact("motion");
+    assert_eq!(motion, Some(&Fact::Name("2/1".to_owned())));
 }
 
 #[test]
@@ -219,7 +232,8 @@ fn an_orbit_near_grazing_is_not_relied_on() {
     let question = Question { gap_std: near, ..Question::new(Observable::ImpactSpeed) };
     let choice = choose(&scene(0.5, Some(1e6)), hz(2.1), &question).unwrap();
     assert!(!choice.rung(Model::ClosedForm).valid && choice.chosen == Some(Model::KelvinVoigt));
-    assert!(choice.rung(Model::ClosedForm).why.contains("uncertainty"));
+    let closed = choice.rung(Model::ClosedForm);
+    assert_eq!(reason(closed, "orbit-near-grazing").get("std"), Some(near));
 }
 
 #[test]
@@ -229,7 +243,7 @@ fn other_scenes_find_their_rung() {
     let curved = ContactKeys { stiffness: Some(1e9), exponent: Some(1.5), damping: None };
     let choice = choose(&Scene { contact: Some(curved), ..scene(0.5, None) }, hz(2.1), &question).unwrap();
     assert!(!choice.rung(Model::KelvinVoigt).valid && choice.rung(Model::HuntCrossley).valid);
-    assert!(choice.chosen.is_some(), "{:?}", choice.reasons);
+    assert!(choice.chosen.is_some(), "{:?}", choice.findings);
     // Pressed together for good: no law of impacts matters.
     let held = Rig { gap: -5e-3, ..Rig::thesis() };
     let still = Scene { rig: held, contact: Some(curved), ..scene(0.01, None) };
@@ -239,11 +253,13 @@ fn other_scenes_find_their_rung() {
     assert_eq!(choose(&loose, 4.5, &question).unwrap().chosen, Some(Model::LooseMass));
     let unknown = choose(&Scene { contact: None, ..loose.clone() }, 4.5, &question).unwrap();
     // From 1e4 N/m on its stiffness moves the speed by less than a fiftieth.
-    assert_eq!(unknown.chosen, Some(Model::LooseMass), "{:?}", unknown.reasons);
+    assert_eq!(unknown.chosen, Some(Model::LooseMass), "{:?}", unknown.findings);
     assert!(unknown.sensitivity.len() >= 5 && unknown.sensitivity.iter().all(|row| row.enough));
     let came = Question { history: Some(Direction::Up), ..question };
-    let said = choose(&loose, 4.5, &came).unwrap().reasons.join(" ");
-    assert!(said.contains("The history is not followed") && said.contains("no richer model"), "{said}");
+    let choice = choose(&loose, 4.5, &came).unwrap();
+    for code in ["history-not-followed", "spring-only-pushes"] {
+        reason(choice.rung(Model::LooseMass), code);
+    }
     // No rebound: no finite damper makes it.
     let dead = Scene { rig: Rig { restitution: 0.0, ..Rig::thesis() }, ..scene(0.5, Some(1e6)) };
     let choice = choose(&dead, hz(2.1), &question).unwrap();
@@ -263,8 +279,7 @@ fn other_scenes_find_their_rung() {
     ] {
         for observable in [Observable::Fundamental, Observable::HalfPeakToPeak, Observable::Impulse] {
             let choice = choose(&scene, frequency, &Question::new(observable)).unwrap();
-            assert_eq!(choice.chosen, Some(expected), "{observable:?}: {:?}", choice.reasons);
-            assert!(choice.reasons.last().unwrap().starts_with(expected.name()), "{:?}", choice.reasons);
+            assert_eq!(choice.chosen, Some(expected), "{observable:?}: {:?}", choice.findings);
         }
     }
 }
@@ -280,7 +295,7 @@ fn a_gap_that_is_hardly_known_lets_no_mass_stay_clear() {
     assert_eq!(chosen(0.99 * clear).chosen, Some(Model::Linear));
     let unsure = chosen(1.01 * clear);
     assert!(unsure.chosen != Some(Model::Linear) && !unsure.rung(Model::Linear).valid);
-    assert!(unsure.rung(Model::Linear).why.contains("uncertainty"), "{}", unsure.rung(Model::Linear).why);
+    reason(unsure.rung(Model::Linear), "clearance-not-sure");
 }
 
 #[test]
@@ -295,7 +310,7 @@ fn what_is_good_enough_along_an_axis_is_so_at_each_point() {
     let model = survey.chosen.unwrap();
     assert_eq!(model, Model::Restitution);
     for point in &survey.points {
-        assert!(point.rung(model).sufficient, "{:?}", point.reasons);
+        assert!(point.rung(model).sufficient, "{:?}", point.findings);
     }
     // No lower one is.
     for lower in &Model::ALL[..model as usize] {
@@ -310,13 +325,13 @@ fn the_stiffest_contact_tried_is_not_taken_for_enough() {
     let choice = choose(&scene(0.5, None), hz(2.1), &fine).unwrap();
     let last = choice.sensitivity.last().unwrap();
     assert!(!last.enough && last.change.abs() > 1e-4);
-    let said = choice.reasons.last().unwrap();
-    assert!(said.contains("still") && !said.contains("stays within"), "{said}");
+    let needed = finding(&choice, "stiffness-needed");
+    assert_eq!((needed.get("still"), needed.get("enough_from")), (Some(last.change), None));
     // At 2 % it is so from a stiffness on, and that one is within.
     let choice = scene_b(None);
     let from = choice.sensitivity.iter().find(|row| row.enough).unwrap().stiffness;
-    let said = choice.reasons.last().unwrap();
-    assert!(said.contains(&format!("stays within 2 % from {from:.0e} N/m on")), "{said}");
+    let needed = finding(&choice, "stiffness-needed");
+    assert_eq!((needed.get("still"), needed.get("enough_from")), (None, Some(from)));
     assert!(choice.sensitivity_failed.is_empty());
 }
 
@@ -347,8 +362,10 @@ fn a_motion_on_its_way_widens_nothing() {
     let slow = Scene { rig, excitation, ..scene(0.1, Some(1e9)) };
     let choice = choose(&slow, 5.230_365_15, &question).unwrap();
     assert!(choice.rung(Model::Restitution).answer.unwrap()[0] > 0.0);
-    let said = choice.reasons.join(" ");
-    assert!(choice.chosen.is_none() && !said.contains("without impacts. Settled"), "{said}");
+    assert!(choice.chosen.is_none(), "{:?}", choice.chosen);
+    // None that is settled is without impacts.
+    let still = |rung: &&Rung| rung.settled && rung.model != Model::Linear && rung.answer == Some([0.0; 2]);
+    assert_eq!(choice.rungs.iter().find(still), None);
 }
 
 #[test]
@@ -415,9 +432,8 @@ fn a_mean_that_is_hardly_known_is_not_enough() {
     let rung = fine.rung(Model::Restitution);
     let part = (0..2).map(|i| rung.spread[i] / rung.answer.unwrap()[i]).fold(0.0, f64::max);
     assert!(rung.valid && part > 0.01 && part < 0.2, "{part}");
-    assert!(!rung.sufficient && fine.chosen != Some(Model::Restitution), "{:?}", fine.reasons);
-    let said = fine.reasons.join(" ");
-    assert!(said.contains("standard error of its mean is") && said.contains("larger tolerance"), "{said}");
+    assert!(!rung.sufficient && fine.chosen != Some(Model::Restitution), "{:?}", fine.findings);
+    assert!(reason(rung, "mean-not-known").get("ratio").unwrap() > 1.0);
 }
 
 #[test]
@@ -438,13 +454,15 @@ fn chatter_is_not_told_as_masses_that_stay_in_contact() {
     let mut impacts = 0;
     motion.run(motion.time() + 10.0 / 5.501, |leg| impacts += usize::from(leg.impact().is_some())).unwrap();
     assert!(impacts >= 10, "{impacts}");
-    let why = &choice.rung(Model::Restitution).why;
-    assert!(why.contains("chatter to rest") && !why.contains("stay in contact"), "{why}");
+    let motion = reason(choice.rung(Model::Restitution), "rest-leads-to").fact("motion");
+    assert!(matches!(motion, Some(Fact::Name(motion)) if motion.starts_with("chatter")), "{motion:?}");
 }
 
 #[test]
 fn a_law_that_matters_is_a_doubt() {
-    let doubt = scene_b(Some(1e6)).doubt().unwrap();
-    assert!(doubt.contains("soft-corrected") && doubt.contains("should be measured"), "{doubt}");
-    assert_eq!(scene_b(Some(1e8)).doubt(), None);
+    let choice = scene_b(Some(1e6));
+    let doubt = finding(&choice, "law-matters");
+    assert_eq!(doubt.severity, Severity::Doubt);
+    assert_eq!(doubt.fact("rung"), Some(&Fact::Name("soft-corrected".to_owned())));
+    assert!(scene_b(Some(1e8)).findings.iter().all(|f| f.code != "law-matters"));
 }

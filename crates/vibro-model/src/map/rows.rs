@@ -64,7 +64,8 @@ impl Rows {
             return Err(Error::refused(
                 "the rows that are there belong to another map: its first line differs",
             )
-            .hint("choose another --out, or remove the file"));
+            .hint("choose another folder, or remove the file")
+            .setting("out"));
         };
         let mut rows = Rows::none(plan);
         let mut row: Vec<(usize, Cell)> = Vec::new();

@@ -61,7 +61,7 @@ impl Compliance {
             return Err(Error::refused(format!(
                 "the contact's damper is {ratio:.3} of the critical one: it creeps apart, and has no correction"
             ))
-            .hint("follow the motion: `vibro model simulate --model kelvin-voigt`"));
+            .hint("simulate the motion with a contact of spring and damper"));
         }
         let (decay, turn) = swing(ratio);
         let damped = omega * (1.0 - ratio * ratio).sqrt();
@@ -93,7 +93,7 @@ fn ratio_of(restitution: f64) -> Result<f64> {
         return Err(Error::refused(format!(
             "a restitution of {restitution} needs a damper beyond the critical one, which the correction does not know"
         ))
-        .hint("follow the motion: `vibro model simulate --model kelvin-voigt`"));
+        .hint("simulate the motion with a contact of spring and damper"));
     }
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..60 {
@@ -150,7 +150,7 @@ pub fn softened(
             100.0 * share,
             100.0 * LONGEST_CONTACT
         ))
-        .hint("follow the motion: `vibro model simulate --model kelvin-voigt`"));
+        .hint("simulate the motion with a contact of spring and damper"));
     }
     found.orbits.iter().map(|orbit| soften(rig, excitation, orbit, compliance)).collect()
 }

@@ -401,7 +401,7 @@ fn a_rig_without_losses_is_neutral_or_unstable() {
                 // The margin is far above the rounding of a and b, far below what separates the two.
                 if root > 1e-6 && outermost < 2.0 - 1e-6 {
                     assert_eq!(
-                        (orbit.validity.stable, orbit.validity.stability),
+                        (orbit.validity.stable, orbit.validity.stability.name()),
                         (None, "neutral"),
                         "{place}"
                     );

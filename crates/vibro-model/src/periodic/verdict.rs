@@ -3,7 +3,7 @@
 use super::Beat;
 use crate::flow::Signal;
 use crate::validity::Loss;
-use crate::{Flight, Validity};
+use crate::{Flight, Stability, Validity};
 use nalgebra::Matrix4;
 use num_complex::Complex64;
 
@@ -42,9 +42,9 @@ pub(super) fn judge(
         admissible: exists && lowest == 0.0,
         stable,
         stability: match stable {
-            Some(true) => "stable",
-            Some(false) => "unstable",
-            None => "neutral",
+            Some(true) => Stability::Stable,
+            Some(false) => Stability::Unstable,
+            None => Stability::Neutral,
         },
         instability: (exists && stable == Some(false)).then(|| Loss::of(multipliers)),
         energy_rule: monodromy.is_some_and(|m| (Matrix4::identity() - m).determinant() > 0.0),

@@ -110,7 +110,7 @@ impl Draft {
             number.unwrap_or_else(|| format!("{key} = {value:?}"))
         };
         let given = parse(&text).map_err(|e| {
-            let e = e.aside(format!("in --set {assignment}"));
+            let e = e.aside(format!("in the assignment {assignment}"));
             match value.replacen(',', ".", 1) {
                 point if point != value && point.parse::<f64>().is_ok() => {
                     e.hint(format!("a decimal point: {key}={point}"))
@@ -233,14 +233,15 @@ impl Draft {
             );
             return Err(self.at(&format!("excitation.{stray}"), error));
         }
-        let need = |key: &str| {
+        let need = |key: &'static str| {
             self.number(&format!("excitation.{key}")).ok_or_else(|| {
                 let error = Error::usage(
                     format!("the excitation {kind:?} has no {key}"),
                     format!("excitation.{key}"),
                 );
                 self.at("excitation.kind", error)
-                    .hint(format!("give --{key}, --set excitation.{key}=…, or the key in [excitation]"))
+                    .hint(format!("state {key}, in [excitation] of a rig's file"))
+                    .setting(key)
             })
         };
         let excitation = match kind {

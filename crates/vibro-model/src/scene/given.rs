@@ -77,7 +77,7 @@ fn walk(text: &str, table: &DeTable<'_>, prefix: &str, given: &mut BTreeMap<Stri
             return Err(Error::usage(found, expected).excerpt(text, name.span()));
         }
         let wrong = |expected: &str| {
-            Error::usage(format!("{key} is {}", told(value.get_ref())), expected).excerpt(text, value.span())
+            Error::usage(format!("{key} is {}", kind(value.get_ref())), expected).excerpt(text, value.span())
         };
         let value = match (key.as_str(), value.get_ref()) {
             ("excitation.kind", DeValue::String(word)) => Value::Word(word.to_string()),
@@ -98,7 +98,7 @@ fn walk(text: &str, table: &DeTable<'_>, prefix: &str, given: &mut BTreeMap<Stri
 fn part(value: &DeValue<'_>) -> Result<Part> {
     let keys = ["force", "frequency", "phase"];
     let wrong = |found: String| Error::usage(found, "{ force = …, frequency = …, phase = … }");
-    let DeValue::Table(table) = value else { return Err(wrong(told(value).to_owned())) };
+    let DeValue::Table(table) = value else { return Err(wrong(kind(value).to_owned())) };
     let mut found = [None, None, Some(0.0)];
     for (name, value) in table {
         let name = name.get_ref().as_ref();
@@ -106,7 +106,7 @@ fn part(value: &DeValue<'_>) -> Result<Part> {
         let slot =
             slot.and_then(|i| found.get_mut(i)).ok_or_else(|| wrong(format!("unknown key `{name}`")))?;
         *slot = Some(
-            number(value.get_ref()).ok_or_else(|| wrong(format!("{name} is {}", told(value.get_ref()))))?,
+            number(value.get_ref()).ok_or_else(|| wrong(format!("{name} is {}", kind(value.get_ref()))))?,
         );
     }
     match found {
@@ -125,7 +125,7 @@ fn number(value: &DeValue<'_>) -> Option<f64> {
     }
 }
 
-fn told(value: &DeValue<'_>) -> &'static str {
+fn kind(value: &DeValue<'_>) -> &'static str {
     match value {
         DeValue::String(_) => "text",
         DeValue::Boolean(_) => "true or false",

@@ -1,13 +1,16 @@
 //! Impacts, rests and kicks: what changes a simulated motion at an instant.
 
 use super::{Hold, Impact, Simulation};
-use crate::Event;
 use crate::drive::Tick;
 use crate::stick::Press;
+use crate::{Event, State};
+use std::f64::consts::TAU;
 use vibro_record::Result;
 
 /// Approach speed in m/s below which the end of a chatter is looked for; above it, impacts do not yet accumulate closely enough.
 const SLOW: f64 = 1e-3;
+/// The same over the speeds of the masses: slower approaches come after times too short beside a cycle for the digits of a number.
+const SLOW_PART: f64 = 1e-9;
 
 impl Simulation {
     /// Exchanges momentum in the present state, which is at contact.
@@ -19,10 +22,19 @@ impl Simulation {
         self.state.v2 += impulse / self.rig.m2;
         self.hold = Hold::Apart;
         self.counts.impacts += 1;
-        if approach < SLOW.max(self.grazing_speed) || self.rig.restitution == 0.0 {
+        if approach < SLOW.max(self.grazing_speed).max(SLOW_PART * self.speed())
+            || self.rig.restitution == 0.0
+        {
             self.settle(approach)?;
         }
         Ok(Impact { time: self.time, phase: self.drive.phase(), approach_velocity: approach, impulse })
+    }
+
+    /// Scale of the speeds in m/s: of velocities and of displacements times ω.
+    #[inline]
+    fn speed(&self) -> f64 {
+        let State { x1, v1, x2, v2 } = self.state;
+        v1.abs() + v2.abs() + TAU * self.drive.frequency() * (x1.abs() + x2.abs())
     }
 
     /// Looks after an impact whether the masses come to rest against each other, at once or after a chatter.

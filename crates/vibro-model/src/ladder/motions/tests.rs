@@ -1,10 +1,10 @@
-use super::{Answer, Followed, Motions, On, Reader, Stage, Tried};
+use super::{Answer, Followed, Motions, On, Outcome, Reader, Stage};
 use crate::ladder::tests::fastest;
 use crate::ladder::{Choice, Model, Question, choose};
 use crate::{Compliant, ContactKeys, Excitation, Motion, Observable, Rig, Scene, Simulation, Sine, State};
 use std::f64::consts::TAU;
 use vibro_math::runge_kutta::{Dop853, Integrator, Tolerance};
-use vibro_record::Direction;
+use vibro_record::{Direction, Fact};
 
 fn asked(restitution: f64, force: f64, frequency: f64, history: Option<Direction>) -> Choice {
     let scene = Scene {
@@ -81,14 +81,16 @@ fn impacts_that_a_rising_frequency_keeps_are_followed() {
     assert!(lasting > 200, "{lasting}");
     assert_eq!(impacts_at_the_end(&rig, 0.05, &[(6.8, 600.0)]), 0);
     let up = asked(0.7, 0.05, 6.8, Some(Direction::Up));
-    assert!(up.chosen.is_some_and(|m| m >= Model::Restitution), "{:?}", up.reasons);
+    assert!(up.chosen.is_some_and(|m| m >= Model::Restitution), "{:?}", up.findings);
     assert!(!up.rung(Model::Linear).valid);
     // A falling frequency comes from where nothing strikes.
     assert_eq!(asked(0.7, 0.05, 6.8, Some(Direction::Down)).chosen, Some(Model::Linear));
     // Without the history nothing says which.
     let open = asked(0.7, 0.05, 6.8, None);
     assert_eq!((open.chosen, open.needs.as_slice()), (None, &["history"][..]));
-    assert!(open.motions.iter().any(|m| !m.stable) && open.reasons[0].contains("unstable"));
+    assert!(open.motions.iter().any(|m| !m.stable));
+    assert_eq!(open.findings[0].code, "several-motions");
+    assert!(open.findings[0].fact("unstable").is_some());
 }
 
 #[test]
@@ -96,14 +98,14 @@ fn a_motion_that_repeats_nothing_is_on_no_orbit() {
     // Nearly the same speed and amplitudes as the orbit, whose largest multiplier is 1.0000, but no pattern.
     let choice = asked(0.98, 0.1, 7.0, Some(Direction::Up));
     let closed = choice.rung(Model::ClosedForm);
-    assert!(!closed.valid && closed.why.contains("not in it"), "{}", closed.why);
+    assert!(!closed.valid && closed.reasons.iter().any(|r| r.code == "other-motion"), "{closed:?}");
     // What is compared is no longer the answer: that is as near as the tolerance.
     let (orbit, motion) = (closed.answer.unwrap(), choice.rung(Model::Restitution).answer.unwrap());
     assert!((orbit[0] / motion[0] - 1.0).abs() < 0.02, "{orbit:?} {motion:?}");
     assert!(choice.chosen != Some(Model::ClosedForm));
     // Where the motion is on its orbit, it is found.
     let on = asked(0.98, 0.5, 10.98, None);
-    assert!(on.rung(Model::ClosedForm).valid, "{:?}", on.reasons);
+    assert!(on.rung(Model::ClosedForm).valid, "{:?}", on.findings);
 }
 
 /// Impacts of the thesis' rig from a state at phase 0, in 240 cycles after 3000.
@@ -130,21 +132,21 @@ fn motions_that_strike_less_than_once_a_cycle_are_warned_of() {
         assert_eq!(impacts_from(restitution, force, frequency, State::REST), 0);
         let open = asked(restitution, force, frequency, None);
         // From rest nothing strikes, which is what is answered.
-        assert_eq!((open.chosen, open.needs.len()), (Some(Model::Linear), 0), "{:?}", open.reasons);
-        let patterns: Vec<(&str, bool)> = open.motions.iter().map(|m| (m.pattern.as_str(), m.rare)).collect();
-        assert_eq!(patterns[..2], [("no impact", false), (pattern, true)]);
-        assert!(
-            open.reasons.iter().any(|r| r.contains("After a knock") && r.contains(pattern)),
-            "{:?}",
-            open.reasons
-        );
+        assert_eq!((open.chosen, open.needs.len()), (Some(Model::Linear), 0), "{:?}", open.findings);
+        let patterns: Vec<(String, bool)> =
+            open.motions.iter().map(|m| (m.pattern.to_string(), m.rare)).collect();
+        assert_eq!(patterns[..2], [("no impact".to_owned(), false), (pattern.to_owned(), true)]);
+        let rare = open.findings.iter().find(|f| f.code == "rare-motions").unwrap();
+        let named = rare.fact("motions");
+        assert!(matches!(named, Some(Fact::Name(all)) if all.contains(pattern)), "{named:?}");
         let fell = asked(restitution, force, frequency, Some(Direction::Down));
-        assert_eq!(fell.chosen, Some(Model::Linear), "{:?}", fell.reasons);
+        assert_eq!(fell.chosen, Some(Model::Linear), "{:?}", fell.findings);
     }
     // What was not looked for is said, once.
     let linear = asked(0.7, 0.05, 13.5986, None);
     assert_eq!(linear.chosen, Some(Model::Linear));
-    assert_eq!(linear.reasons.iter().filter(|r| r.contains("there can be more")).count(), 1);
+    let searched = ["other-motions-searched", "search-cut"];
+    assert_eq!(linear.findings.iter().filter(|f| searched.contains(&f.code)).count(), 1);
 }
 
 #[test]
@@ -168,9 +170,9 @@ fn a_contact_that_leads_from_rest_to_another_motion_asks_for_the_history() {
     };
     let question = Question { tolerance: 0.002, ..Question::new(Observable::HalfPeakToPeak) };
     let open = choose(&scene, 17.196, &question).unwrap();
-    assert_eq!((open.chosen, open.needs.as_slice()), (None, &["history"][..]), "{:?}", open.reasons);
+    assert_eq!((open.chosen, open.needs.as_slice()), (None, &["history"][..]), "{:?}", open.findings);
     let soft = open.motions.last().unwrap();
-    assert_eq!((soft.model, soft.pattern.as_str()), (Model::KelvinVoigt, "1/1"));
+    assert_eq!((soft.model, soft.pattern.to_string().as_str()), (Model::KelvinVoigt, "1/1"));
     // From rest the largest and the smallest x₁ of a cycle, from states at many instants.
     let law = scene.spring(529_320.0).unwrap();
     let mut motion = Compliant::new(&rig, &excitation, law, State::REST, 0.0).unwrap();
@@ -202,7 +204,8 @@ fn one_motion_is_read_alike_from_wherever_it_starts() {
         let choice = speeds(restitution, 0.9, frequency, 1e8);
         let [only] = choice.motions.as_slice() else { panic!("{:?}", choice.motions) };
         // Settled to a fiftieth of the tolerance.
-        assert!(only.pattern == pattern && (only.answer[0] / mean - 1.0).abs() < 4e-4, "{only:?} {mean}");
+        assert_eq!(only.pattern.to_string(), pattern);
+        assert!((only.answer[0] / mean - 1.0).abs() < 4e-4, "{only:?} {mean}");
         assert!(choice.chosen.is_some() && choice.followed.is_some_and(|f| f.states == f.of));
     }
 }
@@ -212,7 +215,7 @@ fn a_motion_known_with_impacts_at_once_is_not_listed_again_with_a_contact_that_g
     for (frequency, stiffness, pattern) in [(13.2, 1e7, "4/6"), (12.0, 1e8, "irregular")] {
         let open = speeds(0.9, 0.5, frequency, stiffness);
         assert_eq!(open.needs, ["history"]);
-        let patterns: Vec<&str> = open.motions.iter().map(|m| m.pattern.as_str()).collect();
+        let patterns: Vec<String> = open.motions.iter().map(|m| m.pattern.to_string()).collect();
         assert_eq!(patterns, ["no impact", pattern]);
     }
 }
@@ -222,7 +225,7 @@ fn a_motion_that_a_contact_comes_to_from_rest_is_not_rare() {
     let scene = Scene { rig: Rig { restitution: 0.7, ..Rig::thesis() }, ..Scene::thesis() };
     let excitation = Excitation::Sine(Sine { force: 0.3, frequency: 13.5986 });
     let question = Question::new(Observable::ImpactSpeed);
-    let stage = Stage { scene: &scene, excitation: &excitation, question: &question, repeat: false };
+    let stage = Stage { scene: &scene, excitation: &excitation, question: &question };
     let mut motions = Motions::new(&stage).unwrap();
     let rare = |motions: &Motions| motions.known.iter().map(|m| m.rare).collect::<Vec<_>>();
     assert_eq!((rare(&motions), &motions.on), (vec![false, true], &On::Free));
@@ -230,10 +233,10 @@ fn a_motion_that_a_contact_comes_to_from_rest_is_not_rare() {
     let state = State { x1: -4e-3, v1: 0.3, x2: -1e-3, v2: -0.2 };
     let mut motion = Simulation::from_state(&scene.rig, &excitation, state, 0.0).unwrap();
     let from_rest = Reader::new(&scene.rig, 13.5986, &question).read(&mut motion).unwrap();
-    assert_eq!(from_rest.regime.to_string(), motions.known[1].pattern);
-    let tried =
-        Tried { answer: Some(Answer::exact([0.0; 2])), from_rest: Some(from_rest), ..Tried::default() };
-    motions.differs(&tried, Model::KelvinVoigt, &question);
+    assert_eq!(from_rest.regime, motions.known[1].pattern);
+    let outcome =
+        Outcome { answer: Some(Answer::exact([0.0; 2])), from_rest: Some(from_rest), ..Outcome::default() };
+    motions.differs(&outcome, Model::KelvinVoigt, &question);
     assert_eq!((rare(&motions), &motions.on), (vec![false, false], &On::Open));
 }
 
@@ -250,9 +253,9 @@ fn states_that_were_not_followed_are_counted() {
     let short = at(1e-3);
     let Followed { states, of } = short.followed.unwrap();
     assert!(states > 0 && states < of && short.needs.is_empty(), "{states} {of}");
-    let told = format!("from {states} of {of} ");
-    assert!(short.cut().is_some_and(|said| said.contains(&told)), "{:?}", short.cut());
-    assert!(short.reasons.iter().any(|said| said.contains(&told)), "{:?}", short.reasons);
+    let cut = short.findings.iter().find(|f| f.code == "search-cut").unwrap();
+    assert_eq!((cut.get("states"), cut.get("of")), (Some(f64::from(states)), Some(f64::from(of))));
     let all = at(0.1);
-    assert!(all.followed.is_some_and(|f| f.states == f.of) && all.cut().is_none());
+    assert!(all.followed.is_some_and(|f| f.states == f.of));
+    assert!(all.findings.iter().all(|f| f.code != "search-cut"));
 }

@@ -1,13 +1,13 @@
-//! An orbit as programs are told it.
+//! An orbit as it is listed: all verdicts and amplitudes beside each other.
 
 use super::{Orbit, Orbits};
 use crate::NoImpact;
-use crate::validity::Loss;
+use crate::validity::{Loss, Stability};
 use serde::ser::{Serialize, Serializer};
 
 #[derive(serde::Serialize)]
 #[expect(clippy::struct_excessive_bools, reason = "verdicts, each on its own")]
-struct Told {
+struct Listed {
     frequency: f64,
     cycles: u32,
     impulse: f64,
@@ -22,7 +22,7 @@ struct Told {
     exists: bool,
     admissible: bool,
     stable: bool,
-    stability: &'static str,
+    stability: Stability,
     instability: Option<Loss>,
     energy_rule: bool,
     grazing_distance: f64,
@@ -34,7 +34,7 @@ struct Told {
 impl Serialize for Orbit {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let v = &self.validity;
-        Told {
+        Listed {
             frequency: self.frequency,
             cycles: self.cycles,
             impulse: self.impulse,

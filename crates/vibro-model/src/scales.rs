@@ -1,0 +1,142 @@
+//! Which rigs and excitations double precision can compute.
+//!
+//! Two bounds, both far beyond any machine:
+//!
+//! - Magnitudes. No formula here multiplies more than six values of a rig, its excitation or its motion (a flight's bound takes a
+//!   displacement and five rates). Products stay within 10^±308 where each value lies within 10^±50.
+//! - Swings in a cycle. Phases have the relative rounding ε = 2.2e-16. After n swings of a mass its phase is off by 2πnε; half of all digits,
+//!   √ε, are left for n ≤ 1/(2π√ε) = 1.07e7. A flight is searched for contacts at each swing, so this bounds the work of a cycle as well.
+
+use super::{Excitation, Rig};
+use std::f64::consts::TAU;
+use vibro_record::units::notation::significant;
+use vibro_record::{Error, Result};
+
+/// Values lie between the reciprocal of this and this, in SI units, or are 0.
+const LARGEST: f64 = 1e50;
+/// Swings, or decays by e, of a mass in a cycle of the excitation.
+const MOST_SWINGS: f64 = 1e7;
+
+/// Checks that a rig and its excitation are possible, and that their motion can be computed in double precision.
+///
+/// # Errors
+/// If a value is impossible, or outside 1e-50 to 1e50 in SI units and not 0; if a mass swings, or its damper slows it, more than ten million
+/// times in a cycle.
+pub(super) fn check(rig: &Rig, excitation: &Excitation) -> Result<()> {
+    rig.check()?;
+    excitation.check()?;
+    let Rig { m1, m2, k1, k2, c1, c2, gap, .. } = *rig;
+    let mut values = vec![("m1", m1, "kg"), ("k1", k1, "N/m"), ("c1", c1, "N s/m"), ("gap", gap, "m")];
+    if !rig.has_wall() {
+        values.extend([("m2", m2, "kg"), ("k2", k2, "N/m"), ("c2", c2, "N s/m")]);
+    }
+    match excitation {
+        Excitation::Sine(sine) => values.push(("force", sine.force, "N")),
+        Excitation::Impulse(train) => values.push(("impulse", train.impulse, "N s")),
+        Excitation::Pulse(train) => values.extend([("force", train.force, "N"), ("width", train.width, "s")]),
+        Excitation::Sines(sines) => values.extend(sines.parts.iter().map(|p| ("force", p.force, "N"))),
+    }
+    let frequency = excitation.frequency();
+    values.push(("frequency", frequency, "Hz"));
+    for (name, value, unit) in values {
+        let size = value.abs();
+        if size != 0.0 && !(LARGEST.recip()..=LARGEST).contains(&size) {
+            return Err(Error::refused(format!(
+                "{name} is {value:e} {unit}: products of such values leave the range of numbers"
+            ))
+            .hint("give 0, or a size between 1e-50 and 1e50 in SI units"));
+        }
+    }
+    let swings = rig.oscillators().map(|o| o.omega2().sqrt().max(o.decay()) / (TAU * frequency));
+    for (mass, swings) in ["mass 1", "mass 2"].into_iter().zip(swings) {
+        if swings > MOST_SWINGS {
+            return Err(Error::refused(format!(
+                "{mass} swings or slows {} times in a cycle of {} Hz: more than {MOST_SWINGS:.0e} lose half of all digits",
+                significant(swings, 3),
+                significant(frequency, 3)
+            ))
+            .hint("give a higher frequency, a larger mass or a smaller stiffness; a fixed mass 2 has an infinite m2"));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Impulses, Observable, Scene, Simulation, Sine, ladder, map, orbits_of, response};
+
+    const SINE: Sine = Sine { force: 0.5, frequency: 11.0 };
+
+    #[test]
+    fn what_numbers_cannot_hold_is_refused_at_once() {
+        let t = Rig::thesis();
+        for (rig, name) in [
+            (Rig { gap: 1e-300, ..t }, "gap is 1e-300 m"),
+            (Rig { gap: -1e60, ..t }, "gap is -1e60 m"),
+            (Rig { m2: 1e-30, ..t }, "mass 2 swings"),
+            (Rig { k2: 1e30, restitution: 1e-30, ..t }, "mass 2 swings"),
+            (Rig { c1: 1e30, ..t }, "mass 1 swings or slows"),
+        ] {
+            let said = Simulation::new(&rig, &SINE).unwrap_err().to_string();
+            assert!(said.starts_with(name), "{said}");
+            assert!(orbits_of(&rig, &SINE.into(), 1).is_err(), "{name}");
+        }
+        let blow = Excitation::Impulse(Impulses { impulse: 1e150, frequency: 1.0 });
+        let said = response(&t, &blow, 5.0, 15.0, 50, 1).unwrap_err().to_string();
+        assert!(said.starts_with("impulse is 1e150 N s"), "{said}");
+    }
+
+    #[test]
+    fn what_numbers_can_hold_is_computed() {
+        let t = Rig::thesis();
+        // A stiff mass 2, a wall whose other values do not count, a small gap, no damping, a strong force.
+        let wall = Rig { m2: f64::INFINITY, k2: 0.0, c2: f64::NAN, ..t };
+        for rig in [Rig { k2: 1e12, ..t }, wall, Rig { gap: 1e-40, ..t }, Rig { c1: 0.0, c2: 0.0, ..t }] {
+            let mut motion = Simulation::new(&rig, &SINE).unwrap();
+            motion.run(1.0, |_| {}).unwrap();
+        }
+    }
+
+    #[test]
+    fn a_chatter_of_any_size_comes_to_its_end() {
+        // The scales of all ways, speeds and forces are free: 2e12 times the force across 2e12 times the gap is the same motion.
+        let pattern = |scale: f64| {
+            let rig = Rig { gap: 5e-16 * scale, restitution: 0.1, ..Rig::thesis() };
+            let sine = Sine { force: 0.5 * scale, frequency: 6.11 };
+            let mut motion = Simulation::new(&rig, &sine).unwrap();
+            crate::regime(&mut motion, 100, 60).unwrap().regime
+        };
+        assert_eq!(pattern(2e12), pattern(1.0));
+        let plan = map::Plan {
+            rig: Rig::thesis(),
+            excitation: Excitation::Sine(Sine { force: 9.2e18, frequency: 11.0 }),
+            x: "frequency:5:15:4".parse().unwrap(),
+            y: "restitution:0.1:0.9:3".parse().unwrap(),
+            cycles: 200,
+        };
+        let mut rows = map::Rows::none(&plan);
+        plan.run(&mut rows, |_, _| Ok(())).unwrap();
+        assert_eq!(rows.done(), 3);
+    }
+
+    #[test]
+    fn masses_pressed_together_need_no_stiffness() {
+        let rig = Rig { gap: -1e-3, ..Rig::thesis() };
+        let question = ladder::Question::new(Observable::Fundamental);
+        let scene = |force| Scene {
+            rig,
+            excitation: Some(Excitation::Sine(Sine { force, frequency: 11.0 })),
+            ..Scene::thesis()
+        };
+        let said = ladder::choose(&scene(0.0), 11.0, &question).unwrap_err().to_string();
+        assert!(said.starts_with("nothing drives"), "{said}");
+        let choice = ladder::choose(&scene(0.01), 11.0, &question).unwrap();
+        assert_eq!(choice.chosen, Some(ladder::Model::Restitution));
+        // Together they are one oscillator: F/|k₁ + k₂ − (m₁ + m₂)ω² + i(c₁ + c₂)ω|.
+        let omega = TAU * 11.0;
+        let stiffness = rig.k1 + rig.k2 - (rig.m1 + rig.m2) * omega * omega;
+        let expected = 0.01 / stiffness.hypot((rig.c1 + rig.c2) * omega);
+        assert!((choice.answer().unwrap()[0] / expected - 1.0).abs() < 4e-4);
+    }
+}
