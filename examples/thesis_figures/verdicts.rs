@@ -116,8 +116,8 @@ fn traces() -> Result<Vec<Sheet>> {
             let lead = lead(&orbit);
             let agrees = real(&orbit) && (lead.abs() < 90.0) == (thesis == "in phase");
             let what = format!("motion of both masses at ν {nu}, F₀ 0.5 N, R 0.7");
-            let here =
-                format!("phase of x₂ to x₁ {lead:.0}°, {}", orbit.validity.stability.name()).replace('-', "−");
+            let here = format!("phase of x₂ to x₁ {lead:.0}°, {}", orbit.validity.stability.name())
+                .replace('-', "−");
             let figure = pictures::orbit(title, &rig, &orbit).height(70.0);
             Ok(Sheet::new(name, title, figure, vec![Claim::told(what, thesis, here, agrees, why)]))
         })
@@ -128,7 +128,8 @@ fn branches() -> Result<Sheet> {
     let rig = rig(0.98);
     let sine = Excitation::Sine(Sine { force: 0.1, frequency: 1.0 });
     let found = response(&rig, &sine, 3.0, 14.0, 700, 1)?;
-    let top = found.changes.iter().filter(|c| c.kind == ChangeKind::Fold).map(|c| c.frequency).fold(0.0, f64::max);
+    let top =
+        found.changes.iter().filter(|c| c.kind == ChangeKind::Fold).map(|c| c.frequency).fold(0.0, f64::max);
     let claims = vec![Claim::told(
         "clapping resonance",
         "only when sweeping up",

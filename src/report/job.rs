@@ -16,7 +16,7 @@ pub use pairing::Crossing;
 pub use pulse::NamedPulse;
 pub use spectral::SpectrumResult;
 
-use super::words::{self, Voice, sentences};
+use super::words::{Voice, sentences};
 use super::{Figure, Output, files, page, pictures, tables};
 use crate::campaign::Campaign;
 use crate::compare::{Fit, Overlay, overlay};
@@ -347,7 +347,7 @@ fn model(campaign: &Campaign, responses: &[Response], warnings: &mut Vec<String>
         return Ok(None);
     }
     let overlay = overlay(&rig, campaign.excitation.and_then(|e| e.force), &campaign.into(), responses)?;
-    merge(warnings, "", &words::sentences(&overlay.findings, Voice::Campaign));
+    merge(warnings, "", &sentences(&overlay.findings, Voice::Campaign));
     Ok(Some(overlay))
 }
 
@@ -375,8 +375,8 @@ fn fitted(campaign: &Campaign, responses: &[Response], warnings: &mut Vec<String
         // Doubts come before all else.
         let (doubts, rest): (Vec<_>, Vec<_>) =
             fit.findings.iter().cloned().partition(|f| f.severity == Severity::Doubt);
-        warnings.splice(0..0, words::sentences(&doubts, Voice::Campaign));
-        merge(warnings, "", &words::sentences(&rest, Voice::Campaign));
+        warnings.splice(0..0, sentences(&doubts, Voice::Campaign));
+        merge(warnings, "", &sentences(&rest, Voice::Campaign));
     }
     Ok(found)
 }

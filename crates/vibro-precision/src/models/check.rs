@@ -204,7 +204,10 @@ fn unlike(orbit: &Orbit, growth: &Growth) -> Option<String> {
         None => (largest - 1.0).abs() <= off.max(CLOSES.sqrt()),
     };
     (!verdict).then(|| {
-        format!("is called {}, and disturbances grow by {largest:.9} a cycle", orbit.validity.stability.name())
+        format!(
+            "is called {}, and disturbances grow by {largest:.9} a cycle",
+            orbit.validity.stability.name()
+        )
     })
 }
 
