@@ -1,11 +1,14 @@
 //! `vibro compare`: measured responses over the model.
 
 use super::{args, complain, print, progress};
-use crate::campaign::{Campaign, Parameter};
+use crate::analysis::model::tables::climbed;
+use crate::analysis::sweep::{self, figures, modelled, tables};
+use crate::analysis::{self, JobOptions, Tells};
+use crate::campaign::Parameter;
 use crate::compare::{Fit, Overlay, Predicting, overlay};
 use crate::error::{Error, Place, Result};
-use crate::report::job::{self, JobOptions};
-use crate::report::{Output, files, pictures, tables};
+use crate::report::words::{Voice, told};
+use crate::report::{Output, files};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -19,7 +22,7 @@ struct Answer {
 }
 
 pub fn run(typed: &args::Compare, json: bool) -> Result<()> {
-    let mut campaign = Campaign::from_path(&typed.campaign)?;
+    let mut campaign = analysis::open(&typed.campaign)?;
     if !typed.fit.is_empty() {
         let names = typed.fit.iter().map(|name| Parameter::from_name(name.trim()));
         campaign.fit.ask(names.collect::<Result<_>>()?)?;
@@ -29,18 +32,20 @@ pub fn run(typed: &args::Compare, json: bool) -> Result<()> {
             .hint("add a [rig] table; keys left out take the values of the thesis' rig")
     })?;
     let options = JobOptions { allow_outside: typed.allow_outside };
-    let responses = job::responses(&campaign, options, &progress::bar(json))?;
+    let responses = sweep::responses(&campaign, options, &progress::bar(json))?;
     let force = campaign.excitation.and_then(|e| e.force);
     let mut overlay = overlay(&rig, force, &Predicting::from(&campaign), &responses)?;
-    overlay.warnings.splice(0..0, campaign.rig_left_out());
-    overlay.warnings.extend(job::common(&responses));
-    let fit = job::fit(&campaign, &rig, &responses)?;
+    let whole = |finding| (String::new(), finding);
+    let mut findings: Vec<_> = modelled::rig_left_out(&campaign).map(whole).into_iter().collect();
+    findings.extend(overlay.warnings.findings().into_iter().map(whole));
+    findings.extend(sweep::told(&responses));
+    let fit = modelled::fit(&campaign, &rig, &responses)?;
     let mut written = Vec::new();
     if let Some(folder) = &typed.out {
         let mut output = Output::new(folder)?;
         let mut figures =
-            vec![("overlay".to_owned(), pictures::overlay(&campaign.name, &overlay, &responses))];
-        figures.extend(fit.as_ref().map(|fit| ("fit".to_owned(), pictures::fit(&campaign.name, fit))));
+            vec![("overlay".to_owned(), figures::overlay(&campaign.name, &overlay, &responses))];
+        figures.extend(fit.as_ref().map(|fit| ("fit".to_owned(), figures::fit(&campaign.name, fit))));
         files::figures(&mut output, &figures, &|| ())?;
         output.write("pairs.csv", tables::pairs(&overlay).csv())?;
         if let Some(fit) = &fit {
@@ -49,17 +54,17 @@ pub fn run(typed: &args::Compare, json: bool) -> Result<()> {
         }
         written = output.written().to_vec();
     }
+    findings.extend(fit.iter().flat_map(|f| f.warnings.findings()).map(whole));
+    overlay.warnings = told(&findings, Voice::Command, false);
     if json {
-        overlay.warnings.extend(fit.iter().flat_map(|f| f.warnings.iter().cloned()));
         return print::json(&Answer { overlay, fit, files: written });
     }
     complain::warn(&overlay.warnings);
     let mut text = format!("{}\n{}", tables::peaks(&overlay).text(), tables::scores(&overlay).text());
     if !overlay.rungs.is_empty() {
-        let _ = write!(text, "\n{}", tables::climbed(&overlay).text());
+        let _ = write!(text, "\n{}", climbed(&overlay).text());
     }
     if let Some(fit) = &fit {
-        complain::warn(&fit.warnings);
         let _ = write!(text, "\n{}\n{}", tables::fitted(fit).text(), tables::fit_rungs(fit).text());
     }
     for file in written {

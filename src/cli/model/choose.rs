@@ -1,12 +1,13 @@
 //! `vibro model choose`: the simplest model that is good enough.
 
+use crate::analysis::model::{figures, tables};
 use crate::cli::args::{self, Came, Looked};
 use crate::cli::{complain, print};
 use crate::error::{Error, Result};
 use crate::model::ladder::{Choice, Question, Survey, choose, choose_over};
 use crate::model::{Observable, Scene};
 use crate::record::Direction;
-use crate::report::{Figure, Output, Table, files, pictures, tables};
+use crate::report::{Figure, Output, Table, files};
 use crate::units::notation::significant;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -73,7 +74,7 @@ fn single(
         None => Vec::new(),
         Some(folder) => {
             let tables = [("rungs.csv", &rungs), ("sensitivity.csv", &sensitivity)];
-            write(folder, pictures::ladder(choice, question), &tables)?
+            write(folder, figures::ladder(choice, question), &tables)?
         }
     };
     warnings.extend(choice.doubt());
@@ -120,7 +121,7 @@ fn along(
             let (points, rungs) =
                 (tables::chosen(&survey.points, question), tables::summaries(&survey.rungs));
             let tables = [("points.csv", &points), ("rungs.csv", &rungs), ("stretches.csv", &stretches)];
-            write(folder, pictures::ladder_over(survey, question)?, &tables)?
+            write(folder, figures::ladder_over(survey, question)?, &tables)?
         }
     };
     let open = survey.points.iter().filter(|c| c.chosen.is_none()).count();

@@ -94,7 +94,7 @@ impl SpectralOptions {
             given(self.left_at_end.is_some(), "left_at_end"),
         ];
         let of_tones = [
-            given(self.method == Some(Method::Welch), "method welch"),
+            given(self.method == Some(Method::Welch), "method"),
             given(self.estimator.is_some(), "reference"),
             given(self.segment.is_some(), "segment"),
             given(self.overlap.is_some(), "overlap"),
@@ -112,7 +112,7 @@ impl SpectralOptions {
             (!self.hammer, first(&of_hammer), "without a hammer", "hammer = true, too"),
             (
                 self.hammer,
-                given(self.estimator.is_none(), "a hammer"),
+                given(self.estimator.is_none(), "hammer"),
                 "without a reference",
                 "the force channel as reference",
             ),
@@ -125,29 +125,34 @@ impl SpectralOptions {
         ];
         for (holds, name, with, expected) in rules {
             if let Some(name) = name.filter(|_| holds) {
-                return Err(Error::usage(format!("{name} {with}"), expected));
+                return Err(Error::usage(format!("{name} {with}"), expected).setting(name));
             }
         }
         if let Some(delay) = self.delay {
             if self.estimator.is_none() {
-                return Err(Error::usage("delay without a reference", "two channels that are compared"));
+                return Err(Error::usage("delay without a reference", "two channels that are compared")
+                    .setting("delay"));
             }
             if !delay.is_finite() {
-                return Err(Error::usage(format!("delay = {delay}"), "seconds"));
+                return Err(Error::usage(format!("delay = {delay}"), "seconds").setting("delay"));
             }
         }
         if let Some(re) = self.decibel.filter(|r| !(r.is_finite() && *r > 0.0)) {
-            return Err(Error::usage(format!("decibel = {re}"), "a reference above 0, such as 1e-6"));
+            return Err(Error::usage(format!("decibel = {re}"), "a reference above 0, such as 1e-6")
+                .setting("decibel"));
         }
         if !(-2..=2).contains(&self.integrate) {
-            return Err(Error::usage(format!("integrate = {}", self.integrate), "-2 to 2"));
+            return Err(
+                Error::usage(format!("integrate = {}", self.integrate), "-2 to 2").setting("integrate")
+            );
         }
         if let Some(fmin) = self.fmin.filter(|f| !(f.is_finite() && *f > 0.0)) {
-            return Err(Error::usage(format!("fmin = {fmin}"), "a finite number above 0"));
+            return Err(Error::usage(format!("fmin = {fmin}"), "a finite number above 0").setting("fmin"));
         }
         let known = [Scaling::Peak, Scaling::Rms, Scaling::Power, Scaling::Psd];
         if let Some(scaling) = self.scaling.filter(|s| !known.contains(s)) {
-            return Err(Error::usage(format!("scaling {}", scaling.name()), "peak, rms, power or psd"));
+            return Err(Error::usage(format!("scaling {}", scaling.name()), "peak, rms, power or psd")
+                .setting("scaling"));
         }
         Ok(())
     }
