@@ -115,3 +115,6 @@ fn run_all<A: Analysis>(job: &mut Job<'_>) -> Result<()> {
 fn no_file() -> Error {
     Error::usage("the key file is missing", "").hint("add file = …")
 }
+
+#[cfg(test)]
+mod tests;

@@ -252,6 +252,3 @@ impl Campaign {
         Err(self.fault(entry, error.setting(key)))
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -7,7 +7,7 @@ pub mod tables;
 
 use super::job::Marks;
 use super::{Analysis, Answer, Job, Source, no_file};
-use crate::campaign::{Entry, LowPass, channel, channels, word};
+use crate::campaign::{Channel, Entry, LowPass, channel, channels, word};
 use crate::error::{Error, Result};
 use crate::measure::drill::{Beam, Cycle, DrillOptions, Edge, From, Smoothing};
 use file::DrillFile;
@@ -100,6 +100,19 @@ fn needed<T: Clone>(key: &'static str, value: &Option<T>) -> Result<T> {
     value.clone().ok_or_else(lacks)
 }
 
+/// A drill names its channels by keys of its own.
+fn own_channels(channel: &Channel) -> Result<()> {
+    match (&channel.channel, channel.calibration) {
+        (Some(_), _) => {
+            Err(Error::usage("a drill has several channels", "velocity and reference").setting("channel"))
+        }
+        (None, Some(_)) => {
+            Err(Error::usage("a drill has no calibration", "a sensitivity").setting("calibration"))
+        }
+        (None, None) => Ok(()),
+    }
+}
+
 impl Keys {
     /// Whether no key is missing that has no default, and none contradicts another.
     ///
@@ -168,6 +181,7 @@ impl Keys {
         each: &mut dyn FnMut(&Cycle<'_>) -> Result<()>,
     ) -> Result<Answer> {
         self.usable()?;
+        own_channels(source.channel)?;
         let file = DrillFile {
             reader: source.reader()?,
             path: source.path.to_owned(),
@@ -193,14 +207,7 @@ impl Analysis for Keys {
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.file.as_ref().ok_or_else(no_file)?;
-        if entry.channel.calibration.is_some() {
-            let found = "a drill has no calibration";
-            return Err(Error::usage(found, "its sensitivity").setting("calibration"));
-        }
-        if entry.channel.channel.is_some() {
-            let found = "a drill has more than one channel";
-            return Err(Error::usage(found, "velocity and reference").setting("channel"));
-        }
+        own_channels(&entry.channel)?;
         entry.keys.usable()
     }
 

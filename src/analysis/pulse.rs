@@ -6,7 +6,7 @@ pub mod tables;
 use super::job::Record;
 use super::source::{file_name, name_of};
 use super::{Analysis, Answer, Job, Source};
-use crate::campaign::{Entry, LowPass, above_zero};
+use crate::campaign::{Channel, Entry, LowPass, Reading, above_zero};
 use crate::error::{Error, Result};
 use crate::measure::pulse::{Instrument, PulseOptions, PulseResult, pulse, two_times};
 use serde::Deserialize;
@@ -17,7 +17,15 @@ use serde::Deserialize;
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {
     /// Time from the onset to the largest force, in s: instead of a file
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S", allow_negative_numbers = true))]
+    #[cfg_attr(
+        feature = "cli",
+        arg(
+            long,
+            value_name = "S",
+            allow_negative_numbers = true,
+            conflicts_with_all = Channel::KEYS.into_iter().chain(Reading::KEYS)
+        )
+    )]
     pub time_to_peak: Option<f64>,
     /// Time from the onset to the end of the contact, in s
     #[cfg_attr(feature = "cli", arg(long, value_name = "S", allow_negative_numbers = true))]

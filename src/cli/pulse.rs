@@ -5,12 +5,7 @@ use crate::analysis::pulse::Keys;
 use crate::error::Result;
 use std::path::PathBuf;
 
-/// Options that say how a file is read.
-const OF_A_FILE: [&str; 9] =
-    ["channel", "calibration", "format", "allow_missing", "rate", "base_band", "unit", "decimal", "complex"];
-
 #[derive(Debug, clap::Args)]
-#[command(mut_arg("time_to_peak", |arg| arg.conflicts_with_all(OF_A_FILE)))]
 pub struct Pulse {
     /// Record of the acceleration (or force) of a contact
     file: Option<PathBuf>,

@@ -1,9 +1,9 @@
 //! Drill records made up from a machine that is known.
 
-#[path = "../../examples/hammer_drill/noise.rs"]
+#[path = "../../examples/hammer_drill/make/noise.rs"]
 pub mod noise;
 #[allow(dead_code)]
-#[path = "../../examples/hammer_drill/stroke.rs"]
+#[path = "../../examples/hammer_drill/make/stroke.rs"]
 mod stroke;
 
 use noise::Noise;

@@ -4,8 +4,8 @@
 //! `cargo run --release --example two_mass_rig [FOLDER]` writes into FOLDER, by default into this example's own.
 //! The same bytes come out every time: the noise has fixed seeds, and nothing depends on the clock.
 //!
-//! - `FUP0001.DAT` …: force spectra of the upward sweep, `FDN0001.DAT` … of the downward one;
-//! - `V1U0001.DAT`, `V1D0001.DAT` …: velocity spectra of the excited mass, `V2U`, `V2D` of the passive one;
+//! - `data/FUP0001.DAT` …: force spectra of the upward sweep, `data/FDN0001.DAT` … of the downward one;
+//! - `data/V1U0001.DAT`, `data/V1D0001.DAT` …: velocity spectra of the excited mass, `V2U`, `V2D` of the passive one;
 //! - `UP1.TXT`, `UP2.TXT`, `DOWN1.TXT`, `DOWN2.TXT`: list files of the sweeps, one a mass and direction;
 //! - `TRUTH.csv`: what a perfect instrument would have found.
 
@@ -20,7 +20,8 @@ use vibroimpact::{Error, Result};
 fn main() -> Result<()> {
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/two_mass_rig");
     let folder = std::env::args_os().nth(1).map_or(own, PathBuf::from);
-    std::fs::create_dir_all(&folder).map_err(|e| Error::io("create", &folder, e))?;
+    let data = folder.join("data");
+    std::fs::create_dir_all(&data).map_err(|e| Error::io("create", &data, e))?;
     let write = |name: &str, text: &str| {
         let path = folder.join(name);
         std::fs::write(&path, text).map_err(|e| Error::io("write", &path, e))
@@ -33,7 +34,7 @@ fn main() -> Result<()> {
         }
         measure(direction, usize::MAX, |point| {
             truth.push_str(&point.truth());
-            point.files(0).iter().try_for_each(|(name, text)| write(name, text))
+            point.files(0).iter().try_for_each(|(name, text)| write(&format!("data/{name}"), text))
         })?;
     }
     write("TRUTH.csv", &truth)

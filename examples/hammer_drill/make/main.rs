@@ -1,8 +1,8 @@
 //! Makes the record of the example campaign: striker and bit of a hammer drill under a laser, with a pulse once a turn.
 //!
 //! `cargo run --release --example hammer_drill [FOLDER] [SECONDS]` writes into FOLDER, by default into this example's own:
-//! - `drill.wav`: striker, bit and pulse in volts, 20 s at 102.4 kHz (25 MB);
-//! - `still.wav`: the same laser with the machine at rest;
+//! - `data/drill.wav`: striker, bit and pulse in volts, 20 s at 102.4 kHz (25 MB);
+//! - `data/still.wav`: the same laser with the machine at rest;
 //! - `TRUTH.csv`: every impact, as it would be seen without noise and faults.
 //!
 //! Then `vibro run examples/hammer_drill/campaign.toml`. The same bytes come out every time.
@@ -22,10 +22,11 @@ fn main() -> Result<()> {
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/hammer_drill");
     let folder = std::env::args_os().nth(1).map_or(own, PathBuf::from);
     let seconds = std::env::args().nth(2).and_then(|s| s.parse().ok()).unwrap_or(20.0);
-    std::fs::create_dir_all(&folder).map_err(|e| Error::io("create", &folder, e))?;
+    let data = folder.join("data");
+    std::fs::create_dir_all(&data).map_err(|e| Error::io("create", &data, e))?;
     let made = record::record(seconds);
     let file = |name: &str, channels: Vec<Record>| {
-        let path = folder.join(name);
+        let path = data.join(name);
         let file = std::fs::File::create(&path).map_err(|e| Error::io("create", &path, e))?;
         write(&channels, Sample::Float32, &mut std::io::BufWriter::new(file))
     };

@@ -170,7 +170,7 @@ pub fn list(direction: Direction, mass: usize) -> (String, String) {
     let mut text = format!("{}\n{LINES}\n{BASE_BAND}\n", names.len());
     for column in [0, mass] {
         for name in &names {
-            let _ = writeln!(text, "{}", name[column]);
+            let _ = writeln!(text, "data/{}", name[column]);
         }
     }
     (format!("{}{mass}.TXT", direction.word().to_uppercase()), text)
