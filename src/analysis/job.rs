@@ -207,16 +207,12 @@ impl<'a> Job<'a> {
                 records.push(Record { name: name.clone(), file, mark: String::new(), answer });
             }
         }
-        let mut slugs: Vec<String> = Vec::new();
-        for (i, record) in records.iter_mut().enumerate() {
-            let slug = if marks == Marks::Names { files::slug(&record.name) } else { String::new() };
-            let number = i + 1;
-            record.mark = match slug.as_str() {
-                "" => number.to_string(),
-                taken if slugs.iter().any(|s| s == taken) => format!("{taken}_{number}"),
-                free => free.to_owned(),
-            };
-            slugs.push(slug);
+        let marks = match marks {
+            Marks::Names => files::slugs(records.iter().map(|r| r.name.as_str())),
+            Marks::Numbers => (1..=records.len()).map(|n| n.to_string()).collect(),
+        };
+        for (record, mark) in records.iter_mut().zip(marks) {
+            record.mark = mark;
         }
         self.answer(kind, records);
         Ok(())

@@ -228,17 +228,6 @@ pub fn told(responses: &[Response]) -> Vec<About> {
     told
 }
 
-/// File names of the sweeps, each once.
-fn slugs(responses: &[Response]) -> Vec<String> {
-    let mut slugs: Vec<String> = Vec::new();
-    for (i, response) in responses.iter().enumerate() {
-        let slug = files::slug(&response.name);
-        let numbered = slug.is_empty() || slugs.contains(&slug);
-        slugs.push(if numbered { format!("{slug}_{}", i + 1) } else { slug });
-    }
-    slugs
-}
-
 impl Analysis for Keys {
     const SECTION: &'static str = "sweep";
     const OF_FILES: bool = false;
@@ -275,7 +264,7 @@ impl Analysis for Keys {
             job.shown.tables.extend([tables::resonances(&responses), tables::jumps(&responses)]);
         }
         modelled::run(job, &responses)?;
-        let slugs = slugs(&responses);
+        let slugs = files::slugs(responses.iter().map(|r| r.name.as_str()));
         if job.campaign.compute.waterfall {
             let fmax = job.campaign.compute.fmax;
             for (slug, matrix) in slugs.iter().zip(&matrices) {

@@ -130,6 +130,20 @@ pub fn slug(name: &str) -> String {
     slug.trim_end_matches('_').to_owned()
 }
 
+/// Names as parts of file names, each once.
+pub fn slugs<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut slugs: Vec<String> = Vec::new();
+    for (i, name) in names.enumerate() {
+        let slug = slug(name);
+        slugs.push(match slug.as_str() {
+            "" => (i + 1).to_string(),
+            taken if slugs.iter().any(|s| s == taken) => format!("{taken}_{}", i + 1),
+            _ => slug,
+        });
+    }
+    slugs
+}
+
 /// Characters of names in this field, and how they are spelled in ASCII.
 const SPELLED: [(&str, &str); 36] = [
     ("⁰₀", "0"),
