@@ -95,9 +95,9 @@ pub struct Keys {
 }
 
 /// A key that has no default.
-fn needed<T: Clone>(key: &'static str, value: &Option<T>) -> Result<T> {
+fn needed<T>(key: &'static str, value: Option<T>) -> Result<T> {
     let lacks = || Error::usage(format!("a drill needs {key}"), "a value: there is no default").setting(key);
-    value.clone().ok_or_else(lacks)
+    value.ok_or_else(lacks)
 }
 
 /// A drill names its channels by keys of its own.
@@ -120,12 +120,12 @@ impl Keys {
     /// With the key at fault.
     pub fn usable(&self) -> Result<()> {
         let wrong = |key, found: String, expected: &str| Err(Error::usage(found, expected).setting(key));
-        needed("velocity", &self.velocity)?;
-        needed("reference", &self.reference)?;
-        needed("beam_angle", &self.beam_angle)?;
-        needed("from", &self.from)?;
-        needed("pulses_per_turn", &self.pulses_per_turn)?;
-        needed("edge", &self.edge)?;
+        needed("velocity", self.velocity.clone())?;
+        needed("reference", self.reference.clone())?;
+        needed("beam_angle", self.beam_angle)?;
+        needed("from", self.from)?;
+        needed("pulses_per_turn", self.pulses_per_turn)?;
+        needed("edge", self.edge)?;
         if let Some(bad) = self.sensitivity.filter(|s| !s.is_finite()) {
             return wrong("sensitivity", format!("a sensitivity of {bad}"), "m/s a unit, not 0");
         }
@@ -144,11 +144,11 @@ impl Keys {
     }
 
     fn options(&self) -> Result<DrillOptions> {
-        let beam = Beam::new(needed("beam_angle", &self.beam_angle)?, needed("from", &self.from)?)?;
-        let pulses = needed("pulses_per_turn", &self.pulses_per_turn)?;
+        let beam = Beam::new(needed("beam_angle", self.beam_angle)?, needed("from", self.from)?)?;
+        let pulses = needed("pulses_per_turn", self.pulses_per_turn)?;
         // Without a number the file must say that the channel is a velocity.
         let sensitivity = self.sensitivity.unwrap_or(f64::NAN);
-        let plain = DrillOptions::new(sensitivity, beam, pulses, needed("edge", &self.edge)?);
+        let plain = DrillOptions::new(sensitivity, beam, pulses, needed("edge", self.edge)?);
         Ok(DrillOptions {
             level: self.level,
             mass: self.mass,
@@ -185,8 +185,8 @@ impl Keys {
         let file = DrillFile {
             reader: source.reader()?,
             path: source.path.to_owned(),
-            velocity: needed("velocity", &self.velocity)?,
-            reference: needed("reference", &self.reference)?,
+            velocity: needed("velocity", self.velocity.clone())?,
+            reference: needed("reference", self.reference.clone())?,
             handle: self.handle.clone(),
             handle_sensitivity: self.handle_sensitivity,
             noise: source.further("noise", self.noise.as_ref())?,
