@@ -7,7 +7,7 @@ pub mod tables;
 
 use super::job::Marks;
 use super::{Analysis, Answer, Job, Source, no_file};
-use crate::campaign::{Channel, Entry, LowPass, channel, channels, word};
+use crate::campaign::{Channel, Entry, LowPass, channel, channels};
 use crate::error::{Error, Result};
 use crate::measure::drill::{Beam, Cycle, DrillOptions, Edge, From, Smoothing};
 use file::DrillFile;
@@ -34,13 +34,13 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(long, value_name = "DEG", allow_negative_numbers = true))]
     pub beam_angle: Option<f64>,
     /// From where that angle is counted: the normal to the motion, or its axis
-    #[cfg_attr(feature = "cli", arg(long, value_parser = word::<From>))]
+    #[cfg_attr(feature = "cli", arg(long, value_parser = crate::campaign::word::<From>))]
     pub from: Option<From>,
     /// Pulses of the reference in a turn
     #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
     pub pulses_per_turn: Option<usize>,
     /// Edge of the pulse that counts: rising or falling
-    #[cfg_attr(feature = "cli", arg(long, value_parser = word::<Edge>))]
+    #[cfg_attr(feature = "cli", arg(long, value_parser = crate::campaign::word::<Edge>))]
     pub edge: Option<Edge>,
     /// Level of the edge, in the unit of the reference [default: the middle of its two levels]
     #[cfg_attr(feature = "cli", arg(long, value_name = "VALUE", allow_negative_numbers = true))]

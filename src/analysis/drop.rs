@@ -5,7 +5,7 @@ pub mod tables;
 use super::job::Record;
 use super::source::{file_name, name_of};
 use super::{Analysis, Answer, Job, Source, impacts};
-use crate::campaign::{Entry, two};
+use crate::campaign::Entry;
 use crate::error::{Error, Result};
 use crate::measure::impacts::ImpactsOptions;
 use crate::measure::restitution::{Bounces, Drop, GRAVITY, Train, Velocities, restitution};
@@ -50,10 +50,10 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(long))]
     pub keep_hum: bool,
     /// Masses in kg: the striking and the struck one
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M1,M2", value_parser = two::<','>))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M1,M2", value_parser = crate::campaign::two::<','>))]
     pub masses: Option<(f64, f64)>,
     /// Velocities of both masses before the impact, in m/s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "V1,V2", value_parser = two::<','>, allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "V1,V2", value_parser = crate::campaign::two::<','>, allow_negative_numbers = true))]
     pub before: Option<(f64, f64)>,
     /// Velocities of both masses after it, in m/s; of mass 1 alone where masses are given
     #[cfg_attr(

@@ -6,7 +6,7 @@ pub mod tables;
 use super::job::Marks;
 use super::spectrum::{self, Detrend};
 use super::{Analysis, Answer, Job, Source, no_file};
-use crate::campaign::{Entry, above_zero, channel, two, word};
+use crate::campaign::{Entry, above_zero, channel};
 use crate::error::{Error, Result};
 use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal};
 use crate::record::{Finding, Meta, Record, Window};
@@ -21,7 +21,7 @@ use std::path::PathBuf;
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {
     /// Band in Hz whose peaks are fitted together [default: a band around each peak]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "LO:HI", value_parser = two::<':'>))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "LO:HI", value_parser = crate::campaign::two::<':'>))]
     pub band: Option<(f64, f64)>,
     /// Mass in kg, for the stiffness k = m(2 pi f)^2
     #[cfg_attr(feature = "cli", arg(long, value_name = "KG", allow_negative_numbers = true))]
@@ -37,7 +37,7 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(long, value_name = "NAME"))]
     pub reference: Option<String>,
     /// FRF estimator: h1 for noise in the response, h2 for noise in the excitation, hv for both alike [default: h1]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = word::<Estimator>))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = crate::campaign::word::<Estimator>))]
     pub estimator: Option<Estimator>,
     /// Samples of a segment [default: 8192, or the whole of a shorter record]
     #[cfg_attr(feature = "cli", arg(long, value_name = "SAMPLES"))]
@@ -46,10 +46,10 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(long, value_name = "PART", allow_negative_numbers = true))]
     pub overlap: Option<f64>,
     /// Taken out of a segment before the window: mean or none [default: mean]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "WHAT", value_parser = word::<Detrend>))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "WHAT", value_parser = crate::campaign::word::<Detrend>))]
     pub detrend: Option<Detrend>,
     /// Window of a segment [default: hann]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = word::<Window>))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = crate::campaign::word::<Window>))]
     pub window: Option<Window>,
     /// Integrations in frequency [default: 0]
     #[cfg_attr(feature = "cli", arg(long, value_name = "N", allow_negative_numbers = true))]

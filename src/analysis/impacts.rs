@@ -5,7 +5,7 @@ pub mod tables;
 
 use super::job::Marks;
 use super::{Analysis, Answer, Job, Source, no_file};
-use crate::campaign::{Entry, above_zero, channel, word};
+use crate::campaign::{Entry, above_zero, channel};
 use crate::error::{Error, Result};
 use crate::measure::impacts::{ImpactsOptions, Scatter, Shape, impacts, typed};
 use crate::read::Reader;
@@ -43,7 +43,7 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", allow_negative_numbers = true))]
     pub shape_rate: Option<f64>,
     /// What is known to scatter: the onsets about even times, the intervals, each on its own, or unknown [default: unknown]
-    #[cfg_attr(feature = "cli", arg(long, value_parser = word::<Scatter>, default_value = "unknown", hide_default_value = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_parser = crate::campaign::word::<Scatter>, default_value = "unknown", hide_default_value = true))]
     pub scatter: Scatter,
     /// No impact is missed and none is too many, however uneven the intervals
     #[cfg_attr(feature = "cli", arg(long))]

@@ -6,7 +6,7 @@ pub mod tables;
 use super::job::Record;
 use super::source::{file_name, name_of};
 use super::{Analysis, Answer, Job, Source};
-use crate::campaign::{Channel, Entry, LowPass, Reading, above_zero};
+use crate::campaign::{Entry, LowPass, above_zero};
 use crate::error::{Error, Result};
 use crate::measure::pulse::{Instrument, PulseOptions, PulseResult, pulse, two_times};
 use serde::Deserialize;
@@ -23,7 +23,7 @@ pub struct Keys {
             long,
             value_name = "S",
             allow_negative_numbers = true,
-            conflicts_with_all = Channel::KEYS.into_iter().chain(Reading::KEYS)
+            conflicts_with_all = crate::campaign::Channel::KEYS.into_iter().chain(crate::campaign::Reading::KEYS)
         )
     )]
     pub time_to_peak: Option<f64>,

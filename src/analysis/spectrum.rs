@@ -5,7 +5,7 @@ pub mod tables;
 
 use super::job::Marks;
 use super::{Analysis, Answer, Job, Source, no_file};
-use crate::campaign::{Entry, channel, word};
+use crate::campaign::{Entry, channel};
 use crate::error::{Error, Result};
 use crate::measure::spectral::{Method, SpectralOptions, SpectralResult, spectral};
 use crate::record::{Scaling, Window};
@@ -19,7 +19,7 @@ use serde::Deserialize;
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {
     /// One transform of the whole record, fft, or the average over segments, welch [default: welch; fft with tones]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "METHOD", value_parser = word::<Method>))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "METHOD", value_parser = crate::campaign::word::<Method>))]
     pub method: Option<Method>,
     /// Fit the N strongest sines of the whole record, 1 to 10: frequency, amplitude and phase with their uncertainties
     #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
@@ -31,13 +31,13 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(long, value_name = "PART", allow_negative_numbers = true))]
     pub overlap: Option<f64>,
     /// Taken out before the window: mean or none [default: mean with welch or an integration, else none]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "WHAT", value_parser = word::<Detrend>))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "WHAT", value_parser = crate::campaign::word::<Detrend>))]
     pub detrend: Option<Detrend>,
     /// Window: hann, rectangular, hamming, blackman, blackman-harris, flat-top [default: hann]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = word::<Window>))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = crate::campaign::word::<Window>))]
     pub window: Option<Window>,
     /// What a line means: peak, rms, power or psd [default: peak]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = word::<Scaling>))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = crate::campaign::word::<Scaling>))]
     pub scaling: Option<Scaling>,
     /// Integrations in frequency: 1 takes velocity to displacement, −1 to acceleration [default: 0]
     #[cfg_attr(feature = "cli", arg(long, value_name = "N", allow_negative_numbers = true))]
@@ -50,7 +50,7 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(long, value_name = "NAME"))]
     pub reference: Option<String>,
     /// FRF estimator: h1 for noise in the response, h2 for noise in the excitation, hv for both alike [default: h1]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = word::<Estimator>))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = crate::campaign::word::<Estimator>))]
     pub estimator: Option<Estimator>,
     /// The excitation is a hammer: one record a blow, of the samples of a segment, from the level before it
     #[cfg_attr(feature = "cli", arg(long))]

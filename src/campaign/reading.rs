@@ -1,6 +1,6 @@
 //! What a person knows of a file that the file does not say: keys of a campaign and options of the command line alike.
 
-use super::{channel, word};
+use super::channel;
 use crate::error::{Error, Result};
 use crate::read::{Format, Reader};
 use crate::units::Unit;
@@ -30,7 +30,7 @@ pub struct Reading {
     #[cfg_attr(feature = "cli", arg(long))]
     pub unit: Option<String>,
     /// Decimal mark, where the file leaves it open: comma or point
-    #[cfg_attr(feature = "cli", arg(long, value_name = "MARK", value_parser = word::<Decimal>))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "MARK", value_parser = crate::campaign::word::<Decimal>))]
     pub decimal: Option<Decimal>,
     /// Two columns of values are real and imaginary part
     #[cfg_attr(feature = "cli", arg(long))]

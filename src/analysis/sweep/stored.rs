@@ -1,6 +1,6 @@
 //! What an analyser stored, where its files do not say.
 
-use crate::campaign::{above_zero, word};
+use crate::campaign::above_zero;
 use crate::error::{Error, Result};
 use crate::read::SweepReader;
 use crate::record::{Scaling, Window};
@@ -23,7 +23,7 @@ pub struct Stored {
     #[cfg_attr(feature = "cli", arg(long))]
     pub window: Option<String>,
     /// Scaling of the spectra: peak or rms [default: peak, assumed]
-    #[cfg_attr(feature = "cli", arg(long, value_parser = word::<Scaling>))]
+    #[cfg_attr(feature = "cli", arg(long, value_parser = crate::campaign::word::<Scaling>))]
     pub scaling: Option<Scaling>,
     /// How often the analyser integrated before it stored, 0 to 2 [default: once for a displacement]
     #[cfg_attr(feature = "cli", arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u8).range(0..=2)))]
