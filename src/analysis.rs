@@ -1,5 +1,120 @@
-//! Analyses: one a kind of record.
+//! Analyses, one folder a kind of record: its keys, its run, its figures, its tables.
+//!
+//! A table of a campaign and a command line fill the same keys: `[[impacts]] refractory = 0.005` and `vibro impacts --refractory 0.005`
+//! run one function. A new kind of record is a folder here and a row in [`KINDS`].
 
-mod drill_file;
+pub mod answer;
+pub mod drill;
+pub mod drop;
+pub mod frf;
+pub mod impacts;
+pub mod job;
+pub mod model;
+pub mod precision;
+pub mod pulse;
+pub mod source;
+pub mod spectrum;
+pub mod sweep;
 
-pub use drill_file::DrillFile;
+mod page;
+
+pub use answer::{Answer, Tells};
+pub use job::{Job, JobOptions, Outcome, Progress, run};
+pub use source::Source;
+
+use crate::campaign::{Campaign, Entry};
+use crate::error::{Error, Result};
+use serde::de::DeserializeOwned;
+use std::path::Path;
+
+/// The keys of a kind of record.
+pub trait Analysis: DeserializeOwned {
+    /// Its section of a campaign: `impacts` for `[[impacts]]`.
+    const SECTION: &'static str;
+    /// Whether records lie in files: their tables then have the keys of how a file is read.
+    const OF_FILES: bool = true;
+
+    /// Whether a table can be, after those before it and before anything is measured. An error names the key at fault as its setting.
+    ///
+    /// # Errors
+    /// If keys contradict each other, are impossible, or one is missing.
+    fn check(entry: &Entry<Self>, earlier: &[Entry<Self>]) -> Result<()>;
+
+    /// Measures the records of all tables.
+    ///
+    /// # Errors
+    /// If a file cannot be read. A record that allows no answer is left out.
+    fn run(entries: &[Entry<Self>], job: &mut Job<'_>) -> Result<()>;
+}
+
+/// A row of the table of kinds.
+#[derive(Clone, Copy)]
+pub struct Kind {
+    section: &'static str,
+    check: fn(&Campaign) -> Result<()>,
+    run: fn(&mut Job<'_>) -> Result<()>,
+}
+
+impl Kind {
+    const fn of<A: Analysis>() -> Kind {
+        Kind { section: A::SECTION, check: check::<A>, run: run_all::<A> }
+    }
+}
+
+/// All kinds of records, in the order in which they are measured and shown.
+pub const KINDS: [Kind; 7] = [
+    Kind::of::<sweep::Keys>(),
+    Kind::of::<spectrum::Keys>(),
+    Kind::of::<frf::Keys>(),
+    Kind::of::<drill::Keys>(),
+    Kind::of::<impacts::Keys>(),
+    Kind::of::<drop::Keys>(),
+    Kind::of::<pulse::Keys>(),
+];
+
+/// Reads a campaign and checks all its records.
+///
+/// # Errors
+/// If it is not TOML, has an unknown key, or a value that cannot be; each points at its line.
+pub fn open(path: impl AsRef<Path>) -> Result<Campaign> {
+    let campaign = Campaign::from_path(path, &KINDS.map(|kind| kind.section))?;
+    KINDS.iter().try_for_each(|kind| (kind.check)(&campaign))?;
+    Ok(campaign)
+}
+
+/// The tables of a kind of record.
+///
+/// # Errors
+/// As [`Campaign::entries`].
+pub fn entries<A: Analysis>(campaign: &Campaign) -> Result<Vec<Entry<A>>> {
+    campaign.entries(A::SECTION, A::OF_FILES)
+}
+
+fn check<A: Analysis>(campaign: &Campaign) -> Result<()> {
+    let entries = entries::<A>(campaign)?;
+    for (i, entry) in entries.iter().enumerate() {
+        let reads = entry.reads().filter(|_| entry.file.is_none());
+        let without = reads.map(|key| {
+            Error::usage(format!("{key} without a file"), "file, too, or leave it out").setting(key)
+        });
+        let checked = match without {
+            Some(error) => Err(error),
+            None => entry.reading.reader().and_then(|_| A::check(entry, &entries[..i])),
+        };
+        checked.map_err(|e| campaign.fault(entry, e))?;
+    }
+    Ok(())
+}
+
+fn run_all<A: Analysis>(job: &mut Job<'_>) -> Result<()> {
+    let entries = entries::<A>(job.campaign)?;
+    A::run(&entries, job)
+}
+
+/// The error of a table that must name a file.
+fn no_file() -> Error {
+    Error::usage("the key file is missing", "").hint("add file = …")
+}
+
+#[cfg(test)]
+mod tests;

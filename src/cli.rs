@@ -23,6 +23,7 @@ mod target;
 mod waterfall;
 
 use crate::error::Result;
+use crate::report::words::Voice;
 use args::{Args, Command};
 use clap::Parser;
 
@@ -39,7 +40,15 @@ pub fn main() -> u8 {
     };
     match dispatch(&args) {
         Ok(code) => code,
-        Err(error) => complain::error(&error, args.json),
+        Err(error) => complain::error(&error, voice(&args.command), args.json),
+    }
+}
+
+/// How settings are named: what a campaign says is corrected there.
+fn voice(command: &Command) -> Voice {
+    match command {
+        Command::Run(_) | Command::Compare(_) => Voice::Campaign,
+        _ => Voice::Command,
     }
 }
 

@@ -1,8 +1,8 @@
 //! Measurements of impacting machines: from instrument files to answers, each with its uncertainty.
 //!
 //! # Flow
-//! Data flows one way: [`read`] → [`signal`] → [`measure`] → [`model`] →
-//! [`campaign`] → [`compare`] → [`report`]; [`mod@write`] turns records into files again.
+//! Data flows one way: [`read`] → [`signal`] → [`measure`] → [`model`] → [`compare`] → [`analysis`]; [`mod@write`] turns records into files
+//! again. An analysis takes its keys from a [`campaign`] or a command line, and shows what it found by [`report`].
 //! [`record`], [`units`], [`error`] and [`math`] lie below all of them.
 //!
 //! # Units and scaling
@@ -12,10 +12,10 @@
 //! # Example
 //! The response of mass 1 in the example campaign, taken from velocity to displacement:
 //! ```
-//! use vibroimpact::campaign::Campaign;
+//! use vibroimpact::analysis::{open, sweep};
 //! use vibroimpact::measure::response::{ResponseOptions, response};
-//! let campaign = Campaign::from_path("examples/two_mass_rig/campaign.toml")?;
-//! let (list, reader) = campaign.sweep(Some("mass 1, up"), false)?;
+//! let campaign = open("examples/two_mass_rig/campaign.toml")?;
+//! let (list, reader) = sweep::named(&campaign, Some("mass 1, up"), false)?;
 //! let found = response(&reader.read(&list)?, &ResponseOptions { integrate: 1, ..Default::default() })?;
 //! let largest = found.points.iter().map(|p| &p.amplitude).max_by(|a, b| a.value.total_cmp(&b.value)).unwrap();
 //! assert!((largest.value - 14.19e-3).abs() < 0.02e-3); // m

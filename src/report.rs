@@ -1,16 +1,13 @@
-//! Tables, files and the page that shows the figures of a campaign.
+//! What a person reads: tables, figures, files, one page, and the words for findings. Nothing here knows an analysis.
 
 pub mod files;
-pub mod job;
-pub mod page;
-pub mod pictures;
-pub mod tables;
+pub mod layout;
+pub mod words;
 
 mod growing;
 mod html;
 mod output;
 mod table;
-pub mod words;
 
 pub use growing::Growing;
 pub use html::Page;

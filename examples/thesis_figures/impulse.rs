@@ -4,9 +4,10 @@ use crate::scene::{accepted, add_orbits, border, grid, hertz, ratio, rig, under_
 use crate::sheet::{Claim, Sheet};
 use std::f64::consts::PI;
 use vibroimpact::Result;
+use vibroimpact::analysis::model::figures;
 use vibroimpact::model::portrait::{Portrait, Sitting};
 use vibroimpact::model::{Excitation, Green, Impulses, Motion, Rig, Simulation};
-use vibroimpact::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke, pictures};
+use vibroimpact::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
 
 /// Impulse of the thesis' examples in N s.
 const IMPULSE: f64 = 0.009;
@@ -166,7 +167,7 @@ fn absent() -> Result<Sheet> {
         "no such orbit exists there, nor does that of its last figure over time",
     )];
     let figure =
-        pictures::traces("Motion where no orbit has one impact a cycle", &portrait, rig.gap).height(100.0);
+        figures::traces("Motion where no orbit has one impact a cycle", &portrait, rig.gap).height(100.0);
     Ok(Sheet::new("impulse_absent", "Impulses: the motion where there is no such orbit", figure, claims))
 }
 

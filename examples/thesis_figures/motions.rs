@@ -3,10 +3,11 @@
 use crate::scene::{hertz, rig, under_sine};
 use crate::sheet::{Claim, Sheet};
 use crate::sweeps::CONTACT;
+use vibroimpact::analysis::model::figures;
 use vibroimpact::model::portrait::{Portrait, Sitting};
 use vibroimpact::model::regime::regime;
 use vibroimpact::model::{Chirp, Compliant, Excitation, Motion, Regime, Rig, Simulation, Sine, State};
-use vibroimpact::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, pictures};
+use vibroimpact::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series};
 use vibroimpact::{Error, Result};
 
 pub fn sheets() -> Result<Vec<Sheet>> {
@@ -40,7 +41,7 @@ fn swept_to(name: &'static str, title: &'static str, hz: f64, in_phase: bool) ->
         (alike > 0.0) == in_phase,
         "",
     )];
-    let figure = pictures::traces(title, &portrait, rig.gap).height(100.0);
+    let figure = figures::traces(title, &portrait, rig.gap).height(100.0);
     Ok(Sheet::new(name, title, figure, claims))
 }
 
@@ -69,7 +70,7 @@ fn eleven() -> Result<Sheet> {
             "the simulation settles on the orbit",
         ),
     ];
-    let figure = pictures::traces("Motion at 11.1 Hz", &portrait, rig.gap).height(100.0);
+    let figure = figures::traces("Motion at 11.1 Hz", &portrait, rig.gap).height(100.0);
     Ok(Sheet::new("motion_11hz", "The motion at 11.1 Hz with classical impacts", figure, claims))
 }
 

@@ -5,11 +5,12 @@ use crate::sheet::{Claim, Sheet};
 use crate::sine;
 use std::f64::consts::TAU;
 use vibroimpact::Result;
+use vibroimpact::analysis::model::figures;
 use vibroimpact::model::contact::conversion;
 use vibroimpact::model::sweep::{Observable, Pace, Plan, Point, Swept, apart};
 use vibroimpact::model::{Compliant, Excitation, Law, Loose, Motion, Pulses, Rig, Simulation, Sine, State};
 use vibroimpact::record::Direction;
-use vibroimpact::report::{AxisSpec, Figure, Marker, Panel, Plot, Series, pictures};
+use vibroimpact::report::{AxisSpec, Figure, Marker, Panel, Plot, Series};
 
 /// Contact of the thesis' simulations.
 pub const CONTACT: Law = Law::KelvinVoigt { stiffness: 1e5, damping: 0.1 };
@@ -51,7 +52,7 @@ fn highest(points: &[Point], from: f64, to: f64) -> (f64, f64) {
 /// Both masses; the largest x₁ in each range (Hz) of `up` and `down` is named by its frequency.
 fn picture(swept: &Swept, up: &[(f64, f64)], down: &[(f64, f64)], caption: &str) -> Figure {
     let mut figure =
-        pictures::sweep(swept, &[], &[], Observable::Rms, false, &[]).height(120.0).caption(caption);
+        figures::sweep(swept, &[], &[], Observable::Rms, false, &[]).height(120.0).caption(caption);
     for (points, ranges, way) in [(&swept.up, up, ""), (&swept.down, down, ", down")] {
         for (from, to) in ranges {
             let (at, height) = highest(points, *from, *to);

@@ -3,8 +3,9 @@
 use crate::scene::{accepted, grid, ratio, real, rig, under_sine};
 use crate::sheet::{Claim, Sheet};
 use ndarray::Array2;
+use vibroimpact::analysis::model::figures;
 use vibroimpact::model::{ChangeKind, Excitation, Loss, Orbit, Sine, response};
-use vibroimpact::report::{AxisSpec, Figure, Heatmap, Ink, Legend, Plot, Series, pictures};
+use vibroimpact::report::{AxisSpec, Figure, Heatmap, Ink, Legend, Plot, Series};
 use vibroimpact::{Error, Result};
 
 pub fn sheets() -> Result<Vec<Sheet>> {
@@ -79,7 +80,7 @@ fn multipliers() -> Result<Sheet> {
 fn inadmissible() -> Result<Sheet> {
     let rig = rig(0.7);
     let orbit = one(0.7, 0.5, 0.8)?;
-    let figure = pictures::orbit("Inadmissible orbit", &rig, &orbit).height(70.0);
+    let figure = figures::orbit("Inadmissible orbit", &rig, &orbit).height(70.0);
     let depth = -1e3 * orbit.validity.min_gap;
     let why = "the masses would pass through each other by so much within the period";
     let claims = vec![Claim::told(
@@ -118,7 +119,7 @@ fn traces() -> Result<Vec<Sheet>> {
             let what = format!("motion of both masses at ν {nu}, F₀ 0.5 N, R 0.7");
             let here = format!("phase of x₂ to x₁ {lead:.0}°, {}", orbit.validity.stability.name())
                 .replace('-', "−");
-            let figure = pictures::orbit(title, &rig, &orbit).height(70.0);
+            let figure = figures::orbit(title, &rig, &orbit).height(70.0);
             Ok(Sheet::new(name, title, figure, vec![Claim::told(what, thesis, here, agrees, why)]))
         })
         .collect()
@@ -137,7 +138,7 @@ fn branches() -> Result<Sheet> {
         top > 9.0,
         "a sweep down finds the other motion",
     )];
-    let figure = pictures::branches("Response with all its branches", &found).height(125.0);
+    let figure = figures::branches("Response with all its branches", &found).height(125.0);
     Ok(Sheet::new("branches", "Response with its branches and the backbone", figure, claims))
 }
 

@@ -20,11 +20,17 @@ impl Channel {
 }
 
 /// A channel.
+///
+/// # Errors
+/// If it is neither a name nor a number.
 pub fn one<'de, D: Deserializer<'de>>(from: D) -> Result<Option<String>, D::Error> {
     Channel::deserialize(from).map(|channel| Some(channel.text()))
 }
 
 /// Channels.
+///
+/// # Errors
+/// If one is neither a name nor a number.
 pub fn several<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<String>, D::Error> {
     Vec::<Channel>::deserialize(from).map(|all| all.into_iter().map(Channel::text).collect())
 }

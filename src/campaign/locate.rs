@@ -5,9 +5,11 @@ use std::ops::Range;
 use std::path::Path;
 
 /// The parser's complaint as ours.
-pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error) -> Error {
+///
+/// `beside` are keys that are known, too.
+pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&str]) -> Error {
     let span = error.span().unwrap_or(0..0);
-    let Told { found, expected, hint } = tell(error.message(), line_at(text, span.start));
+    let Told { found, expected, hint } = tell(error.message(), line_at(text, span.start), beside);
     Error::input(Place::file(path), found, expected).excerpt(text, span).hint(hint)
 }
 
@@ -19,7 +21,7 @@ struct Told {
     hint: String,
 }
 
-fn tell(message: &str, line: &str) -> Told {
+fn tell(message: &str, line: &str, beside: &[&str]) -> Told {
     if let Some((key, value)) = line.split_once('=')
         && let Some((whole, decimals)) = value.split('#').next().unwrap_or_default().trim().split_once(',')
         && [whole.trim_start_matches(['+', '-']), decimals]
@@ -38,11 +40,7 @@ fn tell(message: &str, line: &str) -> Told {
     if message.starts_with("unknown field")
         && let Some((wrong, known)) = names.split_first()
     {
-        let hint = match nearest(wrong, known) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("keys known here: {}", known.join(", ")),
-        };
-        return Told { found: format!("unknown key `{wrong}`"), hint, ..Told::default() };
+        return unknown_key(wrong, &[beside, known].concat());
     }
     if message.starts_with("unknown variant")
         && let Some((wrong, known)) = names.split_first()
@@ -122,18 +120,32 @@ fn line_at(text: &str, at: usize) -> &str {
     text.get(start..).and_then(|rest| rest.lines().next()).unwrap_or_default().trim()
 }
 
-/// The first line of `text` that sets `key`, at top level or behind the byte `from`.
-pub fn find(text: &str, key: &str, from: Option<usize>) -> Range<usize> {
-    let from = from.unwrap_or(0);
-    let mut at = 0;
-    for line in text.split_inclusive('\n') {
-        let trimmed = line.trim_start();
-        if at >= from && trimmed.strip_prefix(key).is_some_and(|rest| rest.trim_start().starts_with('=')) {
-            return at..at + line.trim_end().len();
-        }
-        at += line.len();
-    }
-    from..from
+fn unknown_key(wrong: &str, known: &[&str]) -> Told {
+    let hint = match nearest(wrong, known) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!("keys known here: {}", known.join(", ")),
+    };
+    Told { found: format!("unknown key `{wrong}`"), hint, ..Told::default() }
+}
+
+/// The complaint about a key at the top that is none.
+pub fn unknown(
+    path: &Path,
+    text: &str,
+    key: &toml::Spanned<toml::de::DeString<'_>>,
+    known: &[&str],
+) -> Error {
+    let Told { found, hint, .. } = unknown_key(key.get_ref(), known);
+    Error::input(Place::file(path), found, "").excerpt(text, key.span()).hint(hint)
+}
+
+/// Where a key stands in a table or in one of its tables.
+pub fn find(table: &toml::de::DeTable<'_>, key: &str) -> Option<Range<usize>> {
+    table.iter().find_map(|(name, value)| match value.get_ref() {
+        _ if name.get_ref() == key => Some(name.span().start..value.span().end),
+        toml::de::DeValue::Table(inner) => find(inner, key),
+        _ => None,
+    })
 }
 
 /// The known name at the smallest edit distance, if that is small.
@@ -174,10 +186,11 @@ mod tests {
     }
 
     #[test]
-    fn a_key_is_found_behind_a_place() {
-        let text = "a = 1\n[x]\n  a = 2\n";
-        assert_eq!(find(text, "a", None), 0..5);
-        assert_eq!(&text[find(text, "a", Some(6))], "  a = 2");
+    fn a_key_is_found_in_the_table_that_has_it() {
+        let text = "b = 1\n[x]\n  a = 2\n";
+        let table = toml::de::DeTable::parse(text).unwrap();
+        assert_eq!(find(table.get_ref(), "a").map(|span| &text[span]), Some("a = 2"));
+        assert_eq!(find(table.get_ref(), "c"), None);
     }
 
     #[test]
@@ -204,7 +217,7 @@ mod tests {
             ),
         ] {
             let error = toml::from_str::<crate::campaign::FitEntry>(text).unwrap_err();
-            let told = tell(error.message(), text.lines().next().unwrap());
+            let told = tell(error.message(), text.lines().next().unwrap(), &[]);
             assert!(told.found.contains(found), "{text}: {told:?}");
             assert!(told.expected.contains(expected) && told.hint.contains(hint), "{text}: {told:?}");
         }

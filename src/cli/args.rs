@@ -2,45 +2,34 @@
 
 mod compare;
 mod convert;
-mod drill;
 mod excitation;
-mod impacts;
 mod info;
-mod low_pass;
-mod modal;
 mod model;
 mod precision;
-mod pulse;
-mod reading;
+mod record;
 mod response;
-mod restitution;
 mod run;
-mod spectrum;
 mod sweep;
 mod waterfall;
 
 pub use compare::Compare;
 pub use convert::{Change, Convert};
-pub use drill::{Drill, Edge, From};
 pub use excitation::Excitation;
-pub use impacts::{Finding, Impacts, Scatter};
 pub use info::Info;
-pub use low_pass::{LowPass, low_pass};
-pub use modal::Modal;
 pub use model::{
     Came, Law, Looked, Model, ModelChoose, ModelCommand, ModelMap, ModelResponse, ModelSweep, Observable,
     Orbit, Over, Scene, Simulate, Way,
 };
 pub use precision::{Kind, Precision};
-pub use pulse::Pulse;
-pub use reading::{Channel, Decimal, Reading};
+pub use record::Record;
 pub use response::Response;
-pub use restitution::Restitution;
 pub use run::Run;
-pub use spectrum::{Detrend, Estimator, Method, Spectrum};
 pub use sweep::{Sweep, Taking};
 pub use waterfall::Waterfall;
 
+use super::{
+    drill::Drill, impacts::Impacts, modal::Modal, pulse::Pulse, restitution::Restitution, spectrum::Spectrum,
+};
 use clap::{Parser, Subcommand};
 
 /// Measure impacting machines: from analyser files to answers, each with its uncertainty.

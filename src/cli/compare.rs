@@ -1,12 +1,15 @@
 //! `vibro compare`: measured responses over the model.
 
 use super::{args, complain, print, progress};
-use crate::campaign::{Campaign, Parameter};
+use crate::analysis::model::tables::climbed;
+use crate::analysis::sweep::{self, figures, modelled, tables};
+use crate::analysis::{self, JobOptions};
+use crate::campaign::Parameter;
 use crate::compare::{Fit, Overlay, Predicting, overlay};
 use crate::error::{Error, Place, Result};
-use crate::report::job::{self, JobOptions};
-use crate::report::words::{self, Voice};
-use crate::report::{Output, files, pictures, tables};
+use crate::record::Finding;
+use crate::report::words::{About, Voice, told};
+use crate::report::{Output, files};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -14,15 +17,13 @@ use std::fmt::Write as _;
 struct Answer {
     #[serde(flatten)]
     overlay: Overlay,
-    /// Of the campaign, the sweeps and the fit; those of the overlay are added.
-    warnings: Vec<String>,
     /// Parameters found from the data.
     fit: Option<Fit>,
     files: Vec<String>,
 }
 
 pub fn run(typed: &args::Compare, json: bool) -> Result<()> {
-    let mut campaign = Campaign::from_path(&typed.campaign)?;
+    let mut campaign = analysis::open(&typed.campaign)?;
     if !typed.fit.is_empty() {
         let names = typed.fit.iter().map(|name| Parameter::from_name(name.trim()));
         campaign.fit.ask(names.collect::<Result<_>>()?)?;
@@ -32,18 +33,20 @@ pub fn run(typed: &args::Compare, json: bool) -> Result<()> {
             .hint("add a [rig] table; keys left out take the values of the thesis' rig")
     })?;
     let options = JobOptions { allow_outside: typed.allow_outside };
-    let responses = job::responses(&campaign, options, &progress::bar(json))?;
+    let responses = sweep::responses(&campaign, options, &progress::bar(json))?;
     let force = campaign.excitation.and_then(|e| e.force);
-    let overlay = overlay(&rig, force, &Predicting::from(&campaign), &responses)?;
-    let mut warnings: Vec<String> = campaign.rig_left_out().into_iter().collect();
-    warnings.extend(job::common(&responses));
-    let fit = job::fit(&campaign, &rig, &responses)?;
+    let mut overlay = overlay(&rig, force, &Predicting::from(&campaign), &responses)?;
+    let whole = |finding| (String::new(), finding);
+    let mut findings: Vec<_> = modelled::rig_left_out(&campaign).map(whole).into_iter().collect();
+    findings.extend(overlay.findings.drain(..).map(whole));
+    findings.extend(sweep::told(&responses));
+    let fit = modelled::fit(&campaign, &rig, &responses)?;
     let mut written = Vec::new();
     if let Some(folder) = &typed.out {
         let mut output = Output::new(folder)?;
         let mut figures =
-            vec![("overlay".to_owned(), pictures::overlay(&campaign.name, &overlay, &responses))];
-        figures.extend(fit.as_ref().map(|fit| ("fit".to_owned(), pictures::fit(&campaign.name, fit))));
+            vec![("overlay".to_owned(), figures::overlay(&campaign.name, &overlay, &responses))];
+        figures.extend(fit.as_ref().map(|fit| ("fit".to_owned(), figures::fit(&campaign.name, fit))));
         files::figures(&mut output, &figures, &|| ())?;
         output.write("pairs.csv", tables::pairs(&overlay).csv())?;
         if let Some(fit) = &fit {
@@ -52,15 +55,15 @@ pub fn run(typed: &args::Compare, json: bool) -> Result<()> {
         }
         written = output.written().to_vec();
     }
-    warnings.extend(fit.iter().flat_map(|fit| words::warnings(&fit.findings, Voice::Command)));
+    findings.extend(fit.iter().flat_map(|f| f.findings.iter().cloned()).map(whole));
     if json {
-        return print::json(&Answer { overlay, warnings, fit, files: written });
+        overlay.findings = findings.into_iter().map(with_record).collect();
+        return print::json(&Answer { overlay, fit, files: written });
     }
-    complain::warn(&words::warnings(&overlay.findings, Voice::Command));
-    complain::warn(&warnings);
+    complain::warn(&told(&findings, Voice::Command, true));
     let mut text = format!("{}\n{}", tables::peaks(&overlay).text(), tables::scores(&overlay).text());
     if !overlay.rungs.is_empty() {
-        let _ = write!(text, "\n{}", tables::climbed(&overlay).text());
+        let _ = write!(text, "\n{}", climbed(&overlay).text());
     }
     if let Some(fit) = &fit {
         let _ = write!(text, "\n{}\n{}", tables::fitted(fit).text(), tables::fit_rungs(fit).text());
@@ -69,4 +72,9 @@ pub fn run(typed: &args::Compare, json: bool) -> Result<()> {
         let _ = writeln!(text, "wrote {file}");
     }
     print::text(&text)
+}
+
+/// A finding with its record as subject where it names none itself.
+fn with_record((record, finding): About) -> Finding {
+    if record.is_empty() || finding.subject.is_some() { finding } else { finding.about(record) }
 }

@@ -16,8 +16,8 @@ struct Failure {
 }
 
 /// Prints an error, with `json` as an object on standard output as well, and gives its exit code.
-pub fn error(error: &Error, json: bool) -> u8 {
-    let text = error.spoken(|key| Voice::Command.setting(key));
+pub fn error(error: &Error, voice: Voice, json: bool) -> u8 {
+    let text = error.spoken(|key| voice.setting(key));
     line(&format!("vibro: {text}"));
     if json {
         object(text, error.exit_code());

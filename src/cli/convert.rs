@@ -3,7 +3,7 @@
 mod change;
 
 use super::target::{apart, write_beside};
-use super::{args, complain, print, settings};
+use super::{args, complain, print};
 use crate::error::{Error, Result};
 use crate::record::Record;
 use crate::write::{Precision, Storage, Target};
@@ -27,8 +27,8 @@ pub fn run(typed: &args::Convert, json: bool) -> Result<()> {
         ));
     }
     let one = typed.channel.channel.is_some() || typed.channel.calibration.is_some();
-    let reader =
-        if one || typed.change.wanted() { settings::time_reader } else { settings::reader }(&typed.reading)?;
+    let reader = typed.reading.reader()?;
+    let reader = if one || typed.change.wanted() { reader.rate_of_base_band() } else { reader };
     let mut recording = reader.from_path(&typed.input)?;
     if one {
         let trace = recording.trace(typed.channel.channel.as_deref(), typed.channel.calibration)?;

@@ -17,7 +17,7 @@ struct Answer {
 }
 
 pub fn run(typed: &args::Excitation, json: bool) -> Result<()> {
-    let (list, how) = settings::sweep(&typed.sweep)?;
+    let (list, how) = settings::listed(&typed.sweep)?;
     let sweep = how.read(&list)?;
     let mut warnings = sweep.doubts.clone();
     let points = if typed.sweep.legacy {

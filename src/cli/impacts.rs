@@ -1,22 +1,25 @@
 //! `vibro impacts`: the job of timeav.
 
-use super::{args, complain, print, settings};
+use super::{args, complain, print};
+use crate::analysis::impacts::Keys;
 use crate::error::{Error, Result};
-use crate::measure::impacts::{Impacts, ImpactsOptions, Scatter, Shape, impacts};
 use crate::measure::{Estimate, legacy};
-use crate::read::Reader;
 use crate::record::Trace;
-use crate::report::words::{Voice, sentences};
-use crate::report::{Output, files, pictures, tables};
 use serde::Serialize;
 use std::fmt::Write as _;
+use std::path::PathBuf;
 
-#[derive(Serialize)]
-struct Answer {
-    #[serde(flatten)]
-    impacts: Impacts,
-    warnings: Vec<String>,
-    files: Vec<String>,
+#[derive(Debug, clap::Args)]
+pub struct Impacts {
+    /// File with a contact trace, or any signal that jumps at each impact
+    file: PathBuf,
+    /// Print what the thesis' script timeav printed, mistakes included
+    #[arg(long)]
+    legacy: bool,
+    #[command(flatten)]
+    keys: Keys,
+    #[command(flatten)]
+    record: args::Record,
 }
 
 /// What the script printed: a mean and the times. It knew nothing of the rest.
@@ -36,64 +39,21 @@ struct Legacy {
     warnings: Vec<String>,
 }
 
-pub fn run(typed: &args::Impacts, json: bool) -> Result<()> {
-    let recording = settings::time_reader(&typed.reading)?.from_path(&typed.file)?;
-    let trace = recording.trace(typed.channel.channel.as_deref(), typed.channel.calibration)?;
+pub fn run(typed: &Impacts, json: bool) -> Result<()> {
+    if typed.legacy && typed.record.out.is_some() {
+        return Err(Error::usage(
+            "--legacy prints what the script printed, it draws nothing",
+            "--legacy or --out",
+        ));
+    }
     if typed.legacy {
-        if typed.out.is_some() {
-            return Err(Error::usage(
-                "--legacy prints what the script printed, it draws nothing",
-                "--legacy or --out",
-            ));
-        }
+        let trace = typed.record.measured(&typed.file, json, |source| source.trace(&source.recording()?))?;
         return legacy(&trace, json);
     }
-    let reference = match &typed.reference {
-        Some(name) => Some(recording.trace(Some(name), None)?.values),
-        None => None,
-    };
-    let shape = match &typed.shape {
-        Some(file) => {
-            settings::above_zero("--shape-rate", typed.shape_rate)?;
-            let pulse = Reader::new().rate(typed.shape_rate).from_path(file)?.trace(None, None)?;
-            Some(Shape::of(&pulse, &trace)?)
-        }
-        None => None,
-    };
-    let options = ImpactsOptions {
-        excitation: typed.excitation.map(|f| f.value),
-        excitation_std: typed.excitation_std.or(typed.excitation.map(|f| f.std)),
-        complete: typed.none_missed,
-        reference,
-        shape,
-        scatter: match typed.scatter {
-            args::Scatter::Onsets => Scatter::Onsets,
-            args::Scatter::Intervals => Scatter::Intervals,
-            args::Scatter::Unknown => Scatter::Unknown,
-        },
-        ..settings::finding(&typed.finding, None)
-    };
-    let found = impacts(&trace, &options).map_err(|e| e.of_record(&typed.file.display().to_string()))?;
-    let mut warnings: Vec<String> = recording.doubts.iter().chain(&trace.meta.doubts).cloned().collect();
-    let mut written = Vec::new();
-    if let Some(folder) = &typed.out {
-        let mut output = Output::new(folder)?;
-        let figure = pictures::impacts(&trace.meta.name, &trace, &found);
-        files::figures(&mut output, &[("impacts".to_owned(), figure)], &|| ())?;
-        output.write("impacts.csv", tables::impact_times(&found).csv())?;
-        written = output.written().to_vec();
-    }
-    if json {
-        return print::json(&Answer { impacts: found, warnings, files: written });
-    }
-    warnings.extend(sentences(&found.findings, Voice::Command));
-    complain::warn(&warnings);
-    let mut text = tables::impacts(&[(String::new(), &found)]).text();
-    let _ = writeln!(text, "\n{}\ntimes: --json, or impacts.csv with --out", found.interval.method);
-    for file in written {
-        let _ = writeln!(text, "wrote {file}");
-    }
-    print::text(&text)
+    let found = typed.record.measured(&typed.file, json, |source| typed.keys.measure(source));
+    let answer = found.map_err(|e| e.of_record(&typed.file.display().to_string()))?;
+    let note = "times: --json, or impacts.csv with --out";
+    print::answer(answer, typed.record.out.as_deref(), &[], note, json)
 }
 
 fn legacy(trace: &Trace, json: bool) -> Result<()> {

@@ -1,8 +1,9 @@
 //! `vibro info`: what is in a file.
 
-use super::{args, complain, print, settings};
+use super::{args, complain, print};
 use crate::error::Result;
 use crate::read::{Header, gathered};
+use crate::report::words::Voice;
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -23,7 +24,7 @@ struct File {
 
 /// Lists what can be listed and complains of the rest; gives the exit code of the first failure.
 pub fn run(typed: &args::Info, json: bool) -> Result<u8> {
-    let reader = settings::reader(&typed.reading)?;
+    let reader = typed.reading.reader()?;
     let mut answer = Answer { files: Vec::new(), errors: Vec::new(), warnings: Vec::new() };
     let mut code = 0;
     for path in &typed.files {
@@ -31,7 +32,7 @@ pub fn run(typed: &args::Info, json: bool) -> Result<u8> {
             Ok(found) => found,
             // The other files are still worth listing; the first failure decides the exit code.
             Err(error) => {
-                let failed = complain::error(&error, false);
+                let failed = complain::error(&error, Voice::Command, false);
                 code = if code == 0 { failed } else { code };
                 answer.errors.push(error.to_string());
                 continue;

@@ -1,9 +1,10 @@
 //! `vibro precision`: speed against accuracy, and where methods break.
 
+use crate::analysis::precision::{figures, tables};
 use crate::cli::{args, complain, print, progress};
 use crate::compare::precision::{Cell, Earlier, FailureMap, Family, Scene, added, busy, estimators, models};
 use crate::error::{Error, Result};
-use crate::report::{Figure, Output, files, pictures, tables};
+use crate::report::{Figure, Output, files};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -66,12 +67,12 @@ pub fn run(typed: &args::Precision, json: bool) -> Result<()> {
         let mut output = Output::new(folder)?;
         let mut drawn: Vec<(String, Figure)> = Vec::new();
         for scene in &scenes {
-            drawn.push((format!("precision_{}", files::slug(&scene.name)), pictures::precision(scene)));
+            drawn.push((format!("precision_{}", files::slug(&scene.name)), figures::precision(scene)));
         }
         for map in &maps {
             let name =
                 |(name, figure): (String, Figure)| (format!("failures_{}", files::slug(&name)), figure);
-            drawn.extend(pictures::failures(map).into_iter().map(name));
+            drawn.extend(figures::failures(map).into_iter().map(name));
         }
         files::figures(&mut output, &drawn, &|| ())?;
         output.write("precision.csv", tables::precision(&scenes).csv())?;

@@ -39,7 +39,7 @@ impl Drop for Busy {
     }
 }
 
-impl crate::report::job::Progress for ProgressBar {
+impl crate::analysis::Progress for ProgressBar {
     fn start(&self, what: &str, steps: usize) {
         self.set_length(steps as u64);
         self.set_position(0);

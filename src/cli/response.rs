@@ -1,11 +1,12 @@
 //! `vibro response`: the job of sinesw3.
 
 use super::{args, complain, print, settings};
+use crate::analysis::sweep::{figures, tables};
 use crate::error::{Error, Result};
 use crate::measure::response::{Response, response};
 use crate::measure::{Estimate, legacy};
 use crate::record::Sweep;
-use crate::report::{Output, files, pictures, tables};
+use crate::report::{Output, files};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -36,7 +37,7 @@ struct LegacyPoint {
 }
 
 pub fn run(typed: &args::Response, json: bool) -> Result<()> {
-    let (list, how) = settings::sweep(&typed.sweep)?;
+    let (list, how) = settings::listed(&typed.sweep)?;
     let sweep = how.read(&list)?;
     if typed.sweep.legacy && typed.out.is_some() {
         return Err(Error::usage(
@@ -52,7 +53,7 @@ pub fn run(typed: &args::Response, json: bool) -> Result<()> {
     let mut written = Vec::new();
     if let Some(folder) = &typed.out {
         let mut output = Output::new(folder)?;
-        let figure = pictures::response(&response.name, std::slice::from_ref(&response));
+        let figure = figures::response(&response.name, std::slice::from_ref(&response));
         files::figures(&mut output, &[("response".to_owned(), figure)], &|| ())?;
         output.write("response.csv", tables::response(&response).csv())?;
         written = output.written().to_vec();

@@ -1,11 +1,13 @@
 //! `vibro waterfall`: the job of sinesw.
 
 use super::{args, complain, print, settings};
+use crate::analysis::sweep::figures;
+use crate::campaign::above_zero;
 use crate::error::Result;
 use crate::measure::legacy;
 use crate::measure::waterfall::{Waterfall, waterfall};
 use crate::record::Finding;
-use crate::report::{Output, files, pictures};
+use crate::report::{Output, files};
 use ndarray::Array2;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -24,8 +26,8 @@ struct Answer<'a> {
 }
 
 pub fn run(typed: &args::Waterfall, json: bool) -> Result<()> {
-    settings::above_zero("--fmax", typed.fmax)?;
-    let (list, how) = settings::sweep(&typed.sweep)?;
+    above_zero("fmax", typed.fmax)?;
+    let (list, how) = settings::listed(&typed.sweep)?;
     let sweep = how.read(&list)?;
     let matrix = if typed.sweep.legacy {
         let excitation = legacy::rounded(&legacy::excitation(&sweep)?);
@@ -49,8 +51,8 @@ pub fn run(typed: &args::Waterfall, json: bool) -> Result<()> {
     if let Some(folder) = &typed.out {
         let mut output = Output::new(folder)?;
         let figures = [
-            ("waterfall".to_owned(), pictures::waterfall(&matrix, typed.fmax)?),
-            ("map".to_owned(), pictures::map(&matrix, typed.fmax)?),
+            ("waterfall".to_owned(), figures::waterfall(&matrix, typed.fmax)?),
+            ("map".to_owned(), figures::map(&matrix, typed.fmax)?),
         ];
         files::figures(&mut output, &figures, &|| ())?;
         output.write("waterfall.csv", files::matrix_csv(&matrix))?;

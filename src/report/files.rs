@@ -1,9 +1,9 @@
 //! Figures and matrices as files.
 
 use super::{Drawing, Figure, Output};
-use crate::error::Result;
+use crate::error::{ErrorKind, Result};
 use crate::measure::waterfall::Waterfall;
-use crate::record::Record;
+use crate::record::{Finding, Record};
 use crate::write::{Storage, Target};
 use rayon::prelude::*;
 use std::fmt::Write as _;
@@ -61,27 +61,34 @@ pub fn matrix_csv(matrix: &Waterfall) -> String {
     text
 }
 
-/// Writes records as CSV and UFF: binary where the text of data set 58 has too few digits for the abscissa. Gives the sentence that
-/// says why there is no UFF where that has too few, too.
+/// Files that an analysis makes: name and content.
+pub type Files = Vec<(String, Vec<u8>)>;
+
+/// Records as CSV and UFF: binary where the text of data set 58 has too few digits for the abscissa. A finding says why there is no UFF
+/// where that has too few, too.
 ///
 /// # Errors
-/// If a file cannot be written, or there is nothing to write.
-pub fn records(output: &mut Output, name: &str, records: &[Record]) -> Result<Option<String>> {
+/// If there is nothing to write, or it cannot be written.
+pub fn records(name: &str, records: &[Record]) -> Result<(Files, Option<Finding>)> {
     let text = |target: Target, storage: Storage| -> Result<Vec<u8>> {
         let mut bytes = Vec::new();
         target.write(records, storage, &mut bytes)?;
         Ok(bytes)
     };
-    output.write(&format!("{name}.csv"), text(Target::Csv, Storage::default())?)?;
+    let mut files = vec![(format!("{name}.csv"), text(Target::Csv, Storage::default())?)];
     let binary = Storage { binary: true, ..Storage::default() };
     match text(Target::Uff, Storage::default()).or_else(|_| text(Target::Uff, binary)) {
-        Ok(bytes) => output.write(&format!("{name}.uff"), bytes).map(|_| None),
-        Err(error) if error.exit_code() == 1 => {
-            let why = error.to_string().lines().next().unwrap_or_default().to_owned();
-            Ok(Some(format!("{name}.uff is not written: {why}. All lines are in {name}.csv.")))
-        }
-        Err(error) => Err(error),
+        Ok(bytes) => files.push((format!("{name}.uff"), bytes)),
+        Err(error) => match error.kind() {
+            ErrorKind::Refused { why, .. } => {
+                let finding =
+                    Finding::caution("uff-not-written").name("file", name).name("why", why.as_str());
+                return Ok((files, Some(finding)));
+            }
+            _ => return Err(error),
+        },
     }
+    Ok((files, None))
 }
 
 /// Endings of the files that results are written in.
@@ -89,9 +96,9 @@ const ENDINGS: [&str; 5] = ["svg", "png", "csv", "json", "html"];
 /// So many names of left-over files are said.
 const NAMED: usize = 8;
 
-/// A sentence on the files in the folder that look like results but were not written by this run, nor are among `coming`: they
-/// may be those of an earlier one. They are left as they are.
-pub fn left_over(output: &Output, coming: &[&str]) -> Option<String> {
+/// The files in the folder that look like results but were not written by this run, nor are among `coming`: they may be those of an
+/// earlier one. They are left as they are.
+pub fn left_over(output: &Output, coming: &[&str]) -> Option<Finding> {
     let written = |name: &str| coming.contains(&name) || output.written().iter().any(|w| w == name);
     let entries = std::fs::read_dir(output.folder()).ok()?.filter_map(std::result::Result::ok);
     let mut names: Vec<String> = entries
@@ -101,17 +108,10 @@ pub fn left_over(output: &Output, coming: &[&str]) -> Option<String> {
         .filter(|name| !written(name))
         .collect();
     names.sort();
-    let others = match names.len().saturating_sub(NAMED) {
-        0 => String::new(),
-        n => format!(" and {n} more"),
-    };
+    let more = names.len().saturating_sub(NAMED);
     names.truncate(NAMED);
-    (!names.is_empty()).then(|| {
-        format!(
-            "Files in the folder of the results that this run did not write, perhaps of an earlier one: {}{others}.",
-            names.join(", ")
-        )
-    })
+    let found = Finding::caution("files-left-over").name("names", names.join(", "));
+    (!names.is_empty()).then(|| if more > 0 { found.count("more", more) } else { found })
 }
 
 /// A name as part of a file name that every system takes: ASCII letters and digits, Greek letters by their names, raised and lowered digits as
@@ -128,6 +128,20 @@ pub fn slug(name: &str) -> String {
         }
     }
     slug.trim_end_matches('_').to_owned()
+}
+
+/// Names as parts of file names, each once.
+pub fn slugs<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut slugs: Vec<String> = Vec::new();
+    for (i, name) in names.enumerate() {
+        let slug = slug(name);
+        slugs.push(match slug.as_str() {
+            "" => (i + 1).to_string(),
+            taken if slugs.iter().any(|s| s == taken) => format!("{taken}_{}", i + 1),
+            _ => slug,
+        });
+    }
+    slugs
 }
 
 /// Characters of names in this field, and how they are spelled in ASCII.
@@ -173,6 +187,7 @@ const SPELLED: [(&str, &str); 36] = [
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record::Fact;
 
     #[test]
     fn files_of_an_earlier_run_are_named() {
@@ -187,11 +202,10 @@ mod tests {
         for i in 0..10 {
             std::fs::write(dir.path().join(format!("map_{i}.png")), "").unwrap();
         }
-        let sentence = left_over(&output, &["report.html"]).unwrap();
-        assert!(
-            sentence.contains("map_0.png, map_1.png") && sentence.ends_with("map_7.png and 2 more."),
-            "{sentence}"
-        );
+        let finding = left_over(&output, &["report.html"]).unwrap();
+        let Some(Fact::Name(names)) = finding.fact("names") else { panic!("{finding:?}") };
+        assert!(names.starts_with("map_0.png, map_1.png") && names.ends_with("map_7.png"), "{names}");
+        assert_eq!(finding.get("more"), Some(2.0));
         assert!(dir.path().join("map_0.png").exists());
         assert_eq!(left_over(&Output::new(dir.path().join("none")).unwrap(), &[]), None);
     }
@@ -208,21 +222,21 @@ mod tests {
             let meta = Meta::new("gaps", Unit::parse("m/N").unwrap());
             [Record::Frf(Frf { meta, axis, values, kind: FrfKind::Receptance })]
         };
-        let dir = tempfile::tempdir().unwrap();
-        let mut output = Output::new(dir.path()).unwrap();
-        let lines = || {
-            let found = crate::read::Reader::new().from_path(dir.path().join("x.uff")).unwrap();
+        let lines = |bytes: &[u8]| {
+            let found = crate::read::Reader::new().from_reader("x.uff", bytes).unwrap();
             found.records[0].axis().values()
         };
         // Text of six digits, then single precision (half a unit in the last place is 4.9e-4 there).
         for (step, off) in [(10.0, 0.05), (0.01, 5e-4)] {
-            assert_eq!(records(&mut output, "x", &gaps(step)).unwrap(), None);
-            let wanted = gaps(step)[0].axis().values();
-            assert!(lines().iter().zip(&wanted).all(|(a, b)| (a - b).abs() <= off), "{:?}", lines());
+            let (files, finding) = records("x", &gaps(step)).unwrap();
+            assert_eq!(finding, None);
+            let (wanted, found) = (gaps(step)[0].axis().values(), lines(&files[1].1));
+            assert!(found.iter().zip(&wanted).all(|(a, b)| (a - b).abs() <= off), "{found:?}");
         }
-        let why = records(&mut output, "y", &gaps(1e-4)).unwrap().unwrap();
-        assert!(why.contains("y.uff is not written") && why.contains("too few digits"), "{why}");
-        assert!(dir.path().join("y.csv").is_file() && !dir.path().join("y.uff").exists());
+        let (files, finding) = records("y", &gaps(1e-4)).unwrap();
+        let finding = finding.unwrap();
+        assert!(matches!(finding.fact("why"), Some(Fact::Name(why)) if why.contains("too few digits")));
+        assert_eq!((finding.code, files.len(), files[0].0.as_str()), ("uff-not-written", 1, "y.csv"));
     }
 
     #[test]

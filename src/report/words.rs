@@ -15,6 +15,7 @@
 //! | `[refractory]` | a setting: `--refractory` for the command, `refractory` for a campaign |
 //! | `<, at {time s}>` | left out where the fact is missing |
 
+mod campaign;
 mod drill;
 mod files;
 mod fit;
@@ -31,7 +32,8 @@ use crate::units::notation::{quantity, significant};
 use serde_json::Value;
 
 /// All sentences by the code of their finding.
-const TABLES: [&[(&str, &str)]; 10] = [
+const TABLES: [&[(&str, &str)]; 11] = [
+    campaign::WORDS,
     drill::WORDS,
     files::WORDS,
     fit::WORDS,
@@ -134,6 +136,44 @@ pub fn sentences(findings: &[Finding], voice: Voice) -> Vec<String> {
         }
     }
     all
+}
+
+/// A finding, and the record that it is about: empty for all of them.
+pub type About = (String, Finding);
+
+/// The sentences of findings about records, doubts first. One that holds for several records stands once, behind their names.
+pub fn told(findings: &[About], voice: Voice, notes: bool) -> Vec<String> {
+    let mut groups: Vec<(&Finding, Vec<&str>)> = Vec::new();
+    for (record, finding) in findings {
+        match groups.iter_mut().find(|(known, _)| *known == finding) {
+            Some((_, records)) if records.contains(&record.as_str()) => {}
+            Some((_, records)) => records.push(record),
+            None => groups.push((finding, vec![record])),
+        }
+    }
+    let mut all = Vec::new();
+    for severity in [Severity::Doubt, Severity::Caution, Severity::Note] {
+        for (finding, records) in groups.iter().filter(|g| g.0.severity == severity) {
+            let text = sentence(finding, voice);
+            if notes || severity != Severity::Note {
+                let whole = records.contains(&"");
+                all.push(if whole { text } else { format!("{}: {text}", records.join("; ")) });
+            }
+        }
+    }
+    all
+}
+
+/// Puts `findings` and `warnings` into an answer: each finding with its record as subject where it names none itself, and the sentences
+/// of those that are not notes.
+pub fn put(answer: &mut serde_json::Map<String, Value>, findings: &[About], voice: Voice) {
+    let subject = |(record, finding): &About| match &finding.subject {
+        None if !record.is_empty() => finding.clone().about(record.as_str()),
+        _ => finding.clone(),
+    };
+    let findings_as_data: Vec<Finding> = findings.iter().map(subject).collect();
+    answer.insert("findings".to_owned(), serde_json::json!(findings_as_data));
+    answer.insert("warnings".to_owned(), serde_json::json!(told(findings, voice, false)));
 }
 
 /// What a finding says, and to whom.
@@ -263,6 +303,18 @@ mod tests {
         let found = [Finding::note("a"), Finding::caution("b"), Finding::doubt("c"), Finding::doubt("c")];
         assert_eq!(sentences(&found, Voice::Command), ["c", "b", "a"]);
         assert_eq!(warnings(&found, Voice::Command), ["c", "b"]);
+    }
+
+    #[test]
+    fn a_finding_of_several_records_stands_once_behind_their_names() {
+        let of = |record: &str, code| (record.to_owned(), Finding::caution(code));
+        let all =
+            [of("a", "x-code"), of("b", "x-code"), of("a", "x-code"), of("", "y-code"), of("c", "y-code")];
+        assert_eq!(told(&all, Voice::Campaign, true), ["a; b: x-code", "y-code"]);
+        let mut answer = serde_json::Map::new();
+        put(&mut answer, &all[..1], Voice::Campaign);
+        assert_eq!(answer["findings"][0]["subject"], "a");
+        assert_eq!(answer["warnings"], serde_json::json!(["a: x-code"]));
     }
 
     #[test]

@@ -1,12 +1,12 @@
 //! `vibro drill` from the command line: the example's record against its truth, and input that allows no answer.
 
 #[allow(dead_code)]
-#[path = "../../examples/hammer_drill/noise.rs"]
+#[path = "../../examples/hammer_drill/make/noise.rs"]
 pub mod noise;
-#[path = "../../examples/hammer_drill/record.rs"]
+#[path = "../../examples/hammer_drill/make/record.rs"]
 mod record;
 #[allow(dead_code)]
-#[path = "../../examples/hammer_drill/stroke.rs"]
+#[path = "../../examples/hammer_drill/make/stroke.rs"]
 pub mod stroke;
 
 use serde_json::Value;
@@ -138,8 +138,10 @@ fn a_campaign_measures_both_channels() {
     let folder = tempfile::tempdir().unwrap();
     let made = record::record(0.6);
     let channels = [volts("striker", made.striker), volts("bit", made.bit), volts("pulse", made.pulse)];
-    wav(folder.path(), "drill.wav", &channels);
-    wav(folder.path(), "still.wav", &[volts("striker", record::still(0.5))]);
+    let data = folder.path().join("data");
+    std::fs::create_dir(&data).unwrap();
+    wav(&data, "drill.wav", &channels);
+    wav(&data, "still.wav", &[volts("striker", record::still(0.5))]);
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/hammer_drill/campaign.toml");
     let text = std::fs::read_to_string(own).unwrap();
     let campaign = folder.path().join("campaign.toml");

@@ -1,18 +1,19 @@
 //! The example campaign's data are what its generator makes, byte for byte, and what is measured in them is what the rig did.
 
-#[path = "../../examples/two_mass_rig/analyser.rs"]
+#[path = "../../examples/two_mass_rig/make/analyser.rs"]
 mod analyser;
-#[path = "../../examples/two_mass_rig/campaign.rs"]
+#[path = "../../examples/two_mass_rig/make/campaign.rs"]
 mod campaign;
-#[path = "../../examples/two_mass_rig/noise.rs"]
+#[path = "../../examples/two_mass_rig/make/noise.rs"]
 mod noise;
 
 use campaign::{Direction, list, measure, truth_header};
 use rayon::prelude::*;
 use std::path::Path;
-use vibroimpact::campaign::{Campaign, FitEntry, Parameter};
+use vibroimpact::analysis::sweep::{modelled::fit, responses};
+use vibroimpact::analysis::{JobOptions, open};
+use vibroimpact::campaign::{FitEntry, Parameter};
 use vibroimpact::compare::Fit;
-use vibroimpact::report::job::{JobOptions, fit, responses};
 
 fn committed(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/two_mass_rig").join(name);
@@ -37,7 +38,10 @@ fn the_upward_sweep_comes_out_again() {
         if shown.contains(&number) {
             for (name, text) in point.files(0) {
                 assert_eq!(name.len(), 11);
-                assert!(text == committed(&name), "{name} differs from what the generator makes");
+                assert!(
+                    text == committed(&format!("data/{name}")),
+                    "{name} differs from what the generator makes"
+                );
                 compared += 1;
             }
         }
@@ -70,7 +74,7 @@ fn lists_name_files_that_are_there() {
 #[test]
 fn the_rig_is_found_again_in_its_spectra() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/two_mass_rig");
-    let campaign = Campaign::from_path(folder.join("campaign.toml")).unwrap();
+    let campaign = open(folder.join("campaign.toml")).unwrap();
     let found = responses(&campaign, JobOptions::default(), &()).unwrap();
     let truth = committed("TRUTH.csv");
     // Tops of the closed-form orbits of this rig, as the overlay predicts them, through the same spectra.
@@ -125,7 +129,7 @@ fn fitted_again(draws: std::ops::RangeInclusive<u64>) -> Vec<Fit> {
     let folder = tempfile::tempdir().unwrap();
     let own = |draw: u64| folder.path().join(draw.to_string());
     for draw in draws.clone() {
-        std::fs::create_dir(own(draw)).unwrap();
+        std::fs::create_dir_all(own(draw).join("data")).unwrap();
         std::fs::copy(shipped.join("campaign.toml"), own(draw).join("campaign.toml")).unwrap();
     }
     for direction in [Direction::Up, Direction::Down] {
@@ -138,7 +142,7 @@ fn fitted_again(draws: std::ops::RangeInclusive<u64>) -> Vec<Fit> {
         measure(direction, usize::MAX, |point| {
             draws.clone().into_par_iter().for_each(|draw| {
                 for (name, text) in point.files(draw) {
-                    std::fs::write(own(draw).join(name), text).unwrap();
+                    std::fs::write(own(draw).join("data").join(name), text).unwrap();
                 }
             });
             Ok(())
@@ -147,7 +151,7 @@ fn fitted_again(draws: std::ops::RangeInclusive<u64>) -> Vec<Fit> {
     }
     let parameters: Vec<Parameter> = Parameter::ALL.into_iter().filter(|p| !p.is_mass()).collect();
     let fitted = |draw: u64| {
-        let mut campaign = Campaign::from_path(own(draw).join("campaign.toml")).unwrap();
+        let mut campaign = open(own(draw).join("campaign.toml")).unwrap();
         let found = responses(&campaign, JobOptions::default(), &()).unwrap();
         campaign.fit = FitEntry { parameters: parameters.clone(), starts: Some(1), ..campaign.fit };
         fit(&campaign, &campaign.rig.unwrap(), &found).unwrap().unwrap()

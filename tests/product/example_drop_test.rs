@@ -1,13 +1,12 @@
 //! The example drop test: its data are what its generator makes, and its campaign gives back the truth.
 
-#[path = "../../examples/drop_test/records.rs"]
+#[path = "../../examples/drop_test/make/records.rs"]
 mod records;
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use vibroimpact::campaign::Campaign;
+use vibroimpact::analysis::{self, JobOptions};
 use vibroimpact::report::Output;
-use vibroimpact::report::job::{self, JobOptions};
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/drop_test")
@@ -25,29 +24,32 @@ fn the_records_come_out_again() {
 
 #[test]
 fn the_campaign_gives_back_the_truth() {
-    let campaign = Campaign::from_path(folder().join("campaign.toml")).unwrap();
+    let campaign = analysis::open(folder().join("campaign.toml")).unwrap();
     let out = tempfile::tempdir().unwrap();
     let mut output = Output::new(out.path()).unwrap();
-    let results = job::run(&campaign, JobOptions::default(), &mut output, &()).unwrap();
-    let drops = &results.drops[0].restitution;
-    assert_eq!(results.drops[0].files.len(), 5);
+    let results = analysis::run(&campaign, JobOptions::default(), &mut output, &()).unwrap();
+    let results = Value::Object(results.results);
+    let estimate = |found: &Value| (found["value"].as_f64().unwrap(), found["std"].as_f64().unwrap());
+    let drops = &results["drops"][0];
+    assert_eq!(drops["files"].as_array().unwrap().len(), 5);
     // Five drops that scatter by 2 %: within four standard uncertainties of the mean.
-    let (r, u) = (drops.restitution.value, drops.restitution.std.unwrap());
-    assert!((r - records::RESTITUTION).abs() < 4.0 * u && u < 0.02 * r, "{drops:?}");
-    let lively = &results.drops[1].restitution;
-    assert!(lively.agree == Some(true) && lively.by.len() == 2, "{lively:?}");
-    for way in &lively.by {
-        let u = way.restitution.std.unwrap();
-        assert!((way.restitution.value - records::LIVELY).abs() < 4.0 * u && u < 0.005, "{way:?}");
+    let (r, u) = estimate(&drops["restitution"]);
+    assert!((r - records::RESTITUTION).abs() < 4.0 * u && u < 0.02 * r, "{drops}");
+    let lively = &results["drops"][1];
+    let by = lively["by"].as_array().unwrap();
+    assert!(lively["agree"] == true && by.len() == 2, "{lively}");
+    for way in by {
+        let (r, u) = estimate(&way["restitution"]);
+        assert!((r - records::LIVELY).abs() < 4.0 * u && u < 0.005, "{way}");
     }
-    let contact = &results.impacts[0].impacts;
+    let contact = &results["impacts"][0];
     let truth = std::fs::read_to_string(folder().join("TRUTH.csv")).unwrap();
     let count = truth.lines().find_map(|l| l.strip_prefix("impacts in the contact trace,")).unwrap();
-    assert_eq!(contact.n.to_string(), count.trim_end_matches(','));
-    assert_eq!(contact.per_cycle.map(|p| (p.impacts, p.cycles)), Some((1, 2)));
-    let off = contact.frequency.value - records::EXCITATION / 2.0;
-    assert!(off.abs() < 4.0 * contact.frequency.std.unwrap(), "{contact:?}");
-    assert!((contact.hum.as_ref().unwrap().frequency - 50.02).abs() < 0.01, "{:?}", contact.hum);
+    assert_eq!(contact["n"].to_string(), count.trim_end_matches(','));
+    assert_eq!(contact["per_cycle"], serde_json::json!({ "impacts": 1, "cycles": 2 }));
+    let (f, u) = estimate(&contact["frequency"]);
+    assert!((f - records::EXCITATION / 2.0).abs() < 4.0 * u, "{contact}");
+    assert!((contact["hum"]["frequency"].as_f64().unwrap() - 50.02).abs() < 0.01, "{}", contact["hum"]);
     for file in ["drop_1.svg", "drop_6.png", "impacts_1.svg", "impacts_1.csv", "results.json", "report.html"]
     {
         assert!(out.path().join(file).is_file(), "{file}");
@@ -70,13 +72,13 @@ fn drops_of_one_name_with_other_heights_are_refused_with_their_line() {
             names[0], names[1]
         );
         std::fs::write(out.path().join("campaign.toml"), text).unwrap();
-        let campaign = Campaign::from_path(out.path().join("campaign.toml"))?;
+        let campaign = analysis::open(out.path().join("campaign.toml"))?;
         let mut output = Output::new(out.path().join("out")).unwrap();
-        job::run(&campaign, JobOptions::default(), &mut output, &())
+        analysis::run(&campaign, JobOptions::default(), &mut output, &())
     };
     let name = "name = \"a\"\n";
-    assert_eq!(run([name, name], 0.001).unwrap().drops.len(), 1);
-    assert_eq!(run(["", ""], 0.001).unwrap().drops.len(), 2);
+    let drops = |names| run(names, 0.001).unwrap().results["drops"].as_array().unwrap().len();
+    assert_eq!((drops([name, name]), drops(["", ""])), (1, 2));
     let error = run([name, name], 0.01).err().unwrap();
     assert_eq!(error.exit_code(), 2);
     let text = error.to_string();

@@ -1,6 +1,6 @@
 //! `vibro convert`, as typed.
 
-use super::{Channel, Reading};
+use crate::campaign::{Channel, Reading};
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]

@@ -1,6 +1,6 @@
 //! `vibro info`, as typed.
 
-use super::Reading;
+use crate::campaign::Reading;
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]

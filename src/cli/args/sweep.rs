@@ -1,5 +1,7 @@
 //! A stepped-sine sweep, as typed.
 
+use crate::analysis::sweep::Stored;
+
 /// A sweep, and what its analyser stored.
 #[derive(Debug, clap::Args)]
 pub struct Sweep {
@@ -12,21 +14,8 @@ pub struct Sweep {
     /// Allow names in the list that lead outside its folder
     #[arg(long)]
     pub allow_outside: bool,
-    /// Unit of the stored responses [default: what the files say, else the SI unit of the quantity, m where none is stated]
-    #[arg(long)]
-    pub unit: Option<String>,
-    /// Factor on the stored responses
-    #[arg(long, allow_negative_numbers = true)]
-    pub calibration: Option<f64>,
-    /// Window of the analyser: hann, rectangular, hamming, blackman, blackman-harris, flat-top, unknown [default: hann, assumed]
-    #[arg(long)]
-    pub window: Option<String>,
-    /// Scaling of the spectra: peak or rms [default: peak, assumed]
-    #[arg(long)]
-    pub scaling: Option<String>,
-    /// How often the analyser integrated before it stored [default: once for a displacement]
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u8).range(0..=2))]
-    pub analyser_integrated: Option<u8>,
+    #[command(flatten)]
+    pub stored: Stored,
     /// Lowest frequency looked at, in Hz [default: two lines or a quarter of the lowest excitation]
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     pub fmin: Option<f64>,

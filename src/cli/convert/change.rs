@@ -1,7 +1,7 @@
 //! Time traces filtered, integrated and differentiated, and the sentences that say how.
 
 use super::super::args::Change;
-use super::super::settings::above_zero;
+use crate::campaign::above_zero;
 use crate::error::{Error, Result};
 use crate::record::{Record, Trace};
 use crate::signal::filter::Filter;

@@ -1,5 +1,6 @@
 //! `vibro model choose`: the simplest model that is good enough.
 
+use crate::analysis::model::{figures, tables};
 use crate::cli::args::{self, Came, Looked};
 use crate::cli::progress::Busy;
 use crate::cli::{complain, print};
@@ -8,7 +9,7 @@ use crate::model::ladder::{Choice, Question, Rung, Survey, choose, choose_over};
 use crate::model::{Observable, Scene};
 use crate::record::{Direction, Finding, Severity};
 use crate::report::words::{self, Voice, sentences};
-use crate::report::{Figure, Output, Table, files, pictures, tables};
+use crate::report::{Figure, Output, Table, files};
 use crate::units::notation::significant;
 use serde::Serialize;
 use serde_json::Value;
@@ -114,7 +115,7 @@ fn single(
         None => Vec::new(),
         Some(folder) => {
             let tables = [("rungs.csv", &rungs), ("sensitivity.csv", &sensitivity)];
-            write(folder, pictures::ladder(choice, question), &tables)?
+            write(folder, figures::ladder(choice, question), &tables)?
         }
     };
     if json {
@@ -169,7 +170,7 @@ fn along(
         Some(folder) => {
             let (points, rungs) = (tables::chosen(&survey.points, question), tables::summaries(survey));
             let tables = [("points.csv", &points), ("rungs.csv", &rungs), ("stretches.csv", &stretches)];
-            write(folder, pictures::ladder_over(survey, question)?, &tables)?
+            write(folder, figures::ladder_over(survey, question)?, &tables)?
         }
     };
     warnings.extend(over(&survey.points));

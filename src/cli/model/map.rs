@@ -1,11 +1,12 @@
 //! `vibro model map`: regime and stability over two parameters.
 
+use crate::analysis::Progress;
+use crate::analysis::model::figures;
 use crate::cli::{args, complain, print, progress};
 use crate::error::{Error, Result};
 use crate::model::map::{Axis, Cell, Plan, Rows};
 use crate::model::{Excitation, Regime, Scene};
-use crate::report::job::Progress;
-use crate::report::{Output, Table, files, pictures};
+use crate::report::{Output, Table, files};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -68,7 +69,7 @@ pub fn run(typed: &args::ModelMap, json: bool) -> Result<()> {
         if part.exists() {
             fs::remove_file(&part).map_err(|e| Error::io("remove", &part, e))?;
         }
-        files::figures(&mut output, &[("map".to_owned(), pictures::regimes(&plan, &rows)?)], &|| ())?;
+        files::figures(&mut output, &[("map".to_owned(), figures::regimes(&plan, &rows)?)], &|| ())?;
         written = output.written().to_vec();
     }
     let missing = cells(&plan, &rows).filter(|c| c.regime.is_none()).count();

@@ -1,10 +1,12 @@
 //! `vibro model orbit`: all motions with one impact a period.
 
 use super::{Judged, gap_std, judged};
-use crate::cli::{args, complain, print, settings};
+use crate::analysis::model::{figures, tables};
+use crate::campaign::above_zero;
+use crate::cli::{args, complain, print};
 use crate::error::Result;
 use crate::model::{Compliance, Excitation, NoImpact, Orbits, Rig, Scene, Softened, orbits_of, softened};
-use crate::report::{Output, files, pictures, tables};
+use crate::report::{Output, files};
 use crate::units::notation::quantity;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -27,7 +29,7 @@ struct Told<'a> {
 }
 
 pub fn run(typed: &args::Orbit, json: bool) -> Result<()> {
-    settings::above_zero("--frequency", typed.frequency)?;
+    above_zero("frequency", typed.frequency)?;
     let gap_std = gap_std(typed.gap_std)?;
     let (scene, mut warnings) = super::scene(&typed.scene, typed.frequency)?;
     let excitation = super::excitation(&scene)?;
@@ -53,7 +55,7 @@ pub fn run(typed: &args::Orbit, json: bool) -> Result<()> {
         let figures: Vec<_> = shown
             .iter()
             .map(|(i, orbit)| {
-                (format!("orbit_{}", i + 1), pictures::orbit(&format!("Motion {}", i + 1), &scene.rig, orbit))
+                (format!("orbit_{}", i + 1), figures::orbit(&format!("Motion {}", i + 1), &scene.rig, orbit))
             })
             .collect();
         files::figures(&mut output, &figures, &|| ())?;

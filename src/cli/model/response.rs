@@ -1,11 +1,13 @@
 //! `vibro model response`: motions over frequency.
 
 use super::{Judged, gap_std, judged};
+use crate::analysis::model::{figures, tables};
+use crate::campaign::above_zero;
 use crate::cli::progress::Busy;
-use crate::cli::{args, complain, print, settings};
+use crate::cli::{args, complain, print};
 use crate::error::Result;
 use crate::model::{Change, NoImpact, ResponsePoint, Scene, response};
-use crate::report::{Output, files, pictures, tables};
+use crate::report::{Output, files};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -52,8 +54,8 @@ fn point(point: &ResponsePoint, gap_std: Option<f64>) -> Point<'_> {
 }
 
 pub fn run(typed: &args::ModelResponse, json: bool) -> Result<()> {
-    settings::above_zero("--from", Some(typed.from))?;
-    settings::above_zero("--to", Some(typed.to))?;
+    above_zero("from", Some(typed.from))?;
+    above_zero("to", Some(typed.to))?;
     let gap_std = gap_std(typed.gap_std)?;
     let (scene, mut warnings) = super::scene(&typed.scene, Some(typed.from))?;
     let excitation = super::excitation(&scene)?;
@@ -67,7 +69,7 @@ pub fn run(typed: &args::ModelResponse, json: bool) -> Result<()> {
     let mut written = Vec::new();
     if let Some(folder) = &typed.out {
         let mut output = Output::new(folder)?;
-        let figure = pictures::branches("Response with one impact a period", &found);
+        let figure = figures::branches("Response with one impact a period", &found);
         files::figures(&mut output, &[("response".to_owned(), figure)], &|| ())?;
         output.write("response.csv", tables::branches(&found).csv())?;
         output.write("changes.csv", tables::changes(&found).csv())?;

@@ -1,14 +1,16 @@
 //! `vibro model simulate`: a motion, event by event.
 
 use super::contact;
+use crate::analysis::model::figures;
+use crate::campaign::above_zero;
 use crate::cli::args::{self, Law};
 use crate::cli::progress::Busy;
-use crate::cli::{complain, print, settings};
+use crate::cli::{complain, print};
 use crate::error::{Error, Result};
 use crate::model::portrait::{Portrait, Sitting};
 use crate::model::regime::Regime;
 use crate::model::{Compliant, Impact, Loose, Motion, Scene, Simulation, State};
-use crate::report::{Output, Table, files, pictures};
+use crate::report::{Output, Table, files};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -130,7 +132,7 @@ fn start(scene: &Scene, typed: &args::Simulate) -> Result<State> {
 
 /// The motion with instantaneous impacts.
 fn restitution(scene: &Scene, typed: &args::Simulate) -> Result<Simulation> {
-    settings::above_zero("--grazing", Some(typed.grazing))?;
+    above_zero("grazing", Some(typed.grazing))?;
     let start = start(scene, typed)?;
     let motion = Simulation::from_state(&scene.rig, super::excitation(scene)?, start, typed.phase)?;
     Ok(motion.grazing_below(typed.grazing))
@@ -223,9 +225,9 @@ fn summary(seen: &Seen) -> Table {
 
 fn write(output: &mut Output, portrait: &Portrait, gap: f64) -> Result<()> {
     let figures = [
-        ("traces".to_owned(), pictures::traces("Traces of both masses", portrait, gap)),
-        ("phase_plane".to_owned(), pictures::phase_plane("Phase plane", portrait)),
-        ("poincare".to_owned(), pictures::poincare("Poincaré sections", portrait)),
+        ("traces".to_owned(), figures::traces("Traces of both masses", portrait, gap)),
+        ("phase_plane".to_owned(), figures::phase_plane("Phase plane", portrait)),
+        ("poincare".to_owned(), figures::poincare("Poincaré sections", portrait)),
     ];
     files::figures(output, &figures, &|| ())?;
     let states = |times: &[f64], states: &[State]| {

@@ -1,6 +1,7 @@
 //! `vibro model sweep`: up and down with the state carried on.
 
 use super::contact;
+use crate::analysis::model::{figures, tables};
 use crate::cli::args::{self, Law, Over, Way};
 use crate::cli::progress::Busy;
 use crate::cli::{complain, print};
@@ -14,7 +15,7 @@ use crate::model::{
     Compliant, Excitation, Loose, Motion, PeriodicOrbit, Rig, Scene, Simulation, State, orbits,
 };
 use crate::record::Direction;
-use crate::report::{Output, files, pictures, tables};
+use crate::report::{Output, files};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -56,7 +57,7 @@ pub fn run(typed: &args::ModelSweep, json: bool) -> Result<()> {
     let mut written = Vec::new();
     if let Some(folder) = &typed.out {
         let mut output = Output::new(folder)?;
-        let figure = pictures::sweep(&swept, &resonances, &jumps, plan.observable, over_force, &branches);
+        let figure = figures::sweep(&swept, &resonances, &jumps, plan.observable, over_force, &branches);
         files::figures(&mut output, &[("sweep".to_owned(), figure)], &|| ())?;
         output.write("sweep.csv", tables::sweep(&swept).csv())?;
         if typed.branches {

@@ -143,14 +143,15 @@ fn numbers_below_zero_are_no_options() {
     let path = text(&path);
     let list = sweep(folder.path(), &frequencies());
     let list = text(&list);
-    for (arguments, option) in [
-        (&["info", path, "--rate", "-5"][..], "--rate is -5"),
-        (&["info", path, "--base-band", "-1e3"], "--base-band is -1000"),
-        (&["response", list, "--fmin", "-5"], "--fmin is -5"),
-        (&["response", list, "--calibration", "-0.5"], "--calibration is -0.5"),
-        (&["waterfall", list, "--fmax", "-5"], "--fmax is -5"),
+    for (arguments, found) in [
+        (&["info", path, "--rate", "-5"][..], "rate is -5"),
+        (&["info", path, "--base-band", "-1e3"], "base_band is -1000"),
+        (&["response", list, "--fmin", "-5"], "fmin is -5"),
+        (&["response", list, "--calibration", "-0.5"], "calibration is -0.5"),
+        (&["waterfall", list, "--fmax", "-5"], "fmax is -5"),
     ] {
-        has(&complaint(arguments, 2), &[option, "expected a finite number above 0"]);
+        let option = format!("({})", arguments[arguments.len() - 2]);
+        has(&complaint(arguments, 2), &[found, "expected a finite number above 0", &option]);
     }
     has(&complaint(&["response", list, "--band", "-3"], 2), &["-3", "1..=1000"]);
     has(&complaint(&["response", list, "--analyser-integrated", "-1"], 2), &["-1", "0..=2"]);

@@ -61,7 +61,7 @@ impl SpectralOptions {
         self.window.unwrap_or(Window::Hann)
     }
 
-    /// Whether the mean is taken out: that of segments, and what would be divided by nothing, unless stated otherwise.
+    /// Whether the mean is taken out: that of segments, and what would be divided by nothing, unless told otherwise.
     pub(super) fn detrended(&self) -> bool {
         self.detrend.unwrap_or(self.method() == Method::Welch || self.integrate > 0)
     }
@@ -76,52 +76,84 @@ impl SpectralOptions {
     /// # Errors
     /// It names the two that do.
     pub fn check(&self) -> Result<()> {
-        let (fft, tones) = (self.method() == Method::Fft, self.tones.is_some());
-        let (hammer, reference) = (self.hammer, self.estimator.is_some());
-        let of_tones = "tones of the whole record of one channel as it is";
-        let of_fft = "method welch, or the whole record of one channel";
-        let of_hammer = "the hammer's own windows alone";
-        let rules = [
-            (tones && self.method == Some(Method::Welch), "method welch with tones", of_tones),
-            (tones && reference, "reference with tones", of_tones),
-            (tones && self.segment.is_some(), "segment with tones", of_tones),
-            (tones && self.overlap.is_some(), "overlap with tones", of_tones),
-            (tones && self.integrate != 0, "integrate with tones", of_tones),
-            (fft && self.segment.is_some(), "segment with method fft", of_fft),
-            (fft && self.overlap.is_some(), "overlap with method fft", of_fft),
-            (fft && reference, "reference with method fft", of_fft),
-            (hammer && self.window.is_some(), "window with a hammer", of_hammer),
-            (hammer && self.overlap.is_some(), "overlap with a hammer", of_hammer),
-            (hammer && self.method.is_some(), "method with a hammer", of_hammer),
-            (hammer && self.detrend.is_some(), "detrend with a hammer", of_hammer),
-            (!hammer && self.force_window.is_some(), "force_window without a hammer", "hammer = true, too"),
-            (!hammer && self.left_at_end.is_some(), "left_at_end without a hammer", "hammer = true, too"),
-            (hammer && !reference, "a hammer without a reference", "the force channel as reference"),
-            (
-                reference && self.scaling.is_some(),
-                "scaling with a reference",
-                "no scaling: a function has none",
-            ),
-            (!reference && self.delay.is_some(), "delay without a reference", "two channels to compare"),
+        let (given, fft) = (|o: bool, name| o.then_some(name), self.method() == Method::Fft);
+        let first = |names: &[Option<&'static str>]| names.iter().flatten().next().copied();
+        let averaged = [
+            given(self.segment.is_some(), "segment"),
+            given(self.overlap.is_some(), "overlap"),
+            given(self.estimator.is_some(), "reference"),
         ];
-        if let Some((_, found, expected)) = rules.iter().find(|rule| rule.0) {
-            return Err(Error::usage(*found, *expected));
+        let own = [
+            given(self.window.is_some(), "window"),
+            given(self.overlap.is_some(), "overlap"),
+            given(self.method.is_some(), "method"),
+            given(self.detrend.is_some(), "detrend"),
+        ];
+        let of_hammer = [
+            given(self.force_window.is_some(), "force_window"),
+            given(self.left_at_end.is_some(), "left_at_end"),
+        ];
+        let of_tones = [
+            given(self.method == Some(Method::Welch), "method"),
+            given(self.estimator.is_some(), "reference"),
+            given(self.segment.is_some(), "segment"),
+            given(self.overlap.is_some(), "overlap"),
+            given(self.integrate != 0, "integrate"),
+        ];
+        let rules = [
+            (
+                self.tones.is_some(),
+                first(&of_tones),
+                "with tones",
+                "tones of the whole record of one channel as it is",
+            ),
+            (fft, first(&averaged), "with method fft", "method welch, or the whole record of one channel"),
+            (self.hammer, first(&own), "with a hammer", "the hammer's own windows alone"),
+            (!self.hammer, first(&of_hammer), "without a hammer", "hammer = true, too"),
+            (
+                self.hammer,
+                given(self.estimator.is_none(), "hammer"),
+                "without a reference",
+                "the force channel as reference",
+            ),
+            (
+                self.estimator.is_some(),
+                given(self.scaling.is_some(), "scaling"),
+                "with a reference",
+                "a function has no scaling",
+            ),
+        ];
+        for (holds, name, with, expected) in rules {
+            if let Some(name) = name.filter(|_| holds) {
+                return Err(Error::usage(format!("{name} {with}"), expected).setting(name));
+            }
+        }
+        if let Some(delay) = self.delay {
+            if self.estimator.is_none() {
+                return Err(Error::usage("delay without a reference", "two channels that are compared")
+                    .setting("delay"));
+            }
+            if !delay.is_finite() {
+                return Err(Error::usage(format!("delay = {delay}"), "seconds").setting("delay"));
+            }
+        }
+        if let Some(re) = self.decibel.filter(|r| !(r.is_finite() && *r > 0.0)) {
+            return Err(Error::usage(format!("decibel = {re}"), "a reference above 0, such as 1e-6")
+                .setting("decibel"));
+        }
+        if !(-2..=2).contains(&self.integrate) {
+            return Err(
+                Error::usage(format!("integrate = {}", self.integrate), "-2 to 2").setting("integrate")
+            );
+        }
+        if let Some(fmin) = self.fmin.filter(|f| !(f.is_finite() && *f > 0.0)) {
+            return Err(Error::usage(format!("fmin = {fmin}"), "a finite number above 0").setting("fmin"));
         }
         let known = [Scaling::Peak, Scaling::Rms, Scaling::Power, Scaling::Psd];
-        let above_zero = |v: f64| v.is_finite() && v > 0.0;
-        let wrong = |name: &str, value: Option<f64>, expected: &str| {
-            value.map(|v| Error::usage(format!("{name} = {v}"), expected))
-        };
-        let integrate = Some(f64::from(self.integrate)).filter(|_| !(-2..=2).contains(&self.integrate));
-        let faults = [
-            wrong("delay", self.delay.filter(|d| !d.is_finite()), "seconds"),
-            wrong("decibel", self.decibel.filter(|re| !above_zero(*re)), "a reference above 0, such as 1e-6"),
-            wrong("integrate", integrate, "-2 to 2"),
-            wrong("fmin", self.fmin.filter(|f| !above_zero(*f)), "a finite number above 0"),
-            self.scaling
-                .filter(|s| !known.contains(s))
-                .map(|s| Error::usage(format!("scaling {}", s.name()), "peak, rms, power or psd")),
-        ];
-        faults.into_iter().flatten().next().map_or(Ok(()), Err)
+        if let Some(scaling) = self.scaling.filter(|s| !known.contains(s)) {
+            return Err(Error::usage(format!("scaling {}", scaling.name()), "peak, rms, power or psd")
+                .setting("scaling"));
+        }
+        Ok(())
     }
 }

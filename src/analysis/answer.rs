@@ -1,0 +1,122 @@
+//! What an analysis of one record has to show.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::record::Finding;
+use crate::report::files::Files;
+use crate::report::words::About;
+use crate::report::{Figure, Table};
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+/// What an analysis found, for programs and for people. Names of figures and files are those of a record alone, `impacts`; a campaign
+/// adds a number or a name.
+#[derive(Debug, Default)]
+pub struct Answer {
+    /// All numbers by their keys.
+    pub result: Map<String, Value>,
+    /// What a person should know.
+    pub findings: Vec<About>,
+    /// What a person wants first.
+    pub tables: Vec<Table>,
+    /// Tables for a person who looks at this record alone.
+    pub details: Vec<Table>,
+    /// Figures.
+    pub figures: Vec<(String, Figure)>,
+    /// Files of numbers.
+    pub files: Files,
+    /// Why its main part is missing, where the rest can be shown all the same.
+    pub refused: Option<Error>,
+}
+
+impl Answer {
+    /// The answer of a result.
+    ///
+    /// # Errors
+    /// If it cannot be written as JSON.
+    pub fn of(result: &impl Serialize) -> Result<Answer> {
+        let unwritten = |e| Error::refused(format!("the result cannot be written as JSON: {e}"));
+        let Value::Object(mut result) = serde_json::to_value(result).map_err(unwritten)? else {
+            return Err(Error::refused("the result is no object"));
+        };
+        // They are told as findings of the answer.
+        result.shift_remove("warnings");
+        result.shift_remove("findings");
+        Ok(Answer { result, ..Answer::default() })
+    }
+
+    /// Adds what is known of a record; `""` is the whole answer.
+    pub fn tell(&mut self, record: &str, told: &impl Tells) {
+        self.findings.extend(told.findings().into_iter().map(|f| (record.to_owned(), f)));
+    }
+
+    /// Adds a figure.
+    pub fn figure(&mut self, name: impl Into<String>, figure: Figure) {
+        self.figures.push((name.into(), figure));
+    }
+
+    /// Adds a table as a file of numbers.
+    pub fn csv(&mut self, name: &str, table: &Table) {
+        self.files.push((format!("{name}.csv"), table.csv().into_bytes()));
+    }
+}
+
+/// What has something to tell.
+pub trait Tells {
+    /// As findings.
+    fn findings(&self) -> Vec<Finding>;
+}
+
+impl Tells for Vec<Finding> {
+    fn findings(&self) -> Vec<Finding> {
+        self.clone()
+    }
+}
+
+impl Tells for Finding {
+    fn findings(&self) -> Vec<Finding> {
+        vec![self.clone()]
+    }
+}
+
+/// Readers and estimators that still tell it in sentences.
+impl Tells for Vec<String> {
+    fn findings(&self) -> Vec<Finding> {
+        self.iter().map(|text| Finding::caution("said").name("text", text.as_str())).collect()
+    }
+}
+
+/// The finding that a record allows no answer; the error itself where it is another.
+///
+/// # Errors
+/// If the error is no refusal of a record.
+pub fn left_out(error: Error) -> Result<Finding> {
+    let ErrorKind::Refused { why, hint, .. } = error.kind() else { return Err(error) };
+    let found = Finding::caution("left-out").name("why", why.trim_end_matches('.'));
+    Ok(if hint.is_empty() { found } else { found.name("hint", hint.as_str()) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::words::{Voice, told};
+
+    #[test]
+    fn what_is_left_out_is_told_with_what_to_try() {
+        let refusal = Error::refused("no peak. Two are noise.").hint("is it a metre?");
+        let told = told(&[("a".to_owned(), left_out(refusal).unwrap())], Voice::Campaign, false);
+        assert_eq!(told, ["a: Left out: no peak. Two are noise. Try: is it a metre?"]);
+        assert!(left_out(Error::usage("x", "y")).is_err());
+    }
+
+    #[test]
+    fn an_answer_has_its_numbers_without_its_sentences() {
+        #[derive(Serialize)]
+        struct Found {
+            n: usize,
+            warnings: Vec<String>,
+        }
+        let answer = Answer::of(&Found { n: 3, warnings: vec!["x".to_owned()] }).unwrap();
+        assert_eq!(Value::Object(answer.result), serde_json::json!({ "n": 3 }));
+        assert!(Answer::of(&3).is_err());
+    }
+}

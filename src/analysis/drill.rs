@@ -1,0 +1,221 @@
+//! Hammer drills: `[[drill]]`, `vibro drill`.
+
+pub mod cycles;
+pub mod figures;
+pub mod file;
+pub mod tables;
+
+use super::job::Marks;
+use super::{Analysis, Answer, Job, Source, no_file};
+use crate::campaign::{Channel, Entry, LowPass, channel, channels};
+use crate::error::{Error, Result};
+use crate::measure::drill::{Beam, Cycle, DrillOptions, Edge, From, Smoothing};
+use file::DrillFile;
+use serde::Deserialize;
+use std::path::PathBuf;
+
+/// Where the channels of a drill are, and how they are measured.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
+pub struct Keys {
+    /// Velocity channel, by name or by number from 1
+    #[serde(deserialize_with = "channel")]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "CH"))]
+    pub velocity: Option<String>,
+    /// Channel with the pulses of the crank
+    #[serde(deserialize_with = "channel")]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "CH"))]
+    pub reference: Option<String>,
+    /// Velocity along the beam in m/s for one unit of the channel [default: 1 where the file says it is a velocity]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "FACTOR", allow_negative_numbers = true))]
+    pub sensitivity: Option<f64>,
+    /// Angle of the beam in degrees
+    #[cfg_attr(feature = "cli", arg(long, value_name = "DEG", allow_negative_numbers = true))]
+    pub beam_angle: Option<f64>,
+    /// From where that angle is counted: the normal to the motion, or its axis
+    #[cfg_attr(feature = "cli", arg(long, value_parser = crate::campaign::word::<From>))]
+    pub from: Option<From>,
+    /// Pulses of the reference in a turn
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
+    pub pulses_per_turn: Option<usize>,
+    /// Edge of the pulse that counts: rising or falling
+    #[cfg_attr(feature = "cli", arg(long, value_parser = crate::campaign::word::<Edge>))]
+    pub edge: Option<Edge>,
+    /// Level of the edge, in the unit of the reference [default: the middle of its two levels]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "VALUE", allow_negative_numbers = true))]
+    pub level: Option<f64>,
+    /// Mass that is measured, in kg: gives energies
+    #[cfg_attr(feature = "cli", arg(long, value_name = "KG"))]
+    pub mass: Option<f64>,
+    /// Mass that it strikes, in kg, at rest before: gives the restitution
+    #[cfg_attr(feature = "cli", arg(long, value_name = "KG"))]
+    pub struck_mass: Option<f64>,
+    /// Longest contact in s [default: 0.0002]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "TIME"))]
+    pub contact: Option<f64>,
+    /// Duration in s of the fits before and after a contact [default: 0.0005]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "TIME"))]
+    pub fit: Option<f64>,
+    /// Longest drop-out in s that is bridged [default: 0.002]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "TIME"))]
+    pub longest_dropout: Option<f64>,
+    /// Channel delay to remove, in s: the velocity was recorded later than the reference [default: 0]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "TIME", allow_negative_numbers = true))]
+    pub delay: Option<f64>,
+    /// Phases of the average [default: 720]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
+    pub points: Option<usize>,
+    /// Corner in Hz of the zero-phase low-pass for average and displacement, or `none` [default: what the phases of the
+    /// average can show]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", value_parser = LowPass::typed))]
+    pub low_pass: Option<LowPass>,
+    /// Time constant in s of exponential smoothing instead of the low-pass
+    #[cfg_attr(feature = "cli", arg(long, value_name = "TIME"))]
+    pub smoothing: Option<f64>,
+    /// Highest frequency in Hz that the instrument passes
+    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
+    pub instrument: Option<f64>,
+    /// Record of the velocity channel without motion: the noise floor
+    #[cfg_attr(feature = "cli", arg(long, value_name = "FILE"))]
+    pub noise: Option<PathBuf>,
+    /// Margin in dB by which motion must stand above the noise [default: 10]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "DB"))]
+    pub margin: Option<f64>,
+    /// Acceleration channel of a handle, up to three times: hand-arm exposure
+    #[serde(deserialize_with = "channels")]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "CH"))]
+    pub handle: Vec<String>,
+    /// Acceleration in m/s² for one unit of these channels
+    #[cfg_attr(feature = "cli", arg(long, value_name = "FACTOR", allow_negative_numbers = true))]
+    pub handle_sensitivity: Option<f64>,
+    /// Hours a day of that exposure: A(8)
+    #[cfg_attr(feature = "cli", arg(long, value_name = "HOURS"))]
+    pub exposure: Option<f64>,
+}
+
+/// A key that has no default.
+fn needed<T>(key: &'static str, value: Option<T>) -> Result<T> {
+    let lacks = || Error::usage(format!("a drill needs {key}"), "a value: there is no default").setting(key);
+    value.ok_or_else(lacks)
+}
+
+/// A drill names its channels by keys of its own.
+fn own_channels(channel: &Channel) -> Result<()> {
+    match (&channel.channel, channel.calibration) {
+        (Some(_), _) => {
+            Err(Error::usage("a drill has several channels", "velocity and reference").setting("channel"))
+        }
+        (None, Some(_)) => {
+            Err(Error::usage("a drill has no calibration", "a sensitivity").setting("calibration"))
+        }
+        (None, None) => Ok(()),
+    }
+}
+
+impl Keys {
+    /// Whether no key is missing that has no default, and none contradicts another.
+    ///
+    /// # Errors
+    /// With the key at fault.
+    pub fn usable(&self) -> Result<()> {
+        let wrong = |key, found: String, expected: &str| Err(Error::usage(found, expected).setting(key));
+        needed("velocity", self.velocity.clone())?;
+        needed("reference", self.reference.clone())?;
+        needed("beam_angle", self.beam_angle)?;
+        needed("from", self.from)?;
+        needed("pulses_per_turn", self.pulses_per_turn)?;
+        needed("edge", self.edge)?;
+        if let Some(bad) = self.sensitivity.filter(|s| !s.is_finite()) {
+            return wrong("sensitivity", format!("a sensitivity of {bad}"), "m/s a unit, not 0");
+        }
+        if self.low_pass.is_some() && self.smoothing.is_some() {
+            return wrong("smoothing", "both low_pass and smoothing".to_owned(), "one of them");
+        }
+        let alone = [
+            ("struck_mass", self.struck_mass.is_some() && self.mass.is_none(), "mass"),
+            ("handle_sensitivity", self.handle_sensitivity.is_some() && self.handle.is_empty(), "handle"),
+            ("exposure", self.exposure.is_some() && self.handle.is_empty(), "handle"),
+        ];
+        match alone.into_iter().find(|(_, alone, _)| *alone) {
+            Some((key, _, other)) => wrong(key, format!("{key} without {other}"), "both"),
+            None => Ok(()),
+        }
+    }
+
+    fn options(&self) -> Result<DrillOptions> {
+        let beam = Beam::new(needed("beam_angle", self.beam_angle)?, needed("from", self.from)?)?;
+        let pulses = needed("pulses_per_turn", self.pulses_per_turn)?;
+        // Without a number the file must say that the channel is a velocity.
+        let sensitivity = self.sensitivity.unwrap_or(f64::NAN);
+        let plain = DrillOptions::new(sensitivity, beam, pulses, needed("edge", self.edge)?);
+        Ok(DrillOptions {
+            level: self.level,
+            mass: self.mass,
+            struck_mass: self.struck_mass,
+            contact: self.contact.unwrap_or(plain.contact),
+            fit: self.fit.unwrap_or(plain.fit),
+            longest_dropout: self.longest_dropout.unwrap_or(plain.longest_dropout),
+            delay: self.delay.unwrap_or(plain.delay),
+            points: self.points.unwrap_or(plain.points),
+            smoothing: match (self.low_pass, self.smoothing) {
+                (Some(LowPass::Off(_)), _) => Smoothing::Off,
+                (Some(LowPass::Corner(corner)), _) => Smoothing::LowPass(corner),
+                (None, Some(time)) => Smoothing::Exponential(time),
+                (None, None) => Smoothing::default(),
+            },
+            instrument: self.instrument,
+            margin: self.margin.unwrap_or(plain.margin),
+            hours: self.exposure,
+            ..plain
+        })
+    }
+
+    /// The drill of a record, with its figures and tables; `each` turn of the average is handed out as it comes.
+    ///
+    /// # Errors
+    /// If a file cannot be read, the record allows no answer, or `each` fails.
+    pub fn measure(
+        &self,
+        source: &Source<'_>,
+        each: &mut dyn FnMut(&Cycle<'_>) -> Result<()>,
+    ) -> Result<Answer> {
+        self.usable()?;
+        own_channels(source.channel)?;
+        let file = DrillFile {
+            reader: source.reader()?,
+            path: source.path.to_owned(),
+            velocity: needed("velocity", self.velocity.clone())?,
+            reference: needed("reference", self.reference.clone())?,
+            handle: self.handle.clone(),
+            handle_sensitivity: self.handle_sensitivity,
+            noise: source.further("noise", self.noise.as_ref())?,
+        };
+        let found = file.measure_each(&self.options()?, source.progress, each)?;
+        let mut answer = Answer::of(&found)?;
+        answer.tell("", &found.findings);
+        answer.tables.push(tables::drill(source.name, &found));
+        answer.figures = figures::drill(source.name, &found);
+        answer.csv("average", &tables::drill_average(&found));
+        answer.csv("impacts", &tables::drill_impacts(&found));
+        Ok(answer)
+    }
+}
+
+impl Analysis for Keys {
+    const SECTION: &'static str = "drill";
+
+    fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
+        entry.file.as_ref().ok_or_else(no_file)?;
+        own_channels(&entry.channel)?;
+        entry.keys.usable()
+    }
+
+    fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
+        job.each("drill", entries, Marks::Names, |entry, source| {
+            let mut answer = entry.keys.measure(source, &mut |_| Ok(()))?;
+            answer.files.iter_mut().for_each(|file| file.0.insert_str(0, "drill_"));
+            Ok(vec![answer])
+        })
+    }
+}

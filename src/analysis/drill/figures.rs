@@ -1,0 +1,188 @@
+//! Hammer drills: the average turn, a few turns as measured, motion against noise, speed over time.
+
+use crate::measure::drill::{Drill, Impact, SmoothingKind};
+use crate::report::layout::lettered;
+use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
+
+/// Most points of a line: more are not seen in print.
+const POINTS: usize = 4000;
+
+/// Most markers over a line: more hide it.
+const MARKERS: usize = 20;
+
+/// Colour and marker of the velocities before and after the impacts of each group; the last are for all further groups.
+const FORMS: [[(Ink, Marker); 2]; 3] = [
+    [(Ink::Nth(1), Marker::Circle), (Ink::Nth(2), Marker::Square)],
+    [(Ink::Nth(3), Marker::Triangle), (Ink::Nth(4), Marker::Diamond)],
+    [(Ink::Grey, Marker::OpenCircle), (Ink::Grey, Marker::Cross)],
+];
+
+/// All figures of a record, by file name.
+pub fn drill(name: &str, drill: &Drill) -> Vec<(String, Figure)> {
+    let mut figures = vec![
+        ("drill_average".to_owned(), average(name, drill)),
+        ("drill_trace".to_owned(), trace(name, drill)),
+        ("drill_speed".to_owned(), speed(name, drill)),
+    ];
+    figures.extend(floor(name, drill).map(|f| ("drill_noise".to_owned(), f)));
+    figures
+}
+
+fn average(name: &str, drill: &Drill) -> Figure {
+    let a = &drill.average;
+    // The turn ends where it begins: so does the curve.
+    let closed = |values: Vec<f64>| -> Vec<f64> {
+        let first = values.first().copied();
+        values.into_iter().chain(first).collect()
+    };
+    let degrees: Vec<f64> = a.phase.iter().map(|p| 360.0 * p).chain([360.0]).collect();
+    // Where the impact comes earlier in one turn and later in another, two courses are averaged: mean ± standard deviation
+    // would reach beyond both, to speeds that no turn had.
+    let edge = |sign: f64| -> Vec<f64> {
+        let within =
+            |(v, (low, high)): (f64, &(f64, f64))| if low <= high { v.clamp(*low, *high) } else { v };
+        closed(a.mean.iter().zip(&a.std).map(|(m, s)| m + sign * s).zip(&a.range).map(within).collect())
+    };
+    let x = || AxisSpec::new("Crank angle after the pulse", "°").limits(0.0, 360.0);
+    let above = Plot::new(x(), AxisSpec::new("Velocity", "m/s"))
+        .with(Series::band("± 1 standard deviation", degrees.clone(), edge(-1.0), edge(1.0)).ink(Ink::Nth(0)))
+        .with(
+            Series::line("mean", degrees.clone(), closed(a.mean.clone()))
+                .ink(Ink::Nth(0))
+                .stroke(Stroke::Solid),
+        );
+    let (above, marked) = marks(above, drill, |i| 360.0 * i.phase, |_| true);
+    let below = Plot::new(x(), AxisSpec::new("Displacement", "m")).with(
+        Series::line("", degrees, closed(drill.displacement.value.clone()))
+            .ink(Ink::Nth(0))
+            .stroke(Stroke::Solid),
+    );
+    let smoothed = match &drill.smoothing {
+        Some(s) => {
+            let kind = match s.kind {
+                SmoothingKind::ZeroPhaseLowPass => "zero-phase low-pass of second order, twice",
+                SmoothingKind::Exponential => "exponential smoothing",
+            };
+            format!("{kind}, corner {:.0} Hz", s.corner)
+        }
+        None => "not smoothed".to_owned(),
+    };
+    lettered(Figure::double(format!("Average turn, {name}")).height(130.0).shared_x().panel(above).panel(below)).caption(format!(
+        "Mean of {} turns at {:.2} Hz with the scatter from turn to turn, which ends where no turn went further; {smoothed}. Displacement by integration over whole turns. {marked} of {} impacts are marked.{}",
+        drill.averaged,
+        drill.speed.value,
+        drill.impacts.len(),
+        if drill.groups.len() > 1 { " Group 0 is the strongest, of which means are given." } else { "" }
+    ))
+}
+
+/// Velocities before and after the impacts over `x`, each group with its own markers; and the number of impacts marked.
+fn marks(
+    mut plot: Plot,
+    drill: &Drill,
+    x: impl Fn(&Impact) -> f64,
+    shown: impl Fn(&Impact) -> bool,
+) -> (Plot, usize) {
+    let mut marked = 0;
+    for (number, forms) in FORMS.iter().enumerate() {
+        let last = number + 1 == FORMS.len();
+        let own: Vec<Impact> = drill
+            .impacts
+            .iter()
+            .filter(|i| shown(i) && (i.group == number || last && i.group > number))
+            .copied()
+            .collect();
+        if own.is_empty() {
+            continue;
+        }
+        let of = match drill.groups.len() {
+            0 | 1 => String::new(),
+            n if last && n > FORMS.len() => ", other groups".to_owned(),
+            _ => format!(", group {number}"),
+        };
+        let own = thin(&own, MARKERS);
+        marked += own.len();
+        let at: Vec<f64> = own.iter().map(&x).collect();
+        let [before, after] = *forms;
+        let values = |of: fn(&Impact) -> f64| own.iter().map(of).collect::<Vec<f64>>();
+        plot = plot
+            .with(
+                Series::points(format!("before impact{of}"), at.clone(), values(|i| i.before))
+                    .ink(before.0)
+                    .marker(before.1),
+            )
+            .with(
+                Series::points(format!("after impact{of}"), at, values(|i| i.after))
+                    .ink(after.0)
+                    .marker(after.1),
+            );
+    }
+    (plot, marked)
+}
+
+fn trace(name: &str, drill: &Drill) -> Figure {
+    let (start, step) = drill.excerpt_time;
+    let time = |n: usize| -> Vec<f64> { (0..n).map(|k| start + k as f64 * step).collect() };
+    let n = drill.excerpt.len();
+    let end = start + n as f64 * step;
+    let x = || AxisSpec::new("Time", "s").limits(start, end);
+    let above = Plot::new(x(), AxisSpec::new("Velocity", "m/s"))
+        .with(Series::line("measured", time(n), drill.excerpt.clone()).ink(Ink::Grey).stroke(Stroke::Thin));
+    let (above, _) = marks(above, drill, |i| i.time, |i| i.time >= start && i.time <= end);
+    let reference = drill.excerpt_reference.clone();
+    let mut below = Plot::new(x(), AxisSpec::new("Reference, as recorded", ""))
+        .with(Series::line("", time(reference.len()), reference).ink(Ink::Black).stroke(Stroke::Thin));
+    for edge in drill.times.iter().filter(|t| **t >= start - step && **t <= end) {
+        below = below.with(Series::vertical("", *edge));
+    }
+    let caption = "A few turns in the middle of the record, as measured: drop-outs are not bridged here. Vertical lines are the edges of the reference that begin a turn.";
+    lettered(Figure::double(format!("Trace, {name}")).height(110.0).shared_x().panel(above).panel(below))
+        .caption(caption)
+}
+
+fn speed(name: &str, drill: &Drill) -> Figure {
+    let plot = Plot::new(AxisSpec::new("Time", "s"), AxisSpec::new("Speed", "Hz"))
+        .with(
+            Series::line("each turn", thin(&drill.times, POINTS), thin(&drill.speeds, POINTS))
+                .stroke(Stroke::Thin),
+        )
+        .with(Series::horizontal("mean", drill.speed.value));
+    Figure::double(format!("Speed, {name}"))
+        .height(70.0)
+        .panel(plot)
+        .caption("Turns of the crank in a second.")
+}
+
+fn floor(name: &str, drill: &Drill) -> Option<Figure> {
+    let floor = drill.noise_floor.as_ref()?;
+    let lowest = floor.noise.iter().copied().fold(f64::INFINITY, f64::min).max(-400.0);
+    let highest = floor.motion.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let y = AxisSpec::new(format!("RMS of {:.1} Hz lines, re 1 m/s", floor.line_width), "dB")
+        .limits(lowest - 10.0, highest + 5.0);
+    let x = AxisSpec::frequency().log();
+    let mut plot = Plot::new(x, y)
+        .with(Series::line("motion", floor.frequency.clone(), floor.motion.clone()).stroke(Stroke::Thin))
+        .with(
+            Series::line("no motion", floor.frequency.clone(), floor.noise.clone())
+                .stroke(Stroke::Thin)
+                .ink(Ink::Grey),
+        );
+    let bands: Vec<String> = floor.bands.iter().map(|b| format!("{:.0} to {:.0} Hz", b[0], b[1])).collect();
+    // The end of the widest band is the one that is asked for.
+    let widest = floor.bands.iter().max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
+    if let Some(band) = widest {
+        plot = plot.with(Series::vertical(format!("{} dB margin ends", floor.margin), band[1]));
+    }
+    let few = bands.iter().take(3).cloned().collect::<Vec<_>>().join(", ");
+    Some(Figure::double(format!("Motion and noise, {name}")).panel(plot).caption(format!(
+        "RMS of lines {:.1} Hz wide. Motion stands {} dB or more above the noise in {} bands, first {few}.",
+        floor.line_width,
+        floor.margin,
+        bands.len()
+    )))
+}
+
+/// Every so many points, at most `most`.
+fn thin<T: Copy>(values: &[T], most: usize) -> Vec<T> {
+    values.iter().step_by(values.len().div_ceil(most).max(1)).copied().collect()
+}

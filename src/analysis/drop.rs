@@ -1,0 +1,302 @@
+//! Drops: `[[drop]]`, `vibro restitution`.
+
+pub mod tables;
+
+use super::job::Record;
+use super::source::{file_name, name_of};
+use super::{Analysis, Answer, Job, Source, impacts};
+use crate::campaign::Entry;
+use crate::error::{Error, Result};
+use crate::measure::impacts::ImpactsOptions;
+use crate::measure::restitution::{Bounces, Drop, GRAVITY, Train, Velocities, restitution};
+use serde::Deserialize;
+
+/// What is known of drops of one series beside their records.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
+pub struct Keys {
+    /// Height of the fall in m; without it, a train of bounces
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M", allow_negative_numbers = true))]
+    pub height: Option<f64>,
+    /// Its standard uncertainty in m
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M"))]
+    pub height_std: Option<f64>,
+    /// Time from first to second impact in s
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S", allow_negative_numbers = true))]
+    pub interval: Option<f64>,
+    /// Standard uncertainty of the interval in s
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
+    pub interval_std: Option<f64>,
+    /// Times between successive impacts of one train of bounces, in s
+    #[cfg_attr(
+        feature = "cli",
+        arg(long, value_name = "A,B,C", value_delimiter = ',', allow_negative_numbers = true)
+    )]
+    pub intervals: Vec<f64>,
+    /// Acceleration of free fall in m/s² [default: 9.80665]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M/S²", allow_negative_numbers = true))]
+    pub gravity: Option<f64>,
+    /// Its standard uncertainty in m/s²
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M/S²"))]
+    pub gravity_std: Option<f64>,
+    /// Lowest impact, as part of the median one [default: 0.02]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "PART"))]
+    pub threshold: Option<f64>,
+    /// Pause in s that parts two impacts [default: found from the trace]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
+    pub refractory: Option<f64>,
+    /// Leave mains hum in the trace
+    #[cfg_attr(feature = "cli", arg(long))]
+    pub keep_hum: bool,
+    /// Masses in kg: the striking and the struck one
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M1,M2", value_parser = crate::campaign::two::<','>))]
+    pub masses: Option<(f64, f64)>,
+    /// Velocities of both masses before the impact, in m/s
+    #[cfg_attr(feature = "cli", arg(long, value_name = "V1,V2", value_parser = crate::campaign::two::<','>, allow_negative_numbers = true))]
+    pub before: Option<(f64, f64)>,
+    /// Velocities of both masses after it, in m/s; of mass 1 alone where masses are given
+    #[cfg_attr(
+        feature = "cli",
+        arg(long, value_name = "V1,V2", value_delimiter = ',', allow_negative_numbers = true)
+    )]
+    pub after: Vec<f64>,
+    /// Velocity of mass 2 after it, in m/s, where that of mass 1 is not known and masses are given
+    #[cfg_attr(feature = "cli", arg(long, value_name = "V2", allow_negative_numbers = true))]
+    pub after2: Option<f64>,
+    /// Standard uncertainty of each velocity, in m/s
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M/S"))]
+    pub velocity_std: Option<f64>,
+}
+
+/// Velocities after an impact: of mass 1 and of mass 2.
+type After = (Option<f64>, Option<f64>);
+
+impl Keys {
+    /// Whether the keys go together, beside a file or without one.
+    ///
+    /// # Errors
+    /// With the key that does not.
+    pub fn usable(&self, file: bool) -> Result<()> {
+        let wrong = |key, found: String, expected: &str| Err(Error::usage(found, expected).setting(key));
+        let typed = self.interval.is_some() || !self.intervals.is_empty();
+        if self.interval.is_some() && !self.intervals.is_empty() {
+            let expected = "one of them: the first of intervals is that after the fall";
+            return wrong("intervals", "both interval and intervals".to_owned(), expected);
+        }
+        if file && typed {
+            let key = if self.interval.is_some() { "interval" } else { "intervals" };
+            return wrong(key, "a file and an interval".to_owned(), "one of them");
+        }
+        if self.interval.is_some() && self.height.is_none() {
+            let found = "interval without a height".to_owned();
+            return Err(Error::usage(found, "both, or flight times as intervals")
+                .setting("interval")
+                .setting("height"));
+        }
+        let moving = [
+            ("after", !self.after.is_empty()),
+            ("after2", self.after2.is_some()),
+            ("velocity_std", self.velocity_std.is_some()),
+        ];
+        if let Some((key, _)) = moving.into_iter().find(|(_, given)| *given && self.before.is_none()) {
+            return wrong(key, format!("{key} without before"), "both");
+        }
+        if !file && !typed && self.before.is_none() {
+            let expected = "a file, an interval and a height, intervals, or before and after";
+            return Err(Error::usage("nothing that was measured", expected)
+                .setting("interval")
+                .setting("height"));
+        }
+        if self.before.is_some() && self.after().is_none() {
+            let found = match (self.after.len(), self.after2) {
+                (0, _) => "before without velocities after the impact".to_owned(),
+                (n, Some(_)) => format!("{n} velocities in after, and after2"),
+                (n, None) => format!("{n} velocities in after"),
+            };
+            return wrong("before", found, "after = V1 and V2, or with masses after = V1 or after2 = V2");
+        }
+        Ok(())
+    }
+
+    fn after(&self) -> Option<After> {
+        match (self.after.as_slice(), self.after2) {
+            ([one], two) => Some((Some(*one), two)),
+            ([one, two], None) => Some((Some(*one), Some(*two))),
+            ([], Some(two)) => Some((None, Some(two))),
+            _ => None,
+        }
+    }
+
+    fn velocities(&self) -> Option<Velocities> {
+        let before = self.before?;
+        let (after1, after2) = self.after()?;
+        Some(Velocities { before, after1, after2, masses: self.masses, std: self.velocity_std })
+    }
+
+    /// The first key of which two drops of one series have different values.
+    fn differing(&self, other: &Keys) -> Option<&'static str> {
+        let equal = [
+            ("height", self.height == other.height),
+            ("height_std", self.height_std == other.height_std),
+            ("interval_std", self.interval_std == other.interval_std),
+            ("gravity", self.gravity == other.gravity),
+            ("gravity_std", self.gravity_std == other.gravity_std),
+            ("threshold", self.threshold == other.threshold),
+            ("refractory", self.refractory == other.refractory),
+            ("keep_hum", self.keep_hum == other.keep_hum),
+            ("masses", self.masses == other.masses),
+        ];
+        equal.into_iter().find(|(_, equal)| !equal).map(|(key, _)| key)
+    }
+}
+
+/// Drops of one name, whose mean is taken.
+pub struct Series {
+    drop: Drop,
+    bounces: Bounces,
+    trains: Vec<Train>,
+    velocities: Option<Velocities>,
+    files: Vec<String>,
+    answer: Answer,
+}
+
+impl Series {
+    /// A series without a drop yet.
+    pub fn new(keys: &Keys) -> Series {
+        let drop = Drop {
+            height: keys.height.unwrap_or(f64::NAN),
+            height_std: keys.height_std,
+            interval_std: keys.interval_std,
+            gravity: keys.gravity.unwrap_or(GRAVITY),
+            gravity_std: keys.gravity_std,
+            masses: keys.masses,
+            ..Drop::default()
+        };
+        Series {
+            drop,
+            bounces: Bounces::default(),
+            trains: Vec::new(),
+            velocities: None,
+            files: Vec::new(),
+            answer: Answer::default(),
+        }
+    }
+
+    /// Adds what the keys say of a drop without a record.
+    pub fn add_numbers(&mut self, keys: &Keys) {
+        self.drop.intervals.extend(keys.interval.or(keys.intervals.first().copied()));
+        if !keys.intervals.is_empty() {
+            let onset_std = keys.interval_std.map(|s| s / 2f64.sqrt());
+            self.trains.push(Train { intervals: keys.intervals.clone(), onset_std });
+        }
+        self.velocities = self.velocities.take().or_else(|| keys.velocities());
+    }
+
+    /// Adds the record of a drop, which gets this number.
+    ///
+    /// # Errors
+    /// If the file cannot be read, or its trace allows no answer.
+    pub fn add_record(&mut self, keys: &Keys, source: &Source<'_>, number: usize) -> Result<()> {
+        let file = file_name(source.path);
+        let recording = source.recording()?;
+        let trace = source.trace(&recording)?;
+        let how = ImpactsOptions {
+            threshold: keys.threshold.unwrap_or(Bounces::THRESHOLD),
+            refractory: keys.refractory,
+            hum: !keys.keep_hum,
+            ..ImpactsOptions::default()
+        };
+        let found = self.bounces.add(&trace, &how)?;
+        self.answer.tell(&file, &recording.doubts);
+        self.answer.tell(&file, &trace.meta.doubts);
+        self.answer.tell(&file, &found.findings);
+        self.answer
+            .figure(format!("drop_{number}"), impacts::figures::drop(source.name, &trace, &found.times));
+        self.files.push(file);
+        Ok(())
+    }
+
+    fn is_empty(&self) -> bool {
+        self.files.is_empty()
+            && self.drop.intervals.is_empty()
+            && self.trains.is_empty()
+            && self.velocities.is_none()
+    }
+
+    /// The restitution by every method that the drops allow.
+    ///
+    /// # Errors
+    /// If they allow none.
+    pub fn answer(self, name: &str) -> Result<Answer> {
+        let falls = self.drop.height.is_finite();
+        let mut measured = self.bounces.measured(self.drop, falls);
+        measured.trains.extend(self.trains);
+        measured.velocities = self.velocities;
+        let found = restitution(&measured)?;
+        let mut answer = Answer::of(&found)?;
+        answer.figures = self.answer.figures;
+        answer.findings = self.answer.findings;
+        answer.tell("", &found.findings);
+        answer.tables.push(tables::restitution(name, &found));
+        answer.details.extend(tables::agreement(&found));
+        answer.csv("restitution", &tables::restitution(name, &found));
+        Ok(answer)
+    }
+}
+
+impl Analysis for Keys {
+    const SECTION: &'static str = "drop";
+
+    fn check(entry: &Entry<Keys>, earlier: &[Entry<Keys>]) -> Result<()> {
+        entry.keys.usable(entry.file.is_some())?;
+        let Some(name) = &entry.name else { return Ok(()) };
+        // Drops of one name are one series, whose keys are equal.
+        let mut series = earlier.iter().filter(|e| e.name.as_ref() == Some(name)).peekable();
+        if let Some(key) = series.peek().and_then(|first| first.keys.differing(&entry.keys)) {
+            return Err(Error::usage(
+                format!("a drop of {name:?} has another {key} than the first of that name"),
+                "drops of one series have equal keys: give this one another name, or the same value",
+            )
+            .setting(key));
+        }
+        if entry.keys.before.is_some() && series.any(|e| e.keys.before.is_some()) {
+            let found = format!("two drops of {name:?} have velocities");
+            return Err(Error::usage(found, "one impact with velocities a name").setting("before"));
+        }
+        Ok(())
+    }
+
+    fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
+        let mut all: Vec<(Option<&String>, String, Series)> = Vec::new();
+        for (i, entry) in entries.iter().enumerate() {
+            // Files without a name are no series, even where one folder has the same file name as another.
+            let stated = entry.name.as_ref();
+            let at = all.iter().position(|s| stated.is_some() && s.0 == stated).unwrap_or_else(|| {
+                let name = if entry.file.is_some() { name_of(entry) } else { format!("drop {}", i + 1) };
+                all.push((stated, stated.cloned().unwrap_or(name), Series::new(&entry.keys)));
+                all.len() - 1
+            });
+            let Some((_, name, series)) = all.get_mut(at) else { continue };
+            series.add_numbers(&entry.keys);
+            if entry.file.is_some() {
+                let path = job.path(entry)?;
+                let keys = &entry.keys;
+                let added = job.measured(entry, name, &path, |source| series.add_record(keys, source, i + 1));
+                job.found(&file_name(&path), added)?;
+            }
+        }
+        let mut records = Vec::new();
+        for (_, name, series) in all.into_iter().filter(|s| !s.2.is_empty()) {
+            let files = series.files.clone().into();
+            let found = series.answer(&name);
+            let Some(mut answer) = job.found(&name, found)? else { continue };
+            // Its drops are numbered already.
+            job.shown.figures.append(&mut answer.figures);
+            let mark = (records.len() + 1).to_string();
+            records.push(Record { name, file: files, mark, answer });
+        }
+        job.answer("drops", records);
+        Ok(())
+    }
+}

@@ -1,0 +1,256 @@
+//! Frequency response functions and their modes: `[[frf]]`, `vibro modal`.
+
+pub mod figures;
+pub mod tables;
+
+use super::job::Marks;
+use super::spectrum::{self, Detrend};
+use super::{Analysis, Answer, Job, Source, no_file};
+use crate::campaign::{Entry, above_zero, channel};
+use crate::error::{Error, Result};
+use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal};
+use crate::record::{Finding, Meta, Record, Window};
+use crate::report::files;
+use crate::signal::transfer::Estimator;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// How modes are found, and how the function is taken where a file has two channels.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
+pub struct Keys {
+    /// Band in Hz whose peaks are fitted together [default: a band around each peak]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "LO:HI", value_parser = crate::campaign::two::<':'>))]
+    pub band: Option<(f64, f64)>,
+    /// Mass in kg, for the stiffness k = m(2 pi f)^2
+    #[cfg_attr(feature = "cli", arg(long, value_name = "KG", allow_negative_numbers = true))]
+    pub mass: Option<f64>,
+    /// File with the coherence of the same lines [default: a coherence in the file]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "FILE"))]
+    pub coherence: Option<PathBuf>,
+    /// Lines of a lower coherence are left out [default: 0.5]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "C"))]
+    pub least_coherence: Option<f64>,
+    /// Channel of the excitation: the function is computed from it to the channel
+    #[serde(deserialize_with = "channel")]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME"))]
+    pub reference: Option<String>,
+    /// FRF estimator: h1 for noise in the response, h2 for noise in the excitation, hv for both alike [default: h1]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = crate::campaign::word::<Estimator>))]
+    pub estimator: Option<Estimator>,
+    /// Samples of a segment [default: 8192, or the whole of a shorter record]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "SAMPLES"))]
+    pub segment: Option<usize>,
+    /// Part of a segment that it shares with the next [default: 0.5]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "PART", allow_negative_numbers = true))]
+    pub overlap: Option<f64>,
+    /// Taken out of a segment before the window: mean or none [default: mean]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "WHAT", value_parser = crate::campaign::word::<Detrend>))]
+    pub detrend: Option<Detrend>,
+    /// Window of a segment [default: hann]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = crate::campaign::word::<Window>))]
+    pub window: Option<Window>,
+    /// Integrations in frequency [default: 0]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N", allow_negative_numbers = true))]
+    pub integrate: Option<i8>,
+    /// Lowest frequency in Hz [default: two lines where integrated, else 0]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
+    pub fmin: Option<f64>,
+    /// The excitation is a hammer: one record a blow
+    #[cfg_attr(feature = "cli", arg(long))]
+    pub hammer: bool,
+    /// Width of the force window in s
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
+    pub force_window: Option<f64>,
+    /// What an exponential window leaves of the response at the end of a record
+    #[cfg_attr(feature = "cli", arg(long, value_name = "PART"))]
+    pub left_at_end: Option<f64>,
+    /// Channel delay to remove, in s
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S", allow_negative_numbers = true))]
+    pub delay: Option<f64>,
+}
+
+/// A function and its modes.
+#[derive(Serialize)]
+struct Found<'a> {
+    quantity: &'static str,
+    unit: &'a str,
+    #[serde(flatten)]
+    modal: &'a ModalResult,
+}
+
+/// A function before its modes are known.
+struct Function {
+    meta: Meta,
+    measured: Measured,
+    /// Its lines and their coherence, where it was computed.
+    records: Vec<Record>,
+}
+
+impl Keys {
+    /// How the function is taken from two channels.
+    fn taken(&self) -> spectrum::Keys {
+        spectrum::Keys {
+            reference: self.reference.clone(),
+            estimator: self.estimator,
+            segment: self.segment,
+            overlap: self.overlap,
+            detrend: self.detrend,
+            window: self.window,
+            integrate: self.integrate,
+            fmin: self.fmin,
+            hammer: self.hammer,
+            force_window: self.force_window,
+            left_at_end: self.left_at_end,
+            delay: self.delay,
+            ..spectrum::Keys::default()
+        }
+    }
+
+    /// Whether the keys go together.
+    ///
+    /// # Errors
+    /// With the key that does not.
+    pub fn usable(&self) -> Result<()> {
+        above_zero("mass", self.mass)?;
+        if self.reference.is_some() {
+            if self.coherence.is_some() {
+                let found = "coherence beside a reference, from which it follows";
+                return Err(Error::usage(found, "one of them").setting("coherence"));
+            }
+            return self.taken().options().map(drop);
+        }
+        let given = [
+            ("estimator", self.estimator.is_some()),
+            ("segment", self.segment.is_some()),
+            ("overlap", self.overlap.is_some()),
+            ("detrend", self.detrend.is_some()),
+            ("window", self.window.is_some()),
+            ("integrate", self.integrate.is_some()),
+            ("fmin", self.fmin.is_some()),
+            ("hammer", self.hammer),
+            ("force_window", self.force_window.is_some()),
+            ("left_at_end", self.left_at_end.is_some()),
+            ("delay", self.delay.is_some()),
+        ];
+        match given.into_iter().find(|(_, given)| *given) {
+            Some((key, _)) => {
+                let expected =
+                    "the channel of the excitation as reference: the function is taken from two channels";
+                Err(Error::usage(format!("{key} without a reference"), expected).setting(key))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// The functions of a file with their modes, figures, tables and files; the one that is taken from two of its channels, where a
+    /// reference is named.
+    ///
+    /// # Errors
+    /// If a file cannot be read, or no function is there.
+    pub fn measure(&self, source: &Source<'_>) -> Result<Vec<Answer>> {
+        self.usable()?;
+        let mut told = Answer::default();
+        let functions = self.functions(source, &mut told)?;
+        let answers = functions.into_iter().map(|function| {
+            let mut answer = self.modes(source, &function)?;
+            answer.findings.splice(0..0, told.findings.iter().cloned());
+            Ok(answer)
+        });
+        answers.collect()
+    }
+
+    fn functions(&self, source: &Source<'_>, told: &mut Answer) -> Result<Vec<Function>> {
+        if self.reference.is_some() {
+            let found = self.taken().lines(source)?;
+            told.tell("", &found.warnings);
+            told.tell("", &found.findings);
+            let records = found.records();
+            let [Record::Frf(frf), Record::Spectrum(coherence)] = records.as_slice() else {
+                return Ok(Vec::new());
+            };
+            let measured = Measured::complex(frf).with_coherence(coherence)?;
+            return Ok(vec![Function { meta: frf.meta.clone(), measured, records }]);
+        }
+        let recording = source.reader()?.from_path(source.path)?;
+        told.tell("", &recording.doubts);
+        let coherence = match source.further("coherence", self.coherence.as_ref())? {
+            Some(path) => Some(source.reader()?.from_path(path)?),
+            None => None,
+        };
+        let all = Measured::all(&recording.records, source.channel.channel.as_deref())
+            .map_err(|e| e.of_record(&recording.path.display().to_string()).in_file(&recording.path))?;
+        let mut functions = Vec::with_capacity(all.len());
+        for (mut meta, mut measured) in all {
+            if let Some(coherence) = &coherence {
+                let joined = measured.with_coherence_of(&coherence.records);
+                measured = joined.map_err(|e| e.in_file(&coherence.path))?;
+            }
+            if let Some(factor) = source.channel.calibration {
+                meta.step("calibrate", &[("factor", &factor)]);
+                measured.values.iter_mut().for_each(|v| *v *= factor);
+            }
+            functions.push(Function { meta, measured, records: Vec::new() });
+        }
+        Ok(functions)
+    }
+
+    fn modes(&self, source: &Source<'_>, function: &Function) -> Result<Answer> {
+        let Function { meta, measured, records } = function;
+        let options = ModalOptions {
+            band: self.band,
+            mass: self.mass,
+            least_coherence: self.least_coherence.unwrap_or(ModalOptions::default().least_coherence),
+            decay: meta.added_decay(),
+            from_blows: meta.from_blows(),
+        };
+        // A function without a mode is still a function to be seen.
+        let (found, refused) = match modal(measured, &options) {
+            Err(error) if error.exit_code() == 1 => {
+                (ModalResult { modes: Vec::new(), findings: Vec::new() }, Some(error))
+            }
+            found => (found?, None),
+        };
+        let (quantity, unit) = (meta.quantity.name(), meta.unit.symbol());
+        let mut answer = Answer::of(&Found { quantity, unit, modal: &found })?;
+        answer.result.insert("channel".to_owned(), meta.name.clone().into());
+        answer.tell("", &meta.doubts);
+        answer.tell("", &found.findings);
+        answer.refused = refused;
+        answer.tables.push(tables::modes(source.name, &found));
+        answer.details.push(tables::modal_methods(&found));
+        answer.figure("frf", figures::frf(source.name, meta, measured, &found.modes));
+        let nyquist = figures::nyquist(source.name, measured, &found.modes);
+        answer.figures.extend(nyquist.map(|figure| ("nyquist".to_owned(), figure)));
+        answer.csv("modes", &tables::modes(source.name, &found));
+        answer.csv("methods", &tables::modal_methods(&found));
+        if !records.is_empty() {
+            let (files, unwritten) = files::records("frf", records)?;
+            answer.files.extend(files);
+            answer.tell("", &unwritten.into_iter().collect::<Vec<_>>());
+        }
+        Ok(answer)
+    }
+}
+
+impl Analysis for Keys {
+    const SECTION: &'static str = "frf";
+
+    fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
+        entry.file.as_ref().ok_or_else(no_file)?;
+        entry.keys.usable()
+    }
+
+    fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
+        job.each("frf", entries, Marks::Numbers, |entry, source| {
+            let mut answers = entry.keys.measure(source)?;
+            for answer in &mut answers {
+                let none =
+                    answer.refused.take().map(|e| Finding::caution("no-modes").name("why", e.to_string()));
+                answer.tell("", &none.into_iter().collect::<Vec<_>>());
+            }
+            Ok(answers)
+        })
+    }
+}

@@ -1,0 +1,120 @@
+//! Impacts: the trace with its impacts marked, a histogram of the intervals, and each interval over the one before.
+
+use crate::measure::impacts::Impacts;
+use crate::record::Trace;
+use crate::report::layout::lettered;
+use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
+
+/// Samples that a line keeps: more than a print can show.
+const SHOWN: usize = 4000;
+
+/// Trace, histogram of intervals and return map.
+pub fn impacts(title: &str, trace: &Trace, found: &Impacts) -> Figure {
+    let intervals: Vec<f64> = found.times.windows(2).map(|w| 1e3 * (w[1] - w[0])).collect();
+    let axis = |name: &str| AxisSpec::new(name, "ms");
+    let (low, high) = limits(&intervals);
+    let inside: Vec<f64> = intervals.iter().copied().filter(|v| (low..=high).contains(v)).collect();
+    let beyond = intervals.len() - inside.len();
+    let mut histogram = Plot::new(axis("Interval").limits(low, high), AxisSpec::new("Intervals", ""))
+        .with(Series::histogram("", &inside).ink(Ink::Nth(0)))
+        .legend(Legend::Hidden);
+    let mean = 1e3 * found.interval.value;
+    if (low..=high).contains(&mean) {
+        histogram = histogram.with(Series::vertical("mean", mean));
+    }
+    if beyond > 0 {
+        histogram = histogram.title(format!("{beyond} of {} intervals outside", intervals.len()));
+    }
+    let both = |w: &&[f64]| w.iter().all(|v| (low..=high).contains(v));
+    let (before, after): (Vec<f64>, Vec<f64>) =
+        intervals.windows(2).filter(both).map(|w| (w[0], w[1])).unzip();
+    let map = Plot::new(axis("Interval").limits(low, high), axis("Interval after it").limits(low, high))
+        .with(Series::line("", [low, high], [low, high]).ink(Ink::Grey).stroke(Stroke::Thin))
+        .with(Series::points("", before, after).marker(Marker::Circle).ink(Ink::Nth(0)))
+        .legend(Legend::Hidden);
+    // The record at large, and a stretch of it in which single impacts can be seen.
+    let all = (
+        trace.axis.start(),
+        trace.axis.start() + trace.axis.step().unwrap_or(1.0) * trace.values.len() as f64,
+    );
+    let middle = found.times.get(found.times.len() / 2).copied().unwrap_or(all.0);
+    let reach = 5.5 * found.median_interval;
+    let near = ((middle - reach).max(all.0), (middle + reach).min(all.1));
+    let figure = Figure::double(title)
+        .height(130.0)
+        .columns(2)
+        .panel(marked(trace, &found.times, all))
+        .panel(marked(trace, &found.times, near))
+        .panel(histogram)
+        .panel(map)
+        .caption("(a) The trace with the impacts that were found, (b) about ten intervals of it. (c) Intervals between successive impacts, (d) each over the one before; a periodic motion is a point there, or a few. Intervals far outside the others, as a missed impact makes them, are counted and not shown.");
+    lettered(figure)
+}
+
+/// The trace of a drop with its impacts at `times`.
+pub fn drop(title: &str, trace: &Trace, times: &[f64]) -> Figure {
+    let first = times.first().copied().unwrap_or(0.0);
+    let last = times.last().copied().unwrap_or(first);
+    let margin = 0.15 * (last - first);
+    let end = trace.axis.at(trace.values.len().saturating_sub(1));
+    let (from, to) = ((first - margin).max(trace.axis.start()), (last + 2.0 * margin).min(end));
+    let mut plot = marked(trace, times, (from, to));
+    if let Some(second) = times.get(1) {
+        plot = plot.title(format!("first flight {:.2} ms", 1e3 * (second - first)));
+    }
+    Figure::double(title)
+        .height(70.0)
+        .panel(plot)
+        .caption("The trace of a drop with the impacts that were found.")
+}
+
+/// The part of a trace between two times, with its impacts marked over it.
+fn marked(trace: &Trace, times: &[f64], (from, to): (f64, f64)) -> Plot {
+    let (x, y) = outline(trace, from, to);
+    let low = y.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = y.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let times: Vec<f64> = times.iter().copied().filter(|t| (from..=to).contains(t)).collect();
+    let over = vec![high + 0.07 * (high - low); times.len()];
+    let name = if trace.meta.name.is_empty() { "Trace" } else { &trace.meta.name };
+    Plot::new(
+        AxisSpec::new("Time", "s").limits(from, to),
+        AxisSpec::new(crate::report::layout::capital(name), trace.meta.unit.symbol()),
+    )
+    .with(Series::line("trace", x, y).stroke(Stroke::Thin).ink(Ink::Nth(0)))
+    .with(Series::points("impacts", times, over).marker(Marker::Triangle).ink(Ink::Nth(1)))
+    .legend(Legend::Above)
+}
+
+/// A line that keeps the extremes of each stretch, where there are more samples than can be seen.
+fn outline(trace: &Trace, from: f64, to: f64) -> (Vec<f64>, Vec<f64>) {
+    let inside: Vec<usize> =
+        (0..trace.values.len()).filter(|i| (from..=to).contains(&trace.axis.at(*i))).collect();
+    let stretch = inside.len().div_ceil(SHOWN / 2).max(1);
+    let mut kept: Vec<usize> = Vec::new();
+    for part in inside.chunks(stretch) {
+        let by = |a: &&usize, b: &&usize| trace.values[**a].total_cmp(&trace.values[**b]);
+        let (low, high) = (part.iter().min_by(by), part.iter().max_by(by));
+        kept.extend(low.min(high));
+        if low != high {
+            kept.extend(low.max(high));
+        }
+    }
+    kept.into_iter().map(|i| (trace.axis.at(i), trace.values[i])).unzip()
+}
+
+/// Both axes of the return map from the same to the same: all values but those further than five interquartile ranges from the
+/// quartiles, where these are a few, so that one missed impact does not squeeze the others into a point.
+fn limits(values: &[f64]) -> (f64, f64) {
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    let at = |part: usize| sorted.get(sorted.len() * part / 4).copied().unwrap_or(f64::NAN);
+    let (lower, upper) = (at(1), at(3));
+    let reach = 5.0 * (upper - lower);
+    let central: Vec<f64> =
+        sorted.iter().copied().filter(|v| (lower - reach..=upper + reach).contains(v)).collect();
+    // More than one in ten are no outliers but another kind of interval.
+    let shown = if 10 * (sorted.len() - central.len()) <= sorted.len() { &central } else { &sorted };
+    let (low, high) = (shown.first().copied().unwrap_or(0.0), shown.last().copied().unwrap_or(1.0));
+    let margin = (0.1 * (high - low)).max(0.01 * high.abs());
+    (low - margin, high + margin)
+}

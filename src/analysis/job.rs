@@ -1,0 +1,320 @@
+//! All that a campaign asks for, and its files.
+
+use super::answer::left_out;
+use super::source::{Source, file_name, name_of};
+use super::{Analysis, Answer, KINDS, Tells, page};
+use crate::campaign::{Campaign, Entry};
+use crate::error::{Error, Result};
+use crate::record::{Finding, Step};
+use crate::report::files::Files;
+use crate::report::words::{About, Voice, add_warnings, put};
+use crate::report::{Figure, Output, Table, files};
+use serde::Serialize;
+use serde_json::{Map, Value};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Steps of progress through a record.
+const PARTS: usize = 100;
+
+/// Names of the files that hold all results.
+const RESULTS: &str = "results.json";
+const REPORT: &str = "report.html";
+
+/// Told how far a job is.
+pub trait Progress: Sync {
+    /// A part with this many steps begins.
+    fn start(&self, what: &str, steps: usize);
+    /// One step is done.
+    fn step(&self);
+    /// All is done.
+    fn done(&self);
+}
+
+/// Nobody is told.
+impl Progress for () {
+    fn start(&self, _: &str, _: usize) {}
+    fn step(&self) {}
+    fn done(&self) {}
+}
+
+/// How a job may go about its files.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct JobOptions {
+    /// Allow names that lead outside the campaign's folder.
+    pub allow_outside: bool,
+}
+
+/// What a campaign gave.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// As in `results.json`: a list of answers by the name of each kind.
+    pub results: Map<String, Value>,
+    /// What a person should know, each about a record.
+    pub findings: Vec<About>,
+    /// The tables that a person wants first.
+    pub tables: Vec<Table>,
+    /// Whether anything was answered.
+    pub answered: bool,
+}
+
+/// What is shown of all records, in order.
+#[derive(Debug, Default)]
+pub(super) struct Shown {
+    /// Sentences on what matters most.
+    pub summary: Vec<String>,
+    /// Tables that a person wants first.
+    pub tables: Vec<Table>,
+    /// Figures by the names of their files.
+    pub figures: Vec<(String, Figure)>,
+    /// Long tables, below the figures.
+    pub curves: Vec<Table>,
+    /// Values that were assumed.
+    pub constants: Vec<(String, String)>,
+    /// Steps by the name of their record.
+    pub histories: Vec<(String, Vec<Step>)>,
+}
+
+/// A campaign at work: what its analyses ask, and where they put what they find.
+pub struct Job<'a> {
+    /// The campaign.
+    pub campaign: &'a Campaign,
+    /// How it may go about its files.
+    pub options: JobOptions,
+    /// Told how far it is.
+    pub progress: &'a dyn Progress,
+    /// Title of the report.
+    pub title: String,
+    pub(super) shown: Shown,
+    results: Map<String, Value>,
+    findings: Vec<About>,
+    files: Files,
+    answers: usize,
+}
+
+impl<'a> Job<'a> {
+    fn new(campaign: &'a Campaign, options: JobOptions, progress: &'a dyn Progress) -> Job<'a> {
+        let title = if campaign.name.is_empty() { "Campaign".to_owned() } else { campaign.name.clone() };
+        Job {
+            campaign,
+            options,
+            progress,
+            title,
+            shown: Shown::default(),
+            results: Map::new(),
+            findings: Vec::new(),
+            files: Vec::new(),
+            answers: 0,
+        }
+    }
+
+    /// Tells something of a record; `""` is the whole campaign.
+    pub fn tell(&mut self, record: &str, told: &impl Tells) {
+        self.findings.extend(told.findings().into_iter().map(|f| (record.to_owned(), f)));
+    }
+
+    /// What a record gave; `None` and a finding where it allows no answer.
+    ///
+    /// # Errors
+    /// If something else is wrong than the record.
+    pub fn found<T>(&mut self, record: &str, found: Result<T>) -> Result<Option<T>> {
+        match found {
+            Ok(found) => Ok(Some(found)),
+            Err(error) => {
+                let finding = left_out(error)?;
+                self.tell(record, &finding);
+                Ok(None)
+            }
+        }
+    }
+
+    /// Puts a value under a key of the results.
+    ///
+    /// # Errors
+    /// If it cannot be written as JSON.
+    pub fn put(&mut self, key: &str, value: &impl Serialize) -> Result<()> {
+        let unwritten = |e| Error::refused(format!("the results cannot be written as JSON: {e}"));
+        let mut value = serde_json::to_value(value).map_err(unwritten)?;
+        add_warnings(&mut value, Voice::Campaign);
+        self.results.insert(key.to_owned(), value);
+        Ok(())
+    }
+
+    /// Adds a file of numbers.
+    pub fn file(&mut self, name: String, content: impl Into<Vec<u8>>) {
+        self.files.push((name, content.into()));
+    }
+
+    /// That so many records were answered.
+    pub(super) fn answered(&mut self, records: usize) {
+        self.answers += records;
+    }
+
+    /// Adds the answers of records to the list of their kind. Figures and files get the mark of their record behind their name.
+    pub fn answer(&mut self, kind: &str, records: Vec<Record>) {
+        let list = self.results.entry(kind).or_insert_with(|| Value::Array(Vec::new()));
+        self.answers += records.len();
+        for Record { name, file, mark, answer } in records {
+            let mut object = Map::new();
+            object.insert("name".to_owned(), Value::String(name.clone()));
+            object.insert(if file.is_array() { "files" } else { "file" }.to_owned(), file);
+            for (key, value) in answer.result {
+                object.entry(key).or_insert(value);
+            }
+            put(&mut object, &answer.findings, Voice::Campaign);
+            if let Value::Array(list) = list {
+                list.push(Value::Object(object));
+            }
+            let about =
+                |(record, finding): About| (if record.is_empty() { name.clone() } else { record }, finding);
+            self.findings.extend(answer.findings.into_iter().map(about));
+            for table in answer.tables.into_iter().filter(|t| !t.rows.is_empty()) {
+                let same = |t: &&mut Table| t.title == table.title && t.columns == table.columns;
+                match self.shown.tables.iter_mut().find(same) {
+                    Some(known) => known.rows.extend(table.rows),
+                    None => self.shown.tables.push(table),
+                }
+            }
+            let marked = |name: &str| match name.rsplit_once('.') {
+                Some((stem, ending)) => format!("{stem}_{mark}.{ending}"),
+                None => format!("{name}_{mark}"),
+            };
+            self.shown
+                .figures
+                .extend(answer.figures.into_iter().map(|(name, figure)| (marked(&name), figure)));
+            self.files.extend(answer.files.into_iter().map(|(name, bytes)| (marked(&name), bytes)));
+        }
+    }
+
+    /// Measures the record of each table by itself.
+    ///
+    /// # Errors
+    /// If a file cannot be read.
+    pub fn each<K: Analysis>(
+        &mut self,
+        kind: &str,
+        entries: &[Entry<K>],
+        marks: Marks,
+        measure: impl Fn(&Entry<K>, &Source<'_>) -> Result<Vec<Answer>>,
+    ) -> Result<()> {
+        let mut records: Vec<Record> = Vec::new();
+        for entry in entries {
+            let name = name_of(entry);
+            let path = self.path(entry)?;
+            let found = self.measured(entry, &name, &path, |source| measure(entry, source));
+            for answer in self.found(&name, found)?.unwrap_or_default() {
+                let file = Value::String(file_name(&path));
+                records.push(Record { name: name.clone(), file, mark: String::new(), answer });
+            }
+        }
+        let marks = match marks {
+            Marks::Names => files::slugs(records.iter().map(|r| r.name.as_str())),
+            Marks::Numbers => (1..=records.len()).map(|n| n.to_string()).collect(),
+        };
+        for (record, mark) in records.iter_mut().zip(marks) {
+            record.mark = mark;
+        }
+        self.answer(kind, records);
+        Ok(())
+    }
+
+    /// The file of a table.
+    ///
+    /// # Errors
+    /// If it leads outside the folder or does not exist.
+    pub fn path<K>(&self, entry: &Entry<K>) -> Result<PathBuf> {
+        let file = entry.file.as_deref().unwrap_or(Path::new(""));
+        self.campaign.file(entry, "file", file, self.options.allow_outside)
+    }
+
+    /// Measures the file of a table; the progress is that of its samples.
+    ///
+    /// # Errors
+    /// As `measure`.
+    pub fn measured<K, T>(
+        &self,
+        entry: &Entry<K>,
+        name: &str,
+        path: &Path,
+        measure: impl FnOnce(&Source<'_>) -> Result<T>,
+    ) -> Result<T> {
+        self.progress.start(name, PARTS);
+        let told = AtomicUsize::new(0);
+        let step = |done: usize, all: usize| {
+            let parts = (PARTS * done).checked_div(all).unwrap_or(0).min(PARTS);
+            let before = told.fetch_max(parts, Ordering::Relaxed);
+            (before..parts).for_each(|_| self.progress.step());
+        };
+        let beside =
+            |key: &'static str, file: &Path| self.campaign.file(entry, key, file, self.options.allow_outside);
+        measure(&Source {
+            name,
+            path,
+            channel: &entry.channel,
+            reading: &entry.reading,
+            beside: &beside,
+            progress: &step,
+        })
+    }
+}
+
+/// How the files of a kind's records are told apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Marks {
+    /// By their numbers, from 1.
+    Numbers,
+    /// By their names.
+    Names,
+}
+
+/// An answer with the record that gave it.
+#[derive(Debug)]
+pub struct Record {
+    /// Name for people.
+    pub name: String,
+    /// The file, or a list of files.
+    pub file: Value,
+    /// What stands behind the names of its figures and files.
+    pub mark: String,
+    /// What was found.
+    pub answer: Answer,
+}
+
+/// Does all that a campaign asks for, and writes it to `output`.
+///
+/// # Errors
+/// If a file cannot be read; if the overlay is not possible; if a file cannot be written.
+pub fn run(
+    campaign: &Campaign,
+    options: JobOptions,
+    output: &mut Output,
+    progress: &dyn Progress,
+) -> Result<Outcome> {
+    let mut job = Job::new(campaign, options, progress);
+    let version = env!("CARGO_PKG_VERSION");
+    job.put("campaign", &job.title.clone())?;
+    job.put("version", &version)?;
+    for kind in KINDS {
+        (kind.run)(&mut job)?;
+    }
+    if campaign.is_empty() {
+        job.tell("", &Finding::caution("campaign-without-record"));
+    } else if job.answers == 0 {
+        job.tell("", &Finding::caution("no-record-answers"));
+    }
+    let Job { shown, mut results, mut findings, files: numbers, answers, title, .. } = job;
+    progress.start("drawing figures", shown.figures.len());
+    let drawings = files::figures(output, &shown.figures, &|| progress.step())?;
+    for (name, bytes) in numbers {
+        output.write(&name, bytes)?;
+    }
+    findings.extend(files::left_over(output, &[RESULTS, REPORT]).map(|f| (String::new(), f)));
+    put(&mut results, &findings, Voice::Campaign);
+    let json = serde_json::to_string_pretty(&results)
+        .map_err(|e| Error::refused(format!("the results cannot be written as JSON: {e}")))?;
+    output.write(RESULTS, json + "\n")?;
+    output.write(REPORT, page::page(&title, version, &findings, &shown, &drawings).html())?;
+    progress.done();
+    let tables = shown.tables;
+    Ok(Outcome { results, findings, tables, answered: answers > 0 })
+}

@@ -1,0 +1,15 @@
+//! Figures of the model.
+
+mod branches;
+mod ladder;
+mod motion;
+mod orbit;
+mod regimes;
+mod sweep;
+
+pub use branches::branches;
+pub use ladder::{ladder, ladder_over};
+pub use motion::{phase_plane, poincare, traces};
+pub use orbit::orbit;
+pub use regimes::regimes;
+pub use sweep::sweep;

@@ -1,0 +1,157 @@
+//! Response curves with all branches.
+
+use crate::model::{ChangeKind, Orbit, Response};
+use crate::report::layout::lettered;
+use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
+
+/// How a motion is drawn.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Look {
+    Real,
+    Unstable,
+    Impossible,
+}
+
+fn look(orbit: &Orbit) -> Option<Look> {
+    let v = &orbit.validity;
+    match (v.exists, v.admissible, v.stable) {
+        (false, ..) => None,
+        (_, false, _) => Some(Look::Impossible),
+        (.., Some(false)) => Some(Look::Unstable),
+        _ => Some(Look::Real),
+    }
+}
+
+/// Lines that grow side by side, each from where it ended.
+#[derive(Default)]
+struct Pieces {
+    lines: Vec<Vec<(f64, f64)>>,
+}
+
+impl Pieces {
+    /// Goes on with the line that ends at `from`; begins one where none does.
+    fn join(&mut self, from: (f64, f64), to: (f64, f64)) {
+        match self.lines.iter_mut().rev().find(|line| line.last() == Some(&from)) {
+            Some(line) => line.push(to),
+            None => self.lines.push(vec![from, to]),
+        }
+    }
+
+    /// All of them as one series, broken by missing values: each line whole, so that dashes run along it.
+    fn series(self, name: &str) -> Series {
+        let (x, y): (Vec<f64>, Vec<f64>) = self.lines.join(&(f64::NAN, f64::NAN)).into_iter().unzip();
+        Series::line(name, x, y)
+    }
+}
+
+/// Half the peak-to-peak values of both masses over frequency: stable motions solid, unstable ones dashed, those in which the masses would
+/// pass through each other thin and grey.
+pub fn branches(title: &str, response: &Response) -> Figure {
+    let mut figure = Figure::double(title).height(150.0).shared_x();
+    for mass in 0..2 {
+        figure = figure.panel(panel(response, mass));
+    }
+    lettered(figure.caption(
+        "Half the peak-to-peak displacement. Solid: motions with one impact a period that can be and are stable; dashed: unstable; thin and \
+         grey: the masses would pass through each other. Dash-dotted: free motion without losses (backbone).",
+    ))
+}
+
+fn panel(response: &Response, mass: usize) -> Plot {
+    let top = response
+        .points
+        .iter()
+        .flat_map(|p| p.orbits.iter().filter(|o| look(o).is_some_and(|l| l != Look::Impossible)))
+        .map(|o| o.peak_to_peak[mass] / 2.0)
+        .chain(
+            response
+                .points
+                .iter()
+                .filter_map(|p| p.no_impact.filter(|n| n.possible && mass == 0))
+                .map(|n| n.amplitude),
+        )
+        .fold(0.0, f64::max);
+    let y = AxisSpec::new(if mass == 0 { "Amplitude of x₁" } else { "Amplitude of x₂" }, "mm");
+    let (first, last) = (response.points.first(), response.points.last());
+    let ends = [first, last].map(|p| p.map_or(f64::NAN, |p| p.frequency));
+    // Three decades are shown.
+    let y = if top > 0.0 { y.log().limits(1.0 * top, 2.0e3 * top) } else { y };
+    let mut plot = Plot::new(AxisSpec::frequency().limits(ends[0], ends[1]), y).title(if mass == 0 {
+        "excited mass"
+    } else {
+        "passive mass"
+    });
+    let mut lines: [Pieces; 3] = Default::default();
+    let (mut free, mut back) = (Pieces::default(), Pieces::default());
+    for pair in response.points.windows(2) {
+        let [a, b] = pair else { continue };
+        let place = |o: &Orbit| (o.frequency, 1e3 * o.peak_to_peak[mass] / 2.0);
+        for orbit in &a.orbits {
+            let Some(next) = orbit.continued(&b.orbits) else { continue };
+            if let (Some(_), Some(seen)) = (look(orbit), look(next)) {
+                lines[seen as usize].join(place(orbit), place(next));
+            }
+        }
+        if let (Some(n), Some(m)) = (a.no_impact, b.no_impact)
+            && n.possible
+            && m.possible
+        {
+            let height = |amplitude: f64| if mass == 0 { 1e3 * amplitude } else { 0.0 };
+            free.join((a.frequency, height(n.amplitude)), (b.frequency, height(m.amplitude)));
+        }
+        if let (Some(n), Some(m)) = (&a.backbone, &b.backbone) {
+            // Poles are no lines.
+            let (n, m) = (place(n), place(m));
+            if n.1.max(m.1) < 2.0e3 * top && n.1 < 3.0 * m.1 && m.1 < 3.0 * n.1 {
+                back.join(n, m);
+            }
+        }
+    }
+    let [real, unstable, impossible] = lines;
+    for (name, pieces, ink, stroke) in [
+        ("impossible", impossible, Ink::Grey, Stroke::Thin),
+        ("backbone", back, Ink::Nth(2), Stroke::DashDot),
+        ("without impacts", free, Ink::Black, Stroke::Thin),
+        ("unstable", unstable, Ink::Nth(0), Stroke::Dashed),
+        ("stable", real, Ink::Nth(0), Stroke::Solid),
+    ] {
+        if !pieces.lines.is_empty() {
+            plot = plot.with(pieces.series(name).ink(ink).stroke(stroke));
+        }
+    }
+    for (kinds, name, marker) in [
+        (&[ChangeKind::Fold][..], "fold", Marker::FilledSquare),
+        (&[ChangeKind::Flip], "flip", Marker::Diamond),
+        (&[ChangeKind::NeimarkSacker], "Neimark–Sacker", Marker::Triangle),
+        (&[ChangeKind::Grazing, ChangeKind::SecondContact], "grazing", Marker::OpenCircle),
+    ] {
+        let at = response.changes.iter().filter(|c| {
+            kinds.contains(&c.kind) && c.amplitude[mass] < 2.0 * top && c.amplitude[mass] > 1e-3 * top
+        });
+        let (x, y): (Vec<f64>, Vec<f64>) = at.map(|c| (c.frequency, 1e3 * c.amplitude[mass])).unzip();
+        if !x.is_empty() {
+            plot = plot.with(Series::points(name, x, y).ink(Ink::Nth(3)).marker(marker));
+        }
+    }
+    plot
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::Shape;
+
+    #[test]
+    fn lines_side_by_side_stay_whole() {
+        let mut pieces = Pieces::default();
+        for i in 0..3 {
+            let x = f64::from(i);
+            pieces.join((x, 0.0), (x + 1.0, 0.0));
+            pieces.join((x, 5.0 + x), (x + 1.0, 6.0 + x));
+        }
+        let Shape::Line { x, y, .. } = pieces.series("").shape else { panic!("a line") };
+        assert_eq!((&x[..4], &y[..4]), (&[0.0, 1.0, 2.0, 3.0][..], &[0.0; 4][..]));
+        assert!(x[4].is_nan() && y[4].is_nan());
+        assert_eq!((&x[5..], &y[5..]), (&[0.0, 1.0, 2.0, 3.0][..], &[5.0, 6.0, 7.0, 8.0][..]));
+    }
+}

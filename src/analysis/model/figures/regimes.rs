@@ -1,0 +1,90 @@
+//! Maps of regime and stability over two parameters.
+
+use crate::error::Result;
+use crate::model::Regime;
+use crate::model::map::{Axis, Cell, Plan, Rows};
+use crate::report::layout::lettered;
+use crate::report::{AxisSpec, Figure, Heatmap, Legend, Plot};
+use ndarray::Array2;
+
+/// Patterns that have a colour of their own: the most frequent ones.
+const OWN: usize = 3;
+
+/// Regimes by colour, and the spectral radius, beside each other.
+///
+/// # Errors
+/// As [`Heatmap::new`].
+pub fn regimes(plan: &Plan, rows: &Rows) -> Result<Figure> {
+    let (x, y) = (plan.x.values(), plan.y.values());
+    let cells = |of: &dyn Fn(&Cell) -> f64| {
+        Array2::from_shape_fn((y.len(), x.len()), |(row, column)| {
+            rows.get(row).map_or(f64::NAN, |cells| of(&cells[column]))
+        })
+    };
+    let all: Vec<Cell> = (0..y.len()).filter_map(|row| rows.get(row)).flatten().copied().collect();
+    let own = frequent(&all);
+    let (names, class) = classes(&own);
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let regime = cells(&|c| c.regime.map_or(f64::NAN, |r| class(r) as f64));
+    let radius = cells(&|c| c.spectral_radius.unwrap_or(f64::NAN));
+    let axis = |axis: &Axis| {
+        let (name, unit) = axis.key.label();
+        AxisSpec::new(label(name), unit)
+    };
+    let plot = |title: &str| Plot::new(axis(&plan.x), axis(&plan.y)).title(title);
+    let scale = AxisSpec::new("Spectral radius", "").limits(f64::NAN, 1.0);
+    let figure = Figure::double("Regimes")
+        .columns(2)
+        .panel(
+            plot("regime (impacts/cycles)")
+                .heatmap(Heatmap::classes(&x, &y, &regime, &names)?)
+                .legend(Legend::Above),
+        )
+        .panel(plot("stability").heatmap(Heatmap::new(&x, &y, &radius, scale)?))
+        .caption(
+            "Motion from rest. (a) Its pattern of impacts, told by comparing states at impact. (b) Largest modulus of the Floquet \
+             multipliers over the period of the pattern; white where there is none.",
+        );
+    Ok(lettered(figure))
+}
+
+/// The most frequent patterns.
+fn frequent(cells: &[Cell]) -> Vec<Regime> {
+    let mut counts: Vec<(Regime, usize)> = Vec::new();
+    for regime in cells.iter().filter_map(|c| c.regime) {
+        if !matches!(regime, Regime::Periodic { .. }) {
+            continue;
+        }
+        match counts.iter_mut().find(|c| c.0 == regime) {
+            Some(count) => count.1 += 1,
+            None => counts.push((regime, 1)),
+        }
+    }
+    counts.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.to_string().cmp(&b.0.to_string())));
+    counts.into_iter().take(OWN).map(|c| c.0).collect()
+}
+
+/// Names of the classes, and the class of a regime.
+fn classes(own: &[Regime]) -> (Vec<String>, impl Fn(Regime) -> usize) {
+    let mut names: Vec<String> = own.iter().map(Regime::to_string).collect();
+    let n = names.len();
+    names.extend(["other patterns", "irregular or not settled", "chatter", "no impact"].map(str::to_owned));
+    let own = own.to_vec();
+    let class = move |regime: Regime| {
+        own.iter().position(|r| *r == regime).unwrap_or(match regime {
+            Regime::Periodic { .. } => n,
+            Regime::Irregular => n + 1,
+            Regime::Chatter { .. } => n + 2,
+            Regime::NoImpact => n + 3,
+        })
+    };
+    (names, class)
+}
+
+fn label(name: &str) -> String {
+    match name {
+        "frequency" => "Excitation frequency".to_owned(),
+        "m1" | "m2" | "k1" | "k2" | "c1" | "c2" => name.to_owned(),
+        _ => name[..1].to_uppercase() + &name[1..],
+    }
+}

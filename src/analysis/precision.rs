@@ -1,0 +1,4 @@
+//! Speed against accuracy: figures and tables of scenes and of borders.
+
+pub mod figures;
+pub mod tables;

@@ -1,0 +1,145 @@
+//! Contact pulses: `[[pulse]]`, `vibro pulse`.
+
+pub mod figures;
+pub mod tables;
+
+use super::job::Record;
+use super::source::{file_name, name_of};
+use super::{Analysis, Answer, Job, Source};
+use crate::campaign::{Entry, LowPass, above_zero};
+use crate::error::{Error, Result};
+use crate::measure::pulse::{Instrument, PulseOptions, PulseResult, pulse, two_times};
+use serde::Deserialize;
+
+/// What is known of a pulse and of its instrument, or two times without a record.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
+pub struct Keys {
+    /// Time from the onset to the largest force, in s: instead of a file
+    #[cfg_attr(
+        feature = "cli",
+        arg(
+            long,
+            value_name = "S",
+            allow_negative_numbers = true,
+            conflicts_with_all = crate::campaign::Channel::KEYS.into_iter().chain(crate::campaign::Reading::KEYS)
+        )
+    )]
+    pub time_to_peak: Option<f64>,
+    /// Time from the onset to the end of the contact, in s
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S", allow_negative_numbers = true))]
+    pub duration: Option<f64>,
+    /// Standard uncertainty of each of the two times, in s
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S", allow_negative_numbers = true))]
+    pub std: Option<f64>,
+    /// Mass that is decelerated, in kg, for stiffness and damping
+    #[cfg_attr(feature = "cli", arg(long, value_name = "KG", allow_negative_numbers = true))]
+    pub mass: Option<f64>,
+    /// Corner (-3 dB) of the instrument's Butterworth low-pass, in Hz, or none [default: not known, and no uncertainty]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", value_parser = LowPass::typed, allow_negative_numbers = true))]
+    pub low_pass: Option<LowPass>,
+    /// Order of that low-pass, 1 to 10
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
+    pub order: Option<usize>,
+}
+
+impl Keys {
+    /// Whether the keys go together, beside a file or without one.
+    ///
+    /// # Errors
+    /// With the key that does not.
+    pub fn usable(&self, file: bool) -> Result<()> {
+        let wrong = |key, found: String, expected: &str| Err(Error::usage(found, expected).setting(key));
+        above_zero("mass", self.mass)?;
+        let times = self.time_to_peak.is_some();
+        if times != self.duration.is_some() {
+            let key = if times { "time_to_peak" } else { "duration" };
+            return wrong(key, "only one of time_to_peak and duration".to_owned(), "both, or none");
+        }
+        if self.std.is_some() && !times {
+            return wrong("std", "std without time_to_peak and duration".to_owned(), "both times");
+        }
+        match (file, times) {
+            (true, true) => return wrong("time_to_peak", "a file and two times".to_owned(), "one of them"),
+            (false, false) => {
+                let expected = "a file, or time_to_peak and duration";
+                return Err(Error::usage("neither a file nor two times", expected));
+            }
+            _ => {}
+        }
+        let key = if self.low_pass.is_some() { "low_pass" } else { "order" };
+        if times && (self.low_pass.is_some() || self.order.is_some()) {
+            return wrong(key, format!("{key} beside two times"), "a file, or leave it out");
+        }
+        self.instrument().map(drop).map_err(|e| e.setting(key))
+    }
+
+    fn instrument(&self) -> Result<Instrument> {
+        Instrument::stated(self.low_pass.map(LowPass::corner), self.order)
+    }
+
+    /// The contact of two times.
+    ///
+    /// # Errors
+    /// If the times cannot be.
+    pub fn times(&self, name: &str) -> Result<Answer> {
+        let (peak, duration) = self.time_to_peak.zip(self.duration).unwrap_or((f64::NAN, f64::NAN));
+        shown(name, &two_times(peak, duration, self.std, self.mass)?)
+    }
+
+    /// The contact of a record.
+    ///
+    /// # Errors
+    /// If the file cannot be read, or its trace allows no answer.
+    pub fn measure(&self, source: &Source<'_>) -> Result<Answer> {
+        let recording = source.recording()?;
+        let trace = source.trace(&recording)?;
+        let found = pulse(&trace, &PulseOptions { instrument: self.instrument()?, mass: self.mass })?;
+        let mut answer = shown(source.name, &found)?;
+        answer.tell("", &recording.doubts);
+        answer.tell("", &trace.meta.doubts);
+        Ok(answer)
+    }
+}
+
+fn shown(name: &str, found: &PulseResult) -> Result<Answer> {
+    let mut answer = Answer::of(found)?;
+    answer.tell("", &found.findings);
+    answer.figures.extend(figures::pulse(name, found).map(|figure| ("pulse".to_owned(), figure)));
+    answer.csv("pulse", &tables::pulse(name, found));
+    answer.tables.push(tables::pulse(name, found));
+    if !found.fits.is_empty() {
+        answer.csv("pulse_fits", &tables::pulse_fits(name, found));
+        answer.tables.push(tables::pulse_fits(name, found));
+    }
+    Ok(answer)
+}
+
+impl Analysis for Keys {
+    const SECTION: &'static str = "pulse";
+
+    fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
+        entry.keys.usable(entry.file.is_some())
+    }
+
+    fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
+        let mut records = Vec::new();
+        for (i, entry) in entries.iter().enumerate() {
+            let (name, file, found) = if entry.file.is_some() {
+                let (name, path) = (name_of(entry), job.path(entry)?);
+                let found = job.measured(entry, &name, &path, |source| entry.keys.measure(source));
+                (name, file_name(&path), found)
+            } else {
+                let name = entry.name.clone().unwrap_or_else(|| format!("pulse {}", i + 1));
+                let found = entry.keys.times(&name);
+                (name, String::new(), found)
+            };
+            let Some(answer) = job.found(&name, found)? else { continue };
+            let mark = (records.len() + 1).to_string();
+            records.push(Record { name, file: file.into(), mark, answer });
+        }
+        job.answer("pulses", records);
+        Ok(())
+    }
+}

@@ -1,0 +1,81 @@
+//! Where a record comes from: a table of a campaign, or a command line.
+
+use crate::campaign::{Channel, Entry, Reading};
+use crate::error::Result;
+use crate::read::{Reader, Recording};
+use crate::record::Trace;
+use std::path::{Path, PathBuf};
+
+/// A file, how it is read, and who is told of the progress.
+#[derive(Clone, Copy)]
+pub struct Source<'a> {
+    /// Name of the record for people.
+    pub name: &'a str,
+    /// The file.
+    pub path: &'a Path,
+    /// Which record of the file.
+    pub channel: &'a Channel,
+    /// What the file does not say.
+    pub reading: &'a Reading,
+    /// Path of a further file that a key names.
+    pub beside: &'a dyn Fn(&'static str, &Path) -> Result<PathBuf>,
+    /// Told how many samples were gone over, of how many.
+    pub progress: &'a (dyn Fn(usize, usize) + Sync),
+}
+
+impl Source<'_> {
+    /// A reader that knows what is stated.
+    ///
+    /// # Errors
+    /// If what is stated cannot be.
+    pub fn reader(&self) -> Result<Reader> {
+        self.reading.reader()
+    }
+
+    /// The recording, in which a base band gives the sampling rate.
+    ///
+    /// # Errors
+    /// If the file cannot be read.
+    pub fn recording(&self) -> Result<Recording> {
+        self.reader()?.rate_of_base_band().from_path(self.path)
+    }
+
+    /// The trace that is meant of a recording.
+    ///
+    /// # Errors
+    /// If there is no such trace.
+    pub fn trace(&self, recording: &Recording) -> Result<Trace> {
+        recording.trace(self.channel.channel.as_deref(), self.channel.calibration)
+    }
+
+    /// Path of a further file, where a key names one.
+    ///
+    /// # Errors
+    /// If it lies where none may lie, or does not exist.
+    pub fn further(&self, key: &'static str, file: Option<&PathBuf>) -> Result<Option<PathBuf>> {
+        file.map(|file| (self.beside)(key, file)).transpose()
+    }
+}
+
+impl<'a> Source<'a> {
+    /// A record of a command line, whose files are named as they are.
+    pub fn typed(
+        name: &'a str,
+        path: &'a Path,
+        channel: &'a Channel,
+        reading: &'a Reading,
+        progress: &'a (dyn Fn(usize, usize) + Sync),
+    ) -> Source<'a> {
+        Source { name, path, channel, reading, beside: &|_, file| Ok(file.to_owned()), progress }
+    }
+}
+
+/// The name of a file without its folder.
+pub fn file_name(path: &Path) -> String {
+    path.file_name().map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into_owned())
+}
+
+/// Name of a table for people: that stated, else the file's.
+pub fn name_of<K>(entry: &Entry<K>) -> String {
+    entry.name.clone().or_else(|| entry.file.as_deref().map(file_name)).unwrap_or_default()
+}

@@ -1,0 +1,167 @@
+//! Spectra of time records, and the function of two channels: `[[spectrum]]`, `vibro spectrum`.
+
+pub mod figures;
+pub mod tables;
+
+use super::job::Marks;
+use super::{Analysis, Answer, Job, Source, no_file};
+use crate::campaign::{Entry, channel};
+use crate::error::{Error, Result};
+use crate::measure::spectral::{Method, SpectralOptions, SpectralResult, spectral};
+use crate::record::{Scaling, Window};
+use crate::report::files;
+use crate::signal::transfer::Estimator;
+use serde::Deserialize;
+
+/// How a spectrum is taken, or the function of two channels.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
+pub struct Keys {
+    /// One transform of the whole record, fft, or the average over segments, welch [default: welch; fft with tones]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "METHOD", value_parser = crate::campaign::word::<Method>))]
+    pub method: Option<Method>,
+    /// Fit the N strongest sines of the whole record, 1 to 10: frequency, amplitude and phase with their uncertainties
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
+    pub tones: Option<usize>,
+    /// Samples of a segment [default: 8192, or the whole of a shorter record]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "SAMPLES"))]
+    pub segment: Option<usize>,
+    /// Part of a segment that it shares with the next [default: 0.5]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "PART", allow_negative_numbers = true))]
+    pub overlap: Option<f64>,
+    /// Taken out before the window: mean or none [default: mean with welch or an integration, else none]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "WHAT", value_parser = crate::campaign::word::<Detrend>))]
+    pub detrend: Option<Detrend>,
+    /// Window: hann, rectangular, hamming, blackman, blackman-harris, flat-top [default: hann]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = crate::campaign::word::<Window>))]
+    pub window: Option<Window>,
+    /// What a line means: peak, rms, power or psd [default: peak]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = crate::campaign::word::<Scaling>))]
+    pub scaling: Option<Scaling>,
+    /// Integrations in frequency: 1 takes velocity to displacement, −1 to acceleration [default: 0]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N", allow_negative_numbers = true))]
+    pub integrate: Option<i8>,
+    /// Lowest frequency given, in Hz [default: two lines where integrated, else 0]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
+    pub fmin: Option<f64>,
+    /// Channel of the excitation: gives the frequency response function from it
+    #[serde(deserialize_with = "channel")]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME"))]
+    pub reference: Option<String>,
+    /// FRF estimator: h1 for noise in the response, h2 for noise in the excitation, hv for both alike [default: h1]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = crate::campaign::word::<Estimator>))]
+    pub estimator: Option<Estimator>,
+    /// The excitation is a hammer: one record a blow, of the samples of a segment, from the level before it
+    #[cfg_attr(feature = "cli", arg(long))]
+    pub hammer: bool,
+    /// Width of the force window in s
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
+    pub force_window: Option<f64>,
+    /// What an exponential window leaves of the response at the end of a record, e.g. 0.01
+    #[cfg_attr(feature = "cli", arg(long, value_name = "PART"))]
+    pub left_at_end: Option<f64>,
+    /// Channel delay to remove, in s: the channel was recorded later than the reference
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S", allow_negative_numbers = true))]
+    pub delay: Option<f64>,
+    /// Give levels in decibels over this reference, in SI units of the channel: 1, or 1e-6 for 1 µm/s²
+    #[cfg_attr(feature = "cli", arg(long, value_name = "REF"))]
+    pub decibel: Option<f64>,
+}
+
+/// What is taken out of a segment before the window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Detrend {
+    /// Nothing.
+    None,
+    /// Its mean.
+    Mean,
+}
+
+impl Keys {
+    /// The options of the estimator.
+    ///
+    /// # Errors
+    /// If keys contradict each other or cannot be.
+    pub fn options(&self) -> Result<SpectralOptions> {
+        if self.estimator.is_some() && self.reference.is_none() {
+            let expected = "the channel of the excitation as reference";
+            return Err(Error::usage("estimator without a reference", expected).setting("estimator"));
+        }
+        let options = SpectralOptions {
+            method: self.method,
+            segment: self.segment,
+            overlap: self.overlap,
+            detrend: self.detrend.map(|d| d == Detrend::Mean),
+            window: self.window,
+            scaling: self.scaling,
+            integrate: self.integrate.unwrap_or(0),
+            fmin: self.fmin,
+            estimator: self.reference.as_ref().map(|_| self.estimator.unwrap_or(Estimator::H1)),
+            hammer: self.hammer,
+            force_window: self.force_window,
+            left_at_end: self.left_at_end,
+            delay: self.delay,
+            decibel: self.decibel,
+            tones: self.tones,
+        };
+        options.check()?;
+        Ok(options)
+    }
+
+    /// The lines of a record.
+    ///
+    /// # Errors
+    /// If the file cannot be read, or the record allows no answer.
+    pub fn lines(&self, source: &Source<'_>) -> Result<SpectralResult> {
+        let options = self.options()?;
+        let reader = source.reader()?.rate_of_base_band();
+        let (channel, reference) = (source.channel, self.reference.as_deref());
+        let mut traces =
+            reader.stream_chosen(source.path, reference, channel.channel.as_deref(), channel.calibration)?;
+        let all = traces.frames();
+        spectral(&mut traces, &options, |done| (source.progress)(done, all))
+    }
+
+    /// The lines of a record, with their figure, tables and files.
+    ///
+    /// # Errors
+    /// As [`Keys::lines`].
+    pub fn measure(&self, source: &Source<'_>) -> Result<Answer> {
+        let found = self.lines(source)?;
+        let mut answer = Answer::of(&found)?;
+        answer.result.insert("channel".to_owned(), found.name.clone().into());
+        answer.tell("", &found.warnings);
+        answer.tell("", &found.findings);
+        answer.tables = vec![tables::peaks(source.name, &found), tables::tones(source.name, &found)];
+        answer.details.push(tables::taken(&found));
+        let name = if self.reference.is_some() { "frf" } else { "spectrum" };
+        answer.figure(name, figures::lines(source.name, &found));
+        let (files, unwritten) = files::records(name, &found.records())?;
+        answer.files = files;
+        answer.tell("", &unwritten.into_iter().collect::<Vec<_>>());
+        Ok(answer)
+    }
+}
+
+impl Analysis for Keys {
+    const SECTION: &'static str = "spectrum";
+
+    fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
+        entry.file.as_ref().ok_or_else(no_file)?;
+        entry.keys.options().map(drop)
+    }
+
+    fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
+        job.each("spectra", entries, Marks::Names, |entry, source| {
+            let mut answer = entry.keys.measure(source)?;
+            // Beside the functions of [[frf]], which are numbered, all are spectra.
+            let names = answer.figures.iter_mut().map(|f| &mut f.0);
+            for name in names.chain(answer.files.iter_mut().map(|f| &mut f.0)) {
+                *name = name.replacen("frf", "spectrum", 1);
+            }
+            Ok(vec![answer])
+        })
+    }
+}

@@ -1,0 +1,66 @@
+//! Residuals of a fit, and the profile of its least certain parameter.
+
+use crate::compare::{Fit, Profile};
+use crate::record::Direction;
+use crate::report::layout::lettered;
+use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
+use std::fmt::Write as _;
+
+/// Residuals over frequency, by mass and direction, and the profile of the parameter with the largest relative uncertainty.
+pub fn fit(title: &str, fit: &Fit) -> Figure {
+    let mut above =
+        Plot::new(AxisSpec::new("Excitation frequency", "Hz"), AxisSpec::new("Residual / stated std", ""))
+            .legend(Legend::Right);
+    for (mass, direction, marker) in [
+        (1, Direction::Up, Marker::Circle),
+        (1, Direction::Down, Marker::OpenCircle),
+        (2, Direction::Up, Marker::FilledSquare),
+        (2, Direction::Down, Marker::Square),
+    ] {
+        let mine = fit.points.iter().filter(|p| p.mass == mass && p.direction == direction);
+        let (x, y): (Vec<f64>, Vec<f64>) = mine.map(|p| (p.frequency, p.residual)).unzip();
+        if !x.is_empty() {
+            let name = format!("mass {mass}, {}", direction.name());
+            above =
+                above.with(Series::points(name, x, y).ink(Ink::Nth(usize::from(mass) - 1)).marker(marker));
+        }
+    }
+    above = above.with(Series::horizontal("", 0.0));
+    let mut figure = Figure::double(title).panel(above.title("Residuals")).height(80.0);
+    let left = fit.left_out;
+    let mut caption = format!(
+        "Residuals of {} amplitudes in units of their stated standard uncertainties; {} of other motions, and outliers, are left out.",
+        fit.n,
+        left.clear()
+    );
+    if let Some(profile) = &fit.profile {
+        let sure = fit.doubt.is_none();
+        figure = figure.panel(profiled(profile, sure)).height(150.0);
+        let name = profile.parameter.name();
+        let _ = write!(
+            caption,
+            " Below: the least sum of squares over {name}, the least certain parameter, all others free; "
+        );
+        let _ = if sure {
+            write!(caption, "the 95 % confidence interval lies below the grey line ({}).", profile.limit)
+        } else {
+            write!(caption, "the answer is in doubt, so it gives no interval.")
+        };
+    }
+    lettered(figure).caption(caption)
+}
+
+fn profiled(profile: &Profile, sure: bool) -> Plot {
+    let top = profile.rise.iter().copied().filter(|r| r.is_finite()).fold(profile.limit, f64::max);
+    let unit = if profile.unit == "1" { "" } else { profile.unit };
+    let plot = Plot::new(
+        AxisSpec::new(profile.parameter.name(), unit),
+        AxisSpec::new("Rise of the sum of squares", "").limits(0.0, 1.05 * top.min(6.0 * profile.limit)),
+    )
+    .title(format!("Profile of {}", profile.parameter.name()))
+    .legend(Legend::Hidden);
+    let plot = if sure { plot.with(Series::horizontal("95 %", profile.limit)) } else { plot };
+    plot.with(
+        Series::line("", profile.value.clone(), profile.rise.clone()).ink(Ink::Nth(0)).stroke(Stroke::Solid),
+    )
+}

@@ -1,0 +1,157 @@
+//! Measured responses over the predicted branches.
+
+use super::response::{MARKS, log_limits, rank, series, shown};
+use crate::compare::{Kind, Level, Motion, Overlay, Pair, Prediction, Verdict};
+use crate::measure::response::Response;
+use crate::model::ladder::Model;
+use crate::report::layout::lettered;
+use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
+use crate::units::notation::significant;
+
+/// Height of a panel in mm.
+const PANEL: f64 = 85.0;
+
+/// One panel a mass and level of force: branches that can be seen solid, unstable ones dashed, neutral ones dash-dotted, the
+/// motion without impacts thin; measured points on top. Branches on which the masses would pass through each other are left
+/// out.
+pub fn overlay(title: &str, overlay: &Overlay, responses: &[Response]) -> Figure {
+    let force = match overlay.force {
+        Some(force) => format!("a force of {force:.4} N"),
+        None => "the measured force".to_owned(),
+    };
+    let mut figure = Figure::double(title).shared_x().caption(format!(
+        "Fundamental of the displacement. Lines: closed form for {force}; motions in which the masses would pass through each \
+         other are left out, and so is mass 2 at rest. Crosses: what a simulated sweep comes to where that is another motion, or where impacts last. Points: measured. {MARKS}"
+    ));
+    for level in &overlay.levels {
+        for mass in [1, 2] {
+            let measured: Vec<(usize, &Response)> = (0..)
+                .zip(responses)
+                .filter(|(_, r)| r.mass == Some(mass) && level.sweeps.contains(&r.name))
+                .map(|(i, r)| (rank(responses, i), r))
+                .collect();
+            if !measured.is_empty() {
+                let name = if overlay.levels.len() > 1 { level_name(level) } else { String::new() };
+                let plot = panel(mass, &level.curve, &overlay.pairs, &measured);
+                figure = figure.panel(plot.title(name));
+            }
+        }
+    }
+    let panels = figure.panels.len().max(1) as f64;
+    lettered(figure.height(PANEL * panels))
+}
+
+fn level_name(level: &Level) -> String {
+    format!("Force {} N", significant(level.force, 3))
+}
+
+fn panel(mass: u8, curve: &Prediction, pairs: &[Pair], measured: &[(usize, &Response)]) -> Plot {
+    let (factor, unit) = shown("m");
+    let y = AxisSpec::new(format!("Displacement of mass {mass}"), unit).log();
+    // The branches may run out of the picture: what is measured decides its size.
+    let limits = log_limits(measured.iter().map(|m| m.1)).map(|(low, high)| (factor * low, factor * high));
+    let y = match limits {
+        Some((low, high)) => y.limits(low, high),
+        None => y,
+    };
+    let mut plot = Plot::new(AxisSpec::new("Excitation frequency", "Hz"), y);
+    let swept = |p: &&Pair| p.mass == mass && measured.iter().any(|(_, r)| r.name == p.sweep);
+    let lasting = [Model::KelvinVoigt, Model::HuntCrossley];
+    let lasts = pairs.iter().filter(swept).any(|p| lasting.contains(&p.model));
+    for (verdict, name, stroke) in [
+        (
+            Verdict::Seen,
+            if lasts { "one impact a cycle, at once" } else { "one impact a cycle" },
+            Stroke::Solid,
+        ),
+        (Verdict::Unstable, "unstable", Stroke::Dashed),
+        (Verdict::Neutral, "neutral", Stroke::DashDot),
+    ] {
+        // Both branches have one entry in the legend.
+        for rank in 0..2 {
+            let y: Vec<f64> = branch(curve, mass, rank, verdict).iter().map(|v| factor * v).collect();
+            if is_within(&y, limits) {
+                plot =
+                    plot.with(Series::line(name, curve.frequency.clone(), y).ink(Ink::Black).stroke(stroke));
+            }
+        }
+    }
+    if mass == 1 {
+        let y: Vec<f64> = curve.motions.iter().map(|m| factor * free(m, usize::from(mass) - 1)).collect();
+        if is_within(&y, limits) {
+            plot = plot.with(
+                Series::line("without impacts", curve.frequency.clone(), y)
+                    .ink(Ink::Grey)
+                    .stroke(Stroke::Thin),
+            );
+        }
+    }
+    for (rank, response) in measured {
+        let [points, faint] = series(response, *rank, &[], limits);
+        plot = plot.with(faint).with(points);
+    }
+    let other = pairs.iter().filter(swept).filter(|p| p.model != Model::ClosedForm);
+    let (x, y): (Vec<f64>, Vec<f64>) =
+        other.filter_map(|p| Some((p.frequency, factor * p.predicted?))).unzip();
+    if !x.is_empty() {
+        plot = plot.with(
+            Series::points(
+                if lasts { "predicted with the contact" } else { "another motion, simulated" },
+                x,
+                y,
+            )
+            .ink(Ink::Black)
+            .marker(Marker::Cross),
+        );
+    }
+    plot
+}
+
+/// Whether anything of a line is seen between these limits.
+fn is_within(y: &[f64], limits: Option<(f64, f64)>) -> bool {
+    let (low, high) = limits.unwrap_or((f64::MIN, f64::MAX));
+    y.windows(2).any(|part| {
+        part.iter().all(|v| v.is_finite()) && part[0].max(part[1]) >= low && part[0].min(part[1]) <= high
+    })
+}
+
+fn free(motions: &[Motion], mass: usize) -> f64 {
+    motions.iter().find(|m| m.kind == Kind::Free && m.is_seen()).map_or(f64::NAN, |m| m.amplitude[mass])
+}
+
+/// Amplitudes of the impacting motion of this rank where this is its verdict, and NaN elsewhere. Parts that cannot be seen
+/// reach one point into those that can, so that no gap opens between them.
+fn branch(curve: &Prediction, mass: u8, rank: usize, verdict: Verdict) -> Vec<f64> {
+    let motion = |i: usize| curve.motions[i].iter().filter(|m| m.kind == Kind::Impacting).nth(rank);
+    let is = |i: usize| i < curve.motions.len() && motion(i).is_some_and(|m| m.verdict == verdict);
+    let beside = |i: usize| verdict != Verdict::Seen && (is(i + 1) || i > 0 && is(i - 1));
+    (0..curve.frequency.len())
+        .map(|i| {
+            let shown = motion(i).filter(|m| is(i) || m.is_seen() && beside(i));
+            shown.map_or(f64::NAN, |m| m.amplitude[usize::from(mass) - 1])
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_beyond_the_limits_is_not_within() {
+        let limits = Some((1.0, 10.0));
+        for (y, seen) in [
+            (&[0.1, 0.5, 0.2][..], false),
+            (&[20.0, 50.0], false),
+            (&[0.5, 2.0], true),
+            // It crosses them between two points.
+            (&[0.5, 20.0], true),
+            // No line leads to a single point.
+            (&[f64::NAN, 2.0, f64::NAN], false),
+            (&[2.0], false),
+        ] {
+            assert_eq!(is_within(y, limits), seen, "{y:?}");
+        }
+        assert!(is_within(&[1e-9, 1e9], None) && !is_within(&[f64::NAN, f64::NAN], None));
+    }
+}

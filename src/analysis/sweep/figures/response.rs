@@ -1,0 +1,160 @@
+//! Response curves: every mass and direction, with uncertainties and named resonances.
+
+use crate::measure::jump::Jump;
+use crate::measure::resonance::{Resonance, ResonanceKind};
+use crate::measure::response::Response;
+use crate::record::Direction;
+use crate::report::layout::{capital, lettered};
+use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
+
+/// Amplitude over excitation frequency, linear above and logarithmic below.
+pub fn response(title: &str, responses: &[Response]) -> Figure {
+    let mut linear = plot(responses, false);
+    let factor = responses.first().map_or(1.0, |r| shown(r.unit).0);
+    for (text, f, a) in names(responses) {
+        linear = linear.note(text, f, factor * a);
+    }
+    let figure = Figure::double(title).height(160.0).shared_x().panel(linear).panel(plot(responses, true));
+    lettered(figure.caption(format!("Amplitude at the excitation frequency. {MARKS}")))
+}
+
+fn plot(responses: &[Response], log: bool) -> Plot {
+    let first = responses.first();
+    let quantity = first.map_or("Amplitude", |r| r.quantity);
+    let label = format!("{} amplitude", capital(quantity));
+    let (factor, unit) = first.map_or((1.0, ""), |r| shown(r.unit));
+    let y = AxisSpec::new(label, unit);
+    let x = AxisSpec::new("Excitation frequency", "Hz");
+    let limits = log_limits(responses.iter()).map(|(low, high)| (low * factor, high * factor));
+    let y = match limits {
+        Some((low, high)) if log => y.log().limits(low, high),
+        // Room for markers at zero.
+        Some((_, high)) => y.limits(-0.03 * high, f64::NAN),
+        None => y,
+    };
+    let mut plot = Plot::new(x, y);
+    for (i, response) in responses.iter().enumerate() {
+        let rank_here = rank(responses, i);
+        let same = |(k, r): &(usize, &Response)| {
+            r.direction == response.direction && rank(responses, *k) == rank_here
+        };
+        let jumps: Vec<&Jump> =
+            responses.iter().enumerate().filter(same).flat_map(|(_, r)| &r.jumps).collect();
+        let [measured, faint] = series(response, rank_here, &jumps, limits.filter(|_| log));
+        plot = plot.with(faint).with(measured.stroke(Stroke::Thin));
+    }
+    plot
+}
+
+/// What stands below figures of measured points.
+pub(super) const MARKS: &str = "Bars are one standard uncertainty where larger than the marker; \
+    triangles that point down are upper limits, where no motion stands out of the noise: those at the lower edge lie below it.";
+
+/// Limits of a logarithmic axis that shows all points that stand out of the noise, with their uncertainties but for those that
+/// reach down to nothing; of upper limits where there are no others.
+pub(super) fn log_limits<'a>(responses: impl Iterator<Item = &'a Response>) -> Option<(f64, f64)> {
+    let (mut clear, mut faint) = (Vec::new(), Vec::new());
+    for point in responses.flat_map(|r| &r.points) {
+        if let Some(limit) = point.upper_limit {
+            faint.push(limit);
+        } else {
+            let (a, std) = (point.amplitude.value, point.amplitude.std.unwrap_or(0.0));
+            clear.extend([(a - std).max(a / 4.0), a + std]);
+        }
+    }
+    let all = if clear.is_empty() { faint } else { clear };
+    let all = all.into_iter().filter(|a| *a > 0.0);
+    let (low, high) = all.fold((f64::INFINITY, 0.0f64), |(l, h), a| (l.min(a), h.max(a)));
+    (low <= high).then_some((low / 2.0, high * 2.0))
+}
+
+/// How many earlier sweeps are of the same mass and direction: the level of force, usually.
+pub(super) fn rank(responses: &[Response], i: usize) -> usize {
+    let of = |r: &Response| (r.mass, r.direction);
+    let earlier = responses.iter().take(i);
+    responses.get(i).map_or(0, |own| earlier.filter(|r| of(r) == of(own)).count())
+}
+
+/// Measured points and upper limits of one curve, in the ink of its mass and `rank` and the marker of its mass (circles or
+/// squares) and direction (filled or open). A line through the points is broken at these jumps of either mass, and at faint
+/// points. Upper limits below a logarithmic axis with these limits stand at its lower edge.
+pub(super) fn series(
+    response: &Response,
+    rank: usize,
+    jumps: &[&Jump],
+    axis: Option<(f64, f64)>,
+) -> [Series; 2] {
+    let (mut x, mut y, mut std) = (Vec::new(), Vec::new(), Vec::new());
+    let mut limits = (Vec::new(), Vec::new());
+    let (factor, _) = shown(response.unit);
+    // The middle of a triangle that stands on the edge, as a part of the axis.
+    let edge = axis.map_or(0.0, |(low, high)| low * (high / low).powf(0.02));
+    for (i, point) in response.points.iter().enumerate() {
+        let limit = point.upper_limit;
+        if let Some(limit) = limit {
+            limits.0.push(point.excitation);
+            limits.1.push((factor * limit).max(edge));
+        }
+        x.push(point.excitation);
+        y.push(if limit.is_some() { f64::NAN } else { factor * point.amplitude.value });
+        std.push(factor * point.amplitude.std.unwrap_or(0.0));
+        let next = response.points.get(i + 1).map_or(f64::NAN, |p| p.excitation);
+        let between = |f: f64| (f - point.excitation) * (f - next) < 0.0;
+        if jumps.iter().any(|j| between(j.frequency)) {
+            x.push(f64::NAN);
+            y.push(f64::NAN);
+            std.push(0.0);
+        }
+    }
+    let down = response.direction == Some(Direction::Down);
+    let marker = match (response.mass, down) {
+        (Some(2), false) => Marker::FilledSquare,
+        (Some(2), true) => Marker::Square,
+        (Some(_), false) => Marker::Circle,
+        (Some(_), true) => Marker::OpenCircle,
+        (None, _) => Marker::Auto,
+    };
+    let measured = Series::points(response.name.clone(), x, y).y_error(std).marker(marker);
+    let limits = Series::points("", limits.0, limits.1).marker(Marker::Limit);
+    let ink = response.mass.map_or(2 * rank, |mass| 2 * rank + usize::from(mass.saturating_sub(1)));
+    [measured, limits].map(|series| series.ink(Ink::Nth(ink)))
+}
+
+/// The unit in which motion is shown, and the factor from SI: the same on every axis.
+pub(super) fn shown(unit: &str) -> (f64, &str) {
+    match unit {
+        "m" => (1e3, "mm"),
+        "m/s" => (1e3, "mm/s"),
+        other => (1.0, other),
+    }
+}
+
+/// Names of resonances at the larger of the curves that show them; one name where both directions agree.
+fn names(responses: &[Response]) -> Vec<(String, f64, f64)> {
+    let mut found: Vec<(String, Vec<Direction>, f64, f64)> = Vec::new();
+    for response in responses {
+        let Some(direction) = response.direction else { continue };
+        let named = |r: &&Resonance| matches!(r.kind, ResonanceKind::Grazing | ResonanceKind::Clapping);
+        for r in response.resonances.iter().filter(named) {
+            // Equal to what the label prints.
+            match found.iter_mut().find(|f| f.0 == r.kind.name() && (f.2 - r.frequency).abs() < 0.01) {
+                Some(known) => {
+                    if !known.1.contains(&direction) {
+                        known.1.push(direction);
+                    }
+                    if known.3 < r.amplitude {
+                        (known.2, known.3) = (r.frequency, r.amplitude);
+                    }
+                }
+                None => found.push((r.kind.name().to_owned(), vec![direction], r.frequency, r.amplitude)),
+            }
+        }
+    }
+    found
+        .into_iter()
+        .map(|(kind, directions, f, a)| {
+            let going: Vec<&str> = directions.iter().map(|d| d.name()).collect();
+            (format!("{kind} {f:.2} Hz, {}", going.join(" and ")), f, a)
+        })
+        .collect()
+}

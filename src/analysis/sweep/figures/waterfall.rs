@@ -1,0 +1,92 @@
+//! Spectra of a sweep behind each other, and as a map.
+
+use crate::error::{Error, Result};
+use crate::measure::waterfall::Waterfall as Matrix;
+use crate::report::layout::capital;
+use crate::report::{AxisSpec, Figure, Heatmap, Legend, Plot, Waterfall};
+use crate::units::decibel;
+use ndarray::{Array2, Axis};
+
+/// Reference of levels in SI units: 1 µm, 1 µm/s, …
+const REFERENCE: f64 = 1e-6;
+/// Least and largest range of a map in dB.
+const RANGE: (f64, f64) = (60.0, 120.0);
+/// The part of a map's lines that may lie below its range.
+const BELOW: f64 = 0.05;
+
+/// Waterfall from the cut-off to `fmax` (Hz; the last line where it is `None`).
+///
+/// # Errors
+/// If the matrix and its axes do not fit.
+pub fn waterfall(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
+    let height = AxisSpec::new(format!("{} amplitude", capital(matrix.quantity.name())), matrix.unit.clone());
+    let (low, high) = range(matrix, fmax)?;
+    let scene = Waterfall::new(&matrix.frequency, &matrix.excitation, &matrix.magnitude, height)?
+        .frequencies(low, high);
+    Ok(Figure::double(matrix.name.clone()).height(120.0).panel(scene).caption(caption(matrix)))
+}
+
+/// Level over frequency and excitation in dB, from the largest line down to the noise.
+///
+/// # Errors
+/// If the matrix and its axes do not fit.
+pub fn map(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
+    let mut order: Vec<usize> = (0..matrix.excitation.len()).collect();
+    order.sort_by(|a, b| matrix.excitation[*a].total_cmp(&matrix.excitation[*b]));
+    // A map has one row a position: of repeated excitations the first stays.
+    order.dedup_by(|a, b| matrix.excitation[*a] <= matrix.excitation[*b]);
+    let (low, high) = range(matrix, fmax)?;
+    let columns: Vec<usize> =
+        (0..matrix.frequency.len()).filter(|k| (low..=high).contains(&matrix.frequency[*k])).collect();
+    let x: Vec<f64> = columns.iter().map(|k| matrix.frequency[*k]).collect();
+    let y: Vec<f64> = order.iter().map(|i| matrix.excitation[*i]).collect();
+    let values = matrix.magnitude.select(Axis(0), &order).select(Axis(1), &columns);
+    let key = AxisSpec::new(format!("{} level", capital(matrix.quantity.name())), matrix.unit.clone())
+        .db(REFERENCE);
+    let (key, colours) = match levels(&values) {
+        Some((bottom, top)) => {
+            let span = format!(" Colours span {:.0} dB; what lies deeper has the darkest.", top - bottom);
+            (key.limits(bottom, top), span)
+        }
+        None => (key, String::new()),
+    };
+    let caption = format!("{}{colours} White: not measured.", caption(matrix));
+    let heatmap = Heatmap::new(&x, &y, &values, key)?;
+    let frequency = AxisSpec::frequency().limits(low, high);
+    let plot = Plot::new(frequency, AxisSpec::new("Excitation frequency", "Hz"))
+        .heatmap(heatmap)
+        .legend(Legend::Hidden);
+    Ok(Figure::double(matrix.name.clone()).height(100.0).panel(plot).caption(caption))
+}
+
+/// Limits of the colours in dB, in whole tens: the largest line, and what nearly all lines lie above.
+fn levels(values: &Array2<f64>) -> Option<(f64, f64)> {
+    // A level needs a reference; a millionth of the unit is the usual one for vibration amplitudes.
+    let levels = values.iter().filter(|v| v.is_finite() && **v > 0.0).map(|v| decibel(*v, REFERENCE));
+    let mut levels: Vec<f64> = levels.collect();
+    levels.sort_by(f64::total_cmp);
+    let top = (levels.last()? / 10.0).ceil() * 10.0;
+    let low = (levels.get((BELOW * levels.len() as f64) as usize)? / 10.0).floor() * 10.0;
+    Some((low.clamp(top - RANGE.1, top - RANGE.0), top))
+}
+
+fn range(matrix: &Matrix, fmax: Option<f64>) -> Result<(f64, f64)> {
+    let last = matrix.frequency.last().copied().unwrap_or(1.0);
+    let high = fmax.unwrap_or(last).min(last);
+    if high <= matrix.fmin {
+        return Err(Error::usage(
+            format!("a picture from {:.3} Hz (the cut-off) to {high:.3} Hz", matrix.fmin),
+            "an upper end above the cut-off",
+        )
+        .hint("raise --fmax, or lower --fmin"));
+    }
+    Ok((matrix.fmin, high))
+}
+
+fn caption(matrix: &Matrix) -> String {
+    if matrix.fmin > 0.0 {
+        format!("Spectra of {}; lines below the cut-off of {:.2} Hz are left out.", matrix.name, matrix.fmin)
+    } else {
+        format!("Spectra of {}.", matrix.name)
+    }
+}

@@ -1,0 +1,112 @@
+//! Sweeps that belong together: both masses, both directions, one level of force.
+
+use crate::compare::{Forcing, levels};
+use crate::measure::crossing::crossings;
+use crate::measure::resonance::{NamedCurve, deepest, name_modes};
+use crate::measure::response::Response;
+use crate::record::{Direction, Finding};
+use crate::report::words::About;
+use serde::Serialize;
+
+/// Where the curves of both masses cross.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Crossing {
+    /// Direction of the two sweeps.
+    pub direction: Direction,
+    /// Median force of the sweep of mass 1 in N, where the campaign has several levels of force.
+    pub force: Option<f64>,
+    /// Frequency in Hz.
+    pub frequency: f64,
+    /// Its standard uncertainty in Hz.
+    pub frequency_std: Option<f64>,
+    /// The mass that moves more above it.
+    pub larger_above: u8,
+}
+
+fn forced(response: &Response) -> Option<f64> {
+    Forcing::measured(response).map(|f| f.median())
+}
+
+/// Excitation frequency, amplitude and its standard uncertainty.
+fn curve(response: &Response) -> Vec<(f64, f64, f64)> {
+    let points = response.points.iter();
+    points.map(|p| (p.excitation, p.amplitude.value, p.amplitude.std.unwrap_or(f64::NAN))).collect()
+}
+
+fn by_level<'a>(responses: impl Iterator<Item = &'a Response>) -> Vec<Vec<usize>> {
+    levels(&responses.map(forced).collect::<Vec<_>>())
+}
+
+/// Names the resonances of sweeps, each level of force on its own.
+pub(super) fn name(responses: &mut [&mut Response]) {
+    for level in by_level(responses.iter().map(|r| &**r)) {
+        let members = responses.iter_mut().enumerate().filter(|(i, _)| level.contains(i));
+        let mut curves: Vec<NamedCurve<'_>> = members
+            .filter_map(|(_, r)| {
+                let (mass, direction) = (r.mass?, r.direction?);
+                let mut curve = curve(r);
+                curve.sort_by(|a, b| a.0.total_cmp(&b.0));
+                let (jumps, resonances) = (&mut r.jumps, &mut r.resonances);
+                Some(NamedCurve { mass, direction, curve, jumps, resonances })
+            })
+            .collect();
+        name_modes(&mut curves);
+    }
+}
+
+/// The first sweep of a mass in a direction.
+fn first<'a>(of: &[&'a Response], mass: u8, direction: Direction) -> Option<&'a Response> {
+    of.iter().copied().find(|r| r.mass == Some(mass) && r.direction == Some(direction))
+}
+
+/// The antiresonance of mass 1, up and down, at the first level of force.
+pub(super) fn antiresonances(responses: &[Response]) -> [Option<f64>; 2] {
+    let all: Vec<&Response> = responses.iter().collect();
+    [Direction::Up, Direction::Down]
+        .map(|direction| first(&all, 1, direction).and_then(|r| deepest(&r.resonances)))
+}
+
+/// Where both masses cross, in each direction at each level of force.
+pub(super) fn all_crossings(responses: &[Response]) -> Vec<Crossing> {
+    let levels = by_level(responses.iter());
+    let mut found = Vec::new();
+    for level in &levels {
+        let members: Vec<&Response> = level.iter().filter_map(|i| responses.get(*i)).collect();
+        for direction in [Direction::Up, Direction::Down] {
+            let pair = first(&members, 1, direction).zip(first(&members, 2, direction));
+            let Some((one, two)) = pair else { continue };
+            let force = forced(one).filter(|_| levels.len() > 1);
+            let jumps = [one.jumps.as_slice(), &two.jumps].concat();
+            found.extend(crossings(curve(one), curve(two), &jumps).into_iter().map(|c| Crossing {
+                direction,
+                force,
+                frequency: c.frequency,
+                frequency_std: c.frequency_std,
+                larger_above: if c.second_above { 2 } else { 1 },
+            }));
+        }
+    }
+    found
+}
+
+/// What is open about levels of force: sweeps of one mass, direction and level, of which naming and crossings know only the first, and
+/// sweeps whose level is not known.
+pub(super) fn twice(responses: &[Response]) -> Vec<About> {
+    let mut found = Vec::new();
+    let levels = by_level(responses.iter());
+    if levels.len() > 1 {
+        let unknown = responses.iter().filter(|r| forced(r).is_none());
+        found.extend(unknown.map(|r| (r.name.clone(), Finding::caution("force-not-measured"))));
+    }
+    for level in levels {
+        let members: Vec<&Response> = level.iter().filter_map(|i| responses.get(*i)).collect();
+        for (i, r) in members.iter().enumerate() {
+            let Some((mass, direction)) = r.mass.zip(r.direction) else { continue };
+            if let Some(known) = members.get(..i).and_then(|before| first(before, mass, direction)) {
+                let finding = Finding::caution("swept-twice").name("first", format!("{:?}", known.name));
+                found.push((r.name.clone(), finding));
+            }
+        }
+    }
+    found
+}

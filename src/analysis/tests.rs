@@ -1,0 +1,78 @@
+use super::*;
+use crate::units::Quantity;
+
+fn of(text: &str) -> Result<Campaign> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("campaign.toml");
+    std::fs::write(&path, text).unwrap();
+    open(path)
+}
+
+const SWEEP: &str = "[[sweep]]\nname = \"a\"\nlist = \"L.TXT\"\n";
+
+#[test]
+fn a_campaign_of_every_part() {
+    let text = format!(
+        "name = \"x\"\n[rig]\ngap = 2e-3\n[excitation]\nkind = \"sine\"\nforce = 0.1\n{SWEEP}\
+         quantity = \"velocity\"\ndirection = \"down\"\nmass = 2\nwindow = \"hann\"\n\
+         [[frf]]\nfile = \"a.uff\"\n[[drop]]\nfile = \"d.wav\"\n[compute]\noverlay = false\n"
+    );
+    let campaign = of(&text).unwrap();
+    assert_eq!(campaign.rig.map(|r| r.gap), Some(2e-3));
+    let sweeps = entries::<sweep::Keys>(&campaign).unwrap();
+    assert_eq!(sweeps[0].keys.reader().unwrap().quantity, Some(Quantity::Velocity));
+    assert!(campaign.out().ends_with("results") && !campaign.is_empty());
+}
+
+#[test]
+fn mistakes_point_at_their_line() {
+    for (text, line, word) in [
+        ("nam = 1", "line 1, column 1", "`name`"),
+        ("name = \"a\"\n[rig]\nm3 = 1", "line 3, column 1", "m3"),
+        ("[[sweep]]\nname = \"a\"", "line 2", "neither a list"),
+        (&format!("{SWEEP}{SWEEP}"), "line 5", "two sweeps"),
+        (&format!("{SWEEP}mass = 3"), "line 4", "mass"),
+        (&format!("{SWEEP}base_band = 50.0"), "line 3", "beside a list"),
+        (&format!("{SWEEP}quantity = \"speed\""), "line 4", "speed"),
+        (&format!("{SWEEP}unit = \"mm\"\nquantity = \"velocity\""), "line 4", "displacement"),
+        (&format!("{SWEEP}window = \"kaiser\""), "line 4", "kaiser"),
+        (&format!("{SWEEP}calibration = 0.0"), "line 4", "calibration"),
+        ("out = \"../x\"", "line 1", "outside"),
+        ("name = ", "line 1", ""),
+        ("[sweep]\nname = \"a\"", "line 1", "write [[sweep]]"),
+        ("[[rig]]\nm1 = 1.0", "line 1", "write [rig]"),
+        ("sweep = \"a\"", "line 1", "double brackets"),
+        (&format!("{SWEEP}direction = 3"), "line 4", "direction = 3; expected \"up\" or \"down\""),
+        (&format!("{SWEEP}direction = \"left\""), "line 4", "`up` or `down`"),
+        (&format!("{SWEEP}scaling = 1 # ?"), "line 4", "scaling = 1; expected \"peak\" or \"rms\""),
+        (&format!("{SWEEP}mass = -1"), "line 4", "found the integer `-1`; expected a small whole number"),
+        ("[[sweep]]\nlist = \"L\"", "line 1", "add name = "),
+        ("[rig]\nm1 = 0,5\nm2 = 1", "line 2", "write m1 = 0.5"),
+        ("[rig]\nm2 = 1.0\nk1 = -1.0", "line 3, column 1", "k1 is -1 N/m"),
+        (
+            "[[sweep]]\nname = \"a\"\nforce = [\"f\"]\nresponse = [\"r\"]\nlines = 400",
+            "line 2",
+            "1 force and 1 response files, lines 400, base_band left out",
+        ),
+    ] {
+        let error = of(text).unwrap_err().to_string();
+        assert!(error.contains(line) && error.contains(word) && error.contains('^'), "{text}\n{error}");
+    }
+}
+
+#[test]
+fn a_sweep_is_chosen_by_name() {
+    let campaign = of(&format!("{SWEEP}[[sweep]]\nname = \"b\"\nlist = \"M.TXT\"\n")).unwrap();
+    let chosen = |name| sweep::named(&campaign, name, false).unwrap_err().to_string();
+    assert!(chosen(None).contains("a, b") && chosen(Some("c")).contains("a, b"));
+    assert!(chosen(Some("a")).contains("does not exist"));
+}
+
+#[test]
+fn a_missing_recording_is_made_by_the_command_that_is_named() {
+    let campaign = of("made_by = \"make it\"\n[[impacts]]\nfile = \"x.wav\"\n").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let mut output = crate::report::Output::new(folder.path()).unwrap();
+    let error = run(&campaign, JobOptions::default(), &mut output, &()).unwrap_err().to_string();
+    assert!(error.contains("line 3") && error.contains("try: `make it` makes it"), "{error}");
+}

@@ -1,0 +1,129 @@
+//! What a person knows of a file that the file does not say: keys of a campaign and options of the command line alike.
+
+use super::channel;
+use crate::error::{Error, Result};
+use crate::read::{Format, Reader};
+use crate::units::Unit;
+use serde::Deserialize;
+
+/// How a measurement file is to be read, where it does not say itself.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
+pub struct Reading {
+    /// Force the format instead of finding it out
+    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME"))]
+    pub format: Option<String>,
+    /// Keep NaN, Inf and blank values as missing instead of refusing them
+    #[cfg_attr(feature = "cli", arg(long))]
+    pub allow_missing: bool,
+    /// Sampling rate in Hz: the values are a time trace
+    #[cfg_attr(
+        feature = "cli",
+        arg(long, value_name = "HZ", allow_negative_numbers = true, conflicts_with = "base_band")
+    )]
+    pub rate: Option<f64>,
+    /// Base band in Hz: the values are a spectrum from 0 to it, or a trace sampled at 2.56 times it
+    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", allow_negative_numbers = true))]
+    pub base_band: Option<f64>,
+    /// Unit of the values, such as mm/s
+    #[cfg_attr(feature = "cli", arg(long))]
+    pub unit: Option<String>,
+    /// Decimal mark, where the file leaves it open: comma or point
+    #[cfg_attr(feature = "cli", arg(long, value_name = "MARK", value_parser = crate::campaign::word::<Decimal>))]
+    pub decimal: Option<Decimal>,
+    /// Two columns of values are real and imaginary part
+    #[cfg_attr(feature = "cli", arg(long))]
+    pub complex: bool,
+}
+
+/// Which record of a file is meant, and its calibration.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
+pub struct Channel {
+    /// Record of the file, by name or by number from 1 [default: the only one]
+    #[serde(deserialize_with = "channel::one")]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME"))]
+    pub channel: Option<String>,
+    /// Factor on the stored values; with a unit, to that unit
+    #[cfg_attr(feature = "cli", arg(long, value_name = "FACTOR", allow_negative_numbers = true))]
+    pub calibration: Option<f64>,
+}
+
+/// Decimal mark of a text file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Decimal {
+    /// 1,5
+    Comma,
+    /// 1.5
+    Point,
+}
+
+/// Checks a setting that must be a finite number above 0.
+///
+/// # Errors
+/// If it is not.
+pub fn above_zero(key: &'static str, value: Option<f64>) -> Result<()> {
+    match value {
+        Some(v) if !(v.is_finite() && v > 0.0) => {
+            Err(Error::usage(format!("{key} is {v}"), "a finite number above 0").setting(key))
+        }
+        _ => Ok(()),
+    }
+}
+
+impl Reading {
+    /// Its keys.
+    pub const KEYS: [&str; 7] =
+        ["format", "allow_missing", "rate", "base_band", "unit", "decimal", "complex"];
+
+    /// A reader that knows what is stated.
+    ///
+    /// # Errors
+    /// On an unknown format or unit, and on rates that are not above 0.
+    pub fn reader(&self) -> Result<Reader> {
+        above_zero("rate", self.rate)?;
+        above_zero("base_band", self.base_band)?;
+        let unknown = |what: &str, name: &str, expected: &str, key| {
+            Error::usage(format!("{what} {name:?} is not known"), expected).setting(key)
+        };
+        let format = |name: &String| {
+            Format::from_name(name)
+                .ok_or_else(|| unknown("the format", name, &Format::names().join(", "), "format"))
+        };
+        let unit = |text: &String| {
+            let expected = "a unit such as m, mm/s, g, m/s², V, (m/s²)/N";
+            Unit::parse(text).ok_or_else(|| unknown("the unit", text, expected, "unit"))
+        };
+        Ok(Reader::new()
+            .format(self.format.as_ref().map(format).transpose()?)
+            .allow_missing(self.allow_missing)
+            .rate(self.rate)
+            .base_band(self.base_band)
+            .unit(self.unit.as_ref().map(unit).transpose()?)
+            .decimal_comma(self.decimal.map(|d| d == Decimal::Comma))
+            .complex(self.complex))
+    }
+}
+
+impl Channel {
+    /// Its keys.
+    pub const KEYS: [&str; 2] = ["channel", "calibration"];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_keys_are_those_that_can_be_read() {
+        let found = toml::from_str::<Reading>("x = 1").unwrap_err().message().to_owned()
+            + toml::from_str::<Channel>("x = 1").unwrap_err().message();
+        let known = Reading::KEYS.iter().chain(&Channel::KEYS);
+        assert!(known.clone().all(|key| found.contains(&format!("`{key}`"))), "{found}");
+        // Each known key stands between two marks, and so does `x` twice.
+        assert_eq!(found.matches('`').count(), 2 * (known.count() + 2), "{found}");
+    }
+}

@@ -1,0 +1,61 @@
+//! Values that a campaign and a command line write alike: names, a low-pass or none, two numbers.
+
+use serde::Deserialize;
+use serde::de::value::{Error, StrDeserializer};
+
+/// A value by its name, as a campaign writes it between quotes.
+///
+/// # Errors
+/// With the names that are known.
+pub fn word<T: for<'a> Deserialize<'a>>(text: &str) -> Result<T, String> {
+    T::deserialize(StrDeserializer::<Error>::new(text)).map_err(|e| e.to_string())
+}
+
+/// Two numbers with a mark between them: `LO:HI` or `A,B`.
+///
+/// # Errors
+/// With what stands there.
+pub fn two<const MARK: char>(text: &str) -> Result<(f64, f64), String> {
+    let number = |part: &str| part.trim().parse::<f64>().map_err(|_| format!("{part:?} is not a number"));
+    let parts: Vec<&str> = text.split(MARK).collect();
+    match parts.as_slice() {
+        [a, b] => Ok((number(a)?, number(b)?)),
+        other => Err(format!("expected two numbers with {MARK:?} between them, found {}", other.len())),
+    }
+}
+
+/// Low-pass of average and displacement of a drill, or of the instrument of a pulse.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "expected a corner in Hz, or \"none\"")]
+pub enum LowPass {
+    /// Corner in Hz.
+    Corner(f64),
+    /// `none`.
+    Off(Word),
+}
+
+impl LowPass {
+    /// The corner in Hz, if there is one.
+    pub fn corner(self) -> Option<f64> {
+        if let LowPass::Corner(hz) = self { Some(hz) } else { None }
+    }
+
+    /// As it is typed.
+    ///
+    /// # Errors
+    /// If it is neither.
+    pub fn typed(text: &str) -> Result<LowPass, String> {
+        match text {
+            "none" => Ok(LowPass::Off(Word::None)),
+            _ => text.parse().map(LowPass::Corner).map_err(|_| "a corner in Hz, or none".to_owned()),
+        }
+    }
+}
+
+/// The word for no low-pass.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Word {
+    /// `none`.
+    None,
+}

@@ -1,0 +1,44 @@
+//! Parts that tables and figures of all analyses share.
+
+use super::{Cell, Figure, Panel, Table};
+
+/// A column: name, unit, and what it shows of an item.
+pub type Shown<'a, T> = (&'a str, &'a str, &'a dyn Fn(&T) -> Cell);
+
+/// A table without rows yet.
+pub fn headed(title: impl Into<String>, columns: &[(&str, &str)]) -> Table {
+    columns.iter().fold(Table::new(title), |table, (name, unit)| table.column(*name, *unit))
+}
+
+/// One row an item.
+pub fn table<T>(
+    title: impl Into<String>,
+    items: impl IntoIterator<Item = T>,
+    columns: &[Shown<'_, T>],
+) -> Table {
+    let head = columns.iter().fold(Table::new(title), |table, c| table.column(c.0, c.1));
+    items.into_iter().fold(head, |table, item| table.row(columns.iter().map(|c| c.2(&item))))
+}
+
+/// A value with its standard uncertainty.
+pub fn pair(value: f64, std: Option<f64>) -> Cell {
+    Cell::Estimate { value, std }
+}
+
+/// Letters (a), (b), … before the titles of the plots of a figure that has several.
+pub fn lettered(mut figure: Figure) -> Figure {
+    if figure.panels.len() > 1 {
+        for (letter, panel) in ('a'..='z').zip(&mut figure.panels) {
+            if let Panel::Plot(plot) = panel {
+                plot.title.insert_str(0, &format!("({letter}) "));
+            }
+        }
+    }
+    figure
+}
+
+/// A text with a capital at its beginning.
+pub fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |c| c.to_uppercase().chain(letters).collect())
+}
