@@ -5,7 +5,7 @@ use super::scales::Scales;
 use crate::Source;
 use crate::source::ReadSeek;
 use std::io::{Read, SeekFrom};
-use vibro_record::{Error, Result};
+use vibro_record::{Error,Finding,Result};
 
 /// Bytes of one block, more or less: large enough for the disk, small enough for the cache.
 const BLOCK: usize = 256 * 1024;
@@ -62,9 +62,9 @@ impl WavStream {
         self.layout.declared_frames
     }
 
-    /// Sentences about the file: where it is cut off or leaves something open.
-    pub fn doubts(&self) -> &[String] {
-        &self.layout.doubts
+    /// Where the file is cut off or leaves something open.
+    pub fn findings(&self) -> &[Finding] {
+        &self.layout.findings
     }
 
     /// Texts of the file by key.
