@@ -26,7 +26,7 @@ fn write(records: &[Record], storage: Storage) -> Vec<u8> {
 fn again(records: &[Record], storage: Storage) -> Vec<Record> {
     let recording = Reader::new().from_reader("again.uff", &write(records, storage)[..]);
     let recording = recording.unwrap_or_else(|e| panic!("{storage:?}: {e}"));
-    assert_eq!(recording.doubts, Vec::<String>::new());
+    assert_eq!(recording.findings, []);
     recording.records
 }
 

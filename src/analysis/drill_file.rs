@@ -1,5 +1,6 @@
 //! Channels of a file, read block by block.
 
+use crate::report::words::{self, Voice};
 use crate::measure::drill::{Channels, Cycle, Drill, DrillOptions, drill_each, still};
 use std::path::{Path, PathBuf};
 use vibro_io::Reader;
@@ -162,7 +163,9 @@ impl Channels for Played<'_> {
             (self.progress)(self.done, self.all);
         }
         // What only the values show is known now. Sensitivities are stated: that a file knows none is no doubt.
-        self.doubts = traces.doubts_but(|doubt| doubt == Trace::UNCALIBRATED);
+        let known = |found: &crate::record::Finding| found.code == Trace::UNCALIBRATED;
+        let findings: Vec<_> = traces.findings().into_iter().filter(|found| !known(found)).collect();
+        self.doubts = words::sentences(&findings, Voice::Command);
         Ok(())
     }
 }

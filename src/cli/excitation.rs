@@ -1,5 +1,6 @@
 //! `vibro excitation`: the job of sineswpf.
 
+use crate::report::words::{self, Voice};
 use super::target::{apart, write_beside};
 use super::{args, complain, print, settings};
 use crate::error::{Error, Result};
@@ -19,7 +20,7 @@ struct Answer {
 pub fn run(typed: &args::Excitation, json: bool) -> Result<()> {
     let (list, how) = settings::sweep(&typed.sweep)?;
     let sweep = how.read(&list)?;
-    let mut warnings = sweep.doubts.clone();
+    let mut warnings = words::sentences(&sweep.findings, Voice::Command);
     let points = if typed.sweep.legacy {
         warnings = vec!["These are the answers of the script sineswpf, mistakes included.".to_owned()];
         legacy::excitation(&sweep)?

@@ -1,5 +1,6 @@
 //! `vibro impacts`: the job of timeav.
 
+use crate::report::words::{self, Voice};
 use super::{args, complain, print, settings};
 use crate::error::{Error, Result};
 use crate::measure::impacts::{Impacts, ImpactsOptions, Scatter, Shape, impacts};
@@ -72,7 +73,8 @@ pub fn run(typed: &args::Impacts, json: bool) -> Result<()> {
         ..settings::finding(&typed.finding, None)
     };
     let mut found = impacts(&trace, &options).map_err(|e| e.of_record(&typed.file.display().to_string()))?;
-    found.warnings.extend(recording.doubts.iter().chain(&trace.meta.doubts).cloned());
+    let findings = [recording.findings.as_slice(), &trace.meta.findings].concat();
+    found.warnings.extend(words::sentences(&findings, Voice::Command));
     let mut written = Vec::new();
     if let Some(folder) = &typed.out {
         let mut output = Output::new(folder)?;

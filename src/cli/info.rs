@@ -1,8 +1,10 @@
 //! `vibro info`: what is in a file.
 
+use crate::report::words::{self, Voice};
 use super::{args, complain, print, settings};
 use crate::error::Result;
-use crate::read::{Header, gathered};
+use crate::read::Header;
+use crate::record::Finding;
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -27,7 +29,7 @@ pub fn run(typed: &args::Info, json: bool) -> Result<u8> {
     let mut answer = Answer { files: Vec::new(), errors: Vec::new(), warnings: Vec::new() };
     let mut code = 0;
     for path in &typed.files {
-        let (format, records, doubts) = match reader.survey(path) {
+        let (format, records, mut findings) = match reader.survey(path) {
             Ok(found) => found,
             // The other files are still worth listing; the first failure decides the exit code.
             Err(error) => {
@@ -39,9 +41,9 @@ pub fn run(typed: &args::Info, json: bool) -> Result<u8> {
         };
         let about =
             |d: &String| if typed.files.len() > 1 { format!("{}: {d}", path.display()) } else { d.clone() };
-        answer.warnings.extend(doubts.iter().map(about));
-        let of_records: Vec<_> = records.iter().map(|r| (r.name.as_str(), r.doubts.as_slice())).collect();
-        answer.warnings.extend(gathered(&of_records).iter().map(about));
+        let of_records: Vec<_> = records.iter().map(|r| (r.name.as_str(), r.findings.as_slice())).collect();
+        findings.extend(Finding::gathered(&of_records));
+        answer.warnings.extend(words::sentences(&findings, Voice::Command).iter().map(about));
         answer.files.push(File { path: path.display().to_string(), format: format.name(), records });
     }
     if json {

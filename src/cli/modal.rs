@@ -1,5 +1,6 @@
 //! `vibro modal`: natural frequencies, damping ratios and modal constants.
 
+use crate::report::words::{self, Voice};
 use super::{args, complain, print, settings};
 use crate::error::{Error, Result};
 use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal};
@@ -44,8 +45,8 @@ pub fn run(typed: &args::Modal, json: bool) -> Result<()> {
         from_blows: meta.from_blows(),
     };
     let mut result = modal(&measured, &options)?;
-    let doubts: Vec<String> = recording.doubts.iter().chain(&meta.doubts).cloned().collect();
-    result.warnings.splice(0..0, doubts);
+    let findings = [recording.findings.as_slice(), &meta.findings].concat();
+    result.warnings.splice(0..0, words::sentences(&findings, Voice::Command));
     let title = typed.file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let mut written = Vec::new();
     if let Some(folder) = &typed.out {

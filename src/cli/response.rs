@@ -1,5 +1,6 @@
 //! `vibro response`: the job of sinesw3.
 
+use crate::report::words::{self, Voice};
 use super::{args, complain, print, settings};
 use crate::error::{Error, Result};
 use crate::measure::response::{Response, response};
@@ -60,6 +61,7 @@ pub fn run(typed: &args::Response, json: bool) -> Result<()> {
     if json {
         return print::json(&Answer { response, files: written });
     }
+    complain::warn(&words::sentences(&response.findings, Voice::Command));
     complain::warn(&response.warnings);
     let mut text = tables::curve(&response).text();
     let all = std::slice::from_ref(&response);

@@ -1,5 +1,6 @@
 //! From what was typed to what is meant: checked options.
 
+use crate::report::words::{self, Voice};
 use super::args::{Channel, Decimal, Finding, Reading, Sweep, Taking};
 use crate::campaign::Campaign;
 use crate::error::{Error, Result};
@@ -57,9 +58,8 @@ pub fn finding(typed: &Finding, threshold: Option<f64>) -> ImpactsOptions {
 pub fn trace(file: &Path, reading: &Reading, chosen: &Channel) -> Result<(Trace, Vec<String>)> {
     let recording = time_reader(reading)?.from_path(file)?;
     let trace = recording.trace(chosen.channel.as_deref(), chosen.calibration)?;
-    let mut doubts = recording.doubts;
-    doubts.extend(trace.meta.doubts.iter().cloned());
-    Ok((trace, doubts))
+    let findings = [recording.findings.as_slice(), &trace.meta.findings].concat();
+    Ok((trace, words::sentences(&findings, Voice::Command)))
 }
 
 /// The channel that is meant, block by block, behind the channel `reference` where there is one.

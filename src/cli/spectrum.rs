@@ -2,6 +2,7 @@
 
 mod answer;
 
+use crate::report::words::{self, Voice};
 use super::args::{self, Detrend, Method};
 use super::{complain, print, progress, settings};
 use crate::error::{Error, Result};
@@ -80,6 +81,7 @@ pub fn run(typed: &args::Spectrum, json: bool) -> Result<()> {
     if json {
         return print::json(&answer);
     }
+    complain::warn(&words::sentences(&answer.result.findings, Voice::Command));
     complain::warn(&answer.result.warnings);
     print::text(&answer.text())
 }

@@ -1,5 +1,6 @@
 //! `vibro waterfall`: the job of sinesw.
 
+use crate::report::words::{self, Voice};
 use super::{args, complain, print, settings};
 use crate::error::Result;
 use crate::measure::legacy;
@@ -38,6 +39,7 @@ pub fn run(typed: &args::Waterfall, json: bool) -> Result<()> {
             unit: sweep.unit().symbol().to_owned(),
             fmin: 0.0,
             warnings: vec!["This is the matrix of the script sinesw, mistakes included.".to_owned()],
+            findings: Vec::new(),
         }
     } else {
         waterfall(&sweep, &settings::taking(&typed.taking, typed.sweep.fmin, sweep.unit().quantity()))?
@@ -53,6 +55,8 @@ pub fn run(typed: &args::Waterfall, json: bool) -> Result<()> {
         output.write("waterfall.csv", files::matrix_csv(&matrix))?;
         files = output.written().to_vec();
     }
+    let mut warnings = words::sentences(&matrix.findings, Voice::Command);
+    warnings.extend_from_slice(&matrix.warnings);
     if json {
         return print::json(&Answer {
             frequency: &matrix.frequency,
@@ -60,11 +64,11 @@ pub fn run(typed: &args::Waterfall, json: bool) -> Result<()> {
             magnitude: matrix.magnitude.rows().into_iter().map(|r| r.to_vec()).collect(),
             unit: &matrix.unit,
             fmin: matrix.fmin,
-            warnings: &matrix.warnings,
+            warnings: &warnings,
             files,
         });
     }
-    complain::warn(&matrix.warnings);
+    complain::warn(&warnings);
     let (points, lines) = matrix.magnitude.dim();
     let mut text = format!("{points} spectra of {lines} lines, {} in {}\n", matrix.quantity, matrix.unit);
     if typed.out.is_none() {

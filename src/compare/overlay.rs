@@ -253,6 +253,7 @@ mod tests {
             resonances: Vec::new(),
             jumps: Vec::new(),
             warnings: Vec::new(),
+            findings: Vec::new(),
             history: Vec::new(),
         }
     }

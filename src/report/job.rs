@@ -16,7 +16,7 @@ pub use pairing::Crossing;
 pub use pulse::NamedPulse;
 pub use spectral::SpectrumResult;
 
-use super::{Figure, Output, files, page, pictures, tables};
+use super::{Figure, Output, files, page, pictures, tables, words};
 use crate::campaign::Campaign;
 use crate::compare::{Fit, Overlay, overlay};
 use crate::error::{Error, Result};
@@ -246,20 +246,21 @@ pub fn run(
 
 /// The warnings of all sweeps, once each, with the names of the sweeps that they hold for where these are not all.
 pub(crate) fn common(responses: &[Response]) -> Vec<String> {
-    let mut found: Vec<(&str, Vec<&str>)> = Vec::new();
+    let mut found: Vec<(String, Vec<&str>)> = Vec::new();
     for response in responses {
-        for sentence in &response.warnings {
+        let own = words::sentences(&response.findings, words::Voice::Campaign);
+        for sentence in own.into_iter().chain(response.warnings.iter().cloned()) {
             match found.iter_mut().find(|f| f.0 == sentence) {
                 Some(known) => known.1.push(&response.name),
                 None => found.push((sentence, vec![&response.name])),
             }
         }
     }
-    let said = |(sentence, names): (&str, Vec<&str>)| {
+    let said = |(sentence, names): (String, Vec<&str>)| {
         if responses.len() > 1 && names.len() < responses.len() {
             format!("{}: {sentence}", names.join("; "))
         } else {
-            sentence.to_owned()
+            sentence
         }
     };
     found.into_iter().map(said).collect()

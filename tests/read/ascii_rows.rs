@@ -1,5 +1,6 @@
 //! Analyser text in every dress instruments give it, and every way it can be broken.
 
+use super::sentences;
 use vibroimpact::read::{Format, Reader, Recording};
 use vibroimpact::record::{AxisKind, Record, Values};
 use vibroimpact::units::Unit;
@@ -70,7 +71,7 @@ fn columns_and_separators() {
     }
     let channels = read(b"5 1\n3 2\n9 1\n");
     assert_eq!(channels.records.len(), 2);
-    assert!(channels.all_doubts().iter().any(|d| d.contains("--complex")));
+    assert!(sentences(&channels.all_findings()).iter().any(|d| d.contains("--complex")));
 }
 
 #[test]
@@ -118,13 +119,13 @@ fn headers_state_axis_and_unit() {
     let short = read(b"Lines: 400\nBase band: 20 Hz\n1\n2\n");
     assert_eq!(short.records[0].meta().declared_n, Some(401));
     assert!(
-        short.all_doubts().iter().any(|d| d.contains("401") && d.contains("holds 2")),
+        sentences(&short.all_findings()).iter().any(|d| d.contains("401") && d.contains("holds 2")),
         "{:?}",
-        short.all_doubts()
+        sentences(&short.all_findings())
     );
     let trace = read(b"Sampling rate: 128 Hz\nunit: apples\n1\n2\n");
     assert_eq!(trace.records[0].axis().step(), Some(1.0 / 128.0));
-    assert!(trace.all_doubts().iter().any(|d| d.contains("apples")));
+    assert!(sentences(&trace.all_findings()).iter().any(|d| d.contains("apples")));
 }
 
 #[test]
@@ -136,7 +137,7 @@ fn missing_values_are_refused_with_their_lines() {
     let kept_values = values(&kept);
     assert_eq!(kept_values.len(), 6);
     assert_eq!(kept_values.iter().filter(|v| v.is_nan()).count(), 3);
-    assert!(kept.all_doubts().iter().any(|d| d.starts_with("3 value(s)")));
+    assert!(sentences(&kept.all_findings()).iter().any(|d| d.starts_with("3 value(s)")));
     // Blank lines at the end are no values.
     assert_eq!(values(&read(b"1\n2\n\n\n")), [1.0, 2.0]);
     let fields = complaint(b"1;2\n3;\n;4\n");
@@ -247,7 +248,7 @@ fn words_behind_the_values_are_passed_over_and_quoted() {
     ] {
         let recording = read(text.as_bytes());
         assert_eq!(recording.records[0].len(), n, "{text}");
-        assert!(recording.doubts.iter().any(|d| d.contains("\"End of data\"")), "{:?}", recording.doubts);
+        assert!(sentences(&recording.findings).iter().any(|d| d.contains("\"End of data\"")), "{:?}", sentences(&recording.findings));
     }
     for text in [
         "1\n2\n3\n4\nEnd of data\n5\n",
@@ -282,7 +283,7 @@ fn words_behind_spectral_lines_make_their_number_doubtful() {
     let of = |header: &str| {
         let text = format!("{header}1.5\n2.5\n3.5\n4.5\n5.5\nEnd of data\n");
         let recording = Reader::new().base_band(Some(20.0)).from_reader("x.txt", text.as_bytes()).unwrap();
-        let doubts = recording.all_doubts();
+        let doubts = sentences(&recording.all_findings());
         (
             recording.records[0].axis().step(),
             doubts.iter().any(|d| d.contains("Whether 5 values are all lines")),

@@ -1,5 +1,6 @@
 //! A sampling rate or a base band that is stated beside a column of times or frequencies.
 
+use super::sentences;
 use std::fmt::Write as _;
 use vibroimpact::read::{Reader, Recording};
 
@@ -23,7 +24,7 @@ fn a_rounded_rate_leaves_a_long_column_as_it_is() {
     let step = recording.records[0].axis().step().unwrap();
     // Both ends are printed to half a nanosecond.
     assert!((step - 1.0 / RATE).abs() <= 1e-9 / 19_999.0, "{step}");
-    let doubts = recording.all_doubts();
+    let doubts = sentences(&recording.all_findings());
     assert!(
         doubts
             .iter()
@@ -40,9 +41,9 @@ fn lines_of_a_plain_transform_go_with_their_base_band() {
     let text = table(400, "f [Hz]", |i| 0.05 * i);
     let recording = read(&Reader::new().base_band(Some(20.0)), &text).unwrap();
     assert!((recording.records[0].axis().step().unwrap() - 0.05).abs() < 1e-11);
-    assert!(!recording.all_doubts().iter().any(|d| d.contains("stated")), "{:?}", recording.all_doubts());
+    assert!(!sentences(&recording.all_findings()).iter().any(|d| d.contains("stated")), "{:?}", sentences(&recording.all_findings()));
     let nearly = read(&Reader::new().base_band(Some(20.001)), &text).unwrap();
-    let doubts = nearly.all_doubts();
+    let doubts = sentences(&nearly.all_findings());
     assert!(doubts.iter().any(|d| d.contains("a base band of 20 Hz; 20.001 Hz was stated")), "{doubts:?}");
     assert!(read(&Reader::new().base_band(Some(20.1)), &text).is_err());
 }

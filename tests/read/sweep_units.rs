@@ -1,5 +1,6 @@
 //! What the files of a sweep say of their units beside what a person states.
 
+use super::sentences;
 use vibroimpact::read::{SweepList, SweepReader};
 use vibroimpact::record::{Sweep, Values};
 use vibroimpact::units::Unit;
@@ -71,7 +72,7 @@ fn only_what_states_the_values_makes_them_decibels() {
         let sweep = read("Unit: N", header, &linear).unwrap();
         assert!(close(response(&sweep), 2e-3), "{header}");
         assert!(
-            sweep.doubts.iter().any(|d| d.contains("decibels") && d.contains("mm/s was stated")),
+            sentences(&sweep.findings).iter().any(|d| d.contains("decibels") && d.contains("mm/s was stated")),
             "{header}"
         );
         // What is stated of responses says nothing of forces.
@@ -79,7 +80,7 @@ fn only_what_states_the_values_makes_them_decibels() {
     }
     let speaks = |header: &str| {
         let sweep = read("Unit: N", &format!("{header}\nUnit: m/s"), &plain).unwrap();
-        sweep.doubts.iter().any(|d| d.contains("speak of decibels"))
+        sentences(&sweep.findings).iter().any(|d| d.contains("speak of decibels"))
     };
     assert!(speaks("Database: DB rig") && speaks("Level (dB)"));
     assert!(!speaks("File: /data/db/run1.dat") && !speaks("Filter slope: dB/octave, 12"));
@@ -90,10 +91,10 @@ fn a_stated_unit_wins_over_the_files_and_that_is_said() {
     let how = |unit: &str| SweepReader { unit: Unit::parse(unit), ..SweepReader::default() };
     let sweep = read("Unit: kN", "Unit: mm/s", &how("m/s")).unwrap();
     assert!(close(response(&sweep), 2.0), "{}", response(&sweep));
-    assert!(sweep.doubts.iter().any(|d| d.contains("m/s was stated and is used")), "{:?}", sweep.doubts);
+    assert!(sentences(&sweep.findings).iter().any(|d| d.contains("m/s was stated and is used")), "{:?}", sentences(&sweep.findings));
     // Nobody stated the unit of the force.
     assert!(close(sweep.points[0].force[2], 2000.0));
     let sweep = read("Unit: N", "Unit: mm/s", &how("mm/s")).unwrap();
     assert!(close(response(&sweep), 2e-3));
-    assert!(!sweep.doubts.iter().any(|d| d.contains("was stated")), "{:?}", sweep.doubts);
+    assert!(!sentences(&sweep.findings).iter().any(|d| d.contains("was stated")), "{:?}", sentences(&sweep.findings));
 }

@@ -49,7 +49,7 @@ fn streaming_agrees_with_reading() {
         assert_eq!(traces.channels().iter().collect::<Vec<_>>(), metas, "{name}");
         let (columns, blocks) = all(&mut traces);
         assert!(blocks > 2, "{name}");
-        assert_eq!(traces.doubts(), recording.all_doubts(), "{name}");
+        assert_eq!(traces.findings(), recording.all_findings(), "{name}");
         for (column, record) in columns.iter().zip(&recording.records) {
             let Record::Trace(whole) = record else { panic!() };
             assert!(*column == whole.values, "{name}");

@@ -1,5 +1,6 @@
 //! What the header of a data set 58 means: units, kind of record, abscissa.
 
+use super::sentences;
 use super::uff_set::{NONE, SEVEN, Set, doubts, form, read, reader, refused, try_read, values};
 use vibroimpact::record::{AxisKind, Record, Scaling};
 use vibroimpact::units::{Quantity, Unit};
@@ -67,7 +68,7 @@ fn units_without_text() {
         let recording = read(rotation.as_bytes());
         let meta = recording.records[0].meta();
         assert_eq!((meta.quantity, meta.unit.symbol()), (Quantity::AngularVelocity, "rad/s"));
-        assert_eq!(meta.doubts.len(), said, "{:?}", meta.doubts);
+        assert_eq!(sentences(&meta.findings).len(), said, "{:?}", sentences(&meta.findings));
     }
 }
 

@@ -108,6 +108,8 @@ pub struct Response {
     pub jumps: Vec<Jump>,
     /// What a person must know.
     pub warnings: Vec<String>,
+    /// What was found of the sweep's files.
+    pub findings: Vec<vibro_record::Finding>,
     /// Every step from file to curve.
     pub history: Vec<Step>,
 }
@@ -132,7 +134,7 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
         sweep.line_width().ok_or_else(|| Error::refused("the lines of the sweep are not evenly spaced"))?;
     let excitations = excitations(sweep, options.fmin.unwrap_or(0.0))?;
     let fmin = options.fmin.unwrap_or_else(|| default_cutoff(df, &excitations));
-    let mut warnings = sweep.doubts.clone();
+    let mut warnings = Vec::new();
     let quantity = sweep.unit().times_seconds(options.integrate).quantity();
     if quantity == Quantity::Other {
         return Err(Error::refused(format!(
@@ -202,6 +204,7 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
         resonances,
         jumps,
         warnings,
+        findings: sweep.findings.clone(),
         history,
     })
 }

@@ -25,6 +25,8 @@ pub struct Waterfall {
     pub fmin: f64,
     /// What a person must know.
     pub warnings: Vec<String>,
+    /// What was found of the sweep's files.
+    pub findings: Vec<vibro_record::Finding>,
 }
 
 /// Finds the excitation frequencies and gathers the matrix, as [`gathered`].
@@ -56,7 +58,7 @@ pub fn gathered(sweep: &Sweep, options: &ResponseOptions, excitation: Vec<f64>, 
         }
     }
     let unit = sweep.unit().times_seconds(options.integrate);
-    let mut warnings = sweep.doubts.clone();
+    let mut warnings = Vec::new();
     if fmin > 0.0 {
         warnings.push(format!("Lines below the cut-off of {fmin:.3} Hz are left out."));
     }
@@ -69,5 +71,6 @@ pub fn gathered(sweep: &Sweep, options: &ResponseOptions, excitation: Vec<f64>, 
         unit: unit.symbol().to_owned(),
         fmin,
         warnings,
+        findings: sweep.findings.clone(),
     }
 }

@@ -1,5 +1,6 @@
 //! Frequency response functions of a campaign: figures and modes.
 
+use crate::report::words::{self, Voice};
 use super::{JobOptions, Progress, file_name, merge, or_left_out, spectral};
 use crate::campaign::{Campaign, FrfEntry};
 use crate::error::Result;
@@ -67,7 +68,7 @@ pub(super) fn frfs(
             if let Some(figure) = pictures::nyquist(&name, &measured, &found.modes) {
                 figures.push((format!("nyquist_{number}"), figure));
             }
-            found.warnings.splice(0..0, meta.doubts.iter().cloned());
+            found.warnings.splice(0..0, words::sentences(&meta.findings, Voice::Campaign));
             merge(warnings, &name, &found.warnings);
             results.push(FrfResult {
                 name: name.clone(),
@@ -121,6 +122,7 @@ fn functions(
         let (file, found) = spectral::lines(campaign, &entry, reference, &how, options, progress)?;
         let name = entry.name.clone().unwrap_or_else(|| file.clone());
         let Some(found) = or_left_out(found, &name, warnings)? else { return Ok(Vec::new()) };
+        merge(warnings, &name, &words::sentences(&found.findings, Voice::Campaign));
         merge(warnings, &name, &found.warnings);
         let records = found.records();
         let [Record::Frf(frf), Record::Spectrum(coherence)] = records.as_slice() else {
@@ -132,7 +134,7 @@ fn functions(
     }
     let recording = campaign.recording(&entry, options.allow_outside)?;
     let file = file_name(&recording.path);
-    merge(warnings, &file, &recording.doubts);
+    merge(warnings, &file, &words::sentences(&recording.findings, Voice::Campaign));
     let name = entry.name.clone().unwrap_or_else(|| file.clone());
     let coherence = match &own.coherence {
         Some(file) => {

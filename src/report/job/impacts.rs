@@ -1,5 +1,6 @@
 //! Impacts of a campaign.
 
+use crate::report::words::{self, Voice};
 use super::{JobOptions, file_name, merge, or_left_out};
 use crate::campaign::{Campaign, RecordEntry};
 use crate::error::Result;
@@ -31,10 +32,10 @@ pub(super) fn read(
     let path = campaign.record_path(entry, options.allow_outside)?;
     let recording = entry.reader().rate_of_base_band().from_path(&path)?;
     let file = file_name(&path);
-    merge(warnings, &file, &recording.doubts);
+    merge(warnings, &file, &words::sentences(&recording.findings, Voice::Campaign));
     let trace = recording.trace(entry.channel.as_deref(), entry.calibration)?;
     let name = entry.name.clone().unwrap_or_else(|| file.clone());
-    merge(warnings, &name, &trace.meta.doubts);
+    merge(warnings, &name, &words::sentences(&trace.meta.findings, Voice::Campaign));
     Ok((name, file, recording, trace))
 }
 

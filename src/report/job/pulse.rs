@@ -1,5 +1,6 @@
 //! Contact pulses of a campaign.
 
+use crate::report::words::{self, Voice};
 use super::{JobOptions, file_name, merge, or_left_out};
 use crate::campaign::Campaign;
 use crate::error::Result;
@@ -39,11 +40,11 @@ pub(super) fn pulses(
                 let path = campaign.record_path(&entry, options.allow_outside)?;
                 let recording = entry.reader().rate_of_base_band().from_path(path)?;
                 let file = file_name(&recording.path);
-                merge(warnings, &file, &recording.doubts);
+                merge(warnings, &file, &words::sentences(&recording.findings, Voice::Campaign));
                 let trace = recording.trace(entry.channel.as_deref(), entry.calibration)?;
                 let name = entry.name.unwrap_or_else(|| file.clone());
                 let instrument = own.instrument()?;
-                merge(warnings, &name, &trace.meta.doubts);
+                merge(warnings, &name, &words::sentences(&trace.meta.findings, Voice::Campaign));
                 (name, file, pulse(&trace, &PulseOptions { instrument, mass: own.mass }))
             }
         };

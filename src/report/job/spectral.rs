@@ -1,5 +1,6 @@
 //! Spectra of a campaign.
 
+use crate::report::words::{self, Voice};
 use super::{JobOptions, PARTS, Progress, file_name, merge, or_left_out, slugs};
 use crate::campaign::{Campaign, RecordEntry};
 use crate::error::Result;
@@ -67,6 +68,7 @@ pub(super) fn spectra(
         let (file, found) = lines(campaign, &entry, own.reference.as_deref(), &how, options, progress)?;
         let name = entry.name.clone().unwrap_or_else(|| file.clone());
         let Some(result) = or_left_out(found, &name, warnings)? else { continue };
+        merge(warnings, &name, &words::sentences(&result.findings, Voice::Campaign));
         merge(warnings, &name, &result.warnings);
         let channel = result.name.clone();
         results.push(SpectrumResult { channel, file, result: SpectralResult { name, ..result } });

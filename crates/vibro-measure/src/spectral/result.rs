@@ -44,6 +44,8 @@ pub struct SpectralResult {
     pub tones: Vec<Tone>,
     /// What a person must know.
     pub warnings: Vec<String>,
+    /// What was found of the file and its channels.
+    pub findings: Vec<vibro_record::Finding>,
     /// The lines as they were found.
     #[serde(skip)]
     pub found: Lines,
@@ -80,7 +82,7 @@ impl SpectralResult {
         averages: usize,
         scatter: &[f64],
         detrend: &'static str,
-        warnings: Vec<String>,
+        findings: Vec<vibro_record::Finding>,
     ) -> SpectralResult {
         let value = spectrum.values.magnitudes();
         SpectralResult {
@@ -99,7 +101,8 @@ impl SpectralResult {
             averages,
             response: None,
             tones: Vec::new(),
-            warnings,
+            warnings: Vec::new(),
+            findings,
             found: Lines::Spectrum(spectrum),
         }
     }
@@ -110,9 +113,8 @@ impl SpectralResult {
         window: (&'static str, f64),
         detrend: &'static str,
         blows: Vec<Blow>,
-        mut warnings: Vec<String>,
+        findings: Vec<vibro_record::Finding>,
     ) -> SpectralResult {
-        warnings.extend(found.warnings.iter().cloned());
         let degrees = |v: &f64| v.to_degrees();
         SpectralResult {
             name: found.frf.meta.name.clone(),
@@ -136,7 +138,8 @@ impl SpectralResult {
                 blows,
             }),
             tones: Vec::new(),
-            warnings,
+            warnings: found.warnings.clone(),
+            findings,
             found: Lines::Transfer(found),
         }
     }
