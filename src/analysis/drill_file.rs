@@ -1,7 +1,7 @@
 //! Channels of a file, read block by block.
 
-use crate::report::words::{self, Voice};
 use crate::measure::drill::{Channels, Cycle, Drill, DrillOptions, drill_each, still};
+use crate::report::words::{self, Voice};
 use std::path::{Path, PathBuf};
 use vibro_io::Reader;
 use vibro_record::units::Quantity;

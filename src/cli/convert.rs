@@ -2,11 +2,11 @@
 
 mod change;
 
-use crate::report::words::{self, Voice};
 use super::target::{apart, write_beside};
 use super::{args, complain, print, settings};
 use crate::error::{Error, Result};
 use crate::record::Record;
+use crate::report::words::{self, Voice};
 use crate::write::{Precision, Storage, Target};
 use serde::Serialize;
 

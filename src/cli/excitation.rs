@@ -1,11 +1,11 @@
 //! `vibro excitation`: the job of sineswpf.
 
-use crate::report::words::{self, Voice};
 use super::target::{apart, write_beside};
 use super::{args, complain, print, settings};
 use crate::error::{Error, Result};
 use crate::measure::excitation::{Excitation, excitations};
 use crate::measure::legacy;
+use crate::report::words::{self, Voice};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::Path;

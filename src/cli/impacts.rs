@@ -1,12 +1,12 @@
 //! `vibro impacts`: the job of timeav.
 
-use crate::report::words::{self, Voice};
 use super::{args, complain, print, settings};
 use crate::error::{Error, Result};
 use crate::measure::impacts::{Impacts, ImpactsOptions, Scatter, Shape, impacts};
 use crate::measure::{Estimate, legacy};
 use crate::read::Reader;
 use crate::record::Trace;
+use crate::report::words::{self, Voice};
 use crate::report::{Output, files, pictures, tables};
 use serde::Serialize;
 use std::fmt::Write as _;

@@ -1,10 +1,10 @@
 //! `vibro info`: what is in a file.
 
-use crate::report::words::{self, Voice};
 use super::{args, complain, print, settings};
 use crate::error::Result;
 use crate::read::Header;
 use crate::record::Finding;
+use crate::report::words::{self, Voice};
 use serde::Serialize;
 use std::fmt::Write as _;
 

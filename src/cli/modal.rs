@@ -1,9 +1,9 @@
 //! `vibro modal`: natural frequencies, damping ratios and modal constants.
 
-use crate::report::words::{self, Voice};
 use super::{args, complain, print, settings};
 use crate::error::{Error, Result};
 use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal};
+use crate::report::words::{self, Voice};
 use crate::report::{Output, files, pictures, tables};
 use serde::Serialize;
 use std::fmt::Write as _;

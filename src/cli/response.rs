@@ -1,11 +1,11 @@
 //! `vibro response`: the job of sinesw3.
 
-use crate::report::words::{self, Voice};
 use super::{args, complain, print, settings};
 use crate::error::{Error, Result};
 use crate::measure::response::{Response, response};
 use crate::measure::{Estimate, legacy};
 use crate::record::Sweep;
+use crate::report::words::{self, Voice};
 use crate::report::{Output, files, pictures, tables};
 use serde::Serialize;
 use std::fmt::Write as _;

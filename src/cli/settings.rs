@@ -1,6 +1,5 @@
 //! From what was typed to what is meant: checked options.
 
-use crate::report::words::{self, Voice};
 use super::args::{Channel, Decimal, Finding, Reading, Sweep, Taking};
 use crate::campaign::Campaign;
 use crate::error::{Error, Result};
@@ -9,6 +8,7 @@ use crate::measure::response::{ResponseOptions, to_displacement};
 use crate::read::{Format, Reader, SweepList, SweepReader};
 use crate::record::Traces;
 use crate::record::{Scaling, Trace, Window};
+use crate::report::words::{self, Voice};
 use crate::units::{Quantity, Unit};
 use std::path::Path;
 

@@ -2,12 +2,12 @@
 
 mod answer;
 
-use crate::report::words::{self, Voice};
 use super::args::{self, Detrend, Method};
 use super::{complain, print, progress, settings};
 use crate::error::{Error, Result};
 use crate::measure::spectral::{self, SpectralOptions};
 use crate::record::Scaling;
+use crate::report::words::{self, Voice};
 use crate::report::{Output, files, pictures};
 use crate::signal::transfer::Estimator;
 use answer::Answer;

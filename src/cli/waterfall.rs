@@ -1,10 +1,10 @@
 //! `vibro waterfall`: the job of sinesw.
 
-use crate::report::words::{self, Voice};
 use super::{args, complain, print, settings};
 use crate::error::Result;
 use crate::measure::legacy;
 use crate::measure::waterfall::{Waterfall, waterfall};
+use crate::report::words::{self, Voice};
 use crate::report::{Output, files, pictures};
 use ndarray::Array2;
 use serde::Serialize;

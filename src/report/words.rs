@@ -212,7 +212,7 @@ impl Told<'_> {
             unit => unit.to_owned(),
         };
         let show = |v: f64| match unit.as_str() {
-            "" if v.fract() == 0.0 && v.abs() < 1e6 => v.to_string(),
+            "" if v.fract() == 0.0 && v.abs() < 1e15 => v.to_string(),
             "" => significant(v, digits),
             unit => quantity(v, unit, digits),
         };

@@ -473,9 +473,7 @@ fn one_true_sentence_is_said_of_the_unit() {
     };
     let list = text(&list);
     assert_eq!(said(&["response", list, "--unit", "mm/s"]), Vec::<String>::new());
-    let assumed = |unit: &str| {
-        format!("Neither the files nor what was stated name the unit of the responses: {unit} is assumed.")
-    };
+    let assumed = |unit: &str| format!("No unit of the responses is known: {unit} is assumed. State --unit.");
     assert_eq!(said(&["response", list]), [assumed("m")]);
     fs::write(&campaign, "[[sweep]]\nname = \"a\"\nlist = \"LIST.TXT\"\nquantity = \"velocity\"\n").unwrap();
     assert_eq!(said(&["response", text(&campaign)]), [assumed("m/s")]);

@@ -109,7 +109,11 @@ fn wav_that_declares_more_than_it_holds() {
     let expected: Vec<f64> = (0..16).map(|k| f64::from(k) / 8_388_608.0).collect();
     assert_eq!(values(&cut, "channel 1"), expected);
     assert_eq!(cut.records[0].meta().declared_n, Some(3_333_333_333));
-    assert!(says(&cut, "declares 3333333333 frames") && says(&cut, "holds 16"), "{:?}", sentences(&cut.all_findings()));
+    assert!(
+        says(&cut, "declares 3333333333 values") && says(&cut, "holds 16"),
+        "{:?}",
+        sentences(&cut.all_findings())
+    );
 }
 
 /// Eight rows of a quarter times the row, once a millisecond.
@@ -137,7 +141,11 @@ fn csv_in_every_encoding_and_line_end() {
         assert_eq!(record.meta().unit.symbol(), unit);
         let step = record.axis().step().unwrap();
         assert!((step / 1e-3 - 1.0).abs() < 4.0 * f64::EPSILON, "{name}: {step}");
-        assert!(sentences(&recording.all_findings()).is_empty(), "{name}: {:?}", sentences(&recording.all_findings()));
+        assert!(
+            sentences(&recording.all_findings()).is_empty(),
+            "{name}: {:?}",
+            sentences(&recording.all_findings())
+        );
     }
     let german = read("csv/german_spreadsheet_utf16.csv");
     assert_eq!(german.records[0].meta().notes[0], ("Messung".to_owned(), "Prüfstand 2".to_owned()));
@@ -168,7 +176,7 @@ fn csv_faults_are_named_with_their_lines() {
     let missing = error("csv/missing_values.csv");
     assert!(missing.contains("line 3: 3 missing value(s)"), "{missing}");
     assert!(
-        missing.contains("3 (\"a\"), 4 (\"a\"), 5 (\"b\")") && missing.contains("--allow-missing"),
+        missing.contains("3 (\"a\"), 4 (\"a\"), 5 (\"b\")") && missing.contains("allow_missing"),
         "{missing}"
     );
     let cut = error("csv/row_cut_off.csv");

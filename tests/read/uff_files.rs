@@ -279,7 +279,9 @@ fn a_mangled_superscript() {
     let clean = frf(only("dataset58_FRF.unv").unwrap());
     assert_eq!((&mangled.values, &mangled.axis), (&clean.values, &clean.axis));
     assert_eq!(mangled.kind, FrfKind::Accelerance);
-    assert!(sentences(&mangled.meta.findings).iter().any(|d| d.contains("(m/s²)/N") && d.contains("mangled")));
+    assert!(
+        sentences(&mangled.meta.findings).iter().any(|d| d.contains("(m/s²)/N") && d.contains("mangled"))
+    );
 }
 
 #[test]

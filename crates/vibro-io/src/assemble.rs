@@ -49,7 +49,9 @@ pub fn to_si(values: &mut Values, factor: f64) -> Result<()> {
     }
     match values {
         Values::Real(values) => units::scale(values, factor),
-        Values::Complex(values) => units::scale(values.iter_mut().flat_map(|v| [&mut v.re, &mut v.im]), factor),
+        Values::Complex(values) => {
+            units::scale(values.iter_mut().flat_map(|v| [&mut v.re, &mut v.im]), factor)
+        }
     }
 }
 

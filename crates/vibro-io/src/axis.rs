@@ -5,12 +5,7 @@ use vibro_record::{Axis, AxisKind, Finding, Grid};
 /// Axis of `values` (SI) and a finding where it is uneven or was printed with too few digits.
 ///
 /// `resolution` is half a unit in the last digit, `what` names the values, e.g. `column "t"`.
-pub fn from_values(
-    kind: AxisKind,
-    values: Vec<f64>,
-    resolution: f64,
-    what: &str,
-) -> (Axis, Option<Finding>) {
+pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64, what: &str) -> (Axis, Option<Finding>) {
     let unit = match kind {
         AxisKind::Time => "s",
         AxisKind::Frequency => "Hz",

@@ -2,7 +2,7 @@
 
 use super::{Reader, Recording};
 use std::path::Path;
-use vibro_record::{Error,Finding,Frf,FrfKind,Place,Record,Result,Scaling,Trace,Traces,Values};
+use vibro_record::{Error, Finding, Frf, FrfKind, Place, Record, Result, Scaling, Trace, Traces, Values};
 
 impl Reader {
     /// One channel to be read block by block, behind the channel `reference` where there is one; a `calibration` multiplies it. Where
@@ -123,9 +123,13 @@ impl Recording {
             .hint("`vibro info` lists what is in the file; samples over time need a sampling rate")
             .setting("rate")),
             (None, [_]) => Ok(0),
-            (None, _) => refuse(format!("{} records of kind {kind}, and none was chosen", names.len()), names.join(", ")),
+            (None, _) => refuse(
+                format!("{} records of kind {kind}, and none was chosen", names.len()),
+                names.join(", "),
+            ),
             (Some(name), _) => {
-                let number = || name.parse::<usize>().ok().filter(|n| (1..=names.len()).contains(n)).map(|n| n - 1);
+                let number =
+                    || name.parse::<usize>().ok().filter(|n| (1..=names.len()).contains(n)).map(|n| n - 1);
                 match (names.iter().filter(|n| **n == name).count(), number()) {
                     (1, _) => Ok(names.iter().position(|n| *n == name).unwrap_or(0)),
                     (0, Some(index)) => Ok(index),

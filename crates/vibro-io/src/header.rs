@@ -78,7 +78,7 @@ fn notes(meta: &Meta) -> Vec<String> {
 
 /// Count and largest magnitude of a stream of values.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Summary {
+pub(crate) struct Summary {
     /// Values seen.
     pub n: usize,
     /// Index and magnitude of the largest; the first of equals.

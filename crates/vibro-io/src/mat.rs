@@ -20,7 +20,7 @@ use element::Elements;
 use flate2::read::ZlibDecoder;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use variable::{Content, Variable};
-use vibro_record::{Error,Finding,Place,Result};
+use vibro_record::{Error, Finding, Place, Result};
 
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Bytes before the first variable.
@@ -86,7 +86,8 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         }
         let found = Finding::caution("variable-cut-off").number("byte", cut.byte as f64);
         let found = found.number("there", cut.there as f64);
-        findings.push(cut.declared.into_iter().fold(found, |f, declared| f.number("declared", declared as f64)));
+        findings
+            .push(cut.declared.into_iter().fold(found, |f, declared| f.number("declared", declared as f64)));
     }
     let records = records::build(source, variables, options, &mut findings)?;
     Ok(Recording { path: source.path().to_owned(), format: Format::Mat, records, findings })

@@ -14,7 +14,7 @@ pub(super) const POSSIBLE: std::ops::RangeInclusive<f64> = 1e-12..=1e15;
 /// What a person knows of a file that the file does not say. A statement here that contradicts the file wins, with a
 /// finding in the record.
 #[derive(Debug, Clone, Default)]
-pub struct Options {
+pub(crate) struct Options {
     /// Keep NaN, Inf and blank values as missing (NaN) instead of refusing them.
     pub allow_missing: bool,
     /// Sampling rate in Hz: the values are a time trace.
@@ -167,7 +167,7 @@ impl Reader {
     ///
     /// # Errors
     /// As [`Reader::from_path`].
-    pub fn from_source(&self, source: &Source) -> Result<Recording> {
+    pub(crate) fn from_source(&self, source: &Source) -> Result<Recording> {
         let (entry, source) = self.entry(source)?;
         (entry.read)(&source, &self.options).map_err(|e| no_list(&source, e).in_file(source.path()))
     }

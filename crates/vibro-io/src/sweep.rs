@@ -4,11 +4,14 @@ use super::decibel::Decibel;
 use super::{Format, Reader, Recording, SweepList};
 use std::path::Path;
 use vibro_record::units::{Quantity, Unit};
-use vibro_record::{Axis,Direction,Error,Finding,Meta,Place,Record,Result,Scaling,Spectrum,Sweep,SweepPoint,Values,Window};
+use vibro_record::{
+    Axis, Direction, Error, Finding, Meta, Place, Record, Result, Scaling, Spectrum, Sweep, SweepPoint,
+    Values, Window,
+};
 
 /// What the analyser stored. What its files state themselves is believed where nothing is stated here; where both are and
 /// differ, the statement here is used, with a finding.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct SweepReader {
     /// Name of the sweep.
     pub name: String,
@@ -49,25 +52,6 @@ struct Settled {
     factor: f64,
     unit: Unit,
     window: Option<Window>,
-}
-
-impl Default for SweepReader {
-    /// Nothing stated.
-    fn default() -> Self {
-        SweepReader {
-            name: String::new(),
-            direction: None,
-            mass: None,
-            unit: None,
-            quantity: None,
-            calibration: None,
-            force_calibration: None,
-            window: None,
-            scaling: None,
-            analyser_integrated: None,
-            format: None,
-        }
-    }
 }
 
 impl SweepReader {
@@ -209,7 +193,8 @@ impl SweepReader {
                     let other = stated.filter(|s| !said.force && s.factor() != taken(&spectrum.meta));
                     let factor = other.map_or(1.0, |s| s.factor() / taken(&spectrum.meta));
                     if let Some(stated) = other {
-                        let differs = Finding::caution("sweep-unit-overrides-files").name("used", stated.symbol());
+                        let differs =
+                            Finding::caution("sweep-unit-overrides-files").name("used", stated.symbol());
                         let differs = differs.name("file", written.symbol());
                         found(differs.number("factor", taken(&spectrum.meta)));
                     }
@@ -242,9 +227,7 @@ fn linear(path: &Path, meta: &Meta, said: &Said, findings: &mut Vec<Finding>) ->
         (Some(Decibel::Stated(words)), Some(unit)) => {
             Finding::doubt("decibels-overruled").name("words", words).name("unit", unit.symbol())
         }
-        (Some(Decibel::Mentioned(words)), _) => {
-            Finding::caution("decibels-mentioned").name("words", words)
-        }
+        (Some(Decibel::Mentioned(words)), _) => Finding::caution("decibels-mentioned").name("words", words),
         (None, _) => return Ok(()),
     };
     if !findings.iter().any(|known| known.code == finding.code) {
@@ -280,6 +263,7 @@ fn other_quantity(path: &Path, written: &Unit, meant: Quantity, said: &Said) -> 
         if said.force { "a force, in N".to_owned() } else { format!("{meant}, as was stated") },
     )
     .hint(hint)
+    .setting(if said.force { "force_calibration" } else { "calibration" })
 }
 
 fn no_spectrum(recording: &Recording) -> Error {

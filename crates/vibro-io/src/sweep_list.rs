@@ -138,7 +138,8 @@ pub fn inside(folder: &Path, name: &Path, allow_outside: bool) -> Result<PathBuf
             format!("the name {:?} leads outside the folder of the list", name.display().to_string()),
             "names of files beside or below the list",
         )
-        .hint("move the files beside the list, or give --allow-outside if you trust it"));
+        .hint("move the files beside the list, or allow files outside its folder if you trust it")
+        .setting("allow_outside"));
     }
     Ok(joined)
 }

@@ -182,7 +182,8 @@ fn streamed(text: &Text, dialect: &Dialect, options: &Options, summary: &Summary
     let mut findings: Vec<Finding> =
         tail::cut_off(&text.tail, dialect.separator, dialect.decimal).into_iter().collect();
     let largest = summary.max.map_or(0.0, |(_, max)| max);
-    let rows = Rows { columns: vec![Values::Real(vec![largest])], counted: Some(summary.n), ..Rows::default() };
+    let rows =
+        Rows { columns: vec![Values::Real(vec![largest])], counted: Some(summary.n), ..Rows::default() };
     let records = records::build(text, dialect, rows, options, &mut findings)?;
     let headers = records.iter().map(|record| {
         let mut header = Header::of(record);

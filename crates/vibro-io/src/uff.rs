@@ -24,7 +24,7 @@ use super::{Header, Source};
 use delimiter::{Number, is_delimiter, set_number};
 use stream::Stream;
 use system::System;
-use vibro_record::{Error,Finding,Place,Record,Result};
+use vibro_record::{Error, Finding, Place, Record, Result};
 
 /// Endings under which text may stand before the first data set.
 const ENDINGS: [&str; 6] = ["uff", "unv", "ufb", "bunv", "uf", "58"];
@@ -161,7 +161,8 @@ impl Around {
     }
 
     fn cut_short(&mut self, place: Place, lines: usize) {
-        self.findings.push(Finding::caution("header-cut-short").count("lines", lines).count("of", uff58::LINES));
+        self.findings
+            .push(Finding::caution("header-cut-short").count("lines", lines).count("of", uff58::LINES));
         self.cut = Some((place, lines));
     }
 

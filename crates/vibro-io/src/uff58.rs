@@ -38,7 +38,7 @@ use heading::Heading;
 use layout::Layout;
 use spacing::Digits;
 use values::Binary;
-use vibro_record::{Error,Finding,Result};
+use vibro_record::{Error, Finding, Result};
 
 pub use heading::LINES;
 pub use plan::Plan;
@@ -165,11 +165,7 @@ impl Extent {
             return found(declared, false, None);
         }
         if mixed && closes(&stream.peek(size(true))?) {
-            return found(
-                size(true),
-                true,
-                Some(Finding::note("abscissa-double")),
-            );
+            return found(size(true), true, Some(Finding::note("abscissa-double")));
         }
         let noted = noted.filter(|bytes| *bytes > 0);
         if let Some(bytes) = noted
@@ -185,11 +181,7 @@ impl Extent {
             let bytes = stream.remaining() - trailing_delimiter(stream)?;
             return found(bytes, wide, None);
         }
-        found(
-            expected,
-            wide,
-            Some(Finding::doubt("no-closing-line").number("bytes", expected as f64)),
-        )
+        found(expected, wide, Some(Finding::doubt("no-closing-line").number("bytes", expected as f64)))
     }
 }
 

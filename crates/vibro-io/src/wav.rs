@@ -17,14 +17,14 @@ mod stream;
 
 pub(super) use calibrated::Calibrated;
 pub(crate) use scales::{Scale, Scales};
-pub use stream::WavStream;
+use stream::WavStream;
 
 use super::format::{Format, Survey};
 use super::reader::{Options, Recording};
 use super::{Header, Source, Summary, missing};
 use std::path::Path;
 use vibro_record::units::{self, Unit};
-use vibro_record::{Axis,Error,Finding,Meta,Place,Record,Result,Trace};
+use vibro_record::{Axis, Error, Finding, Meta, Place, Record, Result, Trace};
 
 /// The unit of values without a calibration.
 const FULL_SCALE: &str = "FS";

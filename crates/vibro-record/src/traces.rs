@@ -139,7 +139,8 @@ impl Traces {
     /// Findings about the file and its channels, these with their names where there are several. What only the values
     /// show is among them once all have been read.
     pub fn findings(&self) -> Vec<Finding> {
-        let channels: Vec<_> = self.channels.iter().map(|m| (m.name.as_str(), m.findings.as_slice())).collect();
+        let channels: Vec<_> =
+            self.channels.iter().map(|m| (m.name.as_str(), m.findings.as_slice())).collect();
         let mut all = self.findings.clone();
         all.extend(Finding::gathered(&channels));
         all
@@ -282,7 +283,8 @@ fn clock(path: &Path, traces: &[Trace], frames: usize) -> Result<(f64, f64)> {
         let Some(rate) = trace.rate().filter(|r| r.is_finite() && *r > 0.0) else {
             let found = format!("the sampling rate of channel {:?} is not known", trace.meta.name);
             return Err(Error::input(place(path), found, "samples at even distances in time")
-                .hint("state the sampling rate with --rate"));
+                .hint("state the sampling rate")
+                .setting("rate"));
         };
         let Some((first, known)) = common else {
             common = Some((trace, rate));

@@ -1,11 +1,11 @@
 //! Frequency response functions of a campaign: figures and modes.
 
-use crate::report::words::{self, Voice};
 use super::{JobOptions, Progress, file_name, merge, or_left_out, spectral};
 use crate::campaign::{Campaign, FrfEntry};
 use crate::error::Result;
 use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal};
 use crate::record::{Meta, Record};
+use crate::report::words::{self, Voice};
 use crate::report::{Figure, Output, files, pictures, tables};
 use serde::Serialize;
 

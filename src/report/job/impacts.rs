@@ -1,12 +1,12 @@
 //! Impacts of a campaign.
 
-use crate::report::words::{self, Voice};
 use super::{JobOptions, file_name, merge, or_left_out};
 use crate::campaign::{Campaign, RecordEntry};
 use crate::error::Result;
 use crate::measure::impacts::{Impacts, ImpactsOptions, Shape, impacts as find};
 use crate::read::{Reader, Recording};
 use crate::record::Trace;
+use crate::report::words::{self, Voice};
 use crate::report::{Figure, pictures};
 use serde::Serialize;
 

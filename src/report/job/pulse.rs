@@ -1,10 +1,10 @@
 //! Contact pulses of a campaign.
 
-use crate::report::words::{self, Voice};
 use super::{JobOptions, file_name, merge, or_left_out};
 use crate::campaign::Campaign;
 use crate::error::Result;
 use crate::measure::pulse::{PulseOptions, PulseResult, pulse, two_times};
+use crate::report::words::{self, Voice};
 use crate::report::{Figure, pictures};
 use serde::Serialize;
 

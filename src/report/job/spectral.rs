@@ -1,11 +1,11 @@
 //! Spectra of a campaign.
 
-use crate::report::words::{self, Voice};
 use super::{JobOptions, PARTS, Progress, file_name, merge, or_left_out, slugs};
 use crate::campaign::{Campaign, RecordEntry};
 use crate::error::Result;
 use crate::measure::spectral::{SpectralOptions, SpectralResult, spectral};
 use crate::record::Traces;
+use crate::report::words::{self, Voice};
 use crate::report::{Figure, Output, files, pictures};
 use serde::Serialize;
 

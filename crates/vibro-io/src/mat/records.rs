@@ -30,7 +30,8 @@ pub fn build(
                 findings.push(Finding::note("variable-passed-over").name("class", class));
             }
             Content::Other(class) => {
-                findings.push(Finding::note("variable-passed-over").name("variable", name).name("class", class));
+                findings
+                    .push(Finding::note("variable-passed-over").name("variable", name).name("class", class));
             }
             // MATLAB keeps the inside of objects and functions in a nameless array.
             Content::Array(_) if name.is_empty() => {}
@@ -136,9 +137,9 @@ impl Axes {
         {
             let found =
                 format!("{first:?} says a sampling rate of {} Hz, {other:?} {} Hz", short(*a), short(*b));
-            return Err(
-                Error::input(Place::file(source.path()), found, "one sampling rate").hint("state the sampling rate").setting("rate")
-            );
+            return Err(Error::input(Place::file(source.path()), found, "one sampling rate")
+                .hint("state the sampling rate")
+                .setting("rate"));
         }
         axes.stated = match (options.rate, options.base_band) {
             (Some(rate), _) => Some(Axis::time(0.0, 1.0 / rate, 0)),
@@ -310,9 +311,9 @@ impl Made<'_> {
         }
         let values = match imaginary {
             None => Values::Real(real),
-            Some(imaginary) => {
-                Values::Complex(real.iter().zip(&imaginary).map(|(re, im)| Complex64::new(*re, *im)).collect())
-            }
+            Some(imaginary) => Values::Complex(
+                real.iter().zip(&imaginary).map(|(re, im)| Complex64::new(*re, *im)).collect(),
+            ),
         };
         Ok(assemble::record(meta, axis, values, Spectral::default()))
     }

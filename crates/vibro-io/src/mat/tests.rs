@@ -87,7 +87,6 @@ fn values(record: &Record) -> &[f64] {
     }
 }
 
-
 #[test]
 fn both_byte_orders_and_every_storage() {
     for order in [LITTLE, Order { big: true }] {
@@ -148,7 +147,11 @@ fn abscissae_from_vectors() {
     let uneven =
         of(&[LITTLE.column("time", &[0.0, 0.1, 0.5]), LITTLE.column("x", &[1.0, 2.0, 3.0])]).unwrap();
     assert_eq!(uneven.records[0].axis().values(), [0.0, 0.1, 0.5]);
-    assert!(says(&uneven.findings, "axis-uneven", &["column=vector \"time\"", "smallest=0.1", "largest=0.4"]));
+    assert!(says(
+        &uneven.findings,
+        "axis-uneven",
+        &["column=vector \"time\"", "smallest=0.1", "largest=0.4"]
+    ));
 
     let lines = of(&[LITTLE.column("freq", &[0.0, 2.0]), LITTLE.column("X", &[1.0, 2.0])]).unwrap();
     let Record::Spectrum(spectrum) = &lines.records[0] else { panic!() };
@@ -285,7 +288,11 @@ fn a_file_that_is_cut_off_keeps_what_is_whole() {
     let recording = Reader::new().from_reader("x.mat", file.as_slice()).unwrap();
     assert_eq!(recording.records.len(), 1);
     // Flags and dimensions of 16 bytes each, the name of 8, two doubles behind their tag.
-    assert!(says(&recording.findings, "variable-cut-off", &["declared=64", "there=54"]), "{:?}", recording.findings);
+    assert!(
+        says(&recording.findings, "variable-cut-off", &["declared=64", "there=54"]),
+        "{:?}",
+        recording.findings
+    );
 }
 
 #[test]

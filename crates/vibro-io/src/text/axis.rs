@@ -193,9 +193,8 @@ fn contradicted(stated: &Stated, options: &Options, step: f64, findings: &mut Ve
     if let Some(rate) = options.rate {
         differ("sampling rate", stated.rate, Some(rate));
         if let Some(band) = band.filter(|_| stated.rate.is_none()) {
-            findings.push(
-                Finding::caution("spectrum-read-as-trace").number("band", band).number("rate", rate),
-            );
+            findings
+                .push(Finding::caution("spectrum-read-as-trace").number("band", band).number("rate", rate));
         }
         if options.base_band.is_some() {
             findings.push(Finding::caution("rate-and-band-stated"));
@@ -204,9 +203,8 @@ fn contradicted(stated: &Stated, options: &Options, step: f64, findings: &mut Ve
         differ("base band", stated.base_band, options.base_band);
         differ("line distance", stated.line_width.map(short), Some(short(step)));
         if let (Some(rate), Some(used), None) = (stated.rate, options.base_band, band) {
-            findings.push(
-                Finding::caution("trace-read-as-spectrum").number("rate", rate).number("band", used),
-            );
+            findings
+                .push(Finding::caution("trace-read-as-spectrum").number("rate", rate).number("band", used));
         }
     }
 }

@@ -20,8 +20,7 @@ const REMARKS: &[&str] = &["#", "%", "!", "*", "'", "\"", "//"];
 const ENOUGH: usize = 24;
 
 /// What to try where digits may be grouped; such numbers are not read.
-pub const GROUPED: &str =
-    "state the decimal mark if a comma separates two numbers; if digits are grouped in threes, export them without";
+pub const GROUPED: &str = "state the decimal mark if a comma separates two numbers; if digits are grouped in threes, export them without";
 
 /// Finds the dialect from the first rows.
 ///
@@ -132,11 +131,7 @@ fn marks(head: &Head, rows: &[Line], options: &Options) -> Result<(Separator, u8
             return Err(ask("with a decimal comma").hint("say which: comma or point").setting("decimal"));
         }
     };
-    Ok(if comma {
-        (explicit.unwrap_or(Separator::Blank), b',')
-    } else {
-        (explicit.unwrap_or(COMMA), b'.')
-    })
+    Ok(if comma { (explicit.unwrap_or(Separator::Blank), b',') } else { (explicit.unwrap_or(COMMA), b'.') })
 }
 
 /// Whether a comma in a line cannot stand between two integers.

@@ -1,12 +1,12 @@
 //! Columns to records: abscissa, units, complex pairs.
 
+use super::Text;
 use super::axis::{Printed, choose};
 use super::dialect::{Abscissa, Cell, Dialect};
 use super::header::Stated;
 use super::names::{Name, Part};
 use super::rows::Rows;
 use super::tail;
-use super::Text;
 use crate::assemble::{self, Spectral, to_si};
 use crate::axis::{from_values, short};
 use crate::{Options, number};
@@ -30,8 +30,12 @@ pub fn build(
 ) -> Result<Vec<Record>> {
     let n = rows.counted.or(rows.columns.first().map(Values::len)).unwrap_or(0);
     let made = Made { text, dialect, options, stated: dialect.stated(&rows.kept) };
-    let mut of_axis: Vec<Finding> =
-        made.stated.impossible.iter().map(|l| Finding::caution("header-line-impossible").name("line", l)).collect();
+    let mut of_axis: Vec<Finding> = made
+        .stated
+        .impossible
+        .iter()
+        .map(|l| Finding::caution("header-line-impossible").name("line", l))
+        .collect();
     let names = dialect.names.clone().unwrap_or_else(|| vec![Name::default(); dialect.columns]);
     let columns = rows.columns.into_iter().zip(names).enumerate();
     let mut table: Vec<Column> =
@@ -119,8 +123,9 @@ impl Made<'_> {
 
     /// Which column is the abscissa. A column of times need not be it, for it may hold intervals: by name it is, or if it rises.
     fn abscissa(&self, table: &[Column]) -> Option<usize> {
-        let by_name =
-            |column: &Column| column.name.bare().axis(column.at == 1).is_some() && column.reals().iter().all(|v| v.is_finite());
+        let by_name = |column: &Column| {
+            column.name.bare().axis(column.at == 1).is_some() && column.reals().iter().all(|v| v.is_finite())
+        };
         match self.dialect.abscissa {
             Abscissa::Named => {
                 self.dialect.named_abscissa().filter(|at| by_name(&table[*at]) || table[*at].rises())
@@ -163,7 +168,8 @@ impl Made<'_> {
         self.one_clock(&kind, column, factor, others, own)?;
         let values = values.iter().map(|v| v * factor).collect();
         let (axis, finding) = from_values(kind, values, own * factor, &label);
-        let findings = findings.into_iter().map(|f| f.name("column", label.as_str())).chain(finding).collect();
+        let findings =
+            findings.into_iter().map(|f| f.name("column", label.as_str())).chain(finding).collect();
         Ok(Printed { axis, label, resolution: own * factor, assumed: by_name.is_none(), findings })
     }
 
@@ -281,9 +287,9 @@ impl Made<'_> {
         step.into_iter().for_each(|step| step.arguments.extend(more.clone()));
         let factor = self.options.adopt(&mut meta, unit.as_deref().or(self.stated.unit.as_deref()));
         let mut values = match (imaginary.map(|c| c.values), values) {
-            (Some(Values::Real(imaginary)), Values::Real(real)) => {
-                Values::Complex(real.iter().zip(&imaginary).map(|(re, im)| Complex64::new(*re, *im)).collect())
-            }
+            (Some(Values::Real(imaginary)), Values::Real(real)) => Values::Complex(
+                real.iter().zip(&imaginary).map(|(re, im)| Complex64::new(*re, *im)).collect(),
+            ),
             (_, values) => values,
         };
         to_si(&mut values, factor).map_err(|e| e.in_file(self.text.path()))?;
@@ -301,7 +307,9 @@ impl Made<'_> {
     fn spectral(&self, name: &str, unit: Option<&str>) -> Spectral {
         let density = unit.is_some_and(is_density).then_some(Scaling::Psd);
         let window = match self.said("window", name) {
-            Some(window) => Window::from_name(&window).or(self.stated.window.filter(|_| !self.several("window"))),
+            Some(window) => {
+                Window::from_name(&window).or(self.stated.window.filter(|_| !self.several("window")))
+            }
             // A remark about another column says nothing of this one.
             None => self.stated.window.filter(|_| !self.several("window")),
         };

@@ -151,7 +151,9 @@ impl Reader<'_> {
     /// The fields of a line; itself where it cannot be cut.
     fn texts(&self, line: &Line) -> Vec<String> {
         let whole = || vec![line.text.to_owned()];
-        self.dialect.cut(line).map_or_else(|_| whole(), |f| f.into_iter().map(|(_, f)| f.into_owned()).collect())
+        self.dialect
+            .cut(line)
+            .map_or_else(|_| whole(), |f| f.into_iter().map(|(_, f)| f.into_owned()).collect())
     }
 
     /// Whether a line ends with the file and not with a line end.

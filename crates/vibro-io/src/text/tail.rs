@@ -151,7 +151,10 @@ mod tests {
                 let text = format!("{}{end}{rows}1.234", "x".repeat(phase));
                 assert!(said(&text), "phase {phase}, {end:?}");
                 let source = Source::memory("x.txt", text.as_bytes()).unwrap();
-                assert!(cut_off(&of(&source).unwrap(), Separator::Blank, b'.').is_some(), "phase {phase}, {end:?}");
+                assert!(
+                    cut_off(&of(&source).unwrap(), Separator::Blank, b'.').is_some(),
+                    "phase {phase}, {end:?}"
+                );
                 assert!(!said(&format!("{text}567E-03")), "phase {phase}, {end:?}");
             }
         }

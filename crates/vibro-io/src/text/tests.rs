@@ -140,7 +140,11 @@ fn what_is_stated_may_refine_a_column_and_not_contradict_it() {
     assert!(band.contains("a time from 1 to 1.2 s") && band.contains("base band of 50 Hz"), "{band}");
     let contradicted = of("fs: 1000\nt [s],a [g]\n0.0,1\n0.1,2\n");
     assert_eq!(contradicted.records[0].axis().step(), Some(0.1));
-    assert!(says(&contradicted.findings, "header-step-differs", &["header=0.001", "step=0.1"]), "{:?}", contradicted.findings);
+    assert!(
+        says(&contradicted.findings, "header-step-differs", &["header=0.001", "step=0.1"]),
+        "{:?}",
+        contradicted.findings
+    );
 }
 
 #[test]
@@ -159,7 +163,11 @@ fn uneven_times_are_kept_and_said() {
     let recording = of("t [s],a [g]\n0.00,1\n0.10,2\n0.20,3\n0.50,4\n");
     let axis = recording.records[0].axis();
     assert_eq!((axis.step(), axis.at(3)), (None, 0.5));
-    assert!(says(&recording.findings, "axis-uneven", &["unit=s", "smallest=0.1", "largest=0.3"]), "{:?}", recording.findings);
+    assert!(
+        says(&recording.findings, "axis-uneven", &["unit=s", "smallest=0.1", "largest=0.3"]),
+        "{:?}",
+        recording.findings
+    );
 }
 
 #[test]
@@ -224,7 +232,11 @@ fn parts_must_agree_and_are_apart_over_time() {
 #[test]
 fn what_is_assumed_is_said() {
     let recording = of("time,a [EU]\n0.0,1\n0.1,2\n");
-    assert!(says(&recording.findings, "axis-unit-assumed", &["unit=s", "column=column \"time\""]), "{:?}", recording.findings);
+    assert!(
+        says(&recording.findings, "axis-unit-assumed", &["unit=s", "column=column \"time\""]),
+        "{:?}",
+        recording.findings
+    );
     assert!(says(&recording.records[0].meta().findings, "unit-unknown", &["unit=EU"]));
     let lone = read_with(&Reader::new(), "velocity [mm/s]\n1,5\n2,5\n").unwrap();
     assert_eq!(values(&lone.records[0]), [1.5 * 1e-3, 2.5 * 1e-3]);
@@ -337,6 +349,24 @@ fn a_time_that_runs_backwards_is_refused_whatever_the_rate() {
     let options = Options { rate: Some(10_000.0), ..Options::default() };
     let why = read_table(&source, &options).unwrap_err().to_string();
     assert!(why.contains("runs backwards: value 26 is 0.0015, behind 0.0024"), "{why}");
+}
+
+#[test]
+fn a_number_that_is_cut_off_is_seen_behind_every_line_end() {
+    for end in ["\n", "\r\n", "\r"] {
+        let text = ["t [s],a [g]", "0,1.25", "1,1.35", "2,1.45", "3,1.5"].join(end);
+        assert!(says(&of(text).findings, "last-number-cut-off", &["found=1.5"]), "{end:?}");
+    }
+}
+
+/// The digits of the abscissa are those of its text, also where rows are read as bytes: 1024 Hz in whole milliseconds.
+#[test]
+fn the_digits_of_a_long_table_are_those_of_its_first_and_last_rows() {
+    let rows: String = (0..20_000).map(|i| format!("{:.3},{}\n", f64::from(i) / 1024.0, i % 7)).collect();
+    let recording = of(format!("t [s],a [g]\n{rows}"));
+    let step = recording.records[0].axis().step().unwrap();
+    // Both ends are rounded by half a millisecond at most.
+    assert!((step - 1.0 / 1024.0).abs() <= 1e-3 / 19_999.0, "{step}");
 }
 
 proptest! {

@@ -4,7 +4,7 @@ use super::codes::{self, Domain};
 use super::heading::{self, Heading};
 use crate::Options;
 use vibro_record::units::{Quantity, Unit};
-use vibro_record::{AxisKind,Finding,Meta};
+use vibro_record::{AxisKind, Finding, Meta};
 
 /// Kind of the abscissa and factor to s or Hz.
 pub fn kind_and_factor(heading: &Heading, options: &Options, meta: &mut Meta) -> (AxisKind, f64) {

@@ -2,10 +2,10 @@
 
 use super::codes;
 use super::layout::Layout;
-use crate::uff::delimiter::is_delimiter;
-use crate::uff::stream::Stream;
 use crate::number;
 use crate::text::encoding;
+use crate::uff::delimiter::is_delimiter;
+use crate::uff::stream::Stream;
 use vibro_record::{Error, Place, Result};
 
 /// Lines before the values.

@@ -2,7 +2,7 @@
 
 use super::codes::{self, Domain};
 use super::heading::Heading;
-use vibro_record::{AxisKind,Finding,Meta,Scaling};
+use vibro_record::{AxisKind, Finding, Meta, Scaling};
 
 /// Kinds of record.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -12,7 +12,10 @@ use crate::assemble::to_si;
 use crate::uff::system::System;
 use crate::{Header, Options, missing};
 use vibro_record::units::{self, Unit};
-use vibro_record::{Axis,AxisKind,Error,Finding,Frf,FrfKind,Grid,Meta,Record,Result,Scaling,Spectrum,Trace,Values,Window};
+use vibro_record::{
+    Axis, AxisKind, Error, Finding, Frf, FrfKind, Grid, Meta, Record, Result, Scaling, Spectrum, Trace,
+    Values, Window,
+};
 
 /// Everything about a record but its values.
 #[derive(Debug, Clone)]

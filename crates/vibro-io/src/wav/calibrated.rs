@@ -5,7 +5,7 @@ use crate::reader::Options;
 use crate::{Source, Summary};
 use std::path::PathBuf;
 use vibro_math::lanes;
-use vibro_record::{Finding,Meta,Result,Stream,Trace,units};
+use vibro_record::{Finding, Meta, Result, Stream, Trace, units};
 
 /// Some channels of a wave file, with what a person stated and what the file says applied.
 pub(crate) struct Calibrated {

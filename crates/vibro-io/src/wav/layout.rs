@@ -4,12 +4,12 @@
 //! ITU-R BS.2088 (BW64) for the `ds64` chunk.
 
 use super::scales::Scales;
-use crate::source::ReadSeek;
 use crate::Source;
+use crate::source::ReadSeek;
 use crate::text::encoding;
 use std::fmt;
 use std::io::{Read, SeekFrom};
-use vibro_record::{Error,Finding,Place,Result};
+use vibro_record::{Error, Finding, Place, Result};
 
 /// How many chunks are looked at: real files have a dozen.
 const MOST_CHUNKS: usize = 10_000;

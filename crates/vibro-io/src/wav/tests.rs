@@ -165,7 +165,11 @@ fn rf64_takes_its_length_from_ds64_and_allocates_what_is_there() {
         assert_eq!(trace.values.len(), 10);
         assert!(trace.values.capacity() < 100);
         assert_eq!(trace.meta.declared_n, Some(5_000_000_000));
-        assert!(says(&recording.findings, "fewer-values", &["declared=5000000000"]), "{:?}", recording.findings);
+        assert!(
+            says(&recording.findings, "fewer-values", &["declared=5000000000"]),
+            "{:?}",
+            recording.findings
+        );
         let mut stream = WavStream::open(&Source::memory("x.wav", huge(form)).unwrap()).unwrap();
         assert_eq!((stream.frames(), stream.declared_frames()), (10, Some(5_000_000_000)));
         let mut block = Vec::new();
@@ -217,7 +221,11 @@ fn statements_of_a_person_win_with_a_doubt() {
     let Record::Trace(trace) = &recording.records[0] else { panic!() };
     assert_eq!((trace.values[0], trace.meta.unit.symbol()), (2.5 * 1e-3, "m/s"));
     assert_eq!(trace.rate(), Some(1000.0));
-    assert!(says(&trace.meta.findings, "statement-overrides-file", &["file=48000", "used=1000"]), "{:?}", trace.meta.findings);
+    assert!(
+        says(&trace.meta.findings, "statement-overrides-file", &["file=48000", "used=1000"]),
+        "{:?}",
+        trace.meta.findings
+    );
     assert!(says(&trace.meta.findings, "full-scale-stated", &["unit=mm/s"]), "{:?}", trace.meta.findings);
     let error = Reader::new().base_band(Some(100.0)).from_reader("x.wav", bytes.as_slice()).unwrap_err();
     assert!(error.to_string().contains("base band"));
