@@ -1,7 +1,7 @@
 //! The fastest path: one number a line, every line of the same length, every number like `1.234567e-01`.
 //!
 //! That is what analysers print most. Since the number of rows follows from the size of the file, every thread writes its
-//! values where they belong. Anything else makes this path give up, and [`super::clean`] takes over.
+//! values where they belong. Anything else makes this path give up, and [`super::fast`] takes over.
 
 use super::fast::{BLOCK, SMALLEST_PIECE};
 use crate::Source;
