@@ -119,7 +119,7 @@ impl Reader {
     /// # Errors
     /// If it cannot be opened, is of no known format, or its content is not what its format requires.
     pub fn from_path(&self, path: impl AsRef<Path>) -> Result<Recording> {
-        self.from_source(&Source::file(path)?)
+        self.read(&Source::file(path)?)
     }
 
     /// Reads many files, in parallel, in the order given.
@@ -160,14 +160,14 @@ impl Reader {
         let name = name.into();
         let mut bytes = Vec::new();
         reader.read_to_end(&mut bytes).map_err(|e| Error::io("read", &name, e))?;
-        self.from_source(&Source::memory(name, bytes)?)
+        self.read(&Source::memory(name, bytes)?)
     }
 
     /// Reads a source.
     ///
     /// # Errors
     /// As [`Reader::from_path`].
-    pub(crate) fn from_source(&self, source: &Source) -> Result<Recording> {
+    pub(crate) fn read(&self, source: &Source) -> Result<Recording> {
         let (entry, source) = self.entry(source)?;
         (entry.read)(&source, &self.options).map_err(|e| no_list(&source, e).in_file(source.path()))
     }

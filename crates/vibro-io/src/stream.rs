@@ -29,7 +29,7 @@ impl Reader {
             let findings = stream.findings().to_vec();
             return Traces::of_stream(path, findings, &traces, stream.frames(), Box::new(stream));
         }
-        let recording = self.from_source(&source)?;
+        let recording = self.read(&source)?;
         let kinds: Vec<&str> = recording.records.iter().map(Record::kind).collect();
         let nothing = no_trace(&path, &kinds);
         let traces = recording.records.into_iter().filter_map(|record| match record {

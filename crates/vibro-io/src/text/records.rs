@@ -67,12 +67,15 @@ pub fn build(
     for (i, (column, imaginary)) in made.pairs(table, &axis)?.into_iter().enumerate() {
         let mut record = made.record((i, column, imaginary), &axis)?;
         record.meta_mut().declared_n = declared;
-        of_axis.iter().for_each(|found| record.meta_mut().found(found.clone()));
+        if dialect.abscissa == Abscissa::Rising {
+            for found in &of_axis {
+                record.meta_mut().found(found.clone());
+            }
+        }
         records.push(record);
     }
     if dialect.abscissa == Abscissa::Named {
         // What holds for all columns of a table is said of the table.
-        records.iter_mut().for_each(|r| r.meta_mut().findings.retain(|f| !of_axis.contains(f)));
         findings.append(&mut of_axis);
     }
     Ok(records)
@@ -284,7 +287,9 @@ impl Made<'_> {
         let comma = (self.dialect.decimal == b',').then(|| ("decimal mark", "comma".to_owned()));
         let place = (self.dialect.columns > 1).then(|| ("column", at.to_string()));
         let more = [place, encoding, comma].into_iter().flatten().map(|(key, value)| (key.to_owned(), value));
-        step.into_iter().for_each(|step| step.arguments.extend(more.clone()));
+        if let Some(step) = step {
+            step.arguments.extend(more);
+        }
         let factor = self.options.adopt(&mut meta, unit.as_deref().or(self.stated.unit.as_deref()));
         let mut values = match (imaginary.map(|c| c.values), values) {
             (Some(Values::Real(imaginary)), Values::Real(real)) => Values::Complex(

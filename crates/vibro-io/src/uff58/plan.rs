@@ -212,7 +212,9 @@ fn unit(heading: &Heading, system: &System, options: &Options, coherence: bool, 
         }
         return meta.adopt_unit(said.symbol());
     }
-    findings.into_iter().for_each(|found| meta.found(found));
+    for found in findings {
+        meta.found(found);
+    }
     if factor != 1.0 {
         let from = if written.is_empty() { "data set 164" } else { &written };
         meta.step("to_si", &[("from", &from), ("factor", &factor)]);

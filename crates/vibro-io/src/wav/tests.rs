@@ -47,7 +47,7 @@ fn chunks(list: &[(&[u8; 4], Vec<u8>)]) -> Vec<u8> {
 }
 
 fn read_bytes(bytes: &[u8]) -> Result<Recording> {
-    Reader::new().from_source(&Source::memory("x.wav", bytes)?)
+    Reader::new().read(&Source::memory("x.wav", bytes)?)
 }
 
 fn values(bytes: &[u8]) -> Vec<Vec<f64>> {
