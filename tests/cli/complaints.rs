@@ -177,7 +177,7 @@ fn a_file_cut_within_its_last_number() {
     let narrow = with("b.csv", "t [s],v [m/s]\n0.0,1.25\n0.1");
     has(&complaint(&["info", text(&narrow)], 2), &["line 3", "1 field(s)", "cut off"]);
     let narrow = with("b.txt", "0.0 1.25\n0.1 1.35\n0.2");
-    has(&complaint(&["info", text(&narrow)], 2), &["line 3", "1 values", "cut off"]);
+    has(&complaint(&["info", text(&narrow)], 2), &["line 3", "1 field(s) in this row", "cut off"]);
 }
 
 #[test]
