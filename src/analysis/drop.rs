@@ -208,8 +208,8 @@ impl Series {
             ..ImpactsOptions::default()
         };
         let found = self.bounces.add(&trace, &how)?;
-        self.answer.tell(&file, &recording.doubts);
-        self.answer.tell(&file, &trace.meta.doubts);
+        self.answer.tell(&file, &recording.findings);
+        self.answer.tell(&file, &trace.meta.findings);
         self.answer.tell(&file, &found.findings);
         self.answer
             .figure(format!("drop_{number}"), impacts::figures::drop(source.name, &trace, &found.times));

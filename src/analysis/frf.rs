@@ -174,7 +174,7 @@ impl Keys {
             return Ok(vec![Function { meta: frf.meta.clone(), measured, records }]);
         }
         let recording = source.reader()?.from_path(source.path)?;
-        told.tell("", &recording.doubts);
+        told.tell("", &recording.findings);
         let coherence = match source.further("coherence", self.coherence.as_ref())? {
             Some(path) => Some(source.reader()?.from_path(path)?),
             None => None,
@@ -215,7 +215,7 @@ impl Keys {
         let (quantity, unit) = (meta.quantity.name(), meta.unit.symbol());
         let mut answer = Answer::of(&Found { quantity, unit, modal: &found })?;
         answer.result.insert("channel".to_owned(), meta.name.clone().into());
-        answer.tell("", &meta.doubts);
+        answer.tell("", &meta.findings);
         answer.tell("", &found.findings);
         answer.refused = refused;
         answer.tables.push(tables::modes(source.name, &found));

@@ -129,8 +129,8 @@ impl Keys {
         let found = impacts(&trace, &options)?;
         let mut answer = Answer::of(&found)?;
         answer.tell("", &found.findings);
-        answer.tell("", &recording.doubts);
-        answer.tell("", &trace.meta.doubts);
+        answer.tell("", &recording.findings);
+        answer.tell("", &trace.meta.findings);
         answer.tables.push(tables::impacts(source.name, &found));
         answer.figure("impacts", figures::impacts(source.name, &trace, &found));
         answer.csv("impacts", &tables::impact_times(&found));

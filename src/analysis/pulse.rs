@@ -97,8 +97,8 @@ impl Keys {
         let trace = source.trace(&recording)?;
         let found = pulse(&trace, &PulseOptions { instrument: self.instrument()?, mass: self.mass })?;
         let mut answer = shown(source.name, &found)?;
-        answer.tell("", &recording.doubts);
-        answer.tell("", &trace.meta.doubts);
+        answer.tell("", &recording.findings);
+        answer.tell("", &trace.meta.findings);
         Ok(answer)
     }
 }

@@ -11,7 +11,6 @@ mod summary;
 pub use pairing::Crossing;
 pub use stored::Stored;
 
-use super::answer::Tells;
 use super::{Analysis, Job, JobOptions, Progress, entries};
 use crate::campaign::{Campaign, Entry, above_zero};
 use crate::error::{Error, Place, Result};
@@ -214,8 +213,7 @@ fn taken(
 
 /// What is known of the responses, each about its sweep; of all sweeps once.
 pub fn told(responses: &[Response]) -> Vec<About> {
-    let all: Vec<_> =
-        responses.iter().map(|r| [r.warnings.findings(), r.findings.clone()].concat()).collect();
+    let all: Vec<_> = responses.iter().map(|r| r.findings.clone()).collect();
     let mut told = Vec::new();
     for (i, (response, findings)) in responses.iter().zip(&all).enumerate() {
         for finding in findings {

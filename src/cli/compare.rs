@@ -7,8 +7,7 @@ use crate::analysis::{self, JobOptions};
 use crate::campaign::Parameter;
 use crate::compare::{Fit, Overlay, Predicting, overlay};
 use crate::error::{Error, Place, Result};
-use crate::record::Finding;
-use crate::report::words::{About, Voice, told};
+use crate::report::words::{Voice, told, with_record};
 use crate::report::{Output, files};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -72,9 +71,4 @@ pub fn run(typed: &args::Compare, json: bool) -> Result<()> {
         let _ = writeln!(text, "wrote {file}");
     }
     print::text(&text)
-}
-
-/// A finding with its record as subject where it names none itself.
-fn with_record((record, finding): About) -> Finding {
-    if record.is_empty() || finding.subject.is_some() { finding } else { finding.about(record) }
 }

@@ -6,6 +6,7 @@ use super::target::{apart, write_beside};
 use super::{args, complain, print};
 use crate::error::{Error, Result};
 use crate::record::Record;
+use crate::report::words::{self, Voice};
 use crate::write::{Precision, Storage, Target};
 use serde::Serialize;
 
@@ -38,7 +39,7 @@ pub fn run(typed: &args::Convert, json: bool) -> Result<()> {
     let mut bytes = Vec::new();
     let precision = if typed.single { Precision::Single } else { Precision::Double };
     target.write(&recording.records, Storage { binary: typed.binary, precision }, &mut bytes)?;
-    let mut warnings = recording.all_doubts();
+    let mut warnings = words::sentences(&recording.all_findings(), Voice::Command);
     warnings.extend(changes);
     if target == Target::Npy {
         warnings.push("An array file holds values only: axis and unit are not in it.".to_owned());

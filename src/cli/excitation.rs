@@ -5,6 +5,7 @@ use super::{args, complain, print, settings};
 use crate::error::{Error, Result};
 use crate::measure::excitation::{Excitation, excitations};
 use crate::measure::legacy;
+use crate::report::words::{self, Voice};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -19,7 +20,7 @@ struct Answer {
 pub fn run(typed: &args::Excitation, json: bool) -> Result<()> {
     let (list, how) = settings::listed(&typed.sweep)?;
     let sweep = how.read(&list)?;
-    let mut warnings = sweep.doubts.clone();
+    let mut warnings = words::sentences(&sweep.findings, Voice::Command);
     let points = if typed.sweep.legacy {
         warnings = vec!["These are the answers of the script sineswpf, mistakes included.".to_owned()];
         legacy::excitation(&sweep)?

@@ -2,8 +2,9 @@
 
 use super::{args, complain, print};
 use crate::error::Result;
-use crate::read::{Header, gathered};
-use crate::report::words::Voice;
+use crate::read::Header;
+use crate::record::Finding;
+use crate::report::words::{Voice, told, with_record};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -12,7 +13,7 @@ struct Answer {
     files: Vec<File>,
     /// Complaints about files that could not be listed.
     errors: Vec<String>,
-    warnings: Vec<String>,
+    findings: Vec<Finding>,
 }
 
 #[derive(Serialize)]
@@ -25,10 +26,11 @@ struct File {
 /// Lists what can be listed and complains of the rest; gives the exit code of the first failure.
 pub fn run(typed: &args::Info, json: bool) -> Result<u8> {
     let reader = typed.reading.reader()?;
-    let mut answer = Answer { files: Vec::new(), errors: Vec::new(), warnings: Vec::new() };
+    let mut answer = Answer { files: Vec::new(), errors: Vec::new(), findings: Vec::new() };
+    let mut about = Vec::new();
     let mut code = 0;
     for path in &typed.files {
-        let (format, records, doubts) = match reader.survey(path) {
+        let (format, records, mut findings) = match reader.survey(path) {
             Ok(found) => found,
             // The other files are still worth listing; the first failure decides the exit code.
             Err(error) => {
@@ -38,17 +40,17 @@ pub fn run(typed: &args::Info, json: bool) -> Result<u8> {
                 continue;
             }
         };
-        let about =
-            |d: &String| if typed.files.len() > 1 { format!("{}: {d}", path.display()) } else { d.clone() };
-        answer.warnings.extend(doubts.iter().map(about));
-        let of_records: Vec<_> = records.iter().map(|r| (r.name.as_str(), r.doubts.as_slice())).collect();
-        answer.warnings.extend(gathered(&of_records).iter().map(about));
+        let of_records: Vec<_> = records.iter().map(|r| (r.name.as_str(), r.findings.as_slice())).collect();
+        findings.extend(Finding::gathered(&of_records));
+        let file = if typed.files.len() > 1 { path.display().to_string() } else { String::new() };
+        about.extend(findings.into_iter().map(|finding| (file.clone(), finding)));
         answer.files.push(File { path: path.display().to_string(), format: format.name(), records });
     }
     if json {
+        answer.findings = about.into_iter().map(with_record).collect();
         print::json(&answer)?;
     } else {
-        complain::warn(&answer.warnings);
+        complain::warn(&told(&about, Voice::Command, true));
         print::text(&table(&answer.files))?;
     }
     Ok(code)

@@ -61,7 +61,6 @@ pub fn run(typed: &args::Response, json: bool) -> Result<()> {
     if json {
         return print::json(&Answer { response, files: written });
     }
-    complain::warn(&response.warnings);
     complain::found(&response.findings);
     let mut text = tables::curve(&response).text();
     let all = std::slice::from_ref(&response);

@@ -20,7 +20,6 @@ struct Answer<'a> {
     magnitude: Vec<Vec<f64>>,
     unit: &'a str,
     fmin: f64,
-    warnings: &'a [String],
     findings: &'a [Finding],
     files: Vec<String>,
 }
@@ -41,8 +40,7 @@ pub fn run(typed: &args::Waterfall, json: bool) -> Result<()> {
             quantity: sweep.unit().quantity(),
             unit: sweep.unit().symbol().to_owned(),
             fmin: 0.0,
-            warnings: vec!["This is the matrix of the script sinesw, mistakes included.".to_owned()],
-            findings: Vec::new(),
+            findings: vec![Finding::caution("legacy-matrix")],
         }
     } else {
         waterfall(&sweep, &settings::taking(&typed.taking, typed.sweep.fmin, sweep.unit().quantity()))?
@@ -65,12 +63,10 @@ pub fn run(typed: &args::Waterfall, json: bool) -> Result<()> {
             magnitude: matrix.magnitude.rows().into_iter().map(|r| r.to_vec()).collect(),
             unit: &matrix.unit,
             fmin: matrix.fmin,
-            warnings: &matrix.warnings,
             findings: &matrix.findings,
             files,
         });
     }
-    complain::warn(&matrix.warnings);
     complain::found(&matrix.findings);
     let (points, lines) = matrix.magnitude.dim();
     let mut text = format!("{points} spectra of {lines} lines, {} in {}\n", matrix.quantity, matrix.unit);

@@ -206,7 +206,6 @@ mod tests {
             points: (0..30).map(point).collect(),
             resonances: Vec::new(),
             jumps: Vec::new(),
-            warnings: Vec::new(),
             findings: Vec::new(),
             history: Vec::new(),
         }

@@ -164,6 +164,11 @@ pub fn told(findings: &[About], voice: Voice, notes: bool) -> Vec<String> {
     all
 }
 
+/// A finding with its record as subject where it names none itself.
+pub fn with_record((record, finding): About) -> Finding {
+    if record.is_empty() || finding.subject.is_some() { finding } else { finding.about(record) }
+}
+
 /// Puts `findings` and `warnings` into an answer: each finding with its record as subject where it names none itself, and the sentences
 /// of those that are not notes.
 pub fn put(answer: &mut serde_json::Map<String, Value>, findings: &[About], voice: Voice) {
@@ -252,7 +257,7 @@ impl Told<'_> {
             unit => unit.to_owned(),
         };
         let show = |v: f64| match unit.as_str() {
-            "" if v.fract() == 0.0 && v.abs() < 1e6 => v.to_string(),
+            "" if v.fract() == 0.0 && v.abs() < 1e15 => v.to_string(),
             "" => significant(v, digits),
             unit => quantity(v, unit, digits),
         };

@@ -12,3 +12,9 @@ mod uff_files;
 mod uff_meaning;
 mod uff_set;
 mod uff_text;
+
+/// What a person reads of findings.
+fn sentences(findings: &[vibroimpact::record::Finding]) -> Vec<String> {
+    use vibroimpact::report::words::{self, Voice};
+    words::sentences(findings, Voice::Command)
+}

@@ -26,7 +26,7 @@ fn write(records: &[Record], storage: Storage) -> Vec<u8> {
 fn again(records: &[Record], storage: Storage) -> Vec<Record> {
     let recording = Reader::new().from_reader("again.uff", &write(records, storage)[..]);
     let recording = recording.unwrap_or_else(|e| panic!("{storage:?}: {e}"));
-    assert_eq!(recording.doubts, Vec::<String>::new());
+    assert_eq!(recording.findings, []);
     recording.records
 }
 
@@ -268,7 +268,7 @@ fn missing_values_stay_missing() {
     for storage in STORAGES {
         let bytes = write(std::slice::from_ref(&record), storage);
         let refused = Reader::new().from_reader("x.uff", &bytes[..]).unwrap_err().to_string();
-        assert!(refused.contains("--allow-missing"), "{refused}");
+        assert!(refused.contains("allow_missing"), "{refused}");
         let kept = Reader::new().allow_missing(true).from_reader("x.uff", &bytes[..]).unwrap();
         let kept = numbers(&kept.records[0]);
         assert!(kept[1].re.is_nan() && kept[2].re == 3.0, "{storage:?}: {kept:?}");

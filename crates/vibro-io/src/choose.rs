@@ -2,7 +2,7 @@
 
 use super::{Reader, Recording};
 use std::path::Path;
-use vibro_record::{Error, Frf, FrfKind, Place, Record, Result, Scaling, Trace, Traces, Values};
+use vibro_record::{Error, Finding, Frf, FrfKind, Place, Record, Result, Scaling, Trace, Traces, Values};
 
 impl Reader {
     /// One channel to be read block by block, behind the channel `reference` where there is one; a `calibration` multiplies it. Where
@@ -36,7 +36,8 @@ impl Reader {
                 let names: Vec<&str> = all.channels().iter().map(|m| m.name.as_str()).collect();
                 let found = format!("{} channels to choose from, and none was chosen", others.len());
                 return Err(Error::input(Place::file(file), found, names.join(", "))
-                    .hint("name one with --channel, by its name or its number from 1"));
+                    .hint("name one, by its name or its number from 1")
+                    .setting("channel"));
             }
             all.keep(&reference.into_iter().chain(others).collect::<Vec<usize>>());
             all
@@ -74,9 +75,9 @@ impl Recording {
         let names: Vec<&str> = traces.iter().map(|t| t.meta.name.as_str()).collect();
         let mut trace = traces[self.choose("trace", &names, channel)?].clone();
         if let Some(factor) = calibration {
-            if trace.meta.doubts.iter().any(|d| d == Trace::UNCALIBRATED) {
+            if trace.meta.has(Trace::UNCALIBRATED) {
                 let found = format!("a calibration of {factor} without a unit");
-                return Err(Error::usage(found, "the unit, too: --unit, or unit = \"…\" in a campaign"));
+                return Err(Error::usage(found, "the unit, too").setting("unit"));
             }
             let unit = trace.meta.unit.clone();
             trace.calibrate(factor, &unit)?;
@@ -85,7 +86,7 @@ impl Recording {
     }
 
     /// The frequency response function that `channel` names, as [`Recording::trace`] does. A complex spectrum whose scaling
-    /// is not stated is taken for one, with a doubt.
+    /// is not stated is taken for one, with a finding.
     ///
     /// # Errors
     /// If there is no such function, or several and none was named; if it is a spectrum of amplitudes or powers.
@@ -95,9 +96,7 @@ impl Recording {
         let (mut frf, scaling) = frfs[self.choose("frequency response function", &names, channel)?].clone();
         match scaling {
             None => {}
-            Some(Scaling::Unknown) => frf.meta.doubt(
-                "The file does not say that this complex spectrum is a frequency response function: it is taken for one.",
-            ),
+            Some(Scaling::Unknown) => frf.meta.found(Finding::caution("spectrum-taken-for-frf")),
             Some(scaling) => {
                 return Err(Error::input(
                     Place::file(&self.path),
@@ -112,8 +111,8 @@ impl Recording {
 
     fn choose(&self, kind: &str, names: &[&str], channel: Option<&str>) -> Result<usize> {
         let refuse = |found: String, expected: String| {
-            let hint = "name one with --channel, or channel = \"…\" in a campaign; `vibro info` lists all";
-            Err(Error::input(Place::file(&self.path), found, expected).hint(hint))
+            let hint = "name one, by its name or its number from 1; `vibro info` lists all";
+            Err(Error::input(Place::file(&self.path), found, expected).hint(hint).setting("channel"))
         };
         match (channel, names) {
             (_, []) => Err(Error::input(
@@ -121,11 +120,16 @@ impl Recording {
                 format!("no {kind}"),
                 format!("a file that holds a {kind}"),
             )
-            .hint("`vibro info` lists what is in the file; samples over time need --rate where the file does not say it")),
+            .hint("`vibro info` lists what is in the file; samples over time need a sampling rate")
+            .setting("rate")),
             (None, [_]) => Ok(0),
-            (None, _) => refuse(format!("{} records of kind {kind}, and none was chosen", names.len()), names.join(", ")),
+            (None, _) => refuse(
+                format!("{} records of kind {kind}, and none was chosen", names.len()),
+                names.join(", "),
+            ),
             (Some(name), _) => {
-                let number = || name.parse::<usize>().ok().filter(|n| (1..=names.len()).contains(n)).map(|n| n - 1);
+                let number =
+                    || name.parse::<usize>().ok().filter(|n| (1..=names.len()).contains(n)).map(|n| n - 1);
                 match (names.iter().filter(|n| **n == name).count(), number()) {
                     (1, _) => Ok(names.iter().position(|n| *n == name).unwrap_or(0)),
                     (0, Some(index)) => Ok(index),
@@ -167,7 +171,7 @@ mod tests {
             Reader::new().from_reader("x.csv", text.as_bytes()).unwrap().frf(None)
         };
         let frf = of("").unwrap();
-        assert!(frf.meta.doubts.iter().any(|d| d.contains("is taken for one")), "{:?}", frf.meta.doubts);
+        assert!(frf.meta.has("spectrum-taken-for-frf"), "{:?}", frf.meta.findings);
         for scaling in ["peak", "rms", "psd"] {
             let error = of(&format!("# scaling: {scaling}\n")).unwrap_err().to_string();
             assert!(error.contains("\"X\" is a complex spectrum scaled as"), "{scaling}: {error}");

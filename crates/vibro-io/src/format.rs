@@ -1,8 +1,8 @@
 //! The ordered table of formats.
 
 use super::reader::{Options, Recording};
-use super::{Header, Source, ascii, csv, mat, uff, wav};
-use vibro_record::Result;
+use super::{Header, Source, mat, text, uff, wav};
+use vibro_record::{Finding, Result};
 
 /// A readable format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -19,8 +19,8 @@ pub enum Format {
     Ascii,
 }
 
-/// Headers of the records, and doubts about the file as a whole.
-pub(super) type Survey = (Vec<Header>, Vec<String>);
+/// Headers of the records, and findings about the file as a whole.
+pub(super) type Survey = (Vec<Header>, Vec<Finding>);
 
 /// How one format is told apart and read.
 pub(super) struct Entry {
@@ -30,8 +30,8 @@ pub(super) struct Entry {
     pub sniff: fn(head: &[u8], source: &Source) -> bool,
     /// All records with their values.
     pub read: fn(&Source, &Options) -> Result<Recording>,
-    /// The records without their values, in memory that does not grow with the file where the format allows; and doubts
-    /// about the file as a whole.
+    /// The records without their values, in memory that does not grow with the file where the format allows; and
+    /// findings about the file as a whole.
     pub survey: fn(&Source, &Options) -> Result<Survey>,
 }
 
@@ -40,13 +40,19 @@ pub(super) const TABLE: &[Entry] = &[
     Entry { format: Format::Wav, name: "wav", sniff: wav::sniff, read: wav::read, survey: wav::survey },
     Entry { format: Format::Mat, name: "mat", sniff: mat::sniff, read: mat::read, survey: mat::survey },
     Entry { format: Format::Uff, name: "uff", sniff: uff::sniff, read: uff::read, survey: uff::survey },
-    Entry { format: Format::Csv, name: "csv", sniff: csv::sniff, read: csv::read, survey: csv::survey },
+    Entry {
+        format: Format::Csv,
+        name: "csv",
+        sniff: text::is_table,
+        read: text::read_table,
+        survey: text::survey_table,
+    },
     Entry {
         format: Format::Ascii,
         name: "ascii",
-        sniff: ascii::sniff,
-        read: ascii::read,
-        survey: ascii::survey,
+        sniff: text::is_text,
+        read: text::read_numbers,
+        survey: text::survey_numbers,
     },
 ];
 

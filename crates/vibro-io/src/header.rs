@@ -1,6 +1,6 @@
 //! What `vibro info` says of a record, gathered without holding its values.
 
-use vibro_record::{Axis, Meta, Record};
+use vibro_record::{Axis, Finding, Meta, Record};
 
 /// One record of a file, without its values.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -29,9 +29,8 @@ pub struct Header {
     pub max_at: Option<f64>,
     /// Header lines that were kept and not understood, and what the text was read as: encoding, decimal mark.
     pub notes: Vec<String>,
-    /// Sentences of doubt.
-    #[serde(rename = "warnings")]
-    pub doubts: Vec<String>,
+    /// What a person must know before trusting the values.
+    pub findings: Vec<Finding>,
 }
 
 impl Header {
@@ -52,12 +51,12 @@ impl Header {
             max_abs: max.map(|(_, m)| m),
             max_at: max.map(|(i, _)| axis.at(i)),
             notes: notes(meta),
-            doubts: meta.doubts.clone(),
+            findings: meta.findings.clone(),
         }
     }
 
-    /// Fills in what a pass over the values found, `factor` taking them to SI.
-    pub fn with_summary(mut self, summary: &Summary, factor: f64, axis: &Axis) -> Header {
+    /// The same with what a pass over the values found, `factor` taking them to SI.
+    pub(crate) fn summed(mut self, summary: &Summary, factor: f64, axis: &Axis) -> Header {
         self.n = summary.n;
         self.max_abs = summary.max.map(|(_, m)| m * factor.abs());
         self.max_at = summary.max.filter(|(i, _)| *i < axis.len()).map(|(i, _)| axis.at(i));
@@ -79,7 +78,7 @@ fn notes(meta: &Meta) -> Vec<String> {
 
 /// Count and largest magnitude of a stream of values.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Summary {
+pub(crate) struct Summary {
     /// Values seen.
     pub n: usize,
     /// Index and magnitude of the largest; the first of equals.

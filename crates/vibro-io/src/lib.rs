@@ -1,25 +1,40 @@
-//! Files to records: one file a format, one ordered sniff table.
+//! Files of analysers, vibrometers and recorders to records, and records to files.
 //!
-//! ```no_run
+//! A [`Reader`] finds out the format from the first bytes, reads all records of a file in SI units, and says as
+//! [findings](vibro_record::Finding) what it assumed. What the file does not say is stated on the reader.
+//!
+//! ```
 //! use vibro_io::Reader;
-//! let recording = Reader::new().from_path("TRACE01.DAT")?;
-//! for record in &recording.records {
-//!     println!("{} {} {}", record.meta().name, record.len(), record.meta().unit);
-//! }
+//! use vibro_record::Record;
+//!
+//! let text = "Messung: 7\nZeit [ms];Weg [mm]\n0,0;1,5\n0,5;-2\n1,0;0,25\n";
+//! let recording = Reader::new().from_reader("bench.csv", text.as_bytes())?; // or from_path("bench.csv")
+//! let Record::Trace(trace) = &recording.records[0] else { panic!("a time trace") };
+//! assert_eq!((trace.meta.name.as_str(), trace.meta.unit.symbol()), ("Weg", "m"));
+//! assert_eq!((trace.rate(), trace.values[1]), (Some(2000.0), -2e-3));
+//! assert!(recording.all_findings().is_empty());
 //! # Ok::<(), vibro_record::Error>(())
 //! ```
+//!
+//! | format | module | what it is |
+//! |---|---|---|
+//! | `wav` | `wav` | RIFF and RF64 wave |
+//! | `mat` | `mat` | MATLAB level 5 |
+//! | `uff` | `uff`, `uff58` | Universal File Format, data sets 58 and 58b |
+//! | `csv`, `ascii` | `text` | tables with names; columns of numbers |
+//!
+//! Long time traces come block by block from [`Reader::stream`], a sweep of spectra from [`SweepReader`]. [`mod@write`] turns
+//! records into files again.
 
-mod abscissa;
-mod ascii;
+mod assemble;
+mod axis;
 mod choose;
-mod csv;
-mod cut_off;
 mod decibel;
-mod footer;
 mod format;
 mod header;
 mod mat;
 mod missing;
+mod number;
 mod reader;
 mod source;
 mod stream;
@@ -28,15 +43,39 @@ mod sweep_list;
 mod text;
 mod uff;
 mod uff58;
-pub(crate) mod wav;
+mod wav;
 
-pub mod number;
 pub mod write;
 
 pub use format::Format;
-pub use header::{Header, Summary};
-pub use reader::{Options, Reader, Recording, gathered};
-pub use source::Source;
+pub use header::Header;
+pub use reader::{Reader, Recording};
 pub use sweep::SweepReader;
 pub use sweep_list::{SweepList, inside};
-pub use wav::WavStream;
+
+pub(crate) use header::Summary;
+pub(crate) use reader::Options;
+pub(crate) use source::Source;
+
+#[cfg(test)]
+mod tests {
+    use vibro_record::{Fact, Finding};
+
+    /// Findings as text, numbers with six digits: `axis-uneven column=column "t" smallest=0.1`.
+    pub fn told(findings: &[Finding]) -> Vec<String> {
+        let fact = |(name, fact): &(&str, Fact)| match fact {
+            Fact::Number(value) => format!("{name}={}", crate::axis::short(*value)),
+            Fact::Numbers(values) => format!("{name}={values:?}"),
+            Fact::Name(text) => format!("{name}={text}"),
+        };
+        let facts = |found: &Finding| found.facts.iter().map(fact).collect::<Vec<_>>().join(" ");
+        findings.iter().map(|found| format!("{} {}", found.code, facts(found))).collect()
+    }
+
+    /// Whether one of the findings, as text, begins with `code` and holds all `facts`.
+    pub fn says(findings: &[Finding], code: &str, facts: &[&str]) -> bool {
+        told(findings)
+            .iter()
+            .any(|t| t.split(' ').next() == Some(code) && facts.iter().all(|f| t.contains(f)))
+    }
+}

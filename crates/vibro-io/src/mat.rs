@@ -20,7 +20,7 @@ use element::Elements;
 use flate2::read::ZlibDecoder;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use variable::{Content, Variable};
-use vibro_record::{Error, Place, Result};
+use vibro_record::{Error, Finding, Place, Result};
 
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Bytes before the first variable.
@@ -77,22 +77,25 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         Some(Level::Four) => return Err(refuse("a MAT-file of version 4")),
         None => return Err(refuse("no MAT-file header")),
     };
-    let mut doubts = Vec::new();
+    let mut findings = Vec::new();
     let (variables, cut) = variables(source, big_endian)?;
     if let Some(cut) = cut {
         let numbers = |v: &Variable| matches!(&v.content, Content::Array(a) if a.real.len() > 1);
         if !variables.iter().any(numbers) {
             return Err(cut.error(source));
         }
-        doubts.push(format!("The file is cut off: {cut}, and it is passed over."));
+        let found = Finding::caution("variable-cut-off").number("byte", cut.byte as f64);
+        let found = found.number("there", cut.there as f64);
+        findings
+            .push(cut.declared.into_iter().fold(found, |f, declared| f.number("declared", declared as f64)));
     }
-    let records = records::build(source, variables, options, &mut doubts)?;
-    Ok(Recording { path: source.path().to_owned(), format: Format::Mat, records, doubts })
+    let records = records::build(source, variables, options, &mut findings)?;
+    Ok(Recording { path: source.path().to_owned(), format: Format::Mat, records, findings })
 }
 
 pub(super) fn survey(source: &Source, options: &Options) -> Result<Survey> {
     let recording = read(source, options)?;
-    Ok((recording.records.iter().map(Header::of).collect(), recording.doubts))
+    Ok((recording.records.iter().map(Header::of).collect(), recording.findings))
 }
 
 /// The variable at which a file ends early.

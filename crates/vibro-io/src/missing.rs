@@ -1,7 +1,7 @@
 //! The complaint about values that are missing.
 
 use std::path::Path;
-use vibro_record::{Error, Place, Result};
+use vibro_record::{Error, Finding, Place, Result};
 
 /// How many places a complaint lists.
 pub(super) const LISTED: usize = 8;
@@ -9,12 +9,13 @@ pub(super) const LISTED: usize = 8;
 /// Refuses missing values; `found` says which.
 pub(super) fn refusal(place: Place, found: impl Into<String>) -> Error {
     Error::input(place, found, "a finite number in every place")
-        .hint("give --allow-missing to keep them as missing")
+        .hint("allow missing values to keep them as such")
+        .setting("allow_missing")
 }
 
 /// What is said where `count` of them are kept; nothing where there are none.
-pub(super) fn kept(count: usize) -> Option<String> {
-    (count > 0).then(|| format!("{count} value(s) are missing and kept as such."))
+pub(super) fn kept(count: usize) -> Option<Finding> {
+    (count > 0).then(|| Finding::caution("missing-kept").count("n", count))
 }
 
 /// Values that are missing: how many, and where the first of them stand.
@@ -27,11 +28,14 @@ pub(super) struct Missing {
 }
 
 impl Missing {
-    /// Counts `count` values of a line; `what` says which of the line where that is known.
-    pub fn take(&mut self, line: u64, count: usize, what: impl FnOnce() -> String) {
+    /// Counts `count` values of a line; `what` names the column where it has a name.
+    pub fn take(&mut self, line: u64, count: usize, what: &str) {
         self.count = self.count.saturating_add(count);
+        if self.places.last().is_some_and(|(last, of)| (*last, of.as_str()) == (line, what)) {
+            return;
+        }
         if self.places.len() < LISTED {
-            self.places.push((line, what()));
+            self.places.push((line, what.to_owned()));
         } else {
             self.more = true;
         }

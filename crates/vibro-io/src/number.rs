@@ -14,14 +14,6 @@ const POWERS: [f64; 23] = [
 ];
 
 /// Parses one number with a decimal point. Blanks around it are allowed; anything else left over gives `None`.
-///
-/// ```
-/// use vibro_io::number::parse;
-/// assert_eq!(parse(b" 1.0D+03"), Some(1000.0));
-/// assert_eq!(parse(b"1.234-101"), Some(1.234e-101));
-/// assert_eq!(parse(b"1,5"), None);
-/// assert_eq!(parse(b"NaN"), None); // see `is_missing`
-/// ```
 pub fn parse(text: &[u8]) -> Option<f64> {
     parse_with(text, b'.')
 }
@@ -98,12 +90,6 @@ pub fn prefix(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
 
 /// Parses a field of `W` characters as Fortran's `1PEw.d` and C's `%w.de` print it: a blank, a sign or blank, a digit, the
 /// point, `W` − 8 digits, `E`, a sign, two digits. `None` for every other field, which [`prefix`] may still read.
-///
-/// ```
-/// use vibro_io::number::scientific;
-/// assert_eq!(scientific(b" -1.47553E-02"), Some(-1.47553e-2));
-/// assert_eq!(scientific(b"-1.47553E-002"), None);
-/// ```
 #[inline]
 pub fn scientific<const W: usize>(field: &[u8; W]) -> Option<f64> {
     if field[0] != b' ' || !matches!(field[1], b' ' | b'-') {
@@ -254,6 +240,8 @@ mod tests {
         }
         assert_eq!(parse_with(b"1,5E-3", b','), Some(1.5e-3));
         assert!(parse(b"-0").unwrap().is_sign_negative());
+        assert_eq!(scientific(b" -1.47553E-02"), Some(-1.47553e-2));
+        assert_eq!(scientific(b"-1.47553E-002"), None);
     }
 
     #[test]

@@ -6,15 +6,15 @@ use rayon::prelude::*;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use vibro_record::units::Unit;
-use vibro_record::{Error, Meta, Place, Record, Result};
+use vibro_record::{Error, Finding, Place, Record, Result};
 
 /// Rates, bands and line widths in Hz of any instrument lie far inside; steps made of them are finite and positive.
 pub(super) const POSSIBLE: std::ops::RangeInclusive<f64> = 1e-12..=1e15;
 
 /// What a person knows of a file that the file does not say. A statement here that contradicts the file wins, with a
-/// doubt in the record.
+/// finding in the record.
 #[derive(Debug, Clone, Default)]
-pub struct Options {
+pub(crate) struct Options {
     /// Keep NaN, Inf and blank values as missing (NaN) instead of refusing them.
     pub allow_missing: bool,
     /// Sampling rate in Hz: the values are a time trace.
@@ -29,28 +29,6 @@ pub struct Options {
     pub complex: bool,
 }
 
-impl Options {
-    /// Adopts the unit of values: what a person states, else what the file says. Returns the factor to SI.
-    pub(super) fn adopt(&self, meta: &mut Meta, said: Option<&str>) -> f64 {
-        // A coherence beside a function has no unit, whatever that of the function is.
-        let bare = said.is_none_or(|u| matches!(u.trim(), "" | "1"));
-        if self.unit.is_some() && bare && meta.name.to_lowercase().contains("coherence") {
-            return meta.adopt_unit("1");
-        }
-        if let Some(given) = &self.unit {
-            if let Some(said) = said.filter(|u| Unit::parse_or_opaque(u) != *given) {
-                meta.doubt(format!("The file says the unit {said:?}; {given} was stated and is used."));
-            }
-            return meta.adopt_unit(given.symbol());
-        }
-        if let Some(said) = said {
-            return meta.adopt_unit(said);
-        }
-        meta.doubt("The file says no unit: the values are kept as they are.");
-        1.0
-    }
-}
-
 /// Everything a file holds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
@@ -60,34 +38,19 @@ pub struct Recording {
     pub format: Format,
     /// Its records in order.
     pub records: Vec<Record>,
-    /// Sentences about the file as a whole: what was passed over, what was assumed.
-    pub doubts: Vec<String>,
+    /// What was passed over or assumed of the file as a whole.
+    pub findings: Vec<Finding>,
 }
 
 impl Recording {
-    /// All doubts: the file's, then those of the records, see [`gathered`].
-    pub fn all_doubts(&self) -> Vec<String> {
-        let mut all = self.doubts.clone();
+    /// All findings: the file's, then those of the records, see [`Finding::gathered`].
+    pub fn all_findings(&self) -> Vec<Finding> {
+        let mut all = self.findings.clone();
         let records: Vec<_> =
-            self.records.iter().map(|r| (r.meta().name.as_str(), r.meta().doubts.as_slice())).collect();
-        all.extend(gathered(&records));
+            self.records.iter().map(|r| (r.meta().name.as_str(), r.meta().findings.as_slice())).collect();
+        all.extend(Finding::gathered(&records));
         all
     }
-}
-
-/// Doubts of records, given as name and doubts: one that all share once, any other with the name of its record.
-pub fn gathered(records: &[(&str, &[String])]) -> Vec<String> {
-    let mut all: Vec<String> = Vec::new();
-    for (name, doubts) in records {
-        for doubt in *doubts {
-            let shared = records.iter().all(|(_, others)| others.contains(doubt));
-            let said = if shared || name.is_empty() { doubt.clone() } else { format!("{name}: {doubt}") };
-            if !shared || !all.contains(&said) {
-                all.push(said);
-            }
-        }
-    }
-    all
 }
 
 /// Reads measurement files of any known format.
@@ -156,7 +119,7 @@ impl Reader {
     /// # Errors
     /// If it cannot be opened, is of no known format, or its content is not what its format requires.
     pub fn from_path(&self, path: impl AsRef<Path>) -> Result<Recording> {
-        self.from_source(&Source::file(path)?)
+        self.read(&Source::file(path)?)
     }
 
     /// Reads many files, in parallel, in the order given.
@@ -197,14 +160,14 @@ impl Reader {
         let name = name.into();
         let mut bytes = Vec::new();
         reader.read_to_end(&mut bytes).map_err(|e| Error::io("read", &name, e))?;
-        self.from_source(&Source::memory(name, bytes)?)
+        self.read(&Source::memory(name, bytes)?)
     }
 
     /// Reads a source.
     ///
     /// # Errors
     /// As [`Reader::from_path`].
-    pub fn from_source(&self, source: &Source) -> Result<Recording> {
+    pub(crate) fn read(&self, source: &Source) -> Result<Recording> {
         let (entry, source) = self.entry(source)?;
         (entry.read)(&source, &self.options).map_err(|e| no_list(&source, e).in_file(source.path()))
     }
@@ -213,12 +176,12 @@ impl Reader {
     ///
     /// # Errors
     /// As [`Reader::from_path`].
-    pub fn survey(&self, path: impl AsRef<Path>) -> Result<(Format, Vec<Header>, Vec<String>)> {
+    pub fn survey(&self, path: impl AsRef<Path>) -> Result<(Format, Vec<Header>, Vec<Finding>)> {
         let source = Source::file(path)?;
         let (entry, source) = self.entry(&source)?;
-        let (headers, doubts) =
+        let (headers, findings) =
             (entry.survey)(&source, &self.options).map_err(|e| no_list(&source, e).in_file(source.path()))?;
-        Ok((entry.format, headers, doubts))
+        Ok((entry.format, headers, findings))
     }
 
     pub(super) fn options(&self) -> &Options {
@@ -241,7 +204,8 @@ impl Reader {
                 "not a format that is known here",
                 Format::names().join(", "),
             )
-            .hint("force the format with --format, or export the record as text or UFF-58")
+            .hint("name the format, or export the record as text or UFF-58")
+            .setting("format")
         })?;
         let small = head.len() as u64 == source.len();
         Ok((entry, if small { Source::memory(source.path(), head)? } else { source.clone() }))

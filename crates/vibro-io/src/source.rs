@@ -10,14 +10,14 @@ pub const HEAD: usize = 64 * 1024;
 
 /// Bytes that can be opened several times, by several threads.
 #[derive(Debug, Clone)]
-pub struct Source {
+pub(crate) struct Source {
     path: PathBuf,
     len: u64,
     bytes: Option<std::sync::Arc<[u8]>>,
 }
 
 /// Something to read from and to seek in.
-pub trait ReadSeek: Read + Seek + Send {}
+pub(crate) trait ReadSeek: Read + Seek + Send {}
 impl<T: Read + Seek + Send> ReadSeek for T {}
 
 impl Source {

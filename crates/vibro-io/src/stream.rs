@@ -26,10 +26,10 @@ impl Reader {
             let mut stream = Calibrated::open(&source, self.options())?;
             let chosen = choose(&path, channels, stream.channels().iter().map(|t| &t.meta))?;
             let traces = stream.chosen(&chosen);
-            let doubts = stream.doubts().to_vec();
-            return Traces::of_stream(path, doubts, &traces, stream.frames(), Box::new(stream));
+            let findings = stream.findings().to_vec();
+            return Traces::of_stream(path, findings, &traces, stream.frames(), Box::new(stream));
         }
-        let recording = self.from_source(&source)?;
+        let recording = self.read(&source)?;
         let kinds: Vec<&str> = recording.records.iter().map(Record::kind).collect();
         let nothing = no_trace(&path, &kinds);
         let traces = recording.records.into_iter().filter_map(|record| match record {
@@ -42,7 +42,7 @@ impl Reader {
         }
         let chosen = choose(&path, channels, all.iter().flatten().map(|t| &t.meta))?;
         let traces = chosen.iter().filter_map(|i| all.get_mut(*i)?.take()).collect();
-        Traces::of_file(path, recording.doubts, traces)
+        Traces::of_file(path, recording.findings, traces)
     }
 }
 
@@ -65,5 +65,6 @@ fn no_trace(path: &Path, kinds: &[&str]) -> Error {
         all => format!("{} records and no time trace among them (the first is a {})", all.len(), all[0]),
     };
     Error::input(Place::file(path), found, "samples over time")
-        .hint("state the sampling rate with --rate, if the values are samples over time")
+        .hint("state the sampling rate, if the values are samples over time")
+        .setting("rate")
 }

@@ -5,12 +5,13 @@ use super::{Format, Reader, Recording, SweepList};
 use std::path::Path;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{
-    Axis, Direction, Error, Meta, Place, Record, Result, Scaling, Spectrum, Sweep, SweepPoint, Values, Window,
+    Axis, Direction, Error, Finding, Meta, Place, Record, Result, Scaling, Spectrum, Sweep, SweepPoint,
+    Values, Window,
 };
 
 /// What the analyser stored. What its files state themselves is believed where nothing is stated here; where both are and
-/// differ, the statement here is used, with a doubt.
-#[derive(Debug, Clone)]
+/// differ, the statement here is used, with a finding.
+#[derive(Debug, Clone, Default)]
 pub struct SweepReader {
     /// Name of the sweep.
     pub name: String,
@@ -53,25 +54,6 @@ struct Settled {
     window: Option<Window>,
 }
 
-impl Default for SweepReader {
-    /// Nothing stated.
-    fn default() -> Self {
-        SweepReader {
-            name: String::new(),
-            direction: None,
-            mass: None,
-            unit: None,
-            quantity: None,
-            calibration: None,
-            force_calibration: None,
-            window: None,
-            scaling: None,
-            analyser_integrated: None,
-            format: None,
-        }
-    }
-}
-
 impl SweepReader {
     /// Reads all spectra of a list.
     ///
@@ -84,7 +66,7 @@ impl SweepReader {
         let mut recordings = reader.from_paths(&paths).map_err(|e| list.missing().unwrap_or(e))?;
         let forces = recordings.split_off(list.response.len());
         let axis = Axis::frequency(0.0, list.base_band / list.lines as f64, list.lines + 1);
-        let mut doubts = Vec::new();
+        let mut findings = Vec::new();
         let mut points = Vec::with_capacity(list.len());
         let mut unit: Option<Unit> = None;
         let newton = Unit::of(Quantity::Force);
@@ -97,7 +79,7 @@ impl SweepReader {
                         quantity: None,
                         calibration: self.force_calibration,
                     };
-                    let settled = self.settle(recording, &said, &mut doubts)?;
+                    let settled = self.settle(recording, &said, &mut findings)?;
                     magnitudes(recording, list, &axis, settled.factor)?
                 }
                 None => Vec::new(),
@@ -108,7 +90,7 @@ impl SweepReader {
                 quantity: self.quantity,
                 calibration: self.calibration,
             };
-            let settled = self.settle(&response, &said, &mut doubts)?;
+            let settled = self.settle(&response, &said, &mut findings)?;
             let values = magnitudes(&response, list, &axis, settled.factor)?;
             match &unit {
                 Some(first) if *first != settled.unit => {
@@ -120,14 +102,14 @@ impl SweepReader {
                 }
                 _ => unit = Some(settled.unit.clone()),
             }
-            gather(&response, &mut doubts);
+            gather(&response, &mut findings);
             let mut meta = response.records.into_iter().next().map_or_else(
                 || Meta::new("", settled.unit.clone()),
                 |mut record| std::mem::replace(record.meta_mut(), Meta::new("", Unit::none())),
             );
             meta.unit = settled.unit;
             meta.quantity = meta.unit.quantity();
-            meta.doubts.clear(); // said once, for the sweep
+            meta.findings.clear(); // said once, for the sweep
             meta.step("calibrate", &[("factor", &settled.factor), ("unit", &meta.unit.clone())]);
             points.push(SweepPoint {
                 force_path: list.force.get(i).cloned(),
@@ -147,10 +129,7 @@ impl SweepReader {
         let displacement = unit.is_some_and(|u| u.quantity() == Quantity::Displacement);
         let analyser_integrated = self.analyser_integrated.unwrap_or(u8::from(displacement));
         if self.analyser_integrated.is_none() && displacement {
-            doubts.push(
-                "The files do not say how the displacement was measured: one integration of a velocity in the analyser is assumed."
-                    .to_owned(),
-            );
+            findings.push(Finding::caution("analyser-integration-assumed"));
         }
         Ok(Sweep {
             name: self.name.clone(),
@@ -159,25 +138,25 @@ impl SweepReader {
             axis,
             analyser_integrated,
             points,
-            doubts,
+            findings,
         })
     }
 
     /// Brings together what a file states and what was stated for it.
-    fn settle(&self, recording: &Recording, said: &Said, doubts: &mut Vec<String>) -> Result<Settled> {
+    fn settle(&self, recording: &Recording, said: &Said, findings: &mut Vec<Finding>) -> Result<Settled> {
         let Some(Record::Spectrum(spectrum)) = recording.records.first() else {
             return Err(no_spectrum(recording));
         };
-        linear(&recording.path, &spectrum.meta, said, doubts)?;
-        let mut doubt = |sentence: String| {
-            if !doubts.contains(&sentence) {
-                doubts.push(sentence);
+        linear(&recording.path, &spectrum.meta, said, findings)?;
+        let mut found = |finding: Finding| {
+            if !findings.contains(&finding) {
+                findings.push(finding);
             }
         };
         let scaling = match (self.scaling, spectrum.scaling) {
             (Some(stated), _) => stated,
             (None, Scaling::Unknown) => {
-                doubt("The files do not name their scaling: peak amplitudes are assumed.".into());
+                found(Finding::caution("peak-assumed"));
                 Scaling::Peak
             }
             (None, written) => written,
@@ -194,7 +173,7 @@ impl SweepReader {
             (Some(stated), _) => stated,
             (None, Some(written)) => Some(written),
             (None, None) => {
-                doubt("The files do not name their window: Hann is assumed.".into());
+                found(Finding::caution("hann-assumed"));
                 Some(Window::Hann)
             }
         };
@@ -214,10 +193,10 @@ impl SweepReader {
                     let other = stated.filter(|s| !said.force && s.factor() != taken(&spectrum.meta));
                     let factor = other.map_or(1.0, |s| s.factor() / taken(&spectrum.meta));
                     if let Some(stated) = other {
-                        doubt(format!(
-                            "The files say another unit than {stated} (one stored unit is {} {written}); {stated} was stated and is used.",
-                            taken(&spectrum.meta)
-                        ));
+                        let differs =
+                            Finding::caution("sweep-unit-overrides-files").name("used", stated.symbol());
+                        let differs = differs.name("file", written.symbol());
+                        found(differs.number("factor", taken(&spectrum.meta)));
                     }
                     (factor, written.clone())
                 }
@@ -225,9 +204,7 @@ impl SweepReader {
             (None, Some(stated)) => (stated.factor(), stated.si()),
             (None, None) => {
                 let unit = Unit::of(said.quantity.unwrap_or(Quantity::Displacement));
-                doubt(format!(
-                    "Neither the files nor what was stated name the unit of the responses: {unit} is assumed."
-                ));
+                found(Finding::caution("response-unit-assumed").name("unit", unit.symbol()));
                 (1.0, unit)
             }
         };
@@ -240,25 +217,21 @@ impl SweepReader {
 const LINEAR: &str = "export linear amplitudes; levels in decibels are not read";
 
 /// Refuses levels in decibels, unless a linear unit is stated by a person.
-fn linear(path: &Path, meta: &Meta, said: &Said, doubts: &mut Vec<String>) -> Result<()> {
-    const MENTIONED: &str = "The files speak of decibels";
+fn linear(path: &Path, meta: &Meta, said: &Said, findings: &mut Vec<Finding>) -> Result<()> {
     let unit = said.unit.filter(|unit| !said.force && unit.is_known());
-    let sentence = match (Decibel::of(meta), unit) {
+    let finding = match (Decibel::of(meta), unit) {
         (Some(Decibel::Stated(words)), None) => {
             let found = format!("the file says that its values are decibels: {words:?}");
             return Err(Error::input(Place::file(path), found, "linear amplitudes").hint(LINEAR));
         }
         (Some(Decibel::Stated(words)), Some(unit)) => {
-            format!("The file says that its values are decibels ({words:?}); {unit} was stated and is used.")
+            Finding::doubt("decibels-overruled").name("words", words).name("unit", unit.symbol())
         }
-        (Some(Decibel::Mentioned(words)), _) => {
-            format!("{MENTIONED} ({words:?}): their values are taken as linear amplitudes.")
-        }
+        (Some(Decibel::Mentioned(words)), _) => Finding::caution("decibels-mentioned").name("words", words),
         (None, _) => return Ok(()),
     };
-    let again = |d: &String| *d == sentence || (d.starts_with(MENTIONED) && sentence.starts_with(MENTIONED));
-    if !doubts.iter().any(again) {
-        doubts.push(sentence);
+    if !findings.iter().any(|known| known.code == finding.code) {
+        findings.push(finding);
     }
     Ok(())
 }
@@ -276,8 +249,8 @@ fn taken(meta: &Meta) -> f64 {
 
 fn other_quantity(path: &Path, written: &Unit, meant: Quantity, said: &Said) -> Error {
     let hint = match (is_raw(written), said.force) {
-        (true, true) => "give force_calibration in the campaign: newtons per stored number",
-        (true, false) => "give unit and calibration: what one stored number stands for",
+        (true, true) => "state the calibration of the force: newtons per stored number",
+        (true, false) => "state unit and calibration: what one stored number stands for",
         (false, true) => "check that these are the force files, and not the response files",
         (false, false) => {
             "leave quantity and unit out, and the file is believed; or check that this is the channel you mean"
@@ -290,6 +263,7 @@ fn other_quantity(path: &Path, written: &Unit, meant: Quantity, said: &Said) -> 
         if said.force { "a force, in N".to_owned() } else { format!("{meant}, as was stated") },
     )
     .hint(hint)
+    .setting(if said.force { "force_calibration" } else { "calibration" })
 }
 
 fn no_spectrum(recording: &Recording) -> Error {
@@ -348,14 +322,12 @@ fn magnitudes(recording: &Recording, list: &SweepList, axis: &Axis, factor: f64)
     Ok(magnitudes)
 }
 
-/// Doubts of the files, each once; what a sweep settles for itself is not repeated.
-fn gather(recording: &Recording, doubts: &mut Vec<String>) {
-    const SETTLED: [&str; 4] =
-        ["scaled", "says no unit", "no unit is stated", "says nothing of its abscissa"];
-    for doubt in recording.all_doubts() {
-        let settled = SETTLED.iter().any(|part| doubt.contains(part));
-        if !settled && doubts.len() < 50 && !doubts.contains(&doubt) {
-            doubts.push(doubt);
+/// Findings of the files, each once; what a sweep settles for itself is not repeated.
+fn gather(recording: &Recording, findings: &mut Vec<Finding>) {
+    const SETTLED: [&str; 4] = ["scaling-unsaid", "unit-unsaid", "axis-unit-assumed", "abscissa-unsaid"];
+    for found in recording.all_findings() {
+        if !SETTLED.contains(&found.code) && findings.len() < 50 && !findings.contains(&found) {
+            findings.push(found);
         }
     }
 }

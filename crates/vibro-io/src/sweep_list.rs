@@ -10,7 +10,8 @@
 //! …
 //! ```
 
-use super::{Reader, Source, number, text};
+use super::text::encoding;
+use super::{Reader, Source, number};
 use std::path::{Component, Path, PathBuf};
 use vibro_record::{Error, Place, Result};
 
@@ -42,12 +43,12 @@ impl SweepList {
     pub fn from_path(path: impl AsRef<Path>, allow_outside: bool) -> Result<SweepList> {
         let path = path.as_ref();
         let bytes = Source::file(path)?.all()?;
-        if !text::is_text(&bytes[..bytes.len().min(4096)]) {
+        if !encoding::is_text(&bytes[..bytes.len().min(4096)]) {
             return Err(Error::input(Place::file(path), "binary data", "a list file of text").hint(
                 "give a list file (N, lines, base band, force names, response names) or campaign.toml#name",
             ));
         }
-        let text = text::decode(&bytes);
+        let text = encoding::decode(&bytes);
         let mut list = parse(path, &text).map_err(|e| no_measurement(path, &text, e))?;
         let folder = path.parent().unwrap_or(Path::new(""));
         for (name, place) in list.force.iter_mut().chain(&mut list.response).zip(&list.places) {
@@ -62,7 +63,7 @@ impl SweepList {
             return None;
         }
         let bytes = source.all().ok()?;
-        parse(source.path(), &text::decode(&bytes)).ok()
+        parse(source.path(), &encoding::decode(&bytes)).ok()
     }
 
     /// A complaint about all files that do not exist, each with the line that names it; `None` where all exist.
@@ -137,7 +138,8 @@ pub fn inside(folder: &Path, name: &Path, allow_outside: bool) -> Result<PathBuf
             format!("the name {:?} leads outside the folder of the list", name.display().to_string()),
             "names of files beside or below the list",
         )
-        .hint("move the files beside the list, or give --allow-outside if you trust it"));
+        .hint("move the files beside the list, or allow files outside its folder if you trust it")
+        .setting("allow_outside"));
     }
     Ok(joined)
 }

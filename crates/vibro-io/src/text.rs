@@ -1,139 +1,204 @@
-//! Bytes to text, whatever the instrument's code page.
+//! Text of analysers, loggers and spreadsheets: dialect → rows → records.
+//!
+//! A [`dialect`] says, as data, where names, units and abscissa stand and how a row is cut. It is found out from the first
+//! bytes: [`table`] knows tables with names above their columns, [`numbers`] plain columns of numbers. The dialect of another
+//! instrument is one more function in the list of [`dialect`]. Clean rows are read in parallel ([`fast`]), all others one by
+//! one ([`rows`]), so that a complaint names line and column. Columns become records in [`records`].
 
-use std::borrow::Cow;
-use vibro_record::Meta;
+mod axis;
+mod dialect;
+pub(crate) mod encoding;
+mod fast;
+mod fixed;
+mod footer;
+mod gaps;
+mod header;
+mod lines;
+mod names;
+mod numbers;
+mod records;
+mod rows;
+mod table;
+mod tail;
 
-/// How many bytes are looked at to tell text from binary data, and UTF-16 without a byte order mark.
-pub const LOOK: usize = 2048;
+use crate::format::Survey;
+use crate::reader::{Options, Recording};
+use crate::{Header, Source, Summary, SweepList, missing};
+use dialect::{Abscissa, Cell, Dialect, Head};
+use fast::Shape;
+use rows::Rows;
+use std::path::Path;
+use vibro_record::{Error, Finding, Place, Result, Values};
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Order {
-    Little,
-    Big,
+/// A text and what is known of it before its rows are read.
+pub(crate) struct Text {
+    /// UTF-8 or Latin-1, with LF or CR LF.
+    source: Source,
+    head: Head,
+    tail: Vec<u8>,
+    /// Its encoding, where that is not UTF-8.
+    encoding: Option<&'static str>,
 }
 
-/// Whether the first bytes look like text: UTF-16, or no control characters but blanks, line ends and the end mark of DOS.
-pub fn is_text(head: &[u8]) -> bool {
-    let control = |b: &u8| *b < 0x20 && !b"\t\n\r\x0c\x1a".contains(b);
-    !head[..head.len().min(LOOK)].iter().any(control) || is_utf16(head)
+impl Text {
+    /// Turns UTF-16 and lone CRs in the head into UTF-8 with LF; everything else stays on disk.
+    fn of(source: &Source) -> Result<Text> {
+        let bytes = source.head()?;
+        let encoding = encoding::name(&bytes);
+        let converted = if encoding::is_utf16(&bytes) {
+            Some(encoding::decode(&source.all()?).into_owned().into_bytes())
+        } else if encoding::lone_cr(&bytes, source.len() > bytes.len() as u64) {
+            Some(source.all()?)
+        } else {
+            None
+        };
+        let source = match converted {
+            Some(bytes) => Source::memory(source.path(), encoding::with_lf(bytes))?,
+            None => source.clone(),
+        };
+        Ok(Text { head: Head::of(&source)?, tail: tail::of(&source)?, source, encoding })
+    }
+
+    fn path(&self) -> &Path {
+        self.source.path()
+    }
+
+    /// The dialect of a table with names, which must be there.
+    fn table(&self, options: &Options) -> Result<Dialect> {
+        dialect::of_table(&self.head, options)?.ok_or_else(|| {
+            Error::input(
+                Place::file(self.path()),
+                "no row of numbers with names of columns right above it",
+                "e.g. `time [s],velocity [mm/s]`, then rows of numbers",
+            )
+            .hint("read numbers without names as the format ascii")
+            .setting("format")
+        })
+    }
 }
 
-/// Whether the bytes are UTF-16, by byte order mark or by the zero bytes that western text has in every second place.
-pub fn is_utf16(head: &[u8]) -> bool {
-    order(head).is_some()
+/// Whether a text begins with a table under names.
+pub(crate) fn is_table(head: &[u8], source: &Source) -> bool {
+    // Names need a letter that numbers do not hold; most files of numbers have none.
+    let letter = |b: &u8| !b.is_ascii() || b.is_ascii_alphabetic() && !b"eEdDqQijIJ".contains(b);
+    let words = head[..head.len().min(encoding::LOOK)].iter().any(letter);
+    let found = || dialect::of_table(&Text::of(source)?.head, &Options::default());
+    words && encoding::is_text(head) && found().is_ok_and(|found| found.is_some())
 }
 
-/// Adds encoding and decimal mark of a text to the arguments of the step `read`, where they are not the plain ones.
-pub fn read_as(meta: &mut Meta, head: &[u8], decimal: u8) {
-    let encoding = if is_utf16(head) {
-        "UTF-16"
-    } else if std::str::from_utf8(head).is_err_and(|e| e.error_len().is_some()) {
-        "Latin-1"
-    } else {
-        ""
+/// Text of any kind: this is the last format tried.
+pub(crate) fn is_text(head: &[u8], _: &Source) -> bool {
+    encoding::is_text(head)
+}
+
+pub(crate) fn read_table(source: &Source, options: &Options) -> Result<Recording> {
+    let text = Text::of(source)?;
+    read(&text, &text.table(options)?, options)
+}
+
+pub(crate) fn read_numbers(source: &Source, options: &Options) -> Result<Recording> {
+    let text = Text::of(source)?;
+    read(&text, &dialect::of_numbers(&text.head, options)?, options)
+}
+
+pub(crate) fn survey_table(source: &Source, options: &Options) -> Result<Survey> {
+    let text = Text::of(source)?;
+    survey(&text, &text.table(options)?, options)
+}
+
+pub(crate) fn survey_numbers(source: &Source, options: &Options) -> Result<Survey> {
+    let text = Text::of(source)?;
+    survey(&text, &dialect::of_numbers(&text.head, options)?, options)
+}
+
+fn read(text: &Text, dialect: &Dialect, options: &Options) -> Result<Recording> {
+    let shape = Shape::of(dialect, &text.head);
+    let clean = shape.map(|shape| fast::read(&text.source, &shape)).transpose()?.flatten();
+    let rows = match clean {
+        Some(columns) => Rows { columns, ..Rows::default() },
+        None => carefully(text, dialect, options)?,
     };
-    let decimal = if decimal == b',' { "comma" } else { "" };
-    let Some(step) = meta.history.iter_mut().find(|step| step.name == "read") else { return };
-    for (key, value) in [("encoding", encoding), ("decimal mark", decimal)] {
-        if !value.is_empty() {
-            step.arguments.push((key.to_owned(), value.to_owned()));
+    let mut findings: Vec<Finding> =
+        tail::cut_off(&text.tail, dialect.separator, dialect.decimal).into_iter().collect();
+    if rows.remarks > rows.kept.len() {
+        let found = Finding::note("remarks-dropped").count("n", rows.remarks);
+        findings.push(found.count("kept", rows.kept.len()));
+    }
+    findings.extend(rows.footer.as_ref().map(footer::Footer::finding));
+    findings.extend(missing::kept(rows.missing));
+    let rows = bridged(rows, dialect, &mut findings);
+    if dialect.decimal == b',' && dialect.columns == 1 && dialect.abscissa == Abscissa::Named {
+        findings.push(Finding::caution("decimal-comma-assumed"));
+    }
+    let records = records::build(text, dialect, rows, options, &mut findings)?;
+    Ok(Recording { path: text.path().to_owned(), format: dialect.format, records, findings })
+}
+
+/// Row by row, each complaint with its place.
+fn carefully(text: &Text, dialect: &Dialect, options: &Options) -> Result<Rows> {
+    let bytes = text.source.all()?;
+    let bytes = if encoding::lone_cr(&bytes, false) { encoding::with_lf(bytes) } else { bytes };
+    let whole = encoding::decode(&bytes);
+    let rows = rows::read(text.path(), whole.trim_end_matches('\u{1a}'), dialect, options.allow_missing)?;
+    let alone = rows.columns.first().filter(|_| dialect.columns == 1);
+    if let Some(words) = rows.footer.as_ref().filter(|_| dialect.abscissa == Abscissa::Rising)
+        && (words.ends_list(alone.into_iter().flat_map(Values::magnitudes))
+            || SweepList::of(&text.source).is_some())
+    {
+        return Err(Error::input(
+            Place::file(text.path()),
+            "names of files behind numbers",
+            "numbers and nothing else",
+        )
+        .hint("if this is the list of a sweep, its numbers do not go with its names: correct it and give it to `vibro response`"));
+    }
+    Ok(rows)
+}
+
+/// Rows without a first value, where the first column is an abscissa.
+fn bridged(mut rows: Rows, dialect: &Dialect, findings: &mut Vec<Finding>) -> Rows {
+    if rows.missing > 0 && dialect.abscissa == Abscissa::Rising {
+        findings.extend(gaps::bridge(&mut rows.columns));
+    }
+    rows
+}
+
+/// Streams a clean single column; anything else is read as a whole.
+fn survey(text: &Text, dialect: &Dialect, options: &Options) -> Result<Survey> {
+    let shape = Shape::of(dialect, &text.head).filter(|_| dialect.columns == 1 && dialect.cell == Cell::Real);
+    if let Some(shape) = shape {
+        let mut summary = Summary::default();
+        let bounds = (shape.first_byte, text.source.len());
+        if fast::scan(&text.source, &shape, bounds, |v| summary.push(v.abs()))?.is_some() && summary.n > 0 {
+            return streamed(text, dialect, options, &summary);
         }
     }
+    let recording = read(text, dialect, options)?;
+    Ok((recording.records.iter().map(Header::of).collect(), recording.findings))
 }
 
-/// Text without a byte order mark: UTF-8 borrowed as it is, UTF-16 converted, everything else taken as Latin-1.
-///
-/// Latin-1 gives every byte a character, so that nothing is lost and a later complaint can show what stands there.
-/// Half a pair of surrogates becomes U+FFFD.
-pub fn decode(bytes: &[u8]) -> Cow<'_, str> {
-    if let Some(order) = order(bytes) {
-        let units = bytes.chunks_exact(2).map(|pair| match order {
-            Order::Little => u16::from_le_bytes([pair[0], pair[1]]),
-            Order::Big => u16::from_be_bytes([pair[0], pair[1]]),
-        });
-        let text = char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER));
-        return text.skip_while(|c| *c == '\u{feff}').collect::<String>().into();
-    }
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    match std::str::from_utf8(bytes) {
-        Ok(text) => text.into(),
-        Err(_) => bytes.iter().map(|b| char::from(*b)).collect::<String>().into(),
-    }
+/// The header of a column whose values are gone: the largest stands for them.
+fn streamed(text: &Text, dialect: &Dialect, options: &Options, summary: &Summary) -> Result<Survey> {
+    let mut findings: Vec<Finding> =
+        tail::cut_off(&text.tail, dialect.separator, dialect.decimal).into_iter().collect();
+    let largest = summary.max.map_or(0.0, |(_, max)| max);
+    let rows =
+        Rows { columns: vec![Values::Real(vec![largest])], counted: Some(summary.n), ..Rows::default() };
+    let records = records::build(text, dialect, rows, options, &mut findings)?;
+    let headers = records.iter().map(|record| {
+        let mut header = Header::of(record);
+        let max_abs = header.max_abs;
+        header = header.summed(summary, 1.0, record.axis());
+        Header { max_abs, ..header }
+    });
+    Ok((headers.collect(), findings))
 }
 
-fn order(bytes: &[u8]) -> Option<Order> {
-    if bytes.starts_with(&[0xff, 0xfe]) {
-        return Some(Order::Little);
-    }
-    if bytes.starts_with(&[0xfe, 0xff]) {
-        return Some(Order::Big);
-    }
-    let bytes = &bytes[..bytes.len().min(LOOK)];
-    if !bytes.contains(&0) {
-        return None;
-    }
-    let pairs = bytes.chunks_exact(2);
-    let (total, mut first, mut second) = (pairs.len(), 0, 0);
-    for pair in pairs {
-        first += usize::from(pair[0] == 0);
-        second += usize::from(pair[1] == 0);
-    }
-    // Text has no zero bytes otherwise; a few characters such as √ fill both bytes.
-    let most = |zeros: usize| zeros * 4 >= total * 3;
-    match (first, second) {
-        (0, zeros) if total > 1 && most(zeros) => Some(Order::Little),
-        (zeros, 0) if total > 1 && most(zeros) => Some(Order::Big),
-        _ => None,
-    }
+/// The first characters of a text, for messages.
+fn shorten(text: &str) -> String {
+    let short: String = text.chars().take(40).collect();
+    if short.len() < text.len() { format!("{short}…") } else { short }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    fn utf16(text: &str, big: bool) -> Vec<u8> {
-        text.encode_utf16().flat_map(|u| if big { u.to_be_bytes() } else { u.to_le_bytes() }).collect()
-    }
-
-    #[test]
-    fn utf8_is_borrowed_and_its_mark_dropped() {
-        assert!(matches!(decode("µm".as_bytes()), Cow::Borrowed("µm")));
-        assert!(matches!(decode(b"\xef\xbb\xbfm/s"), Cow::Borrowed("m/s")));
-    }
-
-    #[test]
-    fn latin1_superscripts() {
-        assert_eq!(decode(b"g\xb2/Hz"), "g²/Hz");
-        assert_eq!(decode(b"\xb5m"), "µm");
-    }
-
-    #[test]
-    fn utf16_with_and_without_a_mark() {
-        let text = "time [s];v [µm/s]\r\n0,5;√2\r\n";
-        for big in [false, true] {
-            assert_eq!(decode(&utf16(text, big)), text);
-            assert_eq!(decode(&utf16(&format!("\u{feff}{text}"), big)), text);
-        }
-        // An odd last byte and half a surrogate pair do not stop the rest.
-        let mut cut = utf16("ab\u{1f600}", false);
-        cut.truncate(cut.len() - 1);
-        assert_eq!(decode(&[b"\xff\xfe", cut.as_slice()].concat()), "ab\u{fffd}");
-    }
-
-    #[test]
-    fn zeros_alone_are_not_text() {
-        assert!(!is_text(&[0; 64]));
-        assert!(!is_text(b"ab\0\0cd"));
-        assert!(is_text(b"1.5\r\n2.5\r\n\x1a"));
-        assert!(is_text(&utf16("1,5\r\n", false)));
-    }
-
-    proptest! {
-        #[test]
-        fn never_panics(bytes in proptest::collection::vec(any::<u8>(), 0..64)) {
-            let _ = decode(&bytes);
-            let _ = is_text(&bytes);
-        }
-    }
-}
+mod tests;

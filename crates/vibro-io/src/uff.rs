@@ -24,7 +24,7 @@ use super::{Header, Source};
 use delimiter::{Number, is_delimiter, set_number};
 use stream::Stream;
 use system::System;
-use vibro_record::{Error, Place, Record, Result};
+use vibro_record::{Error, Finding, Place, Record, Result};
 
 /// Endings under which text may stand before the first data set.
 const ENDINGS: [&str; 6] = ["uff", "unv", "ufb", "bunv", "uf", "58"];
@@ -50,23 +50,23 @@ pub(super) fn sniff(head: &[u8], source: &Source) -> bool {
 
 pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
     let mut records: Vec<Record> = Vec::new();
-    let doubts = walk(source, options, |set: Set<Kept>| {
+    let findings = walk(source, options, |set: Set<Kept>| {
         records.push(set.plan.record(set.sink)?);
         Ok(())
     })?;
     tell_apart(records.iter_mut().map(|r| &mut r.meta_mut().name).collect());
-    Ok(Recording { path: source.path().to_owned(), format: Format::Uff, records, doubts })
+    Ok(Recording { path: source.path().to_owned(), format: Format::Uff, records, findings })
 }
 
 /// Goes through the file once, in memory that does not grow with it.
 pub(super) fn survey(source: &Source, options: &Options) -> Result<Survey> {
     let mut headers: Vec<Header> = Vec::new();
-    let doubts = walk(source, options, |set: Set<Counted>| {
+    let findings = walk(source, options, |set: Set<Counted>| {
         headers.push(set.plan.header(&set.sink)?);
         Ok(())
     })?;
     tell_apart(headers.iter_mut().map(|h| &mut h.name).collect());
-    Ok((headers, doubts))
+    Ok((headers, findings))
 }
 
 /// Two channels of one name are told apart by number, so that each can be asked for.
@@ -83,12 +83,12 @@ fn tell_apart(mut names: Vec<&mut String>) {
     }
 }
 
-/// Hands every data set 58 to `each`; gives the doubts about the file as a whole.
+/// Hands every data set 58 to `each`; gives the findings about the file as a whole.
 fn walk<S: Sink>(
     source: &Source,
     options: &Options,
     mut each: impl FnMut(Set<S>) -> Result<()>,
-) -> Result<Vec<String>> {
+) -> Result<Vec<Finding>> {
     let mut stream = Stream::open(source)?;
     let file = source.name();
     let mut around = Around::default();
@@ -126,8 +126,7 @@ fn walk<S: Sink>(
                 if let Some(stated) = System::read(&mut stream)? {
                     system = stated;
                 } else {
-                    let doubt = "Data set 164 holds no unit factors: SI units are assumed.";
-                    around.doubts.push(doubt.to_owned());
+                    around.findings.push(Finding::caution("no-unit-factors"));
                 }
             }
         }
@@ -139,7 +138,7 @@ fn walk<S: Sink>(
 /// What stands around the data sets that are read.
 #[derive(Default)]
 struct Around {
-    doubts: Vec<String>,
+    findings: Vec<Finding>,
     /// Other data sets with their counts, in the order of their first appearance.
     others: Vec<(u32, usize)>,
     /// Lines outside any data set, and where the first stands.
@@ -162,15 +161,13 @@ impl Around {
     }
 
     fn cut_short(&mut self, place: Place, lines: usize) {
-        self.doubts.push(format!(
-            "A data set 58 ends after {lines} of its {} header lines and is passed over.",
-            uff58::LINES
-        ));
+        self.findings
+            .push(Finding::caution("header-cut-short").count("lines", lines).count("of", uff58::LINES));
         self.cut = Some((place, lines));
     }
 
-    /// All doubts; an error where there is nothing but a header cut short.
-    fn finish(self, functions: usize) -> Result<Vec<String>> {
+    /// All findings; an error where there is nothing but a header cut short.
+    fn finish(self, functions: usize) -> Result<Vec<Finding>> {
         if let (0, Some((place, lines))) = (functions, self.cut) {
             return Err(Error::input(
                 place,
@@ -179,7 +176,7 @@ impl Around {
             )
             .hint("the file is cut short: copy or export it again"));
         }
-        let mut doubts = self.doubts;
+        let mut findings = self.findings;
         if !self.others.is_empty() {
             let names: Vec<String> = self
                 .others
@@ -190,18 +187,15 @@ impl Around {
                     if *count > 1 { format!("{count} × {name}{used}") } else { format!("{name}{used}") }
                 })
                 .collect();
-            doubts.push(format!("Data sets passed over: {}.", names.join(", ")));
+            findings.push(Finding::note("sets-passed-over").name("sets", names.join(", ")));
         }
         if self.lines > 0 {
             let place = self.first.map_or_else(String::new, |p| Place { path: None, ..p }.to_string());
-            doubts.push(format!(
-                "{} lines outside any data set were passed over, the first at {place}.",
-                self.lines
-            ));
+            findings.push(Finding::caution("lines-outside").count("n", self.lines).name("place", place));
         }
         if functions == 0 {
-            doubts.push("The file holds no data set 58, so no record.".to_owned());
+            findings.push(Finding::caution("no-function"));
         }
-        Ok(doubts)
+        Ok(findings)
     }
 }

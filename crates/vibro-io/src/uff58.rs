@@ -38,7 +38,7 @@ use heading::Heading;
 use layout::Layout;
 use spacing::Digits;
 use values::Binary;
-use vibro_record::{Error, Result};
+use vibro_record::{Error, Finding, Result};
 
 pub use heading::LINES;
 pub use plan::Plan;
@@ -77,9 +77,7 @@ pub fn read<S: Sink>(
     let mut sink;
     let taken = if let Some(id) = id {
         let extent = Extent::find(stream, layout, n, id.bytes)?;
-        if !extent.doubt.is_empty() {
-            plan.meta.doubt(&extent.doubt);
-        }
+        extent.finding.into_iter().for_each(|found| plan.meta.found(found));
         let digits = if extent.wide_abscissa { Digits::Double } else { Digits::Single };
         let size = layout.point_size(extent.wide_abscissa) as u64;
         sink = S::new(layout, n.min((extent.bytes / size) as usize), digits);
@@ -94,14 +92,12 @@ pub fn read<S: Sink>(
     plan.counted(n, taken);
     let end = stream.pass_set()?;
     if end.lines > 0 {
-        plan.meta.doubt(format!(
-            "Behind the {} declared values stand {} more lines before the closing -1: they are not read.",
-            n, end.lines
-        ));
+        let more = Finding::caution("more-lines").count("declared", n);
+        plan.meta.found(more.count("lines", end.lines as usize));
     }
     if !end.closed {
-        let from = start.map_or_else(String::new, |line| format!(" that begins at line {line}"));
-        plan.meta.doubt(format!("The file ends without the closing -1 of the data set{from}."));
+        let open = Finding::caution("set-not-closed");
+        plan.meta.found(start.into_iter().fold(open, |found, line| found.number("line", line as f64)));
     }
     Ok(Ok(Set { plan, sink }))
 }
@@ -153,7 +149,7 @@ impl IdLine {
 struct Extent {
     bytes: u64,
     wide_abscissa: bool,
-    doubt: String,
+    finding: Option<Finding>,
 }
 
 impl Extent {
@@ -164,40 +160,28 @@ impl Extent {
         let declared = size(false);
         let mixed = layout.double && !layout.even;
         let sure = noted == Some(declared) && declared <= stream.remaining() && !mixed;
-        let found = |bytes, wide_abscissa, doubt: String| Ok(Extent { bytes, wide_abscissa, doubt });
+        let found = |bytes, wide_abscissa, finding| Ok(Extent { bytes, wide_abscissa, finding });
         if sure || closes(&stream.peek(declared)?) {
-            return found(declared, false, String::new());
+            return found(declared, false, None);
         }
         if mixed && closes(&stream.peek(size(true))?) {
-            return found(
-                size(true),
-                true,
-                "The abscissa is stored in double precision, where the standard has single.".to_owned(),
-            );
+            return found(size(true), true, Some(Finding::note("abscissa-double")));
         }
         let noted = noted.filter(|bytes| *bytes > 0);
         if let Some(bytes) = noted
             && closes(&stream.peek(bytes)?)
         {
-            let doubt = format!(
-                "Record 7 declares {n} values, so {declared} bytes; {bytes} stand before the closing -1, as the number line says."
-            );
-            return found(bytes, false, doubt);
+            let other = Finding::caution("other-size").count("n", n).number("declared", declared as f64);
+            return found(bytes, false, Some(other.number("bytes", bytes as f64)));
         }
         let wide = mixed && noted == Some(size(true));
         let expected = size(wide);
         if expected > stream.remaining() {
             // Cut short: the end of the file is the end of the values, unless a delimiter still follows them.
             let bytes = stream.remaining() - trailing_delimiter(stream)?;
-            return found(bytes, wide, String::new());
+            return found(bytes, wide, None);
         }
-        found(
-            expected,
-            wide,
-            format!(
-                "No closing -1 stands behind the {expected} bytes that record 7 declares: the values may not be what they seem."
-            ),
-        )
+        found(expected, wide, Some(Finding::doubt("no-closing-line").number("bytes", expected as f64)))
     }
 }
 

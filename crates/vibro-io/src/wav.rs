@@ -17,14 +17,14 @@ mod stream;
 
 pub(super) use calibrated::Calibrated;
 pub(crate) use scales::{Scale, Scales};
-pub use stream::WavStream;
+use stream::WavStream;
 
 use super::format::{Format, Survey};
 use super::reader::{Options, Recording};
 use super::{Header, Source, Summary, missing};
 use std::path::Path;
 use vibro_record::units::{self, Unit};
-use vibro_record::{Axis, Error, Meta, Place, Record, Result, Trace};
+use vibro_record::{Axis, Error, Finding, Meta, Place, Record, Result, Trace};
 
 /// The unit of values without a calibration.
 const FULL_SCALE: &str = "FS";
@@ -55,7 +55,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         records.push(Record::Trace(trace));
     }
     let path = source.path().to_owned();
-    Ok(Recording { path, format: Format::Wav, records, doubts: stream.doubts().to_vec() })
+    Ok(Recording { path, format: Format::Wav, records, findings: stream.findings().to_vec() })
 }
 
 /// Goes over the samples a block at a time.
@@ -70,9 +70,9 @@ pub(super) fn survey(source: &Source, options: &Options) -> Result<Survey> {
             units::scale([&mut max], factor).map_err(|e| e.in_file(source.path()))?;
         }
         let axis = trace.axis.clone();
-        headers.push(Header::of(&Record::Trace(trace)).with_summary(summary, factor, &axis));
+        headers.push(Header::of(&Record::Trace(trace)).summed(summary, factor, &axis));
     }
-    Ok((headers, stream.doubts().to_vec()))
+    Ok((headers, stream.findings().to_vec()))
 }
 
 fn open(source: &Source, options: &Options) -> Result<WavStream> {
@@ -80,8 +80,9 @@ fn open(source: &Source, options: &Options) -> Result<WavStream> {
         return Err(Error::input(
             Place::file(source.path()),
             "a base band was stated, but a wave file holds samples over time",
-            "--rate, or nothing: the file says its sampling rate",
-        ));
+            "a sampling rate, or nothing: the file says its own",
+        )
+        .setting("base_band"));
     }
     WavStream::open(source)
 }
@@ -132,9 +133,9 @@ fn gaps(path: &Path, count: usize, listed: impl Iterator<Item = (usize, usize)>)
     missing::refusal(Place::file(path), found)
 }
 
-/// The doubt about values without a calibration that a fraction of full scale cannot have.
-fn beyond_full_scale(max: f64) -> String {
-    format!("Values reach {max}, beyond full scale: they may be in a physical unit already.")
+/// Values without a calibration that a fraction of full scale cannot have.
+fn beyond_full_scale(max: f64) -> Finding {
+    Finding::caution("beyond-full-scale").number("max", max)
 }
 
 /// Channel `channel` without values and without calibration.
@@ -156,14 +157,15 @@ fn describe(
         meta.notes = stream.notes().to_vec();
     }
     meta.declared_n = stream.declared_frames().map(|n| n as usize);
-    meta.doubt(Trace::UNCALIBRATED);
+    meta.found(Finding::caution("uncalibrated"));
     let scaled = scales.is_some() || options.unit.is_some();
     if let Some((_, max)) = summary.max.filter(|(_, max)| *max > 1.0 && !scaled) {
-        meta.doubt(beyond_full_scale(max));
+        meta.found(beyond_full_scale(max));
     }
     let mut rate = stream.rate();
     if let Some(stated) = options.rate.filter(|stated| *stated != rate) {
-        meta.doubt(format!("The file says a sampling rate of {rate} Hz; {stated} Hz was given and is used."));
+        let differs = Finding::caution("statement-overrides-file").name("what", "sampling rate");
+        meta.found(differs.number("file", rate).number("used", stated));
         rate = stated;
     }
     let start = scales.map_or(0.0, |s| s.start);
@@ -174,7 +176,7 @@ fn describe(
 fn dress(trace: &mut Trace, stream: &WavStream, options: &Options, channel: usize) -> Result<f64> {
     if let Some(unit) = &options.unit {
         trace.calibrate(1.0, unit)?;
-        trace.meta.doubt(format!("Full scale is taken as 1 {unit}, as was stated."));
+        trace.meta.found(Finding::note("full-scale-stated").name("unit", unit.symbol()));
         return Ok(unit.factor());
     }
     let Some(scale) = stream.scales().and_then(|s| s.channels.get(channel)) else { return Ok(1.0) };
@@ -182,13 +184,11 @@ fn dress(trace: &mut Trace, stream: &WavStream, options: &Options, channel: usiz
     trace.calibrate(scale.factor, &unit)?;
     if scale.unit == FULL_SCALE {
         // Only the level was kept: there never was a calibration.
-        trace.meta.doubt(Trace::UNCALIBRATED);
+        trace.meta.found(Finding::caution("uncalibrated"));
         return Ok(scale.factor);
     }
-    trace.meta.doubt(format!(
-        "Full scale is {} {}, as a comment in the file says: wrong if an audio program has changed the level since.",
-        scale.factor, scale.unit
-    ));
+    let said = Finding::caution("full-scale-by-comment").number("factor", scale.factor);
+    trace.meta.found(said.name("unit", scale.unit.as_str()));
     Ok(scale.factor * unit.factor())
 }
 

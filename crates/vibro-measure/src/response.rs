@@ -106,8 +106,6 @@ pub struct Response {
     pub resonances: Vec<Resonance>,
     /// Sudden changes.
     pub jumps: Vec<Jump>,
-    /// What the reader of the sweep doubts, in words.
-    pub warnings: Vec<String>,
     /// What limits the curve.
     pub findings: Vec<Finding>,
     /// Every step from file to curve.
@@ -134,7 +132,7 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
         sweep.line_width().ok_or_else(|| Error::refused("the lines of the sweep are not evenly spaced"))?;
     let excitations = excitations(sweep, options.fmin.unwrap_or(0.0))?;
     let fmin = options.fmin.unwrap_or_else(|| default_cutoff(df, &excitations));
-    let mut findings = Vec::new();
+    let mut findings = sweep.findings.clone();
     let quantity = sweep.unit().times_seconds(options.integrate).quantity();
     if quantity == Quantity::Other {
         return Err(Error::refused(format!(
@@ -185,8 +183,12 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
         for point in &mut points {
             (point.frequency_std, point.amplitude.std) = (None, None);
         }
-        jumps.iter_mut().for_each(|j| (j.amplitude_before_std, j.amplitude_after_std) = (None, None));
-        resonances.iter_mut().for_each(|r| (r.frequency_std, r.amplitude_std) = (None, None));
+        for jump in &mut jumps {
+            (jump.amplitude_before_std, jump.amplitude_after_std) = (None, None);
+        }
+        for resonance in &mut resonances {
+            (resonance.frequency_std, resonance.amplitude_std) = (None, None);
+        }
     }
     let mut history = sweep.history().to_vec();
     history.push(Step::new(
@@ -208,7 +210,6 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
         points,
         resonances,
         jumps,
-        warnings: sweep.doubts.clone(),
         findings,
         history,
     })

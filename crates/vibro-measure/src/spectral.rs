@@ -88,7 +88,7 @@ fn lines(
         averages,
         &scatter,
         if detrend { "mean" } else { "none" },
-        traces.doubts(),
+        traces.findings(),
     );
     if let Some(tones) = tones {
         found.findings.extend(tones.findings);
@@ -132,7 +132,7 @@ fn response(
         }
         found.frf.meta.step("delay", &[("seconds", &delay)]);
     }
-    let mut result = SpectralResult::response(found, estimator, window, detrend, blows, traces.doubts());
+    let mut result = SpectralResult::response(found, estimator, window, detrend, blows, traces.findings());
     result.left_out(options.integrate, fmin);
     Ok(result)
 }

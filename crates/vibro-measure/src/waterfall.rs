@@ -23,8 +23,6 @@ pub struct Waterfall {
     pub unit: String,
     /// Cut-off in Hz; 0 where nothing was cut off.
     pub fmin: f64,
-    /// What the reader of the sweep doubts, in words.
-    pub warnings: Vec<String>,
     /// What was left out.
     pub findings: Vec<Finding>,
 }
@@ -67,7 +65,6 @@ pub fn gathered(sweep: &Sweep, options: &ResponseOptions, excitation: Vec<f64>, 
         quantity: unit.quantity(),
         unit: unit.symbol().to_owned(),
         fmin,
-        warnings: sweep.doubts.clone(),
-        findings: cut.into_iter().collect(),
+        findings: sweep.findings.iter().cloned().chain(cut).collect(),
     }
 }

@@ -116,4 +116,22 @@ impl Finding {
             Fact::Numbers(_) | Fact::Name(_) => None,
         }
     }
+
+    /// Findings of records, given as name and findings: one that all share once, any other about its record.
+    pub fn gathered(records: &[(&str, &[Finding])]) -> Vec<Finding> {
+        let mut all: Vec<Finding> = Vec::new();
+        for (name, findings) in records {
+            for finding in *findings {
+                let shared = records.iter().all(|(_, others)| others.contains(finding));
+                let mut finding = finding.clone();
+                if !shared && !name.is_empty() {
+                    finding.subject = Some((*name).to_owned());
+                }
+                if !shared || !all.contains(&finding) {
+                    all.push(finding);
+                }
+            }
+        }
+        all
+    }
 }

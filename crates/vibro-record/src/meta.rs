@@ -1,5 +1,6 @@
 //! What is known of a record beside its values.
 
+use crate::Finding;
 use crate::units::{Quantity, Unit};
 
 /// One step that made a record: its name, its arguments, the version of this crate.
@@ -30,7 +31,7 @@ pub const ADDED_DECAY: &str = "exponential window; decay in 1/s ";
 /// Identification line of UFF-58, and key of a remark in CSV, that a function was averaged over the blows of a hammer.
 pub const FROM_BLOWS: &str = "averaged over hammer blows";
 
-/// Channel, quantity, unit, history and doubts.
+/// Channel, quantity, unit, history and findings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Meta {
     /// Channel or record name; may be empty.
@@ -43,8 +44,8 @@ pub struct Meta {
     pub declared_n: Option<usize>,
     /// Header lines that are kept but not interpreted, as key and value (the key may be empty).
     pub notes: Vec<(String, String)>,
-    /// Sentences that a person must read before trusting the values.
-    pub doubts: Vec<String>,
+    /// What a person must know before trusting the values.
+    pub findings: Vec<Finding>,
     /// Every step that made the record, oldest first.
     pub history: Vec<Step>,
 }
@@ -58,17 +59,21 @@ impl Meta {
             unit,
             declared_n: None,
             notes: Vec::new(),
-            doubts: Vec::new(),
+            findings: Vec::new(),
             history: Vec::new(),
         }
     }
 
-    /// Adds a sentence of doubt, once.
-    pub fn doubt(&mut self, sentence: impl Into<String>) {
-        let sentence = sentence.into();
-        if !self.doubts.contains(&sentence) {
-            self.doubts.push(sentence);
+    /// Adds a finding, once.
+    pub fn found(&mut self, finding: Finding) {
+        if !self.findings.contains(&finding) {
+            self.findings.push(finding);
         }
+    }
+
+    /// Whether there is a finding with this code.
+    pub fn has(&self, code: &str) -> bool {
+        self.findings.iter().any(|f| f.code == code)
     }
 
     /// Adds a step to the history.
@@ -101,14 +106,11 @@ impl Meta {
     }
 
     /// Takes the unit an instrument wrote: stores its SI unit and quantity, notes the conversion, and returns the factor
-    /// by which the values must be multiplied. An unknown unit is kept, with a doubt and factor 1.
+    /// by which the values must be multiplied. An unknown unit is kept, with a finding and factor 1.
     pub fn adopt_unit(&mut self, text: &str) -> f64 {
         let unit = Unit::parse_or_opaque(text);
         if !unit.is_known() {
-            self.doubt(format!(
-                "The unit \"{}\" is not understood: the values are kept as they are.",
-                text.trim()
-            ));
+            self.found(Finding::caution("unit-unknown").name("unit", text.trim()));
         }
         self.unit = unit.si();
         self.quantity = self.unit.quantity();

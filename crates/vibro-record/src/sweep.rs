@@ -1,6 +1,6 @@
 //! A stepped-sine sweep: one force and one response spectrum a step.
 
-use super::{Axis, Spectrum, Step};
+use super::{Axis, Finding, Spectrum, Step};
 use crate::units::Unit;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -63,8 +63,8 @@ pub struct Sweep {
     pub analyser_integrated: u8,
     /// The steps.
     pub points: Vec<SweepPoint>,
-    /// Sentences of doubt about the sweep as a whole.
-    pub doubts: Vec<String>,
+    /// Findings about the sweep as a whole.
+    pub findings: Vec<Finding>,
 }
 
 impl Sweep {

@@ -21,12 +21,12 @@ impl Trace {
         matches!(self.axis.kind, super::AxisKind::Time).then(|| self.axis.step().map(|dt| 1.0 / dt)).flatten()
     }
 
-    /// The doubt of a trace whose values are fractions of a recorder's full scale.
-    pub const UNCALIBRATED: &str = "No calibration is known: values are fractions of full scale.";
+    /// Code of the finding that the values are fractions of a recorder's full scale.
+    pub const UNCALIBRATED: &str = "uncalibrated";
 
     /// Applies a calibration: a value v becomes `factor`·v in `unit`, stored in SI.
     ///
-    /// The doubt that no calibration is known goes; all other doubts, notes and steps stay, and a step `calibrate` is
+    /// The finding that no calibration is known goes; all others, notes and steps stay, and a step `calibrate` is
     /// added. A negative factor turns the sensor around.
     ///
     /// ```
@@ -53,7 +53,7 @@ impl Trace {
         units::scale(&mut self.values, to_si)?;
         let from = std::mem::replace(&mut self.meta.unit, unit.si());
         self.meta.quantity = self.meta.unit.quantity();
-        self.meta.doubts.retain(|doubt| doubt != Trace::UNCALIBRATED);
+        self.meta.findings.retain(|found| found.code != Trace::UNCALIBRATED);
         self.meta.step("calibrate", &[("factor", &factor), ("unit", unit), ("from", &from)]);
         Ok(())
     }
@@ -62,12 +62,13 @@ impl Trace {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Finding;
     use crate::units::Quantity;
 
     fn trace() -> Trace {
         let mut meta = Meta::new("a", Unit::opaque("FS"));
-        meta.doubt(Trace::UNCALIBRATED);
-        meta.doubt("Something else.");
+        meta.found(Finding::caution("uncalibrated"));
+        meta.found(Finding::caution("x"));
         meta.step("read", &[]);
         Trace { meta, axis: Axis::time(0.0, 0.1, 2), values: vec![0.5, f64::NAN] }
     }
@@ -80,7 +81,7 @@ mod tests {
         assert!((t.values[0] + 0.02).abs() < 1e-17);
         assert!(t.values[1].is_nan());
         assert_eq!((t.meta.quantity, t.meta.unit.symbol()), (Quantity::Velocity, "m/s"));
-        assert_eq!(t.meta.doubts, ["Something else."]);
+        assert_eq!(t.meta.findings, [Finding::caution("x")]);
         assert_eq!(t.meta.history.len(), 2);
         assert_eq!(t.meta.history[1].arguments[1], ("unit".to_owned(), "mm/s".to_owned()));
     }

@@ -1,6 +1,6 @@
 //! Time traces block by block.
 
-use crate::{Error, Meta, Place, Result, Trace, units};
+use crate::{Error, Finding, Meta, Place, Result, Trace, units};
 use std::path::{Path, PathBuf};
 
 /// Frames of a block from memory.
@@ -42,7 +42,7 @@ pub trait Stream: Send {
 pub struct Traces {
     path: PathBuf,
     channels: Vec<Meta>,
-    doubts: Vec<String>,
+    findings: Vec<Finding>,
     rate: f64,
     start: f64,
     frames: usize,
@@ -69,11 +69,11 @@ impl Traces {
     ///
     /// # Errors
     /// As [`Traces::from_memory`].
-    pub fn of_file(path: PathBuf, doubts: Vec<String>, mut traces: Vec<Trace>) -> Result<Traces> {
+    pub fn of_file(path: PathBuf, findings: Vec<Finding>, mut traces: Vec<Trace>) -> Result<Traces> {
         check_lengths(&path, &traces)?;
         let values: Vec<Vec<f64>> = traces.iter_mut().map(|t| std::mem::take(&mut t.values)).collect();
         let frames = values.first().map_or(0, Vec::len);
-        Traces::of(path, doubts, &traces, frames, Origin::Memory { values, at: 0 })
+        Traces::of(path, findings, &traces, frames, Origin::Memory { values, at: 0 })
     }
 
     /// Traces that come from a stream; the values of `traces` do not count.
@@ -82,17 +82,17 @@ impl Traces {
     /// As [`Traces::from_memory`].
     pub fn of_stream(
         path: PathBuf,
-        doubts: Vec<String>,
+        findings: Vec<Finding>,
         traces: &[Trace],
         frames: usize,
         stream: Box<dyn Stream>,
     ) -> Result<Traces> {
-        Traces::of(path, doubts, traces, frames, Origin::Stream(stream))
+        Traces::of(path, findings, traces, frames, Origin::Stream(stream))
     }
 
     fn of(
         path: PathBuf,
-        doubts: Vec<String>,
+        findings: Vec<Finding>,
         traces: &[Trace],
         frames: usize,
         origin: Origin,
@@ -100,7 +100,7 @@ impl Traces {
         let (rate, start) = clock(&path, traces, frames)?;
         let channels: Vec<Meta> = traces.iter().map(|t| t.meta.clone()).collect();
         let factors = vec![1.0; channels.len()];
-        Ok(Traces { path, channels, doubts, rate, start, frames, factors, origin })
+        Ok(Traces { path, channels, findings, rate, start, frames, factors, origin })
     }
 
     /// File.
@@ -108,7 +108,7 @@ impl Traces {
         &self.path
     }
 
-    /// Name, unit, doubts and history of each channel; the values are in its unit.
+    /// Name, unit, findings and history of each channel; the values are in its unit.
     pub fn channels(&self) -> &[Meta] {
         &self.channels
     }
@@ -136,21 +136,13 @@ impl Traces {
         self.frames
     }
 
-    /// Sentences about the file and its channels, these with their names where there are several. What only the values
+    /// Findings about the file and its channels, these with their names where there are several. What only the values
     /// show is among them once all have been read.
-    pub fn doubts(&self) -> Vec<String> {
-        self.doubts_but(|_| false)
-    }
-
-    /// As [`Traces::doubts`], without those of the channels that are `known`.
-    pub fn doubts_but(&self, known: impl Fn(&str) -> bool) -> Vec<String> {
-        let several = self.channels.len() > 1;
-        let mut all = self.doubts.clone();
-        for meta in &self.channels {
-            let named = several && !meta.name.is_empty();
-            let said = meta.doubts.iter().filter(|d| !known(d.as_str()));
-            all.extend(said.map(|d| if named { format!("{}: {d}", meta.name) } else { d.clone() }));
-        }
+    pub fn findings(&self) -> Vec<Finding> {
+        let channels: Vec<_> =
+            self.channels.iter().map(|m| (m.name.as_str(), m.findings.as_slice())).collect();
+        let mut all = self.findings.clone();
+        all.extend(Finding::gathered(&channels));
         all
     }
 
@@ -221,9 +213,9 @@ impl Traces {
         if factor == 0.0 || !factor.is_finite() {
             return Err(Error::usage(format!("a calibration of {factor}"), "a number that is not 0"));
         }
-        if meta.doubts.iter().any(|d| d == Trace::UNCALIBRATED) {
+        if meta.has(Trace::UNCALIBRATED) {
             let found = format!("a calibration of {factor} without a unit");
-            return Err(Error::usage(found, "the unit, too: --unit, or unit = \"…\" in a campaign"));
+            return Err(Error::usage(found, "the unit, too").setting("unit"));
         }
         *known *= factor;
         meta.step("calibrate", &[("factor", &factor)]);
@@ -291,7 +283,8 @@ fn clock(path: &Path, traces: &[Trace], frames: usize) -> Result<(f64, f64)> {
         let Some(rate) = trace.rate().filter(|r| r.is_finite() && *r > 0.0) else {
             let found = format!("the sampling rate of channel {:?} is not known", trace.meta.name);
             return Err(Error::input(place(path), found, "samples at even distances in time")
-                .hint("state the sampling rate with --rate"));
+                .hint("state the sampling rate")
+                .setting("rate"));
         };
         let Some((first, known)) = common else {
             common = Some((trace, rate));

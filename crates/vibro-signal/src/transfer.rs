@@ -214,8 +214,8 @@ fn named(reference: &Meta, response: &Meta) -> Meta {
         Unit::parse_or_opaque(&format!("({y})/({x})")).si()
     };
     let mut meta = Meta::new(format!("{} / {}", response.name, reference.name), unit);
-    meta.doubts.clone_from(&response.doubts);
-    reference.doubts.iter().for_each(|d| meta.doubt(d.clone()));
+    meta.findings.clone_from(&response.findings);
+    reference.findings.iter().for_each(|f| meta.found(f.clone()));
     meta.history.clone_from(&response.history);
     meta
 }

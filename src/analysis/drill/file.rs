@@ -164,9 +164,8 @@ impl Channels for Played<'_> {
             (self.progress)(self.done, self.all);
         }
         // What only the values show is known now. Sensitivities are stated: that a file knows none is no finding.
-        let doubts = traces.doubts_but(|doubt| doubt == Trace::UNCALIBRATED);
-        self.findings =
-            doubts.iter().map(|d| Finding::caution("drill-file-doubt").name("doubt", d)).collect();
+        self.findings = traces.findings();
+        self.findings.retain(|found| found.code != Trace::UNCALIBRATED);
         Ok(())
     }
 }

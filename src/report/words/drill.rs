@@ -1,7 +1,6 @@
 //! Sentences of findings of drill records and of hand-arm exposure, by code.
 
 pub(super) const WORDS: &[(&str, &str)] = &[
-    ("drill-file-doubt", "{doubt}"),
     (
         "drill-velocity-scaled-twice",
         "The velocity channel is in m/s already; it is multiplied by the sensitivity {sensitivity} too. Check [sensitivity].",

@@ -1,6 +1,7 @@
 //! Sentences of findings of sweeps, their response and resonances, by code.
 
 pub(super) const WORDS: &[(&str, &str)] = &[
+    ("legacy-matrix", "This is the matrix of the script sinesw, mistakes included."),
     (
         "sweep-window-unlike",
         "The force lines differ from a {window} window by {off %}<; {better} fits to {left %}>. Amplitudes have no uncertainty. Set [window].",

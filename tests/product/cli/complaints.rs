@@ -181,7 +181,7 @@ fn a_file_cut_within_its_last_number() {
     let narrow = with("b.csv", "t [s],v [m/s]\n0.0,1.25\n0.1");
     has(&complaint(&["info", text(&narrow)], 2), &["line 3", "1 field(s)", "cut off"]);
     let narrow = with("b.txt", "0.0 1.25\n0.1 1.35\n0.2");
-    has(&complaint(&["info", text(&narrow)], 2), &["line 3", "1 values", "cut off"]);
+    has(&complaint(&["info", text(&narrow)], 2), &["line 3", "1 field(s) in this row", "cut off"]);
 }
 
 #[test]
@@ -480,9 +480,7 @@ fn one_true_sentence_is_said_of_the_unit() {
     };
     let list = text(&list);
     assert_eq!(said(&["response", list, "--unit", "mm/s"]), Vec::<String>::new());
-    let assumed = |unit: &str| {
-        format!("Neither the files nor what was stated name the unit of the responses: {unit} is assumed.")
-    };
+    let assumed = |unit: &str| format!("No unit of the responses is known: {unit} is assumed. State --unit.");
     assert_eq!(said(&["response", list]), [assumed("m")]);
     fs::write(&campaign, "[[sweep]]\nname = \"a\"\nlist = \"LIST.TXT\"\nquantity = \"velocity\"\n").unwrap();
     assert_eq!(said(&["response", text(&campaign)]), [assumed("m/s")]);

@@ -1,5 +1,6 @@
 //! Analyser text in every dress instruments give it, and every way it can be broken.
 
+use super::sentences;
 use vibroimpact::read::{Format, Reader, Recording};
 use vibroimpact::record::{AxisKind, Record, Values};
 use vibroimpact::units::Unit;
@@ -70,7 +71,7 @@ fn columns_and_separators() {
     }
     let channels = read(b"5 1\n3 2\n9 1\n");
     assert_eq!(channels.records.len(), 2);
-    assert!(channels.all_doubts().iter().any(|d| d.contains("--complex")));
+    assert!(sentences(&channels.all_findings()).iter().any(|d| d.contains("--complex")));
 }
 
 #[test]
@@ -78,7 +79,7 @@ fn decimal_commas() {
     assert_eq!(values(&read(b"3,0517\n-0,25\n")), [3.0517, -0.25]);
     assert_eq!(values(&read(b"1,5E-03\n2,5E-03\n")), [1.5e-3, 2.5e-3]);
     let error = complaint(b"1,5\n2,5\n");
-    assert!(error.contains("x.txt, line 1") && error.contains("--decimal comma"), "{error}");
+    assert!(error.contains("x.txt, line 1") && error.contains("(decimal)"), "{error}");
     let told = Reader::new().decimal_comma(Some(true)).from_reader("x.txt", &b"1,5\n2,5\n"[..]).unwrap();
     assert_eq!(values(&told), [1.5, 2.5]);
 }
@@ -118,25 +119,25 @@ fn headers_state_axis_and_unit() {
     let short = read(b"Lines: 400\nBase band: 20 Hz\n1\n2\n");
     assert_eq!(short.records[0].meta().declared_n, Some(401));
     assert!(
-        short.all_doubts().iter().any(|d| d.contains("401") && d.contains("holds 2")),
+        sentences(&short.all_findings()).iter().any(|d| d.contains("401") && d.contains("holds 2")),
         "{:?}",
-        short.all_doubts()
+        sentences(&short.all_findings())
     );
     let trace = read(b"Sampling rate: 128 Hz\nunit: apples\n1\n2\n");
     assert_eq!(trace.records[0].axis().step(), Some(1.0 / 128.0));
-    assert!(trace.all_doubts().iter().any(|d| d.contains("apples")));
+    assert!(sentences(&trace.all_findings()).iter().any(|d| d.contains("apples")));
 }
 
 #[test]
 fn missing_values_are_refused_with_their_lines() {
     let text = b"1\nNaN\n3\n\n-inf\n6\n";
     let error = complaint(text);
-    assert!(error.contains("line(s) 2, 4, 5") && error.contains("--allow-missing"), "{error}");
+    assert!(error.contains("line(s) 2, 4, 5") && error.contains("allow_missing"), "{error}");
     let kept = Reader::new().allow_missing(true).from_reader("x.txt", &text[..]).unwrap();
     let kept_values = values(&kept);
     assert_eq!(kept_values.len(), 6);
     assert_eq!(kept_values.iter().filter(|v| v.is_nan()).count(), 3);
-    assert!(kept.all_doubts().iter().any(|d| d.starts_with("3 value(s)")));
+    assert!(sentences(&kept.all_findings()).iter().any(|d| d.starts_with("3 values are missing")));
     // Blank lines at the end are no values.
     assert_eq!(values(&read(b"1\n2\n\n\n")), [1.0, 2.0]);
     let fields = complaint(b"1;2\n3;\n;4\n");
@@ -147,9 +148,9 @@ fn missing_values_are_refused_with_their_lines() {
 fn every_complaint_has_a_place_and_a_way_on() {
     for (bytes, place, found) in [
         (&b"1\n2\nthree\n4\n"[..], "line 3, column 1", "three"),
-        (b"1 2\n3 4\n5\n", "line 3", "found 1 values"),
+        (b"1 2\n3 4\n5\n", "line 3", "1 field(s) in this row"),
         (b"1 2\n3 4\n5 x\n", "line 3, column 3", "\"x\""),
-        (b"1.5\n2.5\n3,5\n", "line 3", "found 2 values"),
+        (b"1.5\n2.5\n3,5\n", "line 3", "2 field(s) in this row"),
         (b"no numbers here\n", "x.txt", "no row of numbers"),
         (b"1\n2\n1e999\n", "line 3", "1e999"),
     ] {
@@ -247,7 +248,11 @@ fn words_behind_the_values_are_passed_over_and_quoted() {
     ] {
         let recording = read(text.as_bytes());
         assert_eq!(recording.records[0].len(), n, "{text}");
-        assert!(recording.doubts.iter().any(|d| d.contains("\"End of data\"")), "{:?}", recording.doubts);
+        assert!(
+            sentences(&recording.findings).iter().any(|d| d.contains("\"End of data\"")),
+            "{:?}",
+            sentences(&recording.findings)
+        );
     }
     for text in [
         "1\n2\n3\n4\nEnd of data\n5\n",
@@ -282,11 +287,8 @@ fn words_behind_spectral_lines_make_their_number_doubtful() {
     let of = |header: &str| {
         let text = format!("{header}1.5\n2.5\n3.5\n4.5\n5.5\nEnd of data\n");
         let recording = Reader::new().base_band(Some(20.0)).from_reader("x.txt", text.as_bytes()).unwrap();
-        let doubts = recording.all_doubts();
-        (
-            recording.records[0].axis().step(),
-            doubts.iter().any(|d| d.contains("Whether 5 values are all lines")),
-        )
+        let doubts = sentences(&recording.all_findings());
+        (recording.records[0].axis().step(), doubts.iter().any(|d| d.contains("Are 5 values all lines")))
     };
     assert_eq!(of(""), (Some(5.0), true));
     assert_eq!(of("Lines: 4\n"), (Some(5.0), false));

@@ -1,5 +1,6 @@
 //! Wave files, MAT-files and tables that other programs wrote.
 
+use super::sentences;
 use crate::others_files;
 use std::path::PathBuf;
 use vibroimpact::read::{Format, Reader, Recording};
@@ -25,7 +26,7 @@ fn values(recording: &Recording, name: &str) -> Vec<f64> {
 }
 
 fn says(recording: &Recording, word: &str) -> bool {
-    recording.all_doubts().iter().any(|d| d.contains(word))
+    sentences(&recording.all_findings()).iter().any(|d| d.contains(word))
 }
 
 #[test]
@@ -77,7 +78,7 @@ fn mat_what_is_passed_over_is_named() {
         "\"cube\" has 3",
         "\"none\" is empty",
     ] {
-        assert!(says(&recording, word), "{word}: {:?}", recording.all_doubts());
+        assert!(says(&recording, word), "{word}: {:?}", sentences(&recording.all_findings()));
     }
 }
 
@@ -109,7 +110,11 @@ fn wav_that_declares_more_than_it_holds() {
     let expected: Vec<f64> = (0..16).map(|k| f64::from(k) / 8_388_608.0).collect();
     assert_eq!(values(&cut, "channel 1"), expected);
     assert_eq!(cut.records[0].meta().declared_n, Some(3_333_333_333));
-    assert!(says(&cut, "declares 3333333333 frames") && says(&cut, "holds 16"), "{:?}", cut.all_doubts());
+    assert!(
+        says(&cut, "declares 3333333333 values") && says(&cut, "holds 16"),
+        "{:?}",
+        sentences(&cut.all_findings())
+    );
 }
 
 /// Eight rows of a quarter times the row, once a millisecond.
@@ -137,7 +142,11 @@ fn csv_in_every_encoding_and_line_end() {
         assert_eq!(record.meta().unit.symbol(), unit);
         let step = record.axis().step().unwrap();
         assert!((step / 1e-3 - 1.0).abs() < 4.0 * f64::EPSILON, "{name}: {step}");
-        assert!(recording.all_doubts().is_empty(), "{name}: {:?}", recording.all_doubts());
+        assert!(
+            sentences(&recording.all_findings()).is_empty(),
+            "{name}: {:?}",
+            sentences(&recording.all_findings())
+        );
     }
     let german = read("csv/german_spreadsheet_utf16.csv");
     assert_eq!(german.records[0].meta().notes[0], ("Messung".to_owned(), "Prüfstand 2".to_owned()));
@@ -149,7 +158,7 @@ fn csv_times_with_too_few_digits() {
     let step = recording.records[0].axis().step().unwrap();
     // Both ends are rounded by half a millisecond at most.
     assert!((step - 1.0 / 1024.0).abs() <= 1e-3 / 99.0, "{step}");
-    assert!(says(&recording, "too few digits"), "{:?}", recording.all_doubts());
+    assert!(says(&recording, "too few digits"), "{:?}", sentences(&recording.all_findings()));
 }
 
 #[test]
@@ -168,7 +177,7 @@ fn csv_faults_are_named_with_their_lines() {
     let missing = error("csv/missing_values.csv");
     assert!(missing.contains("line 3: 3 missing value(s)"), "{missing}");
     assert!(
-        missing.contains("3 (\"a\"), 4 (\"a\"), 5 (\"b\")") && missing.contains("--allow-missing"),
+        missing.contains("3 (\"a\"), 4 (\"a\"), 5 (\"b\")") && missing.contains("allow_missing"),
         "{missing}"
     );
     let cut = error("csv/row_cut_off.csv");
@@ -184,7 +193,7 @@ fn csv_quoted_names_and_numbers() {
     assert_eq!(values(&recording, "speed \"laser\""), [1.5 * 1e-3, 2.5 * 1e-3]);
     assert_eq!(recording.records[0].axis(), &Axis::time(0.0, 0.1, 2));
     let recording = read("csv/quoted_scientific.csv");
-    assert!(recording.doubts.is_empty(), "{:?}", recording.doubts);
+    assert!(sentences(&recording.findings).is_empty(), "{:?}", sentences(&recording.findings));
     let expected: Vec<f64> = (0..24).map(|k| -f64::from(k) / 4.0 * 1e-3).collect();
     assert_eq!(values(&recording, "v"), expected);
 }

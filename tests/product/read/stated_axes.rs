@@ -1,5 +1,6 @@
 //! A sampling rate or a base band that is stated beside a column of times or frequencies.
 
+use super::sentences;
 use std::fmt::Write as _;
 use vibroimpact::read::{Reader, Recording};
 
@@ -15,6 +16,12 @@ fn read(reader: &Reader, text: &str) -> Result<Recording, String> {
     reader.from_reader("x.csv", text.as_bytes()).map_err(|e| e.to_string())
 }
 
+/// What the column holds, to the thousandth, and what was stated in its place.
+fn refined(recording: &Recording) -> Option<(f64, f64)> {
+    let found = recording.all_findings().into_iter().find(|f| f.code == "column-refines")?;
+    Some(((found.get("holds")? * 1e3).round() / 1e3, found.get("stated")?))
+}
+
 #[test]
 fn a_rounded_rate_leaves_a_long_column_as_it_is() {
     const RATE: f64 = 8192.0 / 3.0;
@@ -23,13 +30,7 @@ fn a_rounded_rate_leaves_a_long_column_as_it_is() {
     let step = recording.records[0].axis().step().unwrap();
     // Both ends are printed to half a nanosecond.
     assert!((step - 1.0 / RATE).abs() <= 1e-9 / 19_999.0, "{step}");
-    let doubts = recording.all_doubts();
-    assert!(
-        doubts
-            .iter()
-            .any(|d| d.contains("a sampling rate of 2730.667 Hz; 2730.67 Hz was stated: the column is used")),
-        "{doubts:?}"
-    );
+    assert_eq!(refined(&recording), Some((2730.667, 2730.67)));
     // Too far off: both steps are printed to the digit that differs.
     let error = read(&Reader::new().rate(Some(2731.0)), &text).unwrap_err();
     assert!(error.contains("steps of 0.000366211 s") && error.contains("steps of 0.000366166 s"), "{error}");
@@ -40,9 +41,12 @@ fn lines_of_a_plain_transform_go_with_their_base_band() {
     let text = table(400, "f [Hz]", |i| 0.05 * i);
     let recording = read(&Reader::new().base_band(Some(20.0)), &text).unwrap();
     assert!((recording.records[0].axis().step().unwrap() - 0.05).abs() < 1e-11);
-    assert!(!recording.all_doubts().iter().any(|d| d.contains("stated")), "{:?}", recording.all_doubts());
+    assert!(
+        !sentences(&recording.all_findings()).iter().any(|d| d.contains("stated")),
+        "{:?}",
+        sentences(&recording.all_findings())
+    );
     let nearly = read(&Reader::new().base_band(Some(20.001)), &text).unwrap();
-    let doubts = nearly.all_doubts();
-    assert!(doubts.iter().any(|d| d.contains("a base band of 20 Hz; 20.001 Hz was stated")), "{doubts:?}");
+    assert_eq!(refined(&nearly), Some((20.0, 20.001)));
     assert!(read(&Reader::new().base_band(Some(20.1)), &text).is_err());
 }

@@ -1,5 +1,6 @@
 //! What the files of a sweep say of their units beside what a person states.
 
+use super::sentences;
 use vibroimpact::read::{SweepList, SweepReader};
 use vibroimpact::record::{Sweep, Values};
 use vibroimpact::units::Unit;
@@ -35,7 +36,7 @@ fn a_force_in_volts_takes_its_calibration() {
         assert!(close(sweep.points[0].force[2], 2.0 * 22.4), "{unit}: {:?}", sweep.points[0].force);
     }
     let error = read("Unit: V", "Unit: m/s", &SweepReader::default()).unwrap_err();
-    assert!(error.contains("F.DAT") && error.contains("give force_calibration"), "{error}");
+    assert!(error.contains("F.DAT") && error.contains("force_calibration"), "{error}");
     let how = SweepReader { force_calibration: Some(22.4), ..SweepReader::default() };
     assert!(
         read("Unit: m/s", "Unit: m/s", &how).unwrap_err().contains("check that these are the force files")
@@ -55,7 +56,7 @@ fn a_response_in_volts_takes_unit_and_calibration() {
         assert_eq!(sweep.points[0].response.meta.unit.symbol(), "m/s");
     }
     let error = read("Unit: N", "Unit: V", &how(Some("mm/s"), None)).unwrap_err();
-    assert!(error.contains("R.DAT") && error.contains("give unit and calibration"), "{error}");
+    assert!(error.contains("R.DAT") && error.contains("state unit and calibration"), "{error}");
     // A calibration is no reason to take an acceleration for a velocity.
     let error = read("Unit: N", "Unit: m/s²", &how(Some("mm/s"), Some(125.0))).unwrap_err();
     assert!(error.contains("acceleration") && error.contains("expected velocity"), "{error}");
@@ -71,7 +72,9 @@ fn only_what_states_the_values_makes_them_decibels() {
         let sweep = read("Unit: N", header, &linear).unwrap();
         assert!(close(response(&sweep), 2e-3), "{header}");
         assert!(
-            sweep.doubts.iter().any(|d| d.contains("decibels") && d.contains("mm/s was stated")),
+            sentences(&sweep.findings)
+                .iter()
+                .any(|d| d.contains("decibels") && d.contains("mm/s was stated")),
             "{header}"
         );
         // What is stated of responses says nothing of forces.
@@ -79,7 +82,7 @@ fn only_what_states_the_values_makes_them_decibels() {
     }
     let speaks = |header: &str| {
         let sweep = read("Unit: N", &format!("{header}\nUnit: m/s"), &plain).unwrap();
-        sweep.doubts.iter().any(|d| d.contains("speak of decibels"))
+        sentences(&sweep.findings).iter().any(|d| d.contains("mention decibels"))
     };
     assert!(speaks("Database: DB rig") && speaks("Level (dB)"));
     assert!(!speaks("File: /data/db/run1.dat") && !speaks("Filter slope: dB/octave, 12"));
@@ -90,10 +93,18 @@ fn a_stated_unit_wins_over_the_files_and_that_is_said() {
     let how = |unit: &str| SweepReader { unit: Unit::parse(unit), ..SweepReader::default() };
     let sweep = read("Unit: kN", "Unit: mm/s", &how("m/s")).unwrap();
     assert!(close(response(&sweep), 2.0), "{}", response(&sweep));
-    assert!(sweep.doubts.iter().any(|d| d.contains("m/s was stated and is used")), "{:?}", sweep.doubts);
+    assert!(
+        sentences(&sweep.findings).iter().any(|d| d.contains("m/s was stated and is used")),
+        "{:?}",
+        sentences(&sweep.findings)
+    );
     // Nobody stated the unit of the force.
     assert!(close(sweep.points[0].force[2], 2000.0));
     let sweep = read("Unit: N", "Unit: mm/s", &how("mm/s")).unwrap();
     assert!(close(response(&sweep), 2e-3));
-    assert!(!sweep.doubts.iter().any(|d| d.contains("was stated")), "{:?}", sweep.doubts);
+    assert!(
+        !sentences(&sweep.findings).iter().any(|d| d.contains("was stated")),
+        "{:?}",
+        sentences(&sweep.findings)
+    );
 }

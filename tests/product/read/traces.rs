@@ -49,7 +49,7 @@ fn streaming_agrees_with_reading() {
         assert_eq!(traces.channels().iter().collect::<Vec<_>>(), metas, "{name}");
         let (columns, blocks) = all(&mut traces);
         assert!(blocks > 2, "{name}");
-        assert_eq!(traces.doubts(), recording.all_doubts(), "{name}");
+        assert_eq!(traces.findings(), recording.all_findings(), "{name}");
         for (column, record) in columns.iter().zip(&recording.records) {
             let Record::Trace(whole) = record else { panic!() };
             assert!(*column == whole.values, "{name}");
@@ -99,7 +99,7 @@ fn a_file_without_a_clock_asks_for_the_rate() {
     let path = folder.path().join("x.txt");
     std::fs::write(&path, "1\n2\n3\n4\n").unwrap();
     let error = Reader::new().stream(&path).err().unwrap().to_string();
-    assert!(error.contains("--rate"), "{error}");
+    assert!(error.contains("(rate)"), "{error}");
     assert_eq!(Reader::new().rate(Some(100.0)).stream(&path).unwrap().rate(), 100.0);
 }
 

@@ -62,7 +62,7 @@ fn an_abscissa_in_double_precision() {
     let recording = read(&binary(4, 3, 0, 48, &wide).file());
     assert_eq!(values(&recording), [1.5, 2.5, 3.5]);
     assert_eq!(recording.records[0].axis().values(), [0.0, 0.1, 0.5]);
-    assert!(doubts(&recording).contains("stored in double precision"));
+    assert!(doubts(&recording).contains("has double precision"));
     // And as the standard has it.
     let mut narrow = Vec::new();
     for (x, y) in [(0.0f32, 1.5f64), (0.25, 2.5), (0.5, 3.5)] {

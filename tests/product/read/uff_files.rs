@@ -2,6 +2,7 @@
 //!
 //! Numbers are those of `../shared/data/README.md`, in SI: where a file is in g or inches, the factor stands in the test.
 
+use super::sentences;
 use std::path::{Path, PathBuf};
 use vibroimpact::read::{Format, Header, Reader, Recording};
 use vibroimpact::record::{Axis, Frf, FrfKind, Record, Scaling, Spectrum, Trace};
@@ -18,7 +19,7 @@ fn read(path: &Path) -> Recording {
     let recording = Reader::new().from_path(path).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(recording.format, Format::Uff);
     let (format, headers, doubts) = Reader::new().survey(path).unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!((format, doubts), (Format::Uff, recording.doubts.clone()));
+    assert_eq!((format, doubts), (Format::Uff, recording.findings.clone()));
     assert_eq!(headers.len(), recording.records.len());
     for (record, header) in recording.records.iter().zip(headers) {
         let full = Header::of(record);
@@ -84,7 +85,7 @@ fn a_microphone_record_in_both_encodings() {
         assert_eq!(record.len(), 79_292);
         assert_eq!(record.meta().declared_n, Some(79_292));
         assert_eq!(record.meta().unit.symbol(), "Pa");
-        assert_eq!(record.meta().doubts, Vec::<String>::new());
+        assert_eq!(sentences(&record.meta().findings), Vec::<String>::new());
         assert!(printed(peak(record).1, 0.141_304, 6), "{:?}", peak(record));
         assert_eq!(step(record.axis()), 1.52588e-5);
     }
@@ -137,7 +138,7 @@ fn a_last_line_that_is_not_filled() {
     assert_eq!(trace.values[12], -5.840_96);
     assert_eq!(step(&trace.axis), 5e-5);
     assert_eq!(trace.meta.unit.symbol(), "m/s²");
-    assert_eq!(trace.meta.doubts, Vec::<String>::new());
+    assert_eq!(sentences(&trace.meta.findings), Vec::<String>::new());
 }
 
 #[test]
@@ -154,7 +155,7 @@ fn a_header_line_that_ends_in_minus_one_and_a_file_cut_short() {
     let Some(record) = only("dataset_milestone_in_header.uff") else { return };
     assert_eq!(record.len(), 42);
     assert_eq!(record.meta().declared_n, Some(2_508_876));
-    let doubts = record.meta().doubts.join(" ");
+    let doubts = sentences(&record.meta().findings).join(" ");
     assert!(doubts.contains("2508876") && doubts.contains("42"), "{doubts}");
     assert_eq!(record.axis().start(), 1.118_58e-5);
     assert!(record.meta().notes.iter().any(|(_, line)| line.ends_with("1/1 :1]")));
@@ -166,7 +167,7 @@ fn wrong_line_ends_behind_binary_values() {
     let wrong = read(&folder.join("commercial_58b_wrong_crlf.uff"));
     let repaired = read(&folder.join("commercial_58b_repaired.uff"));
     assert_eq!(wrong.records, rename(repaired.records));
-    assert_eq!(wrong.all_doubts(), Vec::<String>::new());
+    assert_eq!(sentences(&wrong.all_findings()), Vec::<String>::new());
     assert_eq!(wrong.records.len(), 4);
     for (record, max) in wrong.records.iter().zip([0.345_068, 0.436_714, 0.212_302, 0.273_485]) {
         assert_eq!(record.len(), 222_400);
@@ -242,7 +243,7 @@ fn a_hammer_test() {
     assert_eq!((response.values.len(), step(&response.axis)), (1600, 0.5));
     // The file says (m/s)/N under the label "Receptance"; that it was an acceleration only the mangled twin shows.
     assert_eq!(response.kind, FrfKind::Mobility);
-    let doubts = response.meta.doubts.join(" ");
+    let doubts = sentences(&response.meta.findings).join(" ");
     assert!(doubts.contains("Receptance") && doubts.contains("(m/s)/N"), "{doubts}");
     for resonance in [41.0, 62.0, 81.5, 96.5, 125.0, 140.5, 175.0] {
         let line = (resonance / 0.5) as usize;
@@ -273,7 +274,9 @@ fn a_mangled_superscript() {
     let clean = frf(only("dataset58_FRF.unv").unwrap());
     assert_eq!((&mangled.values, &mangled.axis), (&clean.values, &clean.axis));
     assert_eq!(mangled.kind, FrfKind::Accelerance);
-    assert!(mangled.meta.doubts.iter().any(|d| d.contains("(m/s²)/N") && d.contains("mangled")));
+    assert!(
+        sentences(&mangled.meta.findings).iter().any(|d| d.contains("(m/s²)/N") && d.contains("mangled"))
+    );
 }
 
 #[test]
@@ -285,7 +288,7 @@ fn a_spectrum_that_does_not_start_at_zero() {
     let spectrum = spectrum(record);
     assert_eq!(spectrum.meta.unit.symbol(), "m");
     assert_eq!(spectrum.scaling, Scaling::Unknown);
-    assert!(spectrum.meta.doubts.iter().any(|d| d.contains("peak or RMS")));
+    assert!(sentences(&spectrum.meta.findings).iter().any(|d| d.contains("peak or RMS")));
 }
 
 #[test]
@@ -323,7 +326,7 @@ fn other_data_sets_are_named() {
     ] {
         let recording = read(&folder.join(file));
         assert_eq!(recording.records.len(), records, "{file}");
-        let doubts = recording.doubts.join(" ");
+        let doubts = sentences(&recording.findings).join(" ");
         for set in sets {
             assert!(doubts.contains(set), "{file}: {set:?} is not in {doubts:?}");
         }

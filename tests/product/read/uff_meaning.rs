@@ -1,5 +1,6 @@
 //! What the header of a data set 58 means: units, kind of record, abscissa.
 
+use super::sentences;
 use super::uff_set::{NONE, SEVEN, Set, doubts, form, read, reader, refused, try_read, values};
 use vibroimpact::record::{AxisKind, Record, Scaling};
 use vibroimpact::units::{Quantity, Unit};
@@ -39,10 +40,7 @@ fn numerator_and_denominator_share_the_unit() {
 fn units_without_text() {
     let (symbol, value, text) = unit(&Set::ratio(4, &axis(12, "NONE", "NONE"), &axis(13, "NONE", "NONE")));
     assert_eq!((symbol.as_str(), value), ("(m/s²)/N", 1.0));
-    assert!(
-        text.contains("acceleration over excitation force") && text.contains("SI units are assumed"),
-        "{text}"
-    );
+    assert!(text.contains("SI units of acceleration over excitation force are assumed"), "{text}");
     // Millimetre and newton: a displacement of 1 is 1 mm.
     let system = b"    -1\n   164\n        10mm (newton)                  2\n  1.00000000000000000D+03  1.00000000000000000D+00  1.00000000000000000D+00\n  2.73149999999999977D+02\n    -1\n";
     let set = Set::ratio(4, &axis(8, "NONE", "NONE"), &axis(13, "NONE", "NONE")).file();
@@ -67,7 +65,7 @@ fn units_without_text() {
         let recording = read(rotation.as_bytes());
         let meta = recording.records[0].meta();
         assert_eq!((meta.quantity, meta.unit.symbol()), (Quantity::AngularVelocity, "rad/s"));
-        assert_eq!(meta.doubts.len(), said, "{:?}", meta.doubts);
+        assert_eq!(sentences(&meta.findings).len(), said, "{:?}", sentences(&meta.findings));
     }
 }
 
@@ -75,12 +73,12 @@ fn units_without_text() {
 fn units_that_are_not_understood_or_contradict() {
     let none = axis(0, "NONE", "NONE");
     for (function, above, symbol, word) in [
-        (4, axis(0, "NONE", "EU"), "EU", "\"EU\" is not understood"),
-        (4, none.clone(), "", "neither unit nor quantity"),
-        (4, axis(0, "Receptance", "(m/s)/N"), "(m/s)/N", "labelled \"Receptance\""),
-        (4, axis(12, "NONE", "m/s"), "m/s", "data type of the ordinate is acceleration"),
-        (12, axis(12, "Velocity", "m/s²"), "m/s²", "labelled \"Velocity\""),
-        (9, axis(12, "NONE", "g"), "g", "which is squared"),
+        (4, axis(0, "NONE", "EU"), "EU", "\"EU\" is not known"),
+        (4, none.clone(), "", "says no unit"),
+        (4, axis(0, "Receptance", "(m/s)/N"), "(m/s)/N", "label is \"Receptance\""),
+        (4, axis(12, "NONE", "m/s"), "m/s", "data type is acceleration"),
+        (12, axis(12, "Velocity", "m/s²"), "m/s²", "label is \"Velocity\""),
+        (9, axis(12, "NONE", "g"), "g", "is squared"),
     ] {
         let (found, value, text) = unit(&Set::ratio(function, &above, &none));
         assert_eq!((found.as_str(), value), (symbol, 1.0), "{above}");
@@ -147,11 +145,11 @@ fn the_abscissa_is_time_frequency_or_something_else() {
     assert_eq!(kind(1, &axis(17, "time", "ms")), (AxisKind::Time, 0.25e-3, String::new()));
     assert_eq!(kind(1, &axis(17, "NONE", "NONE")), (AxisKind::Time, 0.25, String::new()));
     let (found, step, text) = kind(1, &axis(17, "NONE", "Hz"));
-    assert!(found == AxisKind::Frequency && step == 0.25 && text.contains("the unit is believed"), "{text}");
+    assert!(found == AxisKind::Frequency && step == 0.25 && text.contains("the unit is used"), "{text}");
     let (found, _, text) = kind(1, &axis(0, "NONE", "NONE"));
     assert!(found == AxisKind::Time && text.contains("is assumed"), "{text}");
     let (found, _, text) = kind(0, &axis(0, "NONE", "NONE"));
-    assert!(found == AxisKind::Index && text.contains("does not say"), "{text}");
+    assert!(found == AxisKind::Index && text.contains("is not said"), "{text}");
     let (found, _, text) = kind(1, &axis(17, "NONE", "fortnight"));
     assert!(found == AxisKind::Time && text.contains("fortnight"), "{text}");
     // 2π rad are one turn.
@@ -195,7 +193,7 @@ fn a_step_that_is_no_step() {
     let zero = String::from_utf8(Set::trace(7, SEVEN).file()).unwrap().replace("2.50000E-01", "0.00000E+00");
     let recording = read(zero.as_bytes());
     assert_eq!(recording.records[0].axis().kind, AxisKind::Index);
-    assert!(doubts(&recording).contains("increment of 0"));
+    assert!(doubts(&recording).contains("abscissa step of 0"));
     let recording = try_read(&reader().rate(Some(4.0)), zero.as_bytes()).unwrap();
     assert_eq!(recording.records[0].axis().step(), Some(0.25));
 }

@@ -1,5 +1,6 @@
 //! Universal files made by hand, one data set 58 at a time, and what is read of them.
 
+use super::sentences;
 use vibroimpact::read::{Header, Reader, Recording};
 use vibroimpact::record::Record;
 
@@ -74,13 +75,13 @@ pub fn try_read(reader: &Reader, bytes: &[u8]) -> Result<Recording, String> {
     let survey = reader.survey(file.path()).map_err(|e| e.to_string());
     match (&read, survey) {
         (Ok(recording), Ok((_, headers, doubts))) => {
-            assert_eq!(doubts, recording.doubts);
+            assert_eq!(doubts, recording.findings);
             assert_eq!(headers.len(), recording.records.len());
             for (record, header) in recording.records.iter().zip(headers) {
                 let full = Header::of(record);
                 assert_eq!((full.n, full.dx, full.unit), (header.n, header.dx, header.unit));
                 assert_eq!((full.x0, full.name, full.kind), (header.x0, header.name, header.kind));
-                assert_eq!(full.doubts, header.doubts);
+                assert_eq!(full.findings, header.findings);
             }
         }
         (Err(_), Err(_)) => {}
@@ -106,14 +107,14 @@ pub fn values(recording: &Recording) -> Vec<f64> {
 }
 
 pub fn doubts(recording: &Recording) -> String {
-    recording.all_doubts().join(" ")
+    sentences(&recording.all_findings()).join(" ")
 }
 
 /// Checks values and that there is no doubt.
 pub fn clean(bytes: &[u8], expected: &[f64]) {
     let recording = read(bytes);
     assert_eq!(values(&recording), expected);
-    assert_eq!(recording.all_doubts(), Vec::<String>::new());
+    assert_eq!(sentences(&recording.all_findings()), Vec::<String>::new());
 }
 
 pub const SEVEN: &str =

@@ -115,10 +115,10 @@ fn garbage_where_numbers_should_be() {
 fn missing_values_are_refused_or_kept() {
     let bytes = Set::trace(3, "  1.00000E+00          NaN  3.00000E+00\n").file();
     let message = refused(&bytes);
-    assert!(message.contains("line 14, column 24") && message.contains("--allow-missing"), "{message}");
+    assert!(message.contains("line 14, column 24") && message.contains("allow_missing"), "{message}");
     let recording = try_read(&reader().allow_missing(true), &bytes).unwrap();
     assert!(values(&recording)[1].is_nan() && values(&recording)[2] == 3.0);
-    assert!(doubts(&recording).contains("1 value(s) are missing"));
+    assert!(doubts(&recording).contains("1 value is missing"));
 }
 
 #[test]

@@ -1,15 +1,13 @@
 //! Variables to records: abscissa, columns, what is passed over.
 
 use super::variable::{Array, Content, Variable};
-use crate::abscissa::{from_values, short};
-use crate::ascii::SCALING_UNSAID;
+use crate::assemble::{self, Spectral};
+use crate::axis::{from_values, short};
 use crate::reader::Options;
 use crate::{Source, missing};
 use num_complex::Complex64;
 use vibro_record::units::{self, Unit};
-use vibro_record::{
-    Axis, AxisKind, Error, Frf, FrfKind, Meta, Place, Record, Result, Scaling, Spectrum, Trace, Values,
-};
+use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Place, Record, Result, Values};
 
 /// How many scalars and texts are kept.
 const MOST_NOTES: usize = 256;
@@ -22,29 +20,34 @@ pub fn build(
     source: &Source,
     variables: Vec<Variable>,
     options: &Options,
-    doubts: &mut Vec<String>,
+    findings: &mut Vec<Finding>,
 ) -> Result<Vec<Record>> {
     let (mut arrays, mut notes, mut rates) = (Vec::new(), Vec::new(), Vec::new());
     for Variable { name, content } in variables {
         match content {
             Content::Text(text) => notes.push((name, text)),
             Content::Other(class) if name.is_empty() => {
-                doubts.push(format!("A variable without a name ({class}) is passed over."));
+                findings.push(Finding::note("variable-passed-over").name("class", class));
             }
-            Content::Other(class) => doubts.push(format!("{name:?} is a {class} and is passed over.")),
+            Content::Other(class) => {
+                findings
+                    .push(Finding::note("variable-passed-over").name("variable", name).name("class", class));
+            }
             // MATLAB keeps the inside of objects and functions in a nameless array.
             Content::Array(_) if name.is_empty() => {}
             Content::Array(array) => match (array.real.as_slice(), &array.imaginary) {
-                ([], _) => doubts.push(format!("{name:?} is empty and is passed over.")),
+                ([], _) => findings.push(Finding::note("variable-empty").name("variable", name)),
                 ([value], None) => {
                     rates.extend(rate(&name, *value).map(|rate| (name.clone(), rate)));
                     notes.push((name, value.to_string()));
                 }
-                _ if array.dimensions.iter().filter(|d| **d > 1).count() > 2 => doubts
-                    .push(format!("{name:?} has {} dimensions and is passed over.", array.dimensions.len())),
+                _ if array.dimensions.iter().filter(|d| **d > 1).count() > 2 => {
+                    let found = Finding::note("variable-many-dimensions").name("variable", name);
+                    findings.push(found.count("dimensions", array.dimensions.len()));
+                }
                 _ => {
                     if array.rounded {
-                        doubts.push(format!("{name:?} holds integers beyond 2^53, which are rounded."));
+                        findings.push(Finding::caution("integers-rounded").name("variable", name.as_str()));
                     }
                     arrays.push((name, array));
                 }
@@ -61,14 +64,14 @@ pub fn build(
     });
     let kept = kept.count();
     if notes.len() > kept {
-        doubts.push(format!("Of {} scalars and texts the first {kept} are kept as notes.", notes.len()));
+        findings.push(Finding::note("remarks-dropped").count("n", notes.len()).count("kept", kept));
         notes.truncate(kept);
     }
-    let axes = Axes::find(source, &mut arrays, &rates, options, doubts)?;
+    let axes = Axes::find(source, &mut arrays, &rates, options, findings)?;
     let mut made = Made { source, options, notes, axes, missing: 0, gaps: Vec::new() };
     let mut records = Vec::new();
     for (name, array) in arrays {
-        made.split(&name, array, &mut records, doubts)?;
+        made.split(&name, array, &mut records, findings)?;
     }
     if records.is_empty() {
         return Err(Error::input(
@@ -82,11 +85,9 @@ pub fn build(
         let found = format!("{} value(s) are NaN or infinite: {}{more}", made.missing, made.gaps.join(", "));
         return Err(missing::refusal(Place::file(source.path()), found));
     }
-    doubts.extend(missing::kept(made.missing));
+    findings.extend(missing::kept(made.missing));
     if options.unit.is_none() {
-        doubts.push(
-            "A MAT-file knows no units: time is taken in s, frequency in Hz, and values are kept as they are.".into(),
-        );
+        findings.push(Finding::caution("format-without-units"));
     }
     Ok(records)
 }
@@ -127,7 +128,7 @@ impl Axes {
         arrays: &mut Vec<(String, Array)>,
         rates: &[(String, f64)],
         options: &Options,
-        doubts: &mut Vec<String>,
+        findings: &mut Vec<Finding>,
     ) -> Result<Axes> {
         let mut axes = Axes { rate: rates.first().map(|(_, rate)| *rate), ..Axes::default() };
         if let [(first, a), rest @ ..] = rates
@@ -136,9 +137,9 @@ impl Axes {
         {
             let found =
                 format!("{first:?} says a sampling rate of {} Hz, {other:?} {} Hz", short(*a), short(*b));
-            return Err(
-                Error::input(Place::file(source.path()), found, "one sampling rate").hint("give --rate")
-            );
+            return Err(Error::input(Place::file(source.path()), found, "one sampling rate")
+                .hint("state the sampling rate")
+                .setting("rate"));
         }
         axes.stated = match (options.rate, options.base_band) {
             (Some(rate), _) => Some(Axis::time(0.0, 1.0 / rate, 0)),
@@ -155,15 +156,19 @@ impl Axes {
             let vector = array.dimensions.contains(&n);
             let fits = arrays.iter().enumerate().any(|(i, (_, a))| i != at && a.dimensions.contains(&n));
             if !(rises && vector && fits) {
-                let why = if rises { "has the length of no other variable" } else { "does not always rise" };
-                doubts.push(format!("{name:?} {why}, so it is read as values and not as an abscissa."));
+                let found = if rises {
+                    Finding::caution("abscissa-of-other-length")
+                } else {
+                    Finding::caution("abscissa-not-rising")
+                };
+                findings.push(found.name("variable", name.as_str()));
                 continue;
             }
             let (name, array) = arrays.remove(at);
-            let (axis, doubt) = vector_axis(axis_kind.clone(), array, &name);
-            doubts.extend(doubt);
+            let (axis, finding) = vector_axis(axis_kind.clone(), array, &name);
+            findings.extend(finding);
             if axis_kind == AxisKind::Time {
-                axes.check_rate(&name, &axis, options, doubts);
+                axes.check_rate(&name, &axis, options, findings);
                 axes.time = Some(axis);
             } else {
                 axes.frequency = Some(axis);
@@ -172,19 +177,17 @@ impl Axes {
         Ok(axes)
     }
 
-    fn check_rate(&self, name: &str, axis: &Axis, options: &Options, doubts: &mut Vec<String>) {
+    fn check_rate(&self, name: &str, axis: &Axis, options: &Options, findings: &mut Vec<Finding>) {
         let Some(rate) = options.rate.or(self.rate) else { return };
         if axis.step().is_none_or(|dt| (dt * rate - 1.0).abs() > 1e-6) {
-            let used = if options.rate.is_some() { "the rate was stated and" } else { "the vector" };
-            doubts.push(format!(
-                "The vector {name:?} does not go with the sampling rate of {} Hz: {used} is used.",
-                short(rate)
-            ));
+            let used = if options.rate.is_some() { "rate" } else { "vector" };
+            let found = Finding::caution("vector-against-rate").name("variable", name).name("used", used);
+            findings.push(found.number("rate", rate));
         }
     }
 
     /// Axis for `n` real or complex values.
-    fn of(&self, n: usize, complex: bool, name: &str, doubts: &mut Vec<String>) -> Axis {
+    fn of(&self, n: usize, complex: bool, name: &str, findings: &mut Vec<Finding>) -> Axis {
         if let Some(stated) = self.stated.as_ref().filter(|s| !complex || s.kind == AxisKind::Frequency) {
             let step = stated.step().unwrap_or(1.0);
             return match stated.kind {
@@ -198,7 +201,7 @@ impl Axes {
         let time = self.time.as_ref().filter(|t| t.len() == n && !complex);
         let frequency = self.frequency.as_ref().filter(|f| f.len() == n);
         if time.is_some() && frequency.is_some() {
-            doubts.push(format!("{name:?} has as many values as time and as frequency: time is taken."));
+            findings.push(Finding::caution("time-or-frequency").name("variable", name));
         }
         if let Some(axis) = time.or(frequency) {
             return axis.clone();
@@ -214,13 +217,13 @@ impl Axes {
     }
 }
 
-fn vector_axis(kind: AxisKind, array: Array, name: &str) -> (Axis, Option<String>) {
+fn vector_axis(kind: AxisKind, array: Array, name: &str) -> (Axis, Option<Finding>) {
     let (first, last) = (array.real.first().copied(), array.real.last().copied());
     let (first, last) = (first.unwrap_or(0.0), last.unwrap_or(0.0));
     let step = (last - first).abs() / array.real.len().saturating_sub(1).max(1) as f64;
     // Sums of steps drift by rounding: a millionth of a step is no unevenness. Floats of 32 bits round to 2⁻²⁴.
     let single = if array.single { first.abs().max(last.abs()) * f64::from(f32::EPSILON) / 2.0 } else { 0.0 };
-    from_values(kind, array.real, single.max(0.5e-6 * step), &format!("The vector {name:?}"))
+    from_values(kind, array.real, single.max(0.5e-6 * step), &format!("vector {name:?}"))
 }
 
 /// Columns of a matrix: cut from the end, so that memory is given back as they are made.
@@ -256,11 +259,11 @@ impl Made<'_> {
         name: &str,
         array: Array,
         records: &mut Vec<Record>,
-        doubts: &mut Vec<String>,
+        findings: &mut Vec<Finding>,
     ) -> Result<()> {
         let mut long = array.dimensions.iter().copied().filter(|d| *d > 1);
         let (Some(rows), Some(columns)) = (long.next(), long.next()) else {
-            let record = self.record(name.to_owned(), array.real, array.imaginary, doubts)?;
+            let record = self.record(name.to_owned(), array.real, array.imaginary, findings)?;
             records.push(record);
             return Ok(());
         };
@@ -280,7 +283,7 @@ impl Made<'_> {
         let mut imaginary = array.imaginary.map(cut).into_iter().flatten();
         for (k, real) in cut(array.real).into_iter().enumerate() {
             let part = if lying { format!("{name}({},:)", k + 1) } else { format!("{name}(:,{})", k + 1) };
-            let record = self.record(part, real, imaginary.next(), doubts)?;
+            let record = self.record(part, real, imaginary.next(), findings)?;
             records.push(record);
         }
         Ok(())
@@ -291,10 +294,10 @@ impl Made<'_> {
         name: String,
         mut real: Vec<f64>,
         mut imaginary: Option<Vec<f64>>,
-        doubts: &mut Vec<String>,
+        findings: &mut Vec<Finding>,
     ) -> Result<Record> {
         self.mark_missing(&name, &mut real, imaginary.as_deref_mut());
-        let axis = self.axes.of(real.len(), imaginary.is_some(), &name, doubts);
+        let axis = self.axes.of(real.len(), imaginary.is_some(), &name, findings);
         let mut meta = Meta::new(name, Unit::opaque(""));
         meta.notes.clone_from(&self.notes);
         meta.step("read", &[("file", &self.source.name()), ("format", &"mat")]);
@@ -304,27 +307,15 @@ impl Made<'_> {
                 .map_err(|e| e.in_file(self.source.path()))?;
         }
         if axis.kind == AxisKind::Index {
-            meta.doubt(
-                "The file says nothing of its abscissa: values are numbered (give --rate for a time trace, --base-band for a spectrum).",
-            );
+            meta.found(Finding::caution("abscissa-unsaid"));
         }
         let values = match imaginary {
-            None if axis.kind != AxisKind::Frequency => {
-                return Ok(Record::Trace(Trace { meta, axis, values: real }));
-            }
             None => Values::Real(real),
-            Some(imaginary) => {
-                let pairs = real.iter().zip(&imaginary).map(|(re, im)| Complex64::new(*re, *im));
-                let kind = FrfKind::of(meta.quantity);
-                if kind != FrfKind::Other {
-                    return Ok(Record::Frf(Frf { meta, axis, values: pairs.collect(), kind }));
-                }
-                Values::Complex(pairs.collect())
-            }
+            Some(imaginary) => Values::Complex(
+                real.iter().zip(&imaginary).map(|(re, im)| Complex64::new(*re, *im)).collect(),
+            ),
         };
-        meta.doubt(SCALING_UNSAID);
-        let scaling = Scaling::Unknown;
-        Ok(Record::Spectrum(Spectrum { meta, axis, values, scaling, window: None, enbw: None }))
+        Ok(assemble::record(meta, axis, values, Spectral::default()))
     }
 
     /// Infinite values are as missing as NaN; a complex value is missing as a whole.

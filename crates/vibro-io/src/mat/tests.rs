@@ -1,5 +1,6 @@
 use super::*;
 use crate::Reader;
+use crate::tests::{says, told};
 use num_complex::Complex64;
 use proptest::prelude::*;
 use std::io::Write;
@@ -86,10 +87,6 @@ fn values(record: &Record) -> &[f64] {
     }
 }
 
-fn says(doubts: &[String], word: &str) -> bool {
-    doubts.iter().any(|d| d.contains(word))
-}
-
 #[test]
 fn both_byte_orders_and_every_storage() {
     for order in [LITTLE, Order { big: true }] {
@@ -127,7 +124,7 @@ fn sampling_from_scalars() {
     assert_eq!(stated.records[0].axis(), &Axis::time(0.0, 0.02, 3));
     let zero = of(&[LITTLE.column("fs", &[0.0]), x]).unwrap();
     assert_eq!(zero.records[0].axis().kind, AxisKind::Index);
-    assert!(says(&zero.records[0].meta().doubts, "--rate"));
+    assert!(says(&zero.records[0].meta().findings, "abscissa-unsaid", &[]));
 }
 
 #[test]
@@ -145,12 +142,16 @@ fn abscissae_from_vectors() {
     assert_eq!(recording.records.len(), 1);
     // A thousand sums, each rounded by at most half an ulp of 1.
     assert!((recording.records[0].axis().step().unwrap() - 0.001).abs() < 1000.0 * f64::EPSILON);
-    assert_eq!(recording.doubts.len(), 1, "{:?}", recording.doubts);
+    assert_eq!(recording.findings.len(), 1, "{:?}", recording.findings);
 
     let uneven =
         of(&[LITTLE.column("time", &[0.0, 0.1, 0.5]), LITTLE.column("x", &[1.0, 2.0, 3.0])]).unwrap();
     assert_eq!(uneven.records[0].axis().values(), [0.0, 0.1, 0.5]);
-    assert!(says(&uneven.doubts, "\"time\" is uneven: steps from 0.1 to 0.4 s"));
+    assert!(says(
+        &uneven.findings,
+        "axis-uneven",
+        &["column=vector \"time\"", "smallest=0.1", "largest=0.4"]
+    ));
 
     let lines = of(&[LITTLE.column("freq", &[0.0, 2.0]), LITTLE.column("X", &[1.0, 2.0])]).unwrap();
     let Record::Spectrum(spectrum) = &lines.records[0] else { panic!() };
@@ -162,15 +163,15 @@ fn abscissae_from_vectors() {
     // A force called f, and a torque called t, are no abscissae.
     let force = of(&[LITTLE.column("f", &[0.0, 2.0, 1.0]), LITTLE.column("x", &[1.0, 2.0, 3.0])]).unwrap();
     assert_eq!(force.records.len(), 2);
-    assert!(says(&force.doubts, "\"f\" does not always rise"));
+    assert!(says(&force.findings, "abscissa-not-rising", &["variable=f"]));
     let alone = of(&[LITTLE.column("t", &[0.0, 2.0]), LITTLE.column("x", &[1.0, 2.0, 3.0])]).unwrap();
     assert_eq!(alone.records.len(), 2);
-    assert!(says(&alone.doubts, "length of no other variable"));
+    assert!(says(&alone.findings, "abscissa-of-other-length", &[]));
     let both =
         of(&[LITTLE.column("fs", &[5.0]), LITTLE.column("t", &[0.0, 0.1]), LITTLE.column("x", &[1.0, 2.0])]);
     let both = both.unwrap();
     assert_eq!(both.records[0].axis(), &Axis::time(0.0, 0.1, 2));
-    assert!(says(&both.doubts, "does not go with the sampling rate of 5 Hz: the vector is used"));
+    assert!(says(&both.findings, "vector-against-rate", &["rate=5", "used=vector"]));
 }
 
 #[test]
@@ -225,16 +226,17 @@ fn texts_are_notes_and_the_rest_is_named() {
     assert_eq!(recording.records.len(), 1);
     let notes = &recording.records[0].meta().notes;
     assert_eq!(*notes, [("unit".to_owned(), "µm".to_owned()), ("rig".to_owned(), "two".to_owned())]);
-    for sentence in [
-        "\"lines\" is a char array",
-        "\"setup\" is a struct",
-        "\"flag\" is a logical array",
-        "\"thin\" is a sparse matrix",
-        "without a name (object)",
-        "\"none\" is empty",
-        "\"cube\" has 3 dimensions",
+    for expected in [
+        "variable-passed-over variable=lines class=char array of several rows or more than 4096 characters",
+        "variable-passed-over variable=setup class=struct",
+        "variable-passed-over variable=flag class=logical array",
+        "variable-passed-over variable=thin class=sparse matrix",
+        "variable-passed-over class=object",
+        "variable-empty variable=none",
+        "variable-many-dimensions variable=cube dimensions=3",
     ] {
-        assert!(says(&recording.doubts, sentence), "{sentence}: {:?}", recording.doubts);
+        let told = told(&recording.findings);
+        assert!(told.iter().any(|t| t == expected), "{expected}: {told:?}");
     }
 }
 
@@ -242,7 +244,7 @@ fn texts_are_notes_and_the_rest_is_named() {
 fn integers_that_a_double_cannot_hold_are_said() {
     let bytes: Vec<u8> = [(1i64 << 53) + 1, 1].iter().flat_map(|v| v.to_le_bytes()).collect();
     let recording = of(&[LITTLE.matrix(14, &[2, 1], "x", &[LITTLE.element(12, &bytes)])]).unwrap();
-    assert!(says(&recording.doubts, "rounded"));
+    assert!(says(&recording.findings, "integers-rounded", &[]));
 }
 
 #[test]
@@ -286,7 +288,11 @@ fn a_file_that_is_cut_off_keeps_what_is_whole() {
     let recording = Reader::new().from_reader("x.mat", file.as_slice()).unwrap();
     assert_eq!(recording.records.len(), 1);
     // Flags and dimensions of 16 bytes each, the name of 8, two doubles behind their tag.
-    assert!(says(&recording.doubts, "declares 64 bytes, 54 are there"), "{:?}", recording.doubts);
+    assert!(
+        says(&recording.findings, "variable-cut-off", &["declared=64", "there=54"]),
+        "{:?}",
+        recording.findings
+    );
 }
 
 #[test]

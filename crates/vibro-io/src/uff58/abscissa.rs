@@ -4,7 +4,7 @@ use super::codes::{self, Domain};
 use super::heading::{self, Heading};
 use crate::Options;
 use vibro_record::units::{Quantity, Unit};
-use vibro_record::{AxisKind, Meta};
+use vibro_record::{AxisKind, Finding, Meta};
 
 /// Kind of the abscissa and factor to s or Hz.
 pub fn kind_and_factor(heading: &Heading, options: &Options, meta: &mut Meta) -> (AxisKind, f64) {
@@ -33,29 +33,21 @@ pub fn kind_and_factor(heading: &Heading, options: &Options, meta: &mut Meta) ->
     }
     if let Some(kind) = by_unit {
         if kind != by_type {
-            meta.doubt(format!(
-                "The data type of the abscissa is {}, but its unit {} is that of {}: the unit is believed.",
-                shown(&by_type),
-                axis.unit,
-                shown(&kind)
-            ));
+            let differs = Finding::caution("abscissa-type-against-unit").name("type", shown(&by_type));
+            meta.found(differs.name("unit", axis.unit.as_str()).name("quantity", shown(&kind)));
         }
         return (kind, abscissa_factor(&unit, meta));
     }
-    meta.doubt(format!(
-        "The unit \"{}\" of the abscissa is not one of {}: s or Hz are assumed.",
-        axis.unit,
-        shown(&by_type)
-    ));
+    let assumed = Finding::caution("axis-unit-unknown").name("column", "abscissa");
+    let si = if by_type == AxisKind::Time { "s" } else { "Hz" };
+    meta.found(assumed.name("said", axis.unit.as_str()).name("unit", si));
     (by_type, 1.0)
 }
 
 /// Factor of a unit of time to s, of frequency or angular frequency to Hz.
 fn abscissa_factor(unit: &Unit, meta: &mut Meta) -> f64 {
     if unit.quantity() == Quantity::AngularVelocity {
-        meta.doubt(format!(
-            "The abscissa is an angular frequency in {unit}: it is divided by 2π and stands in Hz."
-        ));
+        meta.found(Finding::note("axis-angular").name("column", "abscissa"));
     }
     unit.hertz().unwrap_or(unit.factor())
 }
@@ -77,12 +69,10 @@ fn by_function(heading: &Heading, options: &Options, meta: &mut Meta) -> AxisKin
         Domain::Frequency => (AxisKind::Frequency, "frequency in Hz"),
         Domain::Either if options.rate.is_some() => return AxisKind::Time,
         Domain::Either => {
-            meta.doubt("The file does not say whether the abscissa is time or frequency.");
+            meta.found(Finding::caution("axis-kind-unsaid").name("column", "abscissa"));
             return AxisKind::Index;
         }
     };
-    meta.doubt(format!(
-        "The file does not say what its abscissa is; by the function type, {name}, {shown} is assumed."
-    ));
+    meta.found(Finding::caution("abscissa-by-function").name("function", name).name("quantity", shown));
     kind
 }

@@ -2,9 +2,10 @@
 
 use super::codes;
 use super::layout::Layout;
+use crate::number;
+use crate::text::encoding;
 use crate::uff::delimiter::is_delimiter;
 use crate::uff::stream::Stream;
-use crate::{number, text};
 use vibro_record::{Error, Place, Result};
 
 /// Lines before the values.
@@ -105,7 +106,7 @@ impl Heading {
             if !record(stream)? {
                 return Ok(Err(i));
             }
-            *line = given(&text::decode(stream.text()));
+            *line = given(&encoding::decode(stream.text()));
         }
         if !record(stream)? {
             return Ok(Err(5));
@@ -121,7 +122,7 @@ impl Heading {
             if !record(stream)? {
                 return Ok(Err(7 + i));
             }
-            *axis = axis_of(&text::decode(stream.text()));
+            *axis = axis_of(&encoding::decode(stream.text()));
         }
         let [abscissa, ordinate, denominator, _] = axes;
         Ok(Ok(Heading {
@@ -188,7 +189,7 @@ fn whole(line: &[char], from: usize, to: usize) -> Option<i64> {
 
 /// Record 6, format `2(I5,I10),2(1X,A10,I10,I4)`.
 fn dof(stream: &Stream) -> Result<(String, (i64, Point, Point))> {
-    let text = text::decode(stream.text());
+    let text = encoding::decode(stream.text());
     let line: Vec<char> = text.trim_end().chars().collect();
     let point = |from: usize| {
         Some(Point {
@@ -226,7 +227,7 @@ fn dof(stream: &Stream) -> Result<(String, (i64, Point, Point))> {
 
 /// Record 7, format `3I10,3E13.5`.
 fn form(stream: &Stream) -> Result<(Layout, usize, f64, f64)> {
-    let text = text::decode(stream.text());
+    let text = encoding::decode(stream.text());
     let line: Vec<char> = text.trim_end().chars().collect();
     let real = |from: usize, to: usize| {
         let field = columns(&line, from, to);

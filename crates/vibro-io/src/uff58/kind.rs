@@ -2,7 +2,7 @@
 
 use super::codes::{self, Domain};
 use super::heading::Heading;
-use vibro_record::{AxisKind, Meta, Scaling};
+use vibro_record::{AxisKind, Finding, Meta, Scaling};
 
 /// Kinds of record.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,49 +20,28 @@ impl Kind {
         if *axis == AxisKind::Time || (*axis != AxisKind::Frequency && !complex) {
             let usual = matches!(heading.function, 0 | 1) && matches!(axis, AxisKind::Time | AxisKind::Index);
             if *axis == AxisKind::Time && domain == Domain::Frequency {
-                meta.doubt(format!(
-                    "The function type says {name}, but the abscissa is time: read as a time trace."
-                ));
+                meta.found(Finding::caution("function-over-time").name("function", name));
             } else if !usual {
-                meta.doubt(format!("The function type says {name}: read as a trace over its abscissa."));
+                meta.found(Finding::caution("function-as-trace").name("function", name));
             }
             return Kind::Trace;
         }
         if let Some(scaling) = stated {
             return Kind::Spectrum(scaling);
         }
-        let unknown = |meta: &mut Meta, doubt: String| {
-            meta.doubt(doubt);
+        let unknown = |meta: &mut Meta, found: Finding| {
+            meta.found(found.name("function", name.as_str()));
             Kind::Spectrum(Scaling::Unknown)
         };
         match heading.function {
             4 | 5 if complex => Kind::Frf,
-            4 | 5 => unknown(
-                meta,
-                format!(
-                    "A {name} with real values only: whether they are magnitudes or one of two parts is not said, so it is read as a spectrum."
-                ),
-            ),
-            2 | 3 => unknown(
-                meta,
-                format!(
-                    "Whether the lines of this {name} are squared RMS or squared peak values, the format does not say."
-                ),
-            ),
-            12 => unknown(
-                meta,
-                "Whether the lines of this spectrum are peak or RMS amplitudes, the format does not say."
-                    .to_owned(),
-            ),
+            4 | 5 => unknown(meta, Finding::caution("function-real-only")),
+            2 | 3 => unknown(meta, Finding::caution("scaling-unsaid-squared")),
+            12 => unknown(meta, Finding::caution("scaling-unsaid")),
             6 | 21 | 26 => Kind::Spectrum(Scaling::Coherence),
             9 => Kind::Spectrum(Scaling::Psd),
             10 => Kind::Spectrum(Scaling::Energy),
-            _ => unknown(
-                meta,
-                format!(
-                    "The function type says {name}: read as a spectrum over its abscissa, its scaling is not known."
-                ),
-            ),
+            _ => unknown(meta, Finding::caution("function-as-spectrum")),
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::codes;
 use super::heading::{Axis, Heading};
 use crate::uff::system::System;
+use vibro_record::Finding;
 use vibro_record::units::{Dimension, Quantity, Unit};
 
 /// What one unit of the stored values is.
@@ -14,8 +15,8 @@ pub struct Ordinate {
     pub factor: f64,
     /// Unit as the file has it; empty where it has none.
     pub written: String,
-    /// Sentences of doubt.
-    pub doubts: Vec<String>,
+    /// What is to be said of it.
+    pub findings: Vec<Finding>,
 }
 
 /// Characters that a superscript or µ becomes when it is read in another code page than it was written in.
@@ -55,15 +56,13 @@ struct Part {
 }
 
 impl Part {
-    fn of(axis: &Axis, direction: i64, system: &System, doubts: &mut Vec<String>) -> Part {
+    fn of(axis: &Axis, direction: i64, system: &System, findings: &mut Vec<Finding>) -> Part {
         let data_type = codes::data_type(axis.data_type, direction.abs() > 3);
         let part = |said, dimension, factor| Part { said, data_type, dimension, factor };
         if !axis.unit.is_empty() {
-            let unit = Unit::parse(&axis.unit).or_else(|| mend(&axis.unit, doubts)).unwrap_or_else(|| {
-                let unit = &axis.unit;
-                doubts
-                    .push(format!("The unit \"{unit}\" is not understood: the values are kept as they are."));
-                Unit::opaque(unit)
+            let unit = Unit::parse(&axis.unit).or_else(|| mend(&axis.unit, findings)).unwrap_or_else(|| {
+                findings.push(Finding::caution("unit-unknown").name("unit", axis.unit.as_str()));
+                Unit::opaque(&axis.unit)
             });
             return part(Said::Text, unit.dimension(), unit.factor());
         }
@@ -85,21 +84,19 @@ impl Part {
 }
 
 /// A unit whose superscript was mangled on its way through a wrong code page.
-fn mend(text: &str, doubts: &mut Vec<String>) -> Option<Unit> {
+fn mend(text: &str, findings: &mut Vec<Finding>) -> Option<Unit> {
     let mended = MANGLED.iter().fold(text.to_owned(), |t, (wrong, right)| t.replace(wrong, right));
     let unit = Unit::parse(&mended)?;
-    doubts.push(format!(
-        "The unit \"{text}\" is taken as \"{mended}\": its superscript was mangled by a wrong code page."
-    ));
+    findings.push(Finding::note("unit-mended").name("unit", text).name("taken", mended));
     Some(unit)
 }
 
 impl Ordinate {
     /// The unit of the values of a data set.
     pub fn of(heading: &Heading, system: &System) -> Ordinate {
-        let mut doubts = Vec::new();
-        let above = Part::of(&heading.ordinate, heading.response.direction, system, &mut doubts);
-        let mut below = Part::of(&heading.denominator, heading.reference.direction, system, &mut doubts);
+        let mut findings = Vec::new();
+        let above = Part::of(&heading.ordinate, heading.response.direction, system, &mut findings);
+        let mut below = Part::of(&heading.denominator, heading.reference.direction, system, &mut findings);
         let (ordinate, denominator) = (&heading.ordinate.unit, &heading.denominator.unit);
         let mut written = ordinate.clone();
         if !denominator.is_empty() {
@@ -111,20 +108,20 @@ impl Ordinate {
         }
         let (unit, factor) = match plain(heading, &above, &below) {
             Ok((dimension, power, seconds)) => {
-                doubts.extend(sources(heading, &above, &below, system));
+                findings.extend(sources(heading, &above, &below, system));
                 let squared = dimension.half_power(2 * power).unwrap_or(dimension);
                 let dimension = squared.times(Dimension([0, 0, 2 * seconds, 0, 0, 0]));
                 let factor = (above.factor / below.factor).powi(i32::from(power));
                 (spelled(dimension, factor, &written), factor)
             }
             Err(why) => {
-                doubts.extend(why);
+                findings.extend(why);
                 let from_text = above.said == Said::Text || below.said == Said::Text;
                 let factor = if from_text { 1.0 } else { above.factor / below.factor };
                 (Unit::opaque(&written), factor)
             }
         };
-        let mut result = Ordinate { unit, factor, written, doubts };
+        let mut result = Ordinate { unit, factor, written, findings };
         label_against_unit(heading, &mut result);
         result
     }
@@ -154,22 +151,18 @@ fn is_whole(above: &Part, below: &Part) -> bool {
 
 /// Dimension of the ordinate, the power to which it stands in the lines of a spectrum of this function type, and the
 /// power of seconds beside it. Without an answer the values stay as they are, for the reason given.
-fn plain(heading: &Heading, above: &Part, below: &Part) -> Result<(Dimension, i8, i8), Option<String>> {
+fn plain(heading: &Heading, above: &Part, below: &Part) -> Result<(Dimension, i8, i8), Option<Finding>> {
     let (name, _) = codes::function(heading.function);
     let coherence = matches!(heading.function, 6 | 21 | 26);
     if coherence && above.said != Said::Text {
         return Ok((Dimension::NONE, 1, 0));
     }
     if above.said == Said::Nobody && below.said == Said::Nobody {
-        return Err(Some(
-            "The file names neither unit nor quantity of the values: they are kept as they are.".to_owned(),
-        ));
+        return Err(Some(Finding::caution("unit-unsaid")));
     }
     let (Some(numerator), Some(denominator)) = (above.dimension, below.dimension) else {
-        return Err((above.said == Said::Exponents || below.said == Said::Exponents).then(|| {
-            "The file gives exponents of length and force only: the values are in SI units, but which is not said."
-                .to_owned()
-        }));
+        let exponents = above.said == Said::Exponents || below.said == Said::Exponents;
+        return Err(exponents.then(|| Finding::caution("unit-by-exponents")));
     };
     let dimension = numerator.times(denominator.inverse());
     let (power, seconds) = match heading.function {
@@ -179,25 +172,21 @@ fn plain(heading: &Heading, above: &Part, below: &Part) -> Result<(Dimension, i8
         _ => return Ok((dimension, 1, 0)),
     };
     if above.is_typed() {
-        return Err(Some(format!(
-            "The unit {} is that of a signal, but the function is a {name}, which is squared: the values are kept as they are.",
-            heading.ordinate.unit
-        )));
+        let found = Finding::caution("unit-of-signal").name("unit", heading.ordinate.unit.as_str());
+        return Err(Some(found.name("function", name)));
     }
     if above.said == Said::Text {
         return Ok((dimension, 1, 0)); // the text is the unit of the lines, such as g²/Hz
     }
     if below.said != Said::Nobody {
-        return Err(Some(format!(
-            "The file gives data types but no unit for its {name}: the values are kept as they are."
-        )));
+        return Err(Some(Finding::caution("unit-unsaid-squared").name("function", name)));
     }
     Ok((dimension, power, seconds))
 }
 
 /// Doubts about where the unit comes from.
-fn sources(heading: &Heading, above: &Part, below: &Part, system: &System) -> Vec<String> {
-    let mut doubts = Vec::new();
+fn sources(heading: &Heading, above: &Part, below: &Part, system: &System) -> Vec<Finding> {
+    let mut findings = Vec::new();
     let types = match (above.data_type, below.data_type) {
         (Some((above, _)), Some((below, _))) => format!("{above} over {below}"),
         (Some((above, _)), None) => above.to_owned(),
@@ -207,28 +196,23 @@ fn sources(heading: &Heading, above: &Part, below: &Part, system: &System) -> Ve
     if [above, below].iter().any(|p| p.said == Said::DataType && p.dimension != Some(Dimension::NONE))
         && !system.stated
     {
-        doubts.push(format!(
-            "The file names no unit: its data type is {types}, and without a unit system (data set 164) SI units are assumed."
-        ));
+        findings.push(Finding::caution("unit-by-data-type").name("type", types.as_str()));
     }
-    let (Said::Text, Some(dimension)) = (above.said, above.dimension) else { return doubts };
+    let (Said::Text, Some(dimension)) = (above.said, above.dimension) else { return findings };
     let unit = &heading.ordinate.unit;
     let ratio = system.factor(dimension) / above.factor;
     if system.stated && (ratio - 1.0).abs() > 1e-6 {
-        doubts.push(format!(
-            "The unit {unit} is believed; by the unit system of data set 164 the values would be {ratio} times as large."
-        ));
+        let differs = Finding::caution("unit-against-system").name("unit", unit.as_str());
+        findings.push(differs.number("ratio", ratio));
     }
     let squared = matches!(heading.function, 2 | 3 | 9 | 10);
     let ratio = above.data_type.zip(below.data_type).map(|(a, b)| a.1.times(b.1.inverse()));
     let contradicts = above.data_type.is_some_and(|(_, d)| d != dimension) && ratio != Some(dimension);
     if contradicts && !squared {
-        doubts.push(format!(
-            "The data type of the ordinate is {types}, but its unit {unit} is that of {}: the unit is believed.",
-            described(dimension)
-        ));
+        let differs = Finding::caution("unit-against-type").name("type", types).name("unit", unit.as_str());
+        findings.push(differs.name("quantity", described(dimension)));
     }
-    doubts
+    findings
 }
 
 fn is_frf(quantity: Quantity) -> bool {
@@ -270,10 +254,8 @@ fn label_against_unit(heading: &Heading, ordinate: &mut Ordinate) {
     let rotation = unit != Quantity::of(dimension) && label == unit;
     if comparable && Quantity::of(dimension) != label && !rotation {
         let unit = if ordinate.written.is_empty() { ordinate.unit.symbol() } else { &ordinate.written };
-        ordinate.doubts.push(format!(
-            "The ordinate is labelled \"{}\", but its unit {unit} is that of {}: the unit is believed.",
-            heading.ordinate.label,
-            described(dimension)
-        ));
+        let differs = Finding::caution("unit-against-label").name("label", heading.ordinate.label.as_str());
+        let differs = differs.name("unit", unit).name("quantity", described(dimension));
+        ordinate.findings.push(differs);
     }
 }

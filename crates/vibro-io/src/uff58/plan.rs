@@ -1,4 +1,4 @@
-//! What record a data set 58 becomes: kind, axis, scaling, unit, and the doubts about each.
+//! What record a data set 58 becomes: kind, axis, scaling, unit, and the findings about each.
 
 use super::abscissa;
 use super::heading::Heading;
@@ -8,11 +8,13 @@ use super::sink::{Counted, Kept};
 use super::spacing::Spacing;
 use super::stated::Stated;
 use super::values::Taken;
+use crate::assemble::to_si;
 use crate::uff::system::System;
 use crate::{Header, Options, missing};
 use vibro_record::units::{self, Unit};
 use vibro_record::{
-    Axis, AxisKind, Error, Frf, FrfKind, Grid, Meta, Record, Result, Scaling, Spectrum, Trace, Values, Window,
+    Axis, AxisKind, Error, Finding, Frf, FrfKind, Grid, Meta, Record, Result, Scaling, Spectrum, Trace,
+    Values, Window,
 };
 
 /// Everything about a record but its values.
@@ -82,24 +84,24 @@ impl Plan {
     /// A step that is given wins; a step that is no step leaves numbered values.
     fn settle_step(&mut self, options: &Options) {
         if options.base_band.is_some() && self.axis == AxisKind::Frequency {
-            self.meta.doubt("The base band that was given is not used: the file has its own frequencies.");
+            self.meta.found(Finding::caution("band-unused"));
         }
         if let Some(rate) = options.rate.filter(|_| self.axis == AxisKind::Time) {
             let said = 1.0 / rate;
             let differs = |step: f64| (step / said - 1.0).abs() > 1e-5; // record 7 prints six digits
             if self.step.is_none_or(differs) {
-                let file =
-                    self.step.map_or_else(|| "its own instants".to_owned(), |s| format!("a step of {s} s"));
-                self.meta.doubt(format!("The file has {file}; a rate of {rate} Hz was given and is used."));
+                let found = match self.step {
+                    Some(step) => Finding::caution("rate-overrides-step").number("step", step),
+                    None => Finding::caution("rate-overrides-instants"),
+                };
+                self.meta.found(found.number("rate", rate));
             }
             self.step = Some(said);
         }
         if let Some(step) = self.step
             && !(step > 0.0 && step.is_finite() && self.start.is_finite())
         {
-            self.meta.doubt(format!(
-                "The file says an abscissa increment of {step}: values are numbered (give --rate for a time trace)."
-            ));
+            self.meta.found(Finding::caution("increment-impossible").number("step", step));
             (self.axis, self.start, self.step) = (AxisKind::Index, 0.0, Some(1.0));
         }
     }
@@ -107,12 +109,13 @@ impl Plan {
     /// Doubts that only the values bring.
     pub fn counted(&mut self, declared: usize, taken: Taken) {
         if taken.n < declared {
-            self.meta.doubt(format!("The header declares {declared} values; the file holds {}.", taken.n));
+            let fewer = Finding::caution("fewer-values").count("declared", declared);
+            self.meta.found(fewer.count("n", taken.n));
         } else if declared == 0 {
-            self.meta.doubt("The header declares no values.");
+            self.meta.found(Finding::caution("no-values-declared"));
         }
         if let Some(kept) = missing::kept(taken.missing) {
-            self.meta.doubt(kept);
+            self.meta.found(kept);
         }
     }
 
@@ -123,14 +126,12 @@ impl Plan {
             return None;
         }
         let Some(step) = spacing.step() else {
-            self.meta.doubt("The instants are stored one by one and are uneven: there is no sampling rate.");
+            self.meta.found(Finding::caution("instants-uneven"));
             return None;
         };
         let (start, seconds) = (spacing.first() * self.abscissa_factor, step * self.abscissa_factor);
         if spacing.is_coarse(step) {
-            self.meta.doubt(format!(
-                "The instants have too few digits to show whether a sample is missing: the step is taken as (last - first)/(n - 1) = {seconds} s."
-            ));
+            self.meta.found(Finding::caution("instants-coarse").number("step", seconds));
         }
         Some((start, seconds))
     }
@@ -147,14 +148,7 @@ impl Plan {
             None => Grid::Uneven(kept.abscissa.iter().map(|x| x * self.abscissa_factor).collect()),
         };
         let mut values = kept.values;
-        if self.factor != 1.0 {
-            match &mut values {
-                Values::Real(values) => units::scale(values, self.factor)?,
-                Values::Complex(values) => {
-                    units::scale(values.iter_mut().flat_map(|v| [&mut v.re, &mut v.im]), self.factor)?;
-                }
-            }
-        }
+        to_si(&mut values, self.factor)?;
         Ok(self.build(grid, values))
     }
 
@@ -176,7 +170,7 @@ impl Plan {
         };
         let none = if self.complex { Values::Complex(Vec::new()) } else { Values::Real(Vec::new()) };
         let empty = self.build(grid, none);
-        let mut header = Header::of(&empty).with_summary(&summary, factor, empty.axis());
+        let mut header = Header::of(&empty).summed(&summary, factor, empty.axis());
         if even.is_none() {
             (header.x0, header.max_at) = (x0, max_at);
         }
@@ -209,16 +203,17 @@ impl Plan {
 
 /// Settles unit and quantity; gives the factor to SI.
 fn unit(heading: &Heading, system: &System, options: &Options, coherence: bool, meta: &mut Meta) -> f64 {
-    let Ordinate { unit, factor, written, doubts } = Ordinate::of(heading, system);
+    let Ordinate { unit, factor, written, findings } = Ordinate::of(heading, system);
     // A coherence has none, whatever that of the function beside it is.
     if let Some(said) = options.unit.as_ref().filter(|_| !coherence) {
         if unit.is_known() && (unit.dimension() != said.dimension() || factor != said.factor()) {
-            meta.doubt(format!("The file says the unit {written}; {said} was given and is used."));
+            let differs = Finding::caution("unit-overrides-file").name("file", written);
+            meta.found(differs.name("used", said.symbol()));
         }
         return meta.adopt_unit(said.symbol());
     }
-    for doubt in doubts {
-        meta.doubt(doubt);
+    for found in findings {
+        meta.found(found);
     }
     if factor != 1.0 {
         let from = if written.is_empty() { "data set 164" } else { &written };

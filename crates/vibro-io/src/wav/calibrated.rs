@@ -5,7 +5,7 @@ use crate::reader::Options;
 use crate::{Source, Summary};
 use std::path::PathBuf;
 use vibro_math::lanes;
-use vibro_record::{Meta, Result, Stream, Trace, units};
+use vibro_record::{Finding, Meta, Result, Stream, Trace, units};
 
 /// Some channels of a wave file, with what a person stated and what the file says applied.
 pub(crate) struct Calibrated {
@@ -52,8 +52,8 @@ impl Calibrated {
         &self.all
     }
 
-    pub fn doubts(&self) -> &[String] {
-        self.stream.doubts()
+    pub fn findings(&self) -> &[Finding] {
+        self.stream.findings()
     }
 
     pub fn frames(&self) -> usize {
@@ -102,7 +102,7 @@ impl Stream for Calibrated {
     fn finish(&self, metas: &mut [Meta]) {
         for (meta, largest) in metas.iter_mut().zip(&self.largest) {
             if *largest > 1.0 && !self.scaled {
-                meta.doubt(beyond_full_scale(*largest));
+                meta.found(beyond_full_scale(*largest));
             }
         }
     }

@@ -4,11 +4,12 @@
 //! ITU-R BS.2088 (BW64) for the `ds64` chunk.
 
 use super::scales::Scales;
+use crate::Source;
 use crate::source::ReadSeek;
-use crate::{Source, text};
+use crate::text::encoding;
 use std::fmt;
 use std::io::{Read, SeekFrom};
-use vibro_record::{Error, Place, Result};
+use vibro_record::{Error, Finding, Place, Result};
 
 /// How many chunks are looked at: real files have a dozen.
 const MOST_CHUNKS: usize = 10_000;
@@ -35,7 +36,7 @@ pub struct Layout {
     pub declared_frames: Option<u64>,
     pub scales: Option<Scales>,
     pub notes: Vec<(String, String)>,
-    pub doubts: Vec<String>,
+    pub findings: Vec<Finding>,
 }
 
 /// Kind of a sample; integers are left-justified in their bytes.
@@ -130,15 +131,12 @@ pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<Layout> {
         return Err(fault(source, 12, "no data chunk", "a chunk with samples")
             .hint("the recording may have been cut off before its first sample"));
     };
-    let mut doubts = Vec::new();
+    let mut findings = Vec::new();
     if dropped > 0 {
-        doubts.push(format!(
-            "Of {} texts in the file the first {} are kept.",
-            notes.len() + dropped,
-            notes.len()
-        ));
+        let kept = notes.len();
+        findings.push(Finding::note("remarks-dropped").count("n", kept + dropped).count("kept", kept));
     }
-    let Format { sample, channels, rate } = kind(source, format_at, &format, &mut doubts)?;
+    let Format { sample, channels, rate } = kind(source, format_at, &format, &mut findings)?;
     let frame = (sample.bytes() * channels) as u64;
     let room = source.len().saturating_sub(data_at);
     let present = size.min(room);
@@ -150,19 +148,18 @@ pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<Layout> {
     }
     let declared_frames = (size != UNSAID && size != u64::MAX).then_some(size / frame);
     match declared_frames {
-        None => doubts.push(format!(
-            "The header leaves the length open, as a recorder does that was not stopped: all {frames} frames up to the end of the file are read."
-        )),
-        Some(declared) if size > room => doubts.push(format!(
-            "The header declares {declared} frames ({size} bytes); the file holds {frames} ({room} bytes)."
-        )),
+        None => findings.push(Finding::caution("length-open").number("frames", frames as f64)),
+        Some(declared) if size > room => {
+            let fewer = Finding::caution("fewer-values").number("declared", declared as f64);
+            findings.push(fewer.number("n", frames as f64));
+        }
         Some(_) => {}
     }
     if present % frame != 0 {
-        doubts.push(format!("{} byte(s) behind the last whole frame are passed over.", present % frame));
+        findings.push(Finding::note("part-of-frame").number("bytes", (present % frame) as f64));
     }
     let mut layout =
-        Layout { sample, channels, rate, data_at, frames, declared_frames, scales, notes, doubts };
+        Layout { sample, channels, rate, data_at, frames, declared_frames, scales, notes, findings };
     // A comment that does not fit the samples is from another file.
     layout.scales = layout.scales.filter(|s| s.rate.round() == rate && s.channels.len() == channels);
     layout.rate = layout.scales.as_ref().map_or(rate, |s| s.rate);
@@ -213,7 +210,7 @@ struct Format {
 }
 
 /// Reads the `fmt ` chunk.
-fn kind(source: &Source, at: u64, format: &[u8], doubts: &mut Vec<String>) -> Result<Format> {
+fn kind(source: &Source, at: u64, format: &[u8], findings: &mut Vec<Finding>) -> Result<Format> {
     let word = |at| field(format, at).map(u16::from_le_bytes);
     let (Some(mut tag), Some(channels), Some(rate), Some(frame), Some(mut bits)) =
         (word(0), word(2), field(format, 4).map(u32::from_le_bytes), word(12), word(14))
@@ -243,9 +240,8 @@ fn kind(source: &Source, at: u64, format: &[u8], doubts: &mut Vec<String>) -> Re
     }
     // 12 bits in two bytes fill them from the top, so says the format; some writers fill them from the bottom.
     if usize::from(bits) < 8 * bytes && tag == 1 {
-        doubts.push(format!(
-            "Samples of {bits} bits stand in {bytes} bytes: they are taken as left-justified, as the format has it."
-        ));
+        let wide = Finding::caution("bits-left-justified").number("bits", f64::from(bits));
+        findings.push(wide.count("bytes", bytes));
     }
     Ok(Format { sample, channels, rate: f64::from(rate) })
 }
@@ -270,7 +266,7 @@ fn info(list: &[u8], notes: &mut Vec<(String, String)>, scales: &mut Option<Scal
         let body = &rest[8..];
         let size = (size as usize).min(body.len());
         let end = body[..size].iter().position(|b| *b == 0).unwrap_or(size);
-        let value = text::decode(&body[..end]).into_owned();
+        let value = encoding::decode(&body[..end]).into_owned();
         if id == b"ICMT" && scales.is_none() {
             *scales = Scales::parse(&value);
         }

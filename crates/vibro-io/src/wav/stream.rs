@@ -5,23 +5,13 @@ use super::scales::Scales;
 use crate::Source;
 use crate::source::ReadSeek;
 use std::io::{Read, SeekFrom};
-use vibro_record::{Error, Result};
+use vibro_record::{Error, Finding, Result};
 
 /// Bytes of one block, more or less: large enough for the disk, small enough for the cache.
 const BLOCK: usize = 256 * 1024;
 
 /// A wave file that is read block by block, so that memory does not grow with its length.
-///
-/// ```no_run
-/// use vibro_io::{Source, WavStream};
-/// let mut stream = WavStream::open(&Source::file("drill.wav")?)?;
-/// let mut block = Vec::new();
-/// while stream.next_block(&mut block)? > 0 {
-///     println!("{} channels of {} values", block.len(), block[0].len());
-/// }
-/// # Ok::<(), vibro_record::Error>(())
-/// ```
-pub struct WavStream {
+pub(crate) struct WavStream {
     layout: Layout,
     reader: Box<dyn ReadSeek>,
     path: std::path::PathBuf,
@@ -62,9 +52,9 @@ impl WavStream {
         self.layout.declared_frames
     }
 
-    /// Sentences about the file: where it is cut off or leaves something open.
-    pub fn doubts(&self) -> &[String] {
-        &self.layout.doubts
+    /// Where the file is cut off or leaves something open.
+    pub fn findings(&self) -> &[Finding] {
+        &self.layout.findings
     }
 
     /// Texts of the file by key.

@@ -1,5 +1,6 @@
 use super::*;
 use crate::Reader;
+use crate::tests::says;
 use proptest::prelude::*;
 use vibro_record::units::Quantity;
 
@@ -46,7 +47,7 @@ fn chunks(list: &[(&[u8; 4], Vec<u8>)]) -> Vec<u8> {
 }
 
 fn read_bytes(bytes: &[u8]) -> Result<Recording> {
-    Reader::new().from_source(&Source::memory("x.wav", bytes)?)
+    Reader::new().read(&Source::memory("x.wav", bytes)?)
 }
 
 fn values(bytes: &[u8]) -> Vec<Vec<f64>> {
@@ -84,10 +85,10 @@ fn a_record_says_what_it_is() {
     let [Record::Trace(left), Record::Trace(right)] = recording.records.as_slice() else { panic!() };
     assert_eq!((left.meta.name.as_str(), right.meta.name.as_str()), ("channel 1", "channel 2"));
     assert_eq!((left.meta.unit.symbol(), left.meta.quantity), ("FS", Quantity::Other));
-    assert_eq!(left.meta.doubts, [Trace::UNCALIBRATED]);
+    assert_eq!(left.meta.findings, [Finding::caution("uncalibrated")]);
     assert_eq!(left.meta.declared_n, Some(3));
     assert_eq!(left.axis, Axis::time(0.0, 1.0 / 48_000.0, 3));
-    assert!(recording.doubts.is_empty());
+    assert!(recording.findings.is_empty());
     assert_eq!(recording.format, Format::Wav);
 }
 
@@ -97,7 +98,7 @@ fn the_extensible_form_names_its_sub_format() {
     assert_eq!(values(&float), [[0.25]]);
     let padded = chunks(&[(b"fmt ", extensible(1, 1, 32, 24)), (b"data", vec![0, 0, 0, 0x40])]);
     assert_eq!(values(&padded), [[0.5]]);
-    assert!(read_bytes(&padded).unwrap().doubts[0].contains("left-justified"));
+    assert!(read_bytes(&padded).unwrap().findings[0].code == "bits-left-justified");
     let strange = chunks(&[(b"fmt ", extensible(0x99, 1, 32, 32)), (b"data", vec![0; 4])]);
     assert!(read_bytes(&strange).unwrap_err().to_string().contains("0x0099"));
 }
@@ -129,7 +130,7 @@ fn a_length_that_was_never_filled_in_means_to_the_end() {
         let recording = read_bytes(&bytes).unwrap();
         assert_eq!(recording.records[0].len(), 4);
         assert_eq!(recording.records[0].meta().declared_n, None);
-        assert!(recording.doubts[0].contains("all 4 frames"), "{:?}", recording.doubts);
+        assert!(says(&recording.findings, "length-open", &["frames=4"]), "{:?}", recording.findings);
     }
 }
 
@@ -140,9 +141,8 @@ fn a_truncated_file_says_both_numbers() {
     let recording = read_bytes(&bytes).unwrap();
     assert_eq!(recording.records[0].len(), 2);
     assert_eq!(recording.records[0].meta().declared_n, Some(4));
-    assert!(recording.doubts[0].contains("declares 4 frames (8 bytes)"), "{:?}", recording.doubts);
-    assert!(recording.doubts[0].contains("holds 2 (5 bytes)"), "{:?}", recording.doubts);
-    assert!(recording.doubts[1].contains("1 byte(s)"), "{:?}", recording.doubts);
+    assert!(says(&recording.findings, "fewer-values", &["declared=4", "n=2"]), "{:?}", recording.findings);
+    assert!(says(&recording.findings, "part-of-frame", &["bytes=1"]), "{:?}", recording.findings);
 }
 
 /// A header of 10 GB with 20 bytes behind it.
@@ -165,7 +165,11 @@ fn rf64_takes_its_length_from_ds64_and_allocates_what_is_there() {
         assert_eq!(trace.values.len(), 10);
         assert!(trace.values.capacity() < 100);
         assert_eq!(trace.meta.declared_n, Some(5_000_000_000));
-        assert!(recording.doubts[0].contains("declares 5000000000 frames"), "{:?}", recording.doubts);
+        assert!(
+            says(&recording.findings, "fewer-values", &["declared=5000000000"]),
+            "{:?}",
+            recording.findings
+        );
         let mut stream = WavStream::open(&Source::memory("x.wav", huge(form)).unwrap()).unwrap();
         assert_eq!((stream.frames(), stream.declared_frames()), (10, Some(5_000_000_000)));
         let mut block = Vec::new();
@@ -211,14 +215,18 @@ fn missing_samples_are_refused_with_their_frames_or_kept() {
 fn statements_of_a_person_win_with_a_doubt() {
     let bytes = wav(3, 1, 32, &2.5f32.to_le_bytes());
     let plain = read_bytes(&bytes).unwrap();
-    assert!(plain.records[0].meta().doubts[1].contains("reach 2.5"));
+    assert!(plain.records[0].meta().findings[1] == Finding::caution("beyond-full-scale").number("max", 2.5));
     let reader = Reader::new().rate(Some(1000.0)).unit(Unit::parse("mm/s"));
     let recording = reader.from_reader("x.wav", bytes.as_slice()).unwrap();
     let Record::Trace(trace) = &recording.records[0] else { panic!() };
     assert_eq!((trace.values[0], trace.meta.unit.symbol()), (2.5 * 1e-3, "m/s"));
     assert_eq!(trace.rate(), Some(1000.0));
-    assert!(trace.meta.doubts[0].contains("48000 Hz; 1000 Hz was given"), "{:?}", trace.meta.doubts);
-    assert!(trace.meta.doubts[1].contains("1 mm/s"), "{:?}", trace.meta.doubts);
+    assert!(
+        says(&trace.meta.findings, "statement-overrides-file", &["file=48000", "used=1000"]),
+        "{:?}",
+        trace.meta.findings
+    );
+    assert!(says(&trace.meta.findings, "full-scale-stated", &["unit=mm/s"]), "{:?}", trace.meta.findings);
     let error = Reader::new().base_band(Some(100.0)).from_reader("x.wav", bytes.as_slice()).unwrap_err();
     assert!(error.to_string().contains("base band"));
 }
@@ -234,8 +242,8 @@ fn survey_and_stream_agree_with_reading() {
     let path = folder.path().join("three.wav");
     std::fs::write(&path, wav(1, 3, 16, &pcm16(&samples))).unwrap();
     let recording = Reader::new().from_path(&path).unwrap();
-    let (format, headers, doubts) = Reader::new().survey(&path).unwrap();
-    assert_eq!((format, doubts), (Format::Wav, recording.doubts.clone()));
+    let (format, headers, findings) = Reader::new().survey(&path).unwrap();
+    assert_eq!((format, findings), (Format::Wav, recording.findings.clone()));
     assert_eq!(headers, recording.records.iter().map(Header::of).collect::<Vec<_>>());
     let mut stream = WavStream::open(&Source::file(&path).unwrap()).unwrap();
     assert_eq!((stream.channels(), stream.rate(), stream.frames()), (3, 48_000.0, n as u64));
@@ -268,7 +276,7 @@ fn texts_are_bounded_and_not_copied_for_a_thousand_channels() {
     let length = |r: &Record| r.meta().notes.iter().map(|(_, text)| text.len()).sum::<usize>();
     assert_eq!(length(&recording.records[0]), 60_000);
     assert_eq!(recording.records.iter().skip(1).map(length).sum::<usize>(), 0);
-    assert_eq!(recording.doubts, ["Of 16 texts in the file the first 1 are kept."]);
+    assert!(says(&recording.findings, "remarks-dropped", &["n=16", "kept=1"]));
     let many = [b"INFO".to_vec(), b"ICMT\x02\0\0\0ab".repeat(1000)].concat();
     let recording =
         read_bytes(&chunks(&[(b"LIST", many), (b"fmt ", fmt(1, 1, 8)), (b"data", vec![0; 4])])).unwrap();

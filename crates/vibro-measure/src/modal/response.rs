@@ -173,7 +173,9 @@ impl Measured {
         let mut good: Vec<bool> = self.frequency.iter().map(|f| *f > 0.0).collect();
         for (finding, is_left_out) in left_out {
             let lines: Vec<usize> = (0..n).filter(|i| is_left_out(*i)).collect();
-            lines.iter().for_each(|i| good[*i] = false);
+            for i in &lines {
+                good[*i] = false;
+            }
             if !lines.is_empty() {
                 let first: Vec<f64> = lines.iter().take(NAMED).map(|i| self.frequency[*i]).collect();
                 findings.push(finding.count("n", lines.len()).numbers("lines", first));

@@ -106,6 +106,8 @@ pub struct ByMethod {
     pub note: Option<Finding>,
 }
 
+// serde hands over the field as it is.
+#[allow(clippy::ref_option)]
 fn code<S: Serializer>(note: &Option<Finding>, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(note.as_ref().map_or("", |n| n.code))
 }

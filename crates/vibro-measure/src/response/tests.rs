@@ -32,7 +32,7 @@ fn sweep(points: Vec<SweepPoint>) -> Sweep {
         axis: Axis::frequency(0.0, 1.0, LINES),
         analyser_integrated: 0,
         points,
-        doubts: Vec::new(),
+        findings: Vec::new(),
     }
 }
 

@@ -82,7 +82,7 @@ impl SpectralResult {
         averages: usize,
         scatter: &[f64],
         detrend: &'static str,
-        warnings: Vec<String>,
+        findings: Vec<Finding>,
     ) -> SpectralResult {
         let value = spectrum.values.magnitudes();
         SpectralResult {
@@ -101,8 +101,8 @@ impl SpectralResult {
             averages,
             response: None,
             tones: Vec::new(),
-            warnings,
-            findings: Vec::new(),
+            warnings: Vec::new(),
+            findings,
             found: Lines::Spectrum(spectrum),
         }
     }
@@ -113,9 +113,8 @@ impl SpectralResult {
         window: (&'static str, f64),
         detrend: &'static str,
         blows: Vec<Blow>,
-        mut warnings: Vec<String>,
+        findings: Vec<Finding>,
     ) -> SpectralResult {
-        warnings.extend(found.warnings.iter().cloned());
         let degrees = |v: &f64| v.to_degrees();
         SpectralResult {
             name: found.frf.meta.name.clone(),
@@ -139,8 +138,8 @@ impl SpectralResult {
                 blows,
             }),
             tones: Vec::new(),
-            warnings,
-            findings: found.findings.clone(),
+            warnings: found.warnings.clone(),
+            findings: [findings, found.findings.clone()].concat(),
             found: Lines::Transfer(found),
         }
     }

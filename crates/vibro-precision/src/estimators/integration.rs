@@ -82,7 +82,7 @@ fn with_cut_off(v: &Vibration) -> Result<Answer> {
             given: Some(v.frequency),
             response: lines,
         }],
-        doubts: Vec::new(),
+        findings: Vec::new(),
     };
     let found = response(&sweep, &ResponseOptions { integrate: 1, ..ResponseOptions::default() })?;
     let point = found.points.first().ok_or_else(|| Error::refused("no point"))?;

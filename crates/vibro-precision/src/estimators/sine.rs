@@ -59,7 +59,7 @@ fn three_lines(trace: &Trace) -> Result<Excitation> {
         axis: point.response.axis.clone(),
         analyser_integrated: 0,
         points: vec![point],
-        doubts: Vec::new(),
+        findings: Vec::new(),
     };
     excitations(&sweep, 0.0)?.pop().ok_or_else(|| Error::refused("no point"))
 }

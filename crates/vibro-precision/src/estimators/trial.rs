@@ -27,11 +27,6 @@ impl Answer {
         Answer { value, std: None, said: Vec::new() }
     }
 
-    /// An estimate with its warnings.
-    pub fn stated(estimate: &Estimate, warnings: &[String]) -> Answer {
-        Answer { value: estimate.value, std: estimate.std, said: warnings.to_vec() }
-    }
-
     /// An estimate with its findings by their codes; a doubt takes the uncertainty away.
     pub fn found(estimate: &Estimate, findings: &[Finding]) -> Answer {
         let said = |f: &Finding| match f.severity {

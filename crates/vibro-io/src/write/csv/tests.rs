@@ -23,7 +23,7 @@ fn text(records: &[Record]) -> String {
 fn essence(record: &Record) -> Record {
     let mut record = record.clone();
     let meta = record.meta_mut();
-    (meta.notes, meta.doubts, meta.history) = (Vec::new(), Vec::new(), Vec::new());
+    (meta.notes, meta.findings, meta.history) = (Vec::new(), Vec::new(), Vec::new());
     record
 }
 

@@ -16,7 +16,7 @@ fn bytes(records: &[Record], sample: Sample) -> Vec<u8> {
 
 fn back(bytes: &[u8]) -> Vec<Trace> {
     let recording = Reader::new().from_reader("x.wav", bytes).unwrap();
-    assert!(recording.doubts.is_empty(), "{:?}", recording.doubts);
+    assert!(recording.findings.is_empty(), "{:?}", recording.findings);
     let traces = recording.records.into_iter().map(|r| match r {
         Record::Trace(t) => t,
         other => panic!("{other:?}"),
@@ -47,12 +47,16 @@ fn the_comment_undoes_the_scaling_with_a_doubt() {
     let traces = back(&file);
     assert_eq!((traces[0].values.as_slice(), traces[0].meta.unit.symbol()), ([3.0, -1.0].as_slice(), "m/s"));
     assert_eq!((traces[0].meta.name.as_str(), traces[0].axis.start()), ("v", 0.5));
-    assert!(traces[0].meta.doubts[0].starts_with("Full scale is 4 m/s"), "{:?}", traces[0].meta.doubts);
+    assert!(
+        crate::tests::says(&traces[0].meta.findings, "full-scale-by-comment", &["factor=4", "unit=m/s"]),
+        "{:?}",
+        traces[0].meta.findings
+    );
     // Without a calibration before there is none afterwards.
     let file = bytes(&[trace("v", "FS", Axis::time(0.0, 0.001, 1), vec![3.0])], Sample::Float32);
     assert_eq!(
-        (back(&file)[0].values[0], back(&file)[0].meta.doubts.clone()),
-        (3.0, vec![Trace::UNCALIBRATED.into()])
+        (back(&file)[0].values[0], back(&file)[0].meta.findings.clone()),
+        (3.0, vec![vibro_record::Finding::caution("uncalibrated")])
     );
 }
 

@@ -1,19 +1,13 @@
 //! The fastest path: one number a line, every line of the same length, every number like `1.234567e-01`.
 //!
 //! That is what analysers print most. Since the number of rows follows from the size of the file, every thread writes its
-//! values where they belong. Anything else makes this path give up, and [`super::clean`] takes over.
+//! values where they belong. Anything else makes this path give up, and [`super::fast`] takes over.
 
-use super::layout::{Cell, Layout, cut_row};
+use super::fast::{BLOCK, SMALLEST_PIECE};
 use crate::Source;
 use crate::number::{self, Exponential};
 use std::io::{ErrorKind, Read, SeekFrom};
 use vibro_record::{Error, Result};
-
-/// Bytes read at a time: small enough to stay in the second-level cache.
-const BLOCK: usize = 256 * 1024;
-
-/// Pieces smaller than this are not worth a thread.
-const SMALLEST_PIECE: u64 = 1024 * 1024;
 
 /// A row of fixed length: blanks, a sign or blank, the number, the line end.
 #[derive(Debug, Clone, Copy)]
@@ -27,28 +21,17 @@ pub struct Fixed {
 
 impl Fixed {
     /// The shape of these rows (with their line ends cut off at LF), if all have it.
-    pub fn of(rows: &[(u64, usize, &[u8])], layout: &Layout) -> Option<Fixed> {
-        if layout.columns != 1 || layout.cell != Cell::Real || layout.decimal != b'.' || rows.len() < 2 {
-            return None;
-        }
-        let mut cells = Vec::new();
-        let mut found: Option<Fixed> = None;
-        for (_, _, row) in rows {
-            cut_row(row, layout.separator, &mut cells);
-            let [(offset, cell)] = cells.as_slice() else { return None };
-            let unsigned = cell.strip_prefix(b"-").or(cell.strip_prefix(b"+")).unwrap_or(cell);
-            let end = offset + cell.len();
-            let number = (end - unsigned.len(), end);
-            let fixed = found.get_or_insert(Fixed {
-                length: row.len() + 1,
-                number,
-                parse: number::exponential_of(unsigned.len())?,
-            });
-            if fixed.length != row.len() + 1 || fixed.number != number || fixed.value(row).is_none() {
-                return None;
-            }
-        }
-        found
+    pub fn of(rows: &[&[u8]]) -> Option<Fixed> {
+        let first = rows.first().filter(|_| rows.len() > 1)?;
+        let end = first.trim_ascii_end().len();
+        let blanks = end - first[..end].trim_ascii_start().len();
+        let from = blanks + usize::from(matches!(first.get(blanks), Some(b'-' | b'+')));
+        let parse = number::exponential_of(end - from)?;
+        let fixed = Fixed { length: first.len() + 1, number: (from, end), parse };
+        let alike = |row: &&[u8]| {
+            row.len() == first.len() && row.trim_ascii_end().len() == end && fixed.value(row).is_some()
+        };
+        rows.iter().all(alike).then_some(fixed)
     }
 
     /// Value of a row, without looking at its line end.
@@ -79,9 +62,8 @@ impl Fixed {
 }
 
 /// All values; `None` where a row is of another shape.
-pub fn read(source: &Source, layout: &Layout) -> Result<Option<Vec<f64>>> {
-    let Some(fixed) = layout.fixed else { return Ok(None) };
-    let (from, length) = (layout.first_byte as u64, fixed.length as u64);
+pub fn read(source: &Source, from: u64, fixed: Fixed) -> Result<Option<Vec<f64>>> {
+    let length = fixed.length as u64;
     let bytes = source.len() - from;
     // The last line may lack its LF; other remainders are lines of another length.
     let rows = bytes.div_ceil(length);

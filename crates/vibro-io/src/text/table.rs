@@ -1,69 +1,64 @@
-//! Where the names end and the numbers begin, and what separates them.
+//! Tables with names above their columns: CSV and TSV.
+//!
+//! ```text
+//! # a remark                         remarks behind # or %, kept as notes
+//! Sample rate; 1000; Hz              preamble: `key: value`, or key and value in cells
+//! time [s]; velocity [mm/s]          names, with units in the usual spellings (see `names`) …
+//! s; mm/s                            … or with a second row that holds the units
+//! 0,000; 1,5                         rows; comma, semicolon or tab separates, with a comma or point in numbers
+//! ```
+//! A time, a frequency or a counter is the abscissa by its name. Columns `X_re` and `X_im` over frequency are one complex
+//! record.
 
-use super::name::{Name, is_unit_row};
-use super::rows::{Line, Lines, cut};
-use crate::number;
-use crate::reader::Options;
-use crate::source::HEAD;
-use std::borrow::Cow;
+use super::dialect::{Abscissa, Cell, Dialect, Head, Separator};
+use super::lines::{Fields, Line, Lines, fields};
+use super::names::{Name, is_unit_row};
+use crate::{Format, Options, number};
+use vibro_record::Result;
 
 /// From the one that stands in numbers least to the one that does most.
-const SEPARATORS: [char; 3] = ['\t', ';', ','];
+const SEPARATORS: [u8; 3] = *b"\t;,";
 
-/// What stands above the rows of numbers.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Layout<'a> {
-    pub separator: char,
-    /// One a column.
-    pub names: Vec<Name>,
-    /// Line of the names.
-    pub named_in: u64,
-    /// The first row of numbers.
-    pub first: Line<'a>,
-    /// Comments and preamble with their lines.
-    pub preamble: Vec<(u64, String)>,
-}
+const REMARKS: &[&str] = &["#", "%"];
 
-type Fields<'a> = Vec<(usize, Cow<'a, str>)>;
-
-/// Finds the first row of numbers with names right above it; `None` where there is none in the first 64 KiB.
+/// Finds the first row of numbers with names right above it.
 ///
-/// Where `named_csv` the file calls itself CSV: then a single column will do, and a header that does not fit its rows is
-/// still a header, so that reading can name the row at fault.
-pub fn detect<'a>(text: &'a str, options: &Options, named_csv: bool) -> Option<Layout<'a>> {
+/// Where the file calls itself CSV a single column will do, and a header that does not fit its rows is still a header, so that
+/// reading can name the row at fault.
+#[allow(clippy::unnecessary_wraps)] // as all dialects
+pub fn detect(head: &Head, options: &Options) -> Result<Option<Dialect>> {
     let mut above: Vec<Line> = Vec::new();
     let mut unfit = None;
-    for line in Lines::from(text, 0, 1).take_while(|l| l.at < HEAD).filter(|l| !l.is_blank()) {
-        if line.comment().is_none() {
-            let rows = SEPARATORS.map(|separator| (separator, row(line.text, separator, options)));
-            let several = |(_, count): &&(char, Option<usize>)| count.is_some_and(|n| n > 1);
-            for (separator, count) in rows.iter().filter(several) {
-                match fit(&above, line, *separator, count.unwrap_or(0)) {
-                    Some((layout, true)) => return Some(layout),
-                    Some((layout, false)) => unfit = unfit.or(Some(layout)),
+    for line in Lines::new(&head.text, 0, 1, REMARKS).filter(|l| !l.is_blank()) {
+        if line.remark.is_none() {
+            let rows = SEPARATORS.map(|mark| (Separator::Char(mark), row(line.text, mark, options)));
+            for (separator, count) in rows {
+                let Some(count) = count.filter(|n| *n > 1) else { continue };
+                match fit(&above, line, separator, count) {
+                    Some((found, true)) => return Ok(Some(decided(found, head, options))),
+                    Some((found, false)) => unfit = unfit.or(Some(found)),
                     None => {}
                 }
             }
             // One column last: `1,5` under `a,b` is no decimal comma.
-            if named_csv
+            if head.called_csv
                 && unfit.is_none()
                 && let Some((separator, _)) = rows.iter().find(|(_, count)| *count == Some(1))
-                && let Some((layout, true)) = fit(&above, line, *separator, 1)
+                && let Some((found, true)) = fit(&above, line, *separator, 1)
             {
-                return Some(layout);
+                return Ok(Some(decided(found, head, options)));
             }
         }
         above.push(line);
     }
-    unfit.filter(|_| named_csv)
+    Ok(unfit.filter(|_| head.called_csv).map(|found| decided(found, head, options)))
 }
 
 /// Number of fields, where all are numbers or missing and at least one is a number.
-fn row(text: &str, separator: char, options: &Options) -> Option<usize> {
-    let mut fields = Vec::new();
-    cut(text, separator, &mut fields).ok()?;
+fn row(text: &str, mark: u8, options: &Options) -> Option<usize> {
+    let fields = fields(text, Separator::Char(mark)).ok()?;
     let point = options.decimal_comma != Some(true);
-    let comma = options.decimal_comma != Some(false) && separator != ',';
+    let comma = options.decimal_comma != Some(false) && mark != b',';
     let mut numbers = 0;
     for (_, field) in &fields {
         let field = field.as_bytes();
@@ -77,12 +72,26 @@ fn row(text: &str, separator: char, options: &Options) -> Option<usize> {
     (numbers > 0).then_some(fields.len())
 }
 
-/// The layout with the names that stand in the last lines above `first`, and whether there are as many as columns.
-fn fit<'a>(above: &[Line], first: Line<'a>, separator: char, count: usize) -> Option<(Layout<'a>, bool)> {
-    let mut spoken = above.iter().filter(|l| l.comment().is_none()).rev();
+/// The dialect with the decimal mark: as stated, else the first comma or point in the rows, where commas do not separate.
+fn decided(mut found: Dialect, head: &Head, options: &Options) -> Dialect {
+    let marks = found.separator != Separator::Char(b',');
+    let comma = options.decimal_comma.or_else(|| first_mark(&found, &head.text));
+    found.decimal_open = comma.is_none() && marks;
+    found.decimal = if comma == Some(true) && marks { b',' } else { b'.' };
+    found
+}
+
+/// Whether the first comma or point in the rows is a comma; `None` where there is neither.
+pub fn first_mark(dialect: &Dialect, text: &str) -> Option<bool> {
+    let mut rows = dialect.rows(text).filter(|line| line.remark.is_none());
+    rows.find_map(|line| line.text.bytes().find(|b| matches!(b, b',' | b'.'))).map(|mark| mark == b',')
+}
+
+/// The dialect with the names that stand in the last lines above `first`, and whether there are as many as columns.
+fn fit(above: &[Line], first: Line, separator: Separator, count: usize) -> Option<(Dialect, bool)> {
+    let mut spoken = above.iter().filter(|l| l.remark.is_none()).rev();
     let last = spoken.next()?;
-    let mut values = Vec::new();
-    cut(first.text, separator, &mut values).ok()?;
+    let values = fields(first.text, separator).ok()?;
     let names = headings(last, separator, &values)?;
     let columns = names.len();
     if columns == 1 && count > 1 {
@@ -100,14 +109,27 @@ fn fit<'a>(above: &[Line], first: Line<'a>, separator: char, count: usize) -> Op
         _ => return None,
     };
     let preamble = above.iter().filter(|l| *l != last && *l != line).map(|l| (l.number, said(l, separator)));
-    let layout = Layout { separator, names, named_in: line.number, first, preamble: preamble.collect() };
-    Some((layout, fits))
+    let dialect = Dialect {
+        format: Format::Csv,
+        separator,
+        decimal: b'.',
+        decimal_open: false,
+        cell: Cell::Real,
+        columns,
+        names: Some(names),
+        abscissa: Abscissa::Named,
+        remarks: REMARKS,
+        blank_rows: false,
+        header: preamble.collect(),
+        columns_from: line.number,
+        first_line: first.number,
+    };
+    Some((dialect, fits))
 }
 
 /// The fields of a line above the row `values`, without a blank one at the end that the row has no value for.
-fn headings<'a>(line: &Line<'a>, separator: char, values: &Fields) -> Option<Fields<'a>> {
-    let mut fields = Vec::new();
-    cut(line.text, separator, &mut fields).ok()?;
+fn headings<'a>(line: &Line<'a>, separator: Separator, values: &Fields) -> Option<Fields<'a>> {
+    let mut fields = fields(line.text, separator).ok()?;
     let last = fields.len().checked_sub(1)?;
     let unused = values.get(last).is_none_or(|(_, v)| v.is_empty());
     if last > 0 && fields[last].1.is_empty() && unused {
@@ -133,14 +155,13 @@ fn units(fields: &Fields) -> bool {
 }
 
 /// A preamble line as `key: value`: spreadsheets put key, value and unit into cells.
-fn said(line: &Line, separator: char) -> String {
-    if let Some(text) = line.comment() {
+fn said(line: &Line, separator: Separator) -> String {
+    if let Some(text) = line.remark {
         return text.to_owned();
     }
-    let mut fields = Vec::new();
-    if line.text.contains([':', '=']) || cut(line.text, separator, &mut fields).is_err() {
+    let Some(fields) = fields(line.text, separator).ok().filter(|_| !line.text.contains([':', '='])) else {
         return line.text.trim().to_owned();
-    }
+    };
     let mut cells = fields.iter().map(|(_, f)| f.trim()).filter(|f| !f.is_empty());
     let key = cells.next().unwrap_or_default().to_owned();
     let value = cells.collect::<Vec<_>>().join(" ");
@@ -151,14 +172,21 @@ fn said(line: &Line, separator: char) -> String {
 mod tests {
     use super::*;
 
+    fn found(text: &str, called_csv: bool) -> Option<Dialect> {
+        let name = if called_csv { "x.csv" } else { "x" };
+        let head = Head::of(&crate::Source::memory(name, text.as_bytes()).ok()?).unwrap();
+        detect(&head, &Options::default()).unwrap()
+    }
+
     fn layout(text: &str) -> Option<(char, Vec<String>, u64, u64)> {
         shape(text, false)
     }
 
-    fn shape(text: &str, named_csv: bool) -> Option<(char, Vec<String>, u64, u64)> {
-        let l = detect(text, &Options::default(), named_csv)?;
-        let names = l.names.into_iter().map(|n| format!("{}|{}", n.name, n.unit.unwrap_or_default()));
-        Some((l.separator, names.collect(), l.named_in, l.first.number))
+    fn shape(text: &str, called_csv: bool) -> Option<(char, Vec<String>, u64, u64)> {
+        let d = found(text, called_csv)?;
+        let Separator::Char(mark) = d.separator else { panic!() };
+        let names = d.names?.into_iter().map(|n| format!("{}|{}", n.name, n.unit.unwrap_or_default()));
+        Some((char::from(mark), names.collect(), d.columns_from, d.first_line))
     }
 
     fn names(list: &[&str]) -> Vec<String> {
@@ -171,7 +199,7 @@ mod tests {
         assert_eq!(layout("t,a\n0,1\n"), Some((',', plain.clone(), 1, 2)));
         assert_eq!(layout("t;a\n0,5;1,5\n"), Some((';', plain.clone(), 1, 2)));
         assert_eq!(layout("t\ta\n0,5\t1,5\n"), Some(('\t', plain.clone(), 1, 2)));
-        assert_eq!(layout("\"t\" , \"a\"\r\r1,-\r"), Some((',', plain.clone(), 1, 3)));
+        assert_eq!(layout("\"t\" , \"a\"\n\n1,-\n"), Some((',', plain.clone(), 1, 3)));
         assert_eq!(layout("t,a,\n0,1,\n"), Some((',', plain.clone(), 1, 2)));
         assert_eq!(layout("t,a\n0,1,\n"), Some((',', plain, 1, 2)));
         // A last column without a name is a column.
@@ -188,9 +216,9 @@ mod tests {
     #[test]
     fn preamble_and_comments_are_kept() {
         let text = "# by hand\nSample rate;1000;Hz\nOperator: A;B\n12;13\nt;a\n% more\n0;1\n";
-        let l = detect(text, &Options::default(), false).unwrap();
-        assert_eq!((l.named_in, l.first.number), (5, 7));
-        let said: Vec<&str> = l.preamble.iter().map(|(_, s)| s.as_str()).collect();
+        let d = found(text, false).unwrap();
+        assert_eq!((d.columns_from, d.first_line), (5, 7));
+        let said: Vec<&str> = d.header.iter().map(|(_, s)| s.as_str()).collect();
         assert_eq!(said, ["by hand", "Sample rate: 1000 Hz", "Operator: A;B", "12: 13", "more"]);
     }
 

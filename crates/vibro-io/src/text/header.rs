@@ -26,14 +26,32 @@ pub struct Stated {
     pub name: Option<String>,
     /// Header lines as key and value; the key is empty where a line has none.
     pub notes: Vec<(String, String)>,
-    /// What stands under a key that is understood and is no possible value of it.
-    pub doubts: Vec<String>,
+    /// Lines under whose key stands no possible value.
+    pub impossible: Vec<String>,
 }
 
 /// More lines than any analyser has.
 const MOST_LINES: f64 = 1e9;
 
 impl Stated {
+    /// Reads header lines.
+    pub fn of<'a>(lines: impl Iterator<Item = &'a str>) -> Stated {
+        let mut stated = Stated::default();
+        for line in lines {
+            let (key, value) = split(line);
+            stated.notes.push((key.to_owned(), value.to_owned()));
+            let possible = if key.is_empty() {
+                free_text(line, &mut stated)
+            } else {
+                keyed(&key.to_lowercase(), value, &mut stated)
+            };
+            if possible.is_none() {
+                stated.impossible.push(line.to_owned());
+            }
+        }
+        stated
+    }
+
     /// Whether `n` values are all lines of the base band: then they are a spectrum, whatever else is stated, since analysers
     /// print the sampling rate too.
     pub fn all_lines(&self, n: usize) -> bool {
@@ -50,23 +68,6 @@ impl Stated {
     pub fn lines_of(&self, n: usize) -> f64 {
         self.lines.unwrap_or_else(|| n.saturating_sub(1).max(1) as f64)
     }
-}
-
-/// Reads header lines.
-pub fn read(header: &[(u64, String)]) -> Stated {
-    let mut stated = Stated::default();
-    for (_, line) in header {
-        let (key, value) = split(line);
-        stated.notes.push((key.to_owned(), value.to_owned()));
-        if key.is_empty() {
-            free_text(line, &mut stated);
-        } else if keyed(&key.to_lowercase(), value, &mut stated).is_none() {
-            stated
-                .doubts
-                .push(format!("The header line {line:?} states no possible value and is passed over."));
-        }
-    }
-    stated
 }
 
 /// `key: value` or `key = value`; an empty key where the line is neither. A time of day is no key.
@@ -121,21 +122,17 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) -> Option<()> {
     Some(())
 }
 
-/// Lines without a key: `20 Hz 400 lines`.
-fn free_text(line: &str, stated: &mut Stated) {
+/// Lines without a key: `20 Hz 400 lines`. `None` where they state no possible value.
+fn free_text(line: &str, stated: &mut Stated) -> Option<()> {
     let words: Vec<String> = line.split_whitespace().map(str::to_lowercase).collect();
     let before = |name: &str| {
         let pair = words.windows(2).find(|w| w[1].trim_end_matches(',') == name)?;
         pair[0].parse::<f64>().ok()
     };
     if let (Some(hz), Some(lines)) = (before("hz"), before("lines")) {
-        match (checked(hz), line_count(lines)) {
-            (Some(hz), Some(lines)) => (stated.base_band, stated.lines) = (Some(hz), Some(lines)),
-            _ => stated
-                .doubts
-                .push(format!("The header line {line:?} states no possible value and is passed over.")),
-        }
+        (stated.base_band, stated.lines) = (Some(checked(hz)?), Some(line_count(lines)?));
     }
+    Some(())
 }
 
 /// A number with one of `units` behind it (or the unit from the key), checked.
@@ -161,8 +158,7 @@ mod tests {
     use super::*;
 
     fn of(lines: &[&str]) -> Stated {
-        let header: Vec<_> = lines.iter().enumerate().map(|(i, l)| (i as u64 + 1, (*l).to_owned())).collect();
-        read(&header)
+        Stated::of(lines.iter().copied())
     }
 
     #[test]
@@ -206,7 +202,7 @@ mod tests {
         for line in lines {
             let s = of(&[line]);
             assert_eq!((s.lines, s.base_band, s.rate, s.line_width), (None, None, None, None), "{line}");
-            assert!(s.doubts.len() == 1 && s.doubts[0].contains(line), "{line}: {:?}", s.doubts);
+            assert!(s.impossible == [line], "{line}: {:?}", s.impossible);
         }
     }
 
@@ -214,6 +210,6 @@ mod tests {
     fn keys_with_other_meanings_state_nothing() {
         let s = of(&["Resolution: 16", "Bandwidth: 20 kHz", "Span: 20 Hz"]);
         assert_eq!((s.base_band, s.line_width), (None, None));
-        assert!(s.doubts.is_empty(), "{:?}", s.doubts);
+        assert!(s.impossible.is_empty(), "{:?}", s.impossible);
     }
 }

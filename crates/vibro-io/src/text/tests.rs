@@ -1,5 +1,6 @@
 use super::*;
-use crate::Reader;
+use crate::tests::says;
+use crate::{Format, Reader};
 use num_complex::Complex64;
 use proptest::prelude::*;
 use std::fmt::Write as _;
@@ -27,21 +28,17 @@ fn values(record: &Record) -> &[f64] {
     }
 }
 
-fn says(doubts: &[String], word: &str) -> bool {
-    doubts.iter().any(|d| d.contains(word))
-}
-
 #[test]
 fn traces_over_a_time_column() {
     let recording = of("time [ms],velocity [mm/s],Force (N)\n0.0,1.5,-2\n0.5,2.5,3e1\n1.0,0,0\n");
     assert_eq!(recording.records.len(), 2);
-    assert!(recording.doubts.is_empty());
+    assert!(recording.findings.is_empty());
     let Record::Trace(velocity) = &recording.records[0] else { panic!() };
     assert_eq!((velocity.meta.name.as_str(), velocity.meta.quantity), ("velocity", Quantity::Velocity));
     assert_eq!(velocity.values, [1.5 * 1e-3, 2.5 * 1e-3, 0.0]);
     assert_eq!(velocity.axis, Axis::time(0.0, 0.5e-3, 3));
     assert_eq!(values(&recording.records[1]), [-2.0, 30.0, 0.0]);
-    assert!(velocity.meta.doubts.is_empty(), "{:?}", velocity.meta.doubts);
+    assert!(velocity.meta.findings.is_empty(), "{:?}", velocity.meta.findings);
     let (step, arguments) = (&velocity.meta.history[0].name, &velocity.meta.history[0].arguments);
     assert_eq!((step.as_str(), arguments[2].1.as_str()), ("read", "2"));
 }
@@ -68,7 +65,7 @@ fn a_rate_in_the_preamble_or_stated() {
     let text = "Sampling rate;2;kHz\n# operator: A\na;b\n1;2\n3;4\n";
     let recording = of(text);
     assert_eq!(recording.records[1].axis(), &Axis::time(0.0, 1.0 / 2000.0, 2));
-    assert!(says(&recording.records[0].meta().doubts, "no unit"));
+    assert!(says(&recording.records[0].meta().findings, "unit-unsaid", &[]));
     let stated = read_with(&Reader::new().rate(Some(100.0)).unit(Unit::parse("mm")), text).unwrap();
     assert_eq!(stated.records[0].axis(), &Axis::time(0.0, 0.01, 2));
     assert_eq!(values(&stated.records[0]), [1.0 * 1e-3, 3.0 * 1e-3]);
@@ -109,7 +106,7 @@ fn words_behind_the_rows_are_passed_over_and_quoted() {
     let rows = "t [s],v [m/s]\n0,1\n1,2\n2,3\n3,4\n";
     let recording = of(format!("{rows}End of data\n\nbye\n"));
     assert_eq!(values(&recording.records[0]), [1.0, 2.0, 3.0, 4.0]);
-    assert!(says(&recording.doubts, "2 line(s) that are no rows, passed over: \"End of data\", \"bye\""));
+    assert!(says(&recording.findings, "words-behind-values", &["n=2", "lines=\"End of data\", \"bye\""]));
     // Numbers among words are no row where there are too many fields.
     let counted = of(format!("{rows}End, of, data, 4 rows, 2 columns\n"));
     assert_eq!(values(&counted.records[0]).len(), 4);
@@ -131,11 +128,11 @@ fn words_behind_the_rows_are_passed_over_and_quoted() {
 fn what_is_stated_may_refine_a_column_and_not_contradict_it() {
     let text = "t [s],a [m/s²]\n1.0,1\n1.1,2\n1.2,3\n";
     let same = read_with(&Reader::new().rate(Some(10.0)), text).unwrap();
-    assert!(same.doubts.is_empty(), "{:?}", same.doubts);
+    assert!(same.findings.is_empty(), "{:?}", same.findings);
     assert_eq!(same.records[0].axis(), &Axis::time(1.0, 0.1, 3));
     let refined = read_with(&Reader::new().rate(Some(9.9)).unit(Unit::parse("g")), text).unwrap();
     assert_eq!(refined.records[0].axis(), &Axis::time(1.0, 1.0 / 9.9, 3));
-    assert!(says(&refined.records[0].meta().doubts, "\"m/s²\"; g was stated"));
+    assert!(says(&refined.records[0].meta().findings, "unit-overrides-file", &["file=m/s²", "used=g"]));
     let other = read_with(&Reader::new().rate(Some(50.0)), text).unwrap_err().to_string();
     assert!(other.contains("\"t\" holds a time from 1 to 1.2 s in steps of 0.1 s"), "{other}");
     assert!(other.contains("sampling rate of 50 Hz"), "{other}");
@@ -143,7 +140,11 @@ fn what_is_stated_may_refine_a_column_and_not_contradict_it() {
     assert!(band.contains("a time from 1 to 1.2 s") && band.contains("base band of 50 Hz"), "{band}");
     let contradicted = of("fs: 1000\nt [s],a [g]\n0.0,1\n0.1,2\n");
     assert_eq!(contradicted.records[0].axis().step(), Some(0.1));
-    assert!(says(&contradicted.doubts, "states a step of 0.001"), "{:?}", contradicted.doubts);
+    assert!(
+        says(&contradicted.findings, "header-step-differs", &["header=0.001", "step=0.1"]),
+        "{:?}",
+        contradicted.findings
+    );
 }
 
 #[test]
@@ -154,7 +155,7 @@ fn times_with_too_few_digits() {
     let axis = recording.records[0].axis();
     // Both ends are rounded by half a millisecond at most, spread over 2999 steps.
     assert!((axis.step().unwrap() - dt).abs() <= 1e-3 / 2999.0);
-    assert!(says(&recording.doubts, "too few digits"), "{:?}", recording.doubts);
+    assert!(says(&recording.findings, "axis-rounded", &[]), "{:?}", recording.findings);
 }
 
 #[test]
@@ -162,7 +163,11 @@ fn uneven_times_are_kept_and_said() {
     let recording = of("t [s],a [g]\n0.00,1\n0.10,2\n0.20,3\n0.50,4\n");
     let axis = recording.records[0].axis();
     assert_eq!((axis.step(), axis.at(3)), (None, 0.5));
-    assert!(says(&recording.doubts, "uneven: steps from 0.1 to 0.3 s"), "{:?}", recording.doubts);
+    assert!(
+        says(&recording.findings, "axis-uneven", &["unit=s", "smallest=0.1", "largest=0.3"]),
+        "{:?}",
+        recording.findings
+    );
 }
 
 #[test]
@@ -171,7 +176,7 @@ fn a_column_of_intervals_is_no_abscissa() {
     assert_eq!(recording.records.len(), 2);
     assert_eq!(recording.records[0].meta().quantity, Quantity::Time);
     assert_eq!(recording.records[0].axis().kind, AxisKind::Index);
-    assert!(says(&recording.doubts, "says nothing of its abscissa"));
+    assert!(says(&recording.findings, "abscissa-unsaid", &[]));
 }
 
 #[test]
@@ -195,7 +200,7 @@ fn spectra_and_frequency_responses() {
     assert_eq!(kinds, ["spectrum", "spectrum", "frf", "spectrum"]);
     let Record::Spectrum(plain) = &recording.records[0] else { panic!() };
     assert_eq!((plain.scaling, plain.axis.clone()), (Scaling::Unknown, Axis::frequency(0.0, 0.5, 2)));
-    assert!(says(&plain.meta.doubts, "scaled"));
+    assert!(says(&plain.meta.findings, "scaling-unsaid", &[]));
     let Record::Spectrum(density) = &recording.records[1] else { panic!() };
     assert_eq!(density.scaling, Scaling::Psd);
     let Record::Frf(frf) = &recording.records[2] else { panic!() };
@@ -212,7 +217,7 @@ fn remarks_about_scaling_hold_for_one_column_or_for_all() {
     let [Record::Spectrum(a), Record::Spectrum(b)] = recording.records.as_slice() else { panic!() };
     assert_eq!((a.scaling, b.scaling), (Scaling::Peak, Scaling::Rms));
     assert_eq!((b.window.map(vibro_record::Window::name), b.enbw), (Some("hann"), Some(1.5)));
-    assert!(b.meta.doubts.is_empty(), "{:?}", b.meta.doubts);
+    assert!(b.meta.findings.is_empty(), "{:?}", b.meta.findings);
 }
 
 #[test]
@@ -227,11 +232,15 @@ fn parts_must_agree_and_are_apart_over_time() {
 #[test]
 fn what_is_assumed_is_said() {
     let recording = of("time,a [EU]\n0.0,1\n0.1,2\n");
-    assert!(says(&recording.doubts, "\"time\" has no unit: seconds are assumed"), "{:?}", recording.doubts);
-    assert!(says(&recording.records[0].meta().doubts, "\"EU\" is not understood"));
+    assert!(
+        says(&recording.findings, "axis-unit-assumed", &["unit=s", "column=column \"time\""]),
+        "{:?}",
+        recording.findings
+    );
+    assert!(says(&recording.records[0].meta().findings, "unit-unknown", &["unit=EU"]));
     let lone = read_with(&Reader::new(), "velocity [mm/s]\n1,5\n2,5\n").unwrap();
     assert_eq!(values(&lone.records[0]), [1.5 * 1e-3, 2.5 * 1e-3]);
-    assert!(says(&lone.doubts, "decimal mark"));
+    assert!(says(&lone.findings, "decimal-comma-assumed", &[]));
     let error = read_with(&Reader::new(), "time [h],a\n0,1\n1,2\n").unwrap_err().to_string();
     assert!(error.contains("the unit \"h\" of the abscissa"), "{error}");
     let error = read_with(&Reader::new(), "time [s]\n0\n1\n").unwrap_err().to_string();
@@ -254,15 +263,15 @@ fn units_of_an_abscissa_as_words() {
             let recording = of(format!("{text}\n0,1\n1,2\n2,3\n"));
             let axis = recording.records[0].axis();
             assert_eq!((&axis.kind, axis.step()), (&AxisKind::Time, Some(step)), "{text}");
-            assert!(recording.doubts.is_empty(), "{text}: {:?}", recording.doubts);
+            assert!(recording.findings.is_empty(), "{text}: {:?}", recording.findings);
         }
     }
     assert_eq!(of("f (Hertz),a [g]\n0,1\n1,2\n").records[0].axis(), &Axis::frequency(0.0, 1.0, 2));
     let unknown = of("Time (moons),a [g]\n0,1\n1,2\n");
     assert!(
-        says(&unknown.doubts, "\"moons\" is not understood: seconds are assumed"),
+        says(&unknown.findings, "axis-unit-unknown", &["said=moons", "unit=s"]),
         "{:?}",
-        unknown.doubts
+        unknown.findings
     );
 }
 
@@ -273,7 +282,7 @@ fn angular_frequencies_become_hertz() {
     let axis = recording.records[0].axis();
     // One division by 2π.
     assert_eq!((&axis.kind, axis.step()), (&AxisKind::Frequency, Some(1.0 / std::f64::consts::TAU)));
-    assert!(says(&recording.doubts, "divided by 2π"), "{:?}", recording.doubts);
+    assert!(says(&recording.findings, "axis-angular", &[]), "{:?}", recording.findings);
 }
 
 #[test]
@@ -282,14 +291,14 @@ fn missing_values_kept_are_counted() {
     assert!(read_with(&Reader::new(), text).unwrap_err().to_string().contains("line 3"));
     let kept = read_with(&Reader::new().allow_missing(true), text).unwrap();
     assert!(values(&kept.records[0])[1].is_nan());
-    assert!(says(&kept.doubts, "1 value(s) are missing"));
+    assert!(says(&kept.findings, "missing-kept", &["n=1"]));
 }
 
 /// Which texts are taken for CSV when nobody says so, under a name without an ending.
 #[test]
 fn plain_columns_are_left_to_the_reader_of_plain_columns() {
     let sniffed = |name: &str, text: &[u8]| {
-        sniff(&text[..text.len().min(1 << 16)], &Source::memory(name, text).unwrap())
+        is_table(&text[..text.len().min(1 << 16)], &Source::memory(name, text).unwrap())
     };
     assert!(sniffed("x", b"t,a\n0,1\n"));
     assert!(sniffed("x.csv", b"a\n1\n"));
@@ -323,7 +332,7 @@ fn two_clocks_in_one_file_are_refused() {
         text
     };
     let read_text =
-        |text: String| read(&Source::memory("x.csv", text.into_bytes()).unwrap(), &Options::default());
+        |text: String| read_table(&Source::memory("x.csv", text.into_bytes()).unwrap(), &Options::default());
     let why = read_text(text(2e-4, 0.0)).unwrap_err().to_string();
     assert!(why.contains("\"Time A\" and \"Time B\" run over 0.0049 and 0.0098"), "{why}");
     // The same clock read elsewhere is no other.
@@ -338,8 +347,29 @@ fn a_time_that_runs_backwards_is_refused_whatever_the_rate() {
     }
     let source = Source::memory("x.csv", format!("Time (s),U (V)\n{rows}").into_bytes()).unwrap();
     let options = Options { rate: Some(10_000.0), ..Options::default() };
-    let why = read(&source, &options).unwrap_err().to_string();
+    let why = read_table(&source, &options).unwrap_err().to_string();
     assert!(why.contains("runs backwards: value 26 is 0.0015, behind 0.0024"), "{why}");
+}
+
+#[test]
+fn a_number_that_is_cut_off_is_seen_behind_every_line_end() {
+    for end in ["\n", "\r\n", "\r"] {
+        let text = ["t [s],a [g]", "0,1.25", "1,1.35", "2,1.45", "3,1.5"].join(end);
+        assert!(says(&of(text).findings, "last-number-cut-off", &["found=1.5"]), "{end:?}");
+    }
+}
+
+/// The digits of the abscissa are those of its text, also where rows are read as bytes: 1024 Hz in whole milliseconds.
+#[test]
+fn the_digits_of_a_long_table_are_those_of_its_first_and_last_rows() {
+    let mut text = "t [s],a [g]\n".to_owned();
+    for i in 0..20_000 {
+        let _ = writeln!(text, "{:.3},{}", f64::from(i) / 1024.0, i % 7);
+    }
+    let recording = of(text);
+    let step = recording.records[0].axis().step().unwrap();
+    // Both ends are rounded by half a millisecond at most.
+    assert!((step - 1.0 / 1024.0).abs() <= 1e-3 / 19_999.0, "{step}");
 }
 
 proptest! {
@@ -349,8 +379,8 @@ proptest! {
             let bytes = format!("{head}{text}").into_bytes();
             if !bytes.is_empty() {
                 let source = Source::memory("x.csv", bytes).unwrap();
-                let _ = sniff(&source.head().unwrap(), &source);
-                let _ = read(&source, &Options::default());
+                let _ = is_table(&source.head().unwrap(), &source);
+                let _ = read_table(&source, &Options::default());
             }
         }
     }
@@ -358,7 +388,7 @@ proptest! {
     #[test]
     fn never_panics_on_random_bytes(bytes in prop::collection::vec(any::<u8>(), 1..200)) {
         let source = Source::memory("x.csv", bytes).unwrap();
-        let _ = sniff(&source.head().unwrap(), &source);
-        let _ = read(&source, &Options { allow_missing: true, ..Options::default() });
+        let _ = is_table(&source.head().unwrap(), &source);
+        let _ = read_table(&source, &Options { allow_missing: true, ..Options::default() });
     }
 }

@@ -1,10 +1,10 @@
 //! Rows without a first value, where the first column is an abscissa.
 
-use vibro_record::{Axis, AxisKind, Values};
+use vibro_record::{Axis, AxisKind, Finding, Values};
 
 /// Fills gaps in a rising first column: by what lies between its neighbours where that makes it even, as lost samples do;
-/// else the rows are left out, as a blank line between two blocks is no sample. Gives a sentence where it did.
-pub fn bridge(columns: &mut [Values]) -> Option<String> {
+/// else the rows are left out, as a blank line between two blocks is no sample. Gives a finding where it did.
+pub fn bridge(columns: &mut [Values]) -> Option<Finding> {
     let [Values::Real(first), rest @ ..] = columns else { return None };
     let known: Vec<usize> = (0..first.len()).filter(|i| !first[*i].is_nan()).collect();
     let rises = known.len() > 2 && known.windows(2).all(|w| first[w[1]] > first[w[0]]);
@@ -25,7 +25,7 @@ pub fn bridge(columns: &mut [Values]) -> Option<String> {
     let hundredth = (first[first.len() - 1] - first[0]) / first.len() as f64 / 100.0;
     if Axis::from_values(AxisKind::Time, filled.clone(), hundredth).step().is_some() {
         *first = filled;
-        return Some(format!("{gaps} row(s) without a first value are taken to continue its even steps."));
+        return Some(Finding::note("abscissa-filled").count("n", gaps));
     }
     for column in columns {
         match column {
@@ -33,5 +33,5 @@ pub fn bridge(columns: &mut [Values]) -> Option<String> {
             Values::Complex(values) => *values = known.iter().map(|i| values[*i]).collect(),
         }
     }
-    Some(format!("{gaps} row(s) without a first value are left out."))
+    Some(Finding::caution("rows-left-out").count("n", gaps))
 }

@@ -1,6 +1,9 @@
 //! Words behind the values of a text.
 
-use super::number;
+use super::shorten;
+use crate::missing::LISTED;
+use crate::number;
+use vibro_record::Finding;
 
 /// Fewer rows may be the head of a list of files.
 const FEW: usize = 4;
@@ -9,7 +12,7 @@ const MOST: usize = 16;
 
 /// The last lines of a file, where they cannot be rows of numbers.
 #[derive(Debug, PartialEq)]
-pub(super) struct Footer {
+pub struct Footer {
     lines: Vec<String>,
 }
 
@@ -18,10 +21,10 @@ impl Footer {
     /// are one; `None` where they may hold values.
     ///
     /// A word in the place of a value is a bad value: no line has as many fields as a row, and none comes twice.
-    pub fn of(
+    pub fn of<'a>(
         rows: usize,
         columns: usize,
-        rest: impl Iterator<Item = (String, Vec<String>)>,
+        rest: impl Iterator<Item = (&'a str, Vec<String>)>,
     ) -> Option<Footer> {
         let mut lines: Vec<String> = Vec::new();
         for (line, fields) in rest {
@@ -38,14 +41,9 @@ impl Footer {
     }
 
     /// What is to be said of it.
-    pub fn doubt(&self) -> String {
-        let quoted: Vec<String> =
-            self.lines.iter().map(|line| format!("{:?}", super::ascii::shorten(line))).collect();
-        format!(
-            "Behind the values stand {} line(s) that are no rows, passed over: {}.",
-            quoted.len(),
-            quoted.join(", ")
-        )
+    pub fn finding(&self) -> Finding {
+        let quoted: Vec<String> = self.lines.iter().map(|line| format!("{:?}", shorten(line))).collect();
+        Finding::caution("words-behind-values").count("n", quoted.len()).name("lines", quoted.join(", "))
     }
 
     /// Whether it names files behind numbers that begin as the list of a sweep does: points, lines, base band.
@@ -102,10 +100,10 @@ fn is_words(fields: &[String], columns: usize) -> bool {
 }
 
 /// Which of the `lines` behind a word that is no number hold it, too: for a complaint.
-pub(super) fn again<L: AsRef<str>>(word: &str, lines: impl Iterator<Item = (u64, L)>) -> Option<String> {
+pub fn again<L: AsRef<str>>(word: &str, lines: impl Iterator<Item = (u64, L)>) -> Option<String> {
     let holds = |line: &L| line.as_ref().split([' ', '\t', '\r', ',', ';', '"']).any(|w| w == word);
     let mut others = lines.filter(|(_, line)| holds(line)).map(|(number, _)| number.to_string());
-    let first: Vec<String> = others.by_ref().take(super::missing::LISTED).collect();
+    let first: Vec<String> = others.by_ref().take(LISTED).collect();
     let more = if others.next().is_some() { ", …" } else { "" };
     (!first.is_empty()).then(|| format!("also in line(s) {}{more}", first.join(", ")))
 }
@@ -116,16 +114,15 @@ mod tests {
 
     fn of(rows: usize, columns: usize, text: &str) -> Option<Footer> {
         let cut = |line: &str| line.split([' ', ';']).map(str::to_owned).collect();
-        Footer::of(rows, columns, text.lines().map(|line| (line.to_owned(), cut(line))))
+        Footer::of(rows, columns, text.lines().map(|line| (line, cut(line))))
     }
 
     #[test]
     fn a_footer_is_words_that_are_no_row() {
-        let doubt = of(4, 1, "End of data\n\n-- SPS390 --\n\u{1a}").unwrap().doubt();
-        assert!(
-            doubt.contains("2 line(s)") && doubt.contains("\"End of data\", \"-- SPS390 --\""),
-            "{doubt}"
-        );
+        let found = of(4, 1, "End of data\n\n-- SPS390 --\n\u{1a}").unwrap().finding();
+        assert_eq!(found.get("n"), Some(2.0));
+        let quoted = vibro_record::Fact::Name("\"End of data\", \"-- SPS390 --\"".into());
+        assert_eq!(found.fact("lines"), Some(&quoted));
         assert!(of(4, 1, "End of data: 5 values").is_some());
         assert!(of(4, 2, "End").is_some());
         // Three numbers and a name are a list of files.

@@ -1,10 +1,12 @@
 //! What a column's header says: name, unit, abscissa, real or imaginary part.
 
-use vibro_record::AxisKind;
+use super::dialect::Separator;
+use super::header;
 use vibro_record::units::{Quantity, Unit};
+use vibro_record::{AxisKind, Finding};
 
 /// Name and unit of a column.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Name {
     /// Without the unit.
     pub name: String,
@@ -54,28 +56,32 @@ impl Name {
         }
     }
 
-    /// Factor that takes this column as an abscissa to s or Hz, and a sentence where something is assumed.
+    /// Factor that takes this column as an abscissa to s or Hz, and a finding where something is assumed.
     ///
     /// # Errors
     /// What was found, where the unit is not understood.
-    pub fn to_axis(&self, kind: &AxisKind, label: &str) -> Result<(f64, Option<String>), String> {
-        let si = if *kind == AxisKind::Time { "seconds" } else { "hertz" };
+    pub fn to_axis(&self, kind: &AxisKind) -> Result<(f64, Option<Finding>), String> {
         let Some(text) = &self.unit else {
-            let doubt = match bracketed(&self.name, '(', ')') {
-                Some((_, unit)) => format!("{label}: the unit {unit:?} is not understood: {si} are assumed."),
-                None => format!("{label} has no unit: {si} are assumed."),
+            let si = if *kind == AxisKind::Time { "s" } else { "Hz" };
+            let assumed = match bracketed(&self.name, '(', ')') {
+                Some((_, unit)) => Finding::caution("axis-unit-unknown").name("said", unit),
+                None => Finding::caution("axis-unit-assumed"),
             };
-            return Ok((1.0, Some(doubt)));
+            return Ok((1.0, Some(assumed.name("unit", si))));
         };
         if text == HOUR {
             return Ok((3600.0, None));
         }
         let unit = Unit::parse(text).ok_or_else(|| format!("the unit {text:?} of the abscissa"))?;
         if *kind == AxisKind::Frequency && is_angular(text) {
-            let doubt = format!("{label} is an angular frequency: it is divided by 2π to give Hz.");
-            return Ok((unit.factor() / std::f64::consts::TAU, Some(doubt)));
+            return Ok((unit.factor() / std::f64::consts::TAU, Some(Finding::note("axis-angular"))));
         }
         Ok((unit.factor(), None))
+    }
+
+    /// The same column without its unit.
+    pub fn bare(&self) -> Name {
+        Name { name: self.name.clone(), unit: None }
     }
 
     /// Whether the values are an abscissa: by name, or (only asked of a first column) by unit alone.
@@ -140,6 +146,72 @@ impl Name {
             .or_else(|| name.rsplit_once(joints).and_then(|(rest, word)| found(word, rest)))
             .or_else(|| name.split_once(joints).and_then(|(word, rest)| found(word, rest)))
     }
+}
+
+/// One name a column, where the last header line can be cut into as many; a second line may hold the units.
+pub fn above(header: &[(u64, String)], columns: usize, separator: Separator) -> Option<Vec<Name>> {
+    let mut spoken = header.iter().rev().map(|(_, line)| cut(line, columns, separator));
+    let last = spoken.next()??;
+    if is_unit_row(last.iter().map(String::as_str))
+        && let Some(Some(upper)) = spoken.next()
+    {
+        return Some(upper.iter().zip(&last).map(|(name, unit)| Name::with_unit_row(name, unit)).collect());
+    }
+    let names: Vec<Name> = last.iter().map(|field| Name::parse(field)).collect();
+    // A lone title is no name of a column, unless it states the unit.
+    let sure = columns > 1 || (names[0].unit.is_some() && last[0].ends_with([']', ')']));
+    sure.then_some(names)
+}
+
+/// The fields of a line, as many as there are columns: cut as the rows are, else at tabs or wide gaps, else at single blanks.
+fn cut(line: &str, columns: usize, separator: Separator) -> Option<Vec<String>> {
+    if !header::split(line).0.is_empty() || !line.contains(char::is_alphabetic) {
+        return None;
+    }
+    let fit = |fields: Vec<String>| (fields.len() == columns && are_words(&fields)).then_some(fields);
+    let split = |at: &str| -> Vec<String> {
+        line.split(at).map(|f| f.trim().to_owned()).filter(|f| !f.is_empty()).collect()
+    };
+    if columns == 1 {
+        return Some(vec![line.trim().to_owned()]);
+    }
+    if let Separator::Char(mark) = separator
+        && let Some(fields) = fit(split(char::from(mark).to_string().as_str()))
+    {
+        return Some(fields);
+    }
+    fit(split("\t")).or_else(|| fit(split("  "))).or_else(|| fit(words(line)).filter(|f| are_names(f)))
+}
+
+/// Whether no field is a number, a date or a clock; one that ends with a unit may begin with a digit.
+fn are_words(fields: &[String]) -> bool {
+    let digit = |f: &String| f.starts_with(|c: char| c.is_ascii_digit()) && !f.ends_with([']', ')']);
+    !fields.iter().any(|f| digit(f) || f.contains(':'))
+}
+
+/// Words between single blanks; a bracket belongs to the word before it.
+fn words(line: &str) -> Vec<String> {
+    let mut out: Vec<String> = Vec::new();
+    let mut open = false;
+    for word in line.split_whitespace() {
+        match out.last_mut() {
+            Some(last) if open || word.starts_with(['[', '(']) => {
+                last.push(' ');
+                last.push_str(word);
+            }
+            _ => out.push(word.to_owned()),
+        }
+        let count = |marks: [char; 2]| word.matches(marks).count();
+        open = if open { count([']', ')']) == 0 } else { count(['[', '(']) > count([']', ')']) };
+    }
+    out
+}
+
+/// Whether words between single blanks may name columns: the first is an abscissa, or one has a bracket.
+fn are_names(words: &[String]) -> bool {
+    let units = words.iter().any(|w| w.ends_with([']', ')']));
+    let axis: Option<AxisKind> = words.first().and_then(|w| Name::parse(w).axis(true));
+    units || axis.is_some()
 }
 
 /// Hours have no symbol among the units of values.

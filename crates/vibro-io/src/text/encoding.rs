@@ -1,0 +1,149 @@
+//! Bytes to text, whatever the instrument's code page.
+
+use std::borrow::Cow;
+
+/// How many bytes are looked at to tell text from binary data, and UTF-16 without a byte order mark.
+pub const LOOK: usize = 2048;
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Order {
+    Little,
+    Big,
+}
+
+/// Whether the first bytes look like text: UTF-16, or no control characters but blanks, line ends and the end mark of DOS.
+pub fn is_text(head: &[u8]) -> bool {
+    let control = |b: &u8| *b < 0x20 && !b"\t\n\r\x0c\x1a".contains(b);
+    !head[..head.len().min(LOOK)].iter().any(control) || is_utf16(head)
+}
+
+/// Whether the bytes are UTF-16, by byte order mark or by the zero bytes that western text has in every second place.
+pub fn is_utf16(head: &[u8]) -> bool {
+    order(head).is_some()
+}
+
+/// Name of the encoding of a text by its first bytes; `None` for UTF-8.
+pub fn name(head: &[u8]) -> Option<&'static str> {
+    if is_utf16(head) {
+        return Some("UTF-16");
+    }
+    std::str::from_utf8(head).is_err_and(|e| e.error_len().is_some()).then_some("Latin-1")
+}
+
+/// Whether a CR stands before anything but LF or another CR; the last byte of a head that is `cut` off tells nothing.
+pub fn lone_cr(bytes: &[u8], cut: bool) -> bool {
+    // Most files have none at all, and that is told quickly.
+    bytes.contains(&b'\r')
+        && (bytes.windows(2).any(|w| w[0] == b'\r' && !matches!(w[1], b'\r' | b'\n'))
+            || (!cut && bytes.last() == Some(&b'\r')))
+}
+
+/// Every CR that no LF follows becomes LF; several CRs before LF are one line end, as text that was converted twice has it.
+pub fn with_lf(mut bytes: Vec<u8>) -> Vec<u8> {
+    let mut before_lf = false;
+    for b in bytes.iter_mut().rev() {
+        if *b == b'\r' && !before_lf {
+            *b = b'\n';
+        } else {
+            before_lf = matches!(*b, b'\n' | b'\r');
+        }
+    }
+    bytes
+}
+
+/// Text without a byte order mark: UTF-8 borrowed as it is, UTF-16 converted, everything else taken as Latin-1.
+///
+/// Latin-1 gives every byte a character, so that nothing is lost and a later complaint can show what stands there.
+/// Half a pair of surrogates becomes U+FFFD.
+pub fn decode(bytes: &[u8]) -> Cow<'_, str> {
+    if let Some(order) = order(bytes) {
+        let units = bytes.chunks_exact(2).map(|pair| match order {
+            Order::Little => u16::from_le_bytes([pair[0], pair[1]]),
+            Order::Big => u16::from_be_bytes([pair[0], pair[1]]),
+        });
+        let text = char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER));
+        return text.skip_while(|c| *c == '\u{feff}').collect::<String>().into();
+    }
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text.into(),
+        Err(_) => bytes.iter().map(|b| char::from(*b)).collect::<String>().into(),
+    }
+}
+
+fn order(bytes: &[u8]) -> Option<Order> {
+    if bytes.starts_with(&[0xff, 0xfe]) {
+        return Some(Order::Little);
+    }
+    if bytes.starts_with(&[0xfe, 0xff]) {
+        return Some(Order::Big);
+    }
+    let bytes = &bytes[..bytes.len().min(LOOK)];
+    if !bytes.contains(&0) {
+        return None;
+    }
+    let pairs = bytes.chunks_exact(2);
+    let (total, mut first, mut second) = (pairs.len(), 0, 0);
+    for pair in pairs {
+        first += usize::from(pair[0] == 0);
+        second += usize::from(pair[1] == 0);
+    }
+    // Text has no zero bytes otherwise; a few characters such as √ fill both bytes.
+    let most = |zeros: usize| zeros * 4 >= total * 3;
+    match (first, second) {
+        (0, zeros) if total > 1 && most(zeros) => Some(Order::Little),
+        (zeros, 0) if total > 1 && most(zeros) => Some(Order::Big),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn utf16(text: &str, big: bool) -> Vec<u8> {
+        text.encode_utf16().flat_map(|u| if big { u.to_be_bytes() } else { u.to_le_bytes() }).collect()
+    }
+
+    #[test]
+    fn utf8_is_borrowed_and_its_mark_dropped() {
+        assert!(matches!(decode("µm".as_bytes()), Cow::Borrowed("µm")));
+        assert!(matches!(decode(b"\xef\xbb\xbfm/s"), Cow::Borrowed("m/s")));
+    }
+
+    #[test]
+    fn latin1_superscripts() {
+        assert_eq!(decode(b"g\xb2/Hz"), "g²/Hz");
+        assert_eq!(decode(b"\xb5m"), "µm");
+    }
+
+    #[test]
+    fn utf16_with_and_without_a_mark() {
+        let text = "time [s];v [µm/s]\r\n0,5;√2\r\n";
+        for big in [false, true] {
+            assert_eq!(decode(&utf16(text, big)), text);
+            assert_eq!(decode(&utf16(&format!("\u{feff}{text}"), big)), text);
+        }
+        // An odd last byte and half a surrogate pair do not stop the rest.
+        let mut cut = utf16("ab\u{1f600}", false);
+        cut.truncate(cut.len() - 1);
+        assert_eq!(decode(&[b"\xff\xfe", cut.as_slice()].concat()), "ab\u{fffd}");
+    }
+
+    #[test]
+    fn zeros_alone_are_not_text() {
+        assert!(!is_text(&[0; 64]));
+        assert!(!is_text(b"ab\0\0cd"));
+        assert!(is_text(b"1.5\r\n2.5\r\n\x1a"));
+        assert!(is_text(&utf16("1,5\r\n", false)));
+    }
+
+    proptest! {
+        #[test]
+        fn never_panics(bytes in proptest::collection::vec(any::<u8>(), 0..64)) {
+            let _ = decode(&bytes);
+            let _ = is_text(&bytes);
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! The end of a text of numbers: whether it is cut off, and how precisely its abscissa is printed.
+
+use super::dialect::{Dialect, Head, Separator};
+use crate::{Source, number};
+use std::io::{Read, SeekFrom};
+use vibro_record::{Error, Finding, Result};
+
+/// Bytes at the end that are looked at.
+const LOOK: usize = 4096;
+/// Rows above the last one that must agree before it can be called short.
+const ROWS: usize = 3;
+
+/// What to try where the last row of a file cannot be read.
+pub const CUT_OFF: &str =
+    "the file ends within this row, so the export was cut off: export it again, or remove the row";
+
+/// The last bytes of a source, one more than is looked at: it tells whether they begin in the middle of a row.
+pub fn of(source: &Source) -> Result<Vec<u8>> {
+    let failed = |e| Error::io("read", source.path(), e);
+    let mut tail = Vec::new();
+    let mut input = source.open()?;
+    let look = LOOK as u64 + 1;
+    input.seek(SeekFrom::Start(source.len().saturating_sub(look))).map_err(failed)?;
+    input.take(look).read_to_end(&mut tail).map_err(failed)?;
+    Ok(tail)
+}
+
+/// The rows that are whole at the end of a text.
+fn whole(text: &[u8]) -> &[u8] {
+    match text.len().checked_sub(LOOK) {
+        None | Some(0) => text,
+        // Half a row has fewer digits, too.
+        Some(from) => text[from..].iter().position(|b| *b == b'\n').map_or(&[], |end| &text[from + end..]),
+    }
+}
+
+/// A doubt where `text` lacks its line end and its last number has fewer digits than the same column has in all rows above
+/// that are looked at.
+pub fn cut_off(text: &[u8], separator: Separator, decimal: u8) -> Option<Finding> {
+    if text.last().is_none_or(|b| matches!(b, b'\n' | b'\r' | 0x1a)) {
+        return None;
+    }
+    let mark = if let Separator::Char(mark) = separator { mark } else { b' ' };
+    let mut rows = whole(text)
+        .rsplit(|b| *b == b'\n')
+        .map(<[u8]>::trim_ascii)
+        .filter(|row| !row.is_empty())
+        .map(|row| row.rsplit(|b| *b == mark || b.is_ascii_whitespace()).next().unwrap_or(row));
+    let last = rows.next()?;
+    let found = digits(last, decimal)?;
+    // Up to the names: they are no numbers.
+    let above: Vec<(usize, usize)> = rows.map_while(|cell| digits(cell, decimal)).collect();
+    let usual = *above.first()?;
+    let agree = above.len() >= ROWS && above.iter().all(|d| *d == usual);
+    let short = found.0 < usual.0 || found.1 < usual.1;
+    (short && agree)
+        .then(|| Finding::doubt("last-number-cut-off").name("found", String::from_utf8_lossy(last).as_ref()))
+}
+
+/// Digits behind the decimal mark and digits of the exponent; `None` for what is no number.
+fn digits(cell: &[u8], decimal: u8) -> Option<(usize, usize)> {
+    number::parse_with(cell, decimal)?;
+    let end = cell.iter().position(u8::is_ascii_alphabetic).unwrap_or(cell.len());
+    let (mantissa, exponent) = cell.split_at(end);
+    let behind = mantissa.iter().position(|b| *b == decimal).map_or(0, |at| mantissa.len() - at - 1);
+    Some((behind, exponent.iter().filter(|b| b.is_ascii_digit()).count()))
+}
+
+/// Half a unit in the last digit that a column is printed with: by its rows in the head and at the end of the text, since the
+/// largest of a rising column have the most digits.
+pub fn resolution(head: &Head, tail: &[u8], dialect: &Dialect, column: usize) -> f64 {
+    let mut digits = Digits::default();
+    let mut take = |line: &super::lines::Line| {
+        let fields = dialect.cut(line).unwrap_or_default();
+        let value = fields.get(column).map(|(_, f)| f.as_bytes());
+        let parsed = value.and_then(|f| Some((f, number::parse_with(f, dialect.decimal)?)));
+        if let Some((field, value)) = parsed {
+            digits.take(field, dialect.decimal, value);
+        }
+    };
+    dialect.rows(&head.text).filter(|l| l.remark.is_none()).for_each(|l| take(&l));
+    if head.text.len() > tail.len() {
+        let text = String::from_utf8_lossy(whole(tail));
+        let lines = super::lines::Lines::new(&text, 0, 1, dialect.remarks);
+        lines.filter(|l| l.remark.is_none()).for_each(|l| take(&l));
+    }
+    digits.resolution()
+}
+
+/// How precisely a column is printed: with a fixed number of decimals, or of significant digits.
+#[derive(Debug, Default)]
+struct Digits {
+    significant: i32,
+    decimals: i32,
+    largest: f64,
+}
+
+impl Digits {
+    fn take(&mut self, field: &[u8], decimal: u8, value: f64) {
+        let end = field.iter().position(u8::is_ascii_alphabetic).unwrap_or(field.len());
+        let (mantissa, exponent) = field.split_at(end);
+        let exponent =
+            exponent.get(1..).and_then(|e| std::str::from_utf8(e).ok()?.parse::<i32>().ok()).unwrap_or(0);
+        let count = |bytes: &[u8]| bytes.iter().filter(|b| b.is_ascii_digit()).count() as i32;
+        let behind = mantissa.iter().position(|b| *b == decimal).map_or(0, |at| count(&mantissa[at..]));
+        let leading = mantissa.iter().position(|b| (b'1'..=b'9').contains(b)).unwrap_or(mantissa.len());
+        self.significant = self.significant.max(count(&mantissa[leading..]));
+        self.decimals = self.decimals.max(behind.saturating_sub(exponent));
+        self.largest = self.largest.max(value.abs());
+    }
+
+    /// Numbers printed with `%.3f` share their last decimal, those of `%.6g` their number of digits: the coarser of both
+    /// bounds is right for either, and for the shortest form that reads back.
+    fn resolution(&self) -> f64 {
+        let leading = if self.largest > 0.0 { self.largest.log10().floor() as i32 + 1 } else { 0 };
+        let unit = |exponent: i32| 10f64.powi(exponent);
+        0.5 * unit(-self.decimals).max(unit(leading.saturating_sub(self.significant)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn said(text: &str) -> bool {
+        cut_off(text.as_bytes(), Separator::Char(b','), b'.').is_some()
+    }
+
+    #[test]
+    fn a_number_shorter_than_all_above_may_be_cut() {
+        let above = "0.1,1.250E-03\n0.2,-1.350E-03\n0.3,1.450E-03\n";
+        for (last, short) in [
+            ("0.4,1.550E-03\n", false),
+            ("0.4,1.550E-03", false),
+            ("0.4,1.550E-0", true),
+            ("0.4,1.55", true),
+            ("0.4,1", true),
+            ("0.4,1.5\n", false),
+        ] {
+            assert_eq!(said(&format!("{above}{last}")), short, "{last:?}");
+        }
+        assert!(cut_off(b"a;b\n1;1,25\n2;1,35\n3;1,45\n4;1,5", Separator::Char(b';'), b',').is_some());
+    }
+
+    #[test]
+    fn a_long_file_is_judged_wherever_its_tail_begins() {
+        for end in ["\n", "\r\n"] {
+            let rows = format!("1.234567E-03{end}").repeat(2 * LOOK / 12);
+            // A first line of every length moves the start of the tail through all bytes of a row.
+            for phase in 0..=15 {
+                let text = format!("{}{end}{rows}1.234", "x".repeat(phase));
+                assert!(said(&text), "phase {phase}, {end:?}");
+                let source = Source::memory("x.txt", text.as_bytes()).unwrap();
+                assert!(
+                    cut_off(&of(&source).unwrap(), Separator::Blank, b'.').is_some(),
+                    "phase {phase}, {end:?}"
+                );
+                assert!(!said(&format!("{text}567E-03")), "phase {phase}, {end:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn numbers_of_any_length_tell_nothing() {
+        for text in [
+            "1.25\n1.5\n1.75\n2",
+            "1\n2\n3\n4",
+            "1.25\n1.5",
+            "",
+            "x",
+            "1.5\nx\n1.5\n1.5\n1",
+            "1.25,2\n1.35,3\n1.45,4\n1.5,5",
+        ] {
+            assert!(!said(text), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn the_resolution_of_printed_digits() {
+        let of = |texts: &[&str]| {
+            let mut digits = Digits::default();
+            for text in texts {
+                digits.take(text.as_bytes(), b'.', number::parse(text.as_bytes()).unwrap());
+            }
+            digits.resolution()
+        };
+        let close = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-12;
+        assert!(close(of(&["0.000", "0.001", "12.345"]), 0.5e-3));
+        assert!(close(of(&["1.000E-03", "1.234E+01"]), 0.5e-2));
+        assert!(close(of(&["0.0009765", "10.0001"]), 0.5e-4));
+        assert!(close(of(&["0", "1", "2"]), 0.5));
+        // Shortest forms: 0.1 + 0.2 has 17 digits, and so may the others have had.
+        assert!(of(&["0", "0.1", "0.30000000000000004", "0.5"]) < 1e-16);
+    }
+}
