@@ -93,7 +93,7 @@ pub fn entries<A: Analysis>(campaign: &Campaign) -> Result<Vec<Entry<A>>> {
 fn check<A: Analysis>(campaign: &Campaign) -> Result<()> {
     let entries = entries::<A>(campaign)?;
     for (i, entry) in entries.iter().enumerate() {
-        let reads = entry.reads().filter(|_| entry.file.is_none());
+        let reads = entry.reads().filter(|_| A::OF_FILES && entry.file.is_none());
         let without = reads.map(|key| {
             Error::usage(format!("{key} without a file"), "file, too, or leave it out").setting(key)
         });

@@ -94,11 +94,12 @@ mod tests {
         let motion = Simulation::new(&Rig::thesis(), &Sine { force: 0.1, frequency: 3.0 }).unwrap();
         let swept = both(&plan, &motion, 0.1, &[Direction::Up]).unwrap();
         let (resonances, _) = named(&swept);
-        let highest = |kind: ResonanceKind| {
-            let of_kind = resonances.iter().filter(|r| r.mass == 1 && r.found.kind == kind);
-            of_kind.max_by(|a, b| a.found.amplitude.total_cmp(&b.found.amplitude)).unwrap().found.frequency
+        let named = |kind, range: std::ops::Range<f64>| {
+            resonances
+                .iter()
+                .any(|r| r.mass == 1 && r.found.kind == kind && range.contains(&r.found.frequency))
         };
-        let [grazing, clapping] = [ResonanceKind::Grazing, ResonanceKind::Clapping].map(highest);
-        assert!((grazing - 5.58).abs() < 0.1 && (10.4..11.2).contains(&clapping), "{grazing} {clapping}");
+        assert!(named(ResonanceKind::Grazing, 5.48..5.68), "{resonances:?}");
+        assert!(named(ResonanceKind::Clapping, 10.4..11.2), "{resonances:?}");
     }
 }

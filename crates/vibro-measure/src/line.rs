@@ -1,7 +1,6 @@
 //! A spectral line below the line distance: frequency and amplitude of a sine between lines.
 
 use super::bisection::border;
-use super::peaks::parabola;
 use vibro_record::Window;
 use vibro_signal::window::{line_shape, noise_correlation};
 
@@ -171,10 +170,16 @@ fn propagate(lines: [f64; 3], window: Window, noise: f64) -> (Option<f64>, Optio
     (position, amplitude)
 }
 
-/// Vertex of the parabola through the logarithms of three lines: its distance from the middle one, and its height.
+/// Vertex of the parabola through the logarithms of three lines: its distance from the middle one, at most half a line, and the height
+/// there. A flat top in noise has its vertex anywhere.
 fn log_parabola(lines: [f64; 3]) -> (f64, f64) {
-    let vertex = parabola([-1.0, 0.0, 1.0], lines.map(f64::ln)).filter(|v| v.1.is_finite());
-    vertex.map_or((0.0, lines[1]), |(delta, height)| (delta.clamp(-0.5, 0.5), height.exp()))
+    let [l, m, r] = lines.map(f64::ln);
+    let curvature = l - 2.0 * m + r;
+    if !curvature.is_finite() || curvature >= 0.0 {
+        return (0.0, lines[1]);
+    }
+    let delta = (0.5 * (l - r) / curvature).clamp(-0.5, 0.5);
+    (delta, (m - 0.25 * (l - r) * delta).exp())
 }
 
 #[cfg(test)]

@@ -93,7 +93,7 @@ pub fn vertex(f: [f64; 3], a: [f64; 3], std: [f64; 3]) -> Option<Vertex> {
 }
 
 /// Extremum of the parabola through three points, inside their range.
-pub(crate) fn parabola(x: [f64; 3], y: [f64; 3]) -> Option<(f64, f64)> {
+fn parabola(x: [f64; 3], y: [f64; 3]) -> Option<(f64, f64)> {
     let (h0, h1) = (x[1] - x[0], x[2] - x[1]);
     let (s0, s1) = ((y[1] - y[0]) / h0, (y[2] - y[1]) / h1);
     let curvature = (s1 - s0) / (h0 + h1);

@@ -96,7 +96,7 @@ pub(super) fn twice(responses: &[Response]) -> Vec<About> {
     let levels = by_level(responses.iter());
     if levels.len() > 1 {
         let unknown = responses.iter().filter(|r| forced(r).is_none());
-        found.extend(unknown.map(|r| (r.name.clone(), Finding::caution("force-not-measured"))));
+        found.extend(unknown.map(|r| (r.name.clone(), Finding::caution("force-level-unknown"))));
     }
     for level in levels {
         let members: Vec<&Response> = level.iter().filter_map(|i| responses.get(*i)).collect();

@@ -117,14 +117,18 @@ impl Uncertainty {
 
     /// Why the points do not determine the parameter number `i`.
     fn reason(&self, problem: &Problem<'_>, u: &[f64], i: usize) -> Option<Unidentified> {
-        let Unknown { parameter, coordinate, .. } = problem.unknowns[i];
-        let part = if coordinate.high.is_finite() {
-            let [low, high] = coordinate.interval(u[i], NORMAL * self.std(i));
-            (high - low) / (coordinate.high - coordinate.low)
-        } else {
-            self.relative[i]
+        let parameter = problem.unknowns[i].parameter;
+        let is_loose = |i: usize| {
+            let coordinate = problem.unknowns[i].coordinate;
+            let part = if coordinate.high.is_finite() {
+                let [low, high] = coordinate.interval(u[i], NORMAL * self.std(i));
+                (high - low) / (coordinate.high - coordinate.low)
+            } else {
+                self.relative[i]
+            };
+            part > LOOSE
         };
-        if part <= LOOSE && self.limits[i].is_none() {
+        if !is_loose(i) && self.limits[i].is_none() {
             return None;
         }
         let of_impacts = matches!(
@@ -135,7 +139,7 @@ impl Uncertainty {
             Unidentified::NeedsImpacts
         } else if self.limits[i].is_some() {
             Unidentified::AtLimit
-        } else if (0..u.len()).any(|j| j != i && self.is_tied(i, j)) {
+        } else if (0..u.len()).any(|j| j != i && is_loose(j) && self.is_tied(i, j)) {
             Unidentified::Combination
         } else {
             Unidentified::TooUncertain

@@ -9,7 +9,7 @@ pub const WORDS: &[(&str, &str)] = &[
     ("rig-left-out", "{table} does not give {keys}: the values of the thesis' rig are used."),
     ("no-mass-named", "No sweep names its mass, so nothing is overlaid on the model."),
     (
-        "force-not-measured",
+        "force-level-unknown",
         "No measured force: of several levels it is taken to belong to that of the first sweep.",
     ),
     (

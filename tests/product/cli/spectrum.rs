@@ -121,7 +121,7 @@ fn what_has_no_answer_is_said() {
     fs::write(&plain, "1\n2\n3\n1\n2\n3\n1\n2\n3\n4\n").unwrap();
     assert!(complaint(&["spectrum", text(&plain)], 2).contains("--rate"));
     fs::write(&plain, "5\n".repeat(100)).unwrap();
-    assert!(complaint(&["spectrum", text(&plain), "--rate", "100"], 1).contains("nothing but the value 5"));
+    assert!(complaint(&["spectrum", text(&plain), "--rate", "100"], 1).contains("constant at 5"));
     fs::write(&plain, "5\nNaN\n".repeat(50)).unwrap();
     assert!(complaint(&["spectrum", text(&plain), "--rate", "100"], 2).contains("--allow-missing"));
     let missing = ["spectrum", text(&plain), "--rate", "100", "--allow-missing"];

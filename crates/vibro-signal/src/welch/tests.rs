@@ -121,7 +121,7 @@ fn overlapping_segments_are_not_independent() {
 fn records_without_a_spectrum_are_refused() {
     let error = |traces: Vec<Trace>| averages(traces, 64, 0.5, Window::Hann).unwrap_err().to_string();
     assert!(error(vec![trace("x", vec![1.0; 63])]).contains("63 samples: not one segment of 64"));
-    assert!(error(vec![trace("x", vec![1.5; 640])]).contains("nothing but the value 1.5"));
+    assert!(error(vec![trace("x", vec![1.5; 640])]).contains("constant at 1.5"));
     let mut gap = records();
     gap[1].values[500] = f64::NAN;
     assert!(error(gap).contains("sample 500 of channel \"y\" is missing"));
