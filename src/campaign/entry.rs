@@ -1,7 +1,7 @@
 //! One table of a section of a campaign: `[[impacts]]`.
 
 use super::{Campaign, Channel, Reading, locate};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, Result};
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, IntoDeserializer};
 use std::ops::Range;
@@ -99,17 +99,9 @@ impl Campaign {
 
     /// An error about a table: it points at the line of the key that the error names as its setting, else at the table.
     pub fn fault<K>(&self, entry: &Entry<K>, error: Error) -> Error {
-        let span = setting(&error).and_then(|key| entry.places.iter().find(|(name, _)| name == key));
+        let place = |key: &&str| entry.places.iter().find(|(name, _)| name == key);
+        let span = error.settings().iter().find_map(place);
         let span = span.map_or(&entry.head, |(_, span)| span);
         error.in_file(self.path()).excerpt(&self.text, span.clone())
-    }
-}
-
-/// The setting that an error is about.
-pub(super) fn setting(error: &Error) -> Option<&'static str> {
-    match error.kind() {
-        ErrorKind::Input(fault) => fault.settings.first().copied(),
-        ErrorKind::Refused { settings, .. } => settings.first().copied(),
-        ErrorKind::Io { .. } => None,
     }
 }

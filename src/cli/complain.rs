@@ -116,5 +116,5 @@ pub fn found(findings: &[Finding]) {
 
 /// One line on standard error.
 pub fn line(text: &str) {
-    let _ = writeln!(std::io::stderr(), "{text}");
+    let _ = writeln!(std::io::stderr(), "{}", super::print::printable(text));
 }

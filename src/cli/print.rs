@@ -24,11 +24,12 @@ pub fn answer(
 ) -> Result<()> {
     let mut written = Vec::new();
     if let Some(folder) = out {
-        let mut output = Output::new(folder)?;
+        let mut output = Output::set(folder)?;
         files::figures(&mut output, &answer.figures, &|| ())?;
         for (name, bytes) in &answer.files {
             output.write(name, bytes)?;
         }
+        output.commit()?;
         written = output.written().to_vec();
     }
     written.extend(beside.iter().cloned());
@@ -75,8 +76,24 @@ pub fn object(value: &Value) -> Result<()> {
 /// As [`json`].
 pub fn text(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(printable(text).as_bytes()).and_then(|()| out.flush()) {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(Error::io("write", "standard output", e)),
         _ => Ok(()),
+    }
+}
+
+/// Text without control characters but line breaks and tabs: a name from a file must not steer a terminal.
+pub fn printable(text: &str) -> String {
+    let steers = |c: char| c.is_control() && c != '\n' && c != '\t';
+    text.chars().map(|c| if steers(c) { '\u{fffd}' } else { c }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::printable;
+
+    #[test]
+    fn escapes_of_a_terminal_are_shown_as_what_they_are() {
+        assert_eq!(printable("a\x1b[31mb\tµ\n\u{9b}"), "a\u{fffd}[31mb\tµ\n\u{fffd}");
     }
 }

@@ -12,9 +12,10 @@ pub fn run(typed: &args::Run, json: bool) -> Result<u8> {
     let campaign = analysis::open(&typed.campaign)?;
     let folder = typed.out.clone().unwrap_or_else(|| campaign.out());
     let options = JobOptions { allow_outside: typed.allow_outside };
-    let mut output = Output::new(&folder)?;
+    let mut output = Output::set(&folder)?;
     let Outcome { results, findings, tables, answered } =
         analysis::run(&campaign, options, &mut output, &progress::bar(json))?;
+    output.commit()?;
     let files = output.written();
     let code = u8::from(!answered && !campaign.is_empty());
     if json {

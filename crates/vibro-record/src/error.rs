@@ -129,15 +129,17 @@ impl Error {
         self
     }
 
+    /// Keys of the settings that it is about.
+    pub fn settings(&self) -> &[&'static str] {
+        match &*self.0 {
+            ErrorKind::Input(Fault { settings, .. }) | ErrorKind::Refused { settings, .. } => settings,
+            ErrorKind::Io { .. } => &[],
+        }
+    }
+
     /// The text of the error with settings named as `typed` says, such as `low_pass` as `--low-pass`.
     pub fn spoken(&self, typed: impl Fn(&str) -> String) -> String {
-        let settings = match &*self.0 {
-            ErrorKind::Input(Fault { settings, .. }) | ErrorKind::Refused { settings, .. } => {
-                settings.as_slice()
-            }
-            ErrorKind::Io { .. } => &[],
-        };
-        let named: Vec<String> = settings.iter().map(|key| typed(key)).collect();
+        let named: Vec<String> = self.settings().iter().map(|key| typed(key)).collect();
         if named.is_empty() { format!("{self:#}") } else { format!("{self:#} ({})", named.join(", ")) }
     }
 

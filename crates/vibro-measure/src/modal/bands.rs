@@ -4,7 +4,7 @@ use super::Measured;
 use crate::median::upper_median;
 use crate::peaks::local_maxima;
 use std::ops::Range;
-use vibro_record::units::notation::significant;
+use vibro_record::units::notation::shortest;
 use vibro_record::{Error, Result};
 
 /// A peak: its line, its bandwidth in Hz as far as the lines show it, and its height above the higher of its valleys.
@@ -64,8 +64,8 @@ pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Ve
         if within.is_empty() {
             return Err(Error::refused(format!(
                 "no line between {low} and {high} Hz: the function runs from {} to {} Hz",
-                significant(f[0], 6),
-                significant(f[f.len() - 1], 6)
+                shortest(f[0]),
+                shortest(f[f.len() - 1])
             ))
             .hint("choose a band within it")
             .setting("band"));

@@ -68,9 +68,10 @@ fn upper_limits_are_passed_by_no_more_than_one_in_twenty_and_by_no_fewer_than_th
         // At most 5 % of 1000, and twice the binomial standard deviation of 6.9. At least 2 %: a reading below 1.38 gives a limit
         // below 3, and one of 3 reads so in 3 % of all cases. Limits that are much too wide are never passed.
         assert!((20..=63).contains(&missed), "{window:?}: {missed} of {limited}");
-        // A peak that noise pushes further than a line away counts as another one.
+        // A peak that noise pushes further than a line away counts as another one: seldom, and most under a flat top, whose lines
+        // beside the largest are nearly as high.
         let hidden = finding(&found, "sweep-hidden-by-lines").map_or(0.0, |f| f.get("n").unwrap());
-        assert!(hidden <= 5.0, "{window:?}: {hidden}");
+        assert!(hidden <= 0.02 * f64::from(draws), "{window:?}: {hidden}");
         assert!(finding(&found, "sweep-below-noise").is_some(), "{:?}", found.findings);
     }
 }
