@@ -371,4 +371,17 @@ mod tests {
         let unused: Vec<&&str> = known.iter().filter(|c| !codes.iter().any(|made| made == *c)).collect();
         assert!(unused.is_empty(), "no finding for {unused:?}");
     }
+
+    #[test]
+    fn the_documentation_lists_every_code() {
+        let listed: Vec<&str> = include_str!("../../docs/findings.md")
+            .lines()
+            .filter_map(|line| line.strip_prefix("| `")?.split('`').next())
+            .collect();
+        let known: Vec<&str> = TABLES.iter().flat_map(|t| t.iter()).map(|(code, _)| *code).collect();
+        let differs: Vec<&&str> = known.iter().filter(|c| !listed.contains(c)).collect();
+        assert!(differs.is_empty(), "not in docs/findings.md: {differs:?}");
+        let gone: Vec<&&str> = listed.iter().filter(|c| !known.contains(c)).collect();
+        assert!(gone.is_empty(), "only in docs/findings.md: {gone:?}");
+    }
 }

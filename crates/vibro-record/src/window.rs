@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Windows by name; their samples and line shapes are in [`vibro_signal::window`].
+/// Windows by name; their samples and line shapes are in the crate `vibro-signal`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Window {
