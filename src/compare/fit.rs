@@ -37,7 +37,7 @@ use compliance::corrected;
 use data::Data;
 use hold_out::rungs;
 use rayon::prelude::*;
-use search::{End, search};
+use search::{End, around, search};
 use setting::Setting;
 use settle::{Settled, enough, settle};
 use uncertainty::Uncertainty;
@@ -45,6 +45,11 @@ use unknown::{Unknown, coordinates};
 
 /// Starting points where none are asked for.
 const STARTS: usize = 8;
+/// Turns of looking around the best answer, and how many without a better one are the last.
+const TURNS: usize = 6;
+const IDLE: usize = 2;
+/// One point more within one κ is better.
+const BETTER: f64 = 1.0;
 /// Relative standard uncertainty of calibrations where none is stated: that of a good sensor. Amplitudes do not show it, and all that grows
 /// with them (gap, force, masses) is as uncertain.
 const ASSUMED: f64 = 0.01;
@@ -113,20 +118,37 @@ fn identify<'a>(
     let reached: Vec<End> = search(data, base, unknowns, starts).into_iter().chain([stated]).collect();
     let found: Vec<Result<Settled<'a>>> =
         reached.par_iter().map(|end| settle(data, base, unknowns, &end.u, pace)).collect();
-    let (mut best, mut refusal, mut ends) = (None::<Settled<'a>>, None, Vec::new());
-    for (found, end) in found.into_iter().zip(&reached) {
-        match found {
-            Ok(found) => {
-                ends.extend(vec![found.least.minimum.parameters.clone(); end.starts]);
-                if best.as_ref().is_none_or(|best| found.unexplained < best.unexplained) {
-                    best = Some(found);
-                }
+    let end = |(found, end): (&Result<Settled<'a>>, &End)| {
+        Some(vec![found.as_ref().ok()?.least.minimum.parameters.clone(); end.starts])
+    };
+    let ends = found.iter().zip(&reached).filter_map(end).flatten().collect();
+    let (mut best, mut idle) = (nearest(found)?, 0);
+    for turn in 0..TURNS {
+        if idle == IDLE {
+            break;
+        }
+        let places = around(base, unknowns, &best.least.minimum.parameters, turn);
+        match nearest(places.par_iter().map(|u| settle(data, base, unknowns, u, pace)).collect()) {
+            Ok(next) if next.unexplained < best.unexplained - BETTER => (best, idle) = (next, 0),
+            _ => idle += 1,
+        }
+    }
+    Ok((best, ends))
+}
+
+/// The answer that explains most; the first refusal where there is none.
+fn nearest(found: Vec<Result<Settled<'_>>>) -> Result<Settled<'_>> {
+    let (mut best, mut refusal) = (None::<Settled<'_>>, None);
+    for one in found {
+        match one {
+            Ok(one) if best.as_ref().is_none_or(|best| one.unexplained < best.unexplained) => {
+                best = Some(one);
             }
+            Ok(_) => {}
             Err(error) => refusal = refusal.or(Some(error)),
         }
     }
-    let best = best.ok_or_else(|| refusal.unwrap_or_else(|| Error::refused("no start led to an answer")))?;
-    Ok((best, ends))
+    best.ok_or_else(|| refusal.unwrap_or_else(|| Error::refused("no start led to an answer")))
 }
 
 /// How many starts ended within one standard uncertainty of the answer in every parameter.

@@ -10,6 +10,7 @@ use super::super::prediction::Kind;
 use super::data::{Data, Reading, Step};
 use super::setting::Setting;
 use super::unknown::{Unknown, at, coordinates, fold};
+use crate::campaign::Parameter;
 use crate::math::approach;
 use rayon::prelude::*;
 
@@ -29,6 +30,8 @@ const REACH: f64 = 1.5;
 const LOGIT: f64 = 1.5;
 /// Places whose cost is looked at for each start: one evaluation costs a hundredth of following a start.
 const SCREENED: usize = 16;
+/// Places beside an answer in one turn.
+const AROUND: usize = 8;
 /// Rounds of choosing motions and fitting for each κ: motions stay after two or three.
 const ROUNDS: usize = 4;
 
@@ -82,6 +85,19 @@ fn spread(base: &Setting, unknowns: &[Unknown], i: usize) -> Vec<f64> {
         }
     };
     unknowns.iter().zip(PRIMES).map(one).collect()
+}
+
+/// Places beside the answer `u` with other losses: they replace one another, and the points determine them worst.
+pub fn around(base: &Setting, unknowns: &[Unknown], u: &[f64], turn: usize) -> Vec<Vec<f64>> {
+    let is_loss = |k: &Unknown| matches!(k.parameter, Parameter::Restitution | Parameter::C1 | Parameter::C2);
+    if !unknowns.iter().any(is_loss) {
+        return Vec::new();
+    }
+    let place = |i: usize| {
+        let fresh = spread(base, unknowns, i);
+        unknowns.iter().zip(fresh).zip(u).map(|((k, new), u)| if is_loss(k) { new } else { *u }).collect()
+    };
+    (turn * AROUND + 1..=(turn + 1) * AROUND).map(place).collect()
 }
 
 /// The digits of `i` behind the point, in reverse.
