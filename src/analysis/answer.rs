@@ -54,6 +54,12 @@ impl Answer {
         self.figures.push((name.into(), figure));
     }
 
+    /// Adds a table for a person, and as a file of numbers.
+    pub fn table(&mut self, name: &str, table: Table) {
+        self.csv(name, &table);
+        self.tables.push(table);
+    }
+
     /// Adds a table as a file of numbers.
     pub fn csv(&mut self, name: &str, table: &Table) {
         self.files.push((format!("{name}.csv"), table.csv().into_bytes()));

@@ -238,9 +238,8 @@ impl Series {
         answer.figures = self.answer.figures;
         answer.findings = self.answer.findings;
         answer.tell("", &found.findings);
-        answer.tables.push(tables::restitution(name, &found));
+        answer.table("restitution", tables::restitution(name, &found));
         answer.details.extend(tables::agreement(&found));
-        answer.csv("restitution", &tables::restitution(name, &found));
         Ok(answer)
     }
 }

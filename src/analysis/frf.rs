@@ -218,13 +218,13 @@ impl Keys {
         answer.tell("", &meta.findings);
         answer.tell("", &found.findings);
         answer.refused = refused;
-        answer.tables.push(tables::modes(source.name, &found));
-        answer.details.push(tables::modal_methods(&found));
+        answer.table("modes", tables::modes(source.name, &found));
+        let methods = tables::modal_methods(&found);
+        answer.csv("methods", &methods);
+        answer.details.push(methods);
         answer.figure("frf", figures::frf(source.name, meta, measured, &found.modes));
         let nyquist = figures::nyquist(source.name, measured, &found.modes);
         answer.figures.extend(nyquist.map(|figure| ("nyquist".to_owned(), figure)));
-        answer.csv("modes", &tables::modes(source.name, &found));
-        answer.csv("methods", &tables::modal_methods(&found));
         if !records.is_empty() {
             let (files, unwritten) = files::records("frf", records)?;
             answer.files.extend(files);

@@ -107,11 +107,9 @@ fn shown(name: &str, found: &PulseResult) -> Result<Answer> {
     let mut answer = Answer::of(found)?;
     answer.tell("", &found.findings);
     answer.figures.extend(figures::pulse(name, found).map(|figure| ("pulse".to_owned(), figure)));
-    answer.csv("pulse", &tables::pulse(name, found));
-    answer.tables.push(tables::pulse(name, found));
+    answer.table("pulse", tables::pulse(name, found));
     if !found.fits.is_empty() {
-        answer.csv("pulse_fits", &tables::pulse_fits(name, found));
-        answer.tables.push(tables::pulse_fits(name, found));
+        answer.table("pulse_fits", tables::pulse_fits(name, found));
     }
     Ok(answer)
 }

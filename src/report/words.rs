@@ -114,25 +114,22 @@ fn fact(value: &Value) -> Option<Fact> {
 
 /// The sentences of findings that are not notes, once each, doubts first.
 pub fn warnings(findings: &[Finding], voice: Voice) -> Vec<String> {
-    let mut all: Vec<String> = Vec::new();
-    for severity in [Severity::Doubt, Severity::Caution] {
-        for finding in findings.iter().filter(|f| f.severity == severity) {
-            let text = sentence(finding, voice);
-            if !all.contains(&text) {
-                all.push(text);
-            }
-        }
-    }
-    all
+    in_order(findings, &[Severity::Doubt, Severity::Caution], voice)
 }
 
 /// The sentences of all findings, once each, doubts first and notes last.
 pub fn sentences(findings: &[Finding], voice: Voice) -> Vec<String> {
-    let mut all = warnings(findings, voice);
-    for finding in findings.iter().filter(|f| f.severity == Severity::Note) {
-        let text = sentence(finding, voice);
-        if !all.contains(&text) {
-            all.push(text);
+    in_order(findings, &[Severity::Doubt, Severity::Caution, Severity::Note], voice)
+}
+
+fn in_order(findings: &[Finding], severities: &[Severity], voice: Voice) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    for severity in severities {
+        for finding in findings.iter().filter(|f| f.severity == *severity) {
+            let text = sentence(finding, voice);
+            if !all.contains(&text) {
+                all.push(text);
+            }
         }
     }
     all
@@ -172,12 +169,8 @@ pub fn with_record((record, finding): About) -> Finding {
 /// Puts `findings` and `warnings` into an answer: each finding with its record as subject where it names none itself, and the sentences
 /// of those that are not notes.
 pub fn put(answer: &mut serde_json::Map<String, Value>, findings: &[About], voice: Voice) {
-    let subject = |(record, finding): &About| match &finding.subject {
-        None if !record.is_empty() => finding.clone().about(record.as_str()),
-        _ => finding.clone(),
-    };
-    let findings_as_data: Vec<Finding> = findings.iter().map(subject).collect();
-    answer.insert("findings".to_owned(), serde_json::json!(findings_as_data));
+    let subjects: Vec<Finding> = findings.iter().cloned().map(with_record).collect();
+    answer.insert("findings".to_owned(), serde_json::json!(subjects));
     answer.insert("warnings".to_owned(), serde_json::json!(told(findings, voice, false)));
 }
 

@@ -63,12 +63,12 @@ impl Instrument {
                 format!("a low-pass of {corner} Hz without its order"),
                 "the order of the low-pass, 1 to 10",
             )
-            .setting("low_pass")),
+            .setting("order")),
             (_, Some(order)) => Err(Error::usage(
                 format!("a low-pass of order {order} without its corner"),
                 "the corner of the low-pass in Hz",
             )
-            .setting("order")),
+            .setting("low_pass")),
         }
     }
 

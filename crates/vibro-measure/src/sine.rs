@@ -124,14 +124,8 @@ impl Lines {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::synthetic::trace;
     use std::f64::consts::TAU;
-    use vibro_record::units::Unit;
-    use vibro_record::{Axis, Meta};
-
-    fn trace(values: Vec<f64>) -> Trace {
-        let meta = Meta::new("a", Unit::parse("m").unwrap());
-        Trace { meta, axis: Axis::time(0.0, 1e-3, values.len()), values }
-    }
 
     #[test]
     fn a_clean_sine_is_exact_from_two_periods_on() {

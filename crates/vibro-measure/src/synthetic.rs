@@ -1,8 +1,15 @@
 //! Spectra of sines in noise whose truth is known, for tests.
 
 use num_complex::Complex64;
-use vibro_record::Window;
+use vibro_record::units::Unit;
+use vibro_record::{Axis, Meta, Trace, Window};
 use vibro_signal::window::line_shape;
+
+/// A displacement sampled at 1 kHz.
+pub fn trace(values: Vec<f64>) -> Trace {
+    let meta = Meta::new("a", Unit::parse("m").unwrap());
+    Trace { meta, axis: Axis::time(0.0, 1e-3, values.len()), values }
+}
 
 /// Normal numbers from a fixed seed.
 pub struct Normal(pub u64);

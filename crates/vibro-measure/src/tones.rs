@@ -111,15 +111,9 @@ fn one_more(trace: &Trace, fitted: &Fit, spacing: f64) -> std::result::Result<Fi
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::synthetic::trace;
     use std::f64::consts::TAU;
     use vibro_math::Noise;
-    use vibro_record::units::Unit;
-    use vibro_record::{Axis, Meta};
-
-    fn trace(values: Vec<f64>) -> Trace {
-        let meta = Meta::new("a", Unit::parse("m").unwrap());
-        Trace { meta, axis: Axis::time(0.0, 1e-3, values.len()), values }
-    }
 
     /// Of three sines two are asked for; what is left stands 1.5 lines beside one of them, 40 lines from the other.
     #[test]

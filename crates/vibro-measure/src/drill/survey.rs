@@ -1,5 +1,7 @@
 //! First look over a channel: extremes, levels, noise. Memory does not grow with its length.
 
+use crate::median::upper_median;
+
 /// Groups whose extremes are kept: memory is bounded.
 const GROUPS: usize = 1 << 14;
 /// Places at which differences are kept: their median is known to 1.3 % or better.
@@ -207,9 +209,7 @@ impl Differences {
 
 /// Median of some values; 0 where there are none.
 pub(crate) fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.filter(|v| v.is_finite()).collect();
-    let middle = values.len() / 2;
-    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
+    upper_median(values).unwrap_or(0.0)
 }
 
 #[cfg(test)]
