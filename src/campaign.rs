@@ -209,7 +209,7 @@ impl Campaign {
     }
 
     /// Keys of the rig that are not given and were taken from the thesis' rig.
-    pub fn rig_left_out(&self) -> Vec<&'static str> {
+    pub(crate) fn rig_left_out(&self) -> Vec<&'static str> {
         let table = self.table().unwrap_or_default();
         let rig = table.get("rig").and_then(|rig| rig.get_ref().as_table());
         rig.map_or_else(Vec::new, |rig| Rig::KEYS.into_iter().filter(|k| !rig.contains_key(*k)).collect())
@@ -219,7 +219,7 @@ impl Campaign {
     ///
     /// # Errors
     /// If it leads outside the folder.
-    pub fn path_of<K>(
+    pub(crate) fn path_of<K>(
         &self,
         entry: &Entry<K>,
         key: &'static str,

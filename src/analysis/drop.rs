@@ -184,7 +184,7 @@ impl Series {
     }
 
     /// Adds what the keys say of a drop without a record.
-    pub fn add_numbers(&mut self, keys: &Keys) {
+    pub(crate) fn add_numbers(&mut self, keys: &Keys) {
         self.drop.intervals.extend(keys.interval.or(keys.intervals.first().copied()));
         if !keys.intervals.is_empty() {
             let onset_std = keys.interval_std.map(|s| s / 2f64.sqrt());
@@ -197,7 +197,7 @@ impl Series {
     ///
     /// # Errors
     /// If the file cannot be read, or its trace allows no answer.
-    pub fn add_record(&mut self, keys: &Keys, source: &Source<'_>, number: usize) -> Result<()> {
+    pub(crate) fn add_record(&mut self, keys: &Keys, source: &Source<'_>, number: usize) -> Result<()> {
         let file = file_name(source.path);
         let recording = source.recording()?;
         let trace = source.trace(&recording)?;

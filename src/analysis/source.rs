@@ -76,6 +76,6 @@ pub fn file_name(path: &Path) -> String {
 }
 
 /// Name of a table for people: that stated, else the file's.
-pub fn name_of<K>(entry: &Entry<K>) -> String {
+pub(crate) fn name_of<K>(entry: &Entry<K>) -> String {
     entry.name.clone().or_else(|| entry.file.as_deref().map(file_name)).unwrap_or_default()
 }

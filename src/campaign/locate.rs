@@ -7,7 +7,7 @@ use std::path::Path;
 /// The parser's complaint as ours.
 ///
 /// `beside` are keys that are known, too.
-pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&str]) -> Error {
+pub(crate) fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&str]) -> Error {
     let span = error.span().unwrap_or(0..0);
     let Told { found, expected, hint } = tell(error.message(), line_at(text, span.start), beside);
     Error::input(Place::file(path), found, expected).excerpt(text, span).hint(hint)

@@ -103,7 +103,7 @@ fn object(error: String, exit_code: u8) {
 }
 
 /// Prints a warning for a person; JSON carries warnings itself.
-pub fn warn(sentences: &[String]) {
+pub(crate) fn warn(sentences: &[String]) {
     for sentence in sentences {
         line(&format!("note: {sentence}"));
     }

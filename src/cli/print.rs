@@ -83,7 +83,7 @@ pub fn text(text: &str) -> Result<()> {
 }
 
 /// Text without control characters but line breaks and tabs: a name from a file must not steer a terminal.
-pub fn printable(text: &str) -> String {
+pub(crate) fn printable(text: &str) -> String {
     let steers = |c: char| c.is_control() && c != '\n' && c != '\t';
     text.chars().map(|c| if steers(c) { '\u{fffd}' } else { c }).collect()
 }

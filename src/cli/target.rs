@@ -21,7 +21,7 @@ pub fn apart(a: &Path, b: &Path) -> Result<()> {
 }
 
 /// Writes a file whole, in a folder that must exist.
-pub fn write_beside(path: &Path, bytes: impl AsRef<[u8]>) -> Result<PathBuf> {
+pub(crate) fn write_beside(path: &Path, bytes: impl AsRef<[u8]>) -> Result<PathBuf> {
     let name = path
         .file_name()
         .ok_or_else(|| Error::usage(format!("{} is no file name", path.display()), "a file"))?;

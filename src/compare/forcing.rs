@@ -104,7 +104,7 @@ impl Forcing {
     }
 
     /// Standard uncertainty in N of that; 0 where it is stated, taken from other points, or not known.
-    pub fn std_of(&self, point: &ResponsePoint) -> f64 {
+    pub(crate) fn std_of(&self, point: &ResponsePoint) -> f64 {
         match self {
             Forcing::Measured(_) => point.force.and(point.force_std).unwrap_or(0.0),
             Forcing::Constant(_) => 0.0,

@@ -60,7 +60,7 @@ pub enum Verdict {
 
 impl Motion {
     /// Whether it can be seen.
-    pub fn is_seen(&self) -> bool {
+    pub(crate) fn is_seen(&self) -> bool {
         self.verdict == Verdict::Seen
     }
 }

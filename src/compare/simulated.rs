@@ -57,7 +57,7 @@ pub fn simulated(rig: &Rig, law: Option<Law>, points: &[(f64, f64)], pace: Pace)
 
 /// As [`simulated`] with rigid contacts, but a point with more impacts than a plain pattern has is given up: a rig of wrong parameters could
 /// take minutes.
-pub fn simulated_briefly(rig: &Rig, points: &[(f64, f64)], pace: Pace) -> Vec<Result<Simulated>> {
+pub(crate) fn simulated_briefly(rig: &Rig, points: &[(f64, f64)], pace: Pace) -> Vec<Result<Simulated>> {
     let plain = |motion: &mut Simulation| {
         if is_busy(motion)? {
             return Err(Error::refused(format!("the masses meet more than {BUSY} times a cycle")));

@@ -41,7 +41,7 @@ pub fn figures(
 }
 
 /// Matrix as CSV: a column of line frequencies, then one column a spectrum, headed by its excitation frequency.
-pub fn matrix_csv(matrix: &Waterfall) -> String {
+pub(crate) fn matrix_csv(matrix: &Waterfall) -> String {
     let mut text = String::from("frequency [Hz]");
     for excitation in &matrix.excitation {
         let _ = write!(text, ",{excitation} Hz [{}]", matrix.unit);
@@ -116,7 +116,7 @@ pub fn left_over(output: &Output, coming: &[&str]) -> Option<Finding> {
 
 /// A name as part of a file name that every system takes: ASCII letters and digits, Greek letters by their names, raised and lowered digits as
 /// digits, everything else one `_`.
-pub fn slug(name: &str) -> String {
+pub(crate) fn slug(name: &str) -> String {
     let mut slug = String::new();
     for c in name.chars().flat_map(char::to_lowercase) {
         if c.is_ascii_alphanumeric() {
@@ -131,7 +131,7 @@ pub fn slug(name: &str) -> String {
 }
 
 /// Names as parts of file names, each once.
-pub fn slugs<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+pub(crate) fn slugs<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut slugs: Vec<String> = Vec::new();
     for (i, name) in names.enumerate() {
         let slug = slug(name);

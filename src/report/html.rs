@@ -48,7 +48,7 @@ impl Page {
     }
 
     /// Adds a paragraph.
-    pub fn paragraph(self, text: &str) -> Page {
+    pub(crate) fn paragraph(self, text: &str) -> Page {
         self.element(&format!("<p>{}</p>", escaped(text)))
     }
 

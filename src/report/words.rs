@@ -77,7 +77,7 @@ fn said(code: &str, told: &Told<'_>) -> String {
 }
 
 /// Adds `warnings` to each object of an answer that has `findings`: the sentences of those that are not notes.
-pub fn add_warnings(answer: &mut Value, voice: Voice) {
+pub(crate) fn add_warnings(answer: &mut Value, voice: Voice) {
     match answer {
         Value::Object(object) => {
             if let Some(Value::Array(findings)) = object.get("findings") {
@@ -162,7 +162,7 @@ pub fn told(findings: &[About], voice: Voice, notes: bool) -> Vec<String> {
 }
 
 /// A finding with its record as subject where it names none itself.
-pub fn with_record((record, finding): About) -> Finding {
+pub(crate) fn with_record((record, finding): About) -> Finding {
     if record.is_empty() || finding.subject.is_some() { finding } else { finding.about(record) }
 }
 

@@ -19,9 +19,9 @@ pub const SERIES: [Rgb; 7] = [
 /// Frames, ticks and text.
 pub const BLACK: Rgb = Rgb(0, 0, 0);
 /// Reference lines and leaders.
-pub const GREY: Rgb = Rgb(110, 110, 110);
+pub(crate) const GREY: Rgb = Rgb(110, 110, 110);
 /// Lines that only guide the eye.
-pub const PALE: Rgb = Rgb(205, 205, 205);
+pub(crate) const PALE: Rgb = Rgb(205, 205, 205);
 /// Paper.
 pub const WHITE: Rgb = Rgb(255, 255, 255);
 
@@ -64,7 +64,7 @@ const VIRIDIS: [[u8; 3]; 33] = [
 
 /// Perceptually uniform map from 0 (dark violet) to 1 (yellow); linear between the tabulated colours, within
 /// 2/255 of the original 256. Values outside are clamped, NaN counts as 0.
-pub fn viridis(fraction: f64) -> Rgb {
+pub(crate) fn viridis(fraction: f64) -> Rgb {
     let fraction = if fraction.is_nan() { 0.0 } else { fraction.clamp(0.0, 1.0) };
     let at = fraction * (VIRIDIS.len() - 1) as f64;
     let low = (at as usize).min(VIRIDIS.len() - 2);
@@ -81,7 +81,8 @@ impl Rgb {
     }
 
     /// Relative luminance from 0 to 1 (WCAG 2.1, from IEC 61966-2-1).
-    pub fn luminance(self) -> f64 {
+    #[cfg(test)]
+    fn luminance(self) -> f64 {
         let linear = |c: u8| {
             let c = f64::from(c) / 255.0;
             if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }

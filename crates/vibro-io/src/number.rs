@@ -19,14 +19,14 @@ pub fn parse(text: &[u8]) -> Option<f64> {
 }
 
 /// Parses one number with `decimal` as its decimal mark.
-pub fn parse_with(text: &[u8], decimal: u8) -> Option<f64> {
+pub(crate) fn parse_with(text: &[u8], decimal: u8) -> Option<f64> {
     let text = text.trim_ascii();
     let (value, used) = prefix(text, decimal)?;
     (used == text.len()).then_some(value)
 }
 
 /// Whether a field stands for a missing value: blank, `NaN`, `Inf`, `-`, `NA`, `1.#QNAN`, `***`, …
-pub fn is_missing(text: &[u8]) -> bool {
+pub(crate) fn is_missing(text: &[u8]) -> bool {
     let text = text.trim_ascii();
     let text = text.strip_prefix(b"-").or(text.strip_prefix(b"+")).unwrap_or(text);
     if text.is_empty() || text.iter().all(|b| *b == b'*') {
@@ -157,7 +157,7 @@ fn eight_digits(text: [u8; 8]) -> Option<u64> {
 pub type Exponential = fn(&[u8]) -> Option<f64>;
 
 /// [`exponential`] for fields of `width` characters, made for that width; `None` for widths that instruments do not print.
-pub fn exponential_of(width: usize) -> Option<Exponential> {
+pub(crate) fn exponential_of(width: usize) -> Option<Exponential> {
     fn of<const W: usize>(field: &[u8]) -> Option<f64> {
         field.first_chunk::<W>().and_then(|field| exponential(field))
     }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use vibro_record::{Error, Place, Result};
 
 /// How many bytes [`Source::head`] returns at most: enough to tell every format apart.
-pub const HEAD: usize = 64 * 1024;
+pub(crate) const HEAD: usize = 64 * 1024;
 
 /// Bytes that can be opened several times, by several threads.
 #[derive(Debug, Clone)]

@@ -56,7 +56,7 @@ impl Oscillator {
     }
 
     /// λ² = Ω² − b² in 1/s², negative above critical damping.
-    pub fn lambda2(&self) -> f64 {
+    pub(crate) fn lambda2(&self) -> f64 {
         self.lambda2
     }
 

@@ -18,7 +18,7 @@ use super::Polynomial;
 use vibro_record::{Error, Result};
 
 /// Terms of a dense output, as a polynomial in the part of the step.
-pub const TERMS: usize = 8;
+pub(crate) const TERMS: usize = 8;
 
 /// Most stages of a scheme, those of its dense output included.
 const STAGES: usize = 16;

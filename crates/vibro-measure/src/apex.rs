@@ -14,7 +14,7 @@ use std::ops::RangeInclusive;
 /// lean, and what is beyond a polynomial then falls off slowly: two orders that happen to agree prove nothing.) Where the points
 /// beside `i` are below half of it, where there are three only, or where the polynomial has no single top, the answer is that
 /// of [`vertex`], with the uncertainty of a lean that three points cannot show.
-pub fn apex(
+pub(crate) fn apex(
     frequency: &[f64],
     heights: &[f64],
     std: &[f64],

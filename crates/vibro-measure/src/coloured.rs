@@ -71,7 +71,7 @@ impl Coloured {
 
     /// Square root of the density at `turns` periods a sample over that of white noise of the same variance, but not below 1: what
     /// is no noise but a further sine leaves a process whose density elsewhere is too small.
-    pub fn widening(&self, turns: f64) -> f64 {
+    pub(crate) fn widening(&self, turns: f64) -> f64 {
         let (mut re, mut im) = (1.0, 0.0);
         for (k, a) in self.coefficients.iter().enumerate() {
             let (sin, cos) = (TAU * turns * (k as f64 + 1.0)).sin_cos();

@@ -78,7 +78,7 @@ pub fn deviation(magnitudes: &[f64], k: usize, reach: usize, window: Window) -> 
 
 /// Amplitude of a sine at a known `position` in lines, with its standard uncertainty: the three nearest lines against
 /// the window's shape there. `None` where they do not exist or are missing.
-pub fn amplitude_at(
+pub(crate) fn amplitude_at(
     magnitudes: &[f64],
     position: f64,
     window: Option<Window>,

@@ -189,7 +189,7 @@ impl Fit {
     }
 
     /// Whether nothing is left but rounding.
-    pub fn is_exact(&self) -> bool {
+    pub(crate) fn is_exact(&self) -> bool {
         let largest = self.linear.chunks_exact(2).map(|p| p[0].hypot(p[1])).fold(0.0, f64::max);
         self.noise <= ROUNDING * largest
     }

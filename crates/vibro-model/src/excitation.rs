@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use vibro_record::{Error, Result};
 
 /// The most sines that can act at once.
-pub const MOST_SINES: usize = 4;
+pub(crate) const MOST_SINES: usize = 4;
 
 /// Excitation of mass 1, told apart by its `kind`.
 ///

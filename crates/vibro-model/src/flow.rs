@@ -223,11 +223,12 @@ impl Flight {
     }
 
     /// First contact in `0..=duration`: the gap falls to zero. No contact can be missed (see [`vibro_math::root`]).
-    pub fn first_contact(&self, duration: f64) -> Option<f64> {
+    #[cfg(test)]
+    pub(crate) fn first_contact(&self, duration: f64) -> Option<f64> {
         self.land(duration).map(|landing| landing.time)
     }
 
-    /// As [`Flight::first_contact`], with the state there.
+    /// First contact in `0..=duration`, with the state there.
     #[inline]
     pub(super) fn land(&self, duration: f64) -> Option<Landing> {
         if self.open > duration {
@@ -310,7 +311,7 @@ impl Flight {
     }
 
     /// Visits every time in `0..=duration` at which a signal's rate is zero.
-    pub fn each_stationary(&self, signal: Signal, duration: f64, visit: impl FnMut(f64)) {
+    pub(crate) fn each_stationary(&self, signal: Signal, duration: f64, visit: impl FnMut(f64)) {
         each_root(0.0, duration, |t| self.bounded(signal, 1, t), visit);
     }
 }

@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 use vibro_record::{Error, Result};
 
 /// Cycles of all cells together beyond which a map is refused: some minutes of work.
-pub const MOST_CYCLES: f64 = 5e8;
+pub(crate) const MOST_CYCLES: f64 = 5e8;
 
 /// A parameter that can be varied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -60,7 +60,7 @@ impl Observable {
     }
 
     /// What it shows of an orbit with the duration of its contact taken into account.
-    pub fn of_softened(self, orbit: &Softened) -> [f64; 2] {
+    pub(crate) fn of_softened(self, orbit: &Softened) -> [f64; 2] {
         match self {
             Observable::Fundamental => orbit.fundamental,
             Observable::HalfPeakToPeak => orbit.peak_to_peak.map(|p| p / 2.0),

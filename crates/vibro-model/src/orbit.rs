@@ -15,7 +15,7 @@ mod train;
 
 pub use backbone::backbone;
 pub use shown::{Shown, shown};
-pub use soft::{Compliance, LONGEST_CONTACT, Softened, softened};
+pub use soft::{Compliance, Softened, softened};
 
 pub(super) use conditions::Root;
 pub(super) use course::Course;
@@ -125,7 +125,7 @@ impl Orbit {
     }
 
     /// Whether the orbit lies on that side of the fold where a larger impulse would take more energy than the force then gives.
-    pub fn is_upper(&self) -> bool {
+    pub(crate) fn is_upper(&self) -> bool {
         self.upper
     }
 

@@ -91,7 +91,12 @@ impl PeriodicOrbit {
     ///
     /// # Errors
     /// As [`PeriodicOrbit::near`].
-    pub fn from_strikes(rig: &Rig, sine: &Sine, cycles: u32, strikes: &[Strike]) -> Result<PeriodicOrbit> {
+    pub(crate) fn from_strikes(
+        rig: &Rig,
+        sine: &Sine,
+        cycles: u32,
+        strikes: &[Strike],
+    ) -> Result<PeriodicOrbit> {
         let phase = |s: &Strike| strikes[0].phase + sine.omega() * (s.time - strikes[0].time);
         let impacts: Vec<_> = strikes.iter().map(|s| (phase(s), s.impulse)).collect();
         PeriodicOrbit::near(rig, sine, cycles, &impacts)

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use vibro_record::{Error, Result};
 
 /// The most cycles that are kept in a portrait.
-pub const MOST_CYCLES: u32 = 100_000;
+pub(crate) const MOST_CYCLES: u32 = 100_000;
 
 /// A motion over some cycles of its excitation.
 #[derive(Debug, Clone, PartialEq)]

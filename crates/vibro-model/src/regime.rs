@@ -162,7 +162,7 @@ impl Watch {
     }
 
     /// Forgets what was watched and watches `motion` from now on.
-    pub fn restart(&mut self, motion: &impl Motion) {
+    pub(crate) fn restart(&mut self, motion: &impl Motion) {
         self.frequency = motion.frequency();
         (self.start, self.now, self.phase) = (motion.time(), motion.time(), motion.phase());
         self.strikes.clear();

@@ -94,7 +94,7 @@ impl Rig {
     }
 
     /// Whether the passive mass is infinite: a wall.
-    pub fn has_wall(&self) -> bool {
+    pub(crate) fn has_wall(&self) -> bool {
         self.m2 == f64::INFINITY
     }
 

@@ -147,7 +147,7 @@ impl Press {
     }
 
     /// Whether a separation with speed `w` (m/s) rises no higher than the rounding of the gap.
-    pub fn is_rest(&self, w: f64) -> bool {
+    pub(crate) fn is_rest(&self, w: f64) -> bool {
         w * w <= 8.0 * self.acceleration * self.noise
     }
 
@@ -158,7 +158,7 @@ impl Press {
     /// T = 2w/(a(1 − R)) + [4j/3a³ − 2Rκ/a²] w²/(1 − R)² + O(w³), j being the rate of the gap's acceleration. The second term has
     /// to be below a ten thousandth of the first, and the first below a ten thousandth of the rig's time scale; then what is left
     /// out is below 1e-8 T.
-    pub fn accumulation(&self, rig: &Rig, w: f64) -> Option<f64> {
+    pub(crate) fn accumulation(&self, rig: &Rig, w: f64) -> Option<f64> {
         let (a, r) = (self.acceleration, rig.restitution);
         let lost = 1.0 - r;
         let [first, second] = rig.oscillators();

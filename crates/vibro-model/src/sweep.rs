@@ -4,7 +4,9 @@ mod gauge;
 mod size;
 
 pub use gauge::Gauge;
-pub use gauge::{LOW_PASS, Observable};
+#[cfg(test)]
+use gauge::LOW_PASS;
+pub use gauge::Observable;
 pub use size::{at_size, size};
 
 use super::{Motion, parallel};
@@ -13,7 +15,7 @@ use std::f64::consts::TAU;
 use vibro_record::{Direction, Error, Result};
 
 /// Cycles beyond which a sweep is refused: about a minute of work.
-pub const MOST_CYCLES: f64 = 1e8;
+pub(crate) const MOST_CYCLES: f64 = 1e8;
 
 /// Steps a cycle of a continuous sweep. A step has the frequency of its middle, so the phase is exact at its ends and errs by at
 /// most 2πrh²/8 inside, r being the rate in Hz/s and h the step in s: 7e-6 rad at 3 Hz and 0.02 Hz/s.

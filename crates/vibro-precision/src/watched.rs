@@ -8,7 +8,7 @@ use std::sync::mpsc::channel;
 use std::time::Duration;
 
 /// Time in s that one answer at a border may take, on a machine that does other things, too: right ones take less than a hundredth of it.
-pub const PATIENCE: f64 = 60.0;
+pub(crate) const PATIENCE: f64 = 60.0;
 
 /// How a watched run ended.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,7 +62,7 @@ pub fn watched<T: Send + 'static>(seconds: f64, f: impl FnOnce() -> T + Send + '
 
 /// The answers of all tasks, in their order, on as many threads as there are cores. These are not those of rayon's global pool, which what is
 /// watched may use itself while they wait for it.
-pub fn side_by_side<T: Send>(tasks: Vec<Box<dyn FnOnce() -> T + Send>>) -> Vec<T> {
+pub(crate) fn side_by_side<T: Send>(tasks: Vec<Box<dyn FnOnce() -> T + Send>>) -> Vec<T> {
     match rayon::ThreadPoolBuilder::new().build() {
         Ok(pool) => pool.install(|| tasks.into_par_iter().map(|task| task()).collect()),
         Err(_) => tasks.into_iter().map(|task| task()).collect(),

@@ -59,7 +59,7 @@ impl DrillFile {
     ///
     /// # Errors
     /// As [`DrillFile::measure`], and if `each` fails.
-    pub fn measure_each(
+    pub(crate) fn measure_each(
         &self,
         options: &DrillOptions,
         progress: &dyn Fn(usize, usize),

@@ -88,7 +88,7 @@ pub fn drill_average(drill: &Drill) -> Table {
 }
 
 /// Every impact.
-pub fn drill_impacts(drill: &Drill) -> Table {
+pub(crate) fn drill_impacts(drill: &Drill) -> Table {
     let columns = [
         ("cycle", ""),
         ("time", "s"),

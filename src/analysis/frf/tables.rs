@@ -38,7 +38,7 @@ pub fn modes(name: &str, result: &ModalResult) -> Table {
 }
 
 /// What each method gives for each mode.
-pub fn modal_methods(result: &ModalResult) -> Table {
+pub(crate) fn modal_methods(result: &ModalResult) -> Table {
     let columns = [
         ("method", ""),
         ("frequency", "Hz"),

@@ -38,7 +38,7 @@ pub fn impacts(name: &str, found: &Impacts) -> Table {
 }
 
 /// Every impact: time, height, phase.
-pub fn impact_times(found: &Impacts) -> Table {
+pub(crate) fn impact_times(found: &Impacts) -> Table {
     let mut table = headed("Times of impacts", &[("time", "s"), ("height", ""), ("phase", "")]);
     for (i, (time, height)) in found.times.iter().zip(&found.heights).enumerate() {
         table.push([

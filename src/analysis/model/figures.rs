@@ -8,7 +8,8 @@ mod regimes;
 mod sweep;
 
 pub use branches::branches;
-pub use ladder::{ladder, ladder_over};
+pub use ladder::ladder;
+pub(crate) use ladder::ladder_over;
 pub use motion::{phase_plane, poincare, traces};
 pub use orbit::orbit;
 pub use regimes::regimes;

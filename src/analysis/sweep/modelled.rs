@@ -11,7 +11,7 @@ use crate::model::Rig;
 use crate::record::Finding;
 
 /// The finding that keys of the rig are not given and were taken from the thesis' rig.
-pub fn rig_left_out(campaign: &Campaign) -> Option<Finding> {
+pub(crate) fn rig_left_out(campaign: &Campaign) -> Option<Finding> {
     let keys = campaign.rig_left_out();
     let found = Finding::doubt("rig-left-out").name("table", "[rig]").name("keys", keys.join(", "));
     (!keys.is_empty()).then_some(found)

@@ -7,7 +7,7 @@ use crate::record::{Scaling, Window};
 use crate::units::{Quantity, Unit};
 
 /// Quantities that an analyser stores of a response.
-pub const MOTION: [Quantity; 3] = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
+pub(crate) const MOTION: [Quantity; 3] = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
 
 /// What is stated of stored responses.
 #[derive(Debug, Clone, Default)]

@@ -4,6 +4,6 @@ mod fit;
 mod overlay;
 mod response;
 
-pub use fit::{fit_points, fit_rungs, fitted};
-pub use overlay::{pairs, peaks, scores};
-pub use response::{curve, jumps, resonances, response};
+pub(crate) use fit::{fit_points, fit_rungs, fitted};
+pub(crate) use overlay::{pairs, peaks, scores};
+pub(crate) use response::{curve, jumps, resonances, response};

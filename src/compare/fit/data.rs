@@ -64,7 +64,7 @@ pub struct Data {
 }
 
 /// Part of an amplitude that stands for its standard uncertainty where none is known. It is only a weight: the residuals scale it.
-pub const GUESS: f64 = 1e-2;
+pub(crate) const GUESS: f64 = 1e-2;
 
 impl Data {
     /// The points of displacement responses that name their mass and direction. `force` in N is the stated one.

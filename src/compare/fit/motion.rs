@@ -35,7 +35,7 @@ impl Motions {
 ///
 /// # Errors
 /// If the rig is impossible.
-pub fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Motions> {
+pub(crate) fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Motions> {
     type One = (usize, [Option<Kind>; 2], Option<[f64; 2]>);
     let sequence = |sequence: &Vec<usize>| -> Result<Vec<One>> {
         let points: Vec<(f64, f64)> = sequence
@@ -88,7 +88,11 @@ const OUTLIERS: f64 = 0.25;
 ///
 /// They are left out one after the other, the farthest first, since it moves what the points share. Where the points scatter more than they
 /// should, by the median, that counts for a standard deviation.
-pub fn without_outliers(data: &Data, setting: &Setting, mut kinds: Vec<Option<Kind>>) -> Vec<Option<Kind>> {
+pub(crate) fn without_outliers(
+    data: &Data,
+    setting: &Setting,
+    mut kinds: Vec<Option<Kind>>,
+) -> Vec<Option<Kind>> {
     for _ in 0..(OUTLIERS * kinds.len() as f64) as usize {
         let mut problem = Problem::new(data, setting, &[], &kinds);
         problem.weigh(&[]);

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 /// κ of the search, in turn: the starts are off by up to a half.
 const COARSE: [f64; 2] = [0.3, 0.1];
 /// κ once motions are those of simulated sweeps, down to where noise takes over.
-pub const FINE: [f64; 4] = [0.1, 0.03, 0.01, 0.003];
+pub(crate) const FINE: [f64; 4] = [0.1, 0.03, 0.01, 0.003];
 /// So many standard deviations of a point count as one, so that noise is no outlier.
 const WIDE: f64 = 3.0;
 /// Places that cost the same but for this, a tenth of a point …
@@ -164,7 +164,7 @@ fn cost(data: &Data, base: &Setting, unknowns: &[Unknown], u: &[f64]) -> f64 {
 }
 
 /// What the priors add to a cost.
-pub fn prior_cost(unknowns: &[Unknown], setting: &Setting) -> f64 {
+pub(crate) fn prior_cost(unknowns: &[Unknown], setting: &Setting) -> f64 {
     unknowns.iter().map(|unknown| prior(unknown, setting).powi(2)).sum()
 }
 

@@ -24,7 +24,7 @@ impl Setting {
     }
 
     /// Force at a step in N.
-    pub fn force_at(&self, data: &Data, step: &Step) -> f64 {
+    pub(crate) fn force_at(&self, data: &Data, step: &Step) -> f64 {
         step.force * self.force / data.force
     }
 

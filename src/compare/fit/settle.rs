@@ -172,14 +172,14 @@ impl<'a> Least<'a> {
     }
 
     /// Whether χ²/ν is larger than chance makes it (E. B. Wilson & M. M. Hilferty 1931).
-    pub fn beyond_chance(&self) -> bool {
+    pub(crate) fn beyond_chance(&self) -> bool {
         let part = 2.0 / (9.0 * self.problem.freedom() as f64);
         self.reduced > (1.0 - part + CHANCE * part.sqrt()).powi(3)
     }
 }
 
 /// χ²/ν by the stated uncertainties, priors counted in, and whether the residuals of the data are noise.
-pub fn goodness(problem: &Problem<'_>, residuals: &[f64]) -> (f64, Whiteness) {
+pub(crate) fn goodness(problem: &Problem<'_>, residuals: &[f64]) -> (f64, Whiteness) {
     let (n, _) = problem.rows();
     let (data, priors) = residuals.split_at(n.min(residuals.len()));
     let sum = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();

@@ -28,7 +28,7 @@ impl SharedErrors {
     }
 
     /// Whitens residuals in units of standard deviations that are `widened` times as large as stated.
-    pub fn whiten(&self, residuals: &mut [f64], widened: f64) {
+    pub(crate) fn whiten(&self, residuals: &mut [f64], widened: f64) {
         for (v, s) in &self.directions {
             // V's columns are orthogonal: each takes off its own part.
             let along: f64 = v.iter().zip(residuals.iter()).map(|(v, r)| v * r).sum();

@@ -157,7 +157,7 @@ impl Uncertainty {
     }
 
     /// Whether two parameters are known only together.
-    pub fn is_tied(&self, i: usize, j: usize) -> bool {
+    pub(crate) fn is_tied(&self, i: usize, j: usize) -> bool {
         self.correlation(i, j).abs() > TIED
     }
 

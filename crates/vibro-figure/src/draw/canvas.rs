@@ -86,7 +86,7 @@ impl Canvas {
     }
 
     /// Closed areas with one fill and, where wanted, an outline.
-    pub fn areas(&mut self, parts: &[Vec<Point>], fill: Rgb, outline: Option<Pen>) {
+    pub(crate) fn areas(&mut self, parts: &[Vec<Point>], fill: Rgb, outline: Option<Pen>) {
         let data = path(parts, true);
         if !data.is_empty() {
             let outline = outline.map(stroke).unwrap_or_default();

@@ -20,11 +20,11 @@ impl Clutter {
         clutter
     }
 
-    pub fn add_lines(&mut self, parts: &[Vec<Point>]) {
+    pub(crate) fn add_lines(&mut self, parts: &[Vec<Point>]) {
         self.segments.extend(parts.iter().flat_map(|p| p.windows(2).map(|w| (w[0], w[1]))));
     }
 
-    pub fn add_box(&mut self, rect: Rect) {
+    pub(crate) fn add_box(&mut self, rect: Rect) {
         self.boxes.push(rect);
     }
 

@@ -108,7 +108,7 @@ impl KeyList {
 
     /// The place in a frame where a column covers nothing: corners first, then edges; `None` where there is
     /// none.
-    pub fn free_place(&self, frame: Rect, clutter: &Clutter) -> Option<Rect> {
+    pub(crate) fn free_place(&self, frame: Rect, clutter: &Clutter) -> Option<Rect> {
         let (w, h) = self.column(f64::INFINITY);
         let room = frame.grown(-INSET);
         if w > room.w || h > room.h {
@@ -120,14 +120,14 @@ impl KeyList {
     }
 
     /// Draws the entries under each other.
-    pub fn draw_column(&self, canvas: &mut Canvas, place: Rect) {
+    pub(crate) fn draw_column(&self, canvas: &mut Canvas, place: Rect) {
         for (i, entry) in self.entries.iter().enumerate() {
             entry.draw(canvas, (place.x, place.y + (i as f64 + 0.5) * LEADING), self.sample(), place.w);
         }
     }
 
     /// Draws the entries in rows from the upper left.
-    pub fn draw_rows(&self, canvas: &mut Canvas, place: Rect) {
+    pub(crate) fn draw_rows(&self, canvas: &mut Canvas, place: Rect) {
         for (entry, (x, row)) in self.entries.iter().zip(self.flow(place.w)) {
             entry.draw(canvas, (place.x + x, place.y + (row as f64 + 0.5) * LEADING), self.sample(), place.w);
         }

@@ -115,7 +115,7 @@ impl<'a> Sheet<'a> {
     }
 
     /// Room around a frame of about this size.
-    pub fn insets(&self, size: (f64, f64)) -> Insets {
+    pub(crate) fn insets(&self, size: (f64, f64)) -> Insets {
         let bare = Insets { left: 2.5 * LARGE, bottom: 2.5 * LARGE, top: SMALL, right: GAP };
         let mut insets = self.axes.as_ref().map_or(bare, |(x, y)| {
             let mut insets = frame::insets(x, y, size, self.named_x);
@@ -140,7 +140,7 @@ impl<'a> Sheet<'a> {
     }
 
     /// Moves a legend that has no free place in this frame out of it; says whether it did.
-    pub fn make_room(&mut self, frame: Rect) -> bool {
+    pub(crate) fn make_room(&mut self, frame: Rect) -> bool {
         let Some(place) = self.place(frame).filter(|_| self.names == Names::Inside) else { return false };
         if self.free_place(&place, &Clutter::of(&self.forms(&place))).is_some() {
             return false;

@@ -94,7 +94,7 @@ const TABLES: &[Detect] = &[table::detect];
 ///
 /// # Errors
 /// If it is one that cannot be read without a statement.
-pub fn of_table(head: &Head, options: &Options) -> Result<Option<Dialect>> {
+pub(crate) fn of_table(head: &Head, options: &Options) -> Result<Option<Dialect>> {
     for detect in TABLES {
         if let Some(found) = detect(head, options)? {
             return Ok(Some(found));
@@ -113,7 +113,7 @@ pub fn of_numbers(head: &Head, options: &Options) -> Result<Dialect> {
 
 impl Dialect {
     /// Byte of the first row in the bytes of a head.
-    pub fn first_byte(&self, head: &[u8]) -> usize {
+    pub(crate) fn first_byte(&self, head: &[u8]) -> usize {
         let mark = if head.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
         line_start(head, self.first_line).unwrap_or(head.len()).max(mark)
     }
@@ -125,7 +125,7 @@ impl Dialect {
     }
 
     /// The column that its name makes the abscissa.
-    pub fn named_abscissa(&self) -> Option<usize> {
+    pub(crate) fn named_abscissa(&self) -> Option<usize> {
         let names = self.names.as_deref().filter(|_| self.abscissa == Abscissa::Named)?;
         names.iter().enumerate().find_map(|(i, name)| name.axis(i == 0).map(|_| i))
     }

@@ -12,13 +12,13 @@ enum Order {
 }
 
 /// Whether the first bytes look like text: UTF-16, or no control characters but blanks, line ends and the end mark of DOS.
-pub fn is_text(head: &[u8]) -> bool {
+pub(crate) fn is_text(head: &[u8]) -> bool {
     let control = |b: &u8| *b < 0x20 && !b"\t\n\r\x0c\x1a".contains(b);
     !head[..head.len().min(LOOK)].iter().any(control) || is_utf16(head)
 }
 
 /// Whether the bytes are UTF-16, by byte order mark or by the zero bytes that western text has in every second place.
-pub fn is_utf16(head: &[u8]) -> bool {
+pub(crate) fn is_utf16(head: &[u8]) -> bool {
     order(head).is_some()
 }
 
@@ -31,7 +31,7 @@ pub fn name(head: &[u8]) -> Option<&'static str> {
 }
 
 /// Whether a CR stands before anything but LF or another CR; the last byte of a head that is `cut` off tells nothing.
-pub fn lone_cr(bytes: &[u8], cut: bool) -> bool {
+pub(crate) fn lone_cr(bytes: &[u8], cut: bool) -> bool {
     // Most files have none at all, and that is told quickly.
     bytes.contains(&b'\r')
         && (bytes.windows(2).any(|w| w[0] == b'\r' && !matches!(w[1], b'\r' | b'\n'))
@@ -39,7 +39,7 @@ pub fn lone_cr(bytes: &[u8], cut: bool) -> bool {
 }
 
 /// Every CR that no LF follows becomes LF; several CRs before LF are one line end, as text that was converted twice has it.
-pub fn with_lf(mut bytes: Vec<u8>) -> Vec<u8> {
+pub(crate) fn with_lf(mut bytes: Vec<u8>) -> Vec<u8> {
     let mut before_lf = false;
     for b in bytes.iter_mut().rev() {
         if *b == b'\r' && !before_lf {
@@ -55,7 +55,7 @@ pub fn with_lf(mut bytes: Vec<u8>) -> Vec<u8> {
 ///
 /// Latin-1 gives every byte a character, so that nothing is lost and a later complaint can show what stands there.
 /// Half a pair of surrogates becomes U+FFFD.
-pub fn decode(bytes: &[u8]) -> Cow<'_, str> {
+pub(crate) fn decode(bytes: &[u8]) -> Cow<'_, str> {
     if let Some(order) = order(bytes) {
         let units = bytes.chunks_exact(2).map(|pair| match order {
             Order::Little => u16::from_le_bytes([pair[0], pair[1]]),

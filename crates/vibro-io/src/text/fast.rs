@@ -15,7 +15,7 @@ use vibro_record::{Error, Result, Values};
 pub const BLOCK: usize = 256 * 1024;
 
 /// Pieces smaller than this are not worth a thread.
-pub const SMALLEST_PIECE: u64 = 1024 * 1024;
+pub(crate) const SMALLEST_PIECE: u64 = 1024 * 1024;
 
 /// Rows that tell the shape.
 const ENOUGH: usize = 24;

@@ -47,7 +47,7 @@ impl Footer {
     }
 
     /// Whether it names files behind numbers that begin as the list of a sweep does: points, lines, base band.
-    pub fn ends_list(&self, numbers: impl Iterator<Item = f64>) -> bool {
+    pub(crate) fn ends_list(&self, numbers: impl Iterator<Item = f64>) -> bool {
         let head: Vec<f64> = numbers.take(3).collect();
         let whole = |v: f64| v >= 1.0 && v.fract() == 0.0;
         matches!(head[..], [points, lines, band] if whole(points) && whole(lines) && band > 0.0)

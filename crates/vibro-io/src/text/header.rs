@@ -54,7 +54,7 @@ impl Stated {
 
     /// Whether `n` values are all lines of the base band: then they are a spectrum, whatever else is stated, since analysers
     /// print the sampling rate too.
-    pub fn all_lines(&self, n: usize) -> bool {
+    pub(crate) fn all_lines(&self, n: usize) -> bool {
         self.base_band.is_some() && self.lines.is_some_and(|lines| lines as usize + 1 == n)
     }
 
@@ -65,7 +65,7 @@ impl Stated {
     }
 
     /// Number of lines, by the header or else by the number of values.
-    pub fn lines_of(&self, n: usize) -> f64 {
+    pub(crate) fn lines_of(&self, n: usize) -> f64 {
         self.lines.unwrap_or_else(|| n.saturating_sub(1).max(1) as f64)
     }
 }

@@ -49,7 +49,7 @@ impl Name {
     }
 
     /// The same column with the unit that a second header row gives it.
-    pub fn with_unit_row(text: &str, unit: &str) -> Name {
+    pub(crate) fn with_unit_row(text: &str, unit: &str) -> Name {
         match bare_unit(unit) {
             "" => Name::parse(text),
             unit => Name { name: text.trim().to_owned(), unit: Some(symbol(unit).to_owned()) },
@@ -60,7 +60,7 @@ impl Name {
     ///
     /// # Errors
     /// What was found, where the unit is not understood.
-    pub fn to_axis(&self, kind: &AxisKind) -> Result<(f64, Option<Finding>), String> {
+    pub(crate) fn to_axis(&self, kind: &AxisKind) -> Result<(f64, Option<Finding>), String> {
         let Some(text) = &self.unit else {
             let si = if *kind == AxisKind::Time { "s" } else { "Hz" };
             let assumed = match bracketed(&self.name, '(', ')') {
@@ -239,7 +239,7 @@ fn is_angular(unit: &str) -> bool {
 
 /// Whether a row of fields holds units only: all blank, known or in brackets; or, where the first is known, at least
 /// half of them known and the others short, such as `EU`.
-pub fn is_unit_row<'a>(fields: impl Iterator<Item = &'a str>) -> bool {
+pub(crate) fn is_unit_row<'a>(fields: impl Iterator<Item = &'a str>) -> bool {
     let (mut total, mut known, mut sure, mut short, mut first) = (0, 0, 0, 0, None);
     for field in fields.filter(|f| !f.trim().is_empty()) {
         let unit = bare_unit(field);

@@ -20,7 +20,7 @@ const REMARKS: &[&str] = &["#", "%", "!", "*", "'", "\"", "//"];
 const ENOUGH: usize = 24;
 
 /// What to try where digits may be grouped; such numbers are not read.
-pub const GROUPED: &str = "state the decimal mark if a comma separates two numbers; if digits are grouped in threes, export them without";
+pub(crate) const GROUPED: &str = "state the decimal mark if a comma separates two numbers; if digits are grouped in threes, export them without";
 
 /// Finds the dialect from the first rows.
 ///

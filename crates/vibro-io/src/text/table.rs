@@ -82,7 +82,7 @@ fn decided(mut found: Dialect, head: &Head, options: &Options) -> Dialect {
 }
 
 /// Whether the first comma or point in the rows is a comma; `None` where there is neither.
-pub fn first_mark(dialect: &Dialect, text: &str) -> Option<bool> {
+pub(crate) fn first_mark(dialect: &Dialect, text: &str) -> Option<bool> {
     let mut rows = dialect.rows(text).filter(|line| line.remark.is_none());
     rows.find_map(|line| line.text.bytes().find(|b| matches!(b, b',' | b'.'))).map(|mark| mark == b',')
 }

@@ -11,7 +11,7 @@ const LOOK: usize = 4096;
 const ROWS: usize = 3;
 
 /// What to try where the last row of a file cannot be read.
-pub const CUT_OFF: &str =
+pub(crate) const CUT_OFF: &str =
     "the file ends within this row, so the export was cut off: export it again, or remove the row";
 
 /// The last bytes of a source, one more than is looked at: it tells whether they begin in the middle of a row.
@@ -36,7 +36,7 @@ fn whole(text: &[u8]) -> &[u8] {
 
 /// A doubt where `text` lacks its line end and its last number has fewer digits than the same column has in all rows above
 /// that are looked at.
-pub fn cut_off(text: &[u8], separator: Separator, decimal: u8) -> Option<Finding> {
+pub(crate) fn cut_off(text: &[u8], separator: Separator, decimal: u8) -> Option<Finding> {
     if text.last().is_none_or(|b| matches!(b, b'\n' | b'\r' | 0x1a)) {
         return None;
     }

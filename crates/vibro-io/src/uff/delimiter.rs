@@ -12,13 +12,13 @@ pub struct Number {
 /// Whether a line opens or closes a data set: `-1` within the first six columns, and nothing else.
 ///
 /// A `-1` further to the right is a value: some writers print whole numbers without a decimal point.
-pub fn is_delimiter(line: &[u8]) -> bool {
+pub(crate) fn is_delimiter(line: &[u8]) -> bool {
     let blanks = line.iter().take_while(|b| **b == b' ').count();
     blanks <= 4 && line.trim_ascii() == b"-1"
 }
 
 /// The number on the line behind an opening `-1`; `None` where the line is something else.
-pub fn set_number(line: &[u8]) -> Option<Number> {
+pub(crate) fn set_number(line: &[u8]) -> Option<Number> {
     let start = line.iter().position(|b| *b != b' ')?;
     let digits = line[start..].iter().take_while(|b| b.is_ascii_digit()).count();
     let end = start + digits;

@@ -63,7 +63,7 @@ impl<'a> Stream<'a> {
     }
 
     /// Takes the next line into [`Stream::text`]; false at the end of the file.
-    pub fn next_line(&mut self) -> Result<bool> {
+    pub(crate) fn next_line(&mut self) -> Result<bool> {
         if std::mem::take(&mut self.held) {
             return Ok(true);
         }
@@ -106,17 +106,17 @@ impl<'a> Stream<'a> {
     }
 
     /// Whether the line taken last ended with a line feed, and not with the file.
-    pub fn terminated(&self) -> bool {
+    pub(crate) fn terminated(&self) -> bool {
         self.terminated
     }
 
     /// Whether the line taken last is longer than what is kept of it.
-    pub fn too_long(&self) -> bool {
+    pub(crate) fn too_long(&self) -> bool {
         self.too_long
     }
 
     /// Passes over everything up to and with the next delimiter.
-    pub fn pass_set(&mut self) -> Result<End> {
+    pub(crate) fn pass_set(&mut self) -> Result<End> {
         let mut lines = 0;
         while self.next_line()? {
             if is_delimiter(&self.text) {
@@ -133,7 +133,7 @@ impl<'a> Stream<'a> {
     }
 
     /// Takes bytes of the buffer that hold whole lines.
-    pub fn consume_lines(&mut self, bytes: usize, lines: u64) {
+    pub(crate) fn consume_lines(&mut self, bytes: usize, lines: u64) {
         self.input.consume(bytes);
         self.position += bytes as u64;
         if let Some(count) = &mut self.lines {
@@ -142,14 +142,14 @@ impl<'a> Stream<'a> {
     }
 
     /// Takes binary bytes of the buffer.
-    pub fn consume_binary(&mut self, bytes: usize) {
+    pub(crate) fn consume_binary(&mut self, bytes: usize) {
         self.input.consume(bytes);
         self.position += bytes as u64;
         self.lines = None;
     }
 
     /// Fills `target` with binary bytes; false where the file ends before.
-    pub fn take_binary(&mut self, target: &mut [u8]) -> Result<bool> {
+    pub(crate) fn take_binary(&mut self, target: &mut [u8]) -> Result<bool> {
         if self.remaining() < target.len() as u64 {
             return Ok(false);
         }
@@ -196,7 +196,7 @@ impl<'a> Stream<'a> {
     }
 
     /// A byte of this file, for complaints.
-    pub fn byte_place(&self, byte: u64) -> Place {
+    pub(crate) fn byte_place(&self, byte: u64) -> Place {
         Place::byte(self.path, byte)
     }
 }

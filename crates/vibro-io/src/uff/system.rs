@@ -56,7 +56,7 @@ impl System {
     }
 
     /// SI units in one unit of length^a force^b temperature^c.
-    pub fn factor_of(&self, [length, force, temperature]: [i64; 3]) -> f64 {
+    pub(crate) fn factor_of(&self, [length, force, temperature]: [i64; 3]) -> f64 {
         let power = |base: f64, exponent: i64| base.powf(-(exponent as f64));
         power(self.length, length) * power(self.force, force) * power(self.temperature, temperature)
     }

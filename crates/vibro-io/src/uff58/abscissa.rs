@@ -7,7 +7,7 @@ use vibro_record::units::{Quantity, Unit};
 use vibro_record::{AxisKind, Finding, Meta};
 
 /// Kind of the abscissa and factor to s or Hz.
-pub fn kind_and_factor(heading: &Heading, options: &Options, meta: &mut Meta) -> (AxisKind, f64) {
+pub(crate) fn kind_and_factor(heading: &Heading, options: &Options, meta: &mut Meta) -> (AxisKind, f64) {
     let axis = &heading.abscissa;
     let unit = Unit::parse_or_opaque(&axis.unit);
     let by_unit = match unit.quantity() {

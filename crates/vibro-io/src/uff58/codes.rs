@@ -73,7 +73,7 @@ const DATA_TYPES: &[(i64, &str, [i8; 6], [i8; 6])] = &[
 ];
 
 /// Name and dimension of a specific data type; `None` for unknown, general and unlisted ones.
-pub fn data_type(code: i64, rotational: bool) -> Option<(&'static str, Dimension)> {
+pub(crate) fn data_type(code: i64, rotational: bool) -> Option<(&'static str, Dimension)> {
     let (_, name, along, about) = DATA_TYPES.iter().find(|t| t.0 == code)?;
     let exponents = if rotational { about } else { along };
     Some((name, Dimension(exponents.map(|e| 2 * e))))
@@ -84,7 +84,7 @@ const FRF_WORDS: &[(&str, Quantity)] =
     &[("compliance", Quantity::Receptance), ("inertance", Quantity::Accelerance)];
 
 /// The quantity an axis label names, where one of its words is the name of one.
-pub fn quantity_of_label(label: &str) -> Option<Quantity> {
+pub(crate) fn quantity_of_label(label: &str) -> Option<Quantity> {
     label.split(|c: char| !c.is_alphabetic()).find_map(|word| {
         let word = word.to_lowercase();
         Quantity::from_name(&word).or_else(|| FRF_WORDS.iter().find(|w| w.0 == word).map(|w| w.1))
@@ -122,7 +122,7 @@ const SETS: &[(u32, &str)] = &[
 ];
 
 /// `15 nodes`: the number of a data set with its plain name, where it has one.
-pub fn set_name(number: u32) -> String {
+pub(crate) fn set_name(number: u32) -> String {
     match SETS.iter().find(|s| s.0 == number) {
         Some((_, name)) => format!("{number} {name}"),
         None => number.to_string(),

@@ -35,7 +35,7 @@ impl Layout {
 
     /// Bytes of one point in binary; `wide_abscissa` where the abscissa has the precision of the values, which the
     /// standard does not provide.
-    pub fn point_size(self, wide_abscissa: bool) -> usize {
+    pub(crate) fn point_size(self, wide_abscissa: bool) -> usize {
         let value = if self.double { 8 } else { 4 };
         let abscissa = if wide_abscissa { value } else { 4 };
         value * (1 + usize::from(self.complex)) + if self.even { 0 } else { abscissa }

@@ -87,7 +87,7 @@ impl Spacing {
 
     /// Whether the digits are too few to see a value that is missing between even ones: it moves one of the others by
     /// half a step or more from the mean line.
-    pub fn is_coarse(&self, step: f64) -> bool {
+    pub(crate) fn is_coarse(&self, step: f64) -> bool {
         2.0 * self.slack >= step
     }
 }

@@ -48,7 +48,7 @@ impl WavStream {
     }
 
     /// Number of frames that the file declares, where it does.
-    pub fn declared_frames(&self) -> Option<u64> {
+    pub(crate) fn declared_frames(&self) -> Option<u64> {
         self.layout.declared_frames
     }
 

@@ -61,7 +61,7 @@ impl Beam {
     }
 
     /// Relative change of the velocity a degree of error in the angle makes: tan α · π/180.
-    pub fn per_degree(self) -> f64 {
+    pub(crate) fn per_degree(self) -> f64 {
         self.alpha.tan() * 1f64.to_radians()
     }
 }

@@ -64,7 +64,7 @@ impl Residuals {
     ///
     /// The bias is the residual continued to the middle of the contact: the least bent curve that a parabola leaves is the third of
     /// Legendre's polynomials, √7 P₃ for a root mean square of 1.
-    pub fn lack_of_fit(&self, numbers: &[usize]) -> [Option<LackOfFit>; 2] {
+    pub(crate) fn lack_of_fit(&self, numbers: &[usize]) -> [Option<LackOfFit>; 2] {
         [0, 1].map(|side| {
             let own: Vec<&Shape> = numbers.iter().filter_map(|i| self.shapes.get(*i)?.get(side)).collect();
             let x = 1.0 + 2.0 * self.gap as f64 / self.length.max(1) as f64;

@@ -57,7 +57,7 @@ impl Motion {
 
     /// Integrates the same turn, which may be smoothed here: trapezoids from edge to edge; the mean velocity of the turn is
     /// what drifts.
-    pub fn displace(&mut self, values: &[f64], start: f64, end: f64, rate: f64) {
+    pub(crate) fn displace(&mut self, values: &[f64], start: f64, end: f64, rate: f64) {
         let (Some(first), Some(last)) = (crossing::value(values, start), crossing::value(values, end)) else {
             return;
         };

@@ -113,14 +113,14 @@ impl Survey {
     }
 
     /// Smallest step between neighbours that is not 0: the resolution, where the channel was digitised coarsely.
-    pub fn quantum(&self) -> f64 {
+    pub(crate) fn quantum(&self) -> f64 {
         let steps = self.differences.kept.iter().map(|d| d.first.abs()).filter(|d| *d > 0.0);
         let smallest = steps.fold(f64::INFINITY, f64::min);
         if smallest.is_finite() { smallest } else { 0.0 }
     }
 
     /// Number of equal neighbours that chance does not give in the whole channel (once in a thousand such channels).
-    pub fn longest_by_chance(&self) -> usize {
+    pub(crate) fn longest_by_chance(&self) -> usize {
         let n = self.differences.kept.len().max(1) as f64;
         let equal = self.differences.kept.iter().filter(|d| d.first == 0.0).count() as f64;
         // One more than was seen: none among a few thousand does not mean never.
@@ -152,7 +152,7 @@ impl Survey {
     }
 
     /// Part of the values that lie within a tenth of the height of a pulse from one of its two levels; 0 where there is only one.
-    pub fn two_levels(&self) -> f64 {
+    pub(crate) fn two_levels(&self) -> f64 {
         let Some((low, high)) = self.levels() else { return 0.0 };
         let near = |v: f64| (v - low).abs().min((v - high).abs()) < 0.1 * (high - low);
         let kept = &self.differences.kept;

@@ -61,7 +61,7 @@ pub enum Locking {
 /// `std` is the relative standard uncertainty of the frequency of the excitation. A fraction holds where the slope of `cycles` over
 /// `index` is m/n within three standard uncertainties and every place of the pattern keeps its phase within [`REPEATS`]: what is
 /// merely near a fraction wanders through all phases.
-pub fn locking(cycles: &[f64], index: &[usize], std: f64) -> Locking {
+pub(crate) fn locking(cycles: &[f64], index: &[usize], std: f64) -> Locking {
     let Some(step) = interval(cycles, index, Scatter::Unknown).filter(|s| s.mean > 0.0) else {
         return Locking::Irregular;
     };

@@ -12,7 +12,7 @@ const WORDS: usize = 16;
 /// A train that is locked to the sampling clock has such a number, too, as it has few distances. A sample-and-hold shows in words of
 /// four values of that length in which none returns after the next: flat pulses return to their level, and a train of stairs repeats
 /// its words. A trace of two values counts as not repeated.
-pub fn sample_and_hold(values: &[f64]) -> usize {
+pub(crate) fn sample_and_hold(values: &[f64]) -> usize {
     let (mut common, mut changes) = (0, Vec::new());
     for i in (1..values.len()).filter(|i| values[*i] != values[i - 1]) {
         let (mut a, mut b) = (common, i - changes.last().unwrap_or(&i));

@@ -8,7 +8,7 @@ use vibro_record::{Error, Result};
 ///
 /// Where the interval is near a whole number of samples, all edges lie alike between theirs: the scatter of the intervals does not
 /// show it, and no number of edges averages it.
-pub fn quantised(samples: f64) -> f64 {
+pub(crate) fn quantised(samples: f64) -> f64 {
     1.0 / (6f64.sqrt() * samples)
 }
 
@@ -80,7 +80,7 @@ impl Reference {
     }
 
     /// Mean length of a cycle in samples.
-    pub fn mean_cycle(&self) -> f64 {
+    pub(crate) fn mean_cycle(&self) -> f64 {
         match self.edges.as_slice() {
             [first, .., last] => (last.1 - first.1) / (last.0 - first.0) as f64,
             _ => f64::NAN,

@@ -26,7 +26,7 @@ impl Pole {
     ///
     /// The window moves the pole s = −ζωᵣ ± iωᵣ√(1 − ζ²) by −σ and leaves its residue, which is `s^power` A/(2iωᵣ√(1 − ζ²)).
     /// `None` where it decays by less than σ, or does not oscillate (ζ of 1 and more).
-    pub fn without_decay(&self, decay: f64, power: i32) -> Option<Pole> {
+    pub(crate) fn without_decay(&self, decay: f64, power: i32) -> Option<Pole> {
         if self.zeta.is_nan() || self.zeta.abs() >= 1.0 {
             return None;
         }

@@ -167,7 +167,7 @@ impl Samples {
 
     /// Factor for the uncertainties by the fit's covariance. `None` where more is left around the onset than elsewhere, and is not
     /// white noise: the pulse begins otherwise than the model can, and the parameters may be anything.
-    pub fn widening(&self, fitted: &Fitted, whiteness: &Whiteness) -> Option<f64> {
+    pub(crate) fn widening(&self, fitted: &Fitted, whiteness: &Whiteness) -> Option<f64> {
         let onset = fitted.fit.parameters[0];
         let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
         let around = onset - AROUND..=onset + AROUND + delay;

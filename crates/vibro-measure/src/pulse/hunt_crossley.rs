@@ -64,7 +64,7 @@ impl HuntCrossley {
 
     /// Deceleration at each of the rising `times` in s, in m/s² for each m/s of approach, of a contact that lasts `duration`
     /// seconds; as an instrument with this low-pass shows it where there is one.
-    pub fn decelerations(&self, duration: f64, filter: Option<&LowPass>, times: &[f64]) -> Vec<f64> {
+    pub(crate) fn decelerations(&self, duration: f64, filter: Option<&LowPass>, times: &[f64]) -> Vec<f64> {
         let scale = duration / self.duration;
         let step = STEP * scale;
         let mut values = match filter {

@@ -55,7 +55,7 @@ impl KelvinVoigt {
     }
 
     /// Deceleration at `t`, in m/s² for each m/s of approach; goes on before 0 and after the duration.
-    pub fn unbounded(&self, t: f64) -> f64 {
+    pub(crate) fn unbounded(&self, t: f64) -> f64 {
         let (h, turn) = (self.omega * self.theta.sin(), self.omega * self.theta.cos());
         self.omega / self.theta.cos() * (-h * t).exp() * (turn * t + 2.0 * self.theta).sin()
     }

@@ -156,7 +156,7 @@ impl<'a> Normalised<'a> {
     }
 
     /// Factor from the fitted velocity to m/s, or why there is none.
-    pub fn to_velocity(&self, mass: Option<f64>) -> std::result::Result<f64, Finding> {
+    pub(crate) fn to_velocity(&self, mass: Option<f64>) -> std::result::Result<f64, Finding> {
         let unit = self.height * self.length;
         match (self.trace.meta.quantity, mass) {
             (Quantity::Acceleration, _) => Ok(unit),

@@ -13,7 +13,7 @@ const WRONG_SHAPE: f64 = 0.02;
 const NAMED: usize = 5;
 
 /// Where the force lines, which hold one strong sine, have not the shape that the window gives them.
-pub fn wrong_window(sweep: &Sweep, excitations: &[Excitation], df: f64) -> Option<Finding> {
+pub(crate) fn wrong_window(sweep: &Sweep, excitations: &[Excitation], df: f64) -> Option<Finding> {
     let window = sweep.points.first()?.response.window?;
     let typical = |window: Window| {
         upper_median(sweep.points.iter().zip(excitations).filter_map(|(p, e)| {
@@ -48,7 +48,7 @@ pub fn repeated(sweep: &Sweep) -> Option<Finding> {
 }
 
 /// Where lines at the frequencies of `hiders` hide the responses at `excitation`, both in Hz.
-pub fn hidden_by_lines(excitation: &[f64], hiders: &[Option<f64>]) -> Option<Finding> {
+pub(crate) fn hidden_by_lines(excitation: &[f64], hiders: &[Option<f64>]) -> Option<Finding> {
     let pairs = excitation.iter().zip(hiders).filter_map(|(at, hider)| Some((*at, (*hider)?)));
     let (responses, lines): (Vec<f64>, Vec<f64>) = pairs.unzip();
     let first = |all: &[f64]| all.iter().copied().take(NAMED).collect::<Vec<f64>>();

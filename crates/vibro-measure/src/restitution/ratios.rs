@@ -37,7 +37,7 @@ const SCATTER_ALONE: f64 = 0.5;
 /// Variances of R are averaged over from where they show in ln R to where they outdo all else, and this factor beyond.
 const BEYOND: f64 = 1e3;
 /// Fewer trains than this show a scatter between them without a standard uncertainty of their mean.
-pub const TRAINS: usize = 6;
+pub(crate) const TRAINS: usize = 6;
 /// Steps of the logarithm (to base 10) of a variance.
 const STEP: f64 = 0.15;
 

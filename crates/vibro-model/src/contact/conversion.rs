@@ -72,7 +72,8 @@ pub fn loss(restitution: f64) -> Result<f64> {
 }
 
 /// R of a Hunt–Crossley contact of αv = `loss` ≥ 0; NaN for a negative one.
-pub fn hunt_crossley_restitution(loss: f64) -> f64 {
+#[cfg(test)]
+fn hunt_crossley_restitution(loss: f64) -> f64 {
     if !(loss >= 0.0 && loss.is_finite()) {
         return f64::NAN;
     }
@@ -102,12 +103,12 @@ fn less(x: f64) -> f64 {
 }
 
 /// Largest indentation in m of a Hertz contact met at `speed` (m/s) by a reduced mass `mass` (kg): (5Mv²/4k)^{2/5}.
-pub fn hertz_depth(stiffness: f64, mass: f64, speed: f64) -> f64 {
+pub(crate) fn hertz_depth(stiffness: f64, mass: f64, speed: f64) -> f64 {
     (1.25 * mass * speed * speed / stiffness).powf(0.4)
 }
 
 /// Duration in s of a Hertz contact: 2.9432 times its largest indentation over the speed, the factor being (4√π/5)Γ(2/5)/Γ(9/10).
-pub fn hertz_duration(stiffness: f64, mass: f64, speed: f64) -> f64 {
+pub(crate) fn hertz_duration(stiffness: f64, mass: f64, speed: f64) -> f64 {
     2.943_275_184_324_705 * hertz_depth(stiffness, mass, speed) / speed
 }
 

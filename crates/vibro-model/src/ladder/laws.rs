@@ -5,7 +5,7 @@ use crate::{ContactKeys, Law, Rig, Scene};
 use vibro_record::{Error, Result};
 
 /// Exponent of two curved bodies.
-pub const HERTZ: f64 = 1.5;
+pub(crate) const HERTZ: f64 = 1.5;
 
 /// Keys of the contact; all unknown where there is none.
 pub fn keys(scene: &Scene) -> ContactKeys {
@@ -13,7 +13,7 @@ pub fn keys(scene: &Scene) -> ContactKeys {
 }
 
 /// Whether the contact is stated to be other than a spring.
-pub fn is_curved(scene: &Scene) -> bool {
+pub(crate) fn is_curved(scene: &Scene) -> bool {
     keys(scene).exponent.is_some_and(|n| n != 1.0)
 }
 

@@ -14,9 +14,9 @@ use std::f64::consts::{PI, TAU};
 use vibro_record::{Error, Result};
 
 /// Cycles up to which motions with one impact are looked for in closed form.
-pub const MOST_CYCLES: u32 = 6;
+pub(crate) const MOST_CYCLES: u32 = 6;
 /// Cycles after which no further state is started from.
-pub const MOST_FOLLOWED: u32 = 40_000;
+pub(crate) const MOST_FOLLOWED: u32 = 40_000;
 /// Part of the speeds by which a motion starts beside an orbit.
 const BESIDE: f64 = 0.02;
 

@@ -97,7 +97,7 @@ impl Reader {
 
     /// The same, for a rig whose motion without impacts stays clear of the other mass by `clearance` (m): no motion without impacts is
     /// taken as settled that may yet come nearer.
-    pub fn clear_by(self, clearance: Option<f64>) -> Reader {
+    pub(crate) fn clear_by(self, clearance: Option<f64>) -> Reader {
         Reader { clearance, ..self }
     }
 

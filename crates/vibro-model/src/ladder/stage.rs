@@ -114,7 +114,7 @@ impl Stage<'_> {
     }
 
     /// The same with the contact's duration.
-    pub fn soft_corrected(&self, motions: &Motions, closed: &Outcome) -> Outcome {
+    pub(crate) fn soft_corrected(&self, motions: &Motions, closed: &Outcome) -> Outcome {
         if laws::is_curved(self.scene) {
             return Outcome::not(Finding::note("spring-needed"));
         }
@@ -189,7 +189,7 @@ impl Stage<'_> {
     }
 
     /// Curved bodies that meet for as long as the spring that is stated and rebound alike, in place of an exponent that is not stated.
-    pub fn curved_alike(&self, motions: &Motions) -> Outcome {
+    pub(crate) fn curved_alike(&self, motions: &Motions) -> Outcome {
         let speed = motions.reading.speed;
         let Some(stiffness) = laws::keys(self.scene).stiffness.filter(|_| speed > 0.0) else {
             return Outcome::not(Finding::note("impacts-missing"));
@@ -223,7 +223,7 @@ impl Stage<'_> {
     }
 
     /// What a spring and damper of this stiffness (N/m) gives, from where the motion with impacts at once had settled.
-    pub fn with_spring(&self, motions: &Motions, stiffness: f64) -> Result<Answer> {
+    pub(crate) fn with_spring(&self, motions: &Motions, stiffness: f64) -> Result<Answer> {
         Ok(self.with(motions, self.scene.spring(stiffness)?)?.0.answer)
     }
 
@@ -249,7 +249,7 @@ impl Stage<'_> {
     }
 
     /// A mass 1 loose on its spring, from rest; with the contact's spring and damper where they are known.
-    pub fn loose_mass(&self, stiffness: Option<f64>) -> Outcome {
+    pub(crate) fn loose_mass(&self, stiffness: Option<f64>) -> Outcome {
         let Some(buffer) = self.scene.buffer else {
             return Outcome::not(Finding::note("buffer-missing"));
         };

@@ -36,7 +36,7 @@ impl Quadratic {
     }
 
     /// Whether it has roots.
-    pub fn has_roots(&self) -> bool {
+    pub(crate) fn has_roots(&self) -> bool {
         self.a > 0.0 && self.discriminant >= 0.0
     }
 

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use vibro_record::{Error, Result};
 
 /// The longest part of the period in contact for which the correction was checked.
-pub const LONGEST_CONTACT: f64 = 0.025;
+pub(crate) const LONGEST_CONTACT: f64 = 0.025;
 
 /// A contact of spring k₃ and damper c₃ (Kelvin and Voigt) that cannot pull, as two masses M meet it alone.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -91,7 +91,7 @@ impl Stretch {
     /// slopes s lies no zero where parabolas of the largest curvature M cannot bring both ends down to it, one where f changes its sign
     /// and s cannot; what is neither is halved. Pairs closer than a millionth of the duration may be taken for none: between them the
     /// signal changes by less than M(1e-6 duration)³.
-    pub fn each_turn(&self, duration: f64, mut visit: impl FnMut(Signal, f64, f64, f64)) {
+    pub(crate) fn each_turn(&self, duration: f64, mut visit: impl FnMut(Signal, f64, f64, f64)) {
         let fastest = self.oscillators.iter().map(|o| o.omega2().sqrt()).fold(self.omega, f64::max);
         // At 0.35 a step, the cubic through both ends errs by 0.35⁴/384 = 4e-5 of the rate.
         let steps = (fastest * duration / 0.35).ceil().max(1.0);

@@ -64,7 +64,7 @@ impl System {
     }
 
     /// What is left of the 2p equations at `u` = (θ₁ … θₚ, J₁ … Jₚ in units of [`System::impulse`]), and the Jacobian.
-    pub fn evaluate(&self, u: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
+    pub(crate) fn evaluate(&self, u: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
         let p = u.len() / 2;
         let unit = self.impulse();
         let (far, fast) = (1.0 / self.length, 1.0 / (self.length * self.omega));
@@ -104,7 +104,7 @@ impl System {
     }
 
     /// Free parts (displacement, velocity) of both masses just after impact `i`.
-    pub fn free_after(&self, u: &DVector<f64>, i: usize) -> [(f64, f64); 2] {
+    pub(crate) fn free_after(&self, u: &DVector<f64>, i: usize) -> [(f64, f64); 2] {
         let p = u.len() / 2;
         let unit = self.impulse();
         let mut free = [(0.0, 0.0); 2];

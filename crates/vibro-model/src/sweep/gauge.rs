@@ -30,7 +30,7 @@ impl Observable {
 }
 
 /// Corner of the running mean square's low-pass in rad/s.
-pub const LOW_PASS: f64 = 10.0;
+pub(crate) const LOW_PASS: f64 = 10.0;
 
 /// Samples a cycle of the excitation, or a swing of the faster mass where that is shorter. Displacements and velocities are both sampled, so between two samples the motion is a cubic (its peaks err by
 /// h⁴/384 of the fourth derivative, 4e-6 of the amplitude for h = 2π/32) and integrals are trapezes with end corrections, whose
@@ -106,7 +106,7 @@ impl Gauge {
     }
 
     /// Whether it must see the whole motion, not only the cycles measured.
-    pub fn needs_all(&self) -> bool {
+    pub(crate) fn needs_all(&self) -> bool {
         self.observable == Observable::Rms
     }
 

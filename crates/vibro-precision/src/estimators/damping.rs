@@ -131,7 +131,7 @@ fn many(
 }
 
 /// What methods for damping do at their borders.
-pub fn cells_of_damping(quick: bool) -> Vec<Task> {
+pub(crate) fn cells_of_damping(quick: bool) -> Vec<Task> {
     let narrow = [0.01, 0.1, 0.3, 0.5, 1.0]
         .map(|n| Kind::new(format!("bandwidth of {n} lines"), 22_000, lines(n, 0.01)));
     let noise = [0.1, 0.3, 1.0]

@@ -250,7 +250,7 @@ fn scattered(count: usize) -> Vec<usize> {
 }
 
 /// What methods for impacts do at their borders.
-pub fn cells_of_impacts(quick: bool) -> Vec<Task> {
+pub(crate) fn cells_of_impacts(quick: bool) -> Vec<Task> {
     let plain = Train::default;
     let kind = |name: &str, train: Train| changed(name, train, |_, _| ());
     let ringing = [0.3, 0.6, 0.9]

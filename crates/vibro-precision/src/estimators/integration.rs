@@ -174,7 +174,7 @@ pub fn scenes(quick: bool) -> Vec<Scene> {
 }
 
 /// What methods of integration do at their borders.
-pub fn cells_of_integration(quick: bool) -> Vec<Task> {
+pub(crate) fn cells_of_integration(quick: bool) -> Vec<Task> {
     let kind = |name: &str, n, band, faults| Kind::new(name, 41_000, vibration(n, band, faults));
     let usual = (15.0, 25.0);
     let level = [

@@ -155,7 +155,7 @@ fn changed(name: &str, change: impl Fn(&mut Pulse, &mut Noise) + Send + Sync + '
 }
 
 /// What methods for pulses do at their borders.
-pub fn cells_of_pulses(quick: bool) -> Vec<Task> {
+pub(crate) fn cells_of_pulses(quick: bool) -> Vec<Task> {
     let damped = |xi: f64| {
         let rho = KelvinVoigt::new(xi, FREQUENCY).and_then(|k| Some(k.time_to_peak()? / k.duration()));
         let rho = rho.map_or("no peak".to_owned(), |r| format!("ρ = {r:.3}"));

@@ -1,7 +1,7 @@
 //! How often a method's errors are larger than it states.
 
 /// An answer within so many of its standard uncertainties is right.
-pub const WITHIN: f64 = 3.0;
+pub(crate) const WITHIN: f64 = 3.0;
 /// Share of normal errors that lie further off.
 pub const OUTSIDE: f64 = 2.699_796e-3;
 /// Share of errors that lie further off where the standard uncertainty comes from 30 free residuals (Student's distribution).

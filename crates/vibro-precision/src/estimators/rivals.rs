@@ -91,7 +91,7 @@ pub fn detrended(values: &[f64]) -> Vec<f64> {
 }
 
 /// Half of the distance from the lowest to the highest value.
-pub fn half_swing(values: &[f64]) -> f64 {
+pub(crate) fn half_swing(values: &[f64]) -> f64 {
     let (low, high) =
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
     0.5 * (high - low)

@@ -282,7 +282,7 @@ fn changed(name: &str, change: impl Fn(&mut Vec<f64>, &mut Noise) + Send + Sync 
 }
 
 /// What methods for sines do at their borders.
-pub fn cells_of_sines(quick: bool) -> Vec<Task> {
+pub(crate) fn cells_of_sines(quick: bool) -> Vec<Task> {
     let noise = [0.0, -10.0, -20.0, -30.0]
         .map(|db| Kind::new(format!("{db} dB"), 12_000, anywhere(N, db, |line| line)));
     let short = [0.5, 0.9, 1.2, 1.6, 2.5].map(|p| at(&format!("{p} periods"), 256, p, 0.0, 40.0));

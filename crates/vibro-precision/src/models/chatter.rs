@@ -13,10 +13,11 @@ use crate::{Family, Scene};
 use vibro_model::{Rig, State};
 
 /// End of the first chatter, release, and end of the second chatter in s, by arithmetic with 40 digits.
-pub const GOLDEN: [f64; 3] = [0.152_721_089_353_360_45, 0.220_247_418_265_660_51, 0.574_521_373_816_090_7];
+pub(crate) const GOLDEN: [f64; 3] =
+    [0.152_721_089_353_360_45, 0.220_247_418_265_660_51, 0.574_521_373_816_090_7];
 
 /// The pre-loaded rig from x₁ = −2 mm.
-pub fn task() -> Task {
+pub(crate) fn task() -> Task {
     let rig = Rig { gap: -5e-4, ..Rig::thesis() };
     let frequency = 0.45 * (rig.k1 / rig.m1).sqrt() / TAU;
     Task { start: State { x1: -2e-3, ..State::REST }, most: 500_000, ..Task::sine(rig, 0.35, frequency, 0.6) }

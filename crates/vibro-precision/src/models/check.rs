@@ -13,7 +13,7 @@ pub type Found = (Outcome, String);
 
 /// What every method may be off: this part of a cycle in times, this part of the fastest approach speed in all of them. It is what a fixed step of a
 /// thousandth of a cycle comes to within some impacts, and twenty times what a millimetre scale would show.
-pub const ALLOWED: f64 = 0.01;
+pub(crate) const ALLOWED: f64 = 0.01;
 
 /// Approach speed in m/s from which an impact must be told.
 const SLOW: f64 = 1e-3;

@@ -22,7 +22,7 @@ const STARTS: usize = 8;
 ///
 /// # Errors
 /// As [`Steady::new`].
-pub fn task(depth: f64, start: usize) -> vibro_record::Result<(Task, Option<f64>)> {
+pub(crate) fn task(depth: f64, start: usize) -> vibro_record::Result<(Task, Option<f64>)> {
     let rig = Rig::thesis();
     let frequency = 2.1 * (rig.k1 / rig.m1).sqrt() / TAU;
     let steady = Steady::new(&rig, &Sine { force: 0.5, frequency })?;

@@ -13,7 +13,9 @@ mod stepper;
 #[cfg(feature = "diffsol")]
 pub use self::diffsol::{Diffsol, contacts, impacts};
 pub use events::{Events, events};
-pub use loops::{Loop, marched};
-pub use moreau::moreau;
-pub use penalty::{Spring, penalty, sprung};
+pub use loops::Loop;
+pub(crate) use loops::marched;
+pub(crate) use moreau::moreau;
+pub(crate) use penalty::sprung;
+pub use penalty::{Spring, penalty};
 pub use stepper::{Kind, Stepper, Taken};

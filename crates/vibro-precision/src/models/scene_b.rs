@@ -15,7 +15,7 @@ use vibro_model::contact::conversion::damping_ratio;
 use vibro_record::Error;
 
 /// Number, time in s and approach speed in m/s of impacts, by arithmetic with 40 digits (Newton on the equations of motion).
-pub const GOLDEN: [(usize, f64, f64); 5] = [
+pub(crate) const GOLDEN: [(usize, f64, f64); 5] = [
     (1, 0.030_744_282_246_676_34, 0.078_330_829_224_466_23),
     (2, 0.144_162_776_471_947_4, 0.147_727_906_853_932_83),
     (3, 0.237_270_475_783_159_57, 0.233_773_950_612_516_77),
@@ -24,7 +24,7 @@ pub const GOLDEN: [(usize, f64, f64); 5] = [
 ];
 
 /// The motion from rest.
-pub fn task(until: f64) -> Task {
+pub(crate) fn task(until: f64) -> Task {
     let rig = Rig::thesis();
     Task::sine(rig, 0.5, 2.1 * (rig.k1 / rig.m1).sqrt() / TAU, until)
 }

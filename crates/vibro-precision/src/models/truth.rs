@@ -11,7 +11,8 @@ mod mode;
 mod repeats;
 
 pub use course::{Course, Met, Start};
-pub use definition::{CLOSES, Growth, growth, impacts};
+pub(crate) use definition::CLOSES;
+pub use definition::{Growth, growth, impacts};
 pub use repeats::{Repeats, repeats, settled};
 
 use super::rivals::Spring;

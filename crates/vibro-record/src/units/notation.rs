@@ -146,16 +146,6 @@ pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
     format!("{} {}", significant(value / 10f64.powi(exponent), digits), scaled_unit(unit, exponent))
 }
 
-/// A quantity with its standard uncertainty, `8.63 Hz ± 2.9 mHz`; with three digits where that is not known.
-pub fn with_std(value: f64, std: Option<f64>, unit: &str) -> String {
-    let Some(std) = std.filter(|s| s.is_finite() && *s > 0.0 && value.is_finite()) else {
-        return quantity(value, unit, 3);
-    };
-    // Digits down to the second of the uncertainty.
-    let digits = (value.abs() / std).max(1.0).log10().floor() as usize + 2;
-    format!("{} ± {}", quantity(value, unit, digits.min(DIGITS as usize)), quantity(std, unit, 2))
-}
-
 /// The reference of a level: a number from 1 to below 1000 in a unit with a prefix, as `1 µm/s`; 0.1 is 100 of the smaller unit.
 ///
 /// ```
@@ -258,13 +248,6 @@ fn scientific(value: f64, digits: usize) -> (String, i32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_quantity_has_the_digits_that_its_uncertainty_leaves() {
-        assert_eq!(with_std(8.63, Some(2.9e-3), "Hz"), "8.6300 Hz ± 2.9 mHz");
-        assert_eq!(with_std(0.071, Some(0.003), "Hz"), "71.0 mHz ± 3.0 mHz");
-        assert_eq!(with_std(0.071, None, "Hz"), "71.0 mHz");
-    }
 
     #[test]
     fn the_uncertainty_has_two_digits_and_sets_those_of_the_value() {

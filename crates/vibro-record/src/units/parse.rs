@@ -239,7 +239,7 @@ fn symbol(name: &str) -> Option<Parsed> {
 }
 
 /// Spelling of a dimension without a name: base units with exponents, e.g. `m²·s⁻³`.
-pub fn spell(dimension: Dimension) -> String {
+pub(crate) fn spell(dimension: Dimension) -> String {
     let names = ["m", "kg", "s", "A", "K", "rad"];
     let parts: Vec<String> = names
         .iter()

@@ -108,7 +108,7 @@ fn stiffness(choice: &Choice, question: &Question) -> Plot {
 ///
 /// # Errors
 /// As [`Heatmap::classes`].
-pub fn ladder_over(survey: &Survey, question: &Question) -> Result<Figure> {
+pub(crate) fn ladder_over(survey: &Survey, question: &Question) -> Result<Figure> {
     let points = &survey.points;
     let x: Vec<f64> = points.iter().map(|c| c.frequency).collect();
     // Rungs that are nowhere valid stand for nothing here, if they are above all that are.

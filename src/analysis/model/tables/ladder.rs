@@ -110,7 +110,7 @@ pub fn stretches(stretches: &[Stretch]) -> Table {
 }
 
 /// Which model is good enough where along the sweeps of a campaign.
-pub fn climbed(overlay: &Overlay) -> Table {
+pub(crate) fn climbed(overlay: &Overlay) -> Table {
     let rows: Vec<(&Rungs, &Stretch)> =
         overlay.rungs.iter().flat_map(|r| r.stretches.iter().map(move |s| (r, s))).collect();
     table(
@@ -132,12 +132,12 @@ pub fn climbed(overlay: &Overlay) -> Table {
 }
 
 /// Where a rung is valid and chosen.
-pub fn where_chosen(rung: &Summary, points: usize) -> String {
+pub(crate) fn where_chosen(rung: &Summary, points: usize) -> String {
     format!("Valid at {} and chosen at {} of {points} points.", rung.valid_at, rung.chosen_at)
 }
 
 /// Each rung over the whole axis.
-pub fn summaries(survey: &Survey) -> Table {
+pub(crate) fn summaries(survey: &Survey) -> Table {
     table(
         "Rungs",
         &survey.rungs,

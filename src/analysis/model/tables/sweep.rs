@@ -33,7 +33,7 @@ pub fn sweep(swept: &Swept) -> Table {
 }
 
 /// Resonances and jumps of both masses.
-pub fn sweep_named(resonances: &[Named<Resonance>], jumps: &[Named<Jump>]) -> Table {
+pub(crate) fn sweep_named(resonances: &[Named<Resonance>], jumps: &[Named<Jump>]) -> Table {
     let head = [("mass", ""), ("direction", ""), ("kind", ""), ("frequency", "Hz"), ("amplitude", "m")];
     let mut table = headed("Resonances and jumps", &head);
     for r in resonances {
@@ -131,7 +131,7 @@ pub fn followed(branch: &Branch, observable: Observable) -> Followed {
 }
 
 /// Branches, point by point.
-pub fn branch_points(branches: &[Branch], observable: Observable) -> Table {
+pub(crate) fn branch_points(branches: &[Branch], observable: Observable) -> Table {
     let head = [
         ("branch", ""),
         ("frequency", "Hz"),

@@ -50,7 +50,7 @@ pub fn fit_points(fit: &Fit) -> Table {
 }
 
 /// Models by what they predict of points held out.
-pub fn fit_rungs(fit: &Fit) -> Table {
+pub(crate) fn fit_rungs(fit: &Fit) -> Table {
     let percent = |value: Option<f64>| Cell::from(value.map(|v| 100.0 * v));
     table(
         "Models by hold-out error",

@@ -18,7 +18,7 @@ pub enum Loop {
 ///
 /// # Errors
 /// If the budget is spent.
-pub fn marched(task: &Task, kind: Loop, n: f64) -> Result<Told, Fault> {
+pub(crate) fn marched(task: &Task, kind: Loop, n: f64) -> Result<Told, Fault> {
     let h = task.cycle() / n;
     let steps = (task.until / h).ceil();
     if steps > task.most as f64 {

@@ -9,7 +9,7 @@ use super::loops::rests;
 ///
 /// # Errors
 /// If the budget is spent.
-pub fn moreau(task: &Task, n: f64) -> Result<Told, Fault> {
+pub(crate) fn moreau(task: &Task, n: f64) -> Result<Told, Fault> {
     let h = task.cycle() / n;
     let steps = (task.until / h).ceil();
     if steps > task.most as f64 {

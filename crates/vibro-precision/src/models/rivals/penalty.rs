@@ -81,7 +81,7 @@ enum Stage {
 ///
 /// # Errors
 /// If the budget is spent, no step is small enough, or the steps have no dense output.
-pub fn sprung(task: &Task, spring: &Spring, kind: Kind) -> Result<Told, Fault> {
+pub(crate) fn sprung(task: &Task, spring: &Spring, kind: Kind) -> Result<Told, Fault> {
     let (k, c, gap) = (spring.stiffness, spring.damping, task.rig.gap);
     let pushes = [k, c, -k, -c];
     let negative = |w: [f64; 4]| w.map(|w| -w);

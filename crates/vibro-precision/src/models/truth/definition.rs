@@ -10,7 +10,7 @@ use super::mode::LENGTH;
 use super::repeats::Repeats;
 
 /// How well a motion is known, in parts of its size: far above the rounding of 512 steps, 1e-12, and far below what anybody could measure.
-pub const CLOSES: f64 = 1e-8;
+pub(crate) const CLOSES: f64 = 1e-8;
 /// Largest gain of one impact on the next up to which that holds.
 const GAIN: f64 = 1e3;
 

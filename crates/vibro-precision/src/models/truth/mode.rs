@@ -13,7 +13,7 @@ pub type Row = [f64; SIZE];
 /// Longest steps in a cycle.
 const STEPS: f64 = 512.0;
 /// Halvings to the shortest step: 2⁻⁴⁶ of 1/5000 s is below the rounding of a time of 0.1 s.
-pub const DEEPEST: usize = 46;
+pub(crate) const DEEPEST: usize = 46;
 /// Length in m by which displacements are scaled, so that all coordinates are of order 1.
 pub const LENGTH: f64 = 1e-3;
 
