@@ -1,6 +1,6 @@
 //! The only place where findings become sentences.
 //!
-//! One sentence a code, in the tables of this folder. A sentence is a template; in braces stands a fact of the finding:
+//! One sentence a code, in the tables of `docs/findings.md`. A sentence is a template; in braces stands a fact of the finding:
 //!
 //! | written | shown |
 //! |---|---|
@@ -15,36 +15,21 @@
 //! | `[refractory]` | a setting: `--refractory` for the command, `refractory` for a campaign |
 //! | `<, at {time s}>` | left out where the fact is missing |
 
-mod campaign;
-mod drill;
-mod files;
-mod fit;
-mod impacts;
-mod modal;
-mod model;
-mod pulse;
-mod restitution;
-mod signal;
-mod sweep;
-
 use crate::record::{Fact, Finding, Severity};
 use crate::units::notation::{quantity, significant};
 use serde_json::Value;
+use std::collections::HashMap;
+use std::sync::LazyLock;
 
-/// All sentences by the code of their finding.
-const TABLES: [&[(&str, &str)]; 11] = [
-    campaign::WORDS,
-    drill::WORDS,
-    files::WORDS,
-    fit::WORDS,
-    impacts::WORDS,
-    modal::WORDS,
-    model::WORDS,
-    pulse::WORDS,
-    restitution::WORDS,
-    signal::WORDS,
-    sweep::WORDS,
-];
+/// The sentence of each code, as `docs/findings.md` lists them.
+static SENTENCES: LazyLock<HashMap<&str, &str>> = LazyLock::new(|| {
+    let rows = include_str!("../../docs/findings.md").lines().filter_map(|line| line.strip_prefix("| `"));
+    let cells = |row: &'static str| {
+        let (code, rest) = row.strip_suffix(" |")?.split_once("` | ")?;
+        Some((code, rest.split_once(" | ")?.1))
+    };
+    rows.filter_map(cells).collect()
+});
 
 /// Who reads the sentence, and so how settings are named.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,8 +57,7 @@ pub fn sentence(finding: &Finding, voice: Voice) -> String {
 }
 
 fn said(code: &str, told: &Told<'_>) -> String {
-    let template = TABLES.iter().flat_map(|table| table.iter()).find(|(known, _)| *known == code);
-    template.map_or_else(|| code.to_owned(), |(_, text)| told.filled(text))
+    SENTENCES.get(code).map_or_else(|| code.to_owned(), |text| told.filled(text))
 }
 
 /// Adds `warnings` to each object of an answer that has `findings`: the sentences of those that are not notes.
@@ -316,11 +300,9 @@ mod tests {
     }
 
     #[test]
-    fn no_code_has_two_sentences() {
-        let mut codes: Vec<&str> = TABLES.iter().flat_map(|t| t.iter()).map(|(code, _)| *code).collect();
-        codes.sort_unstable();
-        let twice: Vec<&&str> = codes.windows(2).filter(|w| w[0] == w[1]).map(|w| &w[0]).collect();
-        assert!(twice.is_empty(), "{twice:?}");
+    fn every_row_of_the_documentation_is_read_and_no_code_has_two() {
+        let rows = include_str!("../../docs/findings.md").lines().filter(|line| line.starts_with("| `"));
+        assert_eq!(rows.count(), SENTENCES.len());
     }
 
     #[test]
@@ -358,23 +340,9 @@ mod tests {
         let mut codes = Vec::new();
         made(&root.join("src"), &mut codes);
         made(&root.join("crates"), &mut codes);
-        let known: Vec<&str> = TABLES.iter().flat_map(|t| t.iter()).map(|(code, _)| *code).collect();
-        let silent: Vec<&String> = codes.iter().filter(|c| !known.contains(&c.as_str())).collect();
+        let silent: Vec<&String> = codes.iter().filter(|c| !SENTENCES.contains_key(c.as_str())).collect();
         assert!(silent.is_empty(), "no sentence for {silent:?}");
-        let unused: Vec<&&str> = known.iter().filter(|c| !codes.iter().any(|made| made == *c)).collect();
+        let unused: Vec<&&str> = SENTENCES.keys().filter(|c| !codes.iter().any(|made| made == *c)).collect();
         assert!(unused.is_empty(), "no finding for {unused:?}");
-    }
-
-    #[test]
-    fn the_documentation_lists_every_code() {
-        let listed: Vec<&str> = include_str!("../../docs/findings.md")
-            .lines()
-            .filter_map(|line| line.strip_prefix("| `")?.split('`').next())
-            .collect();
-        let known: Vec<&str> = TABLES.iter().flat_map(|t| t.iter()).map(|(code, _)| *code).collect();
-        let differs: Vec<&&str> = known.iter().filter(|c| !listed.contains(c)).collect();
-        assert!(differs.is_empty(), "not in docs/findings.md: {differs:?}");
-        let gone: Vec<&&str> = listed.iter().filter(|c| !known.contains(c)).collect();
-        assert!(gone.is_empty(), "only in docs/findings.md: {gone:?}");
     }
 }
