@@ -36,12 +36,13 @@ use answer::Answer;
 use compliance::corrected;
 use data::Data;
 use hold_out::rungs;
+use problem::Problem;
 use rayon::prelude::*;
-use search::{End, around, search};
+use search::End;
 use setting::Setting;
-use settle::{Settled, enough, settle};
+use settle::Settled;
 use uncertainty::Uncertainty;
-use unknown::{Unknown, coordinates};
+use unknown::Unknown;
 
 /// Starting points where none are asked for.
 const STARTS: usize = 8;
@@ -68,11 +69,11 @@ pub fn fit(
     entry: &FitEntry,
 ) -> Result<Fit> {
     rig.check()?;
-    let mut data = Data::new(force, responses)?;
+    let mut data = Data::new(force, responses, pace)?;
     data.calibration = entry.calibration.unwrap_or(ASSUMED);
     data.scattered(entry.scatter.unwrap_or(0.0));
     let base = Setting { rig: *rig, force: data.force };
-    found(&data, &base, contact, responses, entry, pace)
+    found(&data, &base, contact, responses, entry)
 }
 
 /// As [`fit`], from points that have been taken.
@@ -82,42 +83,36 @@ fn found(
     contact: Option<f64>,
     responses: &[Response],
     entry: &FitEntry,
-    pace: Pace,
 ) -> Result<Fit> {
-    let unknowns = Unknown::all(entry, base)?;
+    let problem = Problem::new(data, base, Unknown::all(entry, base)?);
     let starts = entry.starts.unwrap_or(STARTS);
-    let (rigid, ends) = identify(data, base, &unknowns, starts, pace)?;
-    let corrected = contact.map(|stiffness| corrected(&rigid, stiffness, pace)).transpose()?;
-    let (answer, rungs) = match &corrected {
-        None => (Answer::new(rigid.clone(), None)?, rungs(&rigid, None, responses, pace)),
-        Some(soft) => {
-            let settled = settle(&soft.data, base, &unknowns, &soft.u, pace)?;
-            let rungs = rungs(&rigid, Some(&settled), responses, pace);
-            (Answer::new(settled, Some(soft.lost))?, rungs)
-        }
-    };
+    let (rigid, ends) = identify(&problem, starts)?;
+    let corrected = contact.map(|stiffness| corrected(&rigid, stiffness)).transpose()?;
+    let soft = corrected.as_ref().map(|soft| {
+        Problem::new(&soft.data, base, problem.unknowns.clone())
+            .settle(&soft.u)
+            .map(|found| (found, soft.lost))
+    });
+    let soft = soft.transpose()?;
+    let rungs = rungs(&rigid, soft.as_ref().map(|soft| &soft.0), responses);
+    let agreeing = agreeing(&ends, &rigid)?;
+    let (settled, lost) = soft.map_or((rigid, None), |(settled, lost)| (settled, Some(lost)));
+    let answer = Answer::new(settled, lost)?;
     let doubts = answer.doubts();
     let mut fit = answer.fit(base, doubts.first().map(|doubt| doubt.code));
-    (fit.starts, fit.agreeing, fit.rungs) = (starts, agreeing(&ends, &rigid)?, rungs);
+    (fit.starts, fit.agreeing, fit.rungs) = (starts, agreeing, rungs);
     let rest = answer.cautions(&fit, entry);
     fit.findings = doubts.into_iter().chain(rest).collect();
     Ok(fit)
 }
 
 /// The best answer of several starts, and where each start ended.
-fn identify<'a>(
-    data: &'a Data,
-    base: &Setting,
-    unknowns: &[Unknown],
-    starts: usize,
-    pace: Pace,
-) -> Result<(Settled<'a>, Vec<Vec<f64>>)> {
-    enough(data.clear(), unknowns)?;
+fn identify<'a>(problem: &Problem<'a>, starts: usize) -> Result<(Settled<'a>, Vec<Vec<f64>>)> {
+    problem.enough(problem.data.clear())?;
     // Where the rig is known well, no search is nearer than the rig itself: it counts as an end that no start reached.
-    let stated = End { u: coordinates(base, unknowns), starts: 0 };
-    let reached: Vec<End> = search(data, base, unknowns, starts).into_iter().chain([stated]).collect();
-    let found: Vec<Result<Settled<'a>>> =
-        reached.par_iter().map(|end| settle(data, base, unknowns, &end.u, pace)).collect();
+    let stated = End { u: problem.coordinates(&problem.base), starts: 0 };
+    let reached: Vec<End> = problem.search(starts).into_iter().chain([stated]).collect();
+    let found: Vec<Result<Settled<'a>>> = reached.par_iter().map(|end| problem.settle(&end.u)).collect();
     let end = |(found, end): (&Result<Settled<'a>>, &End)| {
         Some(vec![found.as_ref().ok()?.least.minimum.parameters.clone(); end.starts])
     };
@@ -127,8 +122,8 @@ fn identify<'a>(
         if idle == IDLE {
             break;
         }
-        let places = around(base, unknowns, &best.least.minimum.parameters, turn);
-        match nearest(places.par_iter().map(|u| settle(data, base, unknowns, u, pace)).collect()) {
+        let places = problem.around(&best.least.minimum.parameters, turn);
+        match nearest(places.par_iter().map(|u| problem.settle(u)).collect()) {
             Ok(next) if next.unexplained < best.unexplained - BETTER => (best, idle) = (next, 0),
             _ => idle += 1,
         }

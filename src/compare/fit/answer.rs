@@ -159,8 +159,7 @@ impl Answer<'_> {
                 frequency: step.frequency,
                 motion: kind,
                 measured: reading.amplitude * reading.compliance,
-                fitted: setting.shows(kind, setting.force_at(problem.data, step), step.frequency)[*mass]
-                    * reading.compliance,
+                fitted: problem.data.shows(&setting, kind, step)[*mass] * reading.compliance,
                 residual: *residual * stated,
             })
         });

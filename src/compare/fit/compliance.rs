@@ -1,13 +1,11 @@
 //! The compliance of the contact, taken out of the points.
 
 use super::super::prediction::Kind;
-use super::super::simulated::Pace;
 use super::data::{Data, Reading, Step};
 use super::motion::assigned;
 use super::problem::Problem;
 use super::setting::Setting;
-use super::settle::{Settled, settle};
-use super::unknown::coordinates;
+use super::settle::Settled;
 use crate::error::Result;
 use crate::model::{Compliance, Excitation, Sine, orbits, shown, softened};
 use std::f64::consts::PI;
@@ -35,25 +33,24 @@ pub struct Corrected {
 ///
 /// # Errors
 /// If too few points are left.
-pub fn corrected(answer: &Settled<'_>, stiffness: f64, pace: Pace) -> Result<Corrected> {
+pub fn corrected(answer: &Settled<'_>, stiffness: f64) -> Result<Corrected> {
     // A rigid answer may be a rig whose contacts last too long to be corrected: then from the rig as it was stated.
-    let found = corrected_from(answer, &answer.setting(), stiffness, pace);
+    let found = corrected_from(answer, &answer.setting(), stiffness);
     if found.as_ref().is_ok_and(|found| found.lost == 0) {
         return found;
     }
-    match (found, corrected_from(answer, &answer.least.problem.base, stiffness, pace)) {
+    match (found, corrected_from(answer, &answer.least.problem.base, stiffness)) {
         (Ok(a), Ok(b)) => Ok(if b.lost < a.lost { b } else { a }),
-        (Err(_), other) => other,
-        (found, Err(_)) => found,
+        (found, other) => other.or(found),
     }
 }
 
-fn corrected_from(answer: &Settled<'_>, from: &Setting, stiffness: f64, pace: Pace) -> Result<Corrected> {
+fn corrected_from(answer: &Settled<'_>, from: &Setting, stiffness: f64) -> Result<Corrected> {
     let problem = &answer.least.problem;
-    let mut now = without(problem, problem.data, from, stiffness, pace)?;
+    let mut now = without(problem, problem.data, from, stiffness)?;
     for _ in 0..ROUNDS {
-        let settled = settle(&now.data, &problem.base, &problem.unknowns, &now.u, pace)?;
-        let next = without(problem, &now.data, &settled.setting(), stiffness, pace)?;
+        let settled = Problem::new(&now.data, &problem.base, problem.unknowns.clone()).settle(&now.u)?;
+        let next = without(problem, &now.data, &settled.setting(), stiffness)?;
         let still = change(&now.data, &next.data) <= STILL;
         now = next;
         if still {
@@ -65,20 +62,14 @@ fn corrected_from(answer: &Settled<'_>, from: &Setting, stiffness: f64, pace: Pa
 
 /// The points of the problem without what the contact makes of them in this setting. The motions are those of `latest` points: uncorrected
 /// ones may be outliers for want of the correction.
-fn without(
-    problem: &Problem<'_>,
-    latest: &Data,
-    setting: &Setting,
-    stiffness: f64,
-    pace: Pace,
-) -> Result<Corrected> {
-    let kinds = assigned(latest, setting, pace)?.kinds;
+fn without(problem: &Problem<'_>, latest: &Data, setting: &Setting, stiffness: f64) -> Result<Corrected> {
+    let kinds = assigned(latest, setting, latest.pace)?.kinds;
     let (mut data, mut lost) = (problem.data.clone(), 0);
     for (step, kind) in data.steps.iter_mut().zip(kinds) {
         if kind != Some(Kind::Impacting) {
             continue;
         }
-        let force = step.force * setting.force / problem.data.force;
+        let force = problem.data.force_at(setting, step);
         let Some((factors, left)) = factors(setting, stiffness, force, step.frequency) else {
             lost += Step::clear(step).count();
             step.readings = [None, None];
@@ -93,7 +84,7 @@ fn without(
             }
         }
     }
-    Ok(Corrected { data, lost, u: coordinates(setting, &problem.unknowns) })
+    Ok(Corrected { data, lost, u: problem.coordinates(setting) })
 }
 
 /// Largest change of an amplitude in standard deviations.

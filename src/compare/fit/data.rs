@@ -1,6 +1,9 @@
 //! The measured points of a fit, both masses of one step together.
 
 use super::super::forcing::{Forcing, median};
+use super::super::prediction::Kind;
+use super::super::simulated::Pace;
+use super::setting::Setting;
 use crate::error::{Error, Result};
 use crate::measure::response::{Response, ResponsePoint};
 use crate::record::Direction;
@@ -61,17 +64,19 @@ pub struct Data {
     pub without_std: usize,
     /// Whether none has one: the residuals then tell its size.
     pub guessed: bool,
+    /// How long the simulated rig stays at each step.
+    pub pace: Pace,
 }
 
 /// Part of an amplitude that stands for its standard uncertainty where none is known. It is only a weight: the residuals scale it.
 pub(crate) const GUESS: f64 = 1e-2;
 
 impl Data {
-    /// The points of displacement responses that name their mass and direction. `force` in N is the stated one.
+    /// The points of displacement responses that name their mass and direction, their calibration exact. `force` in N is the stated one.
     ///
     /// # Errors
     /// If there is no such response, or no force is known.
-    pub fn new(force: Option<f64>, responses: &[Response]) -> Result<Data> {
+    pub fn new(force: Option<f64>, responses: &[Response], pace: Pace) -> Result<Data> {
         let usable: Vec<(&Response, usize, Direction)> = responses
             .iter()
             .filter(|r| r.quantity == "displacement" && matches!(r.mass, Some(1 | 2)))
@@ -95,6 +100,7 @@ impl Data {
             calibration: 0.0,
             without_std: sweeps.iter().flat_map(|r| &r.points).filter(|p| p.amplitude.std.is_none()).count(),
             guessed: known.is_none(),
+            pace,
         };
         for ((response, mass, direction), forcing) in usable.into_iter().zip(&forcings) {
             data.add(response, mass, direction, forcing, known.unwrap_or(GUESS));
@@ -114,6 +120,16 @@ impl Data {
         if std::mem::take(&mut self.guessed) {
             self.without_std = 0;
         }
+    }
+
+    /// Force in N at a step in this setting.
+    pub fn force_at(&self, setting: &Setting, step: &Step) -> f64 {
+        step.force * setting.force / self.force
+    }
+
+    /// What a spectrum shows of both masses in m at a step, of the motion of this kind.
+    pub fn shows(&self, setting: &Setting, kind: Kind, step: &Step) -> [f64; 2] {
+        setting.shows(kind, self.force_at(setting, step), step.frequency)
     }
 
     /// Amplitudes above the noise floor.

@@ -1,13 +1,11 @@
 //! No more model than the points ask for: models of rising order, each judged by points that it was not fitted to.
 
 use super::super::prediction::Kind;
-use super::super::simulated::Pace;
 use super::data::{Data, Reading};
 use super::motion::assigned;
 use super::problem::Problem;
 use super::setting::Setting;
-use super::settle::{Settled, goodness};
-use super::unknown::coordinates;
+use super::settle::Settled;
 use crate::campaign::Parameter;
 use crate::measure::residuals::aicc;
 use crate::measure::response::Response;
@@ -87,12 +85,7 @@ pub struct Rung {
 /// fitted, and what was held out predicted (blocked cross-validation: D. R. Roberts et al., *Ecography* 40 (2017) 913). Which motion such a
 /// step shows, the simulated sweep of the model's own rig decides. The simplest model within one standard error of the best is chosen
 /// (L. Breiman et al., *Classification and Regression Trees* (1984), 3.4.3).
-pub fn rungs(
-    rigid: &Settled<'_>,
-    soft: Option<&Settled<'_>>,
-    responses: &[Response],
-    pace: Pace,
-) -> Vec<Rung> {
+pub fn rungs(rigid: &Settled<'_>, soft: Option<&Settled<'_>>, responses: &[Response]) -> Vec<Rung> {
     let full = &rigid.least.problem;
     let blocks = blocks(full.data, responses);
     let mut linear = full.clone();
@@ -106,7 +99,7 @@ pub fn rungs(
     models.extend(soft.map(|soft| (FitModel::SoftCorrected, soft.least.problem.clone(), soft)));
     let answer = &soft.unwrap_or(rigid).least.problem;
     let judged = |(model, problem, own): &(FitModel, Problem<'_>, &Settled<'_>)| {
-        rung(*model, problem, &own.setting(), answer, &blocks, pace)
+        rung(*model, problem, &own.setting(), answer, &blocks)
     };
     let mut rungs: Vec<Rung> = models.iter().filter_map(judged).collect();
     let best =
@@ -126,14 +119,13 @@ fn rung(
     from: &Setting,
     answer: &Problem<'_>,
     blocks: &[HeldOut],
-    pace: Pace,
 ) -> Option<Rung> {
     let (own, u) = fitted(problem.clone(), from)?;
     let setting = own.setting(&u);
     // One set of weights, that of the answer, for all models: sums of squares over different ones cannot be compared.
     let off = answer.off(|step, kind| {
         let kind = if model == FitModel::Linear { Kind::Free } else { kind };
-        let mut shows = setting.shows(kind, setting.force_at(answer.data, step), step.frequency);
+        let mut shows = answer.data.shows(&setting, kind, step);
         // A rigid model is compared with what was measured.
         if !std::ptr::eq(problem.data, answer.data) {
             for (shows, reading) in shows.iter_mut().zip(&step.readings) {
@@ -143,14 +135,14 @@ fn rung(
         shows
     });
     let sum = off.iter().map(|r| r * r).sum();
-    let (_, whiteness) = goodness(&own, &own.at(&u));
+    let (_, whiteness) = own.goodness(&own.at(&u));
     let judged = |held: &HeldOut| {
         let mut rest = problem.clone();
         for i in &held.steps {
             rest.kinds[*i] = None;
         }
         let (rest, u) = fitted(rest, from)?;
-        let error = error(problem.data, &rest.setting(&u), model, &held.steps, pace)?;
+        let error = error(problem.data, &rest.setting(&u), model, &held.steps)?;
         Some(Block { feature: held.feature.clone(), frequency: held.frequency, error })
     };
     let blocks: Vec<Block> = blocks.par_iter().filter_map(judged).collect();
@@ -173,7 +165,7 @@ fn rung(
 
 /// A model at its least sum of squares over its steps, with weights of its own; it begins at the setting `from`.
 fn fitted<'a>(mut problem: Problem<'a>, from: &Setting) -> Option<(Problem<'a>, Vec<f64>)> {
-    let mut u = coordinates(from, &problem.unknowns);
+    let mut u = problem.coordinates(from);
     for _ in 0..2 {
         problem.weigh(&u);
         if !u.is_empty() {
@@ -184,12 +176,12 @@ fn fitted<'a>(mut problem: Problem<'a>, from: &Setting) -> Option<(Problem<'a>, 
 }
 
 /// Mean of |ln (measured/predicted)|, 1 at most, of all amplitudes at these steps; `None` where there is none.
-fn error(data: &Data, setting: &Setting, model: FitModel, steps: &[usize], pace: Pace) -> Option<f64> {
+fn error(data: &Data, setting: &Setting, model: FitModel, steps: &[usize]) -> Option<f64> {
     let impacts = model != FitModel::Linear;
-    let motions = if impacts { Some(assigned(data, setting, pace).ok()?) } else { None };
+    let motions = if impacts { Some(assigned(data, setting, data.pace).ok()?) } else { None };
     let one = |i: &usize| {
         let step = &data.steps[*i];
-        let of = |kind| setting.shows(kind, setting.force_at(data, step), step.frequency);
+        let of = |kind| data.shows(setting, kind, step);
         let predicted = match &motions {
             None => of(Kind::Free),
             Some(motions) => motions.history[*i].map(of).or(motions.simulated[*i]).unwrap_or([f64::NAN; 2]),

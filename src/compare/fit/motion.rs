@@ -40,7 +40,7 @@ pub(crate) fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Mot
     let sequence = |sequence: &Vec<usize>| -> Result<Vec<One>> {
         let points: Vec<(f64, f64)> = sequence
             .iter()
-            .map(|i| (data.steps[*i].frequency, setting.force_at(data, &data.steps[*i])))
+            .map(|i| (data.steps[*i].frequency, data.force_at(setting, &data.steps[*i])))
             .collect();
         let simulated = simulated_briefly(&setting.rig, &points, pace);
         let one = |((i, (frequency, force)), simulated): ((&usize, &(f64, f64)), &Result<_>)| {
@@ -94,7 +94,7 @@ pub(crate) fn without_outliers(
     mut kinds: Vec<Option<Kind>>,
 ) -> Vec<Option<Kind>> {
     for _ in 0..(OUTLIERS * kinds.len() as f64) as usize {
-        let mut problem = Problem::new(data, setting, &[], &kinds);
+        let mut problem = Problem::new(data, setting, Vec::new()).of(kinds.clone());
         problem.weigh(&[]);
         let mut away = vec![None::<f64>; kinds.len()];
         for ((step, _), r) in problem.used().zip(problem.at(&[])) {

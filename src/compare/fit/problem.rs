@@ -4,9 +4,9 @@ use super::super::prediction::Kind;
 use super::data::{Data, Reading, Step};
 use super::setting::Setting;
 use super::shared_errors::SharedErrors;
-use super::unknown::{Unknown, at, fold};
+use super::unknown::Unknown;
 use crate::campaign::Parameter;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::math::{Minimum, minimise};
 
 /// A sum of squares to be minimised: data with weights, and priors.
@@ -30,21 +30,66 @@ pub struct Problem<'a> {
 }
 
 impl<'a> Problem<'a> {
-    /// Of these motions; weights are still to be taken.
-    pub fn new(data: &'a Data, base: &Setting, unknowns: &[Unknown], kinds: &[Option<Kind>]) -> Problem<'a> {
+    /// Of points whose motions are not known yet.
+    pub fn new(data: &'a Data, base: &Setting, unknowns: Vec<Unknown>) -> Problem<'a> {
         Problem {
             data,
             base: *base,
-            unknowns: unknowns.to_vec(),
-            kinds: kinds.to_vec(),
+            unknowns,
+            kinds: vec![None; data.steps.len()],
             step_errors: Vec::new(),
             calibrations: SharedErrors::default(),
             scale: 1.0,
         }
     }
+
+    /// The same with these motions; weights are still to be taken.
+    pub fn of(&self, kinds: Vec<Option<Kind>>) -> Problem<'a> {
+        Problem { kinds, ..Problem::new(self.data, &self.base, self.unknowns.clone()) }
+    }
 }
 
 impl Problem<'_> {
+    /// The setting at these coordinates of the unknowns.
+    pub fn setting(&self, u: &[f64]) -> Setting {
+        self.unknowns.iter().zip(u).fold(self.base, |setting, (unknown, u)| {
+            let [low, high] = unknown.limits(&self.base);
+            setting.with(unknown.parameter, unknown.coordinate.value(*u).clamp(low, high))
+        })
+    }
+
+    /// Coordinates of the unknowns' values in `setting`.
+    pub fn coordinates(&self, setting: &Setting) -> Vec<f64> {
+        self.unknowns.iter().map(|k| k.coordinate.of(setting.get(k.parameter))).collect()
+    }
+
+    /// Turns coordinates below 0 of unknowns without an upper bound into those above with the same value; says which were turned.
+    pub fn fold(&self, u: &mut [f64]) -> Vec<bool> {
+        let one = |(unknown, u): (&Unknown, &mut f64)| {
+            let below = unknown.coordinate.high.is_infinite() && *u < 0.0;
+            if below {
+                *u = -*u;
+            }
+            below
+        };
+        self.unknowns.iter().zip(u).map(one).collect()
+    }
+
+    /// Whether `n` amplitudes and the priors can determine the unknowns.
+    ///
+    /// # Errors
+    /// If not.
+    pub fn enough(&self, n: usize) -> Result<()> {
+        let all = self.unknowns.len();
+        if n + self.rows().1 >= all && n > 0 {
+            return Ok(());
+        }
+        let why = format!("{n} amplitudes with one impact a cycle or none do not determine {all} parameters");
+        Err(Error::refused(why).hint(
+            "check units and which mass is which; start nearer to the rig, fit fewer parameters, or state priors",
+        ))
+    }
+
     /// Amplitudes that take part: index of the step and of the mass.
     pub fn used(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let steps = self.data.steps.iter().zip(&self.kinds).enumerate();
@@ -62,17 +107,12 @@ impl Problem<'_> {
         (data + priors).saturating_sub(self.unknowns.len())
     }
 
-    /// The setting at these coordinates.
-    pub fn setting(&self, u: &[f64]) -> Setting {
-        at(&self.base, &self.unknowns, u)
-    }
-
     /// Takes what errors of frequencies, forces and calibrations make of the residuals from the setting at `u`.
     pub fn weigh(&mut self, u: &[f64]) {
         let setting = self.setting(u);
         let errors = |(step, kind): (&Step, &Option<Kind>)| {
             let Some(kind) = *kind else { return SharedErrors::default() };
-            let force = setting.force_at(self.data, step);
+            let force = self.data.force_at(&setting, step);
             let column = |std: f64, shows: &dyn Fn(f64) -> [f64; 2]| {
                 let mut column = vec![0.0; 2];
                 if std > 0.0 {
@@ -108,7 +148,7 @@ impl Problem<'_> {
         let column = |mass: usize, sloped: bool| {
             self.whitened(|step, kind| {
                 let mut error = [0.0; 2];
-                error[mass] = setting.shows(kind, setting.force_at(self.data, step), step.frequency)[mass]
+                error[mass] = self.data.shows(setting, kind, step)[mass]
                     * std
                     * if sloped { along(step.frequency) } else { 1.0 };
                 error
@@ -119,7 +159,7 @@ impl Problem<'_> {
             .to_vec();
         if self.unknowns.iter().all(|u| u.parameter != Parameter::Force) {
             columns.push(self.whitened(|step, kind| {
-                let force = setting.force_at(self.data, step);
+                let force = self.data.force_at(setting, step);
                 slopes(|by| setting.shows(kind, force * by, step.frequency)).map(|s| s * std)
             }));
         }
@@ -158,8 +198,7 @@ impl Problem<'_> {
     /// Residuals at `u` in standard deviations, data and priors.
     pub fn at(&self, u: &[f64]) -> Vec<f64> {
         let setting = self.setting(u);
-        let mut all =
-            self.off(|step, kind| setting.shows(kind, setting.force_at(self.data, step), step.frequency));
+        let mut all = self.off(|step, kind| self.data.shows(&setting, kind, step));
         for unknown in &self.unknowns {
             all.extend(unknown.prior.map(|[value, std]| (setting.get(unknown.parameter) - value) / std));
         }
@@ -174,7 +213,7 @@ impl Problem<'_> {
         let (data, priors) = self.rows();
         let residuals = |u: &[f64], r: &mut [f64]| r.copy_from_slice(&self.at(u));
         let mut minimum = minimise(residuals, data + priors, start, &vec![0.1; start.len()])?;
-        for (i, turned) in fold(&self.unknowns, &mut minimum.parameters).into_iter().enumerate() {
+        for (i, turned) in self.fold(&mut minimum.parameters).into_iter().enumerate() {
             if turned {
                 minimum.jacobian.column_mut(i).neg_mut();
             }

@@ -1,7 +1,6 @@
 //! A rig with the force on it, and what each step shows of its motions.
 
 use super::super::prediction::Kind;
-use super::data::{Data, Step};
 use crate::campaign::Parameter;
 use crate::model::{Rig, Sine, Steady, shown};
 
@@ -21,11 +20,6 @@ impl Setting {
     pub fn with(mut self, parameter: Parameter, value: f64) -> Setting {
         parameter.set(&mut self.rig, &mut self.force, value);
         self
-    }
-
-    /// Force at a step in N.
-    pub(crate) fn force_at(&self, data: &Data, step: &Step) -> f64 {
-        step.force * self.force / data.force
     }
 
     /// What a spectrum shows of both masses in m, of the motion of this kind at this force and frequency; NaN where it cannot be.

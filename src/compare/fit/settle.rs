@@ -2,13 +2,12 @@
 
 use super::super::prediction::Kind;
 use super::super::simulated::Pace;
-use super::data::{Data, Step};
+use super::data::Step;
 use super::motion::{Motions, assigned, without_outliers};
 use super::problem::{Problem, shown};
-use super::search::{FINE, approached, prior_cost, unexplained};
+use super::search::{FINE, unexplained};
 use super::setting::Setting;
-use super::unknown::{Unknown, at};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::math::Minimum;
 use crate::measure::residuals::{Whiteness, student};
 
@@ -53,143 +52,116 @@ impl Settled<'_> {
     }
 }
 
-/// Settles from the coordinates `start` on.
-///
-/// At first outliers pull little ([`super::search`]), since the motions of wrong parameters are wrong, too; in the end all count as stated.
-///
-/// # Errors
-/// If a round leaves fewer points than parameters.
-pub fn settle<'a>(
-    data: &'a Data,
-    base: &Setting,
-    unknowns: &[Unknown],
-    start: &[f64],
-    pace: Pace,
-) -> Result<Settled<'a>> {
-    let mut u = start.to_vec();
-    let motions = |u: &[f64], pace: Pace| assigned(data, &at(base, unknowns, u), pace);
-    let brief = Pace { settle: pace.settle.min(BRIEF.settle), measure: pace.measure.min(BRIEF.measure) };
-    for part in FINE {
-        let now = motions(&u, brief)?;
-        enough(now.amplitudes(data), unknowns)?;
-        u = approached(data, base, unknowns, &now.kinds, part, u);
-    }
-    let mut wavering = vec![false; data.steps.len()];
-    let kept = |now: &Motions, u: &[f64], wavering: &[bool]| -> Vec<Option<Kind>> {
-        let near = without_outliers(data, &at(base, unknowns, u), now.kinds.clone());
-        near.into_iter().zip(wavering).map(|(kind, out)| kind.filter(|_| !out)).collect()
-    };
-    let mut kinds = kept(&motions(&u, pace)?, &u, &wavering);
-    let mut round = 0;
-    loop {
-        round += 1;
-        let least = Least::new(data, base, unknowns, &kinds, &u)?;
-        u.clone_from(&least.minimum.parameters);
-        let now = motions(&u, pace)?;
-        let next = kept(&now, &u, &wavering);
-        let agreed = next == kinds;
-        if agreed || round == MOST {
-            let of = |out: &dyn Fn(usize) -> usize| (0..data.steps.len()).map(out).sum();
-            return Ok(Settled {
-                wavering: of(&|i| if wavering[i] { data.steps[i].clear().count() } else { 0 }),
-                far: of(&|i| {
-                    let left_out = kinds[i].is_none() && !wavering[i];
-                    if left_out { shown(&data.steps[i], now.kinds[i]).count() } else { 0 }
-                }),
-                agreed,
-                unexplained: left_over(&least.problem, &u, &now),
-                least,
-            });
+impl<'a> Problem<'a> {
+    /// Settles from the coordinates `start` on.
+    ///
+    /// At first outliers pull little ([`super::search`]), since the motions of wrong parameters are wrong, too; in the end all count as stated.
+    ///
+    /// # Errors
+    /// If a round leaves fewer points than parameters.
+    pub fn settle(&self, start: &[f64]) -> Result<Settled<'a>> {
+        let (data, pace) = (self.data, self.data.pace);
+        let motions = |u: &[f64], pace: Pace| assigned(data, &self.setting(u), pace);
+        let brief = Pace { settle: pace.settle.min(BRIEF.settle), measure: pace.measure.min(BRIEF.measure) };
+        let mut u = start.to_vec();
+        for part in FINE {
+            let now = motions(&u, brief)?;
+            self.enough(now.amplitudes(data))?;
+            u = self.of(now.kinds).approached(part, u);
         }
-        if round >= ROUNDS {
-            for ((out, a), b) in wavering.iter_mut().zip(&kinds).zip(&next) {
-                *out |= a != b;
+        let mut wavering = vec![false; data.steps.len()];
+        let steady = |kinds: Vec<Option<Kind>>, wavering: &[bool]| -> Vec<Option<Kind>> {
+            kinds.into_iter().zip(wavering).map(|(kind, out)| kind.filter(|_| !out)).collect()
+        };
+        let kept = |now: &Motions, u: &[f64], wavering: &[bool]| {
+            steady(without_outliers(data, &self.setting(u), now.kinds.clone()), wavering)
+        };
+        let mut kinds = kept(&motions(&u, pace)?, &u, &wavering);
+        let mut round = 0;
+        loop {
+            round += 1;
+            let least = self.of(kinds.clone()).least(&u)?;
+            u.clone_from(&least.minimum.parameters);
+            let now = motions(&u, pace)?;
+            let next = kept(&now, &u, &wavering);
+            let agreed = next == kinds;
+            if agreed || round == MOST {
+                let of = |out: &dyn Fn(usize) -> usize| (0..data.steps.len()).map(out).sum();
+                return Ok(Settled {
+                    wavering: of(&|i| if wavering[i] { data.steps[i].clear().count() } else { 0 }),
+                    far: of(&|i| {
+                        let left_out = kinds[i].is_none() && !wavering[i];
+                        if left_out { shown(&data.steps[i], now.kinds[i]).count() } else { 0 }
+                    }),
+                    agreed,
+                    unexplained: least.problem.left_over(&u, &now),
+                    least,
+                });
             }
+            if round >= ROUNDS {
+                for ((out, a), b) in wavering.iter_mut().zip(&kinds).zip(&next) {
+                    *out |= a != b;
+                }
+            }
+            kinds = steady(next, &wavering);
         }
-        kinds = next.into_iter().zip(&wavering).map(|(kind, out)| kind.filter(|_| !out)).collect();
     }
-}
 
-/// How far all points lie from what was simulated, or nearer from the motion they are taken for.
-fn left_over(problem: &Problem<'_>, u: &[f64], motions: &Motions) -> f64 {
-    let (data, setting) = (problem.data, problem.setting(u));
-    let one = |((step, kind), simulated): ((&Step, &Option<Kind>), &Option<[f64; 2]>)| {
-        let far = |shows: [f64; 2]| unexplained(data, step, shows);
-        let taken = kind.map(|kind| far(setting.shows(kind, setting.force_at(data, step), step.frequency)));
-        taken.unwrap_or(f64::INFINITY).min(far(simulated.unwrap_or([0.0; 2])))
-    };
-    let points: f64 = data.steps.iter().zip(&problem.kinds).zip(&motions.simulated).map(one).sum();
-    points + FINE.len() as f64 * prior_cost(&problem.unknowns, &setting)
-}
-
-/// Whether `n` amplitudes and the priors can determine the unknowns.
-///
-/// # Errors
-/// If not.
-pub fn enough(n: usize, unknowns: &[Unknown]) -> Result<()> {
-    let priors = unknowns.iter().filter(|u| u.prior.is_some()).count();
-    if n + priors < unknowns.len() || n == 0 {
-        let why = format!(
-            "{n} amplitudes with one impact a cycle or none do not determine {} parameters",
-            unknowns.len()
-        );
-        return Err(Error::refused(why).hint(
-            "check units and which mass is which; start nearer to the rig, fit fewer parameters, or state priors",
-        ));
-    }
-    Ok(())
-}
-
-impl<'a> Least<'a> {
-    /// From `start` on; weights and scale from the parameters found, twice.
+    /// The least sum of squares with its motions, from `start` on; weights and scale from the parameters found, twice.
     ///
     /// # Errors
     /// If there are fewer points than parameters.
-    pub fn new(
-        data: &'a Data,
-        base: &Setting,
-        unknowns: &[Unknown],
-        kinds: &[Option<Kind>],
-        start: &[f64],
-    ) -> Result<Least<'a>> {
-        let mut problem = Problem::new(data, base, unknowns, kinds);
-        enough(problem.rows().0, unknowns)?;
+    pub fn least(mut self, start: &[f64]) -> Result<Least<'a>> {
+        self.enough(self.rows().0)?;
         let mut u = start.to_vec();
         for _ in 0..2 {
-            problem.weigh(&u);
-            let minimum = problem.solve(&u)?;
-            let (reduced, whiteness) = goodness(&problem, &minimum.residuals);
-            let least = if data.guessed && problem.freedom() > 0 { f64::MIN_POSITIVE } else { 1.0 };
+            self.weigh(&u);
+            let minimum = self.solve(&u)?;
+            let (reduced, whiteness) = self.goodness(&minimum.residuals);
+            let least = if self.data.guessed && self.freedom() > 0 { f64::MIN_POSITIVE } else { 1.0 };
             // A scale that the residuals had to tell is itself uncertain.
-            let widened = if reduced > least { student(problem.freedom()).unwrap_or(1.0) } else { 1.0 };
-            problem.scale = reduced.max(least) * (widened * whiteness.inflation).powi(2);
+            let widened = if reduced > least { student(self.freedom()).unwrap_or(1.0) } else { 1.0 };
+            self.scale = reduced.max(least) * (widened * whiteness.inflation).powi(2);
             u = minimum.parameters;
         }
-        problem.weigh(&u);
-        let minimum = problem.solve(&u)?;
-        let (reduced, whiteness) = goodness(&problem, &minimum.residuals);
-        Ok(Least { problem, minimum, reduced, whiteness })
+        self.weigh(&u);
+        let minimum = self.solve(&u)?;
+        let (reduced, whiteness) = self.goodness(&minimum.residuals);
+        Ok(Least { problem: self, minimum, reduced, whiteness })
     }
 
+    /// How far all points lie from what was simulated, or nearer from the motion they are taken for.
+    fn left_over(&self, u: &[f64], motions: &Motions) -> f64 {
+        let (data, setting) = (self.data, self.setting(u));
+        let one = |((step, kind), simulated): ((&Step, &Option<Kind>), &Option<[f64; 2]>)| {
+            let far = |shows: [f64; 2]| unexplained(data, step, shows);
+            let taken = kind.map_or(f64::INFINITY, |kind| far(data.shows(&setting, kind, step)));
+            taken.min(far(simulated.unwrap_or([0.0; 2])))
+        };
+        let points: f64 = data.steps.iter().zip(&self.kinds).zip(&motions.simulated).map(one).sum();
+        points + FINE.len() as f64 * self.prior_cost(&setting)
+    }
+
+    /// χ²/ν by the stated uncertainties, priors counted in, and whether the residuals of the data are noise.
+    pub fn goodness(&self, residuals: &[f64]) -> (f64, Whiteness) {
+        let (data, priors) = residuals.split_at(self.rows().0.min(residuals.len()));
+        let sum = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
+        let all = if self.freedom() == 0 { f64::NAN } else { self.scale * sum(data) + sum(priors) };
+        let mut rows: Vec<Vec<f64>> = vec![Vec::new(); self.data.sweeps.len()];
+        for ((step, mass), r) in self.used().zip(data) {
+            if let Some(reading) = &self.data.steps[step].readings[mass] {
+                rows[reading.sweep].push(*r);
+            }
+        }
+        let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
+        (all / self.freedom() as f64, Whiteness::of(&rows))
+    }
+}
+
+impl Least<'_> {
     /// Whether χ²/ν is larger than chance makes it (E. B. Wilson & M. M. Hilferty 1931).
     pub(crate) fn beyond_chance(&self) -> bool {
         let part = 2.0 / (9.0 * self.problem.freedom() as f64);
         self.reduced > (1.0 - part + CHANCE * part.sqrt()).powi(3)
     }
-}
-
-/// χ²/ν by the stated uncertainties, priors counted in, and whether the residuals of the data are noise.
-pub(crate) fn goodness(problem: &Problem<'_>, residuals: &[f64]) -> (f64, Whiteness) {
-    let (n, _) = problem.rows();
-    let (data, priors) = residuals.split_at(n.min(residuals.len()));
-    let sum = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
-    let all = if problem.freedom() == 0 { f64::NAN } else { problem.scale * sum(data) + sum(priors) };
-    let mut rows: Vec<Vec<f64>> = vec![Vec::new(); problem.data.sweeps.len()];
-    for ((step, mass), r) in problem.used().zip(data) {
-        if let Some(reading) = &problem.data.steps[step].readings[mass] {
-            rows[reading.sweep].push(*r);
-        }
-    }
-    let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
-    (all / problem.freedom() as f64, Whiteness::of(&rows))
 }

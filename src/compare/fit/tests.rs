@@ -1,7 +1,6 @@
 use super::super::prediction::Kind;
 use super::data::{Reading, Step};
 use super::motion::assigned;
-use super::settle::Least;
 use super::uncertainty::NORMAL;
 use super::*;
 use crate::campaign::Parameter;
@@ -42,6 +41,7 @@ fn swept(setting: &Setting, pace: Pace, frequencies: &[f64], noise: f64) -> (Dat
         calibration: 0.0,
         without_std: 0,
         guessed: false,
+        pace,
     };
     for down in [false, true] {
         let mut frequencies = frequencies.to_vec();
@@ -157,12 +157,13 @@ fn covered(
         .into_par_iter()
         .map(|seed| {
             let (data, unknowns) = drawn(seed);
-            let true_u = coordinates(setting, &unknowns);
-            let least = Least::new(&data, setting, &unknowns, kinds, &true_u).unwrap();
+            let problem = Problem::new(&data, setting, unknowns).of(kinds.to_vec());
+            let true_u = problem.coordinates(setting);
+            let least = problem.least(&true_u).unwrap();
             let (problem, minimum) = (&least.problem, &least.minimum);
             let sum = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
             let rise = sum(&problem.at(&true_u)) - sum(&minimum.residuals);
-            let n = unknowns.len();
+            let n = true_u.len();
             let found = Uncertainty::new(&least).unwrap();
             assert!(found.unidentified.iter().all(Option::is_none), "seed {seed}: {:?}", found.unidentified);
             let off = |i: usize| (minimum.parameters[i] - true_u[i]).abs() / found.std(i);
@@ -270,7 +271,7 @@ fn wrong_starts_come_back() {
                 s.with(*p, wrong)
             });
         let unknowns = unknowns(&ALL, &start);
-        let (settled, found) = identify(&data, &start, &unknowns, STARTS, PACE).unwrap();
+        let (settled, found) = identify(&Problem::new(&data, &start, unknowns), STARTS).unwrap();
         let points = settled.least.problem.rows().0;
         println!("{} of {STARTS} agree, {points} points", agreeing(&found, &settled).unwrap());
         // Seven parameters, twice: four standard deviations are exceeded in one of a thousand cases.
@@ -284,11 +285,12 @@ fn wrong_starts_come_back() {
 fn least_from<'a>(
     data: &'a Data,
     setting: &Setting,
-    unknowns: &[Unknown],
+    unknowns: Vec<Unknown>,
     kinds: &[Option<Kind>],
 ) -> Settled<'a> {
-    let u = coordinates(setting, unknowns);
-    let least = Least::new(data, setting, unknowns, kinds, &u).unwrap();
+    let problem = Problem::new(data, setting, unknowns).of(kinds.to_vec());
+    let u = problem.coordinates(setting);
+    let least = problem.least(&u).unwrap();
     Settled { least, wavering: 0, far: 0, agreed: true, unexplained: 0.0 }
 }
 
@@ -320,7 +322,7 @@ fn unidentified(
     let kinds: Vec<Option<Kind>> =
         kinds.iter().zip(&data.steps).map(|(kind, step)| kind.filter(|_| step.clear().count() > 0)).collect();
     let unknowns = unknowns(names, &setting);
-    let settled = least_from(&data, &setting, &unknowns, &kinds);
+    let settled = least_from(&data, &setting, unknowns, &kinds);
     Uncertainty::new(&settled.least).unwrap().unidentified
 }
 
@@ -370,8 +372,10 @@ fn what_cannot_be_is_refused() {
     clean.steps.truncate(2);
     clean.sequences = vec![vec![0, 1]];
     let data = noisy(&clean, &kinds, &setting, 1);
-    let said =
-        identify(&data, &setting, &unknowns(&ALL, &setting), 2, PACE).map(|_| ()).unwrap_err().to_string();
+    let said = identify(&Problem::new(&data, &setting, unknowns(&ALL, &setting)), 2)
+        .map(|_| ())
+        .unwrap_err()
+        .to_string();
     assert!(
         said.contains("4 amplitudes with one impact a cycle or none do not determine 7 parameters"),
         "{said}"
@@ -387,7 +391,7 @@ fn a_prior_is_used_and_named_where_it_determines_the_parameter() {
         toml::from_str("parameters = [\"gap\", \"c1\"]\nprior.c1 = [0.1, 1e-7]\nprior.gap = [1e-3, 1e-4]")
             .unwrap();
     let unknowns = Unknown::all(&entry, &setting).unwrap();
-    let answer = Answer::new(least_from(&data, &setting, &unknowns, &kinds), None).unwrap();
+    let answer = Answer::new(least_from(&data, &setting, unknowns, &kinds), None).unwrap();
     assert_eq!(answer.doubts(), []);
     let [gap, c1] = [0, 1].map(|i| answer.fitted(&setting, i, false));
     assert!(!gap.rests_on_prior && gap.identifiable, "{gap:?}");
@@ -415,9 +419,9 @@ fn the_simplest_model_that_predicts_what_it_has_not_seen_is_chosen() {
         (&still, &["force", "k1"][..], free, FitModel::Linear),
     ] {
         let unknowns = unknowns(names, &setting);
-        let settled = least_from(data, &setting, &unknowns, &kinds);
+        let settled = least_from(data, &setting, unknowns, &kinds);
         // Without named features all steps are held out in turn, ten at a time.
-        let rungs = rungs(&settled, None, &[], PACE);
+        let rungs = rungs(&settled, None, &[]);
         let chosen: Vec<FitModel> = rungs.iter().filter(|r| r.chosen).map(|r| r.model).collect();
         assert_eq!(chosen, [expected], "{rungs:?}");
         // The noise is 0.3 µm of 0.15 mm or more, and the parameters are better known.

@@ -63,28 +63,3 @@ impl Unknown {
         }
     }
 }
-
-/// `base` with these unknowns at these coordinates.
-pub fn at(base: &Setting, unknowns: &[Unknown], u: &[f64]) -> Setting {
-    unknowns.iter().zip(u).fold(*base, |setting, (unknown, u)| {
-        let [low, high] = unknown.limits(base);
-        setting.with(unknown.parameter, unknown.coordinate.value(*u).clamp(low, high))
-    })
-}
-
-/// Coordinates of the unknowns' values in `setting`.
-pub fn coordinates(setting: &Setting, unknowns: &[Unknown]) -> Vec<f64> {
-    unknowns.iter().map(|unknown| unknown.coordinate.of(setting.get(unknown.parameter))).collect()
-}
-
-/// Turns coordinates below 0 of unknowns without an upper bound into those above with the same value; says which were turned.
-pub fn fold(unknowns: &[Unknown], u: &mut [f64]) -> Vec<bool> {
-    let one = |(unknown, u): (&Unknown, &mut f64)| {
-        let below = unknown.coordinate.high.is_infinite() && *u < 0.0;
-        if below {
-            *u = -*u;
-        }
-        below
-    };
-    unknowns.iter().zip(u).map(one).collect()
-}

@@ -14,7 +14,7 @@ fn answered(entry: &str, seed: u64, change: impl Fn(&mut Data)) -> Result<Fit> {
     // How the search gets to the answer is for other tests: two starts do.
     let entry = FitEntry { starts: entry.starts.or(Some(2)), ..entry };
     let start = Setting { rig: Rig { restitution: 0.95, ..setting.rig }, ..setting };
-    found(&data, &start, None, &[], &entry, PACE)
+    found(&data, &start, None, &[], &entry)
 }
 
 fn finding<'a>(fit: &'a Fit, code: &str) -> Option<&'a Finding> {
@@ -47,7 +47,7 @@ fn a_damper_that_is_not_there_is_told_from_nothing() {
     let data = noisy(&clean, &kinds, &setting, 32);
     let entry: FitEntry = toml::from_str("parameters = [\"c1\", \"c2\"]").unwrap();
     let start = setting.with(Parameter::C2, 0.05).with(Parameter::C1, 0.12);
-    let fit = found(&data, &start, None, &[], &entry, PACE).unwrap();
+    let fit = found(&data, &start, None, &[], &entry).unwrap();
     let [c1, c2] = [Parameter::C1, Parameter::C2].map(|p| of(&fit, p));
     assert!(matches!(c2.reason, Some(Unidentified::AtLimit | Unidentified::TooUncertain)), "{c2:?}");
     // Four standard deviations are left in one of 16 000 cases.
@@ -166,7 +166,7 @@ fn the_gap_is_as_uncertain_as_a_fixed_force() {
         data.force *= 1.01;
         data.steps.iter_mut().for_each(|step| step.force *= 1.01);
         let start = Setting { force: data.force, ..setting.with(Parameter::Restitution, 0.95) };
-        let fit = found(&data, &start, None, &[], &toml::from_str(&names).unwrap(), PACE).unwrap();
+        let fit = found(&data, &start, None, &[], &toml::from_str(&names).unwrap()).unwrap();
         for found in &fit.parameters {
             let Estimate { value, std, .. } = found.estimate;
             let off = (value - setting.get(found.parameter)).abs();
@@ -232,7 +232,7 @@ fn a_restitution_near_one_is_found_or_doubted() {
         println!("seed {seed}");
         let data = noisy(&clean, &kinds, &setting, seed);
         let start = setting.with(Parameter::Restitution, 0.95).with(Parameter::C2, 0.08);
-        let fit = found(&data, &start, None, &[], &entry, PACE).unwrap();
+        let fit = found(&data, &start, None, &[], &entry).unwrap();
         println!("{:?}", fit.doubt);
         for found in &fit.parameters {
             let Estimate { value, std, .. } = found.estimate;

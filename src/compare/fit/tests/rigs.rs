@@ -56,7 +56,8 @@ fn other_patterns(draws: std::ops::Range<u64>, rigs: usize) {
             println!("seeds {} and {}", 40 + draw, 1000 + draw);
             let data = noisy(&clean, &kinds, &setting, 40 + draw);
             let start = off(&setting, draw).with(Parameter::Force, setting.force);
-            let (settled, _) = identify(&data, &start, &unknowns(&ALL[1..], &start), STARTS, PACE).unwrap();
+            let (settled, _) =
+                identify(&Problem::new(&data, &start, unknowns(&ALL[1..], &start)), STARTS).unwrap();
             let away = away(&settled, &setting);
             let points = settled.least.problem.rows().0;
             println!("{points} points, {} far, {away:.1?} standard deviations", settled.far);
@@ -89,7 +90,7 @@ fn gaps_far_off(gaps: &[f64]) {
     for &gap in gaps {
         let start = setting.with(Parameter::Gap, gap);
         let unknowns = unknowns(&["restitution", "c1", "c2", "gap"], &start);
-        let (settled, _) = identify(&data, &start, &unknowns, STARTS, PACE).unwrap();
+        let (settled, _) = identify(&Problem::new(&data, &start, unknowns), STARTS).unwrap();
         // Four standard deviations, of four parameters.
         let away = away(&settled, &setting);
         assert!(away.iter().all(|a| *a < 4.0), "{gap}: {away:?}");

@@ -4,7 +4,7 @@ use super::*;
 
 /// The undoubted answer from this start: what is left over freedom, and how many standard deviations each parameter lies off `setting`.
 fn answer(data: &Data, setting: &Setting, start: &Setting, names: &[&str]) -> (f64, Vec<f64>) {
-    let (settled, _) = identify(data, start, &unknowns(names, start), STARTS, PACE).unwrap();
+    let (settled, _) = identify(&Problem::new(data, start, unknowns(names, start)), STARTS).unwrap();
     let found = (settled.least.reduced, away(&settled, setting));
     assert_eq!(Answer::new(settled, None).unwrap().doubts(), []);
     found
@@ -56,7 +56,7 @@ fn a_prior_that_contradicts_the_points_is_named() {
             toml::from_str(&format!("parameters = [\"gap\", \"restitution\", \"c1\"]\nprior.gap = {prior}"))
                 .unwrap();
         let unknowns = Unknown::all(&entry, &setting).unwrap();
-        let (settled, _) = identify(&data, &setting, &unknowns, 2, PACE).unwrap();
+        let (settled, _) = identify(&Problem::new(&data, &setting, unknowns), 2).unwrap();
         let doubts = Answer::new(settled, None).unwrap().doubts();
         println!("{doubts:?}");
         let contradicted = doubts.iter().find(|d| d.code == "prior-contradicted");

@@ -53,10 +53,10 @@ fn allowed_for(contacts: &[(f64, u64)], starts: Option<usize>) {
     println!("{contacts:?}");
     let drawn: Vec<(f64, Data)> =
         contacts.iter().map(|(stiffness, seed)| (*stiffness, soft(&setting, *stiffness, *seed))).collect();
-    let blind = found(&drawn.last().unwrap().1, &start, None, &[], &entry, PACE).unwrap();
+    let blind = found(&drawn.last().unwrap().1, &start, None, &[], &entry).unwrap();
     assert!(blind.parameters.iter().all(|p| p.estimate.std.is_none()), "{:?}", blind.parameters);
     for (stiffness, data) in drawn {
-        let fit = found(&data, &start, Some(stiffness), &[], &entry, PACE).unwrap();
+        let fit = found(&data, &start, Some(stiffness), &[], &entry).unwrap();
         for found in &fit.parameters {
             let Estimate { value, std, .. } = found.estimate;
             let away = (value - setting.get(found.parameter)) / std.unwrap_or(f64::NAN);
