@@ -5,46 +5,38 @@
 //! one matrix carries it over a step to rounding. An impact keeps momentum and turns the relative speed v into −Rv.
 
 mod course;
-mod definition;
-mod guard;
 mod mode;
 mod repeats;
 
-pub use course::{Course, Met, Start};
-pub(crate) use definition::CLOSES;
-pub use definition::{Growth, growth, impacts};
-pub use repeats::{Repeats, repeats, settled};
+pub use repeats::{Repeats, impacts, repeats, settled};
 
-use super::rivals::Spring;
-use super::task::{Task, Told};
+use super::task::{Spring, Task, Told};
+use course::{Course, Met};
+use std::f64::consts::TAU;
 
-/// The motion of a task with impacts at once, or with a `contact`; or why there is none.
-///
-/// # Errors
-/// As [`Course::run`].
-pub fn motion(task: &Task, contact: Option<&Spring>) -> Result<Told, String> {
-    let mut told = Told::default();
-    let mut touch = None;
-    let rest = |touch: Option<f64>, until| contact.zip(touch).and_then(|(c, from)| c.rest(task, from, until));
-    Course::new(task, contact).run(task.phase, Start::Free(task.first()), task.until, &mut |met| {
+/// The motion of a task with impacts at once, or with a `contact`.
+pub fn motion(task: &Task, contact: Option<&Spring>) -> Told {
+    let (mut told, mut touch) = (Told::default(), None);
+    let course = Course::new(task, contact);
+    let mut place = course.free(task.phase, &task.first());
+    let start = task.phase / (TAU * task.frequency);
+    let rests = |told: &mut Told, touch: Option<f64>, end: f64| {
+        told.sticks.extend(contact.zip(touch).and_then(|(c, from)| c.rest(from, end)));
+    };
+    while let Some(met) = course.next(&mut place, start + task.until) {
         match met {
             Met::Impact(time, before) => {
-                told.impacts.push((*time, before[1] - before[3]));
-                touch = Some(*time);
+                told.impacts.push((time - start, before[1] - before[3]));
+                touch = Some(time - start);
             }
-            Met::Stick(time) => told.sticks.push([*time, f64::INFINITY]),
-            Met::Release(time) if contact.is_some() => told.sticks.extend(rest(touch.take(), *time)),
-            Met::Release(time) => {
-                if let Some(rest) = told.sticks.last_mut() {
-                    rest[1] = *time;
-                }
-            }
+            Met::Stick(time) => told.sticks.push([time - start, f64::INFINITY]),
+            Met::Release(time) if contact.is_some() => rests(&mut told, touch.take(), time - start),
+            Met::Release(time) => told.release(time - start),
         }
-        true
-    })?;
-    told.sticks.extend(rest(touch, f64::INFINITY));
+    }
+    rests(&mut told, touch, f64::INFINITY);
     told.impacts.retain(|i| i.0 < task.until);
-    Ok(told)
+    told
 }
 
 #[cfg(test)]

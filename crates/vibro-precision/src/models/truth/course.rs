@@ -1,22 +1,16 @@
 //! From event to event.
 
-use std::f64::consts::PI;
-
-use super::super::rivals::Spring;
-use super::super::task::Task;
-use super::guard::Guard;
-use super::mode::{DEEPEST, Mode, Row, SIZE};
+use super::super::task::{Spring, Task};
+use super::mode::{Guard, Instant, Mode, Row, SIZE};
+use std::f64::consts::TAU;
 
 /// Rebounds in m/s below which masses that press each other come to rest; what is left of the chatter is a geometric series of
 /// flights, and takes 2w/(a(1 − R)).
 const SLOWEST: f64 = 1e-7;
-/// Events before there is no truth.
-const MOST: usize = 1_000_000;
 
-/// What is met on the way.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// What is met on the way, at a time in s.
 pub enum Met {
-    /// The masses meet: time in s and state before.
+    /// The masses meet, with their state before.
     Impact(f64, [f64; 4]),
     /// They come to rest against each other.
     Stick(f64),
@@ -24,20 +18,10 @@ pub enum Met {
     Release(f64),
 }
 
-/// Where a motion begins.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Start {
-    /// Apart.
-    Free([f64; 4]),
-    /// As they meet.
-    Meeting([f64; 4]),
-}
-
 /// A rig's motion with impacts at once or with a contact.
-#[derive(Debug, Clone)]
 pub struct Course {
     task: Task,
-    apart: Mode,
+    pub apart: Mode,
     /// At rest against each other, or in contact.
     held: Mode,
     compliant: bool,
@@ -54,9 +38,17 @@ pub struct Course {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Stage {
     Apart,
+    /// As they meet: the impact has been shown, and not yet happened.
+    Meeting,
     Held,
     /// The contact does not push, the masses still overlap.
     Eased,
+}
+
+/// A place on the way.
+pub struct Place {
+    at: Instant,
+    stage: Stage,
 }
 
 impl Course {
@@ -70,8 +62,7 @@ impl Course {
             None => apart.rate(&[0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0]).map(|a| rig.reduced_mass() * a),
         };
         // The force turns round within half a turn of the contact: eight steps see each of its signs.
-        let half = |c: &Spring| PI * (rig.reduced_mass() / c.stiffness).sqrt();
-        let held = Mode::new(task, &force, contact.map_or(f64::INFINITY, |c| half(c) / 8.0));
+        let held = Mode::new(task, &force, contact.map_or(f64::INFINITY, |c| c.alone / 8.0));
         let gap = [-1.0, 0.0, 1.0, 0.0, 0.0, 0.0, rig.gap];
         Course {
             task: *task,
@@ -85,122 +76,71 @@ impl Course {
         }
     }
 
-    /// The mode without contact.
-    pub fn apart(&self) -> &Mode {
-        &self.apart
+    /// Apart in this state, where the force's phase is that (rad).
+    pub fn free(&self, phase: f64, y: &[f64; 4]) -> Place {
+        Place { at: self.apart.instant(phase / (TAU * self.task.frequency), y), stage: Stage::Apart }
     }
 
-    /// Follows the motion from time 0, at which the force is F₀ cos(phase), to `until` or until `visit` says no.
-    ///
-    /// # Errors
-    /// If more impacts come than can be followed.
-    pub fn run(
-        &self,
-        phase: f64,
-        start: Start,
-        until: f64,
-        visit: &mut dyn FnMut(&Met) -> bool,
-    ) -> Result<(), String> {
-        let (mut t, mut stage) = (0.0, Stage::Apart);
-        let mut y = match start {
-            Start::Free(y) => y,
-            Start::Meeting(before) => {
-                let Some(met) = self.meet(phase, t, before, visit) else { return Ok(()) };
-                (t, stage) = (met.0, met.2);
-                met.1
-            }
-        };
-        for _ in 0..MOST {
-            let guards: &[Guard] = match stage {
-                Stage::Apart => &[self.closes],
-                Stage::Held => &[self.eases],
-                Stage::Eased => &[self.parts, self.pushes],
+    /// As they meet in this state.
+    pub fn meeting(&self, phase: f64, before: &[f64; 4]) -> Place {
+        Place { stage: Stage::Meeting, ..self.free(phase, before) }
+    }
+
+    /// Follows the motion to what is met next, if anything is up to `until`; the exciting force is F₀ cos ωt.
+    pub fn next(&self, place: &mut Place, until: f64) -> Option<Met> {
+        loop {
+            let (mode, guards): (&Mode, &[&Guard]) = match place.stage {
+                Stage::Apart => (&self.apart, &[&self.closes]),
+                Stage::Held => (&self.held, &[&self.eases]),
+                Stage::Eased => (&self.apart, &[&self.parts, &self.pushes]),
+                Stage::Meeting => match self.meet(place) {
+                    Some(met) => return Some(met),
+                    None => continue,
+                },
             };
-            let mode = if stage == Stage::Held { &self.held } else { &self.apart };
-            let Some((which, time, at)) = next(mode, guards, phase, t, y, until) else { return Ok(()) };
-            (t, y) = (time, at);
-            stage = match (stage, which) {
+            let (which, at) = mode.next(guards, place.at, until)?;
+            place.at = at;
+            match (place.stage, which) {
                 (Stage::Apart, _) => {
-                    if !visit(&Met::Impact(t, y)) {
-                        return Ok(());
-                    }
-                    let Some(met) = self.meet(phase, t, y, visit) else { return Ok(()) };
-                    (t, y) = (met.0, met.1);
-                    met.2
+                    place.stage = Stage::Meeting;
+                    return Some(Met::Impact(at.0, std::array::from_fn(|i| at.1[i])));
                 }
-                (Stage::Held, _) if self.compliant => Stage::Eased,
+                (Stage::Held, _) if self.compliant => place.stage = Stage::Eased,
                 (Stage::Held, _) => {
-                    if !visit(&Met::Release(t)) {
-                        return Ok(());
-                    }
                     // The gap opens like the cube of time: a ten-thousandth of a cycle passes unwatched, until it is more than rounding.
-                    let short = 1e-4 * self.task.cycle();
-                    y[0] = y[2] + self.task.rig.gap;
-                    y = self.apart.after(phase, t, y, short);
-                    t += short;
-                    Stage::Apart
+                    place.at.1[0] = at.1[2] + self.task.rig.gap;
+                    place.at = self.apart.after(place.at, 1e-4 * self.task.cycle());
+                    place.stage = Stage::Apart;
+                    return Some(Met::Release(at.0));
                 }
                 (Stage::Eased, 0) => {
-                    if !visit(&Met::Release(t)) {
-                        return Ok(());
-                    }
-                    Stage::Apart
+                    place.stage = Stage::Apart;
+                    return Some(Met::Release(at.0));
                 }
-                (Stage::Eased, _) => Stage::Held,
-            };
+                _ => place.stage = Stage::Held,
+            }
         }
-        Err(format!("more than {MOST} events up to {t:.6} s"))
     }
 
-    /// What follows from meeting at `t` with `y`: nothing where `visit` wants no more.
-    fn meet(
-        &self,
-        phase: f64,
-        t: f64,
-        mut y: [f64; 4],
-        visit: &mut dyn FnMut(&Met) -> bool,
-    ) -> Option<(f64, [f64; 4], Stage)> {
+    /// What follows from meeting; something is met where the masses come to rest.
+    fn meet(&self, place: &mut Place) -> Option<Met> {
+        place.stage = if self.compliant { Stage::Held } else { Stage::Apart };
         if self.compliant {
-            return Some((t, y, Stage::Held));
+            return None;
         }
-        let rig = &self.task.rig;
+        let (rig, (t, y)) = (&self.task.rig, place.at);
         // m₁v₁ + m₂v₂ = const, (v₁ − v₂)⁺ = −R(v₁ − v₂)⁻.
         let common = (rig.m1 * y[1] + rig.m2 * y[3]) / (rig.m1 + rig.m2);
         let back = -rig.restitution * (y[1] - y[3]);
-        y[1] = common + rig.m2 / (rig.m1 + rig.m2) * back;
-        y[3] = common - rig.m1 / (rig.m1 + rig.m2) * back;
-        let pressed = self.eases.value(&self.held.coordinates(phase, t, &y)) / rig.reduced_mass();
+        place.at.1[1] = common + rig.m2 / (rig.m1 + rig.m2) * back;
+        place.at.1[3] = common - rig.m1 / (rig.m1 + rig.m2) * back;
+        let pressed = self.eases.value(&place.at.1) / rig.reduced_mass();
         if pressed <= 0.0 || -back >= SLOWEST || rig.restitution == 1.0 {
-            return Some((t, y, Stage::Apart));
+            return None;
         }
         let chatter = -2.0 * back / (pressed * (1.0 - rig.restitution));
-        let together = self.held.after(phase, t, [y[0], common, y[0] - rig.gap, common], chatter);
-        visit(&Met::Stick(t + chatter)).then_some((t + chatter, together, Stage::Held))
+        let together = self.held.instant(t, &[y[0], common, y[0] - rig.gap, common]);
+        (place.at, place.stage) = (self.held.after(together, chatter), Stage::Held);
+        Some(Met::Stick(t + chatter))
     }
-}
-
-/// The first guard that falls to zero, when, and the state there; steps begin short, and are doubled one after another.
-fn next(
-    mode: &Mode,
-    guards: &[Guard],
-    phase: f64,
-    start: f64,
-    y: [f64; 4],
-    until: f64,
-) -> Option<(usize, f64, [f64; 4])> {
-    let (mut t, mut level) = (start, DEEPEST);
-    let mut at = mode.coordinates(phase, t, &y);
-    while t < until {
-        let end = t + mode.duration(level);
-        let then = mode.coordinates(phase, end, &mode.step(level, &at));
-        let fallen = guards.iter().enumerate().filter_map(|(i, guard)| {
-            let (after, y) = guard.fall(mode, phase, level, t, [&at, &then])?;
-            Some((i, t + after, y))
-        });
-        if let Some(first) = fallen.min_by(|a, b| a.1.total_cmp(&b.1)) {
-            return Some(first);
-        }
-        (t, at, level) = (end, then, level.saturating_sub(1));
-    }
-    None
 }

@@ -1,24 +1,21 @@
-//! One linear mode of the rig, carried over steps by matrix exponentials.
-
-use std::f64::consts::TAU;
-
-use nalgebra::SMatrix;
+//! One linear mode of the rig, carried over steps by matrix exponentials, and what ends it.
 
 use super::super::task::Task;
+use nalgebra::SMatrix;
+use std::f64::consts::TAU;
 
 /// Coordinates: x₁, v₁, x₂, v₂, cos and sin of the exciting force's phase, 1.
 pub const SIZE: usize = 7;
-/// Weights of the coordinates.
+/// Coordinates, or weights of them.
 pub type Row = [f64; SIZE];
 /// Longest steps in a cycle.
-const STEPS: f64 = 512.0;
+pub const STEPS: usize = 512;
 /// Halvings to the shortest step: 2⁻⁴⁶ of 1/5000 s is below the rounding of a time of 0.1 s.
-pub(crate) const DEEPEST: usize = 46;
+const DEEPEST: usize = 46;
 /// Length in m by which displacements are scaled, so that all coordinates are of order 1.
 pub const LENGTH: f64 = 1e-3;
 
 /// Masses that push each other by a force that is linear in the coordinates.
-#[derive(Debug, Clone)]
 pub struct Mode {
     matrix: [Row; SIZE],
     /// Rows of x₁, v₁, x₂, v₂ for the longest step and each halving of it.
@@ -27,6 +24,17 @@ pub struct Mode {
     /// Frequency in Hz.
     frequency: f64,
 }
+
+/// A quantity linear in the coordinates that ends a stage when it falls to zero, with its rate.
+pub struct Guard {
+    weights: Row,
+    rate: Row,
+    /// A rate of this size is rounding.
+    noise: f64,
+}
+
+/// A time in s at which the exciting force is F₀ cos ωt, and the coordinates there.
+pub type Instant = (f64, Row);
 
 impl Mode {
     /// The mode in which the masses push each other by `contact`·coordinates (N), in steps of a 512th of a cycle and of `longest` (s) at most.
@@ -48,7 +56,7 @@ impl Mode {
         let speed = LENGTH * omega;
         let unit = [LENGTH, speed, LENGTH, speed, 1.0, 1.0, 1.0];
         let scaled = SMatrix::<f64, SIZE, SIZE>::from_fn(|i, j| matrix[i][j] * unit[j] / unit[i]);
-        let longest = longest.min(task.cycle() / STEPS);
+        let longest = longest.min(task.cycle() / STEPS as f64);
         let ladder = (0..=DEEPEST).map(|level| {
             let step = (scaled * (longest * 0.5_f64.powi(level as i32))).exp();
             std::array::from_fn(|i| std::array::from_fn(|j| step[(i, j)] * unit[i] / unit[j]))
@@ -56,26 +64,19 @@ impl Mode {
         Mode { matrix, ladder: ladder.collect(), longest, frequency: task.frequency }
     }
 
-    /// Duration in s of a step of this `level`.
-    pub fn duration(&self, level: usize) -> f64 {
+    /// A time with all coordinates of a state.
+    pub fn instant(&self, t: f64, y: &[f64]) -> Instant {
+        let (sin, cos) = (TAU * self.frequency * t).sin_cos();
+        (t, [y[0], y[1], y[2], y[3], cos, sin, 1.0])
+    }
+
+    fn duration(&self, level: usize) -> f64 {
         self.longest * 0.5_f64.powi(level as i32)
     }
 
-    /// Steps of level 0 in a cycle where nothing shortens them.
-    #[cfg(test)]
-    pub fn steps() -> usize {
-        STEPS as usize
-    }
-
-    /// All coordinates of a state at `time`, the force being F₀ cos(phase) at time 0.
-    pub fn coordinates(&self, phase: f64, time: f64, y: &[f64; 4]) -> Row {
-        let (sin, cos) = (TAU * self.frequency * time + phase).sin_cos();
-        [y[0], y[1], y[2], y[3], cos, sin, 1.0]
-    }
-
-    /// State after a step of this `level`.
-    pub fn step(&self, level: usize, from: &Row) -> [f64; 4] {
-        self.ladder[level].map(|row| dot(&row, from))
+    /// A step of this `level`: 0 is the longest, each further one half of it.
+    pub fn step(&self, level: usize, (t, at): &Instant) -> Instant {
+        self.instant(t + self.duration(level), &self.ladder[level].map(|row| dot(&row, at)))
     }
 
     /// Weights of the rate of what has these `weights`.
@@ -83,22 +84,73 @@ impl Mode {
         std::array::from_fn(|j| (0..SIZE).map(|i| weights[i] * self.matrix[i][j]).sum())
     }
 
-    /// State `duration` (s) later, by as many of its steps and halvings as fit.
-    pub fn after(&self, phase: f64, time: f64, y: [f64; 4], duration: f64) -> [f64; 4] {
-        let (mut done, mut y, mut level) = (0.0, y, 0);
+    /// The instant `duration` (s) later, by as many of the steps and halvings as fit.
+    pub fn after(&self, mut at: Instant, duration: f64) -> Instant {
+        let (mut left, mut level) = (duration, 0);
         while level <= DEEPEST {
-            if done + self.duration(level) > duration {
+            if self.duration(level) > left {
                 level += 1;
-                continue;
+            } else {
+                at = self.step(level, &at);
+                left -= self.duration(level);
             }
-            y = self.step(level, &self.coordinates(phase, time + done, &y));
-            done += self.duration(level);
         }
-        y
+        at
+    }
+
+    /// The first of the guards that falls to zero before `until`, and the instant; steps begin short, and are doubled one after another.
+    pub fn next(&self, guards: &[&Guard], mut at: Instant, until: f64) -> Option<(usize, Instant)> {
+        let mut level = DEEPEST;
+        while at.0 < until {
+            let then = self.step(level, &at);
+            let fallen =
+                guards.iter().enumerate().filter_map(|(i, g)| Some((i, g.fall(self, level, &at, &then)?)));
+            if let Some(first) = fallen.min_by(|a, b| a.1.0.total_cmp(&b.1.0)) {
+                return Some(first);
+            }
+            (at, level) = (then, level.saturating_sub(1));
+        }
+        None
+    }
+}
+
+impl Guard {
+    /// The quantity of these `weights` in a mode.
+    pub fn new(mode: &Mode, weights: Row) -> Guard {
+        let rate = mode.rate(&weights);
+        // Rounding of displacements of 1 mm and of speeds of 0.1 m/s.
+        let size = [LENGTH, 0.1, LENGTH, 0.1, 1.0, 1.0, 1.0];
+        let noise = 1e-14 * rate.iter().zip(size).map(|(r, s)| r.abs() * s).sum::<f64>();
+        Guard { weights, rate, noise }
+    }
+
+    /// Its value.
+    pub fn value(&self, at: &Row) -> f64 {
+        dot(&self.weights, at)
+    }
+
+    /// The instant at which it has fallen to zero within a step from `first` to `last`, if it has: a change of sign, or a dip between two
+    /// positive ends. By halving: the last instant before what is false at the start and true from there on.
+    fn fall(&self, mode: &Mode, level: usize, first: &Instant, last: &Instant) -> Option<Instant> {
+        let falls = |at: &Instant| dot(&self.rate, &at.1) < -self.noise;
+        let below = |at: &Instant| self.value(&at.1) <= 0.0;
+        let (falling, fallen) = (falls(first), below(last) && falls(last));
+        if !fallen && (!falling || falls(last) || below(first) || below(last)) {
+            return None;
+        }
+        let over = |at: &Instant| if falling { below(at) || !falls(at) } else { below(at) && falls(at) };
+        let mut at = *first;
+        for level in level + 1..=DEEPEST {
+            let next = mode.step(level, &at);
+            if !over(&next) {
+                at = next;
+            }
+        }
+        (fallen || below(&mode.step(DEEPEST, &at))).then_some(at)
     }
 }
 
 /// Sum of products.
-pub fn dot(weights: &Row, coordinates: &Row) -> f64 {
+fn dot(weights: &Row, coordinates: &Row) -> f64 {
     weights.iter().zip(coordinates).map(|(w, c)| w * c).sum()
 }
