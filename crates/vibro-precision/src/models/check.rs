@@ -93,13 +93,13 @@ pub fn speed(told: &Told, truth: &Repeats) -> Found {
 /// pass through each other; and what the motion settles on with one impact a cycle is among the stable ones.
 pub fn closed_form(task: &Task) -> Result<Found, Found> {
     let found = orbits(&task.rig, task.force, task.frequency)?;
-    Ok(judged(task, &found.orbits.iter().filter(|o| o.validity.exists).collect::<Vec<_>>()))
+    judged(task, &found.orbits.iter().filter(|o| o.validity.exists).collect::<Vec<_>>())
 }
 
-fn judged(task: &Task, told: &[&Orbit]) -> Found {
-    let wrong = |why: String| Found::new(Outcome::Wrong, why);
-    let Some(truth) = impacts(task) else {
-        return Found::new(Outcome::NotAsked, "no truth: rounding decides which orbits there are");
+fn judged(task: &Task, told: &[&Orbit]) -> Result<Found, Found> {
+    let wrong = |why: String| Ok(Found::new(Outcome::Wrong, why));
+    let Some(truth) = impacts(task)? else {
+        return Ok(Found::new(Outcome::NotAsked, "no truth: rounding decides which orbits there are"));
     };
     if told.len() != truth.len() {
         return wrong(format!("{} orbits are told, {} of which there are", told.len(), truth.len()));
@@ -118,7 +118,7 @@ fn judged(task: &Task, told: &[&Orbit]) -> Found {
         }
     }
     let stable = |o: &Orbit| o.validity.admissible && o.validity.stable != Some(false);
-    match settled(task, None, SETTLED) {
+    match settled(task, None, SETTLED)? {
         Some(one)
             if !told.iter().any(|o| stable(o) && one.off(o.approach_velocity, o.force_phase) < NEAR) =>
         {
@@ -129,10 +129,10 @@ fn judged(task: &Task, told: &[&Orbit]) -> Found {
         }
         settled => {
             let settles = if settled.is_some() { "on one of them" } else { "on none" };
-            Found::new(
+            Ok(Found::new(
                 Outcome::Right,
                 format!("all {} orbits that there are; the motion settles {settles}", told.len()),
-            )
+            ))
         }
     }
 }
@@ -146,7 +146,7 @@ pub fn corrected(task: &Task) -> Result<Found, Found> {
     let (mut judged, mut withheld) = (Vec::new(), 0);
     for (orbit, soft) in found.orbits.iter().zip(soft).filter(|(o, _)| o.validity.admissible) {
         let rigid = Repeats { before: list(&orbit.before_impact()), phase: orbit.force_phase };
-        let Some(truth) = repeats(task, Some(&task.spring()), orbit.period(), &rigid) else { continue };
+        let Some(truth) = repeats(task, Some(task.spring()), orbit.period(), &rigid) else { continue };
         let Some(soft) = soft else {
             withheld += 1;
             continue;
@@ -186,7 +186,7 @@ mod tests {
         let task = Task { force: task.rig.gap / unit * (1.0 - 1e-3), ..task };
         let found = orbits(&task.rig, task.force, task.frequency).unwrap().orbits;
         let [first, second] = found[..] else { panic!("{}", found.len()) };
-        let outcome = |told: &[&Orbit]| judged(&task, told).outcome;
+        let outcome = |told: &[&Orbit]| judged(&task, told).unwrap().outcome;
         assert_eq!(outcome(&[&first, &second]), Outcome::Right);
         for told in [&[&first][..], &[&second], &[], &[&first, &first], &[&first, &second, &second]] {
             assert_eq!(outcome(told), Outcome::Wrong);
@@ -205,14 +205,14 @@ mod tests {
             [Rig { c2: task.rig.c2 * (1.0 + 1e-6), ..task.rig }, Rig { restitution: 0.7 + 1e-6, ..task.rig }];
         for other in others {
             let found = orbits(&other, task.force, task.frequency).unwrap().orbits;
-            assert_eq!(judged(&task, &found.iter().collect::<Vec<_>>()).outcome, Outcome::Wrong);
+            assert_eq!(judged(&task, &found.iter().collect::<Vec<_>>()).unwrap().outcome, Outcome::Wrong);
         }
     }
 
     #[test]
     fn a_motion_with_an_impact_too_many_too_few_or_too_late_is_wrong() {
         let task = task_b(1.0);
-        let truth = truth::motion(&task, None);
+        let truth = truth::motion(&task, None).unwrap();
         assert_eq!(motion(&truth, &truth, &task).outcome, Outcome::Right);
         let changed = |change: &dyn Fn(&mut Told)| {
             let mut told = truth.clone();

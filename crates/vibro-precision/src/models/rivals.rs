@@ -15,8 +15,8 @@ use diffsol::{
     followed,
 };
 use loops::{classical, euler, marched, moreau};
-pub use stages::{Locate, events, through};
-pub use stepper::Kind;
+pub use stages::{Course, Locate, events, through};
+pub use stepper::{Kind, Stepper};
 
 /// A way to follow a motion.
 #[derive(Clone, Copy)]
@@ -91,6 +91,9 @@ pub const DOP853_RESTS: Method = rival("DOP853, rule for rest", tolerance, |t, r
 });
 pub const STIFF_SPRING: Method =
     rival("stiff spring, RK45", stiffness, |t, k| through(t, &Spring::new(&t.rig, k), Kind::Rk45(1e-8)));
+/// In larger steps, for motions whose other errors are larger.
+pub const ROUGH_SPRING: Method =
+    Method { follow: |t, k| through(t, &Spring::new(&t.rig, k), Kind::Rk45(1e-6)), ..STIFF_SPRING };
 pub const RK45_THROUGH: Method =
     rival("RK45 straight through", tolerance, |t, r| through(t, &t.spring(), Kind::Rk45(r)));
 pub const RK45_CONTACT: Method = Method { name: "RK45 through the contact", ..RK45_THROUGH };

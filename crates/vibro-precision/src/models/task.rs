@@ -161,3 +161,8 @@ impl Task {
 pub fn list(state: &State) -> [f64; 4] {
     [state.x1, state.v1, state.x2, state.v2]
 }
+
+/// A list as a state.
+pub fn state([x1, v1, x2, v2]: [f64; 4]) -> State {
+    State { x1, v1, x2, v2 }
+}

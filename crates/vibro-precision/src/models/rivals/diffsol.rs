@@ -3,8 +3,8 @@
 //! It compares the signs of the root function at the ends of its steps.
 
 use super::super::task::{Spring, Task, Told};
-use super::stages::{Course, Guard, Stage, System};
-use super::stepper::{FLOOR, first_step};
+use super::stages::{Course, Guard, Locate, Stage, System};
+use super::stepper::{FLOOR, Kind, first_step};
 use crate::Outcome;
 use crate::failure::Found;
 use ::diffsol::{
@@ -34,7 +34,7 @@ impl From<DiffsolError> for Found {
 /// Follows the motion with impacts at once, or with a contact.
 pub fn followed(task: &Task, spring: Option<Spring>, how: Diffsol) -> Result<Told, Found> {
     let (Diffsol::Tsit45(relative) | Diffsol::Bdf(relative)) = how;
-    let course = Course::new(task, spring, relative);
+    let course = Course::new(task, spring, Kind::Rk45(relative), Locate::Ends);
     let (system, stage, first) = (course.system, Cell::new(course.stage), course.y);
     let now = |t: f64, y: &[f64]| system.rate(stage.get(), t, &four(y));
     let mut problem = OdeBuilder::<NalgebraMat<f64>>::new()

@@ -69,24 +69,87 @@ impl System<'_> {
     }
 }
 
+/// How an event is looked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Locate {
+    /// Signs at the ends of steps, then halving: the event functions of the usual packages.
+    Ends,
+    /// The first root of the dense output, none missed.
+    Dense,
+    /// The same; and what is left of a chatter that ends in rest is summed up, a geometric series of flights that takes 2w/(a(1 − R)).
+    Summed,
+}
+
 /// How far a motion has been followed.
-pub(super) struct Course<'a> {
-    pub system: System<'a>,
+pub struct Course<'a> {
+    pub(super) system: System<'a>,
+    kind: Kind,
+    locate: Locate,
     /// Approach speed in m/s below which masses that press each other stay together.
     sticks: f64,
+    /// Steps that it may still take.
+    left: u64,
     pub told: Told,
     pub t: f64,
-    pub y: [f64; 4],
-    pub stage: Stage,
+    pub(super) y: [f64; 4],
+    pub(super) stage: Stage,
 }
 
 impl<'a> Course<'a> {
-    /// The start of a task. Its rule for rest is the speed at which a bounce is as high as the integrator's error, 1 mm times its
-    /// `relative` tolerance.
-    pub fn new(task: &'a Task, spring: Option<Spring>, relative: f64) -> Course<'a> {
-        let sticks = if task.rests { (0.02 * relative).sqrt() } else { 0.0 };
-        let (system, told, y) = (System { task, spring }, Told::default(), task.first());
-        Course { system, sticks, told, t: 0.0, y, stage: Stage::Apart }
+    /// The start of a task, with impacts at once or with a contact. Its rule for rest is the speed at which a bounce is as high as the
+    /// integrator's error, 1 mm times its relative tolerance.
+    pub fn new(task: &'a Task, spring: Option<Spring>, kind: Kind, locate: Locate) -> Course<'a> {
+        Course {
+            system: System { task, spring },
+            kind,
+            locate,
+            sticks: if task.rests { (0.02 * kind.relative()).sqrt() } else { f64::NEG_INFINITY },
+            left: task.most,
+            told: Told::default(),
+            t: 0.0,
+            y: task.first(),
+            stage: Stage::Apart,
+        }
+    }
+
+    /// Follows the motion to what ends its stage: the guard that falls, when, and the state there; none where the task ends before.
+    pub fn next(&mut self) -> Result<Option<(usize, f64, [f64; 4])>, Found> {
+        let (system, stage) = (self.system, self.stage);
+        let (task, guards) = (system.task, system.guards(stage));
+        let f = |t: f64, y: &[f64; 4]| system.rate(stage, t, y);
+        let mut stepper = Stepper::new(self.kind, task, f, self.t, self.y);
+        while self.t < task.until {
+            if self.left == 0 {
+                return Err(task.stalled(self.t));
+            }
+            self.left -= 1;
+            // The holding force bends with the excitation: its sign is tested eight times a cycle at least.
+            let longest = if stage == Stage::Together { task.cycle() / 8.0 } else { f64::INFINITY };
+            let step = stepper.step(f, task.until.min(self.t + longest))?;
+            let fallen = guards.iter().flatten().enumerate().filter_map(|(which, guard)| {
+                let at = match (self.locate, guard) {
+                    (Locate::Dense | Locate::Summed, Guard::Linear(w, offset)) => step.first_fall(w, *offset),
+                    _ => step.crossing(f, guard.value(task, self.t, &self.y), |t, y| guard.value(task, t, y)),
+                };
+                Some((which, at?))
+            });
+            if let Some((which, at)) = fallen.min_by(|a, b| a.1.total_cmp(&b.1)) {
+                return Ok(Some((which, step.start + at, step.at(f, at))));
+            }
+            (self.t, self.y) = (step.start + step.duration, step.end);
+        }
+        Ok(None)
+    }
+
+    /// A contact since the last impact that lasts up to a time (s) is told as rest if it was long enough.
+    fn rested(&mut self, until: f64) {
+        let last = self.told.impacts.last();
+        self.told.sticks.extend(self.system.spring.zip(last).and_then(|(c, from)| c.rest(from.0, until)));
+    }
+
+    /// Whether the masses meet where this stage ends.
+    pub fn apart(&self) -> bool {
+        self.stage == Stage::Apart
     }
 
     /// What follows where a guard has fallen at time and state.
@@ -101,11 +164,17 @@ impl<'a> Course<'a> {
             (Stage::Apart, _) => {
                 let approach = task.collide(&mut y);
                 self.told.impacts.push((t, approach));
-                if approach < self.sticks && task.hold(t, &y) > 0.0 {
-                    self.told.sticks.push([t, f64::INFINITY]);
-                    let rig = &task.rig;
+                let (rig, hold) = (&task.rig, task.hold(t, &y));
+                if approach < self.sticks && hold > 0.0 {
                     let v = (rig.m1 * y[1] + rig.m2 * y[3]) / (rig.m1 + rig.m2);
+                    let apart = y[3] - y[1];
                     y = [y[0], v, y[0] - rig.gap, v];
+                    if self.locate == Locate::Summed {
+                        let left = 2.0 * apart * rig.reduced_mass() / (hold * (1.0 - rig.restitution));
+                        y = rk4(&|t: f64, y: &[f64; 4]| self.system.rate(Stage::Together, t, y), t, &y, left);
+                        self.t += left;
+                    }
+                    self.told.sticks.push([self.t, f64::INFINITY]);
                     Stage::Together
                 } else {
                     Stage::Apart
@@ -121,58 +190,26 @@ impl<'a> Course<'a> {
                 Stage::Apart
             }
             (Stage::Touching, _) => Stage::Released,
-            (Stage::Released, 0) => Stage::Apart,
+            (Stage::Released, 0) => {
+                self.rested(t);
+                Stage::Apart
+            }
             (Stage::Released, _) => Stage::Touching,
         };
         self.y = y;
     }
 }
 
-/// How an event is looked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Locate {
-    /// Signs at the ends of steps, then halving: the event functions of the usual packages.
-    Ends,
-    /// The first root of the dense output, none missed.
-    Dense,
-}
-
 /// Follows the motion with impacts at once, or with a contact.
 pub fn events(task: &Task, spring: Option<Spring>, kind: Kind, locate: Locate) -> Result<Told, Found> {
-    let (mut now, mut left) = (Course::new(task, spring, kind.relative()), task.most);
-    while now.t < task.until {
-        let (system, stage) = (now.system, now.stage);
-        let f = |t: f64, y: &[f64; 4]| system.rate(stage, t, y);
-        let guards = system.guards(stage);
-        let mut stepper = Stepper::new(kind, task, f, now.t, now.y);
-        let (mut t, mut y) = (now.t, now.y);
-        let met = loop {
-            if t >= task.until {
-                return Ok(now.told);
-            }
-            if left == 0 {
-                return Err(task.stalled(t));
-            }
-            left -= 1;
-            // The holding force bends with the excitation: its sign is tested eight times a cycle at least.
-            let longest = if stage == Stage::Together { task.cycle() / 8.0 } else { f64::INFINITY };
-            let step = stepper.step(f, task.until.min(t + longest))?;
-            let fallen = guards.iter().flatten().enumerate().filter_map(|(which, guard)| {
-                let at = match (locate, guard) {
-                    (Locate::Dense, Guard::Linear(weights, offset)) => step.first_fall(weights, *offset),
-                    _ => step.crossing(f, guard.value(task, t, &y), |t, y| guard.value(task, t, y)),
-                };
-                Some((which, at?))
-            });
-            let first = fallen.min_by(|a, b| a.1.total_cmp(&b.1));
-            if let Some((which, at)) = first {
-                break (which, step.start + at, step.at(f, at));
-            }
-            (t, y) = (step.start + step.duration, step.end);
-        };
-        now.meet(met.0, met.1, met.2);
+    let mut course = Course::new(task, spring, kind, locate);
+    while let Some((which, t, y)) = course.next()? {
+        course.meet(which, t, y);
     }
-    Ok(now.told)
+    if !course.apart() {
+        course.rested(f64::INFINITY);
+    }
+    Ok(course.told)
 }
 
 /// Integrates straight through contacts of a spring that never pulls, step sizes left to the error control; touches are read off
