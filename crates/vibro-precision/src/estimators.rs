@@ -12,8 +12,6 @@ mod rivals;
 mod sine;
 mod trial;
 
-pub use trial::limit;
-
 use super::failure::Question;
 use super::{FailureMap, Family, Measured, Scene};
 use vibro_record::{Result, Spectrum, Sweep, SweepPoint};
@@ -91,7 +89,7 @@ mod tests {
     #[test]
     fn the_limits_of_the_map_are_made_for_as_many_cells_as_it_has() {
         let cells = questions(false).len();
-        assert!(cells <= trial::CELLS && 2 * cells > trial::CELLS, "{cells}");
+        assert!(cells <= 500 && 2 * cells > 500, "{cells}");
     }
 
     /// The whole map takes long: here the borders of one quantity stand for it.

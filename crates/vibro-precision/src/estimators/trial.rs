@@ -171,48 +171,12 @@ pub fn measured<D: 'static>(methods: &[Method<D>], settings: &[Kind<D>], quick: 
 
 /// Records of a cell of the map: in full, and quick.
 const TRIALS: [usize; 2] = [40, 6];
-/// Most cells of the map, for which the two limits that follow are made.
-pub const CELLS: usize = 500;
-/// Chance that anywhere in the full map a method whose errors are as it states them is called wrong: half of it by [`FAR`], half by [`outliers`].
-const CHANCE: f64 = 0.01;
 /// An answer within so many of its standard uncertainties is right.
 const WITHIN: f64 = 3.0;
-/// Share of normal errors that lie further off.
-const OUTSIDE: f64 = 2.699_796e-3;
-/// Beyond so many a single answer is wrong: of normal errors 2.0e-7 are, of the 20 000 of the full map one in 0.4 % of such maps.
+/// How many answers of a cell may lie further off, in full and quick; and the standard uncertainties beyond which a single one is wrong. In a full map
+/// of 500 cells each calls a method whose errors are as it states them wrong somewhere in fewer than one of 200 runs.
+const OUTLIERS: [usize; 2] = [3, 2];
 const FAR: f64 = 5.2;
-
-/// How many of so many answers may lie between [`WITHIN`] and [`FAR`]: the least number that chance exceeds anywhere in the map less often
-/// than half of [`CHANCE`].
-fn outliers(judged: usize) -> usize {
-    exceeded(judged, OUTSIDE, 0.5 * CHANCE / CELLS as f64)
-}
-
-/// Share of errors further off than [`WITHIN`] where the standard uncertainty comes from 30 free residuals (Student's distribution).
-const ALLOWED: f64 = 5.39e-3;
-/// Methods of this library, for which the chance of [`limit`] is made.
-const METHODS: usize = 8;
-
-/// How many of so many answers at all borders of a method may lie beyond three of the uncertainties that they state: the least number that chance
-/// exceeds for any of eight methods in fewer than one map of a hundred, where 0.54 % of answers do. That is the share of a standard
-/// uncertainty from 30 free residuals; a perfectly known one has 0.27 %.
-pub fn limit(judged: usize) -> usize {
-    exceeded(judged, ALLOWED, CHANCE / METHODS as f64)
-}
-
-/// The least number that more of `trials` independent events of probability `share` exceed with less than `chance` (binomial distribution).
-fn exceeded(trials: usize, share: f64, chance: f64) -> usize {
-    let odds = share / (1.0 - share);
-    let mut term = (1.0 - share).powf(trials as f64);
-    let mut beyond = 1.0 - term;
-    let mut count = 0;
-    while beyond > chance && count < trials {
-        term *= odds * (trials - count) as f64 / (count + 1) as f64;
-        beyond -= term;
-        count += 1;
-    }
-    count
-}
 
 /// What each method does with each kind of record at a border, to be asked.
 pub fn questions<D: Send + 'static>(
@@ -226,7 +190,7 @@ pub fn questions<D: Send + 'static>(
         ours: method.ours(),
         border,
         scene: kind.name.clone(),
-        ask: Box::new(move || asked(method, &kind, TRIALS[usize::from(quick)])),
+        ask: Box::new(move || asked(method, &kind, quick)),
     };
     let kinds = kinds.into_iter().map(Arc::new);
     kinds.flat_map(|k| methods.iter().map(move |m| question(m, Arc::clone(&k)))).collect()
@@ -246,7 +210,8 @@ fn off(answer: &Answer, truth: f64, tolerance: f64) -> std::result::Result<f64, 
     }
 }
 
-fn asked<D: 'static>(method: &Method<D>, kind: &Kind<D>, trials: usize) -> Found {
+fn asked<D: 'static>(method: &Method<D>, kind: &Kind<D>, quick: bool) -> Found {
+    let trials = TRIALS[usize::from(quick)];
     let (mut right, mut wrong, mut worst) = (0, 0, 0.0_f64);
     let (mut refusal, mut held) = (None, [0; 2]);
     for number in 0..trials {
@@ -261,7 +226,7 @@ fn asked<D: 'static>(method: &Method<D>, kind: &Kind<D>, trials: usize) -> Found
             Err(why) => refusal = refusal.or(Some(why)),
         }
     }
-    let found = if WITHIN * worst > FAR || wrong > outliers(right + wrong) {
+    let found = if WITHIN * worst > FAR || wrong > OUTLIERS[usize::from(quick)] {
         let why = format!(
             "{wrong} of {trials} answers beyond what they state or is allowed, the worst {worst:.3} times"
         );
@@ -283,14 +248,22 @@ mod tests {
 
     #[test]
     fn chance_calls_a_right_method_wrong_in_fewer_than_one_map_in_a_hundred() {
-        let half = 0.5 * CHANCE / CELLS as f64;
+        let half = 0.5 * 0.01 / 500.0;
         // The normal distribution by the midpoint rule, which is off by 1e-8/24 of its curvature.
         let density = |x: f64| (-0.5 * x * x).exp() * (2.0 / std::f64::consts::PI).sqrt();
         let beyond =
             |z: f64| (0..100_000).map(|i| 1e-4 * density(z + 1e-4 * (f64::from(i) + 0.5))).sum::<f64>();
-        assert!((beyond(WITHIN) / OUTSIDE - 1.0).abs() < 1e-6);
-        let of_cell = |z: f64| TRIALS[0] as f64 * beyond(z);
-        assert!(of_cell(FAR) < half && of_cell(FAR - 0.1) > half);
+        assert!(TRIALS[0] as f64 * beyond(FAR) < half && TRIALS[0] as f64 * beyond(FAR - 0.1) > half);
+        // The binomial distribution by its factorials.
+        let share = beyond(WITHIN);
+        for (n, most) in TRIALS.into_iter().zip(OUTLIERS) {
+            let at = |k: usize| {
+                let ways = (0..k).map(|i| (n - i) as f64 / (i + 1) as f64).product::<f64>();
+                ways * share.powf(k as f64) * (1.0 - share).powf((n - k) as f64)
+            };
+            let more = |most: usize| (most + 1..=n).map(at).sum::<f64>();
+            assert!(more(most) < half && more(most - 1) > half, "{n}: {}", more(most));
+        }
     }
 
     #[test]
@@ -304,34 +277,5 @@ mod tests {
         // What is known less well than what is allowed is not right, however near it comes.
         assert!(of(10.0, Some(1.1), None).is_err());
         assert!(near(of(10.0, Some(0.9), None), 0.0));
-    }
-
-    #[test]
-    fn the_number_that_chance_exceeds_is_that_of_the_binomial_distribution() {
-        // P(k) by its factorials.
-        let at = |share: f64, n: usize, k: usize| {
-            let ways = (0..k).map(|i| (n - i) as f64 / (i + 1) as f64).product::<f64>();
-            ways * share.powf(k as f64) * (1.0 - share).powf((n - k) as f64)
-        };
-        for (share, chance) in [(OUTSIDE, 1e-5), (ALLOWED, CHANCE / METHODS as f64)] {
-            for n in [1, 6, 40, 1000] {
-                let beyond = |count: usize| (count + 1..=n).map(|k| at(share, n, k)).sum::<f64>();
-                let count = exceeded(n, share, chance);
-                assert!(beyond(count) < chance, "{n}: {count}");
-                assert!(count == 0 || beyond(count - 1) > chance, "{n}: {count}");
-            }
-        }
-    }
-
-    /// Student's density for 30 degrees of freedom, whose constant is 14.5·13.5·…·0.5/14!/√30 (Γ(15.5)/(Γ(15)√(30π))), by the midpoint rule.
-    #[test]
-    fn the_share_that_is_allowed_is_that_of_thirty_free_residuals() {
-        let gammas = (0..14).map(|i| (f64::from(i) + 1.5) / (f64::from(i) + 1.0)).product::<f64>() * 0.5;
-        let density = |x: f64| gammas / 30f64.sqrt() * (1.0 + x * x / 30.0).powf(-15.5);
-        let integral = |from: f64, steps: i32| -> f64 {
-            (0..steps).map(|i| 1e-3 * density(from + 1e-3 * (f64::from(i) + 0.5))).sum()
-        };
-        assert!((2.0 * integral(0.0, 60_000) - 1.0).abs() < 1e-6);
-        assert!((2.0 * integral(WITHIN, 57_000) / ALLOWED - 1.0).abs() < 0.005);
     }
 }

@@ -229,14 +229,10 @@ fn asked(
     let task = &border.task;
     let not_asked = |why: &str| Ok(Found::new(Outcome::NotAsked, why));
     match (can, border.asks) {
-        (Can::Orbits | Can::Follow, Asks::Contact) => {
-            return not_asked("asked is a contact, and its impacts have no duration");
-        }
-        (Can::Orbits | Can::SoftOrbits, Asks::First(_)) => {
-            return not_asked("it knows motions that repeat, and no first impact");
-        }
-        (Can::Follow | Can::FollowSoft, Asks::Orbits) => {
-            return not_asked("asked are the motions that exist, and it follows one");
+        (Can::Orbits | Can::Follow, Asks::Contact)
+        | (Can::Orbits | Can::SoftOrbits, Asks::First(_))
+        | (Can::Follow | Can::FollowSoft, Asks::Orbits) => {
+            return not_asked("it answers another question");
         }
         (_, Asks::Speed) if !method.ours && task.until * task.frequency > LONG => {
             return not_asked("it would take minutes; fewer cycles are asked of it");

@@ -50,17 +50,15 @@ pub fn kelvin_voigt(task: &Task) -> Result<Told, Found> {
 /// The motion with one impact a cycle in closed form, told by its impact.
 pub fn closed_form(task: &Task) -> Result<Told, Found> {
     let found = orbits(&task.rig, task.force, task.frequency)?;
-    Ok(Told {
-        impacts: found.orbits.first().map(|o| (0.0, o.approach_velocity)).into_iter().collect(),
-        ..Told::default()
-    })
+    let impacts = found.orbits.iter().map(|o| (0.0, o.approach_velocity)).take(1).collect();
+    Ok(Told { impacts, ..Told::default() })
 }
 
 /// The same with the contact that the task has.
 pub fn soft_form(task: &Task) -> Result<Told, Found> {
     let (_, soft, _) = soft_forms(task)?;
-    let first = soft.first().copied().flatten();
-    Ok(Told { impacts: first.map(|o| (0.0, o.approach_velocity)).into_iter().collect(), ..Told::default() })
+    let impacts = soft.iter().take(1).flatten().map(|o| (0.0, o.approach_velocity)).collect();
+    Ok(Told { impacts, ..Told::default() })
 }
 
 /// All orbits, their corrections, and the contact that these are for.

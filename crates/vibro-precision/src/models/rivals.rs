@@ -16,7 +16,9 @@ use diffsol::{
 };
 use loops::{classical, euler, marched, moreau};
 pub use stages::{Course, Locate, events, through};
-pub use stepper::{Kind, Stepper};
+pub use stepper::Kind;
+#[cfg(test)]
+pub use stepper::Stepper;
 
 /// A way to follow a motion.
 #[derive(Clone, Copy)]
@@ -25,95 +27,89 @@ pub struct Method {
     pub name: &'static str,
     /// Whether it is one of this library's.
     pub ours: bool,
-    /// A value of its setting in words.
-    pub setting: fn(f64) -> String,
+    /// Words before and after a value of its setting; none where it has no setting.
+    pub setting: Setting,
     /// The motion of a task by a setting.
-    pub follow: fn(&Task, f64) -> Result<Told, Found>,
+    pub follow: Follow,
 }
 
 type Follow = fn(&Task, f64) -> Result<Told, Found>;
+type Setting = Option<[&'static str; 2]>;
 
-const fn own(name: &'static str, setting: fn(f64) -> String, follow: Follow) -> Method {
-    Method { name, ours: true, setting, follow }
+const STEPS: Setting = Some(["", " steps a cycle"]);
+const TOLERANCE: Setting = Some(["tolerance ", ""]);
+const STIFFNESS: Setting = Some(["k₃ ", " N/m"]);
+
+impl Method {
+    const fn own(name: &'static str, setting: Setting, follow: Follow) -> Method {
+        Method { name, ours: true, setting, follow }
+    }
+
+    const fn rival(name: &'static str, setting: Setting, follow: Follow) -> Method {
+        Method { name, ours: false, setting, follow }
+    }
+
+    /// A value of its setting in words.
+    pub fn words(&self, value: f64) -> String {
+        match self.setting {
+            None => String::new(),
+            Some([before, after]) if (1.0..1e5).contains(&value) => format!("{before}{value}{after}"),
+            Some([before, after]) => format!("{before}{value:.0e}{after}"),
+        }
+    }
 }
 
-const fn rival(name: &'static str, setting: fn(f64) -> String, follow: Follow) -> Method {
-    Method { name, ours: false, setting, follow }
-}
-
-fn none(_: f64) -> String {
-    String::new()
-}
-
-fn steps(n: f64) -> String {
-    format!("{n} steps a cycle")
-}
-
-fn tolerance(relative: f64) -> String {
-    format!("tolerance {relative:.0e}")
-}
-
-fn stiffness(k: f64) -> String {
-    format!("k₃ {k:.0e} N/m")
-}
-
-fn deviation(phase: f64) -> String {
-    format!("phase within {phase:.0e} rad")
-}
-
-fn frequencies(n: f64) -> String {
-    format!("{n} frequencies")
-}
-
-pub const FLIGHTS: Method = own("exact flights", none, |t, _| ours::flights(t));
+pub const FLIGHTS: Method = Method::own("exact flights", None, |t, _| ours::flights(t));
 pub const RIGID: Method = Method { name: "exact flights, rigid", ..FLIGHTS };
-pub const SWEPT: Method = own("exact flights", deviation, ours::swept);
-pub const STANDING: Method = own("closed form, no rate", frequencies, ours::standing);
-pub const CLOSED: Method = own("closed form", none, |t, _| ours::closed_form(t));
-pub const SOFT: Method = own("soft-corrected closed form", none, |t, _| ours::soft_form(t));
-pub const KELVIN_VOIGT: Method = own("exact Kelvin–Voigt", none, |t, _| ours::kelvin_voigt(t));
-pub const EULER: Method = rival("Euler loop", steps, |t, n| marched(t, euler, n));
-pub const RK4_LOOP: Method = rival("RK4 loop", steps, |t, n| marched(t, classical, n));
-pub const MOREAU: Method = rival("Moreau time stepping", steps, |t, n| marched(t, moreau, n));
+pub const SWEPT: Method = Method::own("exact flights", Some(["phase within ", " rad"]), ours::swept);
+pub const STANDING: Method = Method::own("closed form, no rate", Some(["", " frequencies"]), ours::standing);
+pub const CLOSED: Method = Method::own("closed form", None, |t, _| ours::closed_form(t));
+pub const SOFT: Method = Method::own("soft-corrected closed form", None, |t, _| ours::soft_form(t));
+pub const KELVIN_VOIGT: Method = Method::own("exact Kelvin–Voigt", None, |t, _| ours::kelvin_voigt(t));
+pub const EULER: Method = Method::rival("Euler loop", STEPS, |t, n| marched(t, euler, n));
+pub const RK4_LOOP: Method = Method::rival("RK4 loop", STEPS, |t, n| marched(t, classical, n));
+pub const MOREAU: Method = Method::rival("Moreau time stepping", STEPS, |t, n| marched(t, moreau, n));
 pub const RK4_ENDS: Method =
-    rival("RK4, sign test", steps, |t, n| events(t, None, Kind::Rk4(n), Locate::Ends));
+    Method::rival("RK4, sign test", STEPS, |t, n| events(t, None, Kind::Rk4(n), Locate::Ends));
 pub const RK45_ENDS: Method =
-    rival("RK45, sign test", tolerance, |t, r| events(t, None, Kind::Rk45(r), Locate::Ends));
-pub const RK45_RESTLESS: Method = rival("RK45, no rule for rest", tolerance, |t, r| {
+    Method::rival("RK45, sign test", TOLERANCE, |t, r| events(t, None, Kind::Rk45(r), Locate::Ends));
+pub const RK45_RESTLESS: Method = Method::rival("RK45, no rule for rest", TOLERANCE, |t, r| {
     events(&Task { rests: false, ..*t }, None, Kind::Rk45(r), Locate::Ends)
 });
 pub const RK45_DENSE: Method =
-    rival("RK45, dense events", tolerance, |t, r| events(t, None, Kind::Rk45(r), Locate::Dense));
+    Method::rival("RK45, dense events", TOLERANCE, |t, r| events(t, None, Kind::Rk45(r), Locate::Dense));
 pub const DOP853_DENSE: Method =
-    rival("DOP853, dense events", tolerance, |t, r| events(t, None, Kind::Dop853(r), Locate::Dense));
-pub const DOP853_RESTS: Method = rival("DOP853, rule for rest", tolerance, |t, r| {
+    Method::rival("DOP853, dense events", TOLERANCE, |t, r| events(t, None, Kind::Dop853(r), Locate::Dense));
+pub const DOP853_RESTS: Method = Method::rival("DOP853, rule for rest", TOLERANCE, |t, r| {
     events(&Task { rests: true, ..*t }, None, Kind::Dop853(r), Locate::Dense)
 });
-pub const STIFF_SPRING: Method =
-    rival("stiff spring, RK45", stiffness, |t, k| through(t, &Spring::new(&t.rig, k), Kind::Rk45(1e-8)));
+pub const STIFF_SPRING: Method = Method::rival("stiff spring, RK45", STIFFNESS, |t, k| {
+    through(t, &Spring::new(&t.rig, k), Kind::Rk45(1e-8))
+});
 /// In larger steps, for motions whose other errors are larger.
 pub const ROUGH_SPRING: Method =
     Method { follow: |t, k| through(t, &Spring::new(&t.rig, k), Kind::Rk45(1e-6)), ..STIFF_SPRING };
 pub const RK45_THROUGH: Method =
-    rival("RK45 straight through", tolerance, |t, r| through(t, &t.spring(), Kind::Rk45(r)));
+    Method::rival("RK45 straight through", TOLERANCE, |t, r| through(t, &t.spring(), Kind::Rk45(r)));
 pub const RK45_CONTACT: Method = Method { name: "RK45 through the contact", ..RK45_THROUGH };
 pub const RK4_THROUGH: Method =
-    rival("RK4 straight through", steps, |t, n| through(t, &t.spring(), Kind::Rk4(n)));
-pub const RK45_TOUCH: Method = rival("RK45, touch to parting", tolerance, |t, r| {
+    Method::rival("RK4 straight through", STEPS, |t, n| through(t, &t.spring(), Kind::Rk4(n)));
+pub const RK45_TOUCH: Method = Method::rival("RK45, touch to parting", TOLERANCE, |t, r| {
     events(t, Some(t.spring()), Kind::Rk45(r), Locate::Dense)
 });
-pub const DOP853_TOUCH: Method = rival("DOP853, touch to parting", tolerance, |t, r| {
+pub const DOP853_TOUCH: Method = Method::rival("DOP853, touch to parting", TOLERANCE, |t, r| {
     events(t, Some(t.spring()), Kind::Dop853(r), Locate::Dense)
 });
 #[cfg(feature = "diffsol")]
-pub const TSIT45: Method = rival("diffsol TSIT45, sign test", tolerance, |t, r| followed(t, None, Tsit45(r)));
+pub const TSIT45: Method =
+    Method::rival("diffsol TSIT45, sign test", TOLERANCE, |t, r| followed(t, None, Tsit45(r)));
 #[cfg(feature = "diffsol")]
-pub const TSIT45_RESTS: Method = rival("diffsol TSIT45, rule for rest", tolerance, |t, r| {
+pub const TSIT45_RESTS: Method = Method::rival("diffsol TSIT45, rule for rest", TOLERANCE, |t, r| {
     followed(&Task { rests: true, ..*t }, None, Tsit45(r))
 });
 #[cfg(feature = "diffsol")]
 pub const TSIT45_TOUCH: Method =
-    rival("diffsol TSIT45, sign test", tolerance, |t, r| followed(t, Some(t.spring()), Tsit45(r)));
+    Method::rival("diffsol TSIT45, sign test", TOLERANCE, |t, r| followed(t, Some(t.spring()), Tsit45(r)));
 #[cfg(feature = "diffsol")]
 pub const BDF_TOUCH: Method =
-    rival("diffsol BDF, sign test", tolerance, |t, r| followed(t, Some(t.spring()), Bdf(r)));
+    Method::rival("diffsol BDF, sign test", TOLERANCE, |t, r| followed(t, Some(t.spring()), Bdf(r)));

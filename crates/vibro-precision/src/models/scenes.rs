@@ -68,7 +68,7 @@ impl Ask {
             });
             let fault = |f: Found| format!("{}: {}", f.outcome.name(), f.why);
             let answer = told.map_err(fault).and_then(|told| (self.judge)(&told));
-            let (name, setting) = ((method.name, method.ours), (method.setting)(setting));
+            let (name, setting) = ((method.name, method.ours), method.words(setting));
             Measured::new(name, setting, time / self.tasks.len() as f64, answer)
         };
         let of = |settings: &'static [f64]| match quick {
@@ -339,92 +339,74 @@ fn soft(stiffness: f64, cycles: f64) -> Result<Ask> {
 /// Restitution, force in N and frequency in Hz of a window that has been irregular for 200 000 cycles: no method can follow the motion,
 /// all can be asked for its statistics.
 const WINDOW: (f64, f64, f64) = (0.97, 0.3, 5.61);
-/// Cycles left out at the beginning, cycles of a batch, and batches that every method reads.
+/// Cycles left out at the beginning, and cycles that every method reads.
 const SETTLE: f64 = 100.0;
-const BATCH: f64 = 1000.0;
-const BATCHES: usize = 4;
-/// Other starts that the truth is computed from, and batches of each.
-const OTHERS: usize = 8;
-const LONG: usize = 5;
-/// Further off than so many standard errors the statistics are those of another motion: of normal errors one in 16 000 is.
+const CYCLES: f64 = 4000.0;
+/// Other starts that the truth is computed from.
+const OTHERS: usize = 10;
+/// Further off than so many standard errors the statistics are those of another motion: of errors told from ten starts one in 300 is.
 const ALLOWED: f64 = 4.0;
 
-/// The motion from rest through so many batches.
-fn irregular(batches: usize) -> Task {
+/// The motion from x₁ (m) at rest.
+fn irregular(x1: f64, cycles: f64) -> Task {
     let (restitution, force, frequency) = WINDOW;
     let rig = Rig { restitution, ..Rig::thesis() };
-    Task::sine(rig, force, frequency, (SETTLE + BATCH * batches as f64) / frequency)
+    let start = State { x1, ..State::REST };
+    Task { start, ..Task::sine(rig, force, frequency, (SETTLE + cycles) / frequency) }
 }
 
-/// Mean and standard deviation of the approach speeds in each batch.
-fn batches(told: &Told, count: usize) -> std::result::Result<Vec<[f64; 2]>, String> {
-    let at = |batch: usize| (SETTLE + BATCH * batch as f64) / WINDOW.2;
-    let one = |batch: usize| {
-        let inside = told.impacts.iter().filter(|i| i.0 > at(batch) && i.0 <= at(batch + 1));
-        let speeds: Vec<f64> = inside.map(|i| i.1).collect();
-        if speeds.len() > 10 { Ok(moments(&speeds)) } else { Err("the impacts die out".to_owned()) }
-    };
-    (0..count).map(one).collect()
+/// Mean and standard deviation of the approach speeds.
+fn statistics(told: &Told) -> [f64; 2] {
+    moments(told.impacts.iter().filter(|i| i.0 > SETTLE / WINDOW.2).map(|i| i.1))
 }
 
-/// Mean over the batches of each figure, and their scatter.
-fn over(batches: &[[f64; 2]]) -> [[f64; 2]; 2] {
-    [0, 1].map(|i| moments(&batches.iter().map(|b| b[i]).collect::<Vec<_>>()))
+fn moments(values: impl Iterator<Item = f64> + Clone) -> [f64; 2] {
+    let n = values.clone().count() as f64;
+    let mean = values.clone().sum::<f64>() / n;
+    [mean, (values.map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt()]
 }
 
-fn moments(values: &[f64]) -> [f64; 2] {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    [mean, (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt()]
-}
-
-/// Batches of the truth: integration of order 8 with tight tolerance, from starts that no method is given, so that no run of a method is among them.
-fn irregular_truth(starts: usize) -> Result<Vec<[f64; 2]>> {
+/// The statistics by integration of order 8 with tight tolerance, from starts that no method is given, so that no run of a method is among them.
+fn irregular_truth() -> Result<Vec<[f64; 2]>> {
     let one = |start: usize| {
-        let start = State { x1: -1e-4 * (start + 1) as f64, ..State::REST };
-        let told = events(&Task { start, ..irregular(LONG) }, None, Kind::Dop853(1e-12), Locate::Dense)?;
-        batches(&told, LONG).map_err(Error::refused)
+        let task = irregular(-1e-4 * (start + 1) as f64, CYCLES);
+        Ok(statistics(&events(&task, None, Kind::Dop853(1e-12), Locate::Dense)?))
     };
-    Ok((0..starts).into_par_iter().map(one).collect::<Result<Vec<_>>>()?.concat())
+    (0..OTHERS).into_par_iter().map(one).collect()
 }
 
 fn chaos() -> Result<Ask> {
-    let long = over(&irregular_truth(OTHERS)?);
+    let runs = irregular_truth()?;
+    let truth = [0, 1].map(|i| moments(runs.iter().map(|run| run[i])));
     // Standard error of what a method reads, relative, that of the truth included.
-    let share = (1.0 / BATCHES as f64 + 1.0 / (OTHERS * LONG) as f64).sqrt();
-    let scatter = long.map(|[mean, std]| std / mean * share);
+    let scatter = truth.map(|[mean, std]| std / mean * (1.0 + 1.0 / OTHERS as f64).sqrt());
     let judge = move |told: &[Told]| -> Verdict {
-        let found = over(&batches(&told[0], BATCHES)?);
-        let off = [0, 1].map(|i| (found[i][0] / long[i][0] - 1.0).abs());
-        for (i, name) in ["mean", "standard deviation"].iter().enumerate() {
-            let errors = off[i] / scatter[i];
-            // Not a number is no statistics either.
-            if errors.is_nan() || errors > ALLOWED {
-                return Err(format!(
-                    "the {name} of the approach speeds is {:.1} % off, {errors:.0} standard errors: the statistics of another motion",
-                    100.0 * off[i]
-                ));
-            }
+        let found = statistics(&told[0]);
+        let off = [0, 1].map(|i| (found[i] / truth[i][0] - 1.0).abs());
+        // Written so that not a number is no statistics either.
+        if let Some(i) = (0..2).find(|i| !(off[*i] <= ALLOWED * scatter[*i])) {
+            let (name, part) = (["mean", "standard deviation"][i], 100.0 * off[i]);
+            return Err(format!(
+                "the {name} of the approach speeds is {part:.1} % off: those of another motion"
+            ));
         }
         // Below a standard error both are chance, and all methods alike.
         Ok((0..2).map(|i| off[i].max(scatter[i])).fold(0.0, f64::max))
     };
     let (restitution, force, frequency) = WINDOW;
+    let [mean, std] = scatter.map(|s| 100.0 * s);
     Ok(Ask {
         name: "chaotic window".to_owned(),
         says: format!(
             "At R {restitution}, {force} N and {frequency} Hz no two computations agree for long: mean and standard deviation of the \
-             approach speeds over {} cycles, whose standard errors are {:.1} and {:.1} %. Below them errors are chance, and told as them; beyond {ALLOWED} of them it is another motion.",
-            BATCH * BATCHES as f64,
-            100.0 * scatter[0],
-            100.0 * scatter[1]
+             approach speeds over {CYCLES} cycles, whose standard errors are {mean:.1} and {std:.1} %. Below them errors are chance, and told as \
+             them; beyond {ALLOWED} of them it is another motion."
         ),
         error_of: "larger relative error of mean and deviation",
         truth: format!(
-            "order 8, tolerance 1e-12, from {OTHERS} other starts, {} cycles in all; standard errors from the means of batches of {BATCH}",
-            BATCH * (OTHERS * LONG) as f64
+            "order 8, tolerance 1e-12, from {OTHERS} other starts; standard errors from their scatter"
         ),
-        tasks: vec![irregular(BATCHES)],
+        tasks: vec![irregular(0.0, CYCLES)],
         methods: &[
             (FLIGHTS, ONE),
             (EULER, &[100.0, 1e3]),
@@ -501,7 +483,7 @@ mod tests {
 
     #[test]
     fn the_window_stays_irregular() {
-        let told = ours::flights(&irregular(20)).unwrap();
+        let told = ours::flights(&irregular(0.0, 20_000.0)).unwrap();
         let mut last: Vec<f64> = told.impacts.iter().rev().take(1000).map(|i| i.1).collect();
         last.sort_by(f64::total_cmp);
         // What repeats after fewer than 500 impacts has every speed at least twice.
@@ -509,31 +491,20 @@ mod tests {
         assert!(last.len() > 990, "{}", last.len());
     }
 
-    /// Where one start led to another motion than the others, or a batch knew of the one before, the standard error would be none.
+    /// Where one start led to another motion than the others, its statistics would be others.
     #[test]
-    fn batches_of_other_starts_scatter_alike_and_know_nothing_of_each_other() {
-        let all = irregular_truth(4).unwrap();
+    fn other_starts_scatter_alike() {
+        let all = irregular_truth().unwrap();
         for i in 0..2 {
-            let [mean, std] = over(&all)[i];
-            let of_starts: Vec<f64> =
-                all.chunks(LONG).map(|s| s.iter().map(|b| b[i]).sum::<f64>() / LONG as f64).collect();
-            // Four means of five batches: beyond four of their standard errors is one in 16 000.
-            for start in &of_starts {
-                assert!((start - mean).abs() < ALLOWED * std / (LONG as f64).sqrt(), "{i}: {of_starts:?}");
-            }
-            let pairs: Vec<f64> = all
-                .chunks(LONG)
-                .flat_map(|s| s.windows(2).map(|w| (w[0][i] - mean) * (w[1][i] - mean)))
-                .collect();
-            let correlation = pairs.iter().sum::<f64>() / pairs.len() as f64 / (std * std);
-            // Of 16 pairs without correlation it scatters by 1/√16.
-            assert!(correlation.abs() < 0.75, "{i}: {correlation}");
+            let [mean, std] = moments(all.iter().map(|run| run[i]));
+            // Of ten normal numbers none is 9/√10 of their own standard deviations off; three are rare.
+            assert!(all.iter().all(|run| (run[i] - mean).abs() < 2.6 * std), "{all:?}");
         }
     }
 
     #[test]
     fn moments_of_four_numbers() {
-        let [mean, std] = moments(&[1.0, 2.0, 3.0, 6.0]);
+        let [mean, std] = moments([1.0, 2.0, 3.0, 6.0].into_iter());
         assert!((mean - 3.0).abs() < 1e-15 && (std - (14.0_f64 / 3.0).sqrt()).abs() < 1e-15);
     }
 }

@@ -1,11 +1,10 @@
-//! The truth, by nothing that this library's models use: integration of order 8 to 1e-13 from event to event, the linear flight over a cycle,
-//! Newton's method.
+//! The truth, by nothing that this library's models use: integration of order 8 to 1e-13 from event to event, and Newton's method.
 
-use super::rivals::{Course, Kind, Locate, Stepper, events};
+use super::rivals::{Course, Kind, Locate, events};
 use super::task::{Spring, Task, Told, state};
 use crate::failure::Found;
 use nalgebra::{Matrix4, Vector4};
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{PI, TAU};
 
 /// The integration.
 const KIND: Kind = Kind::Dop853(1e-13);
@@ -20,12 +19,6 @@ const SMALL: f64 = 1e-7;
 const CLOSED: f64 = 1e-9;
 /// What is left of the start, relative, where Newton's method takes over.
 const NEARLY: f64 = 1e-3;
-/// Where two numbers in parts of the motion's size are closer than this, rounding decides.
-const ROUNDING: f64 = 1e-8;
-/// Largest gain of one impact on the next up to which that holds.
-const GAIN: f64 = 1e3;
-/// Instants of a cycle at which the gap is looked at.
-const LOOKS: usize = 512;
 
 /// The motion of a task with impacts at once, or with a contact.
 pub fn motion(task: &Task, contact: Option<Spring>) -> Result<Told, Found> {
@@ -126,103 +119,12 @@ pub fn settled(task: &Task, contact: Option<Spring>, cycles: f64) -> Result<Opti
     Ok(if regular { repeats(task, contact, task.cycle(), &last[8].1) } else { None })
 }
 
-/// A flight over one cycle, past the other mass: the state at its end, and the smallest gap in m between the ends.
-fn flight(task: &Task, phase: f64, y: [f64; 4]) -> Result<([f64; 4], f64), Found> {
-    let task = Task { phase, ..*task };
-    let f = |t: f64, y: &[f64; 4]| task.pushed(t, y, 0.0);
-    let mut stepper = Stepper::new(KIND, &task, f, 0.0, y);
-    let (mut at, mut lowest) = (y, f64::INFINITY);
-    for i in 1..=LOOKS {
-        let end = task.cycle() * i as f64 / LOOKS as f64;
-        let mut step = stepper.step(f, end)?;
-        while step.start + step.duration < end {
-            step = stepper.step(f, end)?;
-        }
-        at = step.end;
-        // Beside the impacts themselves the gap is small without meaning anything.
-        if (2..LOOKS - 1).contains(&i) {
-            lowest = lowest.min(task.gap(&at));
-        }
-    }
-    Ok((at, lowest))
-}
-
-/// The motions of a task with one impact a cycle that approaches, and how deep (m) the masses pass through each other in each; none
-/// where rounding decides.
-///
-/// A cycle takes the state behind an impact to A y + b cos φ + c sin φ before the next, φ being the force's phase there, and the impact takes it
-/// back to the first by a matrix: for each φ one linear equation gives the only state that repeats, and it is a sine of φ, as is its
-/// gap. Where the gap is zero the masses meet: at two phases, or none.
-pub fn impacts(task: &Task) -> Result<Option<Vec<(Repeats, f64)>>, Found> {
-    let rig = &task.rig;
-    let speed = LENGTH * TAU * task.frequency;
-    let unit = Vector4::new(LENGTH, speed, LENGTH, speed);
-    // Before the next impact, in these units, from a state behind one.
-    let before = |task: &Task, phase: f64, y: [f64; 4]| -> Result<Vector4<f64>, Found> {
-        Ok(Vector4::from(flight(task, phase, y)?.0).component_div(&unit))
-    };
-    let mut free = Matrix4::zeros();
-    for i in 0..4 {
-        let mut y = [0.0; 4];
-        y[i] = unit[i];
-        free.set_column(i, &before(&Task { force: 0.0, ..*task }, 0.0, y)?);
-    }
-    // m₁v₁ + m₂v₂ = const, (v₁ − v₂)⁺ = −R(v₁ − v₂)⁻.
-    let mut impact = Matrix4::identity();
-    let whole = (1.0 + rig.restitution) / (rig.m1 + rig.m2);
-    for (row, mass) in [(1, -rig.m2), (3, rig.m1)] {
-        impact[(row, 1)] += mass * whole;
-        impact[(row, 3)] -= mass * whole;
-    }
-    let back = (Matrix4::identity() - free * impact).try_inverse().filter(|inverse| inverse.norm() < GAIN);
-    let Some(back) = back else { return Ok(None) };
-    let [even, odd] = [back * before(task, 0.0, [0.0; 4])?, back * before(task, FRAC_PI_2, [0.0; 4])?];
-    let gaps = [even, odd].map(|y| y[0] - y[2]);
-    let (swing, crest, gap) = (gaps[0].hypot(gaps[1]), gaps[1].atan2(gaps[0]), rig.gap / LENGTH);
-    let size = even.norm().hypot(odd.norm()).max(gap.abs());
-    if (swing - gap.abs()).abs() < ROUNDING * size {
-        return Ok(None);
-    }
-    let mut found = Vec::new();
-    // x₁ − x₂ = gap.
-    for side in if swing > gap.abs() { &[-1.0, 1.0][..] } else { &[] } {
-        let phase = (crest + side * (gap / swing).acos()).rem_euclid(TAU);
-        let y = even * phase.cos() + odd * phase.sin();
-        let one = Repeats { before: y.component_mul(&unit).into(), phase };
-        if one.speed().abs() < ROUNDING * size * speed {
-            return Ok(None);
-        }
-        if one.speed() > 0.0 {
-            let after: [f64; 4] = (impact * y).component_mul(&unit).into();
-            found.push((one, -flight(task, phase, after)?.1));
-        }
-    }
-    Ok(Some(found))
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::scenes::{GOLDEN_B, GOLDEN_C, task_b, task_c};
     use super::*;
-    use vibro_model::{Sine, Steady};
+    use crate::models::rivals::Stepper;
 
-    #[test]
-    fn motions_of_the_definition_repeat() {
-        // Just before scene B reaches the gap by itself two motions with an impact exist.
-        let task = task_b(1.0);
-        let unit =
-            Steady::new(&task.rig, &Sine { force: 1.0, frequency: task.frequency }).unwrap().amplitude();
-        for (force, n) in [(0.5, 1), (task.rig.gap / unit * (1.0 - 1e-3), 2), (1e-3, 0)] {
-            let task = Task { force, ..task };
-            let found = impacts(&task).unwrap().unwrap();
-            assert_eq!(found.len(), n);
-            for (one, _) in found {
-                // Newton's method on the motion itself stays where it begins.
-                let again = repeats(&task, None, task.cycle(), &one).unwrap();
-                assert!(one.off(again.speed(), again.phase) < 1e-8, "{one:?} {again:?}");
-            }
-        }
-    }
     #[test]
     fn impacts_of_scene_b_are_those_of_arithmetic_with_40_digits() {
         let told = motion(&task_b(2.0), None).unwrap();

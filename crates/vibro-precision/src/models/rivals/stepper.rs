@@ -54,14 +54,8 @@ pub struct Taken {
     pub duration: f64,
     /// State at its end.
     pub end: [f64; 4],
-    course: Course,
-}
-
-/// What is known of the motion within a step.
-enum Course {
-    /// Its beginning.
-    Start([f64; 4]),
-    Dense(Step<4>),
+    from: [f64; 4],
+    dense: Option<Step<4>>,
 }
 
 impl Stepper {
@@ -89,30 +83,25 @@ impl Stepper {
                 let (start, from, duration) = (*t, *y, h.min(until - *t));
                 (*t, *y) =
                     (if duration < *h { until } else { start + duration }, rk4(&f, start, y, duration));
-                return Ok(Taken { start, duration, end: *y, course: Course::Start(from) });
+                return Ok(Taken { start, duration, end: *y, from, dense: None });
             }
             Stepper::Five(integrator) => integrator.step(f, until)?,
             Stepper::Eight(integrator) => integrator.step(f, until)?,
         };
-        Ok(Taken { start: step.start, duration: step.duration, end: step.end, course: Course::Dense(step) })
+        let Step { start, duration, end, .. } = step;
+        Ok(Taken { start, duration, end, from: end, dense: Some(step) })
     }
 }
 
 impl Taken {
     /// State at `t` after its start.
     pub fn at(&self, f: impl Fn(f64, &[f64; 4]) -> [f64; 4], t: f64) -> [f64; 4] {
-        match &self.course {
-            Course::Start(y) => rk4(&f, self.start, y, t),
-            Course::Dense(step) => step.at(t),
-        }
+        self.dense.as_ref().map_or_else(|| rk4(&f, self.start, &self.from, t), |step| step.at(t))
     }
 
     /// First time after its start at which weights·y + offset, not negative there, falls to zero; none where there is no dense output.
     pub fn first_fall(&self, weights: &[f64; 4], offset: f64) -> Option<f64> {
-        match &self.course {
-            Course::Start(_) => None,
-            Course::Dense(step) => step.first_fall(weights, offset),
-        }
+        self.dense.as_ref()?.first_fall(weights, offset)
     }
 
     /// Where `height`, not negative at the start, is zero if it is not positive at the end: a sign test and halving.
