@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use vibro_math::Noise;
 use vibro_measure::impacts::{ImpactsOptions, Shape, impacts};
 use vibro_measure::legacy::contact_times;
-use vibro_record::{Result, Trace, Window};
+use vibro_record::{Result, Trace};
 
 /// Samples a second of the contact trace.
 const RATE: f64 = 2000.0;
@@ -85,16 +85,9 @@ fn onset_bound(noise: f64) -> f64 {
     bounds(&[0.37, 1.0], &[1e-4, 1e-4], noise, model)[0]
 }
 
-const RATES: [Method<Trace>; 4] = [
+const RATES: [Method<Trace>; 3] = [
     Method::rival("timeav", |t| contact_times(t).map_or(f64::NAN, |f| f.frequency)),
     Method::rival("threshold", |t| RATE * rivals::mean_rate(&rivals::threshold(&t.values))),
-    Method::rival("spectrum, first line", |t| {
-        // The first line that is half as high as the highest: the fundamental of a train of pulses.
-        let lines = rivals::lines(t, Window::Hann);
-        let high = 2.0 * rivals::half(&lines[4..]);
-        let first = lines.iter().skip(4).position(|v| *v > 0.5 * high);
-        first.map_or(f64::NAN, |k| (k + 4) as f64 * rivals::spacing(t))
-    }),
     Method::own("onset fit", |t| {
         let found = impacts(t, &ImpactsOptions::default())?;
         Ok(Answer::found(&found.frequency, &found.findings))
@@ -115,8 +108,7 @@ fn between(trace: &Trace, shape: Option<Shape>) -> Result<Answer> {
     Ok(Answer { value: middle(&found.times), std, doubt: None })
 }
 
-const TIMES: [Method<Trace>; 5] = [
-    Method::rival("highest sample", |t| middle(&rivals::tops(&t.values)) / RATE),
+const TIMES: [Method<Trace>; 4] = [
     Method::rival("threshold, sample", |t| middle(&rivals::threshold(&t.values)) / RATE),
     Method::rival("threshold, between", |t| {
         middle(&rivals::passages(&t.values, rivals::half(&t.values))) / RATE

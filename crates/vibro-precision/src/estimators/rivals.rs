@@ -61,17 +61,6 @@ pub fn threshold(values: &[f64]) -> Vec<f64> {
     passages(values, half(values)).iter().map(|t| t.ceil()).collect()
 }
 
-/// Times in samples of the highest value after each passage of half the highest, until it is passed downwards.
-pub fn tops(values: &[f64]) -> Vec<f64> {
-    let level = half(values);
-    let top = |t: &f64| {
-        let from = *t as usize;
-        let end = (from..values.len()).find(|i| values[*i] < level).unwrap_or(values.len());
-        from as f64 + largest(&values[from..end]) as f64
-    };
-    threshold(values).iter().map(top).collect()
-}
-
 /// Mean frequency in events a sample from the first and the last of these times in samples.
 pub fn mean_rate(times: &[f64]) -> f64 {
     match times {

@@ -14,7 +14,7 @@ use crate::failure::{Found, Question};
 use crate::{FailureMap, Family, Outcome};
 use std::f64::consts::TAU;
 use std::sync::Arc;
-use vibro_model::{Rig, Sine, State, Steady};
+use vibro_model::{Rig, Sine, Steady};
 use vibro_record::Result;
 use vibro_record::units::notation::quantity;
 
@@ -78,8 +78,7 @@ const METHODS: &[(Method, f64, Can)] = &[
 /// Six cycles at ν 2.1 under 0.5 N from x₁ = −1 mm.
 fn six_cycles(rig: Rig) -> Task {
     let frequency = at(&Rig::thesis(), 2.1);
-    let start = State { x1: -1e-3, ..State::REST };
-    Task { start, most: 100_000, ..Task::sine(rig, 0.5, frequency, 6.0 / frequency) }
+    Task { start: [-1e-3, 0.0, 0.0, 0.0], most: 100_000, ..Task::sine(rig, 0.5, frequency, 6.0 / frequency) }
 }
 
 /// The first chatter of scene C and the second with this restitution.

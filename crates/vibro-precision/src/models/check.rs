@@ -1,13 +1,13 @@
 //! Answers against the truth.
 
 use super::ours::soft_forms;
-use super::task::{Task, Told, list};
+use super::task::{Task, Told};
 use super::truth::{Repeats, repeats, settled};
 use crate::Outcome;
 use crate::failure::Found;
 use std::f64::consts::TAU;
 use std::fmt::Debug;
-use vibro_model::{Orbit, orbits};
+use vibro_model::{Orbit, State, orbits};
 
 /// What every method may be off: this part of a cycle in times, this part of the fastest approach speed in all of them. It is what a fixed step of a
 /// thousandth of a cycle comes to within some impacts, and twenty times what a millimetre scale would show.
@@ -115,7 +115,8 @@ fn judged(task: &Task, told: &[&Orbit]) -> Result<Found, Found> {
 }
 
 fn rigid(orbit: &Orbit) -> Repeats {
-    Repeats { before: list(&orbit.before_impact()), phase: orbit.force_phase }
+    let State { x1, v1, x2, v2 } = orbit.before_impact();
+    Repeats { before: [x1, v1, x2, v2], phase: orbit.force_phase }
 }
 
 /// Every orbit that does not pass through the other mass, corrected, against the motion with the contact that repeats. The correction is of first order
@@ -164,8 +165,7 @@ mod tests {
         let unit =
             Steady::new(&task.rig, &Sine { force: 1.0, frequency: task.frequency }).unwrap().amplitude();
         let force = task.rig.gap / unit * (1.0 - 1e-3);
-        let start = vibro_model::State { x1: -1e-3, ..task.start };
-        let task = Task { force, start, ..task };
+        let task = Task { force, start: [-1e-3, 0.0, 0.0, 0.0], ..task };
         let found = orbits(&task.rig, task.force, task.frequency).unwrap().orbits;
         let [first, second] = found[..] else { panic!("{}", found.len()) };
         let outcome = |told: &[&Orbit]| judged(&task, told).unwrap().outcome;

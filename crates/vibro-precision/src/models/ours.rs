@@ -4,7 +4,7 @@ use super::task::{Spring, Task, Told};
 use crate::failure::Found;
 use vibro_model::contact::conversion::damping_ratio;
 use vibro_model::{
-    Chirp, Compliance, Compliant, Event, Excitation, Law, Motion, Orbits, Piece, Simulation, Sine,
+    Chirp, Compliance, Compliant, Event, Excitation, Law, Motion, Orbits, Piece, Simulation, Sine, State,
 };
 use vibro_model::{Softened, orbits, softened};
 
@@ -12,17 +12,22 @@ fn sine(task: &Task) -> Sine {
     Sine { force: task.force, frequency: task.frequency }
 }
 
+fn start(task: &Task) -> State {
+    let [x1, v1, x2, v2] = task.start;
+    State { x1, v1, x2, v2 }
+}
+
 /// Event by event on exact flights.
 pub fn flights(task: &Task) -> Result<Told, Found> {
     let mut told = Told::default();
-    Simulation::from_state(&task.rig, &sine(task), task.start, task.phase)?
+    Simulation::from_state(&task.rig, &sine(task), start(task), task.phase)?
         .advance(task.until, &mut |piece| told.take(&piece))?;
     Ok(told)
 }
 
 /// As [`flights`], the frequency changing at the task's rate in steps whose phase deviates by up to `deviation` (rad).
 pub fn swept(task: &Task, deviation: f64) -> Result<Told, Found> {
-    let mut motion = Simulation::from_state(&task.rig, &sine(task), task.start, task.phase)?;
+    let mut motion = Simulation::from_state(&task.rig, &sine(task), start(task), task.phase)?;
     let mut told = Told::default();
     Chirp { rate: task.rate, deviation }.advance(&mut motion, task.until, &mut |piece| told.take(&piece))?;
     Ok(told)
@@ -33,7 +38,7 @@ pub fn kelvin_voigt(task: &Task) -> Result<Told, Found> {
     damping_ratio(task.rig.restitution)?;
     let Spring { stiffness, damping, .. } = task.spring();
     let law = Law::KelvinVoigt { stiffness, damping };
-    let mut motion = Compliant::new(&task.rig, &Excitation::Sine(sine(task)), law, task.start, task.phase)?;
+    let mut motion = Compliant::new(&task.rig, &Excitation::Sine(sine(task)), law, start(task), task.phase)?;
     let mut told = Told::default();
     // A contact that gives way is told when it is over: the motion is followed for longer, and what began too late left out.
     motion.advance(task.until + 3.0 * task.cycle(), &mut |piece| {

@@ -7,7 +7,7 @@ mod stages;
 mod stepper;
 
 use super::ours;
-use super::task::{Spring, Task, Told};
+use super::task::{Task, Told};
 use crate::failure::Found;
 #[cfg(feature = "diffsol")]
 use diffsol::{
@@ -15,8 +15,10 @@ use diffsol::{
     followed,
 };
 use loops::{classical, euler, marched, moreau};
-pub use stages::{Course, Locate, events, through};
+use stages::through;
+pub use stages::{Course, Locate, events};
 pub use stepper::Kind;
+use stepper::Kind::{Dop853, Rk4, Rk45};
 #[cfg(test)]
 pub use stepper::Stepper;
 
@@ -69,47 +71,54 @@ pub const KELVIN_VOIGT: Method = Method::own("exact Kelvin–Voigt", None, |t, _
 pub const EULER: Method = Method::rival("Euler loop", STEPS, |t, n| marched(t, euler, n));
 pub const RK4_LOOP: Method = Method::rival("RK4 loop", STEPS, |t, n| marched(t, classical, n));
 pub const MOREAU: Method = Method::rival("Moreau time stepping", STEPS, |t, n| marched(t, moreau, n));
-pub const RK4_ENDS: Method =
-    Method::rival("RK4, sign test", STEPS, |t, n| events(t, None, Kind::Rk4(n), Locate::Ends));
-pub const RK45_ENDS: Method =
-    Method::rival("RK45, sign test", TOLERANCE, |t, r| events(t, None, Kind::Rk45(r), Locate::Ends));
-pub const RK45_RESTLESS: Method = Method::rival("RK45, no rule for rest", TOLERANCE, |t, r| {
-    events(&Task { rests: false, ..*t }, None, Kind::Rk45(r), Locate::Ends)
-});
-pub const RK45_DENSE: Method =
-    Method::rival("RK45, dense events", TOLERANCE, |t, r| events(t, None, Kind::Rk45(r), Locate::Dense));
-pub const DOP853_DENSE: Method =
-    Method::rival("DOP853, dense events", TOLERANCE, |t, r| events(t, None, Kind::Dop853(r), Locate::Dense));
-pub const DOP853_RESTS: Method = Method::rival("DOP853, rule for rest", TOLERANCE, |t, r| {
-    events(&Task { rests: true, ..*t }, None, Kind::Dop853(r), Locate::Dense)
-});
-pub const STIFF_SPRING: Method = Method::rival("stiff spring, RK45", STIFFNESS, |t, k| {
-    through(t, &Spring::new(&t.rig, k), Kind::Rk45(1e-8))
-});
+pub const RK4_ENDS: Method = Method::rival("RK4, sign test", STEPS, |t, n| ends(t, Rk4(n)));
+pub const RK45_ENDS: Method = Method::rival("RK45, sign test", TOLERANCE, |t, r| ends(t, Rk45(r)));
+pub const RK45_RESTLESS: Method =
+    Method::rival("RK45, no rule for rest", TOLERANCE, |t, r| ends(&rests(t, false), Rk45(r)));
+pub const RK45_DENSE: Method = Method::rival("RK45, dense events", TOLERANCE, |t, r| dense(t, Rk45(r)));
+pub const DOP853_DENSE: Method = Method::rival("DOP853, dense events", TOLERANCE, |t, r| dense(t, Dop853(r)));
+pub const DOP853_RESTS: Method =
+    Method::rival("DOP853, rule for rest", TOLERANCE, |t, r| dense(&rests(t, true), Dop853(r)));
+pub const STIFF_SPRING: Method = Method::rival("stiff spring, RK45", STIFFNESS, |t, k| stiff(t, k, 1e-8));
 /// In larger steps, for motions whose other errors are larger.
-pub const ROUGH_SPRING: Method =
-    Method { follow: |t, k| through(t, &Spring::new(&t.rig, k), Kind::Rk45(1e-6)), ..STIFF_SPRING };
+pub const ROUGH_SPRING: Method = Method { follow: |t, k| stiff(t, k, 1e-6), ..STIFF_SPRING };
 pub const RK45_THROUGH: Method =
-    Method::rival("RK45 straight through", TOLERANCE, |t, r| through(t, &t.spring(), Kind::Rk45(r)));
+    Method::rival("RK45 straight through", TOLERANCE, |t, r| through(t, Rk45(r)));
 pub const RK45_CONTACT: Method = Method { name: "RK45 through the contact", ..RK45_THROUGH };
-pub const RK4_THROUGH: Method =
-    Method::rival("RK4 straight through", STEPS, |t, n| through(t, &t.spring(), Kind::Rk4(n)));
-pub const RK45_TOUCH: Method = Method::rival("RK45, touch to parting", TOLERANCE, |t, r| {
-    events(t, Some(t.spring()), Kind::Rk45(r), Locate::Dense)
-});
-pub const DOP853_TOUCH: Method = Method::rival("DOP853, touch to parting", TOLERANCE, |t, r| {
-    events(t, Some(t.spring()), Kind::Dop853(r), Locate::Dense)
-});
+pub const RK4_THROUGH: Method = Method::rival("RK4 straight through", STEPS, |t, n| through(t, Rk4(n)));
+pub const RK45_TOUCH: Method = Method::rival("RK45, touch to parting", TOLERANCE, |t, r| touch(t, Rk45(r)));
+pub const DOP853_TOUCH: Method =
+    Method::rival("DOP853, touch to parting", TOLERANCE, |t, r| touch(t, Dop853(r)));
 #[cfg(feature = "diffsol")]
 pub const TSIT45: Method =
     Method::rival("diffsol TSIT45, sign test", TOLERANCE, |t, r| followed(t, None, Tsit45(r)));
 #[cfg(feature = "diffsol")]
 pub const TSIT45_RESTS: Method = Method::rival("diffsol TSIT45, rule for rest", TOLERANCE, |t, r| {
-    followed(&Task { rests: true, ..*t }, None, Tsit45(r))
+    followed(&rests(t, true), None, Tsit45(r))
 });
 #[cfg(feature = "diffsol")]
-pub const TSIT45_TOUCH: Method =
-    Method::rival("diffsol TSIT45, sign test", TOLERANCE, |t, r| followed(t, Some(t.spring()), Tsit45(r)));
+pub const TSIT45_TOUCH: Method = Method { follow: |t, r| followed(t, Some(t.spring()), Tsit45(r)), ..TSIT45 };
 #[cfg(feature = "diffsol")]
 pub const BDF_TOUCH: Method =
     Method::rival("diffsol BDF, sign test", TOLERANCE, |t, r| followed(t, Some(t.spring()), Bdf(r)));
+
+fn ends(task: &Task, kind: Kind) -> Result<Told, Found> {
+    events(task, None, kind, Locate::Ends)
+}
+
+fn dense(task: &Task, kind: Kind) -> Result<Told, Found> {
+    events(task, None, kind, Locate::Dense)
+}
+
+fn touch(task: &Task, kind: Kind) -> Result<Told, Found> {
+    events(task, Some(task.spring()), kind, Locate::Dense)
+}
+
+/// A spring of stiffness `k` (N/m) in place of the impact.
+fn stiff(task: &Task, k: f64, tolerance: f64) -> Result<Told, Found> {
+    through(&Task { stiffness: k, ..*task }, Rk45(tolerance))
+}
+
+fn rests(task: &Task, rests: bool) -> Task {
+    Task { rests, ..*task }
+}

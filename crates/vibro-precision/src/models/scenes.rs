@@ -14,11 +14,14 @@ use crate::scene::timed;
 use crate::{Family, Measured, Scene};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
-use vibro_model::{Compliance, Rig, Sine, State, Steady};
+use vibro_model::{Compliance, Rig, Sine, Steady};
 use vibro_record::{Error, Result};
 
 /// What a judge says of the motions that are told: their error, or why there is none.
 type Verdict = std::result::Result<f64, String>;
+
+/// A method with its settings.
+type Asked = (Method, &'static [f64]);
 
 /// A scene before it is measured.
 struct Ask {
@@ -28,7 +31,7 @@ struct Ask {
     truth: String,
     /// Motions that are followed one after another; the time of one answer is the mean.
     tasks: Vec<Task>,
-    methods: &'static [(Method, &'static [f64])],
+    methods: Vec<Asked>,
     judge: Box<dyn Fn(&[Told]) -> Verdict>,
 }
 
@@ -91,6 +94,18 @@ impl Ask {
 /// For a method without a setting.
 const ONE: &[f64] = &[0.0];
 
+/// Fixed steps, as far as they go within a second.
+const LOOPS: [Asked; 3] =
+    [(EULER, &[100.0, 1e3, 1e4]), (RK4_LOOP, &[100.0, 1e3, 1e4]), (MOREAU, &[100.0, 1e3, 1e4])];
+/// Methods that locate impacts.
+const EVENTS: &[Asked] = &[
+    (RK45_ENDS, &[1e-3, 1e-6, 1e-9, 1e-12]),
+    (RK45_DENSE, &[1e-3, 1e-6, 1e-9, 1e-12]),
+    (DOP853_DENSE, &[1e-6, 1e-9, 1e-12, 1e-14]),
+    #[cfg(feature = "diffsol")]
+    (TSIT45, &[1e-4, 1e-6, 1e-9, 1e-12]),
+];
+
 /// Frequency in Hz at which ν = ω/Ω₁ is that.
 pub(super) fn at(rig: &Rig, nu: f64) -> f64 {
     nu * (rig.k1 / rig.m1).sqrt() / TAU
@@ -146,19 +161,14 @@ fn scene_b(seconds: f64) -> Result<Ask> {
              order 8 to 1e-13, beyond {FOLLOWED:.0e} s; smaller errors than {least:.0e} s, the rounding of the time, are told as that"
         ),
         tasks: vec![task],
-        methods: &[
-            (FLIGHTS, ONE),
-            (EULER, &[100.0, 1e3, 1e4]),
-            (RK4_LOOP, &[100.0, 1e3, 1e4]),
-            (MOREAU, &[100.0, 1e3, 1e4]),
-            (RK4_ENDS, &[30.0, 100.0, 300.0, 1e3]),
-            (RK45_ENDS, &[1e-3, 1e-6, 1e-9, 1e-12]),
-            (RK45_DENSE, &[1e-3, 1e-6, 1e-9, 1e-12]),
-            (DOP853_DENSE, &[1e-6, 1e-9, 1e-12, 1e-14]),
-            #[cfg(feature = "diffsol")]
-            (TSIT45, &[1e-4, 1e-6, 1e-9, 1e-12]),
-            (STIFF_SPRING, &[1e5, 1e6, 1e8]),
-        ],
+        methods: [
+            &[(FLIGHTS, ONE)],
+            &LOOPS[..],
+            &[(RK4_ENDS, &[30.0, 100.0, 300.0, 1e3])],
+            EVENTS,
+            &[(STIFF_SPRING, &[1e5, 1e6, 1e8])],
+        ]
+        .concat(),
         judge: Box::new(judge),
     })
 }
@@ -182,7 +192,7 @@ pub(super) fn grazing_task(depth: f64, start: usize) -> Result<(Task, Option<f64
     let task = Task {
         rig: Rig { gap, ..rig },
         phase: -turn - steady.response.arg(),
-        start: State { x1: amplitude * turn.cos(), v1: amplitude * omega * turn.sin(), x2: 0.0, v2: 0.0 },
+        start: [amplitude * turn.cos(), amplitude * omega * turn.sin(), 0.0, 0.0],
         ..Task::sine(rig, 0.5, frequency, peak + 0.25 / frequency)
     };
     let reached = amplitude - gap;
@@ -221,18 +231,7 @@ fn grazing(depth: f64) -> Result<Ask> {
         error_of: "median error of the impact's time (s)",
         truth: "the forced motion A cos ω(t − tₚ) meets the gap A − d at tₚ − 2 asin(√(d/2A))/ω".to_owned(),
         tasks,
-        methods: &[
-            (FLIGHTS, ONE),
-            (EULER, &[100.0, 1e3, 1e4]),
-            (RK4_LOOP, &[100.0, 1e3, 1e4]),
-            (MOREAU, &[100.0, 1e3, 1e4]),
-            (RK4_ENDS, &[100.0, 1e3, 1e4]),
-            (RK45_ENDS, &[1e-3, 1e-6, 1e-9, 1e-12]),
-            (RK45_DENSE, &[1e-3, 1e-6, 1e-9, 1e-12]),
-            (DOP853_DENSE, &[1e-6, 1e-9, 1e-12, 1e-14]),
-            #[cfg(feature = "diffsol")]
-            (TSIT45, &[1e-4, 1e-6, 1e-9, 1e-12]),
-        ],
+        methods: [&[(FLIGHTS, ONE)], &LOOPS[..], &[(RK4_ENDS, &[100.0, 1e3, 1e4])], EVENTS].concat(),
         judge: Box::new(judge),
     })
 }
@@ -244,8 +243,12 @@ pub(super) const GOLDEN_C: [f64; 3] =
 /// Impacts that accumulate, rest, and release: the pre-loaded rig from x₁ = −2 mm.
 pub(super) fn task_c() -> Task {
     let rig = Rig { gap: -5e-4, ..Rig::thesis() };
-    let start = State { x1: -2e-3, ..State::REST };
-    Task { start, most: 500_000, rests: true, ..Task::sine(rig, 0.35, at(&rig, 0.45), 0.6) }
+    Task {
+        start: [-2e-3, 0.0, 0.0, 0.0],
+        most: 500_000,
+        rests: true,
+        ..Task::sine(rig, 0.35, at(&rig, 0.45), 0.6)
+    }
 }
 
 fn scene_c() -> Ask {
@@ -266,19 +269,18 @@ fn scene_c() -> Ask {
         error_of: "largest error of the three times (s)",
         truth: "arithmetic with 40 digits".to_owned(),
         tasks: vec![task_c()],
-        methods: &[
-            (FLIGHTS, ONE),
-            (EULER, &[1e3, 1e4, 1e5]),
-            (RK4_LOOP, &[1e3, 1e4, 1e5]),
-            (MOREAU, &[1e3, 1e4, 1e5]),
-            (RK45_RESTLESS, &[1e-6]),
-            (RK4_ENDS, &[100.0, 1e3]),
-            (RK45_ENDS, &[1e-3, 1e-6, 1e-9, 1e-12]),
-            (RK45_DENSE, &[1e-3, 1e-6, 1e-9, 1e-12]),
-            (DOP853_DENSE, &[1e-6, 1e-9, 1e-12, 1e-14]),
-            #[cfg(feature = "diffsol")]
-            (TSIT45, &[1e-4, 1e-6, 1e-9, 1e-12]),
-        ],
+        methods: [
+            &[
+                (FLIGHTS, ONE),
+                (EULER, &[1e3, 1e4, 1e5]),
+                (RK4_LOOP, &[1e3, 1e4, 1e5]),
+                (MOREAU, &[1e3, 1e4, 1e5]),
+                (RK45_RESTLESS, &[1e-6]),
+                (RK4_ENDS, &[100.0, 1e3]),
+            ],
+            EVENTS,
+        ]
+        .concat(),
         judge: Box::new(judge),
     }
 }
@@ -318,7 +320,7 @@ fn soft(stiffness: f64, cycles: f64) -> Result<Ask> {
         error_of: "relative error of the settled approach speed",
         truth: "the motion that repeats, by Newton's method on integration of order 8 to 1e-13".to_owned(),
         tasks: vec![task],
-        methods: &[
+        methods: vec![
             (CLOSED, ONE),
             (SOFT, ONE),
             (RIGID, ONE),
@@ -351,8 +353,8 @@ const ALLOWED: f64 = 4.0;
 fn irregular(x1: f64, cycles: f64) -> Task {
     let (restitution, force, frequency) = WINDOW;
     let rig = Rig { restitution, ..Rig::thesis() };
-    let start = State { x1, ..State::REST };
-    Task { start, ..Task::sine(rig, force, frequency, (SETTLE + cycles) / frequency) }
+    let plain = Task::sine(rig, force, frequency, (SETTLE + cycles) / frequency);
+    Task { start: [x1, 0.0, 0.0, 0.0], ..plain }
 }
 
 /// Mean and standard deviation of the approach speeds.
@@ -407,7 +409,7 @@ fn chaos() -> Result<Ask> {
             "order 8, tolerance 1e-12, from {OTHERS} other starts; standard errors from their scatter"
         ),
         tasks: vec![irregular(0.0, CYCLES)],
-        methods: &[
+        methods: vec![
             (FLIGHTS, ONE),
             (EULER, &[100.0, 1e3]),
             (RK4_LOOP, &[100.0, 1e3]),
@@ -446,15 +448,12 @@ fn slow_sweep() -> Result<Ask> {
              that"
         ),
         tasks: vec![task],
-        methods: &[
-            (STANDING, &[11.0, 61.0]),
-            (SWEPT, &[0.1, 1e-2, 1e-3, 1e-4, 1e-5]),
-            (EULER, &[100.0, 1e3, 1e4]),
-            (RK4_LOOP, &[100.0, 1e3, 1e4]),
-            (MOREAU, &[100.0, 1e3, 1e4]),
-            (RK45_ENDS, &[1e-3, 1e-6, 1e-9, 1e-12]),
-            (DOP853_DENSE, &[1e-6, 1e-9, 1e-12]),
-        ],
+        methods: [
+            &[(STANDING, &[11.0, 61.0][..]), (SWEPT, &[0.1, 1e-2, 1e-3, 1e-4, 1e-5])],
+            &LOOPS[..],
+            &[(RK45_ENDS, &[1e-3, 1e-6, 1e-9, 1e-12]), (DOP853_DENSE, &[1e-6, 1e-9, 1e-12])],
+        ]
+        .concat(),
         judge: Box::new(judge),
     })
 }

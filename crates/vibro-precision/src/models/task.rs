@@ -3,8 +3,8 @@
 use crate::Outcome;
 use crate::failure::Found;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use vibro_model::Rig;
 use vibro_model::contact::conversion::damping_ratio;
-use vibro_model::{Rig, State};
 
 /// A motion to be followed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,8 +19,8 @@ pub struct Task {
     pub rate: f64,
     /// Phase at time 0 in rad: the force is F₀ cos(phase) there.
     pub phase: f64,
-    /// State at time 0.
-    pub start: State,
+    /// State (x₁, v₁, x₂, v₂) at time 0.
+    pub start: [f64; 4],
     /// Stiffness in N/m of the contact, for methods that have one.
     pub stiffness: f64,
     /// Time of the end in s.
@@ -92,7 +92,7 @@ impl Task {
             frequency,
             rate: 0.0,
             phase: -FRAC_PI_2,
-            start: State::REST,
+            start: [0.0; 4],
             stiffness: 1e6,
             until,
             most: 20_000_000,
@@ -135,11 +135,6 @@ impl Task {
         self.rig.gap + y[2] - y[0]
     }
 
-    /// The start as a list.
-    pub fn first(&self) -> [f64; 4] {
-        list(&self.start)
-    }
-
     /// Exchanges momentum by the impact law: gives the approach speed in m/s.
     #[inline]
     pub fn collide(&self, y: &mut [f64; 4]) -> f64 {
@@ -155,14 +150,4 @@ impl Task {
         let why = format!("{} steps are spent at {t:.6} s of {:.6} s", self.most, self.until);
         Found::new(Outcome::Stalled, why)
     }
-}
-
-/// A state as a list.
-pub fn list(state: &State) -> [f64; 4] {
-    [state.x1, state.v1, state.x2, state.v2]
-}
-
-/// A list as a state.
-pub fn state([x1, v1, x2, v2]: [f64; 4]) -> State {
-    State { x1, v1, x2, v2 }
 }

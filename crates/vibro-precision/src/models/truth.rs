@@ -1,7 +1,7 @@
 //! The truth, by nothing that this library's models use: integration of order 8 to 1e-13 from event to event, and Newton's method.
 
 use super::rivals::{Course, Kind, Locate, events};
-use super::task::{Spring, Task, Told, state};
+use super::task::{Spring, Task, Told};
 use crate::failure::Found;
 use nalgebra::{Matrix4, Vector4};
 use std::f64::consts::{PI, TAU};
@@ -70,7 +70,7 @@ pub fn repeats(task: &Task, contact: Option<Spring>, period: f64, guess: &Repeat
     };
     let missed = |u: &Vector4<f64>| -> Option<Vector4<f64>> {
         let Repeats { before: y, phase } = of(u);
-        let task = Task { phase, start: state(y), until: 1.5 * period, rests: true, ..*task };
+        let task = Task { phase, start: y, until: 1.5 * period, rests: true, ..*task };
         let mut course = Course::new(&task, contact, KIND, Locate::Summed);
         course.meet(0, 0.0, y);
         let (time, then) = meeting(&mut course).ok()??;

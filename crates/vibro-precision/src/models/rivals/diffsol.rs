@@ -121,7 +121,7 @@ mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
     use super::*;
-    use vibro_model::{Rig, State};
+    use vibro_model::Rig;
 
     /// Displacement in m from which both masses start.
     const START: f64 = 1e-3;
@@ -138,7 +138,7 @@ mod tests {
         let thesis = Rig::thesis();
         let rig = Rig { m2: thesis.m1, k2: thesis.k1, c1: 0.0, c2: 0.0, gap: 0.0, restitution, ..thesis };
         let omega = (rig.k1 / rig.m1).sqrt();
-        let start = State { x1: -START, x2: START, ..State::REST };
+        let start = [-START, 0.0, START, 0.0];
         let sine = Task::sine(rig, 0.0, omega / std::f64::consts::TAU, until / omega);
         (Task { start, most: STEPS, ..sine }, omega)
     }

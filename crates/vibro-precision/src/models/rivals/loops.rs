@@ -15,7 +15,7 @@ pub fn marched(task: &Task, stride: Stride, n: f64) -> Result<Told, Found> {
     if steps > task.most as f64 {
         return Err(task.stalled(task.most as f64 * h));
     }
-    let (mut y, mut told) = (task.first(), Told::default());
+    let (mut y, mut told) = (task.start, Told::default());
     for i in 0..steps as u64 {
         let (next, impact) = stride(task, i as f64 * h, &y, h);
         y = next;

@@ -107,7 +107,7 @@ impl<'a> Course<'a> {
             left: task.most,
             told: Told::default(),
             t: 0.0,
-            y: task.first(),
+            y: task.start,
             stage: Stage::Apart,
         }
     }
@@ -214,13 +214,13 @@ pub fn events(task: &Task, spring: Option<Spring>, kind: Kind, locate: Locate) -
 
 /// Integrates straight through contacts of a spring that never pulls, step sizes left to the error control; touches are read off
 /// afterwards.
-pub fn through(task: &Task, spring: &Spring, kind: Kind) -> Result<Told, Found> {
+pub fn through(task: &Task, kind: Kind) -> Result<Told, Found> {
+    let spring = task.spring();
     let force = |y: &[f64; 4]| if task.gap(y) < 0.0 { spring.bound(task, y).max(0.0) } else { 0.0 };
     let f = |t: f64, y: &[f64; 4]| task.pushed(t, y, force(y));
-    let (mut told, mut left) = (Told::default(), task.most);
-    let mut stepper = Stepper::new(kind, task, f, 0.0, task.first());
-    let (mut t, mut gap) = (0.0, task.gap(&task.first()));
-    let mut touch = None;
+    let (mut told, mut touch, mut left) = (Told::default(), None, task.most);
+    let mut stepper = Stepper::new(kind, task, f, 0.0, task.start);
+    let (mut t, mut gap) = (0.0, task.gap(&task.start));
     while t < task.until {
         if left == 0 {
             return Err(task.stalled(t));
@@ -235,14 +235,10 @@ pub fn through(task: &Task, spring: &Spring, kind: Kind) -> Result<Told, Found> 
             touch = Some(step.start + at);
         }
         t = step.start + step.duration;
-        let after = task.gap(&step.end);
-        if after > 0.0
-            && let Some(from) = touch.take()
-        {
-            let parts = step.crossing(f, -gap, |_, y| -task.gap(y)).map_or(t, |at| step.start + at);
-            told.sticks.extend(spring.rest(from, parts));
+        gap = task.gap(&step.end);
+        if gap > 0.0 {
+            told.sticks.extend(touch.take().and_then(|from| spring.rest(from, t)));
         }
-        gap = after;
     }
     told.sticks.extend(touch.and_then(|from| spring.rest(from, f64::INFINITY)));
     Ok(told)
