@@ -233,7 +233,7 @@ const NEAR: [Near; 29] = [
 #[test]
 #[ignore = "a full map: cargo test --release -- --ignored"]
 fn estimators_are_right_or_refuse_at_their_borders() {
-    let map = estimators::failures(true).unwrap();
+    let map = estimators::failures(true);
     check(&map);
     for Near { method, border, scenes, why } in NEAR {
         for scene in scenes {

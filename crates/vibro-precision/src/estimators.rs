@@ -14,7 +14,7 @@ mod trial;
 
 use super::failure::Question;
 use super::{FailureMap, Family, Measured, Scene};
-use vibro_record::{Result, Spectrum, Sweep, SweepPoint};
+use vibro_record::{Spectrum, Sweep, SweepPoint};
 
 /// Every scene of the estimators, each method measured; `quick` takes fewer records.
 pub(crate) fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Vec<Scene> {
@@ -36,10 +36,7 @@ pub(crate) fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Vec<Scene> 
 /// refused where it is withheld, where a doubt takes its uncertainty away, and where its uncertainty is more than what is allowed. No doubt excuses
 /// an uncertainty that is stated. A method is wrong where more answers are off than chance allows, or one by more than 5.2 standard uncertainties: limits that methods
 /// whose errors are as they state them pass in fewer than one of a hundred full maps.
-///
-/// # Errors
-/// If the system gives no threads.
-pub fn failures(quick: bool) -> Result<FailureMap> {
+pub fn failures(quick: bool) -> FailureMap {
     FailureMap::asked(Family::Estimators, questions(quick))
 }
 
@@ -95,7 +92,7 @@ mod tests {
     /// The whole map takes long: here the borders of one quantity stand for it.
     #[test]
     fn displacements_are_right_or_refused_at_their_borders() {
-        let map = FailureMap::asked(Family::Estimators, integration::borders(true)).unwrap();
+        let map = FailureMap::asked(Family::Estimators, integration::borders(true));
         assert_eq!(map.broken().collect::<Vec<_>>(), Vec::<&Cell>::new());
         // Neither a map of refusals nor a check that all methods pass.
         let count =

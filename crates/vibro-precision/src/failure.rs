@@ -3,9 +3,8 @@
 use super::Family;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::time::Duration;
-use vibro_record::{Error, Result};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use vibro_record::Error;
 
 /// What a method did at a border, told with the truth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -17,7 +16,7 @@ pub enum Outcome {
     Refused,
     /// An answer further off than it allows for, without a word on what is wrong.
     Wrong,
-    /// No answer within the budget of steps or time.
+    /// No answer within the budget of steps.
     Stalled,
     /// It panicked.
     Crashed,
@@ -110,21 +109,16 @@ pub(crate) struct Question {
     pub ask: Box<dyn FnOnce() -> Found + Send>,
 }
 
-/// Time that a cell may take, on a machine that does other things, too: right ones take less than a tenth of it.
-const PATIENCE: Duration = Duration::from_secs(60);
-
 impl FailureMap {
     /// Asks every question, as many side by side as there are cores.
-    pub(crate) fn asked(family: Family, questions: Vec<Question>) -> Result<FailureMap> {
-        // Not the global pool: a method may use that itself while a thread here waits for it.
-        let pool = rayon::ThreadPoolBuilder::new().build().map_err(|e| Error::refused(e.to_string()))?;
-        let cell = |question: Question| {
-            let Question { method, ours, border, scene, ask } = question;
-            let Found { outcome, why, held } = watched(ask, PATIENCE);
+    pub(crate) fn asked(family: Family, questions: Vec<Question>) -> FailureMap {
+        let cell = |Question { method, ours, border, scene, ask }: Question| {
+            let panicked = |_| Found::new(Outcome::Crashed, "it panicked, with its message printed");
+            let Found { outcome, why, held } = catch_unwind(AssertUnwindSafe(ask)).unwrap_or_else(panicked);
             let (method, border) = (method.to_owned(), border.to_owned());
             Cell { family, method, ours, border, scene, outcome, why, held }
         };
-        Ok(FailureMap { cells: pool.install(|| questions.into_par_iter().map(cell).collect()) })
+        FailureMap { cells: questions.into_par_iter().map(cell).collect() }
     }
 
     /// Whether nothing was asked.
@@ -169,55 +163,24 @@ impl FailureMap {
     }
 }
 
-/// What a question comes to on a thread of its own; one that does not end is left to itself.
-fn watched(ask: Box<dyn FnOnce() -> Found + Send>, patience: Duration) -> Found {
-    let (send, receive) = channel();
-    std::thread::spawn(move || send.send(ask()));
-    receive.recv_timeout(patience).unwrap_or_else(|ended| match ended {
-        RecvTimeoutError::Timeout => Found::new(Outcome::Stalled, format!("no answer within {patience:?}")),
-        RecvTimeoutError::Disconnected => {
-            Found::new(Outcome::Crashed, "it panicked, with its message printed")
-        }
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn answers_panics_and_what_does_not_end_are_told_apart() {
-        let outcome =
-            |ask: Box<dyn FnOnce() -> Found + Send>, ms: u64| watched(ask, Duration::from_millis(ms)).outcome;
-        let right = || Found::new(Outcome::Right, "");
-        assert_eq!(outcome(Box::new(right), 10_000), Outcome::Right);
-        assert_eq!(outcome(Box::new(|| panic!("on purpose")), 10_000), Outcome::Crashed);
-        let wait = move || {
-            std::thread::sleep(Duration::from_secs(1));
-            right()
-        };
-        assert_eq!(outcome(Box::new(wait), 10), Outcome::Stalled);
-    }
-
-    #[test]
-    fn what_is_watched_may_use_the_threads_that_the_map_does_not_hold() {
-        let question = |i: usize| Question {
-            method: "sum",
+    fn a_panic_is_a_cell() {
+        let question = |scene: &str, ask: Box<dyn FnOnce() -> Found + Send>| Question {
+            method: "one",
             ours: true,
-            border: "threads",
-            scene: i.to_string(),
-            ask: Box::new(move || {
-                let sum = (0..1000_u64).into_par_iter().sum::<u64>();
-                Found::right_if(sum == 499_500, String::new())
-            }),
+            border: "panics",
+            scene: scene.to_owned(),
+            ask,
         };
-        let map = FailureMap::asked(Family::Models, (0..20).map(question).collect()).unwrap();
-        assert_eq!(map.cells.len(), 20);
-        assert!(
-            map.cells
-                .iter()
-                .enumerate()
-                .all(|(i, c)| c.scene == i.to_string() && c.outcome == Outcome::Right)
-        );
+        let right = question("answers", Box::new(|| Found::new(Outcome::Right, "")));
+        let wrong = question("panics", Box::new(|| panic!("on purpose")));
+        let map = FailureMap::asked(Family::Models, vec![right, wrong]);
+        let outcomes: Vec<_> = map.cells.iter().map(|c| c.outcome).collect();
+        assert_eq!(outcomes, [Outcome::Right, Outcome::Crashed]);
+        assert_eq!(map.broken().count(), 1);
     }
 }

@@ -52,7 +52,7 @@ impl Results {
             progress("borders");
             let map = match family {
                 Family::Models => crate::models::failures(quick)?,
-                Family::Estimators => crate::estimators::failures(quick)?,
+                Family::Estimators => crate::estimators::failures(quick),
             };
             self.failures.cells.extend(map.cells);
         }

@@ -137,34 +137,27 @@ const APART: usize = 1_000_000;
 /// Every method with every setting: the error is the root mean square over the answers, so that it compares with a standard deviation. A
 /// method that answers to fewer than half of the records has failed.
 pub fn measured<D: 'static>(methods: &[Method<D>], settings: &[Kind<D>], quick: bool) -> Vec<Measured> {
-    let records = RECORDS[usize::from(quick)];
+    let (records, clocked) = (RECORDS[usize::from(quick)], TIMED[usize::from(quick)]);
     let one = |method: &Method<D>, place: usize, setting: &Kind<D>| {
+        let case = |number: usize| setting.case(place * APART + number);
         let error = |number: usize| {
-            let case = setting.case(place * APART + number);
-            Ok((method.answer(&case.data)?.value - case.truth) / case.unit)
+            let Case { data, truth, unit, .. } = case(number);
+            Ok((method.answer(&data)?.value - truth) / unit)
         };
-        let answers: Vec<std::result::Result<f64, String>> =
-            (0..records).into_par_iter().map(error).collect();
+        let answers: Vec<_> = (0..records).into_par_iter().map(error).collect();
         // Times are those of an idle machine: one after another.
-        let time = |number: usize| {
-            let record = setting.case(place * APART + number).data;
-            timed(1, quick, || method.answer(&record)).1
-        };
-        let time = median(&mut (0..TIMED[usize::from(quick)]).map(time).collect::<Vec<_>>());
+        let time = |record: D| timed(1, quick, || method.answer(&record)).1;
+        let mut times: Vec<f64> = (0..clocked).map(|number| time(case(number).data)).collect();
         let squares: Vec<f64> = answers.iter().flatten().map(|e| e * e).collect();
         let (n, refusal) = (squares.len(), answers.into_iter().find_map(std::result::Result::err));
-        let mut measured = Measured::new(
-            (method.name, method.ours()),
-            setting.name.clone(),
-            time,
-            if 2 * n < records {
-                Err(String::new())
-            } else {
-                Ok((squares.iter().sum::<f64>() / n as f64).sqrt())
-            },
-        );
-        measured.why = refusal.map(|why| format!("{} of {records} records refused: {why}", records - n));
-        measured
+        let why = refusal.map(|why: String| format!("{} of {records} records refused: {why}", records - n));
+        let answer = if 2 * n < records {
+            Err(String::new())
+        } else {
+            Ok((squares.iter().sum::<f64>() / n as f64).sqrt())
+        };
+        let name = (method.name, method.ours());
+        Measured { why, ..Measured::new(name, setting.name.clone(), median(&mut times), answer) }
     };
     methods.iter().flat_map(|m| settings.iter().enumerate().map(move |(place, s)| one(m, place, s))).collect()
 }

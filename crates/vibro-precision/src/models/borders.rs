@@ -1,15 +1,10 @@
 //! The borders of what models can, and each method at each of them.
 
 use super::check;
-#[cfg(feature = "diffsol")]
-use super::rivals::TSIT45_RESTS;
-use super::rivals::{
-    CLOSED, DOP853_RESTS, EULER, FLIGHTS, KELVIN_VOIGT, MOREAU, Method, RK4_LOOP, RK45_CONTACT, RK45_ENDS,
-    ROUGH_SPRING, SOFT,
-};
+use super::rivals::{self as by, Method};
 use super::scenes::{at, grazing_task, task_c};
 use super::task::{Task, Told};
-use super::truth::{Repeats, motion, settled};
+use super::truth::{motion, settled};
 use crate::failure::{Found, Question};
 use crate::{FailureMap, Family, Outcome};
 use std::f64::consts::TAU;
@@ -60,19 +55,19 @@ const LONG: f64 = 1e4;
 /// Methods in the order of the picture, with their setting, and what they can. The stiff spring stands for an impact at once: it is in
 /// contact for 0.07 % of the period.
 const METHODS: &[(Method, f64, Can)] = &[
-    (CLOSED, 0.0, Can::Orbits),
-    (Method { name: "soft-corrected form", ..SOFT }, 0.0, Can::SoftOrbits),
-    (FLIGHTS, 0.0, Can::Follow),
-    (KELVIN_VOIGT, 0.0, Can::FollowSoft),
-    (EULER, 1e3, Can::Follow),
-    (RK4_LOOP, 1e3, Can::Follow),
-    (MOREAU, 1e3, Can::Follow),
-    (RK45_ENDS, 1e-6, Can::Follow),
-    (DOP853_RESTS, 1e-9, Can::Follow),
+    (by::CLOSED, 0.0, Can::Orbits),
+    (Method { name: "soft-corrected form", ..by::SOFT }, 0.0, Can::SoftOrbits),
+    (by::FLIGHTS, 0.0, Can::Follow),
+    (by::KELVIN_VOIGT, 0.0, Can::FollowSoft),
+    (by::EULER, 1e3, Can::Follow),
+    (by::RK4_LOOP, 1e3, Can::Follow),
+    (by::MOREAU, 1e3, Can::Follow),
+    (by::RK45_ENDS, 1e-6, Can::Follow),
+    (by::DOP853_RESTS, 1e-9, Can::Follow),
     #[cfg(feature = "diffsol")]
-    (TSIT45_RESTS, 1e-9, Can::Follow),
-    (ROUGH_SPRING, 1e8, Can::Follow),
-    (RK45_CONTACT, 1e-6, Can::FollowSoft),
+    (by::TSIT45_RESTS, 1e-9, Can::Follow),
+    (by::ROUGH_SPRING, 1e8, Can::Follow),
+    (by::RK45_CONTACT, 1e-6, Can::FollowSoft),
 ];
 
 /// Six cycles at ν 2.1 under 0.5 N from x₁ = −1 mm.
@@ -168,26 +163,19 @@ fn borders(quick: bool) -> Result<Vec<Border>> {
     Ok(all)
 }
 
-/// What is true at a border, for impacts at once or for a contact; nothing where it is not known.
-#[derive(Default)]
-struct Truth {
-    motion: Option<Told>,
-    settled: Option<Repeats>,
-}
-
-impl Truth {
-    fn new(border: &Border, soft: bool) -> Truth {
-        let task = &border.task;
-        let contact = soft.then(|| task.spring());
-        match border.asks {
-            // No damper of a contact stops a rebound altogether.
-            _ if soft && task.rig.restitution == 0.0 => Truth::default(),
-            Asks::Motion | Asks::Contact => Truth { motion: motion(task, contact).ok(), settled: None },
-            Asks::Speed => {
-                Truth { settled: settled(task, contact, check::SETTLED).ok().flatten(), motion: None }
-            }
-            Asks::First(_) | Asks::Orbits => Truth::default(),
-        }
+/// What would be told rightly at a border, with impacts at once or with a contact; nothing where it is not known.
+fn truth(border: &Border, soft: bool) -> Option<Told> {
+    let task = &border.task;
+    let contact = soft.then(|| task.spring());
+    let impacts =
+        |impact: Option<(f64, f64)>| Told { impacts: impact.into_iter().collect(), ..Told::default() };
+    match border.asks {
+        // No damper of a contact stops a rebound altogether.
+        _ if soft && task.rig.restitution == 0.0 => None,
+        Asks::Motion | Asks::Contact => motion(task, contact).ok(),
+        Asks::Speed => Some(impacts(Some((0.0, settled(task, contact, check::SETTLED).ok()??.speed())))),
+        Asks::First(time) => Some(impacts(time.map(|t| (t, 0.0)))),
+        Asks::Orbits => None,
     }
 }
 
@@ -198,23 +186,23 @@ impl Truth {
 pub fn failures(quick: bool) -> Result<FailureMap> {
     let mut questions = Vec::new();
     for border in borders(quick)? {
-        let truths = Arc::new([false, true].map(|soft| Truth::new(&border, soft)));
-        let border = Arc::new(border);
+        let truths = [false, true].map(|soft| truth(&border, soft));
+        let own = Arc::new((border, truths));
         for (method, setting, can) in METHODS {
-            let (truths, own) = (Arc::clone(&truths), Arc::clone(&border));
+            let (border, own) = (&own.0, Arc::clone(&own));
             questions.push(Question {
                 method: method.name,
                 ours: method.ours,
                 border: border.name,
                 scene: border.scene.clone(),
                 ask: Box::new(move || {
-                    let truth = &truths[usize::from(*can == Can::FollowSoft)];
-                    asked(method, *setting, *can, &own, truth).unwrap_or_else(|fault| fault)
+                    let truth = own.1[usize::from(*can == Can::FollowSoft)].as_ref();
+                    asked(method, *setting, *can, &own.0, truth).unwrap_or_else(|fault| fault)
                 }),
             });
         }
     }
-    FailureMap::asked(Family::Models, questions)
+    Ok(FailureMap::asked(Family::Models, questions))
 }
 
 /// What a method makes of a border.
@@ -223,7 +211,7 @@ fn asked(
     setting: f64,
     can: Can,
     border: &Border,
-    truth: &Truth,
+    truth: Option<&Told>,
 ) -> std::result::Result<Found, Found> {
     let task = &border.task;
     let not_asked = |why: &str| Ok(Found::new(Outcome::NotAsked, why));
@@ -241,11 +229,13 @@ fn asked(
         _ => {}
     }
     let told = (method.follow)(task, setting)?;
-    Ok(match (border.asks, &truth.motion, &truth.settled) {
-        (Asks::First(time), ..) => check::first(&told, time, task),
-        (_, Some(truth), _) => check::motion(&told, truth, task),
-        (_, _, Some(truth)) => check::speed(&told, truth),
-        _ => return not_asked("no truth: there is no such motion, or it does not settle"),
+    let Some(truth) = truth else {
+        return not_asked("no truth: there is no such motion, or it does not settle");
+    };
+    Ok(match border.asks {
+        Asks::First(_) => check::first(&told, truth, task),
+        Asks::Speed => check::speed(&told, truth),
+        _ => check::motion(&told, truth, task),
     })
 }
 
@@ -263,12 +253,12 @@ mod tests {
                 continue;
             }
             let place = format!("{} {}", border.name, border.scene);
-            for (which, method) in [FLIGHTS, KELVIN_VOIGT].into_iter().enumerate() {
+            for (which, method) in [by::FLIGHTS, by::KELVIN_VOIGT].into_iter().enumerate() {
                 let Ok(told) = (method.follow)(&border.task, 0.0) else {
                     refused.push((which, place.clone()));
                     continue;
                 };
-                let truth = Truth::new(&border, which == 1).motion.unwrap();
+                let truth = truth(&border, which == 1).unwrap();
                 // Impacts slower than 1e-3 m/s are told apart by what each method calls rest.
                 let fast = |t: &Told| {
                     t.impacts
@@ -311,16 +301,17 @@ mod tests {
     #[test]
     fn a_method_that_misses_an_impact_is_wrong_and_one_without_a_truth_is_not_asked() {
         let border = borders(true).unwrap().into_iter().find(|b| b.asks == Asks::Motion).unwrap();
-        let truth = Truth::new(&border, false);
+        let truth = truth(&border, false);
         let without = |t: &Task, _: f64| {
             let mut told = ours::flights(t)?;
             told.impacts.remove(1);
             Ok(told)
         };
-        let outcome =
-            |method: &Method, truth: &Truth| asked(method, 0.0, Can::Follow, &border, truth).unwrap().outcome;
-        assert_eq!(outcome(&Method { follow: without, ..FLIGHTS }, &truth), Outcome::Wrong);
-        assert_eq!(outcome(&FLIGHTS, &truth), Outcome::Right);
-        assert_eq!(outcome(&FLIGHTS, &Truth::default()), Outcome::NotAsked);
+        let outcome = |method: &Method, truth: Option<&Told>| {
+            asked(method, 0.0, Can::Follow, &border, truth).unwrap().outcome
+        };
+        assert_eq!(outcome(&Method { follow: without, ..by::FLIGHTS }, truth.as_ref()), Outcome::Wrong);
+        assert_eq!(outcome(&by::FLIGHTS, truth.as_ref()), Outcome::Right);
+        assert_eq!(outcome(&by::FLIGHTS, None), Outcome::NotAsked);
     }
 }

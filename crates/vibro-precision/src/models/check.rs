@@ -69,20 +69,19 @@ fn in_order<T: Debug>(
 }
 
 /// The first impact, at the time of the truth or never.
-pub fn first(told: &Told, truth: Option<f64>, task: &Task) -> Found {
-    let allowed = ALLOWED * task.cycle();
-    let found = told.impacts.first().map(|i| i.0);
-    let kept = match (found, truth) {
-        (Some(found), Some(truth)) => (found - truth).abs() <= allowed,
-        (found, truth) => found.is_none() && truth.is_none(),
+pub fn first(told: &Told, truth: &Told, task: &Task) -> Found {
+    let [told, truth] = [told, truth].map(|motion| motion.impacts.first().map(|i| i.0));
+    let kept = match (told, truth) {
+        (Some(told), Some(truth)) => (told - truth).abs() <= ALLOWED * task.cycle(),
+        (told, truth) => told.is_none() && truth.is_none(),
     };
-    let shown = |t: Option<f64>| t.map_or("never".to_owned(), |t| format!("{t:.9} s"));
-    Found::right_if(kept, format!("first impact: told {}, true {}", shown(found), shown(truth)))
+    Found::right_if(kept, format!("time of the first impact in s: told {told:?}, true {truth:?}"))
 }
 
 /// The last approach speed of a motion against that of the one that repeats.
-pub fn speed(told: &Told, truth: &Repeats) -> Found {
-    let error = told.impacts.last().map_or(f64::NAN, |last| (last.1 / truth.speed() - 1.0).abs());
+pub fn speed(told: &Told, truth: &Told) -> Found {
+    let [told, truth] = [told, truth].map(|motion| motion.impacts.last().map_or(f64::NAN, |i| i.1));
+    let error = (told / truth - 1.0).abs();
     Found::right_if(error <= ALLOWED, format!("approach speed {error:.0e} off, allowed {ALLOWED:.0e}"))
 }
 

@@ -1,12 +1,6 @@
 //! Scenes of models: what is asked, of which methods with which settings, and what is true.
 
-#[cfg(feature = "diffsol")]
-use super::rivals::{BDF_TOUCH, TSIT45, TSIT45_TOUCH};
-use super::rivals::{
-    CLOSED, DOP853_DENSE, DOP853_TOUCH, EULER, FLIGHTS, KELVIN_VOIGT, Kind, Locate, MOREAU, Method, RIGID,
-    RK4_ENDS, RK4_LOOP, RK4_THROUGH, RK45_DENSE, RK45_ENDS, RK45_RESTLESS, RK45_THROUGH, RK45_TOUCH,
-    ROUGH_SPRING, SOFT, STANDING, STIFF_SPRING, SWEPT, events,
-};
+use super::rivals::{self as by, Kind, Locate, Method, events};
 use super::task::{Task, Told};
 use super::{ours, truth};
 use crate::failure::Found;
@@ -96,14 +90,14 @@ const ONE: &[f64] = &[0.0];
 
 /// Fixed steps, as far as they go within a second.
 const LOOPS: [Asked; 3] =
-    [(EULER, &[100.0, 1e3, 1e4]), (RK4_LOOP, &[100.0, 1e3, 1e4]), (MOREAU, &[100.0, 1e3, 1e4])];
+    [(by::EULER, &[100.0, 1e3, 1e4]), (by::RK4_LOOP, &[100.0, 1e3, 1e4]), (by::MOREAU, &[100.0, 1e3, 1e4])];
 /// Methods that locate impacts.
 const EVENTS: &[Asked] = &[
-    (RK45_ENDS, &[1e-3, 1e-6, 1e-9, 1e-12]),
-    (RK45_DENSE, &[1e-3, 1e-6, 1e-9, 1e-12]),
-    (DOP853_DENSE, &[1e-6, 1e-9, 1e-12, 1e-14]),
+    (by::RK45_ENDS, &[1e-3, 1e-6, 1e-9, 1e-12]),
+    (by::RK45_DENSE, &[1e-3, 1e-6, 1e-9, 1e-12]),
+    (by::DOP853_DENSE, &[1e-6, 1e-9, 1e-12, 1e-14]),
     #[cfg(feature = "diffsol")]
-    (TSIT45, &[1e-4, 1e-6, 1e-9, 1e-12]),
+    (by::TSIT45, &[1e-4, 1e-6, 1e-9, 1e-12]),
 ];
 
 /// Frequency in Hz at which ν = ω/Ω₁ is that.
@@ -162,11 +156,11 @@ fn scene_b(seconds: f64) -> Result<Ask> {
         ),
         tasks: vec![task],
         methods: [
-            &[(FLIGHTS, ONE)],
+            &[(by::FLIGHTS, ONE)],
             &LOOPS[..],
-            &[(RK4_ENDS, &[30.0, 100.0, 300.0, 1e3])],
+            &[(by::RK4_ENDS, &[30.0, 100.0, 300.0, 1e3])],
             EVENTS,
-            &[(STIFF_SPRING, &[1e5, 1e6, 1e8])],
+            &[(by::STIFF_SPRING, &[1e5, 1e6, 1e8])],
         ]
         .concat(),
         judge: Box::new(judge),
@@ -231,7 +225,7 @@ fn grazing(depth: f64) -> Result<Ask> {
         error_of: "median error of the impact's time (s)",
         truth: "the forced motion A cos ω(t − tₚ) meets the gap A − d at tₚ − 2 asin(√(d/2A))/ω".to_owned(),
         tasks,
-        methods: [&[(FLIGHTS, ONE)], &LOOPS[..], &[(RK4_ENDS, &[100.0, 1e3, 1e4])], EVENTS].concat(),
+        methods: [&[(by::FLIGHTS, ONE)], &LOOPS[..], &[(by::RK4_ENDS, &[100.0, 1e3, 1e4])], EVENTS].concat(),
         judge: Box::new(judge),
     })
 }
@@ -271,12 +265,12 @@ fn scene_c() -> Ask {
         tasks: vec![task_c()],
         methods: [
             &[
-                (FLIGHTS, ONE),
-                (EULER, &[1e3, 1e4, 1e5]),
-                (RK4_LOOP, &[1e3, 1e4, 1e5]),
-                (MOREAU, &[1e3, 1e4, 1e5]),
-                (RK45_RESTLESS, &[1e-6]),
-                (RK4_ENDS, &[100.0, 1e3]),
+                (by::FLIGHTS, ONE),
+                (by::EULER, &[1e3, 1e4, 1e5]),
+                (by::RK4_LOOP, &[1e3, 1e4, 1e5]),
+                (by::MOREAU, &[1e3, 1e4, 1e5]),
+                (by::RK45_RESTLESS, &[1e-6]),
+                (by::RK4_ENDS, &[100.0, 1e3]),
             ],
             EVENTS,
         ]
@@ -321,18 +315,18 @@ fn soft(stiffness: f64, cycles: f64) -> Result<Ask> {
         truth: "the motion that repeats, by Newton's method on integration of order 8 to 1e-13".to_owned(),
         tasks: vec![task],
         methods: vec![
-            (CLOSED, ONE),
-            (SOFT, ONE),
-            (RIGID, ONE),
-            (KELVIN_VOIGT, ONE),
-            (RK45_THROUGH, &[1e-3, 1e-6, 1e-9]),
-            (RK4_THROUGH, &[1e3, 1e4]),
-            (RK45_TOUCH, &[1e-3, 1e-6, 1e-9, 1e-12]),
-            (DOP853_TOUCH, &[1e-6, 1e-9, 1e-12]),
+            (by::CLOSED, ONE),
+            (by::SOFT, ONE),
+            (by::RIGID, ONE),
+            (by::KELVIN_VOIGT, ONE),
+            (by::RK45_THROUGH, &[1e-3, 1e-6, 1e-9]),
+            (by::RK4_THROUGH, &[1e3, 1e4]),
+            (by::RK45_TOUCH, &[1e-3, 1e-6, 1e-9, 1e-12]),
+            (by::DOP853_TOUCH, &[1e-6, 1e-9, 1e-12]),
             #[cfg(feature = "diffsol")]
-            (TSIT45_TOUCH, &[1e-4, 1e-6, 1e-9, 1e-12]),
+            (by::TSIT45_TOUCH, &[1e-4, 1e-6, 1e-9, 1e-12]),
             #[cfg(feature = "diffsol")]
-            (BDF_TOUCH, &[1e-4, 1e-6, 1e-9, 1e-12]),
+            (by::BDF_TOUCH, &[1e-4, 1e-6, 1e-9, 1e-12]),
         ],
         judge: Box::new(judge),
     })
@@ -410,13 +404,13 @@ fn chaos() -> Result<Ask> {
         ),
         tasks: vec![irregular(0.0, CYCLES)],
         methods: vec![
-            (FLIGHTS, ONE),
-            (EULER, &[100.0, 1e3]),
-            (RK4_LOOP, &[100.0, 1e3]),
-            (MOREAU, &[100.0, 1e3]),
-            (RK45_ENDS, &[1e-3, 1e-6, 1e-9]),
-            (DOP853_DENSE, &[1e-6, 1e-9]),
-            (ROUGH_SPRING, &[1e6]),
+            (by::FLIGHTS, ONE),
+            (by::EULER, &[100.0, 1e3]),
+            (by::RK4_LOOP, &[100.0, 1e3]),
+            (by::MOREAU, &[100.0, 1e3]),
+            (by::RK45_ENDS, &[1e-3, 1e-6, 1e-9]),
+            (by::DOP853_DENSE, &[1e-6, 1e-9]),
+            (by::ROUGH_SPRING, &[1e6]),
         ],
         judge: Box::new(judge),
     })
@@ -449,9 +443,9 @@ fn slow_sweep() -> Result<Ask> {
         ),
         tasks: vec![task],
         methods: [
-            &[(STANDING, &[11.0, 61.0][..]), (SWEPT, &[0.1, 1e-2, 1e-3, 1e-4, 1e-5])],
+            &[(by::STANDING, &[11.0, 61.0][..]), (by::SWEPT, &[0.1, 1e-2, 1e-3, 1e-4, 1e-5])],
             &LOOPS[..],
-            &[(RK45_ENDS, &[1e-3, 1e-6, 1e-9, 1e-12]), (DOP853_DENSE, &[1e-6, 1e-9, 1e-12])],
+            &[(by::RK45_ENDS, &[1e-3, 1e-6, 1e-9, 1e-12]), (by::DOP853_DENSE, &[1e-6, 1e-9, 1e-12])],
         ]
         .concat(),
         judge: Box::new(judge),
