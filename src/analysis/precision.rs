@@ -1,4 +1,90 @@
-//! Speed against accuracy: figures and tables of scenes and of borders.
+//! Speed against accuracy, and failures: figures and tables of scenes and of borders.
 
-pub mod figures;
-pub mod tables;
+mod chart;
+mod map;
+
+pub use chart::chart;
+pub use map::maps;
+
+use crate::compare::precision::{Cell as Asked, FailureMap, Family, Measured, Scene};
+use crate::report::layout::{headed, table};
+use crate::report::{Cell, Table};
+use map::OUTCOMES;
+
+/// Every method of every scene with its error and time, for other programs.
+pub fn precision(scenes: &[Scene]) -> Table {
+    type Row<'a> = (&'a Scene, &'a Measured);
+    let rows = scenes.iter().flat_map(|scene| scene.methods.iter().map(move |m| (scene, m)));
+    table(
+        "Precision",
+        rows,
+        &[
+            ("family", "", &|(s, _): &Row| s.family.name().into()),
+            ("scene", "", &|(s, _)| s.name.as_str().into()),
+            ("error of", "", &|(s, _)| s.error_of.as_str().into()),
+            ("bound", "", &|(s, _)| s.bound.into()),
+            ("method", "", &|(_, m)| m.method.as_str().into()),
+            ("setting", "", &|(_, m)| m.setting.as_str().into()),
+            ("own", "", &|(_, m)| yes(m.ours)),
+            ("error", "", &|(_, m)| m.error.into()),
+            ("time", "s", &|(_, m)| (1e-9 * m.time_ns).into()),
+            ("front", "", &|(_, m)| yes(m.front)),
+            ("why", "", &|(_, m)| m.why.as_deref().unwrap_or_default().into()),
+        ],
+    )
+}
+
+fn yes(yes: bool) -> Cell {
+    if yes { "yes" } else { "" }.into()
+}
+
+/// The methods of one scene, for a reader.
+pub fn scene(scene: &Scene) -> Table {
+    table(
+        "",
+        &scene.methods,
+        &[
+            ("method", "", &|m: &&Measured| m.method.as_str().into()),
+            ("setting", "", &|m| m.setting.as_str().into()),
+            ("error", "", &|m| m.error.map_or(Cell::Missing, |e| format!("{e:.1e}").into())),
+            ("time", "", &|m| time(m.time_ns).into()),
+            ("front", "", &|m| yes(m.front)),
+            ("", "", &|m| m.why.as_deref().unwrap_or_default().into()),
+        ],
+    )
+}
+
+/// A time with a prefix.
+fn time(ns: f64) -> String {
+    let prefixes = [(1e9, "s"), (1e6, "ms"), (1e3, "µs")];
+    let (scale, unit) = prefixes.into_iter().find(|(scale, _)| ns >= *scale).unwrap_or((1.0, "ns"));
+    format!("{:.3} {unit}", ns / scale)
+}
+
+/// Every cell of a failure map with its reason.
+pub fn failures(map: &FailureMap) -> Table {
+    table(
+        "Failures",
+        &map.cells,
+        &[
+            ("family", "", &|c: &&Asked| c.family.name().into()),
+            ("border", "", &|c| c.border.as_str().into()),
+            ("scene", "", &|c| c.scene.as_str().into()),
+            ("method", "", &|c| c.method.as_str().into()),
+            ("own", "", &|c| yes(c.ours)),
+            ("outcome", "", &|c| c.outcome.name().into()),
+            ("why", "", &|c| c.why.as_str().into()),
+        ],
+    )
+}
+
+/// How often each method of a family came out how.
+pub fn borders(family: Family, map: &FailureMap) -> Table {
+    let columns: Vec<_> = std::iter::once(("method", "")).chain(OUTCOMES.map(|o| (o.0.name(), ""))).collect();
+    let mut table = headed(format!("Borders of {}", family.name()), &columns);
+    for method in map.methods() {
+        let count = |o| map.cells.iter().filter(|c| c.method == method && c.outcome == o).count();
+        table.push(std::iter::once(Cell::from(method)).chain(OUTCOMES.map(|o| count(o.0).into())));
+    }
+    table
+}

@@ -20,7 +20,7 @@ pub use model::{
     Came, Law, Looked, Model, ModelChoose, ModelCommand, ModelMap, ModelResponse, ModelSweep, Observable,
     Orbit, Over, Scene, Simulate, Way,
 };
-pub use precision::{Kind, Precision};
+pub use precision::Precision;
 pub use record::Record;
 pub use response::Response;
 pub use run::Run;

@@ -1,6 +1,6 @@
 //! Estimators of what is measured, on records with a known truth.
 //!
-//! What people write by hand ([`rivals`]) stands beside the toolkit's own methods, over the same random records of fixed seeds. Errors are root mean
+//! What people write by hand stands beside the toolkit's own methods, over the same random records of fixed seeds. Errors are root mean
 //! squares, so that they compare with the Cramér–Rao bound of the standard deviation.
 
 mod bound;
@@ -8,120 +8,97 @@ mod damping;
 mod impacts;
 mod integration;
 mod pulse;
-mod rate;
-pub mod rivals;
+mod rivals;
 mod sine;
 mod trial;
 
-pub use bound::bounds;
-pub use rate::Rate;
-
-use super::measured::front;
-use super::watched::side_by_side;
-use super::{FailureMap, Family, Scene};
-use trial::{Task, Tried};
-use vibro_record::Result;
+use super::failure::Question;
+use super::{FailureMap, Family, Measured, Scene};
+use vibro_record::{Spectrum, Sweep, SweepPoint};
 
 /// Every scene of the estimators, each method measured; `quick` takes fewer records.
-///
-/// # Errors
-/// None today: every scene can be built.
-pub fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Vec<Scene>> {
-    type Part = (&'static str, fn(bool) -> Vec<Scene>);
-    let parts: [Part; 5] = [
-        ("sines", sine::scenes),
-        ("integration", integration::scenes),
-        ("damping", damping::scenes),
-        ("impacts", impacts::scenes),
-        ("pulses", pulse::scenes),
-    ];
+pub(crate) fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Vec<Scene> {
+    let parts: [fn(bool) -> Vec<Scene>; 5] =
+        [sine::scenes, integration::scenes, damping::scenes, impacts::scenes, pulse::scenes];
     let mut all = Vec::new();
-    for (name, scenes) in parts {
-        progress(name);
-        all.extend(scenes(quick));
+    for scenes in parts {
+        let part = scenes(quick);
+        part.iter().for_each(|scene| progress(&scene.name));
+        all.extend(part);
     }
-    for scene in &mut all {
-        front(scene.family, &mut scene.methods);
-    }
-    Ok(all)
+    all
 }
 
 /// What the estimators do at their borders; `quick` takes fewer records.
 ///
 /// An answer is right within three of its standard uncertainties; one without an uncertainty within what is the same for all methods of a
 /// border: half a line for a frequency, 5 % for an amplitude, 10 % for a damping ratio, 1 % for an impact frequency, 0.02 for ξ. It is
-/// refused where it is withheld, where it states no uncertainty and says so, and where its uncertainty is more than what is allowed. No doubt excuses
+/// refused where it is withheld, where a doubt takes its uncertainty away, and where its uncertainty is more than what is allowed. No doubt excuses
 /// an uncertainty that is stated. A method is wrong where more answers are off than chance allows, or one by more than 5.2 standard uncertainties: limits that methods
 /// whose errors are as they state them pass in fewer than one of a hundred full maps.
-///
-/// # Errors
-/// None today: every scene can be built.
-pub fn failures(quick: bool) -> Result<FailureMap> {
-    Ok(failures_and_rates(quick)?.0)
+pub fn failures(quick: bool) -> FailureMap {
+    FailureMap::asked(Family::Estimators, questions(quick))
 }
 
-/// As [`failures`], and how often each method's answers are further off than they state, at all borders together.
-///
-/// # Errors
-/// None today: every scene can be built.
-pub fn failures_and_rates(quick: bool) -> Result<(FailureMap, Vec<Rate>)> {
-    let tried = side_by_side(tasks(quick));
-    let mut rates: Vec<Rate> = Vec::new();
-    for Tried { cell, judged, beyond } in &tried {
-        match rates.iter_mut().find(|r| r.method == cell.method && r.ours == cell.ours) {
-            Some(rate) => {
-                rate.judged += judged;
-                rate.beyond += beyond;
-            }
-            None => rates.push(Rate {
-                method: cell.method.clone(),
-                ours: cell.ours,
-                judged: *judged,
-                beyond: *beyond,
-            }),
-        }
-    }
-    let cells = tried.into_iter().map(|t| t.cell).collect();
-    Ok((FailureMap { family: Family::Estimators, cells }, rates))
-}
-
-fn tasks(quick: bool) -> Vec<Task> {
-    let parts: [fn(bool) -> Vec<Task>; 5] = [
-        sine::cells_of_sines,
-        integration::cells_of_integration,
-        damping::cells_of_damping,
-        impacts::cells_of_impacts,
-        pulse::cells_of_pulses,
-    ];
+fn questions(quick: bool) -> Vec<Question> {
+    let parts: [fn(bool) -> Vec<Question>; 5] =
+        [sine::borders, integration::borders, damping::borders, impacts::borders, pulse::borders];
     parts.iter().flat_map(|part| part(quick)).collect()
+}
+
+/// A scene of estimators.
+fn scene([name, says, error_of, truth]: [&str; 4], bound: f64, methods: Vec<Measured>) -> Scene {
+    Scene {
+        name: name.to_owned(),
+        family: Family::Estimators,
+        says: says.to_owned(),
+        error_of: error_of.to_owned(),
+        truth: truth.to_owned(),
+        bound: Some(bound),
+        methods,
+    }
+}
+
+/// A sweep of one point, with the magnitudes of its force's lines where it was measured, or a known frequency in Hz.
+fn one_point(response: Spectrum, force: Option<Vec<f64>>, given: Option<f64>) -> Sweep {
+    Sweep {
+        name: String::new(),
+        direction: None,
+        mass: None,
+        axis: response.axis.clone(),
+        analyser_integrated: 0,
+        points: vec![SweepPoint {
+            force_path: force.as_ref().map(|_| "force".into()),
+            response_path: "response".into(),
+            force: force.unwrap_or_default(),
+            given,
+            response,
+        }],
+        findings: Vec::new(),
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::Outcome;
     use super::*;
+    use crate::{Cell, Outcome};
 
     #[test]
     fn the_limits_of_the_map_are_made_for_as_many_cells_as_it_has() {
-        let cells = tasks(false).len();
-        assert!(cells <= trial::CELLS && 2 * cells > trial::CELLS, "{cells}");
+        let cells = questions(false).len();
+        assert!(cells <= 500 && 2 * cells > 500, "{cells}");
     }
 
     /// The whole map takes long: here the borders of one quantity stand for it.
     #[test]
     fn displacements_are_right_or_refused_at_their_borders() {
-        let tried = side_by_side(integration::cells_of_integration(true));
-        let ours: Vec<_> = tried.iter().map(|t| &t.cell).filter(|c| c.ours).collect();
-        let kept = |c: &super::super::Cell| {
-            matches!(c.outcome, Outcome::Right | Outcome::Refused | Outcome::NotAsked)
-        };
-        assert!(ours.iter().all(|c| kept(c)), "{ours:?}");
-        let right = |ours: bool| {
-            tried.iter().filter(|t| t.cell.ours == ours && t.cell.outcome == Outcome::Right).count()
-        };
+        let map = FailureMap::asked(Family::Estimators, integration::borders(true));
+        assert_eq!(map.broken().collect::<Vec<_>>(), Vec::<&Cell>::new());
         // Neither a map of refusals nor a check that all methods pass.
-        assert!(right(true) > 10, "{ours:?}");
-        assert!(tried.iter().any(|t| !t.cell.ours && t.cell.outcome == Outcome::Wrong));
+        let count =
+            |ours, outcome| map.cells.iter().filter(|c| c.ours == ours && c.outcome == outcome).count();
+        assert!(count(true, Outcome::Right) > 10, "{map:?}");
+        assert!(count(false, Outcome::Wrong) > 0);
     }
 
     #[test]

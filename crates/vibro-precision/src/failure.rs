@@ -1,8 +1,10 @@
 //! What methods do at the borders of what they can.
 
-use serde::{Deserialize, Serialize};
-
 use super::Family;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use vibro_record::Error;
 
 /// What a method did at a border, told with the truth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -14,39 +16,13 @@ pub enum Outcome {
     Refused,
     /// An answer further off than it allows for, without a word on what is wrong.
     Wrong,
-    /// No answer within the budget of steps or time.
+    /// No answer within the budget of steps.
     Stalled,
     /// It panicked.
     Crashed,
     /// The scene is not asked of it, or its truth is not known; the reason is told.
     #[serde(rename = "not asked")]
     NotAsked,
-}
-
-/// One method at one scene of a border.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Cell {
-    /// Name of the method.
-    pub method: String,
-    /// Whether it is one of this library's.
-    pub ours: bool,
-    /// The border, such as `grazing velocity`.
-    pub border: String,
-    /// The scene at it, such as `1e-9 m`.
-    pub scene: String,
-    /// What came.
-    pub outcome: Outcome,
-    /// By what that was decided, in a sentence.
-    pub why: String,
-}
-
-/// What each method did at each border.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct FailureMap {
-    /// Which kind of method.
-    pub family: Family,
-    /// The cells, border by border.
-    pub cells: Vec<Cell>,
 }
 
 impl Outcome {
@@ -63,7 +39,112 @@ impl Outcome {
     }
 }
 
+/// One method at one scene of a border.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Cell {
+    /// Which kind of method.
+    pub family: Family,
+    /// Name of the method.
+    pub method: String,
+    /// Whether it is one of this library's.
+    pub ours: bool,
+    /// The border, such as `grazing`, of estimators behind the quantity and a colon.
+    pub border: String,
+    /// The scene at it, such as `1e-9 m`.
+    pub scene: String,
+    /// What came.
+    pub outcome: Outcome,
+    /// By what that was decided, in a sentence.
+    pub why: String,
+    /// Of estimators the answers that were held to the uncertainty that they state, and those that lie beyond three of it.
+    #[serde(skip)]
+    pub held: [usize; 2],
+}
+
+/// What each method did at each border, border by border.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct FailureMap {
+    /// The cells.
+    pub cells: Vec<Cell>,
+}
+
+/// What came of a question.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Found {
+    pub outcome: Outcome,
+    pub why: String,
+    pub held: [usize; 2],
+}
+
+impl Found {
+    pub fn new(outcome: Outcome, why: impl Into<String>) -> Found {
+        Found { outcome, why: why.into(), held: [0; 2] }
+    }
+
+    /// Right where `kept`, wrong otherwise.
+    pub fn right_if(kept: bool, why: String) -> Found {
+        Found::new(if kept { Outcome::Right } else { Outcome::Wrong }, why)
+    }
+}
+
+impl From<Error> for Found {
+    fn from(error: Error) -> Found {
+        Found::new(Outcome::Refused, error.to_string().lines().next().unwrap_or_default())
+    }
+}
+
+impl From<Found> for Error {
+    fn from(found: Found) -> Error {
+        Error::refused(found.why)
+    }
+}
+
+/// One cell of a map, still to be asked for.
+pub(crate) struct Question {
+    pub method: &'static str,
+    pub ours: bool,
+    pub border: &'static str,
+    pub scene: String,
+    pub ask: Box<dyn FnOnce() -> Found + Send>,
+}
+
 impl FailureMap {
+    /// Asks every question, as many side by side as there are cores.
+    pub(crate) fn asked(family: Family, questions: Vec<Question>) -> FailureMap {
+        let cell = |Question { method, ours, border, scene, ask }: Question| {
+            let panicked = |_| Found::new(Outcome::Crashed, "it panicked, with its message printed");
+            let Found { outcome, why, held } = catch_unwind(AssertUnwindSafe(ask)).unwrap_or_else(panicked);
+            let (method, border) = (method.to_owned(), border.to_owned());
+            Cell { family, method, ours, border, scene, outcome, why, held }
+        };
+        FailureMap { cells: questions.into_par_iter().map(cell).collect() }
+    }
+
+    /// Whether nothing was asked.
+    pub fn is_empty(&self) -> bool {
+        self.cells.is_empty()
+    }
+
+    /// The cells of one family.
+    pub fn of(&self, family: Family) -> FailureMap {
+        FailureMap { cells: self.cells.iter().filter(|c| c.family == family).cloned().collect() }
+    }
+
+    /// The map of each quantity, which its borders name before a colon, with that name; the whole where none does.
+    pub fn parts(&self) -> Vec<(&str, FailureMap)> {
+        let mut parts: Vec<(&str, FailureMap)> = Vec::new();
+        for cell in &self.cells {
+            let (quantity, border) = cell.border.split_once(": ").unwrap_or(("", &cell.border));
+            let cell = Cell { border: border.to_owned(), ..cell.clone() };
+            match parts.last_mut() {
+                Some(part) if part.0 == quantity => part.1.cells.push(cell),
+                _ => parts.push((quantity, FailureMap { cells: vec![cell] })),
+            }
+        }
+        parts
+    }
+
     /// Names of the methods, in the order in which they come.
     pub fn methods(&self) -> Vec<&str> {
         let mut names: Vec<&str> = Vec::new();
@@ -75,23 +156,31 @@ impl FailureMap {
         names
     }
 
-    /// The map of each quantity, which its borders name before a colon, with that name; the whole where none does.
-    pub fn parts(&self) -> Vec<(&str, FailureMap)> {
-        let mut parts: Vec<(&str, FailureMap)> = Vec::new();
-        for cell in &self.cells {
-            let (quantity, border) = cell.border.split_once(": ").unwrap_or(("", &cell.border));
-            let cell = Cell { border: border.to_owned(), ..cell.clone() };
-            match parts.iter_mut().find(|p| p.0 == quantity) {
-                Some(part) => part.1.cells.push(cell),
-                None => parts.push((quantity, FailureMap { family: self.family, cells: vec![cell] })),
-            }
-        }
-        parts
-    }
-
     /// The cells of this library's methods that should not be: wrong, stalled or crashed.
     pub fn broken(&self) -> impl Iterator<Item = &Cell> {
         let bad = [Outcome::Wrong, Outcome::Stalled, Outcome::Crashed];
         self.cells.iter().filter(move |c| c.ours && bad.contains(&c.outcome))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_a_cell() {
+        let question = |scene: &str, ask: Box<dyn FnOnce() -> Found + Send>| Question {
+            method: "one",
+            ours: true,
+            border: "panics",
+            scene: scene.to_owned(),
+            ask,
+        };
+        let right = question("answers", Box::new(|| Found::new(Outcome::Right, "")));
+        let wrong = question("panics", Box::new(|| panic!("on purpose")));
+        let map = FailureMap::asked(Family::Models, vec![right, wrong]);
+        let outcomes: Vec<_> = map.cells.iter().map(|c| c.outcome).collect();
+        assert_eq!(outcomes, [Outcome::Right, Outcome::Crashed]);
+        assert_eq!(map.broken().count(), 1);
     }
 }

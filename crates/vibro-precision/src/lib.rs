@@ -4,16 +4,12 @@
 //! together. A [`FailureMap`] tells what the methods do at the borders of what they can: right, refused with a reason, wrong
 //! without a word, stalled, crashed. Two families: models of the motion, and estimators of what is measured of it.
 
-pub mod added;
-pub mod busy;
-pub mod earlier;
 pub mod estimators;
-pub mod failure;
-pub mod measured;
+mod failure;
 pub mod models;
-pub mod scene;
-pub mod watched;
+mod results;
+mod scene;
 
-pub use earlier::Earlier;
 pub use failure::{Cell, FailureMap, Outcome};
+pub use results::Results;
 pub use scene::{Family, Measured, Scene};

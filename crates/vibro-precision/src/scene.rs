@@ -1,6 +1,8 @@
-//! Scenes with a known truth, and what methods make of them.
+//! Scenes with a known truth, what methods make of them, and in which time.
 
 use serde::{Deserialize, Serialize};
+use std::hint::black_box;
+use std::time::Instant;
 
 /// Which kind of method a scene asks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -31,21 +33,38 @@ pub struct Measured {
     pub setting: String,
     /// Whether it is one of this library's.
     pub ours: bool,
-    /// Error, relative or in the unit that the scene names: the median of a model's, the root mean square of an estimator's over all
-    /// records; none where it gave no answer.
+    /// Error, relative or in the unit that the scene names; the root mean square of an estimator's over all records. None where
+    /// it gave no answer.
     pub error: Option<f64>,
-    /// Quartiles of the error.
-    pub error_spread: Option<[f64; 2]>,
     /// Median time of one answer in ns.
     pub time_ns: f64,
-    /// Quartiles of the time in ns; none where it was run once.
-    pub time_spread: Option<[f64; 2]>,
     /// It gave no answer, or one that is not an answer to the scene.
     pub failed: bool,
-    /// Why it failed, in a sentence.
+    /// Why it failed.
     pub why: Option<String>,
     /// No other is both faster and more accurate, of estimators none with the same record.
     pub front: bool,
+}
+
+impl Measured {
+    /// A method's error, or why it has none.
+    pub(crate) fn new(
+        (method, ours): (&str, bool),
+        setting: String,
+        time_ns: f64,
+        answer: Result<f64, String>,
+    ) -> Measured {
+        Measured {
+            method: method.to_owned(),
+            setting,
+            ours,
+            error: answer.as_ref().ok().copied(),
+            time_ns,
+            failed: answer.is_err(),
+            why: answer.err(),
+            front: false,
+        }
+    }
 }
 
 /// A scene with a known truth and what each method made of it.
@@ -65,4 +84,131 @@ pub struct Scene {
     pub bound: Option<f64>,
     /// The methods, those of one name one after another.
     pub methods: Vec<Measured>,
+}
+
+/// Errors that differ by less than this part are told apart by rounding, and by no chart.
+const TIE: f64 = 1e-3;
+
+impl Scene {
+    /// Marks those than which no other is both faster and more accurate (the Pareto front); none that failed.
+    ///
+    /// Errors within a thousandth of each other are the same, and the faster of two is on the front. A setting of a model is the
+    /// model's own choice; that of an estimator is the record, and only answers to the same record compete.
+    pub(crate) fn mark_front(&mut self) {
+        let beats = |a: &Measured, b: &Measured| match (a.error, b.error) {
+            (Some(e), Some(error)) => {
+                (self.family == Family::Models || a.setting == b.setting)
+                    && e <= error * (1.0 + TIE)
+                    && a.time_ns <= b.time_ns
+                    && (e < error * (1.0 - TIE) || a.time_ns < b.time_ns)
+            }
+            _ => false,
+        };
+        let on = |m: &Measured| m.error.is_some() && !self.methods.iter().any(|other| beats(other, m));
+        let marks: Vec<bool> = self.methods.iter().map(on).collect();
+        for (method, front) in self.methods.iter_mut().zip(marks) {
+            method.front = front;
+        }
+    }
+}
+
+/// Shortest time worth reading from the clock, in ns: short answers are repeated until they fill it.
+const READABLE: f64 = 20_000.0;
+/// Most time spent on the repeats of one method on one scene, in ns: in full, and quick.
+const SPENT: [f64; 2] = [400e6, 30e6];
+
+/// The answer of `f` and the median time of one run in ns over up to `repeats`, after a first run that warms the caches and counts
+/// only where nothing is left for another.
+pub(crate) fn timed<T>(repeats: usize, quick: bool, mut f: impl FnMut() -> T) -> (T, f64) {
+    let mut clock = |runs: usize| {
+        let start = Instant::now();
+        let mut answer = black_box(f());
+        for _ in 1..runs {
+            answer = black_box(f());
+        }
+        (answer, start.elapsed().as_secs_f64() * 1e9 / runs as f64)
+    };
+    let (answer, first) = clock(1);
+    let runs = (READABLE / first.max(1.0)).ceil();
+    let most = SPENT[usize::from(quick)] / (first * runs);
+    let mut times: Vec<f64> = (0..repeats.min(most as usize)).map(|_| clock(runs as usize).1).collect();
+    if times.is_empty() {
+        times.push(first);
+    }
+    (answer, median(&mut times))
+}
+
+/// The middle of a list that is not empty.
+pub(crate) fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    f64::midpoint(values[(values.len() - 1) / 2], values[values.len() / 2])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn marks(family: Family, methods: &[(&str, Option<f64>, f64)]) -> Vec<bool> {
+        let method = |&(setting, error, time): &(&str, Option<f64>, f64)| {
+            Measured::new(("", false), setting.to_owned(), time, error.ok_or_else(String::new))
+        };
+        let [name, says, error_of, truth] = [const { String::new() }; 4];
+        let methods = methods.iter().map(method).collect();
+        let mut scene = Scene { name, family, says, error_of, truth, bound: None, methods };
+        scene.mark_front();
+        scene.methods.iter().map(|m| m.front).collect()
+    }
+
+    #[test]
+    fn the_front_holds_what_nothing_beats_in_both() {
+        let all = [("", Some(1e-3), 1.0), ("", Some(1e-6), 5.0), ("", Some(1e-5), 6.0), ("", None, 0.1)];
+        assert_eq!(marks(Family::Models, &all), [true, true, false, false]);
+    }
+
+    #[test]
+    fn of_two_errors_that_only_rounding_tells_apart_the_faster_is_on_the_front() {
+        let [fast, slow] = [5.203_620_391_064_66, 5.203_620_391_064_653];
+        let all = [("", Some(fast), 1.0), ("", Some(slow), 408.0), ("", Some(5.1), 408.0)];
+        assert_eq!(marks(Family::Models, &all), [true, false, true]);
+    }
+
+    #[test]
+    fn estimators_compete_on_the_same_record_only() {
+        let all = [
+            ("0 dB", Some(1e-1), 9.0),
+            ("60 dB", Some(1e-6), 8.0),
+            ("0 dB", Some(1e-1), 10.0),
+            ("60 dB", None, 1.0),
+        ];
+        assert_eq!(marks(Family::Estimators, &all), [true, true, false, false]);
+        assert_eq!(marks(Family::Models, &all), [false, true, false, false]);
+    }
+
+    #[test]
+    fn the_median_is_the_middle() {
+        assert_eq!(median(&mut [5.0, 1.0, 4.0, 2.0, 3.0]), 3.0);
+        assert_eq!(median(&mut [7.0, 5.0]), 6.0);
+    }
+
+    #[test]
+    fn a_run_too_short_for_the_clock_is_measured_many_at_a_time() {
+        let mut runs = 0_usize;
+        let (answer, median) = timed(3, true, || {
+            runs += 1;
+            7
+        });
+        assert_eq!(answer, 7);
+        assert!(runs > 3 && median > 0.0, "{runs}");
+    }
+
+    #[test]
+    fn a_run_longer_than_what_may_be_spent_is_run_once() {
+        let mut runs = 0;
+        let ((), median) = timed(20, true, || {
+            runs += 1;
+            std::thread::sleep(std::time::Duration::from_millis(31));
+        });
+        assert_eq!(runs, 1);
+        assert!(median >= 31e6, "{median}");
+    }
 }

@@ -1,13 +1,14 @@
 //! Damping ratio from a frequency response function.
 
 use super::bound::bounds;
-use super::rivals;
-use super::trial::{Answer, Case, Kind, Method, Task, cells, measured};
-use crate::{Family, Scene};
+use super::trial::{Answer, Case, Kind, Method, measured, questions};
+use super::{rivals, scene};
+use crate::Scene;
+use crate::failure::Question;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibro_math::Noise;
-use vibro_measure::modal::{Measured, ModalOptions, Pole, modal};
+use vibro_measure::modal::{Measured, ModalOptions, Mode, Pole, modal};
 use vibro_record::{Error, FrfKind, Result};
 
 /// The mode: natural frequency in Hz and damping ratio, a bandwidth of 0.36 Hz.
@@ -15,43 +16,35 @@ const OWN: f64 = 100.0;
 const ZETA: f64 = 0.0018;
 
 const METHODS: [Method<Measured>; 4] = [
-    Method {
-        name: "half power, lines",
-        ours: false,
-        estimate: |m| Ok(Answer::bare(rivals::half_power(&m.frequency, &m.values, false))),
-    },
-    Method {
-        name: "half power, between",
-        ours: false,
-        estimate: |m| Ok(Answer::bare(rivals::half_power(&m.frequency, &m.values, true))),
-    },
-    Method {
-        name: "circle",
-        ours: false,
-        estimate: |m| Ok(Answer::bare(rivals::circle(&m.frequency, &m.values))),
-    },
-    Method { name: "rational fit", ours: true, estimate: rational },
+    Method::rival("half power, lines", |m| rivals::half_power(&m.frequency, &m.values, false)),
+    Method::rival("half power, between", |m| rivals::half_power(&m.frequency, &m.values, true)),
+    Method::rival("circle", |m| rivals::circle(&m.frequency, &m.values)),
+    Method::own("rational fit", rational),
 ];
 
 /// The strongest mode's ζ, as `vibro modal` gives it.
 fn rational(measured: &Measured) -> Result<Answer> {
     let found = modal(measured, &ModalOptions::default())?;
-    let height = |m: &&vibro_measure::modal::Mode| m.modal_constant.value.abs() / m.zeta.value;
+    let height = |m: &&Mode| m.modal_constant.value.abs() / m.zeta.value;
     let strongest = found.modes.iter().max_by(|a, b| height(a).total_cmp(&height(b)));
     let mode = strongest.ok_or_else(|| Error::refused("no mode"))?;
     Ok(Answer::found(&mode.zeta, &found.findings))
 }
 
-/// A receptance of modes on lines `step` Hz apart from `from` Hz to `to` Hz, in noise of this part of the highest line.
-fn function(modes: &[Pole], (from, to, step): (f64, f64, f64), part: f64, noise: &mut Noise) -> Measured {
+/// The ζ of the first mode of a receptance on lines `step` Hz apart from `from` Hz to `to` Hz, in noise of this part of the highest line.
+fn case(modes: &[Pole], (from, to, step): (f64, f64, f64), part: f64, noise: &mut Noise) -> Case<Measured> {
     let count = ((to - from) / step) as usize;
     let frequency: Vec<f64> = (0..count).map(|i| from + i as f64 * step).collect();
     let sum = |f: &f64| modes.iter().map(|m| m.at(*f, 0)).sum::<Complex64>();
-    let clean: Vec<Complex64> = frequency.iter().map(sum).collect();
-    let sigma = part * clean.iter().map(|v| v.norm()).fold(0.0, f64::max);
-    let mut add = |v: &Complex64| v + Complex64::new(sigma * noise.normal(), sigma * noise.normal());
-    let values = clean.iter().map(&mut add).collect();
-    Measured { frequency, values, magnitude_only: false, kind: FrfKind::Receptance, coherence: None }
+    let mut values: Vec<Complex64> = frequency.iter().map(sum).collect();
+    let sigma = part * values.iter().map(|v| v.norm()).fold(0.0, f64::max);
+    for v in &mut values {
+        *v += Complex64::new(sigma * noise.normal(), sigma * noise.normal());
+    }
+    let data =
+        Measured { frequency, values, magnitude_only: false, kind: FrfKind::Receptance, coherence: None };
+    let zeta = modes[0].zeta;
+    Case { data, truth: zeta, unit: zeta, tolerance: 0.1 * zeta }
 }
 
 fn mode(frequency: f64, zeta: f64) -> Pole {
@@ -65,8 +58,7 @@ fn lines(in_bandwidth: f64, part: f64) -> impl Fn(&mut Noise) -> Case<Measured> 
         let step = 2.0 * ZETA * OWN / in_bandwidth;
         let reach = (12.0 * step).max(12.0);
         let from = (OWN - reach).max(0.0) + step * noise.uniform();
-        let data = function(&[mode(OWN, ZETA)], (from, OWN + reach, step), part, noise);
-        Case { data, truth: ZETA, unit: ZETA, tolerance: 0.1 * ZETA }
+        case(&[mode(OWN, ZETA)], (from, OWN + reach, step), part, noise)
     }
 }
 
@@ -95,68 +87,45 @@ fn bound(in_bandwidth: f64, part: f64) -> f64 {
 pub fn scenes(quick: bool) -> Vec<Scene> {
     let settings = [1.16, 2.0, 4.0, 8.0, 16.0]
         .map(|n| Kind::new(format!("{n} lines in the bandwidth"), 20_000, lines(n, 0.01)));
-    vec![Scene {
-        name: "damping".to_owned(),
-        family: Family::Estimators,
-        says: "The damping ratio of a mode at 100 Hz whose bandwidth of 0.36 Hz holds 1.16 lines (0.31 Hz apart) to 16 lines, in noise of 1 % of the peak; the bound is that of 16 lines.".to_owned(),
-        error_of: "damping ratio: relative error (rms)".to_owned(),
-        truth: "the pole that the receptance was made of".to_owned(),
-        bound: Some(bound(16.0, 0.01)),
-        methods: measured(&METHODS, &settings, quick),
-    }]
-}
-
-/// One mode on lines of 0.5 Hz up to 300 Hz.
-fn one(
-    name: &str,
-    frequency: f64,
-    zeta: f64,
-    change: impl Fn(&mut Measured) + Send + Sync + 'static,
-) -> Kind<Measured> {
-    many(name, vec![mode(frequency, zeta)], change)
-}
-
-/// Modes of which the first is asked for.
-fn many(
-    name: &str,
-    modes: Vec<Pole>,
-    change: impl Fn(&mut Measured) + Send + Sync + 'static,
-) -> Kind<Measured> {
-    Kind::new(name, 21_000, move |noise: &mut Noise| {
-        let mut data = function(&modes, (1.0, 300.0, 0.5), 0.01, noise);
-        change(&mut data);
-        let zeta = modes[0].zeta;
-        Case { data, truth: zeta, unit: zeta, tolerance: 0.1 * zeta }
-    })
+    let texts = [
+        "damping",
+        "The damping ratio of a mode at 100 Hz whose bandwidth of 0.36 Hz holds 1.16 lines (0.31 Hz apart) to 16 lines, in noise of 1 % of the peak; the bound is that of 16 lines.",
+        "damping ratio: relative error (rms)",
+        "the pole that the receptance was made of",
+    ];
+    vec![scene(texts, bound(16.0, 0.01), measured(&METHODS, &settings, quick))]
 }
 
 /// What methods for damping do at their borders.
-pub(crate) fn cells_of_damping(quick: bool) -> Vec<Task> {
+pub(crate) fn borders(quick: bool) -> Vec<Question> {
+    // Modes on lines of 0.5 Hz up to 300 Hz, of which the first is asked for, changed after they were made.
+    let changed = |name: &str, modes: Vec<Pole>, change: fn(&mut Measured)| {
+        Kind::changed(name, 21_000, move |noise| case(&modes, (1.0, 300.0, 0.5), 0.01, noise), change)
+    };
+    let plain = |name: &str, modes: &[Pole]| changed(name, modes.to_vec(), |_| ());
+    let one = |name, change| changed(name, vec![mode(100.0, 0.01)], change);
     let narrow = [0.01, 0.1, 0.3, 0.5, 1.0]
         .map(|n| Kind::new(format!("bandwidth of {n} lines"), 22_000, lines(n, 0.01)));
     let noise = [0.1, 0.3, 1.0]
         .map(|part| Kind::new(format!("noise of {} % of the peak", 100.0 * part), 23_000, lines(4.0, part)));
-    let heavy = [0.1, 0.3, 0.5, 0.7, 0.9, 1.5].map(|z| one(&format!("ζ = {z}"), 100.0, z, |_| ()));
-    let beside = [
-        many("equal mode half a bandwidth beside", vec![mode(100.0, 0.01), mode(101.0, 0.01)], |_| ()),
-        many("equal mode two bandwidths beside", vec![mode(100.0, 0.01), mode(104.0, 0.01)], |_| ()),
-        many(
-            "antiresonance a bandwidth above",
-            vec![mode(100.0, 0.01), Pole { constant: Complex64::new(1.5, 0.0), ..mode(107.0, 0.02) }],
-            |_| (),
-        ),
-        one("peak 2 lines from the first", 2.2, 0.1, |_| ()),
-        one("phase reversed", 100.0, 0.01, |m| m.values.iter_mut().for_each(|v| *v = v.conj())),
-        one("magnitudes alone", 100.0, 0.01, |m| {
+    let heavy = [0.1, 0.3, 0.5, 0.7, 0.9, 1.5].map(|z| plain(&format!("ζ = {z}"), &[mode(100.0, z)]));
+    let zero = Pole { constant: Complex64::new(1.5, 0.0), ..mode(107.0, 0.02) };
+    let faults = [
+        plain("equal mode half a bandwidth beside", &[mode(100.0, 0.01), mode(101.0, 0.01)]),
+        plain("equal mode two bandwidths beside", &[mode(100.0, 0.01), mode(104.0, 0.01)]),
+        plain("antiresonance a bandwidth above", &[mode(100.0, 0.01), zero]),
+        plain("peak 2 lines from the first", &[mode(2.2, 0.1)]),
+        one("phase reversed", |m| m.values.iter_mut().for_each(|v| *v = v.conj())),
+        one("magnitudes alone", |m| {
             m.magnitude_only = true;
             m.values.iter_mut().for_each(|v| *v = Complex64::new(v.norm(), 0.0));
         }),
-        one("one line missing", 100.0, 0.01, |m| m.values[190] = Complex64::new(f64::NAN, f64::NAN)),
-        one("all lines zero", 100.0, 0.01, |m| m.values.fill(Complex64::new(0.0, 0.0))),
+        one("one line missing", |m| m.values[190] = Complex64::new(f64::NAN, f64::NAN)),
+        one("all lines zero", |m| m.values.fill(Complex64::new(0.0, 0.0))),
     ];
-    let mut all = cells("damping: narrow peak", &METHODS, narrow, quick);
-    all.extend(cells("damping: noise", &METHODS, noise, quick));
-    all.extend(cells("damping: heavy", &METHODS, heavy, quick));
-    all.extend(cells("damping: faults", &METHODS, beside, quick));
+    let mut all = questions("damping: narrow peak", &METHODS, narrow, quick);
+    all.extend(questions("damping: noise", &METHODS, noise, quick));
+    all.extend(questions("damping: heavy", &METHODS, heavy, quick));
+    all.extend(questions("damping: faults", &METHODS, faults, quick));
     all
 }

@@ -1,15 +1,15 @@
 //! Impacts of a contact trace: how often, and when.
 
 use super::bound::bounds;
-use super::rivals;
-use super::trial::{Answer, Case, Kind, Method, Task, cells, measured};
-use crate::{Family, Scene};
+use super::trial::{Answer, Case, Kind, Method, each, measured, questions, trace};
+use super::{rivals, scene};
+use crate::Scene;
+use crate::failure::Question;
 use std::f64::consts::TAU;
 use vibro_math::Noise;
-use vibro_measure::impacts::{Impacts, ImpactsOptions, Shape, impacts};
+use vibro_measure::impacts::{ImpactsOptions, Shape, impacts};
 use vibro_measure::legacy::contact_times;
-use vibro_record::units::Unit;
-use vibro_record::{Axis, Error, Meta, Result, Severity, Trace};
+use vibro_record::{Result, Trace};
 
 /// Samples a second of the contact trace.
 const RATE: f64 = 2000.0;
@@ -38,19 +38,15 @@ struct Train {
     ringing: f64,
 }
 
-impl Default for Train {
-    fn default() -> Train {
-        Train {
-            count: 60,
-            missing: Vec::new(),
-            noise: 0.01,
-            heights: 0.0,
-            jitter: 0.0,
-            first: 1.0,
-            ringing: 0.0,
-        }
-    }
-}
+const PLAIN: Train = Train {
+    count: 60,
+    missing: Vec::new(),
+    noise: 0.01,
+    heights: 0.0,
+    jitter: 0.0,
+    first: 1.0,
+    ringing: 0.0,
+};
 
 impl Train {
     /// The trace, the samples at which impacts stand, and the interval in samples.
@@ -67,12 +63,11 @@ impl Train {
             let part = (time - 20.0).max(0.0) as usize..n.min((time + LONG).max(0.0) as usize);
             for (i, v) in part.clone().zip(&mut values[part]) {
                 let x = i as f64 - time;
-                let ring =
-                    if x > 0.0 { self.ringing * (TAU * x / 12.0).sin() * (-x / 25.0).exp() } else { 0.0 };
-                *v += height * (pulse(x) + ring);
+                let ring = self.ringing * (TAU * x / 12.0).sin() * (-x / 25.0).exp();
+                *v += height * (pulse(x) + if x > 0.0 { ring } else { 0.0 });
             }
         }
-        (trace(values), at, interval)
+        (trace("contact", "V", 1.0 / RATE, values), at, interval)
     }
 
     fn rate(self) -> impl Fn(&mut Noise) -> Case<Trace> {
@@ -84,162 +79,80 @@ impl Train {
     }
 }
 
-fn trace(values: Vec<f64>) -> Trace {
-    let meta = Meta::new("contact", Unit::parse_or_opaque("V"));
-    Trace { meta, axis: Axis::time(0.0, 1.0 / RATE, values.len()), values }
-}
-
 /// Bound of the time of one pulse of unknown height, in samples.
 fn onset_bound(noise: f64) -> f64 {
     let model = |p: &[f64]| (-40..160).map(|i| p[1] * pulse(f64::from(i) - p[0])).collect();
     bounds(&[0.37, 1.0], &[1e-4, 1e-4], noise, model)[0]
 }
 
-fn frequency(trace: &Trace) -> Result<Answer> {
-    let found = impacts(trace, &ImpactsOptions::default())?;
-    let doubts = found.findings.iter().filter(|f| f.severity == Severity::Doubt);
-    let said = doubts.map(|f| format!("no uncertainty: {}", f.code)).collect();
-    Ok(Answer { value: found.frequency.value, std: found.frequency.std, said })
-}
-
-/// Mean frequency from the first and the last of these times in samples.
-fn mean(times: &[f64]) -> f64 {
-    match (times.first(), times.last()) {
-        (Some(first), Some(last)) => RATE * (times.len() - 1) as f64 / (last - first),
-        _ => f64::NAN,
-    }
-}
-
-const RATES: [Method<Trace>; 4] = [
-    Method { name: "timeav", ours: false, estimate: |t| contact_times(t).map(|f| Answer::bare(f.frequency)) },
-    Method {
-        name: "threshold",
-        ours: false,
-        estimate: |t| Ok(Answer::bare(mean(&rivals::passages(&t.values, false)))),
-    },
-    Method {
-        name: "spectrum, first line",
-        ours: false,
-        estimate: |t| {
-            let lines = rivals::lines(t, vibro_record::Window::Hann);
-            // The first line that is half as high as the highest: the fundamental of a train of pulses.
-            let (skipped, rest) = lines.split_at(4);
-            let high = rest.iter().copied().fold(0.0, f64::max);
-            let at =
-                rest.iter().position(|v| *v > 0.5 * high).map_or(f64::NAN, |k| (k + skipped.len()) as f64);
-            Ok(Answer::bare(at * rivals::spacing(t)))
-        },
-    },
-    Method { name: "onset fit", ours: true, estimate: frequency },
+const RATES: [Method<Trace>; 3] = [
+    Method::rival("timeav", |t| contact_times(t).map_or(f64::NAN, |f| f.frequency)),
+    Method::rival("threshold", |t| RATE * rivals::mean_rate(&rivals::threshold(&t.values))),
+    Method::own("onset fit", |t| {
+        let found = impacts(t, &ImpactsOptions::default())?;
+        Ok(Answer::found(&found.frequency, &found.findings))
+    }),
 ];
 
 /// Impacts of a record of which one interval is asked for.
 const COUNT: usize = 20;
 
-/// The interval between the two impacts in the middle.
-fn middle(times: &[f64]) -> Result<f64> {
-    match times.get(COUNT / 2 - 1..=COUNT / 2) {
-        Some(&[a, b]) if times.len() == COUNT => Ok(b - a),
-        _ => Err(Error::refused(format!("{} impacts for {COUNT}", times.len()))),
-    }
+/// The interval between the two impacts in the middle; not a number where there are fewer or more.
+fn middle(times: &[f64]) -> f64 {
+    if times.len() == COUNT { times[COUNT / 2] - times[COUNT / 2 - 1] } else { f64::NAN }
 }
 
-fn between(found: &Impacts) -> Result<Answer> {
-    let value = middle(&found.times)?;
-    Ok(Answer { value, std: found.onset_std.map(|s| s * f64::sqrt(2.0)), said: Vec::new() })
+fn between(trace: &Trace, shape: Option<Shape>) -> Result<Answer> {
+    let found = impacts(trace, &ImpactsOptions { shape, ..ImpactsOptions::default() })?;
+    let std = found.onset_std.map(|s| s * f64::sqrt(2.0));
+    Ok(Answer { value: middle(&found.times), std, doubt: None })
 }
 
-const TIMES: [Method<Trace>; 5] = [
-    Method {
-        name: "highest sample",
-        ours: false,
-        estimate: |t| Ok(Answer::bare(middle(&rivals::tops(&t.values))? / RATE)),
-    },
-    Method {
-        name: "threshold, sample",
-        ours: false,
-        estimate: |t| Ok(Answer::bare(middle(&rivals::passages(&t.values, false))? / RATE)),
-    },
-    Method {
-        name: "threshold, between",
-        ours: false,
-        estimate: |t| Ok(Answer::bare(middle(&rivals::passages(&t.values, true))? / RATE)),
-    },
-    Method {
-        name: "fit of the average",
-        ours: true,
-        estimate: |t| between(&impacts(t, &ImpactsOptions::default())?),
-    },
-    Method {
-        name: "fit of a known shape",
-        ours: true,
-        estimate: |t| {
-            let shape = Shape::known(pulse, -12.0..45.0, 0.5);
-            between(&impacts(t, &ImpactsOptions { shape, ..ImpactsOptions::default() })?)
-        },
-    },
+const TIMES: [Method<Trace>; 4] = [
+    Method::rival("threshold, sample", |t| middle(&rivals::threshold(&t.values)) / RATE),
+    Method::rival("threshold, between", |t| {
+        middle(&rivals::passages(&t.values, rivals::half(&t.values))) / RATE
+    }),
+    Method::own("fit of the average", |t| between(t, None)),
+    Method::own("fit of a known shape", |t| between(t, Shape::known(pulse, -12.0..45.0, 0.5))),
 ];
 
 /// The scenes of impacts.
 pub fn scenes(quick: bool) -> Vec<Scene> {
-    let plain = Train::default;
     let settings = [
-        ("even", plain()),
-        ("2 of 60 missing", Train { missing: vec![20, 41], ..plain() }),
-        ("ringing of 60 %", Train { ringing: 0.6, ..plain() }),
-        ("first 5 times the rest", Train { first: 5.0, ..plain() }),
-        ("heights vary", Train { heights: 0.4, ..plain() }),
-        ("noise of 10 %", Train { noise: 0.1, ..plain() }),
+        ("even", PLAIN),
+        ("2 of 60 missing", Train { missing: vec![20, 41], ..PLAIN }),
+        ("ringing of 60 %", Train { ringing: 0.6, ..PLAIN }),
+        ("first 5 times the rest", Train { first: 5.0, ..PLAIN }),
+        ("heights vary", Train { heights: 0.4, ..PLAIN }),
+        ("noise of 10 %", Train { noise: 0.1, ..PLAIN }),
     ]
     .map(|(name, train)| Kind::new(name, 30_000, train.rate()));
     let noises = [0.1, 0.03, 0.01, 0.003, 0.001].map(|sigma| {
         let bound = f64::sqrt(2.0) * onset_bound(sigma) / RATE;
         Kind::new(format!("noise of {} %", 100.0 * sigma), 31_000, move |noise: &mut Noise| {
-            let (data, at, _) = Train { count: COUNT, noise: sigma, jitter: 0.01, ..plain() }.made(noise);
-            let truth = (at[COUNT / 2] - at[COUNT / 2 - 1]) / RATE;
-            Case { data, truth, unit: bound, tolerance: 1.0 / RATE }
+            let (data, at, _) = Train { count: COUNT, noise: sigma, jitter: 0.01, ..PLAIN }.made(noise);
+            Case { data, truth: middle(&at) / RATE, unit: bound, tolerance: 1.0 / RATE }
         })
     });
-    let n = 60.0_f64;
-    let scene = |name: &str, says: &str, error_of: &str, bound, methods| Scene {
-        name: name.to_owned(),
-        family: Family::Estimators,
-        says: says.to_owned(),
-        error_of: error_of.to_owned(),
-        truth: "the times at which pulses were written into the record".to_owned(),
-        bound: Some(bound),
-        methods,
-    };
+    let (n, truth) = (60.0_f64, "the times at which pulses were written into the record");
+    let rates = [
+        "impact-rate",
+        "The impact frequency of a contact trace of 60 impacts at 2000 samples a second in noise of 1 %: even, with impacts missing, ringing, one impact far higher, uneven heights, and noise of 10 %. The bound is that of the even train.",
+        "impact frequency: relative error (rms)",
+        truth,
+    ];
+    let times = [
+        "impact-times",
+        "The interval between two neighbouring impacts of a train of 20, in noise of 0.1 to 10 % of their height.",
+        "interval: error (rms) over its Cramér–Rao bound",
+        truth,
+    ];
+    let bound = onset_bound(0.01) * (12.0 / (n * (n * n - 1.0))).sqrt() / 265.0;
     vec![
-        scene(
-            "impact-rate",
-            "The impact frequency of a contact trace of 60 impacts at 2000 samples a second in noise of 1 %: even, with impacts missing, ringing, one impact far higher, uneven heights, and noise of 10 %. The bound is that of the even train.",
-            "impact frequency: relative error (rms)",
-            onset_bound(0.01) * (12.0 / (n * (n * n - 1.0))).sqrt() / 265.0,
-            measured(&RATES, &settings, quick),
-        ),
-        scene(
-            "impact-times",
-            "The interval between two neighbouring impacts of a train of 20, in noise of 0.1 to 10 % of their height.",
-            "interval: error (rms) over its Cramér–Rao bound",
-            1.0,
-            measured(&TIMES, &noises, quick),
-        ),
+        scene(rates, bound, measured(&RATES, &settings, quick)),
+        scene(times, 1.0, measured(&TIMES, &noises, quick)),
     ]
-}
-
-/// A train whose trace is changed after it was made.
-fn changed(
-    name: &str,
-    train: Train,
-    change: impl Fn(&mut Vec<f64>, &mut Noise) + Send + Sync + 'static,
-) -> Kind<Trace> {
-    let make = train.rate();
-    Kind::new(name, 32_000, move |noise: &mut Noise| {
-        let mut case = make(noise);
-        change(&mut case.data.values, noise);
-        case
-    })
 }
 
 /// So many of 60 impacts, without a pattern; the first and the last stay.
@@ -250,56 +163,52 @@ fn scattered(count: usize) -> Vec<usize> {
 }
 
 /// What methods for impacts do at their borders.
-pub(crate) fn cells_of_impacts(quick: bool) -> Vec<Task> {
-    let plain = Train::default;
-    let kind = |name: &str, train: Train| changed(name, train, |_, _| ());
-    let ringing = [0.3, 0.6, 0.9]
-        .map(|r| kind(&format!("ringing of {} %", 100.0 * r), Train { ringing: r, ..plain() }));
+pub(crate) fn borders(quick: bool) -> Vec<Question> {
+    let kind = |name: &str, train: Train| Kind::new(name, 32_000, train.rate());
+    let ringing =
+        [0.3, 0.6, 0.9].map(|r| kind(&format!("ringing of {} %", 100.0 * r), Train { ringing: r, ..PLAIN }));
     let counts = [
-        kind("2 of 60 missing", Train { missing: vec![20, 41], ..plain() }),
-        kind("20 of 60 missing", Train { missing: scattered(20), ..plain() }),
-        kind("40 of 60 missing", Train { missing: scattered(40), ..plain() }),
-        kind("two impacts", Train { count: 2, ..plain() }),
-        kind("one impact", Train { count: 1, ..plain() }),
-        kind("no impact", Train { count: 0, ..plain() }),
+        kind("2 of 60 missing", Train { missing: vec![20, 41], ..PLAIN }),
+        kind("20 of 60 missing", Train { missing: scattered(20), ..PLAIN }),
+        kind("40 of 60 missing", Train { missing: scattered(40), ..PLAIN }),
+        kind("two impacts", Train { count: 2, ..PLAIN }),
+        kind("one impact", Train { count: 1, ..PLAIN }),
+        kind("no impact", Train { count: 0, ..PLAIN }),
     ];
     let heights = [
-        kind("first 5 times the rest", Train { first: 5.0, ..plain() }),
-        kind("first 50 times the rest", Train { first: 50.0, ..plain() }),
-        kind("heights vary by 1 : 3", Train { heights: 0.4, ..plain() }),
-        kind("heights vary by 1 : 20", Train { heights: 1.0, ..plain() }),
+        kind("first 5 times the rest", Train { first: 5.0, ..PLAIN }),
+        kind("first 50 times the rest", Train { first: 50.0, ..PLAIN }),
+        kind("heights vary by 1 : 3", Train { heights: 0.4, ..PLAIN }),
+        kind("heights vary by 1 : 20", Train { heights: 1.0, ..PLAIN }),
     ];
-    let noise = [0.1, 0.3, 1.0, 3.0].map(|sigma| {
-        kind(&format!("noise of {} % of the height", 100.0 * sigma), Train { noise: sigma, ..plain() })
-    });
+    let noise = [0.1, 0.3, 1.0, 3.0]
+        .map(|n| kind(&format!("noise of {} % of the height", 100.0 * n), Train { noise: n, ..PLAIN }));
     let uneven = [0.02, 0.1, 0.3]
-        .map(|jitter| kind(&format!("onsets scatter by {} %", 100.0 * jitter), Train { jitter, ..plain() }));
-    let faults = [
-        changed("three spikes in front", plain(), |v, _| [20, 50, 110].into_iter().for_each(|i| v[i] = 0.9)),
-        changed("pulses point downwards", plain(), |v, _| v.iter_mut().for_each(|v| *v = -*v)),
-        changed("clipped at half height", plain(), |v, _| v.iter_mut().for_each(|v| *v = v.min(0.5))),
-        changed("level of 100 heights", plain(), |v, _| v.iter_mut().for_each(|v| *v += 100.0)),
-        changed("drift of 3 heights", plain(), |v, _| {
-            let n = v.len() as f64;
-            v.iter_mut().enumerate().for_each(|(i, v)| *v += 3.0 * i as f64 / n);
+        .map(|jitter| kind(&format!("onsets scatter by {} %", 100.0 * jitter), Train { jitter, ..PLAIN }));
+    let changes: [(&str, fn(&mut Trace)); 9] = [
+        ("three spikes in front", |t| [20, 50, 110].into_iter().for_each(|i| t.values[i] = 0.9)),
+        ("pulses point downwards", |t| each(t, |_, v| -v)),
+        ("clipped at half height", |t| each(t, |_, v| v.min(0.5))),
+        ("level of 100 heights", |t| each(t, |_, v| v + 100.0)),
+        ("drift of 3 heights", |t| each(t, |part, v| v + 3.0 * part)),
+        ("mains hum of half the height", |t| {
+            let cycles = 50.0 * t.values.len() as f64 / RATE;
+            each(t, |part, v| v + 0.5 * (TAU * cycles * part).sin());
         }),
-        changed("mains hum of half the height", plain(), |v, _| {
-            v.iter_mut().enumerate().for_each(|(i, v)| *v += 0.5 * (TAU * 50.0 * i as f64 / RATE).sin());
-        }),
-        changed("one sample in 40 kept", plain(), |v, _| {
+        ("one sample in 40 kept", |t| {
             // Pulses of a sample or none: the contact is sampled at 50 Hz, but the rate is said to be 2000 Hz still.
-            let kept: Vec<f64> = v.iter().copied().step_by(40).collect();
-            v.iter_mut().enumerate().for_each(|(i, v)| *v = kept[(i / 40).min(kept.len() - 1)]);
+            t.values.chunks_mut(40).for_each(|held| held.fill(held[0]));
         }),
-        changed("one sample missing", plain(), |v, _| v[300] = f64::NAN),
-        changed("all equal", plain(), |v, _| v.fill(0.25)),
+        ("one sample missing", |t| t.values[300] = f64::NAN),
+        ("all equal", |t| t.values.fill(0.25)),
     ];
-    let mut all = cells("impact rate: ringing", &RATES, ringing, quick);
-    all.extend(cells("impact rate: missing", &RATES, counts, quick));
-    all.extend(cells("impact rate: heights", &RATES, heights, quick));
-    all.extend(cells("impact rate: noise", &RATES, noise, quick));
-    all.extend(cells("impact rate: uneven", &RATES, uneven, quick));
-    all.extend(cells("impact rate: faults", &RATES, faults, quick));
+    let faults = changes.map(|(name, change)| Kind::changed(name, 32_000, PLAIN.rate(), change));
+    let mut all = questions("impact rate: ringing", &RATES, ringing, quick);
+    all.extend(questions("impact rate: missing", &RATES, counts, quick));
+    all.extend(questions("impact rate: heights", &RATES, heights, quick));
+    all.extend(questions("impact rate: noise", &RATES, noise, quick));
+    all.extend(questions("impact rate: uneven", &RATES, uneven, quick));
+    all.extend(questions("impact rate: faults", &RATES, faults, quick));
     all
 }
 
@@ -321,7 +230,7 @@ mod tests {
 
     fn in_noise(cases: u64) {
         for sigma in [0.1, 0.12, 0.15, 0.2] {
-            let make = Train { noise: sigma, ..Train::default() }.rate();
+            let make = Train { noise: sigma, ..PLAIN }.rate();
             let (mut right, mut withheld, mut refused) = (0, 0, 0);
             for seed in 30_000..30_000 + cases {
                 let case = make(&mut Noise::new(seed));

@@ -1,14 +1,14 @@
 //! Damping ratio of a contact from the pulse of its force.
 
 use super::bound::bounds;
-use super::rivals;
-use super::trial::{Answer, Case, Kind, Method, Task, cells, measured};
-use crate::{Family, Scene};
+use super::trial::{Answer, Case, Kind, Method, each, measured, questions, trace};
+use super::{rivals, scene};
+use crate::Scene;
+use crate::failure::Question;
 use std::f64::consts::{PI, TAU};
 use vibro_math::Noise;
 use vibro_measure::pulse::{Instrument, KelvinVoigt, PulseOptions, pulse, two_times};
-use vibro_record::units::Unit;
-use vibro_record::{Axis, Meta, Result, Trace};
+use vibro_record::{Axis, Trace};
 
 /// Contact frequency in Hz, as in the runs of the thesis.
 const FREQUENCY: f64 = 25e3;
@@ -21,39 +21,23 @@ struct Pulse {
     times: [f64; 3],
 }
 
-const BY_HAND: Method<Pulse> = Method {
-    name: "two instants",
-    ours: false,
-    estimate: |p| {
-        let (peak, end) = rivals::instants(&p.trace.values);
-        Ok(Answer::bare(closed_form(peak / end)))
-    },
-};
+const BY_HAND: Method<Pulse> =
+    Method::rival("two instants", |p| closed_form(rivals::instants(&p.trace.values)));
 
-const WHOLE: Method<Pulse> = Method { name: "whole pulse", ours: true, estimate: whole };
-
-fn whole(p: &Pulse) -> Result<Answer> {
+const WHOLE: Method<Pulse> = Method::own("whole pulse", |p| {
     let found = pulse(&p.trace, &PulseOptions { instrument: p.instrument.clone(), mass: None })?;
     Ok(Answer::found(&found.xi, &found.findings))
-}
+});
 
 /// ξ from two times that come with an uncertainty, as `vibro pulse --peak --end` gives it.
-const TWO_TIMES: Method<Pulse> = Method {
-    name: "two times",
-    ours: true,
-    estimate: |p| {
-        let [peak, end, std] = p.times;
-        let found = two_times(peak, end, Some(std), None)?;
-        Ok(Answer::found(&found.xi, &found.findings))
-    },
-};
+const TWO_TIMES: Method<Pulse> = Method::own("two times", |p| {
+    let [peak, end, std] = p.times;
+    let found = two_times(peak, end, Some(std), None)?;
+    Ok(Answer::found(&found.xi, &found.findings))
+});
 
 /// The same from a spreadsheet, which asks for no domain.
-const FORMULA: Method<Pulse> = Method {
-    name: "formula of ρ",
-    ours: false,
-    estimate: |p| Ok(Answer::bare(closed_form(p.times[0] / p.times[1]))),
-};
+const FORMULA: Method<Pulse> = Method::rival("formula of ρ", |p| closed_form(p.times[0] / p.times[1]));
 
 const METHODS: [Method<Pulse>; 2] = [BY_HAND, WHOLE];
 const FOUR: [Method<Pulse>; 4] = [FORMULA, BY_HAND, TWO_TIMES, WHOLE];
@@ -96,12 +80,11 @@ fn pulses(xi: f64, samples: f64, part: f64) -> impl Fn(&mut Noise) -> Case<Pulse
         let shape = clean(xi, onset, (n, dt, (onset / dt).ceil() as usize));
         let height = shape.iter().copied().fold(0.0, f64::max);
         let values = shape.iter().map(|v| 3.0 * (v + part * height * noise.normal())).collect();
-        let meta = Meta::new("bit", Unit::parse_or_opaque("m/s²"));
         let std = 0.005 * length;
         let peak = KelvinVoigt::new(xi, FREQUENCY).and_then(|k| k.time_to_peak()).unwrap_or(0.0);
         Case {
             data: Pulse {
-                trace: Trace { meta, axis: Axis::time(0.0, dt, n), values },
+                trace: trace("bit", "m/s²", dt, values),
                 instrument: Instrument::Flat,
                 times: [peak + std * noise.normal(), length + std * noise.normal(), std],
             },
@@ -133,29 +116,21 @@ fn bound(xi: f64, samples: f64, part: f64) -> f64 {
 pub fn scenes(quick: bool) -> Vec<Scene> {
     let settings = [8.0, 16.0, 32.0, 64.0, 128.0]
         .map(|n| Kind::new(format!("{n} samples in the pulse"), 50_000, pulses(0.2, n, 0.01)));
-    vec![Scene {
-        name: "pulse".to_owned(),
-        family: Family::Estimators,
-        says: "The damping ratio ξ of a contact from its pulse of deceleration, 8 to 128 samples long, in noise of 1 % of its height; the bound is that of 128 samples.".to_owned(),
-        error_of: "damping ratio ξ of the contact: error (rms)".to_owned(),
-        truth: "the contact of spring and damper, ξ = 0.2, in closed form".to_owned(),
-        bound: Some(bound(0.2, 128.0, 0.01)),
-        methods: measured(&METHODS, &settings, quick),
-    }]
+    let texts = [
+        "pulse",
+        "The damping ratio ξ of a contact from its pulse of deceleration, 8 to 128 samples long, in noise of 1 % of its height; the bound is that of 128 samples.",
+        "damping ratio ξ of the contact: error (rms)",
+        "the contact of spring and damper, ξ = 0.2, in closed form",
+    ];
+    vec![scene(texts, bound(0.2, 128.0, 0.01), measured(&METHODS, &settings, quick))]
 }
 
-/// Pulses that are changed after they were made.
-fn changed(name: &str, change: impl Fn(&mut Pulse, &mut Noise) + Send + Sync + 'static) -> Kind<Pulse> {
-    let make = pulses(0.2, 40.0, 0.01);
-    Kind::new(name, 51_000, move |noise: &mut Noise| {
-        let mut case = make(noise);
-        change(&mut case.data, noise);
-        case
-    })
+fn height(p: &Pulse) -> f64 {
+    2.0 * rivals::half(&p.trace.values)
 }
 
 /// What methods for pulses do at their borders.
-pub(crate) fn cells_of_pulses(quick: bool) -> Vec<Task> {
+pub(crate) fn borders(quick: bool) -> Vec<Question> {
     let damped = |xi: f64| {
         let rho = KelvinVoigt::new(xi, FREQUENCY).and_then(|k| Some(k.time_to_peak()? / k.duration()));
         let rho = rho.map_or("no peak".to_owned(), |r| format!("ρ = {r:.3}"));
@@ -168,47 +143,44 @@ pub(crate) fn cells_of_pulses(quick: bool) -> Vec<Task> {
     });
     let few = [2.0, 4.0, 6.0, 8.0]
         .map(|n| Kind::new(format!("{n} samples in the pulse"), 54_000, pulses(0.2, n, 0.01)));
-    let faults = [
-        changed("clipped at 80 % of the height", |p, _| {
-            let high = p.trace.values.iter().copied().fold(0.0, f64::max);
-            p.trace.values.iter_mut().for_each(|v| *v = v.min(0.8 * high));
+    let changes: [(&str, fn(&mut Pulse)); 10] = [
+        ("clipped at 80 % of the height", |p| {
+            let high = height(p);
+            each(&mut p.trace, |_, v| v.min(0.8 * high));
         }),
-        changed("ringing of 30 % afterwards", |p, _| {
-            let high = p.trace.values.iter().copied().fold(0.0, f64::max);
+        ("ringing of 30 % afterwards", |p| {
+            let high = height(p);
             // The pulse ends 3.3 durations of 40 samples after the beginning.
-            for (i, v) in p.trace.values.iter_mut().enumerate().skip(133) {
-                let x = (i - 133) as f64;
-                *v += 0.3 * high * (-x / 20.0).exp() * (x / 2.0).sin();
+            for (i, v) in p.trace.values.iter_mut().skip(133).enumerate() {
+                *v += 0.3 * high * (-(i as f64) / 20.0).exp() * (i as f64 / 2.0).sin();
             }
         }),
-        changed("level of 1000 heights", |p, _| {
-            let high = p.trace.values.iter().copied().fold(0.0, f64::max);
-            p.trace.values.iter_mut().for_each(|v| *v += 1e3 * high);
+        ("level of 1000 heights", |p| {
+            let high = height(p);
+            each(&mut p.trace, |_, v| v + 1e3 * high);
         }),
-        changed("level drifts by the height", |p, _| {
-            let high = p.trace.values.iter().copied().fold(0.0, f64::max);
-            let n = p.trace.values.len() as f64;
-            p.trace.values.iter_mut().enumerate().for_each(|(i, v)| *v += high * i as f64 / n);
+        ("level drifts by the height", |p| {
+            let high = height(p);
+            each(&mut p.trace, |part, v| v + high * part);
         }),
-        changed("points downwards", |p, _| p.trace.values.iter_mut().for_each(|v| *v = -*v)),
-        changed("cut off at the top", |p, _| {
+        ("points downwards", |p| each(&mut p.trace, |_, v| -v)),
+        ("cut off at the top", |p| {
             p.trace.values.truncate(108);
             p.trace.axis = Axis::time(0.0, p.trace.axis.step().unwrap_or(1.0), 108);
         }),
-        changed("low-pass not stated", |p, _| p.instrument = Instrument::Unknown),
-        changed("a second, lower pulse", |p, _| {
+        ("low-pass not stated", |p| p.instrument = Instrument::Unknown),
+        ("a second, lower pulse", |p| {
             let copy: Vec<f64> = p.trace.values.clone();
             p.trace.values.iter_mut().skip(60).zip(copy).for_each(|(v, c)| *v += 0.5 * c);
         }),
-        changed("one sample missing", |p, _| p.trace.values[100] = f64::NAN),
-        changed("all equal", |p, _| p.trace.values.fill(1.0)),
+        ("one sample missing", |p| p.trace.values[100] = f64::NAN),
+        ("all equal", |p| p.trace.values.fill(1.0)),
     ];
-    let swapped = [changed("the two times swapped", |p, _| p.times.swap(0, 1))];
-    let mut all = cells("contact ξ: ρ → 1/2", &FOUR, light, quick);
-    all.extend(cells("contact ξ: ρ → 0", &FOUR, heavy, quick));
-    all.extend(cells("contact ξ: noise", &METHODS, noise, quick));
-    all.extend(cells("contact ξ: few samples", &METHODS, few, quick));
-    all.extend(cells("contact ξ: faults", &METHODS, faults, quick));
-    all.extend(cells("contact ξ: two times", &[FORMULA, TWO_TIMES], swapped, quick));
+    let faults = changes.map(|(name, change)| Kind::changed(name, 51_000, pulses(0.2, 40.0, 0.01), change));
+    let mut all = questions("contact ξ: ρ → 1/2", &FOUR, light, quick);
+    all.extend(questions("contact ξ: ρ → 0", &FOUR, heavy, quick));
+    all.extend(questions("contact ξ: noise", &METHODS, noise, quick));
+    all.extend(questions("contact ξ: few samples", &METHODS, few, quick));
+    all.extend(questions("contact ξ: faults", &METHODS, faults, quick));
     all
 }

@@ -35,33 +35,43 @@ pub fn second(lines: &[f64]) -> Option<usize> {
     peaks.get(1).copied()
 }
 
-/// Place and height of the top of a parabola through line `k` and both beside it; the line itself at the ends.
-pub fn parabola(lines: &[f64], k: usize) -> (f64, f64) {
+/// Place of the top of a parabola through line `k` and both beside it; the line itself at the ends.
+pub fn parabola(lines: &[f64], k: usize) -> f64 {
     let (Some(left), Some(right)) = (k.checked_sub(1).map(|i| lines[i]), lines.get(k + 1)) else {
-        return (k as f64, lines[k]);
+        return k as f64;
     };
-    let (sum, difference) = (left + right - 2.0 * lines[k], right - left);
-    let part = -0.5 * difference / sum;
-    (k as f64 + part, lines[k] + 0.25 * difference * part)
+    k as f64 - 0.5 * (right - left) / (left + right - 2.0 * lines[k])
 }
 
-/// Frequency in Hz from the first and the last passage through the mean, and their number.
-pub fn crossings(trace: &Trace) -> f64 {
-    let n = trace.values.len() as f64;
-    let mean = trace.values.iter().sum::<f64>() / n;
-    let at: Vec<f64> = trace
-        .values
-        .windows(2)
-        .enumerate()
-        .filter(|(_, w)| w[0] < mean && w[1] >= mean)
-        .map(|(i, w)| i as f64 + (mean - w[0]) / (w[1] - w[0]))
-        .collect();
-    match (at.first(), at.last()) {
-        (Some(first), Some(last)) => {
-            (at.len() - 1) as f64 / (last - first) * trace.rate().unwrap_or(f64::NAN)
-        }
+/// Times in samples at which a level is passed upwards, between samples.
+pub fn passages(values: &[f64], level: f64) -> Vec<f64> {
+    let up = |(i, w): (usize, &[f64])| {
+        (w[0] < level && w[1] >= level).then(|| i as f64 + (level - w[0]) / (w[1] - w[0]))
+    };
+    values.windows(2).enumerate().filter_map(up).collect()
+}
+
+/// Half of the highest value.
+pub fn half(values: &[f64]) -> f64 {
+    0.5 * values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// The first samples after the passages of half the highest value.
+pub fn threshold(values: &[f64]) -> Vec<f64> {
+    passages(values, half(values)).iter().map(|t| t.ceil()).collect()
+}
+
+/// Mean frequency in events a sample from the first and the last of these times in samples.
+pub fn mean_rate(times: &[f64]) -> f64 {
+    match times {
+        [first, .., last] => (times.len() - 1) as f64 / (last - first),
         _ => f64::NAN,
     }
+}
+
+/// Mean of the values.
+pub fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// Running sums over the rate: an integral without a word on its constant.
@@ -74,39 +84,35 @@ pub fn sums(trace: &Trace) -> Vec<f64> {
     trace.values.iter().map(add).collect()
 }
 
-/// Without the mean.
-pub fn centred(values: &[f64]) -> Vec<f64> {
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    values.iter().map(|v| v - mean).collect()
-}
-
 /// Without the straight line of least squares (`detrend`).
 pub fn detrended(values: &[f64]) -> Vec<f64> {
-    let n = values.len() as f64;
+    let (n, mean) = (values.len() as f64, mean(values));
     let middle = 0.5 * (n - 1.0);
-    let plain = centred(values);
-    let slope = plain.iter().enumerate().map(|(i, v)| (i as f64 - middle) * v).sum::<f64>()
+    let slope = values.iter().enumerate().map(|(i, v)| (i as f64 - middle) * (v - mean)).sum::<f64>()
         / (n * (n * n - 1.0) / 12.0);
-    plain.iter().enumerate().map(|(i, v)| v - slope * (i as f64 - middle)).collect()
+    values.iter().enumerate().map(|(i, v)| v - mean - slope * (i as f64 - middle)).collect()
 }
 
 /// Half of the distance from the lowest to the highest value.
-pub(crate) fn half_swing(values: &[f64]) -> f64 {
+pub fn half_swing(values: &[f64]) -> f64 {
     let (low, high) =
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
     0.5 * (high - low)
 }
 
-/// ζ from the lines nearest to the half-power points of the largest line, or from points interpolated between lines.
-pub fn half_power(frequency: &[f64], values: &[Complex64], between: bool) -> f64 {
+/// Magnitudes of the lines, the largest, the half-power level, and the next lines below and above that are under it.
+fn peak(values: &[Complex64]) -> Option<(Vec<f64>, usize, f64, usize, usize)> {
     let size: Vec<f64> = values.iter().map(|v| v.norm()).collect();
     let at = largest(&size);
-    let Some(top) = size.get(at) else { return f64::NAN };
-    let level = top / f64::sqrt(2.0);
+    let level = size.get(at)? / f64::sqrt(2.0);
     let under = |i: &usize| size[*i] < level;
-    let (Some(left), Some(right)) = ((0..at).rev().find(under), (at + 1..size.len()).find(under)) else {
-        return f64::NAN;
-    };
+    let (left, right) = ((0..at).rev().find(under)?, (at + 1..size.len()).find(under)?);
+    Some((size, at, level, left, right))
+}
+
+/// ζ from the lines nearest to the half-power points of the largest line, or from points interpolated between lines.
+pub fn half_power(frequency: &[f64], values: &[Complex64], between: bool) -> f64 {
+    let Some((size, at, level, left, right)) = peak(values) else { return f64::NAN };
     let cross = |out: usize, inside: usize| {
         let part = if between { (level - size[out]) / (size[inside] - size[out]) } else { 0.0 };
         frequency[out] + part * (frequency[inside] - frequency[out])
@@ -117,12 +123,8 @@ pub fn half_power(frequency: &[f64], values: &[Complex64], between: bool) -> f64
 /// ζ from a circle through the mobility at the lines above half power and two more on either side (Kåsa 1976), by the angle that the lines
 /// below and above the largest one turn: ζ = (ω₂² − ω₁²)/(2ωᵣ(ω₁ tan(α₁/2) + ω₂ tan(α₂/2))).
 pub fn circle(frequency: &[f64], values: &[Complex64]) -> f64 {
-    let size: Vec<f64> = values.iter().map(|v| v.norm()).collect();
-    let at = largest(&size);
-    let Some(top) = size.get(at) else { return f64::NAN };
-    let level = top / f64::sqrt(2.0);
-    let low = (0..at).rev().find(|i| size[*i] < level).unwrap_or(0).saturating_sub(1);
-    let high = ((at + 1..size.len()).find(|i| size[*i] < level).unwrap_or(at) + 1).min(size.len() - 1);
+    let Some((size, at, _, left, right)) = peak(values) else { return f64::NAN };
+    let (low, high) = (left.saturating_sub(1), (right + 1).min(size.len() - 1));
     let points: Vec<Complex64> = (low..=high)
         .map(|i| values[i] * Complex64::new(0.0, TAU * frequency[i]) / size[at] / (TAU * frequency[at]))
         .collect();
@@ -142,42 +144,15 @@ pub fn circle(frequency: &[f64], values: &[Complex64]) -> f64 {
     (w2 * w2 - w1 * w1) / (2.0 * own * (w1 * (0.5 * below).tan() + w2 * (0.5 * above).tan()))
 }
 
-/// Times in samples at which half of the highest value is passed upwards: the first sample above it, or between both.
-pub fn passages(values: &[f64], between: bool) -> Vec<f64> {
-    let level = 0.5 * values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    values
-        .windows(2)
-        .enumerate()
-        .filter(|(_, w)| w[0] < level && w[1] >= level)
-        .map(|(i, w)| i as f64 + if between { (level - w[0]) / (w[1] - w[0]) } else { 1.0 })
-        .collect()
-}
-
-/// Times in samples of the highest value after each passage of half the highest, until it is passed downwards.
-pub fn tops(values: &[f64]) -> Vec<f64> {
-    let level = 0.5 * values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let end = |from: usize| (from..values.len()).find(|i| values[*i] < level).unwrap_or(values.len());
-    passages(values, false)
-        .iter()
-        .map(|t| {
-            let from = *t as usize;
-            let part = from..end(from);
-            part.max_by(|a, b| values[*a].total_cmp(&values[*b])).unwrap_or(from) as f64
-        })
-        .collect()
-}
-
-/// Time to the peak and duration of a pulse in samples, read as on a screen: level of the first tenth of the record, highest sample,
+/// Time to the peak over duration of a pulse, read as on a screen: level of the first tenth of the record, highest sample,
 /// and where 3 % of its height is passed before and after.
-pub fn instants(values: &[f64]) -> (f64, f64) {
-    let quiet = (values.len() / 10).max(1);
-    let level = values[..quiet].iter().sum::<f64>() / quiet as f64;
-    let above: Vec<f64> = values.iter().map(|v| v - level).collect();
-    let peak = largest(&above);
-    let foot = 0.03 * above[peak];
-    let start = (0..peak).rev().find(|i| above[*i] < foot).unwrap_or(0);
-    let end = (peak..above.len()).find(|i| above[*i] < foot).unwrap_or(above.len());
-    ((peak - start) as f64, (end - start) as f64)
+pub fn instants(values: &[f64]) -> f64 {
+    let level = mean(&values[..(values.len() / 10).max(1)]);
+    let peak = largest(values);
+    let foot = level + 0.03 * (values[peak] - level);
+    let start = (0..peak).rev().find(|i| values[*i] < foot).unwrap_or(0);
+    let end = (peak..values.len()).find(|i| values[*i] < foot).unwrap_or(values.len());
+    (peak - start) as f64 / (end - start) as f64
 }
 
 #[cfg(test)]
@@ -206,7 +181,6 @@ mod tests {
     #[test]
     fn a_parabola_is_found_exactly() {
         let lines: Vec<f64> = (0..9).map(|k| 5.0 - (f64::from(k) - 4.3).powi(2)).collect();
-        let (place, height) = parabola(&lines, largest(&lines));
-        assert!((place - 4.3).abs() < 1e-12 && (height - 5.0).abs() < 1e-12);
+        assert!((parabola(&lines, largest(&lines)) - 4.3).abs() < 1e-12);
     }
 }

@@ -1,67 +1,92 @@
-//! The borders of what models can.
+//! The borders of what models can, and each method at each of them.
 
+use super::check;
+use super::rivals::{self as by, Method};
+use super::scenes::{at, grazing_task, task_c};
+use super::task::{Task, Told};
+use super::truth::{motion, settled};
+use crate::failure::{Found, Question};
+use crate::{FailureMap, Family, Outcome};
 use std::f64::consts::TAU;
-
-use super::grazing;
-use super::task::Task;
-use super::truth;
-use vibro_model::{Rig, Sine, State, Steady};
+use std::sync::Arc;
+use vibro_model::{Rig, Sine, Steady};
 use vibro_record::Result;
 use vibro_record::units::notation::quantity;
 
-/// Cycles that a motion is followed.
-const CYCLES: f64 = 6.0;
-
 /// A scene at a border.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Border {
-    /// Name of the border.
-    pub name: &'static str,
-    /// Name of the scene.
-    pub scene: String,
-    /// The motion.
-    pub task: Task,
-    /// What is asked there.
-    pub asks: Asks,
+struct Border {
+    name: &'static str,
+    scene: String,
+    task: Task,
+    asks: Asks,
 }
 
 /// What is asked of a method.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Asks {
+#[derive(Clone, Copy, PartialEq)]
+enum Asks {
     /// The impacts and rests of the motion.
     Motion,
+    /// The same, of methods that have a contact.
+    Contact,
     /// Whether there is an impact, and when: in s, or never.
     First(Option<f64>),
     /// The motions that repeat.
-    Orbit,
-    /// As [`Asks::Motion`], of methods that have a contact.
-    Contact,
-    /// The approach speed after so many cycles.
-    Cycles(f64),
+    Orbits,
+    /// The approach speed at the end.
+    Speed,
 }
 
-/// ν = ω/Ω₁ to a frequency in Hz.
-fn at(rig: &Rig, nu: f64) -> f64 {
-    nu * (rig.k1 / rig.m1).sqrt() / TAU
+/// What a method can be asked.
+#[derive(Clone, Copy, PartialEq)]
+enum Can {
+    /// Motions that repeat.
+    Orbits,
+    /// The same with a contact of the task's stiffness.
+    SoftOrbits,
+    /// Any motion, with impacts at once.
+    Follow,
+    /// Any motion, with that contact.
+    FollowSoft,
 }
+
+/// Cycles beyond which other methods are not asked: they would take minutes.
+const LONG: f64 = 1e4;
+
+/// Methods in the order of the picture, with their setting, and what they can. The stiff spring stands for an impact at once: it is in
+/// contact for 0.07 % of the period.
+const METHODS: &[(Method, f64, Can)] = &[
+    (by::CLOSED, 0.0, Can::Orbits),
+    (Method { name: "soft-corrected form", ..by::SOFT }, 0.0, Can::SoftOrbits),
+    (by::FLIGHTS, 0.0, Can::Follow),
+    (by::KELVIN_VOIGT, 0.0, Can::FollowSoft),
+    (by::EULER, 1e3, Can::Follow),
+    (by::RK4_LOOP, 1e3, Can::Follow),
+    (by::MOREAU, 1e3, Can::Follow),
+    (by::RK45_ENDS, 1e-6, Can::Follow),
+    (by::DOP853_RESTS, 1e-9, Can::Follow),
+    #[cfg(feature = "diffsol")]
+    (by::TSIT45_RESTS, 1e-9, Can::Follow),
+    (by::ROUGH_SPRING, 1e8, Can::Follow),
+    (by::RK45_CONTACT, 1e-6, Can::FollowSoft),
+];
 
 /// Six cycles at ν 2.1 under 0.5 N from x₁ = −1 mm.
-fn motion(rig: Rig) -> Task {
+fn six_cycles(rig: Rig) -> Task {
     let frequency = at(&Rig::thesis(), 2.1);
-    Task {
-        start: State { x1: -1e-3, ..State::REST },
-        most: 100_000,
-        ..Task::sine(rig, 0.5, frequency, CYCLES / frequency)
-    }
+    Task { start: [-1e-3, 0.0, 0.0, 0.0], most: 100_000, ..Task::sine(rig, 0.5, frequency, 6.0 / frequency) }
 }
 
-/// Restitution up to which the first chatter of a motion ends in rest, by halving: with more the masses are let go while they still bounce.
-fn onset(task: &impl Fn(f64) -> Task) -> f64 {
+/// The first chatter of scene C and the second with this restitution.
+fn chatter(restitution: f64) -> Task {
+    let task = task_c();
+    Task { rig: Rig { restitution, ..task.rig }, until: 1.2, most: 100_000, rests: false, ..task }
+}
+
+/// Restitution up to which the first chatter ends in rest, by halving: with more the masses are let go while they still bounce.
+fn onset() -> f64 {
     // The first release is at a quarter of a second whatever R is, the next chatter begins behind 0.4 s.
-    let rests = |restitution: f64| {
-        truth::motion(&Task { until: 0.3, ..task(restitution) }, None)
-            .is_ok_and(|told| !told.sticks.is_empty())
-    };
+    let rests =
+        |r| motion(&Task { until: 0.3, ..chatter(r) }, None).is_ok_and(|told| !told.sticks.is_empty());
     let (mut low, mut high) = (0.7, 0.9);
     for _ in 0..20 {
         let middle = f64::midpoint(low, high);
@@ -71,32 +96,27 @@ fn onset(task: &impl Fn(f64) -> Task) -> f64 {
 }
 
 /// All scenes; `quick` follows fewer cycles where many are asked for.
-///
-/// # Errors
-/// If a scene cannot be built.
-pub fn borders(quick: bool) -> Result<Vec<Border>> {
+fn borders(quick: bool) -> Result<Vec<Border>> {
     let thesis = Rig::thesis();
     let mut all = Vec::new();
-    let mut add = |border: &'static str, scene: String, task: Task, asks: Asks| {
-        all.push(Border { name: border, scene, task, asks });
-    };
+    let mut add = |name, scene: String, task, asks| all.push(Border { name, scene, task, asks });
     for depth in [1e-3, 1e-6, 1e-9, 1e-12, -1e-12, -1e-9, -1e-6, -1e-3] {
-        let (task, time) = grazing::task(depth, 1)?;
+        let (task, time) = grazing_task(depth, 1)?;
         let words = if depth > 0.0 { "reached" } else { "missed" };
         add("grazing", format!("{words} by {}", quantity(depth.abs(), "m", 1)), task, Asks::First(time));
     }
     // The forced motion alone reaches the gap up to a factor 1 + ε.
-    let frequency = at(&thesis, 2.1);
-    let unit = Steady::new(&thesis, &Sine { force: 1.0, frequency })?.amplitude();
+    let plain = six_cycles(thesis);
+    let unit = Steady::new(&thesis, &Sine { force: 1.0, frequency: plain.frequency })?.amplitude();
     for excess in [1e-3, 1e-9, -1e-9, -1e-3] {
-        let task = Task { force: thesis.gap / unit * (1.0 + excess), ..motion(thesis) };
+        let task = Task { force: thesis.gap / unit * (1.0 + excess), ..plain };
         let sign = if excess > 0.0 { '+' } else { '−' };
-        add("grazing orbit", format!("amplitude over gap 1 {sign} {:.0e}", excess.abs()), task, Asks::Orbit);
+        add("grazing orbit", format!("amplitude over gap 1 {sign} {:.0e}", excess.abs()), task, Asks::Orbits);
     }
     for (name, restitution) in
         [("0", 0.0), ("1e-9", 1e-9), ("0.01", 0.01), ("0.99", 0.99), ("1 − 1e-6", 1.0 - 1e-6), ("1", 1.0)]
     {
-        add("restitution", format!("R {name}"), motion(Rig { restitution, ..thesis }), Asks::Motion);
+        add("restitution", format!("R {name}"), six_cycles(Rig { restitution, ..thesis }), Asks::Motion);
     }
     for (name, part) in
         [("none", 0.0), ("1e-9 of critical", 1e-9), ("critical", 1.0), ("100 times critical", 100.0)]
@@ -104,51 +124,194 @@ pub fn borders(quick: bool) -> Result<Vec<Border>> {
         let critical = |m: f64, k: f64| 2.0 * part * (m * k).sqrt();
         let rig = Rig { c1: critical(thesis.m1, thesis.k1), c2: critical(thesis.m2, thesis.k2), ..thesis };
         // Enough force to reach across the gap.
-        let task = Task { force: 0.5 * (1.0 + 20.0 * part), ..motion(rig) };
+        let task = Task { force: 0.5 * (1.0 + 20.0 * part), ..six_cycles(rig) };
         add("damping", name.to_owned(), task, Asks::Motion);
     }
     for gap in [1e-6, 1e-12, 0.0, -1e-12, -1e-6, -5e-4] {
-        add("gap", quantity(gap, "m", 1), motion(Rig { gap, ..thesis }), Asks::Motion);
+        add("gap", quantity(gap, "m", 1), six_cycles(Rig { gap, ..thesis }), Asks::Motion);
     }
     for ratio in [1e-3, 1e-1, 1e1, 1e3] {
         let scale = ratio * thesis.m1 / thesis.m2;
         let rig = Rig { m2: thesis.m2 * scale, k2: thesis.k2 * scale, c2: thesis.c2 * scale, ..thesis };
-        add("mass ratio", format!("m₂/m₁ {ratio:.0e}"), motion(rig), Asks::Motion);
+        add("mass ratio", format!("m₂/m₁ {ratio:.0e}"), six_cycles(rig), Asks::Motion);
     }
     // 0.07 to 7 % of the period in contact.
     for stiffness in [1e8, 1e5, 1e4] {
-        let task = Task { stiffness, ..motion(thesis) };
-        add("soft contact", format!("{stiffness:.0e} N/m"), task, Asks::Contact);
+        add("soft contact", format!("{stiffness:.0e} N/m"), Task { stiffness, ..plain }, Asks::Contact);
     }
     let pair = ((thesis.k1 + thesis.k2) / (thesis.m1 + thesis.m2)).sqrt() / TAU;
     let [first, second] = thesis.natural_frequencies();
-    for (name, frequency, c) in [
-        ("mass 1", first, 0.1),
-        ("mass 1, no dampers", first, 0.0),
-        ("mass 2", second, 0.1),
-        ("mass 2, no dampers", second, 0.0),
-        ("both together", pair, 0.1),
-        ("both together, no dampers", pair, 0.0),
-    ] {
-        let rig = Rig { c1: c, c2: c, ..thesis };
-        let task = Task { frequency, until: CYCLES / frequency, ..motion(rig) };
-        add("resonance", name.to_owned(), task, Asks::Motion);
+    for (name, frequency) in [("mass 1", first), ("mass 2", second), ("both together", pair)] {
+        for (dampers, c) in [("", 0.1), (", no dampers", 0.0)] {
+            let rig = Rig { c1: c, c2: c, ..thesis };
+            let task = Task { frequency, until: 6.0 / frequency, ..six_cycles(rig) };
+            add("resonance", format!("{name}{dampers}"), task, Asks::Motion);
+        }
     }
-    let chatter = |restitution: f64| {
-        let scene_c = super::chatter::task();
-        Task { rig: Rig { restitution, ..scene_c.rig }, until: 1.2, most: 100_000, ..scene_c }
-    };
     for restitution in [0.3, 0.7, 0.9, 0.95] {
         add("chatter", format!("R {restitution}"), chatter(restitution), Asks::Motion);
     }
-    let onset = onset(&chatter);
+    let onset = onset();
     for (sign, beside) in [('−', -1e-3), ('+', 1e-3)] {
         let scene = format!("R {onset:.4} {sign} 1e-3, where rest begins");
         add("chatter", scene, chatter(onset + beside), Asks::Motion);
     }
-    for cycles in if quick { vec![1e3] } else { vec![1e4, 1e6] } {
-        let task = Task { until: cycles / frequency, most: 200_000_000, ..motion(thesis) };
-        add("long runs", format!("{cycles:.0e} cycles"), task, Asks::Cycles(cycles));
+    for cycles in if quick { &[1e3][..] } else { &[1e4, 1e6] } {
+        let task = Task { until: cycles / plain.frequency, most: 200_000_000, ..plain };
+        add("long runs", format!("{cycles:.0e} cycles"), task, Asks::Speed);
     }
     Ok(all)
+}
+
+/// What would be told rightly at a border, with impacts at once or with a contact; nothing where it is not known.
+fn truth(border: &Border, soft: bool) -> Option<Told> {
+    let task = &border.task;
+    let contact = soft.then(|| task.spring());
+    let impacts =
+        |impact: Option<(f64, f64)>| Told { impacts: impact.into_iter().collect(), ..Told::default() };
+    match border.asks {
+        // No damper of a contact stops a rebound altogether.
+        _ if soft && task.rig.restitution == 0.0 => None,
+        Asks::Motion | Asks::Contact => motion(task, contact).ok(),
+        Asks::Speed => Some(impacts(Some((0.0, settled(task, contact, check::SETTLED).ok()??.speed())))),
+        Asks::First(time) => Some(impacts(time.map(|t| (t, 0.0)))),
+        Asks::Orbits => None,
+    }
+}
+
+/// What the models do at their borders; `quick` follows fewer cycles.
+///
+/// # Errors
+/// If a scene cannot be built.
+pub fn failures(quick: bool) -> Result<FailureMap> {
+    let mut questions = Vec::new();
+    for border in borders(quick)? {
+        let truths = [false, true].map(|soft| truth(&border, soft));
+        let own = Arc::new((border, truths));
+        for (method, setting, can) in METHODS {
+            let (border, own) = (&own.0, Arc::clone(&own));
+            questions.push(Question {
+                method: method.name,
+                ours: method.ours,
+                border: border.name,
+                scene: border.scene.clone(),
+                ask: Box::new(move || {
+                    let truth = own.1[usize::from(*can == Can::FollowSoft)].as_ref();
+                    asked(method, *setting, *can, &own.0, truth).unwrap_or_else(|fault| fault)
+                }),
+            });
+        }
+    }
+    Ok(FailureMap::asked(Family::Models, questions))
+}
+
+/// What a method makes of a border.
+fn asked(
+    method: &Method,
+    setting: f64,
+    can: Can,
+    border: &Border,
+    truth: Option<&Told>,
+) -> std::result::Result<Found, Found> {
+    let task = &border.task;
+    let not_asked = |why: &str| Ok(Found::new(Outcome::NotAsked, why));
+    match (can, border.asks) {
+        (Can::Orbits | Can::Follow, Asks::Contact)
+        | (Can::Orbits | Can::SoftOrbits, Asks::First(_))
+        | (Can::Follow | Can::FollowSoft, Asks::Orbits) => {
+            return not_asked("it answers another question");
+        }
+        (_, Asks::Speed) if !method.ours && task.until * task.frequency > LONG => {
+            return not_asked("it would take minutes; fewer cycles are asked of it");
+        }
+        (Can::Orbits, Asks::Motion | Asks::Orbits) => return check::closed_form(task),
+        (Can::SoftOrbits, _) => return check::corrected(task),
+        _ => {}
+    }
+    let told = (method.follow)(task, setting)?;
+    let Some(truth) = truth else {
+        return not_asked("no truth: there is no such motion, or it does not settle");
+    };
+    Ok(match border.asks {
+        Asks::First(_) => check::first(&told, truth, task),
+        Asks::Speed => check::speed(&told, truth),
+        _ => check::motion(&told, truth, task),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::models::ours;
+
+    /// The map allows every method the same; what the library's own promise is tighter.
+    #[test]
+    fn exact_motions_are_exact_wherever_they_answer() {
+        let (mut compared, mut refused) = ([0; 2], Vec::new());
+        for border in borders(true).unwrap() {
+            if !matches!(border.asks, Asks::Motion | Asks::Contact) {
+                continue;
+            }
+            let place = format!("{} {}", border.name, border.scene);
+            for (which, method) in [by::FLIGHTS, by::KELVIN_VOIGT].into_iter().enumerate() {
+                let Ok(told) = (method.follow)(&border.task, 0.0) else {
+                    refused.push((which, place.clone()));
+                    continue;
+                };
+                let truth = truth(&border, which == 1).unwrap();
+                // Impacts slower than 1e-3 m/s are told apart by what each method calls rest.
+                let fast = |t: &Told| {
+                    t.impacts
+                        .iter()
+                        .copied()
+                        .filter(|i| i.1 > 1e-3 && i.0 < border.task.until - 1e-6)
+                        .collect::<Vec<_>>()
+                };
+                let (fast_told, fast_truth) = (fast(&told), fast(&truth));
+                assert_eq!(fast_told.len(), fast_truth.len(), "{place}");
+                for (a, b) in fast_told.iter().zip(&fast_truth) {
+                    // The truth's own 2e-13 s (its tests), enlarged tenfold by impacts that are nearly missed.
+                    assert!((a.0 - b.0).abs() < 1e-11, "{place}: {a:?} {b:?}");
+                    // In that time accelerations, up to 1e3 m/s² behind a contact, change a speed by 1e-8 m/s.
+                    assert!((a.1 - b.1).abs() < 1e-8, "{place}: {a:?} {b:?}");
+                    compared[which] += 1;
+                }
+                assert_eq!(
+                    told.sticks.len(),
+                    truth.sticks.len(),
+                    "{place}: {:?} {:?}",
+                    told.sticks,
+                    truth.sticks
+                );
+                for (a, b) in told.sticks.iter().zip(&truth.sticks) {
+                    // The truth's own 1e-10 s at the ends of a chatter (its tests), and what the dampers' rates c/m change in what
+                    // it leaves to a series, up to 1e-6 s.
+                    let rig = border.task.rig;
+                    let allowed = 1e-9 + 1e-12 * (rig.c1 / rig.m1).max(rig.c2 / rig.m2);
+                    let apart = |i: usize| (a[i].min(border.task.until) - b[i].min(border.task.until)).abs();
+                    assert!(apart(0) < allowed && apart(1) < allowed, "{place}: {a:?} {b:?}");
+                }
+            }
+        }
+        // No damper gives R = 0, and a resonance without dampers has no forced motion that a flight could be told by.
+        assert_eq!(refused, [(1, "restitution R 0".into()), (0, "resonance mass 1, no dampers".into())]);
+        assert!(compared.iter().all(|n| *n > 200), "{compared:?}");
+    }
+
+    #[test]
+    fn a_method_that_misses_an_impact_is_wrong_and_one_without_a_truth_is_not_asked() {
+        let border = borders(true).unwrap().into_iter().find(|b| b.asks == Asks::Motion).unwrap();
+        let truth = truth(&border, false);
+        let without = |t: &Task, _: f64| {
+            let mut told = ours::flights(t)?;
+            told.impacts.remove(1);
+            Ok(told)
+        };
+        let outcome = |method: &Method, truth: Option<&Told>| {
+            asked(method, 0.0, Can::Follow, &border, truth).unwrap().outcome
+        };
+        assert_eq!(outcome(&Method { follow: without, ..by::FLIGHTS }, truth.as_ref()), Outcome::Wrong);
+        assert_eq!(outcome(&by::FLIGHTS, truth.as_ref()), Outcome::Right);
+        assert_eq!(outcome(&by::FLIGHTS, None), Outcome::NotAsked);
+    }
 }

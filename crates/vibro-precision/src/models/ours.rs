@@ -1,65 +1,99 @@
 //! The library's own methods on a task.
 
-use super::rivals::Spring;
-use super::task::{Fault, Task, Told};
-use vibro_model::{Chirp, Compliant, Event, Excitation, Law, Motion, Piece, Simulation, Sine};
+use super::task::{Spring, Task, Told};
+use crate::failure::Found;
+use vibro_model::contact::conversion::damping_ratio;
+use vibro_model::{
+    Chirp, Compliance, Compliant, Event, Excitation, Law, Motion, Orbits, Piece, Simulation, Sine, State,
+};
+use vibro_model::{Softened, orbits, softened};
+
+fn sine(task: &Task) -> Sine {
+    Sine { force: task.force, frequency: task.frequency }
+}
+
+fn start(task: &Task) -> State {
+    let [x1, v1, x2, v2] = task.start;
+    State { x1, v1, x2, v2 }
+}
 
 /// Event by event on exact flights.
-///
-/// # Errors
-/// As [`Simulation::from_state`] and [`Simulation::run`].
-pub fn flights(task: &Task) -> Result<Told, Fault> {
-    let sine = Sine { force: task.force, frequency: task.frequency };
-    let mut motion = Simulation::from_state(&task.rig, &sine, task.start, task.phase)?;
+pub fn flights(task: &Task) -> Result<Told, Found> {
     let mut told = Told::default();
-    motion.run(task.until, |leg| match leg.event {
-        Event::Impact(impact) => told.impacts.push((impact.time, impact.approach_velocity)),
-        Event::Stick => told.sticks.push([leg.start + leg.duration, f64::INFINITY]),
-        Event::Release => release(&mut told, leg.start + leg.duration),
-        _ => {}
-    })?;
+    Simulation::from_state(&task.rig, &sine(task), start(task), task.phase)?
+        .advance(task.until, &mut |piece| told.take(&piece))?;
     Ok(told)
 }
 
 /// As [`flights`], the frequency changing at the task's rate in steps whose phase deviates by up to `deviation` (rad).
-///
-/// # Errors
-/// As [`flights`] and [`Chirp::advance`].
-pub fn swept(task: &Task, deviation: f64) -> Result<Told, Fault> {
-    let sine = Sine { force: task.force, frequency: task.frequency };
-    let mut motion = Simulation::from_state(&task.rig, &sine, task.start, task.phase)?;
+pub fn swept(task: &Task, deviation: f64) -> Result<Told, Found> {
+    let mut motion = Simulation::from_state(&task.rig, &sine(task), start(task), task.phase)?;
     let mut told = Told::default();
-    Chirp { rate: task.rate, deviation }
-        .advance(&mut motion, task.until, &mut |piece| take(&mut told, &piece))?;
+    Chirp { rate: task.rate, deviation }.advance(&mut motion, task.until, &mut |piece| told.take(&piece))?;
     Ok(told)
 }
 
 /// Event by event with a contact of spring and damper.
-///
-/// # Errors
-/// As [`Compliant::new`] and [`Compliant::advance`].
-pub fn kelvin_voigt(task: &Task, spring: &Spring) -> Result<Told, Fault> {
-    let excitation = Excitation::Sine(Sine { force: task.force, frequency: task.frequency });
-    let law = Law::KelvinVoigt { stiffness: spring.stiffness, damping: spring.damping };
-    let mut motion = Compliant::new(&task.rig, &excitation, law, task.start, task.phase)?;
+pub fn kelvin_voigt(task: &Task) -> Result<Told, Found> {
+    damping_ratio(task.rig.restitution)?;
+    let Spring { stiffness, damping, .. } = task.spring();
+    let law = Law::KelvinVoigt { stiffness, damping };
+    let mut motion = Compliant::new(&task.rig, &Excitation::Sine(sine(task)), law, start(task), task.phase)?;
     let mut told = Told::default();
-    motion.advance(task.until, &mut |piece| {
-        take(&mut told, &piece);
-        if let Event::Impact(impact) = piece.event {
-            told.sticks.extend(spring.rest(task, impact.time, piece.start + piece.duration));
+    // A contact that gives way is told when it is over: the motion is followed for longer, and what began too late left out.
+    motion.advance(task.until + 3.0 * task.cycle(), &mut |piece| {
+        if let Event::Impact(impact) = piece.event
+            && impact.time < task.until
+        {
+            told.take(&piece);
+            told.sticks.extend(task.spring().rest(impact.time, piece.start + piece.duration));
         }
     })?;
     Ok(told)
 }
 
-fn take(told: &mut Told, piece: &Piece<'_>) {
-    if let Event::Impact(impact) = piece.event {
-        told.impacts.push((impact.time, impact.approach_velocity));
-    }
+/// The motion with one impact a cycle in closed form, told by its impact.
+pub fn closed_form(task: &Task) -> Result<Told, Found> {
+    let found = orbits(&task.rig, task.force, task.frequency)?;
+    let impacts = found.orbits.iter().map(|o| (0.0, o.approach_velocity)).take(1).collect();
+    Ok(Told { impacts, ..Told::default() })
 }
 
-fn release(told: &mut Told, time: f64) {
-    if let Some(rest) = told.sticks.last_mut() {
-        rest[1] = time;
+/// The same with the contact that the task has.
+pub fn soft_form(task: &Task) -> Result<Told, Found> {
+    let (_, soft, _) = soft_forms(task)?;
+    let impacts = soft.iter().take(1).flatten().map(|o| (0.0, o.approach_velocity)).collect();
+    Ok(Told { impacts, ..Told::default() })
+}
+
+/// All orbits, their corrections, and the contact that these are for.
+pub fn soft_forms(task: &Task) -> Result<(Orbits, Vec<Option<Softened>>, Compliance), Found> {
+    let found = orbits(&task.rig, task.force, task.frequency)?;
+    let compliance = Compliance::new(&task.rig, task.stiffness, None)?;
+    let soft = softened(&task.rig, &Excitation::Sine(sine(task)), &found, &compliance)?;
+    Ok((found, soft, compliance))
+}
+
+/// Closed forms at `n` frequencies of a sweep, each at the time at which the sweep comes to it.
+pub fn standing(task: &Task, n: f64) -> Result<Told, Found> {
+    let mut told = Told::default();
+    for i in 0..n as u32 {
+        let time = task.until * f64::from(i) / (n - 1.0);
+        let frequency = task.frequency + task.rate * time;
+        let found = orbits(&task.rig, task.force, frequency)?;
+        told.impacts.extend(found.orbits.first().map(|o| (time, o.approach_velocity)));
+    }
+    Ok(told)
+}
+
+impl Told {
+    fn take(&mut self, piece: &Piece<'_>) {
+        let end = piece.start + piece.duration;
+        match piece.event {
+            Event::Impact(impact) => self.impacts.push((impact.time, impact.approach_velocity)),
+            Event::Stick => self.sticks.push([end, f64::INFINITY]),
+            Event::Release => self.release(end),
+            _ => {}
+        }
     }
 }

@@ -1,21 +1,124 @@
-//! What else is done: integration in steps, by a loop, with events, with a stiff spring, by time stepping.
-//!
-//! Each is written as it usually is, and correctly.
+//! Ways to follow a motion: the library's own, and what else is done, each written as it usually is, and correctly.
 
 #[cfg(feature = "diffsol")]
 mod diffsol;
-mod events;
 mod loops;
-mod moreau;
-mod penalty;
+mod stages;
 mod stepper;
 
+use super::ours;
+use super::task::{Task, Told};
+use crate::failure::Found;
 #[cfg(feature = "diffsol")]
-pub use self::diffsol::{Diffsol, contacts, impacts};
-pub use events::{Events, events};
-pub use loops::Loop;
-pub(crate) use loops::marched;
-pub(crate) use moreau::moreau;
-pub(crate) use penalty::sprung;
-pub use penalty::{Spring, penalty};
-pub use stepper::{Kind, Stepper, Taken};
+use diffsol::{
+    Diffsol::{Bdf, Tsit45},
+    followed,
+};
+use loops::{classical, euler, marched, moreau};
+use stages::through;
+pub use stages::{Course, Locate, events};
+pub use stepper::Kind;
+use stepper::Kind::{Dop853, Rk4, Rk45};
+#[cfg(test)]
+pub use stepper::Stepper;
+
+/// A way to follow a motion.
+#[derive(Clone, Copy)]
+pub struct Method {
+    /// Name in charts.
+    pub name: &'static str,
+    /// Whether it is one of this library's.
+    pub ours: bool,
+    /// Words before and after a value of its setting; none where it has no setting.
+    pub setting: Setting,
+    /// The motion of a task by a setting.
+    pub follow: Follow,
+}
+
+type Follow = fn(&Task, f64) -> Result<Told, Found>;
+type Setting = Option<[&'static str; 2]>;
+
+const STEPS: Setting = Some(["", " steps a cycle"]);
+const TOLERANCE: Setting = Some(["tolerance ", ""]);
+const STIFFNESS: Setting = Some(["k₃ ", " N/m"]);
+
+impl Method {
+    const fn own(name: &'static str, setting: Setting, follow: Follow) -> Method {
+        Method { name, ours: true, setting, follow }
+    }
+
+    const fn rival(name: &'static str, setting: Setting, follow: Follow) -> Method {
+        Method { name, ours: false, setting, follow }
+    }
+
+    /// A value of its setting in words.
+    pub fn words(&self, value: f64) -> String {
+        match self.setting {
+            None => String::new(),
+            Some([before, after]) if (1.0..1e5).contains(&value) => format!("{before}{value}{after}"),
+            Some([before, after]) => format!("{before}{value:.0e}{after}"),
+        }
+    }
+}
+
+pub const FLIGHTS: Method = Method::own("exact flights", None, |t, _| ours::flights(t));
+pub const RIGID: Method = Method { name: "exact flights, rigid", ..FLIGHTS };
+pub const SWEPT: Method = Method::own("exact flights", Some(["phase within ", " rad"]), ours::swept);
+pub const STANDING: Method = Method::own("closed form, no rate", Some(["", " frequencies"]), ours::standing);
+pub const CLOSED: Method = Method::own("closed form", None, |t, _| ours::closed_form(t));
+pub const SOFT: Method = Method::own("soft-corrected closed form", None, |t, _| ours::soft_form(t));
+pub const KELVIN_VOIGT: Method = Method::own("exact Kelvin–Voigt", None, |t, _| ours::kelvin_voigt(t));
+pub const EULER: Method = Method::rival("Euler loop", STEPS, |t, n| marched(t, euler, n));
+pub const RK4_LOOP: Method = Method::rival("RK4 loop", STEPS, |t, n| marched(t, classical, n));
+pub const MOREAU: Method = Method::rival("Moreau time stepping", STEPS, |t, n| marched(t, moreau, n));
+pub const RK4_ENDS: Method = Method::rival("RK4, sign test", STEPS, |t, n| ends(t, Rk4(n)));
+pub const RK45_ENDS: Method = Method::rival("RK45, sign test", TOLERANCE, |t, r| ends(t, Rk45(r)));
+pub const RK45_RESTLESS: Method =
+    Method::rival("RK45, no rule for rest", TOLERANCE, |t, r| ends(&rests(t, false), Rk45(r)));
+pub const RK45_DENSE: Method = Method::rival("RK45, dense events", TOLERANCE, |t, r| dense(t, Rk45(r)));
+pub const DOP853_DENSE: Method = Method::rival("DOP853, dense events", TOLERANCE, |t, r| dense(t, Dop853(r)));
+pub const DOP853_RESTS: Method =
+    Method::rival("DOP853, rule for rest", TOLERANCE, |t, r| dense(&rests(t, true), Dop853(r)));
+pub const STIFF_SPRING: Method = Method::rival("stiff spring, RK45", STIFFNESS, |t, k| stiff(t, k, 1e-8));
+/// In larger steps, for motions whose other errors are larger.
+pub const ROUGH_SPRING: Method = Method { follow: |t, k| stiff(t, k, 1e-6), ..STIFF_SPRING };
+pub const RK45_THROUGH: Method =
+    Method::rival("RK45 straight through", TOLERANCE, |t, r| through(t, Rk45(r)));
+pub const RK45_CONTACT: Method = Method { name: "RK45 through the contact", ..RK45_THROUGH };
+pub const RK4_THROUGH: Method = Method::rival("RK4 straight through", STEPS, |t, n| through(t, Rk4(n)));
+pub const RK45_TOUCH: Method = Method::rival("RK45, touch to parting", TOLERANCE, |t, r| touch(t, Rk45(r)));
+pub const DOP853_TOUCH: Method =
+    Method::rival("DOP853, touch to parting", TOLERANCE, |t, r| touch(t, Dop853(r)));
+#[cfg(feature = "diffsol")]
+pub const TSIT45: Method =
+    Method::rival("diffsol TSIT45, sign test", TOLERANCE, |t, r| followed(t, None, Tsit45(r)));
+#[cfg(feature = "diffsol")]
+pub const TSIT45_RESTS: Method = Method::rival("diffsol TSIT45, rule for rest", TOLERANCE, |t, r| {
+    followed(&rests(t, true), None, Tsit45(r))
+});
+#[cfg(feature = "diffsol")]
+pub const TSIT45_TOUCH: Method = Method { follow: |t, r| followed(t, Some(t.spring()), Tsit45(r)), ..TSIT45 };
+#[cfg(feature = "diffsol")]
+pub const BDF_TOUCH: Method =
+    Method::rival("diffsol BDF, sign test", TOLERANCE, |t, r| followed(t, Some(t.spring()), Bdf(r)));
+
+fn ends(task: &Task, kind: Kind) -> Result<Told, Found> {
+    events(task, None, kind, Locate::Ends)
+}
+
+fn dense(task: &Task, kind: Kind) -> Result<Told, Found> {
+    events(task, None, kind, Locate::Dense)
+}
+
+fn touch(task: &Task, kind: Kind) -> Result<Told, Found> {
+    events(task, Some(task.spring()), kind, Locate::Dense)
+}
+
+/// A spring of stiffness `k` (N/m) in place of the impact.
+fn stiff(task: &Task, k: f64, tolerance: f64) -> Result<Told, Found> {
+    through(&Task { stiffness: k, ..*task }, Rk45(tolerance))
+}
+
+fn rests(task: &Task, rests: bool) -> Task {
+    Task { rests, ..*task }
+}

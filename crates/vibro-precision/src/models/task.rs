@@ -1,9 +1,10 @@
 //! What is asked of a method: a rig, its excitation, a start and an end; and what comes back.
 
-use std::f64::consts::TAU;
-
-use vibro_model::{Rig, State};
-use vibro_record::Error;
+use crate::Outcome;
+use crate::failure::Found;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use vibro_model::Rig;
+use vibro_model::contact::conversion::damping_ratio;
 
 /// A motion to be followed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,18 +19,17 @@ pub struct Task {
     pub rate: f64,
     /// Phase at time 0 in rad: the force is F₀ cos(phase) there.
     pub phase: f64,
-    /// State at time 0.
-    pub start: State,
+    /// State (x₁, v₁, x₂, v₂) at time 0.
+    pub start: [f64; 4],
     /// Stiffness in N/m of the contact, for methods that have one.
     pub stiffness: f64,
     /// Time of the end in s.
     pub until: f64,
     /// The most steps that a method may take before it counts as stalled.
     pub most: u64,
+    /// Methods with events let masses that press each other rest where they meet more slowly than the tolerance resolves.
+    pub rests: bool,
 }
-
-/// Stiffness of a contact in N/m where it is not what is varied.
-const STIFFNESS: f64 = 1e6;
 
 /// What a method tells of a motion.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -40,36 +40,69 @@ pub struct Told {
     pub sticks: Vec<[f64; 2]>,
 }
 
-/// Why there is no answer.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Fault {
-    /// The method says that it cannot, and why.
-    Refused(String),
-    /// It needs more steps than it may take.
-    Stalled(String),
-}
-
-impl From<Error> for Fault {
-    fn from(error: Error) -> Fault {
-        Fault::Refused(error.to_string().replace("\n  try: ", "; try: "))
-    }
-}
-
-impl std::fmt::Display for Fault {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Fault::Refused(why) => write!(f, "refused: {why}"),
-            Fault::Stalled(why) => write!(f, "stalled: {why}"),
+impl Told {
+    /// The last rest ends.
+    pub fn release(&mut self, time: f64) {
+        if let Some(rest) = self.sticks.last_mut() {
+            rest[1] = time;
         }
     }
 }
 
+/// A contact spring k₃ with its damper c₃.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spring {
+    /// k₃ in N/m.
+    pub stiffness: f64,
+    /// c₃ in N s/m.
+    pub damping: f64,
+    /// Duration in s of a contact of the spring alone, π√(M/k₃).
+    pub alone: f64,
+}
+
+/// A contact that lasts so many times as long as that of the spring alone counts as rest.
+const RESTS: f64 = 10.0;
+
+impl Spring {
+    /// A spring that rebounds as the rig does; at R = 0, which no damper gives, with the critical one, as is usual: it rebounds with e⁻².
+    pub fn new(rig: &Rig, stiffness: f64) -> Spring {
+        let mass = rig.reduced_mass();
+        let ratio = damping_ratio(rig.restitution).unwrap_or(1.0);
+        let damping = 2.0 * ratio * (stiffness * mass).sqrt();
+        Spring { stiffness, damping, alone: PI * (mass / stiffness).sqrt() }
+    }
+
+    /// Force in N of spring and damper alone, which may pull.
+    pub fn bound(&self, task: &Task, y: &[f64; 4]) -> f64 {
+        -self.stiffness * task.gap(y) + self.damping * (y[1] - y[3])
+    }
+
+    /// The rest in a contact between these times in s, if it lasts long enough to be one.
+    pub fn rest(&self, from: f64, to: f64) -> Option<[f64; 2]> {
+        (to - from > RESTS * self.alone).then_some([from, to])
+    }
+}
+
 impl Task {
-    /// A motion under F₀ sin ωt from rest, as [`Task::most`] steps of twenty million allow.
+    /// A motion under F₀ sin ωt from rest, in twenty million steps at most, with a contact of 1e6 N/m where it has one.
     pub fn sine(rig: Rig, force: f64, frequency: f64, until: f64) -> Task {
-        let phase = -std::f64::consts::FRAC_PI_2;
-        let (start, most) = (State::REST, 20_000_000);
-        Task { rig, force, frequency, rate: 0.0, phase, start, stiffness: STIFFNESS, until, most }
+        Task {
+            rig,
+            force,
+            frequency,
+            rate: 0.0,
+            phase: -FRAC_PI_2,
+            start: [0.0; 4],
+            stiffness: 1e6,
+            until,
+            most: 20_000_000,
+            rests: false,
+        }
+    }
+
+    /// The contact of its stiffness that rebounds as the rig does.
+    pub fn spring(&self) -> Spring {
+        Spring::new(&self.rig, self.stiffness)
     }
 
     /// Duration of a cycle at time 0 in s.
@@ -77,51 +110,29 @@ impl Task {
         1.0 / self.frequency
     }
 
-    /// Exciting force in N at `t`.
-    #[inline]
-    pub fn drive(&self, t: f64) -> f64 {
-        self.force * (TAU * t * (self.frequency + self.rate / 2.0 * t) + self.phase).cos()
-    }
-
     /// Rate of the state (x₁, v₁, x₂, v₂) where the masses push each other with `contact` (N).
     #[inline]
     pub fn pushed(&self, t: f64, y: &[f64; 4], contact: f64) -> [f64; 4] {
         let rig = &self.rig;
+        let drive = self.force * (TAU * t * (self.frequency + self.rate / 2.0 * t) + self.phase).cos();
         [
             y[1],
-            (self.drive(t) - rig.c1 * y[1] - rig.k1 * y[0] - contact) / rig.m1,
+            (drive - rig.c1 * y[1] - rig.k1 * y[0] - contact) / rig.m1,
             y[3],
             (contact - rig.c2 * y[3] - rig.k2 * y[2]) / rig.m2,
         ]
     }
 
-    /// The same where they do not touch.
-    #[inline]
-    pub fn apart(&self, t: f64, y: &[f64; 4]) -> [f64; 4] {
-        self.pushed(t, y, 0.0)
-    }
-
     /// Contact force in N that keeps the masses together.
     pub fn hold(&self, t: f64, y: &[f64; 4]) -> f64 {
-        let rig = &self.rig;
-        let [_, first, _, second] = self.apart(t, y);
-        rig.reduced_mass() * (first - second)
-    }
-
-    /// Rate of the state where they move together.
-    pub fn together(&self, t: f64, y: &[f64; 4]) -> [f64; 4] {
-        self.pushed(t, y, self.hold(t, y))
+        let [_, first, _, second] = self.pushed(t, y, 0.0);
+        self.rig.reduced_mass() * (first - second)
     }
 
     /// Gap in m.
     #[inline]
     pub fn gap(&self, y: &[f64; 4]) -> f64 {
         self.rig.gap + y[2] - y[0]
-    }
-
-    /// The start as a list.
-    pub fn first(&self) -> [f64; 4] {
-        [self.start.x1, self.start.v1, self.start.x2, self.start.v2]
     }
 
     /// Exchanges momentum by the impact law: gives the approach speed in m/s.
@@ -135,7 +146,8 @@ impl Task {
     }
 
     /// That the budget is spent at `t`.
-    pub fn stalled(&self, t: f64) -> Fault {
-        Fault::Stalled(format!("{} steps are spent at {t:.6} s of {:.6} s", self.most, self.until))
+    pub fn stalled(&self, t: f64) -> Found {
+        let why = format!("{} steps are spent at {t:.6} s of {:.6} s", self.most, self.until);
+        Found::new(Outcome::Stalled, why)
     }
 }

@@ -1,6 +1,7 @@
 //! Steps of a fixed or a controlled size behind one face.
 
-use super::super::task::{Fault, Task};
+use super::super::task::Task;
+use crate::failure::Found;
 use vibro_math::runge_kutta::{Dop853, DormandPrince, Integrator, Step, Tolerance};
 
 /// Displacements in m and speeds in m/s below which errors are not counted against the state itself.
@@ -26,25 +27,16 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Its setting in words.
-    pub fn setting(self) -> String {
-        match self {
-            Kind::Rk4(n) => format!("{n} steps a cycle"),
-            Kind::Rk45(r) | Kind::Dop853(r) => format!("tolerance {r:.0e}"),
-        }
-    }
-
     /// Its relative tolerance; of fixed steps, what a step of order 4 leaves.
     pub fn relative(self) -> f64 {
         match self {
-            Kind::Rk4(n) => (std::f64::consts::TAU / n).powi(4).max(1e-14),
+            Kind::Rk4(n) => (std::f64::consts::TAU / n).powi(4),
             Kind::Rk45(r) | Kind::Dop853(r) => r,
         }
     }
 }
 
 /// An integration of the rig's motion.
-#[derive(Debug, Clone)]
 pub enum Stepper {
     /// Time, state, size of a step.
     Fixed(f64, [f64; 4], f64),
@@ -55,101 +47,80 @@ pub enum Stepper {
 }
 
 /// One step.
-#[derive(Debug, Clone, Copy)]
-#[allow(clippy::large_enum_variant)]
-pub enum Taken {
-    /// Start, state there, size, state at the end.
-    Fixed(f64, [f64; 4], f64, [f64; 4]),
-    /// With dense output.
-    Dense(Step<4>),
+pub struct Taken {
+    /// Time of its start in s.
+    pub start: f64,
+    /// Its size in s.
+    pub duration: f64,
+    /// State at its end.
+    pub end: [f64; 4],
+    from: [f64; 4],
+    dense: Option<Step<4>>,
 }
 
 impl Stepper {
     /// Starts at `t` with `y`; errors of the state count against [`FLOOR`] where it is smaller than that.
-    pub fn new<F: Fn(f64, &[f64; 4]) -> [f64; 4]>(
+    pub fn new(
         kind: Kind,
         task: &Task,
-        f: F,
+        f: impl Fn(f64, &[f64; 4]) -> [f64; 4],
         t: f64,
         y: [f64; 4],
     ) -> Stepper {
-        let (floor, first) = (FLOOR, first_step(task, t, &y));
+        let (first, tolerance) =
+            (first_step(task, t, &y), Tolerance { relative: kind.relative(), floor: FLOOR });
         match kind {
             Kind::Rk4(n) => Stepper::Fixed(t, y, task.cycle() / n),
-            Kind::Rk45(relative) => {
-                Stepper::Five(Integrator::new(f, t, y, first, Tolerance { relative, floor }))
-            }
-            Kind::Dop853(relative) => {
-                Stepper::Eight(Integrator::new(f, t, y, first, Tolerance { relative, floor }))
-            }
+            Kind::Rk45(_) => Stepper::Five(Integrator::new(f, t, y, first, tolerance)),
+            Kind::Dop853(_) => Stepper::Eight(Integrator::new(f, t, y, first, tolerance)),
         }
     }
 
     /// One step, at most to `until`.
-    pub fn step<F: Fn(f64, &[f64; 4]) -> [f64; 4]>(&mut self, f: F, until: f64) -> Result<Taken, Fault> {
-        Ok(match self {
+    pub fn step(&mut self, f: impl Fn(f64, &[f64; 4]) -> [f64; 4], until: f64) -> Result<Taken, Found> {
+        let step = match self {
             Stepper::Fixed(t, y, h) => {
-                let step = h.min(until - *t);
-                let taken = Taken::Fixed(*t, *y, step, rk4(&f, *t, y, step));
-                (*t, *y) = (if step < *h { until } else { *t + step }, taken.end());
-                taken
+                let (start, from, duration) = (*t, *y, h.min(until - *t));
+                (*t, *y) =
+                    (if duration < *h { until } else { start + duration }, rk4(&f, start, y, duration));
+                return Ok(Taken { start, duration, end: *y, from, dense: None });
             }
-            Stepper::Five(integrator) => Taken::Dense(integrator.step(f, until)?),
-            Stepper::Eight(integrator) => Taken::Dense(integrator.step(f, until)?),
-        })
+            Stepper::Five(integrator) => integrator.step(f, until)?,
+            Stepper::Eight(integrator) => integrator.step(f, until)?,
+        };
+        let Step { start, duration, end, .. } = step;
+        Ok(Taken { start, duration, end, from: end, dense: Some(step) })
     }
 }
 
 impl Taken {
-    /// Time of its start.
-    pub fn start(&self) -> f64 {
-        match self {
-            Taken::Fixed(t, ..) => *t,
-            Taken::Dense(step) => step.start,
-        }
-    }
-
-    /// Its size in s.
-    pub fn duration(&self) -> f64 {
-        match self {
-            Taken::Fixed(_, _, h, _) => *h,
-            Taken::Dense(step) => step.duration,
-        }
-    }
-
-    /// State at its end.
-    pub fn end(&self) -> [f64; 4] {
-        match self {
-            Taken::Fixed(.., end) => *end,
-            Taken::Dense(step) => step.end,
-        }
-    }
-
     /// State at `t` after its start.
-    pub fn at<F: Fn(f64, &[f64; 4]) -> [f64; 4]>(&self, f: F, t: f64) -> [f64; 4] {
-        match self {
-            Taken::Fixed(start, y, ..) => rk4(&f, *start, y, t),
-            Taken::Dense(step) => step.at(t),
-        }
+    pub fn at(&self, f: impl Fn(f64, &[f64; 4]) -> [f64; 4], t: f64) -> [f64; 4] {
+        self.dense.as_ref().map_or_else(|| rk4(&f, self.start, &self.from, t), |step| step.at(t))
+    }
+
+    /// First time after its start at which weights·y + offset, not negative there, falls to zero; none where there is no dense output.
+    pub fn first_fall(&self, weights: &[f64; 4], offset: f64) -> Option<f64> {
+        self.dense.as_ref()?.first_fall(weights, offset)
     }
 
     /// Where `height`, not negative at the start, is zero if it is not positive at the end: a sign test and halving.
-    pub fn crossing<F: Fn(f64, &[f64; 4]) -> [f64; 4]>(
+    pub fn crossing(
         &self,
-        f: F,
+        f: impl Fn(f64, &[f64; 4]) -> [f64; 4],
         start: f64,
         height: impl Fn(f64, &[f64; 4]) -> f64,
     ) -> Option<f64> {
-        if !(start >= 0.0 && height(self.start() + self.duration(), &self.end()) <= 0.0) {
+        if !(start >= 0.0 && height(self.start + self.duration, &self.end) <= 0.0) {
             return None;
         }
-        let (mut low, mut high) = (0.0, self.duration());
+        let (mut low, mut high) = (0.0, self.duration);
         for _ in 0..60 {
             let middle = f64::midpoint(low, high);
             if middle <= low || middle >= high {
                 break;
             }
-            if height(self.start() + middle, &self.at(&f, middle)) > 0.0 {
+            if height(self.start + middle, &self.at(&f, middle)) > 0.0 {
                 low = middle;
             } else {
                 high = middle;
@@ -161,7 +132,7 @@ impl Taken {
 
 /// One step of the classical fourth order.
 #[inline]
-pub(super) fn rk4<F: Fn(f64, &[f64; 4]) -> [f64; 4]>(f: &F, t: f64, y: &[f64; 4], h: f64) -> [f64; 4] {
+pub(super) fn rk4(f: &impl Fn(f64, &[f64; 4]) -> [f64; 4], t: f64, y: &[f64; 4], h: f64) -> [f64; 4] {
     let to = |k: &[f64; 4], h: f64| std::array::from_fn(|i| y[i] + h * k[i]);
     let a = f(t, y);
     let b = f(t + h / 2.0, &to(&a, h / 2.0));

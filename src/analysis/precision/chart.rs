@@ -18,114 +18,112 @@ const MARKERS: [Marker; 6] = [
 /// Crosses of what failed, in turn.
 const CROSSES: [Marker; 3] = [Marker::Cross, Marker::Saltire, Marker::Star];
 
+/// Methods of other kinds that stand in several charts, those last that only some builds have: each has one colour and form in all of them.
+const OFTEN: [&str; 10] = [
+    "Euler loop",
+    "RK4 loop",
+    "Moreau time stepping",
+    "RK4, sign test",
+    "RK45, sign test",
+    "RK45, dense events",
+    "DOP853, dense events",
+    "stiff spring, RK45",
+    "diffsol TSIT45, sign test",
+    "diffsol BDF, sign test",
+];
+
 /// Room of a row of crosses in parts of the decades of the errors.
 const ROW: f64 = 0.05;
 
-/// What of the plane is seen, and the rows of crosses over it.
+/// Distance within which points of a line share their letters, in parts of the width and of the height.
+const SHARED: [f64; 2] = [0.025, 0.03];
+
+/// What of the plane is seen: decades of time in s, and of the error, and over it rows of crosses, one for each method that failed.
 struct View {
     times: [f64; 2],
     floor: f64,
-    /// The decade from which the rows begin.
     top: f64,
-    /// Height of a row in decades.
     row: f64,
     edge: f64,
 }
 
 impl View {
-    fn of(scene: &Scene, lines: &[(&str, Vec<&Measured>)]) -> View {
+    fn of(scene: &Scene, failing: usize) -> View {
         let span = |values: &mut dyn Iterator<Item = f64>, none: [f64; 2]| {
-            let (low, high) =
-                values.fold((f64::INFINITY, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
+            let (low, high) = values
+                .map(f64::log10)
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |s, v| (s.0.min(v), s.1.max(v)));
             if low <= high { [low, high] } else { none }
         };
-        let errors = span(&mut scene.methods.iter().filter_map(error).chain(scene.bound), [1e-3, 1.0]);
-        let [first, last] = span(&mut scene.methods.iter().map(|m| 1e-9 * m.time_ns), [1e-6, 1.0]);
-        let floor = (0.7 * errors[0]).log10().floor();
-        let top = errors[1].log10().ceil();
+        let errors = span(&mut scene.methods.iter().filter_map(error).chain(scene.bound), [-3.0, 0.0]);
+        let [first, last] = span(&mut scene.methods.iter().map(seconds), [-6.0, 0.0]);
+        let (floor, top) = ((errors[0] - 0.15).floor(), errors[1].ceil());
         let row = ROW * (top - floor).max(1.0);
-        let failing = lines.iter().filter(|l| l.1.iter().any(|m| error(m).is_none())).count() as f64;
-        let (floor, edge) = (10f64.powf(floor), 10f64.powf(top + row * failing));
-        View { times: [0.6 * first, 1.7 * last], floor, top, row, edge }
-    }
-
-    /// Place of the crosses of the `nth` method that failed, from below.
-    fn crosses(&self, nth: usize) -> f64 {
-        10f64.powf(self.top + self.row * (nth as f64 + 0.5))
+        View { times: [first - 0.22, last + 0.23], floor, top, row, edge: top + row * failing as f64 }
     }
 
     /// Whether two points are so close that they share their letters.
-    fn shares(&self, (x, y): (f64, f64), other: (f64, f64)) -> bool {
-        let parts = |a: f64, b: f64, [low, high]: [f64; 2]| (a / b).log10().abs() / (high / low).log10();
-        parts(x, other.0, self.times) < SHARED[0] && parts(y, other.1, [self.floor, self.edge]) < SHARED[1]
+    fn shares(&self, a: (f64, f64), b: (f64, f64)) -> bool {
+        let near = |a: f64, b: f64, span: f64, part: f64| (a / b).log10().abs() < part * span;
+        near(a.0, b.0, self.times[1] - self.times[0], SHARED[0])
+            && near(a.1, b.1, self.edge - self.floor, SHARED[1])
     }
 }
 
 /// Error over time of every method of a scene, one line a method; what failed stands as crosses at the upper edge, each method in a
 /// row of its own. Points of models are their settings; those of estimators are kinds of records, which letters name.
-pub fn precision(scene: &Scene) -> Figure {
-    let lines = lines(scene);
-    let view = View::of(scene, &lines);
-    let [first, last] = view.times;
+pub fn chart(scene: &Scene) -> Figure {
+    let lines: Vec<&[Measured]> = scene.methods.chunk_by(|a, b| a.method == b.method).collect();
+    let view = View::of(scene, lines.iter().filter(|l| l.iter().any(|m| error(m).is_none())).count());
+    let power = |decades: f64| 10f64.powf(decades);
+    let [first, last] = view.times.map(power);
     let label = if scene.error_of.is_empty() { "Error" } else { &scene.error_of };
     let mut plot = Plot::new(
         AxisSpec::new("Time of one answer", "s").log().limits(first, last),
-        AxisSpec::new(capital(label), "").log().limits(view.floor, view.edge),
+        AxisSpec::new(capital(label), "").log().limits(power(view.floor), power(view.edge)),
     )
     .legend(Legend::Right);
     if let Some(bound) = scene.bound {
         plot = plot.with(Series::horizontal("Cramér–Rao bound", bound));
     }
-    if scene.family == Family::Models {
-        let front = stairs(scene, view.edge, last);
-        if !front.0.is_empty() {
-            plot = plot
-                .with(Series::line("Pareto front", front.0, front.1).ink(Ink::Grey).stroke(Stroke::Dotted));
-        }
+    if scene.family == Family::Models && scene.methods.iter().any(|m| m.front) {
+        let (x, y) = stairs(scene, power(view.edge), last);
+        plot = plot.with(Series::line("Pareto front", x, y).ink(Ink::Grey).stroke(Stroke::Dotted));
     }
     // This library's methods are black, the others coloured: six colours, and another form when they come round.
-    let (mut own, mut others) = (0, 0);
+    let (mut own, mut others) = (0, OFTEN.len());
     let (mut crosses, mut named) = (Vec::new(), Vec::new());
-    for (name, methods) in lines {
-        let ours = methods.iter().any(|m| m.ours);
-        let (ink, marker, cross, stroke) = if ours {
-            own += 1;
-            let turn = own - 1;
-            (Ink::Black, MARKERS[turn % MARKERS.len()], CROSSES[turn % CROSSES.len()], Stroke::Solid)
+    for line in lines {
+        let name = line[0].method.as_str();
+        let often = OFTEN.iter().position(|known| *known == name);
+        let count = if line[0].ours { &mut own } else { &mut others };
+        let turn = often.unwrap_or(*count);
+        *count += usize::from(often.is_none());
+        let round = turn / 6;
+        let (ink, marker, cross, stroke) = if line[0].ours {
+            (Ink::Black, turn, turn, Stroke::Solid)
         } else {
-            let nth = |list: &[&str]| list.iter().position(|known| *known == name);
-            let turn = nth(&OFTEN).or_else(|| Some(TURNS - 1 - nth(&OPTIONAL)?)).unwrap_or_else(|| {
-                others += 1;
-                OFTEN.len() + others - 1
-            });
-            let round = turn / 6;
-            (
-                Ink::Nth(turn % 6),
-                MARKERS[(turn + 1 + round) % MARKERS.len()],
-                CROSSES[round % CROSSES.len()],
-                Stroke::Thin,
-            )
+            (Ink::Nth(turn % 6), turn + 1 + round, round, Stroke::Thin)
         };
-        let row = view.crosses(crosses.len());
-        let place = |m: &&Measured| (1e-9 * m.time_ns, error(m).unwrap_or(row));
-        let (failed, reached): (Vec<&Measured>, Vec<_>) = methods.iter().partition(|m| error(m).is_none());
-        if !reached.is_empty() {
-            let (x, y): (Vec<f64>, Vec<f64>) = reached.iter().map(place).unzip();
-            plot = plot.with(Series::points(name, x, y).ink(ink).marker(marker).stroke(stroke));
+        let row = power(view.top + view.row * (crosses.len() as f64 + 0.5));
+        let place = |m: &Measured| (seconds(m), error(m).unwrap_or(row));
+        let points = |name: String, failed: bool| {
+            let of = line.iter().filter(|m| error(m).is_none() == failed);
+            let (x, y): (Vec<f64>, Vec<f64>) = of.map(place).unzip();
+            (!x.is_empty()).then(|| Series::points(name, x, y).ink(ink))
+        };
+        if let Some(reached) = points(name.to_owned(), false) {
+            plot = plot.with(reached.marker(MARKERS[marker % MARKERS.len()]).stroke(stroke));
         }
-        if !failed.is_empty() {
-            let (x, y): (Vec<f64>, Vec<f64>) = failed.iter().map(place).unzip();
-            crosses.push(Series::points(format!("{name}: failed"), x, y).ink(ink).marker(cross));
-        }
-        named.push(methods.into_iter().map(|m| (place(&m), m)).collect());
+        let failed = points(format!("{name}: failed"), true);
+        crosses.extend(failed.map(|f| f.marker(CROSSES[cross % CROSSES.len()])));
+        named.push(line.iter().map(|m| (place(m), m)).collect());
     }
     if !crosses.is_empty() {
-        plot = plot.with(Series::horizontal("above: failed", 10f64.powf(view.top)));
+        plot = plot.with(Series::horizontal("above: failed", power(view.top)));
     }
     // The legend names them from above as they stand.
-    for series in crosses.into_iter().rev() {
-        plot = plot.with(series);
-    }
+    plot = crosses.into_iter().rev().fold(plot, Plot::with);
     let (points, front) = match scene.family {
         Family::Models => {
             ("a model, each point one of its settings", "Dotted: nothing lies below and left of it.")
@@ -145,28 +143,6 @@ pub fn precision(scene: &Scene) -> Figure {
         scene.says, scene.truth
     ))
 }
-
-/// Methods of other kinds that stand in several charts: each has one colour and form in all of them.
-const OFTEN: [&str; 8] = [
-    "Euler loop",
-    "RK4 loop",
-    "Moreau time stepping",
-    "RK4, sign test",
-    "RK45, sign test",
-    "RK45, dense events",
-    "DOP853, dense events",
-    "stiff spring, RK45",
-];
-
-/// Methods that only some builds have: their colours and forms are the last ones, so that no other method has different ones without
-/// them.
-const OPTIONAL: [&str; 2] = ["diffsol TSIT45, sign test", "diffsol BDF, sign test"];
-
-/// Pairs of a colour and a form.
-const TURNS: usize = 6 * MARKERS.len();
-
-/// Distance within which points of a line share their letters, in parts of the width and of the height.
-const SHARED: [f64; 2] = [0.025, 0.03];
 
 /// Names the record of each point by a letter, a capital on the front of that record.
 fn lettered(mut plot: Plot, scene: &Scene, view: &View, lines: Vec<Vec<((f64, f64), &Measured)>>) -> Plot {
@@ -191,44 +167,28 @@ fn lettered(mut plot: Plot, scene: &Scene, view: &View, lines: Vec<Vec<((f64, f6
                 None => named.push((at, letter(m).to_string())),
             }
         }
-        for ((time, error), letters) in named {
-            plot = plot.note(letters, time, error);
-        }
+        plot = named.into_iter().fold(plot, |plot, ((x, y), letters)| plot.note(letters, x, y));
     }
-    let entry = |letter: u8, says: &str| {
-        Series::points(typeset(says), [], []).marker(Marker::Letter(letter.into())).ink(Ink::Black)
-    };
-    for (letter, record) in (b'a'..).zip(&records) {
-        plot = plot.with(entry(letter, record));
+    for (letter, says) in ('a'..).zip(records).chain([('A', "capital: Pareto front")]) {
+        plot =
+            plot.with(Series::points(typeset(says), [], []).marker(Marker::Letter(letter)).ink(Ink::Black));
     }
-    plot.with(entry(b'A', "capital: Pareto front"))
+    plot
+}
+
+fn seconds(m: &Measured) -> f64 {
+    1e-9 * m.time_ns
 }
 
 /// Error that can be drawn: an answer without any counts as rounding.
 fn error(m: &Measured) -> Option<f64> {
-    m.error.filter(|e| !m.failed && e.is_finite()).map(|e| e.abs().max(1e-17))
-}
-
-/// The methods with their settings, in their order.
-fn lines(scene: &Scene) -> Vec<(&str, Vec<&Measured>)> {
-    let mut lines: Vec<(&str, Vec<&Measured>)> = Vec::new();
-    for m in &scene.methods {
-        match lines.iter_mut().find(|l| l.0 == m.method) {
-            Some(line) => line.1.push(m),
-            None => lines.push((&m.method, vec![m])),
-        }
-    }
-    lines
+    m.error.filter(|e| e.is_finite()).map(|e| e.abs().max(1e-17))
 }
 
 /// The border of what has been reached: down from the upper edge at the fastest, along to the most accurate, and on.
 fn stairs(scene: &Scene, edge: f64, last: f64) -> (Vec<f64>, Vec<f64>) {
-    let mut front: Vec<(f64, f64)> = scene
-        .methods
-        .iter()
-        .filter(|m| m.front)
-        .filter_map(|m| Some((1e-9 * m.time_ns, error(m)?)))
-        .collect();
+    let on = scene.methods.iter().filter(|m| m.front);
+    let mut front: Vec<(f64, f64)> = on.filter_map(|m| Some((seconds(m), error(m)?))).collect();
     front.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (mut x, mut y, mut above) = (Vec::new(), Vec::new(), edge);
     for (time, error) in front {
@@ -236,10 +196,8 @@ fn stairs(scene: &Scene, edge: f64, last: f64) -> (Vec<f64>, Vec<f64>) {
         y.extend([above, error]);
         above = error;
     }
-    if !x.is_empty() {
-        x.push(last);
-        y.push(above);
-    }
+    x.push(last);
+    y.push(above);
     (x, y)
 }
 
@@ -254,9 +212,7 @@ mod tests {
             setting: setting.into(),
             ours: false,
             error,
-            error_spread: None,
             time_ns: 1e3,
-            time_spread: None,
             failed: error.is_none(),
             why: None,
             front,
@@ -282,7 +238,7 @@ mod tests {
             measured("one", "40 dB", Some(1e-6), true),
             measured("other", "20 dB", None, false),
         ];
-        match precision(&scene(family, methods)).panels.remove(0) {
+        match chart(&scene(family, methods)).panels.remove(0) {
             Panel::Plot(plot) => plot,
             _ => panic!("a plot"),
         }
@@ -310,7 +266,7 @@ mod tests {
     fn crosses(methods: &[(&str, bool)]) -> Vec<(Ink, Marker)> {
         let failing = |&(name, ours): &(&str, bool)| Measured { ours, ..measured(name, "", None, false) };
         let methods = methods.iter().map(failing).collect();
-        let Panel::Plot(plot) = precision(&scene(Family::Models, methods)).panels.remove(0) else {
+        let Panel::Plot(plot) = chart(&scene(Family::Models, methods)).panels.remove(0) else {
             panic!("a plot")
         };
         let form = |s: &Series| match s.shape {

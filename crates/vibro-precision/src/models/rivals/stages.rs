@@ -1,0 +1,245 @@
+//! Integration from event to event: each impact, end of a contact or release is located, and the integration begins anew behind it.
+
+use super::super::task::{Spring, Task, Told};
+use super::stepper::{Kind, Stepper, rk4};
+use crate::failure::Found;
+
+/// Where the masses are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Stage {
+    Apart,
+    /// At rest against each other.
+    Together,
+    /// Pushed apart by spring and damper of the contact.
+    Touching,
+    /// The contact's force is zero, its surfaces are not yet back at their rest.
+    Released,
+}
+
+/// What ends a stage when it falls to zero.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Guard {
+    /// Weights·y + offset.
+    Linear([f64; 4], f64),
+    /// The force that keeps the masses together.
+    Hold,
+}
+
+impl Guard {
+    pub fn value(&self, task: &Task, t: f64, y: &[f64; 4]) -> f64 {
+        match self {
+            Guard::Linear(w, offset) => w.iter().zip(y).map(|(w, y)| w * y).sum::<f64>() + offset,
+            Guard::Hold => task.hold(t, y),
+        }
+    }
+}
+
+/// A task with impacts at once, or with a contact.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct System<'a> {
+    pub task: &'a Task,
+    pub spring: Option<Spring>,
+}
+
+impl System<'_> {
+    /// Rate of the state in a stage.
+    #[inline]
+    pub fn rate(&self, stage: Stage, t: f64, y: &[f64; 4]) -> [f64; 4] {
+        let push = match (stage, &self.spring) {
+            (Stage::Touching, Some(spring)) => spring.bound(self.task, y),
+            (Stage::Together, _) => self.task.hold(t, y),
+            _ => 0.0,
+        };
+        self.task.pushed(t, y, push)
+    }
+
+    /// What ends a stage, whichever falls first.
+    pub fn guards(&self, stage: Stage) -> [Option<Guard>; 2] {
+        let gap = self.task.rig.gap;
+        let (k, c) = self.spring.map_or((0.0, 0.0), |s| (s.stiffness, s.damping));
+        match stage {
+            Stage::Apart => [Some(Guard::Linear([-1.0, 0.0, 1.0, 0.0], gap)), None],
+            Stage::Together => [Some(Guard::Hold), None],
+            Stage::Touching => [Some(Guard::Linear([k, c, -k, -c], -k * gap)), None],
+            Stage::Released => [
+                Some(Guard::Linear([1.0, 0.0, -1.0, 0.0], -gap)),
+                Some(Guard::Linear([-k, -c, k, c], k * gap)),
+            ],
+        }
+    }
+}
+
+/// How an event is looked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Locate {
+    /// Signs at the ends of steps, then halving: the event functions of the usual packages.
+    Ends,
+    /// The first root of the dense output, none missed.
+    Dense,
+    /// The same; and what is left of a chatter that ends in rest is summed up, a geometric series of flights that takes 2w/(a(1 − R)).
+    Summed,
+}
+
+/// How far a motion has been followed.
+pub struct Course<'a> {
+    pub(super) system: System<'a>,
+    kind: Kind,
+    locate: Locate,
+    /// Approach speed in m/s below which masses that press each other stay together.
+    sticks: f64,
+    /// Steps that it may still take.
+    left: u64,
+    pub told: Told,
+    pub t: f64,
+    pub(super) y: [f64; 4],
+    pub(super) stage: Stage,
+}
+
+impl<'a> Course<'a> {
+    /// The start of a task, with impacts at once or with a contact. Its rule for rest is the speed at which a bounce is as high as the
+    /// integrator's error, 1 mm times its relative tolerance.
+    pub fn new(task: &'a Task, spring: Option<Spring>, kind: Kind, locate: Locate) -> Course<'a> {
+        Course {
+            system: System { task, spring },
+            kind,
+            locate,
+            sticks: if task.rests { (0.02 * kind.relative()).sqrt() } else { f64::NEG_INFINITY },
+            left: task.most,
+            told: Told::default(),
+            t: 0.0,
+            y: task.start,
+            stage: Stage::Apart,
+        }
+    }
+
+    /// Follows the motion to what ends its stage: the guard that falls, when, and the state there; none where the task ends before.
+    pub fn next(&mut self) -> Result<Option<(usize, f64, [f64; 4])>, Found> {
+        let (system, stage) = (self.system, self.stage);
+        let (task, guards) = (system.task, system.guards(stage));
+        let f = |t: f64, y: &[f64; 4]| system.rate(stage, t, y);
+        let mut stepper = Stepper::new(self.kind, task, f, self.t, self.y);
+        while self.t < task.until {
+            if self.left == 0 {
+                return Err(task.stalled(self.t));
+            }
+            self.left -= 1;
+            // The holding force bends with the excitation: its sign is tested eight times a cycle at least.
+            let longest = if stage == Stage::Together { task.cycle() / 8.0 } else { f64::INFINITY };
+            let step = stepper.step(f, task.until.min(self.t + longest))?;
+            let fallen = guards.iter().flatten().enumerate().filter_map(|(which, guard)| {
+                let at = match (self.locate, guard) {
+                    (Locate::Dense | Locate::Summed, Guard::Linear(w, offset)) => step.first_fall(w, *offset),
+                    _ => step.crossing(f, guard.value(task, self.t, &self.y), |t, y| guard.value(task, t, y)),
+                };
+                Some((which, at?))
+            });
+            if let Some((which, at)) = fallen.min_by(|a, b| a.1.total_cmp(&b.1)) {
+                return Ok(Some((which, step.start + at, step.at(f, at))));
+            }
+            (self.t, self.y) = (step.start + step.duration, step.end);
+        }
+        Ok(None)
+    }
+
+    /// A contact since the last impact that lasts up to a time (s) is told as rest if it was long enough.
+    fn rested(&mut self, until: f64) {
+        let last = self.told.impacts.last();
+        self.told.sticks.extend(self.system.spring.zip(last).and_then(|(c, from)| c.rest(from.0, until)));
+    }
+
+    /// Whether the masses meet where this stage ends.
+    pub fn apart(&self) -> bool {
+        self.stage == Stage::Apart
+    }
+
+    /// What follows where a guard has fallen at time and state.
+    pub fn meet(&mut self, which: usize, t: f64, mut y: [f64; 4]) {
+        let System { task, spring } = self.system;
+        self.t = t;
+        self.stage = match (self.stage, which) {
+            (Stage::Apart, _) if spring.is_some() => {
+                self.told.impacts.push((t, y[1] - y[3]));
+                Stage::Touching
+            }
+            (Stage::Apart, _) => {
+                let approach = task.collide(&mut y);
+                self.told.impacts.push((t, approach));
+                let (rig, hold) = (&task.rig, task.hold(t, &y));
+                if approach < self.sticks && hold > 0.0 {
+                    let v = (rig.m1 * y[1] + rig.m2 * y[3]) / (rig.m1 + rig.m2);
+                    let apart = y[3] - y[1];
+                    y = [y[0], v, y[0] - rig.gap, v];
+                    if self.locate == Locate::Summed {
+                        let left = 2.0 * apart * rig.reduced_mass() / (hold * (1.0 - rig.restitution));
+                        y = rk4(&|t: f64, y: &[f64; 4]| self.system.rate(Stage::Together, t, y), t, &y, left);
+                        self.t += left;
+                    }
+                    self.told.sticks.push([self.t, f64::INFINITY]);
+                    Stage::Together
+                } else {
+                    Stage::Apart
+                }
+            }
+            (Stage::Together, _) => {
+                self.told.release(t);
+                // The gap opens like the cube of time: a ten-thousandth of a cycle passes unwatched, until it is more than rounding.
+                let short = 1e-4 * task.cycle();
+                y[0] = y[2] + task.rig.gap;
+                y = rk4(&|t: f64, y: &[f64; 4]| task.pushed(t, y, 0.0), t, &y, short);
+                self.t = t + short;
+                Stage::Apart
+            }
+            (Stage::Touching, _) => Stage::Released,
+            (Stage::Released, 0) => {
+                self.rested(t);
+                Stage::Apart
+            }
+            (Stage::Released, _) => Stage::Touching,
+        };
+        self.y = y;
+    }
+}
+
+/// Follows the motion with impacts at once, or with a contact.
+pub fn events(task: &Task, spring: Option<Spring>, kind: Kind, locate: Locate) -> Result<Told, Found> {
+    let mut course = Course::new(task, spring, kind, locate);
+    while let Some((which, t, y)) = course.next()? {
+        course.meet(which, t, y);
+    }
+    if !course.apart() {
+        course.rested(f64::INFINITY);
+    }
+    Ok(course.told)
+}
+
+/// Integrates straight through contacts of a spring that never pulls, step sizes left to the error control; touches are read off
+/// afterwards.
+pub fn through(task: &Task, kind: Kind) -> Result<Told, Found> {
+    let spring = task.spring();
+    let force = |y: &[f64; 4]| if task.gap(y) < 0.0 { spring.bound(task, y).max(0.0) } else { 0.0 };
+    let f = |t: f64, y: &[f64; 4]| task.pushed(t, y, force(y));
+    let (mut told, mut touch, mut left) = (Told::default(), None, task.most);
+    let mut stepper = Stepper::new(kind, task, f, 0.0, task.start);
+    let (mut t, mut gap) = (0.0, task.gap(&task.start));
+    while t < task.until {
+        if left == 0 {
+            return Err(task.stalled(t));
+        }
+        left -= 1;
+        let step = stepper.step(f, task.until)?;
+        if gap > 0.0
+            && let Some(at) = step.crossing(f, gap, |_, y| task.gap(y))
+        {
+            let y = step.at(f, at);
+            told.impacts.push((step.start + at, y[1] - y[3]));
+            touch = Some(step.start + at);
+        }
+        t = step.start + step.duration;
+        gap = task.gap(&step.end);
+        if gap > 0.0 {
+            told.sticks.extend(touch.take().and_then(|from| spring.rest(from, t)));
+        }
+    }
+    told.sticks.extend(touch.and_then(|from| spring.rest(from, f64::INFINITY)));
+    Ok(told)
+}

@@ -1,0 +1,503 @@
+//! Scenes of models: what is asked, of which methods with which settings, and what is true.
+
+use super::rivals::{self as by, Kind, Locate, Method, events};
+use super::task::{Task, Told};
+use super::{ours, truth};
+use crate::failure::Found;
+use crate::scene::timed;
+use crate::{Family, Measured, Scene};
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+use vibro_model::{Compliance, Rig, Sine, Steady};
+use vibro_record::{Error, Result};
+
+/// What a judge says of the motions that are told: their error, or why there is none.
+type Verdict = std::result::Result<f64, String>;
+
+/// A method with its settings.
+type Asked = (Method, &'static [f64]);
+
+/// A scene before it is measured.
+struct Ask {
+    name: String,
+    says: String,
+    error_of: &'static str,
+    truth: String,
+    /// Motions that are followed one after another; the time of one answer is the mean.
+    tasks: Vec<Task>,
+    methods: Vec<Asked>,
+    judge: Box<dyn Fn(&[Told]) -> Verdict>,
+}
+
+/// Every scene of the models, each method measured; `quick` takes fewer settings, repeats and scenes.
+pub fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Vec<Scene>> {
+    let mut found = Vec::new();
+    let mut add = |ask: Ask| {
+        progress(&ask.name);
+        found.push(ask.measured(quick));
+    };
+    add(scene_b(2.0)?);
+    add(scene_b(100.0)?);
+    for depth in if quick { &[1e-6, 1e-12][..] } else { &[1e-3, 1e-6, 1e-9, 1e-12] } {
+        add(grazing(*depth)?);
+    }
+    add(scene_c());
+    for (stiffness, cycles) in SOFT_CONTACTS {
+        add(soft(stiffness, cycles)?);
+    }
+    add(chaos()?);
+    add(slow_sweep()?);
+    Ok(found)
+}
+
+/// Repeats of an answer: in full, and quick.
+const REPEATS: [usize; 2] = [15, 3];
+
+impl Ask {
+    /// Runs, times and judges every method; `quick` with the first half of its settings.
+    fn measured(self, quick: bool) -> Scene {
+        let one = |method: &Method, setting: f64| {
+            let (told, time) = timed(REPEATS[usize::from(quick)], quick, || {
+                self.tasks
+                    .iter()
+                    .map(|task| (method.follow)(task, setting))
+                    .collect::<std::result::Result<Vec<_>, Found>>()
+            });
+            let fault = |f: Found| format!("{}: {}", f.outcome.name(), f.why);
+            let answer = told.map_err(fault).and_then(|told| (self.judge)(&told));
+            let (name, setting) = ((method.name, method.ours), method.words(setting));
+            Measured::new(name, setting, time / self.tasks.len() as f64, answer)
+        };
+        let of = |settings: &'static [f64]| match quick {
+            true => &settings[..settings.len().div_ceil(2)],
+            false => settings,
+        };
+        let methods = self.methods.iter().flat_map(|(m, settings)| of(settings).iter().map(|s| one(m, *s)));
+        Scene {
+            methods: methods.collect(),
+            name: self.name,
+            family: Family::Models,
+            says: self.says,
+            error_of: self.error_of.to_owned(),
+            truth: self.truth,
+            bound: None,
+        }
+    }
+}
+
+/// For a method without a setting.
+const ONE: &[f64] = &[0.0];
+
+/// Fixed steps, as far as they go within a second.
+const LOOPS: [Asked; 3] =
+    [(by::EULER, &[100.0, 1e3, 1e4]), (by::RK4_LOOP, &[100.0, 1e3, 1e4]), (by::MOREAU, &[100.0, 1e3, 1e4])];
+/// Methods that locate impacts.
+const EVENTS: &[Asked] = &[
+    (by::RK45_ENDS, &[1e-3, 1e-6, 1e-9, 1e-12]),
+    (by::RK45_DENSE, &[1e-3, 1e-6, 1e-9, 1e-12]),
+    (by::DOP853_DENSE, &[1e-6, 1e-9, 1e-12, 1e-14]),
+    #[cfg(feature = "diffsol")]
+    (by::TSIT45, &[1e-4, 1e-6, 1e-9, 1e-12]),
+];
+
+/// Frequency in Hz at which ν = ω/Ω₁ is that.
+pub(super) fn at(rig: &Rig, nu: f64) -> f64 {
+    nu * (rig.k1 / rig.m1).sqrt() / TAU
+}
+
+/// Number and time in s of impacts of scene B, by arithmetic with 40 digits (Newton on the equations of motion).
+pub(super) const GOLDEN_B: [(usize, f64); 5] = [
+    (1, 0.030_744_282_246_676_34),
+    (2, 0.144_162_776_471_947_4),
+    (3, 0.237_270_475_783_159_57),
+    (22, 1.970_065_574_977_416),
+    (1098, 99.932_500_537_538_15),
+];
+
+/// How far the truth of all impacts may be off, in s: ten times what its own test finds up to 2 s, behind which errors die away.
+const FOLLOWED: f64 = 1e-11;
+
+/// Impacts from rest that are crossed at speed.
+pub(super) fn task_b(until: f64) -> Task {
+    let rig = Rig::thesis();
+    Task::sine(rig, 0.5, at(&rig, 2.1), until)
+}
+
+fn scene_b(seconds: f64) -> Result<Ask> {
+    let task = task_b(seconds);
+    let golden = GOLDEN_B.iter().filter(|g| g.1 < seconds);
+    let count = golden.clone().last().map_or(0, |g| g.0);
+    // Time of each impact, and how far off it may be.
+    let followed = truth::motion(&task, None)?.impacts;
+    let mut truth: Vec<[f64; 2]> = followed.iter().take(count).map(|i| [i.0, FOLLOWED]).collect();
+    for (number, time) in golden {
+        truth[number - 1] = [*time, 0.0];
+    }
+    // No time is known better than to its rounding.
+    let least = f64::EPSILON * seconds / 2.0;
+    let judge = move |told: &[Told]| -> Verdict {
+        let last = truth[count - 1][0] + 0.5 * task.cycle();
+        let times: Vec<f64> = told[0].impacts.iter().map(|i| i.0).filter(|t| *t < last).collect();
+        if times.len() != count {
+            let n = times.len();
+            return Err(format!("{n} impacts up to {last:.2} s instead of {count}: not the same motion"));
+        }
+        Ok(times.iter().zip(&truth).map(|(t, [time, off])| (t - time).abs() - off).fold(least, f64::max))
+    };
+    Ok(Ask {
+        name: format!("scene B, {seconds} s"),
+        says: format!(
+            "From rest under 0.5 N at ν 2.1, every impact crossed at speed: the times of the impacts up to {seconds} s."
+        ),
+        error_of: "largest error of an impact time (s)",
+        truth: format!(
+            "impacts 1, 2, 3, 22 and 1098: Newton's method on the equations of motion with 40 digits; all others: integration of \
+             order 8 to 1e-13, beyond {FOLLOWED:.0e} s; smaller errors than {least:.0e} s, the rounding of the time, are told as that"
+        ),
+        tasks: vec![task],
+        methods: [
+            &[(by::FLIGHTS, ONE)],
+            &LOOPS[..],
+            &[(by::RK4_ENDS, &[30.0, 100.0, 300.0, 1e3])],
+            EVENTS,
+            &[(by::STIFF_SPRING, &[1e5, 1e6, 1e8])],
+        ]
+        .concat(),
+        judge: Box::new(judge),
+    })
+}
+
+/// Starts in each direction of a grazing motion.
+const STARTS: usize = 8;
+
+/// A motion that reaches `depth` (m) into the other mass, or misses it by −`depth`, and the time of its impact in s.
+///
+/// Mass 1 is on its forced motion `A cos ω(t − t_p)` and mass 2 rests, so with the gap A − d they meet at
+/// `t_p − 2 asin(√(d/2A))/ω`, or never. The difference A − Δ is exact, so the truth knows the d that the rounded gap leaves.
+pub(super) fn grazing_task(depth: f64, start: usize) -> Result<(Task, Option<f64>)> {
+    let rig = Rig::thesis();
+    let frequency = at(&rig, 2.1);
+    let steady = Steady::new(&rig, &Sine { force: 0.5, frequency })?;
+    let (amplitude, omega) = (steady.amplitude(), steady.omega);
+    let gap = amplitude - depth;
+    // Peaks at places of the cycle that no step size favours.
+    let peak = (0.3 + 0.043_217 * start as f64) / frequency;
+    let turn = omega * peak;
+    let task = Task {
+        rig: Rig { gap, ..rig },
+        phase: -turn - steady.response.arg(),
+        start: [amplitude * turn.cos(), amplitude * omega * turn.sin(), 0.0, 0.0],
+        ..Task::sine(rig, 0.5, frequency, peak + 0.25 / frequency)
+    };
+    let reached = amplitude - gap;
+    let time = (reached > 0.0).then(|| peak - 2.0 * (reached / (2.0 * amplitude)).sqrt().asin() / omega);
+    Ok((task, time))
+}
+
+fn grazing(depth: f64) -> Result<Ask> {
+    let starts =
+        [depth, -depth].into_iter().flat_map(|d| (0..STARTS).map(move |start| grazing_task(d, start)));
+    let (tasks, truth): (Vec<Task>, Vec<Option<f64>>) =
+        starts.collect::<Result<Vec<_>>>()?.into_iter().unzip();
+    let judge = move |told: &[Told]| -> Verdict {
+        let (mut missed, mut invented, mut errors) = (0, 0, Vec::new());
+        for (told, truth) in told.iter().zip(&truth) {
+            match (told.impacts.first(), truth) {
+                (Some(found), Some(truth)) => errors.push((found.0 - truth).abs().max(1e-17)),
+                (None, Some(_)) => missed += 1,
+                (Some(_), None) => invented += 1,
+                (None, None) => {}
+            }
+        }
+        if missed + invented > 0 {
+            return Err(format!(
+                "{missed} of {STARTS} impacts are not seen, {invented} of {STARTS} seen that are none"
+            ));
+        }
+        Ok(crate::scene::median(&mut errors))
+    };
+    Ok(Ask {
+        name: format!("grazing {depth:.0e} m"),
+        says: format!(
+            "A motion that reaches {depth:.0e} m into the other mass, and one that misses it by as much, each from {STARTS} starts: is \
+             the impact seen, and when?"
+        ),
+        error_of: "median error of the impact's time (s)",
+        truth: "the forced motion A cos ω(t − tₚ) meets the gap A − d at tₚ − 2 asin(√(d/2A))/ω".to_owned(),
+        tasks,
+        methods: [&[(by::FLIGHTS, ONE)], &LOOPS[..], &[(by::RK4_ENDS, &[100.0, 1e3, 1e4])], EVENTS].concat(),
+        judge: Box::new(judge),
+    })
+}
+
+/// End of the first chatter of scene C, release, and end of the second chatter in s, by arithmetic with 40 digits.
+pub(super) const GOLDEN_C: [f64; 3] =
+    [0.152_721_089_353_360_45, 0.220_247_418_265_660_51, 0.574_521_373_816_090_7];
+
+/// Impacts that accumulate, rest, and release: the pre-loaded rig from x₁ = −2 mm.
+pub(super) fn task_c() -> Task {
+    let rig = Rig { gap: -5e-4, ..Rig::thesis() };
+    Task {
+        start: [-2e-3, 0.0, 0.0, 0.0],
+        most: 500_000,
+        rests: true,
+        ..Task::sine(rig, 0.35, at(&rig, 0.45), 0.6)
+    }
+}
+
+fn scene_c() -> Ask {
+    let judge = |told: &[Told]| -> Verdict {
+        let Told { impacts, sticks } = &told[0];
+        let [first, second, ..] = sticks[..] else {
+            let (n, m) = (impacts.len(), sticks.len());
+            return Err(format!("{n} impacts, and {m} times at rest against each other instead of 2"));
+        };
+        let found = [first[0], first[1], second[0]];
+        Ok(found.iter().zip(&GOLDEN_C).map(|(f, g)| (f - g).abs()).fold(1e-17, f64::max))
+    };
+    Ask {
+        name: "scene C".to_owned(),
+        says: "Pressed together by their springs, the masses chatter to rest, are released and chatter again: the times of both ends \
+               and of the release. Methods with events let the masses rest below the speed that their tolerance resolves."
+            .to_owned(),
+        error_of: "largest error of the three times (s)",
+        truth: "arithmetic with 40 digits".to_owned(),
+        tasks: vec![task_c()],
+        methods: [
+            &[
+                (by::FLIGHTS, ONE),
+                (by::EULER, &[1e3, 1e4, 1e5]),
+                (by::RK4_LOOP, &[1e3, 1e4, 1e5]),
+                (by::MOREAU, &[1e3, 1e4, 1e5]),
+                (by::RK45_RESTLESS, &[1e-6]),
+                (by::RK4_ENDS, &[100.0, 1e3]),
+            ],
+            EVENTS,
+        ]
+        .concat(),
+        judge: Box::new(judge),
+    }
+}
+
+/// Stiffness in N/m of contacts, and cycles until the motion is read: the slowest multiplier of the rigid orbit, 0.970, is then below
+/// 1e-16; with a contact of 7 % of the period it is −0.9945, and what is left turns round from impact to impact: the mean of sixteen
+/// keeps 2.6e-3 of it, 2e-10 of the start.
+const SOFT_CONTACTS: [(f64, f64); 3] = [(1e8, 1250.0), (1e6, 1250.0), (1e4, 3000.0)];
+/// Impacts whose mean speed is read.
+const READ: usize = 16;
+
+fn soft(stiffness: f64, cycles: f64) -> Result<Ask> {
+    let task = task_b(0.0);
+    let task = Task { stiffness, until: cycles * task.cycle(), most: 100_000_000, ..task };
+    let share = Compliance::new(&task.rig, stiffness, None)?.duration * task.frequency;
+    let truth = truth::settled(&task, Some(task.spring()), 2000.0)?
+        .ok_or_else(|| Error::refused("the motion with the soft contact does not settle"))?
+        .speed();
+    let judge = move |told: &[Told]| -> Verdict {
+        let impacts = &told[0].impacts;
+        let last = &impacts[impacts.len().saturating_sub(READ)..];
+        if last.is_empty() {
+            return Err("no impacts".to_owned());
+        }
+        let speed = last.iter().map(|i| i.1).sum::<f64>() / last.len() as f64;
+        let error = (speed / truth - 1.0).abs();
+        let grows = "the steps are too long: it grows beyond all bounds";
+        if error < 100.0 { Ok(error.max(1e-16)) } else { Err(grows.to_owned()) }
+    };
+    Ok(Ask {
+        name: format!("soft contact {stiffness:.0e} N m⁻¹"),
+        says: format!(
+            "Spring and damper in the contact, {:.2} % of the period in contact: the approach speed once the motion has settled \
+             ({cycles} cycles).",
+            100.0 * share
+        ),
+        error_of: "relative error of the settled approach speed",
+        truth: "the motion that repeats, by Newton's method on integration of order 8 to 1e-13".to_owned(),
+        tasks: vec![task],
+        methods: vec![
+            (by::CLOSED, ONE),
+            (by::SOFT, ONE),
+            (by::RIGID, ONE),
+            (by::KELVIN_VOIGT, ONE),
+            (by::RK45_THROUGH, &[1e-3, 1e-6, 1e-9]),
+            (by::RK4_THROUGH, &[1e3, 1e4]),
+            (by::RK45_TOUCH, &[1e-3, 1e-6, 1e-9, 1e-12]),
+            (by::DOP853_TOUCH, &[1e-6, 1e-9, 1e-12]),
+            #[cfg(feature = "diffsol")]
+            (by::TSIT45_TOUCH, &[1e-4, 1e-6, 1e-9, 1e-12]),
+            #[cfg(feature = "diffsol")]
+            (by::BDF_TOUCH, &[1e-4, 1e-6, 1e-9, 1e-12]),
+        ],
+        judge: Box::new(judge),
+    })
+}
+
+/// Restitution, force in N and frequency in Hz of a window that has been irregular for 200 000 cycles: no method can follow the motion,
+/// all can be asked for its statistics.
+const WINDOW: (f64, f64, f64) = (0.97, 0.3, 5.61);
+/// Cycles left out at the beginning, and cycles that every method reads.
+const SETTLE: f64 = 100.0;
+const CYCLES: f64 = 4000.0;
+/// Other starts that the truth is computed from.
+const OTHERS: usize = 10;
+/// Further off than so many standard errors the statistics are those of another motion: of errors told from ten starts one in 300 is.
+const ALLOWED: f64 = 4.0;
+
+/// The motion from x₁ (m) at rest.
+fn irregular(x1: f64, cycles: f64) -> Task {
+    let (restitution, force, frequency) = WINDOW;
+    let rig = Rig { restitution, ..Rig::thesis() };
+    let plain = Task::sine(rig, force, frequency, (SETTLE + cycles) / frequency);
+    Task { start: [x1, 0.0, 0.0, 0.0], ..plain }
+}
+
+/// Mean and standard deviation of the approach speeds.
+fn statistics(told: &Told) -> [f64; 2] {
+    moments(told.impacts.iter().filter(|i| i.0 > SETTLE / WINDOW.2).map(|i| i.1))
+}
+
+fn moments(values: impl Iterator<Item = f64> + Clone) -> [f64; 2] {
+    let n = values.clone().count() as f64;
+    let mean = values.clone().sum::<f64>() / n;
+    [mean, (values.map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt()]
+}
+
+/// The statistics by integration of order 8 with tight tolerance, from starts that no method is given, so that no run of a method is among them.
+fn irregular_truth() -> Result<Vec<[f64; 2]>> {
+    let one = |start: usize| {
+        let task = irregular(-1e-4 * (start + 1) as f64, CYCLES);
+        Ok(statistics(&events(&task, None, Kind::Dop853(1e-12), Locate::Dense)?))
+    };
+    (0..OTHERS).into_par_iter().map(one).collect()
+}
+
+fn chaos() -> Result<Ask> {
+    let runs = irregular_truth()?;
+    let truth = [0, 1].map(|i| moments(runs.iter().map(|run| run[i])));
+    // Standard error of what a method reads, relative, that of the truth included.
+    let scatter = truth.map(|[mean, std]| std / mean * (1.0 + 1.0 / OTHERS as f64).sqrt());
+    let judge = move |told: &[Told]| -> Verdict {
+        let found = statistics(&told[0]);
+        let off = [0, 1].map(|i| (found[i] / truth[i][0] - 1.0).abs());
+        // Written so that not a number is no statistics either.
+        if let Some(i) = (0..2).find(|i| !(off[*i] <= ALLOWED * scatter[*i])) {
+            let (name, part) = (["mean", "standard deviation"][i], 100.0 * off[i]);
+            return Err(format!(
+                "the {name} of the approach speeds is {part:.1} % off: those of another motion"
+            ));
+        }
+        // Below a standard error both are chance, and all methods alike.
+        Ok((0..2).map(|i| off[i].max(scatter[i])).fold(0.0, f64::max))
+    };
+    let (restitution, force, frequency) = WINDOW;
+    let [mean, std] = scatter.map(|s| 100.0 * s);
+    Ok(Ask {
+        name: "chaotic window".to_owned(),
+        says: format!(
+            "At R {restitution}, {force} N and {frequency} Hz no two computations agree for long: mean and standard deviation of the \
+             approach speeds over {CYCLES} cycles, whose standard errors are {mean:.1} and {std:.1} %. Below them errors are chance, and told as \
+             them; beyond {ALLOWED} of them it is another motion."
+        ),
+        error_of: "larger relative error of mean and deviation",
+        truth: format!(
+            "order 8, tolerance 1e-12, from {OTHERS} other starts; standard errors from their scatter"
+        ),
+        tasks: vec![irregular(0.0, CYCLES)],
+        methods: vec![
+            (by::FLIGHTS, ONE),
+            (by::EULER, &[100.0, 1e3]),
+            (by::RK4_LOOP, &[100.0, 1e3]),
+            (by::MOREAU, &[100.0, 1e3]),
+            (by::RK45_ENDS, &[1e-3, 1e-6, 1e-9]),
+            (by::DOP853_DENSE, &[1e-6, 1e-9]),
+            (by::ROUGH_SPRING, &[1e6]),
+        ],
+        judge: Box::new(judge),
+    })
+}
+
+/// Ends in Hz and rate in Hz/s of a slow sweep over a vibro-impact resonance, and the time in s before which its start is still felt.
+const FROM: f64 = 10.2;
+const TO: f64 = 10.8;
+const RATE: f64 = 0.02;
+const BEGUN: f64 = 5.0;
+
+fn slow_sweep() -> Result<Ask> {
+    let task = Task { rate: RATE, ..Task::sine(Rig::thesis(), 0.5, FROM, (TO - FROM) / RATE) };
+    let largest = |told: &Told| told.impacts.iter().filter(|i| i.0 > BEGUN).map(|i| i.1).fold(0.0, f64::max);
+    let truth = largest(&events(&task, None, Kind::Dop853(1e-13), Locate::Dense)?);
+    let apart = (largest(&ours::swept(&task, 1e-7)?) / truth - 1.0).abs();
+    let judge = move |told: &[Told]| -> Verdict {
+        let speed = largest(&told[0]);
+        if speed > 0.0 { Ok((speed / truth - 1.0).abs().max(apart)) } else { Err("no impacts".to_owned()) }
+    };
+    Ok(Ask {
+        name: "slow sweep".to_owned(),
+        says: format!(
+            "Up from {FROM} to {TO} Hz at {RATE} Hz/s, over the peak of the motion with one impact a cycle: the largest approach speed."
+        ),
+        error_of: "relative error of the largest approach speed",
+        truth: format!(
+            "order 8 with located events, tolerance 1e-13; exact flights in fine steps differ from it by {apart:.0e}, so smaller errors are told as \
+             that"
+        ),
+        tasks: vec![task],
+        methods: [
+            &[(by::STANDING, &[11.0, 61.0][..]), (by::SWEPT, &[0.1, 1e-2, 1e-3, 1e-4, 1e-5])],
+            &LOOPS[..],
+            &[(by::RK45_ENDS, &[1e-3, 1e-6, 1e-9, 1e-12]), (by::DOP853_DENSE, &[1e-6, 1e-9, 1e-12])],
+        ]
+        .concat(),
+        judge: Box::new(judge),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_impact_counts_and_the_truth_is_that_of_40_digits() {
+        for until in [2.0, 100.0] {
+            let task = task_b(until);
+            let truth = truth::motion(&task, None).unwrap();
+            for (number, time) in GOLDEN_B.into_iter().filter(|g| g.1 < until) {
+                assert!((truth.impacts[number - 1].0 - time).abs() < FOLLOWED, "{number}");
+            }
+            let ask = scene_b(until).unwrap();
+            let told = ours::flights(&task).unwrap();
+            assert!((ask.judge)(std::slice::from_ref(&told)).unwrap() < 1e-13);
+            // One that no golden number tells.
+            let mut late = told;
+            late.impacts[10].0 += 1e-6;
+            assert!(((ask.judge)(&[late]).unwrap() - 1e-6).abs() < 2.0 * FOLLOWED);
+        }
+    }
+
+    #[test]
+    fn the_window_stays_irregular() {
+        let told = ours::flights(&irregular(0.0, 20_000.0)).unwrap();
+        let mut last: Vec<f64> = told.impacts.iter().rev().take(1000).map(|i| i.1).collect();
+        last.sort_by(f64::total_cmp);
+        // What repeats after fewer than 500 impacts has every speed at least twice.
+        last.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
+        assert!(last.len() > 990, "{}", last.len());
+    }
+
+    /// Where one start led to another motion than the others, its statistics would be others.
+    #[test]
+    fn other_starts_scatter_alike() {
+        let all = irregular_truth().unwrap();
+        for i in 0..2 {
+            let [mean, std] = moments(all.iter().map(|run| run[i]));
+            // Of ten normal numbers none is 9/√10 of their own standard deviations off; three are rare.
+            assert!(all.iter().all(|run| (run[i] - mean).abs() < 2.6 * std), "{all:?}");
+        }
+    }
+
+    #[test]
+    fn moments_of_four_numbers() {
+        let [mean, std] = moments([1.0, 2.0, 3.0, 6.0].into_iter());
+        assert!((mean - 3.0).abs() < 1e-15 && (std - (14.0_f64 / 3.0).sqrt()).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,158 @@
+//! All that one run of the bench has measured, and what other programs have.
+
+use super::{Cell, FailureMap, Family, Measured, Scene};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use vibro_record::{Error, Result};
+
+/// What `vibro precision --json` prints and reads again.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Results {
+    /// The scenes.
+    pub scenes: Vec<Scene>,
+    /// What came at the borders; empty where they were not asked for.
+    #[serde(default, skip_serializing_if = "FailureMap::is_empty")]
+    pub failures: FailureMap,
+}
+
+/// What another program has measured: one method with one setting on one scene.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Added {
+    scene: String,
+    /// Program, version and method.
+    method: String,
+    #[serde(default)]
+    setting: String,
+    error: Option<f64>,
+    time_ns: f64,
+    why: Option<String>,
+}
+
+impl Results {
+    /// Measures the scenes of a family, and its borders where `failures`; `quick` takes fewer settings, repeats, records and cycles.
+    ///
+    /// # Errors
+    /// If a scene cannot be built.
+    pub fn measure(
+        &mut self,
+        family: Family,
+        quick: bool,
+        failures: bool,
+        progress: &mut dyn FnMut(&str),
+    ) -> Result<()> {
+        let mut scenes = match family {
+            Family::Models => crate::models::scenes(quick, progress)?,
+            Family::Estimators => crate::estimators::scenes(quick, progress),
+        };
+        scenes.iter_mut().for_each(Scene::mark_front);
+        self.scenes.append(&mut scenes);
+        if failures {
+            progress("borders");
+            let map = match family {
+                Family::Models => crate::models::failures(quick)?,
+                Family::Estimators => crate::estimators::failures(quick),
+            };
+            self.failures.cells.extend(map.cells);
+        }
+        Ok(())
+    }
+
+    /// Reads what an earlier run has printed, on another machine perhaps; fronts are marked anew.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is something else, or has a time or an error that is none.
+    pub fn from_path(path: &Path) -> Result<Results> {
+        let mut results: Results = read(path, "what `vibro precision --json` printed")?;
+        for scene in &mut results.scenes {
+            for method in &scene.methods {
+                check(path, &scene.name, method)?;
+            }
+            scene.mark_front();
+        }
+        Ok(results)
+    }
+
+    /// Adds the lines of a JSON file, a list of objects with `scene`, `method`, `setting`, `error`, `time_ns` and `why`, to the
+    /// scenes that they name, and marks the fronts anew. Gives the scenes of lines that were not measured: those are left out.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is not such a list, has a time or an error that is none, or gives a method the name of one of
+    /// this library's, whose line it would become.
+    pub fn add(&mut self, path: &Path) -> Result<Vec<String>> {
+        let lines: Vec<Added> = read(path, "a list of lines, each with scene, method, error and time_ns")?;
+        let ours = |m: &Measured| m.ours.then(|| m.method.clone());
+        let own: Vec<String> = self.scenes.iter().flat_map(|s| s.methods.iter().filter_map(ours)).collect();
+        let mut left = Vec::new();
+        for Added { scene, method, setting, error, time_ns, why } in lines {
+            let answer = error.ok_or_else(|| why.unwrap_or_else(|| "no answer".to_owned()));
+            let line = Measured::new((&method, false), setting, time_ns, answer);
+            check(path, &scene, &line)?;
+            if own.contains(&method) {
+                let found = format!("{}: {scene}, {method}: a method of this library", path.display());
+                return Err(Error::usage(found, "the name of the other program"));
+            }
+            match self.scenes.iter_mut().find(|s| s.name == scene) {
+                Some(scene) => scene.methods.push(line),
+                None => left.push(scene),
+            }
+        }
+        self.scenes.iter_mut().for_each(Scene::mark_front);
+        Ok(left)
+    }
+
+    /// Leaves out what belongs to another family.
+    pub fn retain(&mut self, wanted: impl Fn(Family) -> bool) {
+        self.scenes.retain(|scene| wanted(scene.family));
+        self.failures.cells.retain(|cell: &Cell| wanted(cell.family));
+    }
+}
+
+fn read<T: DeserializeOwned>(path: &Path, expected: &str) -> Result<T> {
+    let text = std::fs::read_to_string(path).map_err(|e| Error::io("read", path, e))?;
+    serde_json::from_str(&text).map_err(|e| Error::usage(format!("{}: {e}", path.display()), expected))
+}
+
+/// Refuses what cannot have been measured.
+fn check(path: &Path, scene: &str, m: &Measured) -> Result<()> {
+    // An error of 0 is one below what the truth resolves.
+    let numbers = [("time_ns", Some(m.time_ns)), ("error", m.error.filter(|e| *e != 0.0))];
+    for (key, value) in numbers {
+        if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
+            let found = format!("{}: {scene}, {} {}: {key} is {value}", path.display(), m.method, m.setting);
+            return Err(Error::usage(found, "a number above 0"));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_peer_does_not_take_the_name_of_one_of_our_methods() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("peer.json");
+        let method = |name: &str, ours| Measured::new((name, ours), String::new(), 1e3, Ok(1e-9));
+        let scene = Scene {
+            name: "one".into(),
+            family: Family::Models,
+            says: String::new(),
+            error_of: String::new(),
+            truth: String::new(),
+            bound: None,
+            methods: vec![method("exact flights", true), method("Euler loop", false)],
+        };
+        let mut results = Results { scenes: vec![scene], ..Results::default() };
+        let mut added = |name: &str| {
+            let line = format!(r#"[{{"scene": "one", "method": "{name}", "error": 1e-12, "time_ns": 1.0}}]"#);
+            std::fs::write(&path, line).unwrap();
+            results.add(&path)
+        };
+        assert!(added("a peer").unwrap().is_empty());
+        assert!(added("Euler loop").unwrap().is_empty());
+        assert!(added("exact flights").unwrap_err().to_string().contains("of this library"));
+    }
+}
