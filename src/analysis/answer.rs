@@ -96,9 +96,9 @@ impl Tells for Vec<String> {
 /// # Errors
 /// If the error is no refusal of a record.
 pub fn left_out(error: Error) -> Result<Finding> {
-    let ErrorKind::Refused { why, hint, .. } = error.kind() else { return Err(error) };
+    let ErrorKind::Refused(why) = error.kind() else { return Err(error) };
     let found = Finding::caution("left-out").name("why", why.trim_end_matches('.'));
-    Ok(if hint.is_empty() { found } else { found.name("hint", hint.as_str()) })
+    Ok(if error.advice().is_empty() { found } else { found.name("hint", error.advice()) })
 }
 
 #[cfg(test)]

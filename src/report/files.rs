@@ -80,7 +80,7 @@ pub fn records(name: &str, records: &[Record]) -> Result<(Files, Option<Finding>
     match text(Target::Uff, Storage::default()).or_else(|_| text(Target::Uff, binary)) {
         Ok(bytes) => files.push((format!("{name}.uff"), bytes)),
         Err(error) => match error.kind() {
-            ErrorKind::Refused { why, .. } => {
+            ErrorKind::Refused(why) => {
                 let finding =
                     Finding::caution("uff-not-written").name("file", name).name("why", why.as_str());
                 return Ok((files, Some(finding)));

@@ -5,8 +5,8 @@ use ndarray::Array2;
 use proptest::prelude::*;
 use resvg::usvg::{self, roxmltree};
 use vibroimpact::report::{
-    AxisSpec, Drawing, Figure, Heatmap, Ink, Legend, Marker, Output, Page, Panel, Peak, Plot, Series, Shape,
-    Stroke, Table, Waterfall,
+    AxisSpec, Drawing, Figure, Heatmap, Legend, Output, Page, Panel, Peak, Plot, Series, Shape, Stroke,
+    Table, Waterfall,
 };
 
 /// Parses a drawing as XML and as a picture, and returns the texts it shows.
@@ -48,15 +48,9 @@ fn everything() -> Figure {
     let plot = Plot::new(x, y)
         .title("(a) All series")
         .with(Series::band("band", at, [0.001; 4], [0.002; 4]))
-        .with(Series::bars("bars", [3.0, 4.0, 5.0], [0.001, 0.002]))
-        .with(Series::bars("outline", [3.0, 4.0, 5.0], [0.0015, 0.001]).outlined())
+        .with(Series::new("bars", Shape::Bars, [3.0, 4.0, 5.0], [0.001, 0.002]))
         .with(Series::line("line", at, [0.001, 0.003, f64::NAN, 0.002]).stroke(Stroke::DashDot))
-        .with(
-            Series::points("points", at, [0.002; 4])
-                .x_error([0.1; 4])
-                .y_error([3e-4; 4])
-                .stroke(Stroke::Thin),
-        )
+        .with(Series::points("points", at, [0.002; 4]).y_error([3e-4; 4]).stroke(Stroke::Thin))
         .with(Series::vertical("vertical", 4.5))
         .with(Series::horizontal("horizontal", 0.0025))
         .note("a note", 4.0, 0.003);
@@ -81,7 +75,6 @@ fn a_figure_says_all_its_names_as_text() {
         "Displacement (mm)",
         "band",
         "bars",
-        "outline",
         "line",
         "points",
         "vertical",
@@ -255,37 +248,30 @@ fn spec() -> impl Strategy<Value = AxisSpec> {
     )
 }
 
-fn shape() -> impl Strategy<Value = Shape> {
+fn series() -> impl Strategy<Value = Series> {
     let list = || prop::collection::vec(number(), 0..12);
-    prop_oneof![
-        (list(), list()).prop_map(|(x, y)| Shape::Line { x, y, stroke: Stroke::Auto }),
-        (list(), list(), list(), list()).prop_map(|(x, y, x_error, y_error)| Shape::Points {
-            x,
-            y,
-            x_error,
-            y_error,
-            marker: Marker::Auto,
-            joined: Some(Stroke::Auto)
-        }),
-        (list(), list(), list()).prop_map(|(x, lower, upper)| Shape::Band { x, lower, upper }),
-        (list(), list(), any::<bool>()).prop_map(|(edges, heights, filled)| Shape::Bars {
-            edges,
-            heights,
-            filled
-        }),
-        number().prop_map(|at| Shape::Vertical { at }),
-        number().prop_map(|at| Shape::Horizontal { at }),
-    ]
+    let shape = prop_oneof![
+        Just(Shape::Line),
+        Just(Shape::Points),
+        Just(Shape::Band),
+        Just(Shape::Bars),
+        Just(Shape::Vertical),
+        Just(Shape::Horizontal),
+    ];
+    ("\\PC{0,12}", shape, list(), list(), list(), list(), any::<bool>()).prop_map(
+        |(name, shape, x, y, low, high, joined)| {
+            let stroke = joined.then_some(Stroke::Thin);
+            Series { low, high, stroke, ..Series::new(name, shape, x, y) }
+        },
+    )
 }
 
 fn panel() -> impl Strategy<Value = Panel> {
-    let series = prop::collection::vec((shape(), "\\PC{0,12}"), 0..5);
+    let series = prop::collection::vec(series(), 0..5);
     let notes = prop::collection::vec((number(), number(), "\\PC{0,30}"), 0..4);
     (spec(), spec(), series, notes).prop_map(|(x, y, series, notes)| {
         let mut plot = Plot::new(x, y);
-        for (shape, name) in series {
-            plot = plot.with(Series::new(name, shape).ink(Ink::Auto));
-        }
+        plot.series = series;
         for (x, y, text) in notes {
             plot = plot.note(text, x, y);
         }

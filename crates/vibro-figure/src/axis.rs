@@ -27,6 +27,11 @@ impl Scale {
             Scale::Db { reference } => vibro_record::units::decibel(value, reference),
         }
     }
+
+    /// The same of a lower end, which zero bounds where amplitudes have levels or logarithms.
+    pub(super) fn of_low(self, value: f64) -> f64 {
+        self.of(if value < 0.0 && self != Scale::Linear { 0.0 } else { value })
+    }
 }
 
 /// What an axis shows: label, unit, scale and, where wanted, limits.
@@ -140,30 +145,21 @@ impl Axis {
     /// Settles the limits; `None` where neither data nor limits say anything.
     pub(super) fn new(spec: &AxisSpec, data: Extent, room: Room) -> Option<Axis> {
         let given = |end: f64| {
-            let u = if matches!(spec.scale, Scale::Log) { end.log10() } else { end };
+            let u = if spec.scale == Scale::Log { end.log10() } else { end };
             (u.abs() <= 1e300).then_some(u)
         };
         let (low, high) = spec.limits.map_or((None, None), |(a, b)| (given(a), given(b)));
-        let (lo, hi) = match (low, high) {
-            (Some(a), Some(b)) => (a.min(b), a.max(b)),
-            _ if data.is_empty() => return None,
-            (a, b) => {
-                let found = roomy(spec.scale, data, room);
-                (
-                    a.unwrap_or(found.0.min(b.unwrap_or(f64::INFINITY))),
-                    b.unwrap_or(found.1.max(a.unwrap_or(f64::NEG_INFINITY))),
-                )
-            }
-        };
-        let (lo, hi) = widened(spec.scale, lo, hi);
+        let found = (!data.is_empty()).then(|| roomy(spec.scale, data, room));
+        let (a, b) = (low.or(found.map(|f| f.0))?, high.or(found.map(|f| f.1))?);
+        let (lo, hi) = widened(spec.scale, a.min(b), a.max(b));
         let degrees = spec.unit == "°";
-        let power = match spec.scale {
-            Scale::Linear if !degrees => engineering(lo.abs().max(hi.abs())),
-            _ => 0,
-        };
-        let unit = match spec.scale {
-            Scale::Db { reference } => level_unit(&spec.unit, reference),
-            _ => scaled_unit(&spec.unit, power),
+        let (power, unit) = match spec.scale {
+            Scale::Db { reference } => (0, level_unit(&spec.unit, reference)),
+            Scale::Linear if !degrees => {
+                let power = engineering(lo.abs().max(hi.abs()));
+                (power, scaled_unit(&spec.unit, power))
+            }
+            _ => (0, spec.unit.clone()),
         };
         Some(Axis { lo, hi, title: labelled(&spec.label, &unit), scale: spec.scale, power, degrees })
     }
@@ -180,33 +176,9 @@ impl Axis {
         ((u / 2.0 - self.lo / 2.0) / (self.hi / 2.0 - self.lo / 2.0)).clamp(-1e4, 1e4)
     }
 
-    /// Whether values are laid out in proportion.
-    pub(super) fn is_linear(&self) -> bool {
-        matches!(self.scale, Scale::Linear)
-    }
-
-    /// The axis with its lower end (where `lower`) and its upper one moved out to the next tick: to a named one where that
-    /// costs little room.
-    pub(super) fn rounded_out(mut self, lower: bool) -> Axis {
-        // As many ticks as an axis of a waterfall has room for.
-        let ticks = self.ticks(7);
-        let named: Vec<f64> = ticks.major.iter().map(|t| t.at).collect();
-        let [a, b, ..] = named[..] else { return self };
-        if matches!(self.scale, Scale::Log) {
-            return self;
-        }
-        let inner = ticks.minor.iter().filter(|u| (a..b).contains(*u)).count();
-        let (step, span) = (b - a, self.hi - self.lo);
-        let out = |end: f64, way: f64| {
-            // Never inwards, not even by rounding: the outermost data would be lost.
-            let next = |step: f64| way * (step * (way * end / step - 1e-9).ceil()).max(way * end);
-            if (next(step) - end).abs() <= 0.1 * span { next(step) } else { next(step / (inner + 1) as f64) }
-        };
-        self.hi = out(self.hi, 1.0);
-        if lower {
-            self.lo = out(self.lo, -1.0);
-        }
-        self
+    /// As [`Axis::at`], for a lower end: one below zero lies below every limit of a logarithmic axis.
+    pub(super) fn at_low(&self, value: f64) -> f64 {
+        self.at_scaled(self.scale.of_low(value))
     }
 
     /// Ticks, at most so many.
@@ -222,19 +194,14 @@ impl Axis {
 fn roomy(scale: Scale, data: Extent, room: Room) -> (f64, f64) {
     let Extent { mut lo, hi } = data;
     if matches!(scale, Scale::Db { .. }) {
-        lo = lo.max(hi - LEVELS);
+        lo = lo.max(hi - if room == Room::Floor { 60.0 } else { LEVELS });
     }
-    let span = hi - lo;
+    let (zero, span) = (scale == Scale::Linear, hi - lo);
     match room {
-        Room::Tight => (lo, hi),
-        Room::Floor => match scale {
-            Scale::Linear => (lo.min(0.0), hi),
-            Scale::Log => (lo, hi),
-            Scale::Db { .. } => (lo.max(hi - 60.0), hi),
-        },
+        Room::Floor if zero => (lo.min(0.0), hi),
+        Room::Tight | Room::Floor => (lo, hi),
         Room::Margin => (lo - 0.03 * span, hi + 0.03 * span),
         Room::Above(part) => {
-            let zero = matches!(scale, Scale::Linear);
             let low = if zero && lo >= 0.0 && lo <= 0.4 * hi { 0.0 } else { lo - 0.06 * span };
             let high = if zero && hi <= 0.0 && hi >= 0.4 * lo { 0.0 } else { hi + part * span };
             (low, high)
@@ -245,7 +212,7 @@ fn roomy(scale: Scale, data: Extent, room: Room) -> (f64, f64) {
 /// Limits with a distance that can be drawn, also where all data are equal.
 fn widened(scale: Scale, lo: f64, hi: f64) -> (f64, f64) {
     // Powers of ten beyond these would round to zero or to infinity in between.
-    let furthest = if matches!(scale, Scale::Log) { 290.0 } else { 1e300 };
+    let furthest = if scale == Scale::Log { 290.0 } else { 1e300 };
     let (lo, hi) = (lo.clamp(-furthest, furthest), hi.clamp(-furthest, furthest));
     let size = lo.abs().max(hi.abs());
     if hi - lo > 1e-11 * size && hi - lo > 1e-280 {
@@ -320,17 +287,6 @@ mod tests {
         assert_eq!(Axis::new(&spec, extent(&[1.0, 9.0]), Room::Above(0.06)).unwrap().lo, 0.0);
         assert!(Axis::new(&spec, extent(&[8.0, 9.0]), Room::Above(0.06)).unwrap().lo > 7.9);
         assert_eq!(Axis::new(&spec, extent(&[-9.0, -1.0]), Room::Above(0.06)).unwrap().hi, 0.0);
-    }
-
-    #[test]
-    fn an_axis_ends_with_a_tick() {
-        let axis =
-            |lo, hi| Axis::new(&AxisSpec::new("x", "Hz").limits(lo, hi), Extent::NONE, Room::Tight).unwrap();
-        let ends = |a: Axis| (a.lo, a.hi);
-        // Steps of 2, each in four.
-        assert_eq!(ends(axis(0.0, 13.9).rounded_out(false)), (0.0, 14.0));
-        assert_eq!(ends(axis(3.99, 12.84).rounded_out(true)), (3.5, 13.0));
-        assert_eq!(ends(axis(4.0, 12.0).rounded_out(true)), (4.0, 12.0));
     }
 
     proptest! {

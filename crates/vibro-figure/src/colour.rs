@@ -25,45 +25,29 @@ pub(crate) const PALE: Rgb = Rgb(205, 205, 205);
 /// Paper.
 pub const WHITE: Rgb = Rgb(255, 255, 255);
 
-/// Every eighth colour of the map *viridis* (Smith, van der Walt and Firing 2015, released under CC0).
-const VIRIDIS: [[u8; 3]; 33] = [
+/// Every sixteenth colour of the map *viridis* (Smith, van der Walt and Firing 2015, released under CC0).
+const VIRIDIS: [[u8; 3]; 17] = [
     [68, 1, 84],
-    [71, 13, 96],
     [72, 24, 106],
-    [72, 35, 116],
     [71, 45, 123],
-    [69, 54, 129],
     [66, 64, 134],
-    [63, 73, 137],
     [59, 82, 139],
-    [55, 90, 141],
     [51, 99, 141],
-    [47, 106, 142],
     [44, 114, 142],
-    [41, 122, 142],
     [38, 129, 142],
-    [35, 137, 142],
     [33, 144, 140],
-    [31, 152, 139],
     [31, 159, 136],
-    [33, 166, 133],
     [40, 174, 128],
-    [49, 181, 123],
     [62, 188, 116],
-    [76, 194, 108],
     [93, 201, 99],
-    [110, 206, 88],
     [130, 211, 76],
-    [150, 216, 63],
     [171, 220, 50],
-    [192, 223, 36],
     [213, 226, 26],
-    [234, 229, 26],
     [253, 231, 37],
 ];
 
 /// Perceptually uniform map from 0 (dark violet) to 1 (yellow); linear between the tabulated colours, within
-/// 2/255 of the original 256. Values outside are clamped, NaN counts as 0.
+/// 8/255 of the original 256. Values outside are clamped, NaN counts as 0.
 pub(crate) fn viridis(fraction: f64) -> Rgb {
     let fraction = if fraction.is_nan() { 0.0 } else { fraction.clamp(0.0, 1.0) };
     let at = fraction * (VIRIDIS.len() - 1) as f64;

@@ -1,7 +1,6 @@
 //! From figures to pictures: layout, and the one writer of SVG.
 
 mod canvas;
-mod clutter;
 mod forms;
 mod frame;
 mod grid;
@@ -29,8 +28,7 @@ use vibro_record::Result;
 pub struct Drawing {
     name: String,
     size: (f64, f64),
-    images: Vec<Image>,
-    body: String,
+    canvas: Canvas,
 }
 
 impl Drawing {
@@ -47,7 +45,7 @@ impl Drawing {
     /// The picture as an SVG document with real text; it refers to nothing outside and has no ids, so that
     /// several can stand in one page.
     pub fn svg(&self) -> String {
-        canvas::document(self.size, &self.name, &self.images, &self.body)
+        canvas::document(self.size, &self.name, &self.canvas.images, &self.canvas.body)
     }
 
     /// The picture as PNG of `dpi` dots per inch (30 to 1200; 300 is usual in print), on white, in the
@@ -61,12 +59,12 @@ impl Drawing {
 
     /// Cell images, which lie under everything else.
     pub(super) fn images(&self) -> &[Image] {
-        &self.images
+        &self.canvas.images
     }
 
     /// The picture without its cell images.
     pub(super) fn lines_and_texts(&self) -> String {
-        canvas::document(self.size, &self.name, &[], &self.body)
+        canvas::document(self.size, &self.name, &[], &self.canvas.body)
     }
 }
 
@@ -82,145 +80,109 @@ pub(super) fn draw(figure: &Figure) -> Drawing {
     let page = Rect { x: 0.0, y: 0.0, w: size.0 * points, h: size.1 * points }.grown(-EDGE);
     let mut canvas = Canvas::default();
     let columns = figure.columns.clamp(1, figure.panels.len().max(1));
-    let mut sheets = settled(figure, columns);
-    let mut grid = Grid::new(&sheets, columns, page, figure.square);
+    let mut sheets = sheets(figure, columns);
+    let mut layout = Layout::new(&sheets, columns, page, figure.square);
     // A legend that finds no place inside makes its frame smaller, which can cost another its place.
-    loop {
-        let mut moved = false;
+    let mut moved = true;
+    while moved {
+        moved = false;
         for (i, sheet) in sheets.iter_mut().enumerate() {
-            moved |= sheet.make_room(grid.frame(i));
+            moved |= sheet.as_mut().is_some_and(|sheet| sheet.make_room(layout.frame(i)));
         }
-        if !moved {
-            break;
-        }
-        grid = Grid::new(&sheets, columns, page, figure.square);
+        layout = Layout::new(&sheets, columns, page, figure.square);
     }
-    for (i, sheet) in sheets.iter().enumerate() {
-        match sheet {
-            Settled::Plot(sheet) => sheet.draw(&mut canvas, grid.frame(i)),
-            Settled::Waterfall(waterfall) => waterfall::draw(&mut canvas, waterfall, grid.cell(i)),
-            Settled::Grid(classes) => grid::draw(&mut canvas, classes, grid.cell(i)),
+    for (i, (panel, sheet)) in figure.panels.iter().zip(&sheets).enumerate() {
+        match (panel, sheet) {
+            (Panel::Plot(_), Some(sheet)) => sheet.draw(&mut canvas, layout.frame(i)),
+            (Panel::Waterfall(waterfall), _) => waterfall::draw(&mut canvas, waterfall, layout.cell(i)),
+            (Panel::Grid(classes), _) => grid::draw(&mut canvas, classes, layout.cell(i)),
+            (Panel::Plot(_), None) => {}
         }
     }
-    Drawing { name: figure.title.clone(), size, images: canvas.images, body: canvas.body }
+    Drawing { name: figure.title.clone(), size, canvas }
 }
 
-enum Settled<'a> {
-    Plot(Sheet<'a>),
-    Waterfall(&'a super::waterfall::Waterfall),
-    Grid(&'a super::grid::Grid),
-}
-
-impl Settled<'_> {
-    fn make_room(&mut self, frame: Rect) -> bool {
-        match self {
-            Settled::Plot(sheet) => sheet.make_room(frame),
-            Settled::Waterfall(_) | Settled::Grid(_) => false,
-        }
-    }
-
-    fn insets(&self, size: (f64, f64)) -> Insets {
-        match self {
-            Settled::Plot(sheet) => sheet.insets(size),
-            Settled::Waterfall(_) | Settled::Grid(_) => Insets::default(),
-        }
-    }
-}
-
-/// All panels with their axes; panels over one another have one abscissa where the figure says so.
-fn settled(figure: &Figure, columns: usize) -> Vec<Settled<'_>> {
-    let extent = |panel: &Panel| match panel {
-        Panel::Plot(plot) => plot::x_extent(plot),
+/// All plots with their axes; those over one another have one abscissa where the figure says so.
+fn sheets<'a>(figure: &'a Figure, columns: usize) -> Vec<Option<Sheet<'a>>> {
+    let across = |panel: &Panel| match panel {
+        Panel::Plot(plot) => plot::extents(plot).0,
         Panel::Waterfall(_) | Panel::Grid(_) => Extent::NONE,
     };
-    let extents: Vec<Extent> = figure.panels.iter().map(extent).collect();
     let last_row = figure.panels.len().saturating_sub(columns);
-    let mut settled = Vec::new();
-    for (i, panel) in figure.panels.iter().enumerate() {
-        settled.push(match panel {
-            Panel::Plot(plot) if figure.shared_x => {
-                let column = extents.iter().skip(i % columns).step_by(columns);
-                let shared = column.fold(Extent::NONE, |a, b| a.joined(*b));
-                Settled::Plot(Sheet::new(plot, shared, i >= last_row))
-            }
-            Panel::Plot(plot) => Settled::Plot(Sheet::new(plot, plot::x_extent(plot), true)),
-            Panel::Waterfall(waterfall) => Settled::Waterfall(waterfall),
-            Panel::Grid(grid) => Settled::Grid(grid),
-        });
-    }
-    settled
+    let sheet = |(i, panel): (usize, &'a Panel)| {
+        let Panel::Plot(plot) = panel else { return None };
+        let column = figure.panels.iter().skip(i % columns).step_by(columns);
+        let shared = column.map(across).fold(Extent::NONE, Extent::joined);
+        let (x, named) = if figure.shared_x { (shared, i >= last_row) } else { (across(panel), true) };
+        Some(Sheet::new(plot, x, named))
+    };
+    figure.panels.iter().enumerate().map(sheet).collect()
 }
 
 /// Frames in rows and columns, all of one size, with the room that the neediest panel of a row or column
 /// takes. Where they are to be square, what is left of the page lies around them.
-struct Grid {
+struct Layout {
     page: Rect,
-    square: bool,
     columns: Vec<Insets>,
     rows: Vec<Insets>,
+    /// Size of a frame.
+    size: (f64, f64),
 }
 
-impl Grid {
-    fn new(sheets: &[Settled<'_>], columns: usize, page: Rect, square: bool) -> Grid {
-        let rows = sheets.len().div_ceil(columns).max(1);
-        let empty = || Grid {
-            page,
-            square,
-            columns: vec![Insets::default(); columns],
-            rows: vec![Insets::default(); rows],
-        };
-        let mut grid = empty();
-        // Ticks, hence the room for their numbers, and that of a legend depend on the size of the frame: thrice is enough.
-        for _ in 0..3 {
-            let size = grid.frame_size();
-            let mut next = empty();
-            for (i, sheet) in sheets.iter().enumerate() {
-                let insets = sheet.insets(size);
-                next.columns[i % columns] = next.columns[i % columns].wider(insets);
-                next.rows[i / columns] = next.rows[i / columns].wider(insets);
-            }
-            grid = next;
-        }
-        grid
-    }
-
+impl Layout {
     /// Distance between neighbouring panels.
     const BETWEEN: f64 = 9.0;
 
-    /// Size of a frame that fills the page.
-    fn filling(&self) -> (f64, f64) {
-        let share = |whole: f64, taken: f64, n: usize| {
-            ((whole - taken - Grid::BETWEEN * (n - 1) as f64) / n as f64).max(10.0)
+    fn new(sheets: &[Option<Sheet<'_>>], columns: usize, page: Rect, square: bool) -> Layout {
+        let rows = sheets.len().div_ceil(columns).max(1);
+        let empty = || Layout {
+            page,
+            columns: vec![Insets::default(); columns],
+            rows: vec![Insets::default(); rows],
+            size: (0.0, 0.0),
         };
-        let (columns, rows) = (self.columns.len(), self.rows.len());
-        (
-            share(self.page.w, self.columns.iter().map(|c| c.left + c.right).sum(), columns),
-            share(self.page.h, self.rows.iter().map(|r| r.top + r.bottom).sum(), rows),
-        )
+        let mut layout = empty();
+        layout.fill(square);
+        // Ticks, hence the room for their numbers, and that of a legend depend on the size of the frame: thrice is enough.
+        for _ in 0..3 {
+            let mut next = empty();
+            for (i, sheet) in sheets.iter().enumerate() {
+                let insets = sheet.as_ref().map_or_else(Insets::default, |sheet| sheet.insets(layout.size));
+                let (column, row) = (&mut next.columns[i % columns], &mut next.rows[i / columns]);
+                *column = column.wider(insets);
+                *row = row.wider(insets);
+            }
+            next.fill(square);
+            layout = next;
+        }
+        layout
     }
 
-    fn frame_size(&self) -> (f64, f64) {
-        let (w, h) = self.filling();
-        if self.square { (w.min(h), w.min(h)) } else { (w, h) }
+    /// Makes the frames fill the page, or as large as squares can be in its middle.
+    fn fill(&mut self, square: bool) {
+        let share = |whole: f64, taken: f64, n: usize| {
+            ((whole - taken - Layout::BETWEEN * (n - 1) as f64) / n as f64).max(10.0)
+        };
+        let (columns, rows) = (self.columns.len(), self.rows.len());
+        let w = share(self.page.w, self.columns.iter().map(|c| c.left + c.right).sum(), columns);
+        let h = share(self.page.h, self.rows.iter().map(|r| r.top + r.bottom).sum(), rows);
+        self.size = (w, h);
+        if square {
+            let side = w.min(h);
+            self.size = (side, side);
+            self.page.x += 0.5 * (w - side) * columns as f64;
+            self.page.y += 0.5 * (h - side) * rows as f64;
+        }
     }
 
     fn frame(&self, index: usize) -> Rect {
-        let ((w, h), filling) = (self.frame_size(), self.filling());
-        let around = |filling: f64, size: f64, n: usize| 0.5 * (filling - size) * n as f64;
         let (column, row) = (index % self.columns.len(), index / self.columns.len());
-        let before = |insets: &[Insets], n: usize, sides: fn(&Insets) -> f64, size: f64| {
-            insets.iter().take(n).map(|i| sides(i) + size + Grid::BETWEEN).sum::<f64>()
-        };
-        let own = (self.columns[column], self.rows[row]);
+        let ((w, h), between) = (self.size, Layout::BETWEEN);
+        let left: f64 = self.columns[..column].iter().map(|c| c.left + c.right + w + between).sum();
+        let above: f64 = self.rows[..row].iter().map(|r| r.top + r.bottom + h + between).sum();
         Rect {
-            x: self.page.x
-                + around(filling.0, w, self.columns.len())
-                + before(&self.columns, column, |i| i.left + i.right, w)
-                + own.0.left,
-            y: self.page.y
-                + around(filling.1, h, self.rows.len())
-                + before(&self.rows, row, |i| i.top + i.bottom, h)
-                + own.1.top,
+            x: self.page.x + left + self.columns[column].left,
+            y: self.page.y + above + self.rows[row].top,
             w,
             h,
         }

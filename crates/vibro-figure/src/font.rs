@@ -1,7 +1,7 @@
 //! The bundled font: its bytes, and how wide a text is in it.
 
-use std::collections::HashMap;
-use std::sync::OnceLock;
+use skrifa::instance::{LocationRef, Size};
+use skrifa::{FontRef, MetadataProvider};
 
 /// The font, `DejaVu Sans` reduced to the glyphs a figure needs; licence in `assets/LICENSE-DejaVu.txt`.
 pub(super) const BYTES: &[u8] = include_bytes!("assets/DejaVuSans.ttf");
@@ -20,8 +20,7 @@ pub(super) const DIGIT_HEIGHT: f64 = 0.73;
 /// The bundled font has no kerning, so this is the sum of the advances. A character that it lacks counts one
 /// em.
 pub(super) fn width(text: &str, size: f64) -> f64 {
-    let advances = advances();
-    size * text.chars().map(|c| advances.get(&c).copied().unwrap_or(1.0)).sum::<f64>()
+    size * advances(text).map(|(_, advance)| advance).sum::<f64>()
 }
 
 /// The text, cut with an ellipsis where it is wider than `room`.
@@ -29,74 +28,24 @@ pub(super) fn fit(text: &str, size: f64, room: f64) -> String {
     if width(text, size) <= room {
         return text.to_owned();
     }
-    let mut kept = String::new();
     let mut used = width("…", size);
-    for c in text.chars() {
-        used += width(c.encode_utf8(&mut [0; 4]), size);
-        if used > room {
-            break;
-        }
-        kept.push(c);
-    }
-    kept.truncate(kept.trim_end().len());
-    kept.push('…');
-    kept
+    let kept = advances(text).take_while(|(_, advance)| {
+        used += size * advance;
+        used <= room
+    });
+    let kept: String = kept.map(|(c, _)| c).collect();
+    format!("{}…", kept.trim_end())
 }
 
-/// Advance in em of every character of the font.
-fn advances() -> &'static HashMap<char, f64> {
-    static TABLE: OnceLock<HashMap<char, f64>> = OnceLock::new();
-    TABLE.get_or_init(|| read_advances(BYTES).unwrap_or_default())
-}
-
-/// Reads the tables `head`, `hhea`, `hmtx` and a `cmap` of format 4 (OpenType 1.9, chapters of the same
-/// names).
-fn read_advances(font: &[u8]) -> Option<HashMap<char, f64>> {
-    let units = f64::from(u16_at(table(font, *b"head")?, 18)?);
-    let metrics = u16_at(table(font, *b"hhea")?, 34)?;
-    let hmtx = table(font, *b"hmtx")?;
-    let cmap = table(font, *b"cmap")?;
-    let count = usize::from(u16_at(cmap, 2)?);
-    let map = (0..count).find_map(|i| {
-        let offset = u32::from(u16_at(cmap, 8 + 8 * i)?) << 16 | u32::from(u16_at(cmap, 10 + 8 * i)?);
-        cmap.get(offset as usize..).filter(|t| u16_at(t, 0) == Some(4))
-    })?;
-    let double = usize::from(u16_at(map, 6)?);
-    let mut table = HashMap::new();
-    for segment in (0..double).step_by(2) {
-        let end = u16_at(map, 14 + segment)?;
-        let start = u16_at(map, 16 + double + segment)?;
-        let delta = u16_at(map, 16 + 2 * double + segment)?;
-        let at = 16 + 3 * double + segment;
-        let range = usize::from(u16_at(map, at)?);
-        for code in start..=end.min(0xFFFE) {
-            let glyph = if range == 0 {
-                code.wrapping_add(delta)
-            } else {
-                match u16_at(map, at + range + 2 * usize::from(code - start))? {
-                    0 => 0,
-                    glyph => glyph.wrapping_add(delta),
-                }
-            };
-            let advance = u16_at(hmtx, 4 * usize::from(glyph.min(metrics.saturating_sub(1))))?;
-            if let (Some(c), true) = (char::from_u32(u32::from(code)), glyph != 0) {
-                table.insert(c, f64::from(advance) / units);
-            }
-        }
-    }
-    Some(table)
-}
-
-fn table(font: &[u8], tag: [u8; 4]) -> Option<&[u8]> {
-    let count = usize::from(u16_at(font, 4)?);
-    let entry = (0..count).map(|i| 12 + 16 * i).find(|&at| font.get(at..at + 4) == Some(&tag[..]))?;
-    let word = |at| Some(usize::from(u16_at(font, at)?) << 16 | usize::from(u16_at(font, at + 2)?));
-    let start = word(entry + 8)?;
-    font.get(start..start + word(entry + 12)?)
-}
-
-fn u16_at(bytes: &[u8], at: usize) -> Option<u16> {
-    Some(u16::from_be_bytes(bytes.get(at..at + 2)?.try_into().ok()?))
+/// Every character with its advance in em.
+fn advances(text: &str) -> impl Iterator<Item = (char, f64)> {
+    let font = FontRef::new(BYTES).ok();
+    let tables =
+        font.map(|font| (font.charmap(), font.glyph_metrics(Size::new(1.0), LocationRef::default())));
+    text.chars().map(move |c| {
+        let advance = tables.as_ref().and_then(|(glyphs, metrics)| metrics.advance_width(glyphs.map(c)?));
+        (c, advance.map_or(1.0, f64::from))
+    })
 }
 
 #[cfg(test)]
@@ -131,9 +80,10 @@ mod tests {
 
     #[test]
     fn every_glyph_a_figure_writes_is_there() {
+        let font = FontRef::new(BYTES).unwrap();
         for c in "0123456789−+×±·°≤≥√⁰¹²³⁴⁵⁶⁷⁸⁹⁻₀₁₂₃₄₅₆₇₈₉Ωωφζνµ→…".chars()
         {
-            assert!(advances().contains_key(&c), "{c}");
+            assert!(font.charmap().map(c).is_some(), "{c}");
         }
     }
 

@@ -3,6 +3,7 @@
 use super::axis::{Axis, AxisSpec, Extent, Scale};
 use super::colour::{self, Rgb};
 use ndarray::{Array2, ArrayRef2};
+use std::ops::Range;
 use vibro_record::{Error, Result};
 
 /// Values over a grid, row by row, such as magnitudes over excitation (rows) and frequency (columns).
@@ -53,16 +54,8 @@ impl Heatmap {
                 format!("{} × {}, one for each row and column position", y.len(), x.len()),
             ));
         }
-        for (positions, what) in [(x, "column"), (y, "row")] {
-            if let Some(i) = positions.windows(2).position(|w| w[0] >= w[1] || w[0].is_nan() || w[1].is_nan())
-            {
-                let (a, b) = (positions[i], positions[i + 1]);
-                return Err(Error::usage(
-                    format!("{what} positions {a} and {b} of a map"),
-                    "positions in ascending order",
-                ));
-            }
-        }
+        ascending(x, "column positions of a map")?;
+        ascending(y, "row positions of a map")?;
         Ok(Heatmap { x: x.to_vec(), y: y.to_vec(), values: values.to_owned(), key })
     }
 
@@ -71,14 +64,13 @@ impl Heatmap {
         &self.key
     }
 
-    /// Borders of all columns, to find the limits of the abscissa.
-    pub(super) fn x_borders(&self, scale: Scale) -> Vec<f64> {
-        borders(&self.x, scale)
-    }
-
-    /// Borders of all rows, to find the limits of the ordinate.
-    pub(super) fn y_borders(&self, scale: Scale) -> Vec<f64> {
-        borders(&self.y, scale)
+    /// Borders of all columns and of all rows, to find the limits of the axes.
+    pub(super) fn borders(&self, x: Scale, y: Scale) -> (Vec<f64>, Vec<f64>) {
+        let borders = |positions: &[f64], scale: Scale| {
+            let spans = spans(&positions.iter().map(|v| scale.of(*v)).collect::<Vec<_>>());
+            spans.into_iter().flat_map(|(from, to)| [from, to]).collect()
+        };
+        (borders(&self.x, x), borders(&self.y, y))
     }
 
     /// Axis of the colour bar; `None` for classes, and where no value is finite.
@@ -94,52 +86,38 @@ impl Heatmap {
         colour::SERIES[index % colour::SERIES.len()].tint(0.25)
     }
 
-    /// Cells as seen through the limits of two axes: palette indices row by row from the top, their count
-    /// across, and the palette, whose index 0 means missing. At most `most` cells across and down; where
-    /// several values fall in a cell it has the largest, so that no narrow line is lost, or for classes the
-    /// one in its middle.
-    pub(super) fn cells(&self, x: &Axis, y: &Axis, most: (usize, usize)) -> (Vec<u8>, usize, Vec<Rgb>) {
-        let columns = cover(&self.x, x, most.0);
-        let rows = cover(&self.y, y, most.1);
+    /// Colours of so many cells across and down between the limits of two axes, from the top; none where
+    /// nothing was measured. Where several values fall in a cell it has the largest, so that no narrow line is
+    /// lost, or for classes the one in its middle.
+    pub(super) fn cells(&self, x: &Axis, y: &Axis, across: usize, down: usize) -> Array2<Option<Rgb>> {
+        let (columns, rows) = (cover(&self.x, x, across), cover(&self.y, y, down));
         let bar = self.colour_axis();
-        let shade = |value: f64| match (&self.key, &bar) {
-            (Key::Quantity(_), Some(bar)) => {
-                let at = bar.at(value);
-                if at.is_nan() { 0 } else { (1.0 + at.clamp(0.0, 1.0) * 254.0).round() as u8 }
+        Array2::from_shape_fn((down, across), |(row, column)| {
+            let (rows, columns) = (&rows[down - 1 - row], &columns[column]);
+            match (&self.key, &bar) {
+                (Key::Quantity(_), Some(bar)) => {
+                    let block = rows.clone().flat_map(|r| columns.clone().map(move |c| (r, c)));
+                    let shade = block.map(|at| bar.at(self.values[at])).fold(f64::NAN, f64::max);
+                    (!shade.is_nan()).then(|| colour::viridis(shade))
+                }
+                (Key::Classes(names), _) => {
+                    let middle = |range: &Range<usize>| range.clone().nth(range.len() / 2);
+                    let class = self.values.get((middle(rows)?, middle(columns)?))?;
+                    (0.0..names.len() as f64).contains(class).then(|| Heatmap::class_colour(*class as usize))
+                }
+                _ => None,
             }
-            (Key::Classes(names), _) if value >= 0.0 && value < names.len().min(255) as f64 => {
-                value as u8 + 1
-            }
-            _ => 0,
-        };
-        let palette = match &self.key {
-            Key::Quantity(_) => bar_palette(),
-            Key::Classes(names) => std::iter::once(colour::WHITE)
-                .chain((0..names.len().min(255)).map(Heatmap::class_colour))
-                .collect(),
-        };
-        let classes = matches!(self.key, Key::Classes(_));
-        let mut cells = Vec::with_capacity(rows.len() * columns.len());
-        for row in rows.iter().rev() {
-            for column in &columns {
-                let block = row.clone().flat_map(|r| column.clone().map(move |c| (r, c)));
-                let mut shades = block.map(|at| self.values.get(at).map_or(0, |v| shade(*v)));
-                let middle = row.len() / 2 * column.len() + column.len() / 2;
-                cells.push(if classes { shades.nth(middle) } else { shades.max() }.unwrap_or(0));
-            }
-        }
-        (cells, columns.len(), palette)
+        })
     }
 }
 
-/// Palette of a quantity: missing, then 255 steps.
-pub(super) fn bar_palette() -> Vec<Rgb> {
-    std::iter::once(colour::WHITE).chain((0..255).map(|i| colour::viridis(f64::from(i) / 254.0))).collect()
-}
-
-fn borders(positions: &[f64], scale: Scale) -> Vec<f64> {
-    let spans = spans(&positions.iter().map(|v| scale.of(*v)).collect::<Vec<_>>());
-    spans.into_iter().flat_map(|(from, to)| [from, to]).collect()
+/// # Errors
+/// If positions do not ascend.
+pub(super) fn ascending(positions: &[f64], of: &str) -> Result<()> {
+    match positions.windows(2).find(|w| w[0] >= w[1] || w[0].is_nan() || w[1].is_nan()) {
+        Some(w) => Err(Error::usage(format!("{of}: {} and {}", w[0], w[1]), "an ascending order")),
+        None => Ok(()),
+    }
 }
 
 /// From where to where each position has its cell: half way to its neighbours and as far beyond the outer ones, but half the
@@ -150,13 +128,10 @@ fn spans(positions: &[f64]) -> Vec<(f64, f64)> {
     let steps: Vec<f64> = positions.windows(2).map(|w| w[1] - w[0]).collect();
     let mut sorted = steps.clone();
     sorted.sort_by(f64::total_cmp);
-    let (Some(low), Some(high)) =
-        (sorted.get(steps.len().div_ceil(2).max(1) - 1), sorted.get(steps.len() / 2))
-    else {
+    let Some(median) = sorted.get(steps.len() / 2) else {
         let half = |at: f64| if at == 0.0 { 0.5 } else { at.abs() * 0.05 };
         return positions.iter().map(|at| (at - half(*at), at + half(*at))).collect();
     };
-    let median = low / 2.0 + high / 2.0;
     let reach = |step: f64| if step > WIDER * median { median / 2.0 } else { step / 2.0 };
     let below = steps.first().into_iter().chain(&steps);
     let above = steps.iter().chain(steps.last());
@@ -164,31 +139,22 @@ fn spans(positions: &[f64]) -> Vec<(f64, f64)> {
     positions.iter().zip(around).map(|(at, (below, above))| (at - below, at + above)).collect()
 }
 
-/// For each of the cells along an axis, the positions it shows: one cell a position where these are even and
-/// fill the axis, else as many cells as are allowed.
-fn cover(positions: &[f64], axis: &Axis, most: usize) -> Vec<std::ops::Range<usize>> {
+/// For each of `count` cells along an axis, the positions it shows.
+fn cover(positions: &[f64], axis: &Axis, count: usize) -> Vec<Range<usize>> {
     let places: Vec<f64> = positions.iter().map(|p| axis.at(*p)).collect();
     let spans = spans(&places);
-    let n = places.len();
-    let close = |at: f64, i: usize| (at - i as f64 / n as f64).abs() < 0.02 / n as f64;
-    let even = n <= most && spans.iter().enumerate().all(|(i, s)| close(s.0, i) && close(s.1, i + 1));
-    if even {
-        return (0..n).map(|i| i..i + 1).collect();
-    }
-    let count = most.max(1);
-    (0..count)
-        .map(|i| {
-            let [from, to] = [i as f64 / count as f64, (i + 1) as f64 / count as f64];
-            let inside = places.partition_point(|p| *p < from)..places.partition_point(|p| *p < to);
-            if !inside.is_empty() {
-                return inside;
-            }
-            // Between two positions: the one whose cell has the middle.
-            let middle = f64::midpoint(from, to);
-            let at = spans.partition_point(|s| s.1 <= middle);
-            if spans.get(at).is_some_and(|s| s.0 <= middle) { at..at + 1 } else { 0..0 }
-        })
-        .collect()
+    let shown = |i: usize| {
+        let [from, to] = [i as f64 / count as f64, (i + 1) as f64 / count as f64];
+        let inside = places.partition_point(|p| *p < from)..places.partition_point(|p| *p < to);
+        if !inside.is_empty() {
+            return inside;
+        }
+        // Between two positions: the one whose cell has the middle.
+        let middle = f64::midpoint(from, to);
+        let at = spans.partition_point(|s| s.1 <= middle);
+        if spans.get(at).is_some_and(|s| s.0 <= middle) { at..at + 1 } else { 0..0 }
+    };
+    (0..count).map(shown).collect()
 }
 
 #[cfg(test)]
@@ -199,12 +165,6 @@ mod tests {
 
     fn axis(lo: f64, hi: f64) -> Axis {
         Axis::new(&AxisSpec::new("x", "1").limits(lo, hi), Extent::NONE, Room::Tight).unwrap()
-    }
-
-    #[test]
-    fn even_positions_that_fill_the_axis_have_a_cell_each() {
-        let cells = cover(&[1.0, 2.0, 3.0], &axis(0.5, 3.5), 100);
-        assert_eq!(cells, [0..1, 1..2, 2..3]);
     }
 
     #[test]
@@ -222,9 +182,13 @@ mod tests {
         let x: Vec<f64> = (0..1000).map(f64::from).collect();
         let values = Array2::from_shape_fn((1, 1000), |(_, c)| if c == 617 { 1.0 } else { 0.0 });
         let map = Heatmap::new(&x, &[1.0], &values, AxisSpec::new("a", "m")).unwrap();
-        let (cells, across, _) = map.cells(&axis(0.0, 999.0), &axis(0.9, 1.1), (50, 1));
-        assert_eq!(across, 50);
-        let marked: Vec<usize> = (0..cells.len()).filter(|i| cells[*i] == 255).collect();
+        let cells = map.cells(&axis(0.0, 999.0), &axis(0.9, 1.1), 50, 1);
+        let marked: Vec<usize> = cells
+            .iter()
+            .enumerate()
+            .filter(|(_, c)| **c == Some(colour::viridis(1.0)))
+            .map(|(i, _)| i)
+            .collect();
         // 617 of 0 to 999 lies in the 31st of 50 cells.
         assert_eq!(marked, [30]);
     }
@@ -237,8 +201,9 @@ mod tests {
             &array![[0.0, 1.0], [f64::NAN, 7.0]].view(),
             &["a", "b"],
         );
-        let (cells, across, palette) = map.unwrap().cells(&axis(-0.5, 1.5), &axis(-0.5, 1.5), (9, 9));
-        assert_eq!((cells, across, palette.len()), (vec![0, 0, 1, 2], 2, 3));
+        let cells = map.unwrap().cells(&axis(-0.5, 1.5), &axis(-0.5, 1.5), 2, 2);
+        let class = |i| Some(Heatmap::class_colour(i));
+        assert_eq!(cells, array![[None, None], [class(0), class(1)]]);
     }
 
     #[test]

@@ -1,74 +1,48 @@
 //! What a plot can show over its axes.
 
-/// One entry of a plot: its data, its name in the legend and its ink.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Series {
-    /// Name in the legend, or beside a reference line; empty for none.
-    pub name: String,
-    /// Data and form.
-    pub shape: Shape,
-    /// Colour.
-    pub ink: Ink,
-}
-
-/// Data in the unit of the axes, with the form in which they are drawn.
+/// One entry of a plot: its data in the unit of the axes, the form in which they are drawn, its name in the
+/// legend and its look.
 ///
 /// Lists of different lengths are drawn as far as the shortest reaches. A value that is missing (NaN), or has
 /// no place on its axis, breaks a line and leaves out a point.
 #[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Name in the legend, or beside a reference line; empty for none.
+    pub name: String,
+    /// Form.
+    pub shape: Shape,
+    /// Abscissae; the borders of bars, one more than there are bars; the place of an upright reference line.
+    pub x: Vec<f64>,
+    /// Ordinates; the heights of bars; the place of a level reference line; none for a band.
+    pub y: Vec<f64>,
+    /// Lower ends of error bars, or lower curve of a band.
+    pub low: Vec<f64>,
+    /// Upper ends of error bars, or upper curve of a band.
+    pub high: Vec<f64>,
+    /// Colour.
+    pub ink: Ink,
+    /// Dashes and width of a line: those that belong to the colour where there are none here. Points are joined
+    /// by a line where there are.
+    pub stroke: Option<Stroke>,
+    /// Form of markers: that which belongs to the colour where there is none here.
+    pub marker: Option<Marker>,
+}
+
+/// Form of a series.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
     /// Line through points, in their order.
-    Line {
-        /// Abscissae.
-        x: Vec<f64>,
-        /// Ordinates.
-        y: Vec<f64>,
-        /// Dashes and width.
-        stroke: Stroke,
-    },
+    Line,
     /// Markers with standard uncertainties as bars.
-    Points {
-        /// Abscissae.
-        x: Vec<f64>,
-        /// Ordinates.
-        y: Vec<f64>,
-        /// Half lengths of the horizontal bars; empty or NaN for none.
-        x_error: Vec<f64>,
-        /// Half lengths of the vertical bars; empty or NaN for none.
-        y_error: Vec<f64>,
-        /// Form of the marker.
-        marker: Marker,
-        /// Line from point to point, where wanted.
-        joined: Option<Stroke>,
-    },
+    Points,
     /// Area between two curves.
-    Band {
-        /// Abscissae.
-        x: Vec<f64>,
-        /// Lower ordinates.
-        lower: Vec<f64>,
-        /// Upper ordinates.
-        upper: Vec<f64>,
-    },
+    Band,
     /// Histogram.
-    Bars {
-        /// Borders of the bars, one more than there are bars.
-        edges: Vec<f64>,
-        /// Heights.
-        heights: Vec<f64>,
-        /// Whether the bars are filled; else only their outline is drawn.
-        filled: bool,
-    },
+    Bars,
     /// Vertical reference line, named along itself.
-    Vertical {
-        /// Abscissa.
-        at: f64,
-    },
+    Vertical,
     /// Horizontal reference line, named along itself.
-    Horizontal {
-        /// Ordinate.
-        at: f64,
-    },
+    Horizontal,
 }
 
 /// Colour of a series.
@@ -89,11 +63,8 @@ pub enum Ink {
 }
 
 /// Dashes and width of a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stroke {
-    /// The next kind of dashes, together with the colour.
-    #[default]
-    Auto,
     /// Unbroken.
     Solid,
     /// `– –`
@@ -107,11 +78,8 @@ pub enum Stroke {
 }
 
 /// Form of a marker.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Marker {
-    /// The next form, together with the colour.
-    #[default]
-    Auto,
     /// Filled circle.
     Circle,
     /// Open square.
@@ -138,13 +106,28 @@ pub enum Marker {
 
 impl Series {
     /// A series of any shape, in the next colour.
-    pub fn new(name: impl Into<String>, shape: Shape) -> Series {
-        Series { name: name.into(), shape, ink: Ink::Auto }
+    pub fn new(
+        name: impl Into<String>,
+        shape: Shape,
+        x: impl Into<Vec<f64>>,
+        y: impl Into<Vec<f64>>,
+    ) -> Series {
+        Series {
+            name: name.into(),
+            shape,
+            x: x.into(),
+            y: y.into(),
+            low: Vec::new(),
+            high: Vec::new(),
+            ink: Ink::Auto,
+            stroke: None,
+            marker: None,
+        }
     }
 
     /// Line through points, in the next dashes.
     pub fn line(name: impl Into<String>, x: impl Into<Vec<f64>>, y: impl Into<Vec<f64>>) -> Series {
-        Series::new(name, Shape::Line { x: x.into(), y: y.into(), stroke: Stroke::Auto })
+        Series::new(name, Shape::Line, x, y)
     }
 
     /// Line of a phase in degrees between −180 and 180: broken where it goes round the circle, rather than
@@ -166,95 +149,56 @@ impl Series {
 
     /// Markers in the next form, without bars.
     pub fn points(name: impl Into<String>, x: impl Into<Vec<f64>>, y: impl Into<Vec<f64>>) -> Series {
-        let (x, y) = (x.into(), y.into());
-        let shape = Shape::Points {
-            x,
-            y,
-            x_error: Vec::new(),
-            y_error: Vec::new(),
-            marker: Marker::Auto,
-            joined: None,
-        };
-        Series::new(name, shape)
+        Series::new(name, Shape::Points, x, y)
     }
 
     /// Area between two curves.
     pub fn band(
         name: impl Into<String>,
         x: impl Into<Vec<f64>>,
-        lower: impl Into<Vec<f64>>,
-        upper: impl Into<Vec<f64>>,
+        low: impl Into<Vec<f64>>,
+        high: impl Into<Vec<f64>>,
     ) -> Series {
-        Series::new(name, Shape::Band { x: x.into(), lower: lower.into(), upper: upper.into() })
-    }
-
-    /// Filled bars between `edges`, of which there is one more.
-    pub fn bars(name: impl Into<String>, edges: impl Into<Vec<f64>>, heights: impl Into<Vec<f64>>) -> Series {
-        Series::new(name, Shape::Bars { edges: edges.into(), heights: heights.into(), filled: true })
+        Series { low: low.into(), high: high.into(), ..Series::new(name, Shape::Band, x, []) }
     }
 
     /// Histogram of the finite values, in bars whose width is that of Freedman and Diaconis (1981), twice the
     /// interquartile range over the cube root of the count; 5 to 60 bars, and one where all values are equal.
     pub fn histogram(name: impl Into<String>, values: &[f64]) -> Series {
         let (edges, heights) = counted(values);
-        Series::bars(name, edges, heights)
+        Series::new(name, Shape::Bars, edges, heights)
     }
 
     /// Grey vertical reference line with its name along it.
     pub fn vertical(name: impl Into<String>, at: f64) -> Series {
-        Series::new(name, Shape::Vertical { at }).ink(Ink::Grey)
+        Series::new(name, Shape::Vertical, [at], []).ink(Ink::Grey)
     }
 
     /// Grey horizontal reference line with its name along it.
     pub fn horizontal(name: impl Into<String>, at: f64) -> Series {
-        Series::new(name, Shape::Horizontal { at }).ink(Ink::Grey)
+        Series::new(name, Shape::Horizontal, [], [at]).ink(Ink::Grey)
     }
 
     /// Sets the colour.
-    pub fn ink(mut self, ink: Ink) -> Series {
-        self.ink = ink;
-        self
+    pub fn ink(self, ink: Ink) -> Series {
+        Series { ink, ..self }
     }
 
     /// Sets the dashes of a line, or joins points by a line.
-    pub fn stroke(mut self, new: Stroke) -> Series {
-        match &mut self.shape {
-            Shape::Line { stroke, .. } => *stroke = new,
-            Shape::Points { joined, .. } => *joined = Some(new),
-            _ => {}
-        }
-        self
+    pub fn stroke(self, stroke: Stroke) -> Series {
+        Series { stroke: Some(stroke), ..self }
     }
 
     /// Sets the form of markers.
-    pub fn marker(mut self, new: Marker) -> Series {
-        if let Shape::Points { marker, .. } = &mut self.shape {
-            *marker = new;
-        }
-        self
+    pub fn marker(self, marker: Marker) -> Series {
+        Series { marker: Some(marker), ..self }
     }
 
     /// Gives points vertical bars of these half lengths.
     pub fn y_error(mut self, std: impl Into<Vec<f64>>) -> Series {
-        if let Shape::Points { y_error, .. } = &mut self.shape {
-            *y_error = std.into();
-        }
-        self
-    }
-
-    /// Gives points horizontal bars of these half lengths.
-    pub fn x_error(mut self, std: impl Into<Vec<f64>>) -> Series {
-        if let Shape::Points { x_error, .. } = &mut self.shape {
-            *x_error = std.into();
-        }
-        self
-    }
-
-    /// Draws bars as an outline.
-    pub fn outlined(mut self) -> Series {
-        if let Shape::Bars { filled, .. } = &mut self.shape {
-            *filled = false;
-        }
+        let std = std.into();
+        let ends = |way: f64| self.y.iter().zip(&std).map(|(y, std)| y + way * std.abs()).collect();
+        (self.low, self.high) = (ends(-1.0), ends(1.0));
         self
     }
 }
@@ -271,16 +215,13 @@ fn counted(values: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let half = if first == 0.0 { 0.5 } else { first.abs() * 0.05 };
         return (vec![first - half, last + half], vec![sorted.len() as f64]);
     }
-    let quantile =
-        |q: f64| sorted.get((q * (sorted.len() - 1) as f64).round() as usize).copied().unwrap_or(last);
+    let quantile = |q: f64| sorted[(q * (sorted.len() - 1) as f64).round() as usize];
     let width = 2.0 * (quantile(0.75) - quantile(0.25)) / (sorted.len() as f64).cbrt();
     let bars = if width > 0.0 { (span / width).ceil().clamp(5.0, 60.0) } else { 20.0 };
     let mut heights = vec![0.0; bars as usize];
     for value in &sorted {
         let bar = (((value - first) / span * bars) as usize).min(heights.len() - 1);
-        if let Some(height) = heights.get_mut(bar) {
-            *height += 1.0;
-        }
+        heights[bar] += 1.0;
     }
     let edges = (0..=heights.len()).map(|i| first + span * (i as f64 / bars)).collect();
     (edges, heights)
@@ -305,9 +246,8 @@ mod tests {
     #[test]
     fn a_phase_is_broken_where_it_goes_round() {
         let series = Series::phase("", &[1.0, 2.0, 3.0], &[170.0, -170.0, -160.0]);
-        let Shape::Line { x, y, .. } = series.shape else { panic!("{series:?}") };
-        assert_eq!(x, [1.0, 2.0, 2.0, 3.0]);
-        assert!(y[1].is_nan() && y[2] == -170.0);
+        assert_eq!(series.x, [1.0, 2.0, 2.0, 3.0]);
+        assert!(series.y[1].is_nan() && series.y[2] == -170.0);
     }
 
     #[test]

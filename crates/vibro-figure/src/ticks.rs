@@ -27,7 +27,8 @@ struct Step {
 /// Steps of 1, 2 and 5 times a power of ten.
 const DECIMAL: [(i32, i32); 3] = [(1, 5), (2, 4), (5, 5)];
 /// Steps of angles in degrees, once an axis spans more than a few of them.
-const DEGREES: [(i32, i32); 8] = [(5, 5), (10, 5), (15, 3), (30, 3), (45, 3), (90, 3), (180, 2), (360, 4)];
+const DEGREES: [(i32, i32); 9] =
+    [(5, 5), (10, 5), (15, 3), (30, 3), (45, 3), (90, 3), (180, 2), (360, 4), (720, 2)];
 
 impl Step {
     /// `count` steps. Division by a positive power of ten rounds once, so that 3·10⁻¹ is the number nearest
@@ -38,13 +39,13 @@ impl Step {
         if self.exponent < 0 { whole / power } else { whole * power }
     }
 
-    /// Multiples of the step from `lo` to `hi`, as the first and their count.
-    fn within(self, lo: f64, hi: f64) -> (f64, usize) {
-        // A limit that misses a multiple by rounding only has its tick.
-        let slack = 1e-9;
-        let first = (lo / self.times(1.0) - slack).ceil();
-        let last = (hi / self.times(1.0) + slack).floor();
-        (first, if last < first { 0 } else { (last - first) as usize + 1 })
+    /// Counts of the step from `lo` to `hi`; a limit that misses one by rounding only has its tick.
+    fn within(self, lo: f64, hi: f64) -> Vec<f64> {
+        let first = (lo / self.times(1.0) - SLACK).ceil();
+        let last = (hi / self.times(1.0) + SLACK).floor();
+        let count = if last < first { 0 } else { (last - first) as usize + 1 };
+        // More than these are seen by nobody: the step is too fine.
+        (0..count.min(200)).map(|i| first + i as f64).collect()
     }
 
     fn minor(self) -> Step {
@@ -52,6 +53,9 @@ impl Step {
         Step { mantissa: self.mantissa * 10 / self.parts, exponent: self.exponent - 1, parts: 1 }
     }
 }
+
+/// What rounding may do to a limit, in steps or decades.
+const SLACK: f64 = 1e-9;
 
 /// Ticks of a linear axis: at most `most`, and at least two where `most` allows, at multiples of 1, 2 or 5
 /// times a power of ten (of 15°, 30°, 45°, … where `degrees`). Labels are the values divided by 10^`power`.
@@ -61,38 +65,28 @@ pub(super) fn linear(lo: f64, hi: f64, most: usize, power: i32, degrees: bool) -
         return Ticks::default();
     }
     let most = most.clamp(2, 10);
-    let decade = (span / most as f64).log10().floor() as i32;
-    let angles = DEGREES.iter().filter(|_| degrees && span > 20.0).map(|&(m, parts)| Step {
-        mantissa: m,
-        exponent: 0,
-        parts,
-    });
-    let decimal = (decade - 1..=decade + 3)
-        .flat_map(|e| DECIMAL.map(|(m, parts)| Step { mantissa: m, exponent: e, parts }));
-    let candidates: Vec<Step> = if degrees && span > 20.0 && span < 3600.0 {
-        angles.chain(Some(Step { mantissa: 720, exponent: 0, parts: 2 })).collect()
-    } else {
-        decimal.collect()
+    let steps = |exponent: i32, of: &[(i32, i32)]| -> Vec<Step> {
+        of.iter().map(|&(mantissa, parts)| Step { mantissa, exponent, parts }).collect()
     };
-    let fits = candidates.iter().position(|s| s.within(lo, hi).1 <= most).unwrap_or(candidates.len() - 1);
+    let decade = (span / most as f64).log10().floor() as i32;
+    let candidates = if degrees && span > 20.0 && span < 3600.0 {
+        steps(0, &DEGREES)
+    } else {
+        (decade - 1..=decade + 3).flat_map(|exponent| steps(exponent, &DECIMAL)).collect()
+    };
+    let count = |i: usize| candidates[i].within(lo, hi).len();
+    let fits = (0..candidates.len()).find(|&i| count(i) <= most).unwrap_or(candidates.len() - 1);
     // The coarsest step that fits may leave a single tick; the next finer one then has two to five.
-    let chosen = if candidates[fits].within(lo, hi).1 < 2 { fits.saturating_sub(1) } else { fits };
-    let step = candidates[chosen];
+    let step = candidates[if count(fits) < 2 { fits.saturating_sub(1) } else { fits }];
     let decimals = usize::try_from(power - step.exponent).unwrap_or(0);
     let shown = Step { exponent: step.exponent - power, ..step };
-    let (first, count) = step.within(lo, hi);
-    let major = (0..count)
-        .map(|i| first + i as f64)
-        .map(|k| Tick { at: step.times(k).clamp(lo, hi), label: fixed(shown.times(k), decimals) })
-        .collect();
-    let small = step.minor();
-    let (first, count) = small.within(lo, hi);
-    let minor = (0..count)
-        .map(|i| first + i as f64)
-        .filter(|k| k.rem_euclid(f64::from(step.parts)) != 0.0)
-        .map(|k| small.times(k).clamp(lo, hi))
-        .collect();
-    Ticks { major, minor }
+    let (named, small) = (step.within(lo, hi), step.minor());
+    let label = |k: f64| Tick { at: step.times(k).clamp(lo, hi), label: fixed(shown.times(k), decimals) };
+    let between = small.within(lo, hi).into_iter().filter(|k| k.rem_euclid(f64::from(step.parts)) != 0.0);
+    Ticks {
+        minor: between.map(|k| small.times(k).clamp(lo, hi)).collect(),
+        major: named.into_iter().map(label).collect(),
+    }
 }
 
 /// Ticks of a logarithmic axis between the decades `lo` and `hi` (log₁₀ of its limits): powers of ten, with 2
@@ -102,20 +96,40 @@ pub(super) fn logarithmic(lo: f64, hi: f64, most: usize) -> Ticks {
         return Ticks::default();
     }
     let most = most.clamp(2, 10);
-    let slack = 1e-9;
-    let (first, last) = ((lo - slack).ceil() as i32, (hi + slack).floor() as i32);
-    let decades = (last - first + 1).max(0) as usize;
-    if decades >= 2 {
-        return powers(lo, hi, first, last, most);
-    }
-    let minor = || multiples(lo, hi, &[2, 3, 4, 5, 6, 7, 8, 9]);
-    let short = multiples(lo, hi, &[1, 2, 5]);
-    if (2..=most).contains(&short.len()) {
-        let major = short.into_iter().map(|(e, m)| labelled(e, m, lo, hi, plain(lo, hi))).collect::<Vec<_>>();
-        let minor = minor().into_iter().filter(|(_, m)| ![2, 5].contains(m));
-        return Ticks { minor: minor.map(|(e, m)| at(e, m).clamp(lo, hi)).collect(), major };
-    }
-    // Less than half a decade: round values, at their logarithms.
+    let (powers, short) = (multiples(lo, hi, &[1]), multiples(lo, hi, &[1, 2, 5]));
+    let (named, between) = if let [first, .., last] = powers[..] {
+        let every = |stride: i32| powers.iter().filter(|(e, _)| e % stride == 0).copied().collect::<Vec<_>>();
+        let stride = (1..=600).find(|s| every(*s).len() <= most).unwrap_or(1);
+        let digits: &[i32] = match stride {
+            1 if powers.len() <= 7 => &[2, 3, 4, 5, 6, 7, 8, 9],
+            1..=9 => &[1],
+            _ => &[],
+        };
+        // A stride may jump over all but one decade: then the two ends are named.
+        let named = every(stride);
+        (if named.len() < 2 { vec![first, last] } else { named }, multiples(lo, hi, digits))
+    } else if (2..=most).contains(&short.len()) {
+        (short, multiples(lo, hi, &[2, 3, 4, 5, 6, 7, 8, 9]))
+    } else {
+        return of_values(lo, hi, most);
+    };
+    // Plain decimals rather than powers of ten where these are short.
+    let plain = lo > -3.5 && hi < 4.5;
+    let label = |&(decade, digit): &(i32, i32)| match digit {
+        _ if plain => {
+            let value = Step { mantissa: digit, exponent: decade, parts: 1 }.times(1.0);
+            fixed(value, usize::try_from(-decade).unwrap_or(0))
+        }
+        1 => power_of_ten(decade),
+        _ => format!("{digit}×{}", power_of_ten(decade)),
+    };
+    let minor = between.iter().filter(|at| !named.contains(at)).map(|at| place(*at).clamp(lo, hi)).collect();
+    let major = named.iter().map(|at| Tick { at: place(*at).clamp(lo, hi), label: label(at) }).collect();
+    Ticks { major, minor }
+}
+
+/// Round values at their logarithms, on less than half a decade.
+fn of_values(lo: f64, hi: f64, most: usize) -> Ticks {
     let ten = |u: f64| 10f64.powf(u.clamp(-300.0, 300.0));
     let power = engineering(ten(hi));
     let mut ticks = linear(ten(lo), ten(hi), most, power, false);
@@ -129,62 +143,17 @@ pub(super) fn logarithmic(lo: f64, hi: f64, most: usize) -> Ticks {
     ticks
 }
 
-fn powers(lo: f64, hi: f64, first: i32, last: i32, most: usize) -> Ticks {
-    let decades = last - first + 1;
-    let stride = [1, 2, 3, 5, 10, 20, 50, 100, 200]
-        .into_iter()
-        .find(|s| count_multiples(first, last, *s) <= most as i32)
-        .unwrap_or(500);
-    // A stride may jump over all but one decade: then the two ends are named.
-    let named: Vec<i32> = (first..=last).filter(|e| e % stride == 0).collect();
-    let named = if named.len() < 2 { vec![first, last] } else { named };
-    let plain = plain(lo, hi);
-    let major = named.iter().map(|&e| labelled(e, 1, lo, hi, plain)).collect();
-    let minor = if decades <= 7 && stride == 1 {
-        multiples(lo, hi, &[2, 3, 4, 5, 6, 7, 8, 9])
-            .into_iter()
-            .map(|(e, m)| at(e, m).clamp(lo, hi))
-            .collect()
-    } else if decades <= 60 {
-        (first..=last).filter(|e| !named.contains(e)).map(|e| f64::from(e).clamp(lo, hi)).collect()
-    } else {
-        Vec::new()
-    };
-    Ticks { major, minor }
-}
-
-fn count_multiples(first: i32, last: i32, stride: i32) -> i32 {
-    last.div_euclid(stride) - (first - 1).div_euclid(stride)
-}
-
 /// Decade and digit of every such multiple of a power of ten from `lo` to `hi`.
 fn multiples(lo: f64, hi: f64, digits: &[i32]) -> Vec<(i32, i32)> {
-    let slack = 1e-9;
-    ((lo - slack).floor() as i32..=hi.ceil() as i32)
+    ((lo - SLACK).floor() as i32..=hi.ceil() as i32)
         .flat_map(|e| digits.iter().map(move |&m| (e, m)))
-        .filter(|&(e, m)| (lo - slack..=hi + slack).contains(&at(e, m)))
+        .filter(|at| (lo - SLACK..=hi + SLACK).contains(&place(*at)))
         .collect()
 }
 
-fn at(decade: i32, digit: i32) -> f64 {
+/// Place of a digit of a decade.
+fn place((decade, digit): (i32, i32)) -> f64 {
     f64::from(decade) + f64::from(digit).log10()
-}
-
-/// Whether the labels are plain decimals rather than powers of ten.
-fn plain(lo: f64, hi: f64) -> bool {
-    lo > -3.5 && hi < 4.5
-}
-
-fn labelled(decade: i32, digit: i32, lo: f64, hi: f64, plain: bool) -> Tick {
-    let label = if plain {
-        let decimals = usize::try_from(-decade).unwrap_or(0);
-        fixed(Step { mantissa: digit, exponent: decade, parts: 1 }.times(1.0), decimals)
-    } else if digit == 1 {
-        power_of_ten(decade)
-    } else {
-        format!("{digit}×{}", power_of_ten(decade))
-    };
-    Tick { at: at(decade, digit).clamp(lo, hi), label }
 }
 
 #[cfg(test)]
@@ -235,7 +204,7 @@ mod tests {
             let ticks = linear(lo, lo + span, most, 0, true);
             sound(&ticks, lo, lo + span, most);
             let step = ticks.major[1].at - ticks.major[0].at;
-            prop_assert!(DEGREES.iter().any(|d| (f64::from(d.0) - step).abs() < 1e-6) || (step - 720.0).abs() < 1e-6);
+            prop_assert!(DEGREES.iter().any(|d| (f64::from(d.0) - step).abs() < 1e-6));
         }
 
         #[test]

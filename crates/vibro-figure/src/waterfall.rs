@@ -1,9 +1,22 @@
 //! Spectra behind each other: frequency to the right, excitation frequency to the back, amplitude up.
 
 use super::axis::{Axis, AxisSpec, Extent, Room};
-use super::projection::Cube;
+use super::heatmap::ascending;
+use super::path::Point;
 use ndarray::ArrayRef2;
 use vibro_record::{Error, Result};
+
+/// A waterfall in the unit cube: frequency to the right, excitation to the back, magnitude up.
+#[derive(Debug, Clone)]
+pub(super) struct Cube {
+    pub x: Axis,
+    pub depth: Axis,
+    pub up: Axis,
+    /// Depth of each spectrum, from front to back, and its line; NaN where it is missing.
+    pub spectra: Vec<(f64, Vec<Point>)>,
+    /// Depth of each peak, and its place over the front edge.
+    pub peaks: Vec<(f64, Point)>,
+}
 
 /// Spectra in oblique projection with hidden lines, one for each excitation frequency.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,13 +66,7 @@ impl Waterfall {
                 format!("{} spectra with {} lines, as its axes have", excitation.len(), frequency.len()),
             ));
         }
-        if let Some(i) = frequency.windows(2).position(|w| w[0] >= w[1] || w[0].is_nan() || w[1].is_nan()) {
-            let (a, b) = (frequency[i], frequency[i + 1]);
-            return Err(Error::usage(
-                format!("line frequencies {a} and {b} Hz of a waterfall"),
-                "ascending frequencies",
-            ));
-        }
+        ascending(frequency, "line frequencies of a waterfall (Hz)")?;
         let mut rows: Vec<(f64, Vec<f64>)> = excitation
             .iter()
             .zip(magnitude.rows())
@@ -105,23 +112,26 @@ impl Waterfall {
         };
         let x = Axis::new(&self.x, extent(&self.x, &mut self.frequency.iter().copied()), Room::Tight)?;
         let depths = extent(&self.depth, &mut self.rows.iter().map(|r| r.0));
-        // The outer spectra stand between ticks, so that they can be read.
-        let depth = Axis::new(&self.depth, depths, Room::Tight)?.rounded_out(true);
-        let inside = |at: &f64| (0.0..=1.0).contains(at);
-        let columns: Vec<(usize, f64)> =
-            self.frequency.iter().map(|f| x.at(*f)).enumerate().filter(|(_, at)| inside(at)).collect();
-        let rows: Vec<(f64, &[f64])> =
-            self.rows.iter().map(|(e, row)| (depth.at(*e), &row[..])).filter(|(at, _)| inside(at)).collect();
-        let value = |row: &[f64], column: usize| row.get(column).copied().unwrap_or(f64::NAN);
-        let mut heights = rows.iter().flat_map(|(_, row)| columns.iter().map(|(i, _)| value(row, *i)));
-        let up = Axis::new(&self.height, extent(&self.height, &mut heights), Room::Floor)?.rounded_out(false);
+        // Not on the axes, so that the outer spectra can be read.
+        let depth = Axis::new(&self.depth, depths, Room::Margin)?;
+        let shown = |axis: &Axis, value: f64| Some(axis.at(value)).filter(|at| (0.0..=1.0).contains(at));
+        let rows: Vec<(f64, Vec<(f64, f64)>)> = self
+            .rows
+            .iter()
+            .filter_map(|(excitation, row)| {
+                let values = self.frequency.iter().zip(row).filter_map(|(f, v)| Some((shown(&x, *f)?, *v)));
+                Some((shown(&depth, *excitation)?, values.collect()))
+            })
+            .collect();
+        let mut heights = rows.iter().flat_map(|(_, row)| row.iter().map(|(_, v)| *v));
+        let up = Axis::new(&self.height, extent(&self.height, &mut heights), Room::Floor)?;
         // NaN stays NaN: a gap.
-        let line =
-            |row: &[f64]| columns.iter().map(|(i, x)| (*x, up.at(value(row, *i)).clamp(0.0, 1.0))).collect();
-        let spectra = rows.iter().map(|(at, row)| (*at, line(row))).collect();
+        let height = |value: f64| up.at(value).clamp(0.0, 1.0);
+        let spectra =
+            rows.iter().map(|(at, row)| (*at, row.iter().map(|(x, v)| (*x, height(*v))).collect())).collect();
         let place =
-            |p: &Peak| (depth.at(p.excitation), (x.at(p.frequency), up.at(p.magnitude).clamp(0.0, 1.0)));
-        let peaks = self.peaks.iter().map(place).collect();
+            |p: &Peak| Some((shown(&depth, p.excitation)?, (shown(&x, p.frequency)?, height(p.magnitude))));
+        let peaks = self.peaks.iter().filter_map(place).collect();
         Some(Cube { x, depth, up, spectra, peaks })
     }
 }

@@ -17,8 +17,6 @@ pub struct Fit {
     pub cofactor: DMatrix<f64>,
     /// Whether a minimum was reached; else the parameters are the best that were met.
     pub converged: bool,
-    /// Evaluations of the model.
-    pub evaluations: usize,
 }
 
 impl Fit {
@@ -55,14 +53,6 @@ impl Fit {
     pub fn std(&self, i: usize) -> f64 {
         self.covariance(i, i).sqrt()
     }
-
-    /// Correlation of parameters `i` and `j`.
-    ///
-    /// # Panics
-    /// If `i` or `j` is no parameter.
-    pub fn correlation(&self, i: usize, j: usize) -> f64 {
-        self.cofactor[(i, j)] / (self.cofactor[(i, i)] * self.cofactor[(j, j)]).sqrt()
-    }
 }
 
 /// Minimises Σrᵢ(p)². `residuals(p, r)` fills `r`, of length `n`; `start` holds the first guess, `scale` the size of a
@@ -96,7 +86,6 @@ pub fn least_squares(
         parameters: found.parameters,
         residuals: found.residuals,
         converged: found.converged,
-        evaluations: found.evaluations,
     })
 }
 
@@ -111,8 +100,6 @@ pub struct Minimum {
     pub jacobian: DMatrix<f64>,
     /// Whether a minimum was reached; else the parameters are the best that were met.
     pub converged: bool,
-    /// Evaluations of the model.
-    pub evaluations: usize,
 }
 
 /// As [`least_squares`], for callers that look into the Jacobian themselves: a combination of parameters on which nothing depends is no
@@ -162,13 +149,7 @@ fn run(
     if n < start.len() {
         return Err(Error::refused(format!("{n} values do not determine {} parameters", start.len())));
     }
-    let mut problem = Problem {
-        residuals,
-        n,
-        scale,
-        parameters: DVector::from_column_slice(start),
-        evaluations: std::cell::Cell::new(0),
-    };
+    let mut problem = Problem { residuals, n, scale, parameters: DVector::from_column_slice(start) };
     if problem.at(&problem.parameters).is_none() {
         return Err(Error::refused("the model gives no finite value at the first guess of a fit"));
     }
@@ -183,7 +164,6 @@ fn run(
         residuals: residuals.as_slice().to_vec(),
         jacobian,
         converged: report.termination.was_successful(),
-        evaluations: problem.evaluations.get(),
     })
 }
 
@@ -234,14 +214,12 @@ struct Problem<'a, F> {
     n: usize,
     scale: &'a [f64],
     parameters: DVector<f64>,
-    evaluations: std::cell::Cell<usize>,
 }
 
 impl<F: Fn(&[f64], &mut [f64])> Problem<'_, F> {
     fn at(&self, parameters: &DVector<f64>) -> Option<DVector<f64>> {
         let mut values = DVector::zeros(self.n);
         (self.residuals)(parameters.as_slice(), values.as_mut_slice());
-        self.evaluations.set(self.evaluations.get() + 1);
         values.iter().all(|v| v.is_finite()).then_some(values)
     }
 }
@@ -309,7 +287,7 @@ mod tests {
         assert!((fit.std(1) / (fit.variance() / sxx).sqrt() - 1.0).abs() < 1e-6, "{fit:?}");
         // Intercept and slope: −x̄/√(Σx²/n).
         let expected = -mx / (x.iter().map(|x| x * x).sum::<f64>() / 12.0).sqrt();
-        assert!((fit.correlation(0, 1) - expected).abs() < 1e-6);
+        assert!((fit.covariance(0, 1) / (fit.std(0) * fit.std(1)) - expected).abs() < 1e-6);
     }
 
     #[test]

@@ -19,15 +19,7 @@ impl Bounded {
     /// The longest step that cannot pass a root, for a value that is not negative (or negative by rounding only).
     #[inline]
     pub(super) fn step(self) -> f64 {
-        let value = self.value.max(0.0);
-        let root = (self.slope * self.slope + 2.0 * self.curvature * value).sqrt();
-        if self.slope < 0.0 {
-            2.0 * value / (root - self.slope)
-        } else if self.curvature > 0.0 {
-            (self.slope + root) / self.curvature
-        } else {
-            f64::INFINITY
-        }
+        fall(self.value.max(0.0), self.slope, self.curvature)
     }
 }
 

@@ -182,12 +182,7 @@ impl<S: Scheme, const N: usize> Integrator<S, N> {
     }
 
     fn stage(&self, rates: &[[f64; N]; STAGES], weights: &[f64], h: f64) -> [f64; N] {
-        let mut sum = [0.0; N];
-        for (rate, w) in rates.iter().zip(weights).filter(|(_, w)| **w != 0.0) {
-            for (sum, rate) in sum.iter_mut().zip(rate) {
-                *sum += w * rate;
-            }
-        }
+        let sum = combine(rates, weights);
         std::array::from_fn(|i| self.y[i] + h * sum[i])
     }
 }
@@ -195,7 +190,7 @@ impl<S: Scheme, const N: usize> Integrator<S, N> {
 /// Σ weights·rates of each component.
 fn combine<const N: usize>(rates: &[[f64; N]], weights: &[f64]) -> [f64; N] {
     let mut sum = [0.0; N];
-    for (rate, w) in rates.iter().zip(weights) {
+    for (rate, w) in rates.iter().zip(weights).filter(|(_, w)| **w != 0.0) {
         for (sum, rate) in sum.iter_mut().zip(rate) {
             *sum += w * rate;
         }

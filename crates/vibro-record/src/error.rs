@@ -10,9 +10,18 @@ use std::path::{Path, PathBuf};
 /// Result with this crate's [`Error`].
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// What went wrong, boxed so that results stay small.
+/// What went wrong and what to try, boxed so that results stay small.
 #[derive(Debug)]
-pub struct Error(Box<ErrorKind>);
+pub struct Error(Box<Inner>);
+
+#[derive(Debug)]
+struct Inner {
+    kind: ErrorKind,
+    /// What to try; empty where nothing would help.
+    hint: String,
+    /// Keys of the settings that the hint is about.
+    settings: Vec<&'static str>,
+}
 
 /// The three ways in which a request fails.
 #[derive(Debug)]
@@ -28,15 +37,8 @@ pub enum ErrorKind {
     },
     /// Input that cannot be read as what it should be, or wrong usage.
     Input(Fault),
-    /// Readable input that does not support an answer.
-    Refused {
-        /// Why there is no answer.
-        why: String,
-        /// What to try instead; empty where nothing would help.
-        hint: String,
-        /// Keys of the settings that the hint is about.
-        settings: Vec<&'static str>,
-    },
+    /// Readable input that does not support an answer, and why.
+    Refused(String),
 }
 
 /// Where input went wrong, and how.
@@ -48,10 +50,6 @@ pub struct Fault {
     pub found: String,
     /// What should stand there; empty where `found` says it all.
     pub expected: String,
-    /// What to try; empty where nothing would help.
-    pub hint: String,
-    /// Keys of the settings that the hint is about.
-    pub settings: Vec<&'static str>,
     /// The line at fault with a caret under it, ready to print.
     pub excerpt: String,
 }
@@ -93,14 +91,14 @@ impl Place {
 }
 
 impl Error {
+    fn new(kind: ErrorKind) -> Self {
+        Error(Box::new(Inner { kind, hint: String::new(), settings: Vec::new() }))
+    }
+
     /// Input at `place` is not what it should be.
     pub fn input(place: Place, found: impl Into<String>, expected: impl Into<String>) -> Self {
-        Error(Box::new(ErrorKind::Input(Fault {
-            place,
-            found: found.into(),
-            expected: expected.into(),
-            ..Fault::default()
-        })))
+        let (found, expected) = (found.into(), expected.into());
+        Error::new(ErrorKind::Input(Fault { place, found, expected, excerpt: String::new() }))
     }
 
     /// Wrong usage: no file is at fault.
@@ -110,31 +108,23 @@ impl Error {
 
     /// The data or the parameters do not allow an answer.
     pub fn refused(why: impl Into<String>) -> Self {
-        Error(Box::new(ErrorKind::Refused { why: why.into(), hint: String::new(), settings: Vec::new() }))
+        Error::new(ErrorKind::Refused(why.into()))
     }
 
     /// The system refused `action` on `path`.
     pub fn io(action: &'static str, path: impl AsRef<Path>, source: std::io::Error) -> Self {
-        Error(Box::new(ErrorKind::Io { path: path.as_ref().to_owned(), action, source }))
+        Error::new(ErrorKind::Io { path: path.as_ref().to_owned(), action, source })
     }
 
     /// Names the setting that helps, as the key of a campaign: `low_pass`. The command line shows it as its option.
     pub fn setting(mut self, key: &'static str) -> Self {
-        match &mut *self.0 {
-            ErrorKind::Input(Fault { settings, .. }) | ErrorKind::Refused { settings, .. } => {
-                settings.push(key);
-            }
-            ErrorKind::Io { .. } => {}
-        }
+        self.0.settings.push(key);
         self
     }
 
     /// Keys of the settings that it is about.
     pub fn settings(&self) -> &[&'static str] {
-        match &*self.0 {
-            ErrorKind::Input(Fault { settings, .. }) | ErrorKind::Refused { settings, .. } => settings,
-            ErrorKind::Io { .. } => &[],
-        }
+        &self.0.settings
     }
 
     /// The text of the error with settings named as `typed` says, such as `low_pass` as `--low-pass`.
@@ -145,17 +135,25 @@ impl Error {
 
     /// Adds what to try.
     pub fn hint(mut self, text: impl Into<String>) -> Self {
-        match &mut *self.0 {
-            ErrorKind::Input(fault) => fault.hint = text.into(),
-            ErrorKind::Refused { hint, .. } => *hint = text.into(),
-            ErrorKind::Io { .. } => {}
-        }
+        self.0.hint = text.into();
         self
+    }
+
+    /// What to try; empty where nothing would help.
+    pub fn advice(&self) -> &str {
+        &self.0.hint
+    }
+
+    fn fault(&mut self) -> Option<&mut Fault> {
+        match &mut self.0.kind {
+            ErrorKind::Input(fault) => Some(fault),
+            _ => None,
+        }
     }
 
     /// Adds to what was found, in brackets.
     pub fn aside(mut self, text: impl fmt::Display) -> Self {
-        if let ErrorKind::Input(fault) = &mut *self.0 {
+        if let Some(fault) = self.fault() {
             fault.found = format!("{} ({text})", fault.found);
         }
         self
@@ -165,7 +163,7 @@ impl Error {
     ///
     /// Sets line and column of the place from the span. Tabs count as one column.
     pub fn excerpt(mut self, source: &str, span: std::ops::Range<usize>) -> Self {
-        if let ErrorKind::Input(fault) = &mut *self.0 {
+        if let Some(fault) = self.fault() {
             let start = floor_char(source, span.start);
             let line_start = source[..start].rfind('\n').map_or(0, |i| i + 1);
             let line_end = source[start..].find('\n').map_or(source.len(), |i| start + i);
@@ -190,7 +188,7 @@ impl Error {
 
     /// Names the file where the place has none yet.
     pub fn in_file(mut self, path: impl AsRef<Path>) -> Self {
-        if let ErrorKind::Input(fault) = &mut *self.0 {
+        if let Some(fault) = self.fault() {
             fault.place.path.get_or_insert_with(|| path.as_ref().to_owned());
         }
         self
@@ -198,7 +196,7 @@ impl Error {
 
     /// Says the place where none is known yet.
     pub fn at(mut self, place: &Place) -> Self {
-        if let ErrorKind::Input(fault) = &mut *self.0
+        if let Some(fault) = self.fault()
             && fault.place == Place::default()
         {
             fault.place = place.clone();
@@ -208,7 +206,7 @@ impl Error {
 
     /// Names the record that an answer was refused of.
     pub fn of_record(mut self, name: &str) -> Self {
-        if let ErrorKind::Refused { why, .. } = &mut *self.0 {
+        if let ErrorKind::Refused(why) = &mut self.0.kind {
             *why = format!("{name}: {why}");
         }
         self
@@ -216,15 +214,12 @@ impl Error {
 
     /// The kind, for matching.
     pub fn kind(&self) -> &ErrorKind {
-        &self.0
+        &self.0.kind
     }
 
     /// Exit code of the command: 1 no answer possible, 2 unreadable input or wrong usage.
     pub fn exit_code(&self) -> u8 {
-        match *self.0 {
-            ErrorKind::Refused { .. } => 1,
-            ErrorKind::Io { .. } | ErrorKind::Input(_) => 2,
-        }
+        if matches!(self.0.kind, ErrorKind::Refused(_)) { 1 } else { 2 }
     }
 }
 
@@ -238,28 +233,19 @@ fn floor_char(text: &str, at: usize) -> usize {
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut parts = Vec::new();
-        if let Some(path) = &self.path {
-            parts.push(path.display().to_string());
-        }
-        if let Some(line) = self.line {
-            parts.push(format!("line {line}"));
-        }
-        if let Some(column) = self.column {
-            parts.push(format!("column {column}"));
-        }
-        if let Some(byte) = self.byte {
-            parts.push(format!("byte {byte}"));
-        }
-        f.write_str(&parts.join(", "))
+        let path = self.path.iter().map(|path| path.display().to_string());
+        let counts = [("line", self.line), ("column", self.column), ("byte", self.byte)];
+        let counts = counts.into_iter().filter_map(|(what, n)| Some(format!("{what} {}", n?)));
+        f.write_str(&path.chain(counts).collect::<Vec<_>>().join(", "))
     }
 }
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match &*self.0 {
+        let Inner { kind, hint, settings } = &*self.0;
+        match kind {
             ErrorKind::Io { path, action, source } => {
-                write!(f, "cannot {action} {}: {}", path.display(), plain_io(source))
+                write!(f, "cannot {action} {}: {}", path.display(), plain_io(source))?;
             }
             ErrorKind::Input(fault) => {
                 if fault.place != Place::default() {
@@ -272,13 +258,17 @@ impl fmt::Display for Error {
                 if !fault.excerpt.is_empty() {
                     write!(f, "\n{}", fault.excerpt)?;
                 }
-                write_hint(f, &fault.hint, &fault.settings)
             }
-            ErrorKind::Refused { why, hint, settings } => {
-                f.write_str(why)?;
-                write_hint(f, hint, settings)
+            ErrorKind::Refused(why) => f.write_str(why)?,
+        }
+        if !hint.is_empty() {
+            write!(f, "\n  try: {hint}")?;
+            // The alternate form leaves the settings to who has other names for them.
+            if !settings.is_empty() && !f.alternate() {
+                write!(f, " ({})", settings.join(", "))?;
             }
         }
+        Ok(())
     }
 }
 
@@ -288,18 +278,9 @@ fn plain_io(error: &std::io::Error) -> String {
     text.split(" (os error").next().unwrap_or(&text).to_lowercase()
 }
 
-/// The hint and, but in the alternate form, the settings that it is about.
-fn write_hint(f: &mut fmt::Formatter<'_>, hint: &str, settings: &[&str]) -> fmt::Result {
-    if hint.is_empty() {
-        return Ok(());
-    }
-    write!(f, "\n  try: {hint}")?;
-    if settings.is_empty() || f.alternate() { Ok(()) } else { write!(f, " ({})", settings.join(", ")) }
-}
-
 impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match &*self.0 {
+        match &self.0.kind {
             ErrorKind::Io { source, .. } => Some(source),
             _ => None,
         }

@@ -48,12 +48,37 @@ pub struct Traces {
     frames: usize,
     /// Factor of each channel on top of what its reader applied.
     factors: Vec<f64>,
-    origin: Origin,
+    stream: Box<dyn Stream>,
 }
 
-enum Origin {
-    Stream(Box<dyn Stream>),
-    Memory { values: Vec<Vec<f64>>, at: usize },
+/// Traces that are in memory already.
+struct Memory {
+    values: Vec<Vec<f64>>,
+    at: usize,
+}
+
+impl Stream for Memory {
+    fn append(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize> {
+        block.resize_with(self.values.len(), Vec::new);
+        let mut frames = 0;
+        for (out, column) in block.iter_mut().zip(&self.values) {
+            let next = &column[self.at..(self.at + BLOCK).min(column.len())];
+            out.extend_from_slice(next);
+            frames = next.len();
+        }
+        self.at += frames;
+        Ok(frames)
+    }
+
+    fn keep(&mut self, channels: &[usize]) {
+        self.values = picked(&self.values, channels);
+    }
+
+    fn finish(&self, _: &mut [Meta]) {}
+}
+
+fn picked<T: Clone>(all: &[T], indices: &[usize]) -> Vec<T> {
+    indices.iter().filter_map(|i| all.get(*i).cloned()).collect()
 }
 
 impl Traces {
@@ -73,7 +98,7 @@ impl Traces {
         check_lengths(&path, &traces)?;
         let values: Vec<Vec<f64>> = traces.iter_mut().map(|t| std::mem::take(&mut t.values)).collect();
         let frames = values.first().map_or(0, Vec::len);
-        Traces::of(path, findings, &traces, frames, Origin::Memory { values, at: 0 })
+        Traces::of_stream(path, findings, &traces, frames, Box::new(Memory { values, at: 0 }))
     }
 
     /// Traces that come from a stream; the values of `traces` do not count.
@@ -87,20 +112,10 @@ impl Traces {
         frames: usize,
         stream: Box<dyn Stream>,
     ) -> Result<Traces> {
-        Traces::of(path, findings, traces, frames, Origin::Stream(stream))
-    }
-
-    fn of(
-        path: PathBuf,
-        findings: Vec<Finding>,
-        traces: &[Trace],
-        frames: usize,
-        origin: Origin,
-    ) -> Result<Traces> {
         let (rate, start) = clock(&path, traces, frames)?;
         let channels: Vec<Meta> = traces.iter().map(|t| t.meta.clone()).collect();
         let factors = vec![1.0; channels.len()];
-        Ok(Traces { path, channels, findings, rate, start, frames, factors, origin })
+        Ok(Traces { path, channels, findings, rate, start, frames, factors, stream })
     }
 
     /// File.
@@ -161,25 +176,10 @@ impl Traces {
     /// # Errors
     /// As [`Traces::next_block`].
     pub fn append(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize> {
-        let frames = match &mut self.origin {
-            Origin::Stream(stream) => {
-                let frames = stream.append(block)?;
-                if frames == 0 {
-                    stream.finish(&mut self.channels);
-                }
-                frames
-            }
-            Origin::Memory { values, at } => {
-                let end = at.saturating_add(BLOCK).min(self.frames);
-                block.resize_with(values.len(), Vec::new);
-                for (out, column) in block.iter_mut().zip(values) {
-                    out.extend_from_slice(column.get(*at..end).unwrap_or_default());
-                }
-                let frames = end - *at;
-                *at = end;
-                frames
-            }
-        };
+        let frames = self.stream.append(block)?;
+        if frames == 0 {
+            self.stream.finish(&mut self.channels);
+        }
         for (column, factor) in block.iter_mut().zip(&self.factors).filter(|(_, factor)| **factor != 1.0) {
             let from = column.len() - frames;
             units::scale(&mut column[from..], *factor)?;
@@ -189,13 +189,7 @@ impl Traces {
 
     /// Hands out these channels only from here on, in this order; an index that does not exist is passed over.
     pub fn keep(&mut self, channels: &[usize]) {
-        fn picked<T: Clone>(all: &[T], indices: &[usize]) -> Vec<T> {
-            indices.iter().filter_map(|i| all.get(*i).cloned()).collect()
-        }
-        match &mut self.origin {
-            Origin::Stream(stream) => stream.keep(channels),
-            Origin::Memory { values, .. } => *values = picked(values, channels),
-        }
+        self.stream.keep(channels);
         self.factors = picked(&self.factors, channels);
         self.channels = picked(&self.channels, channels);
     }
@@ -238,20 +232,15 @@ pub fn find_channel<'a>(
     let number = wanted.parse::<usize>().ok().filter(|i| (1..=n).contains(i));
     let list: Vec<String> =
         all.take(20).enumerate().map(|(i, m)| format!("{} {:?}", i + 1, m.name)).collect();
-    match (same.as_slice(), number) {
-        ([one], _) => Ok(*one),
-        ([], Some(number)) => Ok(number - 1),
-        ([], None) => Err(Error::input(
-            place(path),
-            format!("no channel {wanted:?}"),
-            format!("one of the {n}: {}", list.join(", ")),
-        )),
-        (several, _) => Err(Error::input(
-            place(path),
-            format!("{} channels are called {wanted:?}", several.len()),
-            format!("the number of one: {}", list.join(", ")),
-        )),
-    }
+    let (found, expected) = match (same.as_slice(), number) {
+        ([one], _) => return Ok(*one),
+        ([], Some(number)) => return Ok(number - 1),
+        ([], None) => (format!("no channel {wanted:?}"), format!("one of the {n}")),
+        (several, _) => {
+            (format!("{} channels are called {wanted:?}", several.len()), "the number of one".to_owned())
+        }
+    };
+    Err(Error::input(place(path), found, format!("{expected}: {}", list.join(", "))))
 }
 
 /// The file, where there is one.
@@ -260,14 +249,10 @@ fn place(path: &Path) -> Place {
 }
 
 fn check_lengths(path: &Path, traces: &[Trace]) -> Result<()> {
-    let Some((first, rest)) = traces.split_first() else { return Ok(()) };
-    let n = first.values.len();
-    match rest.iter().find(|t| t.values.len() != n) {
-        None => Ok(()),
-        Some(other) => {
-            Err(apart(path, [first, other], &format!("{n} samples"), &other.values.len().to_string()))
-        }
-    }
+    let pairs = traces.first().into_iter().flat_map(|first| traces.iter().map(move |other| [first, other]));
+    pairs.filter(|[a, b]| a.values.len() != b.values.len()).try_for_each(|[a, b]| {
+        Err(apart(path, [a, b], &format!("{} samples", a.values.len()), &b.values.len().to_string()))
+    })
 }
 
 fn apart(path: &Path, [a, b]: [&Trace; 2], of_a: &str, of_b: &str) -> Error {
@@ -278,7 +263,7 @@ fn apart(path: &Path, [a, b]: [&Trace; 2], of_a: &str, of_b: &str) -> Error {
 
 /// The sampling rate and the start that all traces have.
 fn clock(path: &Path, traces: &[Trace], frames: usize) -> Result<(f64, f64)> {
-    let mut common: Option<(&Trace, f64)> = None;
+    let mut clocks = Vec::new();
     for trace in traces {
         let Some(rate) = trace.rate().filter(|r| r.is_finite() && *r > 0.0) else {
             let found = format!("the sampling rate of channel {:?} is not known", trace.meta.name);
@@ -286,26 +271,21 @@ fn clock(path: &Path, traces: &[Trace], frames: usize) -> Result<(f64, f64)> {
                 .hint("state the sampling rate")
                 .setting("rate"));
         };
-        let Some((first, known)) = common else {
-            common = Some((trace, rate));
-            continue;
-        };
-        if (rate / known - 1.0).abs() * frames as f64 > APART {
-            return Err(apart(path, [first, trace], &format!("a rate of {known} Hz"), &format!("{rate} Hz")));
+        clocks.push((trace, rate, trace.axis.start()));
+    }
+    let Some(&(first, rate, start)) = clocks.first() else {
+        return Err(Error::input(place(path), "no channel", "at least one"));
+    };
+    for (trace, own, begin) in clocks {
+        let of = [first, trace];
+        if (own / rate - 1.0).abs() * frames as f64 > APART {
+            return Err(apart(path, of, &format!("a rate of {rate} Hz"), &format!("{own} Hz")));
         }
-        let (a, b) = (first.axis.start(), trace.axis.start());
-        if (a - b).abs() * known > APART {
-            return Err(apart(
-                path,
-                [first, trace],
-                &format!("its first sample at {a} s"),
-                &format!("{b} s"),
-            ));
+        if (start - begin).abs() * rate > APART {
+            return Err(apart(path, of, &format!("its first sample at {start} s"), &format!("{begin} s")));
         }
     }
-    common
-        .map(|(trace, rate)| (rate, trace.axis.start()))
-        .ok_or_else(|| Error::input(place(path), "no channel", "at least one"))
+    Ok((rate, start))
 }
 
 #[cfg(test)]

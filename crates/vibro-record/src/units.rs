@@ -60,12 +60,7 @@ impl Unit {
 
     /// The SI unit of a quantity; [`Quantity::Other`] gives an opaque empty unit.
     pub fn of(quantity: Quantity) -> Unit {
-        match quantity.si() {
-            Some((symbol, dimension)) => {
-                Unit { symbol: symbol.into(), dimension: Some(dimension), factor: 1.0 }
-            }
-            None => Unit::opaque(""),
-        }
+        quantity.dimension().map_or_else(|| Unit::opaque(""), Unit::from_dimension)
     }
 
     /// A unit that is not understood: kept as it is, factor 1, quantity [`Quantity::Other`].
@@ -139,8 +134,10 @@ impl Unit {
     /// The SI unit of the same dimension, in the spelling usual for its quantity.
     pub fn si(&self) -> Unit {
         let Some(dimension) = self.dimension else { return self.clone() };
-        let quantity = Quantity::of(dimension);
-        let symbol = quantity.si().map_or_else(|| parse::spell(dimension), |(symbol, _)| symbol.to_owned());
+        let symbol = match Quantity::of(dimension) {
+            Quantity::Other => parse::spell(dimension),
+            named => named.symbol().to_owned(),
+        };
         Unit { symbol, dimension: self.dimension, factor: 1.0 }
     }
 

@@ -19,16 +19,6 @@ struct Section {
     a: [f64; 2],
 }
 
-/// What a filter lets pass.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
-    LowPass(f64),
-    HighPass(f64),
-    BandPass(f64, f64),
-    Smoothing(f64),
-    Analogue,
-}
-
 /// A section of a filter in the analogue plane, (b₀ + b₁s + b₂s²)/(a₀ + a₁s + a₂s²), s in rad/s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Analogue {
@@ -56,8 +46,8 @@ pub struct Analogue {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Filter {
-    kind: Kind,
-    order: usize,
+    /// What it lets pass, and its corners.
+    name: String,
     rate: f64,
     sections: Vec<Section>,
 }
@@ -69,13 +59,8 @@ impl Filter {
     /// If the corner does not lie between 0 and half the sampling rate, or the order is not 1 to 16.
     pub fn low_pass(corner: f64, order: usize, rate: f64) -> Result<Filter> {
         let w = warped(corner, rate)?;
-        let sections = pairs(order)?
-            .map(|pole| match pole {
-                Pole::Pair(p) => section([w * w, 0.0, 0.0], [w * w, -2.0 * p.re * w, 1.0]),
-                Pole::Real => first([w, 0.0], [w, 1.0]),
-            })
-            .collect();
-        Ok(Filter { kind: Kind::LowPass(corner), order, rate, sections })
+        let pair = |p: Complex64| section([w * w, 0.0, 0.0], [w * w, -2.0 * p.re * w, 1.0]);
+        butterworth("low-pass", order, corner, rate, first([w, 0.0], [w, 1.0]), pair)
     }
 
     /// Butterworth high-pass of this corner and sampling rate in Hz.
@@ -84,43 +69,8 @@ impl Filter {
     /// As [`Filter::low_pass`].
     pub fn high_pass(corner: f64, order: usize, rate: f64) -> Result<Filter> {
         let w = warped(corner, rate)?;
-        let sections = pairs(order)?
-            .map(|pole| match pole {
-                Pole::Pair(p) => section([0.0, 0.0, 1.0], [w * w, -2.0 * p.re * w, 1.0]),
-                Pole::Real => first([0.0, 1.0], [w, 1.0]),
-            })
-            .collect();
-        Ok(Filter { kind: Kind::HighPass(corner), order, rate, sections })
-    }
-
-    /// Butterworth band-pass between two corners in Hz: `order` counts for each flank.
-    ///
-    /// # Errors
-    /// As [`Filter::low_pass`], and if the corners are not in rising order.
-    pub fn band_pass(low: f64, high: f64, order: usize, rate: f64) -> Result<Filter> {
-        let (w1, w2) = (warped(low, rate)?, warped(high, rate)?);
-        if low >= high {
-            return Err(Error::usage(
-                format!("a band from {low} to {high} Hz"),
-                "a lower corner below the upper one",
-            ));
-        }
-        let (width, middle) = (w2 - w1, w1 * w2);
-        let mut sections = Vec::with_capacity(order.min(MOST));
-        for pole in pairs(order)? {
-            match pole {
-                // s² − pBs + ω₀² = 0: one pole of the low-pass becomes two of the band, each with its conjugate.
-                Pole::Pair(p) => {
-                    let half = 0.5 * width * p;
-                    let root = (half * half - middle).sqrt();
-                    for s in [half + root, half - root] {
-                        sections.push(section([0.0, width, 0.0], [s.norm_sqr(), -2.0 * s.re, 1.0]));
-                    }
-                }
-                Pole::Real => sections.push(section([0.0, width, 0.0], [middle, width, 1.0])),
-            }
-        }
-        Ok(Filter { kind: Kind::BandPass(low, high), order, rate, sections })
+        let pair = |p: Complex64| section([0.0, 0.0, 1.0], [w * w, -2.0 * p.re * w, 1.0]);
+        butterworth("high-pass", order, corner, rate, first([0.0, 1.0], [w, 1.0]), pair)
     }
 
     /// Exponential smoothing yₙ = yₙ₋₁ + α(xₙ − yₙ₋₁), α such that the corner lies at `corner` Hz exactly.
@@ -133,7 +83,7 @@ impl Filter {
         let c = 2.0 * (PI * corner / rate).sin().powi(2);
         let alpha = (c * c + 2.0 * c).sqrt() - c;
         let sections = vec![Section { b: [alpha, 0.0, 0.0], a: [alpha - 1.0, 0.0] }];
-        Ok(Filter { kind: Kind::Smoothing(corner), order: 1, rate, sections })
+        Ok(Filter { name: format!("exponential smoothing, corner {} Hz", shortest(corner)), rate, sections })
     }
 
     /// Sections of second order one behind the other, each transformed bilinearly such that it is exact at one frequency:
@@ -148,7 +98,8 @@ impl Filter {
             Ok(section(scaled(part.b), scaled(part.a)))
         };
         let sections = sections.iter().map(digital).collect::<Result<Vec<Section>>>()?;
-        Ok(Filter { kind: Kind::Analogue, order: 2 * sections.len(), rate, sections })
+        let name = format!("filter of order {} from analogue sections", 2 * sections.len());
+        Ok(Filter { name, rate, sections })
     }
 
     /// Complex factor of one pass on a sine of `frequency` Hz.
@@ -158,13 +109,6 @@ impl Filter {
             .iter()
             .map(|s| (s.b[0] + z * (s.b[1] + z * s.b[2])) / (1.0 + z * (s.a[0] + z * s.a[1])))
             .product()
-    }
-
-    /// Filters as an instrument does, from rest: what comes out is late.
-    pub fn causal(&self, values: &[f64]) -> Vec<f64> {
-        let mut out = values.to_vec();
-        self.from_rest().apply(&mut out);
-        out
     }
 
     /// The filter at rest, to be given samples block by block.
@@ -231,20 +175,7 @@ impl Filter {
 
 impl std::fmt::Display for Filter {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let order = self.order;
-        match self.kind {
-            Kind::LowPass(corner) => {
-                write!(f, "Butterworth low-pass of order {order}, corner {} Hz", shortest(corner))
-            }
-            Kind::HighPass(corner) => {
-                write!(f, "Butterworth high-pass of order {order}, corner {} Hz", shortest(corner))
-            }
-            Kind::BandPass(low, high) => {
-                write!(f, "Butterworth band-pass of order {order}, corners {low} and {high} Hz")
-            }
-            Kind::Smoothing(corner) => write!(f, "exponential smoothing, corner {} Hz", shortest(corner)),
-            Kind::Analogue => write!(f, "filter of order {order} from analogue sections"),
-        }
+        f.write_str(&self.name)
     }
 }
 
@@ -271,22 +202,23 @@ impl Running {
     }
 }
 
-/// Pole of the analogue low-pass with corner 1.
-enum Pole {
-    /// This one (upper half plane) and its conjugate.
-    Pair(Complex64),
-    /// −1.
-    Real,
-}
-
-/// Poles exp(iπ(2k + N − 1)/2N), the real one first: the sharpest pair filters last.
-fn pairs(order: usize) -> Result<impl Iterator<Item = Pole>> {
+/// A Butterworth filter from the section of the real pole of an odd order and those of each pair of poles.
+fn butterworth(
+    kind: &str,
+    order: usize,
+    corner: f64,
+    rate: f64,
+    real: Section,
+    pair: impl Fn(Complex64) -> Section,
+) -> Result<Filter> {
     if !(1..=MOST).contains(&order) {
         return Err(Error::usage(format!("a filter of order {order}"), format!("an order of 1 to {MOST}")));
     }
-    let real = (order % 2 == 1).then_some(Pole::Real);
-    let angle = move |k: usize| PI * (2 * k + order - 1) as f64 / (2 * order) as f64;
-    Ok(real.into_iter().chain((1..=order / 2).rev().map(move |k| Pole::Pair(Complex64::cis(angle(k))))))
+    let angle = |k: usize| PI * (2 * k + order - 1) as f64 / (2 * order) as f64;
+    let pairs = (1..=order / 2).rev().map(|k| pair(Complex64::cis(angle(k))));
+    let sections = (order % 2 == 1).then_some(real).into_iter().chain(pairs).collect();
+    let name = format!("Butterworth {kind} of order {order}, corner {} Hz", shortest(corner));
+    Ok(Filter { name, rate, sections })
 }
 
 /// Corner in the analogue plane, s = (1 − z⁻¹)/(1 + z⁻¹).

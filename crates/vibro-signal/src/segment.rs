@@ -1,7 +1,7 @@
 //! Records cut into overlapping segments, a batch of them at a time.
 
 use super::sound::no_gaps;
-use vibro_math::lanes;
+use vibro_math::lanes::{self, Survey};
 use vibro_record::{Error, Result, Traces};
 
 /// Samples of each channel in one batch: several segments for several cores, and yet no more than a cache holds.
@@ -49,27 +49,18 @@ impl Segments {
     }
 }
 
-/// What a channel was seen to hold.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Range {
-    /// Smallest value.
-    pub low: f64,
-    /// Largest value.
-    pub high: f64,
-}
-
 /// Reads a file's channels and hands out as many whole segments at a time as fill a batch.
 pub(crate) struct Batches<'a> {
     traces: &'a mut Traces,
     segments: Segments,
     frames: usize,
-    ranges: Vec<Range>,
+    ranges: Vec<Survey>,
 }
 
 impl<'a> Batches<'a> {
     /// All channels from the place at which `traces` stands.
     pub fn new(traces: &'a mut Traces, segments: Segments) -> Batches<'a> {
-        let ranges = vec![Range { low: f64::INFINITY, high: f64::NEG_INFINITY }; traces.channels().len()];
+        let ranges = vec![lanes::survey(&[]); traces.channels().len()];
         Batches { traces, segments, frames: 0, ranges }
     }
 
@@ -106,7 +97,7 @@ impl<'a> Batches<'a> {
     }
 
     /// Smallest and largest value of each channel so far.
-    pub fn ranges(&self) -> &[Range] {
+    pub fn ranges(&self) -> &[Survey] {
         &self.ranges
     }
 

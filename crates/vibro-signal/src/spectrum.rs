@@ -125,8 +125,8 @@ pub fn scatter(averages: &Averages, scaling: Scaling) -> Vec<f64> {
 /// The line at 0 Hz of a record whose mean was taken out says nothing.
 fn without_mean(values: &mut Values) {
     match values {
-        Values::Real(v) => v.iter_mut().take(1).for_each(|v| *v = f64::NAN),
-        Values::Complex(v) => v.iter_mut().take(1).for_each(|v| *v = Complex64::new(f64::NAN, f64::NAN)),
+        Values::Real(v) => v[0] = f64::NAN,
+        Values::Complex(v) => v[0] = Complex64::new(f64::NAN, f64::NAN),
     }
 }
 

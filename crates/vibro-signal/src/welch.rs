@@ -3,10 +3,6 @@
 //! Segments are read, transformed on all cores and averaged as they come, so that memory does not grow with the record. Sums
 //! are formed in a fixed order: the same record gives the same digits on any number of cores.
 
-mod stream;
-
-pub use stream::Stream;
-
 use super::fft::{Transform, Workspace};
 use super::segment::{Batches, Segments};
 use super::sound::constant;
@@ -72,7 +68,7 @@ impl Welch {
         products: bool,
         mut progress: impl FnMut(usize) + Send,
     ) -> Result<Averages> {
-        let Segments { length, hop } = self.segments;
+        let length = self.segments.length;
         let (frames, rate) = (traces.frames(), traces.rate());
         if frames < length {
             return Err(Error::refused(format!(
@@ -91,7 +87,7 @@ impl Welch {
             batches.carry(&batch, count, &mut next);
             // The next batch is read while this one is transformed.
             let (read, sums) =
-                rayon::join(|| batches.fill(&mut next), || kernel.batch(&batch, count, hop, products));
+                rayon::join(|| batches.fill(&mut next), || kernel.batch(&batch, count, products));
             total.add_all(&sums);
             progress(batches.frames());
             std::mem::swap(&mut batch, &mut next);
@@ -102,7 +98,7 @@ impl Welch {
                 return Err(constant(name, range.low));
             }
         }
-        Ok(total.mean(&kernel.weights, self.segments, rate, self.detrend))
+        Ok(kernel.mean(total, rate))
     }
 }
 
@@ -176,24 +172,24 @@ impl Sums {
 
 /// What is done to each segment.
 struct Kernel {
+    welch: Welch,
     transform: Transform,
     weights: Vec<f64>,
-    detrend: bool,
 }
 
 impl Kernel {
     fn new(welch: Welch) -> Kernel {
         let length = welch.segments.length;
-        Kernel {
-            transform: Transform::new(length),
-            weights: window::samples(welch.window, length),
-            detrend: welch.detrend,
-        }
+        Kernel { welch, transform: Transform::new(length), weights: window::samples(welch.window, length) }
+    }
+
+    fn mean(&self, sums: Sums, rate: f64) -> Averages {
+        sums.mean(&self.weights, self.welch.segments, rate, self.welch.detrend)
     }
 
     /// Sums of the segments of a batch, a few a core, in their order.
-    fn batch(&self, batch: &[Vec<f64>], count: usize, hop: usize, products: bool) -> Vec<Sums> {
-        let n = self.weights.len();
+    fn batch(&self, batch: &[Vec<f64>], count: usize, products: bool) -> Vec<Sums> {
+        let Segments { length, hop } = self.welch.segments;
         (0..count.div_ceil(GROUP))
             .into_par_iter()
             .map_init(
@@ -202,7 +198,7 @@ impl Kernel {
                     let mut sums = Sums::new(batch.len(), products, self.transform.lines());
                     for i in group * GROUP..count.min((group + 1) * GROUP) {
                         for (work, column) in work.iter_mut().zip(batch) {
-                            self.one(column.get(i * hop..i * hop + n).unwrap_or_default(), work);
+                            self.one(column.get(i * hop..i * hop + length).unwrap_or_default(), work);
                         }
                         sums.add(work);
                     }
@@ -213,7 +209,7 @@ impl Kernel {
     }
 
     fn one(&self, segment: &[f64], work: &mut Workspace) {
-        let mean = if self.detrend { lanes::sum(segment) / segment.len().max(1) as f64 } else { 0.0 };
+        let mean = if self.welch.detrend { lanes::sum(segment) / segment.len().max(1) as f64 } else { 0.0 };
         for ((to, v), w) in work.input.iter_mut().zip(segment).zip(&self.weights) {
             *to = (v - mean) * w;
         }
@@ -232,6 +228,57 @@ fn effective(weights: &[f64], hop: usize, count: usize) -> f64 {
         inflation += 2.0 * (1.0 - j as f64 / count as f64) * (product / squares).powi(2);
     }
     count as f64 / inflation
+}
+
+/// Averages of one channel that comes in blocks of any length. Less than a segment and the block waits in memory.
+pub struct Stream {
+    kernel: Kernel,
+    work: [Workspace; 1],
+    waiting: Vec<f64>,
+    sums: Sums,
+}
+
+impl Welch {
+    /// Averages that are fed block by block.
+    ///
+    /// ```
+    /// use vibro_record::Window;
+    /// use vibro_signal::segment::Segments;
+    /// use vibro_signal::welch::Welch;
+    /// let welch = Welch { segments: Segments::new(8, 0.5)?, window: Window::Hann, detrend: true };
+    /// let mut stream = welch.stream();
+    /// (0..3).for_each(|_| stream.push(&[1.0, 0.0, -1.0, 0.0]));
+    /// assert_eq!(stream.averages(4.0).map(|a| a.count), Some(2));
+    /// # Ok::<(), vibro_record::Error>(())
+    /// ```
+    pub fn stream(self) -> Stream {
+        let kernel = Kernel::new(self);
+        Stream {
+            work: [kernel.transform.workspace()],
+            waiting: Vec::new(),
+            sums: Sums::new(1, false, kernel.transform.lines()),
+            kernel,
+        }
+    }
+}
+
+impl Stream {
+    /// Takes the next samples, all of them numbers.
+    pub fn push(&mut self, block: &[f64]) {
+        self.waiting.extend_from_slice(block);
+        let mut at = 0;
+        while let Some(segment) = self.waiting.get(at..at + self.kernel.welch.segments.length) {
+            self.kernel.one(segment, &mut self.work[0]);
+            self.sums.add(&self.work);
+            at += self.kernel.welch.segments.hop;
+        }
+        self.waiting.drain(..at.min(self.waiting.len()));
+    }
+
+    /// The averages so far of samples at `rate` Hz; `None` if not one segment has come.
+    pub fn averages(&self, rate: f64) -> Option<Averages> {
+        (self.sums.count > 0).then(|| self.kernel.mean(self.sums.clone(), rate))
+    }
 }
 
 #[cfg(test)]

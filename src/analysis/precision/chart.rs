@@ -263,16 +263,13 @@ mod tests {
     }
 
     /// Colour and form of the crosses of each method that failed.
-    fn crosses(methods: &[(&str, bool)]) -> Vec<(Ink, Marker)> {
+    fn crosses(methods: &[(&str, bool)]) -> Vec<(Ink, Option<Marker>)> {
         let failing = |&(name, ours): &(&str, bool)| Measured { ours, ..measured(name, "", None, false) };
         let methods = methods.iter().map(failing).collect();
         let Panel::Plot(plot) = chart(&scene(Family::Models, methods)).panels.remove(0) else {
             panic!("a plot")
         };
-        let form = |s: &Series| match s.shape {
-            Shape::Points { marker, .. } => Some((s.ink, marker)),
-            _ => None,
-        };
+        let form = |s: &Series| (s.shape == Shape::Points).then_some((s.ink, s.marker));
         plot.series.iter().filter_map(form).collect()
     }
 
@@ -291,10 +288,7 @@ mod tests {
     #[test]
     fn crosses_stand_above_all_errors() {
         let plot = plot(Family::Models);
-        let heights = |name: &str| match &plot.series.iter().rfind(|s| s.name == name).unwrap().shape {
-            Shape::Points { y, .. } => y.clone(),
-            _ => panic!("points"),
-        };
+        let heights = |name: &str| plot.series.iter().rfind(|s| s.name == name).unwrap().y.clone();
         assert!(heights("other: failed")[0] > 1e-2, "{:?}", heights("other: failed"));
         assert!(heights("one").iter().all(|y| *y < heights("other: failed")[0]));
     }

@@ -3,14 +3,17 @@
 //! Coordinates are points (1/72 inch) with two decimals, so equal figures give equal bytes. Nothing refers to
 //! anything by an id, so any number of pictures can stand in one page.
 
-use crate::colour::Rgb;
+use crate::colour::{BLACK, Rgb};
 use crate::path::{Point, Rect};
 use crate::{font, png};
+use base64::{Engine, engine::general_purpose::STANDARD};
+use ndarray::Array2;
+use resvg::tiny_skia::{ColorU8, Pixmap};
 use std::fmt::Write;
 
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Pen {
+pub(crate) struct Pen {
     pub colour: Rgb,
     pub width: f64,
     /// Lengths of dashes and gaps, in points.
@@ -25,7 +28,7 @@ impl Pen {
 
 /// Which point of a text stands at its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Anchor {
+pub(crate) enum Anchor {
     Start,
     Middle,
     End,
@@ -33,7 +36,7 @@ pub(super) enum Anchor {
 
 /// A text and how it stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Text<'a> {
+pub(crate) struct Text<'a> {
     pub words: &'a str,
     /// End of the baseline, or its middle.
     pub at: Point,
@@ -50,34 +53,26 @@ pub(super) struct Text<'a> {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Image {
     pub place: Rect,
-    /// Cells across.
-    pub width: usize,
-    /// Index in the palette of each cell, row by row from the top; index 0 is left transparent.
-    pub cells: Vec<u8>,
-    pub palette: Vec<Rgb>,
+    /// Cells row by row from the top, opaque or transparent.
+    pub pixels: Pixmap,
 }
 
 /// What has been drawn so far; images lie under everything else.
-#[derive(Debug, Default)]
-pub(super) struct Canvas {
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Canvas {
     pub body: String,
     pub images: Vec<Image>,
 }
 
 impl Canvas {
-    /// Open lines with one pen. Thin ones have plain corners: no rounding would be seen, and long noisy lines
-    /// have many.
+    /// Open lines with one pen.
     pub fn lines(&mut self, parts: &[Vec<Point>], pen: Pen) {
-        let data = path(parts, false);
-        if !data.is_empty() {
-            let corners = if pen.width < 0.7 { " stroke-linejoin=\"bevel\"" } else { "" };
-            let _ = writeln!(self.body, "<path d=\"{data}\"{}{corners}/>", stroke(pen));
-        }
+        self.shape(&path(parts, false), None, Some(pen));
     }
 
     /// The sides of a rectangle.
     pub fn outline(&mut self, r: Rect, pen: Pen) {
-        let _ = writeln!(self.body, "<path d=\"{}\"{}/>", path(&[corners(r)], true), stroke(pen));
+        self.shape(&path(&[r.corners()], true), None, Some(pen));
     }
 
     /// One straight line.
@@ -86,17 +81,13 @@ impl Canvas {
     }
 
     /// Closed areas with one fill and, where wanted, an outline.
-    pub(crate) fn areas(&mut self, parts: &[Vec<Point>], fill: Rgb, outline: Option<Pen>) {
-        let data = path(parts, true);
-        if !data.is_empty() {
-            let outline = outline.map(stroke).unwrap_or_default();
-            let _ = writeln!(self.body, "<path d=\"{data}\" fill=\"{fill}\"{outline}/>");
-        }
+    pub fn areas(&mut self, parts: &[Vec<Point>], fill: Rgb, outline: Option<Pen>) {
+        self.shape(&path(parts, true), Some(fill), outline);
     }
 
     /// A filled rectangle.
     pub fn rect(&mut self, r: Rect, fill: Rgb, outline: Option<Pen>) {
-        self.areas(&[corners(r)], fill, outline);
+        self.areas(&[r.corners()], fill, outline);
     }
 
     /// Circles of one radius.
@@ -114,10 +105,41 @@ impl Canvas {
             }
             data.push('z');
         }
-        if !data.is_empty() {
-            let outline = outline.map(stroke).unwrap_or_default();
-            let _ = writeln!(self.body, "<path d=\"{data}\" fill=\"{fill}\"{outline}/>");
+        self.shape(&data, Some(fill), outline);
+    }
+
+    /// A path. Thin lines have plain corners: no rounding would be seen, and long noisy lines have many.
+    fn shape(&mut self, data: &str, fill: Option<Rgb>, pen: Option<Pen>) {
+        if data.is_empty() {
+            return;
         }
+        let mut look = fill.map(|fill| format!(" fill=\"{fill}\"")).unwrap_or_default();
+        if let Some(Pen { colour, width, dashes }) = pen {
+            let _ = write!(look, " stroke=\"{colour}\" stroke-width=\"{}\"", decimal(width));
+            if !dashes.is_empty() {
+                let lengths: Vec<String> = dashes.iter().map(|d| decimal(*d)).collect();
+                let _ = write!(look, " stroke-dasharray=\"{}\"", lengths.join(" "));
+            }
+            look.push_str(if width < 0.7 { " stroke-linejoin=\"bevel\"" } else { "" });
+        }
+        let _ = writeln!(self.body, "<path d=\"{data}\"{look}/>");
+    }
+
+    /// Cells row by row from the top, without those that are missing.
+    pub fn image(&mut self, place: Rect, cells: &Array2<Option<Rgb>>) {
+        let (down, across) = cells.dim();
+        let Some(mut pixels) = Pixmap::new(across as u32, down as u32) else { return };
+        for (pixel, Rgb(r, g, b)) in
+            pixels.pixels_mut().iter_mut().zip(cells).filter_map(|(p, c)| c.map(|c| (p, c)))
+        {
+            *pixel = ColorU8::from_rgba(r, g, b, 255).premultiply();
+        }
+        self.images.push(Image { place, pixels });
+    }
+
+    /// Plain black text.
+    pub fn label(&mut self, words: &str, at: Point, size: f64, anchor: Anchor) {
+        self.text(Text { words, at, size, anchor, turn: 0.0, colour: BLACK, halo: false });
     }
 
     /// A text.
@@ -167,7 +189,7 @@ pub(super) fn document((width, height): (f64, f64), name: &str, images: &[Image]
             decimal(y),
             decimal(w),
             decimal(h),
-            base64(&png::indexed(image))
+            STANDARD.encode(png::encoded(&image.pixels, None))
         );
     }
     let family = font::FAMILY;
@@ -194,19 +216,6 @@ pub fn escaped(text: &str) -> String {
         }
     }
     out
-}
-
-fn corners(r: Rect) -> Vec<Point> {
-    vec![(r.x, r.y), (r.right(), r.y), (r.right(), r.bottom()), (r.x, r.bottom())]
-}
-
-fn stroke(pen: Pen) -> String {
-    let mut text = format!(" stroke=\"{}\" stroke-width=\"{}\"", pen.colour, decimal(pen.width));
-    if !pen.dashes.is_empty() {
-        let lengths: Vec<String> = pen.dashes.iter().map(|d| decimal(*d)).collect();
-        let _ = write!(text, " stroke-dasharray=\"{}\"", lengths.join(" "));
-    }
-    text
 }
 
 /// Path data; after the first point each is relative to the one before, in whole hundredths, so that nothing
@@ -270,20 +279,6 @@ fn number(out: &mut String, hundredths: i64) {
     }
 }
 
-/// RFC 4648, section 4.
-fn base64(bytes: &[u8]) -> String {
-    const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for group in bytes.chunks(3) {
-        let word = (0..3).fold(0u32, |w, i| w << 8 | u32::from(group.get(i).copied().unwrap_or(0)));
-        for i in 0..4 {
-            let sextet = (word >> (18 - 6 * i) & 63) as usize;
-            out.push(if i <= group.len() { char::from(ALPHABET[sextet]) } else { '=' });
-        }
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -318,15 +313,5 @@ mod tests {
     #[test]
     fn markup_in_texts_is_only_text() {
         assert_eq!(escaped("<a href='x'>&\"\u{1}\n"), "&lt;a href=&#39;x&#39;&gt;&amp;&quot;\u{FFFD} ");
-    }
-
-    #[test]
-    fn base64_has_the_examples_of_its_standard() {
-        // RFC 4648, section 10.
-        for (plain, coded) in
-            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")]
-        {
-            assert_eq!(base64(plain.as_bytes()), coded);
-        }
     }
 }

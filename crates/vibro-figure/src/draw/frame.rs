@@ -109,45 +109,80 @@ pub(super) fn insets(x: &Axis, y: &Axis, size: (f64, f64), named_x: bool) -> Ins
     }
 }
 
+/// An axis along a line of the page.
+pub(super) struct Ruler<'a> {
+    pub axis: &'a Axis,
+    pub ticks: &'a Ticks,
+    pub from: Point,
+    pub to: Point,
+}
+
+/// Where the numbers of an axis stand.
+#[derive(Clone, Copy)]
+pub(super) enum Side {
+    Below,
+    Left,
+    Right,
+}
+
+impl Ruler<'_> {
+    fn at(&self, u: f64) -> Point {
+        let t = self.axis.at_scaled(u);
+        (self.from.0 + t * (self.to.0 - self.from.0), self.from.1 + t * (self.to.1 - self.from.1))
+    }
+
+    /// Tick marks that go this way.
+    pub fn marks(&self, way: Point) -> Vec<Vec<Point>> {
+        let long = self.ticks.major.iter().map(|tick| (tick.at, TICK));
+        let short = self.ticks.minor.iter().map(|at| (*at, TICK / 2.0));
+        let mark = |(at, length): (f64, f64)| {
+            let (x, y) = self.at(at);
+            vec![(x, y), (x + length * way.0, y + length * way.1)]
+        };
+        long.chain(short).map(mark).collect()
+    }
+
+    /// Writes the numbers.
+    pub fn numbers(&self, canvas: &mut Canvas, side: Side, away: f64) {
+        let beside = font::DIGIT_HEIGHT * SMALL / 2.0;
+        let (dx, dy, anchor) = match side {
+            Side::Below => (0.0, away + 0.8 * SMALL, Anchor::Middle),
+            Side::Left => (-away, beside, Anchor::End),
+            Side::Right => (away, beside, Anchor::Start),
+        };
+        for tick in &self.ticks.major {
+            let (x, y) = self.at(tick.at);
+            canvas.label(&tick.label, (x + dx, y + dy), SMALL, anchor);
+        }
+    }
+}
+
 /// Draws frame, ticks on all four sides, numbers and names. Over a map the ticks stand outside.
 pub(super) fn draw(canvas: &mut Canvas, place: &Place<'_>, named_x: bool, outside: bool) {
     let frame = place.frame;
     let (tx, ty) = (across(place.x, frame.w), upward(place.y, frame.h));
-    let mut lines = Vec::new();
-    let sign = if outside { -1.0 } else { 1.0 };
-    let majors = |t: &Ticks| t.major.iter().map(|m| (m.at, TICK)).collect::<Vec<_>>();
-    let minors = |t: &Ticks| t.minor.iter().map(|m| (*m, TICK / 2.0)).collect::<Vec<_>>();
-    for (u, length) in majors(&tx).into_iter().chain(minors(&tx)) {
-        let x = place.across(place.x.at_scaled(u));
-        lines.push(vec![(x, frame.bottom()), (x, frame.bottom() - sign * length)]);
-        if !outside {
-            lines.push(vec![(x, frame.y), (x, frame.y + length)]);
-        }
-    }
-    for (u, length) in majors(&ty).into_iter().chain(minors(&ty)) {
-        let y = place.up(place.y.at_scaled(u));
-        lines.push(vec![(frame.x, y), (frame.x + sign * length, y)]);
-        if !outside {
-            lines.push(vec![(frame.right(), y), (frame.right() - length, y)]);
-        }
-    }
-    canvas.lines(&lines, TICKS);
+    let corners = frame.corners();
+    let ruler =
+        |axis, ticks, from: usize, to: usize| Ruler { axis, ticks, from: corners[from], to: corners[to] };
+    let (below, left) = (ruler(place.x, &tx, 3, 2), ruler(place.y, &ty, 3, 0));
+    let marks = if outside {
+        [below.marks((0.0, 1.0)), left.marks((-1.0, 0.0))].concat()
+    } else {
+        let (above, right) = (ruler(place.x, &tx, 0, 1), ruler(place.y, &ty, 2, 1));
+        let opposite = [above.marks((0.0, 1.0)), right.marks((-1.0, 0.0))].concat();
+        [below.marks((0.0, -1.0)), left.marks((1.0, 0.0)), opposite].concat()
+    };
+    canvas.lines(&marks, TICKS);
     canvas.outline(frame, FRAME);
     let away = GAP + if outside { TICK - 1.0 } else { 0.0 };
-    for tick in ty.major.iter().filter(|t| !t.label.is_empty()) {
-        let y = place.up(place.y.at_scaled(tick.at)) + font::DIGIT_HEIGHT * SMALL / 2.0;
-        label(canvas, &tick.label, (frame.x - away, y), SMALL, Anchor::End);
-    }
+    left.numbers(canvas, Side::Left, away);
     let beside = frame.x - away - widest(&ty) - GAP - DESCENT;
     along(canvas, &place.y.title, beside, frame, if named_x { 2.0 * LEADING } else { GAP });
     if named_x {
-        for tick in &tx.major {
-            let x = place.across(place.x.at_scaled(tick.at));
-            label(canvas, &tick.label, (x, frame.bottom() + away + 0.8 * SMALL), SMALL, Anchor::Middle);
-        }
+        below.numbers(canvas, Side::Below, away);
         let y = frame.bottom() + away + LEADING + 0.8 * LARGE;
         let (name, size) = fitted(&place.x.title, LARGE, frame.w + 2.0 * LEADING);
-        label(canvas, &name, (frame.x + frame.w / 2.0, y), size, Anchor::Middle);
+        canvas.label(&name, (frame.x + frame.w / 2.0, y), size, Anchor::Middle);
     }
 }
 
@@ -157,21 +192,9 @@ pub(super) fn along(canvas: &mut Canvas, name: &str, x: f64, frame: Rect, below:
     const ABOVE: f64 = 4.0;
     let (name, size) = fitted(name, LARGE, frame.h + ABOVE + below);
     let half = font::width(&name, size) / 2.0;
-    let y = frame.middle().1.max(frame.y - ABOVE + half);
-    canvas.text(Text {
-        words: &name,
-        at: (x, y),
-        size,
-        anchor: Anchor::Middle,
-        turn: 90.0,
-        colour: BLACK,
-        halo: false,
-    });
-}
-
-/// Plain black text.
-pub(super) fn label(canvas: &mut Canvas, text: &str, at: Point, size: f64, anchor: Anchor) {
-    canvas.text(Text { words: text, at, size, anchor, turn: 0.0, colour: BLACK, halo: false });
+    let at = (x, frame.middle().1.max(frame.y - ABOVE + half));
+    let anchor = Anchor::Middle;
+    canvas.text(Text { words: &name, at, size, anchor, turn: 90.0, colour: BLACK, halo: false });
 }
 
 /// A text and its size such that it fits: smaller by a quarter at most, then cut.

@@ -1,7 +1,6 @@
 //! Grids of classes on the page.
 
 use super::canvas::{Anchor, Canvas, Pen};
-use super::frame::label;
 use super::style::{FRAME, GAP, SMALL};
 use crate::colour::{GREY, WHITE};
 use crate::font;
@@ -34,30 +33,30 @@ pub(super) fn draw(canvas: &mut Canvas, grid: &Grid, cell: Rect) {
         let middle = left + (i as f64 + 0.5) * width;
         for (k, word) in words.iter().rev().enumerate() {
             let at = (middle, top - GAP - k as f64 * (ROW - 1.0));
-            label(canvas, &font::fit(word, size, width), at, size, Anchor::Middle);
+            canvas.label(&font::fit(word, size, width), at, size, Anchor::Middle);
         }
     }
     let base = 0.5 * ROW + font::DIGIT_HEIGHT * SIZE / 2.0;
     for (i, (row, place)) in grid.rows.iter().zip(&places).enumerate() {
         let y = top + place;
         if i == 0 || grid.rows[i - 1].group != row.group {
-            label(canvas, &row.group, (cell.x, y + base), SIZE, Anchor::Start);
+            canvas.label(&row.group, (cell.x, y + base), SIZE, Anchor::Start);
             canvas.line((cell.x, y), (left + count * width, y), Pen::solid(GREY, 0.4));
         }
-        label(canvas, &row.name, (left - GAP, y + base), SIZE, Anchor::End);
+        canvas.label(&row.name, (left - GAP, y + base), SIZE, Anchor::End);
         for (k, kind) in row.cells.iter().enumerate() {
             let Some(kind) = kind.and_then(|kind| grid.kinds.get(kind)) else { continue };
             let area = Rect { x: left + k as f64 * width, y, w: width, h: ROW };
             canvas.rect(area, kind.colour, Some(Pen::solid(WHITE, 0.6)));
-            label(canvas, &kind.letter, (area.middle().0, y + base), SIZE, Anchor::Middle);
+            canvas.label(&kind.letter, (area.middle().0, y + base), SIZE, Anchor::Middle);
         }
     }
     let (mut x, y) = (cell.x + GAP, cell.bottom() - KEY + 4.0);
     for kind in &grid.kinds {
         let area = Rect { x, y, w: 14.0, h: ROW };
         canvas.rect(area, kind.colour, Some(Pen { width: 0.4, ..FRAME }));
-        label(canvas, &kind.letter, (area.middle().0, y + base), SIZE, Anchor::Middle);
-        label(canvas, &kind.name, (area.right() + GAP, y + base), SMALL, Anchor::Start);
+        canvas.label(&kind.letter, (area.middle().0, y + base), SIZE, Anchor::Middle);
+        canvas.label(&kind.name, (area.right() + GAP, y + base), SMALL, Anchor::Start);
         x = area.right() + 2.0 * GAP + font::width(&kind.name, SMALL) + 10.0;
     }
 }

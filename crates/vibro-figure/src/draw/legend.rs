@@ -1,15 +1,13 @@
 //! The names of series, and the place for them.
 
 use super::canvas::{Anchor, Canvas, Pen};
-use super::clutter::Clutter;
-use super::forms::markers;
-use super::frame::label;
+use super::forms::Form;
+use super::notes::Clutter;
 use super::style::{LEADING, Look, MARKER, OUTLINE, SMALL};
-use crate::colour::WHITE;
 use crate::font;
 use crate::heatmap::{Heatmap, Key};
 use crate::path::{Point, Rect};
-use crate::series::{Series, Shape};
+use crate::series::{Marker, Series, Shape};
 
 /// Length of a sample with a line and of one without, and its distance from the name.
 const SAMPLE: f64 = 18.0;
@@ -18,25 +16,6 @@ const BESIDE: f64 = 4.0;
 /// Distance between entries in a row, and of a legend from the frame.
 const BETWEEN: f64 = 12.0;
 const INSET: f64 = 6.0;
-
-/// Places in a frame to try, as fractions of the free way across and down: corners, then along the edges.
-const PLACES: [(f64, f64); 15] = [
-    (1.0, 0.0),
-    (0.0, 0.0),
-    (1.0, 1.0),
-    (0.0, 1.0),
-    (0.5, 0.0),
-    (0.5, 1.0),
-    (0.25, 0.0),
-    (0.75, 0.0),
-    (0.25, 1.0),
-    (0.75, 1.0),
-    (1.0, 0.5),
-    (0.0, 0.5),
-    (1.0, 0.25),
-    (0.0, 0.25),
-    (1.0, 0.75),
-];
 
 /// Names with samples.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -47,45 +26,32 @@ pub(super) struct KeyList {
 #[derive(Debug, Clone, PartialEq)]
 struct Entry {
     name: String,
-    sample: Sample,
+    shape: Shape,
+    /// Whether its sample has a line.
+    lined: bool,
     look: Look,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Sample {
-    Line,
-    Points { joined: bool },
-    Area,
-    Outline,
-    Bar,
-    Cell,
 }
 
 impl KeyList {
     /// Entries of all named series and classes; reference lines carry their names themselves.
     pub fn new(series: &[Series], looks: &[Look], map: Option<&Heatmap>) -> KeyList {
         let mut entries: Vec<Entry> = Vec::new();
-        for (series, look) in series.iter().zip(looks).filter(|(s, _)| !s.name.is_empty()) {
-            let sample = match &series.shape {
-                Shape::Line { .. } => Sample::Line,
-                Shape::Points { joined, .. } => Sample::Points { joined: joined.is_some() },
-                Shape::Band { .. } => Sample::Area,
-                Shape::Bars { filled: true, .. } => Sample::Bar,
-                Shape::Bars { filled: false, .. } => Sample::Outline,
-                Shape::Vertical { .. } | Shape::Horizontal { .. } => continue,
-            };
-            let entry = Entry { name: series.name.clone(), sample, look: *look };
+        for (series, look) in series.iter().zip(looks) {
+            let Series { name, shape, stroke, .. } = series;
+            let lined = *shape == Shape::Line || *shape == Shape::Points && stroke.is_some();
+            let entry = Entry { name: name.clone(), shape: *shape, lined, look: *look };
+            let along = matches!(shape, Shape::Vertical | Shape::Horizontal);
             // A branch in several pieces has one entry.
-            if !entries.contains(&entry) {
+            if !name.is_empty() && !along && !entries.contains(&entry) {
                 entries.push(entry);
             }
         }
         if let Some(Key::Classes(names)) = map.map(Heatmap::key) {
             entries.extend(names.iter().enumerate().map(|(i, name)| {
                 let colour = Heatmap::class_colour(i);
-                let marker = crate::series::Marker::Circle;
-                let look = Look { colour, pen: Pen::solid(colour, OUTLINE), marker };
-                Entry { name: name.clone(), sample: Sample::Cell, look }
+                let pen = Pen::solid(colour, OUTLINE);
+                let look = Look { colour, fill: colour, pen, marker: Marker::Circle };
+                Entry { name: name.clone(), shape: Shape::Band, lined: false, look }
             }));
         }
         KeyList { entries }
@@ -108,26 +74,29 @@ impl KeyList {
 
     /// The place in a frame where a column covers nothing: corners first, then edges; `None` where there is
     /// none.
-    pub(crate) fn free_place(&self, frame: Rect, clutter: &Clutter) -> Option<Rect> {
+    pub fn free_place(&self, frame: Rect, clutter: &Clutter) -> Option<Rect> {
         let (w, h) = self.column(f64::INFINITY);
         let room = frame.grown(-INSET);
         if w > room.w || h > room.h {
             return None;
         }
-        let at =
-            |(x, y): (f64, f64)| Rect { x: room.x + x * (room.w - w), y: room.y + y * (room.h - h), w, h };
-        PLACES.into_iter().map(at).find(|place| clutter.under(place.grown(INSET / 2.0)) == 0.0)
+        // Fractions of the free way across and down: the edges above and below, then those at the sides.
+        let level = [0.0, 1.0].map(|y| [1.0, 0.0, 0.5, 0.25, 0.75].map(|x| (x, y)));
+        let upright = [1.0, 0.0].map(|x| [0.5, 0.25, 0.75].map(|y| (x, y)));
+        let at = |(x, y)| Rect { x: room.x + x * (room.w - w), y: room.y + y * (room.h - h), w, h };
+        let places = level.into_iter().flatten().chain(upright.into_iter().flatten()).map(at);
+        places.into_iter().find(|place| clutter.under(place.grown(INSET / 2.0)) == 0.0)
     }
 
     /// Draws the entries under each other.
-    pub(crate) fn draw_column(&self, canvas: &mut Canvas, place: Rect) {
+    pub fn draw_column(&self, canvas: &mut Canvas, place: Rect) {
         for (i, entry) in self.entries.iter().enumerate() {
             entry.draw(canvas, (place.x, place.y + (i as f64 + 0.5) * LEADING), self.sample(), place.w);
         }
     }
 
     /// Draws the entries in rows from the upper left.
-    pub(crate) fn draw_rows(&self, canvas: &mut Canvas, place: Rect) {
+    pub fn draw_rows(&self, canvas: &mut Canvas, place: Rect) {
         for (entry, (x, row)) in self.entries.iter().zip(self.flow(place.w)) {
             entry.draw(canvas, (place.x + x, place.y + (row as f64 + 0.5) * LEADING), self.sample(), place.w);
         }
@@ -135,8 +104,7 @@ impl KeyList {
 
     /// Length of the samples, all alike so that names stand under each other.
     fn sample(&self) -> f64 {
-        let line = |e: &Entry| matches!(e.sample, Sample::Line | Sample::Points { joined: true });
-        if self.entries.iter().any(line) { SAMPLE } else { SHORT }
+        if self.entries.iter().any(|e| e.lined) { SAMPLE } else { SHORT }
     }
 
     fn width(&self, entry: &Entry) -> f64 {
@@ -161,24 +129,20 @@ impl KeyList {
 
 impl Entry {
     fn draw(&self, canvas: &mut Canvas, (x, y): Point, sample: f64, room: f64) {
-        let swatch = Rect { x: x + sample / 2.0 - 5.0, y: y - 3.2, w: 10.0, h: 6.4 };
-        let line = ((x, y), (x + sample, y));
-        let outline = Pen { width: OUTLINE, ..self.look.pen };
-        match self.sample {
-            Sample::Line => canvas.line(line.0, line.1, self.look.pen),
-            Sample::Points { joined } => {
-                if joined {
-                    canvas.line(line.0, line.1, self.look.pen);
-                }
-                markers(canvas, &[(x + sample / 2.0, y)], self.look.marker, MARKER, self.look.colour);
-            }
-            Sample::Area => canvas.rect(swatch, self.look.colour.tint(0.72), None),
-            Sample::Bar => canvas.rect(swatch, self.look.colour.tint(0.6), Some(outline)),
-            Sample::Cell => canvas.rect(swatch, self.look.colour, None),
-            Sample::Outline => canvas.rect(swatch, WHITE, Some(outline)),
+        let Look { colour, fill, pen, marker } = self.look;
+        let middle = (x + sample / 2.0, y);
+        let swatch = || vec![Rect { x: middle.0 - 5.0, y: y - 3.2, w: 10.0, h: 6.4 }.corners()];
+        if self.lined {
+            canvas.line((x, y), (x + sample, y), pen);
+        }
+        match self.shape {
+            Shape::Points => Form::Markers(vec![middle], marker, MARKER, colour).draw(canvas),
+            Shape::Band => canvas.areas(&swatch(), fill, None),
+            Shape::Bars => canvas.areas(&swatch(), fill, Some(Pen { width: OUTLINE, ..pen })),
+            Shape::Line | Shape::Vertical | Shape::Horizontal => {}
         }
         let name = font::fit(&self.name, SMALL, room - sample - BESIDE + 0.01);
         let at = (x + sample + BESIDE, y + font::DIGIT_HEIGHT * SMALL / 2.0);
-        label(canvas, &name, at, SMALL, Anchor::Start);
+        canvas.label(&name, at, SMALL, Anchor::Start);
     }
 }

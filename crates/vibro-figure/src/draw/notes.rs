@@ -1,7 +1,7 @@
 //! Words among the data: names of points with leaders, names of reference lines.
 
 use super::canvas::{Anchor, Canvas, Text};
-use super::clutter::Clutter;
+use super::forms::Form;
 use super::frame::Place;
 use super::style::{LEADER, MARKER, SMALL, TICK};
 use crate::colour::{BLACK, GREY, Rgb};
@@ -25,28 +25,26 @@ struct Spot {
 
 /// Names reference lines: along themselves where that covers nothing, else from aside.
 pub(super) fn name_lines(canvas: &mut Canvas, series: &[Series], place: &Place<'_>, clutter: &mut Clutter) {
+    let frame = place.frame;
     for series in series.iter().filter(|s| !s.name.is_empty()) {
-        let frame = place.frame;
-        let (upright, line) = match series.shape {
-            Shape::Vertical { at } => (true, place.across(place.x.at(at))),
-            Shape::Horizontal { at } => (false, place.up(place.y.at(at))),
+        let (upright, at) = match (series.shape, &series.x[..], &series.y[..]) {
+            (Shape::Vertical, [at, ..], _) => (true, (place.across(place.x.at(*at)), frame.y)),
+            (Shape::Horizontal, _, [at, ..]) => (false, (frame.x, place.up(place.y.at(*at)))),
             _ => continue,
         };
-        let (low, high) = if upright { (frame.x, frame.right()) } else { (frame.y, frame.bottom()) };
-        if !(low..=high).contains(&line) {
+        if !frame.contains(at) {
             continue;
         }
-        let name = &series.name;
-        let spot = beside(name, line, upright, frame, clutter);
-        if let Some(spot) = spot.filter(|s| s.cost < 1.0) {
-            write(canvas, name, spot, upright, GREY, clutter);
-        } else if let Some(spot) = best((0..20).filter_map(|i| {
-            let part = 0.05 + 0.045 * f64::from(i);
-            let on = |start: f64, length: f64| start + part * length;
-            let at = if upright { (line, on(frame.y, frame.h)) } else { (on(frame.x, frame.w), line) };
-            around(name, at, 0.0, frame, clutter)
-        })) {
-            write(canvas, name, spot, false, GREY, clutter);
+        let along = beside(&series.name, if upright { at.0 } else { at.1 }, upright, frame, clutter);
+        if let Some(spot) = along.filter(|spot| spot.cost < 1.0) {
+            write(canvas, &series.name, spot, upright, GREY, clutter);
+            continue;
+        }
+        let (right, down) = if upright { (0.0, frame.h) } else { (frame.w, 0.0) };
+        let parts = (0..20).map(|i| 0.05 + 0.045 * f64::from(i));
+        let aside = parts.map(|part| (at.0 + part * right, at.1 + part * down));
+        if let Some(spot) = best(aside.filter_map(|at| around(&series.name, at, 0.0, frame, clutter))) {
+            write(canvas, &series.name, spot, false, GREY, clutter);
         }
     }
 }
@@ -143,6 +141,49 @@ fn best(spots: impl Iterator<Item = Spot>) -> Option<Spot> {
     spots.min_by(|a, b| a.cost.total_cmp(&b.cost)).filter(|spot| spot.cost < 1e5)
 }
 
+/// Lines and boxes that words must not cover.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Clutter {
+    segments: Vec<(Point, Point)>,
+    boxes: Vec<Rect>,
+}
+
+impl Clutter {
+    /// What these forms cover.
+    pub fn of(forms: &[Form]) -> Clutter {
+        let mut clutter = Clutter::default();
+        for form in forms {
+            form.enter(&mut clutter);
+        }
+        clutter
+    }
+
+    pub fn add_lines(&mut self, parts: &[Vec<Point>]) {
+        self.segments.extend(parts.iter().flat_map(|p| p.windows(2).map(|w| (w[0], w[1]))));
+    }
+
+    pub fn add_box(&mut self, rect: Rect) {
+        self.boxes.push(rect);
+    }
+
+    /// How much a box there would cover: nothing at all gives 0.
+    pub fn under(&self, rect: Rect) -> f64 {
+        let lines: f64 = self
+            .segments
+            .iter()
+            .filter_map(|&(a, b)| rect.cut(a, b))
+            // A line that only touches has no length but is touched.
+            .map(|(a, b)| 1.0 + (a.0 - b.0).hypot(a.1 - b.1))
+            .sum();
+        lines + self.boxes.iter().map(|b| 4.0 * rect.overlap(*b)).sum::<f64>()
+    }
+
+    /// How many boxes a line from `a` to `b` would cross.
+    pub fn crossed(&self, a: Point, b: Point) -> usize {
+        self.boxes.iter().filter(|r| r.cut(a, b).is_some()).count()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -190,5 +231,18 @@ mod tests {
         assert!(spot.cost < 1.0 && spot.area.right() < 100.0, "{spot:?}");
         let spot = beside("mean", 100.0, true, FRAME, &clutter).unwrap();
         assert!(spot.cost < 1.0 && spot.area.right() < 100.0 && spot.area.y < 20.0, "{spot:?}");
+    }
+
+    #[test]
+    fn a_box_covers_what_crosses_it_and_nothing_else() {
+        let mut clutter = Clutter::default();
+        clutter.add_lines(&[vec![(0.0, 5.0), (10.0, 5.0)]]);
+        clutter.add_box(Rect { x: 20.0, y: 0.0, w: 4.0, h: 4.0 });
+        let at = |x, y| Rect { x, y, w: 2.0, h: 2.0 };
+        assert_eq!(clutter.under(at(4.0, 6.0)), 0.0);
+        assert_eq!(clutter.under(at(4.0, 4.0)), 3.0);
+        assert_eq!(clutter.under(at(23.0, 3.0)), 4.0);
+        assert_eq!(clutter.crossed((15.0, 2.0), (30.0, 2.0)), 1);
+        assert_eq!(clutter.crossed((15.0, 9.0), (30.0, 9.0)), 0);
     }
 }

@@ -32,6 +32,8 @@ pub(super) const MARKER: f64 = 2.1;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Look {
     pub colour: Rgb,
+    /// Colour of its areas.
+    pub fill: Rgb,
     /// Pen of its line; of its outline where it is no line.
     pub pen: Pen,
     pub marker: Marker,
@@ -39,44 +41,8 @@ pub(super) struct Look {
 
 /// Chooses what was left to choose: series after series takes the next colour, dashes and marker.
 pub(super) fn looks(series: &[Series]) -> Vec<Look> {
-    let mut next = 0;
-    series
-        .iter()
-        .map(|series| {
-            let (turn, colour) = match series.ink {
-                Ink::Auto => (next, colour::SERIES[next % colour::SERIES.len()]),
-                Ink::Nth(n) => (n, colour::SERIES[n % colour::SERIES.len()]),
-                Ink::Grey => (0, GREY),
-                Ink::Black => (0, BLACK),
-                Ink::White => (0, WHITE),
-            };
-            next += usize::from(series.ink == Ink::Auto);
-            let (stroke, marker) = match &series.shape {
-                Shape::Line { stroke, .. } => (*stroke, Marker::Auto),
-                Shape::Points { joined, marker, .. } => (joined.unwrap_or(Stroke::Thin), *marker),
-                Shape::Vertical { .. } | Shape::Horizontal { .. } => (Stroke::Thin, Marker::Auto),
-                Shape::Band { .. } | Shape::Bars { .. } => (Stroke::Solid, Marker::Auto),
-            };
-            Look { colour, pen: pen(colour, stroke, turn), marker: form(marker, turn) }
-        })
-        .collect()
-}
-
-fn pen(colour: Rgb, stroke: Stroke, turn: usize) -> Pen {
-    const TURNS: [Stroke; 4] = [Stroke::Solid, Stroke::Dashed, Stroke::DashDot, Stroke::Dotted];
-    let stroke = if stroke == Stroke::Auto { TURNS[turn % TURNS.len()] } else { stroke };
-    let (width, dashes): (f64, &'static [f64]) = match stroke {
-        Stroke::Auto | Stroke::Solid => (LINE, &[]),
-        Stroke::Dashed => (LINE, &[4.5, 2.2]),
-        Stroke::DashDot => (LINE, &[6.0, 2.0, 1.2, 2.0]),
-        Stroke::Dotted => (LINE, &[1.2, 1.8]),
-        Stroke::Thin => (THIN, &[]),
-    };
-    Pen { colour, width, dashes }
-}
-
-fn form(marker: Marker, turn: usize) -> Marker {
-    const TURNS: [Marker; 7] = [
+    const STROKES: [Stroke; 4] = [Stroke::Solid, Stroke::Dashed, Stroke::DashDot, Stroke::Dotted];
+    const MARKERS: [Marker; 7] = [
         Marker::Circle,
         Marker::Square,
         Marker::Triangle,
@@ -85,7 +51,41 @@ fn form(marker: Marker, turn: usize) -> Marker {
         Marker::FilledSquare,
         Marker::Cross,
     ];
-    if marker == Marker::Auto { TURNS[turn % TURNS.len()] } else { marker }
+    let mut next = 0;
+    let look = |series: &Series| {
+        let nth = |n: usize| (n, colour::SERIES[n % colour::SERIES.len()]);
+        let (turn, colour) = match series.ink {
+            Ink::Auto => nth(next),
+            Ink::Nth(n) => nth(n),
+            Ink::Grey => (0, GREY),
+            Ink::Black => (0, BLACK),
+            Ink::White => (0, WHITE),
+        };
+        next += usize::from(series.ink == Ink::Auto);
+        let (stroke, white) = match series.shape {
+            Shape::Line => (STROKES[turn % STROKES.len()], 0.0),
+            Shape::Points | Shape::Vertical | Shape::Horizontal => (Stroke::Thin, 0.0),
+            Shape::Band => (Stroke::Solid, 0.72),
+            Shape::Bars => (Stroke::Solid, 0.6),
+        };
+        Look {
+            colour,
+            fill: colour.tint(white),
+            pen: pen(colour, series.stroke.unwrap_or(stroke)),
+            marker: series.marker.unwrap_or(MARKERS[turn % MARKERS.len()]),
+        }
+    };
+    series.iter().map(look).collect()
+}
+
+fn pen(colour: Rgb, stroke: Stroke) -> Pen {
+    let dashes: &[f64] = match stroke {
+        Stroke::Solid | Stroke::Thin => &[],
+        Stroke::Dashed => &[4.5, 2.2],
+        Stroke::DashDot => &[6.0, 2.0, 1.2, 2.0],
+        Stroke::Dotted => &[1.2, 1.8],
+    };
+    Pen { colour, width: if stroke == Stroke::Thin { THIN } else { LINE }, dashes }
 }
 
 #[cfg(test)]

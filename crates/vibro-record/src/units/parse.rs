@@ -5,8 +5,6 @@
 //! writes `m/s-2` may mean either power.
 
 use super::Dimension;
-use std::iter::Peekable;
-use std::str::Chars;
 
 /// Symbols with their dimension (m, kg, s, A, K, rad; not doubled), factor to SI, and whether a prefix may stand before them.
 const SYMBOLS: &[(&str, [i8; 6], f64, bool)] = &[
@@ -58,172 +56,153 @@ const PREFIXES: &[(char, f64)] = &[
     ('G', 1e9),
 ];
 
-/// How deep parentheses may nest: units never do, hostile input might.
-const MAX_DEPTH: usize = 16;
+/// Brackets and roots of a text at most.
+const MAX_BRACKETS: usize = 16;
 
 type Parsed = (Dimension, f64);
 
-/// Dimension and factor of a unit text, `None` where any part is unknown.
+/// Dimension and factor to SI of a unit text; `None` if it is not understood.
 pub fn parse(text: &str) -> Option<Parsed> {
     let text = text.trim();
     let text = text.strip_prefix('[').and_then(|t| t.strip_suffix(']')).unwrap_or(text).trim();
-    if text.is_empty() {
-        return None;
-    }
     if text == "-" {
         return Some((Dimension::NONE, 1.0));
     }
-    let mut chars = text.chars().peekable();
-    let result = product(&mut chars, 0)?;
-    (chars.next().is_none() && result.1.is_finite() && result.1 > 0.0).then_some(result)
+    let mut reader = Reader { rest: text, brackets: 0 };
+    let unit = reader.product()?;
+    (reader.rest.is_empty() && unit.1.is_finite() && unit.1 > 0.0).then_some(unit)
 }
 
-fn product(chars: &mut Peekable<Chars>, depth: usize) -> Option<Parsed> {
-    if depth > MAX_DEPTH {
-        return None;
+/// What has not been read yet, and how many brackets have.
+struct Reader<'a> {
+    rest: &'a str,
+    brackets: usize,
+}
+
+impl<'a> Reader<'a> {
+    /// Takes characters as long as they fit.
+    fn take(&mut self, fits: impl Fn(char) -> bool) -> &'a str {
+        let (taken, rest) = self.rest.split_at(self.rest.find(|c| !fits(c)).unwrap_or(self.rest.len()));
+        self.rest = rest;
+        taken
     }
-    let number = number(chars);
-    // A number may touch its unit, as in `100mV`.
-    let (mut total, mut blank, mut alone) = match number {
-        Some(number) => ((Dimension::NONE, number), true, number != 1.0),
-        None => (factor(chars, depth, false)?, false, false),
-    };
-    loop {
-        while chars.next_if(|c| c.is_whitespace()).is_some() {
-            blank = true;
-        }
-        let divide = match chars.peek() {
-            None | Some(')') => return Some(total).filter(|_| !alone),
-            Some('*' | '·' | '⋅' | '×') => false,
-            Some('/') => true,
-            Some(_) if blank => {
-                total = combine(total, factor(chars, depth, false)?, false);
-                (blank, alone) = (false, false);
-                continue;
-            }
-            Some(_) => return None,
+
+    /// Takes one of these characters if it is the next.
+    fn one(&mut self, of: &[char]) -> Option<char> {
+        let c = self.rest.chars().next().filter(|c| of.contains(c))?;
+        self.rest = &self.rest[c.len_utf8()..];
+        Some(c)
+    }
+
+    fn product(&mut self) -> Option<Parsed> {
+        // A number may touch its unit, as in `100mV`; one alone is no unit.
+        let (mut total, mut blank, mut alone) = match self.number() {
+            Some(number) => ((Dimension::NONE, number), true, number != 1.0),
+            None => (self.factor(false)?, false, false),
         };
-        chars.next();
-        while chars.next_if(|c| c.is_whitespace()).is_some() {}
-        total = combine(total, factor(chars, depth, divide)?, divide);
-        (blank, alone) = (false, false);
+        loop {
+            blank |= !self.take(char::is_whitespace).is_empty();
+            if self.rest.is_empty() || self.rest.starts_with(')') {
+                return Some(total).filter(|_| !alone);
+            }
+            let sign = self.one(&['*', '·', '⋅', '×', '/']);
+            if sign.is_none() && !blank {
+                return None;
+            }
+            self.take(char::is_whitespace);
+            let divide = sign == Some('/');
+            let (dimension, factor) = self.factor(divide)?;
+            total = if divide {
+                (total.0.times(dimension.inverse()), total.1 / factor)
+            } else {
+                (total.0.times(dimension), total.1 * factor)
+            };
+            (blank, alone) = (false, false);
+        }
     }
-}
 
-fn combine(a: Parsed, b: Parsed, divide: bool) -> Parsed {
-    if divide { (a.0.times(b.0.inverse()), a.1 / b.1) } else { (a.0.times(b.0), a.1 * b.1) }
-}
+    /// A product up to its closing bracket.
+    fn bracketed(&mut self) -> Option<Parsed> {
+        self.brackets += 1;
+        let inner = (self.brackets <= MAX_BRACKETS).then(|| self.product())??;
+        self.one(&[')'])?;
+        Some(inner)
+    }
 
-/// A real number such as `10` or `2.5e-3`, where one begins.
-fn number(chars: &mut Peekable<Chars>) -> Option<f64> {
-    let mut text = String::new();
-    let digits = |chars: &mut Peekable<Chars>, text: &mut String| {
-        let before = text.len();
-        while let Some(c) = chars.next_if(char::is_ascii_digit) {
-            text.push(c);
+    fn number(&mut self) -> Option<f64> {
+        let digits = |text: &str| text.len() - text.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+        let mut end = digits(self.rest);
+        if end == 0 {
+            return None;
         }
-        text.len() > before
-    };
-    if !digits(chars, &mut text) {
-        return None;
-    }
-    if chars.next_if_eq(&'.').is_some() {
-        text.push('.');
-        digits(chars, &mut text);
-    }
-    // The letter may also begin a symbol.
-    let (mut ahead, mut exponent) = (chars.clone(), String::from("e"));
-    if ahead.next_if(|c| matches!(c, 'e' | 'E')).is_some() {
-        exponent.extend(ahead.next_if(|c| matches!(c, '-' | '+')));
-        if digits(&mut ahead, &mut exponent) {
-            *chars = ahead;
-            text.push_str(&exponent);
+        if self.rest[end..].starts_with('.') {
+            end += 1 + digits(&self.rest[end + 1..]);
         }
+        // The letter may also begin a symbol.
+        if let Some(power) = self.rest[end..].strip_prefix(['e', 'E']) {
+            let unsigned = power.strip_prefix(['-', '+']).unwrap_or(power);
+            if digits(unsigned) > 0 {
+                end += 1 + power.len() - unsigned.len() + digits(unsigned);
+            }
+        }
+        let (number, rest) = self.rest.split_at(end);
+        self.rest = rest;
+        number.parse().ok()
     }
-    text.parse().ok()
-}
 
-/// An atom with its exponent; `below` says that it stands right behind a `/`.
-fn factor(chars: &mut Peekable<Chars>, depth: usize, below: bool) -> Option<Parsed> {
-    if depth > MAX_DEPTH {
-        return None;
-    }
-    let base = match chars.peek()? {
-        '(' => {
-            chars.next();
-            let inner = product(chars, depth + 1)?;
-            chars.next_if_eq(&')')?;
-            inner
-        }
-        '√' => {
-            chars.next();
-            return root(factor(chars, depth + 1, below)?);
-        }
-        '1' => {
+    /// A factor; `below` a fraction bar a negative exponent is ambiguous.
+    fn factor(&mut self, below: bool) -> Option<Parsed> {
+        let base = if self.one(&['(']).is_some() {
+            self.bracketed()?
+        } else if self.one(&['√']).is_some() {
+            self.brackets += 1;
+            return root((self.brackets <= MAX_BRACKETS).then(|| self.factor(below))??);
+        } else if self.one(&['1']).is_some() {
             // Digits behind it would be another number, not its exponent.
-            chars.next();
             return Some((Dimension::NONE, 1.0));
-        }
-        _ => {
-            let mut name = String::new();
-            while let Some(c) = chars.next_if(|c| c.is_alphabetic() || matches!(c, '%' | '°' | '_')) {
-                name.push(c);
-            }
+        } else {
+            let name = self.take(|c| c.is_alphabetic() || matches!(c, '%' | '°' | '_'));
             if name.eq_ignore_ascii_case("sqrt") || name.eq_ignore_ascii_case("rt") {
-                chars.next_if_eq(&'(')?;
-                let inner = product(chars, depth + 1)?;
-                chars.next_if_eq(&')')?;
-                return root(inner);
+                self.one(&['('])?;
+                return root(self.bracketed()?);
             }
-            symbol(&name)?
+            symbol(name)?
+        };
+        match self.power()? {
+            2 => Some(base),
+            halves if below && halves < 0 => None,
+            halves => Some((base.0.half_power(halves)?, base.1.powf(f64::from(halves) / 2.0))),
         }
-    };
-    Some(match power(chars)? {
-        2 => base,
-        halves if below && halves < 0 => return None,
-        halves => (base.0.half_power(halves)?, base.1.powf(f64::from(halves) / 2.0)),
-    })
+    }
+
+    /// Exponent in halves: 2 where none is written.
+    fn power(&mut self) -> Option<i8> {
+        const RAISED: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+        let text = if self.one(&['^']).is_some() {
+            let bracket = self.one(&['(']).is_some();
+            let text = self.take(|c| c.is_ascii_digit() || matches!(c, '-' | '.'));
+            if bracket {
+                self.one(&[')'])?;
+            }
+            text.to_owned()
+        } else {
+            // `m/s2` and `m s-2`: a digit that follows a symbol is its exponent.
+            let plain = self.take(|c| c.is_ascii_digit() || c == '-').to_owned();
+            let raised = if plain.is_empty() { self.take(|c| c == '⁻' || RAISED.contains(c)) } else { "" };
+            let digit = |c| RAISED.chars().zip('0'..='9').find(|(r, _)| *r == c).map_or('-', |(_, d)| d);
+            let text = plain + &raised.chars().map(digit).collect::<String>();
+            if text.is_empty() {
+                return Some(2);
+            }
+            text
+        };
+        let doubled = text.parse::<f64>().ok()? * 2.0;
+        (doubled.fract() == 0.0 && doubled.abs() <= 12.0).then_some(doubled as i8)
+    }
 }
 
 fn root(inner: Parsed) -> Option<Parsed> {
     Some((inner.0.half_power(1)?, inner.1.sqrt()))
-}
-
-/// The exponent that follows an atom, doubled; 2 where there is none.
-fn power(chars: &mut Peekable<Chars>) -> Option<i8> {
-    let mut text = String::new();
-    if chars.next_if_eq(&'^').is_some() {
-        let bracket = chars.next_if_eq(&'(').is_some();
-        while let Some(c) = chars.next_if(|c| c.is_ascii_digit() || matches!(c, '-' | '.')) {
-            text.push(c);
-        }
-        if bracket {
-            chars.next_if_eq(&')')?;
-        }
-        if text.is_empty() {
-            return None;
-        }
-    } else if chars.peek().is_some_and(|c| c.is_ascii_digit() || *c == '-') {
-        // `m/s2` and `m s-2`: a digit that follows a symbol is its exponent.
-        while let Some(c) = chars.next_if(|c| c.is_ascii_digit() || *c == '-') {
-            text.push(c);
-        }
-    } else {
-        while let Some(c) = chars.next_if(|c| "⁻⁰¹²³⁴⁵⁶⁷⁸⁹".contains(*c)) {
-            text.push(match c {
-                '⁻' => '-',
-                '¹' => '1',
-                '²' => '2',
-                '³' => '3',
-                other => char::from_digit(other as u32 - '⁰' as u32, 10)?,
-            });
-        }
-    }
-    if text.is_empty() {
-        return Some(2);
-    }
-    let doubled = text.parse::<f64>().ok()? * 2.0;
-    (doubled.fract() == 0.0 && doubled.abs() <= 12.0).then_some(doubled as i8)
 }
 
 fn symbol(name: &str) -> Option<Parsed> {

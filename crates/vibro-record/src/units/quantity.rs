@@ -78,14 +78,18 @@ impl Quantity {
         TABLE.iter().find(|e| doubled(e.3) == dimension).map_or(Quantity::Other, |e| e.0)
     }
 
-    /// Lower-case English name, as it stands in JSON.
-    pub fn name(self) -> &'static str {
-        TABLE.iter().find(|e| e.0 == self).map_or("other", |e| e.1)
+    fn entry(self) -> Option<&'static Entry> {
+        TABLE.iter().find(|e| e.0 == self)
     }
 
-    /// SI symbol; empty for [`Quantity::Other`].
+    /// Name, as in JSON.
+    pub fn name(self) -> &'static str {
+        self.entry().map_or("other", |e| e.1)
+    }
+
+    /// Symbol of the SI unit; empty where there is none.
     pub fn symbol(self) -> &'static str {
-        TABLE.iter().find(|e| e.0 == self).map_or("", |e| e.2)
+        self.entry().map_or("", |e| e.2)
     }
 
     /// The quantity with this name, ignoring case and surrounding blanks.
@@ -94,9 +98,8 @@ impl Quantity {
         TABLE.iter().find(|e| e.1 == name).map(|e| e.0)
     }
 
-    /// SI symbol and dimension.
-    pub(super) fn si(self) -> Option<(&'static str, Dimension)> {
-        TABLE.iter().find(|e| e.0 == self).map(|e| (e.2, doubled(e.3)))
+    pub(super) fn dimension(self) -> Option<Dimension> {
+        self.entry().map(|e| doubled(e.3))
     }
 }
 

@@ -13,13 +13,18 @@ fn reference() -> Vec<(String, Vec<f64>)> {
         .collect()
 }
 
+fn causal(filter: &Filter, values: &[f64]) -> Vec<f64> {
+    let mut out = values.to_vec();
+    filter.from_rest().apply(&mut out);
+    out
+}
+
 fn named(text: &str) -> Filter {
     let words: Vec<&str> = text.split(' ').collect();
     let (order, corner) = (words[1].parse().unwrap(), words[2].parse().unwrap());
     match words[0] {
         "low" => Filter::low_pass(corner, order, RATE),
-        "high" => Filter::high_pass(corner, order, RATE),
-        _ => Filter::band_pass(corner, words[3].parse().unwrap(), order, RATE),
+        _ => Filter::high_pass(corner, order, RATE),
     }
     .unwrap()
 }
@@ -31,8 +36,12 @@ fn agrees_with_scipy() {
     let mut worst = 0.0f64;
     for (name, expected) in &reference[1..] {
         let (way, filter) = name.split_once(' ').unwrap();
+        if filter.starts_with("band") {
+            continue;
+        }
         let filter = named(filter);
-        let found = if way == "causal" { filter.causal(record) } else { filter.zero_phase(record).unwrap() };
+        let found =
+            if way == "causal" { causal(&filter, record) } else { filter.zero_phase(record).unwrap() };
         assert_eq!(found.len(), expected.len());
         for (a, b) in found.iter().zip(expected) {
             worst = worst.max((a - b).abs());
@@ -50,7 +59,6 @@ fn corners_are_where_they_are_said() {
         let filters = [
             (Filter::low_pass(123.0, order, RATE).unwrap(), vec![123.0]),
             (Filter::high_pass(77.0, order, RATE).unwrap(), vec![77.0]),
-            (Filter::band_pass(60.0, 200.0, order, RATE).unwrap(), vec![60.0, 200.0]),
             (Filter::smoothing(80.0, RATE).unwrap(), vec![80.0]),
         ];
         for (filter, corners) in filters {
@@ -66,8 +74,8 @@ fn corners_are_where_they_are_said() {
 #[test]
 fn blocks_of_any_length_give_the_same() {
     let record = &reference()[0].1;
-    let filter = Filter::band_pass(40.0, 90.0, 3, RATE).unwrap();
-    let whole = filter.causal(record);
+    let filter = Filter::low_pass(40.0, 5, RATE).unwrap();
+    let whole = causal(&filter, record);
     for length in [1, 7, 64] {
         let (mut running, mut out) = (filter.from_rest(), record.clone());
         out.chunks_mut(length).for_each(|block| running.apply(block));
@@ -95,7 +103,7 @@ fn smoothing_is_the_recursion() {
     let filter = Filter::smoothing(20.0, RATE).unwrap();
     let alpha = filter.sections[0].b[0];
     let (record, mut y) = (&reference()[0].1, 0.0);
-    for (x, found) in record.iter().zip(filter.causal(record)) {
+    for (x, found) in record.iter().zip(causal(&filter, record)) {
         y += alpha * (x - y);
         assert!((y - found).abs() < 1e-14);
     }
@@ -109,7 +117,6 @@ fn impossible_filters_are_refused() {
         assert!(Filter::low_pass(corner, order, rate).is_err());
         assert!(Filter::high_pass(corner, order, rate).is_err());
     }
-    assert!(Filter::band_pass(90.0, 40.0, 2, RATE).unwrap_err().to_string().contains("from 90 to 40"));
     let filter = Filter::low_pass(10.0, 4, RATE).unwrap();
     let error = filter.zero_phase(&[1.0; 15]).unwrap_err().to_string();
     assert!(error.contains("15 samples") && error.contains("more than 15"), "{error}");

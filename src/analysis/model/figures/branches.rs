@@ -139,7 +139,6 @@ fn panel(response: &Response, mass: usize) -> Plot {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Shape;
 
     #[test]
     fn lines_side_by_side_stay_whole() {
@@ -149,7 +148,7 @@ mod tests {
             pieces.join((x, 0.0), (x + 1.0, 0.0));
             pieces.join((x, 5.0 + x), (x + 1.0, 6.0 + x));
         }
-        let Shape::Line { x, y, .. } = pieces.series("").shape else { panic!("a line") };
+        let Series { x, y, .. } = pieces.series("");
         assert_eq!((&x[..4], &y[..4]), (&[0.0, 1.0, 2.0, 3.0][..], &[0.0; 4][..]));
         assert!(x[4].is_nan() && y[4].is_nan());
         assert_eq!((&x[5..], &y[5..]), (&[0.0, 1.0, 2.0, 3.0][..], &[5.0, 6.0, 7.0, 8.0][..]));

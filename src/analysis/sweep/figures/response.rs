@@ -108,13 +108,13 @@ pub(super) fn series(
     }
     let down = response.direction == Some(Direction::Down);
     let marker = match (response.mass, down) {
-        (Some(2), false) => Marker::FilledSquare,
-        (Some(2), true) => Marker::Square,
-        (Some(_), false) => Marker::Circle,
-        (Some(_), true) => Marker::OpenCircle,
-        (None, _) => Marker::Auto,
+        (Some(2), false) => Some(Marker::FilledSquare),
+        (Some(2), true) => Some(Marker::Square),
+        (Some(_), false) => Some(Marker::Circle),
+        (Some(_), true) => Some(Marker::OpenCircle),
+        (None, _) => None,
     };
-    let measured = Series::points(response.name.clone(), x, y).y_error(std).marker(marker);
+    let measured = Series { marker, ..Series::points(response.name.clone(), x, y).y_error(std) };
     let limits = Series::points("", limits.0, limits.1).marker(Marker::Limit);
     let ink = response.mass.map_or(2 * rank, |mass| 2 * rank + usize::from(mass.saturating_sub(1)));
     [measured, limits].map(|series| series.ink(Ink::Nth(ink)))
