@@ -7,7 +7,7 @@ use vibro_record::{
 };
 
 /// What a file states of a spectrum.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Spectral {
     /// Scaling, where it is stated.
     pub scaling: Option<Scaling>,
@@ -15,6 +15,8 @@ pub struct Spectral {
     pub enbw: Option<f64>,
     /// Whether complex values are stated to be a frequency response function.
     pub frf: bool,
+    /// What to say where the scaling is not known, if not that the file is silent.
+    pub doubt: Option<Finding>,
 }
 
 /// The record of values in SI units: a trace unless they stand over frequency, and a frequency response function where they
@@ -34,9 +36,15 @@ pub fn record(mut meta: Meta, axis: Axis, values: Values, said: Spectral) -> Rec
     };
     let scaling = said.scaling.unwrap_or(Scaling::Unknown);
     if scaling == Scaling::Unknown {
-        meta.found(Finding::caution("scaling-unsaid"));
+        meta.found(said.doubt.unwrap_or_else(|| Finding::caution("scaling-unsaid")));
     }
     Record::Spectrum(Spectrum { meta, axis, values, scaling, window: said.window, enbw: said.enbw })
+}
+
+/// A scaling by its name.
+pub fn scaling(name: &str) -> Option<Scaling> {
+    use Scaling::{Coherence, Energy, Peak, Power, Psd, Rms, Unknown};
+    [Peak, Rms, Power, Psd, Energy, Coherence, Unknown].into_iter().find(|s| s.name() == name)
 }
 
 /// Multiplies values by the factor of their unit.

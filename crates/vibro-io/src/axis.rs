@@ -51,16 +51,7 @@ fn is_rounding(steps: &[f64], middle: f64) -> bool {
 
 /// Six digits are enough for a sentence.
 pub fn short(value: f64) -> f64 {
-    rounded(value, 6)
-}
-
-pub fn rounded(value: f64, digits: usize) -> f64 {
-    format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
-}
-
-/// How many digits show that two numbers differ: six at least, and no more where twelve do not.
-pub fn apart(a: f64, b: f64) -> usize {
-    (6..=12).find(|digits| rounded(a, *digits) != rounded(b, *digits)).unwrap_or(6)
+    format!("{value:.5e}").parse().unwrap_or(value)
 }
 
 #[cfg(test)]
@@ -89,16 +80,6 @@ mod tests {
         assert_eq!(steps(of(&[0.0, 2.0, 1.0], 0.0).1, "axis-backwards")[..2], [-1.0, 2.0]);
         assert_eq!(of(&[1.0], 0.0).1, None);
         assert_eq!(of(&[], 0.0).1, None);
-    }
-
-    #[test]
-    fn numbers_are_printed_until_they_differ() {
-        for (a, b, digits) in
-            [(1.0, 2.0, 6), (2_730.67, 2_730.666_667, 7), (1.0, 1.000_000_01, 9), (1.0, 1.0, 6)]
-        {
-            assert_eq!(apart(a, b), digits, "{a} {b}");
-        }
-        assert_ne!(rounded(2_730.67, 7), rounded(2_730.666_667, 7));
     }
 
     #[test]

@@ -55,10 +55,10 @@ impl Header {
         }
     }
 
-    /// The same with what a pass over the values found, `factor` taking them to SI.
-    pub(crate) fn summed(mut self, summary: &Summary, factor: f64, axis: &Axis) -> Header {
+    /// The same with what a pass over the values found.
+    pub(crate) fn summed(mut self, summary: &Summary, axis: &Axis) -> Header {
         self.n = summary.n;
-        self.max_abs = summary.max.map(|(_, m)| m * factor.abs());
+        self.max_abs = summary.max.map(|(_, m)| m);
         self.max_at = summary.max.filter(|(i, _)| *i < axis.len()).map(|(i, _)| axis.at(i));
         self
     }

@@ -28,9 +28,9 @@ pub(super) struct Missing {
 }
 
 impl Missing {
-    /// Counts `count` values of a line; `what` names the column where it has a name.
-    pub fn take(&mut self, line: u64, count: usize, what: &str) {
-        self.count = self.count.saturating_add(count);
+    /// Counts one value of a line; `what` names the column where it has a name.
+    pub fn take(&mut self, line: u64, what: &str) {
+        self.count += 1;
         if self.places.last().is_some_and(|(last, of)| (*last, of.as_str()) == (line, what)) {
             return;
         }

@@ -168,8 +168,8 @@ impl Reader {
     /// # Errors
     /// As [`Reader::from_path`].
     pub(crate) fn read(&self, source: &Source) -> Result<Recording> {
-        let (entry, source) = self.entry(source)?;
-        (entry.read)(&source, &self.options).map_err(|e| no_list(&source, e).in_file(source.path()))
+        let entry = self.entry(source)?;
+        (entry.read)(source, &self.options).map_err(|e| no_list(source, e).in_file(source.path()))
     }
 
     /// The records of a file without their values; memory does not grow with the file where the format allows.
@@ -178,37 +178,34 @@ impl Reader {
     /// As [`Reader::from_path`].
     pub fn survey(&self, path: impl AsRef<Path>) -> Result<(Format, Vec<Header>, Vec<Finding>)> {
         let source = Source::file(path)?;
-        let (entry, source) = self.entry(&source)?;
-        let (headers, findings) =
-            (entry.survey)(&source, &self.options).map_err(|e| no_list(&source, e).in_file(source.path()))?;
-        Ok((entry.format, headers, findings))
+        let entry = self.entry(&source)?;
+        if let Some(survey) = entry.survey {
+            let (headers, findings) = survey(&source, &self.options).map_err(|e| e.in_file(source.path()))?;
+            return Ok((entry.format, headers, findings));
+        }
+        let recording = self.read(&source)?;
+        Ok((entry.format, recording.records.iter().map(Header::of).collect(), recording.findings))
     }
 
     pub(super) fn options(&self) -> &Options {
         &self.options
     }
 
-    /// The format of a source, and the source itself: in memory where its first bytes are all of it.
-    pub(super) fn entry(&self, source: &Source) -> Result<(&'static Entry, Source)> {
+    /// The format of a source.
+    pub(super) fn entry(&self, source: &Source) -> Result<&'static Entry> {
         for (what, value) in [("sampling rate", self.options.rate), ("base band", self.options.base_band)] {
             if let Some(value) = value.filter(|v| !POSSIBLE.contains(v)) {
                 let found = format!("a {what} of {value} Hz was stated");
                 return Err(Error::input(Place::file(source.path()), found, "a possible number of hertz"));
             }
         }
-        let head = source.head()?;
         let forced = self.format.and_then(|format| TABLE.iter().find(|e| e.format == format));
-        let entry = forced.or_else(|| TABLE.iter().find(|e| (e.sniff)(&head, source))).ok_or_else(|| {
-            Error::input(
-                Place::file(source.path()),
-                "not a format that is known here",
-                Format::names().join(", "),
-            )
-            .hint("name the format, or export the record as text or UFF-58")
-            .setting("format")
-        })?;
-        let small = head.len() as u64 == source.len();
-        Ok((entry, if small { Source::memory(source.path(), head)? } else { source.clone() }))
+        forced.or_else(|| TABLE.iter().find(|e| (e.sniff)(source.head(), source))).ok_or_else(|| {
+            let names = Format::names().join(", ");
+            Error::input(Place::file(source.path()), "not a format that is known here", names)
+                .hint("name the format, or export the record as text or UFF-58")
+                .setting("format")
+        })
     }
 }
 

@@ -1,9 +1,9 @@
 //! Time traces of one file block by block.
 
-use crate::wav::Calibrated;
+use crate::wav::Wave;
 use crate::{Format, Reader, Source};
 use std::path::Path;
-use vibro_record::{Error, Meta, Place, Record, Result, Trace, Traces, find_channel};
+use vibro_record::{Error, Meta, Place, Record, Result, Stream as _, Trace, Traces, find_channel};
 
 impl Reader {
     /// Opens all time traces of a file to be read block by block.
@@ -20,14 +20,15 @@ impl Reader {
     /// # Errors
     /// As [`Reader::stream`]; if there is no such channel.
     pub fn stream_channels(&self, path: impl AsRef<Path>, channels: &[&str]) -> Result<Traces> {
-        let (entry, source) = self.entry(&Source::file(path)?)?;
+        let source = Source::file(path)?;
         let path = source.path().to_owned();
-        if entry.format == Format::Wav {
-            let mut stream = Calibrated::open(&source, self.options())?;
-            let chosen = choose(&path, channels, stream.channels().iter().map(|t| &t.meta))?;
-            let traces = stream.chosen(&chosen);
-            let findings = stream.findings().to_vec();
-            return Traces::of_stream(path, findings, &traces, stream.frames(), Box::new(stream));
+        if self.entry(&source)?.format == Format::Wav {
+            let mut wave = Wave::open(&source, self.options())?;
+            let chosen = choose(&path, channels, wave.channels().iter().map(|t| &t.meta))?;
+            let traces: Vec<Trace> = chosen.iter().map(|i| wave.channels()[*i].clone()).collect();
+            wave.keep(&chosen);
+            let (findings, frames) = (wave.findings().to_vec(), wave.frames());
+            return Traces::of_stream(path, findings, &traces, frames, Box::new(wave));
         }
         let recording = self.read(&source)?;
         let kinds: Vec<&str> = recording.records.iter().map(Record::kind).collect();

@@ -42,7 +42,8 @@ impl SweepList {
     /// If a number or a name is missing or out of range, or a name leads outside the folder and `allow_outside` is not set.
     pub fn from_path(path: impl AsRef<Path>, allow_outside: bool) -> Result<SweepList> {
         let path = path.as_ref();
-        let bytes = Source::file(path)?.all()?;
+        let source = Source::file(path)?;
+        let bytes = source.all()?;
         if !encoding::is_text(&bytes[..bytes.len().min(4096)]) {
             return Err(Error::input(Place::file(path), "binary data", "a list file of text").hint(
                 "give a list file (N, lines, base band, force names, response names) or campaign.toml#name",

@@ -181,17 +181,6 @@ fn values_too_large_for_si_are_refused() {
 }
 
 #[test]
-fn a_blank_line_leaves_the_time_column_in_place() {
-    let reader = Reader::new().allow_missing(true);
-    let lost = told(&reader, "t [s]  v [m/s]\n0.0 1\n0.1 2\n\n0.3 4\n0.4 5\n");
-    assert_eq!((lost.records.len(), axis(&lost)), (1, (&AxisKind::Time, Some(0.1))));
-    assert!(values(&lost)[2].is_nan() && values(&lost).len() == 5);
-    let apart = told(&reader, "0.0 1\n0.1 2\n\n0.2 4\n0.3 5\n");
-    assert_eq!((apart.records.len(), values(&apart)), (1, vec![1.0, 2.0, 4.0, 5.0]));
-    assert!(says(&apart, &["1 row without a first value is left out"]));
-}
-
-#[test]
 fn the_measured_accelerances() {
     let Some(folder) = others_files::folder("analyser") else { return };
     // 1001 complex lines of 1 Hz; peaks near 52, 142, 279, 460, 687 and 959 Hz in their maximum over the three points.

@@ -49,11 +49,6 @@ impl<'a> Lines<'a> {
     pub fn new(text: &'a str, at: usize, number: u64, remarks: &'static [&'static str]) -> Lines<'a> {
         Lines { text, at, number, remarks }
     }
-
-    /// The lines from `line` on.
-    pub fn again(&self, line: &Line) -> Lines<'a> {
-        Lines { at: line.at, number: line.number, ..self.clone() }
-    }
 }
 
 impl<'a> Iterator for Lines<'a> {

@@ -149,8 +149,8 @@ impl Name {
 }
 
 /// One name a column, where the last header line can be cut into as many; a second line may hold the units.
-pub fn above(header: &[(u64, String)], columns: usize, separator: Separator) -> Option<Vec<Name>> {
-    let mut spoken = header.iter().rev().map(|(_, line)| cut(line, columns, separator));
+pub fn above(header: &[String], columns: usize, separator: Separator) -> Option<Vec<Name>> {
+    let mut spoken = header.iter().rev().map(|line| cut(line, columns, separator));
     let last = spoken.next()??;
     if is_unit_row(last.iter().map(String::as_str))
         && let Some(Some(upper)) = spoken.next()

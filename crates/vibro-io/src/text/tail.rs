@@ -1,8 +1,11 @@
 //! The end of a text of numbers: whether it is cut off, and how precisely its abscissa is printed.
 
-use super::dialect::{Dialect, Head, Separator};
+use super::Text;
+use super::dialect::{Dialect, Separator};
+use super::lines::{Line, Lines};
 use crate::{Source, number};
-use std::io::{Read, SeekFrom};
+use std::borrow::Cow;
+use std::io::{Read, Seek, SeekFrom};
 use vibro_record::{Error, Finding, Result};
 
 /// Bytes at the end that are looked at.
@@ -15,14 +18,15 @@ pub(crate) const CUT_OFF: &str =
     "the file ends within this row, so the export was cut off: export it again, or remove the row";
 
 /// The last bytes of a source, one more than is looked at: it tells whether they begin in the middle of a row.
-pub fn of(source: &Source) -> Result<Vec<u8>> {
-    let failed = |e| Error::io("read", source.path(), e);
-    let mut tail = Vec::new();
-    let mut input = source.open()?;
-    let look = LOOK as u64 + 1;
-    input.seek(SeekFrom::Start(source.len().saturating_sub(look))).map_err(failed)?;
-    input.take(look).read_to_end(&mut tail).map_err(failed)?;
-    Ok(tail)
+pub fn of(source: &Source) -> Result<Cow<'_, [u8]>> {
+    let from = source.len().saturating_sub(LOOK as u64 + 1);
+    if let Some(bytes) = source.in_memory() {
+        return Ok(bytes[from as usize..].into());
+    }
+    let (mut tail, mut input) = (Vec::new(), source.open()?);
+    let read = input.seek(SeekFrom::Start(from)).and_then(|_| input.read_to_end(&mut tail));
+    read.map_err(|e| Error::io("read", source.path(), e))?;
+    Ok(tail.into())
 }
 
 /// The rows that are whole at the end of a text.
@@ -68,21 +72,18 @@ fn digits(cell: &[u8], decimal: u8) -> Option<(usize, usize)> {
 
 /// Half a unit in the last digit that a column is printed with: by its rows in the head and at the end of the text, since the
 /// largest of a rising column have the most digits.
-pub fn resolution(head: &Head, tail: &[u8], dialect: &Dialect, column: usize) -> f64 {
+pub fn resolution(text: &Text, tail: &[u8], dialect: &Dialect, column: usize) -> f64 {
     let mut digits = Digits::default();
-    let mut take = |line: &super::lines::Line| {
-        let fields = dialect.cut(line).unwrap_or_default();
-        let value = fields.get(column).map(|(_, f)| f.as_bytes());
-        let parsed = value.and_then(|f| Some((f, number::parse_with(f, dialect.decimal)?)));
-        if let Some((field, value)) = parsed {
+    let mut take = |line: Line| {
+        let fields = dialect.cut(&line).unwrap_or_default();
+        let field = fields.get(column).filter(|_| line.remark.is_none()).map(|(_, f)| f.as_bytes());
+        if let Some((field, value)) = field.and_then(|f| Some((f, number::parse_with(f, dialect.decimal)?))) {
             digits.take(field, dialect.decimal, value);
         }
     };
-    dialect.rows(&head.text).filter(|l| l.remark.is_none()).for_each(|l| take(&l));
-    if head.text.len() > tail.len() {
-        let text = String::from_utf8_lossy(whole(tail));
-        let lines = super::lines::Lines::new(&text, 0, 1, dialect.remarks);
-        lines.filter(|l| l.remark.is_none()).for_each(|l| take(&l));
+    dialect.rows(&text.head).for_each(&mut take);
+    if text.head.len() > tail.len() {
+        Lines::new(&String::from_utf8_lossy(whole(tail)), 0, 1, dialect.remarks).for_each(take);
     }
     digits.resolution()
 }
