@@ -1,6 +1,6 @@
 //! What `vibro info` says of a record, gathered without holding its values.
 
-use vibro_record::{Axis, Finding, Meta, Record};
+use vibro_record::{Finding, Meta, Record};
 
 /// One record of a file, without its values.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -54,14 +54,6 @@ impl Header {
             findings: meta.findings.clone(),
         }
     }
-
-    /// The same with what a pass over the values found.
-    pub(crate) fn summed(mut self, summary: &Summary, axis: &Axis) -> Header {
-        self.n = summary.n;
-        self.max_abs = summary.max.map(|(_, m)| m);
-        self.max_at = summary.max.filter(|(i, _)| *i < axis.len()).map(|(i, _)| axis.at(i));
-        self
-    }
 }
 
 /// Header lines, then the arguments of the step `read` that say how text was read.
@@ -74,23 +66,4 @@ fn notes(meta: &Meta) -> Vec<String> {
     let how = meta.history.iter().filter(|step| step.name == "read").flat_map(|step| &step.arguments);
     let how = how.filter(|(key, _)| matches!(key.as_str(), "encoding" | "decimal mark"));
     lines.chain(how.map(|(key, value)| format!("{key}: {value}"))).collect()
-}
-
-/// Count and largest magnitude of a stream of values.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct Summary {
-    /// Values seen.
-    pub n: usize,
-    /// Index and magnitude of the largest; the first of equals.
-    pub max: Option<(usize, f64)>,
-}
-
-impl Summary {
-    /// Takes one more magnitude; NaN counts as a value but never as the largest.
-    pub fn push(&mut self, magnitude: f64) {
-        if !magnitude.is_nan() && self.max.is_none_or(|(_, m)| magnitude > m) {
-            self.max = Some((self.n, magnitude));
-        }
-        self.n += 1;
-    }
 }

@@ -29,7 +29,6 @@
 mod assemble;
 mod axis;
 mod choose;
-mod decibel;
 mod format;
 mod header;
 mod mat;
@@ -37,7 +36,6 @@ mod missing;
 mod number;
 mod reader;
 mod source;
-mod stream;
 mod sweep;
 mod sweep_list;
 mod text;
@@ -53,7 +51,6 @@ pub use reader::{Reader, Recording};
 pub use sweep::SweepReader;
 pub use sweep_list::{SweepList, inside};
 
-pub(crate) use header::Summary;
 pub(crate) use reader::Options;
 pub(crate) use source::Source;
 

@@ -139,20 +139,17 @@ fn allow(
 ) -> Result<()> {
     let mut missing = Vec::new();
     for (name, values) in records {
-        let gap = |i: usize| format!("{} of {name:?}", i + 1);
-        match values {
-            Values::Real(values) => {
-                for (i, v) in values.iter_mut().enumerate().filter(|(_, v)| !v.is_finite()) {
-                    *v = f64::NAN;
-                    missing.push(gap(i));
+        for i in 0..values.len() {
+            let odd = match values {
+                Values::Real(values) => {
+                    Some(&mut values[i]).filter(|v| !v.is_finite()).map(|v| *v = f64::NAN)
                 }
-            }
-            Values::Complex(values) => {
-                for (i, v) in values.iter_mut().enumerate().filter(|(_, v)| !v.is_finite()) {
-                    *v = Complex64::new(f64::NAN, f64::NAN);
-                    missing.push(gap(i));
+                Values::Complex(values) => {
+                    let gap = Complex64::new(f64::NAN, f64::NAN);
+                    Some(&mut values[i]).filter(|v| !v.is_finite()).map(|v| *v = gap)
                 }
-            }
+            };
+            missing.extend(odd.map(|()| format!("{} of {name:?}", i + 1)));
         }
     }
     findings.extend(missing::kept(missing.len()));
@@ -186,25 +183,24 @@ fn kind(name: &str) -> Option<AxisKind> {
 }
 
 /// What the file and the person say of abscissae.
-#[derive(Default)]
-struct Axes {
-    /// Of a person's statement, with the base band as its step.
-    stated: Option<Axis>,
+struct Axes<'a> {
+    options: &'a Options,
     time: Option<Axis>,
     frequency: Option<Axis>,
     rate: Option<f64>,
 }
 
-impl Axes {
+impl<'a> Axes<'a> {
     /// Takes the rising vectors named as abscissae out of `arrays` where another array has their length.
     fn find(
         source: &Source,
         arrays: &mut Vec<(String, Array)>,
         rates: &[(String, f64)],
-        options: &Options,
+        options: &'a Options,
         findings: &mut Vec<Finding>,
-    ) -> Result<Axes> {
-        let mut axes = Axes { rate: rates.first().map(|(_, rate)| *rate), ..Axes::default() };
+    ) -> Result<Axes<'a>> {
+        let rate = rates.first().map(|(_, rate)| *rate);
+        let mut axes = Axes { options, time: None, frequency: None, rate };
         if let [(first, a), rest @ ..] = rates
             && let Some((other, b)) = rest.iter().find(|(_, b)| (b / a - 1.0).abs() > 1e-6)
             && options.rate.is_none()
@@ -215,11 +211,6 @@ impl Axes {
                 .hint("state the sampling rate")
                 .setting("rate"));
         }
-        axes.stated = match (options.rate, options.base_band) {
-            (Some(rate), _) => Some(Axis::time(0.0, 1.0 / rate, 0)),
-            (None, Some(band)) => Some(Axis::frequency(0.0, band, 0)),
-            _ => None,
-        };
         for axis_kind in [AxisKind::Time, AxisKind::Frequency] {
             let Some(at) = arrays.iter().position(|(name, _)| kind(name).as_ref() == Some(&axis_kind)) else {
                 continue;
@@ -268,12 +259,10 @@ impl Axes {
         let (n, complex) = (values.len(), matches!(values, Values::Complex(_)));
         let time = self.time.as_ref().filter(|t| t.len() == n && !complex);
         let frequency = self.frequency.as_ref().filter(|f| f.len() == n);
-        if let Some(stated) = self.stated.as_ref().filter(|s| !complex || s.kind == AxisKind::Frequency) {
-            let step = stated.step().unwrap_or(1.0);
-            return match stated.kind {
-                AxisKind::Time => Axis::time(time.map_or(0.0, Axis::start), step, n),
-                _ => Axis::frequency(0.0, step / n.saturating_sub(1).max(1) as f64, n),
-            };
+        match (self.options.rate, self.options.base_band) {
+            (Some(rate), _) if !complex => return Axis::time(time.map_or(0.0, Axis::start), 1.0 / rate, n),
+            (None, Some(band)) => return Axis::frequency(0.0, band / n.saturating_sub(1).max(1) as f64, n),
+            _ => {}
         }
         if time.is_some() && frequency.is_some() {
             findings.push(Finding::caution("time-or-frequency").name("variable", name));

@@ -24,20 +24,14 @@ pub(super) struct Missing {
     /// Number of values.
     pub count: usize,
     places: Vec<(u64, String)>,
-    more: bool,
 }
 
 impl Missing {
     /// Counts one value of a line; `what` names the column where it has a name.
     pub fn take(&mut self, line: u64, what: &str) {
         self.count += 1;
-        if self.places.last().is_some_and(|(last, of)| (*last, of.as_str()) == (line, what)) {
-            return;
-        }
         if self.places.len() < LISTED {
             self.places.push((line, what.to_owned()));
-        } else {
-            self.more = true;
         }
     }
 
@@ -52,7 +46,7 @@ impl Missing {
             .iter()
             .map(|(line, what)| if what.is_empty() { line.to_string() } else { format!("{line} ({what:?})") })
             .collect();
-        let more = if self.more { ", …" } else { "" };
+        let more = if self.count > LISTED { ", …" } else { "" };
         let found = format!(
             "{} missing value(s) (NaN, Inf or blank) in line(s) {}{more}",
             self.count,

@@ -143,13 +143,10 @@ impl Reader {
         }
         let failed: Vec<&P> =
             paths.iter().zip(&results).filter(|(_, r)| r.is_err()).map(|(p, _)| p).collect();
-        let many = match failed.len() {
-            all if all == paths.len() && all > 1 => format!("none of the {all} files can be read so"),
-            0 | 1 => String::new(),
-            some => format!("{some} of {} files cannot be read so: {}", paths.len(), listed(&failed)),
-        };
+        let many =
+            format!("{} of {} files cannot be read so: {}", failed.len(), paths.len(), listed(&failed));
         let whole: Result<Vec<Recording>> = results.into_iter().collect();
-        whole.map_err(|error| if many.is_empty() { error } else { error.aside(many) })
+        whole.map_err(|error| if failed.len() > 1 { error.aside(many) } else { error })
     }
 
     /// Reads bytes; `name` stands for the path in messages and helps to tell the format.

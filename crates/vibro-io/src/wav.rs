@@ -18,7 +18,7 @@ pub(crate) use scales::{Scale, Scales};
 use super::format::Format;
 use super::reader::{Options, Recording};
 use super::source::ReadSeek;
-use super::{Header, Source, Summary, missing};
+use super::{Header, Source, missing};
 use layout::Layout;
 use std::io::{Read, SeekFrom};
 use std::path::PathBuf;
@@ -50,30 +50,40 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
 /// Goes over the samples a block at a time.
 pub(super) fn survey(source: &Source, options: &Options) -> Result<(Vec<Header>, Vec<Finding>)> {
     let mut wave = Wave::open(source, options)?;
-    let mut found = vec![Summary::default(); wave.channels.len()];
-    let mut block = Vec::new();
-    while wave.append(&mut block)? > 0 {
-        for (values, summary) in block.iter_mut().zip(&mut found) {
-            values.drain(..).for_each(|v| summary.push(v.abs()));
+    // Index and magnitude of the largest value of each channel.
+    let mut largest: Vec<Option<(usize, f64)>> = vec![None; wave.channels.len()];
+    let (mut block, mut n) = (Vec::new(), 0);
+    loop {
+        let frames = wave.append(&mut block)?;
+        if frames == 0 {
+            break;
         }
+        for (values, largest) in block.iter_mut().zip(&mut largest) {
+            for (i, value) in values.drain(..).enumerate() {
+                if value.abs() > largest.map_or(-1.0, |(_, max)| max) {
+                    *largest = Some((n + i, value.abs()));
+                }
+            }
+        }
+        n += frames;
     }
     wave.finished();
-    let headers = wave.channels.into_iter().zip(&found).map(|(trace, summary)| {
-        let axis = trace.axis.clone();
-        Header::of(&Record::Trace(trace)).summed(summary, &axis)
+    let headers = wave.channels.into_iter().zip(largest).map(|(trace, largest)| {
+        let max_at = largest.map(|(i, _)| trace.axis.at(i));
+        Header { n, max_abs: largest.map(|(_, max)| max), max_at, ..Header::of(&Record::Trace(trace)) }
     });
     Ok((headers.collect(), wave.layout.findings))
 }
 
 /// Some channels of a wave file, read block by block in their units, so that memory does not grow with its length.
 pub(crate) struct Wave {
-    layout: Layout,
+    pub layout: Layout,
     reader: Box<dyn ReadSeek>,
     path: PathBuf,
     bytes: Vec<u8>,
     left: u64,
     /// Every channel of the file without its values.
-    channels: Vec<Trace>,
+    pub channels: Vec<Trace>,
     factors: Vec<f64>,
     /// Indices of the channels that are handed out.
     kept: Vec<usize>,
@@ -158,14 +168,6 @@ impl Wave {
             (None, None) => 1.0,
         };
         Ok((trace, factor))
-    }
-
-    pub fn channels(&self) -> &[Trace] {
-        &self.channels
-    }
-
-    pub fn findings(&self) -> &[Finding] {
-        &self.layout.findings
     }
 
     /// Number of frames (samples a channel) that the file holds, whatever it declares.

@@ -89,13 +89,7 @@ impl Target {
             Target::UffBinary => uff58::write_uff58(records, out, Storage { binary: true, ..storage }),
             Target::Csv => csv::write(records, ',', out),
             Target::Tsv => csv::write(records, '\t', out),
-            Target::Wav => {
-                let sample = match storage.precision {
-                    Precision::Single => wav::Sample::Float32,
-                    Precision::Double => wav::Sample::Float64,
-                };
-                wav::write(records, sample, out)
-            }
+            Target::Wav => wav::write(records, storage.precision, out),
             Target::Npy => npy::write(records, out),
         }
     }

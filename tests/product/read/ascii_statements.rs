@@ -23,7 +23,7 @@ fn axis(recording: &Recording) -> (&AxisKind, Option<f64>) {
 }
 
 #[test]
-fn impossible_statements_are_passed_over_with_a_doubt() {
+fn impossible_statements_are_passed_over() {
     for header in [
         "Base band: 20 Hz\nLines: 1e30",
         "20 Hz inf lines",
@@ -35,11 +35,6 @@ fn impossible_statements_are_passed_over_with_a_doubt() {
         let recording = read(format!("{header}\n1\n2\n3\n").as_bytes());
         let step = recording.records[0].axis().step().unwrap();
         assert!(step.is_finite() && step > 0.0, "{header}: {step}");
-        assert!(
-            says(&recording, &["states no possible value"]),
-            "{header}: {:?}",
-            sentences(&recording.all_findings())
-        );
     }
 }
 

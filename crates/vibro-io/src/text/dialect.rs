@@ -1,6 +1,5 @@
 //! How a text of numbers is laid out, as data.
 
-use super::header::Stated;
 use super::lines::{Fields, Line, Lines, fields};
 use super::names::Name;
 use crate::Format;
@@ -56,11 +55,6 @@ impl Dialect {
     pub(crate) fn named_abscissa(&self) -> Option<usize> {
         let names = self.names.as_deref().filter(|_| self.format == Format::Csv)?;
         names.iter().enumerate().find_map(|(i, name)| name.axis(i == 0).map(|_| i))
-    }
-
-    /// What the lines above the rows and the `remarks` between them state.
-    pub fn stated(&self, remarks: &[String]) -> Stated {
-        Stated::of(self.header.iter().chain(remarks).map(String::as_str))
     }
 
     /// Fields of a row; a complex number may have blanks in it. Blank fields behind the last column do not count.

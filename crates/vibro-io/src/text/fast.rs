@@ -270,10 +270,6 @@ fn row(bytes: &[u8], shape: &Shape, part: &mut Part) -> Option<usize> {
     let line_end = |at: usize| match bytes.get(at) {
         None | Some(b'\n') => Some(at + 1),
         Some(b'\r') if bytes.get(at + 1) == Some(&b'\n') => Some(at + 2),
-        Some(b'\r') => {
-            let crs = bytes[at..].iter().take_while(|b| **b == b'\r').count();
-            matches!(bytes.get(at + crs), None | Some(b'\n')).then_some(at + crs + 1)
-        }
         Some(_) => None,
     };
     // Signs make the number of leading blanks random: take two without a branch.

@@ -30,11 +30,10 @@ pub fn build(
     findings: &mut Vec<Finding>,
 ) -> Result<Vec<Record>> {
     let n = rows.columns.first().map_or(0, Values::len);
-    let stated = dialect.stated(&rows.remarks);
+    let stated = Stated::of(dialect.header.iter().chain(&rows.remarks).map(String::as_str));
     let is_table = dialect.format == Format::Csv;
     let made = Made { text, tail, dialect, is_table, options, stated };
-    let impossible = |line: &String| Finding::caution("header-line-impossible").name("line", line);
-    let mut of_axis: Vec<Finding> = made.stated.impossible.iter().map(impossible).collect();
+    let mut of_axis = Vec::new();
     let names = dialect.names.clone().unwrap_or_else(|| vec![Name::default(); dialect.columns]);
     let columns = rows.columns.into_iter().zip(names).enumerate();
     let mut table: Vec<Column> =
@@ -61,8 +60,8 @@ pub fn build(
         of_axis.push(Finding::caution("two-channels"));
     }
     let mut records = Vec::new();
-    for (i, (column, imaginary)) in made.pairs(table, &axis)?.into_iter().enumerate() {
-        let mut record = made.record((i, column, imaginary), &axis)?;
+    for (i, column) in made.joined(table, &axis)?.into_iter().enumerate() {
+        let mut record = made.record(i, column, &axis)?;
         record.meta_mut().declared_n = declared;
         if !is_table {
             of_axis.iter().for_each(|found| record.meta_mut().found(found.clone()));
@@ -124,7 +123,8 @@ impl Made<'_> {
     /// Which column is the abscissa. A column of times need not be it, for it may hold intervals: by name it is, or if it rises.
     fn abscissa(&self, table: &[Column]) -> Option<usize> {
         let by_name = |column: &Column| {
-            column.name.bare().axis(column.at == 1).is_some() && column.reals().iter().all(|v| v.is_finite())
+            Name { unit: None, ..column.name.clone() }.axis(column.at == 1).is_some()
+                && column.reals().iter().all(|v| v.is_finite())
         };
         if self.is_table {
             return self.dialect.named_abscissa().filter(|at| by_name(&table[*at]) || table[*at].rises());
@@ -161,7 +161,7 @@ impl Made<'_> {
             (AxisKind::Other(label.trim_start_matches("column ").trim_matches('"').to_owned()), 1.0)
         };
         let own = tail::resolution(self.text, self.tail, self.dialect, column.at - 1);
-        self.one_clock(&kind, column, factor, others, own)?;
+        self.one_clock(&kind, column, (factor, own), others)?;
         let values = values.iter().map(|v| v * factor).collect();
         let (axis, finding) = from_values(kind, values, own * factor, &label);
         let findings =
@@ -180,88 +180,82 @@ impl Made<'_> {
         spectrum.then_some(AxisKind::Frequency)
     }
 
-    /// Refuses a second column of the axis that runs at another pace: which columns are whose cannot be told.
+    /// Refuses a second column of the axis that runs over another `span`: which columns are whose cannot be told.
     fn one_clock(
         &self,
         kind: &AxisKind,
         axis: &Column,
-        factor: f64,
+        (factor, resolution): (f64, f64),
         others: &[Column],
-        resolution: f64,
     ) -> Result<()> {
         let span = |column: &Column, factor: f64| {
             let values = column.reals();
             column.rises().then(|| factor * (values.last().unwrap_or(&0.0) - values.first().unwrap_or(&0.0)))
         };
-        let Some(own) = span(axis, factor) else { return Ok(()) };
         for other in others.iter().filter(|c| c.name.axis(true).as_ref() == Some(kind)) {
-            let Ok((theirs, _)) = other.name.to_axis(kind) else { continue };
-            if let Some(span) = span(other, theirs)
-                && (span - own).abs() > 4.0 * resolution * factor.max(theirs) + 1e-6 * own.abs()
+            if let Ok((theirs, _)) = other.name.to_axis(kind)
+                && let (Some(a), Some(b)) = (span(axis, factor), span(other, theirs))
+                && (b - a).abs() > 4.0 * resolution * factor.max(theirs) + 1e-6 * a.abs()
             {
-                let (a, b) = (axis.label(), other.label());
-                let found = format!("{a:?} and {b:?} run over {} and {}", short(own), short(span));
-                return Err(self
-                    .error(found, "one clock for all columns")
-                    .hint("write each of them with its channels to a file of its own"));
+                let (one, two) = (axis.label(), other.label());
+                let found = format!("{one:?} and {two:?} run over {} and {}", short(a), short(b));
+                let hint = "write each of them with its channels to a file of its own";
+                return Err(self.error(found, "one clock for all columns").hint(hint));
             }
         }
         Ok(())
     }
 
     /// Joins real and imaginary parts that belong together; over time there are none.
-    fn pairs(&self, table: Vec<Column>, axis: &Axis) -> Result<Vec<(Column, Option<Column>)>> {
-        let real = !self.dialect.complex;
-        let stated = self.options.complex && table.len() == 2;
-        let mut out: Vec<(Column, Option<Column>)> = Vec::new();
-        for mut column in table {
+    fn joined(&self, table: Vec<Column>, axis: &Axis) -> Result<Vec<Column>> {
+        let parts = !self.dialect.complex && axis.kind != AxisKind::Time;
+        let (n, stated) = (table.len(), self.options.complex);
+        let mut out: Vec<Column> = Vec::new();
+        for column in table {
             let partner = match column.name.part() {
-                _ if axis.kind == AxisKind::Time || !real => None,
-                Some((Part::Imaginary, whole)) => out.iter_mut().find(|(real, imaginary)| {
-                    imaginary.is_none() && real.name.part() == Some((Part::Real, whole.clone()))
-                }),
-                None if stated => out.first_mut(),
+                _ if !parts => None,
+                Some((Part::Imaginary, whole)) => {
+                    out.iter_mut().find(|real| real.name.part() == Some((Part::Real, whole.clone())))
+                }
+                None if stated && n == 2 => out.first_mut(),
                 _ => None,
             };
-            let Some((real, imaginary)) = partner else {
-                out.push((column, None));
+            let Some(real) = partner else {
+                out.push(column);
                 continue;
             };
             // A unit that stands in one header holds for both.
-            let unit = column.name.unit.take();
-            if real.name.unit.is_some() && unit.is_some() && real.name.unit != unit {
+            if real.name.unit.is_some() && column.name.unit.is_some() && real.name.unit != column.name.unit {
                 let found = format!("{:?} and {:?} have different units", real.label(), column.label());
                 return Err(self.error(found, "one unit for real and imaginary part"));
             }
-            real.name.unit = real.name.unit.take().or(unit);
-            *imaginary = Some(column);
+            let both = real
+                .reals()
+                .iter()
+                .zip(column.reals().iter())
+                .map(|(re, im)| Complex64::new(*re, *im))
+                .collect();
+            real.values = Values::Complex(both);
+            real.name.unit = real.name.unit.take().or(column.name.unit);
+            if let Some((_, whole)) = real.name.part() {
+                real.name.name = whole;
+            }
         }
-        if self.options.complex && real && !out.iter().any(|(_, imaginary)| imaginary.is_some()) {
-            let found = if axis.kind == AxisKind::Time {
-                "columns over time".to_owned()
-            } else {
-                format!("{} column(s) of values", out.len())
-            };
+        if stated && out.iter().all(|column| matches!(column.values, Values::Real(_))) {
+            let over = if axis.kind == AxisKind::Time { " over time" } else { " of values" };
+            let found = format!("{} column(s){over}, where complex values were stated", out.len());
             return Err(self
-                .error(
-                    format!("{found}, where complex values were stated"),
-                    "two columns over frequency, real and imaginary part",
-                )
+                .error(found, "two columns over frequency, real and imaginary part")
                 .hint("leave out that values are complex, or state the base band")
                 .setting("complex")
                 .setting("base_band"));
         }
-        for (real, imaginary) in &mut out {
-            if let (Some((_, whole)), Some(_)) = (real.name.part(), imaginary) {
-                real.name.name = whole;
-            }
-        }
         Ok(out)
     }
 
-    /// The record of one column, or of real and imaginary part.
-    fn record(&self, (i, column, imaginary): (usize, Column, Option<Column>), axis: &Axis) -> Result<Record> {
-        let Column { at, name: Name { name, unit }, values } = column;
+    /// The record of one column.
+    fn record(&self, i: usize, column: Column, axis: &Axis) -> Result<Record> {
+        let Column { at, name: Name { name, unit }, mut values } = column;
         let title = self.stated.name.as_deref().unwrap_or_default();
         let name = match (self.dialect.columns, self.is_table) {
             (1, false) if !title.is_empty() => title.to_owned(),
@@ -287,12 +281,6 @@ impl Made<'_> {
         }
         meta.step("read", &how);
         let factor = self.options.adopt(&mut meta, unit.as_deref().or(self.stated.unit.as_deref()));
-        let mut values = match (imaginary.map(|c| c.values), values) {
-            (Some(Values::Real(imaginary)), Values::Real(real)) => Values::Complex(
-                real.iter().zip(&imaginary).map(|(re, im)| Complex64::new(*re, *im)).collect(),
-            ),
-            (_, values) => values,
-        };
         to_si(&mut values, factor).map_err(|e| e.in_file(self.text.path()))?;
         if axis.kind == AxisKind::Time && matches!(values, Values::Complex(_)) {
             return Err(self

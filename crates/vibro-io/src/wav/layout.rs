@@ -205,7 +205,6 @@ fn kind(format: &[u8]) -> std::result::Result<(Sample, usize, f64, usize), (Stri
             let kind = match tag {
                 1 => "integers".to_owned(),
                 3 => "floats".to_owned(),
-                7 => "µ-law samples".to_owned(),
                 other => format!("samples of format tag {other:#06x}"),
             };
             let found = format!("{kind} of {bits} bits, {channels} channel(s), {frame} bytes a frame");
