@@ -15,7 +15,6 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use vibroimpact::record::{Axis, Meta, Record, Trace};
 use vibroimpact::units::Unit;
-use vibroimpact::write::Precision;
 use vibroimpact::write::wav::write;
 use vibroimpact::write::{Precision, Storage, Target};
 

@@ -26,7 +26,7 @@ impl Reader {
         let source = Source::file(path)?;
         let path = source.path().to_owned();
         if self.entry(&source)?.format == Format::Wav {
-            let mut wave = Wave::open(&source, self.options())?;
+            let mut wave = Wave::open(&source, &self.options)?;
             let chosen = named(&path, channels, wave.channels.iter().map(|t| &t.meta))?;
             let traces: Vec<Trace> = chosen.iter().map(|i| wave.channels[*i].clone()).collect();
             wave.keep(&chosen);
@@ -36,10 +36,10 @@ impl Reader {
         let recording = self.read(&source)?;
         let nothing = recording.none("trace");
         let traces = recording.records.into_iter().filter_map(|record| match record {
-            Record::Trace(trace) => Some(trace),
+            Record::Trace(trace) => Some(Some(trace)),
             _ => None,
         });
-        let mut all: Vec<Option<Trace>> = traces.map(Some).collect();
+        let mut all: Vec<Option<Trace>> = traces.collect();
         if all.is_empty() {
             return Err(nothing);
         }

@@ -30,8 +30,9 @@ impl Missing {
     /// Counts one value of a line; `what` names the column where it has a name.
     pub fn take(&mut self, line: u64, what: &str) {
         self.count += 1;
-        if self.places.len() < LISTED {
-            self.places.push((line, what.to_owned()));
+        let place = (line, what.to_owned());
+        if self.places.len() <= LISTED && self.places.last() != Some(&place) {
+            self.places.push(place);
         }
     }
 
@@ -44,9 +45,10 @@ impl Missing {
         let listed: Vec<String> = self
             .places
             .iter()
+            .take(LISTED)
             .map(|(line, what)| if what.is_empty() { line.to_string() } else { format!("{line} ({what:?})") })
             .collect();
-        let more = if self.count > LISTED { ", …" } else { "" };
+        let more = if self.places.len() > LISTED { ", …" } else { "" };
         let found = format!(
             "{} missing value(s) (NaN, Inf or blank) in line(s) {}{more}",
             self.count,

@@ -57,7 +57,7 @@ impl Recording {
 #[derive(Debug, Clone, Default)]
 pub struct Reader {
     format: Option<Format>,
-    options: Options,
+    pub(super) options: Options,
 }
 
 impl Reader {
@@ -125,22 +125,9 @@ impl Reader {
     /// Reads many files, in parallel, in the order given.
     ///
     /// # Errors
-    /// As [`Reader::from_path`], for the first file at fault; all others at fault, and all that do not exist, are named too.
+    /// As [`Reader::from_path`], for the first file at fault; the others are named too.
     pub fn from_paths<P: AsRef<Path> + Sync>(&self, paths: &[P]) -> Result<Vec<Recording>> {
         let results: Vec<Result<Recording>> = paths.par_iter().map(|p| self.from_path(p)).collect();
-        if results.iter().any(Result::is_err) {
-            // Looked for only after a failure: asking for every file beforehand costs as much as opening it.
-            let missing: Vec<&P> = paths.iter().filter(|p| !p.as_ref().exists()).collect();
-            if let [first, _, ..] = missing.as_slice() {
-                let names: Vec<String> = missing.iter().map(|p| p.as_ref().display().to_string()).collect();
-                return Err(Error::input(
-                    Place::file(first.as_ref()),
-                    format!("{} of {} files are missing: {}", names.len(), paths.len(), names.join(", ")),
-                    "every file that is named",
-                )
-                .hint("check the folder and the spelling; on Linux upper and lower case differ"));
-            }
-        }
         let failed: Vec<&P> =
             paths.iter().zip(&results).filter(|(_, r)| r.is_err()).map(|(p, _)| p).collect();
         let many =
@@ -182,10 +169,6 @@ impl Reader {
         }
         let recording = self.read(&source)?;
         Ok((entry.format, recording.records.iter().map(Header::of).collect(), recording.findings))
-    }
-
-    pub(super) fn options(&self) -> &Options {
-        &self.options
     }
 
     /// The format of a source.

@@ -109,8 +109,7 @@ impl SweepReader {
                 response,
             });
         }
-        let displacement = |p: &SweepPoint| p.response.meta.quantity == Quantity::Displacement;
-        let displacement = points.first().is_some_and(displacement);
+        let displacement = points.iter().any(|p| p.response.meta.quantity == Quantity::Displacement);
         if self.analyser_integrated.is_none() && displacement {
             findings.push(Finding::caution("analyser-integration-assumed"));
         }

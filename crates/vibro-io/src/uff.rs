@@ -92,7 +92,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
                 }
             }
         }
-        delimited = stream.pass_set().closed;
+        delimited = stream.pass_set().1;
     }
     if let Some(error) = cut.filter(|_| records.is_empty()) {
         return Err(error);

@@ -57,15 +57,15 @@ pub fn read(
         }
     };
     let (numbers, mut findings) = match storage {
-        Some(storage) => values::binary(stream, &heading, storage, options.allow_missing)?,
+        Some(storage) => values::binary(stream, &heading, &storage, options.allow_missing)?,
         None => (values::text(stream, &heading, options.allow_missing)?, Vec::new()),
     };
-    let end = stream.pass_set();
-    if end.lines > 0 {
+    let (lines, closed) = stream.pass_set();
+    if lines > 0 {
         let more = Finding::caution("more-lines").count("declared", heading.n);
-        findings.push(more.count("lines", end.lines));
+        findings.push(more.count("lines", lines));
     }
-    if !end.closed {
+    if !closed {
         let open = Finding::caution("set-not-closed");
         findings.push(start.into_iter().fold(open, |found, line| found.number("line", line as f64)));
     }

@@ -218,7 +218,9 @@ impl Stream for Wave {
                     );
                     return Err(missing::refusal(Place::file(&self.path), found));
                 }
-                places.into_iter().for_each(|i| values[i] = f64::NAN);
+                for i in places {
+                    values[i] = f64::NAN;
+                }
             }
             let factor = self.factors.get(*channel).copied().unwrap_or(1.0);
             if factor != 1.0 {

@@ -158,7 +158,11 @@ fn cut(line: &str, columns: usize, separator: Separator) -> Option<Vec<String>> 
     if !header::split(line).0.is_empty() || !line.contains(char::is_alphabetic) {
         return None;
     }
-    let fit = |fields: Vec<String>| (fields.len() == columns && are_words(&fields)).then_some(fields);
+    // A number, a date or a clock names nothing; what ends with a unit may begin with a digit.
+    let odd = |f: &String| {
+        f.contains(':') || (f.starts_with(|c: char| c.is_ascii_digit()) && !f.ends_with([']', ')']))
+    };
+    let fit = |fields: Vec<String>| (fields.len() == columns && !fields.iter().any(odd)).then_some(fields);
     let split = |at: &str| -> Vec<String> {
         line.split(at).map(|f| f.trim().to_owned()).filter(|f| !f.is_empty()).collect()
     };
@@ -170,38 +174,13 @@ fn cut(line: &str, columns: usize, separator: Separator) -> Option<Vec<String>> 
     {
         return Some(fields);
     }
-    fit(split("\t")).or_else(|| fit(split("  "))).or_else(|| fit(words(line)).filter(|f| are_names(f)))
-}
-
-/// Whether no field is a number, a date or a clock; one that ends with a unit may begin with a digit.
-fn are_words(fields: &[String]) -> bool {
-    let digit = |f: &String| f.starts_with(|c: char| c.is_ascii_digit()) && !f.ends_with([']', ')']);
-    !fields.iter().any(|f| digit(f) || f.contains(':'))
-}
-
-/// Words between single blanks; a bracket belongs to the word before it.
-fn words(line: &str) -> Vec<String> {
-    let mut out: Vec<String> = Vec::new();
-    let mut open = false;
-    for word in line.split_whitespace() {
-        match out.last_mut() {
-            Some(last) if open || word.starts_with(['[', '(']) => {
-                last.push(' ');
-                last.push_str(word);
-            }
-            _ => out.push(word.to_owned()),
-        }
-        let count = |marks: [char; 2]| word.matches(marks).count();
-        open = if open { count([']', ')']) == 0 } else { count(['[', '(']) > count([']', ')']) };
-    }
-    out
-}
-
-/// Whether words between single blanks may name columns: the first is an abscissa, or one has a bracket.
-fn are_names(words: &[String]) -> bool {
+    // A bracket belongs to the word before it. Between single blanks the first word must be an abscissa, or one have a unit in
+    // brackets: others are free text.
+    let words = line.replace(" [", "[").replace(" (", "(");
+    let words: Vec<String> = words.split_whitespace().map(str::to_owned).collect();
     let units = words.iter().any(|w| w.ends_with([']', ')']));
-    let axis: Option<AxisKind> = words.first().and_then(|w| Name::parse(w).axis(true));
-    units || axis.is_some()
+    let sure = units || words.first().is_some_and(|w| Name::parse(w).axis(true).is_some());
+    fit(split("\t")).or_else(|| fit(split("  "))).or_else(|| fit(words).filter(|_| sure))
 }
 
 /// Hours have no symbol among the units of values.

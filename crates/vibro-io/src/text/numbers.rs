@@ -96,8 +96,16 @@ fn marks(text: &Text, rows: &[Line], options: &Options) -> Result<(Separator, u8
     if !any(&|line| line.contains(',')) {
         return Ok((explicit.unwrap_or(Separator::Blank), b'.'));
     }
+    let ask = || {
+        let Line { number, text: row, .. } = rows[0];
+        let found = format!("{:?} may be one number or two numbers", shorten(row.trim()));
+        Error::input(Place::line(text.path(), number), found, "a file where this can be told")
+            .hint("say which mark is the decimal one: comma or point; export grouped digits without groups")
+            .setting("decimal")
+    };
     let comma = match options.decimal_comma {
         Some(comma) => comma,
+        None if explicit.is_none() && grouped(rows) => return Err(ask()),
         // Points are decimal marks, so commas separate.
         None if any(&|line| line.contains('.')) => false,
         None if explicit.is_some() => true,
@@ -112,15 +120,7 @@ fn marks(text: &Text, rows: &[Line], options: &Options) -> Result<(Separator, u8
         }
         // Several fields between blanks, each with at most one comma; or one that no integer column would print.
         None if any(&|line| line.split_ascii_whitespace().count() > 1) || any(&no_integers) => true,
-        None => {
-            let Line { number, text: row, .. } = rows[0];
-            let found =
-                format!("{:?} may be one number with a decimal comma or two numbers", shorten(row.trim()));
-            let place = Place::line(text.path(), number);
-            return Err(Error::input(place, found, "a file where this can be told")
-                .hint("say which: comma or point")
-                .setting("decimal"));
-        }
+        None => return Err(ask()),
     };
     Ok(if comma { (explicit.unwrap_or(Separator::Blank), b',') } else { (explicit.unwrap_or(COMMA), b'.') })
 }
@@ -130,6 +130,24 @@ fn no_integers(line: &str) -> bool {
     let Some((left, right)) = line.split_once(',') else { return false };
     let leading_zero = right.starts_with('0') && right[1..].starts_with(|c: char| c.is_ascii_digit());
     left == "-0" || leading_zero || right.contains(['e', 'E', 'd', 'D'])
+}
+
+/// Whether every row is one number with decimals, and some have their digits grouped in threes: `1.234,50` or `1,234.50`.
+fn grouped(rows: &[Line]) -> bool {
+    let digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    // Number of groups before the decimal mark. Nobody groups `0.123`.
+    let groups = |line: &str, group: char, decimal: char| {
+        let (whole, decimals) = line.strip_prefix(['-', '+']).unwrap_or(line).split_once(decimal)?;
+        let (first, rest) = whole.split_once(group).unwrap_or((whole, ""));
+        let rest: Vec<&str> = rest.split(group).filter(|part| !part.is_empty()).collect();
+        let leads = first.len() <= 3 && digits(first) && (rest.is_empty() || !first.starts_with('0'));
+        let all = leads && digits(decimals) && rest.iter().all(|part| part.len() == 3 && digits(part));
+        all.then_some(rest.len())
+    };
+    [('.', ','), (',', '.')].iter().any(|&(group, decimal)| {
+        let all: Option<Vec<usize>> = rows.iter().map(|r| groups(r.text.trim(), group, decimal)).collect();
+        all.is_some_and(|all| all.iter().any(|n| *n > 0))
+    })
 }
 
 /// Reads `(re+imj)`, `re + im i` and the like; a bare number has no imaginary part and is accepted.
@@ -194,6 +212,21 @@ mod tests {
         assert_eq!(with("1,5\n", &comma).unwrap().columns, 1);
         let point = Options { decimal_comma: Some(false), ..Options::default() };
         assert_eq!(with("1,5\n", &point).unwrap().columns, 2);
+    }
+
+    #[test]
+    fn grouped_digits_are_asked_about() {
+        for text in ["1.234,50\n2.345,60\n", "-1,234.50\n", "999,50\n1.000,25\n"] {
+            let error = layout(text).unwrap_err().to_string();
+            assert!(error.contains("grouped") && error.contains("(decimal)"), "{text}: {error}");
+            let point = Options { decimal_comma: Some(false), ..Options::default() };
+            let columns = with(text, &point).unwrap().columns;
+            assert_eq!(columns, text.lines().next().unwrap().split(',').count(), "{text}");
+        }
+        // No groups of three, an exponent, a leading zero: commas separate.
+        for text in ["0.123,50\n", "1.234,50\n1.2345,5\n", "1.234,5e1\n", "1.234,50\n12,5\n0.100,5\n"] {
+            assert_eq!(shape(text), (Separator::Char(b','), b'.', 2, false), "{text}");
+        }
     }
 
     #[test]

@@ -64,7 +64,9 @@ pub fn build(
         let mut record = made.record(i, column, &axis)?;
         record.meta_mut().declared_n = declared;
         if !is_table {
-            of_axis.iter().for_each(|found| record.meta_mut().found(found.clone()));
+            for found in &of_axis {
+                record.meta_mut().found(found.clone());
+            }
         }
         records.push(record);
     }

@@ -17,14 +17,6 @@ pub struct Stream<'a> {
     lines: Option<u64>,
 }
 
-/// How a data set ends.
-pub struct End {
-    /// Lines that are not blank before the delimiter.
-    pub lines: usize,
-    /// Whether there is a delimiter.
-    pub closed: bool,
-}
-
 impl<'a> Stream<'a> {
     /// Stands before the first byte.
     pub fn new(path: &'a Path, bytes: &'a [u8]) -> Stream<'a> {
@@ -69,13 +61,13 @@ impl<'a> Stream<'a> {
         block
     }
 
-    /// Passes over everything up to and with the next delimiter.
-    pub fn pass_set(&mut self) -> End {
+    /// Passes over everything up to and with the next delimiter: lines that are not blank before it, and whether there is one.
+    pub fn pass_set(&mut self) -> (usize, bool) {
         let mut lines = 0;
         while let Some(line) = self.line_within() {
             lines += usize::from(!line.trim_ascii().is_empty());
         }
-        End { lines, closed: self.next_line().is_some() }
+        (lines, self.next_line().is_some())
     }
 
     /// What is not taken yet.

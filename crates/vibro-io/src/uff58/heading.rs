@@ -83,11 +83,7 @@ pub struct Axis {
 impl Axis {
     /// `speed [rpm]`: label, or else the name of the data type, and unit.
     pub fn described(&self) -> String {
-        let data_type = match self.data_type {
-            19 => "rotational speed",
-            20 => "order",
-            code => codes::data_type(code, false).map_or("", |t| t.0),
-        };
+        let data_type = codes::data_type(self.data_type, false).map_or("", |t| t.0);
         let name = if self.label.is_empty() { data_type } else { &self.label };
         let unit = if self.unit.is_empty() { String::new() } else { format!(" [{}]", self.unit) };
         format!("{name}{unit}").trim_start().to_owned()
@@ -134,11 +130,6 @@ impl Heading {
             (false, true) => response,
             (false, false) => format!("{response} / {reference}"),
         }
-    }
-
-    /// Whether the function type is a coherence, which has no unit.
-    pub fn is_coherence(&self) -> bool {
-        matches!(self.function, 6 | 21 | 26)
     }
 }
 

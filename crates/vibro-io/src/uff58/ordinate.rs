@@ -130,8 +130,8 @@ impl Ordinate {
         }
         let (unit, factor) = match plain(heading, &above, &below) {
             Ok((dimension, power, seconds)) => {
-                let typed = |part: &&Part| !part.text && part.dimension != Some(Dimension::NONE);
-                if !system.stated && [&above, &below].iter().any(|part| typed(part)) {
+                let typed = |part: &Part| !part.text && part.dimension != Some(Dimension::NONE);
+                if !system.stated && (typed(&above) || typed(&below)) {
                     let name = |part: &Part| part.data_type.map_or("a number", |(name, _)| name);
                     let types = match below.data_type {
                         Some((below, _)) => format!("{} over {below}", name(&above)),
@@ -177,7 +177,7 @@ fn is_whole(above: &Part, below: &Part) -> bool {
 /// power of seconds beside it. Without an answer the values stay as they are, for the reason given.
 fn plain(heading: &Heading, above: &Part, below: &Part) -> Result<(Dimension, i8, i8), Option<Finding>> {
     let (name, _, kind) = codes::function(heading.function);
-    if heading.is_coherence() && !above.text {
+    if kind == Kind::Scaled(Scaling::Coherence) && !above.text {
         return Ok((Dimension::NONE, 1, 0));
     }
     if above.unsaid() && below.unsaid() {

@@ -32,7 +32,9 @@ pub fn build(
     meta.declared_n = Some(heading.n);
     meta.step("read", &[("file", &file), ("format", &"uff"), ("case", &heading.layout.case())]);
     let mut said = stated(&heading.id[4]);
-    let factor = unit(heading, system, options, said.scaling == Some(Scaling::Coherence), &mut meta);
+    let coherence = codes::function(heading.function).2 == Kind::Scaled(Scaling::Coherence)
+        || said.scaling == Some(Scaling::Coherence);
+    let factor = unit(heading, system, options, coherence, &mut meta);
     let (kind, abscissa_factor) = abscissa(heading, options, &mut meta);
     if heading.layout.complex && kind == AxisKind::Time {
         let expected = "complex values over frequency, or real values over time";
@@ -42,14 +44,16 @@ pub fn build(
     function(heading, &kind, &mut said, &mut meta);
     let missing = numbers.iter().filter(|v| v.is_nan()).count();
     let (mut stored, mut values) = split(numbers, heading.layout);
-    stored.iter_mut().for_each(|x| *x *= abscissa_factor);
+    for x in &mut stored {
+        *x *= abscissa_factor;
+    }
     let n = values.len();
     if n < heading.n {
         meta.found(Finding::caution("fewer-values").count("declared", heading.n).count("n", n));
     } else if n == 0 {
         meta.found(Finding::caution("no-values-declared"));
     }
-    missing::kept(missing).into_iter().chain(more).for_each(|found| meta.found(found));
+    meta.findings.extend(missing::kept(missing).into_iter().chain(more));
     let even =
         heading.layout.even.then_some((heading.start * abscissa_factor, heading.step * abscissa_factor));
     let axis = axis(kind, even, stored, n, options, &mut meta);
@@ -215,7 +219,7 @@ fn axis(
             let largest = stored.iter().fold(0.0f64, |max, x| max.max(x.abs()));
             let resolution = 0.5e-5 * 10f64.powf(largest.max(f64::MIN_POSITIVE).log10().floor());
             let (axis, found) = from_values(kind, stored, resolution, "abscissa");
-            found.into_iter().for_each(|found| meta.found(found));
+            meta.findings.extend(found);
             return axis;
         }
     };
@@ -230,14 +234,16 @@ fn axis(
 fn unit(heading: &Heading, system: &System, options: &Options, coherence: bool, meta: &mut Meta) -> f64 {
     let Ordinate { unit, factor, written, findings } = Ordinate::of(heading, system);
     // A coherence has none, whatever that of the function beside it is.
-    if let Some(said) = options.unit.as_ref().filter(|_| !coherence && !heading.is_coherence()) {
+    if let Some(said) = options.unit.as_ref().filter(|_| !coherence) {
         if unit.is_known() && (unit.dimension() != said.dimension() || factor != said.factor()) {
             let differs = Finding::caution("unit-overrides-file").name("file", written);
             meta.found(differs.name("used", said.symbol()));
         }
         return meta.adopt_unit(said.symbol());
     }
-    findings.into_iter().for_each(|found| meta.found(found));
+    for found in findings {
+        meta.found(found);
+    }
     if factor != 1.0 {
         let from = if written.is_empty() { "data set 164" } else { &written };
         meta.step("to_si", &[("from", &from), ("factor", &factor)]);

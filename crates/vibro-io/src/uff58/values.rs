@@ -178,13 +178,8 @@ fn last_line(line: &[u8], widths: &[usize], numbers: &mut Vec<f64>) {
 
 /// Tokens between blanks, with their columns from 1.
 fn tokens(line: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
-    let mut at = 0;
-    let places = line.split(u8::is_ascii_whitespace).map(move |token| {
-        let column = at + 1;
-        at += token.len() + 1;
-        (column, token)
-    });
-    places.filter(|(_, token)| !token.is_empty())
+    let tokens = line.split(u8::is_ascii_whitespace).filter(|token| !token.is_empty());
+    tokens.map(|token| (token.as_ptr() as usize - line.as_ptr() as usize + 1, token))
 }
 
 /// What the number line of a 58b says: `58b`, byte order, number format, header lines, bytes.
@@ -221,7 +216,7 @@ impl Storage {
 pub fn binary(
     stream: &mut Stream,
     heading: &Heading,
-    storage: Storage,
+    storage: &Storage,
     allow_missing: bool,
 ) -> Result<(Vec<f64>, Vec<Finding>)> {
     let (layout, n, rest) = (heading.layout, heading.n, stream.rest());

@@ -18,6 +18,9 @@ const UNSAID: u64 = 0xffff_ffff;
 /// Behind the format tag in a sub-format: {xxxx0000-0000-0010-8000-00AA00389B71}.
 const GUID: [u8; 14] = [0, 0, 0, 0, 0x10, 0, 0x80, 0, 0, 0xaa, 0, 0x38, 0x9b, 0x71];
 
+/// What to try where there are no samples.
+const CUT: &str = "the recording may have been cut off before its first sample";
+
 /// What the chunks say.
 #[derive(Debug)]
 pub struct Layout {
@@ -123,7 +126,6 @@ pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<Layout> {
     let Some((format_at, format)) = format else {
         return Err(fault(12, "no fmt chunk", "a chunk that says the kind of samples"));
     };
-    const CUT: &str = "the recording may have been cut off before its first sample";
     let Some((data_at, size)) = data else {
         return Err(fault(12, "no data chunk", "a chunk with samples").hint(CUT));
     };
@@ -199,18 +201,16 @@ fn kind(format: &[u8]) -> std::result::Result<(Sample, usize, f64, usize), (Stri
         _ => None,
     };
     let whole = bytes * usize::from(channels) == usize::from(frame) && usize::from(bits) <= 8 * bytes;
-    match sample.filter(|_| whole) {
-        Some(sample) => Ok((sample, usize::from(channels), f64::from(rate), usize::from(bits))),
-        None => {
-            let kind = match tag {
-                1 => "integers".to_owned(),
-                3 => "floats".to_owned(),
-                other => format!("samples of format tag {other:#06x}"),
-            };
-            let found = format!("{kind} of {bits} bits, {channels} channel(s), {frame} bytes a frame");
-            Err((found, "integers of 8, 16, 24 or 32 bits or floats of 32 or 64 bits, whole bytes a channel"))
-        }
+    if let Some(sample) = sample.filter(|_| whole) {
+        return Ok((sample, usize::from(channels), f64::from(rate), usize::from(bits)));
     }
+    let kind = match tag {
+        1 => "integers".to_owned(),
+        3 => "floats".to_owned(),
+        other => format!("samples of format tag {other:#06x}"),
+    };
+    let found = format!("{kind} of {bits} bits, {channels} channel(s), {frame} bytes a frame");
+    Err((found, "integers of 8, 16, 24 or 32 bits or floats of 32 or 64 bits, whole bytes a channel"))
 }
 
 /// The texts of a LIST chunk of type INFO.

@@ -84,14 +84,13 @@ fn checked(record: &Record) -> Result<&Trace> {
 /// Full scale: the power of two at or next above the largest magnitude.
 fn scale(trace: &Trace) -> Scale {
     let largest = trace.values.iter().fold(0.0f64, |max, v| max.max(v.abs()));
-    // The exponent bits of a double count from 1, for 2⁻¹⁰²², to 2046, for 2¹⁰²³.
-    let power = |exponent: u64| f64::from_bits(exponent.clamp(1, 2046) << 52);
-    let below = power(largest.to_bits() >> 52);
-    let factor = match largest {
-        0.0 => 1.0,
-        max if max <= below => below,
-        max => power((max.to_bits() >> 52) + 1),
-    };
+    let mut factor = 1.0;
+    while factor < largest && factor < 2f64.powi(1023) {
+        factor *= 2.0;
+    }
+    while largest > 0.0 && 0.5 * factor >= largest && factor > f64::MIN_POSITIVE {
+        factor *= 0.5;
+    }
     Scale { factor, unit: trace.meta.unit.symbol().to_owned(), name: trace.meta.name.clone() }
 }
 

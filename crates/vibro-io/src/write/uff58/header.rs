@@ -81,7 +81,7 @@ impl Header {
         ];
         let id = self.id.iter().map(|line| text(line, 80));
         let lines = ["    -1".to_owned(), number].into_iter().chain(id).chain(ends);
-        lines.map(|line| format!("{line:80}\n")).collect()
+        lines.map(|line| format!("{line:80}")).collect::<Vec<_>>().join("\n") + "\n"
     }
 }
 
