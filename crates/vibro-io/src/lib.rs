@@ -27,10 +27,8 @@
 //! records into files again.
 
 mod assemble;
-mod axis;
 mod choose;
 mod format;
-mod header;
 mod mat;
 mod missing;
 mod number;
@@ -46,8 +44,7 @@ mod wav;
 pub mod write;
 
 pub use format::Format;
-pub use header::Header;
-pub use reader::{Reader, Recording};
+pub use reader::{Header, Reader, Recording};
 pub use sweep::SweepReader;
 pub use sweep_list::{SweepList, inside};
 
@@ -61,7 +58,7 @@ mod tests {
     /// Findings as text, numbers with six digits: `axis-uneven column=column "t" smallest=0.1`.
     pub fn told(findings: &[Finding]) -> Vec<String> {
         let fact = |(name, fact): &(&str, Fact)| match fact {
-            Fact::Number(value) => format!("{name}={}", crate::axis::short(*value)),
+            Fact::Number(value) => format!("{name}={}", crate::assemble::short(*value)),
             Fact::Numbers(values) => format!("{name}={values:?}"),
             Fact::Name(text) => format!("{name}={text}"),
         };

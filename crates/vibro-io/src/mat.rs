@@ -14,10 +14,9 @@ mod variable;
 use super::format::Format;
 use super::reader::{Options, Recording};
 use super::{Source, missing};
-use crate::assemble::{self, Spectral, to_si};
-use crate::axis::{from_values, short};
+use crate::assemble::{self, Spectral, from_values, short, to_si};
 use num_complex::Complex64;
-use variable::{Array, Content, Elements, Variable};
+use variable::{Array, Content, Elements};
 use vibro_record::units::Unit;
 use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Place, Record, Result, Values};
 
@@ -75,7 +74,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
     let variables = variable::all(Elements { rest: &bytes[HEADER..], big_endian, place }, bytes.len())?;
     let mut findings = Vec::new();
     let (mut arrays, mut notes, mut rates) = (Vec::new(), Vec::new(), Vec::new());
-    for Variable { name, content } in variables {
+    for (name, content) in variables {
         match content {
             Content::Text(text) => notes.push((name, text)),
             Content::Other(class) => {

@@ -42,18 +42,13 @@ impl Missing {
     /// If there are any and they are not `allowed`.
     pub fn check(&self, path: &Path, allowed: bool) -> Result<()> {
         let Some((first, _)) = self.places.first().filter(|_| !allowed) else { return Ok(()) };
-        let listed: Vec<String> = self
-            .places
-            .iter()
-            .take(LISTED)
-            .map(|(line, what)| if what.is_empty() { line.to_string() } else { format!("{line} ({what:?})") })
-            .collect();
+        let name = |(line, what): &(u64, String)| {
+            if what.is_empty() { line.to_string() } else { format!("{line} ({what:?})") }
+        };
+        let listed: Vec<String> = self.places.iter().take(LISTED).map(name).collect();
         let more = if self.places.len() > LISTED { ", …" } else { "" };
-        let found = format!(
-            "{} missing value(s) (NaN, Inf or blank) in line(s) {}{more}",
-            self.count,
-            listed.join(", ")
-        );
+        let (n, listed) = (self.count, listed.join(", "));
+        let found = format!("{n} missing value(s) (NaN, Inf or blank) in line(s) {listed}{more}");
         Err(refusal(Place::line(path, *first), found))
     }
 }

@@ -1,12 +1,13 @@
 //! The reader: options, then a path or bytes, then records.
 
 use super::format::{Entry, Format, TABLE};
-use super::{Header, Source, SweepList};
+use super::missing::LISTED;
+use super::{Source, SweepList};
 use rayon::prelude::*;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use vibro_record::units::Unit;
-use vibro_record::{Error, Finding, Place, Record, Result};
+use vibro_record::{Error, Finding, Meta, Place, Record, Result};
 
 /// Rates, bands and line widths in Hz of any instrument lie far inside; steps made of them are finite and positive.
 pub(super) const POSSIBLE: std::ops::RangeInclusive<f64> = 1e-12..=1e15;
@@ -125,13 +126,16 @@ impl Reader {
     /// Reads many files, in parallel, in the order given.
     ///
     /// # Errors
-    /// As [`Reader::from_path`], for the first file at fault; the others are named too.
+    /// As [`Reader::from_path`], for the first file at fault; where its content is at fault, the others are named too.
     pub fn from_paths<P: AsRef<Path> + Sync>(&self, paths: &[P]) -> Result<Vec<Recording>> {
         let results: Vec<Result<Recording>> = paths.par_iter().map(|p| self.from_path(p)).collect();
         let failed: Vec<&P> =
             paths.iter().zip(&results).filter(|(_, r)| r.is_err()).map(|(p, _)| p).collect();
-        let many =
-            format!("{} of {} files cannot be read so: {}", failed.len(), paths.len(), listed(&failed));
+        let names = failed.iter().take(LISTED).filter_map(|p| p.as_ref().file_name());
+        let names: Vec<String> = names.map(|name| name.to_string_lossy().into_owned()).collect();
+        let more = if failed.len() > LISTED { ", …" } else { "" };
+        let (n, all, names) = (failed.len(), paths.len(), names.join(", "));
+        let many = format!("{n} of {all} files cannot be read so: {names}{more}");
         let whole: Result<Vec<Recording>> = results.into_iter().collect();
         whole.map_err(|error| if failed.len() > 1 { error.aside(many) } else { error })
     }
@@ -189,14 +193,6 @@ impl Reader {
     }
 }
 
-/// Names of files, the first of them where there are many.
-fn listed<P: AsRef<Path>>(paths: &[&P]) -> String {
-    const LISTED: usize = 12;
-    let name = |p: &&P| p.as_ref().file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-    let more = if paths.len() > LISTED { ", …" } else { "" };
-    paths.iter().take(LISTED).map(name).collect::<Vec<_>>().join(", ") + more
-}
-
 /// What to say where reading failed with `error`: a list of a sweep is a likely thing to be taken for a measurement.
 fn no_list(source: &Source, error: Error) -> Error {
     let Some(list) = SweepList::of(source) else { return error };
@@ -204,4 +200,70 @@ fn no_list(source: &Source, error: Error) -> Error {
     error
         .aside(format!("this reads as the list of a sweep: {points} points, {lines} lines to {band} Hz"))
         .hint("give the list to `vibro response`, or name the files that stand in it")
+}
+
+/// One record of a file, without its values.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Header {
+    /// Channel or record name.
+    pub name: String,
+    /// `trace`, `spectrum` or `frf`.
+    pub kind: &'static str,
+    /// Quantity by name.
+    pub quantity: &'static str,
+    /// SI unit.
+    pub unit: String,
+    /// Number of values present.
+    pub n: usize,
+    /// Number of values that the file declares.
+    pub declared_n: Option<usize>,
+    /// First abscissa value, in s or Hz.
+    pub x0: f64,
+    /// Distance of abscissa values; `None` if uneven.
+    pub dx: Option<f64>,
+    /// Whether values are complex.
+    pub complex: bool,
+    /// Largest magnitude in SI units; `None` where the values were not read or are all missing.
+    pub max_abs: Option<f64>,
+    /// Abscissa of the largest magnitude.
+    pub max_at: Option<f64>,
+    /// Header lines that were kept and not understood, and what the text was read as: encoding, decimal mark.
+    pub notes: Vec<String>,
+    /// What a person must know before trusting the values.
+    pub findings: Vec<Finding>,
+}
+
+impl Header {
+    /// Header of a record that is in memory.
+    pub fn of(record: &Record) -> Header {
+        let (meta, axis) = (record.meta(), record.axis());
+        let max = record.max_abs();
+        Header {
+            name: meta.name.clone(),
+            kind: record.kind(),
+            quantity: meta.quantity.name(),
+            unit: meta.unit.symbol().to_owned(),
+            n: record.len(),
+            declared_n: meta.declared_n,
+            x0: axis.start(),
+            dx: axis.step(),
+            complex: record.is_complex(),
+            max_abs: max.map(|(_, m)| m),
+            max_at: max.map(|(i, _)| axis.at(i)),
+            notes: notes(meta),
+            findings: meta.findings.clone(),
+        }
+    }
+}
+
+/// Header lines, then the arguments of the step `read` that say how text was read.
+fn notes(meta: &Meta) -> Vec<String> {
+    let lines = meta.notes.iter().map(
+        |(key, value)| {
+            if key.is_empty() { value.clone() } else { format!("{key}: {value}") }
+        },
+    );
+    let how = meta.history.iter().filter(|step| step.name == "read").flat_map(|step| &step.arguments);
+    let how = how.filter(|(key, _)| matches!(key.as_str(), "encoding" | "decimal mark"));
+    lines.chain(how.map(|(key, value)| format!("{key}: {value}"))).collect()
 }

@@ -74,7 +74,8 @@ impl SweepList {
             format!("{} (line {line})", files[*i].display())
         };
         let names: Vec<String> = missing.iter().map(name).collect();
-        let found = format!("{} of {} files are missing: {}", names.len(), files.len(), names.join(", "));
+        let (n, all, are) = (names.len(), files.len(), if names.len() == 1 { "is" } else { "are" });
+        let found = format!("{n} of {all} files {are} missing: {}", names.join(", "));
         let hint = "check the folder and the spelling; on Linux upper and lower case differ";
         Some(Error::input(place, found, "every file that is named").hint(hint))
     }

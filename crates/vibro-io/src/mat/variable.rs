@@ -9,13 +9,6 @@ use vibro_record::{Error, Place, Result};
 /// Longest text that is kept.
 const MOST_TEXT: u64 = 4096;
 
-/// A variable with its name.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Variable {
-    pub name: String,
-    pub content: Content,
-}
-
 /// What a variable holds.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Content {
@@ -126,8 +119,8 @@ impl<'a> Elements<'a> {
     }
 }
 
-/// All variables behind the header of a file.
-pub fn all(mut file: Elements, length: usize) -> Result<Vec<Variable>> {
+/// All variables behind the header of a file, with their names.
+pub fn all(mut file: Elements, length: usize) -> Result<Vec<(String, Content)>> {
     let mut variables = Vec::new();
     let path = file.place.path.clone().unwrap_or_default();
     loop {
@@ -153,15 +146,15 @@ pub fn all(mut file: Elements, length: usize) -> Result<Vec<Variable>> {
     }
 }
 
-/// Reads the content of a matrix element.
-fn variable(elements: &mut Elements) -> Result<Variable> {
+/// Name and content of a matrix element.
+fn variable(elements: &mut Elements) -> Result<(String, Content)> {
     let (_, flags) = elements.part("flags")?;
     let flags = elements.words(flags).next().unwrap_or(0);
     let class = flags & 0xff;
     let (complex, logical) = (flags & 0x800 != 0, flags & 0x200 != 0);
     if class == 17 {
         // An object of the newer kind has no dimensions; what follows is not documented.
-        return Ok(Variable { name: String::new(), content: Content::Other("object") });
+        return Ok((String::new(), Content::Other("object")));
     }
     let (_, dimensions) = elements.part("dimensions")?;
     let dimensions: Vec<u64> = elements.words(dimensions).map(u64::from).collect();
@@ -190,7 +183,7 @@ fn variable(elements: &mut Elements) -> Result<Variable> {
         16 => Content::Other("function"),
         other => return Err(elements.fault(format!("{name:?} of class {other}"), "a class from 1 to 17")),
     };
-    Ok(Variable { name, content })
+    Ok((name, content))
 }
 
 fn text(elements: &mut Elements) -> Result<String> {

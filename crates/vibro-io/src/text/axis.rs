@@ -2,7 +2,7 @@
 
 use super::header::Stated;
 use crate::Options;
-use crate::axis::short;
+use crate::assemble::short;
 use std::path::Path;
 use vibro_record::{Axis, AxisKind, Error, Finding, Place, Result};
 

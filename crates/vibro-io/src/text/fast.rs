@@ -104,21 +104,21 @@ fn values(source: &Source, shape: &Shape) -> Result<Option<Vec<f64>>> {
         rest = behind;
         parts.push((Part { values: part, used: 0, ended: false }, piece));
     }
-    let filled: Vec<Option<(usize, bool)>> = parts
+    let filled: Vec<Option<(usize, usize)>> = parts
         .into_par_iter()
         .map(|(mut part, piece)| {
             let clean = blocks(source, piece, |block| rows(block, shape, &mut part))?;
-            Ok(clean.map(|()| (part.used, part.ended)))
+            Ok(clean.map(|()| (part.used, part.values.len())))
         })
         .collect::<Result<_>>()?;
     let (mut total, mut ended) = (0, false);
     for part in filled {
-        let Some((used, ends)) = part else { return Ok(None) };
+        let Some((used, room)) = part else { return Ok(None) };
         if ended && used > 0 {
-            return Ok(None); // rows behind blank lines
+            return Ok(None); // rows behind blank lines, or of another length
         }
         total += used;
-        ended |= ends;
+        ended |= used < room;
     }
     values.truncate(total);
     Ok((!values.is_empty()).then_some(values))
@@ -158,19 +158,20 @@ fn row_start(source: &Source, shape: &Shape, at: u64) -> Result<u64> {
     Ok(start)
 }
 
-/// Number of rows of a piece, or more.
+/// Number of rows of a piece.
 fn rows_in(source: &Source, shape: &Shape, (from, to): (u64, u64)) -> Result<usize> {
     if let Some((length, _)) = shape.fixed {
         return Ok((to - from).div_ceil(length as u64) as usize);
     }
-    let mut count = 1;
+    let (mut count, mut whole) = (0, true);
     blocks(source, (from, to), |block| {
         // Counted in bytes that cannot overflow, so that the compiler looks at many at once.
         let ends = |c: &[u8]| usize::from(c.iter().map(|b| u8::from(*b == b'\n')).sum::<u8>());
         count += block.chunks(255).map(ends).sum::<usize>();
+        whole = block.last().map_or(whole, |last| *last == b'\n');
         Some(())
     })?;
-    Ok(count)
+    Ok(count + usize::from(!whole))
 }
 
 /// Hands these bytes, which begin with a row, to `each` in blocks of whole rows, until it gives `None`, as do rows that are longer

@@ -9,7 +9,7 @@ use std::borrow::Cow;
 /// Fields of a line, each with the byte at which it begins.
 pub type Fields<'a> = Vec<(usize, Cow<'a, str>)>;
 
-/// One line.
+/// One line, or two that a quoted field joins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Line<'a> {
     /// Counted from 1.
@@ -54,8 +54,16 @@ impl<'a> Iterator for Lines<'a> {
     fn next(&mut self) -> Option<Line<'a>> {
         let (start, number) = (self.at, self.number);
         let rest = self.text.get(start..).filter(|r| !r.is_empty())?;
-        let text = &rest[..rest.find('\n').unwrap_or(rest.len())];
+        let end = |from: usize| rest[from..].find('\n').map_or(rest.len(), |end| from + end);
+        let mut text = &rest[..end(0)];
         let remark = remark(text, self.remarks);
+        // A quoted field may hold a line end: it stands open on this line and is closed on the next.
+        let open = |text: &str| text.matches('"').count() % 2 == 1;
+        let both = &rest[..end((text.len() + 1).min(rest.len()))];
+        if remark.is_none() && open(text) && !open(both) {
+            text = both;
+            self.number += 1;
+        }
         self.at = start + text.len() + 1;
         self.number += 1;
         Some(Line { number, at: start, text: text.trim_end_matches('\r'), remark })
@@ -144,6 +152,15 @@ mod tests {
         for text in ["a\n\nb", "a\r\n\r\nb\r\n", "a\r\r\n\nb\n"] {
             assert_eq!(lines(text), expected, "{text:?}");
         }
+    }
+
+    #[test]
+    fn a_quoted_field_joins_two_lines() {
+        assert_eq!(lines("\"a\nb\",c\nd"), [(1, "\"a\nb\",c"), (3, "d")]);
+        assert_eq!(lines("x;\"a\r\nb\"\r\nd"), [(1, "x;\"a\r\nb\""), (3, "d")]);
+        // Inches and remarks do not.
+        assert_eq!(lines("5\" pipe\nb\nd"), [(1, "5\" pipe"), (2, "b"), (3, "d")]);
+        assert_eq!(lines("# \"open\n1\n\"2\n"), [(1, "# \"open"), (2, "1"), (3, "\"2")]);
     }
 
     #[test]

@@ -94,7 +94,11 @@ fn fit(above: &[Line], first: Line, separator: Separator, count: usize) -> Optio
     let fits = count == columns || (count == columns + 1 && blank_end);
     let upper = spoken.next().and_then(|l| Some((l, headings(l, separator, &values)?)));
     let (line, names) = match upper {
-        Some((line, upper)) if upper.len() == columns && named(&upper) && units(&names) => {
+        Some((line, upper))
+            if upper.len() == columns
+                && named(&upper)
+                && is_unit_row(names.iter().map(|(_, f)| f.as_ref())) =>
+        {
             let pairs = upper.iter().zip(&names);
             (line, pairs.map(|((_, n), (_, u))| Name::with_unit_row(n, u)).collect::<Vec<Name>>())
         }
@@ -138,10 +142,6 @@ fn named(fields: &Fields) -> bool {
         field.contains(char::is_alphabetic) && !number && !number::is_missing(bytes)
     };
     !statement && fields.iter().any(|(_, f)| is_name(f))
-}
-
-fn units(fields: &Fields) -> bool {
-    is_unit_row(fields.iter().map(|(_, f)| f.as_ref()))
 }
 
 /// A preamble line as `key: value`: spreadsheets put key, value and unit into cells.

@@ -12,7 +12,6 @@ pub const LINES: usize = 11;
 
 /// What the header of a data set 58 says.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(test, derive(Default))]
 pub struct Heading {
     /// Identification lines 1 to 5.
     pub id: [String; 5],

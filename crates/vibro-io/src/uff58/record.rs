@@ -4,8 +4,7 @@ use super::codes::{self, Kind};
 use super::heading::{self, Heading};
 use super::ordinate::{Ordinate, System};
 use super::values::Layout;
-use crate::assemble::{self, Spectral, to_si};
-use crate::axis::from_values;
+use crate::assemble::{self, Spectral, from_values, to_si};
 use crate::{Options, missing};
 use num_complex::Complex64;
 use vibro_record::units::{Quantity, Unit};
@@ -81,12 +80,13 @@ fn split(numbers: Vec<f64>, layout: Layout) -> (Vec<f64>, Values) {
 /// What this crate's own writer puts into the fifth identification line: `scaling rms; window hann; enbw 1.5`.
 fn stated(line: &str) -> Spectral {
     let mut stated = Spectral::default();
-    for (key, value) in line.split("; ").filter_map(|part| part.split_once(' ')) {
+    let parts = line.split("; ").filter_map(|part| part.split_once(' '));
+    for (key, value) in parts.filter(|_| line.starts_with("scaling ")) {
         match key {
             "scaling" => stated.scaling = assemble::scaling(value).filter(|s| *s != Scaling::Unknown),
-            "window" if stated.scaling.is_some() => stated.window = Window::from_name(value),
-            "enbw" if stated.scaling.is_some() => stated.enbw = value.parse().ok(),
-            _ => break,
+            "window" => stated.window = Window::from_name(value),
+            "enbw" => stated.enbw = value.parse().ok(),
+            _ => {}
         }
     }
     stated

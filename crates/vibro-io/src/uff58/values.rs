@@ -7,7 +7,6 @@ use vibro_record::{Error, Finding, Result};
 
 /// How values are stored: the eight cases of the standard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(test, derive(Default))]
 pub struct Layout {
     /// Whether each value has a real and an imaginary part.
     pub complex: bool,
