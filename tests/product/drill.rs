@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use vibroimpact::record::{Axis, Meta, Record, Trace};
 use vibroimpact::units::Unit;
-use vibroimpact::write::wav::{Sample, write};
+use vibroimpact::write::wav::write;
 use vibroimpact::write::{Precision, Storage, Target};
 
 const PLAIN: [&str; 12] = [
@@ -60,7 +60,7 @@ fn volts(name: &str, values: Vec<f64>) -> Record {
 
 fn wav(folder: &Path, name: &str, channels: &[Record]) -> PathBuf {
     let path = folder.join(name);
-    write(channels, Sample::Float32, &mut std::fs::File::create(&path).unwrap()).unwrap();
+    write(channels, Precision::Single, &mut std::fs::File::create(&path).unwrap()).unwrap();
     path
 }
 

@@ -1,13 +1,14 @@
-//! Values to records: which kind they are.
+//! Values to records: which kind they are, over which axis.
 
 use crate::Options;
 use vibro_record::units::{self, Unit};
 use vibro_record::{
-    Axis, AxisKind, Finding, Frf, FrfKind, Meta, Record, Result, Scaling, Spectrum, Trace, Values, Window,
+    Axis, AxisKind, Finding, Frf, FrfKind, Grid, Meta, Record, Result, Scaling, Spectrum, Trace, Values,
+    Window,
 };
 
 /// What a file states of a spectrum.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Spectral {
     /// Scaling, where it is stated.
     pub scaling: Option<Scaling>,
@@ -15,6 +16,8 @@ pub struct Spectral {
     pub enbw: Option<f64>,
     /// Whether complex values are stated to be a frequency response function.
     pub frf: bool,
+    /// What to say where the scaling is not known, if not that the file is silent.
+    pub doubt: Option<Finding>,
 }
 
 /// The record of values in SI units: a trace unless they stand over frequency, and a frequency response function where they
@@ -34,9 +37,15 @@ pub fn record(mut meta: Meta, axis: Axis, values: Values, said: Spectral) -> Rec
     };
     let scaling = said.scaling.unwrap_or(Scaling::Unknown);
     if scaling == Scaling::Unknown {
-        meta.found(Finding::caution("scaling-unsaid"));
+        meta.found(said.doubt.unwrap_or_else(|| Finding::caution("scaling-unsaid")));
     }
     Record::Spectrum(Spectrum { meta, axis, values, scaling, window: said.window, enbw: said.enbw })
+}
+
+/// A scaling by its name.
+pub fn scaling(name: &str) -> Option<Scaling> {
+    use Scaling::{Coherence, Energy, Peak, Power, Psd, Rms, Unknown};
+    [Peak, Rms, Power, Psd, Energy, Coherence, Unknown].into_iter().find(|s| s.name() == name)
 }
 
 /// Multiplies values by the factor of their unit.
@@ -75,5 +84,97 @@ impl Options {
         }
         meta.found(Finding::caution("unit-unsaid"));
         1.0
+    }
+}
+
+/// Axis of `values` (SI) and a finding where it is uneven or was printed with too few digits.
+///
+/// `resolution` is half a unit in the last digit, `what` names the values, e.g. `column "t"`.
+pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64, what: &str) -> (Axis, Option<Finding>) {
+    let unit = match kind {
+        AxisKind::Time => "s",
+        AxisKind::Frequency => "Hz",
+        AxisKind::Index | AxisKind::Other(_) => "",
+    };
+    let steps: Vec<f64> = values.windows(2).map(|w| w[1] - w[0]).collect();
+    let (smallest, largest) =
+        steps.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), d| (a.min(*d), b.max(*d)));
+    let long = steps.iter().filter(|d| **d > f64::midpoint(smallest, largest)).count();
+    // Steps of one and of two units in the last digit: rounding of 1.25 ms to whole ones, or a sample that was lost.
+    let doubled = smallest > 0.0 && largest > 1.5 * smallest;
+    let axis = if doubled && !is_rounding(&steps, f64::midpoint(smallest, largest)) {
+        Axis { kind, grid: Grid::Uneven(values) }
+    } else {
+        Axis::from_values(kind, values, resolution)
+    };
+    let finding = match axis.step() {
+        _ if axis.len() < 2 => None,
+        // Steps may differ by rounding in binary; a thousandth of a step is visible.
+        Some(step) if largest - smallest > 2e-3 * step => {
+            Some(Finding::caution("axis-rounded").number("step", step))
+        }
+        Some(_) => None,
+        None if smallest > 0.0 => Some(Finding::caution("axis-uneven")),
+        None => Some(Finding::caution("axis-backwards")),
+    };
+    let steps = steps.len();
+    let finding = finding.map(|found| {
+        let found = found.name("column", what).name("unit", unit);
+        found.number("smallest", smallest).number("largest", largest).count("long", long).count("n", steps)
+    });
+    (axis, finding)
+}
+
+/// Whether the longer steps come as regularly as rounding an even grid makes them: the distances between them differ by one
+/// at most. Fewer than three of them prove nothing.
+fn is_rounding(steps: &[f64], middle: f64) -> bool {
+    let long: Vec<usize> = steps.iter().enumerate().filter(|(_, d)| **d > middle).map(|(i, _)| i).collect();
+    let gaps = long.windows(2).map(|w| w[1] - w[0]);
+    let (least, most) = gaps.fold((usize::MAX, 0), |(a, b), gap| (a.min(gap), b.max(gap)));
+    long.len() >= 3 && most - least <= 1
+}
+
+/// Six digits are enough for a sentence.
+pub fn short(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_a_person_must_know_is_said() {
+        let of = |values: &[f64], resolution| {
+            from_values(AxisKind::Time, values.to_vec(), resolution, "column \"t\"")
+        };
+        let (axis, doubt) = of(&[0.0, 0.1, 0.2, 0.300_000_000_000_000_04], 0.0);
+        assert_eq!((axis.step().is_some(), doubt), (true, None));
+        // Steps of 1.25 ms, printed in whole milliseconds: every fourth is longer.
+        let printed: Vec<f64> = (0..16).map(|i| (1.25 * f64::from(i)).round() / 1e3).collect();
+        let (axis, doubt) = of(&printed, 0.5e-3);
+        // Both ends are rounded by half a millisecond at most.
+        assert!((axis.step().unwrap() - 0.00125).abs() <= 1e-3 / 15.0);
+        let steps = |found: Option<Finding>, code: &str| {
+            let found = found.unwrap();
+            assert_eq!(found.code, code);
+            ["smallest", "largest", "long", "n"].map(|name| short(found.get(name).unwrap()))
+        };
+        assert_eq!(steps(doubt, "axis-rounded"), [1e-3, 2e-3, 4.0, 15.0]);
+        assert_eq!(steps(of(&[0.0, 1.0, 3.0], 0.0).1, "axis-uneven"), [1.0, 2.0, 1.0, 2.0]);
+        assert_eq!(steps(of(&[0.0, 2.0, 1.0], 0.0).1, "axis-backwards")[..2], [-1.0, 2.0]);
+        assert_eq!(of(&[1.0], 0.0).1, None);
+        assert_eq!(of(&[], 0.0).1, None);
+    }
+
+    #[test]
+    fn lost_samples_are_not_taken_for_rounding() {
+        for lost in [vec![3], vec![5, 20], vec![5, 6, 30, 70]] {
+            let times: Vec<f64> =
+                (0..100).filter(|i| !lost.contains(i)).map(|i| f64::from(i) / 1e3).collect();
+            let (axis, doubt) = from_values(AxisKind::Time, times.clone(), 0.5e-3, "column \"t\"");
+            assert_eq!(axis.values(), times, "{lost:?}");
+            assert!(doubt.unwrap().code == "axis-uneven", "{lost:?}");
+        }
     }
 }

@@ -1,10 +1,53 @@
-//! One record of a recording, as a person names it.
+//! Records of a file as a person names them: one of a recording, or time traces block by block.
 
-use super::{Reader, Recording};
+use super::{Format, Reader, Recording, Source};
+use crate::wav::Wave;
 use std::path::Path;
-use vibro_record::{Error, Finding, Frf, FrfKind, Place, Record, Result, Scaling, Trace, Traces, Values};
+use vibro_record::{
+    Error, Finding, Frf, FrfKind, Meta, Place, Record, Result, Scaling, Spectrum, Stream as _, Trace, Traces,
+    Values, find_channel,
+};
 
 impl Reader {
+    /// Opens all time traces of a file to be read block by block.
+    ///
+    /// # Errors
+    /// As [`Reader::from_path`]; if the file holds no trace, or its traces have no sampling rate, or different rates,
+    /// lengths or start times: [`Reader::stream_channels`] takes those that belong together.
+    pub fn stream(&self, path: impl AsRef<Path>) -> Result<Traces> {
+        self.stream_channels(path, &[])
+    }
+
+    /// As [`Reader::stream`] for some channels, by name or number from 1, in the order given; all where none is named.
+    ///
+    /// # Errors
+    /// As [`Reader::stream`]; if there is no such channel.
+    pub fn stream_channels(&self, path: impl AsRef<Path>, channels: &[&str]) -> Result<Traces> {
+        let source = Source::file(path)?;
+        let path = source.path().to_owned();
+        if self.entry(&source)?.format == Format::Wav {
+            let mut wave = Wave::open(&source, &self.options)?;
+            let chosen = named(&path, channels, wave.channels.iter().map(|t| &t.meta))?;
+            let traces: Vec<Trace> = chosen.iter().map(|i| wave.channels[*i].clone()).collect();
+            wave.keep(&chosen);
+            let (findings, frames) = (wave.layout.findings.clone(), wave.frames());
+            return Traces::of_stream(path, findings, &traces, frames, Box::new(wave));
+        }
+        let recording = self.read(&source)?;
+        let nothing = recording.none("trace");
+        let traces = recording.records.into_iter().filter_map(|record| match record {
+            Record::Trace(trace) => Some(Some(trace)),
+            _ => None,
+        });
+        let mut all: Vec<Option<Trace>> = traces.collect();
+        if all.is_empty() {
+            return Err(nothing);
+        }
+        let chosen = named(&path, channels, all.iter().flatten().map(|t| &t.meta))?;
+        let traces = chosen.iter().filter_map(|i| all.get_mut(*i)?.take()).collect();
+        Traces::of_file(path, recording.findings, traces)
+    }
+
     /// One channel to be read block by block, behind the channel `reference` where there is one; a `calibration` multiplies it. Where
     /// none is named it is the only one, or the only other one.
     ///
@@ -49,6 +92,14 @@ impl Reader {
     }
 }
 
+/// Indices of the channels named; of all where none is.
+fn named<'a>(path: &Path, named: &[&str], all: impl Iterator<Item = &'a Meta> + Clone) -> Result<Vec<usize>> {
+    if named.is_empty() {
+        return Ok((0..all.count()).collect());
+    }
+    named.iter().map(|name| find_channel(path, name, all.clone())).collect()
+}
+
 impl Recording {
     /// The trace that `channel` names, or by its number among the traces from 1; the only one where it is `None`. A
     /// `calibration` multiplies the values.
@@ -67,13 +118,11 @@ impl Recording {
     /// If there is no such trace, or several and none was named; if a calibration is not a number other than 0, or is given
     /// for fractions of full scale without a unit.
     pub fn trace(&self, channel: Option<&str>, calibration: Option<f64>) -> Result<Trace> {
-        let traces: Vec<&Trace> = self
-            .records
-            .iter()
-            .filter_map(|r| if let Record::Trace(t) = r { Some(t) } else { None })
-            .collect();
-        let names: Vec<&str> = traces.iter().map(|t| t.meta.name.as_str()).collect();
-        let mut trace = traces[self.choose("trace", &names, channel)?].clone();
+        let traces: Vec<&Record> = self.records.iter().filter(|r| matches!(r, Record::Trace(_))).collect();
+        let Record::Trace(trace) = self.choose("trace", &traces, channel)? else {
+            return Err(self.none("trace"));
+        };
+        let mut trace = trace.clone();
         if let Some(factor) = calibration {
             if trace.meta.has(Trace::UNCALIBRATED) {
                 let found = format!("a calibration of {factor} without a unit");
@@ -91,72 +140,49 @@ impl Recording {
     /// # Errors
     /// If there is no such function, or several and none was named; if it is a spectrum of amplitudes or powers.
     pub fn frf(&self, channel: Option<&str>) -> Result<Frf> {
-        let frfs: Vec<(Frf, Option<Scaling>)> = self.records.iter().filter_map(as_frf).collect();
-        let names: Vec<&str> = frfs.iter().map(|(f, _)| f.meta.name.as_str()).collect();
-        let (mut frf, scaling) = frfs[self.choose("frequency response function", &names, channel)?].clone();
-        match scaling {
-            None => {}
-            Some(Scaling::Unknown) => frf.meta.found(Finding::caution("spectrum-taken-for-frf")),
-            Some(scaling) => {
-                return Err(Error::input(
-                    Place::file(&self.path),
-                    format!("{:?} is a complex spectrum scaled as {}", frf.meta.name, scaling.name()),
-                    "a frequency response function: response per force",
-                )
-                .hint("export the frequency response function (H1 or H2), not the spectrum of one channel"));
-            }
-        }
-        Ok(frf)
-    }
-
-    fn choose(&self, kind: &str, names: &[&str], channel: Option<&str>) -> Result<usize> {
-        let refuse = |found: String, expected: String| {
-            let hint = "name one, by its name or its number from 1; `vibro info` lists all";
-            Err(Error::input(Place::file(&self.path), found, expected).hint(hint).setting("channel"))
-        };
-        match (channel, names) {
-            (_, []) => Err(Error::input(
-                Place::file(&self.path),
-                format!("no {kind}"),
-                format!("a file that holds a {kind}"),
-            )
-            .hint("`vibro info` lists what is in the file; samples over time need a sampling rate")
-            .setting("rate")),
-            (None, [_]) => Ok(0),
-            (None, _) => refuse(
-                format!("{} records of kind {kind}, and none was chosen", names.len()),
-                names.join(", "),
-            ),
-            (Some(name), _) => {
-                let number =
-                    || name.parse::<usize>().ok().filter(|n| (1..=names.len()).contains(n)).map(|n| n - 1);
-                match (names.iter().filter(|n| **n == name).count(), number()) {
-                    (1, _) => Ok(names.iter().position(|n| *n == name).unwrap_or(0)),
-                    (0, Some(index)) => Ok(index),
-                    (0, None) => refuse(format!("no {kind} is named {name:?}"), names.join(", ")),
-                    (many, _) => refuse(
-                        format!("{many} records of kind {kind} are named {name:?}"),
-                        format!("a number from 1 to {}", names.len()),
-                    ),
+        const KIND: &str = "frequency response function";
+        let complex = |r: &&Record| r.is_complex();
+        let all: Vec<&Record> = self.records.iter().filter(complex).collect();
+        match self.choose(KIND, &all, channel)? {
+            Record::Frf(frf) => Ok(frf.clone()),
+            Record::Spectrum(Spectrum { meta, axis, values: Values::Complex(values), scaling, .. }) => {
+                if *scaling != Scaling::Unknown {
+                    let found = format!("{:?} is a complex spectrum scaled as {}", meta.name, scaling.name());
+                    let expected = "a frequency response function: response per force";
+                    return Err(Error::input(Place::file(&self.path), found, expected).hint(
+                        "export the frequency response function (H1 or H2), not the spectrum of one channel",
+                    ));
                 }
+                let kind = FrfKind::of(meta.quantity);
+                let mut frf = Frf { meta: meta.clone(), axis: axis.clone(), values: values.clone(), kind };
+                frf.meta.found(Finding::caution("spectrum-taken-for-frf"));
+                Ok(frf)
             }
+            _ => Err(self.none(KIND)),
         }
     }
-}
 
-/// A function, and the scaling of the spectrum that it is made of, if it is.
-fn as_frf(record: &Record) -> Option<(Frf, Option<Scaling>)> {
-    match record {
-        Record::Frf(frf) => Some((frf.clone(), None)),
-        Record::Spectrum(s) => match &s.values {
-            Values::Complex(values) => {
-                let kind = FrfKind::of(s.meta.quantity);
-                let (meta, axis, values) = (s.meta.clone(), s.axis.clone(), values.clone());
-                Some((Frf { meta, axis, values, kind }, Some(s.scaling)))
+    fn none(&self, kind: &str) -> Error {
+        let place = Place::file(&self.path);
+        Error::input(place, format!("no {kind}"), format!("a file that holds a {kind}"))
+            .hint("`vibro info` lists what is in the file; samples over time need a sampling rate")
+            .setting("rate")
+    }
+
+    /// The one of these records that is named, or the only one.
+    fn choose<'a>(&self, kind: &str, all: &[&'a Record], channel: Option<&str>) -> Result<&'a Record> {
+        let chosen = match (channel, all) {
+            (_, []) => return Err(self.none(kind)),
+            (None, [only]) => return Ok(only),
+            (None, _) => {
+                let names: Vec<&str> = all.iter().map(|r| r.meta().name.as_str()).collect();
+                let found = format!("{} records of kind {kind}, and none was chosen", names.len());
+                Err(Error::input(Place::file(&self.path), found, names.join(", ")))
             }
-            Values::Real(_) => None,
-        },
-        Record::Trace(_) => None,
+            (Some(name), _) => find_channel(&self.path, name, all.iter().map(|r| r.meta())),
+        };
+        let hint = "name one, by its name or its number from 1; `vibro info` lists all";
+        chosen.map(|i| all[i]).map_err(|e| e.hint(hint).setting("channel"))
     }
 }
 

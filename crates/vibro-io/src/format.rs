@@ -19,40 +19,34 @@ pub enum Format {
     Ascii,
 }
 
-/// Headers of the records, and findings about the file as a whole.
-pub(super) type Survey = (Vec<Header>, Vec<Finding>);
+/// Reads all records with their values.
+type Read = fn(&Source, &Options) -> Result<Recording>;
+/// Reads the records without their values in memory that does not grow with the file.
+type Survey = fn(&Source, &Options) -> Result<(Vec<Header>, Vec<Finding>)>;
 
 /// How one format is told apart and read.
 pub(super) struct Entry {
     pub format: Format,
     pub name: &'static str,
-    /// Whether the first bytes (at most [`super::source::HEAD`]) are of this format.
+    /// Whether the first bytes are of this format.
     pub sniff: fn(head: &[u8], source: &Source) -> bool,
-    /// All records with their values.
-    pub read: fn(&Source, &Options) -> Result<Recording>,
-    /// The records without their values, in memory that does not grow with the file where the format allows; and
-    /// findings about the file as a whole.
-    pub survey: fn(&Source, &Options) -> Result<Survey>,
+    pub read: Read,
+    /// Where the format allows it; other files are read.
+    pub survey: Option<Survey>,
 }
 
 /// Binary formats with a signature first, then text formats from the strictest to the loosest.
 pub(super) const TABLE: &[Entry] = &[
-    Entry { format: Format::Wav, name: "wav", sniff: wav::sniff, read: wav::read, survey: wav::survey },
-    Entry { format: Format::Mat, name: "mat", sniff: mat::sniff, read: mat::read, survey: mat::survey },
-    Entry { format: Format::Uff, name: "uff", sniff: uff::sniff, read: uff::read, survey: uff::survey },
-    Entry {
-        format: Format::Csv,
-        name: "csv",
-        sniff: text::is_table,
-        read: text::read_table,
-        survey: text::survey_table,
-    },
+    Entry { format: Format::Wav, name: "wav", sniff: wav::sniff, read: wav::read, survey: Some(wav::survey) },
+    Entry { format: Format::Mat, name: "mat", sniff: mat::sniff, read: mat::read, survey: None },
+    Entry { format: Format::Uff, name: "uff", sniff: uff::sniff, read: uff::read, survey: None },
+    Entry { format: Format::Csv, name: "csv", sniff: text::is_table, read: text::read_table, survey: None },
     Entry {
         format: Format::Ascii,
         name: "ascii",
         sniff: text::is_text,
         read: text::read_numbers,
-        survey: text::survey_numbers,
+        survey: None,
     },
 ];
 

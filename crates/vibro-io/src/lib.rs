@@ -27,17 +27,13 @@
 //! records into files again.
 
 mod assemble;
-mod axis;
 mod choose;
-mod decibel;
 mod format;
-mod header;
 mod mat;
 mod missing;
 mod number;
 mod reader;
 mod source;
-mod stream;
 mod sweep;
 mod sweep_list;
 mod text;
@@ -48,12 +44,10 @@ mod wav;
 pub mod write;
 
 pub use format::Format;
-pub use header::Header;
-pub use reader::{Reader, Recording};
+pub use reader::{Header, Reader, Recording};
 pub use sweep::SweepReader;
 pub use sweep_list::{SweepList, inside};
 
-pub(crate) use header::Summary;
 pub(crate) use reader::Options;
 pub(crate) use source::Source;
 
@@ -64,7 +58,7 @@ mod tests {
     /// Findings as text, numbers with six digits: `axis-uneven column=column "t" smallest=0.1`.
     pub fn told(findings: &[Finding]) -> Vec<String> {
         let fact = |(name, fact): &(&str, Fact)| match fact {
-            Fact::Number(value) => format!("{name}={}", crate::axis::short(*value)),
+            Fact::Number(value) => format!("{name}={}", crate::assemble::short(*value)),
             Fact::Numbers(values) => format!("{name}={values:?}"),
             Fact::Name(text) => format!("{name}={text}"),
         };

@@ -7,32 +7,24 @@
 //! ```
 //! A numeric vector is a record, and so is each column of a matrix. Scalars and texts are notes on every record. The
 //! abscissa comes from a vector `t` or `time` (`f`, `freq` or `frequency`) of the same length, or from a scalar `fs`,
-//! `rate`, `SampleRate`, `dt` or `Ts`; the file knows no units. Everything is read at once, for a survey too.
+//! `rate`, `SampleRate`, `dt` or `Ts`; the file knows no units.
 
-mod element;
-mod records;
 mod variable;
 
-use super::format::{Format, Survey};
+use super::format::Format;
 use super::reader::{Options, Recording};
-use super::{Header, Source};
-use element::Elements;
-use flate2::read::ZlibDecoder;
-use std::io::{BufReader, Read, Seek, SeekFrom};
-use variable::{Content, Variable};
-use vibro_record::{Error, Finding, Place, Result};
+use super::{Source, missing};
+use crate::assemble::{self, Spectral, from_values, short, to_si};
+use num_complex::Complex64;
+use variable::{Array, Content, Elements};
+use vibro_record::units::Unit;
+use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Place, Record, Result, Values};
 
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Bytes before the first variable.
-const HEADER: u64 = 128;
-/// Most bytes that deflate makes of one: 258 of two bits.
-const MOST_INFLATED: u64 = 1032;
-
-/// How many values the packed variables of a file of this length may hold, as doubles: 64 times its size, but no less
-/// than 64 MiB and no more than 4 GiB.
-fn budget(length: u64) -> u64 {
-    length.saturating_mul(64).clamp(64 << 20, 4 << 30) / 8
-}
+const HEADER: usize = 128;
+/// More columns than this are taken for a matrix that lies on its side.
+const MOST_COLUMNS: u64 = 1000;
 
 /// The levels of the format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -71,112 +63,260 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         Error::input(Place::file(source.path()), found, "a level 5 MAT-file")
             .hint("open it in MATLAB and save it again with -v7 or -v6, e.g. save('name.mat', '-v7')")
     };
-    let big_endian = match level(&source.head()?, source) {
+    let big_endian = match level(source.head(), source) {
         Some(Level::Five { big_endian }) => big_endian,
         Some(Level::Hdf5) => return Err(refuse("a MAT-file of version 7.3, which is HDF5")),
         Some(Level::Four) => return Err(refuse("a MAT-file of version 4")),
         None => return Err(refuse("no MAT-file header")),
     };
+    let bytes = source.all()?;
+    let place = Place::file(source.path());
+    let variables = variable::all(Elements { rest: &bytes[HEADER..], big_endian, place }, bytes.len())?;
     let mut findings = Vec::new();
-    let (variables, cut) = variables(source, big_endian)?;
-    if let Some(cut) = cut {
-        let numbers = |v: &Variable| matches!(&v.content, Content::Array(a) if a.real.len() > 1);
-        if !variables.iter().any(numbers) {
-            return Err(cut.error(source));
+    let (mut arrays, mut notes, mut rates) = (Vec::new(), Vec::new(), Vec::new());
+    for (name, content) in variables {
+        match content {
+            Content::Text(text) => notes.push((name, text)),
+            Content::Other(class) => {
+                let passed = Finding::note("variable-passed-over");
+                let passed = if name.is_empty() { passed } else { passed.name("variable", name) };
+                findings.push(passed.name("class", class));
+            }
+            // MATLAB keeps the inside of objects and functions in a nameless array.
+            Content::Array(_) if name.is_empty() => {}
+            Content::Array(array) => match (array.real.as_slice(), &array.imaginary) {
+                ([], _) => findings.push(Finding::note("variable-empty").name("variable", name)),
+                ([value], None) => {
+                    rates.extend(rate(&name, *value).map(|rate| (name.clone(), rate)));
+                    notes.push((name, value.to_string()));
+                }
+                _ if array.dimensions.iter().filter(|d| **d > 1).count() > 2 => {
+                    let found = Finding::note("variable-many-dimensions").name("variable", name);
+                    findings.push(found.count("dimensions", array.dimensions.len()));
+                }
+                _ => arrays.push((name, array)),
+            },
         }
-        let found = Finding::caution("variable-cut-off").number("byte", cut.byte as f64);
-        let found = found.number("there", cut.there as f64);
-        findings
-            .push(cut.declared.into_iter().fold(found, |f, declared| f.number("declared", declared as f64)));
     }
-    let records = records::build(source, variables, options, &mut findings)?;
+    let axes = Axes::find(source, &mut arrays, &rates, options, &mut findings)?;
+    let mut records = Vec::new();
+    for (name, array) in arrays {
+        for (name, values) in axes.split(source, name, array)? {
+            records.push((name, values));
+        }
+    }
+    if records.is_empty() {
+        let expected = "at least one to make a record of";
+        return Err(Error::input(Place::file(source.path()), "no numeric vector or matrix", expected));
+    }
+    allow(source, &mut records, options, &mut findings)?;
+    if options.unit.is_none() {
+        findings.push(Finding::caution("format-without-units"));
+    }
+    let record = |(name, mut values): (String, Values)| {
+        let axis = axes.of(&values, &name, &mut findings);
+        let mut meta = Meta::new(name, Unit::opaque(""));
+        meta.notes.clone_from(&notes);
+        meta.step("read", &[("file", &source.name()), ("format", &"mat")]);
+        let factor = options.unit.as_ref().map_or(1.0, |unit| meta.adopt_unit(unit.symbol()));
+        to_si(&mut values, factor).map_err(|e| e.in_file(source.path()))?;
+        if axis.kind == AxisKind::Index {
+            meta.found(Finding::caution("abscissa-unsaid"));
+        }
+        Ok(assemble::record(meta, axis, values, Spectral::default()))
+    };
+    let records = records.into_iter().map(record).collect::<Result<Vec<Record>>>()?;
     Ok(Recording { path: source.path().to_owned(), format: Format::Mat, records, findings })
 }
 
-pub(super) fn survey(source: &Source, options: &Options) -> Result<Survey> {
-    let recording = read(source, options)?;
-    Ok((recording.records.iter().map(Header::of).collect(), recording.findings))
+/// Makes values that are not finite missing, or refuses them all at once.
+fn allow(
+    source: &Source,
+    records: &mut [(String, Values)],
+    options: &Options,
+    findings: &mut Vec<Finding>,
+) -> Result<()> {
+    let mut missing = Vec::new();
+    for (name, values) in records {
+        for i in 0..values.len() {
+            let odd = match values {
+                Values::Real(values) => {
+                    Some(&mut values[i]).filter(|v| !v.is_finite()).map(|v| *v = f64::NAN)
+                }
+                Values::Complex(values) => {
+                    let gap = Complex64::new(f64::NAN, f64::NAN);
+                    Some(&mut values[i]).filter(|v| !v.is_finite()).map(|v| *v = gap)
+                }
+            };
+            missing.extend(odd.map(|()| format!("{} of {name:?}", i + 1)));
+        }
+    }
+    findings.extend(missing::kept(missing.len()));
+    if missing.is_empty() || options.allow_missing {
+        return Ok(());
+    }
+    let more = if missing.len() > missing::LISTED { ", …" } else { "" };
+    let first = missing[..missing.len().min(missing::LISTED)].join(", ");
+    let found = format!("{} value(s) are NaN or infinite: {first}{more}", missing.len());
+    Err(missing::refusal(Place::file(source.path()), found))
 }
 
-/// The variable at which a file ends early.
-struct Cut {
-    /// Where it begins.
-    byte: u64,
-    /// Bytes that its tag declares; `None` where the tag itself is cut.
-    declared: Option<u64>,
-    /// Bytes that are there, behind the tag or of it.
-    there: u64,
+/// Sampling rate in Hz that a scalar of this name states.
+fn rate(name: &str, value: f64) -> Option<f64> {
+    let key = name.replace('_', "").to_lowercase();
+    let rate = match key.as_str() {
+        "fs" | "rate" | "samplerate" | "samplingrate" | "samplefrequency" | "samplingfrequency" => value,
+        "dt" | "ts" | "sampletime" | "samplinginterval" => 1.0 / value,
+        _ => return None,
+    };
+    (rate.is_finite() && rate > 0.0).then_some(rate)
 }
 
-impl Cut {
-    fn error(&self, source: &Source) -> Error {
-        let place = Place::byte(source.path(), self.byte);
-        Error::input(place, format!("the file is cut off: {self}"), "a whole variable of numbers")
-            .hint("copy or save the file again")
+/// The kind of abscissa that a vector of this name holds.
+fn kind(name: &str) -> Option<AxisKind> {
+    match name {
+        "t" | "time" | "Time" => Some(AxisKind::Time),
+        "f" | "freq" | "Freq" | "frequency" | "Frequency" => Some(AxisKind::Frequency),
+        _ => None,
     }
 }
 
-impl std::fmt::Display for Cut {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Cut { byte, there, .. } = self;
-        match self.declared {
-            Some(declared) => {
-                write!(f, "its last variable, at byte {byte}, declares {declared} bytes, {there} are there")
-            }
-            None => write!(f, "of its last variable, at byte {byte}, only {there} bytes are there"),
-        }
-    }
+/// What the file and the person say of abscissae.
+struct Axes<'a> {
+    options: &'a Options,
+    time: Option<Axis>,
+    frequency: Option<Axis>,
+    rate: Option<f64>,
 }
 
-/// All whole variables, and where the file ends within one.
-fn variables(source: &Source, big_endian: bool) -> Result<(Vec<Variable>, Option<Cut>)> {
-    let io = |e| Error::io("read", source.path(), e);
-    let mut file = BufReader::new(source.open()?);
-    let (mut variables, mut budget) = (Vec::new(), budget(source.len()));
-    let mut at = HEADER;
-    while at < source.len() {
-        let (byte, there) = (at, source.len() - at);
-        if there < 8 {
-            return Ok((variables, Some(Cut { byte, declared: None, there })));
+impl<'a> Axes<'a> {
+    /// Takes the rising vectors named as abscissae out of `arrays` where another array has their length.
+    fn find(
+        source: &Source,
+        arrays: &mut Vec<(String, Array)>,
+        rates: &[(String, f64)],
+        options: &'a Options,
+        findings: &mut Vec<Finding>,
+    ) -> Result<Axes<'a>> {
+        let rate = rates.first().map(|(_, rate)| *rate);
+        let mut axes = Axes { options, time: None, frequency: None, rate };
+        if let [(first, a), rest @ ..] = rates
+            && let Some((other, b)) = rest.iter().find(|(_, b)| (b / a - 1.0).abs() > 1e-6)
+            && options.rate.is_none()
+        {
+            let found =
+                format!("{first:?} says a sampling rate of {} Hz, {other:?} {} Hz", short(*a), short(*b));
+            return Err(Error::input(Place::file(source.path()), found, "one sampling rate")
+                .hint("state the sampling rate")
+                .setting("rate"));
         }
-        let place = Place::byte(source.path(), at);
-        file.seek(SeekFrom::Start(at)).map_err(io)?;
-        let tag = Elements::new(&mut file, big_endian, place.clone()).tag()?;
-        at += 8 + tag.behind();
-        if at > source.len() {
-            return Ok((variables, Some(Cut { byte, declared: Some(tag.size), there: there - 8 })));
+        for axis_kind in [AxisKind::Time, AxisKind::Frequency] {
+            let Some(at) = arrays.iter().position(|(name, _)| kind(name).as_ref() == Some(&axis_kind)) else {
+                continue;
+            };
+            let (name, array) = &arrays[at];
+            let n = array.real.len() as u64;
+            let rises = array.real.windows(2).all(|w| w[1] > w[0]) && array.imaginary.is_none();
+            let vector = array.dimensions.contains(&n);
+            let fits = arrays.iter().enumerate().any(|(i, (_, a))| i != at && a.dimensions.contains(&n));
+            if !(rises && vector && fits) {
+                let found = if rises {
+                    Finding::caution("abscissa-of-other-length")
+                } else {
+                    Finding::caution("abscissa-not-rising")
+                };
+                findings.push(found.name("variable", name.as_str()));
+                continue;
+            }
+            let (name, Array { real: values, single, .. }) = arrays.remove(at);
+            let (first, last) = (values[0], values[values.len() - 1]);
+            // Sums of steps drift by rounding: a millionth of a step is no unevenness. Floats of 32 bits round to 2⁻²⁴.
+            let drift = 0.5e-6 * (last - first) / (values.len() - 1).max(1) as f64;
+            let rounding =
+                if single { first.abs().max(last.abs()) * f64::from(f32::EPSILON) / 2.0 } else { 0.0 };
+            let label = format!("vector {name:?}");
+            let (axis, finding) = from_values(axis_kind.clone(), values, drift.max(rounding), &label);
+            findings.extend(finding);
+            if axis_kind == AxisKind::Frequency {
+                axes.frequency = Some(axis);
+                continue;
+            }
+            if let Some(rate) = options.rate.or(axes.rate)
+                && axis.step().is_none_or(|dt| (dt * rate - 1.0).abs() > 1e-6)
+            {
+                let used = if options.rate.is_some() { "rate" } else { "vector" };
+                let found = Finding::caution("vector-against-rate").name("variable", name).name("used", used);
+                findings.push(found.number("rate", rate));
+            }
+            axes.time = Some(axis);
         }
-        let mut body = (&mut file).take(tag.size);
-        match tag.kind {
-            14 => {
-                let mut unlimited = u64::MAX;
-                variables
-                    .push(variable::read(&mut Elements::new(&mut body, big_endian, place), &mut unlimited)?);
-            }
-            15 => {
-                let mut packed = ZlibDecoder::new(body);
-                let mut outer = Elements::new(&mut packed, big_endian, place.clone());
-                let inner = outer.tag()?;
-                if inner.kind != 14 {
-                    return Err(
-                        outer.fault(format!("an element of kind {}", inner.kind), "a packed variable")
-                    );
-                }
-                if inner.size > MOST_INFLATED.saturating_mul(tag.size) {
-                    let found = format!("a variable of {} bytes packed in {}", inner.size, tag.size);
-                    return Err(outer
-                        .fault(found, "at most 1032 times the packed size, which is all that deflate can do")
-                        .hint("the file is damaged; save it again without compression (save -v6)"));
-                }
-                let mut body = packed.take(inner.size);
-                variables
-                    .push(variable::read(&mut Elements::new(&mut body, big_endian, place), &mut budget)?);
-            }
-            0 => break,
+        Ok(axes)
+    }
+
+    /// The axis of a record.
+    fn of(&self, values: &Values, name: &str, findings: &mut Vec<Finding>) -> Axis {
+        let (n, complex) = (values.len(), matches!(values, Values::Complex(_)));
+        let time = self.time.as_ref().filter(|t| t.len() == n && !complex);
+        let frequency = self.frequency.as_ref().filter(|f| f.len() == n);
+        match (self.options.rate, self.options.base_band) {
+            (Some(rate), _) if !complex => return Axis::time(time.map_or(0.0, Axis::start), 1.0 / rate, n),
+            (None, Some(band)) => return Axis::frequency(0.0, band / n.saturating_sub(1).max(1) as f64, n),
             _ => {}
         }
+        if time.is_some() && frequency.is_some() {
+            findings.push(Finding::caution("time-or-frequency").name("variable", name));
+        }
+        match (time.or(frequency), self.rate.filter(|_| !complex)) {
+            (Some(axis), _) => axis.clone(),
+            (None, Some(rate)) => Axis::time(0.0, 1.0 / rate, n),
+            (None, None) => Axis::index(n),
+        }
     }
-    Ok((variables, None))
+
+    fn has(&self, n: u64) -> bool {
+        [&self.time, &self.frequency].into_iter().flatten().any(|axis| axis.len() as u64 == n)
+    }
+
+    /// A vector is one record, a matrix one a column; or one a row, where only the rows have the length of the abscissa.
+    fn split(&self, source: &Source, name: String, array: Array) -> Result<Vec<(String, Values)>> {
+        let values = match &array.imaginary {
+            None => Values::Real(array.real),
+            Some(imaginary) => {
+                let pairs = array.real.iter().zip(imaginary);
+                Values::Complex(pairs.map(|(re, im)| Complex64::new(*re, *im)).collect())
+            }
+        };
+        let mut long = array.dimensions.iter().copied().filter(|d| *d > 1);
+        let (Some(rows), Some(columns)) = (long.next(), long.next()) else {
+            return Ok(vec![(name, values)]);
+        };
+        let lying = self.has(columns) && !self.has(rows) && rows <= columns.max(MOST_COLUMNS);
+        if !lying && columns > rows && columns > MOST_COLUMNS {
+            return Err(Error::input(
+                Place::file(source.path()),
+                format!("{name:?} has {rows} rows and {columns} columns: {columns} records of {rows} values"),
+                "one channel a column",
+            )
+            .hint(format!("transpose it and save it again: {name} = {name}.';")));
+        }
+        let (rows, columns) = (rows as usize, columns as usize);
+        // Value i of record k is `from(k)` plus i times `step`.
+        let (records, n, step) = if lying { (rows, columns, rows) } else { (columns, rows, 1) };
+        let part = |k: usize| {
+            let from = if lying { k } else { k * rows };
+            let name = if lying { format!("{name}({},:)", k + 1) } else { format!("{name}(:,{})", k + 1) };
+            let cut = match &values {
+                Values::Real(all) => {
+                    Values::Real(all.iter().skip(from).step_by(step).take(n).copied().collect())
+                }
+                Values::Complex(all) => {
+                    Values::Complex(all.iter().skip(from).step_by(step).take(n).copied().collect())
+                }
+            };
+            (name, cut)
+        };
+        Ok((0..records).map(part).collect())
+    }
 }
 
 #[cfg(test)]

@@ -24,20 +24,15 @@ pub(super) struct Missing {
     /// Number of values.
     pub count: usize,
     places: Vec<(u64, String)>,
-    more: bool,
 }
 
 impl Missing {
-    /// Counts `count` values of a line; `what` names the column where it has a name.
-    pub fn take(&mut self, line: u64, count: usize, what: &str) {
-        self.count = self.count.saturating_add(count);
-        if self.places.last().is_some_and(|(last, of)| (*last, of.as_str()) == (line, what)) {
-            return;
-        }
-        if self.places.len() < LISTED {
-            self.places.push((line, what.to_owned()));
-        } else {
-            self.more = true;
+    /// Counts one value of a line; `what` names the column where it has a name.
+    pub fn take(&mut self, line: u64, what: &str) {
+        self.count += 1;
+        let place = (line, what.to_owned());
+        if self.places.len() <= LISTED && self.places.last() != Some(&place) {
+            self.places.push(place);
         }
     }
 
@@ -47,17 +42,13 @@ impl Missing {
     /// If there are any and they are not `allowed`.
     pub fn check(&self, path: &Path, allowed: bool) -> Result<()> {
         let Some((first, _)) = self.places.first().filter(|_| !allowed) else { return Ok(()) };
-        let listed: Vec<String> = self
-            .places
-            .iter()
-            .map(|(line, what)| if what.is_empty() { line.to_string() } else { format!("{line} ({what:?})") })
-            .collect();
-        let more = if self.more { ", …" } else { "" };
-        let found = format!(
-            "{} missing value(s) (NaN, Inf or blank) in line(s) {}{more}",
-            self.count,
-            listed.join(", ")
-        );
+        let name = |(line, what): &(u64, String)| {
+            if what.is_empty() { line.to_string() } else { format!("{line} ({what:?})") }
+        };
+        let listed: Vec<String> = self.places.iter().take(LISTED).map(name).collect();
+        let more = if self.places.len() > LISTED { ", …" } else { "" };
+        let (n, listed) = (self.count, listed.join(", "));
+        let found = format!("{n} missing value(s) (NaN, Inf or blank) in line(s) {listed}{more}");
         Err(refusal(Place::line(path, *first), found))
     }
 }

@@ -1,12 +1,13 @@
 //! The reader: options, then a path or bytes, then records.
 
 use super::format::{Entry, Format, TABLE};
-use super::{Header, Source, SweepList};
+use super::missing::LISTED;
+use super::{Source, SweepList};
 use rayon::prelude::*;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use vibro_record::units::Unit;
-use vibro_record::{Error, Finding, Place, Record, Result};
+use vibro_record::{Error, Finding, Meta, Place, Record, Result};
 
 /// Rates, bands and line widths in Hz of any instrument lie far inside; steps made of them are finite and positive.
 pub(super) const POSSIBLE: std::ops::RangeInclusive<f64> = 1e-12..=1e15;
@@ -57,7 +58,7 @@ impl Recording {
 #[derive(Debug, Clone, Default)]
 pub struct Reader {
     format: Option<Format>,
-    options: Options,
+    pub(super) options: Options,
 }
 
 impl Reader {
@@ -125,31 +126,18 @@ impl Reader {
     /// Reads many files, in parallel, in the order given.
     ///
     /// # Errors
-    /// As [`Reader::from_path`], for the first file at fault; all others at fault, and all that do not exist, are named too.
+    /// As [`Reader::from_path`], for the first file at fault; where its content is at fault, the others are named too.
     pub fn from_paths<P: AsRef<Path> + Sync>(&self, paths: &[P]) -> Result<Vec<Recording>> {
         let results: Vec<Result<Recording>> = paths.par_iter().map(|p| self.from_path(p)).collect();
-        if results.iter().any(Result::is_err) {
-            // Looked for only after a failure: asking for every file beforehand costs as much as opening it.
-            let missing: Vec<&P> = paths.iter().filter(|p| !p.as_ref().exists()).collect();
-            if let [first, _, ..] = missing.as_slice() {
-                let names: Vec<String> = missing.iter().map(|p| p.as_ref().display().to_string()).collect();
-                return Err(Error::input(
-                    Place::file(first.as_ref()),
-                    format!("{} of {} files are missing: {}", names.len(), paths.len(), names.join(", ")),
-                    "every file that is named",
-                )
-                .hint("check the folder and the spelling; on Linux upper and lower case differ"));
-            }
-        }
         let failed: Vec<&P> =
             paths.iter().zip(&results).filter(|(_, r)| r.is_err()).map(|(p, _)| p).collect();
-        let many = match failed.len() {
-            all if all == paths.len() && all > 1 => format!("none of the {all} files can be read so"),
-            0 | 1 => String::new(),
-            some => format!("{some} of {} files cannot be read so: {}", paths.len(), listed(&failed)),
-        };
+        let names = failed.iter().take(LISTED).filter_map(|p| p.as_ref().file_name());
+        let names: Vec<String> = names.map(|name| name.to_string_lossy().into_owned()).collect();
+        let more = if failed.len() > LISTED { ", …" } else { "" };
+        let (n, all, names) = (failed.len(), paths.len(), names.join(", "));
+        let many = format!("{n} of {all} files cannot be read so: {names}{more}");
         let whole: Result<Vec<Recording>> = results.into_iter().collect();
-        whole.map_err(|error| if many.is_empty() { error } else { error.aside(many) })
+        whole.map_err(|error| if failed.len() > 1 { error.aside(many) } else { error })
     }
 
     /// Reads bytes; `name` stands for the path in messages and helps to tell the format.
@@ -168,8 +156,8 @@ impl Reader {
     /// # Errors
     /// As [`Reader::from_path`].
     pub(crate) fn read(&self, source: &Source) -> Result<Recording> {
-        let (entry, source) = self.entry(source)?;
-        (entry.read)(&source, &self.options).map_err(|e| no_list(&source, e).in_file(source.path()))
+        let entry = self.entry(source)?;
+        (entry.read)(source, &self.options).map_err(|e| no_list(source, e).in_file(source.path()))
     }
 
     /// The records of a file without their values; memory does not grow with the file where the format allows.
@@ -178,46 +166,31 @@ impl Reader {
     /// As [`Reader::from_path`].
     pub fn survey(&self, path: impl AsRef<Path>) -> Result<(Format, Vec<Header>, Vec<Finding>)> {
         let source = Source::file(path)?;
-        let (entry, source) = self.entry(&source)?;
-        let (headers, findings) =
-            (entry.survey)(&source, &self.options).map_err(|e| no_list(&source, e).in_file(source.path()))?;
-        Ok((entry.format, headers, findings))
+        let entry = self.entry(&source)?;
+        if let Some(survey) = entry.survey {
+            let (headers, findings) = survey(&source, &self.options).map_err(|e| e.in_file(source.path()))?;
+            return Ok((entry.format, headers, findings));
+        }
+        let recording = self.read(&source)?;
+        Ok((entry.format, recording.records.iter().map(Header::of).collect(), recording.findings))
     }
 
-    pub(super) fn options(&self) -> &Options {
-        &self.options
-    }
-
-    /// The format of a source, and the source itself: in memory where its first bytes are all of it.
-    pub(super) fn entry(&self, source: &Source) -> Result<(&'static Entry, Source)> {
+    /// The format of a source.
+    pub(super) fn entry(&self, source: &Source) -> Result<&'static Entry> {
         for (what, value) in [("sampling rate", self.options.rate), ("base band", self.options.base_band)] {
             if let Some(value) = value.filter(|v| !POSSIBLE.contains(v)) {
                 let found = format!("a {what} of {value} Hz was stated");
                 return Err(Error::input(Place::file(source.path()), found, "a possible number of hertz"));
             }
         }
-        let head = source.head()?;
         let forced = self.format.and_then(|format| TABLE.iter().find(|e| e.format == format));
-        let entry = forced.or_else(|| TABLE.iter().find(|e| (e.sniff)(&head, source))).ok_or_else(|| {
-            Error::input(
-                Place::file(source.path()),
-                "not a format that is known here",
-                Format::names().join(", "),
-            )
-            .hint("name the format, or export the record as text or UFF-58")
-            .setting("format")
-        })?;
-        let small = head.len() as u64 == source.len();
-        Ok((entry, if small { Source::memory(source.path(), head)? } else { source.clone() }))
+        forced.or_else(|| TABLE.iter().find(|e| (e.sniff)(source.head(), source))).ok_or_else(|| {
+            let names = Format::names().join(", ");
+            Error::input(Place::file(source.path()), "not a format that is known here", names)
+                .hint("name the format, or export the record as text or UFF-58")
+                .setting("format")
+        })
     }
-}
-
-/// Names of files, the first of them where there are many.
-fn listed<P: AsRef<Path>>(paths: &[&P]) -> String {
-    const LISTED: usize = 12;
-    let name = |p: &&P| p.as_ref().file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-    let more = if paths.len() > LISTED { ", …" } else { "" };
-    paths.iter().take(LISTED).map(name).collect::<Vec<_>>().join(", ") + more
 }
 
 /// What to say where reading failed with `error`: a list of a sweep is a likely thing to be taken for a measurement.
@@ -227,4 +200,70 @@ fn no_list(source: &Source, error: Error) -> Error {
     error
         .aside(format!("this reads as the list of a sweep: {points} points, {lines} lines to {band} Hz"))
         .hint("give the list to `vibro response`, or name the files that stand in it")
+}
+
+/// One record of a file, without its values.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Header {
+    /// Channel or record name.
+    pub name: String,
+    /// `trace`, `spectrum` or `frf`.
+    pub kind: &'static str,
+    /// Quantity by name.
+    pub quantity: &'static str,
+    /// SI unit.
+    pub unit: String,
+    /// Number of values present.
+    pub n: usize,
+    /// Number of values that the file declares.
+    pub declared_n: Option<usize>,
+    /// First abscissa value, in s or Hz.
+    pub x0: f64,
+    /// Distance of abscissa values; `None` if uneven.
+    pub dx: Option<f64>,
+    /// Whether values are complex.
+    pub complex: bool,
+    /// Largest magnitude in SI units; `None` where the values were not read or are all missing.
+    pub max_abs: Option<f64>,
+    /// Abscissa of the largest magnitude.
+    pub max_at: Option<f64>,
+    /// Header lines that were kept and not understood, and what the text was read as: encoding, decimal mark.
+    pub notes: Vec<String>,
+    /// What a person must know before trusting the values.
+    pub findings: Vec<Finding>,
+}
+
+impl Header {
+    /// Header of a record that is in memory.
+    pub fn of(record: &Record) -> Header {
+        let (meta, axis) = (record.meta(), record.axis());
+        let max = record.max_abs();
+        Header {
+            name: meta.name.clone(),
+            kind: record.kind(),
+            quantity: meta.quantity.name(),
+            unit: meta.unit.symbol().to_owned(),
+            n: record.len(),
+            declared_n: meta.declared_n,
+            x0: axis.start(),
+            dx: axis.step(),
+            complex: record.is_complex(),
+            max_abs: max.map(|(_, m)| m),
+            max_at: max.map(|(i, _)| axis.at(i)),
+            notes: notes(meta),
+            findings: meta.findings.clone(),
+        }
+    }
+}
+
+/// Header lines, then the arguments of the step `read` that say how text was read.
+fn notes(meta: &Meta) -> Vec<String> {
+    let lines = meta.notes.iter().map(
+        |(key, value)| {
+            if key.is_empty() { value.clone() } else { format!("{key}: {value}") }
+        },
+    );
+    let how = meta.history.iter().filter(|step| step.name == "read").flat_map(|step| &step.arguments);
+    let how = how.filter(|(key, _)| matches!(key.as_str(), "encoding" | "decimal mark"));
+    lines.chain(how.map(|(key, value)| format!("{key}: {value}"))).collect()
 }

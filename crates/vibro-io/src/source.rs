@@ -1,19 +1,21 @@
 //! Where bytes come from: a file on disk or a buffer in memory.
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::{Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
 use vibro_record::{Error, Place, Result};
 
-/// How many bytes [`Source::head`] returns at most: enough to tell every format apart.
-pub(crate) const HEAD: usize = 64 * 1024;
+/// How many bytes [`Source::head`] gives at most: enough to tell every format apart.
+const HEAD: usize = 64 * 1024;
 
 /// Bytes that can be opened several times, by several threads.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(crate) struct Source {
     path: PathBuf,
     len: u64,
-    bytes: Option<std::sync::Arc<[u8]>>,
+    /// All bytes of a small file or a buffer, the first ones of a larger file.
+    bytes: Vec<u8>,
 }
 
 /// Something to read from and to seek in.
@@ -24,7 +26,7 @@ impl Source {
     /// A file on disk.
     ///
     /// # Errors
-    /// If it cannot be opened, is a folder, or is empty.
+    /// If it cannot be opened, is a folder, a pipe or a device, or is empty.
     pub fn file(path: impl AsRef<Path>) -> Result<Source> {
         let path = path.as_ref();
         let info = std::fs::metadata(path).map_err(|e| Error::io("open", path, e))?;
@@ -32,16 +34,25 @@ impl Source {
             return Err(Error::input(Place::file(path), "this is a folder", "a measurement file")
                 .hint("name the files in it, e.g. folder/*.DAT, or a campaign.toml that lists them"));
         }
-        Source { path: path.to_owned(), len: info.len(), bytes: None }.not_empty()
+        if !info.is_file() {
+            return Err(Error::input(Place::file(path), "not a regular file", "a measurement file")
+                .hint("write what comes from a pipe or a device to a file first"));
+        }
+        let mut bytes = Vec::with_capacity(HEAD.min(info.len() as usize + 1));
+        File::open(path)
+            .and_then(|file| file.take(HEAD as u64).read_to_end(&mut bytes))
+            .map_err(|e| Error::io("read", path, e))?;
+        let len = if bytes.len() < HEAD { bytes.len() as u64 } else { info.len() };
+        Source { path: path.to_owned(), len, bytes }.not_empty()
     }
 
     /// Bytes in memory; `name` stands for the path in messages.
     ///
     /// # Errors
     /// If there are none.
-    pub fn memory(name: impl Into<PathBuf>, bytes: impl Into<std::sync::Arc<[u8]>>) -> Result<Source> {
+    pub fn memory(name: impl Into<PathBuf>, bytes: impl Into<Vec<u8>>) -> Result<Source> {
         let bytes = bytes.into();
-        Source { path: name.into(), len: bytes.len() as u64, bytes: Some(bytes) }.not_empty()
+        Source { path: name.into(), len: bytes.len() as u64, bytes }.not_empty()
     }
 
     fn not_empty(self) -> Result<Source> {
@@ -73,38 +84,35 @@ impl Source {
         self.len
     }
 
-    /// Opens it at its first byte. Wrap in a `BufReader` for small reads.
-    ///
-    /// # Errors
-    /// If the file cannot be opened.
-    pub fn open(&self) -> Result<Box<dyn ReadSeek>> {
-        Ok(match &self.bytes {
-            Some(bytes) => Box::new(Cursor::new(bytes.clone())),
-            None => Box::new(File::open(&self.path).map_err(|e| Error::io("open", &self.path, e))?),
-        })
+    /// The first 64 KiB, or all if there are fewer.
+    pub fn head(&self) -> &[u8] {
+        &self.bytes[..self.bytes.len().min(HEAD)]
     }
 
-    /// The first 64 KiB, or all if there are fewer.
-    ///
-    /// # Errors
-    /// If the file cannot be read.
-    pub fn head(&self) -> Result<Vec<u8>> {
-        let mut head = Vec::with_capacity(HEAD.min(self.len as usize));
-        self.open()?
-            .take(HEAD as u64)
-            .read_to_end(&mut head)
-            .map_err(|e| Error::io("read", &self.path, e))?;
-        Ok(head)
+    /// All bytes, where they are in memory.
+    pub fn in_memory(&self) -> Option<&[u8]> {
+        (self.bytes.len() as u64 == self.len).then_some(&self.bytes)
     }
 
     /// All bytes.
     ///
     /// # Errors
     /// If the file cannot be read.
-    pub fn all(&self) -> Result<Vec<u8>> {
-        if let Some(bytes) = &self.bytes {
-            return Ok(bytes.to_vec());
+    pub fn all(&self) -> Result<Cow<'_, [u8]>> {
+        match self.in_memory() {
+            Some(bytes) => Ok(bytes.into()),
+            None => Ok(std::fs::read(&self.path).map_err(|e| Error::io("read", &self.path, e))?.into()),
         }
-        std::fs::read(&self.path).map_err(|e| Error::io("read", &self.path, e))
+    }
+
+    /// Opens it at its first byte. Wrap in a `BufReader` for small reads.
+    ///
+    /// # Errors
+    /// If the file cannot be opened.
+    pub fn open(&self) -> Result<Box<dyn ReadSeek>> {
+        Ok(match self.in_memory() {
+            Some(bytes) => Box::new(Cursor::new(bytes.to_vec())),
+            None => Box::new(File::open(&self.path).map_err(|e| Error::io("open", &self.path, e))?),
+        })
     }
 }

@@ -1,8 +1,6 @@
 //! The spectra of a sweep, read together.
 
-use super::decibel::Decibel;
 use super::{Format, Reader, Recording, SweepList};
-use std::path::Path;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{
     Axis, Direction, Error, Finding, Meta, Place, Record, Result, Scaling, Spectrum, Sweep, SweepPoint,
@@ -50,6 +48,8 @@ struct Said<'a> {
 struct Settled {
     /// Factor from the record's values to SI peak amplitudes.
     factor: f64,
+    /// Peak amplitudes in SI units.
+    values: Vec<f64>,
     unit: Unit,
     window: Option<Window>,
 }
@@ -66,68 +66,50 @@ impl SweepReader {
         let mut recordings = reader.from_paths(&paths).map_err(|e| list.missing().unwrap_or(e))?;
         let forces = recordings.split_off(list.response.len());
         let axis = Axis::frequency(0.0, list.base_band / list.lines as f64, list.lines + 1);
-        let mut findings = Vec::new();
-        let mut points = Vec::with_capacity(list.len());
-        let mut unit: Option<Unit> = None;
         let newton = Unit::of(Quantity::Force);
+        let (unit, quantity, calibration) = (self.unit.as_ref(), self.quantity, self.calibration);
+        let of_response = Said { force: false, unit, quantity, calibration };
+        let calibration = self.force_calibration;
+        let of_force = Said { force: true, unit: Some(&newton), quantity: None, calibration };
+        let mut findings = Vec::new();
+        let mut points: Vec<SweepPoint> = Vec::with_capacity(list.len());
         for (i, response) in recordings.into_iter().enumerate() {
             let force = match forces.get(i) {
-                Some(recording) => {
-                    let said = Said {
-                        force: true,
-                        unit: Some(&newton),
-                        quantity: None,
-                        calibration: self.force_calibration,
-                    };
-                    let settled = self.settle(recording, &said, &mut findings)?;
-                    magnitudes(recording, list, &axis, settled.factor)?
-                }
+                Some(force) => self.settle(force, &of_force, &axis, &mut findings)?.values,
                 None => Vec::new(),
             };
-            let said = Said {
-                force: false,
-                unit: self.unit.as_ref(),
-                quantity: self.quantity,
-                calibration: self.calibration,
-            };
-            let settled = self.settle(&response, &said, &mut findings)?;
-            let values = magnitudes(&response, list, &axis, settled.factor)?;
-            match &unit {
-                Some(first) if *first != settled.unit => {
-                    return Err(Error::input(
-                        Place::file(&response.path),
-                        format!("the values of this file are in {}", settled.unit),
-                        format!("{first}, as in the files before"),
-                    ));
-                }
-                _ => unit = Some(settled.unit.clone()),
+            let Settled { factor, values, unit, window } =
+                self.settle(&response, &of_response, &axis, &mut findings)?;
+            if let Some(first) = points.first().map(|p| &p.response.meta.unit).filter(|first| **first != unit)
+            {
+                let found = format!("the values of this file are in {unit}");
+                let expected = format!("{first}, as in the files before");
+                return Err(Error::input(Place::file(&response.path), found, expected));
             }
             gather(&response, &mut findings);
-            let mut meta = response.records.into_iter().next().map_or_else(
-                || Meta::new("", settled.unit.clone()),
-                |mut record| std::mem::replace(record.meta_mut(), Meta::new("", Unit::none())),
-            );
-            meta.unit = settled.unit;
-            meta.quantity = meta.unit.quantity();
+            let mut records = response.records;
+            let mut meta = std::mem::replace(records[0].meta_mut(), Meta::new("", Unit::none()));
+            meta.quantity = unit.quantity();
             meta.findings.clear(); // said once, for the sweep
-            meta.step("calibrate", &[("factor", &settled.factor), ("unit", &meta.unit.clone())]);
+            meta.step("calibrate", &[("factor", &factor), ("unit", &unit)]);
+            meta.unit = unit;
+            let response = Spectrum {
+                meta,
+                axis: axis.clone(),
+                values: Values::Real(values),
+                scaling: Scaling::Peak,
+                window,
+                enbw: window.map(Window::enbw),
+            };
             points.push(SweepPoint {
                 force_path: list.force.get(i).cloned(),
                 response_path: list.response[i].clone(),
                 force,
                 given: list.excitation.get(i).copied(),
-                response: Spectrum {
-                    meta,
-                    axis: axis.clone(),
-                    values: Values::Real(values),
-                    scaling: Scaling::Peak,
-                    window: settled.window,
-                    enbw: settled.window.map(Window::enbw),
-                },
+                response,
             });
         }
-        let displacement = unit.is_some_and(|u| u.quantity() == Quantity::Displacement);
-        let analyser_integrated = self.analyser_integrated.unwrap_or(u8::from(displacement));
+        let displacement = points.iter().any(|p| p.response.meta.quantity == Quantity::Displacement);
         if self.analyser_integrated.is_none() && displacement {
             findings.push(Finding::caution("analyser-integration-assumed"));
         }
@@ -136,109 +118,122 @@ impl SweepReader {
             direction: self.direction,
             mass: self.mass,
             axis,
-            analyser_integrated,
+            analyser_integrated: self.analyser_integrated.unwrap_or(u8::from(displacement)),
             points,
             findings,
         })
     }
 
     /// Brings together what a file states and what was stated for it.
-    fn settle(&self, recording: &Recording, said: &Said, findings: &mut Vec<Finding>) -> Result<Settled> {
-        let Some(Record::Spectrum(spectrum)) = recording.records.first() else {
+    fn settle(
+        &self,
+        recording: &Recording,
+        said: &Said,
+        axis: &Axis,
+        findings: &mut Vec<Finding>,
+    ) -> Result<Settled> {
+        let [Record::Spectrum(spectrum)] = recording.records.as_slice() else {
             return Err(no_spectrum(recording));
         };
-        linear(&recording.path, &spectrum.meta, said, findings)?;
+        let error =
+            |found: String, expected: &str| Error::input(Place::file(&recording.path), found, expected);
         let mut found = |finding: Finding| {
             if !findings.contains(&finding) {
                 findings.push(finding);
             }
         };
-        let scaling = match (self.scaling, spectrum.scaling) {
-            (Some(stated), _) => stated,
-            (None, Scaling::Unknown) => {
-                found(Finding::caution("peak-assumed"));
-                Scaling::Peak
-            }
-            (None, written) => written,
-        };
-        if !matches!(scaling, Scaling::Peak | Scaling::Rms) {
-            return Err(Error::input(
-                Place::file(&recording.path),
-                format!("a spectrum scaled as {}", scaling.name()),
-                "peak or RMS amplitudes",
-            )
-            .hint("export amplitudes; a density or a coherence has no amplitude of a single line"));
+        if let Some(words) = decibels(&spectrum.meta) {
+            let Some(unit) = said.unit.filter(|unit| !said.force && unit.is_known()) else {
+                let words = format!("the file says that its values are decibels: {words:?}");
+                return Err(error(words, "linear amplitudes").hint(LINEAR));
+            };
+            found(Finding::doubt("decibels-overruled").name("words", words).name("unit", unit.symbol()));
         }
-        let window = match (self.window, spectrum.window) {
-            (Some(stated), _) => stated,
-            (None, Some(written)) => Some(written),
-            (None, None) => {
-                found(Finding::caution("hann-assumed"));
-                Some(Window::Hann)
+        let scaling = self.scaling.unwrap_or(spectrum.scaling);
+        let peak = match scaling {
+            Scaling::Peak => 1.0,
+            Scaling::Rms => std::f64::consts::SQRT_2,
+            Scaling::Unknown => {
+                found(Finding::caution("peak-assumed"));
+                1.0
+            }
+            other => {
+                let scaled = format!("a spectrum scaled as {}", other.name());
+                return Err(error(scaled, "peak or RMS amplitudes")
+                    .hint("export amplitudes; a density or a coherence has no amplitude of a single line"));
             }
         };
+        let window = self.window.unwrap_or_else(|| {
+            if spectrum.window.is_none() {
+                found(Finding::caution("hann-assumed"));
+            }
+            spectrum.window.or(Some(Window::Hann))
+        });
         // The reader has taken a unit that the file states to SI already.
-        let written = Some(&spectrum.meta.unit).filter(|u| u.is_known());
-        let (factor, unit) = match (written, said.unit) {
-            (Some(written), stated) => match stated.map(Unit::quantity).or(said.quantity) {
-                Some(meant) if meant != written.quantity() => match (stated, said.calibration) {
-                    // What one stored number stands for is stated in full.
-                    (Some(stated), Some(_)) if is_raw(written) => {
-                        (stated.factor() / taken(&spectrum.meta), stated.si())
-                    }
-                    _ => return Err(other_quantity(&recording.path, written, meant, said)),
-                },
-                _ => {
-                    // A factor that a person states holds for what is stored.
-                    let other = stated.filter(|s| !said.force && s.factor() != taken(&spectrum.meta));
-                    let factor = other.map_or(1.0, |s| s.factor() / taken(&spectrum.meta));
-                    if let Some(stated) = other {
-                        let differs =
-                            Finding::caution("sweep-unit-overrides-files").name("used", stated.symbol());
-                        let differs = differs.name("file", written.symbol());
-                        found(differs.number("factor", taken(&spectrum.meta)));
-                    }
-                    (factor, written.clone())
-                }
-            },
-            (None, Some(stated)) => (stated.factor(), stated.si()),
-            (None, None) => {
+        let (written, taken) = (&spectrum.meta.unit, taken(&spectrum.meta));
+        let meant = said.unit.map(Unit::quantity).or(said.quantity);
+        let raw = matches!(written.quantity(), Quantity::Voltage | Quantity::Ratio);
+        let (factor, unit) = match said.unit {
+            Some(stated) if !written.is_known() => (stated.factor(), stated.si()),
+            None if !written.is_known() => {
                 let unit = Unit::of(said.quantity.unwrap_or(Quantity::Displacement));
                 found(Finding::caution("response-unit-assumed").name("unit", unit.symbol()));
                 (1.0, unit)
             }
+            // What one stored number stands for is stated in full.
+            Some(stated) if meant != Some(written.quantity()) && raw && said.calibration.is_some() => {
+                (stated.factor() / taken, stated.si())
+            }
+            _ if meant.is_some_and(|meant| meant != written.quantity()) => {
+                return Err(other_quantity(recording, written, raw, said));
+            }
+            // A factor that a person states holds for what is stored.
+            Some(stated) if !said.force && stated.factor() != taken => {
+                let differs = Finding::caution("sweep-unit-overrides-files").name("used", stated.symbol());
+                found(differs.name("file", written.symbol()).number("factor", taken));
+                (stated.factor() / taken, written.clone())
+            }
+            _ => (1.0, written.clone()),
         };
-        let peak = if scaling == Scaling::Rms { std::f64::consts::SQRT_2 } else { 1.0 };
-        Ok(Settled { factor: factor * said.calibration.unwrap_or(1.0) * peak, unit, window })
+        let factor = factor * said.calibration.unwrap_or(1.0) * peak;
+        Ok(Settled { factor, values: magnitudes(recording, spectrum, axis, factor)?, unit, window })
     }
 }
 
 /// What to try where values are levels.
 const LINEAR: &str = "export linear amplitudes; levels in decibels are not read";
 
-/// Refuses levels in decibels, unless a linear unit is stated by a person.
-fn linear(path: &Path, meta: &Meta, said: &Said, findings: &mut Vec<Finding>) -> Result<()> {
-    let unit = said.unit.filter(|unit| !said.force && unit.is_known());
-    let finding = match (Decibel::of(meta), unit) {
-        (Some(Decibel::Stated(words)), None) => {
-            let found = format!("the file says that its values are decibels: {words:?}");
-            return Err(Error::input(Place::file(path), found, "linear amplitudes").hint(LINEAR));
-        }
-        (Some(Decibel::Stated(words)), Some(unit)) => {
-            Finding::doubt("decibels-overruled").name("words", words).name("unit", unit.symbol())
-        }
-        (Some(Decibel::Mentioned(words)), _) => Finding::caution("decibels-mentioned").name("words", words),
-        (None, _) => return Ok(()),
+/// The words by which a file says that its values are levels: their unit, or a header line that states unit, scale or level.
+fn decibels(meta: &Meta) -> Option<String> {
+    let level = |word: &str| {
+        let word = word.trim().to_lowercase();
+        word.starts_with("db") || word.starts_with("decibel")
     };
-    if !findings.iter().any(|known| known.code == finding.code) {
-        findings.push(finding);
+    let unit = meta.unit.symbol();
+    if !meta.unit.is_known() && level(unit) {
+        return Some(unit.to_owned());
     }
-    Ok(())
-}
-
-/// Volts, or parts of full scale: what a sensor gave, and no quantity of the rig.
-fn is_raw(unit: &Unit) -> bool {
-    matches!(unit.quantity(), Quantity::Voltage | Quantity::Ratio)
+    // The line right above the values names their column.
+    let above = meta.notes.last().filter(|(key, _)| key.is_empty()).map(|(_, line)| line);
+    let bracketed = |name: &&String| name.split(['[', '(']).skip(1).any(level);
+    if let Some(name) = [Some(&meta.name), above].into_iter().flatten().find(bracketed) {
+        return Some(name.clone());
+    }
+    // A number before the word makes it a setting, as in `level: -20 dB`.
+    let states = |value: &str| {
+        let words: Vec<&str> = value.split_whitespace().collect();
+        let at = words.iter().position(|word| level(word));
+        at.is_some_and(|at| at == 0 || words[at - 1].parse::<f64>().is_err())
+    };
+    let about = |key: &str| {
+        let key = key.to_lowercase();
+        !key.contains(['[', '('])
+            && ["unit", "scal", "level", "axis", "amplitude", "magnitude"]
+                .iter()
+                .any(|word| key.contains(word))
+    };
+    let note = meta.notes.iter().find(|(key, value)| about(key) && states(value));
+    note.map(|(key, value)| format!("{key}: {value}"))
 }
 
 /// The factor by which the reader took stored numbers to SI.
@@ -247,79 +242,65 @@ fn taken(meta: &Meta) -> f64 {
     steps.filter(|(key, _)| key == "factor").filter_map(|(_, factor)| factor.parse::<f64>().ok()).product()
 }
 
-fn other_quantity(path: &Path, written: &Unit, meant: Quantity, said: &Said) -> Error {
-    let hint = match (is_raw(written), said.force) {
+fn other_quantity(recording: &Recording, written: &Unit, raw: bool, said: &Said) -> Error {
+    let hint = match (raw, said.force) {
         (true, true) => "state the calibration of the force: newtons per stored number",
         (true, false) => "state unit and calibration: what one stored number stands for",
         (false, true) => "check that these are the force files, and not the response files",
         (false, false) => {
-            "leave quantity and unit out, and the file is believed; or check that this is the channel you mean"
+            "leave quantity and unit out to believe the file; or check that this is the channel you mean"
         }
     };
     let found = format!("the file says its values are in {written}, {}", written.quantity());
-    Error::input(
-        Place::file(path),
-        found,
-        if said.force { "a force, in N".to_owned() } else { format!("{meant}, as was stated") },
-    )
-    .hint(hint)
-    .setting(if said.force { "force_calibration" } else { "calibration" })
+    let expected = match (said.unit.map(Unit::quantity).or(said.quantity), said.force) {
+        (Some(meant), false) => format!("{meant}, as was stated"),
+        _ => "a force, in N".to_owned(),
+    };
+    Error::input(Place::file(&recording.path), found, expected).hint(hint).setting(if said.force {
+        "force_calibration"
+    } else {
+        "calibration"
+    })
 }
 
 fn no_spectrum(recording: &Recording) -> Error {
-    let place = Place::file(&recording.path);
-    match recording.records.as_slice() {
-        [Record::Trace(_)] => Error::input(place, "a time trace", "a spectrum")
-            .hint("list the spectra of the analyser, not its time records"),
-        [Record::Frf(_)] => Error::input(place, "a frequency response function", "a spectrum")
-            .hint("name it under [[frf]] in a campaign"),
-        records => {
-            Error::input(place, format!("{} records in the file", records.len()), "one spectrum a file")
-                .hint("convert it first, and name one file a spectrum in the list")
-        }
-    }
+    let found = match recording.records.as_slice() {
+        [record] => format!("a {}", record.kind()),
+        records => format!("{} records in the file", records.len()),
+    };
+    Error::input(Place::file(&recording.path), found, "one spectrum a file")
+        .hint("list the spectra of the analyser; time records and frequency responses have tables of their own in a campaign")
 }
 
-/// Peak magnitudes of the one spectrum in a recording.
-fn magnitudes(recording: &Recording, list: &SweepList, axis: &Axis, factor: f64) -> Result<Vec<f64>> {
-    let place = || Place::file(&recording.path);
-    let [Record::Spectrum(spectrum)] = recording.records.as_slice() else {
-        return Err(no_spectrum(recording));
-    };
+/// Peak magnitudes of a spectrum, which must have the lines of `axis`.
+fn magnitudes(recording: &Recording, spectrum: &Spectrum, axis: &Axis, factor: f64) -> Result<Vec<f64>> {
+    let error = |found: String, expected: String| Error::input(Place::file(&recording.path), found, expected);
     if let Values::Real(values) = &spectrum.values
         && let Some(i) = values.iter().position(|v| *v < 0.0)
     {
         let at =
             if i < spectrum.axis.len() { format!(" ({} Hz)", spectrum.axis.at(i)) } else { String::new() };
         let found = format!("negative magnitudes: are these decibels? Line {i}{at} holds {}", values[i]);
-        return Err(Error::input(place(), found, "linear amplitudes, 0 or more").hint(LINEAR));
+        return Err(error(found, "linear amplitudes, 0 or more".to_owned()).hint(LINEAR));
     }
-    let mut magnitudes = spectrum.values.magnitudes();
-    if magnitudes.len() != list.lines + 1 {
-        return Err(Error::input(
-            place(),
-            format!("the file holds {} values", magnitudes.len()),
-            format!("{} (the list says {} lines, and 0 Hz counts)", list.lines + 1, list.lines),
-        )
-        .hint("correct the number of lines in the list; or this one file was stored with another setting"));
+    let magnitudes = spectrum.values.magnitudes();
+    let n = axis.len();
+    if magnitudes.len() != n {
+        let expected = format!("{n} (the list says {} lines, and 0 Hz counts)", n - 1);
+        return Err(error(format!("the file holds {} values", magnitudes.len()), expected).hint(
+            "correct the number of lines in the list; or this one file was stored with another setting",
+        ));
     }
-    if let Some(step) = spectrum.axis.step() {
-        let expected = axis.step().unwrap_or(step);
-        if (step / expected - 1.0).abs() > 1e-6 {
-            return Err(Error::input(
-                place(),
-                format!("the lines of this file are {step} Hz apart"),
-                format!("{expected} Hz, as base band and lines of the list say"),
-            ));
-        }
+    if let (Some(step), Some(expected)) = (spectrum.axis.step(), axis.step())
+        && (step / expected - 1.0).abs() > 1e-6
+    {
+        let expected = format!("{expected} Hz, as base band and lines of the list say");
+        return Err(error(format!("the lines of this file are {step} Hz apart"), expected));
     }
     if let Some(i) = magnitudes.iter().position(|m| !m.is_finite()) {
-        return Err(Error::input(place(), format!("line {i} is missing"), "a number in every line"));
+        return Err(error(format!("line {i} is missing"), "a number in every line".to_owned()));
     }
-    for m in &mut magnitudes {
-        *m *= factor;
-    }
-    Ok(magnitudes)
+    Ok(magnitudes.into_iter().map(|m| m * factor).collect())
 }
 
 /// Findings of the files, each once; what a sweep settles for itself is not repeated.
@@ -328,6 +309,51 @@ fn gather(recording: &Recording, findings: &mut Vec<Finding>) {
     for found in recording.all_findings() {
         if !SETTLED.contains(&found.code) && findings.len() < 50 && !findings.contains(&found) {
             findings.push(found);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(unit: &str, name: &str, key: &str, value: &str) -> Option<String> {
+        let mut meta = Meta::new(name, Unit::parse_or_opaque(unit));
+        meta.notes.push((key.to_owned(), value.to_owned()));
+        decibels(&meta)
+    }
+
+    #[test]
+    fn units_and_statements_of_levels() {
+        for (unit, name, key, value) in [
+            ("dB", "", "", ""),
+            ("dBV", "", "", ""),
+            ("", "amplitude [dB re 1 m/s]", "", ""),
+            ("m/s", "v (dB)", "", ""),
+            ("", "", "", "Level (dB)"),
+            ("", "", "Y axis", "dB"),
+            ("", "", "scale", "log dB"),
+            ("", "", "Y_unit", "dB re 1e-9 m/s"),
+            ("", "", "LEVEL", "Decibels"),
+        ] {
+            let said = of(unit, name, key, value);
+            assert!(said.is_some(), "{unit} {name} {key} {value}: {said:?}");
+        }
+    }
+
+    #[test]
+    fn settings_in_decibels_and_paths_are_no_levels() {
+        for (key, value) in [
+            ("gain", "20 dB"),
+            ("gain [dB]", "20"),
+            ("Level", "-20 dB"),
+            ("Window", "flat top (-93 dB)"),
+            ("File", "/data/db/run1.dat"),
+            ("Filter slope", "dB/octave, 12"),
+            ("", "adb"),
+            ("", "range dB = 10"),
+        ] {
+            assert_eq!(of("m/s", "v", key, value), None, "{key}: {value}");
         }
     }
 }

@@ -2,16 +2,13 @@
 //!
 //! A [`dialect`] says, as data, where names, units and abscissa stand and how a row is cut. It is found out from the first
 //! bytes: [`table`] knows tables with names above their columns, [`numbers`] plain columns of numbers. The dialect of another
-//! instrument is one more function in the list of [`dialect`]. Clean rows are read in parallel ([`fast`]), all others one by
+//! instrument is one more function beside these two. Clean rows are read in parallel ([`fast`]), all others one by
 //! one ([`rows`]), so that a complaint names line and column. Columns become records in [`records`].
 
 mod axis;
 mod dialect;
 pub(crate) mod encoding;
 mod fast;
-mod fixed;
-mod footer;
-mod gaps;
 mod header;
 mod lines;
 mod names;
@@ -21,60 +18,59 @@ mod rows;
 mod table;
 mod tail;
 
-use crate::format::Survey;
 use crate::reader::{Options, Recording};
-use crate::{Header, Source, Summary, SweepList, missing};
-use dialect::{Abscissa, Cell, Dialect, Head};
+use crate::{Format, Source, missing};
+use dialect::Dialect;
 use fast::Shape;
 use rows::Rows;
+use std::borrow::Cow;
 use std::path::Path;
-use vibro_record::{Error, Finding, Place, Result, Values};
+use vibro_record::{Error, Finding, Place, Result};
 
 /// A text and what is known of it before its rows are read.
-pub(crate) struct Text {
+pub(crate) struct Text<'a> {
     /// UTF-8 or Latin-1, with LF or CR LF.
-    source: Source,
-    head: Head,
-    tail: Vec<u8>,
+    source: &'a Source,
+    /// Its first lines, without one that is cut off and without the end mark of DOS.
+    head: Cow<'a, str>,
     /// Its encoding, where that is not UTF-8.
     encoding: Option<&'static str>,
 }
 
-impl Text {
-    /// Turns UTF-16 and lone CRs in the head into UTF-8 with LF; everything else stays on disk.
-    fn of(source: &Source) -> Result<Text> {
-        let bytes = source.head()?;
-        let encoding = encoding::name(&bytes);
-        let converted = if encoding::is_utf16(&bytes) {
-            Some(encoding::decode(&source.all()?).into_owned().into_bytes())
-        } else if encoding::lone_cr(&bytes, source.len() > bytes.len() as u64) {
-            Some(source.all()?)
-        } else {
-            None
-        };
-        let source = match converted {
-            Some(bytes) => Source::memory(source.path(), encoding::with_lf(bytes))?,
-            None => source.clone(),
-        };
-        Ok(Text { head: Head::of(&source)?, tail: tail::of(&source)?, source, encoding })
+impl<'a> Text<'a> {
+    fn of(source: &'a Source, encoding: Option<&'static str>) -> Text<'a> {
+        let head = source.head();
+        let cut = source.len() > head.len() as u64;
+        let whole = if cut { head.iter().rposition(|b| *b == b'\n').unwrap_or(0) } else { head.len() };
+        let whole = &head[..whole];
+        let ends = whole.iter().rposition(|b| *b != 0x1a).map_or(0, |last| last + 1);
+        Text { source, head: encoding::decode(&whole[..ends]), encoding }
     }
 
     fn path(&self) -> &Path {
         self.source.path()
     }
 
-    /// The dialect of a table with names, which must be there.
-    fn table(&self, options: &Options) -> Result<Dialect> {
-        dialect::of_table(&self.head, options)?.ok_or_else(|| {
-            Error::input(
-                Place::file(self.path()),
-                "no row of numbers with names of columns right above it",
-                "e.g. `time [s],velocity [mm/s]`, then rows of numbers",
-            )
-            .hint("read numbers without names as the format ascii")
-            .setting("format")
-        })
+    /// Whether the file calls itself CSV: then one column will do, and names need not fit the rows.
+    fn called_csv(&self) -> bool {
+        matches!(self.source.extension().as_str(), "csv" | "tsv")
     }
+}
+
+/// Hands a source to `read`, UTF-16 and lone CRs turned into UTF-8 with LF.
+fn with_text<T>(source: &Source, read: impl FnOnce(&Text) -> Result<T>) -> Result<T> {
+    let head = source.head();
+    let cut = source.len() > head.len() as u64;
+    let converted = if encoding::is_utf16(head) {
+        Some(encoding::decode(&source.all()?).into_owned().into_bytes())
+    } else if encoding::lone_cr(head, cut) {
+        Some(source.all()?.into_owned())
+    } else {
+        None
+    };
+    let converted =
+        converted.map(|bytes| Source::memory(source.path(), encoding::with_lf(bytes))).transpose()?;
+    read(&Text::of(converted.as_ref().unwrap_or(source), encoding::name(head)))
 }
 
 /// Whether a text begins with a table under names.
@@ -82,7 +78,7 @@ pub(crate) fn is_table(head: &[u8], source: &Source) -> bool {
     // Names need a letter that numbers do not hold; most files of numbers have none.
     let letter = |b: &u8| !b.is_ascii() || b.is_ascii_alphabetic() && !b"eEdDqQijIJ".contains(b);
     let words = head[..head.len().min(encoding::LOOK)].iter().any(letter);
-    let found = || dialect::of_table(&Text::of(source)?.head, &Options::default());
+    let found = || with_text(source, |text| Ok(table::detect(text, &Options::default())));
     words && encoding::is_text(head) && found().is_ok_and(|found| found.is_some())
 }
 
@@ -92,106 +88,47 @@ pub(crate) fn is_text(head: &[u8], _: &Source) -> bool {
 }
 
 pub(crate) fn read_table(source: &Source, options: &Options) -> Result<Recording> {
-    let text = Text::of(source)?;
-    read(&text, &text.table(options)?, options)
+    with_text(source, |text| match table::detect(text, options) {
+        Some(dialect) => read(text, &dialect, options),
+        None => Err(Error::input(
+            Place::file(text.path()),
+            "no row of numbers with names of columns right above it",
+            "e.g. `time [s],velocity [mm/s]`, then rows of numbers",
+        )
+        .hint("read numbers without names as the format ascii")
+        .setting("format")),
+    })
 }
 
 pub(crate) fn read_numbers(source: &Source, options: &Options) -> Result<Recording> {
-    let text = Text::of(source)?;
-    read(&text, &dialect::of_numbers(&text.head, options)?, options)
-}
-
-pub(crate) fn survey_table(source: &Source, options: &Options) -> Result<Survey> {
-    let text = Text::of(source)?;
-    survey(&text, &text.table(options)?, options)
-}
-
-pub(crate) fn survey_numbers(source: &Source, options: &Options) -> Result<Survey> {
-    let text = Text::of(source)?;
-    survey(&text, &dialect::of_numbers(&text.head, options)?, options)
+    with_text(source, |text| read(text, &numbers::detect(text, options)?, options))
 }
 
 fn read(text: &Text, dialect: &Dialect, options: &Options) -> Result<Recording> {
-    let shape = Shape::of(dialect, &text.head);
-    let clean = shape.map(|shape| fast::read(&text.source, &shape)).transpose()?.flatten();
+    let shape = Shape::of(dialect, text.source.head());
+    let clean = shape.map(|shape| fast::read(text.source, &shape)).transpose()?.flatten();
     let rows = match clean {
         Some(columns) => Rows { columns, ..Rows::default() },
         None => carefully(text, dialect, options)?,
     };
+    let tail = tail::of(text.source)?;
     let mut findings: Vec<Finding> =
-        tail::cut_off(&text.tail, dialect.separator, dialect.decimal).into_iter().collect();
-    if rows.remarks > rows.kept.len() {
-        let found = Finding::note("remarks-dropped").count("n", rows.remarks);
-        findings.push(found.count("kept", rows.kept.len()));
-    }
-    findings.extend(rows.footer.as_ref().map(footer::Footer::finding));
+        tail::cut_off(&tail, dialect.separator, dialect.decimal).into_iter().collect();
     findings.extend(missing::kept(rows.missing));
-    let rows = bridged(rows, dialect, &mut findings);
-    if dialect.decimal == b',' && dialect.columns == 1 && dialect.abscissa == Abscissa::Named {
+    if dialect.decimal == b',' && dialect.columns == 1 && dialect.format == Format::Csv {
         findings.push(Finding::caution("decimal-comma-assumed"));
     }
-    let records = records::build(text, dialect, rows, options, &mut findings)?;
+    let records = records::build(text, &tail, dialect, rows, options, &mut findings)?;
     Ok(Recording { path: text.path().to_owned(), format: dialect.format, records, findings })
 }
 
 /// Row by row, each complaint with its place.
 fn carefully(text: &Text, dialect: &Dialect, options: &Options) -> Result<Rows> {
     let bytes = text.source.all()?;
-    let bytes = if encoding::lone_cr(&bytes, false) { encoding::with_lf(bytes) } else { bytes };
+    let bytes =
+        if encoding::lone_cr(&bytes, false) { encoding::with_lf(bytes.into_owned()).into() } else { bytes };
     let whole = encoding::decode(&bytes);
-    let rows = rows::read(text.path(), whole.trim_end_matches('\u{1a}'), dialect, options.allow_missing)?;
-    let alone = rows.columns.first().filter(|_| dialect.columns == 1);
-    if let Some(words) = rows.footer.as_ref().filter(|_| dialect.abscissa == Abscissa::Rising)
-        && (words.ends_list(alone.into_iter().flat_map(Values::magnitudes))
-            || SweepList::of(&text.source).is_some())
-    {
-        return Err(Error::input(
-            Place::file(text.path()),
-            "names of files behind numbers",
-            "numbers and nothing else",
-        )
-        .hint("if this is the list of a sweep, its numbers do not go with its names: correct it and give it to `vibro response`"));
-    }
-    Ok(rows)
-}
-
-/// Rows without a first value, where the first column is an abscissa.
-fn bridged(mut rows: Rows, dialect: &Dialect, findings: &mut Vec<Finding>) -> Rows {
-    if rows.missing > 0 && dialect.abscissa == Abscissa::Rising {
-        findings.extend(gaps::bridge(&mut rows.columns));
-    }
-    rows
-}
-
-/// Streams a clean single column; anything else is read as a whole.
-fn survey(text: &Text, dialect: &Dialect, options: &Options) -> Result<Survey> {
-    let shape = Shape::of(dialect, &text.head).filter(|_| dialect.columns == 1 && dialect.cell == Cell::Real);
-    if let Some(shape) = shape {
-        let mut summary = Summary::default();
-        let bounds = (shape.first_byte, text.source.len());
-        if fast::scan(&text.source, &shape, bounds, |v| summary.push(v.abs()))?.is_some() && summary.n > 0 {
-            return streamed(text, dialect, options, &summary);
-        }
-    }
-    let recording = read(text, dialect, options)?;
-    Ok((recording.records.iter().map(Header::of).collect(), recording.findings))
-}
-
-/// The header of a column whose values are gone: the largest stands for them.
-fn streamed(text: &Text, dialect: &Dialect, options: &Options, summary: &Summary) -> Result<Survey> {
-    let mut findings: Vec<Finding> =
-        tail::cut_off(&text.tail, dialect.separator, dialect.decimal).into_iter().collect();
-    let largest = summary.max.map_or(0.0, |(_, max)| max);
-    let rows =
-        Rows { columns: vec![Values::Real(vec![largest])], counted: Some(summary.n), ..Rows::default() };
-    let records = records::build(text, dialect, rows, options, &mut findings)?;
-    let headers = records.iter().map(|record| {
-        let mut header = Header::of(record);
-        let max_abs = header.max_abs;
-        header = header.summed(summary, 1.0, record.axis());
-        Header { max_abs, ..header }
-    });
-    Ok((headers.collect(), findings))
+    rows::read(text.path(), whole.trim_end_matches('\u{1a}'), dialect, options.allow_missing)
 }
 
 /// The first characters of a text, for messages.

@@ -13,18 +13,14 @@
 //! Data sets 58 and 58b become records, data set 164 gives the unit system of those behind it, and every other set is
 //! passed over by name.
 
-pub mod delimiter;
 pub mod stream;
-pub mod system;
 
-use super::format::{Format, Survey};
+use super::Source;
+use super::format::Format;
 use super::reader::{Options, Recording};
-use super::uff58::{self, Counted, Kept, Set, Sink, codes};
-use super::{Header, Source};
-use delimiter::{Number, is_delimiter, set_number};
-use stream::Stream;
-use system::System;
-use vibro_record::{Error, Finding, Place, Record, Result};
+use super::uff58::{self, System, codes};
+use stream::{Stream, is_delimiter, set_number};
+use vibro_record::{Finding, Place, Record, Result};
 
 /// Endings under which text may stand before the first data set.
 const ENDINGS: [&str; 6] = ["uff", "unv", "ufb", "bunv", "uf", "58"];
@@ -49,54 +45,14 @@ pub(super) fn sniff(head: &[u8], source: &Source) -> bool {
 }
 
 pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
-    let mut records: Vec<Record> = Vec::new();
-    let findings = walk(source, options, |set: Set<Kept>| {
-        records.push(set.plan.record(set.sink)?);
-        Ok(())
-    })?;
-    tell_apart(records.iter_mut().map(|r| &mut r.meta_mut().name).collect());
-    Ok(Recording { path: source.path().to_owned(), format: Format::Uff, records, findings })
-}
-
-/// Goes through the file once, in memory that does not grow with it.
-pub(super) fn survey(source: &Source, options: &Options) -> Result<Survey> {
-    let mut headers: Vec<Header> = Vec::new();
-    let findings = walk(source, options, |set: Set<Counted>| {
-        headers.push(set.plan.header(&set.sink)?);
-        Ok(())
-    })?;
-    tell_apart(headers.iter_mut().map(|h| &mut h.name).collect());
-    Ok((headers, findings))
-}
-
-/// Two channels of one name are told apart by number, so that each can be asked for.
-fn tell_apart(mut names: Vec<&mut String>) {
-    let mut seen: Vec<(String, usize)> = Vec::new();
-    for name in names.iter_mut().filter(|n| !n.is_empty()) {
-        match seen.iter_mut().find(|(first, _)| first == *name) {
-            Some((first, count)) => {
-                *count += 1;
-                **name = format!("{first} #{count}");
-            }
-            None => seen.push((name.clone(), 1)),
-        }
-    }
-}
-
-/// Hands every data set 58 to `each`; gives the findings about the file as a whole.
-fn walk<S: Sink>(
-    source: &Source,
-    options: &Options,
-    mut each: impl FnMut(Set<S>) -> Result<()>,
-) -> Result<Vec<Finding>> {
-    let mut stream = Stream::open(source)?;
-    let file = source.name();
-    let mut around = Around::default();
-    let mut system = System::default();
-    let mut functions = 0;
-    let mut delimited = false;
-    while stream.next_line()? {
-        let line = stream.text();
+    let bytes = source.all()?;
+    let mut stream = Stream::new(source.path(), &bytes);
+    let (mut records, mut findings): (Vec<Record>, Vec<Finding>) = (Vec::new(), Vec::new());
+    // Other data sets with their counts, and lines outside any, with the place of the first.
+    let mut others: Vec<(u32, usize)> = Vec::new();
+    let mut outside: Option<(Place, usize)> = None;
+    let (mut system, mut delimited, mut cut) = (System::default(), false, None);
+    while let Some(line) = stream.next_line() {
         if line.trim_ascii().is_empty() {
             continue;
         }
@@ -104,98 +60,68 @@ fn walk<S: Sink>(
             delimited = true;
             continue;
         }
-        let Some(Number { number, binary }) = set_number(line).filter(|_| delimited) else {
-            around.outside(&stream.place());
+        let Some((number, binary)) = set_number(line).filter(|_| delimited) else {
+            outside.get_or_insert_with(|| (stream.place(), 0)).1 += 1;
             continue;
         };
-        let place = stream.place();
         // The delimiter that closes this set may open the next one, where a file has lost one of the two.
         delimited = true;
         if number == 58 {
-            match uff58::read(&mut stream, binary, &system, options, &file)? {
-                Ok(set) => {
-                    functions += 1;
-                    each(set).map_err(|e| e.in_file(source.path()))?;
+            match uff58::read(&mut stream, (line, binary), &system, options, &source.name())
+                .map_err(|e| e.in_file(source.path()))?
+            {
+                Ok(record) => {
+                    records.push(record);
                     continue;
                 }
-                Err(lines) => around.cut_short(place, lines),
+                Err((lines, error)) => {
+                    let short = Finding::caution("header-cut-short").count("lines", lines);
+                    findings.push(short.count("of", uff58::LINES));
+                    cut = Some(error);
+                }
             }
         } else {
-            around.passed_over(number);
+            match others.iter_mut().find(|(n, _)| *n == number) {
+                Some((_, count)) => *count += 1,
+                None => others.push((number, 1)),
+            }
             if number == 164 {
-                if let Some(stated) = System::read(&mut stream)? {
-                    system = stated;
-                } else {
-                    around.findings.push(Finding::caution("no-unit-factors"));
+                match System::read(&mut stream) {
+                    Some(stated) => system = stated,
+                    None => findings.push(Finding::caution("no-unit-factors")),
                 }
             }
         }
-        delimited = stream.pass_set()?.closed;
+        delimited = stream.pass_set().1;
     }
-    around.finish(functions)
+    if let Some(error) = cut.filter(|_| records.is_empty()) {
+        return Err(error);
+    }
+    if !others.is_empty() {
+        let names: Vec<String> = others.into_iter().map(codes::set_names).collect();
+        findings.push(Finding::note("sets-passed-over").name("sets", names.join(", ")));
+    }
+    if let Some((place, lines)) = outside {
+        let place = Place { path: None, ..place }.to_string();
+        findings.push(Finding::caution("lines-outside").count("n", lines).name("place", place));
+    }
+    if records.is_empty() {
+        findings.push(Finding::caution("no-function"));
+    }
+    tell_apart(&mut records);
+    Ok(Recording { path: source.path().to_owned(), format: Format::Uff, records, findings })
 }
 
-/// What stands around the data sets that are read.
-#[derive(Default)]
-struct Around {
-    findings: Vec<Finding>,
-    /// Other data sets with their counts, in the order of their first appearance.
-    others: Vec<(u32, usize)>,
-    /// Lines outside any data set, and where the first stands.
-    lines: usize,
-    first: Option<Place>,
-    cut: Option<(Place, usize)>,
-}
-
-impl Around {
-    fn outside(&mut self, place: &Place) {
-        self.lines += 1;
-        self.first.get_or_insert_with(|| place.clone());
-    }
-
-    fn passed_over(&mut self, number: u32) {
-        match self.others.iter_mut().find(|(n, _)| *n == number) {
-            Some((_, count)) => *count += 1,
-            None => self.others.push((number, 1)),
+/// Two channels of one name are told apart by number, so that each can be asked for.
+fn tell_apart(records: &mut [Record]) {
+    let mut seen: Vec<(String, usize)> = Vec::new();
+    for name in records.iter_mut().map(|r| &mut r.meta_mut().name).filter(|n| !n.is_empty()) {
+        match seen.iter_mut().find(|(first, _)| first == name) {
+            Some((first, count)) => {
+                *count += 1;
+                *name = format!("{first} #{count}");
+            }
+            None => seen.push((name.clone(), 1)),
         }
-    }
-
-    fn cut_short(&mut self, place: Place, lines: usize) {
-        self.findings
-            .push(Finding::caution("header-cut-short").count("lines", lines).count("of", uff58::LINES));
-        self.cut = Some((place, lines));
-    }
-
-    /// All findings; an error where there is nothing but a header cut short.
-    fn finish(self, functions: usize) -> Result<Vec<Finding>> {
-        if let (0, Some((place, lines))) = (functions, self.cut) {
-            return Err(Error::input(
-                place,
-                format!("data set 58 ends after {lines} of its {} header lines", uff58::LINES),
-                "eleven header lines and values behind them",
-            )
-            .hint("the file is cut short: copy or export it again"));
-        }
-        let mut findings = self.findings;
-        if !self.others.is_empty() {
-            let names: Vec<String> = self
-                .others
-                .iter()
-                .map(|(number, count)| {
-                    let name = codes::set_name(*number);
-                    let used = if *number == 164 { " (factors used)" } else { "" };
-                    if *count > 1 { format!("{count} × {name}{used}") } else { format!("{name}{used}") }
-                })
-                .collect();
-            findings.push(Finding::note("sets-passed-over").name("sets", names.join(", ")));
-        }
-        if self.lines > 0 {
-            let place = self.first.map_or_else(String::new, |p| Place { path: None, ..p }.to_string());
-            findings.push(Finding::caution("lines-outside").count("n", self.lines).name("place", place));
-        }
-        if functions == 0 {
-            findings.push(Finding::caution("no-function"));
-        }
-        Ok(findings)
     }
 }

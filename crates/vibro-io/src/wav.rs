@@ -8,188 +8,241 @@
 //! ```
 //! Integers of 8 (unsigned), 16, 24 and 32 bits and floats of 32 and 64 bits. Values are fractions of full scale, ±1, in
 //! the opaque unit `FS`, until [`vibro_record::Trace::calibrate`] gives them a unit. A file written by `write::wav`
-//! carries its calibration in a comment (see [`scales`]), which is applied.
+//! carries its calibration in a comment (see [`Scales`]), which is applied.
 
-mod calibrated;
 mod layout;
 mod scales;
-mod stream;
 
-pub(super) use calibrated::Calibrated;
 pub(crate) use scales::{Scale, Scales};
-use stream::WavStream;
 
-use super::format::{Format, Survey};
+use super::format::Format;
 use super::reader::{Options, Recording};
-use super::{Header, Source, Summary, missing};
-use std::path::Path;
+use super::source::ReadSeek;
+use super::{Header, Source, missing};
+use layout::Layout;
+use std::io::{Read, SeekFrom};
+use std::path::PathBuf;
+use vibro_math::lanes;
 use vibro_record::units::{self, Unit};
-use vibro_record::{Axis, Error, Finding, Meta, Place, Record, Result, Trace};
+use vibro_record::{Axis, Error, Finding, Meta, Place, Record, Result, Stream, Trace};
 
 /// The unit of values without a calibration.
 const FULL_SCALE: &str = "FS";
 
-/// How many bytes of texts are copied for all channels together.
-const MOST_COPIED: usize = 256 * 1024;
+/// Bytes of one block, more or less: large enough for the disk, small enough for the cache.
+const BLOCK: usize = 256 * 1024;
 
 pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
-    let form = head.get(..4);
-    (form == Some(b"RIFF") || form == Some(b"RF64") || form == Some(b"BW64") || form == Some(b"RIFX"))
-        && head.get(8..12) == Some(b"WAVE")
+    [b"RIFF", b"RF64", b"BW64"].iter().any(|form| head.starts_with(*form)) && head.get(8..12) == Some(b"WAVE")
 }
 
 pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
-    let mut stream = open(source, options)?;
-    let frames = stream.frames() as usize;
-    let mut values: Vec<Vec<f64>> = (0..stream.channels()).map(|_| Vec::with_capacity(frames)).collect();
-    let found = pass(source, &mut stream, options, |channel, block| {
-        if let Some(column) = values.get_mut(channel) {
-            column.extend(block);
-        }
-    })?;
-    let mut records = Vec::with_capacity(values.len());
-    for (channel, (column, summary)) in values.into_iter().zip(&found).enumerate() {
-        let mut trace = describe(source, &stream, options, channel, summary);
-        trace.values = column;
-        dress(&mut trace, &stream, options, channel).map_err(|e| e.in_file(source.path()))?;
-        records.push(Record::Trace(trace));
-    }
+    let mut wave = Wave::open(source, options)?;
+    let mut values: Vec<Vec<f64>> = vec![Vec::with_capacity(wave.frames()); wave.channels.len()];
+    while wave.append(&mut values)? > 0 {}
+    wave.finished();
+    let traces = wave.channels.into_iter().zip(values);
+    let records = traces.map(|(trace, values)| Record::Trace(Trace { values, ..trace })).collect();
     let path = source.path().to_owned();
-    Ok(Recording { path, format: Format::Wav, records, findings: stream.findings().to_vec() })
+    Ok(Recording { path, format: Format::Wav, records, findings: wave.layout.findings })
 }
 
 /// Goes over the samples a block at a time.
-pub(super) fn survey(source: &Source, options: &Options) -> Result<Survey> {
-    let mut stream = open(source, options)?;
-    let found = pass(source, &mut stream, options, |_, _| {})?;
-    let mut headers = Vec::with_capacity(found.len());
-    for (channel, summary) in found.iter().enumerate() {
-        let mut trace = describe(source, &stream, options, channel, summary);
-        let factor = dress(&mut trace, &stream, options, channel).map_err(|e| e.in_file(source.path()))?;
-        if let Some((_, mut max)) = summary.max {
-            units::scale([&mut max], factor).map_err(|e| e.in_file(source.path()))?;
-        }
-        let axis = trace.axis.clone();
-        headers.push(Header::of(&Record::Trace(trace)).summed(summary, factor, &axis));
-    }
-    Ok((headers, stream.findings().to_vec()))
-}
-
-fn open(source: &Source, options: &Options) -> Result<WavStream> {
-    if options.base_band.is_some() {
-        return Err(Error::input(
-            Place::file(source.path()),
-            "a base band was stated, but a wave file holds samples over time",
-            "a sampling rate, or nothing: the file says its own",
-        )
-        .setting("base_band"));
-    }
-    WavStream::open(source)
-}
-
-/// Hands out every block and sums up each channel. Missing values become NaN, or are refused with their frames.
-fn pass(
-    source: &Source,
-    stream: &mut WavStream,
-    options: &Options,
-    mut each: impl FnMut(usize, &[f64]),
-) -> Result<Vec<Summary>> {
-    let mut found = vec![Summary::default(); stream.channels()];
-    let mut block = Vec::new();
-    let (mut count, mut listed, mut first) = (0usize, Vec::new(), 0usize);
+pub(super) fn survey(source: &Source, options: &Options) -> Result<(Vec<Header>, Vec<Finding>)> {
+    let mut wave = Wave::open(source, options)?;
+    // Index and magnitude of the largest value of each channel.
+    let mut largest: Vec<Option<(usize, f64)>> = vec![None; wave.channels.len()];
+    let (mut block, mut n) = (Vec::new(), 0);
     loop {
-        let frames = stream.next_block(&mut block)?;
+        let frames = wave.append(&mut block)?;
         if frames == 0 {
             break;
         }
-        for (channel, (values, summary)) in block.iter_mut().zip(&mut found).enumerate() {
-            for (i, value) in values.iter_mut().enumerate() {
-                if !value.is_finite() {
-                    *value = f64::NAN;
-                    count += 1;
-                    if listed.len() < missing::LISTED {
-                        listed.push((first + i, channel));
-                    }
+        for (values, largest) in block.iter_mut().zip(&mut largest) {
+            for (i, value) in values.drain(..).enumerate() {
+                if value.abs() > largest.map_or(-1.0, |(_, max)| max) {
+                    *largest = Some((n + i, value.abs()));
                 }
-                summary.push(value.abs());
             }
-            each(channel, values);
         }
-        first += frames;
+        n += frames;
     }
-    if count > 0 && !options.allow_missing {
-        return Err(gaps(source.path(), count, listed.into_iter()));
-    }
-    Ok(found)
+    wave.finished();
+    let headers = wave.channels.into_iter().zip(largest).map(|(trace, largest)| {
+        let max_at = largest.map(|(i, _)| trace.axis.at(i));
+        Header { n, max_abs: largest.map(|(_, max)| max), max_at, ..Header::of(&Record::Trace(trace)) }
+    });
+    Ok((headers.collect(), wave.layout.findings))
 }
 
-/// The complaint about `count` missing samples, of which the first are listed by frame and channel.
-fn gaps(path: &Path, count: usize, listed: impl Iterator<Item = (usize, usize)>) -> Error {
-    let places: Vec<String> = listed
-        .take(missing::LISTED)
-        .map(|(frame, channel)| format!("{frame} of channel {}", channel + 1))
-        .collect();
-    let found = format!("{count} sample(s) are NaN or infinite: frame {}", places.join(", "));
-    missing::refusal(Place::file(path), found)
+/// Some channels of a wave file, read block by block in their units, so that memory does not grow with its length.
+pub(crate) struct Wave {
+    pub layout: Layout,
+    reader: Box<dyn ReadSeek>,
+    path: PathBuf,
+    bytes: Vec<u8>,
+    left: u64,
+    /// Every channel of the file without its values.
+    pub channels: Vec<Trace>,
+    factors: Vec<f64>,
+    /// Indices of the channels that are handed out.
+    kept: Vec<usize>,
+    largest: Vec<f64>,
+    allow_missing: bool,
+    scaled: bool,
 }
 
-/// Values without a calibration that a fraction of full scale cannot have.
-fn beyond_full_scale(max: f64) -> Finding {
-    Finding::caution("beyond-full-scale").number("max", max)
+impl Wave {
+    /// Reads the chunks of a file up to and behind its samples, and stands before the first of them.
+    ///
+    /// # Errors
+    /// If its samples are of a kind that is not read here, or there are none; if a base band was stated.
+    pub fn open(source: &Source, options: &Options) -> Result<Wave> {
+        if options.base_band.is_some() {
+            let found = "a base band was stated, but a wave file holds samples over time";
+            let expected = "a sampling rate, or nothing: the file says its own";
+            return Err(Error::input(Place::file(source.path()), found, expected).setting("base_band"));
+        }
+        let mut reader = source.open()?;
+        let layout = layout::read(source, &mut *reader)?;
+        reader.seek(SeekFrom::Start(layout.data_at)).map_err(|e| Error::io("read", source.path(), e))?;
+        let n = layout.channels;
+        let mut wave = Wave {
+            reader,
+            path: source.path().to_owned(),
+            bytes: Vec::new(),
+            left: layout.frames,
+            channels: Vec::with_capacity(n),
+            factors: Vec::with_capacity(n),
+            kept: (0..n).collect(),
+            largest: vec![0.0; n],
+            allow_missing: options.allow_missing,
+            scaled: layout.scales.is_some() || options.unit.is_some(),
+            layout,
+        };
+        for channel in 0..n {
+            let (trace, factor) =
+                wave.describe(source, options, channel).map_err(|e| e.in_file(source.path()))?;
+            wave.channels.push(trace);
+            wave.factors.push(factor);
+        }
+        Ok(wave)
+    }
+
+    /// A channel without its values, and the factor that takes these to SI: what a person states or what the file carries.
+    fn describe(&self, source: &Source, options: &Options, channel: usize) -> Result<(Trace, f64)> {
+        let layout = &self.layout;
+        let scale = layout.scales.as_ref().and_then(|s| s.channels.get(channel));
+        let name = scale.map(|s| s.name.clone()).filter(|name| !name.is_empty());
+        let name = name.unwrap_or_else(|| format!("channel {}", channel + 1));
+        let mut meta = Meta::new(name, Unit::opaque(FULL_SCALE));
+        meta.step("read", &[("file", &source.name()), ("format", &"wav"), ("samples", &layout.sample)]);
+        meta.notes.clone_from(&layout.notes);
+        meta.declared_n = layout.declared_frames.map(|n| n as usize);
+        meta.found(Finding::caution(Trace::UNCALIBRATED));
+        if let Some(stated) = options.rate.filter(|stated| *stated != layout.rate) {
+            let differs = Finding::caution("statement-overrides-file").name("what", "sampling rate");
+            meta.found(differs.number("file", layout.rate).number("used", stated));
+        }
+        let start = layout.scales.as_ref().map_or(0.0, |s| s.start);
+        let axis = Axis::time(start, 1.0 / options.rate.unwrap_or(layout.rate), self.frames());
+        let mut trace = Trace { meta, axis, values: Vec::new() };
+        let factor = match (&options.unit, scale) {
+            (Some(unit), _) => {
+                trace.calibrate(1.0, unit)?;
+                trace.meta.found(Finding::note("full-scale-stated").name("unit", unit.symbol()));
+                unit.factor()
+            }
+            (None, Some(scale)) => {
+                let unit = Unit::parse_or_opaque(&scale.unit);
+                trace.calibrate(scale.factor, &unit)?;
+                trace.meta.found(if scale.unit == FULL_SCALE {
+                    // Only the level was kept: there never was a calibration.
+                    Finding::caution(Trace::UNCALIBRATED)
+                } else {
+                    let said = Finding::caution("full-scale-by-comment").number("factor", scale.factor);
+                    said.name("unit", scale.unit.as_str())
+                });
+                scale.factor * unit.factor()
+            }
+            (None, None) => 1.0,
+        };
+        Ok((trace, factor))
+    }
+
+    /// Number of frames (samples a channel) that the file holds, whatever it declares.
+    pub fn frames(&self) -> usize {
+        self.layout.frames as usize
+    }
+
+    /// Adds to all channels what only their samples tell.
+    fn finished(&mut self) {
+        let mut metas: Vec<Meta> = self.channels.iter().map(|t| t.meta.clone()).collect();
+        self.finish(&mut metas);
+        self.channels.iter_mut().zip(metas).for_each(|(trace, meta)| trace.meta = meta);
+    }
 }
 
-/// Channel `channel` without values and without calibration.
-fn describe(
-    source: &Source,
-    stream: &WavStream,
-    options: &Options,
-    channel: usize,
-    summary: &Summary,
-) -> Trace {
-    let scales = stream.scales();
-    let name = scales.and_then(|s| s.channels.get(channel)).map(|s| s.name.clone());
-    let name = name.filter(|n| !n.is_empty()).unwrap_or_else(|| format!("channel {}", channel + 1));
-    let mut meta = Meta::new(name, Unit::opaque(FULL_SCALE));
-    meta.step("read", &[("file", &source.name()), ("format", &"wav"), ("samples", &stream.sample())]);
-    // Each channel has its own copy of the texts, unless these are many: then the first has them.
-    let bytes: usize = stream.notes().iter().map(|(key, text)| key.len() + text.len()).sum();
-    if channel == 0 || bytes.saturating_mul(stream.channels()) <= MOST_COPIED {
-        meta.notes = stream.notes().to_vec();
+impl Stream for Wave {
+    fn append(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize> {
+        let sample = self.layout.sample;
+        let frame = sample.bytes() * self.layout.channels;
+        let frames = ((BLOCK / frame).max(1) as u64).min(self.left);
+        let first = self.layout.frames - self.left;
+        self.bytes.clear();
+        (&mut self.reader)
+            .take(frames * frame as u64)
+            .read_to_end(&mut self.bytes)
+            .map_err(|e| Error::io("read", &self.path, e))?;
+        // A file that shrank since it was opened ends early.
+        let frames = self.bytes.len() / frame;
+        self.left = if frames == 0 { 0 } else { self.left - frames as u64 };
+        block.resize_with(self.kept.len(), Vec::new);
+        for ((channel, column), largest) in self.kept.iter().zip(&mut *block).zip(&mut self.largest) {
+            let from = column.len();
+            let samples = self.bytes.chunks_exact(frame).map(|f| &f[channel * sample.bytes()..]);
+            column.extend(samples.map(|s| sample.value(&s[..sample.bytes()])));
+            let values = &mut column[from..];
+            let seen = lanes::survey(values);
+            *largest = largest.max(seen.high).max(-seen.low);
+            if !seen.finite {
+                let places: Vec<usize> = (0..frames).filter(|i| !values[*i].is_finite()).collect();
+                if !self.allow_missing {
+                    let listed = places.iter().take(missing::LISTED).map(|i| first + *i as u64);
+                    let listed: Vec<String> =
+                        listed.map(|frame| format!("{frame} of channel {}", channel + 1)).collect();
+                    let found = format!(
+                        "{} sample(s) are NaN or infinite: frame {}",
+                        places.len(),
+                        listed.join(", ")
+                    );
+                    return Err(missing::refusal(Place::file(&self.path), found));
+                }
+                for i in places {
+                    values[i] = f64::NAN;
+                }
+            }
+            let factor = self.factors.get(*channel).copied().unwrap_or(1.0);
+            if factor != 1.0 {
+                units::scale(values.iter_mut(), factor).map_err(|e| e.in_file(&self.path))?;
+            }
+        }
+        Ok(frames)
     }
-    meta.declared_n = stream.declared_frames().map(|n| n as usize);
-    meta.found(Finding::caution("uncalibrated"));
-    let scaled = scales.is_some() || options.unit.is_some();
-    if let Some((_, max)) = summary.max.filter(|(_, max)| *max > 1.0 && !scaled) {
-        meta.found(beyond_full_scale(max));
-    }
-    let mut rate = stream.rate();
-    if let Some(stated) = options.rate.filter(|stated| *stated != rate) {
-        let differs = Finding::caution("statement-overrides-file").name("what", "sampling rate");
-        meta.found(differs.number("file", rate).number("used", stated));
-        rate = stated;
-    }
-    let start = scales.map_or(0.0, |s| s.start);
-    Trace { meta, axis: Axis::time(start, 1.0 / rate, summary.n), values: Vec::new() }
-}
 
-/// Applies the calibration that is stated or that the file carries; returns the factor to SI.
-fn dress(trace: &mut Trace, stream: &WavStream, options: &Options, channel: usize) -> Result<f64> {
-    if let Some(unit) = &options.unit {
-        trace.calibrate(1.0, unit)?;
-        trace.meta.found(Finding::note("full-scale-stated").name("unit", unit.symbol()));
-        return Ok(unit.factor());
+    fn keep(&mut self, channels: &[usize]) {
+        self.kept = channels.iter().filter_map(|i| self.kept.get(*i).copied()).collect();
+        self.largest = vec![0.0; self.kept.len()];
     }
-    let Some(scale) = stream.scales().and_then(|s| s.channels.get(channel)) else { return Ok(1.0) };
-    let unit = Unit::parse_or_opaque(&scale.unit);
-    trace.calibrate(scale.factor, &unit)?;
-    if scale.unit == FULL_SCALE {
-        // Only the level was kept: there never was a calibration.
-        trace.meta.found(Finding::caution("uncalibrated"));
-        return Ok(scale.factor);
+
+    fn finish(&self, metas: &mut [Meta]) {
+        // Without a calibration a fraction of full scale cannot have such values.
+        for (meta, largest) in metas.iter_mut().zip(&self.largest).filter(|(_, largest)| **largest > 1.0) {
+            if !self.scaled {
+                meta.found(Finding::caution("beyond-full-scale").number("max", *largest));
+            }
+        }
     }
-    let said = Finding::caution("full-scale-by-comment").number("factor", scale.factor);
-    trace.meta.found(said.name("unit", scale.unit.as_str()));
-    Ok(scale.factor * unit.factor())
 }
 
 #[cfg(test)]

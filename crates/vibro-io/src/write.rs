@@ -18,10 +18,11 @@ pub mod npy;
 pub mod uff58;
 pub mod wav;
 
+use num_complex::Complex64;
 use std::io::Write;
 use std::path::Path;
 pub use uff58::{Precision, Storage};
-use vibro_record::{Error, Record, Result};
+use vibro_record::{Error, Record, Result, Values};
 
 /// A format to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -88,16 +89,26 @@ impl Target {
             Target::UffBinary => uff58::write_uff58(records, out, Storage { binary: true, ..storage }),
             Target::Csv => csv::write(records, ',', out),
             Target::Tsv => csv::write(records, '\t', out),
-            Target::Wav => {
-                let sample = match storage.precision {
-                    Precision::Single => wav::Sample::Float32,
-                    Precision::Double => wav::Sample::Float64,
-                };
-                wav::write(records, sample, out)
-            }
+            Target::Wav => wav::write(records, storage.precision, out),
             Target::Npy => npy::write(records, out),
         }
     }
+}
+
+/// Value `i` of a record, or its real and imaginary part; NaN where there is none.
+fn parts(record: &Record, i: usize) -> impl Iterator<Item = f64> + use<> {
+    let real = |values: &[f64]| (values.get(i).copied().unwrap_or(f64::NAN), None);
+    let complex =
+        |values: &[Complex64]| values.get(i).map_or((f64::NAN, Some(f64::NAN)), |v| (v.re, Some(v.im)));
+    let (re, im) = match record {
+        Record::Trace(trace) => real(&trace.values),
+        Record::Frf(frf) => complex(&frf.values),
+        Record::Spectrum(spectrum) => match &spectrum.values {
+            Values::Real(values) => real(values),
+            Values::Complex(values) => complex(values),
+        },
+    };
+    std::iter::once(re).chain(im)
 }
 
 /// How a record is called in a complaint.

@@ -15,7 +15,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use vibroimpact::record::{Axis, Meta, Record, Trace};
 use vibroimpact::units::Unit;
-use vibroimpact::write::wav::{Sample, write};
+use vibroimpact::write::{Precision, wav::write};
 use vibroimpact::{Error, Result};
 
 fn main() -> Result<()> {
@@ -28,7 +28,7 @@ fn main() -> Result<()> {
     let file = |name: &str, channels: Vec<Record>| {
         let path = data.join(name);
         let file = std::fs::File::create(&path).map_err(|e| Error::io("create", &path, e))?;
-        write(&channels, Sample::Float32, &mut std::io::BufWriter::new(file))
+        write(&channels, Precision::Single, &mut std::io::BufWriter::new(file))
     };
     file(
         "drill.wav",

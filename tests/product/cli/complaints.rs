@@ -499,7 +499,7 @@ fn a_spectrum_in_place_of_a_list_and_an_empty_campaign() {
     let folder = tempfile::tempdir().unwrap();
     sweep(folder.path(), &frequencies());
     let found = complaint(&["response", text(&folder.path().join("VUP0001.DAT"))], 2);
-    has(&found, &["this looks like a measurement file", "not a list"]);
+    has(&found, &["a list holds: number of points", "of a measurement file `vibro info`"]);
     let path = folder.path().join("campaign.toml");
     fs::write(&path, "").unwrap();
     has(&complaint(&["run", text(&path)], 2), &["the file is empty; expected a campaign", "[[sweep]]"]);

@@ -23,7 +23,7 @@ fn axis(recording: &Recording) -> (&AxisKind, Option<f64>) {
 }
 
 #[test]
-fn impossible_statements_are_passed_over_with_a_doubt() {
+fn impossible_statements_are_passed_over() {
     for header in [
         "Base band: 20 Hz\nLines: 1e30",
         "20 Hz inf lines",
@@ -35,11 +35,6 @@ fn impossible_statements_are_passed_over_with_a_doubt() {
         let recording = read(format!("{header}\n1\n2\n3\n").as_bytes());
         let step = recording.records[0].axis().step().unwrap();
         assert!(step.is_finite() && step > 0.0, "{header}: {step}");
-        assert!(
-            says(&recording, &["states no possible value"]),
-            "{header}: {:?}",
-            sentences(&recording.all_findings())
-        );
     }
 }
 
@@ -178,17 +173,6 @@ fn values_too_large_for_si_are_refused() {
     let path = folder.path().join("x.txt");
     std::fs::write(&path, "unit: km\n1\n1e308\n").unwrap();
     assert!(Reader::new().survey(&path).is_err());
-}
-
-#[test]
-fn a_blank_line_leaves_the_time_column_in_place() {
-    let reader = Reader::new().allow_missing(true);
-    let lost = told(&reader, "t [s]  v [m/s]\n0.0 1\n0.1 2\n\n0.3 4\n0.4 5\n");
-    assert_eq!((lost.records.len(), axis(&lost)), (1, (&AxisKind::Time, Some(0.1))));
-    assert!(values(&lost)[2].is_nan() && values(&lost).len() == 5);
-    let apart = told(&reader, "0.0 1\n0.1 2\n\n0.2 4\n0.3 5\n");
-    assert_eq!((apart.records.len(), values(&apart)), (1, vec![1.0, 2.0, 4.0, 5.0]));
-    assert!(says(&apart, &["1 row without a first value is left out"]));
 }
 
 #[test]

@@ -1,21 +1,13 @@
-//! One variable of a MAT-file.
+//! The variables of a MAT-file: elements of kind, size and content, padded to eight bytes.
+//!
+//! Source: The `MathWorks`, "MAT-File Format", chapter 1, "Level 5 MAT-File Format".
 
-use super::element::{Elements, Storage};
-use vibro_record::Result;
+use flate2::read::ZlibDecoder;
+use std::io::Read;
+use vibro_record::{Error, Place, Result};
 
 /// Longest text that is kept.
 const MOST_TEXT: u64 = 4096;
-/// Most dimensions that an array has here.
-const MOST_DIMENSIONS: u64 = 32;
-/// Longest name: MATLAB's own limit is 63.
-const MOST_NAME: u64 = 4096;
-
-/// A variable with its name.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Variable {
-    pub name: String,
-    pub content: Content,
-}
 
 /// What a variable holds.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,45 +27,154 @@ pub struct Array {
     pub imaginary: Option<Vec<f64>>,
     /// Whether values have the precision of 32-bit floats only.
     pub single: bool,
-    /// Whether integers were rounded to fit a double.
-    pub rounded: bool,
 }
 
-/// Reads the content of a matrix element; `budget` is the number of values that may still be taken.
-pub fn read(elements: &mut Elements, budget: &mut u64) -> Result<Variable> {
-    let (_, flags) = elements.content("flags", &[6], 8)?;
-    let flags = flags.first_chunk::<4>().map_or(0, |b| elements.word(*b));
+/// Elements one after the other.
+pub struct Elements<'a> {
+    pub rest: &'a [u8],
+    pub big_endian: bool,
+    /// Where the variable stands in the file.
+    pub place: Place,
+}
+
+impl<'a> Elements<'a> {
+    fn fault(&self, found: impl Into<String>, expected: &str) -> Error {
+        Error::input(self.place.clone(), found, expected).hint("the file is damaged; copy or save it again")
+    }
+
+    /// An unsigned word in the file's order.
+    fn word(&self, bytes: [u8; 4]) -> u32 {
+        if self.big_endian { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) }
+    }
+
+    fn words(&self, bytes: &[u8]) -> impl Iterator<Item = u32> {
+        bytes.as_chunks().0.iter().map(|b| self.word(*b))
+    }
+
+    /// Kind and content of the next element; `None` behind the last.
+    pub fn next(&mut self) -> Result<Option<(u32, &'a [u8])>> {
+        if self.rest.is_empty() {
+            return Ok(None);
+        }
+        let ends_early = |there: usize, declared: u32| {
+            let found = format!("a variable that ends early: {there} of {declared} bytes are there");
+            self.fault(found, "as many bytes as it declares")
+        };
+        let Some(([a, b, c, d, small @ ..], behind)) = self.rest.split_first_chunk::<8>() else {
+            return Err(ends_early(self.rest.len(), 8));
+        };
+        let word = self.word([*a, *b, *c, *d]);
+        if word >> 16 != 0 {
+            // The content of a small element stands in its tag.
+            let size = (word >> 16) as usize;
+            let content = self.rest[4..8].get(..size).ok_or_else(|| ends_early(4, word >> 16))?;
+            self.rest = behind;
+            return Ok(Some((word & 0xffff, content)));
+        }
+        let size = self.word(*small);
+        let content = behind.get(..size as usize).ok_or_else(|| ends_early(behind.len(), size))?;
+        // What is packed is not padded.
+        let padded = if word == 15 { content.len() } else { content.len().next_multiple_of(8) };
+        self.rest = behind.get(padded..).unwrap_or_default();
+        Ok(Some((word, content)))
+    }
+
+    /// The content of an element that a variable must have.
+    fn part(&mut self, what: &str) -> Result<(u32, &'a [u8])> {
+        self.next()?
+            .ok_or_else(|| self.fault(format!("a variable that ends early, without its {what}"), what))
+    }
+
+    /// The next element as `count` numbers; integers beyond 2⁵³ are rounded.
+    fn numbers(&mut self, count: u64) -> Result<Vec<f64>> {
+        fn of<const N: usize>(bytes: &[u8], swap: bool, value: impl Fn([u8; N]) -> f64) -> Vec<f64> {
+            let in_order = |mut b: [u8; N]| {
+                if swap {
+                    b.reverse();
+                }
+                b
+            };
+            bytes.as_chunks().0.iter().map(|b| value(in_order(*b))).collect()
+        }
+        let (kind, bytes) = self.part("values")?;
+        let swap = self.big_endian;
+        let values = match kind {
+            1 => of(bytes, swap, |b| f64::from(i8::from_le_bytes(b))),
+            2 => of(bytes, swap, |b| f64::from(u8::from_le_bytes(b))),
+            3 => of(bytes, swap, |b| f64::from(i16::from_le_bytes(b))),
+            4 => of(bytes, swap, |b| f64::from(u16::from_le_bytes(b))),
+            5 => of(bytes, swap, |b| f64::from(i32::from_le_bytes(b))),
+            6 => of(bytes, swap, |b| f64::from(u32::from_le_bytes(b))),
+            7 => of(bytes, swap, |b| f64::from(f32::from_le_bytes(b))),
+            9 => of(bytes, swap, f64::from_le_bytes),
+            12 => of(bytes, swap, |b| i64::from_le_bytes(b) as f64),
+            13 => of(bytes, swap, |b| u64::from_le_bytes(b) as f64),
+            kind => return Err(self.fault(format!("values of kind {kind}"), "integers or floats")),
+        };
+        if values.len() as u64 != count {
+            let found = format!("a variable that declares {count} values and holds {}", values.len());
+            return Err(self.fault(found, "as many values as its dimensions say"));
+        }
+        Ok(values)
+    }
+}
+
+/// All variables behind the header of a file, with their names.
+pub fn all(mut file: Elements, length: usize) -> Result<Vec<(String, Content)>> {
+    let mut variables = Vec::new();
+    let path = file.place.path.clone().unwrap_or_default();
+    loop {
+        let place = Place::byte(&path, (length - file.rest.len()) as u64);
+        file.place = place.clone();
+        let Some((kind, content)) = file.next()? else { return Ok(variables) };
+        let mut inflated = Vec::new();
+        let content = match kind {
+            14 => content,
+            15 => {
+                // No element is larger than its size can say.
+                let done = ZlibDecoder::new(content).take(u64::from(u32::MAX)).read_to_end(&mut inflated);
+                done.map_err(|e| {
+                    file.fault(format!("a variable that cannot be unpacked: {e}"), "intact data")
+                })?;
+                let mut outer =
+                    Elements { rest: &inflated, big_endian: file.big_endian, place: place.clone() };
+                outer.part("variable")?.1
+            }
+            _ => continue,
+        };
+        variables.push(variable(&mut Elements { rest: content, big_endian: file.big_endian, place })?);
+    }
+}
+
+/// Name and content of a matrix element.
+fn variable(elements: &mut Elements) -> Result<(String, Content)> {
+    let (_, flags) = elements.part("flags")?;
+    let flags = elements.words(flags).next().unwrap_or(0);
     let class = flags & 0xff;
     let (complex, logical) = (flags & 0x800 != 0, flags & 0x200 != 0);
     if class == 17 {
         // An object of the newer kind has no dimensions; what follows is not documented.
-        return Ok(Variable { name: String::new(), content: Content::Other("object") });
+        return Ok((String::new(), Content::Other("object")));
     }
-    let (_, dimensions) = elements.content("dimensions", &[5], 4 * MOST_DIMENSIONS)?;
-    let dimensions: Vec<u64> =
-        dimensions.chunks_exact(4).map(|b| u64::from(elements.word([b[0], b[1], b[2], b[3]]))).collect();
-    let (_, name) = elements.content("name", &[1, 2, 16], MOST_NAME)?;
-    let name = String::from_utf8_lossy(&name).trim_end_matches('\0').to_owned();
+    let (_, dimensions) = elements.part("dimensions")?;
+    let dimensions: Vec<u64> = elements.words(dimensions).map(u64::from).collect();
+    let (_, name) = elements.part("name")?;
+    let name = String::from_utf8_lossy(name).trim_end_matches('\0').to_owned();
     let product = dimensions.iter().try_fold(1u64, |n, d| n.checked_mul(*d));
     let Some(count) = product.filter(|_| dimensions.len() >= 2) else {
         return Err(elements.fault(format!("{name:?} with dimensions {dimensions:?}"), "a countable array"));
     };
     let content = match class {
         _ if logical => Content::Other("logical array"),
-        4 => text(elements, &dimensions, count)?,
+        4 if count == 0 => Content::Text(String::new()),
+        4 if dimensions[0] != 1 || count > MOST_TEXT => {
+            Content::Other("char array of several rows or more than 4096 characters")
+        }
+        4 => Content::Text(text(elements)?),
         6..=15 => {
-            let wanted = count.saturating_mul(1 + u64::from(complex));
-            if wanted > *budget {
-                let found = format!("{name:?} declares {wanted} values, and {budget} may still be inflated");
-                return Err(elements
-                    .fault(
-                        found,
-                        "packed variables that hold at most 64 times the size of the file, or 64 MiB",
-                    )
-                    .hint("save the file without compression: save('name.mat', '-v6')"));
-            }
-            *budget -= wanted;
-            Content::Array(array(elements, dimensions, count, complex, class)?)
+            let real = elements.numbers(count)?;
+            let imaginary = if complex { Some(elements.numbers(count)?) } else { None };
+            Content::Array(Array { dimensions, real, imaginary, single: class == 7 })
         }
         1 => Content::Other("cell array"),
         2 => Content::Other("struct"),
@@ -82,45 +183,19 @@ pub fn read(elements: &mut Elements, budget: &mut u64) -> Result<Variable> {
         16 => Content::Other("function"),
         other => return Err(elements.fault(format!("{name:?} of class {other}"), "a class from 1 to 17")),
     };
-    Ok(Variable { name, content })
+    Ok((name, content))
 }
 
-fn array(
-    elements: &mut Elements,
-    dimensions: Vec<u64>,
-    count: u64,
-    complex: bool,
-    class: u32,
-) -> Result<Array> {
-    let (storage, real) = elements.numbers(count)?;
-    let imaginary = if complex { Some(elements.numbers(count)?.1) } else { None };
-    // 2⁵³ itself may be the rounding of 2⁵³ + 1.
-    let wide = matches!(storage, Storage::I64 | Storage::U64);
-    let rounded = wide && real.iter().any(|v| v.abs() >= 9_007_199_254_740_992.0);
-    Ok(Array { dimensions, real, imaginary, single: class == 7, rounded })
-}
-
-fn text(elements: &mut Elements, dimensions: &[u64], count: u64) -> Result<Content> {
-    if count == 0 {
-        return Ok(Content::Text(String::new()));
-    }
-    if dimensions[0] != 1 || count > MOST_TEXT {
-        return Ok(Content::Other("char array of several rows or more than 4096 characters"));
-    }
-    let (tag, bytes) = elements.content("text", &[1, 2, 4, 16, 17, 18], 4 * MOST_TEXT)?;
-    let text = match tag.kind {
+fn text(elements: &mut Elements) -> Result<String> {
+    let (kind, bytes) = elements.part("text")?;
+    Ok(match kind {
         4 | 17 => {
-            let units = bytes.chunks_exact(2).map(|b| {
-                // Both bytes go into the lower half of a word, in the file's order.
-                (elements.word([b[0], b[1], b[0], b[1]]) & 0xffff) as u16
-            });
+            let swap = |b: &[u8; 2]| {
+                if elements.big_endian { u16::from_be_bytes(*b) } else { u16::from_le_bytes(*b) }
+            };
+            let units = bytes.as_chunks().0.iter().map(swap);
             char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect()
         }
-        18 => {
-            let points = bytes.chunks_exact(4).map(|b| elements.word([b[0], b[1], b[2], b[3]]));
-            points.map(|p| char::from_u32(p).unwrap_or(char::REPLACEMENT_CHARACTER)).collect()
-        }
-        _ => String::from_utf8_lossy(&bytes).into_owned(),
-    };
-    Ok(Content::Text(text))
+        _ => String::from_utf8_lossy(bytes).into_owned(),
+    })
 }

@@ -2,7 +2,7 @@
 
 use super::header::Stated;
 use crate::Options;
-use crate::axis::{apart, rounded, short};
+use crate::assemble::short;
 use std::path::Path;
 use vibro_record::{Axis, AxisKind, Error, Finding, Place, Result};
 
@@ -24,43 +24,34 @@ pub struct Printed {
     pub findings: Vec<Finding>,
 }
 
-/// The axis of `n` values: what a person states, then the printed one, then what the header states. Words behind the values
-/// (a `footer`) make the number of lines doubtful.
+/// The axis of `n` values: what a person states, then the printed one, then what the header states.
 ///
 /// # Errors
 /// If a person's statement contradicts a whole printed column.
 pub fn choose(
     path: &Path,
     printed: Option<Printed>,
-    (n, footer): (usize, bool),
+    n: usize,
     stated: &Stated,
     options: &Options,
     findings: &mut Vec<Finding>,
 ) -> Result<Axis> {
-    let half_open =
-        printed.as_ref().is_some_and(|p| options.base_band.is_some_and(|band| p.stops_before(band)));
     let given = match (options.rate, options.base_band) {
-        (Some(rate), _) => Some(Axis::time(0.0, 1.0 / rate, n)),
-        (None, Some(band)) if half_open => Some(Axis::frequency(0.0, band / n as f64, n)),
-        (None, Some(band)) => Some(Axis::frequency(0.0, band / stated.lines_of(n), n)),
-        (None, None) => None,
-    };
-    let step = given.as_ref().and_then(Axis::step).unwrap_or(f64::NAN);
-    if given.is_some() {
-        contradicted(stated, options, step, findings);
-    }
-    let (printed, given) = match (printed, given) {
-        (Some(printed), Some(given)) => (printed, given),
-        (Some(printed), None) => return Ok(trusted(printed, stated, findings)),
-        (None, given) => {
-            let axis = given.unwrap_or_else(|| headed(n, stated, findings));
-            let counted = stated.lines.is_none_or(|lines| lines != n as f64 && lines + 1.0 != n as f64);
-            if footer && counted && axis.kind == AxisKind::Frequency {
-                findings.push(Finding::doubt("lines-uncounted").count("n", n));
-            }
-            return Ok(axis);
+        (Some(rate), _) => Axis::time(0.0, 1.0 / rate, n),
+        (None, Some(band)) => {
+            let half_open = printed.as_ref().is_some_and(|p| p.stops_before(band));
+            Axis::frequency(0.0, band / if half_open { n as f64 } else { stated.lines_of(n) }, n)
+        }
+        (None, None) => {
+            return Ok(match printed {
+                Some(printed) => trusted(printed, stated, findings),
+                None => headed(n, stated, findings),
+            });
         }
     };
+    let step = given.step().unwrap_or(f64::NAN);
+    contradicted(stated, options, step, findings);
+    let Some(printed) = printed else { return Ok(given) };
     let Printed { axis, label, .. } = &printed;
     let about = |found: Finding| found.name("column", label.as_str());
     if !matches!(axis.kind, AxisKind::Time | AxisKind::Frequency) {
@@ -70,15 +61,15 @@ pub fn choose(
     printed.runs_forward(path)?;
     if printed.goes_with(&given, options.base_band, SURE) {
         if axis.step().is_none() {
-            findings.push(about(Finding::caution("column-uneven").number("step", step)));
+            findings.push(about(Finding::caution("column-uneven")).number("step", step));
         } else if given.kind == AxisKind::Frequency {
             return Ok(printed.axis);
         }
     } else if axis.step().is_some() && printed.goes_with(&given, options.base_band, ROUNDED) {
         findings.push(about(printed.nearly(options)));
         return Ok(printed.axis);
-    } else if printed.assumed && printed.counts() {
-        findings.push(about(Finding::caution("column-counts").number("step", step)));
+    } else if printed.assumed && axis.step() == Some(1.0) && matches!(axis.start(), 0.0 | 1.0) {
+        findings.push(about(Finding::caution("column-counts")).number("step", step));
         return Ok(given);
     } else {
         return Err(printed.contradiction(path, &given, options));
@@ -146,17 +137,9 @@ impl Printed {
         Finding::note("column-refines").name("what", what).number("holds", holds).number("stated", said)
     }
 
-    /// Whether the column counts 0, 1, 2, … or 1, 2, 3, …
-    fn counts(&self) -> bool {
-        self.axis.step() == Some(1.0) && matches!(self.axis.start(), 0.0 | 1.0)
-    }
-
     fn contradiction(&self, path: &Path, given: &Axis, options: &Options) -> Error {
-        let step = |axis: &Axis| axis.step().unwrap_or(f64::NAN);
-        let digits = apart(step(&self.axis), step(given));
         let runs = |axis: &Axis| {
             let (what, unit) = if axis.kind == AxisKind::Time { ("time", "s") } else { ("frequency", "Hz") };
-            let short = |value: f64| rounded(value, digits);
             let (from, to) = (short(axis.start()), short(axis.at(axis.len().saturating_sub(1))));
             let steps =
                 axis.step().map_or("uneven steps".to_owned(), |s| format!("steps of {} {unit}", short(s)));
@@ -181,31 +164,16 @@ impl Printed {
 
 /// Says where a person's statement and the header differ.
 fn contradicted(stated: &Stated, options: &Options, step: f64, findings: &mut Vec<Finding>) {
-    let mut differ = |what: &str, written: Option<f64>, used: Option<f64>| {
-        if let (Some(written), Some(used)) = (written, used)
-            && written != used
-        {
-            let found = Finding::caution("statement-overrides-file").name("what", what);
-            findings.push(found.number("file", written).number("used", used));
-        }
+    let differ = |what: &str, file: Option<f64>, used: Option<f64>| {
+        let (file, used) = file.zip(used).filter(|(file, used)| file != used)?;
+        let found = Finding::caution("statement-overrides-file").name("what", what);
+        Some(found.number("file", file).number("used", used))
     };
-    let band = stated.base_band.or(stated.line_width);
-    if let Some(rate) = options.rate {
-        differ("sampling rate", stated.rate, Some(rate));
-        if let Some(band) = band.filter(|_| stated.rate.is_none()) {
-            findings
-                .push(Finding::caution("spectrum-read-as-trace").number("band", band).number("rate", rate));
-        }
-        if options.base_band.is_some() {
-            findings.push(Finding::caution("rate-and-band-stated"));
-        }
+    if options.rate.is_some() {
+        findings.extend(differ("sampling rate", stated.rate, options.rate));
     } else {
-        differ("base band", stated.base_band, options.base_band);
-        differ("line distance", stated.line_width.map(short), Some(short(step)));
-        if let (Some(rate), Some(used), None) = (stated.rate, options.base_band, band) {
-            findings
-                .push(Finding::caution("trace-read-as-spectrum").number("rate", rate).number("band", used));
-        }
+        findings.extend(differ("base band", stated.base_band, options.base_band));
+        findings.extend(differ("line distance", stated.line_width.map(short), Some(short(step))));
     }
 }
 

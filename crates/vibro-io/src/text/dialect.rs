@@ -1,34 +1,28 @@
 //! How a text of numbers is laid out, as data.
 
-use super::header::Stated;
 use super::lines::{Fields, Line, Lines, fields};
 use super::names::Name;
-use super::{encoding, numbers, table};
-use crate::{Format, Options, Source};
-use std::path::PathBuf;
-use vibro_record::Result;
+use crate::Format;
 
 /// How rows are to be cut and read, and what stands above them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dialect {
+    /// CSV: the abscissa is the first column whose name says so. ASCII: it is the first column, by its name or because it
+    /// rises, and a blank line between rows of one column is a row without a value.
     pub format: Format,
     pub separator: Separator,
     /// Decimal mark.
     pub decimal: u8,
-    /// Whether the first rows hold no mark that tells the decimal one.
-    pub decimal_open: bool,
-    pub cell: Cell,
+    /// Whether a cell holds `(re+imj)`, `re+imj`, `re - im i`, … in place of one real number.
+    pub complex: bool,
     /// Columns of a row.
     pub columns: usize,
     /// One a column, where the text has them.
     pub names: Option<Vec<Name>>,
-    pub abscissa: Abscissa,
     /// What begins a remark.
     pub remarks: &'static [&'static str],
-    /// Whether a blank line between rows is a row without values.
-    pub blank_rows: bool,
-    /// Preamble and remarks above the rows, with their line numbers.
-    pub header: Vec<(u64, String)>,
+    /// Preamble and remarks above the rows.
+    pub header: Vec<String>,
     /// Line that the number of columns is taken from.
     pub columns_from: u64,
     /// Line of the first row, from 1.
@@ -44,73 +38,6 @@ pub enum Separator {
     Char(u8),
 }
 
-/// What one cell holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Cell {
-    /// One real number.
-    Real,
-    /// `(re+imj)`, `re+imj`, `re - im i`, …
-    Complex,
-}
-
-/// Which column is the abscissa.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Abscissa {
-    /// The first whose name says so.
-    Named,
-    /// The first column, by its name or because it rises.
-    Rising,
-}
-
-/// The beginning of a text.
-pub struct Head {
-    pub path: PathBuf,
-    pub bytes: Vec<u8>,
-    /// Without a line that is cut off.
-    pub text: String,
-    /// Whether the file calls itself CSV: then one column will do, and names need not fit the rows.
-    pub called_csv: bool,
-}
-
-impl Head {
-    /// The head of a source that [`super::plain`] made, without the end mark of DOS.
-    pub fn of(source: &Source) -> Result<Head> {
-        let bytes = source.head()?;
-        let cut = source.len() > bytes.len() as u64;
-        let whole = if cut { bytes.iter().rposition(|b| *b == b'\n').unwrap_or(0) } else { bytes.len() };
-        let text = encoding::decode(&bytes[..whole]).trim_end_matches('\u{1a}').to_owned();
-        let called_csv = matches!(source.extension().as_str(), "csv" | "tsv");
-        Ok(Head { path: source.path().to_owned(), bytes, text, called_csv })
-    }
-}
-
-/// Finds out whether a text is of a dialect; `None` where it is not.
-type Detect = fn(&Head, &Options) -> Result<Option<Dialect>>;
-
-/// Tables with names above their columns, the strictest first. The dialect of an instrument is a function here.
-const TABLES: &[Detect] = &[table::detect];
-
-/// The dialect of a table with names; `None` where the text is none.
-///
-/// # Errors
-/// If it is one that cannot be read without a statement.
-pub(crate) fn of_table(head: &Head, options: &Options) -> Result<Option<Dialect>> {
-    for detect in TABLES {
-        if let Some(found) = detect(head, options)? {
-            return Ok(Some(found));
-        }
-    }
-    Ok(None)
-}
-
-/// The dialect of plain columns of numbers.
-///
-/// # Errors
-/// If there is no row of numbers, or if it cannot be told whether commas are decimal marks.
-pub fn of_numbers(head: &Head, options: &Options) -> Result<Dialect> {
-    numbers::detect(head, options)
-}
-
 impl Dialect {
     /// Byte of the first row in the bytes of a head.
     pub(crate) fn first_byte(&self, head: &[u8]) -> usize {
@@ -124,23 +51,18 @@ impl Dialect {
         Lines::new(text, from, self.first_line, self.remarks)
     }
 
-    /// The column that its name makes the abscissa.
+    /// The column of a table that its name makes the abscissa.
     pub(crate) fn named_abscissa(&self) -> Option<usize> {
-        let names = self.names.as_deref().filter(|_| self.abscissa == Abscissa::Named)?;
+        let names = self.names.as_deref().filter(|_| self.format == Format::Csv)?;
         names.iter().enumerate().find_map(|(i, name)| name.axis(i == 0).map(|_| i))
-    }
-
-    /// What the lines above the rows and the `remarks` between them state.
-    pub fn stated(&self, remarks: &[(u64, String)]) -> Stated {
-        Stated::of(self.header.iter().chain(remarks).map(|(_, line)| line.as_str()))
     }
 
     /// Fields of a row; a complex number may have blanks in it. Blank fields behind the last column do not count.
     ///
     /// # Errors
     /// The byte at which something stands behind a closing quote.
-    pub fn cut<'a>(&self, line: &Line<'a>) -> std::result::Result<Fields<'a>, usize> {
-        if self.columns == 1 && self.cell == Cell::Complex {
+    pub fn cut<'a>(&self, line: &Line<'a>) -> Result<Fields<'a>, usize> {
+        if self.columns == 1 && self.complex {
             let text = line.text.trim();
             return Ok(vec![(line.text.len() - line.text.trim_start().len(), text.into())]);
         }

@@ -2,14 +2,8 @@
 
 use std::borrow::Cow;
 
-/// How many bytes are looked at to tell text from binary data, and UTF-16 without a byte order mark.
+/// How many bytes are looked at to tell text from binary data.
 pub const LOOK: usize = 2048;
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Order {
-    Little,
-    Big,
-}
 
 /// Whether the first bytes look like text: UTF-16, or no control characters but blanks, line ends and the end mark of DOS.
 pub(crate) fn is_text(head: &[u8]) -> bool {
@@ -17,9 +11,9 @@ pub(crate) fn is_text(head: &[u8]) -> bool {
     !head[..head.len().min(LOOK)].iter().any(control) || is_utf16(head)
 }
 
-/// Whether the bytes are UTF-16, by byte order mark or by the zero bytes that western text has in every second place.
+/// Whether the bytes are UTF-16, by their byte order mark.
 pub(crate) fn is_utf16(head: &[u8]) -> bool {
-    order(head).is_some()
+    head.starts_with(&[0xff, 0xfe]) || head.starts_with(&[0xfe, 0xff])
 }
 
 /// Name of the encoding of a text by its first bytes; `None` for UTF-8.
@@ -56,44 +50,16 @@ pub(crate) fn with_lf(mut bytes: Vec<u8>) -> Vec<u8> {
 /// Latin-1 gives every byte a character, so that nothing is lost and a later complaint can show what stands there.
 /// Half a pair of surrogates becomes U+FFFD.
 pub(crate) fn decode(bytes: &[u8]) -> Cow<'_, str> {
-    if let Some(order) = order(bytes) {
-        let units = bytes.chunks_exact(2).map(|pair| match order {
-            Order::Little => u16::from_le_bytes([pair[0], pair[1]]),
-            Order::Big => u16::from_be_bytes([pair[0], pair[1]]),
-        });
-        let text = char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER));
+    if is_utf16(bytes) {
+        let unit = if bytes[0] == 0xff { u16::from_le_bytes } else { u16::from_be_bytes };
+        let text = char::decode_utf16(bytes.as_chunks().0.iter().map(|pair| unit(*pair)));
+        let text = text.map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER));
         return text.skip_while(|c| *c == '\u{feff}').collect::<String>().into();
     }
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     match std::str::from_utf8(bytes) {
         Ok(text) => text.into(),
         Err(_) => bytes.iter().map(|b| char::from(*b)).collect::<String>().into(),
-    }
-}
-
-fn order(bytes: &[u8]) -> Option<Order> {
-    if bytes.starts_with(&[0xff, 0xfe]) {
-        return Some(Order::Little);
-    }
-    if bytes.starts_with(&[0xfe, 0xff]) {
-        return Some(Order::Big);
-    }
-    let bytes = &bytes[..bytes.len().min(LOOK)];
-    if !bytes.contains(&0) {
-        return None;
-    }
-    let pairs = bytes.chunks_exact(2);
-    let (total, mut first, mut second) = (pairs.len(), 0, 0);
-    for pair in pairs {
-        first += usize::from(pair[0] == 0);
-        second += usize::from(pair[1] == 0);
-    }
-    // Text has no zero bytes otherwise; a few characters such as √ fill both bytes.
-    let most = |zeros: usize| zeros * 4 >= total * 3;
-    match (first, second) {
-        (0, zeros) if total > 1 && most(zeros) => Some(Order::Little),
-        (zeros, 0) if total > 1 && most(zeros) => Some(Order::Big),
-        _ => None,
     }
 }
 
@@ -119,10 +85,9 @@ mod tests {
     }
 
     #[test]
-    fn utf16_with_and_without_a_mark() {
+    fn utf16_with_a_mark() {
         let text = "time [s];v [µm/s]\r\n0,5;√2\r\n";
         for big in [false, true] {
-            assert_eq!(decode(&utf16(text, big)), text);
             assert_eq!(decode(&utf16(&format!("\u{feff}{text}"), big)), text);
         }
         // An odd last byte and half a surrogate pair do not stop the rest.
@@ -136,7 +101,7 @@ mod tests {
         assert!(!is_text(&[0; 64]));
         assert!(!is_text(b"ab\0\0cd"));
         assert!(is_text(b"1.5\r\n2.5\r\n\x1a"));
-        assert!(is_text(&utf16("1,5\r\n", false)));
+        assert!(is_text(&utf16("\u{feff}1,5\r\n", false)));
     }
 
     proptest! {

@@ -3,8 +3,7 @@
 //! Anything unexpected (a comment, a missing value, a ragged row, a word) makes this path give up, and
 //! [`super::rows`] reads the file again, line by line, to say exactly what stands where.
 
-use super::dialect::{Cell, Dialect, Head, Separator};
-use super::fixed::{self, Fixed};
+use super::dialect::{Dialect, Separator};
 use crate::Source;
 use crate::number::{self, Exponential};
 use rayon::prelude::*;
@@ -12,10 +11,10 @@ use std::io::{Read, SeekFrom};
 use vibro_record::{Error, Result, Values};
 
 /// Bytes read at a time: small enough to stay in the second-level cache.
-pub const BLOCK: usize = 256 * 1024;
+const BLOCK: usize = 256 * 1024;
 
 /// Pieces smaller than this are not worth a thread.
-pub(crate) const SMALLEST_PIECE: u64 = 1024 * 1024;
+const SMALLEST_PIECE: u64 = 1024 * 1024;
 
 /// Rows that tell the shape.
 const ENOUGH: usize = 24;
@@ -23,28 +22,30 @@ const ENOUGH: usize = 24;
 /// How clean rows look, as bytes.
 pub struct Shape {
     /// Byte offset of the first row.
-    pub first_byte: u64,
-    pub columns: usize,
+    first_byte: u64,
+    columns: usize,
     separator: Separator,
     decimal: u8,
     /// Parser of unsigned numbers and their width, where the first rows print them all like `1.234e+05`.
     exponential: Option<(Exponential, usize)>,
-    /// Shape of the rows, where the first ones are all alike.
-    fixed: Option<Fixed>,
+    /// Length of a row of one such number and the end of its number, where the first rows are all alike.
+    fixed: Option<(usize, usize)>,
 }
 
 impl Shape {
-    /// The shape of rows of real numbers; `None` for others.
-    pub fn of(dialect: &Dialect, head: &Head) -> Option<Shape> {
-        if dialect.cell == Cell::Complex {
+    /// The shape of rows of real numbers that begin in `head`; `None` for others.
+    pub fn of(dialect: &Dialect, head: &[u8]) -> Option<Shape> {
+        if dialect.complex {
             return None;
         }
         let Dialect { columns, separator, decimal, .. } = *dialect;
-        let first_byte = dialect.first_byte(&head.bytes);
-        let rows = head.bytes[first_byte..].split_inclusive(|b| *b == b'\n').take(ENOUGH);
-        let rows: Vec<&[u8]> = rows.filter_map(|row| row.strip_suffix(b"\n")).collect();
+        let first_byte = dialect.first_byte(head);
+        let rows = head[first_byte..].split_inclusive(|b| *b == b'\n').take(ENOUGH);
+        let rows: Vec<&[u8]> = rows.filter(|row| row.ends_with(b"\n")).collect();
         let exponential = exponential(&rows, separator).filter(|_| decimal == b'.');
-        let fixed = Fixed::of(&rows).filter(|_| columns == 1 && decimal == b'.');
+        let size = |row: &&[u8]| (row.len(), row.trim_ascii_end().len());
+        let alike = rows.first().map(size).filter(|first| rows.iter().all(|row| size(row) == *first));
+        let fixed = alike.filter(|_| columns == 1 && exponential.is_some());
         Some(Shape { first_byte: first_byte as u64, columns, separator, decimal, exponential, fixed })
     }
 }
@@ -65,11 +66,10 @@ fn exponential(rows: &[&[u8]], separator: Separator) -> Option<(Exponential, usi
 
 /// All columns; `None` where the file is not clean.
 pub fn read(source: &Source, shape: &Shape) -> Result<Option<Vec<Values>>> {
-    let values = match shape.fixed {
-        Some(fixed) => fixed::read(source, shape.first_byte, fixed)?,
-        None => None,
+    let values = match values(source, shape)? {
+        None if shape.fixed.is_some() => values(source, &Shape { fixed: None, ..*shape })?,
+        values => values,
     };
-    let values = if values.is_some() { values } else { clean(source, shape)? };
     let columns = shape.columns;
     Ok(values.map(|values| match columns {
         1 => vec![Values::Real(values)],
@@ -83,14 +83,14 @@ pub fn read(source: &Source, shape: &Shape) -> Result<Option<Vec<Values>>> {
 ///
 /// The rows are counted first, so that every thread writes its values where they belong: looking at the bytes twice costs less
 /// than joining vectors.
-fn clean(source: &Source, shape: &Shape) -> Result<Option<Vec<f64>>> {
+fn values(source: &Source, shape: &Shape) -> Result<Option<Vec<f64>>> {
     let (from, to) = (shape.first_byte, source.len());
-    let threads = rayon::current_num_threads().max(1) as u64;
-    let pieces = ((to - from) / SMALLEST_PIECE).clamp(1, threads);
-    let bounds: Vec<(u64, u64)> = (0..pieces)
-        .map(|i| (from + (to - from) * i / pieces, from + (to - from) * (i + 1) / pieces))
-        .collect();
-    let counts: Vec<usize> = bounds.par_iter().map(|b| rows_in(source, shape, *b)).collect::<Result<_>>()?;
+    let pieces = ((to - from) / SMALLEST_PIECE).clamp(1, rayon::current_num_threads().max(1) as u64);
+    let bounds: Vec<u64> = (0..=pieces)
+        .map(|i| if i == pieces { Ok(to) } else { row_start(source, shape, from + (to - from) * i / pieces) })
+        .collect::<Result<_>>()?;
+    let pieces: Vec<(u64, u64)> = bounds.windows(2).map(|w| (w[0], w[1])).collect();
+    let counts: Vec<usize> = pieces.par_iter().map(|p| rows_in(source, shape, *p)).collect::<Result<_>>()?;
     let total = counts.iter().sum::<usize>().saturating_mul(shape.columns);
     // A value takes two bytes with what ends it: blank lines must not claim room for rows of many columns.
     if total as u64 > (to - from) / 2 + 1 {
@@ -98,33 +98,24 @@ fn clean(source: &Source, shape: &Shape) -> Result<Option<Vec<f64>>> {
     }
     let mut values = vec![0.0; total];
     let mut rest = values.as_mut_slice();
-    let parts: Vec<(&mut [f64], (u64, u64))> = counts
-        .iter()
-        .zip(bounds)
-        .map(|(rows, bounds)| {
-            let (part, behind) = std::mem::take(&mut rest).split_at_mut(rows * shape.columns);
-            rest = behind;
-            (part, bounds)
-        })
-        .collect();
+    let mut parts = Vec::new();
+    for (rows, piece) in counts.iter().zip(pieces) {
+        let (part, behind) = std::mem::take(&mut rest).split_at_mut(rows * shape.columns);
+        rest = behind;
+        parts.push((Part { values: part, used: 0, ended: false }, piece));
+    }
     let filled: Vec<Option<(usize, usize)>> = parts
         .into_par_iter()
-        .map(|(part, (from, to))| {
-            let (room, mut used) = (part.len(), 0);
-            let clean = scan(source, shape, (from, to), |v| {
-                if let Some(place) = part.get_mut(used) {
-                    *place = v;
-                }
-                used += 1;
-            })?;
-            Ok(clean.filter(|_| used <= room).map(|_| (used, room)))
+        .map(|(mut part, piece)| {
+            let clean = blocks(source, piece, |block| rows(block, shape, &mut part))?;
+            Ok(clean.map(|()| (part.used, part.values.len())))
         })
         .collect::<Result<_>>()?;
     let (mut total, mut ended) = (0, false);
     for part in filled {
         let Some((used, room)) = part else { return Ok(None) };
         if ended && used > 0 {
-            return Ok(None); // rows behind blank lines
+            return Ok(None); // rows behind blank lines, or of another length
         }
         total += used;
         ended |= used < room;
@@ -133,98 +124,123 @@ fn clean(source: &Source, shape: &Shape) -> Result<Option<Vec<f64>>> {
     Ok((!values.is_empty()).then_some(values))
 }
 
-/// Number of lines that start in these bounds.
+/// Where the values of a piece go.
+struct Part<'a> {
+    values: &'a mut [f64],
+    used: usize,
+    /// Whether blank lines stand behind them.
+    ended: bool,
+}
+
+impl Part<'_> {
+    #[inline]
+    fn push(&mut self, value: f64) -> Option<()> {
+        *self.values.get_mut(self.used)? = value;
+        self.used += 1;
+        Some(())
+    }
+}
+
+/// The first row that starts at `at` or behind.
+fn row_start(source: &Source, shape: &Shape, at: u64) -> Result<u64> {
+    if at == shape.first_byte {
+        return Ok(at);
+    }
+    // The end of the row before may be the byte before.
+    let mut start = source.len();
+    let mut passed = 0;
+    blocks(source, (at - 1, source.len()), |block| {
+        let end = block.iter().position(|b| *b == b'\n');
+        start = end.map_or(start, |end| at + passed + end as u64);
+        passed += block.len() as u64;
+        end.is_none().then_some(())
+    })?;
+    Ok(start)
+}
+
+/// Number of rows of a piece.
 fn rows_in(source: &Source, shape: &Shape, (from, to): (u64, u64)) -> Result<usize> {
-    let first = from == shape.first_byte;
+    if let Some((length, _)) = shape.fixed {
+        return Ok((to - from).div_ceil(length as u64) as usize);
+    }
+    let (mut count, mut whole) = (0, true);
+    blocks(source, (from, to), |block| {
+        // Counted in bytes that cannot overflow, so that the compiler looks at many at once.
+        let ends = |c: &[u8]| usize::from(c.iter().map(|b| u8::from(*b == b'\n')).sum::<u8>());
+        count += block.chunks(255).map(ends).sum::<usize>();
+        whole = block.last().map_or(whole, |last| *last == b'\n');
+        Some(())
+    })?;
+    Ok(count + usize::from(!whole))
+}
+
+/// Hands these bytes, which begin with a row, to `each` in blocks of whole rows, until it gives `None`, as do rows that are longer
+/// than a block.
+fn blocks(
+    source: &Source,
+    (from, to): (u64, u64),
+    mut each: impl FnMut(&[u8]) -> Option<()>,
+) -> Result<Option<()>> {
+    if let Some(bytes) = source.in_memory() {
+        return Ok(each(&bytes[from as usize..to as usize]));
+    }
     let failed = |e| Error::io("read", source.path(), e);
     let mut file = source.open()?;
-    // A line starts behind every line end before it.
-    let from = if first { from } else { from - 1 };
     file.seek(SeekFrom::Start(from)).map_err(failed)?;
-    let mut left = (to - 1).saturating_sub(from) as usize;
-    let mut buffer = vec![0; BLOCK.min(left.max(1))];
-    let mut count = usize::from(first);
-    while left > 0 {
-        let wanted = buffer.len().min(left);
-        let read = file.read(&mut buffer[..wanted]).map_err(failed)?;
-        if read == 0 {
-            break;
-        }
-        count += count_lf(&buffer[..read]);
-        left -= read;
-    }
-    Ok(count)
-}
-
-/// Counted in bytes that cannot overflow, so that the compiler looks at many at once.
-fn count_lf(bytes: &[u8]) -> usize {
-    bytes.chunks(255).map(|c| usize::from(c.iter().map(|b| u8::from(*b == b'\n')).sum::<u8>())).sum()
-}
-
-/// Streams the values of all rows that start in `from..to` into `sink`. Gives whether blank lines stand behind the
-/// rows, or `None` where the bytes are not clean (the sink may have taken values by then).
-pub fn scan(
-    source: &Source,
-    shape: &Shape,
-    (from, to): (u64, u64),
-    mut sink: impl FnMut(f64),
-) -> Result<Option<bool>> {
-    let mut file = source.open()?;
-    let first = from == shape.first_byte;
-    // A piece owns the rows that start in it: look one byte back for the end of the row before.
-    let mut position = if first { from } else { from - 1 };
-    file.seek(SeekFrom::Start(position)).map_err(|e| Error::io("read", source.path(), e))?;
-    let mut skipping = !first;
-    let mut buffer = vec![0u8; BLOCK.min((to - from) as usize + 2)];
+    let mut file = file.take(to - from);
+    let mut buffer = vec![0u8; BLOCK.min((to - from) as usize + 1)];
     let mut filled = 0;
-    let mut ended = false;
     loop {
-        let read = file.read(&mut buffer[filled..]).map_err(|e| Error::io("read", source.path(), e))?;
-        let last = read == 0;
+        let read = file.read(&mut buffer[filled..]).map_err(failed)?;
         filled += read;
-        let mut at = 0;
-        if skipping {
-            match buffer[..filled].iter().position(|b| *b == b'\n') {
-                Some(newline) => {
-                    at = newline + 1;
-                    skipping = false;
-                }
-                None if last => return Ok(Some(ended)),
-                None => {
-                    position += filled as u64;
-                    filled = 0;
-                    continue;
-                }
-            }
+        let end = buffer[..filled].iter().rposition(|b| *b == b'\n').map_or(0, |end| end + 1);
+        let whole = if read == 0 { filled } else { end };
+        if each(&buffer[..whole]).is_none() || (whole == 0 && filled == buffer.len()) {
+            return Ok(None);
         }
-        let complete = if last {
-            filled
-        } else {
-            match buffer[..filled].iter().rposition(|b| *b == b'\n') {
-                Some(newline) => newline + 1,
-                None if filled == buffer.len() => return Ok(None), // a row as long as the buffer is no row
-                None => continue,
-            }
-        };
-        while at < complete {
-            if position + at as u64 >= to {
-                return Ok(Some(ended));
-            }
-            match row(&buffer[at..complete], shape, &mut sink) {
-                Row::Values(used) if !ended => at += used,
-                Row::Blank(used) => {
-                    ended = true;
-                    at += used;
-                }
-                _ => return Ok(None),
-            }
+        if read == 0 {
+            return Ok(Some(()));
         }
-        if last {
-            return Ok(Some(ended));
+        buffer.copy_within(whole..filled, 0);
+        filled -= whole;
+    }
+}
+
+/// Reads whole rows; `None` where one is not clean or there are more than were counted.
+fn rows(block: &[u8], shape: &Shape, part: &mut Part) -> Option<()> {
+    let mut at = 0;
+    while at < block.len() {
+        if let (Some((length, end)), Some((parse, width))) = (shape.fixed, shape.exponential)
+            && let Some(value) =
+                block.get(at..at + length).and_then(|row| fixed(row, (end - width, end), parse))
+            && !part.ended
+        {
+            part.push(value)?;
+            at += length;
+            continue;
         }
-        buffer.copy_within(at..filled, 0);
-        position += at as u64;
-        filled -= at;
+        at += row(&block[at..], shape, part)?;
+    }
+    Some(())
+}
+
+/// The value of a row with blanks, a sign or blank, a number at its place, blanks or CR, LF.
+#[inline]
+fn fixed(row: &[u8], (from, to): (usize, usize), parse: Exponential) -> Option<f64> {
+    let magnitude = parse(&row[from..to])?;
+    let ends = match &row[to..] {
+        [b'\n'] | [b'\r', b'\n'] => true,
+        [blanks @ .., b'\n'] => blanks.iter().all(|b| matches!(b, b' ' | b'\r' | b'\t')),
+        _ => false,
+    };
+    let (sign, blanks) = row[..from].split_last().unwrap_or((&b' ', &[]));
+    if !ends || blanks.iter().any(|b| *b != b' ') {
+        return None;
+    }
+    match sign {
+        b' ' | b'+' => Some(magnitude),
+        b'-' => Some(-magnitude),
+        _ => None,
     }
 }
 
@@ -243,17 +259,9 @@ fn value(bytes: &[u8], shape: &Shape) -> Option<(f64, usize)> {
     number::prefix(bytes, shape.decimal)
 }
 
-enum Row {
-    /// A full row, and the bytes it took with its line end.
-    Values(usize),
-    /// Nothing but blanks.
-    Blank(usize),
-    /// Something for the slow path.
-    Odd,
-}
-
+/// Reads one row, which may be blank behind the last values; gives its bytes with its line end.
 #[inline]
-fn row(bytes: &[u8], shape: &Shape, sink: &mut impl FnMut(f64)) -> Row {
+fn row(bytes: &[u8], shape: &Shape, part: &mut Part) -> Option<usize> {
     let blank = |at: &mut usize| {
         while bytes.get(*at).is_some_and(|b| matches!(b, b' ' | b'\t')) {
             *at += 1;
@@ -263,10 +271,6 @@ fn row(bytes: &[u8], shape: &Shape, sink: &mut impl FnMut(f64)) -> Row {
     let line_end = |at: usize| match bytes.get(at) {
         None | Some(b'\n') => Some(at + 1),
         Some(b'\r') if bytes.get(at + 1) == Some(&b'\n') => Some(at + 2),
-        Some(b'\r') => {
-            let crs = bytes[at..].iter().take_while(|b| **b == b'\r').count();
-            matches!(bytes.get(at + crs), None | Some(b'\n')).then_some(at + crs + 1)
-        }
         Some(_) => None,
     };
     // Signs make the number of leading blanks random: take two without a branch.
@@ -274,7 +278,11 @@ fn row(bytes: &[u8], shape: &Shape, sink: &mut impl FnMut(f64)) -> Row {
     at += usize::from(bytes.get(at) == Some(&b' '));
     blank(&mut at);
     if let Some(used) = line_end(at) {
-        return Row::Blank(used);
+        part.ended = true;
+        return Some(used);
+    }
+    if part.ended {
+        return None;
     }
     for column in 0..shape.columns {
         if column > 0
@@ -282,13 +290,13 @@ fn row(bytes: &[u8], shape: &Shape, sink: &mut impl FnMut(f64)) -> Row {
             && mark != b'\t'
         {
             if bytes.get(at) != Some(&mark) {
-                return Row::Odd;
+                return None;
             }
             at += 1;
             blank(&mut at);
         }
-        let Some((value, used)) = value(&bytes[at..], shape) else { return Row::Odd };
-        sink(value);
+        let (value, used) = value(&bytes[at..], shape)?;
+        part.push(value)?;
         at += used;
         // Two numbers must not touch.
         let before = at;
@@ -297,8 +305,8 @@ fn row(bytes: &[u8], shape: &Shape, sink: &mut impl FnMut(f64)) -> Row {
             && column + 1 < shape.columns
             && !matches!(shape.separator, Separator::Char(mark) if bytes.get(at) == Some(&mark));
         if touching {
-            return Row::Odd;
+            return None;
         }
     }
-    line_end(at).map_or(Row::Odd, Row::Values)
+    line_end(at)
 }

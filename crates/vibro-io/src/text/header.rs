@@ -26,8 +26,6 @@ pub struct Stated {
     pub name: Option<String>,
     /// Header lines as key and value; the key is empty where a line has none.
     pub notes: Vec<(String, String)>,
-    /// Lines under whose key stands no possible value.
-    pub impossible: Vec<String>,
 }
 
 /// More lines than any analyser has.
@@ -40,13 +38,10 @@ impl Stated {
         for line in lines {
             let (key, value) = split(line);
             stated.notes.push((key.to_owned(), value.to_owned()));
-            let possible = if key.is_empty() {
-                free_text(line, &mut stated)
+            if key.is_empty() {
+                free_text(line, &mut stated);
             } else {
-                keyed(&key.to_lowercase(), value, &mut stated)
-            };
-            if possible.is_none() {
-                stated.impossible.push(line.to_owned());
+                keyed(&key.to_lowercase(), value, &mut stated);
             }
         }
         stated
@@ -79,8 +74,8 @@ pub fn split(line: &str) -> (&str, &str) {
     at.map_or(("", line.trim()), |at| (line[..at].trim(), line[at + 1..].trim()))
 }
 
-/// `None` where the key is understood and its value is not.
-fn keyed(key: &str, value: &str, stated: &mut Stated) -> Option<()> {
+/// Takes what stands under a key that is understood, where it is a possible value.
+fn keyed(key: &str, value: &str, stated: &mut Stated) {
     let (key, unit_in_key) = match key.find(['[', '(']) {
         Some(at) => (key[..at].trim(), key[at + 1..].trim_end_matches([']', ')'])),
         None => (key, ""),
@@ -91,21 +86,21 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) -> Option<()> {
     // `bandwidth`, `span` and `resolution` are no keys: they also stand over time traces, and for other things.
     match key.trim() {
         "lines" | "spectral lines" | "number of lines" | "no of lines" | "fft lines" => {
-            stated.lines = Some(line_count(quantity(value, "", &[("", 1.0), ("lines", 1.0)])?)?);
+            stated.lines = quantity(value, "", &[("", 1.0), ("lines", 1.0)]).and_then(line_count);
         }
         "base band" | "baseband" | "frequency range" | "frequency span" | "fmax" | "f max" => {
-            stated.base_band = Some(hertz()?);
+            stated.base_band = hertz();
         }
         "sampling rate" | "sample rate" | "sampling frequency" | "sample frequency" | "samplerate" | "fs"
         | "rate" => {
-            stated.rate = Some(hertz()?);
+            stated.rate = hertz();
         }
         "dt" | "delta t" | "sampling interval" | "sample interval" | "time step" | "delta time" => {
             let units = [("us", 1e-6), ("µs", 1e-6), ("ms", 1e-3), ("s", 1.0), ("", 1.0)];
-            stated.rate = Some(checked(1.0 / quantity(value, unit_in_key, &units)?)?);
+            stated.rate = quantity(value, unit_in_key, &units).and_then(|dt| checked(1.0 / dt));
         }
         "df" | "delta f" | "line width" | "frequency resolution" | "line spacing" => {
-            stated.line_width = Some(hertz()?);
+            stated.line_width = hertz();
         }
         "unit" | "units" | "y unit" | "yunit" | "amplitude unit" | "engineering unit" => {
             stated.unit = Some(value.trim_matches(['[', ']']).to_owned()).filter(|v| !v.is_empty());
@@ -119,20 +114,19 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) -> Option<()> {
         }
         _ => {}
     }
-    Some(())
 }
 
-/// Lines without a key: `20 Hz 400 lines`. `None` where they state no possible value.
-fn free_text(line: &str, stated: &mut Stated) -> Option<()> {
+/// Lines without a key: `20 Hz 400 lines`.
+fn free_text(line: &str, stated: &mut Stated) {
     let words: Vec<String> = line.split_whitespace().map(str::to_lowercase).collect();
     let before = |name: &str| {
         let pair = words.windows(2).find(|w| w[1].trim_end_matches(',') == name)?;
         pair[0].parse::<f64>().ok()
     };
-    if let (Some(hz), Some(lines)) = (before("hz"), before("lines")) {
-        (stated.base_band, stated.lines) = (Some(checked(hz)?), Some(line_count(lines)?));
+    let (band, lines) = (before("hz").and_then(checked), before("lines").and_then(line_count));
+    if band.is_some() && lines.is_some() {
+        (stated.base_band, stated.lines) = (band, lines);
     }
-    Some(())
 }
 
 /// A number with one of `units` behind it (or the unit from the key), checked.
@@ -202,7 +196,6 @@ mod tests {
         for line in lines {
             let s = of(&[line]);
             assert_eq!((s.lines, s.base_band, s.rate, s.line_width), (None, None, None, None), "{line}");
-            assert!(s.impossible == [line], "{line}: {:?}", s.impossible);
         }
     }
 
@@ -210,6 +203,5 @@ mod tests {
     fn keys_with_other_meanings_state_nothing() {
         let s = of(&["Resolution: 16", "Bandwidth: 20 kHz", "Span: 20 Hz"]);
         assert_eq!((s.base_band, s.line_width), (None, None));
-        assert!(s.impossible.is_empty(), "{:?}", s.impossible);
     }
 }

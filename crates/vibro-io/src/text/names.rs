@@ -79,43 +79,33 @@ impl Name {
         Ok((unit.factor(), None))
     }
 
-    /// The same column without its unit.
-    pub fn bare(&self) -> Name {
-        Name { name: self.name.clone(), unit: None }
-    }
-
     /// Whether the values are an abscissa: by name, or (only asked of a first column) by unit alone.
     pub fn axis(&self, first: bool) -> Option<AxisKind> {
         let unit = self.unit.as_deref().map(Unit::parse_or_opaque);
-        let quantity = unit.as_ref().map(Unit::quantity);
-        // Revolutions have the dimension of a frequency, yet are no frequency axis.
-        let hertz = quantity == Some(Quantity::Frequency)
-            && unit.as_ref().is_some_and(|u| u.symbol().ends_with("Hz"));
-        let known = unit.as_ref().is_some_and(Unit::is_known);
+        let by_unit = match unit.as_ref().map(Unit::quantity) {
+            Some(Quantity::Time) => Some(AxisKind::Time),
+            // Revolutions have the dimension of a frequency, yet are no frequency axis.
+            Some(Quantity::Frequency) if unit.as_ref().is_some_and(|u| u.symbol().ends_with("Hz")) => {
+                Some(AxisKind::Frequency)
+            }
+            _ => None,
+        };
         let key = self.name.to_lowercase();
-        let angular = self.unit.as_deref().is_some_and(is_angular);
-        let omega = matches!(key.as_str(), "omega" | "ω" | "w" | "angular frequency" | "kreisfrequenz");
-        if first && angular && (omega || begins(&key, "freq") || self.name == "f") {
-            return Some(AxisKind::Frequency);
+        let word = match key.as_str() {
+            "time" | "timestamp" | "time stamp" | "zeit" | "temps" | "elapsed time" => Some(AxisKind::Time),
+            "frequency" | "freq" | "freq." | "frequenz" | "fréquence" => Some(AxisKind::Frequency),
+            _ if first && begins(&key, "time") => Some(AxisKind::Time),
+            _ if first && begins(&key, "freq") => Some(AxisKind::Frequency),
+            _ if self.name == "t" && (first || by_unit.is_some()) => Some(AxisKind::Time),
+            _ if self.name == "f" && (first || by_unit.is_some()) => Some(AxisKind::Frequency),
+            _ => None,
+        };
+        if first && self.unit.as_deref().is_some_and(is_angular) {
+            let omega = matches!(key.as_str(), "omega" | "ω" | "w" | "angular frequency" | "kreisfrequenz");
+            return Some(AxisKind::Frequency).filter(|kind| omega || word.as_ref() == Some(kind));
         }
-        let time =
-            matches!(key.as_str(), "time" | "timestamp" | "time stamp" | "zeit" | "temps" | "elapsed time")
-                || (self.name == "t" && (first || quantity == Some(Quantity::Time)))
-                || (first && begins(&key, "time"));
-        let frequency = matches!(key.as_str(), "frequency" | "freq" | "freq." | "frequenz" | "fréquence")
-            || (self.name == "f" && (first || hertz))
-            || (first && begins(&key, "freq"));
-        if time && (!known || quantity == Some(Quantity::Time)) {
-            Some(AxisKind::Time)
-        } else if frequency && (!known || hertz) {
-            Some(AxisKind::Frequency)
-        } else if first && quantity == Some(Quantity::Time) {
-            Some(AxisKind::Time)
-        } else if first && hertz {
-            Some(AxisKind::Frequency)
-        } else {
-            None
-        }
+        let known = unit.is_some_and(|unit| unit.is_known());
+        word.filter(|word| !known || by_unit.as_ref() == Some(word)).or(by_unit.filter(|_| first))
     }
 
     /// Whether the name is one of a column that only counts.
@@ -149,8 +139,8 @@ impl Name {
 }
 
 /// One name a column, where the last header line can be cut into as many; a second line may hold the units.
-pub fn above(header: &[(u64, String)], columns: usize, separator: Separator) -> Option<Vec<Name>> {
-    let mut spoken = header.iter().rev().map(|(_, line)| cut(line, columns, separator));
+pub fn above(header: &[String], columns: usize, separator: Separator) -> Option<Vec<Name>> {
+    let mut spoken = header.iter().rev().map(|line| cut(line, columns, separator));
     let last = spoken.next()??;
     if is_unit_row(last.iter().map(String::as_str))
         && let Some(Some(upper)) = spoken.next()
@@ -168,7 +158,11 @@ fn cut(line: &str, columns: usize, separator: Separator) -> Option<Vec<String>> 
     if !header::split(line).0.is_empty() || !line.contains(char::is_alphabetic) {
         return None;
     }
-    let fit = |fields: Vec<String>| (fields.len() == columns && are_words(&fields)).then_some(fields);
+    // A number, a date or a clock names nothing; what ends with a unit may begin with a digit.
+    let odd = |f: &String| {
+        f.contains(':') || (f.starts_with(|c: char| c.is_ascii_digit()) && !f.ends_with([']', ')']))
+    };
+    let fit = |fields: Vec<String>| (fields.len() == columns && !fields.iter().any(odd)).then_some(fields);
     let split = |at: &str| -> Vec<String> {
         line.split(at).map(|f| f.trim().to_owned()).filter(|f| !f.is_empty()).collect()
     };
@@ -180,38 +174,13 @@ fn cut(line: &str, columns: usize, separator: Separator) -> Option<Vec<String>> 
     {
         return Some(fields);
     }
-    fit(split("\t")).or_else(|| fit(split("  "))).or_else(|| fit(words(line)).filter(|f| are_names(f)))
-}
-
-/// Whether no field is a number, a date or a clock; one that ends with a unit may begin with a digit.
-fn are_words(fields: &[String]) -> bool {
-    let digit = |f: &String| f.starts_with(|c: char| c.is_ascii_digit()) && !f.ends_with([']', ')']);
-    !fields.iter().any(|f| digit(f) || f.contains(':'))
-}
-
-/// Words between single blanks; a bracket belongs to the word before it.
-fn words(line: &str) -> Vec<String> {
-    let mut out: Vec<String> = Vec::new();
-    let mut open = false;
-    for word in line.split_whitespace() {
-        match out.last_mut() {
-            Some(last) if open || word.starts_with(['[', '(']) => {
-                last.push(' ');
-                last.push_str(word);
-            }
-            _ => out.push(word.to_owned()),
-        }
-        let count = |marks: [char; 2]| word.matches(marks).count();
-        open = if open { count([']', ')']) == 0 } else { count(['[', '(']) > count([']', ')']) };
-    }
-    out
-}
-
-/// Whether words between single blanks may name columns: the first is an abscissa, or one has a bracket.
-fn are_names(words: &[String]) -> bool {
+    // A bracket belongs to the word before it. Between single blanks the first word must be an abscissa, or one have a unit in
+    // brackets: others are free text.
+    let words = line.replace(" [", "[").replace(" (", "(");
+    let words: Vec<String> = words.split_whitespace().map(str::to_owned).collect();
     let units = words.iter().any(|w| w.ends_with([']', ')']));
-    let axis: Option<AxisKind> = words.first().and_then(|w| Name::parse(w).axis(true));
-    units || axis.is_some()
+    let sure = units || words.first().is_some_and(|w| Name::parse(w).axis(true).is_some());
+    fit(split("\t")).or_else(|| fit(split("  "))).or_else(|| fit(words).filter(|_| sure))
 }
 
 /// Hours have no symbol among the units of values.
@@ -287,20 +256,11 @@ fn begins(text: &str, word: &str) -> bool {
 
 /// A quotient, hertz, or a unit of the quantity that the name says: `x_m` may be a name, `force_N` is not.
 fn cannot_be_name(name: &str, unit: &str) -> bool {
-    let key = name.to_lowercase();
-    let says = |words: &[&str]| words.iter().any(|w| key.starts_with(w) || key.ends_with(w));
     let quantity = Unit::parse(unit).map(|u| u.quantity());
-    unit.contains('/')
-        || unit.ends_with("Hz")
-        || match quantity {
-            Some(Quantity::Time) => key == "t" || says(&["time", "zeit"]),
-            Some(Quantity::Force) => says(&["force", "kraft"]),
-            Some(Quantity::Displacement) => says(&["displacement", "position", "distance", "weg"]),
-            Some(Quantity::Acceleration) => says(&["acceleration", "acc"]),
-            Some(Quantity::Voltage) => says(&["voltage", "spannung"]),
-            Some(Quantity::Pressure) => says(&["pressure"]),
-            _ => false,
-        }
+    let key = name.to_lowercase();
+    let says =
+        |quantity: Quantity| key.contains(quantity.name()) || (quantity == Quantity::Time && key == "t");
+    unit.contains('/') || unit.ends_with("Hz") || quantity.is_some_and(says)
 }
 
 #[cfg(test)]

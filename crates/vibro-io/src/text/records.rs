@@ -2,14 +2,13 @@
 
 use super::Text;
 use super::axis::{Printed, choose};
-use super::dialect::{Abscissa, Cell, Dialect};
+use super::dialect::Dialect;
 use super::header::Stated;
 use super::names::{Name, Part};
 use super::rows::Rows;
 use super::tail;
-use crate::assemble::{self, Spectral, to_si};
-use crate::axis::{from_values, short};
-use crate::{Options, number};
+use crate::assemble::{self, Spectral, from_values, short, to_si};
+use crate::{Format, Options, number};
 use num_complex::Complex64;
 use std::borrow::Cow;
 use vibro_record::units::Unit;
@@ -23,37 +22,33 @@ use vibro_record::{
 /// If the columns contradict each other or what was stated.
 pub fn build(
     text: &Text,
+    tail: &[u8],
     dialect: &Dialect,
     rows: Rows,
     options: &Options,
     findings: &mut Vec<Finding>,
 ) -> Result<Vec<Record>> {
-    let n = rows.counted.or(rows.columns.first().map(Values::len)).unwrap_or(0);
-    let made = Made { text, dialect, options, stated: dialect.stated(&rows.kept) };
-    let mut of_axis: Vec<Finding> = made
-        .stated
-        .impossible
-        .iter()
-        .map(|l| Finding::caution("header-line-impossible").name("line", l))
-        .collect();
+    let n = rows.columns.first().map_or(0, Values::len);
+    let stated = Stated::of(dialect.header.iter().chain(&rows.remarks).map(String::as_str));
+    let is_table = dialect.format == Format::Csv;
+    let made = Made { text, tail, dialect, is_table, options, stated };
+    let mut of_axis = Vec::new();
     let names = dialect.names.clone().unwrap_or_else(|| vec![Name::default(); dialect.columns]);
     let columns = rows.columns.into_iter().zip(names).enumerate();
     let mut table: Vec<Column> =
         columns.map(|(i, (values, name))| Column { at: i + 1, name, values }).collect();
     let printed = made.abscissa(&table).map(|at| table.remove(at));
     // A column that only counts says nothing, unless there is no other.
-    let counts = dialect.abscissa == Abscissa::Named && table.len() > 1 && table[0].counts();
+    let counts = is_table && table.len() > 1 && table[0].counts();
     let first = if counts { table.remove(0).reals().first().copied() } else { None };
     let printed = printed.map(|column| made.printed(&column, &table)).transpose()?;
     let has_axis = printed.is_some();
-    let size = (n, rows.footer.is_some());
-    let mut axis = choose(text.path(), printed, size, &made.stated, options, &mut of_axis)?;
+    let mut axis = choose(text.path(), printed, n, &made.stated, options, &mut of_axis)?;
     if let (AxisKind::Index, Some(first), Grid::Even { start, .. }) = (&axis.kind, first, &mut axis.grid) {
         *start = first;
     }
     if table.is_empty() {
-        let place = Place::file(text.path());
-        return Err(Error::input(place, "only an abscissa", "at least one column of values"));
+        return Err(made.error("only an abscissa", "at least one column of values"));
     }
     let lines = made.stated.lines.filter(|_| axis.kind == AxisKind::Frequency && !has_axis);
     let declared = lines.map(|lines| lines as usize + 1).filter(|all| n != *all && n + 1 != *all);
@@ -64,17 +59,17 @@ pub fn build(
         of_axis.push(Finding::caution("two-channels"));
     }
     let mut records = Vec::new();
-    for (i, (column, imaginary)) in made.pairs(table, &axis)?.into_iter().enumerate() {
-        let mut record = made.record((i, column, imaginary), &axis)?;
+    for (i, column) in made.joined(table, &axis)?.into_iter().enumerate() {
+        let mut record = made.record(i, column, &axis)?;
         record.meta_mut().declared_n = declared;
-        if dialect.abscissa == Abscissa::Rising {
+        if !is_table {
             for found in &of_axis {
                 record.meta_mut().found(found.clone());
             }
         }
         records.push(record);
     }
-    if dialect.abscissa == Abscissa::Named {
+    if is_table {
         // What holds for all columns of a table is said of the table.
         findings.append(&mut of_axis);
     }
@@ -113,8 +108,10 @@ impl Column {
 
 /// What all records share.
 struct Made<'a> {
-    text: &'a Text,
+    text: &'a Text<'a>,
+    tail: &'a [u8],
     dialect: &'a Dialect,
+    is_table: bool,
     options: &'a Options,
     stated: Stated,
 }
@@ -127,19 +124,16 @@ impl Made<'_> {
     /// Which column is the abscissa. A column of times need not be it, for it may hold intervals: by name it is, or if it rises.
     fn abscissa(&self, table: &[Column]) -> Option<usize> {
         let by_name = |column: &Column| {
-            column.name.bare().axis(column.at == 1).is_some() && column.reals().iter().all(|v| v.is_finite())
+            Name { unit: None, ..column.name.clone() }.axis(column.at == 1).is_some()
+                && column.reals().iter().all(|v| v.is_finite())
         };
-        match self.dialect.abscissa {
-            Abscissa::Named => {
-                self.dialect.named_abscissa().filter(|at| by_name(&table[*at]) || table[*at].rises())
-            }
-            Abscissa::Rising => {
-                let pair = self.options.complex && table.len() == 2 && self.dialect.cell == Cell::Real;
-                let first = &table[0];
-                let is = by_name(first) || (!pair && first.values.len() > 2 && first.rises());
-                (table.len() > 1 && is).then_some(0)
-            }
+        if self.is_table {
+            return self.dialect.named_abscissa().filter(|at| by_name(&table[*at]) || table[*at].rises());
         }
+        let pair = self.options.complex && table.len() == 2 && !self.dialect.complex;
+        let first = &table[0];
+        let is = by_name(first) || (!pair && first.values.len() > 2 && first.rises());
+        (table.len() > 1 && is).then_some(0)
     }
 
     /// Axis from its column, and what is to be said of it.
@@ -167,8 +161,8 @@ impl Made<'_> {
             findings.push(Finding::caution("axis-kind-unsaid"));
             (AxisKind::Other(label.trim_start_matches("column ").trim_matches('"').to_owned()), 1.0)
         };
-        let own = tail::resolution(&self.text.head, &self.text.tail, self.dialect, column.at - 1);
-        self.one_clock(&kind, column, factor, others, own)?;
+        let own = tail::resolution(self.text, self.tail, self.dialect, column.at - 1);
+        self.one_clock(&kind, column, (factor, own), others)?;
         let values = values.iter().map(|v| v * factor).collect();
         let (axis, finding) = from_values(kind, values, own * factor, &label);
         let findings =
@@ -183,120 +177,111 @@ impl Made<'_> {
         if options.rate.is_some() || (!spectrum && stated.rate.is_some()) {
             return Some(AxisKind::Time);
         }
-        let spectrum = spectrum || stated.spacing(n).is_some() || self.dialect.cell == Cell::Complex;
+        let spectrum = spectrum || stated.spacing(n).is_some() || self.dialect.complex;
         spectrum.then_some(AxisKind::Frequency)
     }
 
-    /// Refuses a second column of the axis that runs at another pace: which columns are whose cannot be told.
+    /// Refuses a second column of the axis that runs over another `span`: which columns are whose cannot be told.
     fn one_clock(
         &self,
         kind: &AxisKind,
         axis: &Column,
-        factor: f64,
+        (factor, resolution): (f64, f64),
         others: &[Column],
-        resolution: f64,
     ) -> Result<()> {
         let span = |column: &Column, factor: f64| {
             let values = column.reals();
             column.rises().then(|| factor * (values.last().unwrap_or(&0.0) - values.first().unwrap_or(&0.0)))
         };
-        let Some(own) = span(axis, factor) else { return Ok(()) };
         for other in others.iter().filter(|c| c.name.axis(true).as_ref() == Some(kind)) {
-            let Ok((theirs, _)) = other.name.to_axis(kind) else { continue };
-            if let Some(span) = span(other, theirs)
-                && (span - own).abs() > 4.0 * resolution * factor.max(theirs) + 1e-6 * own.abs()
+            if let Ok((theirs, _)) = other.name.to_axis(kind)
+                && let (Some(a), Some(b)) = (span(axis, factor), span(other, theirs))
+                && (b - a).abs() > 4.0 * resolution * factor.max(theirs) + 1e-6 * a.abs()
             {
-                let (a, b) = (axis.label(), other.label());
-                let found = format!("{a:?} and {b:?} run over {} and {}", short(own), short(span));
-                return Err(self
-                    .error(found, "one clock for all columns")
-                    .hint("write each of them with its channels to a file of its own"));
+                let (one, two) = (axis.label(), other.label());
+                let found = format!("{one:?} and {two:?} run over {} and {}", short(a), short(b));
+                let hint = "write each of them with its channels to a file of its own";
+                return Err(self.error(found, "one clock for all columns").hint(hint));
             }
         }
         Ok(())
     }
 
     /// Joins real and imaginary parts that belong together; over time there are none.
-    fn pairs(&self, table: Vec<Column>, axis: &Axis) -> Result<Vec<(Column, Option<Column>)>> {
-        let real = self.dialect.cell == Cell::Real;
-        let stated = self.options.complex && table.len() == 2;
-        let mut out: Vec<(Column, Option<Column>)> = Vec::new();
-        for mut column in table {
+    fn joined(&self, table: Vec<Column>, axis: &Axis) -> Result<Vec<Column>> {
+        let parts = !self.dialect.complex && axis.kind != AxisKind::Time;
+        let (n, stated) = (table.len(), self.options.complex);
+        let mut out: Vec<Column> = Vec::new();
+        for column in table {
             let partner = match column.name.part() {
-                _ if axis.kind == AxisKind::Time || !real => None,
-                Some((Part::Imaginary, whole)) => out.iter_mut().find(|(real, imaginary)| {
-                    imaginary.is_none() && real.name.part() == Some((Part::Real, whole.clone()))
-                }),
-                None if stated => out.first_mut(),
+                _ if !parts => None,
+                Some((Part::Imaginary, whole)) => {
+                    out.iter_mut().find(|real| real.name.part() == Some((Part::Real, whole.clone())))
+                }
+                None if stated && n == 2 => out.first_mut(),
                 _ => None,
             };
-            let Some((real, imaginary)) = partner else {
-                out.push((column, None));
+            let Some(real) = partner else {
+                out.push(column);
                 continue;
             };
             // A unit that stands in one header holds for both.
-            let unit = column.name.unit.take();
-            if real.name.unit.is_some() && unit.is_some() && real.name.unit != unit {
+            if real.name.unit.is_some() && column.name.unit.is_some() && real.name.unit != column.name.unit {
                 let found = format!("{:?} and {:?} have different units", real.label(), column.label());
                 return Err(self.error(found, "one unit for real and imaginary part"));
             }
-            real.name.unit = real.name.unit.take().or(unit);
-            *imaginary = Some(column);
+            let both = real
+                .reals()
+                .iter()
+                .zip(column.reals().iter())
+                .map(|(re, im)| Complex64::new(*re, *im))
+                .collect();
+            real.values = Values::Complex(both);
+            real.name.unit = real.name.unit.take().or(column.name.unit);
+            if let Some((_, whole)) = real.name.part() {
+                real.name.name = whole;
+            }
         }
-        if self.options.complex && real && !out.iter().any(|(_, imaginary)| imaginary.is_some()) {
-            let found = if axis.kind == AxisKind::Time {
-                "columns over time".to_owned()
-            } else {
-                format!("{} column(s) of values", out.len())
-            };
+        if stated && out.iter().all(|column| matches!(column.values, Values::Real(_))) {
+            let over = if axis.kind == AxisKind::Time { " over time" } else { " of values" };
+            let found = format!("{} column(s){over}, where complex values were stated", out.len());
             return Err(self
-                .error(
-                    format!("{found}, where complex values were stated"),
-                    "two columns over frequency, real and imaginary part",
-                )
+                .error(found, "two columns over frequency, real and imaginary part")
                 .hint("leave out that values are complex, or state the base band")
                 .setting("complex")
                 .setting("base_band"));
         }
-        for (real, imaginary) in &mut out {
-            if let (Some((_, whole)), Some(_)) = (real.name.part(), imaginary) {
-                real.name.name = whole;
-            }
-        }
         Ok(out)
     }
 
-    /// The record of one column, or of real and imaginary part.
-    fn record(&self, (i, column, imaginary): (usize, Column, Option<Column>), axis: &Axis) -> Result<Record> {
-        let Column { at, name: Name { name, unit }, values } = column;
+    /// The record of one column.
+    fn record(&self, i: usize, column: Column, axis: &Axis) -> Result<Record> {
+        let Column { at, name: Name { name, unit }, mut values } = column;
         let title = self.stated.name.as_deref().unwrap_or_default();
-        let name = match (self.dialect.columns, self.dialect.abscissa) {
-            (1, Abscissa::Rising) if !title.is_empty() => title.to_owned(),
-            (1, Abscissa::Rising) => name,
+        let name = match (self.dialect.columns, self.is_table) {
+            (1, false) if !title.is_empty() => title.to_owned(),
+            (1, false) => name,
             _ if !name.is_empty() => name,
-            (_, Abscissa::Named) => format!("column {at}"),
+            (_, true) => format!("column {at}"),
             _ if title.is_empty() => format!("column {}", i + 1),
             _ if i == 0 => title.to_owned(),
             _ => format!("{title} {}", i + 1),
         };
         let mut meta = Meta::new(name, Unit::opaque(""));
         meta.notes.clone_from(&self.stated.notes);
-        meta.step("read", &[("file", &self.text.source.name()), ("format", &self.dialect.format.name())]);
-        let step = meta.history.last_mut();
-        let encoding = self.text.encoding.map(|name| ("encoding", name.to_owned()));
-        let comma = (self.dialect.decimal == b',').then(|| ("decimal mark", "comma".to_owned()));
-        let place = (self.dialect.columns > 1).then(|| ("column", at.to_string()));
-        let more = [place, encoding, comma].into_iter().flatten().map(|(key, value)| (key.to_owned(), value));
-        if let Some(step) = step {
-            step.arguments.extend(more);
+        let (file, format) = (self.text.source.name(), self.dialect.format.name());
+        let mut how: Vec<(&str, &dyn std::fmt::Display)> = vec![("file", &file), ("format", &format)];
+        if self.dialect.columns > 1 {
+            how.push(("column", &at));
         }
+        if let Some(name) = &self.text.encoding {
+            how.push(("encoding", name));
+        }
+        if self.dialect.decimal == b',' {
+            how.push(("decimal mark", &"comma"));
+        }
+        meta.step("read", &how);
         let factor = self.options.adopt(&mut meta, unit.as_deref().or(self.stated.unit.as_deref()));
-        let mut values = match (imaginary.map(|c| c.values), values) {
-            (Some(Values::Real(imaginary)), Values::Real(real)) => Values::Complex(
-                real.iter().zip(&imaginary).map(|(re, im)| Complex64::new(*re, *im)).collect(),
-            ),
-            (_, values) => values,
-        };
         to_si(&mut values, factor).map_err(|e| e.in_file(self.text.path()))?;
         if axis.kind == AxisKind::Time && matches!(values, Values::Complex(_)) {
             return Err(self
@@ -311,43 +296,29 @@ impl Made<'_> {
     /// What remarks and the unit of a column say of its spectrum.
     fn spectral(&self, name: &str, unit: Option<&str>) -> Spectral {
         let density = unit.is_some_and(is_density).then_some(Scaling::Psd);
-        let window = match self.said("window", name) {
-            Some(window) => {
-                Window::from_name(&window).or(self.stated.window.filter(|_| !self.several("window")))
-            }
-            // A remark about another column says nothing of this one.
-            None => self.stated.window.filter(|_| !self.several("window")),
-        };
+        let own = self.said("window", name).and_then(|window| Window::from_name(&window));
         Spectral {
-            scaling: self.said("scaling", name).and_then(|s| scaling(&s)).or(density),
-            window,
+            scaling: self.said("scaling", name).and_then(|s| assemble::scaling(&s)).or(density),
+            // A remark about another column says nothing of this one.
+            window: own
+                .or(self.stated.window.filter(|_| !self.remarks("window").any(|v| v.contains(" of ")))),
             enbw: self.said("enbw", name).and_then(|e| number::parse(e.as_bytes())),
             frf: self.said("kind", name).is_some_and(|k| k == "frf"),
+            doubt: None,
         }
     }
 
-    fn remarks(&self, key: &str) -> impl Iterator<Item = &(String, String)> {
-        self.stated.notes.iter().filter(move |(k, _)| k.eq_ignore_ascii_case(key))
-    }
-
-    /// Whether a remark holds for one column only.
-    fn several(&self, key: &str) -> bool {
-        self.remarks(key).any(|(_, v)| v.contains(" of "))
+    fn remarks(&self, key: &str) -> impl Iterator<Item = &str> {
+        self.stated.notes.iter().filter(move |(k, _)| k.eq_ignore_ascii_case(key)).map(|(_, v)| v.as_str())
     }
 
     /// A remark about one column, `key: value of name`, or about all, `key: value`.
     fn said(&self, key: &str, name: &str) -> Option<String> {
-        let own = self
-            .remarks(key)
-            .find_map(|(_, v)| v.split_once(" of ").filter(|(_, n)| *n == name).map(|(v, _)| v));
-        let common = || self.remarks(key).find(|(_, v)| !v.contains(" of ")).map(|(_, v)| v.as_str());
+        let about = |v: &'_ str| v.split_once(" of ").map(|(v, n)| (v.to_owned(), n == name));
+        let own = self.remarks(key).find_map(|v| about(v).filter(|(_, ours)| *ours).map(|(v, _)| v));
+        let common = || self.remarks(key).find(|v| !v.contains(" of ")).map(str::to_owned);
         own.or_else(common).map(|v| v.trim().to_lowercase())
     }
-}
-
-fn scaling(text: &str) -> Option<Scaling> {
-    use Scaling::{Coherence, Energy, Peak, Power, Psd, Rms, Unknown};
-    [Peak, Rms, Power, Psd, Energy, Coherence, Unknown].into_iter().find(|s| s.name() == text)
 }
 
 /// `g²/Hz`, `(m/s^2)^2/Hz`: a square over hertz is a power spectral density.

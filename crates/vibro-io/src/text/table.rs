@@ -10,48 +10,47 @@
 //! A time, a frequency or a counter is the abscissa by its name. Columns `X_re` and `X_im` over frequency are one complex
 //! record.
 
-use super::dialect::{Abscissa, Cell, Dialect, Head, Separator};
+use super::Text;
+use super::dialect::{Dialect, Separator};
 use super::lines::{Fields, Line, Lines, fields};
 use super::names::{Name, is_unit_row};
 use crate::{Format, Options, number};
-use vibro_record::Result;
 
 /// From the one that stands in numbers least to the one that does most.
 const SEPARATORS: [u8; 3] = *b"\t;,";
 
 const REMARKS: &[&str] = &["#", "%"];
 
-/// Finds the first row of numbers with names right above it.
+/// Finds the first row of numbers with names right above it; `None` where there is none.
 ///
 /// Where the file calls itself CSV a single column will do, and a header that does not fit its rows is still a header, so that
 /// reading can name the row at fault.
-#[allow(clippy::unnecessary_wraps)] // as all dialects
-pub fn detect(head: &Head, options: &Options) -> Result<Option<Dialect>> {
+pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
     let mut above: Vec<Line> = Vec::new();
     let mut unfit = None;
-    for line in Lines::new(&head.text, 0, 1, REMARKS).filter(|l| !l.is_blank()) {
+    for line in Lines::new(&text.head, 0, 1, REMARKS).filter(|l| !l.is_blank()) {
         if line.remark.is_none() {
             let rows = SEPARATORS.map(|mark| (Separator::Char(mark), row(line.text, mark, options)));
-            for (separator, count) in rows {
-                let Some(count) = count.filter(|n| *n > 1) else { continue };
-                match fit(&above, line, separator, count) {
-                    Some((found, true)) => return Ok(Some(decided(found, head, options))),
-                    Some((found, false)) => unfit = unfit.or(Some(found)),
-                    None => {}
+            let of =
+                |n: usize| rows.iter().filter(move |(_, count)| count.is_some_and(|c| (c > 1) == (n > 1)));
+            for (separator, count) in of(2) {
+                match fit(&above, line, *separator, count.unwrap_or(0)) {
+                    Some((found, true)) => return Some(decided(found, text, options)),
+                    found => unfit = unfit.or(found.map(|(found, _)| found)),
                 }
             }
             // One column last: `1,5` under `a,b` is no decimal comma.
-            if head.called_csv
+            if text.called_csv()
                 && unfit.is_none()
-                && let Some((separator, _)) = rows.iter().find(|(_, count)| *count == Some(1))
+                && let Some((separator, _)) = of(1).next()
                 && let Some((found, true)) = fit(&above, line, *separator, 1)
             {
-                return Ok(Some(decided(found, head, options)));
+                return Some(decided(found, text, options));
             }
         }
         above.push(line);
     }
-    Ok(unfit.filter(|_| head.called_csv).map(|found| decided(found, head, options)))
+    unfit.filter(|_| text.called_csv()).map(|found| decided(found, text, options))
 }
 
 /// Number of fields, where all are numbers or missing and at least one is a number.
@@ -73,18 +72,12 @@ fn row(text: &str, mark: u8, options: &Options) -> Option<usize> {
 }
 
 /// The dialect with the decimal mark: as stated, else the first comma or point in the rows, where commas do not separate.
-fn decided(mut found: Dialect, head: &Head, options: &Options) -> Dialect {
-    let marks = found.separator != Separator::Char(b',');
-    let comma = options.decimal_comma.or_else(|| first_mark(&found, &head.text));
-    found.decimal_open = comma.is_none() && marks;
-    found.decimal = if comma == Some(true) && marks { b',' } else { b'.' };
-    found
-}
-
-/// Whether the first comma or point in the rows is a comma; `None` where there is neither.
-pub(crate) fn first_mark(dialect: &Dialect, text: &str) -> Option<bool> {
-    let mut rows = dialect.rows(text).filter(|line| line.remark.is_none());
-    rows.find_map(|line| line.text.bytes().find(|b| matches!(b, b',' | b'.'))).map(|mark| mark == b',')
+fn decided(found: Dialect, text: &Text, options: &Options) -> Dialect {
+    let mut rows = found.rows(&text.head).filter(|line| line.remark.is_none());
+    let mut first = || rows.find_map(|line| line.text.bytes().find(|b| matches!(b, b',' | b'.')));
+    let comma = options.decimal_comma.or_else(|| first().map(|mark| mark == b','));
+    let comma = comma == Some(true) && found.separator != Separator::Char(b',');
+    Dialect { decimal: if comma { b',' } else { b'.' }, ..found }
 }
 
 /// The dialect with the names that stand in the last lines above `first`, and whether there are as many as columns.
@@ -101,25 +94,26 @@ fn fit(above: &[Line], first: Line, separator: Separator, count: usize) -> Optio
     let fits = count == columns || (count == columns + 1 && blank_end);
     let upper = spoken.next().and_then(|l| Some((l, headings(l, separator, &values)?)));
     let (line, names) = match upper {
-        Some((line, upper)) if upper.len() == columns && named(&upper) && units(&names) => {
+        Some((line, upper))
+            if upper.len() == columns
+                && named(&upper)
+                && is_unit_row(names.iter().map(|(_, f)| f.as_ref())) =>
+        {
             let pairs = upper.iter().zip(&names);
             (line, pairs.map(|((_, n), (_, u))| Name::with_unit_row(n, u)).collect::<Vec<Name>>())
         }
         _ if named(&names) => (last, names.iter().map(|(_, n)| Name::parse(n)).collect()),
         _ => return None,
     };
-    let preamble = above.iter().filter(|l| *l != last && *l != line).map(|l| (l.number, said(l, separator)));
+    let preamble = above.iter().filter(|l| *l != last && *l != line).map(|l| said(l, separator));
     let dialect = Dialect {
         format: Format::Csv,
         separator,
         decimal: b'.',
-        decimal_open: false,
-        cell: Cell::Real,
+        complex: false,
         columns,
         names: Some(names),
-        abscissa: Abscissa::Named,
         remarks: REMARKS,
-        blank_rows: false,
         header: preamble.collect(),
         columns_from: line.number,
         first_line: first.number,
@@ -150,10 +144,6 @@ fn named(fields: &Fields) -> bool {
     !statement && fields.iter().any(|(_, f)| is_name(f))
 }
 
-fn units(fields: &Fields) -> bool {
-    is_unit_row(fields.iter().map(|(_, f)| f.as_ref()))
-}
-
 /// A preamble line as `key: value`: spreadsheets put key, value and unit into cells.
 fn said(line: &Line, separator: Separator) -> String {
     if let Some(text) = line.remark {
@@ -174,8 +164,8 @@ mod tests {
 
     fn found(text: &str, called_csv: bool) -> Option<Dialect> {
         let name = if called_csv { "x.csv" } else { "x" };
-        let head = Head::of(&crate::Source::memory(name, text.as_bytes()).ok()?).unwrap();
-        detect(&head, &Options::default()).unwrap()
+        let source = crate::Source::memory(name, text.as_bytes()).ok()?;
+        detect(&Text::of(&source, None), &Options::default())
     }
 
     fn layout(text: &str) -> Option<(char, Vec<String>, u64, u64)> {
@@ -218,7 +208,7 @@ mod tests {
         let text = "# by hand\nSample rate;1000;Hz\nOperator: A;B\n12;13\nt;a\n% more\n0;1\n";
         let d = found(text, false).unwrap();
         assert_eq!((d.columns_from, d.first_line), (5, 7));
-        let said: Vec<&str> = d.header.iter().map(|(_, s)| s.as_str()).collect();
+        let said: Vec<&str> = d.header.iter().map(String::as_str).collect();
         assert_eq!(said, ["by hand", "Sample rate: 1000 Hz", "Operator: A;B", "12: 13", "more"]);
     }
 

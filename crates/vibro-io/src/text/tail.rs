@@ -1,12 +1,15 @@
 //! The end of a text of numbers: whether it is cut off, and how precisely its abscissa is printed.
 
-use super::dialect::{Dialect, Head, Separator};
+use super::Text;
+use super::dialect::{Dialect, Separator};
+use super::lines::{Line, Lines};
 use crate::{Source, number};
-use std::io::{Read, SeekFrom};
+use std::borrow::Cow;
+use std::io::{Read, Seek, SeekFrom};
 use vibro_record::{Error, Finding, Result};
 
 /// Bytes at the end that are looked at.
-const LOOK: usize = 4096;
+const LOOK: u64 = 4096;
 /// Rows above the last one that must agree before it can be called short.
 const ROWS: usize = 3;
 
@@ -14,24 +17,18 @@ const ROWS: usize = 3;
 pub(crate) const CUT_OFF: &str =
     "the file ends within this row, so the export was cut off: export it again, or remove the row";
 
-/// The last bytes of a source, one more than is looked at: it tells whether they begin in the middle of a row.
-pub fn of(source: &Source) -> Result<Vec<u8>> {
-    let failed = |e| Error::io("read", source.path(), e);
-    let mut tail = Vec::new();
-    let mut input = source.open()?;
-    let look = LOOK as u64 + 1;
-    input.seek(SeekFrom::Start(source.len().saturating_sub(look))).map_err(failed)?;
-    input.take(look).read_to_end(&mut tail).map_err(failed)?;
-    Ok(tail)
-}
-
-/// The rows that are whole at the end of a text.
-fn whole(text: &[u8]) -> &[u8] {
-    match text.len().checked_sub(LOOK) {
-        None | Some(0) => text,
-        // Half a row has fewer digits, too.
-        Some(from) => text[from..].iter().position(|b| *b == b'\n').map_or(&[], |end| &text[from + end..]),
+/// The last rows of a source, whole: half a row has fewer digits, too.
+pub fn of(source: &Source) -> Result<Cow<'_, [u8]>> {
+    let from = source.len().saturating_sub(LOOK);
+    let rows = |bytes: &[u8]| bytes.iter().position(|b| *b == b'\n').filter(|_| from > 0).unwrap_or(0);
+    if let Some(bytes) = source.in_memory() {
+        let tail = &bytes[from as usize..];
+        return Ok(tail[rows(tail)..].into());
     }
+    let (mut tail, mut input) = (Vec::new(), source.open()?);
+    let read = input.seek(SeekFrom::Start(from)).and_then(|_| input.read_to_end(&mut tail));
+    read.map_err(|e| Error::io("read", source.path(), e))?;
+    Ok(tail.split_off(rows(&tail)).into())
 }
 
 /// A doubt where `text` lacks its line end and its last number has fewer digits than the same column has in all rows above
@@ -41,7 +38,7 @@ pub(crate) fn cut_off(text: &[u8], separator: Separator, decimal: u8) -> Option<
         return None;
     }
     let mark = if let Separator::Char(mark) = separator { mark } else { b' ' };
-    let mut rows = whole(text)
+    let mut rows = text
         .rsplit(|b| *b == b'\n')
         .map(<[u8]>::trim_ascii)
         .filter(|row| !row.is_empty())
@@ -68,21 +65,18 @@ fn digits(cell: &[u8], decimal: u8) -> Option<(usize, usize)> {
 
 /// Half a unit in the last digit that a column is printed with: by its rows in the head and at the end of the text, since the
 /// largest of a rising column have the most digits.
-pub fn resolution(head: &Head, tail: &[u8], dialect: &Dialect, column: usize) -> f64 {
+pub fn resolution(text: &Text, tail: &[u8], dialect: &Dialect, column: usize) -> f64 {
     let mut digits = Digits::default();
-    let mut take = |line: &super::lines::Line| {
-        let fields = dialect.cut(line).unwrap_or_default();
-        let value = fields.get(column).map(|(_, f)| f.as_bytes());
-        let parsed = value.and_then(|f| Some((f, number::parse_with(f, dialect.decimal)?)));
-        if let Some((field, value)) = parsed {
+    let mut take = |line: Line| {
+        let fields = dialect.cut(&line).unwrap_or_default();
+        let field = fields.get(column).filter(|_| line.remark.is_none()).map(|(_, f)| f.as_bytes());
+        if let Some((field, value)) = field.and_then(|f| Some((f, number::parse_with(f, dialect.decimal)?))) {
             digits.take(field, dialect.decimal, value);
         }
     };
-    dialect.rows(&head.text).filter(|l| l.remark.is_none()).for_each(|l| take(&l));
-    if head.text.len() > tail.len() {
-        let text = String::from_utf8_lossy(whole(tail));
-        let lines = super::lines::Lines::new(&text, 0, 1, dialect.remarks);
-        lines.filter(|l| l.remark.is_none()).for_each(|l| take(&l));
+    dialect.rows(&text.head).for_each(&mut take);
+    if text.head.len() > tail.len() {
+        Lines::new(&String::from_utf8_lossy(tail), 0, 1, dialect.remarks).for_each(take);
     }
     digits.resolution()
 }
@@ -145,7 +139,7 @@ mod tests {
     #[test]
     fn a_long_file_is_judged_wherever_its_tail_begins() {
         for end in ["\n", "\r\n"] {
-            let rows = format!("1.234567E-03{end}").repeat(2 * LOOK / 12);
+            let rows = format!("1.234567E-03{end}").repeat(2 * LOOK as usize / 12);
             // A first line of every length moves the start of the tail through all bytes of a row.
             for phase in 0..=15 {
                 let text = format!("{}{end}{rows}1.234", "x".repeat(phase));

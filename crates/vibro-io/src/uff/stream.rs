@@ -1,180 +1,83 @@
-//! Lines and binary blocks of one file, read once through a buffer of fixed size.
+//! One file, taken line by line and in binary blocks, and the lines that open and close its data sets.
 
-use super::delimiter::is_delimiter;
-use crate::Source;
-use crate::source::ReadSeek;
-use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
-use vibro_record::{Error, Place, Result};
-
-/// Bytes read at a time: few enough to stay in the cache, and that the allocator hands out the same memory for each file.
-const BLOCK: usize = 64 * 1024;
-
-/// Bytes of one line that are kept. Standard lines have 80; binary data that is searched for the next data set may have
-/// "lines" of any length.
-const LONGEST: usize = 1 << 20;
+use vibro_record::Place;
 
 /// Byte order mark of UTF-8, which some editors put first.
 const MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// One file from its first to its last byte, in text lines and binary blocks.
+/// One file from its first to its last byte.
 pub struct Stream<'a> {
-    input: BufReader<Box<dyn ReadSeek>>,
     path: &'a Path,
-    len: u64,
-    position: u64,
+    bytes: &'a [u8],
+    at: usize,
+    /// Where the line taken last begins.
+    start: usize,
     /// Lines taken; `None` behind a binary block, where counting lines means nothing.
     lines: Option<u64>,
-    text: Vec<u8>,
-    line_start: u64,
-    terminated: bool,
-    too_long: bool,
-    held: bool,
-}
-
-/// How a data set ends.
-pub struct End {
-    /// Lines that are not blank before the delimiter.
-    pub lines: u64,
-    /// Whether there is a delimiter.
-    pub closed: bool,
 }
 
 impl<'a> Stream<'a> {
-    /// Opens a source at its first byte.
-    pub fn open(source: &'a Source) -> Result<Stream<'a>> {
-        let room = BLOCK.min(source.len() as usize + 1);
-        let mut stream = Stream {
-            input: BufReader::with_capacity(room, source.open()?),
-            path: source.path(),
-            len: source.len(),
-            position: 0,
-            lines: Some(0),
-            text: Vec::with_capacity(128),
-            line_start: 0,
-            terminated: false,
-            too_long: false,
-            held: false,
-        };
-        if stream.buffer()?.starts_with(MARK) {
-            stream.consume_lines(MARK.len(), 0);
-        }
-        Ok(stream)
+    /// Stands before the first byte.
+    pub fn new(path: &'a Path, bytes: &'a [u8]) -> Stream<'a> {
+        let at = if bytes.starts_with(MARK) { MARK.len() } else { 0 };
+        Stream { path, bytes, at, start: at, lines: Some(0) }
     }
 
-    /// Takes the next line into [`Stream::text`]; false at the end of the file.
-    pub(crate) fn next_line(&mut self) -> Result<bool> {
-        if std::mem::take(&mut self.held) {
-            return Ok(true);
+    /// Takes the next line, without its line feed; `None` at the end of the file.
+    pub fn next_line(&mut self) -> Option<&'a [u8]> {
+        let rest = self.rest();
+        let end = rest.iter().position(|b| *b == b'\n').unwrap_or(rest.len());
+        if rest.is_empty() {
+            return None;
         }
-        self.text.clear();
-        self.line_start = self.position;
-        self.terminated = false;
-        self.too_long = false;
-        while !self.terminated {
-            let buffer = self.input.fill_buf().map_err(|e| Error::io("read", self.path, e))?;
-            if buffer.is_empty() {
-                break;
-            }
-            let end = buffer.iter().position(|b| *b == b'\n');
-            let content = &buffer[..end.unwrap_or(buffer.len())];
-            let room = LONGEST.saturating_sub(self.text.len());
-            self.text.extend_from_slice(&content[..content.len().min(room)]);
-            self.too_long |= content.len() > room;
-            let used = content.len() + usize::from(end.is_some());
-            self.terminated = end.is_some();
-            self.input.consume(used);
-            self.position += used as u64;
-        }
-        if self.position == self.line_start {
-            return Ok(false);
-        }
-        if let Some(lines) = &mut self.lines {
-            *lines += 1;
-        }
-        Ok(true)
+        self.take_line((end + 1).min(rest.len()));
+        Some(&rest[..end])
     }
 
-    /// Gives the same line again at the next call of [`Stream::next_line`].
-    pub fn hold(&mut self) {
-        self.held = true;
+    /// Takes the next line of a data set; `None` at the end of the file and before a delimiter, which stays.
+    pub fn line_within(&mut self) -> Option<&'a [u8]> {
+        let before = Stream { ..*self };
+        let line = self.next_line()?;
+        if is_delimiter(line) {
+            *self = before;
+            return None;
+        }
+        Some(line)
     }
 
-    /// The line taken last, without its line feed.
-    pub fn text(&self) -> &[u8] {
-        &self.text
+    /// Takes `bytes` that are one line with its end.
+    pub fn take_line(&mut self, bytes: usize) {
+        self.start = self.at;
+        self.at += bytes;
+        self.lines = self.lines.map(|lines| lines + 1);
+    }
+
+    /// Takes a binary block.
+    pub fn take_block(&mut self, bytes: usize) -> &'a [u8] {
+        let block = &self.rest()[..bytes];
+        self.at += bytes;
+        self.lines = None;
+        block
+    }
+
+    /// Passes over everything up to and with the next delimiter: lines that are not blank before it, and whether there is one.
+    pub fn pass_set(&mut self) -> (usize, bool) {
+        let mut lines = 0;
+        while let Some(line) = self.line_within() {
+            lines += usize::from(!line.trim_ascii().is_empty());
+        }
+        (lines, self.next_line().is_some())
+    }
+
+    /// What is not taken yet.
+    pub fn rest(&self) -> &'a [u8] {
+        &self.bytes[self.at..]
     }
 
     /// Whether the line taken last ended with a line feed, and not with the file.
-    pub(crate) fn terminated(&self) -> bool {
-        self.terminated
-    }
-
-    /// Whether the line taken last is longer than what is kept of it.
-    pub(crate) fn too_long(&self) -> bool {
-        self.too_long
-    }
-
-    /// Passes over everything up to and with the next delimiter.
-    pub(crate) fn pass_set(&mut self) -> Result<End> {
-        let mut lines = 0;
-        while self.next_line()? {
-            if is_delimiter(&self.text) {
-                return Ok(End { lines, closed: true });
-            }
-            lines += u64::from(!self.text.trim_ascii().is_empty());
-        }
-        Ok(End { lines, closed: false })
-    }
-
-    /// Bytes that are buffered; none at the end of the file.
-    pub fn buffer(&mut self) -> Result<&[u8]> {
-        self.input.fill_buf().map_err(|e| Error::io("read", self.path, e))
-    }
-
-    /// Takes bytes of the buffer that hold whole lines.
-    pub(crate) fn consume_lines(&mut self, bytes: usize, lines: u64) {
-        self.input.consume(bytes);
-        self.position += bytes as u64;
-        if let Some(count) = &mut self.lines {
-            *count += lines;
-        }
-    }
-
-    /// Takes binary bytes of the buffer.
-    pub(crate) fn consume_binary(&mut self, bytes: usize) {
-        self.input.consume(bytes);
-        self.position += bytes as u64;
-        self.lines = None;
-    }
-
-    /// Fills `target` with binary bytes; false where the file ends before.
-    pub(crate) fn take_binary(&mut self, target: &mut [u8]) -> Result<bool> {
-        if self.remaining() < target.len() as u64 {
-            return Ok(false);
-        }
-        self.lines = None;
-        self.input.read_exact(target).map_err(|e| Error::io("read", self.path, e))?;
-        self.position += target.len() as u64;
-        Ok(true)
-    }
-
-    /// Up to 128 bytes that stand `ahead` of the position, which stays where it is.
-    pub fn peek(&mut self, ahead: u64) -> Result<Vec<u8>> {
-        let Ok(offset) = i64::try_from(ahead) else { return Ok(Vec::new()) };
-        let mut bytes = Vec::new();
-        if ahead < self.remaining() {
-            let failed = |e| Error::io("read", self.path, e);
-            self.input.seek_relative(offset).map_err(failed)?;
-            (&mut self.input).take(128).read_to_end(&mut bytes).map_err(failed)?;
-            self.input.seek_relative(-offset - bytes.len() as i64).map_err(failed)?;
-        }
-        Ok(bytes)
-    }
-
-    /// Bytes not taken yet. A file that shrank while it was read has none left.
-    pub fn remaining(&self) -> u64 {
-        self.len.saturating_sub(self.position)
+    pub fn terminated(&self) -> bool {
+        self.bytes[..self.at].ends_with(b"\n")
     }
 
     /// Number of the line taken last, from 1; `None` behind a binary block.
@@ -186,17 +89,83 @@ impl<'a> Stream<'a> {
     pub fn place(&self) -> Place {
         match self.lines {
             Some(line) => Place::line(self.path, line),
-            None => Place::byte(self.path, self.line_start),
+            None => Place::byte(self.path, self.start as u64),
         }
     }
 
-    /// Bytes taken.
-    pub fn position(&self) -> u64 {
-        self.position
+    /// Place of the byte that stands `back` bytes before those not taken.
+    pub fn byte_place(&self, back: usize) -> Place {
+        Place::byte(self.path, (self.at - back) as u64)
+    }
+}
+
+/// Whether a line opens or closes a data set: `-1` within the first six columns, and nothing else.
+///
+/// A `-1` further to the right is a value: some writers print whole numbers without a decimal point.
+pub fn is_delimiter(line: &[u8]) -> bool {
+    let blanks = line.iter().take_while(|b| **b == b' ').count();
+    blanks <= 4 && line.trim_ascii() == b"-1"
+}
+
+/// The number on the line behind an opening `-1`, in its first six columns, and whether a `b` for binary values follows it;
+/// `None` where the line is something else.
+pub fn set_number(line: &[u8]) -> Option<(u32, bool)> {
+    let start = line.iter().position(|b| *b != b' ')?;
+    let end = start + line[start..].iter().take_while(|b| b.is_ascii_digit()).count();
+    let (binary, rest) = match &line[end..] {
+        [b'b' | b'B', rest @ ..] => (true, rest),
+        rest => (false, rest),
+    };
+    let ends = rest.first().is_none_or(u8::is_ascii_whitespace) && (binary || rest.trim_ascii().is_empty());
+    let number = std::str::from_utf8(&line[start..end]).ok()?.parse().ok()?;
+    (ends && end <= 6).then_some((number, binary))
+}
+
+/// Whether `bytes`, which stand behind binary values, begin with a closing `-1`, alone or behind one line end.
+///
+/// It must stand in its very columns: values are searched for it, and looser forms would be found in the wrong place.
+pub fn closes(bytes: &[u8]) -> bool {
+    let bytes = bytes.strip_prefix(b"\r").unwrap_or(bytes);
+    let bytes = bytes.strip_prefix(b"\n").unwrap_or(bytes);
+    let end = bytes.iter().position(|b| *b == b'\n').unwrap_or(bytes.len());
+    bytes[..end].strip_prefix(b"    -1").is_some_and(|rest| rest.trim_ascii().is_empty())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_line_of_its_own_ends_a_set() {
+        for line in ["    -1", "    -1   \r", "-1", "   -1 \t"] {
+            assert!(is_delimiter(line.as_bytes()), "{line:?}");
+        }
+        for line in ["", "Test run -1", "    -1    0", "           -1", "    -1.0", "   -10", "    1"] {
+            assert!(!is_delimiter(line.as_bytes()), "{line:?}");
+        }
     }
 
-    /// A byte of this file, for complaints.
-    pub(crate) fn byte_place(&self, byte: u64) -> Place {
-        Place::byte(self.path, byte)
+    #[test]
+    fn set_numbers() {
+        let number = |text: &str| set_number(text.as_bytes());
+        assert_eq!(number("    58"), Some((58, false)));
+        assert_eq!(number("    58   \r"), Some((58, false)));
+        assert_eq!(number("  2411"), Some((2411, false)));
+        assert_eq!(number("58"), Some((58, false)));
+        assert_eq!(number("    58b     1     2          11        6408"), Some((58, true)));
+        for text in ["", "    -1", "        58", "    58  7", "    58bx", "  1.5", "    b", "1234567"] {
+            assert_eq!(number(text), None, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn a_closing_line_may_stand_behind_a_line_end_that_should_not_be_there() {
+        assert!(closes(b"    -1\r\n    -1"));
+        assert!(closes(b"\r\n    -1"));
+        assert!(closes(b"\n    -1  \n"));
+        assert!(!closes(b"\n\n    -1"));
+        assert!(!closes(b"\x00    -1"));
+        assert!(!closes(b"   -1\n"));
+        assert!(!closes(b""));
     }
 }

@@ -1,93 +1,98 @@
 //! Code numbers of data set 58: function types and specific data types.
 
-use vibro_record::units::{Dimension, Quantity};
+use vibro_record::units::{Dimension, Quantity, Unit};
+use vibro_record::{AxisKind, Scaling};
 
-/// What a function type says of the record.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Domain {
-    /// Stands over time.
-    Time,
-    /// Stands over frequency.
-    Frequency,
-    /// Only the abscissa can tell.
-    Either,
+/// What a record of a function type is, where it stands over frequency.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    /// Response over force; nothing to say of one that is real.
+    Ratio,
+    /// A spectrum of this scaling.
+    Scaled(Scaling),
+    /// A spectrum of squares, peak or RMS.
+    Squared,
+    /// A spectrum of amplitudes, peak or RMS.
+    Amplitude,
+    /// None of these.
+    Other,
 }
 
-/// Function types of record 6 in their order, from 0.
-const FUNCTIONS: &[(&str, Domain)] = &[
-    ("general function", Domain::Either),
-    ("time response", Domain::Time),
-    ("auto spectrum", Domain::Frequency),
-    ("cross spectrum", Domain::Frequency),
-    ("frequency response function", Domain::Frequency),
-    ("transmissibility", Domain::Frequency),
-    ("coherence", Domain::Frequency),
-    ("auto correlation", Domain::Time),
-    ("cross correlation", Domain::Time),
-    ("power spectral density", Domain::Frequency),
-    ("energy spectral density", Domain::Frequency),
-    ("probability density function", Domain::Either),
-    ("spectrum", Domain::Frequency),
-    ("cumulative frequency distribution", Domain::Either),
-    ("peaks and valleys", Domain::Either),
-    ("stress cycles", Domain::Either),
-    ("strain cycles", Domain::Either),
-    ("orbit", Domain::Either),
-    ("mode indicator function", Domain::Frequency),
-    ("force pattern", Domain::Frequency),
-    ("partial power", Domain::Frequency),
-    ("partial coherence", Domain::Frequency),
-    ("eigenvalue", Domain::Either),
-    ("eigenvector", Domain::Either),
-    ("shock response spectrum", Domain::Frequency),
-    ("finite impulse response filter", Domain::Time),
-    ("multiple coherence", Domain::Frequency),
-    ("order function", Domain::Either),
-    ("phase compensation", Domain::Either),
+use AxisKind::{Frequency, Time};
+use Kind::{Amplitude, Other, Ratio, Scaled, Squared};
+
+/// Function types of record 6 in their order, from 0: name, abscissa where only one makes sense, kind over frequency.
+const FUNCTIONS: &[(&str, Option<AxisKind>, Kind)] = &[
+    ("general function", None, Other),
+    ("time response", Some(Time), Other),
+    ("auto spectrum", Some(Frequency), Squared),
+    ("cross spectrum", Some(Frequency), Squared),
+    ("frequency response function", Some(Frequency), Ratio),
+    ("transmissibility", Some(Frequency), Ratio),
+    ("coherence", Some(Frequency), Scaled(Scaling::Coherence)),
+    ("auto correlation", Some(Time), Other),
+    ("cross correlation", Some(Time), Other),
+    ("power spectral density", Some(Frequency), Scaled(Scaling::Psd)),
+    ("energy spectral density", Some(Frequency), Scaled(Scaling::Energy)),
+    ("probability density function", None, Other),
+    ("spectrum", Some(Frequency), Amplitude),
+    ("cumulative frequency distribution", None, Other),
+    ("peaks and valleys", None, Other),
+    ("stress cycles", None, Other),
+    ("strain cycles", None, Other),
+    ("orbit", None, Other),
+    ("mode indicator function", Some(Frequency), Other),
+    ("force pattern", Some(Frequency), Other),
+    ("partial power", Some(Frequency), Other),
+    ("partial coherence", Some(Frequency), Scaled(Scaling::Coherence)),
+    ("eigenvalue", None, Other),
+    ("eigenvector", None, Other),
+    ("shock response spectrum", Some(Frequency), Other),
+    ("finite impulse response filter", Some(Time), Other),
+    ("multiple coherence", Some(Frequency), Scaled(Scaling::Coherence)),
+    ("order function", None, Other),
+    ("phase compensation", None, Other),
 ];
 
-/// A function type by its number.
-pub fn function(code: i64) -> (String, Domain) {
+/// Name, abscissa and kind of a function type.
+pub fn function(code: i64) -> (String, Option<AxisKind>, Kind) {
     match usize::try_from(code).ok().and_then(|i| FUNCTIONS.get(i)) {
-        Some((name, domain)) => ((*name).to_owned(), *domain),
-        None => (format!("function of type {code}"), Domain::Either),
+        Some((name, axis, kind)) => ((*name).to_owned(), axis.clone(), *kind),
+        None => (format!("function of type {code}"), None, Other),
     }
 }
 
-/// Specific data types that name a physical quantity: code, name, exponents of m, kg, s, A, K, rad along an axis and about it.
-const DATA_TYPES: &[(i64, &str, [i8; 6], [i8; 6])] = &[
-    (2, "stress", [-1, 1, -2, 0, 0, 0], [-1, 1, -2, 0, 0, 0]),
-    (3, "strain", [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0]),
-    (5, "temperature", [0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 1, 0]),
-    (8, "displacement", [1, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 1]),
-    (9, "reaction force", [1, 1, -2, 0, 0, 0], [2, 1, -2, 0, 0, 0]),
-    (11, "velocity", [1, 0, -1, 0, 0, 0], [0, 0, -1, 0, 0, 1]),
-    (12, "acceleration", [1, 0, -2, 0, 0, 0], [0, 0, -2, 0, 0, 1]),
-    (13, "excitation force", [1, 1, -2, 0, 0, 0], [2, 1, -2, 0, 0, 0]),
-    (15, "pressure", [-1, 1, -2, 0, 0, 0], [-1, 1, -2, 0, 0, 0]),
-    (16, "mass", [0, 1, 0, 0, 0, 0], [2, 1, 0, 0, 0, 0]),
-    (17, "time", [0, 0, 1, 0, 0, 0], [0, 0, 1, 0, 0, 0]),
-    (18, "frequency", [0, 0, -1, 0, 0, 0], [0, 0, -1, 0, 0, 0]),
+/// Specific data types that name a physical quantity: code, name, SI unit along an axis and about it.
+const DATA_TYPES: &[(i64, &str, &str, &str)] = &[
+    (2, "stress", "Pa", "Pa"),
+    (3, "strain", "1", "1"),
+    (5, "temperature", "K", "K"),
+    (8, "displacement", "m", "rad"),
+    (9, "reaction force", "N", "N*m"),
+    (11, "velocity", "m/s", "rad/s"),
+    (12, "acceleration", "m/s^2", "rad/s^2"),
+    (13, "excitation force", "N", "N*m"),
+    (15, "pressure", "Pa", "Pa"),
+    (16, "mass", "kg", "kg*m^2"),
+    (17, "time", "s", "s"),
+    (18, "frequency", "Hz", "Hz"),
     // Behind the published list, but written by instruments.
-    (21, "sound pressure", [-1, 1, -2, 0, 0, 0], [-1, 1, -2, 0, 0, 0]),
+    (21, "sound pressure", "Pa", "Pa"),
 ];
 
 /// Name and dimension of a specific data type; `None` for unknown, general and unlisted ones.
-pub(crate) fn data_type(code: i64, rotational: bool) -> Option<(&'static str, Dimension)> {
+pub fn data_type(code: i64, rotational: bool) -> Option<(&'static str, Dimension)> {
     let (_, name, along, about) = DATA_TYPES.iter().find(|t| t.0 == code)?;
-    let exponents = if rotational { about } else { along };
-    Some((name, Dimension(exponents.map(|e| 2 * e))))
+    let unit = Unit::parse(if rotational { about } else { along })?;
+    Some((name, unit.dimension()?))
 }
 
-/// Label words of frequency response functions, beside the names of [`Quantity`].
-const FRF_WORDS: &[(&str, Quantity)] =
-    &[("compliance", Quantity::Receptance), ("inertance", Quantity::Accelerance)];
-
 /// The quantity an axis label names, where one of its words is the name of one.
-pub(crate) fn quantity_of_label(label: &str) -> Option<Quantity> {
-    label.split(|c: char| !c.is_alphabetic()).find_map(|word| {
-        let word = word.to_lowercase();
-        Quantity::from_name(&word).or_else(|| FRF_WORDS.iter().find(|w| w.0 == word).map(|w| w.1))
+pub fn quantity_of_label(label: &str) -> Option<Quantity> {
+    label.split(|c: char| !c.is_alphabetic()).find_map(|word| match word.to_lowercase().as_str() {
+        "compliance" => Some(Quantity::Receptance),
+        "inertance" => Some(Quantity::Accelerance),
+        word => Quantity::from_name(word),
     })
 }
 
@@ -96,43 +101,28 @@ const SETS: &[(u32, &str)] = &[
     (15, "nodes"),
     (18, "coordinate systems"),
     (55, "data at nodes"),
-    (56, "data at element centres"),
-    (57, "data at nodes of elements"),
-    (58, "functions"),
     (82, "trace lines"),
     (151, "header"),
     (164, "units"),
-    (217, "function usage"),
-    (252, "matrices"),
-    (259, "entity names"),
-    (780, "elements"),
-    (781, "nodes"),
     (1858, "qualifiers of data set 58"),
-    (2400, "model header"),
     (2411, "nodes"),
     (2412, "elements"),
     (2414, "analysis data"),
     (2420, "coordinate systems"),
-    (2429, "groups"),
-    (2431, "trace lines"),
-    (2435, "groups"),
-    (2452, "groups"),
     (2467, "groups"),
-    (2477, "groups"),
 ];
 
-/// `15 nodes`: the number of a data set with its plain name, where it has one.
-pub(crate) fn set_name(number: u32) -> String {
-    match SETS.iter().find(|s| s.0 == number) {
-        Some((_, name)) => format!("{number} {name}"),
-        None => number.to_string(),
-    }
+/// `3 × 15 nodes`: so many data sets of a number, which has a plain name or none.
+pub fn set_names((number, count): (u32, usize)) -> String {
+    let times = if count > 1 { format!("{count} × ") } else { String::new() };
+    let name = SETS.iter().find(|s| s.0 == number).map_or(String::new(), |s| format!(" {}", s.1));
+    let used = if number == 164 { " (factors used)" } else { "" };
+    format!("{times}{number}{name}{used}")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vibro_record::units::Unit;
 
     #[test]
     fn function_types_have_their_standard_numbers() {

@@ -1,10 +1,9 @@
 //! Records 1 to 11 of data set 58: identification, degrees of freedom, data form, axis characteristics.
 
 use super::codes;
-use super::layout::Layout;
+use super::values::Layout;
 use crate::number;
 use crate::text::encoding;
-use crate::uff::delimiter::is_delimiter;
 use crate::uff::stream::Stream;
 use vibro_record::{Error, Place, Result};
 
@@ -13,7 +12,6 @@ pub const LINES: usize = 11;
 
 /// What the header of a data set 58 says.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(test, derive(Default))]
 pub struct Heading {
     /// Identification lines 1 to 5.
     pub id: [String; 5],
@@ -75,8 +73,6 @@ impl Point {
 pub struct Axis {
     /// Specific data type.
     pub data_type: i64,
-    /// Exponents of length, force and temperature, for the data type "general" only.
-    pub exponents: [i64; 3],
     /// Label; empty where it is `NONE`.
     pub label: String,
     /// Unit; empty where it is `NONE`.
@@ -86,11 +82,7 @@ pub struct Axis {
 impl Axis {
     /// `speed [rpm]`: label, or else the name of the data type, and unit.
     pub fn described(&self) -> String {
-        let data_type = match self.data_type {
-            19 => "rotational speed",
-            20 => "order",
-            code => codes::data_type(code, false).map_or("", |t| t.0),
-        };
+        let data_type = codes::data_type(self.data_type, false).map_or("", |t| t.0);
         let name = if self.label.is_empty() { data_type } else { &self.label };
         let unit = if self.unit.is_empty() { String::new() } else { format!(" [{}]", self.unit) };
         format!("{name}{unit}").trim_start().to_owned()
@@ -101,33 +93,18 @@ impl Heading {
     /// Reads the eleven lines that follow the number of the set. Gives the number of lines found where the set or the
     /// file ends before the eleventh; the delimiter that ended it is then left in the stream.
     pub fn read(stream: &mut Stream) -> Result<std::result::Result<Heading, usize>> {
-        let mut id: [String; 5] = Default::default();
-        for (i, line) in id.iter_mut().enumerate() {
-            if !record(stream)? {
-                return Ok(Err(i));
-            }
-            *line = given(&encoding::decode(stream.text()));
+        let mut lines = Vec::with_capacity(LINES);
+        let mut places = Vec::with_capacity(LINES);
+        while lines.len() < LINES {
+            let Some(line) = stream.line_within() else { return Ok(Err(lines.len())) };
+            lines.push(encoding::decode(line));
+            places.push(stream.place());
         }
-        if !record(stream)? {
-            return Ok(Err(5));
-        }
-        let (record6, (function, response, reference)) = dof(stream)?;
-        if !record(stream)? {
-            return Ok(Err(6));
-        }
-        let place = stream.place();
-        let (layout, n, start, step) = form(stream)?;
-        let mut axes: [Axis; 4] = Default::default();
-        for (i, axis) in axes.iter_mut().enumerate() {
-            if !record(stream)? {
-                return Ok(Err(7 + i));
-            }
-            *axis = axis_of(&encoding::decode(stream.text()));
-        }
-        let [abscissa, ordinate, denominator, _] = axes;
+        let (function, response, reference) = dof(&lines[5], &places[5])?;
+        let (layout, n, start, step) = form(&lines[6], &places[6])?;
         Ok(Ok(Heading {
-            id,
-            record6,
+            id: std::array::from_fn(|i| given(&lines[i])),
+            record6: lines[5].trim_end().to_owned(),
             function,
             response,
             reference,
@@ -135,15 +112,13 @@ impl Heading {
             n,
             start,
             step,
-            abscissa,
-            ordinate,
-            denominator,
-            place,
+            abscissa: axis(&lines[7]),
+            ordinate: axis(&lines[8]),
+            denominator: axis(&lines[9]),
+            place: places.swap_remove(6),
         }))
     }
-}
 
-impl Heading {
     /// A short name: the response point, for a ratio of two with the reference point, or else the first line.
     pub fn name(&self) -> String {
         let response = self.response.name();
@@ -157,39 +132,25 @@ impl Heading {
     }
 }
 
-/// Takes the next header line; false where the set or the file ends instead.
-fn record(stream: &mut Stream) -> Result<bool> {
-    if !stream.next_line()? {
-        return Ok(false);
-    }
-    if is_delimiter(stream.text()) {
-        stream.hold();
-        return Ok(false);
-    }
-    Ok(true)
-}
-
 /// Text without surrounding blanks; empty where it is `NONE`, which stands for nothing.
-pub fn given(text: &str) -> String {
+fn given(text: &str) -> String {
     let text = text.trim();
     if text.eq_ignore_ascii_case("none") { String::new() } else { text.to_owned() }
 }
 
-/// Characters `from..to` of a line; empty beyond its end.
+/// Characters `from..to` of a line without blanks around them; empty beyond its end.
 fn columns(line: &[char], from: usize, to: usize) -> String {
-    line[from.min(line.len())..to.min(line.len())].iter().collect()
+    line[from.min(line.len())..to.min(line.len())].iter().collect::<String>().trim().to_owned()
 }
 
 /// A whole number in columns `from..to`; a blank field is 0, as Fortran has it.
 fn whole(line: &[char], from: usize, to: usize) -> Option<i64> {
     let field = columns(line, from, to);
-    let field = field.trim();
     if field.is_empty() { Some(0) } else { field.parse().ok() }
 }
 
-/// Record 6, format `2(I5,I10),2(1X,A10,I10,I4)`.
-fn dof(stream: &Stream) -> Result<(String, (i64, Point, Point))> {
-    let text = encoding::decode(stream.text());
+/// Record 6, format `2(I5,I10),2(1X,A10,I10,I4)`: function type, response and reference point.
+fn dof(text: &str, place: &Place) -> Result<(i64, Point, Point)> {
     let line: Vec<char> = text.trim_end().chars().collect();
     let point = |from: usize| {
         Some(Point {
@@ -199,44 +160,25 @@ fn dof(stream: &Stream) -> Result<(String, (i64, Point, Point))> {
         })
     };
     let fixed = || Some((whole(&line, 0, 5).filter(|f| (0..100).contains(f))?, point(30)?, point(55)?));
-    let blanks = || {
-        let tokens: Vec<&str> = text.split_whitespace().collect();
-        let function = tokens.first()?.parse().ok().filter(|f| (0..100).contains(f))?;
-        let point = |i: usize| {
-            Some(Point {
-                entity: given(tokens.get(i)?),
-                node: tokens.get(i + 1)?.parse().ok()?,
-                direction: tokens.get(i + 2)?.parse().ok()?,
-            })
-        };
-        // Entity names may hold blanks: only ten tokens are ten fields.
-        let points = (tokens.len() == 10).then(|| Some((point(4)?, point(7)?))).flatten();
-        let (response, reference) = points.unwrap_or_default();
-        Some((function, response, reference))
-    };
-    let parsed = fixed().or_else(blanks).ok_or_else(|| {
+    fixed().ok_or_else(|| {
         Error::input(
-            stream.place(),
+            place.clone(),
             format!("record 6 of data set 58 is {:?}", text.trim_end()),
             "a function type from 0 to 99, identification numbers, response and reference point",
         )
         .hint("the header has 11 lines behind the line with 58: five of text, then this one")
-    })?;
-    Ok((text.trim_end().to_owned(), parsed))
+    })
 }
 
-/// Record 7, format `3I10,3E13.5`.
-fn form(stream: &Stream) -> Result<(Layout, usize, f64, f64)> {
-    let text = encoding::decode(stream.text());
+/// Record 7, format `3I10,3E13.5`, or its numbers between blanks.
+fn form(text: &str, place: &Place) -> Result<(Layout, usize, f64, f64)> {
     let line: Vec<char> = text.trim_end().chars().collect();
     let real = |from: usize, to: usize| {
         let field = columns(&line, from, to);
-        if field.trim().is_empty() { Some(0.0) } else { number::parse(field.as_bytes()) }
+        if field.is_empty() { Some(0.0) } else { number::parse(field.as_bytes()) }
     };
     let fixed = || {
-        let kind = whole(&line, 0, 10)?;
-        let plausible = kind != 0 && line.len() > 20;
-        plausible.then_some(())?;
+        let kind = whole(&line, 0, 10).filter(|kind| *kind != 0 && line.len() > 20)?;
         Some((kind, whole(&line, 10, 20)?, whole(&line, 20, 30)?, real(30, 43)?, real(43, 56)?))
     };
     let blanks = || {
@@ -246,7 +188,7 @@ fn form(stream: &Stream) -> Result<(Layout, usize, f64, f64)> {
         Some((whole(0)?, whole(1)?, whole(2)?, real(3)?, real(4)?))
     };
     let refuse = |found: String, expected: &str| {
-        Err(Error::input(stream.place(), found, expected)
+        Err(Error::input(place.clone(), found, expected)
             .hint("the sizes of a data set 58 stand here: it cannot be read without them"))
     };
     let Some((kind, n, spacing, start, step)) = fixed().or_else(blanks) else {
@@ -255,71 +197,42 @@ fn form(stream: &Stream) -> Result<(Layout, usize, f64, f64)> {
             "ordinate type, number of values, spacing, abscissa start and increment",
         );
     };
-    let (complex, double) = match kind {
-        2 => (false, false),
-        4 => (false, true),
-        5 => (true, false),
-        6 => (true, true),
-        other => {
-            return refuse(
-                format!("ordinate data type {other}"),
-                "2 (real single), 4 (real double), 5 (complex single) or 6 (complex double)",
-            );
-        }
-    };
+    if !matches!(kind, 2 | 4 | 5 | 6) {
+        let expected = "2 (real single), 4 (real double), 5 (complex single) or 6 (complex double)";
+        return refuse(format!("ordinate data type {kind}"), expected);
+    }
     if !matches!(spacing, 0 | 1) {
         return refuse(format!("abscissa spacing {spacing}"), "0 (uneven) or 1 (even)");
     }
     let Ok(n) = usize::try_from(n) else {
         return refuse(format!("{n} values declared"), "a number of values that is not negative");
     };
-    Ok((Layout { complex, double, even: spacing == 1 }, n, start, step))
+    let layout = Layout { complex: kind > 4, double: kind % 2 == 0 && kind != 2, even: spacing == 1 };
+    Ok((layout, n, start, step))
 }
 
 /// Records 8 to 11, format `I10,3I5,2(1X,A20)`.
-fn axis_of(text: &str) -> Axis {
+fn axis(text: &str) -> Axis {
     let line: Vec<char> = text.trim_end().chars().collect();
-    let numbers = || {
-        Some((whole(&line, 0, 10)?, [whole(&line, 10, 15)?, whole(&line, 15, 20)?, whole(&line, 20, 25)?]))
+    // Some writers count the bytes of UTF-8, some its characters: the column between the two fields tells which.
+    let between = |c: Option<&char>| c.is_none_or(|c| c.is_whitespace());
+    let (label, unit) = if between(line.get(25)) && between(line.get(46)) {
+        (columns(&line, 26, 46), columns(&line, 47, usize::MAX))
+    } else if text.is_char_boundary(46) {
+        (text[..46].chars().skip(25).collect(), text[46..].to_owned())
+    } else {
+        (columns(&line, 25, usize::MAX), String::new())
     };
-    if let Some((data_type, exponents)) = numbers() {
-        // Some writers count the bytes of UTF-8, some its characters: the column between the two fields tells which.
-        let between = |c: Option<&char>| c.is_none_or(|c| c.is_whitespace());
-        let (label, unit) = if between(line.get(25)) && between(line.get(46)) {
-            (columns(&line, 26, 46), columns(&line, 47, usize::MAX))
-        } else if text.is_char_boundary(46) {
-            (text[..46].chars().skip(25).collect(), text[46..].to_owned())
-        } else {
-            (columns(&line, 25, usize::MAX), String::new())
-        };
-        return Axis { data_type, exponents, label: given(&label), unit: given(&unit) };
-    }
-    // By blanks: four numbers, then two texts with at least two blanks between them.
-    let mut rest = text.trim_start();
-    let mut numbers = [0; 4];
-    for value in &mut numbers {
-        let (token, behind) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
-        let Ok(parsed) = token.parse() else { break };
-        *value = parsed;
-        rest = behind.trim_start();
-    }
-    let (label, unit) = rest.split_once("  ").unwrap_or((rest, ""));
-    Axis {
-        data_type: numbers[0],
-        exponents: [numbers[1], numbers[2], numbers[3]],
-        label: given(label),
-        unit: given(unit),
-    }
+    Axis { data_type: whole(&line, 0, 10).unwrap_or(0), label: given(&label), unit: given(&unit) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Source;
+    use std::path::Path;
 
     fn heading(text: &str) -> Result<std::result::Result<Heading, usize>> {
-        let source = Source::memory("x.uff", text.as_bytes().to_vec()).unwrap();
-        Heading::read(&mut Stream::open(&source).unwrap())
+        Heading::read(&mut Stream::new(Path::new("x.uff"), text.as_bytes()))
     }
 
     fn header(record6: &str, record7: &str, record9: &str) -> String {
@@ -345,12 +258,9 @@ mod tests {
     }
 
     #[test]
-    fn fields_between_blanks() {
-        let h = heading(&header("4 1 1 0 NONE 7 -3 NONE 22 1", "5 801 1 0.0 .25 0.0", "12 0 0 0 a b  m/s2"));
-        let h = h.unwrap().unwrap();
-        assert_eq!((h.response.node, h.response.direction, h.reference.node), (7, -3, 22));
+    fn sizes_between_blanks() {
+        let h = heading(&header(RECORD6, "5 801 1 0.0 .25 0.0", RECORD9)).unwrap().unwrap();
         assert_eq!((h.n, h.step), (801, 0.25));
-        assert_eq!((h.ordinate.label.as_str(), h.ordinate.unit.as_str()), ("a b", "m/s2"));
     }
 
     #[test]

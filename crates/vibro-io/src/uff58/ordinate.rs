@@ -1,10 +1,45 @@
-//! The unit of the values, from unit texts, data types, unit exponents and the file's unit system.
+//! The unit of the values, from unit texts, data types and the file's unit system.
 
-use super::codes;
+use super::codes::{self, Kind};
 use super::heading::{Axis, Heading};
-use crate::uff::system::System;
-use vibro_record::Finding;
+use crate::number;
+use crate::uff::stream::Stream;
 use vibro_record::units::{Dimension, Quantity, Unit};
+use vibro_record::{Finding, Scaling};
+
+/// Data set 164: factors by which numbers of the file must be divided to be SI; one each where the file does not say.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct System {
+    /// Whether the file says so.
+    stated: bool,
+    length: f64,
+    force: f64,
+    temperature: f64,
+}
+
+impl Default for System {
+    fn default() -> System {
+        System { stated: false, length: 1.0, force: 1.0, temperature: 1.0 }
+    }
+}
+
+impl System {
+    /// Reads two lines of data set 164. `None` where the second does not hold three positive factors, format `3D25.17`.
+    pub fn read(stream: &mut Stream) -> Option<System> {
+        stream.line_within()?;
+        let line = stream.line_within()?;
+        let mut factors = line.chunks(25).map_while(number::parse).filter(|f| *f > 0.0 && f.is_finite());
+        let (length, force, temperature) = (factors.next()?, factors.next()?, factors.next()?);
+        Some(System { stated: true, length, force, temperature })
+    }
+
+    /// SI units in one unit of the file, for a quantity of this dimension. Mass is force times time squared over length,
+    /// and time is in seconds in every system.
+    fn factor(&self, dimension: Dimension) -> f64 {
+        let [m, kg, _, _, kelvin, _] = dimension.0.map(|doubled| f64::from(doubled) / 2.0);
+        self.length.powf(kg - m) * self.force.powf(-kg) * self.temperature.powf(-kelvin)
+    }
+}
 
 /// What one unit of the stored values is.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,19 +70,11 @@ const MANGLED: &[(&str, &str)] = &[
     ("│", "³"),
 ];
 
-/// Who says what a part of the ordinate is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Said {
-    Nobody,
-    Text,
-    DataType,
-    Exponents,
-}
-
 /// Numerator or denominator of an ordinate.
 #[derive(Debug, Clone)]
 struct Part {
-    said: Said,
+    /// Whether a text says its unit.
+    text: bool,
     /// Name and dimension of its data type.
     data_type: Option<(&'static str, Dimension)>,
     /// `None` where the unit is not understood.
@@ -58,28 +85,25 @@ struct Part {
 impl Part {
     fn of(axis: &Axis, direction: i64, system: &System, findings: &mut Vec<Finding>) -> Part {
         let data_type = codes::data_type(axis.data_type, direction.abs() > 3);
-        let part = |said, dimension, factor| Part { said, data_type, dimension, factor };
-        if !axis.unit.is_empty() {
-            let unit = Unit::parse(&axis.unit).or_else(|| mend(&axis.unit, findings)).unwrap_or_else(|| {
-                findings.push(Finding::caution("unit-unknown").name("unit", axis.unit.as_str()));
-                Unit::opaque(&axis.unit)
-            });
-            return part(Said::Text, unit.dimension(), unit.factor());
+        if axis.unit.is_empty() {
+            let dimension = data_type.map_or(Dimension::NONE, |(_, dimension)| dimension);
+            return Part {
+                text: false,
+                data_type,
+                dimension: Some(dimension),
+                factor: system.factor(dimension),
+            };
         }
-        if let Some((_, dimension)) = data_type {
-            return part(Said::DataType, Some(dimension), system.factor(dimension));
-        }
-        if axis.data_type == 1 && axis.exponents != [0; 3] {
-            // Exponents of length, force and temperature leave the power of time open.
-            return part(Said::Exponents, None, system.factor_of(axis.exponents));
-        }
-        part(Said::Nobody, Some(Dimension::NONE), 1.0)
+        let unit = Unit::parse(&axis.unit).or_else(|| mend(&axis.unit, findings)).unwrap_or_else(|| {
+            findings.push(Finding::caution("unit-unknown").name("unit", axis.unit.as_str()));
+            Unit::opaque(&axis.unit)
+        });
+        Part { text: true, data_type, dimension: unit.dimension(), factor: unit.factor() }
     }
 
-    /// Whether a text gives the dimension of the data type, and that is not a plain number.
-    fn is_typed(&self) -> bool {
-        self.said == Said::Text
-            && self.data_type.is_some_and(|(_, d)| d != Dimension::NONE && self.dimension == Some(d))
+    /// Whether neither text nor data type says what it is.
+    fn unsaid(&self) -> bool {
+        !self.text && self.data_type.is_none()
     }
 }
 
@@ -97,18 +121,24 @@ impl Ordinate {
         let mut findings = Vec::new();
         let above = Part::of(&heading.ordinate, heading.response.direction, system, &mut findings);
         let mut below = Part::of(&heading.denominator, heading.reference.direction, system, &mut findings);
-        let (ordinate, denominator) = (&heading.ordinate.unit, &heading.denominator.unit);
-        let mut written = ordinate.clone();
-        if !denominator.is_empty() {
-            written = format!("({ordinate})/({denominator})");
-        }
+        let (numerator, denominator) = (&heading.ordinate.unit, &heading.denominator.unit);
+        let mut written = numerator.clone();
         if is_whole(&above, &below) {
-            written.clone_from(ordinate);
-            below = Part { said: Said::Nobody, dimension: Some(Dimension::NONE), factor: 1.0, ..below };
+            below = Part { text: false, data_type: None, dimension: Some(Dimension::NONE), factor: 1.0 };
+        } else if !denominator.is_empty() {
+            written = format!("({numerator})/({denominator})");
         }
         let (unit, factor) = match plain(heading, &above, &below) {
             Ok((dimension, power, seconds)) => {
-                findings.extend(sources(heading, &above, &below, system));
+                let typed = |part: &Part| !part.text && part.dimension != Some(Dimension::NONE);
+                if !system.stated && (typed(&above) || typed(&below)) {
+                    let name = |part: &Part| part.data_type.map_or("a number", |(name, _)| name);
+                    let types = match below.data_type {
+                        Some((below, _)) => format!("{} over {below}", name(&above)),
+                        None => name(&above).to_owned(),
+                    };
+                    findings.push(Finding::caution("unit-by-data-type").name("type", types));
+                }
                 let squared = dimension.half_power(2 * power).unwrap_or(dimension);
                 let dimension = squared.times(Dimension([0, 0, 2 * seconds, 0, 0, 0]));
                 let factor = (above.factor / below.factor).powi(i32::from(power));
@@ -116,14 +146,11 @@ impl Ordinate {
             }
             Err(why) => {
                 findings.extend(why);
-                let from_text = above.said == Said::Text || below.said == Said::Text;
-                let factor = if from_text { 1.0 } else { above.factor / below.factor };
-                (Unit::opaque(&written), factor)
+                (Unit::opaque(&written), 1.0)
             }
         };
-        let mut result = Ordinate { unit, factor, written, findings };
-        label_against_unit(heading, &mut result);
-        result
+        findings.extend(label_against_unit(heading, &unit, &written));
+        Ordinate { unit, factor, written, findings }
     }
 }
 
@@ -137,107 +164,52 @@ fn spelled(dimension: Dimension, factor: f64, written: &str) -> Unit {
 
 /// Whether the text of the numerator is the unit of the whole ratio already.
 fn is_whole(above: &Part, below: &Part) -> bool {
-    let (Said::Text, Some(written), Some(denominator)) = (above.said, above.dimension, below.dimension)
-    else {
+    let (true, Some(written), Some(denominator)) = (above.text, above.dimension, below.dimension) else {
         return false;
     };
-    let force = Quantity::of(denominator) == Quantity::Force;
     match above.data_type {
-        Some((_, dimension)) if dimension == written => false,
-        Some((_, dimension)) => written == dimension.times(denominator.inverse()),
-        None => force && is_frf(Quantity::of(written)),
+        Some((_, dimension)) => dimension != written && written == dimension.times(denominator.inverse()),
+        None => Quantity::of(denominator) == Quantity::Force && is_frf(Quantity::of(written)),
     }
 }
 
 /// Dimension of the ordinate, the power to which it stands in the lines of a spectrum of this function type, and the
 /// power of seconds beside it. Without an answer the values stay as they are, for the reason given.
 fn plain(heading: &Heading, above: &Part, below: &Part) -> Result<(Dimension, i8, i8), Option<Finding>> {
-    let (name, _) = codes::function(heading.function);
-    let coherence = matches!(heading.function, 6 | 21 | 26);
-    if coherence && above.said != Said::Text {
+    let (name, _, kind) = codes::function(heading.function);
+    if kind == Kind::Scaled(Scaling::Coherence) && !above.text {
         return Ok((Dimension::NONE, 1, 0));
     }
-    if above.said == Said::Nobody && below.said == Said::Nobody {
+    if above.unsaid() && below.unsaid() {
         return Err(Some(Finding::caution("unit-unsaid")));
     }
-    let (Some(numerator), Some(denominator)) = (above.dimension, below.dimension) else {
-        let exponents = above.said == Said::Exponents || below.said == Said::Exponents;
-        return Err(exponents.then(|| Finding::caution("unit-by-exponents")));
-    };
+    let (Some(numerator), Some(denominator)) = (above.dimension, below.dimension) else { return Err(None) };
     let dimension = numerator.times(denominator.inverse());
-    let (power, seconds) = match heading.function {
-        2 | 3 => (2, 0),
-        9 => (2, 1),
-        10 => (2, 2),
+    let (power, seconds) = match kind {
+        Kind::Squared => (2, 0),
+        Kind::Scaled(Scaling::Psd) => (2, 1),
+        Kind::Scaled(Scaling::Energy) => (2, 2),
         _ => return Ok((dimension, 1, 0)),
     };
-    if above.is_typed() {
+    let signal = above.data_type.is_some_and(|(_, d)| d != Dimension::NONE && numerator == d);
+    if above.text && signal {
         let found = Finding::caution("unit-of-signal").name("unit", heading.ordinate.unit.as_str());
         return Err(Some(found.name("function", name)));
     }
-    if above.said == Said::Text {
+    if above.text {
         return Ok((dimension, 1, 0)); // the text is the unit of the lines, such as g²/Hz
     }
-    if below.said != Said::Nobody {
-        return Err(Some(Finding::caution("unit-unsaid-squared").name("function", name)));
-    }
-    Ok((dimension, power, seconds))
-}
-
-/// Doubts about where the unit comes from.
-fn sources(heading: &Heading, above: &Part, below: &Part, system: &System) -> Vec<Finding> {
-    let mut findings = Vec::new();
-    let types = match (above.data_type, below.data_type) {
-        (Some((above, _)), Some((below, _))) => format!("{above} over {below}"),
-        (Some((above, _)), None) => above.to_owned(),
-        (None, Some((below, _))) => format!("a number over {below}"),
-        (None, None) => String::new(),
-    };
-    if [above, below].iter().any(|p| p.said == Said::DataType && p.dimension != Some(Dimension::NONE))
-        && !system.stated
-    {
-        findings.push(Finding::caution("unit-by-data-type").name("type", types.as_str()));
-    }
-    let (Said::Text, Some(dimension)) = (above.said, above.dimension) else { return findings };
-    let unit = &heading.ordinate.unit;
-    let ratio = system.factor(dimension) / above.factor;
-    if system.stated && (ratio - 1.0).abs() > 1e-6 {
-        let differs = Finding::caution("unit-against-system").name("unit", unit.as_str());
-        findings.push(differs.number("ratio", ratio));
-    }
-    let squared = matches!(heading.function, 2 | 3 | 9 | 10);
-    let ratio = above.data_type.zip(below.data_type).map(|(a, b)| a.1.times(b.1.inverse()));
-    let contradicts = above.data_type.is_some_and(|(_, d)| d != dimension) && ratio != Some(dimension);
-    if contradicts && !squared {
-        let differs = Finding::caution("unit-against-type").name("type", types).name("unit", unit.as_str());
-        findings.push(differs.name("quantity", described(dimension)));
-    }
-    findings
+    if below.unsaid() { Ok((dimension, power, seconds)) } else { Err(Some(Finding::caution("unit-unsaid"))) }
 }
 
 fn is_frf(quantity: Quantity) -> bool {
     matches!(quantity, Quantity::Receptance | Quantity::Mobility | Quantity::Accelerance)
 }
 
-/// `a velocity`, or the SI unit where the dimension has no name.
-fn described(dimension: Dimension) -> String {
-    match Quantity::of(dimension) {
-        Quantity::Other => Unit::from_dimension(dimension).symbol().to_owned(),
-        quantity => {
-            let noun = quantity.name();
-            let vowel = noun.starts_with(['a', 'e', 'i', 'o', 'u']);
-            format!("{} {noun}", if vowel { "an" } else { "a" })
-        }
-    }
-}
-
 /// A doubt where the label of the ordinate names another quantity than its unit.
-fn label_against_unit(heading: &Heading, ordinate: &mut Ordinate) {
-    let (Some(label), Some(dimension)) =
-        (codes::quantity_of_label(&heading.ordinate.label), ordinate.unit.dimension())
-    else {
-        return;
-    };
+fn label_against_unit(heading: &Heading, unit: &Unit, written: &str) -> Option<Finding> {
+    let label = codes::quantity_of_label(&heading.ordinate.label)?;
+    let quantity = Quantity::of(unit.dimension()?);
     // The label of a ratio may be that of its numerator, and a density may be labelled by its signal.
     let comparable = match heading.function {
         4 => is_frf(label),
@@ -245,17 +217,56 @@ fn label_against_unit(heading: &Heading, ordinate: &mut Ordinate) {
         _ => false,
     };
     // A rotation is labelled as the motion it is, without the word angular.
-    let unit = match Quantity::of(dimension) {
+    let motion = match quantity {
         Quantity::Angle => Quantity::Displacement,
         Quantity::AngularVelocity => Quantity::Velocity,
         Quantity::AngularAcceleration => Quantity::Acceleration,
         other => other,
     };
-    let rotation = unit != Quantity::of(dimension) && label == unit;
-    if comparable && Quantity::of(dimension) != label && !rotation {
-        let unit = if ordinate.written.is_empty() { ordinate.unit.symbol() } else { &ordinate.written };
-        let differs = Finding::caution("unit-against-label").name("label", heading.ordinate.label.as_str());
-        let differs = differs.name("unit", unit).name("quantity", described(dimension));
-        ordinate.findings.push(differs);
+    let differs = Finding::caution("unit-against-label").name("label", heading.ordinate.label.as_str());
+    let shown = if written.is_empty() { unit.symbol() } else { written };
+    let named = if quantity == Quantity::Other { unit.symbol() } else { quantity.name() };
+    (comparable && motion != label).then(|| differs.name("unit", shown).name("quantity", named))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    fn system(text: &str) -> Option<System> {
+        System::read(&mut Stream::new(Path::new("x.unv"), text.as_bytes()))
+    }
+
+    #[test]
+    fn inch_and_pound_force() {
+        let system = system(
+            "         7Inch (pound f)               2\n  3.93700787401574814D+01  2.24808943099710489D-01  1.80000000000000000D+00\n  4.59670000000000000D+02\n",
+        )
+        .unwrap();
+        // One inch is 0.0254 m by definition; the pound force of the file is the exact one to ten digits.
+        for (file, si) in [
+            ("m/s²", 0.0254),
+            ("N", 4.448_221_615),
+            ("(m/s²)/N", 0.0254 / 4.448_221_615),
+            ("Pa", 4.448_221_615 / 0.0254f64.powi(2)),
+            ("kg", 4.448_221_615 / 0.0254),
+            ("K", 1.0 / 1.8),
+            ("s", 1.0),
+        ] {
+            let factor = system.factor(Unit::parse(file).unwrap().dimension().unwrap());
+            assert!((factor / si - 1.0).abs() < 1e-9, "{file}: {factor} against {si}");
+        }
+    }
+
+    #[test]
+    fn senseless_factors_are_no_system() {
+        for text in
+            ["", "1 SI\n", "1 SI\n1.0 1.0\n", "1 SI\n0.0 1.0 1.0\n", "1 SI\n-1.0 1.0 1.0\n", "1 SI\n    -1\n"]
+        {
+            if !text.is_empty() {
+                assert_eq!(system(text), None, "{text:?}");
+            }
+        }
     }
 }

@@ -8,7 +8,7 @@
 //! The first column is the abscissa; a complex record takes two. Numbers have the fewest digits that read back as the
 //! same double; an uneven abscissa has all its digits, so that its values cannot be taken for rounded even ones.
 
-use super::{failed, label};
+use super::{failed, label, parts};
 use std::fmt::Write as _;
 use std::io::Write;
 use vibro_record::{Axis, AxisKind, Error, FROM_BLOWS, Grid, Record, Result, Scaling, Values};
@@ -35,7 +35,8 @@ pub fn write(records: &[Record], separator: char, out: &mut impl Write) -> Resul
     }
     text.push_str(&field(axis_name(first.axis()), separator));
     for column in &columns {
-        for part in column.parts() {
+        let parts: &[&str] = if column.record.is_complex() { &["_re", "_im"] } else { &[""] };
+        for part in parts {
             text.push(separator);
             text.push_str(&field(&format!("{}{part} [{}]", column.name, column.unit), separator));
         }
@@ -50,7 +51,10 @@ pub fn write(records: &[Record], separator: char, out: &mut impl Write) -> Resul
             number(x, &mut text);
         }
         for column in &columns {
-            column.value(i, separator, &mut text);
+            for value in parts(column.record, i) {
+                text.push(separator);
+                number(value, &mut text);
+            }
         }
         text.push('\n');
         if text.len() > BLOCK {
@@ -111,27 +115,6 @@ impl Column<'_> {
                 }
             }
         }
-    }
-
-    fn parts(&self) -> &'static [&'static str] {
-        if self.record.is_complex() { &["_re", "_im"] } else { &[""] }
-    }
-
-    fn value(&self, i: usize, separator: char, text: &mut String) {
-        let mut put = |value: f64| {
-            text.push(separator);
-            number(value, text);
-        };
-        let complex = match self.record {
-            Record::Trace(r) => return put(r.values.get(i).copied().unwrap_or(f64::NAN)),
-            Record::Frf(r) => &r.values,
-            Record::Spectrum(r) => match &r.values {
-                Values::Real(values) => return put(values.get(i).copied().unwrap_or(f64::NAN)),
-                Values::Complex(values) => values,
-            },
-        };
-        put(complex.get(i).map_or(f64::NAN, |v| v.re));
-        put(complex.get(i).map_or(f64::NAN, |v| v.im));
     }
 }
 

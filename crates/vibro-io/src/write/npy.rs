@@ -5,10 +5,9 @@
 //!
 //! Source: numpy's own description of the format, `NEP 1`.
 
-use super::{failed, label};
-use num_complex::Complex64;
+use super::{failed, label, parts};
 use std::io::Write;
-use vibro_record::{Error, Record, Result, Values};
+use vibro_record::{Error, Record, Result};
 
 /// Writes `records` as one array, values in SI units.
 ///
@@ -42,19 +41,12 @@ pub fn write(records: &[Record], out: &mut impl Write) -> Result<()> {
     out.write_all(&bytes).map_err(failed)?;
     for record in records {
         bytes.clear();
-        let mut put = |value: Complex64| {
-            bytes.extend(value.re.to_le_bytes());
+        for i in 0..n {
+            let mut parts = parts(record, i);
+            bytes.extend(parts.next().unwrap_or(f64::NAN).to_le_bytes());
             if complex {
-                bytes.extend(value.im.to_le_bytes());
+                bytes.extend(parts.next().unwrap_or(0.0).to_le_bytes());
             }
-        };
-        match record {
-            Record::Trace(r) => r.values.iter().for_each(|v| put(Complex64::new(*v, 0.0))),
-            Record::Frf(r) => r.values.iter().for_each(|v| put(*v)),
-            Record::Spectrum(r) => match &r.values {
-                Values::Real(values) => values.iter().for_each(|v| put(Complex64::new(*v, 0.0))),
-                Values::Complex(values) => values.iter().for_each(|v| put(*v)),
-            },
         }
         out.write_all(&bytes).map_err(failed)?;
     }
@@ -64,6 +56,7 @@ pub fn write(records: &[Record], out: &mut impl Write) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use num_complex::Complex64;
     use vibro_record::units::Unit;
     use vibro_record::{Axis, Frf, FrfKind, Meta, Trace};
 

@@ -4,12 +4,14 @@
 //! the standard: real or complex, single or double precision, even or uneven abscissa. See `read::uff58` for the format
 //! and its source.
 
-mod abscissa;
 mod header;
 
+use super::{failed, label, parts};
+use crate::number;
+use crate::uff58::Layout;
 use header::Header;
 use std::io::Write;
-use vibro_record::{Error, Grid, Record, Result, Values};
+use vibro_record::{Error, Grid, Record, Result};
 
 /// Precision of the values. An uneven abscissa has single precision, or six digits, in either.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -59,152 +61,52 @@ pub fn write_uff58(records: &[Record], out: &mut impl Write, storage: Storage) -
     if records.is_empty() {
         return Err(Error::refused("there are no records to write, and a file without any cannot be read"));
     }
-    let mut forms = Vec::with_capacity(records.len());
-    for record in records {
-        if record.len() as u64 > 9_999_999_999 {
-            return Err(Error::refused(format!(
-                "record {:?} has {} values, and data set 58 has ten columns for their number",
-                record.meta().name,
-                record.len()
-            )));
-        }
-        forms.push(abscissa::form(record, storage.binary)?);
-    }
+    let forms = records.iter().map(|r| form(r, storage.binary)).collect::<Result<Vec<_>>>()?;
     for (record, form) in records.iter().zip(&forms) {
-        write(record, form, out, storage).map_err(|e| Error::io("write", "the UFF data", e))?;
+        let even = matches!(record.axis().grid, Grid::Even { .. });
+        let double = storage.precision == Precision::Double;
+        let layout = Layout { complex: record.is_complex(), double, even };
+        let size = storage.binary.then_some(layout.point_size(false) * record.len());
+        let mut bytes = Header::of(record).text(layout, size, form, record).into_bytes();
+        if storage.binary {
+            binary(record, layout, &mut bytes);
+        } else {
+            text(record, layout, &mut bytes);
+        }
+        bytes.extend(format!("{:80}\n", "    -1").bytes());
+        out.write_all(&bytes).map_err(failed)?;
     }
     Ok(())
 }
 
-fn write(record: &Record, form: &[String; 2], out: &mut impl Write, storage: Storage) -> std::io::Result<()> {
-    let layout = Layout::of(record, storage.precision);
-    let bytes = layout.point_size() * record.len();
-    Header::of(record).write(out, layout, storage.binary.then_some(bytes), form, record)?;
-    if storage.binary {
-        points(record, &mut Binary { out, layout })?;
-    } else {
-        let mut text = Text { out, widths: layout.widths(), line: Vec::with_capacity(81), column: 0 };
-        points(record, &mut text)?;
-        text.end()?;
-    }
-    writeln!(out, "{:80}", "    -1")
-}
-
-/// One of the eight cases.
-#[derive(Debug, Clone, Copy)]
-struct Layout {
-    complex: bool,
-    double: bool,
-    even: bool,
-}
-
-impl Layout {
-    fn of(record: &Record, precision: Precision) -> Layout {
-        let even = matches!(record.axis().grid, Grid::Even { .. });
-        Layout { complex: record.is_complex(), double: precision == Precision::Double, even }
-    }
-
-    /// Bytes of one point in binary.
-    fn point_size(self) -> usize {
-        let value = if self.double { 8 } else { 4 };
-        value * (1 + usize::from(self.complex)) + if self.even { 0 } else { 4 }
-    }
-
-    /// Field widths of one line of text.
-    fn widths(self) -> &'static [usize] {
-        match (self.double, self.even, self.complex) {
-            (false, _, _) => &[13; 6],
-            (true, true, _) => &[20; 4],
-            (true, false, false) => &[13, 20, 13, 20],
-            (true, false, true) => &[13, 20, 20],
+fn binary(record: &Record, layout: Layout, bytes: &mut Vec<u8>) {
+    for i in 0..record.len() {
+        if !layout.even {
+            bytes.extend((record.axis().at(i) as f32).to_le_bytes());
         }
-    }
-}
-
-/// Takes abscissa and values one number after the other.
-trait Numbers {
-    fn abscissa(&mut self, value: f64) -> std::io::Result<()>;
-    fn value(&mut self, value: f64) -> std::io::Result<()>;
-}
-
-fn points(record: &Record, numbers: &mut impl Numbers) -> std::io::Result<()> {
-    let uneven = match &record.axis().grid {
-        Grid::Even { .. } => None,
-        Grid::Uneven(values) => Some(values),
-    };
-    let mut point = |i: usize, parts: &[f64]| {
-        if let Some(abscissa) = uneven {
-            numbers.abscissa(abscissa.get(i).copied().unwrap_or(f64::NAN))?;
-        }
-        parts.iter().try_for_each(|part| numbers.value(*part))
-    };
-    let complex = match record {
-        Record::Frf(frf) => &frf.values,
-        Record::Spectrum(spectrum) => match &spectrum.values {
-            Values::Complex(values) => values,
-            Values::Real(values) => {
-                return values.iter().enumerate().try_for_each(|(i, v)| point(i, &[*v]));
+        for part in parts(record, i) {
+            if layout.double {
+                bytes.extend(part.to_le_bytes());
+            } else {
+                bytes.extend((part as f32).to_le_bytes());
             }
-        },
-        Record::Trace(trace) => {
-            return trace.values.iter().enumerate().try_for_each(|(i, v)| point(i, &[*v]));
-        }
-    };
-    complex.iter().enumerate().try_for_each(|(i, v)| point(i, &[v.re, v.im]))
-}
-
-struct Binary<'a, W> {
-    out: &'a mut W,
-    layout: Layout,
-}
-
-impl<W: Write> Numbers for Binary<'_, W> {
-    fn abscissa(&mut self, value: f64) -> std::io::Result<()> {
-        self.out.write_all(&(value as f32).to_le_bytes())
-    }
-
-    fn value(&mut self, value: f64) -> std::io::Result<()> {
-        if self.layout.double {
-            self.out.write_all(&value.to_le_bytes())
-        } else {
-            self.out.write_all(&(value as f32).to_le_bytes())
         }
     }
 }
 
-struct Text<'a, W> {
-    out: &'a mut W,
-    widths: &'static [usize],
-    line: Vec<u8>,
-    column: usize,
-}
-
-impl<W: Write> Text<'_, W> {
-    fn number(&mut self, value: f64) -> std::io::Result<()> {
-        let width = self.widths[self.column];
-        self.line.extend_from_slice(field(value, width, width - 8).as_bytes());
-        self.column += 1;
-        if self.column == self.widths.len() { self.end() } else { Ok(()) }
-    }
-
-    fn end(&mut self) -> std::io::Result<()> {
-        if self.column > 0 {
-            self.line.push(b'\n');
-            self.out.write_all(&self.line)?;
-            self.line.clear();
-            self.column = 0;
+fn text(record: &Record, layout: Layout, bytes: &mut Vec<u8>) {
+    let abscissa = |i: usize| (!layout.even).then(|| record.axis().at(i));
+    let numbers = (0..record.len()).flat_map(|i| abscissa(i).into_iter().chain(parts(record, i)));
+    let widths = layout.widths();
+    for (column, value) in numbers.enumerate() {
+        if column > 0 && column % widths.len() == 0 {
+            bytes.push(b'\n');
         }
-        Ok(())
+        let width = widths[column % widths.len()];
+        bytes.extend(field(value, width, width - 8).bytes());
     }
-}
-
-impl<W: Write> Numbers for Text<'_, W> {
-    fn abscissa(&mut self, value: f64) -> std::io::Result<()> {
-        self.number(value)
-    }
-
-    fn value(&mut self, value: f64) -> std::io::Result<()> {
-        self.number(value)
+    if !record.is_empty() {
+        bytes.push(b'\n');
     }
 }
 
@@ -220,9 +122,77 @@ fn field(value: f64, width: usize, digits: usize) -> String {
     format!("{:>width$}", format!("{mantissa}{letter}{sign}{exponent:0>2}"))
 }
 
+/// How far a value of the abscissa should be off at most, in parts of the (smallest) step: more digits are taken for it.
+const WANTED: f64 = 1e-3;
+/// How far it may be off, or the record is refused.
+const TOLERANCE: f64 = 0.1;
+/// Width of start and step in record 7, and of an abscissa in text.
+const WIDTH: usize = 13;
+
+/// Start and step of an even abscissa as they stand in record 7; zeros for an uneven one.
+///
+/// # Errors
+/// If the format has too few digits for the abscissa of this record.
+fn form(record: &Record, binary: bool) -> Result<[String; 2]> {
+    match &record.axis().grid {
+        Grid::Even { start, step, n } => {
+            let last = n.saturating_sub(1) as f64;
+            // Start and step take half of the tolerance each; the error of the step adds up to the last value.
+            let fitting = |value: f64, times: f64| {
+                let within = |part: f64| {
+                    let bound = 0.5 * part * step.abs();
+                    spellings(value).into_iter().find(|text| (read(text) - value).abs() * times <= bound)
+                };
+                within(WANTED).or_else(|| within(TOLERANCE))
+            };
+            fitting(*start, 1.0).zip(fitting(*step, last)).map(|(start, step)| [start, step]).ok_or_else(
+                || refused(record, &format!("begins at {start} with a step of {step}, {n} values long")),
+            )
+        }
+        Grid::Uneven(values) => {
+            let steps = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 0.0);
+            let bound = TOLERANCE * steps.fold(f64::INFINITY, f64::min);
+            let off = |value: f64| {
+                let kept = if binary { f64::from(value as f32) } else { read(&field(value, WIDTH, 5)) };
+                (kept - value).abs()
+            };
+            match values.iter().find(|value| off(**value).is_nan() || off(**value) > bound) {
+                Some(value) => Err(refused(
+                    record,
+                    &format!("holds {value}, with neighbours {} apart", bound / TOLERANCE),
+                )),
+                None => Ok([0.0, 0.0].map(|zero| field(zero, WIDTH, 6))),
+            }
+        }
+    }
+}
+
+/// Ways to write a number in its columns, the usual one first: E13.5 with one more digit where there is no sign, then as
+/// many digits as go behind a blank, then as many as there are columns.
+fn spellings(value: f64) -> [String; 3] {
+    let dense = |room: usize| {
+        let fits = |digits: &usize| format!("{value:.digits$E}").len() <= room;
+        let digits = (0..room).rev().find(fits).unwrap_or(0);
+        format!("{:>WIDTH$}", format!("{value:.digits$E}"))
+    };
+    [field(value, WIDTH, if value < 0.0 { 5 } else { 6 }), dense(WIDTH - 1), dense(WIDTH)]
+}
+
+fn read(text: &str) -> f64 {
+    number::parse(text.trim().as_bytes()).unwrap_or(f64::NAN)
+}
+
+fn refused(record: &Record, what: &str) -> Error {
+    let why = format!("the abscissa of {} {what}: data set 58 has too few digits for it", label(record));
+    Error::refused(why)
+        .hint("write .csv or .npy, which keep every digit, or binary values (58b), or fewer at once")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use vibro_record::units::Unit;
+    use vibro_record::{Axis, AxisKind, Meta, Trace};
 
     #[test]
     fn fields_fill_their_columns() {
@@ -237,6 +207,49 @@ mod tests {
         ] {
             assert_eq!(field(value, 13, 5), single);
             assert_eq!(field(value, 20, 12), double);
+        }
+    }
+
+    fn of(grid: Grid, binary: bool) -> Result<[String; 2]> {
+        let axis = Axis { kind: AxisKind::Time, grid };
+        let values = vec![0.0; axis.len()];
+        form(&Record::Trace(Trace { meta: Meta::new("x", Unit::none()), axis, values }), binary)
+    }
+
+    /// A record of one value stands for a long one: only its axis is looked at.
+    fn form_of_axis(axis: Axis) -> Result<[String; 2]> {
+        form(&Record::Trace(Trace { meta: Meta::new("x", Unit::none()), axis, values: vec![0.0] }), false)
+    }
+
+    #[test]
+    fn digits_are_taken_where_there_is_room() {
+        let even = |start, step, n| of(Grid::Even { start, step, n }, false).unwrap();
+        assert_eq!(even(0.0, 1.0 / 44_100.0, 7), [" 0.000000E+00", " 2.267574E-05"]);
+        assert_eq!(even(123_456.789, 1.0 / 1024.0, 7), [" 1.23456789E5", " 9.765625E-04"]);
+        assert_eq!(even(0.0, 1.0 / 48_000.0, 20_000)[1], " 2.0833333E-5");
+        assert_eq!(even(0.0, 1.0 / 48_000.0, 200_000)[1], "2.08333333E-5");
+        assert_eq!(even(-1.5, 1.0, 1)[0], " -1.50000E+00");
+    }
+
+    #[test]
+    fn an_abscissa_that_would_be_distorted_is_refused() {
+        let words = |result: Result<[String; 2]>| result.unwrap_err().to_string();
+        let late = words(of(Grid::Even { start: 123_456.789_123_4, step: 1e-4, n: 7 }, true));
+        assert!(
+            late.contains("the trace \"x\" begins at 123456.7891234") && late.contains("try: write .csv"),
+            "{late}"
+        );
+        // Nine digits of 1/48000 are off by 3.3e-14, so by 0.16 of a step after a hundred million steps.
+        let axis = |n| form_of_axis(Axis::time(0.0, 1.0 / 48_000.0, n));
+        assert!(axis(1_000_000).is_ok());
+        let long = words(axis(100_000_000));
+        assert!(long.contains("100000000 values"), "{long}");
+        for binary in [false, true] {
+            let far = words(of(Grid::Uneven(vec![100_000.0, 100_000.001, 100_000.003]), binary));
+            assert!(far.contains("holds 100000.001"), "{far}");
+            assert!(of(Grid::Uneven(vec![0.0, 0.5, 2.0, 2.0]), binary).is_ok());
+            assert!(of(Grid::Uneven(vec![100_000.001]), binary).is_ok());
+            assert!(of(Grid::Uneven(vec![0.0, f64::NAN]), binary).is_err());
         }
     }
 }

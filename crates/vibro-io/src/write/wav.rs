@@ -5,36 +5,17 @@
 //! rate and start in a comment (LIST INFO ICMT). [`crate::Reader`] reads the comment and undoes all of it; an audio program
 //! plays the file and ignores it.
 
-use super::{failed, label};
+use super::{Precision, failed, label};
 use crate::wav::{Scale, Scales};
 use std::io::Write;
 use vibro_record::{AxisKind, Error, Record, Result, Trace};
-
-/// How a sample is stored.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Sample {
-    /// 24 significant bits, which every audio program reads.
-    Float32,
-    /// Exact, read by most programs.
-    #[default]
-    Float64,
-}
-
-impl Sample {
-    fn bytes(self) -> usize {
-        match self {
-            Sample::Float32 => 4,
-            Sample::Float64 => 8,
-        }
-    }
-}
 
 /// Writes traces as the channels of one file.
 ///
 /// # Errors
 /// If there are none, one is no trace over evenly sampled time, their axes differ, a sample is missing, the sampling rate is not
 /// between 1 Hz and 4.29 GHz, they take more than 4 GiB, or the output cannot be written.
-pub fn write(records: &[Record], sample: Sample, out: &mut impl Write) -> Result<()> {
+pub fn write(records: &[Record], precision: Precision, out: &mut impl Write) -> Result<()> {
     let traces = records.iter().map(checked).collect::<Result<Vec<&Trace>>>()?;
     let Some(first) = traces.first() else {
         return Err(Error::refused("there is no record to write"));
@@ -56,7 +37,7 @@ pub fn write(records: &[Record], sample: Sample, out: &mut impl Write) -> Result
     }
     let channels = traces.iter().map(|t| scale(t)).collect();
     let scales = Scales { rate, start: first.axis.start(), channels };
-    let head = head(&scales, whole_rate as u32, first.values.len(), sample)?;
+    let head = head(&scales, whole_rate as u32, first.values.len(), precision)?;
     out.write_all(&head).map_err(failed)?;
     let mut bytes = Vec::new();
     for block in 0..first.values.len().div_ceil(BLOCK) {
@@ -64,9 +45,9 @@ pub fn write(records: &[Record], sample: Sample, out: &mut impl Write) -> Result
         for i in block * BLOCK..((block + 1) * BLOCK).min(first.values.len()) {
             for (trace, scale) in traces.iter().zip(&scales.channels) {
                 let value = trace.values[i] / scale.factor;
-                match sample {
-                    Sample::Float32 => bytes.extend((value as f32).to_le_bytes()),
-                    Sample::Float64 => bytes.extend(value.to_le_bytes()),
+                match precision {
+                    Precision::Single => bytes.extend((value as f32).to_le_bytes()),
+                    Precision::Double => bytes.extend(value.to_le_bytes()),
                 }
             }
         }
@@ -103,21 +84,21 @@ fn checked(record: &Record) -> Result<&Trace> {
 /// Full scale: the power of two at or next above the largest magnitude.
 fn scale(trace: &Trace) -> Scale {
     let largest = trace.values.iter().fold(0.0f64, |max, v| max.max(v.abs()));
-    // The exponent bits of a double count from 1, for 2⁻¹⁰²², to 2046, for 2¹⁰²³.
-    let power = |exponent: u64| f64::from_bits(exponent.clamp(1, 2046) << 52);
-    let below = power(largest.to_bits() >> 52);
-    let factor = match largest {
-        0.0 => 1.0,
-        max if max <= below => below,
-        max => power((max.to_bits() >> 52) + 1),
-    };
+    let mut factor = 1.0;
+    while factor < largest && factor < 2f64.powi(1023) {
+        factor *= 2.0;
+    }
+    while largest > 0.0 && 0.5 * factor >= largest && factor > f64::MIN_POSITIVE {
+        factor *= 0.5;
+    }
     Scale { factor, unit: trace.meta.unit.symbol().to_owned(), name: trace.meta.name.clone() }
 }
 
 /// Everything before the samples.
-fn head(scales: &Scales, rate: u32, frames: usize, sample: Sample) -> Result<Vec<u8>> {
+fn head(scales: &Scales, rate: u32, frames: usize, precision: Precision) -> Result<Vec<u8>> {
     let channels = scales.channels.len();
-    let frame = channels * sample.bytes();
+    let bytes = if precision == Precision::Single { 4 } else { 8 };
+    let frame = channels * bytes;
     let too_large = || {
         Error::refused(format!(
             "{frames} frames of {channels} channel(s) are more than a wave file holds (4 GiB)"
@@ -131,7 +112,7 @@ fn head(scales: &Scales, rate: u32, frames: usize, sample: Sample) -> Result<Vec
     format.extend(rate.to_le_bytes());
     format.extend(rate.saturating_mul(frame as u32).to_le_bytes());
     format.extend(short(frame)?.to_le_bytes());
-    format.extend((8 * sample.bytes() as u16).to_le_bytes());
+    format.extend((8 * bytes as u16).to_le_bytes());
     format.extend(0u16.to_le_bytes());
     let mut comment = scales.to_string().into_bytes();
     comment.push(0);

@@ -2,7 +2,6 @@
 
 use super::{Layout, field};
 use std::fmt::Write as _;
-use std::io::Write;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{ADDED_DECAY, Axis, AxisKind, FROM_BLOWS, Meta, Record, Scaling, Spectrum};
 
@@ -52,25 +51,18 @@ impl Header {
         Header { id, point, function: function(record, before) }
     }
 
-    /// Writes delimiter, number line and header; `bytes` is the size of binary values, `start` and `step` stand in record 7.
-    pub fn write(
-        &self,
-        out: &mut impl Write,
+    /// Delimiter, number line and header; `bytes` is the size of binary values, `start` and `step` stand in record 7.
+    pub fn text(
+        self,
         layout: Layout,
         bytes: Option<usize>,
         [start, step]: &[String; 2],
         record: &Record,
-    ) -> std::io::Result<()> {
-        writeln!(out, "{:80}", "    -1")?;
+    ) -> String {
         let number = bytes.map_or_else(
             || "    58".to_owned(),
             |bytes| format!("    58b{:6}{:6}{:12}{bytes:12}{:6}{:6}{:12}{:12}", 1, 2, 11, 0, 0, 0, 0),
         );
-        writeln!(out, "{number:80}")?;
-        for line in &self.id {
-            writeln!(out, "{:80}", text(line, 80))?;
-        }
-        writeln!(out, "{:80}", format!("{:5}{}", self.function, self.point))?;
         let kind = match (layout.complex, layout.double) {
             (false, false) => 2,
             (false, true) => 4,
@@ -78,13 +70,18 @@ impl Header {
             (true, true) => 6,
         };
         let even = u8::from(layout.even);
-        let form = format!("{kind:10}{:10}{even:10}{start}{step}{}", record.len(), field(0.0, 13, 6));
-        writeln!(out, "{form:80}")?;
         let [above, below] = ordinate(record.meta());
-        for line in [abscissa(record.axis()), above, below, Characteristics::default()] {
-            writeln!(out, "{:80}", line.line())?;
-        }
-        Ok(())
+        let ends = [
+            format!("{:5}{}", self.function, self.point),
+            format!("{kind:10}{:10}{even:10}{start}{step}{}", record.len(), field(0.0, 13, 6)),
+            abscissa(record.axis()),
+            above,
+            below,
+            characteristics(0, "", ""),
+        ];
+        let id = self.id.iter().map(|line| text(line, 80));
+        let lines = ["    -1".to_owned(), number].into_iter().chain(id).chain(ends);
+        lines.map(|line| format!("{line:80}")).collect::<Vec<_>>().join("\n") + "\n"
     }
 }
 
@@ -123,60 +120,40 @@ fn scaling_line(spectrum: &Spectrum) -> Option<String> {
     Some(line)
 }
 
-/// Records 8 to 11.
-#[derive(Default)]
-struct Characteristics {
-    data_type: u8,
-    label: String,
-    unit: String,
+/// One of the records 8 to 11.
+fn characteristics(data_type: u8, label: &str, unit: &str) -> String {
+    format!("{data_type:10}{:5}{:5}{:5} {:20} {:20}", 0, 0, 0, text(label, 20), text(unit, 20))
 }
 
-impl Characteristics {
-    fn new(data_type: u8, label: &str, unit: &str) -> Self {
-        Characteristics { data_type, label: label.to_owned(), unit: unit.to_owned() }
-    }
-
-    fn line(&self) -> String {
-        format!(
-            "{:10}{:5}{:5}{:5} {:20} {:20}",
-            self.data_type,
-            0,
-            0,
-            0,
-            text(&self.label, 20),
-            text(&self.unit, 20)
-        )
-    }
-}
-
-fn abscissa(axis: &Axis) -> Characteristics {
+fn abscissa(axis: &Axis) -> String {
     match &axis.kind {
-        AxisKind::Time => Characteristics::new(17, "time", "s"),
-        AxisKind::Frequency => Characteristics::new(18, "frequency", "Hz"),
-        AxisKind::Index => Characteristics::new(0, "index", ""),
-        AxisKind::Other(name) => Characteristics::new(0, name, ""),
+        AxisKind::Time => characteristics(17, "time", "s"),
+        AxisKind::Frequency => characteristics(18, "frequency", "Hz"),
+        AxisKind::Index => characteristics(0, "index", ""),
+        AxisKind::Other(name) => characteristics(0, name, ""),
     }
 }
 
 /// Records 9 and 10.
-fn ordinate(meta: &Meta) -> [Characteristics; 2] {
-    let of = |quantity: Quantity, data_type: u8| {
-        Characteristics::new(data_type, quantity.name(), &unit_text(&Unit::of(quantity)))
+fn ordinate(meta: &Meta) -> [String; 2] {
+    let of = |quantity: Quantity| {
+        let data_type = match quantity {
+            Quantity::Displacement => 8,
+            Quantity::Velocity => 11,
+            Quantity::Acceleration => 12,
+            Quantity::Force => 13,
+            Quantity::Pressure => 15,
+            Quantity::Mass => 16,
+            _ => 0,
+        };
+        characteristics(data_type, quantity.name(), &unit_text(&Unit::of(quantity)))
     };
-    let none = Characteristics::default();
-    let over_force = |quantity, data_type| [of(quantity, data_type), of(Quantity::Force, 13)];
     match meta.unit.quantity() {
-        Quantity::Receptance => over_force(Quantity::Displacement, 8),
-        Quantity::Mobility => over_force(Quantity::Velocity, 11),
-        Quantity::Accelerance => over_force(Quantity::Acceleration, 12),
-        Quantity::Displacement => [of(Quantity::Displacement, 8), none],
-        Quantity::Velocity => [of(Quantity::Velocity, 11), none],
-        Quantity::Acceleration => [of(Quantity::Acceleration, 12), none],
-        Quantity::Force => [of(Quantity::Force, 13), none],
-        Quantity::Pressure => [of(Quantity::Pressure, 15), none],
-        Quantity::Mass => [of(Quantity::Mass, 16), none],
-        Quantity::Other => [Characteristics::new(0, "", &unit_text(&meta.unit)), none],
-        named => [of(named, 0), none],
+        Quantity::Receptance => [of(Quantity::Displacement), of(Quantity::Force)],
+        Quantity::Mobility => [of(Quantity::Velocity), of(Quantity::Force)],
+        Quantity::Accelerance => [of(Quantity::Acceleration), of(Quantity::Force)],
+        Quantity::Other => [characteristics(0, "", &unit_text(&meta.unit)), characteristics(0, "", "")],
+        named => [of(named), characteristics(0, "", "")],
     }
 }
 

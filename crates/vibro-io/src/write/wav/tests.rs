@@ -8,7 +8,7 @@ fn trace(name: &str, unit: &str, axis: Axis, values: Vec<f64>) -> Record {
     Record::Trace(Trace { meta: Meta::new(name, Unit::parse_or_opaque(unit).si()), axis, values })
 }
 
-fn bytes(records: &[Record], sample: Sample) -> Vec<u8> {
+fn bytes(records: &[Record], sample: Precision) -> Vec<u8> {
     let mut out = Vec::new();
     write(records, sample, &mut out).unwrap();
     out
@@ -31,7 +31,7 @@ fn another_reader_finds_values_within_full_scale() {
         trace("v", "m/s", axis.clone(), vec![0.0, -12.0, 3.0]),
         trace("x", "m", axis, vec![1e-6, 0.0, -0.5e-6]),
     ];
-    let file = bytes(&records, Sample::Float32);
+    let file = bytes(&records, Precision::Single);
     let mut reader = hound::WavReader::new(file.as_slice()).unwrap();
     let spec = reader.spec();
     assert_eq!((spec.channels, spec.sample_rate, spec.bits_per_sample), (2, 8000, 32));
@@ -43,7 +43,7 @@ fn another_reader_finds_values_within_full_scale() {
 
 #[test]
 fn the_comment_undoes_the_scaling_with_a_doubt() {
-    let file = bytes(&[trace("v", "m/s", Axis::time(0.5, 0.001, 2), vec![3.0, -1.0])], Sample::Float32);
+    let file = bytes(&[trace("v", "m/s", Axis::time(0.5, 0.001, 2), vec![3.0, -1.0])], Precision::Single);
     let traces = back(&file);
     assert_eq!((traces[0].values.as_slice(), traces[0].meta.unit.symbol()), ([3.0, -1.0].as_slice(), "m/s"));
     assert_eq!((traces[0].meta.name.as_str(), traces[0].axis.start()), ("v", 0.5));
@@ -53,7 +53,7 @@ fn the_comment_undoes_the_scaling_with_a_doubt() {
         traces[0].meta.findings
     );
     // Without a calibration before there is none afterwards.
-    let file = bytes(&[trace("v", "FS", Axis::time(0.0, 0.001, 1), vec![3.0])], Sample::Float32);
+    let file = bytes(&[trace("v", "FS", Axis::time(0.0, 0.001, 1), vec![3.0])], Precision::Single);
     assert_eq!(
         (back(&file)[0].values[0], back(&file)[0].meta.findings.clone()),
         (3.0, vec![vibro_record::Finding::caution("uncalibrated")])
@@ -64,7 +64,7 @@ fn the_comment_undoes_the_scaling_with_a_doubt() {
 fn what_a_wave_file_cannot_hold_is_refused_with_the_reason() {
     let refused = |records: &[Record]| {
         let mut out = Vec::new();
-        let error = write(records, Sample::Float32, &mut out).unwrap_err();
+        let error = write(records, Precision::Single, &mut out).unwrap_err();
         assert!(out.is_empty() && error.exit_code() == 1);
         error.to_string()
     };
@@ -89,9 +89,9 @@ fn what_a_wave_file_cannot_hold_is_refused_with_the_reason() {
 fn a_size_beyond_four_gigabytes_is_refused() {
     let channels = vec![Scale { factor: 1.0, unit: "m".into(), name: "a".into() }; 2];
     let scales = Scales { rate: 1.0, start: 0.0, channels };
-    assert!(head(&scales, 1, 500_000_000, Sample::Float32).is_ok());
+    assert!(head(&scales, 1, 500_000_000, Precision::Single).is_ok());
     for frames in [600_000_000, usize::MAX] {
-        let error = head(&scales, 1, frames, Sample::Float32).unwrap_err().to_string();
+        let error = head(&scales, 1, frames, Precision::Single).unwrap_err().to_string();
         assert!(error.contains("4 GiB"), "{error}");
     }
 }
@@ -122,7 +122,7 @@ proptest! {
     ) {
         let axis = Axis::time(start, 1.0 / rate, columns[0].len());
         let records: Vec<Record> = columns.into_iter().map(|v| trace(name.trim(), "m/s²", axis.clone(), v)).collect();
-        for sample in [Sample::Float32, Sample::Float64] {
+        for sample in [Precision::Single, Precision::Double] {
             let traces = back(&bytes(&records, sample));
             prop_assert_eq!(traces.len(), records.len());
             for (record, is) in records.iter().zip(&traces) {
@@ -140,9 +140,9 @@ proptest! {
                     // Half an ulp of a float of the value, or half the smallest one; a double loses only what is
                     // below the smallest double when divided by full scale.
                     let bound = match sample {
-                        Sample::Float32 => a.abs() * 2f64.powi(-24) + factor * 2f64.powi(-150),
-                        Sample::Float64 if factor > 1.0 => factor * 5e-324,
-                        Sample::Float64 => 0.0,
+                        Precision::Single => a.abs() * 2f64.powi(-24) + factor * 2f64.powi(-150),
+                        Precision::Double if factor > 1.0 => factor * 5e-324,
+                        Precision::Double => 0.0,
                     };
                     prop_assert!((a - b).abs() <= bound, "{a} {b} {factor}");
                 }

@@ -1,0 +1,254 @@
+//! What record a data set 58 becomes: axis, kind, scaling, unit, and the findings about each.
+
+use super::codes::{self, Kind};
+use super::heading::{self, Heading};
+use super::ordinate::{Ordinate, System};
+use super::values::Layout;
+use crate::assemble::{self, Spectral, from_values, to_si};
+use crate::{Options, missing};
+use num_complex::Complex64;
+use vibro_record::units::{Quantity, Unit};
+use vibro_record::{Axis, AxisKind, Error, Finding, Grid, Meta, Record, Result, Scaling, Values, Window};
+
+/// The record of the `numbers` that stand behind a heading; `more` findings are about how they stand there.
+///
+/// # Errors
+/// If values are complex over time, or one is beyond all numbers in SI units.
+pub fn build(
+    heading: &Heading,
+    numbers: Vec<f64>,
+    more: Vec<Finding>,
+    system: &System,
+    options: &Options,
+    file: &str,
+) -> Result<Record> {
+    let mut meta = Meta::new(heading.name(), Unit::none());
+    for (i, line) in heading.id.iter().enumerate().filter(|(_, line)| !line.is_empty()) {
+        meta.notes.push((format!("id line {}", i + 1), line.clone()));
+    }
+    meta.notes.push(("record 6".to_owned(), heading.record6.clone()));
+    meta.notes.push(("point".to_owned(), heading.name()));
+    meta.declared_n = Some(heading.n);
+    meta.step("read", &[("file", &file), ("format", &"uff"), ("case", &heading.layout.case())]);
+    let mut said = stated(&heading.id[4]);
+    let coherence = codes::function(heading.function).2 == Kind::Scaled(Scaling::Coherence)
+        || said.scaling == Some(Scaling::Coherence);
+    let factor = unit(heading, system, options, coherence, &mut meta);
+    let (kind, abscissa_factor) = abscissa(heading, options, &mut meta);
+    if heading.layout.complex && kind == AxisKind::Time {
+        let expected = "complex values over frequency, or real values over time";
+        return Err(Error::input(heading.place.clone(), "complex values over time", expected)
+            .hint("export real and imaginary part as two real data sets"));
+    }
+    function(heading, &kind, &mut said, &mut meta);
+    let missing = numbers.iter().filter(|v| v.is_nan()).count();
+    let (mut stored, mut values) = split(numbers, heading.layout);
+    for x in &mut stored {
+        *x *= abscissa_factor;
+    }
+    let n = values.len();
+    if n < heading.n {
+        meta.found(Finding::caution("fewer-values").count("declared", heading.n).count("n", n));
+    } else if n == 0 {
+        meta.found(Finding::caution("no-values-declared"));
+    }
+    meta.findings.extend(missing::kept(missing).into_iter().chain(more));
+    let even =
+        heading.layout.even.then_some((heading.start * abscissa_factor, heading.step * abscissa_factor));
+    let axis = axis(kind, even, stored, n, options, &mut meta);
+    to_si(&mut values, factor)?;
+    Ok(assemble::record(meta, axis, values, said))
+}
+
+/// Abscissa values, where they are stored, and the values of whole points.
+fn split(numbers: Vec<f64>, layout: Layout) -> (Vec<f64>, Values) {
+    let complex = |re: &f64, im: &f64| Complex64::new(*re, *im);
+    let (pairs, triples) = (numbers.as_chunks::<2>().0.iter(), numbers.as_chunks::<3>().0.iter());
+    match (layout.complex, layout.even) {
+        (false, true) => (Vec::new(), Values::Real(numbers)),
+        (false, false) => {
+            (pairs.clone().map(|p| p[0]).collect(), Values::Real(pairs.map(|p| p[1]).collect()))
+        }
+        (true, true) => (Vec::new(), Values::Complex(pairs.map(|[re, im]| complex(re, im)).collect())),
+        (true, false) => (
+            triples.clone().map(|p| p[0]).collect(),
+            Values::Complex(triples.map(|[_, re, im]| complex(re, im)).collect()),
+        ),
+    }
+}
+
+/// What this crate's own writer puts into the fifth identification line: `scaling rms; window hann; enbw 1.5`.
+fn stated(line: &str) -> Spectral {
+    let mut stated = Spectral::default();
+    let parts = line.split("; ").filter_map(|part| part.split_once(' '));
+    for (key, value) in parts.filter(|_| line.starts_with("scaling ")) {
+        match key {
+            "scaling" => stated.scaling = assemble::scaling(value).filter(|s| *s != Scaling::Unknown),
+            "window" => stated.window = Window::from_name(value),
+            "enbw" => stated.enbw = value.parse().ok(),
+            _ => {}
+        }
+    }
+    stated
+}
+
+/// What the function type says of a record over this abscissa; where the two disagree, the abscissa decides.
+fn function(heading: &Heading, axis: &AxisKind, said: &mut Spectral, meta: &mut Meta) {
+    let (name, usual, kind) = codes::function(heading.function);
+    if *axis == AxisKind::Time || (*axis != AxisKind::Frequency && !heading.layout.complex) {
+        let plain = matches!(heading.function, 0 | 1) && !matches!(axis, AxisKind::Other(_));
+        if *axis == AxisKind::Time && usual == Some(AxisKind::Frequency) {
+            meta.found(Finding::caution("function-over-time").name("function", name));
+        } else if !plain {
+            meta.found(Finding::caution("function-as-trace").name("function", name));
+        }
+    } else if said.scaling.is_none() {
+        let doubt = |found: Finding| Some(found.name("function", name.as_str()));
+        (said.scaling, said.doubt) = match kind {
+            Kind::Scaled(scaling) => (Some(scaling), None),
+            Kind::Ratio if heading.layout.complex => (None, None),
+            Kind::Ratio => (Some(Scaling::Unknown), doubt(Finding::caution("function-real-only"))),
+            Kind::Squared => (Some(Scaling::Unknown), doubt(Finding::caution("scaling-unsaid-squared"))),
+            Kind::Amplitude => (Some(Scaling::Unknown), None),
+            Kind::Other => (Some(Scaling::Unknown), doubt(Finding::caution("function-as-spectrum"))),
+        };
+        said.frf = kind == Kind::Ratio && heading.layout.complex;
+    }
+}
+
+/// Kind of the abscissa and factor to s or Hz.
+fn abscissa(heading: &Heading, options: &Options, meta: &mut Meta) -> (AxisKind, f64) {
+    let axis = &heading.abscissa;
+    let unit = Unit::parse_or_opaque(&axis.unit);
+    let by_unit = match unit.quantity() {
+        Quantity::Time => Some(AxisKind::Time),
+        Quantity::Frequency | Quantity::AngularVelocity => Some(AxisKind::Frequency),
+        _ => None,
+    };
+    let by_type = match axis.data_type {
+        17 => Some(AxisKind::Time),
+        18 => Some(AxisKind::Frequency),
+        0 | 1 => None,
+        _ => return (AxisKind::Other(axis.described()), 1.0),
+    };
+    let Some(kind) = by_unit else {
+        return match by_type {
+            Some(kind) => {
+                if !axis.unit.is_empty() {
+                    let assumed = Finding::caution("axis-unit-unknown").name("column", "abscissa");
+                    let si = if kind == AxisKind::Time { "s" } else { "Hz" };
+                    meta.found(assumed.name("said", axis.unit.as_str()).name("unit", si));
+                }
+                (kind, 1.0)
+            }
+            None if axis.label.is_empty() && axis.unit.is_empty() => {
+                (by_function(heading, options, meta), 1.0)
+            }
+            None => (by_label(axis), 1.0),
+        };
+    };
+    if let Some(other) = by_type.filter(|other| *other != kind) {
+        let shown = |kind: &AxisKind| if *kind == AxisKind::Time { "time" } else { "frequency" };
+        let differs = Finding::caution("abscissa-type-against-unit").name("type", shown(&other));
+        meta.found(differs.name("unit", axis.unit.as_str()).name("quantity", shown(&kind)));
+    }
+    if unit.quantity() == Quantity::AngularVelocity {
+        meta.found(Finding::note("axis-angular").name("column", "abscissa"));
+    }
+    (kind, unit.hertz().unwrap_or(unit.factor()))
+}
+
+/// Kind of an abscissa without data type or unit.
+fn by_label(axis: &heading::Axis) -> AxisKind {
+    match axis.label.to_lowercase() {
+        label if !axis.unit.is_empty() || label.is_empty() => AxisKind::Other(axis.described()),
+        label if label.contains("time") => AxisKind::Time,
+        label if label.contains("freq") => AxisKind::Frequency,
+        label if label.contains("index") => AxisKind::Index,
+        _ => AxisKind::Other(axis.described()),
+    }
+}
+
+/// Kind of an abscissa of which the file says nothing.
+fn by_function(heading: &Heading, options: &Options, meta: &mut Meta) -> AxisKind {
+    let (name, usual, _) = codes::function(heading.function);
+    if let Some(kind) = usual {
+        let shown = if kind == AxisKind::Time { "time in s" } else { "frequency in Hz" };
+        meta.found(Finding::caution("abscissa-by-function").name("function", name).name("quantity", shown));
+        return kind;
+    }
+    if options.rate.is_some() {
+        return AxisKind::Time;
+    }
+    meta.found(Finding::caution("axis-kind-unsaid").name("column", "abscissa"));
+    AxisKind::Index
+}
+
+/// The axis of `n` values with this start and step, or with `stored` instants. A step that is given wins; a step that is no
+/// step leaves numbered values.
+fn axis(
+    kind: AxisKind,
+    even: Option<(f64, f64)>,
+    stored: Vec<f64>,
+    n: usize,
+    options: &Options,
+    meta: &mut Meta,
+) -> Axis {
+    if options.base_band.is_some() && kind == AxisKind::Frequency {
+        meta.found(Finding::caution("band-unused"));
+    }
+    let (start, step) = match (options.rate.filter(|_| kind == AxisKind::Time), even) {
+        (Some(rate), _) => {
+            let (start, step) = even.unzip();
+            let said = 1.0 / rate;
+            // Record 7 prints six digits.
+            if step.is_none_or(|step| (step / said - 1.0).abs() > 1e-5) {
+                let found = match step {
+                    Some(step) => Finding::caution("rate-overrides-step").number("step", step),
+                    None => Finding::caution("rate-overrides-instants"),
+                };
+                meta.found(found.number("rate", rate));
+            }
+            (start.unwrap_or(0.0), said)
+        }
+        (None, Some(even)) => even,
+        // Lines of a spectrum are used one by one and keep their frequencies.
+        (None, None) if kind != AxisKind::Time => return Axis { kind, grid: Grid::Uneven(stored) },
+        (None, None) => {
+            // Half a unit in the last of six digits, which is more than the rounding of single precision.
+            let largest = stored.iter().fold(0.0f64, |max, x| max.max(x.abs()));
+            let resolution = 0.5e-5 * 10f64.powf(largest.max(f64::MIN_POSITIVE).log10().floor());
+            let (axis, found) = from_values(kind, stored, resolution, "abscissa");
+            meta.findings.extend(found);
+            return axis;
+        }
+    };
+    if step > 0.0 && step.is_finite() && start.is_finite() {
+        return Axis { kind, grid: Grid::Even { start, step, n } };
+    }
+    meta.found(Finding::caution("increment-impossible").number("step", step));
+    Axis::index(n)
+}
+
+/// Settles unit and quantity; gives the factor to SI.
+fn unit(heading: &Heading, system: &System, options: &Options, coherence: bool, meta: &mut Meta) -> f64 {
+    let Ordinate { unit, factor, written, findings } = Ordinate::of(heading, system);
+    // A coherence has none, whatever that of the function beside it is.
+    if let Some(said) = options.unit.as_ref().filter(|_| !coherence) {
+        if unit.is_known() && (unit.dimension() != said.dimension() || factor != said.factor()) {
+            let differs = Finding::caution("unit-overrides-file").name("file", written);
+            meta.found(differs.name("used", said.symbol()));
+        }
+        return meta.adopt_unit(said.symbol());
+    }
+    for found in findings {
+        meta.found(found);
+    }
+    if factor != 1.0 {
+        let from = if written.is_empty() { "data set 164" } else { &written };
+        meta.step("to_si", &[("from", &from), ("factor", &factor)]);
+    }
+    meta.quantity = unit.quantity();
+    meta.unit = unit;
+    factor
+}
