@@ -102,17 +102,12 @@ fn needed<T>(key: &'static str, value: Option<T>) -> Result<T> {
     value.ok_or_else(lacks)
 }
 
-/// A drill names its channels by keys of its own.
+/// A drill names its channels, and what they measure, by keys of its own.
 fn own_channels(channel: &Channel) -> Result<()> {
-    match (&channel.channel, channel.calibration) {
-        (Some(_), _) => {
-            Err(Error::usage("a drill has several channels", "velocity and reference").setting("channel"))
-        }
-        (None, Some(_)) => {
-            Err(Error::usage("a drill has no calibration", "a sensitivity").setting("calibration"))
-        }
-        (None, None) => Ok(()),
-    }
+    let stated = [("channel", channel.channel.is_some()), ("calibration", channel.calibration.is_some())];
+    stated.into_iter().find(|(_, stated)| *stated).map_or(Ok(()), |(key, _)| {
+        Err(Error::usage(format!("a {key} of a drill"), "velocity, reference and sensitivity").setting(key))
+    })
 }
 
 impl Keys {

@@ -55,8 +55,6 @@ use vibro_record::{Error, Finding, Result};
 
 /// Turns that are drawn as they were measured.
 const DRAWN: usize = 3;
-/// Most samples that are kept for it.
-const MOST_DRAWN: usize = 1 << 16;
 
 /// Channels of one record.
 #[derive(Debug, Clone, PartialEq)]
@@ -115,9 +113,9 @@ pub fn drill_each(
             each(&cycles.average(smooth, &states, number, turn))?;
         }
     }
-    let (hidden, averaged) = (jumps.hidden, cycles.stroke.len());
+    let (hidden, gap, averaged) = (jumps.hidden, jumps.gap, cycles.stroke.len());
     let (mut impacts, residuals) = jumps.finish(rate, edge);
-    let groups = groups::groups(&mut impacts, &residuals, averaged, options);
+    let groups = groups::groups(&mut impacts, &residuals, gap, averaged, options);
     let strongest = groups.first();
     let average = cycles.phases();
     let (speed, speed_wanders) = turns.speed(rate, edge);
@@ -151,7 +149,6 @@ pub fn drill_each(
         before: strongest.map(|g| g.before.clone()),
         after: strongest.map(|g| g.after.clone()),
         phase: strongest.map(|g| g.phase.clone()),
-        phase_variation: strongest.and_then(|g| g.phase_variation),
         energy: strongest.and_then(|g| g.energy.clone()),
         energy_given: strongest.and_then(|g| g.energy_given.clone()),
         restitution: strongest.and_then(|g| g.restitution.clone()),
@@ -166,7 +163,6 @@ pub fn drill_each(
         },
         average,
         dropouts: faults.dropouts,
-        spikes: faults.spikes,
         faults,
         bandwidth: cycles.bandwidth(),
         noise_floor,
@@ -218,16 +214,11 @@ fn check(record: &Slices<'_>) -> Result<()> {
 
 /// Edges and turns in the clock of the velocity of so many samples, which comes `delay` samples late.
 fn turns(reference: &[f64], samples: usize, options: &DrillOptions, delay: f64) -> Result<(Edges, Turns)> {
+    let (low, high) = levels(reference).unwrap_or((f64::NAN, f64::NAN));
     // A stated level stands in the middle; the nearer of both levels gives the height.
-    let around = |(low, high): (f64, f64)| match options.level {
-        Some(level) => {
-            let half = (level - low).min(high - level);
-            (level - half, level + half)
-        }
-        None => (low, high),
-    };
-    let levels = levels(reference).map_or((f64::NAN, f64::NAN), around);
-    let mut edges = Edges::of(reference, levels, options.edge);
+    let middle = options.level.unwrap_or(0.5 * (low + high));
+    let half = (middle - low).min(high - middle);
+    let mut edges = Edges::of(reference, (middle - half, middle + half), options.edge);
     let last = samples.saturating_sub(1) as f64;
     edges.at.iter_mut().for_each(|edge| *edge += delay);
     edges.at.retain(|edge| (0.0..=last).contains(edge));
@@ -240,7 +231,7 @@ fn excerpt(turns: &[Turn], velocity: &[f64], reference: &[f64], delay: f64) -> (
     let first = turns.len().saturating_sub(DRAWN) / 2;
     let shown = &turns[first..(first + DRAWN).min(turns.len())];
     let from = shown.first().map_or(0, |t| t.start as usize);
-    let to = shown.last().map_or(0, |t| t.end as usize + 1).min(from + MOST_DRAWN);
+    let to = shown.last().map_or(0, |t| t.end as usize + 1);
     let earlier = |i: usize| i.saturating_add_signed((-delay).round() as isize);
     let beside = reference.iter().take(earlier(to)).skip(earlier(from));
     (from, velocity[from..to].to_vec(), beside.copied().collect())

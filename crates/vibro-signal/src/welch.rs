@@ -3,10 +3,6 @@
 //! Segments are read, transformed on all cores and averaged as they come, so that memory does not grow with the record. Sums
 //! are formed in a fixed order: the same record gives the same digits on any number of cores.
 
-mod stream;
-
-pub use stream::Stream;
-
 use super::fft::{Transform, Workspace};
 use super::segment::{Batches, Segments};
 use super::sound::constant;

@@ -83,10 +83,12 @@ fn marks(
         let own = thin(&own, MARKERS);
         marked += own.len();
         let of = if drill.groups.len() > 1 { format!(", group {number}") } else { String::new() };
-        let sides: [(&str, fn(&Impact) -> f64); 2] = [("before", |i| i.before), ("after", |i| i.after)];
-        for ((side, speed), (ink, marker)) in sides.into_iter().zip(*forms).filter(|_| !own.is_empty()) {
+        if own.is_empty() {
+            continue;
+        }
+        for (side, (ink, marker)) in ["before", "after"].into_iter().zip(*forms) {
             let x: Vec<f64> = own.iter().map(&x).collect();
-            let y: Vec<f64> = own.iter().map(speed).collect();
+            let y: Vec<f64> = own.iter().map(|i| if side == "before" { i.before } else { i.after }).collect();
             plot = plot.with(Series::points(format!("{side} impact{of}"), x, y).ink(ink).marker(marker));
         }
     }
@@ -140,18 +142,16 @@ fn floor(name: &str, drill: &Drill) -> Option<Figure> {
                 .stroke(Stroke::Thin)
                 .ink(Ink::Grey),
         );
-    let bands: Vec<String> = floor.bands.iter().map(|b| format!("{:.0} to {:.0} Hz", b[0], b[1])).collect();
     // The end of the widest band is the one that is asked for.
     let widest = floor.bands.iter().max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
     if let Some(band) = widest {
         plot = plot.with(Series::vertical(format!("{} dB margin ends", floor.margin), band[1]));
     }
-    let few = bands.iter().take(3).cloned().collect::<Vec<_>>().join(", ");
     Some(Figure::double(format!("Motion and noise, {name}")).panel(plot).caption(format!(
-        "RMS of lines {:.1} Hz wide. Motion stands {} dB or more above the noise in {} bands, first {few}.",
+        "RMS of lines {:.1} Hz wide. Motion stands {} dB or more above the noise in {} bands.",
         floor.line_width,
         floor.margin,
-        bands.len()
+        floor.bands.len()
     )))
 }
 

@@ -37,7 +37,7 @@ pub fn drill(name: &str, d: &Drill) -> Table {
         count("impacts over-range", d.clipped, d.impacts.len());
     }
     count("drop-outs", d.dropouts, d.faults.bridged + d.faults.lost);
-    count("spikes", d.spikes, d.spikes);
+    count("spikes", d.faults.spikes, d.faults.spikes);
     if let Some(e) = &d.exposure {
         row("a_hv", Cell::from(&e.a_hv), "m/s²", e.a_hv.n);
         if let Some(a8) = &e.a8 {

@@ -153,7 +153,7 @@ fn uncertainties_of_a_drill_are_true(draws: Draws) {
     for seed in 1..=draws.of(RECORDS) {
         let Case { machine, run, dropouts, found } = case(seed);
         assert_eq!(found.dropouts, dropouts, "seed {seed}");
-        assert_eq!((found.spikes, found.faults.clipped, found.faults.lost), (0, 0, 0), "seed {seed}");
+        assert_eq!((found.faults.spikes, found.faults.clipped, found.faults.lost), (0, 0, 0), "seed {seed}");
         speed.estimate(&found.speed, machine.speed);
         let m = &machine;
         let after = m.before * m.rebound;

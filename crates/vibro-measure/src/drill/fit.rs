@@ -1,6 +1,7 @@
 //! Parabolas on both sides of a contact, and what they leave.
 
 use super::faults::State;
+use nalgebra::{Matrix3, Vector3};
 use std::ops::RangeInclusive;
 
 /// Fewest samples of a fit: twice its parameters.
@@ -45,25 +46,19 @@ impl Parabola {
         if n < FEWEST || 3 * n < 2 * part.len() {
             return None;
         }
-        let (mut s, mut t) = ([0.0; 5], [0.0; 3]);
+        let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
         for (_, x, y) in good() {
-            let powers = [1.0, x, x * x, x * x * x, x * x * x * x];
-            s.iter_mut().zip(powers).for_each(|(s, power)| *s += power);
-            t.iter_mut().zip(powers).for_each(|(t, power)| *t += power * y);
+            let powers = Vector3::new(1.0, x, x * x);
+            normal += powers * powers.transpose();
+            right += powers * y;
         }
-        // Inverse of the normal matrix by cofactors; its first row gives the value.
-        let c = [s[2] * s[4] - s[3] * s[3], s[2] * s[3] - s[1] * s[4], s[1] * s[3] - s[2] * s[2]];
-        let det = s[0] * c[0] + s[1] * c[1] + s[2] * c[2];
-        let c11 = s[0] * s[4] - s[2] * s[2];
-        let c12 = s[1] * s[2] - s[0] * s[3];
-        let c22 = s[0] * s[2] - s[1] * s[1];
-        let value = (c[0] * t[0] + c[1] * t[1] + c[2] * t[2]) / det;
-        let slope = (c[1] * t[0] + c11 * t[1] + c12 * t[2]) / det;
-        let bend = (c[2] * t[0] + c12 * t[1] + c22 * t[2]) / det;
+        // The first row of the inverse gives the value.
+        let inverse = normal.try_inverse()?;
+        let fitted = inverse * right;
         let mut residuals = vec![0.0; part.len()];
-        good().for_each(|(k, x, y)| residuals[k] = y - value - x * (slope + x * bend));
+        good().for_each(|(k, x, y)| residuals[k] = y - fitted[0] - x * (fitted[1] + x * fitted[2]));
         let squares = residuals.iter().map(|r| r * r).sum();
-        let (leverage, freedom) = (c[0] / det, n as f64 - 3.0);
+        let (value, leverage, freedom) = (fitted[0], inverse[(0, 0)], n as f64 - 3.0);
         value.is_finite().then_some(Parabola { value, leverage, squares, freedom, residuals })
     }
 

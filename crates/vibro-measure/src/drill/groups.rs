@@ -1,7 +1,7 @@
 //! Impacts that belong together, those of one direction: their means and their restitution.
 
 use super::DrillOptions;
-use super::jumps::Residuals;
+use super::fit::LackOfFit;
 use crate::Estimate;
 use crate::mean::Mean;
 use serde::Serialize;
@@ -58,8 +58,6 @@ pub struct Group {
     pub share: f64,
     /// Mean phase in turns after the edge, on the circle; no uncertainty where impacts come all round the turn.
     pub phase: Estimate,
-    /// Standard deviation of the phase from impact to impact, in turns.
-    pub phase_variation: Option<f64>,
     /// Mean velocity before, in m/s.
     pub before: Estimate,
     /// Mean velocity after, in m/s.
@@ -78,10 +76,12 @@ pub struct Group {
     pub(super) wanders: bool,
 }
 
-/// Groups of impacts found in `turns` turns, the strongest first; each impact gets its group.
+/// Groups of impacts found in `turns` turns, the strongest first; each impact gets its group. `residuals` are those of their fits, which end
+/// `gap` samples from the middle of the contact.
 pub(super) fn groups(
     impacts: &mut [Impact],
-    residuals: &Residuals,
+    residuals: &[[Vec<f64>; 2]],
+    gap: usize,
     turns: usize,
     options: &DrillOptions,
 ) -> Vec<Group> {
@@ -97,7 +97,12 @@ pub(super) fn groups(
     }
     let count = if impacts.is_empty() { 0 } else { 1 + usize::from(both) };
     let group = |number| {
-        let mut group = Group::new(impacts, number, residuals, options);
+        let fits = |side: usize, impacts: &[usize]| {
+            let own: Vec<&[f64]> =
+                impacts.iter().filter_map(|k| Some(residuals.get(*k)?[side].as_slice())).collect();
+            LackOfFit::of(&own, gap)
+        };
+        let mut group = Group::new(impacts, number, &fits, options);
         group.share = group.n as f64 / turns as f64;
         if both {
             group.findings = group.findings.into_iter().map(|found| found.count("group", number)).collect();
@@ -109,7 +114,12 @@ pub(super) fn groups(
 
 impl Group {
     /// Means over the impacts of group `number`; those of group 0 go towards the struck mass.
-    fn new(all: &[Impact], number: usize, residuals: &Residuals, options: &DrillOptions) -> Group {
+    fn new(
+        all: &[Impact],
+        number: usize,
+        fits: &dyn Fn(usize, &[usize]) -> Option<LackOfFit>,
+        options: &DrillOptions,
+    ) -> Group {
         let members: Vec<usize> = (0..all.len()).filter(|k| all[*k].group == number).collect();
         // The means are of impacts that the instrument could follow, unless it could follow none.
         let clipped = members.iter().filter(|k| all[**k].clipped).count();
@@ -123,17 +133,15 @@ impl Group {
             let found = Finding::doubt("drill-impacts-over-range");
             findings.push(found.count("n", clipped).count("all", members.len()));
         }
-        let [lack_before, lack_after] = residuals.lack_of_fit(&numbers);
-        let mut open = |side, lack: Option<super::fit::LackOfFit>, mean: &Mean| {
+        let mut open = |side, name, mean: &Mean| {
             // A mean that is moved by less than its scatter leaves open keeps its uncertainty.
-            let moved = lack.filter(|l| mean.std.is_some_and(|std| l.bias > BIAS * std));
+            let moved = fits(side, &numbers).filter(|l| mean.std.is_some_and(|std| l.bias > BIAS * std));
             findings.extend(moved.map(|lack| {
-                Finding::doubt("drill-lack-of-fit").name("side", side).number("residual", lack.residual)
+                Finding::doubt("drill-lack-of-fit").name("side", name).number("residual", lack.residual)
             }));
             clipped > 0 || moved.is_some()
         };
-        let open_before = open("before", lack_before, &before);
-        let open_after = open("after", lack_after, &after);
+        let (open_before, open_after) = (open(0, "before", &before), open(1, "after", &after));
         let open = open_before || open_after;
         let estimate = |mean: Mean, open: bool, unit, method| {
             Estimate::new(mean.value, mean.std.filter(|_| !open), unit, mean.n, method)
@@ -143,7 +151,6 @@ impl Group {
         let (sin, cos) = vectors.fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
         let from = f64::atan2(sin, cos) / TAU - 0.5;
         let along = mean(&|i| (i.phase - from).rem_euclid(1.0));
-        let squares: f64 = own.iter().map(|i| ((i.phase - from).rem_euclid(1.0) - along.value).powi(2)).sum();
         let undirected = along.n > 3 && sin * sin + cos * cos < DIRECTED * along.n as f64;
         if undirected {
             findings.push(Finding::doubt("drill-phase-undirected"));
@@ -156,7 +163,6 @@ impl Group {
             clipped,
             share: f64::NAN,
             phase: estimate(phase, undirected, "1", "turns after the edge, mean over impacts on the circle"),
-            phase_variation: (along.n > 1).then(|| (squares / (along.n - 1) as f64).sqrt()),
             before: estimate(before, open_before, "m/s", "parabola up to the contact, mean over impacts"),
             after: estimate(after, open_after, "m/s", "parabola from the contact on, mean over impacts"),
             energy: options.mass.map(|m| {

@@ -6,7 +6,7 @@
 //! the striker: over 0.5 ms of a 7.5 m/s stroke at 50 Hz by 0.04 m/s.
 
 use super::faults::State;
-use super::fit::{FEWEST, LackOfFit, Parabola};
+use super::fit::{FEWEST, Parabola};
 use super::survey::median;
 use super::turns::Turn;
 use super::{Impact, crossing};
@@ -44,7 +44,8 @@ impl Jump {
 pub(super) struct Jumps<'a> {
     values: &'a [f64],
     states: &'a [State],
-    gap: usize,
+    /// Samples from the end of a fit to the middle of the contact.
+    pub gap: usize,
     length: usize,
     found: Vec<Jump>,
     largest: Vec<f64>,
@@ -63,7 +64,7 @@ impl<'a> Jumps<'a> {
     /// Looks at turn number `cycle`.
     pub fn push(&mut self, cycle: usize, turn: Turn) {
         let (from, to) = (turn.start.ceil() as usize, turn.end.ceil() as usize);
-        let steps = self.steps(from, to);
+        let steps: Vec<f64> = (from..to).map(|i| self.step(i)).collect();
         let mut open = vec![true; steps.len()];
         let top = steps.iter().fold(0.0f64, |a, b| a.max(b.abs()));
         let (mut largest, mut disturbed) = (None, false);
@@ -90,24 +91,12 @@ impl<'a> Jumps<'a> {
         (self.length / 4).max(3)
     }
 
-    /// Difference between the mean behind and the mean before each sample, the contact left out; 0 at the ends of the record.
-    fn steps(&self, from: usize, to: usize) -> Vec<f64> {
-        let (m, gap) = (self.averaged(), self.gap);
-        let low = from.saturating_sub(gap + m);
-        let part = self.values.get(low..(to + gap + m + 1).min(self.values.len())).unwrap_or(&[]);
-        let mut sums = vec![0.0];
-        sums.extend(part.iter().scan(0.0, |sum, v| {
-            *sum += v;
-            Some(*sum)
-        }));
-        let mean = |a: usize| Some((sums.get(a + m)? - sums.get(a)?) / m as f64);
-        (from..to)
-            .map(|i| {
-                let behind = mean(i + gap - low);
-                let before = (i + 1).checked_sub(low + gap + m).and_then(mean);
-                behind.zip(before).map_or(0.0, |(a, b)| a - b)
-            })
-            .collect()
+    /// Difference between the mean behind and the mean before a sample, the contact left out; 0 at the ends of the record.
+    fn step(&self, i: usize) -> f64 {
+        let m = self.averaged();
+        let mean = |from: usize| Some(self.values.get(from..from + m)?.iter().sum::<f64>() / m as f64);
+        let before = (i + 1).checked_sub(self.gap + m).and_then(mean);
+        mean(i + self.gap).zip(before).map_or(0.0, |(behind, before)| behind - before)
     }
 
     /// Whether a fault lies within the contact at sample `at`.
@@ -152,17 +141,16 @@ impl<'a> Jumps<'a> {
 
     /// All impacts in the order of time, at `rate` samples a second, with reference edges of standard uncertainty `edge` samples; and
     /// what their fits leave.
-    pub fn finish(mut self, rate: f64, edge: f64) -> (Vec<Impact>, Residuals) {
+    pub fn finish(mut self, rate: f64, edge: f64) -> (Vec<Impact>, Vec<[Vec<f64>; 2]>) {
         let typical = median(self.largest.iter().copied());
         self.found.retain(|j| j.height() >= PART * typical);
         self.found.sort_by(|a, b| a.at.total_cmp(&b.at));
-        let sides = self.found.iter().map(|j| j.sides.each_ref().map(|s| s.residuals.clone()));
-        let residuals = Residuals { sides: sides.collect(), gap: self.gap };
         let noise = [0, 1].map(|k| {
             let sides = || self.found.iter().map(|j| &j.sides[k]);
             let variance = sides().map(|s| s.squares).sum::<f64>() / sides().map(|s| s.freedom).sum::<f64>();
             // A laser's decoder limits the bandwidth of its noise, so neighbours depend on each other.
-            (variance, variance * Whiteness::of(&residuals.of(0..self.found.len(), k)).inflation.powi(2))
+            let residuals: Vec<&[f64]> = sides().map(|s| s.residuals.as_slice()).collect();
+            (variance, variance * Whiteness::of(&residuals).inflation.powi(2))
         });
         let impact = |j: &Jump| {
             let [before, after] = [0, 1].map(|k| noise[k].1 * j.sides[k].leverage);
@@ -188,28 +176,11 @@ impl<'a> Jumps<'a> {
                 clipped: j.clipped,
             }
         };
-        (self.found.iter().map(impact).collect(), residuals)
+        let impacts = self.found.iter().map(impact).collect();
+        (impacts, self.found.into_iter().map(|j| j.sides.map(|s| s.residuals)).collect())
     }
 }
 
-/// Residuals of the fits before and after impacts.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Residuals {
-    sides: Vec<[Vec<f64>; 2]>,
-    /// Samples from the end of a fit to the middle of the contact.
-    gap: usize,
-}
-
-impl Residuals {
-    fn of(&self, numbers: impl IntoIterator<Item = usize>, side: usize) -> Vec<&[f64]> {
-        numbers.into_iter().filter_map(|i| Some(self.sides.get(i)?[side].as_slice())).collect()
-    }
-
-    /// Lack of fit before and after the impacts with these numbers.
-    pub fn lack_of_fit(&self, numbers: &[usize]) -> [Option<LackOfFit>; 2] {
-        [0, 1].map(|side| LackOfFit::of(&self.of(numbers.iter().copied(), side), self.gap))
-    }
-}
 #[cfg(test)]
 mod tests {
     use super::*;

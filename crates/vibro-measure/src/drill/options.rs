@@ -3,7 +3,6 @@
 use super::Edge;
 use crate::exposure::check_hours;
 use serde::{Deserialize, Serialize};
-use vibro_record::units::notation::quantity;
 use vibro_record::{Error, Result};
 use vibro_signal::filter::Filter;
 
@@ -245,13 +244,9 @@ impl DrillOptions {
     pub(super) fn check_turn(&self, turn: f64) -> Result<()> {
         for (key, time) in [("contact", self.contact), ("fit", self.fit)] {
             if time > 0.5 * turn {
-                let half = quantity(0.5 * turn, "s", 3);
-                return Err(Error::refused(format!(
-                    "a {key} time of {time} s is longer than half a turn, {half}"
-                ))
-                .hint("state a shorter time in seconds; if it is right, check the pulses of a turn")
-                .setting(key)
-                .setting("pulses_per_turn"));
+                let why = format!("a {key} time of {time} s is longer than half a turn of {turn:.3e} s");
+                let hint = "state a shorter time in seconds; if it is right, check the pulses of a turn";
+                return Err(Error::refused(why).hint(hint).setting(key).setting("pulses_per_turn"));
             }
         }
         Ok(())

@@ -30,8 +30,6 @@ pub struct Drill {
     pub after: Option<Estimate>,
     /// Mean phase of the impacts in turns after the edge.
     pub phase: Option<Estimate>,
-    /// Standard deviation of the phase from impact to impact, in turns.
-    pub phase_variation: Option<f64>,
     /// Mean kinetic energy before the impacts.
     pub energy: Option<Estimate>,
     /// Mean energy that the impacts take out of the mass.
@@ -48,9 +46,7 @@ pub struct Drill {
     pub displacement: Displacement,
     /// Drop-outs of the velocity.
     pub dropouts: usize,
-    /// Spikes of the velocity.
-    pub spikes: usize,
-    /// Samples bridged, lost and clipped.
+    /// Drop-outs and spikes, and the samples bridged, lost and clipped.
     pub faults: FaultCount,
     /// How fast the motion changes.
     pub bandwidth: Bandwidth,
