@@ -103,12 +103,12 @@ pub fn numbers() -> Result<Sheet> {
     }
     let normal = Beam::new(30.0, From::Normal)?;
     let why = "if the 30° are counted from the normal to the motion";
-    claims.push(Claim::number("factor of a beam at 30°", "2", normal.factor(), (3, ""), 1e-9, why));
+    claims.push(Claim::number("factor of a beam at 30°", "2", normal.factor, (3, ""), 1e-9, why));
     let why = "counted from the line of motion it is 1/cos 30°";
     claims.push(Claim::number(
         "factor of a beam at 30°",
         "2",
-        Beam::new(30.0, From::Axis)?.factor(),
+        Beam::new(30.0, From::Axis)?.factor,
         (3, ""),
         1e-9,
         why,

@@ -2,17 +2,19 @@
 
 pub mod cycles;
 pub mod figures;
-pub mod file;
+mod file;
 pub mod tables;
 
 use super::job::Marks;
 use super::{Analysis, Answer, Job, Source, no_file};
 use crate::campaign::{Channel, Entry, LowPass, channel, channels};
 use crate::error::{Error, Result};
-use crate::measure::drill::{Beam, Cycle, DrillOptions, Edge, From, Smoothing};
-use file::DrillFile;
+use crate::measure::drill::{Beam, Cycle, DrillOptions, Edge, From, Slices, Smoothing, drill_each};
+use file::Channels;
 use serde::Deserialize;
 use std::path::PathBuf;
+use vibro_record::units::Quantity;
+use vibro_record::{Finding, Place};
 
 /// Where the channels of a drill are, and how they are measured.
 #[derive(Debug, Clone, Default, Deserialize)]
@@ -100,54 +102,46 @@ fn needed<T>(key: &'static str, value: Option<T>) -> Result<T> {
     value.ok_or_else(lacks)
 }
 
-/// A drill names its channels by keys of its own.
+/// A drill names its channels, and what they measure, by keys of its own.
 fn own_channels(channel: &Channel) -> Result<()> {
-    match (&channel.channel, channel.calibration) {
-        (Some(_), _) => {
-            Err(Error::usage("a drill has several channels", "velocity and reference").setting("channel"))
-        }
-        (None, Some(_)) => {
-            Err(Error::usage("a drill has no calibration", "a sensitivity").setting("calibration"))
-        }
-        (None, None) => Ok(()),
-    }
+    let stated = [("channel", channel.channel.is_some()), ("calibration", channel.calibration.is_some())];
+    stated.into_iter().find(|(_, stated)| *stated).map_or(Ok(()), |(key, _)| {
+        Err(Error::usage(format!("a {key} of a drill"), "velocity, reference and sensitivity").setting(key))
+    })
 }
 
 impl Keys {
-    /// Whether no key is missing that has no default, and none contradicts another.
+    /// Whether no key is missing that has no default, none is impossible, and none contradicts another.
     ///
     /// # Errors
     /// With the key at fault.
     pub fn usable(&self) -> Result<()> {
-        let wrong = |key, found: String, expected: &str| Err(Error::usage(found, expected).setting(key));
-        needed("velocity", self.velocity.clone())?;
-        needed("reference", self.reference.clone())?;
+        needed("velocity", self.velocity.as_ref())?;
+        needed("reference", self.reference.as_ref())?;
         needed("beam_angle", self.beam_angle)?;
         needed("from", self.from)?;
-        needed("pulses_per_turn", self.pulses_per_turn)?;
-        needed("edge", self.edge)?;
-        if let Some(bad) = self.sensitivity.filter(|s| !s.is_finite()) {
-            return wrong("sensitivity", format!("a sensitivity of {bad}"), "m/s a unit, not 0");
-        }
-        if self.low_pass.is_some() && self.smoothing.is_some() {
-            return wrong("smoothing", "both low_pass and smoothing".to_owned(), "one of them");
-        }
-        let alone = [
-            ("struck_mass", self.struck_mass.is_some() && self.mass.is_none(), "mass"),
-            ("handle_sensitivity", self.handle_sensitivity.is_some() && self.handle.is_empty(), "handle"),
-            ("exposure", self.exposure.is_some() && self.handle.is_empty(), "handle"),
+        // A beam from which nothing is seen leaves its own record out.
+        self.options(Beam::new(0.0, From::Axis)?)?.check()?;
+        let handle = self.handle.is_empty();
+        let contradictions = [
+            (
+                "smoothing",
+                self.low_pass.is_some() && self.smoothing.is_some(),
+                "one of smoothing and low_pass",
+            ),
+            ("handle_sensitivity", self.handle_sensitivity.is_some() && handle, "a handle"),
+            ("exposure", self.exposure.is_some() && handle, "a handle"),
         ];
-        match alone.into_iter().find(|(_, alone, _)| *alone) {
-            Some((key, _, other)) => wrong(key, format!("{key} without {other}"), "both"),
+        match contradictions.into_iter().find(|(_, holds, _)| *holds) {
+            Some((key, _, expected)) => Err(Error::usage(key.replace('_', " "), expected).setting(key)),
             None => Ok(()),
         }
     }
 
-    fn options(&self) -> Result<DrillOptions> {
-        let beam = Beam::new(needed("beam_angle", self.beam_angle)?, needed("from", self.from)?)?;
+    /// Without a sensitivity the file must say that the channel is a velocity.
+    fn options(&self, beam: Beam) -> Result<DrillOptions> {
         let pulses = needed("pulses_per_turn", self.pulses_per_turn)?;
-        // Without a number the file must say that the channel is a velocity.
-        let sensitivity = self.sensitivity.unwrap_or(f64::NAN);
+        let sensitivity = self.sensitivity.unwrap_or(1.0);
         let plain = DrillOptions::new(sensitivity, beam, pulses, needed("edge", self.edge)?);
         Ok(DrillOptions {
             level: self.level,
@@ -182,16 +176,49 @@ impl Keys {
     ) -> Result<Answer> {
         self.usable()?;
         own_channels(source.channel)?;
-        let file = DrillFile {
-            reader: source.reader()?,
-            path: source.path.to_owned(),
-            velocity: needed("velocity", self.velocity.clone())?,
-            reference: needed("reference", self.reference.clone())?,
-            handle: self.handle.clone(),
-            handle_sensitivity: self.handle_sensitivity,
-            noise: source.further("noise", self.noise.as_ref())?,
+        let options =
+            self.options(Beam::new(needed("beam_angle", self.beam_angle)?, needed("from", self.from)?)?)?;
+        let velocity = needed("velocity", self.velocity.as_deref())?;
+        let mut names = vec![velocity, needed("reference", self.reference.as_deref())?];
+        names.extend(self.handle.iter().map(String::as_str));
+        let mut channels = Channels::read(source.reader()?, source.path, &names, source.progress)?;
+        match (channels.is(0, Quantity::Velocity), self.sensitivity) {
+            (true, Some(sensitivity)) if sensitivity != 1.0 => {
+                let found = Finding::doubt("drill-velocity-scaled-twice").number("sensitivity", sensitivity);
+                channels.findings.push(found);
+            }
+            (false, None) => {
+                let expected = "the sensitivity in m/s for one unit of the velocity channel";
+                return Err(Error::usage("no sensitivity", expected).setting("sensitivity"));
+            }
+            _ => {}
+        }
+        let foreign = (2..names.len()).find(|channel| !channels.is(*channel, Quantity::Acceleration));
+        match (self.handle_sensitivity, foreign) {
+            (None, Some(channel)) => {
+                let found = format!("the handle channel {:?}, no acceleration", names[channel]);
+                let expected = "an acceleration, or the sensitivity of the handle in m/s² a unit";
+                let place = Place::file(source.path);
+                return Err(Error::input(place, found, expected).setting("handle_sensitivity"));
+            }
+            (factor, _) => channels.scale(2, factor.unwrap_or(1.0)),
+        }
+        let still = match source.further("noise", self.noise.as_ref())? {
+            None => None,
+            Some(path) => {
+                let still = Channels::read(source.reader()?, &path, &[velocity], &|_, _| ())?;
+                if (still.rate - channels.rate).abs() > 1e-9 * channels.rate {
+                    let found =
+                        format!("{} Hz, but the motion was sampled at {} Hz", still.rate, channels.rate);
+                    return Err(Error::input(Place::file(path), found, "a record of the same rate"));
+                }
+                still.values.into_iter().next()
+            }
         };
-        let found = file.measure_each(&self.options()?, source.progress, each)?;
+        let record =
+            Slices { rate: channels.rate, channels: channels.values.iter().map(Vec::as_slice).collect() };
+        let mut found = drill_each(&record, &options, still.as_deref(), each)?;
+        found.findings.splice(..0, channels.findings);
         let mut answer = Answer::of(&found)?;
         answer.tell("", &found.findings);
         answer.tables.push(tables::drill(source.name, &found));

@@ -23,8 +23,8 @@ fn no_option_of_the_library_ends_in_a_panic() {
         all[9].hours = Some(x);
         all[10].instrument = Some(x);
         for (number, options) in all.iter().enumerate() {
-            let mut record = Slices { rate: 1e4, channels: channels() };
-            let found = drill(&mut record, options, None);
+            let record = Slices { rate: 1e4, channels: channels() };
+            let found = drill(&record, options, None);
             // A level, a sensitivity and a margin may be below 0; all else is a duration, a mass or a frequency, and no day has more
             // than 24 hours.
             let possible = x.is_finite()
@@ -36,18 +36,18 @@ fn no_option_of_the_library_ends_in_a_panic() {
                 };
             assert!(possible || found.is_err(), "{x} as option {number}");
         }
-        let mut record = Slices { rate: x, channels: channels() };
-        let found = drill(&mut record, &plain(), None);
+        let record = Slices { rate: x, channels: channels() };
+        let found = drill(&record, &plain(), None);
         assert!(found.is_err() || x.is_finite() && x > 0.0, "a rate of {x} Hz");
     }
     for pulses in [0, 2, usize::MAX - 1, usize::MAX] {
         let options = DrillOptions { pulses_per_turn: pulses, ..plain() };
-        let mut record = Slices { rate: 1e4, channels: channels() };
-        let found = drill(&mut record, &options, None);
+        let record = Slices { rate: 1e4, channels: channels() };
+        let found = drill(&record, &options, None);
         assert_eq!(found.is_ok(), pulses == 2);
     }
     for channels in [vec![], vec![velocity.as_slice()], vec![&[], &[]], vec![&[1.0], &[2.0]]] {
-        let mut record = Slices { rate: 1e4, channels };
-        assert!(drill(&mut record, &plain(), None).is_err());
+        let record = Slices { rate: 1e4, channels };
+        assert!(drill(&record, &plain(), None).is_err());
     }
 }

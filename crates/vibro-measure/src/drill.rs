@@ -2,8 +2,7 @@
 //!
 //! The velocity is what the laser shows times its sensitivity over cos α, α the angle between beam and motion. Edges of the
 //! reference cut the record into turns; phases are parts of a turn after the edge, which for a pulse at the upper end of
-//! the piston's stroke is the phase after top dead centre. The record is read three times block by block, so that
-//! memory grows with the number of turns (some hundred bytes each) but not with the number of samples.
+//! the piston's stroke is the phase after top dead centre. Beside the channels a record takes 17 bytes a sample.
 //!
 //! ```
 //! use vibro_measure::drill::{Beam, DrillOptions, Edge, From, Slices, drill};
@@ -13,175 +12,236 @@
 //! let volts: Vec<f64> = (0..20_000).map(|i| 0.5 * (-1.0 + 7.0 * (turn(i) + 0.4).fract())).collect();
 //! let pulse: Vec<f64> = (0..20_000).map(|i| if turn(i).fract() < 0.1 { 5.0 } else { 0.0 }).collect();
 //! let options = DrillOptions::new(2.0, Beam::new(0.0, From::Axis)?, 1, Edge::Rising);
-//! let found = drill(&mut Slices { rate, channels: vec![&volts, &pulse] }, &options, None)?;
+//! let found = drill(&Slices { rate, channels: vec![&volts, &pulse] }, &options, None)?;
 //! assert!((found.speed.value - 50.0).abs() < 1e-3);
 //! assert!((found.impacts[0].before - 6.0).abs() < 0.05 && (found.impacts[0].phase - 0.6).abs() < 0.003);
 //! # Ok::<(), vibro_record::Error>(())
 //! ```
 
-mod average;
-mod beam;
-mod channels;
 mod crossing;
+mod cycles;
 mod edges;
-mod excerpt;
 mod faults;
 mod findings;
-mod fit_noise;
+mod fit;
 mod floor;
 mod groups;
-mod impact;
 mod jumps;
-mod lack_of_fit;
-mod motion;
 mod options;
-mod parabola;
-mod pass;
-mod reference;
-mod restitution;
 mod result;
-mod running;
-mod smoothing;
-mod summary;
 mod survey;
 mod turns;
 
-pub use average::Cycle;
-pub use beam::{Beam, From};
-pub use channels::{Channels, Slices};
+pub use cycles::{Bandwidth, Cycle, Phases};
 pub use edges::Edge;
-pub(crate) use edges::{Edges, Found};
-use excerpt::Excerpt;
+pub(crate) use edges::Edges;
 pub use faults::FaultCount;
 pub use floor::NoiseFloor;
-pub use groups::Group;
-pub use impact::Impact;
-pub use motion::Bandwidth;
-pub use options::DrillOptions;
-pub use result::{BeamResult, Displacement, Drill, Phases, Pulses};
-use running::Running;
-pub use smoothing::{Corner, CornerReason, Smoothing, SmoothingKind};
-pub(crate) use survey::Survey;
-pub(crate) use turns::{Numbered, Turns};
+pub use groups::{Group, Impact};
+pub use options::{Beam, Corner, DrillOptions, From, Smoothing, SmoothingKind};
+pub use result::{Displacement, Drill, Pulses};
+pub(crate) use survey::levels;
+pub(crate) use turns::Numbered;
 
-use super::exposure::Handle;
-use pass::Pass;
-use summary::Measured;
-use vibro_record::{Error, Result};
-use vibro_signal::welch::Stream;
+use crate::Estimate;
+use crate::exposure::exposure;
+use crate::mean::Mean;
+use cycles::Cycles;
+use faults::State;
+use jumps::Jumps;
+use survey::{Survey, median};
+use turns::{Turn, Turns};
+use vibro_record::{Error, Finding, Result};
 
-/// Measures the turns and impacts of a drill; `still` is a record of the same velocity channel without motion, in m/s.
-///
-/// # Errors
-/// If the parameters cannot be; if the velocity is constant or missing; if velocity and reference are the same or look swapped; if the
-/// reference has not two levels nor even edges, or no whole turn between its edges; if a channel cannot be read; if a handle allows no
-/// exposure.
-pub fn drill(channels: &mut dyn Channels, options: &DrillOptions, still: Option<&Stream>) -> Result<Drill> {
-    drill_each(channels, options, still, &mut |_| Ok(()))
+/// Turns that are drawn as they were measured.
+const DRAWN: usize = 3;
+
+/// Channels of one record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Slices<'a> {
+    /// Sampling rate in Hz.
+    pub rate: f64,
+    /// Velocity, reference, then up to three axes of a handle, in m/s²; missing samples are NaN.
+    pub channels: Vec<&'a [f64]>,
 }
 
-/// As [`drill`], and hands out each turn of the average, resampled, as it comes.
+/// Measures the turns and impacts of a drill; `still` is the velocity channel without motion.
+///
+/// # Errors
+/// If the parameters cannot be; if the velocity is constant or missing, or the same as the reference; if the reference has no whole turn
+/// between its edges; if a handle allows no exposure.
+pub fn drill(record: &Slices<'_>, options: &DrillOptions, still: Option<&[f64]>) -> Result<Drill> {
+    drill_each(record, options, still, &mut |_| Ok(()))
+}
+
+/// As [`drill`], and hands out each turn of the average, resampled.
 ///
 /// # Errors
 /// As [`drill`], and if `each` fails.
 pub fn drill_each(
-    channels: &mut dyn Channels,
+    record: &Slices<'_>,
     options: &DrillOptions,
-    still: Option<&Stream>,
+    still: Option<&[f64]>,
     each: &mut dyn FnMut(&Cycle<'_>) -> Result<()>,
 ) -> Result<Drill> {
     options.check()?;
-    let rate = channels.rate();
+    check(record)?;
+    let (rate, reference, handles) = (record.rate, record.channels[1], &record.channels[2..]);
+    let scaled = |volts: &[f64]| -> Vec<f64> {
+        volts.iter().map(|v| v * (options.sensitivity * options.beam.factor)).collect()
+    };
+    let mut velocity = scaled(record.channels[0]);
+    let survey = Survey::of(&velocity);
+    let (edges, turns) = turns(reference, velocity.len(), options, options.delay * rate)?;
+    let edge = edges.std(survey::noise(reference));
+    let whole = &turns.whole;
+    let typical = median(whole.iter().map(|t| (t.end - t.start) / rate));
+    options.check_turn(typical)?;
+    let (drawn, excerpt, excerpt_reference) = excerpt(whole, &velocity, reference, options.delay * rate);
+    let (states, faults) = faults::repair(&mut velocity, &survey, (options.longest_dropout * rate) as usize);
+    let smoothing = options.smoothing.corner(options.points, typical, rate);
+    let smooth = smoothing.map(|corner| corner.smooth(&velocity, rate)).transpose()?;
+    let smooth = smooth.as_deref().unwrap_or(&velocity);
+    let mut jumps = Jumps::new(&velocity, &states, options.contact * rate, options.fit * rate);
+    let mut cycles = Cycles::new(rate, options.points);
+    for (number, &turn) in whole.iter().enumerate() {
+        let inside = turn.start as usize..=turn.end.ceil() as usize;
+        if !states[inside].contains(&State::Lost) {
+            jumps.push(number, turn);
+            cycles.differentiate(&velocity, &states, turn);
+            cycles.integrate(smooth, turn);
+            each(&cycles.average(smooth, &states, number, turn))?;
+        }
+    }
+    let (hidden, gap, averaged) = (jumps.hidden, jumps.gap, cycles.stroke.len());
+    let (mut impacts, residuals) = jumps.finish(rate, edge);
+    let groups = groups::groups(&mut impacts, &residuals, gap, averaged, options);
+    let strongest = groups.first();
+    let average = cycles.phases();
+    let (speed, speed_wanders) = turns.speed(rate, edge);
+    let period = 1.0 / speed.value;
+    let speeds: Vec<f64> = whole.iter().map(|t| rate / (t.end - t.start)).collect();
+    let [stroke, drift] = [&cycles.stroke, &cycles.drift].map(|values| Mean::of(values));
+    // Where speeds are too small, so is what they add up to: no uncertainty is stated.
+    let metres = |mean: Mean, method| {
+        Estimate::new(mean.value, mean.std.filter(|_| faults.clipped == 0), "m", mean.n, method)
+    };
+    let noise_floor = still.and_then(|still| NoiseFloor::new(velocity, scaled(still), rate, options.margin));
+    let slow = [
+        ("speed", speed_wanders),
+        ("stroke", stroke.wanders),
+        ("drift", drift.wanders),
+        ("impacts", strongest.is_some_and(|g| g.wanders)),
+    ];
+    let slow: Vec<&str> = slow.into_iter().filter(|(_, wanders)| *wanders).map(|(name, _)| name).collect();
+    let mut result = Drill {
+        speed,
+        speed_variation: scatter(&speeds),
+        cycles: whole.len(),
+        averaged,
+        reference: Pulses {
+            edges: edges.at.len(),
+            missing: turns.missing,
+            extra: turns.extra,
+            pauses: turns.pauses,
+            std: edge / rate,
+        },
+        before: strongest.map(|g| g.before.clone()),
+        after: strongest.map(|g| g.after.clone()),
+        phase: strongest.map(|g| g.phase.clone()),
+        energy: strongest.and_then(|g| g.energy.clone()),
+        energy_given: strongest.and_then(|g| g.energy_given.clone()),
+        restitution: strongest.and_then(|g| g.restitution.clone()),
+        groups,
+        hidden,
+        clipped: impacts.iter().filter(|i| i.clipped).count(),
+        impacts,
+        displacement: Displacement {
+            value: cycles::displacement(&average.mean, period),
+            stroke: metres(stroke, "peak to peak of the integrated velocity, mean over turns"),
+            drift: metres(drift, "integral of the velocity over a turn, mean over turns"),
+        },
+        average,
+        dropouts: faults.dropouts,
+        faults,
+        bandwidth: cycles.bandwidth(),
+        noise_floor,
+        exposure: if handles.is_empty() { None } else { Some(exposure(rate, handles, options.hours)?) },
+        beam: options.beam,
+        smoothing,
+        speeds,
+        times: whole.iter().map(|t| t.start / rate).collect(),
+        excerpt_time: (drawn as f64 / rate, 1.0 / rate),
+        excerpt,
+        excerpt_reference,
+        findings: Vec::new(),
+    };
+    result.findings = findings::findings(&result, options, &edges, &survey, still.is_some());
+    if !slow.is_empty() {
+        result.findings.push(Finding::caution("drill-slow-changes").name("quantities", slow.join(", ")));
+    }
+    Ok(result)
+}
+
+/// Whether there are a rate, a velocity that moves, and a reference that differs from it.
+fn check(record: &Slices<'_>) -> Result<()> {
+    let rate = record.rate;
     if !(rate.is_finite() && rate > 0.0) {
-        return Err(
-            Error::usage(format!("a sampling rate of {rate} Hz"), "a finite number above 0").setting("rate")
-        );
+        let found = format!("a sampling rate of {rate} Hz");
+        return Err(Error::usage(found, "a finite number above 0").setting("rate"));
     }
-    let surveyed = Surveyed::of(channels, options)?;
-    let (low, high) = reference::levels(&surveyed, options)?;
-    let mut edges = Edges::new(low, high, options.edge);
-    channels.play(&mut |block| {
-        edges.push(block.get(1).copied().unwrap_or_default());
-        Ok(())
-    })?;
-    let mut edges = edges.finish();
-    reference::check_pulses(&surveyed.velocity, &surveyed.reference, &edges.edges)?;
-    let delay = options.delay * rate;
-    if delay != 0.0 {
-        // Turns are counted in the clock of the velocity.
-        let last = surveyed.velocity.samples().saturating_sub(1) as f64;
-        edges.edges.iter_mut().for_each(|edge| *edge += delay);
-        edges.edges.retain(|edge| (0.0..=last).contains(edge));
+    let constant = |values: &[f64]| {
+        let mut known = values.iter().filter(|v| v.is_finite());
+        let first = known.next();
+        known.all(|v| Some(v) == first)
+    };
+    match record.channels.as_slice() {
+        [velocity, reference, ..] if velocity == reference => {
+            Err(Error::refused("velocity and reference are the same channel")
+                .hint("name two channels; `vibro info` lists them")
+                .setting("velocity")
+                .setting("reference"))
+        }
+        [velocity, _, ..] if constant(velocity) => {
+            Err(Error::refused("the velocity is constant, or missing")
+                .hint("check that the laser sees the target")
+                .setting("velocity"))
+        }
+        [_, _, ..] => Ok(()),
+        few => Err(Error::usage(format!("{} channels", few.len()), "a velocity and a reference")),
     }
-    let turns = Turns::new(&edges.edges, options.pulses_per_turn)?;
-    let mut pass = Pass::new(options, rate, &turns.whole, &surveyed.velocity, still.is_some())?;
-    let mut excerpts = [0.0, delay].map(|delay| Excerpt::new(&turns.whole, delay));
-    let mut scaled = Vec::new();
-    channels.play(&mut |block| {
-        let [velocity, reference, ..] = block else { return Ok(()) };
-        scale(velocity, options, &mut scaled);
-        excerpts[0].push(&scaled);
-        excerpts[1].push(reference);
-        pass.push(&scaled, each)
-    })?;
-    let pass = pass.finish(each)?;
-    let (surveyed, edges, turns) = (&surveyed, &edges, &turns);
-    summary::summary(Measured { options, rate, surveyed, edges, turns, pass, still, excerpts })
 }
 
-/// The averaged spectrum of a record without motion, from the blocks of its velocity channel alone.
-///
-/// # Errors
-/// If it cannot be read.
-pub fn still(channels: &mut dyn Channels, options: &DrillOptions) -> Result<Stream> {
-    let (mut spectrum, mut scaled) = (floor::averages(), Vec::new());
-    channels.play(&mut |block| {
-        scale(block.first().copied().unwrap_or_default(), options, &mut scaled);
-        scaled.retain(|v| v.is_finite());
-        spectrum.push(&scaled);
-        Ok(())
-    })?;
-    Ok(spectrum)
+/// Edges and turns in the clock of the velocity of so many samples, which comes `delay` samples late.
+fn turns(reference: &[f64], samples: usize, options: &DrillOptions, delay: f64) -> Result<(Edges, Turns)> {
+    let (low, high) = levels(reference).unwrap_or((f64::NAN, f64::NAN));
+    // A stated level stands in the middle; the nearer of both levels gives the height.
+    let middle = options.level.unwrap_or(0.5 * (low + high));
+    let half = (middle - low).min(high - middle);
+    let mut edges = Edges::of(reference, (middle - half, middle + half), options.edge);
+    let last = samples.saturating_sub(1) as f64;
+    edges.at.iter_mut().for_each(|edge| *edge += delay);
+    edges.at.retain(|edge| (0.0..=last).contains(edge));
+    let turns = Turns::new(&edges.at, options.pulses_per_turn)?;
+    Ok((edges, turns))
 }
 
-/// Velocities of the motion in m/s from the values of their channel.
-fn scale(values: &[f64], options: &DrillOptions, scaled: &mut Vec<f64>) {
-    let factor = options.sensitivity * options.beam.factor();
-    scaled.clear();
-    scaled.extend(values.iter().map(|v| factor * v));
+/// Some turns in the middle as they were measured: their first sample, velocity and reference, which is earlier by `delay` samples.
+fn excerpt(turns: &[Turn], velocity: &[f64], reference: &[f64], delay: f64) -> (usize, Vec<f64>, Vec<f64>) {
+    let first = turns.len().saturating_sub(DRAWN) / 2;
+    let shown = &turns[first..(first + DRAWN).min(turns.len())];
+    let from = shown.first().map_or(0, |t| t.start as usize);
+    let to = shown.last().map_or(0, |t| t.end as usize + 1);
+    let earlier = |i: usize| i.saturating_add_signed((-delay).round() as isize);
+    let beside = reference.iter().take(earlier(to)).skip(earlier(from));
+    (from, velocity[from..to].to_vec(), beside.copied().collect())
 }
 
-/// What the first pass shows: what the channels look like, and the vibration of the handle.
-struct Surveyed {
-    velocity: Survey,
-    reference: Survey,
-    handles: Vec<Handle>,
-    /// Whether both channels hold the same values.
-    same: bool,
-}
-
-impl Surveyed {
-    fn of(channels: &mut dyn Channels, options: &DrillOptions) -> Result<Surveyed> {
-        let rate = channels.rate();
-        let (velocity, reference) = (Survey::default(), Survey::default());
-        let mut all = Surveyed { velocity, reference, handles: Vec::new(), same: true };
-        let mut scaled = Vec::new();
-        channels.play(&mut |block| {
-            let [v, r, axes @ ..] = block else {
-                return Err(Error::usage(format!("{} channels", block.len()), "a velocity and a reference"));
-            };
-            all.same = all.same && v.iter().zip(*r).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()));
-            scale(v, options, &mut scaled);
-            all.velocity.push(&scaled);
-            all.reference.push(r);
-            while all.handles.len() < axes.len() {
-                all.handles.push(Handle::new(rate)?);
-            }
-            all.handles.iter_mut().zip(axes).for_each(|(handle, axis)| handle.push(axis));
-            Ok(())
-        })?;
-        Ok(all)
-    }
+/// Standard deviation; NaN for fewer than two values.
+fn scatter(values: &[f64]) -> f64 {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt()
 }
 
 #[cfg(test)]
@@ -199,8 +259,8 @@ mod tests {
             let values = volts(late);
             let beam = Beam::new(0.0, From::Axis).unwrap();
             let options = DrillOptions { delay, ..DrillOptions::new(2.0, beam, 1, Edge::Rising) };
-            let mut channels = Slices { rate: 20_000.0, channels: vec![&values, &pulse] };
-            let found = drill(&mut channels, &options, None).unwrap();
+            let channels = Slices { rate: 20_000.0, channels: vec![&values, &pulse] };
+            let found = drill(&channels, &options, None).unwrap();
             // The edge that begins the turns drawn, at half the height of the pulse, lies on their first samples.
             assert!(found.excerpt_reference.len() == found.excerpt.len() && found.excerpt.len() > 1200);
             let edge = found.excerpt_reference.iter().position(|v| *v > 2.5);

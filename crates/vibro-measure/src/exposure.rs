@@ -1,15 +1,11 @@
 //! Hand-arm vibration: the weighting `W_h` of ISO 5349-1 as a digital filter, `a_hv` and A(8).
 
-mod handle;
-
-pub use handle::Handle;
-
 use super::Estimate;
 use super::mean::Mean;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibro_record::{Error, Finding, Result};
-use vibro_signal::filter::{Analogue, Filter, Running};
+use vibro_signal::filter::{Analogue, Filter};
 
 /// Corners of the band limitation in Hz and their quality (ISO 5349-1:2001, table A.1, where it is
 /// printed as 0.71; its table A.2 was made with 1/√2).
@@ -22,8 +18,6 @@ const TRANSITION_Q: f64 = 0.64;
 const LOWEST_RATE: f64 = 4.0 * 1258.9;
 /// Duration in s over which the scatter of the vibration is taken.
 const SPAN: f64 = 1.0;
-/// Part of a record that may be missing: what takes away samples is likely what shakes most, and a mean over the rest then says little.
-const MISSING: f64 = 0.05;
 /// Duration in s after which the weighting has settled: its slowest pole falls by e^(−π √2 · 6.31 · t), e⁻¹⁴ in this time.
 const SETTLED: f64 = 0.5;
 
@@ -44,37 +38,68 @@ fn analogue() -> [([f64; 3], [f64; 3]); 3] {
     ]
 }
 
-/// The weighting as a digital filter. Each section is transformed bilinearly so that it is exact at its own corner.
-#[derive(Debug, Clone)]
-struct Weighting {
-    filter: Filter,
-    running: Option<Running>,
+/// One axis of a handle, weighted; the half second in which the weighting settles is left out.
+struct Axis {
+    /// Mean square, and that of each whole second.
+    mean_square: f64,
+    seconds: Vec<f64>,
+    /// Largest weighted value.
+    peak: f64,
+    /// Largest unweighted deviation from the mean.
+    unweighted_peak: f64,
+    /// Time in s that counts.
+    duration: f64,
 }
 
-impl Weighting {
-    /// A filter for `rate` samples a second.
-    ///
-    /// # Errors
-    /// If the rate is below four times the upper corner of the weighting.
-    fn new(rate: f64) -> Result<Weighting> {
-        if !(rate >= LOWEST_RATE && rate.is_finite()) {
-            return Err(Error::refused(format!(
-                "a rate of {rate} Hz is too low for the weighting W_h, which reaches to 1259 Hz"
-            ))
-            .hint(format!("sample the handle at {LOWEST_RATE:.0} Hz or more")));
-        }
-        let corners = [BAND[0], BAND[1], TRANSITION];
-        let sections: Vec<Analogue> =
-            analogue().into_iter().zip(corners).map(|((b, a), exact)| Analogue { b, a, exact }).collect();
-        Ok(Weighting { filter: Filter::analogue(&sections, rate)?, running: None })
+/// Weights accelerations. Each section of the filter is transformed bilinearly so that it is exact at its own corner. It begins as if the
+/// first value had been there for ever: an offset of the sensor is no shock.
+///
+/// # Errors
+/// If the rate is below four times the upper corner of the weighting.
+fn weighted(values: &[f64], rate: f64) -> Result<Vec<f64>> {
+    if !(rate >= LOWEST_RATE && rate.is_finite()) {
+        return Err(Error::refused(format!(
+            "a rate of {rate} Hz is too low for the weighting W_h, which reaches to 1259 Hz"
+        ))
+        .hint(format!("sample the handle at {LOWEST_RATE:.0} Hz or more")));
     }
+    let corners = [BAND[0], BAND[1], TRANSITION];
+    let sections = analogue().into_iter().zip(corners).map(|((b, a), exact)| Analogue { b, a, exact });
+    let filter = Filter::analogue(&sections.collect::<Vec<Analogue>>(), rate)?;
+    let mut out = values.to_vec();
+    filter.settled_at(values.first().copied().unwrap_or(0.0)).apply(&mut out);
+    Ok(out)
+}
 
-    /// Weights the next samples in place. The filter begins as if the first value had been there for ever: an offset of the
-    /// sensor is no shock.
-    fn apply(&mut self, values: &mut [f64]) {
-        let Some(first) = values.first() else { return };
-        let filter = &self.filter;
-        self.running.get_or_insert_with(|| filter.settled_at(*first)).apply(values);
+impl Axis {
+    fn new(values: &[f64], rate: f64) -> Result<Axis> {
+        let refused = |why: String, hint| Err(Error::refused(why).hint(hint).setting("handle"));
+        let missing = values.iter().filter(|v| !v.is_finite()).count();
+        if missing > 0 {
+            return refused(
+                format!("{missing} accelerations of the handle are missing"),
+                "mend the cable or the sensor, cut the record, or leave the handle out",
+            );
+        }
+        let weighted = weighted(values, rate)?;
+        let (settle, span) = ((SETTLED * rate).ceil() as usize, (SPAN * rate) as usize);
+        let Some((_, counted)) = weighted.split_at_checked(settle).filter(|(_, counted)| !counted.is_empty())
+        else {
+            return refused(
+                format!("the handle is shorter than {SETTLED} s, in which the weighting W_h settles"),
+                "measure longer, or leave the handle out",
+            );
+        };
+        let mean_square = |part: &[f64]| part.iter().map(|v| v * v).sum::<f64>() / part.len() as f64;
+        let largest =
+            |values: &[f64], mean: f64| values.iter().fold(0.0, |top: f64, v| top.max((v - mean).abs()));
+        Ok(Axis {
+            mean_square: mean_square(counted),
+            seconds: counted.chunks_exact(span).map(mean_square).collect(),
+            peak: largest(counted, 0.0),
+            unweighted_peak: largest(values, values.iter().sum::<f64>() / values.len() as f64),
+            duration: counted.len() as f64 / rate,
+        })
     }
 }
 
@@ -101,86 +126,61 @@ pub struct Exposure {
     pub findings: Vec<Finding>,
 }
 
-/// Exposure from one to three axes of a handle; `hours` of it a day.
+/// Exposure from one to three axes of a handle, in m/s² at `rate` samples a second; `hours` of it a day.
 ///
 /// `a_hv` = √(Σ `a_hw²`) and A(8) = `a_hv` √(T/8 h) (ISO 5349-1:2001, equations 1 and 2). Uncertainties are those of the scatter
 /// from second to second (Müller 2007, as for turns of a drill), for `a_hv` of the sum of squares over the axes, since they rise and fall
-/// together; only seconds without a gap in any axis count for them, and there are none below four. Missing samples, and the half
-/// second behind each, in which the weighting settles anew, are in no mean square. Neither calibration nor mounting are in them.
+/// together; there are none below four seconds. Neither calibration nor mounting are in them.
 ///
 /// # Errors
-/// If there is no axis or there are more than three, a duration that is not above 0 and at most 24 h, more than 5 % of an axis
-/// missing, a record without a stretch in which the weighting settles, or no vibration.
-pub fn exposure(handles: &[Handle], hours: Option<f64>) -> Result<Exposure> {
+/// If there is no axis or there are more than three, a rate that is too low, a duration that is not above 0 and at most 24 h, a missing
+/// sample, a record in which the weighting does not settle, or no vibration.
+pub fn exposure(rate: f64, handles: &[&[f64]], hours: Option<f64>) -> Result<Exposure> {
     if handles.is_empty() || handles.len() > 3 {
         return Err(Error::usage(format!("{} axes of a handle", handles.len()), "one to three"));
     }
     check_hours(hours)?;
-    for handle in handles {
-        let part = 100.0 * handle.missing as f64 / handle.samples().max(1) as f64;
-        if part > 100.0 * MISSING {
-            let limit = 100.0 * MISSING;
-            return Err(Error::refused(format!(
-                "{part:.1} % of the accelerations of the handle are missing, more than {limit:.0} %"
-            ))
-            .hint("mend the cable or the sensor, cut the record, or leave the handle out")
-            .setting("handle"));
-        }
-    }
-    if handles.iter().any(|h| h.counted() == 0) {
-        return Err(Error::refused(format!(
-            "the handle has no stretch without a gap for {SETTLED} s, in which the weighting W_h settles"
-        ))
-        .hint("measure longer, or leave the handle out")
-        .setting("handle"));
-    }
-    // Of y = x²: u_x = u_y/(2x).
-    let root = |square: f64, seconds: &[f64], method: &str| {
-        let (rms, mean) = (square.sqrt(), Mean::of(seconds));
-        Estimate::new(rms, mean.std.map(|s| s / (2.0 * rms)), "m/s²", mean.n, method)
-    };
-    let axis = |h: &Handle| {
-        let seconds: Vec<f64> = h.seconds().flatten().collect();
-        root(h.mean_square(), &seconds, "RMS weighted by W_h, ISO 5349-1")
-    };
-    let axes: Vec<Estimate> = handles.iter().map(axis).collect();
-    let total: f64 = handles.iter().map(Handle::mean_square).sum();
+    let all: Vec<Axis> = handles.iter().map(|values| Axis::new(values, rate)).collect::<Result<_>>()?;
+    let total: f64 = all.iter().map(|a| a.mean_square).sum();
     if total <= 0.0 {
         return Err(Error::refused("the handle does not vibrate: its acceleration does not change"));
     }
-    let mut sums: Vec<Option<f64>> = handles[0].seconds().collect();
-    for handle in &handles[1..] {
-        sums = sums.iter().zip(handle.seconds()).map(|(a, b)| Some((*a)? + b?)).collect();
-    }
-    let together: Vec<f64> = sums.into_iter().flatten().collect();
+    // Of y = x²: u_x = u_y/(2x).
+    let root = |square: f64, mean: &Mean, method| {
+        let rms = square.sqrt();
+        Estimate::new(rms, mean.std.map(|s| s / (2.0 * rms)), "m/s²", mean.n, method)
+    };
+    let axes =
+        all.iter().map(|a| root(a.mean_square, &Mean::of(&a.seconds), "RMS weighted by W_h, ISO 5349-1"));
+    let seconds = all.iter().map(|a| a.seconds.len()).min().unwrap_or(0);
+    let together: Vec<f64> = (0..seconds).map(|k| all.iter().map(|a| a.seconds[k]).sum()).collect();
+    let together = Mean::of(&together);
     let a_hv = root(total, &together, "root of the sum of squares of the axes");
     let a8 = hours.map(|h| {
         let part = (h / 8.0).sqrt();
         Estimate::new(part * a_hv.value, a_hv.std.map(|s| part * s), "m/s²", a_hv.n, "a_hv √(T/8 h)")
     });
-    let crest = |h: &Handle| h.peak / h.mean_square().sqrt();
-    let crest_factor = handles.iter().map(crest).filter(|c| c.is_finite()).fold(0.0, f64::max);
     let mut findings = vec![Finding::note("exposure-understates-shocks")];
     if handles.len() < 3 {
         findings.push(Finding::caution("exposure-axes-missing").count("axes", handles.len()));
     }
-    if Mean::of(&together).wanders {
+    if together.wanders {
         findings.push(Finding::caution("exposure-slow-changes"));
     }
-    let duration = handles.iter().map(Handle::duration).fold(f64::INFINITY, f64::min);
+    let duration = all.iter().map(|a| a.duration).fold(f64::INFINITY, f64::min);
     if duration < SHORT {
         findings.push(Finding::caution("exposure-record-short").number("duration", duration));
     }
-    let missing: usize = handles.iter().map(|h| h.missing).sum();
-    if missing > 0 {
-        let counted: usize = handles.iter().map(Handle::counted).sum();
-        let all: usize = handles.iter().map(Handle::samples).sum();
-        let share = counted as f64 / all as f64;
-        findings
-            .push(Finding::caution("exposure-samples-missing").count("n", missing).number("counted", share));
-    }
-    let unweighted_peak = handles.iter().map(Handle::unweighted_peak).fold(0.0, f64::max);
-    Ok(Exposure { axes, a_hv, a8, hours, crest_factor, unweighted_peak, findings })
+    let crest = all.iter().map(|a| a.peak / a.mean_square.sqrt()).filter(|c| c.is_finite());
+    Ok(Exposure {
+        crest_factor: crest.fold(0.0, f64::max),
+        unweighted_peak: all.iter().map(|a| a.unweighted_peak).fold(0.0, f64::max),
+        axes: axes.collect(),
+        a_hv,
+        a8,
+        hours,
+        findings,
+    })
 }
 
 /// Hours a day of an exposure.

@@ -41,13 +41,6 @@ pub(crate) struct Mean {
 impl Mean {
     /// Mean of values in the order of time, as a sequence without gaps; the caller leaves out what is missing.
     pub fn of(values: &[f64]) -> Mean {
-        Mean::beside(values, |_| 0.0, 0.0)
-    }
-
-    /// As [`Mean::of`], of values that carry noise which is known: `known` gives what it adds to Σ of the square of Σ `x_t w_t`, from
-    /// the weights w, and `least` the standard uncertainty of the mean that comes of it. What the values scatter more than the
-    /// noise explains is added to that.
-    pub fn beside(values: &[f64], known: impl Fn(&[f64]) -> f64, least: f64) -> Mean {
         let n = values.len();
         let value = if n == 0 { f64::NAN } else { values.iter().sum::<f64>() / n as f64 };
         if n < FEWEST {
@@ -57,18 +50,18 @@ impl Mean {
         let step = PI / n as f64;
         let squares: f64 = (1..=count)
             .map(|j| {
-                let weights: Vec<f64> = (0..n).map(|t| (step * j as f64 * (t as f64 + 0.5)).cos()).collect();
+                let weight = |t: usize| (step * j as f64 * (t as f64 + 0.5)).cos();
                 // The cosines sum to 0; the mean is taken away so that it leaves no rounding.
-                let c: f64 = values.iter().zip(&weights).map(|(x, w)| (x - value) * w).sum();
-                2.0 / n as f64 * (c * c - known(&weights))
+                let c: f64 = values.iter().enumerate().map(|(t, x)| (x - value) * weight(t)).sum();
+                2.0 / n as f64 * (c * c)
             })
             .sum();
         if !squares.is_finite() {
             return Mean { value, std: None, n, wanders: false };
         }
         let (part, chance) = part(values, value, count);
-        let variance = squares.max(0.0) / count as f64 / n as f64 / part;
-        let std = student(count).map(|factor| (factor * factor * variance + least * least).sqrt());
+        let variance = squares / count as f64 / n as f64 / part;
+        let std = student(count).map(|factor| (factor * factor * variance).sqrt());
         Mean { value, std: std.filter(|s| s.is_finite()), n, wanders: part < STEEP && !chance }
     }
 }

@@ -10,11 +10,10 @@ const POINTS: usize = 4000;
 /// Most markers over a line: more hide it.
 const MARKERS: usize = 20;
 
-/// Colour and marker of the velocities before and after the impacts of each group; the last are for all further groups.
-const FORMS: [[(Ink, Marker); 2]; 3] = [
+/// Colour and marker of the velocities before and after the impacts of each group.
+const FORMS: [[(Ink, Marker); 2]; 2] = [
     [(Ink::Nth(1), Marker::Circle), (Ink::Nth(2), Marker::Square)],
     [(Ink::Nth(3), Marker::Triangle), (Ink::Nth(4), Marker::Diamond)],
-    [(Ink::Grey, Marker::OpenCircle), (Ink::Grey, Marker::Cross)],
 ];
 
 /// All figures of a record, by file name.
@@ -36,13 +35,7 @@ fn average(name: &str, drill: &Drill) -> Figure {
         values.into_iter().chain(first).collect()
     };
     let degrees: Vec<f64> = a.phase.iter().map(|p| 360.0 * p).chain([360.0]).collect();
-    // Where the impact comes earlier in one turn and later in another, two courses are averaged: mean ± standard deviation
-    // would reach beyond both, to speeds that no turn had.
-    let edge = |sign: f64| -> Vec<f64> {
-        let within =
-            |(v, (low, high)): (f64, &(f64, f64))| if low <= high { v.clamp(*low, *high) } else { v };
-        closed(a.mean.iter().zip(&a.std).map(|(m, s)| m + sign * s).zip(&a.range).map(within).collect())
-    };
+    let edge = |sign: f64| closed(a.mean.iter().zip(&a.std).map(|(m, s)| m + sign * s).collect());
     let x = || AxisSpec::new("Crank angle after the pulse", "°").limits(0.0, 360.0);
     let above = Plot::new(x(), AxisSpec::new("Velocity", "m/s"))
         .with(Series::band("± 1 standard deviation", degrees.clone(), edge(-1.0), edge(1.0)).ink(Ink::Nth(0)))
@@ -68,7 +61,7 @@ fn average(name: &str, drill: &Drill) -> Figure {
         None => "not smoothed".to_owned(),
     };
     lettered(Figure::double(format!("Average turn, {name}")).height(130.0).shared_x().panel(above).panel(below)).caption(format!(
-        "Mean of {} turns at {:.2} Hz with the scatter from turn to turn, which ends where no turn went further; {smoothed}. Displacement by integration over whole turns. {marked} of {} impacts are marked.{}",
+        "Mean of {} turns at {:.2} Hz with the scatter from turn to turn; {smoothed}. Displacement by integration over whole turns. {marked} of {} impacts are marked.{}",
         drill.averaged,
         drill.speed.value,
         drill.impacts.len(),
@@ -85,37 +78,19 @@ fn marks(
 ) -> (Plot, usize) {
     let mut marked = 0;
     for (number, forms) in FORMS.iter().enumerate() {
-        let last = number + 1 == FORMS.len();
-        let own: Vec<Impact> = drill
-            .impacts
-            .iter()
-            .filter(|i| shown(i) && (i.group == number || last && i.group > number))
-            .copied()
-            .collect();
+        let own: Vec<Impact> =
+            drill.impacts.iter().filter(|i| i.group == number && shown(i)).copied().collect();
+        let own = thin(&own, MARKERS);
+        marked += own.len();
+        let of = if drill.groups.len() > 1 { format!(", group {number}") } else { String::new() };
         if own.is_empty() {
             continue;
         }
-        let of = match drill.groups.len() {
-            0 | 1 => String::new(),
-            n if last && n > FORMS.len() => ", other groups".to_owned(),
-            _ => format!(", group {number}"),
-        };
-        let own = thin(&own, MARKERS);
-        marked += own.len();
-        let at: Vec<f64> = own.iter().map(&x).collect();
-        let [before, after] = *forms;
-        let values = |of: fn(&Impact) -> f64| own.iter().map(of).collect::<Vec<f64>>();
-        plot = plot
-            .with(
-                Series::points(format!("before impact{of}"), at.clone(), values(|i| i.before))
-                    .ink(before.0)
-                    .marker(before.1),
-            )
-            .with(
-                Series::points(format!("after impact{of}"), at, values(|i| i.after))
-                    .ink(after.0)
-                    .marker(after.1),
-            );
+        for (side, (ink, marker)) in ["before", "after"].into_iter().zip(*forms) {
+            let x: Vec<f64> = own.iter().map(&x).collect();
+            let y: Vec<f64> = own.iter().map(|i| if side == "before" { i.before } else { i.after }).collect();
+            plot = plot.with(Series::points(format!("{side} impact{of}"), x, y).ink(ink).marker(marker));
+        }
     }
     (plot, marked)
 }
@@ -167,18 +142,16 @@ fn floor(name: &str, drill: &Drill) -> Option<Figure> {
                 .stroke(Stroke::Thin)
                 .ink(Ink::Grey),
         );
-    let bands: Vec<String> = floor.bands.iter().map(|b| format!("{:.0} to {:.0} Hz", b[0], b[1])).collect();
     // The end of the widest band is the one that is asked for.
     let widest = floor.bands.iter().max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
     if let Some(band) = widest {
         plot = plot.with(Series::vertical(format!("{} dB margin ends", floor.margin), band[1]));
     }
-    let few = bands.iter().take(3).cloned().collect::<Vec<_>>().join(", ");
     Some(Figure::double(format!("Motion and noise, {name}")).panel(plot).caption(format!(
-        "RMS of lines {:.1} Hz wide. Motion stands {} dB or more above the noise in {} bands, first {few}.",
+        "RMS of lines {:.1} Hz wide. Motion stands {} dB or more above the noise in {} bands.",
         floor.line_width,
         floor.margin,
-        bands.len()
+        floor.bands.len()
     )))
 }
 

@@ -1,8 +1,7 @@
 //! Tables of drills.
 
 use crate::measure::Estimate;
-use crate::measure::drill::Drill;
-use crate::measure::drill::SmoothingKind;
+use crate::measure::drill::{Drill, Group, SmoothingKind};
 use crate::report::layout::headed;
 use crate::report::{Cell, Table};
 
@@ -13,58 +12,32 @@ pub fn drill(name: &str, d: &Drill) -> Table {
     let mut row = |what: &str, value: Cell, unit: &str, n: usize| {
         table.push([Cell::from(name), Cell::from(what), value, Cell::from(unit), Cell::from(n)]);
     };
-    let first = if d.groups.len() > 1 { "group 0: " } else { "" };
-    let estimates: [(&str, Option<&Estimate>); 8] = [
-        ("speed", Some(&d.speed)),
-        ("velocity before impact", d.before.as_ref()),
-        ("velocity after impact", d.after.as_ref()),
-        ("phase of impact", d.phase.as_ref()),
-        ("energy before impact", d.energy.as_ref()),
-        ("energy given at impact", d.energy_given.as_ref()),
-        ("restitution", d.restitution.as_ref()),
-        ("stroke", Some(&d.displacement.stroke)),
-    ];
-    for (what, estimate) in estimates.into_iter().filter_map(|(w, e)| Some((w, e?))) {
-        let unit = if what.starts_with("phase") { "turn" } else { estimate.unit };
-        let of = if matches!(what, "speed" | "stroke") { "" } else { first };
-        row(&format!("{of}{what}"), Cell::from(estimate), unit, estimate.n);
-    }
-    for (number, g) in d.groups.iter().enumerate().skip(1) {
-        let all = [
-            ("phase of impact", Some(&g.phase)),
-            ("velocity before impact", Some(&g.before)),
-            ("velocity after impact", Some(&g.after)),
-            ("energy before impact", g.energy.as_ref()),
-            ("energy given at impact", g.energy_given.as_ref()),
-            ("restitution", g.restitution.as_ref()),
-        ];
-        for (what, estimate) in all.into_iter().filter_map(|(w, e)| Some((w, e?))) {
-            let unit = if what.starts_with("phase") { "turn" } else { estimate.unit };
-            row(&format!("group {number}: {what}"), Cell::from(estimate), unit, estimate.n);
+    row("speed", Cell::from(&d.speed), "Hz", d.speed.n);
+    for (number, group) in d.groups.iter().enumerate() {
+        let of = if d.groups.len() > 1 { format!("group {number}: ") } else { String::new() };
+        for (what, e) in means(group) {
+            let unit = if e.unit == "1" && what.starts_with("phase") { "turn" } else { e.unit };
+            row(&format!("{of}{what}"), Cell::from(e), unit, e.n);
         }
     }
+    let (x, b) = (&d.displacement, &d.bandwidth);
+    row("stroke", Cell::from(&x.stroke), "m", x.stroke.n);
     row("speed variation", Cell::Number(d.speed_variation), "Hz", d.cycles);
-    row("drift of a turn", Cell::from(&d.displacement.drift), "m", d.displacement.drift.n);
-    row("largest acceleration", Cell::Number(d.bandwidth.acceleration), "m/s²", d.averaged);
-    row("f1", Cell::Number(d.bandwidth.f1), "Hz", d.averaged);
-    row("f2", Cell::Number(d.bandwidth.f2), "Hz", d.averaged);
+    row("drift of a turn", Cell::from(&x.drift), "m", x.drift.n);
+    row("largest acceleration", Cell::Number(b.acceleration), "m/s²", d.averaged);
+    row("f1", Cell::Number(b.f1), "Hz", d.averaged);
+    row("f2", Cell::Number(b.f2), "Hz", d.averaged);
     if let Some(s) = &d.smoothing {
-        row(
-            if s.kind == SmoothingKind::Exponential {
-                "smoothing of the average"
-            } else {
-                "low-pass of the average"
-            },
-            Cell::Number(s.corner),
-            "Hz",
-            d.averaged,
-        );
+        let exponential = s.kind == SmoothingKind::Exponential;
+        let what = if exponential { "smoothing of the average" } else { "low-pass of the average" };
+        row(what, Cell::Number(s.corner), "Hz", d.averaged);
     }
+    let mut count = |what: &str, number: usize, n: usize| row(what, Cell::from(number.to_string()), "", n);
     if d.clipped > 0 {
-        row("impacts over-range", Cell::from(d.clipped.to_string().as_str()), "", d.impacts.len());
+        count("impacts over-range", d.clipped, d.impacts.len());
     }
-    row("drop-outs", Cell::from(d.dropouts.to_string().as_str()), "", d.faults.bridged + d.faults.lost);
-    row("spikes", Cell::from(d.spikes.to_string().as_str()), "", d.spikes);
+    count("drop-outs", d.dropouts, d.faults.bridged + d.faults.lost);
+    count("spikes", d.faults.spikes, d.faults.spikes);
     if let Some(e) = &d.exposure {
         row("a_hv", Cell::from(&e.a_hv), "m/s²", e.a_hv.n);
         if let Some(a8) = &e.a8 {
@@ -74,6 +47,18 @@ pub fn drill(name: &str, d: &Drill) -> Table {
         row("peak, unweighted", Cell::Number(e.unweighted_peak), "m/s²", e.a_hv.n);
     }
     table
+}
+
+fn means(group: &Group) -> impl Iterator<Item = (&'static str, &Estimate)> {
+    let all = [
+        ("velocity before impact", Some(&group.before)),
+        ("velocity after impact", Some(&group.after)),
+        ("phase of impact", Some(&group.phase)),
+        ("energy before impact", group.energy.as_ref()),
+        ("energy given at impact", group.energy_given.as_ref()),
+        ("restitution", group.restitution.as_ref()),
+    ];
+    all.into_iter().filter_map(|(what, estimate)| Some((what, estimate?)))
 }
 
 /// The average turn.
@@ -89,15 +74,9 @@ pub fn drill_average(drill: &Drill) -> Table {
 
 /// Every impact.
 pub(crate) fn drill_impacts(drill: &Drill) -> Table {
-    let columns = [
-        ("cycle", ""),
-        ("time", "s"),
-        ("speed", "Hz"),
-        ("phase", "1"),
-        ("before", "m/s"),
-        ("after", "m/s"),
-        ("group", ""),
-    ];
+    let units = ["", "s", "Hz", "1", "m/s", "m/s", ""];
+    let names = ["cycle", "time", "speed", "phase", "before", "after", "group"];
+    let columns: Vec<(&str, &str)> = names.into_iter().zip(units).collect();
     let mut table = headed("Impacts", &columns);
     for i in &drill.impacts {
         let estimate = |value, std| Cell::Estimate { value, std: Some(std) };

@@ -93,7 +93,7 @@ fn case(spoilt: Spoilt, seed: u64) -> Drill {
         .collect();
     let mut options = DrillOptions::new(1.0, Beam::new(0.0, From::Axis).unwrap(), 1, Edge::Rising);
     options.mass = Some(0.14);
-    drill(&mut Slices { rate: RATE, channels: vec![&velocity, &pulse] }, &options, None).unwrap()
+    drill(&Slices { rate: RATE, channels: vec![&velocity, &pulse] }, &options, None).unwrap()
 }
 
 /// Sides of the impacts on which the velocity is found to be no parabola.

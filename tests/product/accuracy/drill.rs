@@ -121,7 +121,7 @@ fn case(seed: u64) -> Case {
     }
     let mut options = DrillOptions::new(2.0, Beam::new(30.0, From::Normal).unwrap(), 1, Edge::Rising);
     (options.mass, options.struck_mass) = (Some(MASS), Some(STRUCK));
-    let found = drill(&mut Slices { rate: RATE, channels: vec![&volts, &pulse] }, &options, None).unwrap();
+    let found = drill(&Slices { rate: RATE, channels: vec![&volts, &pulse] }, &options, None).unwrap();
     Case { machine, run, dropouts, found }
 }
 
@@ -153,7 +153,7 @@ fn uncertainties_of_a_drill_are_true(draws: Draws) {
     for seed in 1..=draws.of(RECORDS) {
         let Case { machine, run, dropouts, found } = case(seed);
         assert_eq!(found.dropouts, dropouts, "seed {seed}");
-        assert_eq!((found.spikes, found.faults.clipped, found.faults.lost), (0, 0, 0), "seed {seed}");
+        assert_eq!((found.faults.spikes, found.faults.clipped, found.faults.lost), (0, 0, 0), "seed {seed}");
         speed.estimate(&found.speed, machine.speed);
         let m = &machine;
         let after = m.before * m.rebound;
@@ -254,7 +254,7 @@ fn wandering(turns: usize, rho: f64, seed: u64, means: &mut [Coverage; 7]) {
     let pulse: Vec<f64> = run.pulse(RATE, count).iter().map(|p| 5.0 * p + 0.02 * noise.normal()).collect();
     let mut options = DrillOptions::new(1.0, Beam::new(0.0, From::Axis).unwrap(), 1, Edge::Rising);
     (options.mass, options.struck_mass) = (Some(MASS), Some(STRUCK));
-    let found = drill(&mut Slices { rate: RATE, channels: vec![&velocity, &pulse] }, &options, None).unwrap();
+    let found = drill(&Slices { rate: RATE, channels: vec![&velocity, &pulse] }, &options, None).unwrap();
     assert!(found.groups.len() == 1 && found.cycles.abs_diff(turns) <= 1, "seed {seed}: {}", found.cycles);
     let square = m.before.powi(2) * (1.0 + m.before_scatter.powi(2));
     let squares = m.rebound.powi(2) + m.rebound_scatter.powi(2);
@@ -300,7 +300,7 @@ fn strokes(turns: usize, rho: f64, seed: u64, means: &mut [Coverage; 2]) {
         })
         .collect();
     let options = DrillOptions::new(1.0, Beam::new(0.0, From::Axis).unwrap(), 1, Edge::Rising);
-    let found = drill(&mut Slices { rate: RATE, channels: vec![&velocity, &pulse] }, &options, None).unwrap();
+    let found = drill(&Slices { rate: RATE, channels: vec![&velocity, &pulse] }, &options, None).unwrap();
     means[0].estimate(&found.displacement.stroke, amplitude / speed / std::f64::consts::PI);
     means[1].estimate(&found.displacement.drift, offset / speed);
 }

@@ -3,7 +3,7 @@
 use super::draws::Draws;
 use super::score::Score;
 use crate::drill::noise::Noise;
-use vibroimpact::measure::exposure::{Handle, exposure, weighting};
+use vibroimpact::measure::exposure::{exposure, weighting};
 
 const CASES: u64 = 240;
 const RATE: f64 = 6_400.0;
@@ -55,14 +55,13 @@ fn uncertainties_of_an_exposure_are_true(draws: Draws) {
                     offset + amplitude * (1.0 + m) * angle.sin()
                 })
                 .collect();
-            let mut handle = Handle::new(RATE).unwrap();
-            values.chunks(4096).for_each(|b| handle.push(b));
-            handles.push(handle);
+            handles.push(values);
             // The digital weighting at 100 Hz is off the formula by at most (π·100/6400)²/3 = 0.08 %, a tenth of the smallest
             // uncertainty here.
             truths.push(0.5 * amplitude * amplitude * square * weighting(TONE).norm_sqr());
         }
-        let found = exposure(&handles, Some(2.0)).unwrap();
+        let handles: Vec<&[f64]> = handles.iter().map(Vec::as_slice).collect();
+        let found = exposure(RATE, &handles, Some(2.0)).unwrap();
         let truth = truths.iter().sum::<f64>().sqrt();
         for ((score, estimate), truth) in axis.iter_mut().zip(&found.axes).zip(&truths) {
             score.add(estimate, truth.sqrt(), 1.0);

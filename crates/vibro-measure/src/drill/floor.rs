@@ -1,27 +1,15 @@
 //! Motion against the noise of the instrument: averaged spectra of both, in dB.
 
 use vibro_record::units::{Unit, decibel};
-use vibro_record::{Meta, Scaling, Window};
+use vibro_record::{Axis, Meta, Scaling, Trace, Traces, Window};
 use vibro_signal::segment::Segments;
 use vibro_signal::spectrum;
-use vibro_signal::welch::{Stream, Welch};
+use vibro_signal::welch::Welch;
 
 /// Samples of a segment.
 const SEGMENT: usize = 8192;
-
-/// Averages of a velocity that comes in blocks: Hann window, half overlap.
-pub(super) fn averages() -> Stream {
-    let segments = Segments { length: SEGMENT, hop: SEGMENT / 2 };
-    Welch { segments, window: Window::Hann, detrend: true }.stream()
-}
-
-/// RMS value of each line, from the line after 0 Hz on, and their equivalent noise bandwidth in lines; `None` if the signal was
-/// shorter than a segment.
-fn lines(stream: &Stream, rate: f64) -> Option<(Vec<f64>, f64)> {
-    let meta = Meta::new("velocity", Unit::parse_or_opaque("m/s"));
-    let found = spectrum::averaged(&stream.averages(rate)?, 0, &meta, Window::Hann, Scaling::Rms).ok()?;
-    Some((found.values.magnitudes().split_off(1), found.enbw?))
-}
+/// Lines over which levels are averaged to tell the bands, on both sides.
+const SMOOTH: usize = 8;
 
 /// Motion and noise over frequency.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -40,43 +28,46 @@ pub struct NoiseFloor {
     pub line_width: f64,
 }
 
-/// Lines over which levels are averaged to tell the bands, on both sides.
-const SMOOTH: usize = 8;
+/// RMS value of each line, from the line after 0 Hz on, and their equivalent noise bandwidth in lines: Hann window, half overlap.
+/// Missing samples are passed over. `None` if the signal is shorter than a segment or constant.
+fn lines(mut values: Vec<f64>, rate: f64) -> Option<(Vec<f64>, f64)> {
+    values.retain(|v| v.is_finite());
+    let meta = Meta::new("velocity", Unit::parse_or_opaque("m/s"));
+    let axis = Axis::time(0.0, 1.0 / rate, values.len());
+    let mut traces = Traces::from_memory(vec![Trace { meta: meta.clone(), axis, values }]).ok()?;
+    let segments = Segments { length: SEGMENT, hop: SEGMENT / 2 };
+    let welch = Welch { segments, window: Window::Hann, detrend: true };
+    let averages = welch.average(&mut traces, false, |_| ()).ok()?;
+    let found = spectrum::averaged(&averages, 0, &meta, Window::Hann, Scaling::Rms).ok()?;
+    Some((found.values.magnitudes().split_off(1), found.enbw?))
+}
 
 impl NoiseFloor {
     /// Motion against noise at `rate` samples a second. `None` if one of them is shorter than a segment.
-    pub(super) fn new(motion: &Stream, noise: &Stream, rate: f64, margin: f64) -> Option<NoiseFloor> {
+    pub(super) fn new(motion: Vec<f64>, noise: Vec<f64>, rate: f64, margin: f64) -> Option<NoiseFloor> {
         let ((motion, width), (noise, _)) = (lines(motion, rate)?, lines(noise, rate)?);
         let step = rate / SEGMENT as f64;
-        let frequency: Vec<f64> = (1..=motion.len()).map(|k| k as f64 * step).collect();
         // Single lines scatter, and between the harmonics of the speed there is no motion: means over some lines decide.
         let mean = |lines: &[f64], k: usize| {
             let part = &lines[k.saturating_sub(SMOOTH)..(k + SMOOTH + 1).min(lines.len())];
             (part.iter().map(|v| v * v).sum::<f64>() / part.len() as f64).sqrt()
         };
-        let above: Vec<bool> =
-            (0..motion.len()).map(|k| decibel(mean(&motion, k), mean(&noise, k)) >= margin).collect();
-        let mut bands: Vec<[f64; 2]> = Vec::new();
-        for (k, f) in frequency.iter().enumerate().filter(|(k, _)| above[*k]) {
-            match bands.last_mut().filter(|_| k > 0 && above[k - 1]) {
-                Some(band) => band[1] = *f,
-                None => bands.push([*f, *f]),
-            }
-        }
-        bands.retain(|b| b[1] - b[0] >= SMOOTH as f64 * step);
-        let level =
-            |lines: Vec<f64>| lines.into_iter().map(|v| decibel(v.max(f64::MIN_POSITIVE), 1.0)).collect();
+        let above = |k: usize| decibel(mean(&motion, k), mean(&noise, k)) >= margin;
+        let lines: Vec<(f64, bool)> = (0..motion.len()).map(|k| ((k + 1) as f64 * step, above(k))).collect();
+        let bands = lines.chunk_by(|a, b| a.1 == b.1).filter(|band| band[0].1);
+        let bands = bands.map(|band| [band[0].0, band[band.len() - 1].0]);
+        let wide = |b: &[f64; 2]| b[1] - b[0] >= SMOOTH as f64 * step;
+        let level = |v: &f64| decibel(v.max(f64::MIN_POSITIVE), 1.0);
         Some(NoiseFloor {
-            frequency,
-            motion: level(motion),
-            noise: level(noise),
+            bands: bands.filter(wide).collect(),
+            frequency: lines.iter().map(|line| line.0).collect(),
+            motion: motion.iter().map(level).collect(),
+            noise: noise.iter().map(level).collect(),
             margin,
-            bands,
             line_width: width * step,
         })
     }
 }
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -95,12 +86,9 @@ mod tests {
             .enumerate()
             .map(|(i, n)| n + 2.0 * (std::f64::consts::TAU * 500.0 * i as f64 / rate).sin())
             .collect();
-        let spectrum = |v: &[f64], block| {
-            let mut s = averages();
-            v.chunks(block).for_each(|b| s.push(b));
-            s
-        };
-        let floor = NoiseFloor::new(&spectrum(&motion, 1000), &spectrum(&noise, 70_000), rate, 10.0).unwrap();
+        let short = motion[..100].to_vec();
+        assert!(NoiseFloor::new(short, noise.clone(), rate, 10.0).is_none());
+        let floor = NoiseFloor::new(motion, noise, rate, 10.0).unwrap();
         assert_eq!(floor.frequency[499], 500.0);
         // 2/√2 m/s, noise adds nothing that is seen: 40 dB and more below.
         assert!((floor.motion[499] - 20.0 * 2f64.sqrt().log10()).abs() < 0.01);
@@ -110,8 +98,5 @@ mod tests {
         assert!((10.0 * (mean / (1e-4 / 12.0 / 4096.0 * 1.5)).log10()).abs() < 0.1);
         assert_eq!(floor.bands.len(), 1);
         assert!(floor.bands[0][0] >= 490.0 && floor.bands[0][1] <= 510.0, "{:?}", floor.bands);
-        assert!(
-            NoiseFloor::new(&spectrum(&motion[..100], 100), &spectrum(&noise, 100), rate, 10.0).is_none()
-        );
     }
 }

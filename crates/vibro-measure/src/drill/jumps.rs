@@ -6,12 +6,11 @@
 //! the striker: over 0.5 ms of a 7.5 m/s stroke at 50 Hz by 0.04 m/s.
 
 use super::faults::State;
-use super::fit_noise::FitNoise;
-use super::lack_of_fit::Residuals;
-use super::parabola::{FEWEST, Parabola};
+use super::fit::{FEWEST, Parabola};
 use super::survey::median;
 use super::turns::Turn;
 use super::{Impact, crossing};
+use crate::residuals::Whiteness;
 
 /// Most impacts in a turn: two, in front and behind, where two pulses of a turn are counted as one.
 const MOST: usize = 4;
@@ -21,12 +20,13 @@ const PART: f64 = 0.25;
 const CLEAR: f64 = 6.0;
 
 /// A jump, kept until all are known.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct Jump {
     cycle: usize,
     turn: Turn,
-    /// Place in samples from the first of the record.
+    /// Place in samples.
     at: f64,
+    /// Before and after.
     sides: [Parabola; 2],
     /// Step between the samples around the place, and the part of it that lies before.
     step: f64,
@@ -40,70 +40,47 @@ impl Jump {
     }
 }
 
-/// What the turns gave.
-pub(super) struct Found {
-    /// Impacts in the order of time.
-    pub impacts: Vec<Impact>,
-    /// Residuals of their fits.
-    pub residuals: Residuals,
+/// Finds the jumps of one turn after the other.
+pub(super) struct Jumps<'a> {
+    values: &'a [f64],
+    states: &'a [State],
+    /// Samples from the end of a fit to the middle of the contact.
+    pub gap: usize,
+    length: usize,
+    found: Vec<Jump>,
+    largest: Vec<f64>,
     /// Turns whose impact lies in a fault of the velocity.
     pub hidden: usize,
 }
 
-/// Finds the jumps of one turn after the other.
-#[derive(Debug, Clone)]
-pub(super) struct Jumps {
-    gap: usize,
-    length: usize,
-    found: Vec<Jump>,
-    largest: Vec<f64>,
-    noise: [FitNoise; 2],
-    hidden: usize,
-}
-
-impl Jumps {
+impl<'a> Jumps<'a> {
     /// Jumps with a contact that takes `contact` samples at most, and fits over `fit` samples on both sides.
-    pub fn new(contact: f64, fit: f64) -> Jumps {
+    pub fn new(values: &'a [f64], states: &'a [State], contact: f64, fit: f64) -> Jumps<'a> {
         let gap = ((0.5 * contact).ceil() as usize).max(1);
         let length = (fit.round() as usize).max(FEWEST);
-        let noise = [FitNoise::default(); 2];
-        Jumps { gap, length, found: Vec::new(), largest: Vec::new(), noise, hidden: 0 }
+        Jumps { values, states, gap, length, found: Vec::new(), largest: Vec::new(), hidden: 0 }
     }
 
-    /// Samples that must be there before and after a turn.
-    pub fn margin(&self) -> usize {
-        self.gap.saturating_add(self.length).saturating_add(2)
-    }
-
-    /// Takes turn number `cycle`, which lies at `turn` in the record; `values` begins at sample `base` of it.
-    pub fn push(&mut self, cycle: usize, turn: Turn, values: &[f64], states: &[State], base: f64) {
-        let [from, to] = [turn.start, turn.end].map(|edge| (edge - base).ceil().max(0.0) as usize);
-        let steps = self.steps(values, from, to);
+    /// Looks at turn number `cycle`.
+    pub fn push(&mut self, cycle: usize, turn: Turn) {
+        let (from, to) = (turn.start.ceil() as usize, turn.end.ceil() as usize);
+        let steps: Vec<f64> = (from..to).map(|i| self.step(i)).collect();
         let mut open = vec![true; steps.len()];
         let top = steps.iter().fold(0.0f64, |a, b| a.max(b.abs()));
         let (mut largest, mut disturbed) = (None, false);
         for _ in 0..MOST {
-            let next = steps
-                .iter()
-                .enumerate()
-                .filter(|(k, s)| open[*k] && s.abs() > PART * top)
-                .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-            let Some((k, _)) = next else { break };
+            let high = steps.iter().enumerate().filter(|(k, s)| open[*k] && s.abs() > PART * top);
+            let Some((k, _)) = high.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) else { break };
             let reach = 2 * self.gap + self.averaged();
             open[k.saturating_sub(reach)..(k + reach).min(steps.len())].fill(false);
-            let Some((mut jump, residuals)) = self.refine(values, states, from + k) else {
-                disturbed = disturbed || self.disturbed(states, from + k);
+            let Some(jump) = self.refine(cycle, turn, from + k) else {
+                disturbed = disturbed || self.disturbed(from + k);
                 continue;
             };
-            jump.at += base;
-            if !(turn.start..turn.end).contains(&jump.at) {
-                continue;
+            if (turn.start..turn.end).contains(&jump.at) {
+                largest = largest.or(Some(jump.height()));
+                self.found.push(jump);
             }
-            if largest.is_none() {
-                largest = Some(jump.height());
-                self.noise.iter_mut().zip(&residuals).for_each(|(noise, own)| noise.push(own));
-            }
-            self.found.push(Jump { cycle, turn, ..jump });
         }
         self.hidden += usize::from(largest.is_none() && disturbed);
         self.largest.extend(largest);
@@ -114,80 +91,74 @@ impl Jumps {
         (self.length / 4).max(3)
     }
 
-    /// Difference between the mean behind and the mean before each sample, the contact left out.
-    fn steps(&self, values: &[f64], from: usize, to: usize) -> Vec<f64> {
-        let (m, gap) = (self.averaged(), self.gap);
-        let low = from.saturating_sub(gap + m);
-        let Some(part) = values.get(low..(to + gap + m + 1).min(values.len())) else { return Vec::new() };
-        let mut sums = vec![0.0];
-        sums.extend(part.iter().scan(0.0, |sum, v| {
-            *sum += v;
-            Some(*sum)
-        }));
-        let mean = |a: usize| Some((sums.get(a + m)? - sums.get(a)?) / m as f64);
-        (from..to)
-            .map(|i| {
-                let behind = mean(i + gap - low);
-                let before = (i + 1).checked_sub(low + gap + m).and_then(mean);
-                behind.zip(before).map_or(0.0, |(a, b)| a - b)
-            })
-            .collect()
+    /// Difference between the mean behind and the mean before a sample, the contact left out; 0 at the ends of the record.
+    fn step(&self, i: usize) -> f64 {
+        let m = self.averaged();
+        let mean = |from: usize| Some(self.values.get(from..from + m)?.iter().sum::<f64>() / m as f64);
+        let before = (i + 1).checked_sub(self.gap + m).and_then(mean);
+        mean(i + self.gap).zip(before).map_or(0.0, |(behind, before)| behind - before)
     }
 
     /// Whether a fault lies within the contact at sample `at`.
-    fn disturbed(&self, states: &[State], at: usize) -> bool {
-        let near = states.get(at.saturating_sub(self.gap)..(at + self.gap + 1).min(states.len()));
-        near.is_some_and(|s| s.iter().any(|s| !s.measured()))
+    fn disturbed(&self, at: usize) -> bool {
+        let near = at.saturating_sub(self.gap)..(at + self.gap + 1).min(self.states.len());
+        self.states.get(near).is_some_and(|s| s.iter().any(|s| !s.measured()))
     }
 
-    /// The jump near sample `near` and the residuals of its fits, which are taken three times so that they stand around the crossing.
-    fn refine(&self, values: &[f64], states: &[State], near: usize) -> Option<(Jump, [Vec<f64>; 2])> {
+    /// The jump near a sample; its fits are taken three times so that they stand around the crossing.
+    fn refine(&self, cycle: usize, turn: Turn, near: usize) -> Option<Jump> {
+        let (values, states) = (self.values, self.states);
         let mut at = near as f64;
         let mut found = None;
         for _ in 0..3 {
             let left = (at - self.gap as f64).floor() as isize;
             let right = (at + self.gap as f64).ceil() as isize;
             let length = self.length as isize - 1;
-            let (before, residuals_before) = Parabola::through(values, states, at, left - length..=left)?;
-            let (after, residuals_after) = Parabola::through(values, states, at, right..=right + length)?;
+            let before = Parabola::through(values, states, at, left - length..=left)?;
+            let after = Parabola::through(values, states, at, right..=right + length)?;
             let middle = 0.5 * (before.value + after.value);
             let crossings: Vec<(usize, f64)> = (left.max(0) as usize..right as usize)
                 .filter_map(|i| crossing::between(values, i, middle).map(|t| (i, t)))
                 .collect();
             let (&(i, first), &(_, last)) = (crossings.first()?, crossings.last()?);
             at = 0.5 * (first + last);
-            let reached = [left - length, right + length].map(|k| k.max(0) as usize);
-            let jump = Jump {
-                cycle: 0,
-                turn: Turn { start: 0.0, end: 0.0 },
+            let reached = (left - length).max(0) as usize..=(right + length) as usize;
+            found = Some(Jump {
+                cycle,
+                turn,
                 at,
                 sides: [before, after],
                 step: values[i + 1] - values[i],
                 share: at - i as f64,
-                clipped: states.get(reached[0]..=reached[1]).is_some_and(|s| s.contains(&State::Clipped)),
-            };
-            found = Some((jump, [residuals_before, residuals_after]));
+                clipped: states.get(reached).is_some_and(|s| s.contains(&State::Clipped)),
+            });
         }
-        let variance = |jump: &Jump| jump.sides.iter().map(|side| side.variance).sum::<f64>();
-        found.filter(|(jump, _)| {
-            jump.height() > CLEAR * variance(jump).sqrt() && !self.disturbed(states, jump.at.round() as usize)
+        found.filter(|jump| {
+            let variance: f64 = jump.sides.iter().map(Parabola::variance).sum();
+            jump.height() > CLEAR * variance.sqrt() && !self.disturbed(jump.at.round() as usize)
         })
     }
 
-    /// All impacts, at `rate` samples a second, with reference edges of standard uncertainty `edge` samples.
-    pub fn finish(mut self, rate: f64, edge: f64) -> Found {
+    /// All impacts in the order of time, at `rate` samples a second, with reference edges of standard uncertainty `edge` samples; and
+    /// what their fits leave.
+    pub fn finish(mut self, rate: f64, edge: f64) -> (Vec<Impact>, Vec<[Vec<f64>; 2]>) {
         let typical = median(self.largest.iter().copied());
         self.found.retain(|j| j.height() >= PART * typical);
         self.found.sort_by(|a, b| a.at.total_cmp(&b.at));
-        let noise = self.noise.map(|n| n.variance());
-        let inflation = self.noise.map(|n| n.inflation(self.length));
+        let noise = [0, 1].map(|k| {
+            let sides = || self.found.iter().map(|j| &j.sides[k]);
+            let variance = sides().map(|s| s.squares).sum::<f64>() / sides().map(|s| s.freedom).sum::<f64>();
+            // A laser's decoder limits the bandwidth of its noise, so neighbours depend on each other.
+            let residuals: Vec<&[f64]> = sides().map(|s| s.residuals.as_slice()).collect();
+            (variance, variance * Whiteness::of(&residuals).inflation.powi(2))
+        });
         let impact = |j: &Jump| {
-            let [before, after] = [0, 1].map(|k| noise[k] * inflation[k] * j.sides[k].leverage);
+            let [before, after] = [0, 1].map(|k| noise[k].1 * j.sides[k].leverage);
             let length = j.turn.end - j.turn.start;
             let phase = (j.at - j.turn.start) / length;
             // The crossing lies between two samples; the level that is crossed is the mean of both values.
             let weight = (1.0 - j.share).powi(2) + j.share * j.share;
-            let crossed = 0.5 * (noise[0] + noise[1]) * weight + 0.25 * (before + after);
+            let crossed = 0.5 * (noise[0].0 + noise[1].0) * weight + 0.25 * (before + after);
             // A jump within one sample may lie anywhere in it.
             let sampling = if j.step.abs() > 0.8 * j.height() { 1.0 / 12.0 } else { 0.0 };
             let time = crossed / (j.step * j.step) + sampling;
@@ -206,9 +177,7 @@ impl Jumps {
             }
         };
         let impacts = self.found.iter().map(impact).collect();
-        let shapes = self.found.iter().map(|j| j.sides.map(|side| side.shape)).collect();
-        let residuals = Residuals { shapes, length: self.length, gap: self.gap };
-        Found { impacts, residuals, hidden: self.hidden }
+        (impacts, self.found.into_iter().map(|j| j.sides.map(|s| s.residuals)).collect())
     }
 }
 
@@ -231,10 +200,10 @@ mod tests {
     }
 
     fn one(values: &[f64], states: &[State]) -> (Vec<Impact>, usize) {
-        let mut jumps = Jumps::new(20.0, 50.0);
-        jumps.push(4, Turn { start: 100.0, end: 1900.0 }, values, states, 0.0);
-        let found = jumps.finish(1e5, 0.0);
-        (found.impacts, found.hidden)
+        let mut jumps = Jumps::new(values, states, 20.0, 50.0);
+        jumps.push(4, Turn { start: 100.0, end: 1900.0 });
+        let hidden = jumps.hidden;
+        (jumps.finish(1e5, 0.0).0, hidden)
     }
 
     #[test]

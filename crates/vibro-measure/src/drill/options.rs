@@ -1,16 +1,142 @@
 //! What must be known of a drill's record, and how it is taken.
 
-use super::{Beam, Edge, Smoothing};
+use super::Edge;
 use crate::exposure::check_hours;
-use vibro_record::units::notation::quantity;
+use serde::{Deserialize, Serialize};
 use vibro_record::{Error, Result};
+use vibro_signal::filter::Filter;
 
 /// More pulses in a turn than any encoder on a crank gives.
 const MOST_PULSES: usize = 10_000;
 /// More phases than any record fills.
 const MOST_POINTS: usize = 100_000;
-/// Longest turn in samples: a few turns are kept in memory; at 100 kHz these are 40 s.
-pub(super) const LONGEST_TURN: f64 = 4e6;
+/// Cosine of 89°: nearer to square a tenth of a degree changes the velocity by a tenth.
+const SQUARE: f64 = 0.0175;
+/// Harmonics of the speed that the low-pass chosen from the data lets through at least, however few phases the average has:
+/// at the tenth, (10/50)⁴ = 0.2 % of the amplitude are missing then, of a stroke still less.
+const HARMONICS: f64 = 50.0;
+/// Largest corner as a part of the sampling rate: from there on differences of samples show too little:
+/// at a quarter of it a central difference gives 2/π of a slope.
+const HIGHEST: f64 = 0.25;
+
+/// From where the angle of the beam is counted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum From {
+    /// From the normal to the motion: 90° is a beam along the motion.
+    Normal,
+    /// From the axis of the motion: 0° is a beam along the motion.
+    Axis,
+}
+
+/// A beam that sees v cos α of a velocity v, α the angle between beam and motion.
+///
+/// ```
+/// use vibro_measure::drill::{Beam, From};
+/// assert!((Beam::new(30.0, From::Normal)?.factor - 2.0).abs() < 1e-12);
+/// assert!((Beam::new(30.0, From::Axis)?.factor - 1.1547).abs() < 1e-4);
+/// # Ok::<(), vibro_record::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Beam {
+    /// Velocity of the motion over velocity along the beam, 1/cos α.
+    pub factor: f64,
+    /// Relative change of velocities for one degree of error in the angle: tan α · π/180.
+    pub per_degree: f64,
+}
+
+impl Beam {
+    /// A beam at `degrees`, counted `from` the normal or from the axis of the motion.
+    ///
+    /// # Errors
+    /// If the angle is not between 0° and 90°, or the beam stands square to the motion and sees nothing of it.
+    pub fn new(degrees: f64, from: From) -> Result<Beam> {
+        if !(0.0..=90.0).contains(&degrees) {
+            let found = format!("a beam angle of {degrees}°");
+            return Err(Error::usage(found, "0° to 90°").setting("beam_angle"));
+        }
+        let alpha = if from == From::Axis { degrees } else { 90.0 - degrees }.to_radians();
+        if alpha.cos() < SQUARE {
+            let why = format!("a beam at {degrees}° is square to the motion: it sees no velocity");
+            let hint = "check whether the angle counts from the normal or from the axis of the motion";
+            return Err(Error::refused(why).hint(hint).setting("from"));
+        }
+        Ok(Beam { factor: 1.0 / alpha.cos(), per_degree: alpha.tan() * 1f64.to_radians() })
+    }
+}
+
+/// How the velocity is smoothed before it is averaged and integrated. Impacts and bandwidth are always taken from the
+/// velocity as it was measured.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Smoothing {
+    /// A zero-phase low-pass as in [`Smoothing::LowPass`] whose corner comes from the data: half as many times the speed as
+    /// the average has phases, the highest frequency that these can show (50 times at least), and at most a quarter of the
+    /// sampling rate.
+    #[default]
+    Phases,
+    /// None.
+    Off,
+    /// Butterworth low-pass of second order, forward and backward: no delay. Corner in Hz, at half the amplitude.
+    LowPass(f64),
+    /// Exponential smoothing with this time constant in s: delays by it.
+    Exponential(f64),
+}
+
+/// A smoothing and its corner.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Corner {
+    /// Kind of smoothing.
+    pub kind: SmoothingKind,
+    /// Corner in Hz: half the amplitude of the zero-phase low-pass, 1/√2 of exponential smoothing.
+    pub corner: f64,
+}
+
+/// Kind of a smoothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SmoothingKind {
+    /// Butterworth low-pass of second order, forward and backward.
+    ZeroPhaseLowPass,
+    /// First-order low-pass, forward only.
+    Exponential,
+}
+
+impl Smoothing {
+    /// Kind and corner for an average at `points` phases of turns of `turn` seconds, `rate` samples a second; `None` where nothing is
+    /// smoothed.
+    ///
+    /// ```
+    /// use vibro_measure::drill::Smoothing;
+    /// assert_eq!(Smoothing::Phases.corner(720, 0.02, 102_400.0).unwrap().corner, 18_000.0);
+    /// assert_eq!(Smoothing::Phases.corner(720, 0.02, 20_000.0).unwrap().corner, 5_000.0);
+    /// ```
+    pub fn corner(self, points: usize, turn: f64, rate: f64) -> Option<Corner> {
+        use SmoothingKind::{Exponential, ZeroPhaseLowPass};
+        let highest = (0.5 * points as f64).max(HARMONICS) / turn;
+        let (kind, corner) = match self {
+            Smoothing::Off => return None,
+            Smoothing::Phases => (ZeroPhaseLowPass, highest.min(HIGHEST * rate)),
+            Smoothing::LowPass(corner) => (ZeroPhaseLowPass, corner),
+            Smoothing::Exponential(time) => (Exponential, 1.0 / (std::f64::consts::TAU * time)),
+        };
+        Some(Corner { kind, corner })
+    }
+}
+
+impl Corner {
+    /// Smooths a velocity.
+    pub(super) fn smooth(self, values: &[f64], rate: f64) -> Result<Vec<f64>> {
+        match self.kind {
+            SmoothingKind::ZeroPhaseLowPass => Filter::low_pass(self.corner, 2, rate)?.zero_phase(values),
+            SmoothingKind::Exponential => {
+                let mut out = values.to_vec();
+                let first = values.first().copied().unwrap_or(0.0);
+                Filter::smoothing(self.corner, rate)?.settled_at(first).apply(&mut out);
+                Ok(out)
+            }
+        }
+    }
+}
 
 /// Parameters of [`super::drill`]. There is no default for those of which a wrong guess gives a plausible wrong answer.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,11 +199,14 @@ impl DrillOptions {
     }
 
     /// Checks every number.
-    pub(super) fn check(&self) -> Result<()> {
-        let (low_pass, smoothing) = match self.smoothing {
-            Smoothing::LowPass(corner) => (Some(corner), None),
-            Smoothing::Exponential(time) => (None, Some(time)),
-            Smoothing::Phases | Smoothing::Off => (None, None),
+    ///
+    /// # Errors
+    /// With the first one that cannot be as its setting.
+    pub fn check(&self) -> Result<()> {
+        let smoothing = match self.smoothing {
+            Smoothing::LowPass(corner) => ("low_pass", Some(corner)),
+            Smoothing::Exponential(time) => ("smoothing", Some(time)),
+            Smoothing::Phases | Smoothing::Off => ("low_pass", None),
         };
         let positive = [
             ("mass", self.mass),
@@ -85,33 +214,24 @@ impl DrillOptions {
             ("contact", Some(self.contact)),
             ("fit", Some(self.fit)),
             ("longest_dropout", Some(self.longest_dropout)),
-            ("low_pass", low_pass),
-            ("smoothing", smoothing),
             ("instrument", self.instrument),
+            smoothing,
         ];
-        let above = |(key, value): (&'static str, Option<f64>)| {
-            value.map(|v| (key, v, v.is_finite() && v > 0.0, "a finite number above 0"))
-        };
-        let finite = |v: f64| v.is_finite();
-        let (pulses, points) = (self.pulses_per_turn, self.points);
+        let above = |v: f64| v.is_finite() && v > 0.0;
+        let positive =
+            positive.map(|(key, v)| (key, v.unwrap_or(1.0), v.is_none_or(above), "a finite number above 0"));
+        let (sensitivity, pulses, points) = (self.sensitivity, self.pulses_per_turn, self.points);
+        let known = sensitivity.is_finite() && sensitivity != 0.0;
         let others = [
-            (
-                "sensitivity",
-                self.sensitivity,
-                finite(self.sensitivity) && self.sensitivity != 0.0,
-                "a finite number, not 0",
-            ),
-            ("delay", self.delay, finite(self.delay), "a finite number"),
-            ("margin", self.margin, finite(self.margin), "a finite number"),
+            ("sensitivity", sensitivity, known, "a finite number, not 0"),
+            ("delay", self.delay, self.delay.is_finite(), "a finite number"),
+            ("margin", self.margin, self.margin.is_finite(), "a finite number"),
             ("pulses_per_turn", pulses as f64, (1..=MOST_PULSES).contains(&pulses), "1 to 10000"),
             ("points", points as f64, (2..=MOST_POINTS).contains(&points), "2 to 100000"),
         ];
-        for (key, value, holds, expected) in others.into_iter().chain(positive.into_iter().filter_map(above))
-        {
-            if !holds {
-                let found = format!("{} = {value}", key.replace('_', " "));
-                return Err(Error::usage(found, expected).setting(key));
-            }
+        if let Some((key, value, _, expected)) = positive.into_iter().chain(others).find(|check| !check.2) {
+            let found = format!("{} = {value}", key.replace('_', " "));
+            return Err(Error::usage(found, expected).setting(key));
         }
         if self.struck_mass.is_some() && self.mass.is_none() {
             let found = "a struck mass without the mass that strikes it";
@@ -120,27 +240,40 @@ impl DrillOptions {
         check_hours(self.hours)
     }
 
-    /// Checks what must fit into a turn of `turn` seconds at `rate` samples a second.
-    pub(super) fn check_turn(&self, turn: f64, rate: f64) -> Result<()> {
-        if turn * rate > LONGEST_TURN {
-            return Err(Error::refused(format!(
-                "a turn of {} is longer than {LONGEST_TURN:.0} samples",
-                quantity(turn, "s", 3)
-            ))
-            .hint("resample the record, or check the pulses of a turn")
-            .setting("pulses_per_turn"));
-        }
+    /// Checks what must fit into a turn of `turn` seconds.
+    pub(super) fn check_turn(&self, turn: f64) -> Result<()> {
         for (key, time) in [("contact", self.contact), ("fit", self.fit)] {
             if time > 0.5 * turn {
-                let half = quantity(0.5 * turn, "s", 3);
-                return Err(Error::refused(format!(
-                    "a {key} time of {time} s is longer than half a turn, {half}"
-                ))
-                .hint("state a shorter time in seconds; if it is right, check the pulses of a turn")
-                .setting(key)
-                .setting("pulses_per_turn"));
+                let why = format!("a {key} time of {time} s is longer than half a turn of {turn:.3e} s");
+                let hint = "state a shorter time in seconds; if it is right, check the pulses of a turn";
+                return Err(Error::refused(why).hint(hint).setting(key).setting("pulses_per_turn"));
             }
         }
         Ok(())
+    }
+}
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_spellings_of_one_beam_agree() {
+        for degrees in [0.0, 12.5, 45.0, 80.0] {
+            let (a, b) =
+                (Beam::new(degrees, From::Axis).unwrap(), Beam::new(90.0 - degrees, From::Normal).unwrap());
+            // One rounding in the angle, amplified by tan 80° = 6.
+            assert!((a.factor / b.factor - 1.0).abs() < 1e-14);
+        }
+        // 3 % a degree where the factor is 2.
+        assert!((Beam::new(30.0, From::Normal).unwrap().per_degree - 0.0302).abs() < 1e-4);
+    }
+
+    #[test]
+    fn a_square_beam_is_refused_and_an_impossible_angle_is_wrong_usage() {
+        assert_eq!(Beam::new(90.0, From::Axis).unwrap_err().exit_code(), 1);
+        assert_eq!(Beam::new(0.0, From::Normal).unwrap_err().exit_code(), 1);
+        for bad in [-1.0, 91.0, f64::NAN] {
+            assert_eq!(Beam::new(bad, From::Axis).unwrap_err().exit_code(), 2);
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! What a drill's record gave.
 
-use super::{Bandwidth, Corner, FaultCount, Group, Impact, NoiseFloor};
+use super::{Bandwidth, Beam, Corner, FaultCount, Group, Impact, NoiseFloor, Phases};
 use crate::Estimate;
 use crate::exposure::Exposure;
 use serde::Serialize;
@@ -30,8 +30,6 @@ pub struct Drill {
     pub after: Option<Estimate>,
     /// Mean phase of the impacts in turns after the edge.
     pub phase: Option<Estimate>,
-    /// Standard deviation of the phase from impact to impact, in turns.
-    pub phase_variation: Option<f64>,
     /// Mean kinetic energy before the impacts.
     pub energy: Option<Estimate>,
     /// Mean energy that the impacts take out of the mass.
@@ -48,9 +46,7 @@ pub struct Drill {
     pub displacement: Displacement,
     /// Drop-outs of the velocity.
     pub dropouts: usize,
-    /// Spikes of the velocity.
-    pub spikes: usize,
-    /// Samples bridged, lost and clipped.
+    /// Drop-outs and spikes, and the samples bridged, lost and clipped.
     pub faults: FaultCount,
     /// How fast the motion changes.
     pub bandwidth: Bandwidth,
@@ -58,8 +54,8 @@ pub struct Drill {
     pub noise_floor: Option<NoiseFloor>,
     /// Hand-arm exposure, where a handle was measured.
     pub exposure: Option<Exposure>,
-    /// Factor of the beam.
-    pub beam: BeamResult,
+    /// The beam.
+    pub beam: Beam,
     /// Smoothing of average and displacement; `None` where it was switched off.
     pub smoothing: Option<Corner>,
     /// Speed of each turn in Hz, for the picture of it.
@@ -96,20 +92,6 @@ pub struct Pulses {
     pub std: f64,
 }
 
-/// The time-synchronous average.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Phases {
-    /// Phase in turns after the edge.
-    pub phase: Vec<f64>,
-    /// Mean velocity in m/s.
-    pub mean: Vec<f64>,
-    /// Standard deviation from turn to turn, in m/s.
-    pub std: Vec<f64>,
-    /// Lowest and highest velocity of all turns, in m/s, for the picture of it.
-    #[serde(skip)]
-    pub range: Vec<(f64, f64)>,
-}
-
 /// Displacement by integration over whole turns.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Displacement {
@@ -119,13 +101,4 @@ pub struct Displacement {
     pub stroke: Estimate,
     /// Mean displacement left at the end of a turn, which was taken away.
     pub drift: Estimate,
-}
-
-/// Effect of the beam's angle.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct BeamResult {
-    /// Velocity of the motion over velocity along the beam.
-    pub factor: f64,
-    /// Relative change of velocities for one degree of error in the angle.
-    pub per_degree: f64,
 }

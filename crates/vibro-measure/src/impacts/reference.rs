@@ -1,6 +1,6 @@
 //! Cycles of the excitation as a reference channel shows them.
 
-use crate::drill::{Edge, Edges, Numbered, Survey};
+use crate::drill::{Edge, Edges, Numbered, levels};
 use vibro_record::{Error, Result};
 
 /// Relative standard uncertainty of a mean interval whose first and last edge, so many samples apart, each lie anywhere within one
@@ -30,22 +30,19 @@ impl Reference {
     /// # Errors
     /// Where there are fewer than two, or where they pause, so that cycles cannot be counted.
     pub fn new(channel: &[f64]) -> Result<Reference> {
-        let mut survey = Survey::default();
-        survey.push(channel);
         let refused = |why: String| {
             Err(Error::refused(why)
                 .hint("name another reference channel, or state the frequency of the excitation")
                 .setting("reference")
                 .setting("excitation"))
         };
-        let Some((low, high)) = survey.levels() else {
+        let Some(levels) = levels(channel) else {
             return refused("the reference channel has one level only: it shows no cycle".to_owned());
         };
-        let mut edges = Edges::new(low, high, Edge::Rising);
-        edges.push(channel);
-        let found = edges.finish();
-        let Numbered { mut runs, missing, extra, pauses } = Numbered::new(&found.edges);
+        let found = Edges::of(channel, levels, Edge::Rising);
+        let Numbered { mut runs, missing, extra } = Numbered::new(&found.at);
         let edges = runs.pop().unwrap_or_default();
+        let pauses = runs.len();
         if pauses > 0 {
             return refused(format!(
                 "the reference channel misses more than three edges in a row, {pauses} times: cycles cannot be counted across"

@@ -58,22 +58,6 @@ fn agrees_with_scipy() {
 }
 
 #[test]
-fn a_stream_has_the_averages_of_the_record_however_it_is_cut() {
-    let values = records()[1].values.clone();
-    let whole = averages(vec![trace("y", values.clone())], 64, 0.5, Window::Hann).unwrap();
-    for block in [1, 63, 64, 700] {
-        let segments = Segments::new(64, 0.5).unwrap();
-        let mut stream = Welch { segments, window: Window::Hann, detrend: true }.stream();
-        assert_eq!(stream.averages(RATE), None);
-        values.chunks(block).for_each(|b| stream.push(b));
-        let found = stream.averages(RATE).unwrap();
-        assert_eq!((found.count, found.length, found.rate), (whole.count, 64, RATE));
-        // The same terms in another order: |X|² of order 64.
-        close(&found.auto[0], &whole.auto[0], 64.0);
-    }
-}
-
-#[test]
 fn products_agree_with_scipy() {
     let averages = averages(records(), 64, 0.5, Window::Hann).unwrap();
     let (re, im) = (reference("cross real"), reference("cross imaginary"));
