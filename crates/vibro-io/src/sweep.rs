@@ -244,8 +244,7 @@ fn taken(meta: &Meta) -> f64 {
 
 fn other_quantity(recording: &Recording, written: &Unit, raw: bool, said: &Said) -> Error {
     let hint = match (raw, said.force) {
-        (true, true) => "state the calibration of the force: newtons per stored number",
-        (true, false) => "state unit and calibration: what one stored number stands for",
+        (true, _) => "state unit and calibration: what one stored number stands for",
         (false, true) => "check that these are the force files, and not the response files",
         (false, false) => {
             "leave quantity and unit out to believe the file; or check that this is the channel you mean"

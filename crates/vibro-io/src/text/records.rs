@@ -314,10 +314,10 @@ impl Made<'_> {
 
     /// A remark about one column, `key: value of name`, or about all, `key: value`.
     fn said(&self, key: &str, name: &str) -> Option<String> {
-        let about = |v: &'_ str| v.split_once(" of ").map(|(v, n)| (v.to_owned(), n == name));
-        let own = self.remarks(key).find_map(|v| about(v).filter(|(_, ours)| *ours).map(|(v, _)| v));
-        let common = || self.remarks(key).find(|v| !v.contains(" of ")).map(str::to_owned);
-        own.or_else(common).map(|v| v.trim().to_lowercase())
+        let of = format!(" of {name}");
+        let own = self.remarks(key).find_map(|v| v.strip_suffix(of.as_str()));
+        let value = own.or_else(|| self.remarks(key).find(|v| !v.contains(" of ")))?;
+        Some(value.trim().to_lowercase())
     }
 }
 

@@ -25,8 +25,8 @@ pub struct Rows {
 /// Reads all rows from the first one on.
 ///
 /// # Errors
-/// On the first field that is no number, the first row with another number of fields and the first blank line between rows of
-/// several columns; on missing values, all at once, unless they are allowed; on a missing value in a column that its name makes
+/// On the first field that is no number, the first row with another number of fields and, but for tables, the first blank line
+/// between rows of several columns; on missing values, all at once, unless they are allowed; on a missing value in a column that its name makes
 /// the abscissa always.
 pub fn read(path: &Path, text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> {
     let (n, abscissa) = (dialect.columns, dialect.named_abscissa());
