@@ -11,13 +11,13 @@ mod summary;
 pub use pairing::Crossing;
 pub use stored::Stored;
 
-use super::{Analysis, Job, JobOptions, Progress, entries};
+use super::{Analysis, Answer, Job, JobOptions, Progress, entries};
 use crate::campaign::{Campaign, Entry, above_zero};
 use crate::error::{Error, Place, Result};
 use crate::measure::response::{Response, ResponseOptions, response, to_displacement};
 use crate::measure::waterfall::{Waterfall, gathered};
 use crate::read::{SweepList, SweepReader};
-use crate::record::{Direction, Scaling, Sweep};
+use crate::record::{Direction, Finding, Scaling, Sweep};
 use crate::report::files;
 use crate::report::words::About;
 use crate::units::Quantity;
@@ -212,17 +212,13 @@ fn taken(
 }
 
 /// What is known of the responses, each about its sweep; of all sweeps once.
-pub fn told(responses: &[Response]) -> Vec<About> {
-    let all: Vec<_> = responses.iter().map(|r| r.findings.clone()).collect();
+fn told(responses: &[Response]) -> Vec<About> {
+    let everywhere = |finding| responses.iter().all(|r| r.findings.contains(finding));
     let mut told = Vec::new();
-    for (i, (response, findings)) in responses.iter().zip(&all).enumerate() {
-        for finding in findings {
-            let everywhere = all.iter().all(|other| other.contains(finding));
-            if !everywhere || i == 0 {
-                let about = if everywhere { String::new() } else { response.name.clone() };
-                told.push((about, finding.clone()));
-            }
-        }
+    for (i, response) in responses.iter().enumerate() {
+        let (shared, own): (Vec<&Finding>, _) = response.findings.iter().partition(|f| everywhere(f));
+        told.extend(shared.into_iter().filter(|_| i == 0).map(|f| (String::new(), f.clone())));
+        told.extend(own.into_iter().map(|f: &Finding| (response.name.clone(), f.clone())));
     }
     told
 }
@@ -254,26 +250,25 @@ impl Analysis for Keys {
         job.put("antiresonance", &pairing::antiresonances(&responses))?;
         job.put("crossings", &crossings)?;
         job.shown.summary.extend(summary::summary(&responses, &crossings));
-        for (about, finding) in told(&responses).into_iter().chain(pairing::twice(&responses)) {
-            job.tell(&about, &finding);
-        }
+        let mut all = Answer { findings: told(&responses), ..Answer::default() };
+        all.findings.extend(pairing::twice(&responses));
         if !responses.is_empty() {
-            let title = job.title.clone();
-            job.shown.figures.push(("response".to_owned(), figures::response(&title, &responses)));
-            job.shown.tables.extend([tables::resonances(&responses), tables::jumps(&responses)]);
+            all.figure("response", figures::response(&job.title, &responses));
+            all.tables = vec![tables::resonances(&responses), tables::jumps(&responses)];
         }
+        job.show("", "", all);
         modelled::run(job, &responses)?;
         let slugs = files::slugs(responses.iter().map(|r| r.name.as_str()));
-        if job.campaign.compute.waterfall {
-            let fmax = job.campaign.compute.fmax;
-            for (slug, matrix) in slugs.iter().zip(&matrices) {
-                job.shown.figures.push((format!("waterfall_{slug}"), figures::waterfall(matrix, fmax)?));
-                job.shown.figures.push((format!("map_{slug}"), figures::map(matrix, fmax)?));
-            }
-        }
+        let compute = &job.campaign.compute;
         for (slug, (response, matrix)) in slugs.iter().zip(responses.iter().zip(&matrices)) {
-            job.file(format!("response_{slug}.csv"), tables::response(response).csv());
-            job.file(format!("waterfall_{slug}.csv"), files::matrix_csv(matrix));
+            let mut one = Answer::default();
+            if compute.waterfall {
+                one.figure("waterfall", figures::waterfall(matrix, compute.fmax)?);
+                one.figure("map", figures::map(matrix, compute.fmax)?);
+            }
+            one.csv("response", &tables::response(response));
+            one.files.push(("waterfall.csv".to_owned(), files::matrix_csv(matrix).into_bytes()));
+            job.show(&response.name, slug, one);
             job.shown.curves.push(tables::curve(response));
             job.shown.histories.push((response.name.clone(), response.history.clone()));
         }

@@ -1,118 +1,144 @@
 //! `vibro precision`: speed against accuracy, and where methods break.
 
+use super::print;
+use crate::analysis::Answer;
 use crate::analysis::precision::{figures, tables};
-use crate::cli::{args, complain, print, progress};
-use crate::compare::precision::{Cell, Earlier, FailureMap, Family, Scene, added, busy, estimators, models};
+use crate::compare::precision::{Earlier, FailureMap, Family, Scene, added, busy, estimators, models};
 use crate::error::{Error, Result};
-use crate::report::{Figure, Output, files};
-use serde::Serialize;
-use std::fmt::Write as _;
-use std::path::Path;
+use crate::record::Finding;
+use crate::report::files;
+use clap::ValueEnum;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
 
-#[derive(Serialize)]
-struct Answer<'a> {
-    scenes: &'a [Scene],
-    #[serde(skip_serializing_if = "Option::is_none")]
-    failures: Option<Vec<Failure<'a>>>,
-    warnings: &'a [String],
-    files: &'a [String],
+#[derive(Debug, clap::Args)]
+pub struct Precision {
+    /// Fewer settings, repeats, records and cycles, so rougher errors: seconds instead of minutes
+    #[arg(long)]
+    quick: bool,
+    /// Methods of this kind
+    #[arg(long, value_name = "KIND", default_value = "both")]
+    family: Kind,
+    /// Tell also what the methods do at the borders of what they can: right, refused, wrong, stalled, crashed, not asked
+    #[arg(long)]
+    failures: bool,
+    /// Measure nothing: take scenes and failures from what `vibro precision --json` printed into this file
+    #[arg(long, value_name = "FILE", conflicts_with = "quick")]
+    from: Option<PathBuf>,
+    /// Add the lines that another program has measured and written into this file
+    ///
+    /// The file is a JSON list with an object for each method and setting: scene (its name as printed here), method
+    /// (program, version and method), error (in what the scene's "Error:" names; null where it failed), `time_ns` (ns
+    /// of one answer), and, where wanted, setting and why (the reason of a failure). For example:
+    ///
+    /// `[{"scene": "scene C", "method": "Peer 1.0", "error": 2e-4, "time_ns": 7e5}]`
+    ///
+    /// docs/precision.md says what each scene asks; benches/peers/peers.py writes such a file.
+    #[arg(long, value_name = "FILE")]
+    add: Vec<PathBuf>,
+    /// Folder for charts as SVG and PNG, and tables as CSV
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
 }
 
-#[derive(Serialize)]
-struct Failure<'a> {
-    family: Family,
-    #[serde(flatten)]
-    cell: &'a Cell,
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Kind {
+    Models,
+    Estimators,
+    Both,
 }
 
-pub fn run(typed: &args::Precision, json: bool) -> Result<()> {
-    let wanted = |family: Family| typed.family.holds(family);
-    let (mut scenes, mut maps): (Vec<Scene>, Vec<FailureMap>) = Default::default();
-    let bar = progress::bar(json);
-    let mut tell = |scene: &str| {
-        bar.set_message(scene.to_owned());
-        bar.inc(1);
-    };
-    if let Some(path) = &typed.from {
-        Earlier { scenes, maps } = earlier(path, typed)?;
-    } else {
-        if wanted(Family::Models) {
-            scenes.extend(models::scenes(typed.quick, &mut tell)?);
-        }
-        if wanted(Family::Estimators) {
-            scenes.extend(estimators::scenes(typed.quick, &mut tell)?);
-        }
-        if typed.failures {
-            tell("borders");
-            if wanted(Family::Models) {
-                maps.push(models::failures(typed.quick)?);
-            }
-            if wanted(Family::Estimators) {
-                maps.push(estimators::failures(typed.quick)?);
-            }
+impl Kind {
+    /// Whether methods of this family are meant.
+    fn holds(self, family: Family) -> bool {
+        match self {
+            Kind::Models => family == Family::Models,
+            Kind::Estimators => family == Family::Estimators,
+            Kind::Both => true,
         }
     }
-    bar.finish_and_clear();
-    // Of a file or of this run: those of other programs come without quartiles.
-    let mut warnings: Vec<String> = busy::busy(&scenes).into_iter().collect();
-    for path in &typed.add {
-        warnings.extend(added::add(&mut scenes, path)?);
-    }
-    if typed.from.is_none() && cfg!(debug_assertions) {
-        warnings
-            .push("This is a build for development: its times are not those of the released program.".into());
-    }
-    let mut written = Vec::new();
-    if let Some(folder) = &typed.out {
-        let mut output = Output::new(folder)?;
-        let mut drawn: Vec<(String, Figure)> = Vec::new();
+}
+
+impl Precision {
+    /// Measures, or takes up what was measured, and prints it.
+    pub fn run(&self, json: bool) -> Result<()> {
+        let Earlier { mut scenes, maps } = match &self.from {
+            Some(path) => earlier(path, self)?,
+            None => self.measured(json)?,
+        };
+        // Of a file or of this run: those of other programs come without quartiles.
+        let mut said: Vec<String> = busy::busy(&scenes).into_iter().collect();
+        for path in &self.add {
+            said.extend(added::add(&mut scenes, path)?);
+        }
+        let mut answer = Answer::of(&json!({ "scenes": scenes }))?;
+        answer.tell("", said.into_iter().map(|text| Finding::caution("said").name("text", text)));
+        let developed = self.from.is_none() && cfg!(debug_assertions);
+        answer.tell("", developed.then(|| Finding::caution("development-build")));
         for scene in &scenes {
-            drawn.push((format!("precision_{}", files::slug(&scene.name)), figures::precision(scene)));
+            answer.figure(format!("precision_{}", files::slug(&scene.name)), figures::precision(scene));
+            let bound = scene.bound.map_or(String::new(), |b| format!("; Cramér–Rao bound: {b:.1e}"));
+            let Scene { name, says, error_of, .. } = scene;
+            let mut table = tables::scene(scene);
+            table.title = format!("{name}\n{says}\nError: {error_of}{bound}");
+            answer.tables.push(table);
+        }
+        answer.csv("precision", &tables::precision(&scenes));
+        if !maps.is_empty() {
+            let cells = maps.iter().flat_map(|map| map.cells.iter().map(move |cell| (map.family, cell)));
+            let of_family = |(family, cell): (Family, _)| {
+                let mut told = json!(cell);
+                told["family"] = json!(family);
+                told
+            };
+            answer.result.insert("failures".to_owned(), cells.map(of_family).collect::<Vec<Value>>().into());
+            answer.csv("failures", &tables::failures(&maps));
         }
         for map in &maps {
-            let name =
-                |(name, figure): (String, Figure)| (format!("failures_{}", files::slug(&name)), figure);
-            drawn.extend(figures::failures(map).into_iter().map(name));
+            for (name, figure) in figures::failures(map) {
+                answer.figure(format!("failures_{}", files::slug(&name)), figure);
+            }
+            answer.tables.push(tables::borders(map));
         }
-        files::figures(&mut output, &drawn, &|| ())?;
-        output.write("precision.csv", tables::precision(&scenes).csv())?;
-        if !maps.is_empty() {
-            output.write("failures.csv", tables::failures(&maps).csv())?;
-        }
-        written = output.written().to_vec();
+        print::answer(answer, self.out.as_deref(), json)
     }
-    if json {
-        let failures = (!maps.is_empty()).then(|| {
-            maps.iter()
-                .flat_map(|map| map.cells.iter().map(move |cell| Failure { family: map.family, cell }))
-                .collect()
-        });
-        return print::json(&Answer { scenes: &scenes, failures, warnings: &warnings, files: &written });
+
+    fn measured(&self, json: bool) -> Result<Earlier> {
+        let wanted = |family: Family| self.family.holds(family);
+        let (mut scenes, mut maps): (Vec<Scene>, Vec<FailureMap>) = Default::default();
+        print::busy(json, "scenes", |bar| {
+            let mut tell = |scene: &str| {
+                bar.set_message(scene.to_owned());
+                bar.inc(1);
+            };
+            if wanted(Family::Models) {
+                scenes.extend(models::scenes(self.quick, &mut tell)?);
+            }
+            if wanted(Family::Estimators) {
+                scenes.extend(estimators::scenes(self.quick, &mut tell)?);
+            }
+            if self.failures {
+                tell("borders");
+                if wanted(Family::Models) {
+                    maps.push(models::failures(self.quick)?);
+                }
+                if wanted(Family::Estimators) {
+                    maps.push(estimators::failures(self.quick)?);
+                }
+            }
+            Ok(Earlier { scenes, maps })
+        })
     }
-    complain::warn(&warnings);
-    let mut text = String::new();
-    for scene in &scenes {
-        let bound = scene.bound.map_or(String::new(), |b| format!("; Cramér–Rao bound: {b:.1e}"));
-        let Scene { name, says, error_of, .. } = scene;
-        let _ = writeln!(text, "{name}\n{says}\nError: {error_of}{bound}\n{}", tables::scene(scene).text());
-    }
-    for map in &maps {
-        let _ = writeln!(text, "{}", tables::borders(map).text());
-    }
-    for file in written {
-        let _ = writeln!(text, "wrote {file}");
-    }
-    print::text(&text)
 }
 
 /// What a file holds of the family that is asked for.
-fn earlier(path: &Path, typed: &args::Precision) -> Result<Earlier> {
+fn earlier(path: &Path, typed: &Precision) -> Result<Earlier> {
     let mut earlier = Earlier::from_path(path)?;
     let cells = |maps: &[FailureMap]| maps.iter().map(|map| map.cells.len()).sum::<usize>();
     let held = format!("scenes held: {}, failures held: {}", earlier.scenes.len(), cells(&earlier.maps));
     earlier.retain(|family| typed.family.holds(family));
     let of = match typed.family {
-        args::Kind::Both => String::new(),
+        Kind::Both => String::new(),
         kind => format!(" of the family {kind:?}").to_lowercase(),
     };
     if typed.failures && earlier.maps.is_empty() {
@@ -120,7 +146,8 @@ fn earlier(path: &Path, typed: &args::Precision) -> Result<Earlier> {
             format!("{}: no failures{of} ({held})", path.display()),
             "failures to draw",
         )
-        .hint("write the file with `vibro precision --failures --json > FILE`, or leave out --failures"));
+        .hint("write the file with `vibro precision --failures --json > FILE`")
+        .setting("failures"));
     }
     if earlier.scenes.is_empty() && earlier.maps.is_empty() {
         return Err(Error::usage(format!("{}: nothing{of} ({held})", path.display()), "one scene at least")

@@ -1,9 +1,8 @@
 //! A folder of results, each file of which appears whole or not at all, and a set of them together.
 
-use super::Growing;
 use crate::error::{Error, Place, Result};
-use std::fs;
-use std::io::Write;
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
 use std::path::{Component, Path, PathBuf};
 
 /// Folder into which results are written.
@@ -97,7 +96,7 @@ impl Output {
             }
             None => fs::rename(&temporary, &path),
         };
-        let replaced = fill(&temporary, bytes.as_ref()).and_then(named);
+        let replaced = begin(&temporary).and_then(|mut file| file.write_all(bytes.as_ref())).and_then(named);
         if let Err(error) = replaced {
             // The first failure is the one to report; a leftover that cannot be removed either has the same
             // cause.
@@ -108,23 +107,17 @@ impl Output {
         Ok(path)
     }
 
-    /// A file that is written part by part, and appears when it is finished.
+    /// A file of a set that is written part by part.
     ///
     /// # Errors
     /// As [`Output::write`].
-    pub fn growing(&mut self, name: &str) -> Result<Growing> {
+    pub fn growing(&mut self, name: &str) -> Result<BufWriter<File>> {
         let path = self.place(name)?;
-        Growing::new(name, temporary_beside(&path), path)
-    }
-
-    /// Gives such a file its name.
-    ///
-    /// # Errors
-    /// If the system refuses; then a file that had this name stays as it was.
-    pub fn finish(&mut self, file: Growing) -> Result<PathBuf> {
-        let (name, path) = file.finish()?;
-        self.list(&name);
-        Ok(path)
+        let temporary = temporary_beside(&path);
+        let file = begin(&temporary).map_err(|e| Error::io("write", &path, e))?;
+        self.waiting.get_or_insert_default().push((temporary, path));
+        self.list(name);
+        Ok(BufWriter::new(file))
     }
 
     fn list(&mut self, name: &str) {
@@ -216,12 +209,10 @@ fn temporary_beside(path: &Path) -> PathBuf {
     path.with_file_name(format!(".{head}.{}.part", std::process::id()))
 }
 
-fn fill(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+fn begin(path: &Path) -> std::io::Result<File> {
     // A leftover of a program that was killed and had this process number is ours to replace.
     let _ = fs::remove_file(path);
-    let mut file = fs::OpenOptions::new().write(true).create_new(true).open(path)?;
-    file.write_all(bytes)?;
-    file.flush()
+    File::create_new(path)
 }
 
 #[cfg(test)]
@@ -238,14 +229,15 @@ mod tests {
     #[test]
     fn a_growing_file_appears_when_it_is_finished() {
         let home = tempfile::tempdir().unwrap();
-        let mut output = Output::new(home.path()).unwrap();
+        let mut output = Output::set(home.path()).unwrap();
         let mut file = output.growing("rows.csv").unwrap();
-        file.push("a\n").unwrap();
-        file.push("b\n").unwrap();
+        file.write_all(b"a\n").unwrap();
+        file.write_all(b"b\n").unwrap();
         assert!(!home.path().join("rows.csv").exists());
-        output.finish(file).unwrap();
+        drop(file);
+        output.commit().unwrap();
         assert_eq!(fs::read_to_string(home.path().join("rows.csv")).unwrap(), "a\nb\n");
-        drop(output.growing("given_up.csv").unwrap());
+        drop(Output::set(home.path()).unwrap().growing("given_up.csv").unwrap());
         assert_eq!(
             (names(home.path()), output.written()),
             (vec!["rows.csv".to_owned()], &["rows.csv".to_owned()][..])

@@ -90,9 +90,15 @@ impl From<&Estimate> for Cell {
     }
 }
 
-impl From<Option<f64>> for Cell {
-    fn from(value: Option<f64>) -> Cell {
-        value.map_or(Cell::Missing, Cell::Number)
+impl From<bool> for Cell {
+    fn from(yes: bool) -> Cell {
+        Cell::from(if yes { "yes" } else { "no" })
+    }
+}
+
+impl<T: Into<Cell>> From<Option<T>> for Cell {
+    fn from(value: Option<T>) -> Cell {
+        value.map_or(Cell::Missing, Into::into)
     }
 }
 

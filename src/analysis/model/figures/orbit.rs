@@ -1,8 +1,9 @@
 //! One periodic motion: traces of both masses and their phase plane.
 
-use crate::model::{Orbit, Rig};
-use crate::report::layout::lettered;
-use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
+use super::motion::roomy;
+use crate::model::{Orbit, Rig, State};
+use crate::report::layout::{lettered, line, points};
+use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Stroke};
 
 /// Samples of a period.
 const POINTS: usize = 800;
@@ -10,48 +11,26 @@ const POINTS: usize = 800;
 /// Both masses over two periods, x₂ counted from the rest of x₁'s contact face, so that the curves meet at the impacts; velocities over
 /// displacements beside it.
 pub fn orbit(title: &str, rig: &Rig, orbit: &Orbit) -> Figure {
-    let period = orbit.period();
-    let (mut time, mut first, mut second) = (Vec::new(), Vec::new(), Vec::new());
-    for i in 0..=2 * POINTS {
-        let s = orbit.state(period * i as f64 / POINTS as f64);
-        time.push(i as f64 / POINTS as f64);
-        first.push(1e3 * s.x1);
-        second.push(1e3 * (s.x2 + rig.gap));
-    }
-    let impacts = [0.0, 1.0, 2.0];
+    let at = |i: usize| orbit.period() * i as f64 / POINTS as f64;
+    let states: Vec<(f64, State)> =
+        (0..=2 * POINTS).map(|i| (i as f64 / POINTS as f64, orbit.state(at(i)))).collect();
+    let ends: Vec<f64> = states.iter().flat_map(|(_, s)| [1e3 * s.x1, 1e3 * s.x2]).collect();
+    let axis = AxisSpec::new("Time in periods from impact to impact", "").limits(0.0, 2.0);
+    let plot = Plot::new(axis, AxisSpec::new("Displacement", "mm")).title("displacements");
+    let second = states.iter().map(|(t, s)| (*t, 1e3 * (s.x2 + rig.gap)));
+    let plot = line(plot, "gap + x₂", second, Ink::Nth(1), Stroke::Solid);
+    let plot = line(plot, "x₁", states.iter().map(|(t, s)| (*t, 1e3 * s.x1)), Ink::Nth(0), Stroke::Solid);
     let met = 1e3 * orbit.before_impact().x1;
-    let traces = Plot::new(
-        AxisSpec::new("Time in periods from impact to impact", "").limits(0.0, 2.0),
-        AxisSpec::new("Displacement", "mm"),
-    )
-    .title("displacements")
-    .with(Series::line("gap + x₂", time.clone(), second).ink(Ink::Nth(1)).stroke(Stroke::Solid))
-    .with(Series::line("x₁", time, first).ink(Ink::Nth(0)).stroke(Stroke::Solid))
-    .with(Series::points("impact", impacts, [met; 3]).ink(Ink::Black).marker(Marker::OpenCircle));
-
-    let mut ends = (f64::INFINITY, f64::NEG_INFINITY);
-    for x in first_two(orbit, period) {
-        ends = (ends.0.min(x), ends.1.max(x));
-    }
-    // Room beside the curves.
-    let room = 0.05 * (ends.1 - ends.0);
-    let x = AxisSpec::new("Displacement from rest", "mm").limits(ends.0 - room, ends.1 + room);
+    let impacts = [0.0, 1.0, 2.0].map(|t| (t, met));
+    let traces = points(plot, "impact", impacts, Ink::Black, Marker::OpenCircle);
+    let x = roomy(AxisSpec::new("Displacement from rest", "mm"), &ends);
     let mut plane = Plot::new(x, AxisSpec::new("Velocity", "m/s")).title("phase plane");
     for (i, name) in ["x₁", "x₂"].into_iter().enumerate() {
-        let of = |t: f64| {
-            let s = if t < period { orbit.state(t) } else { orbit.before_impact() };
-            if i == 0 { (1e3 * s.x1, s.v1) } else { (1e3 * s.x2, s.v2) }
-        };
-        let (x, v): (Vec<f64>, Vec<f64>) =
-            (0..=POINTS).map(|k| of(period * k as f64 / POINTS as f64)).unzip();
-        let (before, after) = (of(period), of(0.0));
-        plane = plane
-            .with(
-                Series::line("", [before.0, after.0], [before.1, after.1])
-                    .ink(Ink::Nth(i))
-                    .stroke(Stroke::Dotted),
-            )
-            .with(Series::line(name, x, v).ink(Ink::Nth(i)).stroke(Stroke::Solid));
+        let of = |s: State| if i == 0 { (1e3 * s.x1, s.v1) } else { (1e3 * s.x2, s.v2) };
+        let (before, after) = (orbit.before_impact(), orbit.state(0.0));
+        let period = (0..POINTS).map(|k| orbit.state(at(k))).chain([before]);
+        plane = line(plane, "", [of(before), of(after)], Ink::Nth(i), Stroke::Dotted);
+        plane = line(plane, name, period.map(of), Ink::Nth(i), Stroke::Solid);
     }
     let v = &orbit.validity;
     let verdict = match (v.exists, v.admissible, v.instability) {
@@ -69,12 +48,4 @@ pub fn orbit(title: &str, rig: &Rig, orbit: &Orbit) -> Figure {
          the impact. {verdict}",
         orbit.frequency, orbit.approach_velocity
     )))
-}
-
-/// Both displacements over a period, in mm.
-fn first_two(orbit: &Orbit, period: f64) -> impl Iterator<Item = f64> + '_ {
-    (0..=POINTS).flat_map(move |i| {
-        let s = orbit.state(period * i as f64 / POINTS as f64);
-        [1e3 * s.x1, 1e3 * s.x2]
-    })
 }

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::model::Regime;
 use crate::model::map::{Axis, Cell, Plan, Rows};
-use crate::report::layout::lettered;
+use crate::report::layout::{capital, lettered};
 use crate::report::{AxisSpec, Figure, Heatmap, Legend, Plot};
 use ndarray::Array2;
 
@@ -23,9 +23,10 @@ pub fn regimes(plan: &Plan, rows: &Rows) -> Result<Figure> {
     };
     let all: Vec<Cell> = (0..y.len()).filter_map(|row| rows.get(row)).flatten().copied().collect();
     let own = frequent(&all);
-    let (names, class) = classes(&own);
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let regime = cells(&|c| c.regime.map_or(f64::NAN, |r| class(r) as f64));
+    let names: Vec<String> = own.iter().map(Regime::to_string).collect();
+    let others = ["other patterns", "irregular or not settled", "chatter", "no impact"];
+    let names: Vec<&str> = names.iter().map(String::as_str).chain(others).collect();
+    let regime = cells(&|c| c.regime.map_or(f64::NAN, |r| class(&own, r) as f64));
     let radius = cells(&|c| c.spectral_radius.unwrap_or(f64::NAN));
     let axis = |axis: &Axis| {
         let (name, unit) = axis.key.label();
@@ -52,39 +53,30 @@ pub fn regimes(plan: &Plan, rows: &Rows) -> Result<Figure> {
 fn frequent(cells: &[Cell]) -> Vec<Regime> {
     let mut counts: Vec<(Regime, usize)> = Vec::new();
     for regime in cells.iter().filter_map(|c| c.regime) {
-        if !matches!(regime, Regime::Periodic { .. }) {
-            continue;
-        }
         match counts.iter_mut().find(|c| c.0 == regime) {
             Some(count) => count.1 += 1,
             None => counts.push((regime, 1)),
         }
     }
+    counts.retain(|c| matches!(c.0, Regime::Periodic { .. }));
     counts.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.to_string().cmp(&b.0.to_string())));
     counts.into_iter().take(OWN).map(|c| c.0).collect()
 }
 
-/// Names of the classes, and the class of a regime.
-fn classes(own: &[Regime]) -> (Vec<String>, impl Fn(Regime) -> usize) {
-    let mut names: Vec<String> = own.iter().map(Regime::to_string).collect();
-    let n = names.len();
-    names.extend(["other patterns", "irregular or not settled", "chatter", "no impact"].map(str::to_owned));
-    let own = own.to_vec();
-    let class = move |regime: Regime| {
-        own.iter().position(|r| *r == regime).unwrap_or(match regime {
-            Regime::Periodic { .. } => n,
-            Regime::Irregular => n + 1,
-            Regime::Chatter { .. } => n + 2,
-            Regime::NoImpact => n + 3,
-        })
-    };
-    (names, class)
+/// The class of a regime, where these patterns have their own.
+fn class(own: &[Regime], regime: Regime) -> usize {
+    own.iter().position(|r| *r == regime).unwrap_or(match regime {
+        Regime::Periodic { .. } => own.len(),
+        Regime::Irregular => own.len() + 1,
+        Regime::Chatter { .. } => own.len() + 2,
+        Regime::NoImpact => own.len() + 3,
+    })
 }
 
 fn label(name: &str) -> String {
     match name {
         "frequency" => "Excitation frequency".to_owned(),
         "m1" | "m2" | "k1" | "k2" | "c1" | "c2" => name.to_owned(),
-        _ => name[..1].to_uppercase() + &name[1..],
+        _ => capital(name),
     }
 }
