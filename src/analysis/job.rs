@@ -59,8 +59,6 @@ pub struct Outcome {
 /// What is shown of all records, in order.
 #[derive(Debug, Default)]
 pub(super) struct Shown {
-    /// Sentences on what matters most.
-    pub summary: Vec<String>,
     /// Tables that a person wants first.
     pub tables: Vec<Table>,
     /// Figures by the names of their files.
@@ -296,13 +294,12 @@ pub fn run(
     } else if job.answers == 0 {
         job.tell("", [Finding::caution("no-record-answers")]);
     }
-    let Job { shown, mut results, mut findings, files: numbers, answers, title, .. } = job;
+    let Job { shown, mut results, findings, files: numbers, answers, title, .. } = job;
     progress.start("drawing figures", shown.figures.len());
     let drawings = files::figures(output, &shown.figures, &|| progress.step())?;
     for (name, bytes) in numbers {
         output.write(&name, bytes)?;
     }
-    findings.extend(files::left_over(output, &[RESULTS, REPORT]).map(|f| (String::new(), f)));
     put(&mut results, &findings, Voice::Campaign);
     let json = serde_json::to_string_pretty(&results).map_err(unwritten)?;
     output.write(RESULTS, json + "\n")?;

@@ -10,9 +10,6 @@ use std::fmt::Write as _;
 /// Lays out all that is shown, with the drawings of its figures.
 pub fn page(title: &str, version: &str, findings: &[About], shown: &Shown, drawings: &[Drawing]) -> Page {
     let mut page = Page::new(title);
-    for sentence in &shown.summary {
-        page = page.summary(sentence.as_str());
-    }
     for sentence in told(findings, Voice::Campaign, true) {
         page = page.warning(sentence);
     }

@@ -6,8 +6,6 @@ pub mod pairing;
 pub mod stored;
 pub mod tables;
 
-mod summary;
-
 pub use pairing::Crossing;
 pub use stored::Stored;
 
@@ -63,35 +61,32 @@ pub struct Keys {
 
 impl Keys {
     fn usable(&self) -> Result<()> {
-        let wrong = |key, found: String, expected: &str| Err(Error::usage(found, expected).setting(key));
+        let wrong = |key, found: &str, expected: &str| Err(Error::usage(found, expected).setting(key));
         if self.name.is_empty() {
             return Err(Error::usage("the key `name` is missing", "").hint("add name = …"));
         }
         let written = !self.response.is_empty();
         if self.list.is_some() == written {
-            let found =
-                if written { "both a list and response files" } else { "neither a list nor response files" };
-            return wrong("name", found.to_owned(), "list = \"…\", or force, response, lines and base_band");
+            let found = if written { "both a list and response" } else { "neither a list nor response" };
+            let expected = "list = \"…\", or force, response, lines and base_band";
+            return wrong("name", &format!("{found} files"), expected);
         }
         if self.list.is_some() && (self.lines.is_some() || self.base_band.is_some()) {
-            let found = "lines or base_band beside a list, which says both itself".to_owned();
+            let found = "lines or base_band beside a list, which says both itself";
             return wrong("list", found, "one of them: correct the list, or leave the keys out");
         }
         let band = self.base_band.is_some_and(|b| b.is_finite() && b > 0.0);
         let complete = band && self.lines.is_some_and(|l| l > 0) && self.force.len() == self.response.len();
         if written && !complete {
-            let said = |value: Option<String>| value.unwrap_or_else(|| "left out".to_owned());
-            let found = format!(
-                "{} force and {} response files, lines {}, base_band {}",
-                self.force.len(),
-                self.response.len(),
-                said(self.lines.map(|n| n.to_string())),
-                said(self.base_band.map(|b| b.to_string()))
-            );
-            return wrong("name", found, "as many force as response files, and both numbers above 0");
+            let said = |value: Option<f64>| value.map_or_else(|| "left out".to_owned(), |v| v.to_string());
+            let (force, response) = (self.force.len(), self.response.len());
+            let (lines, band) = (said(self.lines.map(|n| n as f64)), said(self.base_band));
+            let found =
+                format!("{force} force and {response} response files, lines {lines}, base_band {band}");
+            return wrong("name", &found, "as many force as response files, and both numbers above 0");
         }
         if let Some(mass) = self.mass.filter(|m| !matches!(m, 1 | 2)) {
-            return wrong("mass", format!("mass = {mass}"), "1 (excited) or 2 (passive)");
+            return wrong("mass", &format!("mass = {mass}"), "1 (excited) or 2 (passive)");
         }
         above_zero("force_calibration", self.force_calibration)?;
         self.reader().map(drop)
@@ -245,11 +240,9 @@ impl Analysis for Keys {
         let (matrices, responses): (Vec<Waterfall>, Vec<Response>) =
             taken.into_par_iter().map(matrix).unzip();
         job.answered(responses.len());
-        let crossings = pairing::all_crossings(&responses);
         job.put("responses", &responses)?;
         job.put("antiresonance", &pairing::antiresonances(&responses))?;
-        job.put("crossings", &crossings)?;
-        job.shown.summary.extend(summary::summary(&responses, &crossings));
+        job.put("crossings", &pairing::all_crossings(&responses))?;
         let mut all = Answer { findings: told(&responses), ..Answer::default() };
         all.findings.extend(pairing::twice(&responses));
         if !responses.is_empty() {

@@ -11,12 +11,13 @@ use crate::measure::{Estimate, legacy};
 use crate::record::{Finding, Trace};
 use crate::report::Output;
 use crate::report::layout::table;
+use clap::Args;
 use serde_json::json;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Which record, how its file is read, and where results go.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Args)]
 pub struct Record {
     #[command(flatten)]
     channel: Channel,
@@ -27,40 +28,39 @@ pub struct Record {
     out: Option<PathBuf>,
 }
 
-#[derive(Debug, clap::Args)]
-pub struct Spectrum {
-    /// Measurement file with samples over time
+/// A file, and how it is measured.
+#[derive(Debug, Args)]
+pub struct Measured<K: Args> {
+    /// Measurement file
     file: PathBuf,
     #[command(flatten)]
-    keys: spectrum::Keys,
+    keys: K,
     #[command(flatten)]
     record: Record,
 }
 
-#[derive(Debug, clap::Args)]
+pub type Spectrum = Measured<spectrum::Keys>;
+pub type Modal = Measured<frf::Keys>;
+
+#[derive(Debug, Args)]
 pub struct Impacts {
-    /// File with a contact trace, or any signal that jumps at each impact
-    file: PathBuf,
     /// Print what the thesis' script timeav printed, mistakes included
     #[arg(long)]
     legacy: bool,
     #[command(flatten)]
-    keys: impacts::Keys,
-    #[command(flatten)]
-    record: Record,
+    of: Measured<impacts::Keys>,
 }
 
-#[derive(Debug, clap::Args)]
-pub struct Modal {
-    /// File with a frequency response function, or with two channels and a reference
-    file: PathBuf,
+#[derive(Debug, Args)]
+pub struct Drill {
+    /// Write every impact with the speed of its turn, and beside it the velocity of every turn over the phase
+    #[arg(long, value_name = "CSV")]
+    each_cycle: Option<PathBuf>,
     #[command(flatten)]
-    keys: frf::Keys,
-    #[command(flatten)]
-    record: Record,
+    of: Measured<drill::Keys>,
 }
 
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Args)]
 pub struct Pulse {
     /// Record of the acceleration (or force) of a contact
     file: Option<PathBuf>,
@@ -70,25 +70,12 @@ pub struct Pulse {
     record: Record,
 }
 
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Args)]
 pub struct Restitution {
     /// Traces of drops or of trains of bounces, one a drop
     files: Vec<PathBuf>,
     #[command(flatten)]
     keys: drop::Keys,
-    #[command(flatten)]
-    record: Record,
-}
-
-#[derive(Debug, clap::Args)]
-pub struct Drill {
-    /// File with a velocity and a reference channel
-    file: PathBuf,
-    #[command(flatten)]
-    keys: drill::Keys,
-    /// Write every impact with the speed of its turn, and beside it the velocity of every turn over the phase
-    #[arg(long, value_name = "CSV")]
-    each_cycle: Option<PathBuf>,
     #[command(flatten)]
     record: Record,
 }
@@ -123,24 +110,29 @@ impl Record {
     }
 }
 
+impl<K: Args> Measured<K> {
+    fn by<T>(&self, json: bool, measure: impl FnOnce(&K, &Source<'_>) -> Result<T>) -> Result<T> {
+        self.record.measured(&self.file, json, |source| measure(&self.keys, source))
+    }
+}
+
 impl Spectrum {
     /// Prints the lines of a channel, or the response of one channel to another.
     pub fn run(&self, json: bool) -> Result<()> {
-        let answer = self.record.measured(&self.file, json, |source| self.keys.measure(source))?;
-        self.record.print(answer, json)
+        self.record.print(self.by(json, spectrum::Keys::measure)?, json)
     }
 }
 
 impl Impacts {
     /// Prints the impacts.
     pub fn run(&self, json: bool) -> Result<()> {
-        let answer = self.record.measured(&self.file, json, |source| {
+        let answer = self.of.by(json, |keys, source| {
             if self.legacy {
                 return of_timeav(&source.trace(&source.recording()?)?);
             }
-            self.keys.measure(source).map_err(|e| e.of_record(&self.file.display().to_string()))
+            keys.measure(source).map_err(|e| e.of_record(&source.path.display().to_string()))
         })?;
-        self.record.print(answer, json)
+        self.of.record.print(answer, json)
     }
 }
 
@@ -181,7 +173,7 @@ fn of_timeav(trace: &Trace) -> Result<Answer> {
 impl Modal {
     /// Prints the modes.
     pub fn run(&self, json: bool) -> Result<()> {
-        let mut answers = self.record.measured(&self.file, json, |source| self.keys.measure(source))?;
+        let mut answers = self.by(json, frf::Keys::measure)?;
         if answers.len() > 1 {
             let names: Vec<&str> = answers.iter().filter_map(|a| a.result["channel"].as_str()).collect();
             let found = format!("{} frequency response functions, and none was chosen", names.len());
@@ -223,8 +215,8 @@ impl Drill {
     pub fn run(&self, json: bool) -> Result<()> {
         let Some(path) = &self.each_cycle else {
             let each = &mut |_: &Cycle<'_>| Ok(());
-            let answer = self.record.measured(&self.file, json, |source| self.keys.measure(source, each))?;
-            return self.record.print(answer, json);
+            let answer = self.of.by(json, |keys, source| keys.measure(source, each))?;
+            return self.of.record.print(answer, json);
         };
         let named =
             path.file_name().zip(path.file_stem()).map(|(n, s)| (n.to_string_lossy(), s.to_string_lossy()));
@@ -245,7 +237,7 @@ impl Drill {
             file.write_all(rows.as_bytes())
                 .map_err(|e| Error::io("write", path.with_file_name(&velocities), e))
         };
-        let answer = self.record.measured(&self.file, json, |source| self.keys.measure(source, &mut each))?;
+        let answer = self.of.by(json, |keys, source| keys.measure(source, &mut each))?;
         if let Some(mut file) = turns {
             file.flush().map_err(|e| Error::io("write", path.with_file_name(&velocities), e))?;
         }
@@ -253,7 +245,7 @@ impl Drill {
             output.write(&name, impacts)?;
         }
         output.commit()?;
-        let mut written = print::written(&answer, self.record.out.as_deref())?;
+        let mut written = print::written(&answer, self.of.record.out.as_deref())?;
         written.extend(output.written().iter().map(|name| folder.join(name).display().to_string()));
         print::shown(answer, written, json)
     }

@@ -12,8 +12,8 @@ use super::welch::Sums;
 use left::Left;
 use serde::Serialize;
 use std::f64::consts::PI;
-use vibro_record::units::notation::{shortest, significant};
-use vibro_record::{Error, Meta, Result, Trace};
+use vibro_record::units::notation::shortest;
+use vibro_record::{Error, Finding, Meta, Result, Trace};
 
 /// Part of the largest force, above the level before it, at which a blow is noticed, and of a blow's own peak at which a second one is.
 const TRIGGER: f64 = 0.2;
@@ -155,15 +155,13 @@ pub fn from_blows(
     let metas: [Meta; 2] = [force.meta.clone(), response.meta.clone()];
     let mut transfer = transfer(&averages, 1, &metas, estimator)?;
     transfer.frf.meta.step("blows", &[("length", &how.length), ("before", &how.before)]);
-    transfer.warnings.extend(left_out(&blows));
+    transfer.findings.extend(left_out(&blows));
     if let Some(left) = Left::of(&response.values, &kept, how, &weights[1]) {
         unfinished(&mut transfer, &left);
     }
     if decay > 0.0 {
-        transfer.warnings.push(format!(
-            "The exponential window adds a decay of {decay:.4} 1/s: the damping ratio of a mode at f Hz is too large by {:.4}/f.",
-            decay / (2.0 * PI)
-        ));
+        let added = Finding::caution("blow-decay-added").number("decay", decay);
+        transfer.findings.push(added.number("excess", decay / (2.0 * PI)));
         transfer.frf.meta.step("exponential_window", &[("decay", &decay)]);
     }
     let [sum, squares] = weights[1].iter().fold([0.0, 0.0], |[s, q], w| [s + w, q + w * w]);
@@ -182,14 +180,14 @@ pub fn from_blows(
 }
 
 /// Which blows are left out, and why.
-fn left_out(blows: &[(usize, Blow)]) -> Option<String> {
+fn left_out(blows: &[(usize, Blow)]) -> Option<Finding> {
     let named: Vec<String> =
         blows.iter().filter_map(|(_, b)| b.rejected.map(|why| format!("{:.3} s, {why}", b.time))).collect();
     let more = if named.len() > NAMED { "; …" } else { "" };
-    let are = if named.len() == 1 { "is" } else { "are" };
     (!named.is_empty()).then(|| {
-        let shown = named[..named.len().min(NAMED)].join("; ");
-        format!("{} of {} blows {are} left out: {shown}{more}.", named.len(), blows.len())
+        let shown = named[..named.len().min(NAMED)].join("; ") + more;
+        let some = Finding::caution("blows-left-out").count("n", named.len());
+        some.count("all", blows.len()).name("blows", shown)
     })
 }
 
@@ -207,12 +205,9 @@ fn unfinished(transfer: &mut Transfer, left: &Left) {
     }
     if most.0 > 0.0 {
         let part = left.at(most.1 + 1);
-        transfer.warnings.push(format!(
-            "Around {} Hz {} % of the response are left when the record of a blow ends: |H| may be off by as much there, its phase by {}°, which is in the standard deviations but not in the coherence. Longer records (--segment) or an exponential window (--left-at-end) help.",
-            significant(transfer.frf.axis.at(most.1), 3),
-            significant(100.0 * part, 2),
-            significant(part.to_degrees(), 2)
-        ));
+        let frequency = transfer.frf.axis.at(most.1);
+        let cut = Finding::caution("blow-record-short").number("frequency", frequency);
+        transfer.findings.push(cut.number("part", part).number("angle", part.to_degrees()));
     }
 }
 
