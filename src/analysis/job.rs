@@ -6,21 +6,15 @@ use super::{Analysis, Answer, KINDS, page};
 use crate::campaign::{Campaign, Entry};
 use crate::error::Result;
 use crate::record::{Finding, Step};
-use crate::report::files::Files;
 use crate::report::words::{About, Voice, put};
-use crate::report::{Figure, Output, Table, files};
+use crate::report::{Output, Table, files};
 use serde::Serialize;
 use serde_json::{Map, Value};
-use std::borrow::Borrow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Steps of progress through a record.
 const PARTS: usize = 100;
-
-/// Names of the files that hold all results.
-const RESULTS: &str = "results.json";
-const REPORT: &str = "report.html";
 
 /// Told how far a job is.
 pub trait Progress: Sync {
@@ -56,21 +50,6 @@ pub struct Outcome {
     pub answered: bool,
 }
 
-/// What is shown of all records, in order.
-#[derive(Debug, Default)]
-pub(super) struct Shown {
-    /// Tables that a person wants first.
-    pub tables: Vec<Table>,
-    /// Figures by the names of their files.
-    pub figures: Vec<(String, Figure)>,
-    /// Long tables, below the figures.
-    pub curves: Vec<Table>,
-    /// Values that were assumed.
-    pub constants: Vec<(String, String)>,
-    /// Steps by the name of their record.
-    pub histories: Vec<(String, Vec<Step>)>,
-}
-
 /// A campaign at work: what its analyses ask, and where they put what they find.
 pub struct Job<'a> {
     /// The campaign.
@@ -81,10 +60,12 @@ pub struct Job<'a> {
     pub progress: &'a dyn Progress,
     /// Title of the report.
     pub title: String,
-    pub(super) shown: Shown,
-    results: Map<String, Value>,
-    findings: Vec<About>,
-    files: Files,
+    /// All answers, long tables as details.
+    pub(super) all: Answer,
+    /// Values that were assumed.
+    pub(super) constants: Vec<(String, String)>,
+    /// Steps by the name of their record.
+    pub(super) histories: Vec<(String, Vec<Step>)>,
     answers: usize,
 }
 
@@ -96,17 +77,11 @@ impl<'a> Job<'a> {
             options,
             progress,
             title,
-            shown: Shown::default(),
-            results: Map::new(),
-            findings: Vec::new(),
-            files: Vec::new(),
+            all: Answer::default(),
+            constants: Vec::new(),
+            histories: Vec::new(),
             answers: 0,
         }
-    }
-
-    /// Tells something of a record; `""` is the whole campaign.
-    pub fn tell(&mut self, record: &str, told: impl IntoIterator<Item = impl Borrow<Finding>>) {
-        self.findings.extend(told.into_iter().map(|f| (record.to_owned(), f.borrow().clone())));
     }
 
     /// What a record gave; `None` and a finding where it allows no answer.
@@ -117,7 +92,7 @@ impl<'a> Job<'a> {
         match found {
             Ok(found) => Ok(Some(found)),
             Err(error) => {
-                self.tell(record, [left_out(error)?]);
+                self.all.tell(record, [left_out(error)?]);
                 Ok(None)
             }
         }
@@ -128,7 +103,7 @@ impl<'a> Job<'a> {
     /// # Errors
     /// If it cannot be written as JSON.
     pub fn put(&mut self, key: &str, value: &impl Serialize) -> Result<()> {
-        self.results.insert(key.to_owned(), serde_json::to_value(value).map_err(unwritten)?);
+        self.all.result.insert(key.to_owned(), serde_json::to_value(value).map_err(unwritten)?);
         Ok(())
     }
 
@@ -151,7 +126,7 @@ impl<'a> Job<'a> {
             }
             list.push(Value::Object(object));
         }
-        self.results.insert(kind.to_owned(), Value::Array(list));
+        self.all.result.insert(kind.to_owned(), Value::Array(list));
     }
 
     /// Shows what an answer has and gives its result; a mark stands behind the names of figures and files.
@@ -160,12 +135,12 @@ impl<'a> Job<'a> {
         put(&mut result, &findings, Voice::Campaign);
         let about =
             |(record, finding): About| (if record.is_empty() { name.to_owned() } else { record }, finding);
-        self.findings.extend(findings.into_iter().map(about));
+        self.all.findings.extend(findings.into_iter().map(about));
         for table in tables.into_iter().filter(|t| !t.rows.is_empty()) {
             let same = |t: &&mut Table| t.title == table.title && t.columns == table.columns;
-            match self.shown.tables.iter_mut().find(same) {
+            match self.all.tables.iter_mut().find(same) {
                 Some(known) => known.rows.extend(table.rows),
-                None => self.shown.tables.push(table),
+                None => self.all.tables.push(table),
             }
         }
         let marked = |name: String| match name.rsplit_once('.') {
@@ -173,8 +148,8 @@ impl<'a> Job<'a> {
             Some((stem, ending)) => format!("{stem}_{mark}.{ending}"),
             None => format!("{name}_{mark}"),
         };
-        self.shown.figures.extend(figures.into_iter().map(|(name, figure)| (marked(name), figure)));
-        self.files.extend(files.into_iter().map(|(name, bytes)| (marked(name), bytes)));
+        self.all.figures.extend(figures.into_iter().map(|(name, figure)| (marked(name), figure)));
+        self.all.files.extend(files.into_iter().map(|(name, bytes)| (marked(name), bytes)));
         result
     }
 
@@ -290,20 +265,20 @@ pub fn run(
         (kind.run)(&mut job)?;
     }
     if campaign.is_empty() {
-        job.tell("", [Finding::caution("campaign-without-record")]);
+        job.all.tell("", [Finding::caution("campaign-without-record")]);
     } else if job.answers == 0 {
-        job.tell("", [Finding::caution("no-record-answers")]);
+        job.all.tell("", [Finding::caution("no-record-answers")]);
     }
-    let Job { shown, mut results, findings, files: numbers, answers, title, .. } = job;
-    progress.start("drawing figures", shown.figures.len());
-    let drawings = files::figures(output, &shown.figures, &|| progress.step())?;
-    for (name, bytes) in numbers {
-        output.write(&name, bytes)?;
+    let mut all = std::mem::take(&mut job.all);
+    progress.start("drawing figures", all.figures.len());
+    let drawings = files::figures(output, &all.figures, &|| progress.step())?;
+    for (name, bytes) in &all.files {
+        output.write(name, bytes)?;
     }
-    put(&mut results, &findings, Voice::Campaign);
-    let json = serde_json::to_string_pretty(&results).map_err(unwritten)?;
-    output.write(RESULTS, json + "\n")?;
-    output.write(REPORT, page::page(&title, version, &findings, &shown, &drawings).html())?;
-    let tables = shown.tables;
-    Ok(Outcome { results, findings, tables, answered: answers > 0 })
+    put(&mut all.result, &all.findings, Voice::Campaign);
+    let json = serde_json::to_string_pretty(&all.result).map_err(unwritten)?;
+    output.write("results.json", json + "\n")?;
+    output.write("report.html", page::page(&job, version, &all, &drawings).html())?;
+    let Answer { result: results, findings, tables, .. } = all;
+    Ok(Outcome { results, findings, tables, answered: job.answers > 0 })
 }

@@ -262,8 +262,8 @@ impl Analysis for Keys {
             one.csv("response", &tables::response(response));
             one.files.push(("waterfall.csv".to_owned(), files::matrix_csv(matrix).into_bytes()));
             job.show(&response.name, slug, one);
-            job.shown.curves.push(tables::curve(response));
-            job.shown.histories.push((response.name.clone(), response.history.clone()));
+            job.all.details.push(tables::curve(response));
+            job.histories.push((response.name.clone(), response.history.clone()));
         }
         Ok(())
     }

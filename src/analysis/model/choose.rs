@@ -124,7 +124,6 @@ fn single(choice: &Choice, question: &Question, answer: &mut Answer) -> Result<(
             ("because", "", &|(.., why)| why.as_str().into()),
         ],
     ));
-    answer.figure("ladder", figures::ladder(choice, question));
     Ok(())
 }
 
@@ -161,7 +160,7 @@ fn along(survey: &Survey, question: &Question, answer: &mut Answer) -> Result<()
     answer.table("stretches", stretches(&survey.stretches));
     answer.table("rungs", summaries(survey));
     answer.csv("points", &chosen(&survey.points, question));
-    answer.figure("ladder", figures::ladder_over(survey, question)?);
+    answer.figure("ladder", figures::ladder(survey, question)?);
     Ok(())
 }
 

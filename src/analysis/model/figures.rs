@@ -8,7 +8,6 @@ mod sweep;
 
 pub use branches::branches;
 pub use ladder::ladder;
-pub(crate) use ladder::ladder_over;
 pub use motion::{orbit, phase_plane, poincare, traces};
 pub use regimes::regimes;
 pub use sweep::sweep;

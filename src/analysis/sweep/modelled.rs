@@ -79,7 +79,7 @@ pub fn run(job: &mut Job<'_>, responses: &[Response]) -> Result<()> {
     let campaign = job.campaign;
     let mut rig = campaign.rig.filter(|_| campaign.compute.overlay && !responses.is_empty());
     if rig.is_some() && responses.iter().all(|r| r.mass.is_none() || r.direction.is_none()) {
-        job.tell("", [Finding::caution("no-mass-named")]);
+        job.all.tell("", [Finding::caution("no-mass-named")]);
         rig = None;
     }
     let (mut laid, mut found) = (None, None);
@@ -87,7 +87,7 @@ pub fn run(job: &mut Job<'_>, responses: &[Response]) -> Result<()> {
         let overlay = overlaid(campaign, rig, responses)?;
         found = job.found("fit", fit(campaign, rig, responses))?.flatten();
         job.show("", "", shown(campaign, responses, &overlay, found.as_ref()));
-        job.shown.constants = constants(rig);
+        job.constants = constants(rig);
         laid = Some(overlay);
     }
     job.put("rig", &rig)?;

@@ -1,14 +1,11 @@
-//! The ladder of models: what a rung costs and is worth, and which one is chosen where.
+//! The ladder of models: which rung is chosen where.
 
 use crate::error::Result;
 use crate::model::Observable;
 use crate::model::ladder::{Choice, Model, Question, Rung, Survey};
-use crate::report::layout::{lettered, line, points};
-use crate::report::{AxisSpec, Figure, Heatmap, Ink, Legend, Marker, Plot, Series, Stroke};
+use crate::report::layout::{lettered, points};
+use crate::report::{AxisSpec, Figure, Heatmap, Ink, Legend, Marker, Plot};
 use ndarray::Array2;
-
-/// Changes in percent below this are drawn here: an axis of parts has no zero.
-const LEAST: f64 = 1e-3;
 
 /// What became of a rung.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -33,50 +30,11 @@ impl Fate {
     }
 }
 
-/// Change of each rung's answer at the rungs above over the time it takes; the answer over the stiffness of the contact where that is not
-/// known and nothing could be chosen.
-pub fn ladder(choice: &Choice, question: &Question) -> Figure {
-    let unknown = choice.chosen.is_none() && !choice.sensitivity.is_empty();
-    let plot = if unknown { stiffness(choice) } else { price(choice) };
-    let caption = if unknown {
-        "Change of the answer from that of impacts without duration, over the stiffness of the contact, which is not known."
-    } else {
-        "Largest change of a rung's answer at the next rung and at the next one that follows the motion, over the time the answer takes \
-         on this machine. Rungs without a rung above, or without an answer, are not shown; changes below 0.001 % are drawn there."
-    };
-    let tolerance = 100.0 * question.tolerance;
-    let plot = plot.with(Series::horizontal(format!("tolerance {tolerance} %"), tolerance));
-    Figure::double("Ladder of models").panel(plot).caption(caption)
-}
-
-fn price(choice: &Choice) -> Plot {
-    let y = AxisSpec::new("Change at the rungs above (%)", "").log().limits(LEAST / 2.0, f64::NAN);
-    let mut plot = Plot::new(AxisSpec::new("Time of an answer", "s").log(), y).legend(Legend::Right);
-    let marks = [Marker::FilledSquare, Marker::Circle, Marker::OpenCircle, Marker::Cross];
-    for (i, fate) in Fate::ALL.into_iter().enumerate() {
-        let of = choice.rungs.iter().filter(|r| Fate::of(choice, r) == fate);
-        let place = |r: &Rung| Some((1e-9 * r.cost_ns?, (100.0 * r.error?).max(LEAST)));
-        plot = points(plot, Fate::NAMES[i], of.clone().filter_map(place), Ink::Nth(i), marks[i]);
-        for (rung, (x, y)) in of.filter_map(|r| Some((r, place(r)?))) {
-            plot = plot.note(rung.model.name(), x, y);
-        }
-    }
-    plot
-}
-
-fn stiffness(choice: &Choice) -> Plot {
-    let y = AxisSpec::new("Change of the answer (%)", "").log();
-    let plot = Plot::new(AxisSpec::new("Contact stiffness", "N/m").log(), y).legend(Legend::Hidden);
-    let places = || choice.sensitivity.iter().map(|r| (r.stiffness, (100.0 * r.change.abs()).max(LEAST)));
-    let plot = line(plot, "", places(), Ink::Nth(0), Stroke::Thin);
-    points(plot, "", places(), Ink::Nth(0), Marker::Circle)
-}
-
 /// Over frequency: what became of each rung, and the answer with the rung that gives it.
 ///
 /// # Errors
 /// As [`Heatmap::classes`].
-pub(crate) fn ladder_over(survey: &Survey, question: &Question) -> Result<Figure> {
+pub fn ladder(survey: &Survey, question: &Question) -> Result<Figure> {
     let all = &survey.points;
     let x: Vec<f64> = all.iter().map(|c| c.frequency).collect();
     // Rungs that are nowhere valid stand for nothing here, if they are above all that are.
