@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::report::words::Voice;
-use clap::error::{ContextKind, ErrorKind};
+use clap::error::ContextKind;
 use serde_json::{Map, json};
 use std::io::Write;
 
@@ -36,23 +36,11 @@ pub fn usage(error: &clap::Error, json: bool) -> u8 {
     2
 }
 
-/// What may be tried where a number is not written as one is expected.
+/// A number with a decimal comma as it is to be typed.
 fn advice(error: &clap::Error) -> Option<String> {
-    let said = |kind| error.get(kind).map(ToString::to_string);
-    match error.kind() {
-        ErrorKind::ValueValidation => {
-            let value = said(ContextKind::InvalidValue)?;
-            let point = value.replacen(',', ".", 1);
-            let comma = value != point && point.parse::<f64>().is_ok();
-            comma.then(|| format!("a decimal point: {point}"))
-        }
-        ErrorKind::UnknownArgument => {
-            let number = said(ContextKind::InvalidArg)?;
-            let is = number.strip_prefix('-')?.starts_with(|c: char| c.is_ascii_digit() || c == '.');
-            is.then(|| format!("a number that is not negative: {number} stands where none can be"))
-        }
-        _ => None,
-    }
+    let value = error.get(ContextKind::InvalidValue)?.to_string();
+    let point = value.replacen(',', ".", 1);
+    (value != point && point.parse::<f64>().is_ok()).then(|| format!("a decimal point: {point}"))
 }
 
 /// What a program reads in place of an answer.

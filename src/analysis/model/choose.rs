@@ -7,7 +7,7 @@ use crate::compare::Overlay;
 use crate::error::{Error, Result};
 use crate::model::Observable;
 use crate::model::ladder::{
-    Change, Choice, Known, Model, Question, Rung, Sensitivity, Stretch, Survey, choose, choose_over,
+    Change, Choice, Model, Question, Rung, Sensitivity, Stretch, Survey, choose, choose_over,
 };
 use crate::record::{Direction, Finding, Severity};
 use crate::report::layout::table;
@@ -109,9 +109,6 @@ fn single(choice: &Choice, question: &Question, answer: &mut Answer) -> Result<(
     }
     answer.tell("", &choice.findings);
     answer.table("rungs", rungs(choice, question));
-    if choice.motions.len() > 1 {
-        answer.tables.push(motions(&choice.motions, question));
-    }
     if !choice.sensitivity.is_empty() {
         answer.table("sensitivity", sensitivity(&choice.sensitivity, question));
     }
@@ -234,20 +231,6 @@ fn rungs(choice: &Choice, question: &Question) -> Table {
         ],
     );
     answered(found, question, choice.rungs.iter().map(|r| r.answer))
-}
-
-/// The motions that are possible at one excitation.
-fn motions(motions: &[Known], question: &Question) -> Table {
-    let found = table(
-        "Motions",
-        motions,
-        &[
-            ("impacts/cycles", "", &|m| m.pattern.to_string().into()),
-            ("known by", "", &|m| m.model.name().into()),
-            ("stable", "", &|m| m.stable.into()),
-        ],
-    );
-    answered(found, question, motions.iter().map(|m| Some(m.answer)))
 }
 
 /// The answer over an unknown stiffness of the contact.
