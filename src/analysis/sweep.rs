@@ -15,7 +15,7 @@ use crate::error::{Error, Place, Result};
 use crate::measure::response::{Response, ResponseOptions, response, to_displacement};
 use crate::measure::waterfall::{Waterfall, gathered};
 use crate::read::{SweepList, SweepReader};
-use crate::record::{Direction, Finding, Scaling, Sweep};
+use crate::record::{Direction, Scaling, Sweep};
 use crate::report::files;
 use crate::report::words::About;
 use crate::units::Quantity;
@@ -206,16 +206,9 @@ fn taken(
     Ok(taken)
 }
 
-/// What is known of the responses, each about its sweep; of all sweeps once.
-fn told(responses: &[Response]) -> Vec<About> {
-    let everywhere = |finding| responses.iter().all(|r| r.findings.contains(finding));
-    let mut told = Vec::new();
-    for (i, response) in responses.iter().enumerate() {
-        let (shared, own): (Vec<&Finding>, _) = response.findings.iter().partition(|f| everywhere(f));
-        told.extend(shared.into_iter().filter(|_| i == 0).map(|f| (String::new(), f.clone())));
-        told.extend(own.into_iter().map(|f: &Finding| (response.name.clone(), f.clone())));
-    }
-    told
+/// What is known of the responses, each about its sweep.
+fn told(responses: &[Response]) -> impl Iterator<Item = About> {
+    responses.iter().flat_map(|r| r.findings.iter().map(|f| (r.name.clone(), f.clone())))
 }
 
 impl Analysis for Keys {
@@ -240,11 +233,9 @@ impl Analysis for Keys {
         let (matrices, responses): (Vec<Waterfall>, Vec<Response>) =
             taken.into_par_iter().map(matrix).unzip();
         job.answered(responses.len());
-        job.put("responses", &responses)?;
         job.put("antiresonance", &pairing::antiresonances(&responses))?;
         job.put("crossings", &pairing::all_crossings(&responses))?;
-        let mut all = Answer { findings: told(&responses), ..Answer::default() };
-        all.findings.extend(pairing::twice(&responses));
+        let mut all = Answer { findings: pairing::twice(&responses), ..Answer::default() };
         if !responses.is_empty() {
             all.figure("response", figures::response(&job.title, &responses));
             all.tables = vec![tables::resonances(&responses), tables::jumps(&responses)];
@@ -253,18 +244,20 @@ impl Analysis for Keys {
         modelled::run(job, &responses)?;
         let slugs = files::slugs(responses.iter().map(|r| r.name.as_str()));
         let compute = &job.campaign.compute;
+        let mut told = Vec::new();
         for (slug, (response, matrix)) in slugs.iter().zip(responses.iter().zip(&matrices)) {
-            let mut one = Answer::default();
+            let mut one = Answer::of(response)?;
+            one.tell("", &response.findings);
             if compute.waterfall {
                 one.figure("waterfall", figures::waterfall(matrix, compute.fmax)?);
                 one.figure("map", figures::map(matrix, compute.fmax)?);
             }
             one.csv("response", &tables::response(response));
             one.files.push(("waterfall.csv".to_owned(), files::matrix_csv(matrix).into_bytes()));
-            job.show(&response.name, slug, one);
+            told.push(job.show(&response.name, slug, one));
             job.all.details.push(tables::curve(response));
             job.histories.push((response.name.clone(), response.history.clone()));
         }
-        Ok(())
+        job.put("responses", &told)
     }
 }

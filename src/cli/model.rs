@@ -18,7 +18,7 @@ pub enum Model {
     Sweep(Asked<sweep::Keys>),
     /// The simplest model that is good enough for a scene, and why
     Choose(Asked<choose::Keys>),
-    /// Map regime and stability over two parameters
+    /// Map regime and stability over two parameters; a map that was cut short in its folder is taken up again
     Map(Asked<map::Keys>),
 }
 
@@ -27,7 +27,7 @@ pub enum Model {
 pub struct Asked<K: Args> {
     #[command(flatten)]
     keys: K,
-    /// Folder for figures as SVG and PNG, and tables as CSV; a map that was cut short there is taken up again
+    /// Folder for figures as SVG and PNG, and tables as CSV
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
