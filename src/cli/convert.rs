@@ -39,11 +39,6 @@ impl Convert {
     pub fn run(&self, json: bool) -> Result<()> {
         let target = Target::of(&self.output)?;
         apart(&self.input, &self.output)?;
-        if (self.binary || self.single) && matches!(target, Target::Csv | Target::Tsv | Target::Npy) {
-            let found = format!("binary or single for {}", target.name());
-            let error = Error::usage(found, "a .uff or .wav file with them");
-            return Err(error.setting("binary").setting("single"));
-        }
         let one = self.channel.channel.is_some() || self.channel.calibration.is_some();
         let reader = self.reading.reader()?;
         let reader = if one || self.change.wanted() { reader.rate_of_base_band() } else { reader };

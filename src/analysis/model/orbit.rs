@@ -28,11 +28,8 @@ pub struct Keys {
     pub gap_std: Option<f64>,
 }
 
-/// Points of a period in the file of a motion's course.
-const COURSE: usize = 1000;
-
 impl Keys {
-    /// The motions, each with its verdicts, figure and course.
+    /// The motions, each with its verdicts and figure.
     ///
     /// # Errors
     /// If the scene or a key cannot be, or nothing drives the rig.
@@ -68,7 +65,6 @@ impl Keys {
             }
             let title = format!("Motion {i}");
             answer.figure(format!("orbit_{i}"), figures::orbit(&title, &scene.rig, orbit));
-            answer.csv(&format!("orbit_{i}"), &course(orbit, scene.rig.gap));
         }
         answer.table("orbits", orbits(&found.orbits));
         answer.table("verdicts", verdicts(&found.orbits, self.gap_std));
@@ -157,26 +153,6 @@ fn no_impact(motion: &NoImpact) -> Table {
         .column("amplitude", "m")
         .column("largest x1", "m")
         .row([motion.possible.into(), motion.amplitude.into(), motion.largest.into()])
-}
-
-/// The course of a motion over two periods, from an impact on.
-fn course(orbit: &Orbit, gap: f64) -> Table {
-    let rows = (0..=2 * COURSE).map(|i| {
-        let t = orbit.period() * i as f64 / COURSE as f64;
-        (t, orbit.state(t))
-    });
-    table(
-        "Course",
-        rows,
-        &[
-            ("time", "s", &|(t, _)| Cell::from(*t)),
-            ("x1", "m", &|(_, s)| Cell::from(s.x1)),
-            ("v1", "m/s", &|(_, s)| Cell::from(s.v1)),
-            ("x2", "m", &|(_, s)| Cell::from(s.x2)),
-            ("v2", "m/s", &|(_, s)| Cell::from(s.v2)),
-            ("gap", "m", &move |(_, s)| Cell::from(gap + s.x2 - s.x1)),
-        ],
-    )
 }
 
 /// What the duration of the contact changes in each motion.
