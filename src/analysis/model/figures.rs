@@ -9,5 +9,6 @@ mod sweep;
 pub use branches::branches;
 pub use ladder::ladder;
 pub use motion::{orbit, phase_plane, poincare, traces};
+pub(super) use regimes::counted;
 pub use regimes::regimes;
 pub use sweep::sweep;

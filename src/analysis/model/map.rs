@@ -5,10 +5,8 @@ use crate::analysis::{Answer, Progress};
 use crate::error::{Error, Result};
 use crate::model::map::{Axis, Cell, Plan, Rows};
 use crate::record::Finding;
-use crate::report::Table;
 use crate::report::layout::table;
 use serde_json::json;
-use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::Write;
 use std::path::Path;
@@ -99,7 +97,12 @@ impl Keys {
         if missing > 0 {
             answer.tell("", [Finding::caution("map-cells-empty").count("n", missing)]);
         }
-        answer.tables.push(counted(&all));
+        let counts = figures::counted(all.iter().flat_map(|row| *row));
+        answer.tables.push(table(
+            "Regimes",
+            &counts,
+            &[("regime", "", &|c| c.0.to_string().into()), ("cells", "", &|c| c.1.into())],
+        ));
         answer.files.push(("map.csv".to_owned(), text(&plan, &rows)?.into_bytes()));
         answer.figure("map", figures::regimes(&plan, &rows)?);
         Ok(answer)
@@ -125,15 +128,4 @@ fn taken_up(part: &Path, plan: &Plan) -> Result<(Rows, File)> {
     let mut file = File::create(part).map_err(|e| Error::io("write", part, e))?;
     file.write_all(whole.as_bytes()).map_err(|e| Error::io("write", part, e))?;
     Ok((rows, file))
-}
-
-/// How many cells have each regime, the most frequent first.
-fn counted(rows: &[&[Cell]]) -> Table {
-    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
-    for regime in rows.iter().flat_map(|row| *row).filter_map(|c| c.regime) {
-        *counts.entry(regime.to_string()).or_default() += 1;
-    }
-    let mut counts: Vec<_> = counts.into_iter().collect();
-    counts.sort_by_key(|(_, n)| std::cmp::Reverse(*n));
-    table("Regimes", &counts, &[("regime", "", &|c| c.0.as_str().into()), ("cells", "", &|c| c.1.into())])
 }
