@@ -3,8 +3,8 @@
 use crate::error::Result;
 use crate::model::Observable;
 use crate::model::ladder::{Choice, Model, Question, Rung, Survey};
-use crate::report::layout::{lettered, points};
-use crate::report::{AxisSpec, Figure, Heatmap, Ink, Legend, Marker, Plot};
+use crate::report::layout::lettered;
+use crate::report::{AxisSpec, Figure, Heatmap, Ink, Legend, Plot, Series};
 use ndarray::Array2;
 
 /// What became of a rung.
@@ -76,8 +76,11 @@ pub fn ladder(survey: &Survey, question: &Question) -> Result<Figure> {
         let mut plot = Plot::new(frequency(), y).title(*title).legend(Legend::Right);
         for (i, model) in Model::ALL.into_iter().enumerate() {
             let of = all.iter().filter(|c| c.chosen == Some(model));
-            let places = of.filter_map(|c| Some((c.frequency, c.answer()?[mass])));
-            plot = points(plot, model.name(), places, Ink::Nth(i), Marker::Auto);
+            let (x, y): (Vec<f64>, Vec<f64>) =
+                of.filter_map(|c| Some((c.frequency, c.answer()?[mass]))).unzip();
+            if !x.is_empty() {
+                plot = plot.with(Series::points(model.name(), x, y).ink(Ink::Nth(i)));
+            }
         }
         figure = figure.panel(plot);
     }
