@@ -38,7 +38,7 @@ impl Output {
     }
 
     /// The file that marks a folder in which old and new results stand side by side.
-    pub(crate) const INCOMPLETE: &str = "INCOMPLETE.txt";
+    pub const INCOMPLETE: &str = "INCOMPLETE.txt";
 
     /// A folder whose files replace the old ones together, in [`Output::commit`].
     ///
@@ -54,7 +54,7 @@ impl Output {
     ///
     /// # Errors
     /// If the system refuses; then the folder is marked as incomplete.
-    pub(crate) fn commit(&mut self) -> Result<()> {
+    pub fn commit(&mut self) -> Result<()> {
         let Some(waiting) = self.waiting.as_mut().map(std::mem::take) else { return Ok(()) };
         let mark = self.folder.join(Self::INCOMPLETE);
         if !waiting.is_empty() {

@@ -6,7 +6,6 @@ use crate::analysis::Answer;
 use crate::campaign::above_zero;
 use crate::error::{Error, Result};
 use crate::model::portrait::{Portrait, Sitting};
-use crate::model::simulate::GRAZING_SPEED;
 use crate::model::{Motion, Regime, Rig, Simulation, State};
 use crate::record::Finding;
 use crate::report::Table;
@@ -45,7 +44,7 @@ pub struct Keys {
     )]
     pub phase: f64,
     /// Approach speed in m/s below which an impact counts as grazing
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M/S", allow_negative_numbers = true, default_value_t = GRAZING_SPEED))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M/S", allow_negative_numbers = true, default_value_t = crate::model::simulate::GRAZING_SPEED))]
     pub grazing: f64,
 }
 
