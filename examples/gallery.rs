@@ -16,7 +16,6 @@ fn main() -> Result<()> {
     let folder = std::env::args().nth(1).unwrap_or_else(|| "gallery".to_owned());
     let mut out = Output::new(folder)?;
     let mut page = Page::new("Two-mass rig: one figure of each kind")
-        .summary("The grazing resonance lies at 5.583 ± 0.012 Hz and the clapping resonance, seen only when sweeping up, at 10.59 ± 0.10 Hz.")
         .warning("All data are made up by formulas: nothing here is a measurement.")
         .warning("The spectra are read on their lines, so that amplitudes between lines are up to 15 % low.")
         .heading("Figures");

@@ -18,7 +18,7 @@ pub mod sweep;
 
 mod page;
 
-pub use answer::{Answer, Tells};
+pub use answer::Answer;
 pub use job::{Job, JobOptions, Outcome, Progress, run};
 pub use source::Source;
 

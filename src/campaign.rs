@@ -104,7 +104,7 @@ impl Campaign {
         let toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
         if !toml || path.is_dir() {
             return Err(Error::input(Place::file(path), "not a campaign", "a campaign file, NAME.toml")
-                .hint("a list of files goes to `vibro response`; the README shows a campaign.toml"));
+                .hint("a list of files goes to `vibro response`; docs/campaign.md shows a campaign"));
         }
         let bytes = std::fs::read(path).map_err(|e| Error::io("open", path, e))?;
         if bytes.trim_ascii().is_empty() {

@@ -1,31 +1,64 @@
 //! The command `vibro`: what was typed, checked, done and printed. Nothing in the library uses this folder.
 
-mod args;
-mod compare;
+mod campaign;
 mod complain;
 mod convert;
-mod drill;
-mod excitation;
-mod impacts;
 mod info;
-mod modal;
 mod model;
 mod precision;
 mod print;
-mod progress;
-mod pulse;
-mod response;
-mod restitution;
-mod run;
-mod settings;
-mod spectrum;
-mod target;
-mod waterfall;
+mod record;
+mod sweep;
 
 use crate::error::Result;
 use crate::report::words::Voice;
-use args::{Args, Command};
-use clap::Parser;
+use clap::{Parser, Subcommand};
+
+/// Measure impacting machines: from analyser files to answers, each with its uncertainty.
+#[derive(Debug, Parser)]
+#[command(name = "vibro", version, max_term_width = 100)]
+struct Args {
+    /// Print one JSON object instead of a table
+    #[arg(long, global = true)]
+    json: bool,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Say what is in a file
+    Info(info::Info),
+    /// Rewrite a file as UFF-58, CSV, WAV or NPY, chosen by the ending of OUT
+    Convert(convert::Convert),
+    /// Give the spectrum of a channel, or the frequency response function of two
+    Spectrum(record::Spectrum),
+    /// Find the excitation frequency of every point of a sweep
+    Excitation(sweep::Excitation),
+    /// Draw all response spectra of a sweep as a waterfall
+    Waterfall(sweep::Waterfall),
+    /// Take the response at the excitation, with resonances and jumps
+    Response(sweep::Taken),
+    /// Measure speed, impacts and the average turn of a hammer drill
+    Drill(Box<record::Drill>),
+    /// Find the impacts in a contact trace: interval, frequency, impacts per cycle
+    Impacts(record::Impacts),
+    /// Coefficient of restitution from drops, bounces or velocities, every method side by side
+    Restitution(record::Restitution),
+    /// Natural frequency, damping and modal constant of the modes of a frequency response function
+    Modal(record::Modal),
+    /// Damping ratio, frequency and restitution of a contact from its pulse
+    Pulse(record::Pulse),
+    /// What the motion of a rig should be: orbits with their verdicts, simulations, sweeps
+    #[command(subcommand)]
+    Model(Box<model::Model>),
+    /// Overlay a campaign's measured responses on the model's prediction
+    Compare(campaign::Compare),
+    /// Speed against accuracy of every method on scenes with a known truth, and where each breaks
+    Precision(precision::Precision),
+    /// Do all that a campaign asks for: results, tables, figures, report
+    Run(campaign::Run),
+}
 
 /// Parses the command line, does what it says, and gives the exit code: 0 done, 1 no answer possible, 2 wrong usage or
 /// unreadable input.
@@ -38,37 +71,32 @@ pub fn main() -> u8 {
             return complain::usage(&error, json);
         }
     };
-    match dispatch(&args) {
-        Ok(code) => code,
-        Err(error) => complain::error(&error, voice(&args.command), args.json),
-    }
-}
-
-/// How settings are named: what a campaign says is corrected there.
-fn voice(command: &Command) -> Voice {
-    match command {
+    // What a campaign says is corrected there.
+    let voice = match &args.command {
         Command::Run(_) | Command::Compare(_) => Voice::Campaign,
         _ => Voice::Command,
-    }
+    };
+    dispatch(&args).unwrap_or_else(|error| complain::error(&error, voice, args.json))
 }
 
 fn dispatch(args: &Args) -> Result<u8> {
-    let done = match &args.command {
-        Command::Info(typed) => return info::run(typed, args.json),
-        Command::Convert(typed) => convert::run(typed, args.json),
-        Command::Spectrum(typed) => spectrum::run(typed, args.json),
-        Command::Excitation(typed) => excitation::run(typed, args.json),
-        Command::Waterfall(typed) => waterfall::run(typed, args.json),
-        Command::Response(typed) => response::run(typed, args.json),
-        Command::Drill(typed) => drill::run(typed, args.json),
-        Command::Impacts(typed) => impacts::run(typed, args.json),
-        Command::Restitution(typed) => restitution::run(typed, args.json),
-        Command::Compare(typed) => compare::run(typed, args.json),
-        Command::Modal(typed) => modal::run(typed, args.json),
-        Command::Pulse(typed) => pulse::run(typed, args.json),
-        Command::Model(typed) => model::run(typed, args.json),
-        Command::Precision(typed) => precision::run(typed, args.json),
-        Command::Run(typed) => return run::run(typed, args.json),
-    };
-    done.map(|()| 0)
+    let json = args.json;
+    match &args.command {
+        Command::Info(typed) => return typed.run(json),
+        Command::Run(typed) => return typed.run(json),
+        Command::Convert(typed) => typed.run(json),
+        Command::Spectrum(typed) => typed.run(json),
+        Command::Excitation(typed) => typed.run(json),
+        Command::Waterfall(typed) => typed.run(json),
+        Command::Response(typed) => typed.run(json),
+        Command::Drill(typed) => typed.run(json),
+        Command::Impacts(typed) => typed.run(json),
+        Command::Restitution(typed) => typed.run(json),
+        Command::Compare(typed) => typed.run(json),
+        Command::Modal(typed) => typed.run(json),
+        Command::Pulse(typed) => typed.run(json),
+        Command::Model(typed) => typed.run(json),
+        Command::Precision(typed) => typed.run(json),
+    }?;
+    Ok(0)
 }

@@ -4,12 +4,10 @@ pub mod files;
 pub mod layout;
 pub mod words;
 
-mod growing;
 mod html;
 mod output;
 mod table;
 
-pub use growing::Growing;
 pub use html::Page;
 pub use output::Output;
 pub use table::{Cell, Column, Table};

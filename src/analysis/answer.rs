@@ -7,6 +7,7 @@ use crate::report::words::About;
 use crate::report::{Figure, Table};
 use serde::Serialize;
 use serde_json::{Map, Value};
+use std::borrow::Borrow;
 
 /// What an analysis found, for programs and for people. Names of figures and files are those of a record alone, `impacts`; a campaign
 /// adds a number or a name.
@@ -34,19 +35,17 @@ impl Answer {
     /// # Errors
     /// If it cannot be written as JSON.
     pub fn of(result: &impl Serialize) -> Result<Answer> {
-        let unwritten = |e| Error::refused(format!("the result cannot be written as JSON: {e}"));
         let Value::Object(mut result) = serde_json::to_value(result).map_err(unwritten)? else {
             return Err(Error::refused("the result is no object"));
         };
         // They are told as findings of the answer.
-        result.shift_remove("warnings");
         result.shift_remove("findings");
         Ok(Answer { result, ..Answer::default() })
     }
 
     /// Adds what is known of a record; `""` is the whole answer.
-    pub fn tell(&mut self, record: &str, told: &impl Tells) {
-        self.findings.extend(told.findings().into_iter().map(|f| (record.to_owned(), f)));
+    pub fn tell(&mut self, record: &str, told: impl IntoIterator<Item = impl Borrow<Finding>>) {
+        self.findings.extend(told.into_iter().map(|f| (record.to_owned(), f.borrow().clone())));
     }
 
     /// Adds a figure.
@@ -66,29 +65,10 @@ impl Answer {
     }
 }
 
-/// What has something to tell.
-pub trait Tells {
-    /// As findings.
-    fn findings(&self) -> Vec<Finding>;
-}
-
-impl Tells for Vec<Finding> {
-    fn findings(&self) -> Vec<Finding> {
-        self.clone()
-    }
-}
-
-impl Tells for Finding {
-    fn findings(&self) -> Vec<Finding> {
-        vec![self.clone()]
-    }
-}
-
-/// Readers and estimators that still tell it in sentences.
-impl Tells for Vec<String> {
-    fn findings(&self) -> Vec<Finding> {
-        self.iter().map(|text| Finding::caution("said").name("text", text.as_str())).collect()
-    }
+/// The error of a result that JSON has no place for.
+#[allow(clippy::needless_pass_by_value)]
+pub(crate) fn unwritten(error: serde_json::Error) -> Error {
+    Error::refused(format!("the result cannot be written as JSON: {error}"))
 }
 
 /// The finding that a record allows no answer; the error itself where it is another.
@@ -119,9 +99,9 @@ mod tests {
         #[derive(Serialize)]
         struct Found {
             n: usize,
-            warnings: Vec<String>,
+            findings: Vec<Finding>,
         }
-        let answer = Answer::of(&Found { n: 3, warnings: vec!["x".to_owned()] }).unwrap();
+        let answer = Answer::of(&Found { n: 3, findings: vec![Finding::note("x")] }).unwrap();
         assert_eq!(Value::Object(answer.result), serde_json::json!({ "n": 3 }));
         assert!(Answer::of(&3).is_err());
     }

@@ -291,7 +291,7 @@ impl Analysis for Keys {
             let found = series.answer(&name);
             let Some(mut answer) = job.found(&name, found)? else { continue };
             // Its drops are numbered already.
-            job.shown.figures.append(&mut answer.figures);
+            job.all.figures.append(&mut answer.figures);
             let mark = (records.len() + 1).to_string();
             records.push(Record { name, file: files, mark, answer });
         }

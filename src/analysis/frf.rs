@@ -164,7 +164,6 @@ impl Keys {
     fn functions(&self, source: &Source<'_>, told: &mut Answer) -> Result<Vec<Function>> {
         if self.reference.is_some() {
             let found = self.taken().lines(source)?;
-            told.tell("", &found.warnings);
             told.tell("", &found.findings);
             let records = found.records();
             let [Record::Frf(frf), Record::Spectrum(coherence)] = records.as_slice() else {
@@ -228,7 +227,7 @@ impl Keys {
         if !records.is_empty() {
             let (files, unwritten) = files::records("frf", records)?;
             answer.files.extend(files);
-            answer.tell("", &unwritten.into_iter().collect::<Vec<_>>());
+            answer.tell("", unwritten);
         }
         Ok(answer)
     }
@@ -248,7 +247,7 @@ impl Analysis for Keys {
             for answer in &mut answers {
                 let none =
                     answer.refused.take().map(|e| Finding::caution("no-modes").name("why", e.to_string()));
-                answer.tell("", &none.into_iter().collect::<Vec<_>>());
+                answer.tell("", none);
             }
             Ok(answers)
         })

@@ -1,14 +1,13 @@
 //! All that a campaign asks for, and its files.
 
-use super::answer::left_out;
+use super::answer::{left_out, unwritten};
 use super::source::{Source, file_name, name_of};
-use super::{Analysis, Answer, KINDS, Tells, page};
+use super::{Analysis, Answer, KINDS, page};
 use crate::campaign::{Campaign, Entry};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::record::{Finding, Step};
-use crate::report::files::Files;
-use crate::report::words::{About, Voice, add_warnings, put};
-use crate::report::{Figure, Output, Table, files};
+use crate::report::words::{About, Voice, put};
+use crate::report::{Output, Table, files};
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
@@ -17,25 +16,18 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Steps of progress through a record.
 const PARTS: usize = 100;
 
-/// Names of the files that hold all results.
-const RESULTS: &str = "results.json";
-const REPORT: &str = "report.html";
-
 /// Told how far a job is.
 pub trait Progress: Sync {
     /// A part with this many steps begins.
     fn start(&self, what: &str, steps: usize);
     /// One step is done.
     fn step(&self);
-    /// All is done.
-    fn done(&self);
 }
 
 /// Nobody is told.
 impl Progress for () {
     fn start(&self, _: &str, _: usize) {}
     fn step(&self) {}
-    fn done(&self) {}
 }
 
 /// How a job may go about its files.
@@ -58,23 +50,6 @@ pub struct Outcome {
     pub answered: bool,
 }
 
-/// What is shown of all records, in order.
-#[derive(Debug, Default)]
-pub(super) struct Shown {
-    /// Sentences on what matters most.
-    pub summary: Vec<String>,
-    /// Tables that a person wants first.
-    pub tables: Vec<Table>,
-    /// Figures by the names of their files.
-    pub figures: Vec<(String, Figure)>,
-    /// Long tables, below the figures.
-    pub curves: Vec<Table>,
-    /// Values that were assumed.
-    pub constants: Vec<(String, String)>,
-    /// Steps by the name of their record.
-    pub histories: Vec<(String, Vec<Step>)>,
-}
-
 /// A campaign at work: what its analyses ask, and where they put what they find.
 pub struct Job<'a> {
     /// The campaign.
@@ -85,10 +60,12 @@ pub struct Job<'a> {
     pub progress: &'a dyn Progress,
     /// Title of the report.
     pub title: String,
-    pub(super) shown: Shown,
-    results: Map<String, Value>,
-    findings: Vec<About>,
-    files: Files,
+    /// All answers, long tables as details.
+    pub(super) all: Answer,
+    /// Values that were assumed.
+    pub(super) constants: Vec<(String, String)>,
+    /// Steps by the name of their record.
+    pub(super) histories: Vec<(String, Vec<Step>)>,
     answers: usize,
 }
 
@@ -100,17 +77,11 @@ impl<'a> Job<'a> {
             options,
             progress,
             title,
-            shown: Shown::default(),
-            results: Map::new(),
-            findings: Vec::new(),
-            files: Vec::new(),
+            all: Answer::default(),
+            constants: Vec::new(),
+            histories: Vec::new(),
             answers: 0,
         }
-    }
-
-    /// Tells something of a record; `""` is the whole campaign.
-    pub fn tell(&mut self, record: &str, told: &impl Tells) {
-        self.findings.extend(told.findings().into_iter().map(|f| (record.to_owned(), f)));
     }
 
     /// What a record gave; `None` and a finding where it allows no answer.
@@ -121,8 +92,7 @@ impl<'a> Job<'a> {
         match found {
             Ok(found) => Ok(Some(found)),
             Err(error) => {
-                let finding = left_out(error)?;
-                self.tell(record, &finding);
+                self.all.tell(record, [left_out(error)?]);
                 Ok(None)
             }
         }
@@ -133,16 +103,8 @@ impl<'a> Job<'a> {
     /// # Errors
     /// If it cannot be written as JSON.
     pub fn put(&mut self, key: &str, value: &impl Serialize) -> Result<()> {
-        let unwritten = |e| Error::refused(format!("the results cannot be written as JSON: {e}"));
-        let mut value = serde_json::to_value(value).map_err(unwritten)?;
-        add_warnings(&mut value, Voice::Campaign);
-        self.results.insert(key.to_owned(), value);
+        self.all.result.insert(key.to_owned(), serde_json::to_value(value).map_err(unwritten)?);
         Ok(())
-    }
-
-    /// Adds a file of numbers.
-    pub fn file(&mut self, name: String, content: impl Into<Vec<u8>>) {
-        self.files.push((name, content.into()));
     }
 
     /// That so many records were answered.
@@ -152,38 +114,43 @@ impl<'a> Job<'a> {
 
     /// Adds the answers of records to the list of their kind. Figures and files get the mark of their record behind their name.
     pub fn answer(&mut self, kind: &str, records: Vec<Record>) {
-        let list = self.results.entry(kind).or_insert_with(|| Value::Array(Vec::new()));
         self.answers += records.len();
+        let mut list = Vec::new();
         for Record { name, file, mark, answer } in records {
+            let result = self.show(&name, &mark, answer);
             let mut object = Map::new();
-            object.insert("name".to_owned(), Value::String(name.clone()));
+            object.insert("name".to_owned(), Value::String(name));
             object.insert(if file.is_array() { "files" } else { "file" }.to_owned(), file);
-            for (key, value) in answer.result {
+            for (key, value) in result {
                 object.entry(key).or_insert(value);
             }
-            put(&mut object, &answer.findings, Voice::Campaign);
-            if let Value::Array(list) = list {
-                list.push(Value::Object(object));
-            }
-            let about =
-                |(record, finding): About| (if record.is_empty() { name.clone() } else { record }, finding);
-            self.findings.extend(answer.findings.into_iter().map(about));
-            for table in answer.tables.into_iter().filter(|t| !t.rows.is_empty()) {
-                let same = |t: &&mut Table| t.title == table.title && t.columns == table.columns;
-                match self.shown.tables.iter_mut().find(same) {
-                    Some(known) => known.rows.extend(table.rows),
-                    None => self.shown.tables.push(table),
-                }
-            }
-            let marked = |name: &str| match name.rsplit_once('.') {
-                Some((stem, ending)) => format!("{stem}_{mark}.{ending}"),
-                None => format!("{name}_{mark}"),
-            };
-            self.shown
-                .figures
-                .extend(answer.figures.into_iter().map(|(name, figure)| (marked(&name), figure)));
-            self.files.extend(answer.files.into_iter().map(|(name, bytes)| (marked(&name), bytes)));
+            list.push(Value::Object(object));
         }
+        self.all.result.insert(kind.to_owned(), Value::Array(list));
+    }
+
+    /// Shows what an answer has and gives its result; a mark stands behind the names of figures and files.
+    pub(super) fn show(&mut self, name: &str, mark: &str, answer: Answer) -> Map<String, Value> {
+        let Answer { mut result, findings, tables, figures, files, .. } = answer;
+        put(&mut result, &findings, Voice::Campaign);
+        let about =
+            |(record, finding): About| (if record.is_empty() { name.to_owned() } else { record }, finding);
+        self.all.findings.extend(findings.into_iter().map(about));
+        for table in tables.into_iter().filter(|t| !t.rows.is_empty()) {
+            let same = |t: &&mut Table| t.title == table.title && t.columns == table.columns;
+            match self.all.tables.iter_mut().find(same) {
+                Some(known) => known.rows.extend(table.rows),
+                None => self.all.tables.push(table),
+            }
+        }
+        let marked = |name: String| match name.rsplit_once('.') {
+            _ if mark.is_empty() => name,
+            Some((stem, ending)) => format!("{stem}_{mark}.{ending}"),
+            None => format!("{name}_{mark}"),
+        };
+        self.all.figures.extend(figures.into_iter().map(|(name, figure)| (marked(name), figure)));
+        self.all.files.extend(files.into_iter().map(|(name, bytes)| (marked(name), bytes)));
+        result
     }
 
     /// Measures the record of each table by itself.
@@ -298,23 +265,20 @@ pub fn run(
         (kind.run)(&mut job)?;
     }
     if campaign.is_empty() {
-        job.tell("", &Finding::caution("campaign-without-record"));
+        job.all.tell("", [Finding::caution("campaign-without-record")]);
     } else if job.answers == 0 {
-        job.tell("", &Finding::caution("no-record-answers"));
+        job.all.tell("", [Finding::caution("no-record-answers")]);
     }
-    let Job { shown, mut results, mut findings, files: numbers, answers, title, .. } = job;
-    progress.start("drawing figures", shown.figures.len());
-    let drawings = files::figures(output, &shown.figures, &|| progress.step())?;
-    for (name, bytes) in numbers {
-        output.write(&name, bytes)?;
+    let mut all = std::mem::take(&mut job.all);
+    progress.start("drawing figures", all.figures.len());
+    let drawings = files::figures(output, &all.figures, &|| progress.step())?;
+    for (name, bytes) in &all.files {
+        output.write(name, bytes)?;
     }
-    findings.extend(files::left_over(output, &[RESULTS, REPORT]).map(|f| (String::new(), f)));
-    put(&mut results, &findings, Voice::Campaign);
-    let json = serde_json::to_string_pretty(&results)
-        .map_err(|e| Error::refused(format!("the results cannot be written as JSON: {e}")))?;
-    output.write(RESULTS, json + "\n")?;
-    output.write(REPORT, page::page(&title, version, &findings, &shown, &drawings).html())?;
-    progress.done();
-    let tables = shown.tables;
-    Ok(Outcome { results, findings, tables, answered: answers > 0 })
+    put(&mut all.result, &all.findings, Voice::Campaign);
+    let json = serde_json::to_string_pretty(&all.result).map_err(unwritten)?;
+    output.write("results.json", json + "\n")?;
+    output.write("report.html", page::page(&job, version, &all, &drawings).html())?;
+    let Answer { result: results, findings, tables, .. } = all;
+    Ok(Outcome { results, findings, tables, answered: job.answers > 0 })
 }

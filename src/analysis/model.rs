@@ -1,4 +1,107 @@
-//! The model of a rig: figures and tables of its orbits, motions, sweeps, maps, and of the choice of a model.
+//! The model of a rig: `vibro model`, one file a question; figures of its orbits, motions, sweeps, maps, and of the choice of a model.
 
+pub mod choose;
+pub mod contact;
 pub mod figures;
-pub mod tables;
+pub mod map;
+pub mod orbit;
+pub mod response;
+pub mod simulate;
+pub mod sweep;
+
+use crate::error::{Error, Result};
+use crate::model::{Draft, Excitation, Orbit, Scene};
+use crate::record::Finding;
+use num_complex::Complex64;
+use serde_json::{Value, json};
+use std::path::PathBuf;
+
+/// The scene that a model is asked about.
+#[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
+pub struct SceneKeys {
+    /// Rig as a TOML file: m1 m2 k1 k2 c1 c2 gap restitution, [excitation], [contact], [buffer] [default: the thesis' rig]
+    pub rig: Option<PathBuf>,
+    /// Set a key of the rig, tables with a dot: gap=0.5e-3, contact.stiffness=1e5
+    #[cfg_attr(feature = "cli", arg(long = "set", value_name = "KEY=VALUE"))]
+    pub set: Vec<String>,
+    /// Force in N: amplitude of a sine, height of a pulse
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N", allow_negative_numbers = true))]
+    pub force: Option<f64>,
+    /// Impulse in N s, once a cycle, instead of a sine force
+    #[cfg_attr(feature = "cli", arg(long, value_name = "NS", allow_negative_numbers = true, conflicts_with_all = ["force", "width"]))]
+    pub impulse: Option<f64>,
+    /// Width in s of a rectangular pulse, once a cycle, instead of a sine force
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S", allow_negative_numbers = true))]
+    pub width: Option<f64>,
+}
+
+/// A scene that something drives, and what is known of it.
+#[derive(Debug, Clone)]
+struct Driven {
+    scene: Scene,
+    excitation: Excitation,
+    finding: Option<Finding>,
+}
+
+impl SceneKeys {
+    /// The scene: the file, then what is set, then the keys of the excitation. `frequency` in Hz replaces that of the excitation.
+    fn driven(&self, frequency: Option<f64>) -> Result<Driven> {
+        let mut draft = self.rig.as_ref().map_or_else(|| Ok(Draft::default()), Draft::from_path)?;
+        let missing = if self.rig.is_some() { draft.left_out() } else { Vec::new() };
+        for assignment in &self.set {
+            draft.set(assignment)?;
+        }
+        if self.impulse.is_some() {
+            draft.drive("impulse");
+        } else if self.width.is_some() {
+            draft.drive("pulse");
+        }
+        for (key, value) in [("force", self.force), ("impulse", self.impulse), ("width", self.width)] {
+            if let Some(value) = value {
+                draft.put(&format!("excitation.{key}"), value);
+            }
+        }
+        let driven = ["force", "impulse", "width", "parts", "kind"];
+        if let Some(frequency) = frequency
+            && driven.iter().any(|key| draft.has(&format!("excitation.{key}")))
+        {
+            draft.put("excitation.frequency", frequency);
+        }
+        let scene = draft.scene()?;
+        let excitation = scene.excitation.clone().ok_or_else(|| {
+            let expected = "a force (a sine), an impulse, a force with a width, or [excitation] in the file";
+            Error::usage("nothing drives the rig", expected).setting("force").setting("impulse")
+        })?;
+        Ok(Driven { scene, excitation, finding: rig_left_out("The file", &missing) })
+    }
+}
+
+/// The finding that keys of a rig are not given and were taken from the thesis' rig.
+pub(super) fn rig_left_out(table: &str, keys: &[&str]) -> Option<Finding> {
+    let found = Finding::doubt("rig-left-out").name("table", table).name("keys", keys.join(", "));
+    (!keys.is_empty()).then_some(found)
+}
+
+/// Lines that are listed of each orbit.
+const LINES: u32 = 8;
+
+/// An orbit with its amplitudes at the first multiples of 1/T, and what the uncertainty of the gap (m) leaves of it.
+fn judged(orbit: &Orbit, gap_std: Option<f64>) -> Value {
+    let v = &orbit.validity;
+    let mut all = json!(orbit);
+    all["lines"] = (1..=LINES).map(|n| json!(orbit.line(n).map(Complex64::norm))).collect();
+    all["robust"] = json!(gap_std.map(|std| orbit.robust(std)));
+    all["near_grazing"] = json!(gap_std.filter(|_| v.exists).map(|std| v.grazing_distance <= std));
+    all
+}
+
+/// Checks an uncertainty of the gap.
+fn check_gap_std(gap_std: Option<f64>) -> Result<()> {
+    match gap_std {
+        Some(v) if !(v.is_finite() && v >= 0.0) => {
+            Err(Error::usage(format!("gap_std is {v} m"), "a finite value of 0 or more").setting("gap_std"))
+        }
+        _ => Ok(()),
+    }
+}

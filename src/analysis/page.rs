@@ -1,38 +1,35 @@
 //! The report of a campaign as one page.
 
-use super::job::Shown;
+use super::{Answer, Job};
 use crate::record::Step;
-use crate::report::words::{About, Voice, told};
+use crate::report::words::{Voice, told};
 use crate::report::{Drawing, Page};
 use crate::units::notation::shortest;
 use std::fmt::Write as _;
 
 /// Lays out all that is shown, with the drawings of its figures.
-pub fn page(title: &str, version: &str, findings: &[About], shown: &Shown, drawings: &[Drawing]) -> Page {
-    let mut page = Page::new(title);
-    for sentence in &shown.summary {
-        page = page.summary(sentence.as_str());
-    }
-    for sentence in told(findings, Voice::Campaign, true) {
+pub fn page(job: &Job<'_>, version: &str, all: &Answer, drawings: &[Drawing]) -> Page {
+    let mut page = Page::new(job.title.as_str());
+    for sentence in told(&all.findings, Voice::Campaign, true) {
         page = page.warning(sentence);
     }
-    for table in &shown.tables {
+    for table in &all.tables {
         page = page.table(table);
     }
-    for ((name, figure), drawing) in shown.figures.iter().zip(drawings) {
+    for ((name, figure), drawing) in all.figures.iter().zip(drawings) {
         let files = [format!("{name}.svg"), format!("{name}.png")];
         page = page.figure(drawing, &figure.caption, &files.each_ref().map(String::as_str));
     }
-    for table in &shown.curves {
+    for table in &all.details {
         page = page.table(table);
     }
 
-    if !shown.constants.is_empty() {
-        let values = shown.constants.iter().map(|(name, value)| (name.as_str(), value.as_str()));
+    if !job.constants.is_empty() {
+        let values = job.constants.iter().map(|(name, value)| (name.as_str(), value.as_str()));
         page = page.details("Rig of the comparison", values);
     }
     let steps: Vec<(&str, String)> =
-        shown.histories.iter().map(|(name, steps)| (name.as_str(), history(steps))).collect();
+        job.histories.iter().map(|(name, steps)| (name.as_str(), history(steps))).collect();
     page.heading("Where the numbers come from")
         .details("Steps from file to curve", steps.iter().map(|(name, text)| (*name, text.as_str())))
         .paragraph(&format!(

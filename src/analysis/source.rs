@@ -57,19 +57,6 @@ impl Source<'_> {
     }
 }
 
-impl<'a> Source<'a> {
-    /// A record of a command line, whose files are named as they are.
-    pub fn typed(
-        name: &'a str,
-        path: &'a Path,
-        channel: &'a Channel,
-        reading: &'a Reading,
-        progress: &'a (dyn Fn(usize, usize) + Sync),
-    ) -> Source<'a> {
-        Source { name, path, channel, reading, beside: &|_, file| Ok(file.to_owned()), progress }
-    }
-}
-
 /// The name of a file without its folder.
 pub fn file_name(path: &Path) -> String {
     path.file_name().map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into_owned())

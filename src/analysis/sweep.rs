@@ -6,12 +6,10 @@ pub mod pairing;
 pub mod stored;
 pub mod tables;
 
-mod summary;
-
 pub use pairing::Crossing;
 pub use stored::Stored;
 
-use super::{Analysis, Job, JobOptions, Progress, entries};
+use super::{Analysis, Answer, Job, JobOptions, Progress, entries};
 use crate::campaign::{Campaign, Entry, above_zero};
 use crate::error::{Error, Place, Result};
 use crate::measure::response::{Response, ResponseOptions, response, to_displacement};
@@ -63,35 +61,32 @@ pub struct Keys {
 
 impl Keys {
     fn usable(&self) -> Result<()> {
-        let wrong = |key, found: String, expected: &str| Err(Error::usage(found, expected).setting(key));
+        let wrong = |key, found: &str, expected: &str| Err(Error::usage(found, expected).setting(key));
         if self.name.is_empty() {
             return Err(Error::usage("the key `name` is missing", "").hint("add name = …"));
         }
         let written = !self.response.is_empty();
         if self.list.is_some() == written {
-            let found =
-                if written { "both a list and response files" } else { "neither a list nor response files" };
-            return wrong("name", found.to_owned(), "list = \"…\", or force, response, lines and base_band");
+            let found = if written { "both a list and response" } else { "neither a list nor response" };
+            let expected = "list = \"…\", or force, response, lines and base_band";
+            return wrong("name", &format!("{found} files"), expected);
         }
         if self.list.is_some() && (self.lines.is_some() || self.base_band.is_some()) {
-            let found = "lines or base_band beside a list, which says both itself".to_owned();
+            let found = "lines or base_band beside a list, which says both itself";
             return wrong("list", found, "one of them: correct the list, or leave the keys out");
         }
         let band = self.base_band.is_some_and(|b| b.is_finite() && b > 0.0);
         let complete = band && self.lines.is_some_and(|l| l > 0) && self.force.len() == self.response.len();
         if written && !complete {
-            let said = |value: Option<String>| value.unwrap_or_else(|| "left out".to_owned());
-            let found = format!(
-                "{} force and {} response files, lines {}, base_band {}",
-                self.force.len(),
-                self.response.len(),
-                said(self.lines.map(|n| n.to_string())),
-                said(self.base_band.map(|b| b.to_string()))
-            );
-            return wrong("name", found, "as many force as response files, and both numbers above 0");
+            let said = |value: Option<f64>| value.map_or_else(|| "left out".to_owned(), |v| v.to_string());
+            let (force, response) = (self.force.len(), self.response.len());
+            let (lines, band) = (said(self.lines.map(|n| n as f64)), said(self.base_band));
+            let found =
+                format!("{force} force and {response} response files, lines {lines}, base_band {band}");
+            return wrong("name", &found, "as many force as response files, and both numbers above 0");
         }
         if let Some(mass) = self.mass.filter(|m| !matches!(m, 1 | 2)) {
-            return wrong("mass", format!("mass = {mass}"), "1 (excited) or 2 (passive)");
+            return wrong("mass", &format!("mass = {mass}"), "1 (excited) or 2 (passive)");
         }
         above_zero("force_calibration", self.force_calibration)?;
         self.reader().map(drop)
@@ -211,20 +206,9 @@ fn taken(
     Ok(taken)
 }
 
-/// What is known of the responses, each about its sweep; of all sweeps once.
-pub fn told(responses: &[Response]) -> Vec<About> {
-    let all: Vec<_> = responses.iter().map(|r| r.findings.clone()).collect();
-    let mut told = Vec::new();
-    for (i, (response, findings)) in responses.iter().zip(&all).enumerate() {
-        for finding in findings {
-            let everywhere = all.iter().all(|other| other.contains(finding));
-            if !everywhere || i == 0 {
-                let about = if everywhere { String::new() } else { response.name.clone() };
-                told.push((about, finding.clone()));
-            }
-        }
-    }
-    told
+/// What is known of the responses, each about its sweep.
+fn told(responses: &[Response]) -> impl Iterator<Item = About> {
+    responses.iter().flat_map(|r| r.findings.iter().map(|f| (r.name.clone(), f.clone())))
 }
 
 impl Analysis for Keys {
@@ -249,34 +233,31 @@ impl Analysis for Keys {
         let (matrices, responses): (Vec<Waterfall>, Vec<Response>) =
             taken.into_par_iter().map(matrix).unzip();
         job.answered(responses.len());
-        let crossings = pairing::all_crossings(&responses);
-        job.put("responses", &responses)?;
         job.put("antiresonance", &pairing::antiresonances(&responses))?;
-        job.put("crossings", &crossings)?;
-        job.shown.summary.extend(summary::summary(&responses, &crossings));
-        for (about, finding) in told(&responses).into_iter().chain(pairing::twice(&responses)) {
-            job.tell(&about, &finding);
-        }
+        job.put("crossings", &pairing::all_crossings(&responses))?;
+        let mut all = Answer { findings: pairing::twice(&responses), ..Answer::default() };
         if !responses.is_empty() {
-            let title = job.title.clone();
-            job.shown.figures.push(("response".to_owned(), figures::response(&title, &responses)));
-            job.shown.tables.extend([tables::resonances(&responses), tables::jumps(&responses)]);
+            all.figure("response", figures::response(&job.title, &responses));
+            all.tables = vec![tables::resonances(&responses), tables::jumps(&responses)];
         }
+        job.show("", "", all);
         modelled::run(job, &responses)?;
         let slugs = files::slugs(responses.iter().map(|r| r.name.as_str()));
-        if job.campaign.compute.waterfall {
-            let fmax = job.campaign.compute.fmax;
-            for (slug, matrix) in slugs.iter().zip(&matrices) {
-                job.shown.figures.push((format!("waterfall_{slug}"), figures::waterfall(matrix, fmax)?));
-                job.shown.figures.push((format!("map_{slug}"), figures::map(matrix, fmax)?));
-            }
-        }
+        let compute = &job.campaign.compute;
+        let mut told = Vec::new();
         for (slug, (response, matrix)) in slugs.iter().zip(responses.iter().zip(&matrices)) {
-            job.file(format!("response_{slug}.csv"), tables::response(response).csv());
-            job.file(format!("waterfall_{slug}.csv"), files::matrix_csv(matrix));
-            job.shown.curves.push(tables::curve(response));
-            job.shown.histories.push((response.name.clone(), response.history.clone()));
+            let mut one = Answer::of(response)?;
+            one.tell("", &response.findings);
+            if compute.waterfall {
+                one.figure("waterfall", figures::waterfall(matrix, compute.fmax)?);
+                one.figure("map", figures::map(matrix, compute.fmax)?);
+            }
+            one.csv("response", &tables::response(response));
+            one.files.push(("waterfall.csv".to_owned(), files::matrix_csv(matrix).into_bytes()));
+            told.push(job.show(&response.name, slug, one));
+            job.all.details.push(tables::curve(response));
+            job.histories.push((response.name.clone(), response.history.clone()));
         }
-        Ok(())
+        job.put("responses", &told)
     }
 }

@@ -2,66 +2,95 @@
 
 mod change;
 
-use super::target::{apart, write_beside};
-use super::{args, complain, print};
+use super::print;
+use crate::analysis::Answer;
+use crate::campaign::{Channel, Reading};
 use crate::error::{Error, Result};
-use crate::record::Record;
-use crate::report::words::{self, Voice};
+use crate::record::{Finding, Record};
+use crate::report::Output;
+use crate::report::layout::table;
 use crate::write::{Precision, Storage, Target};
-use serde::Serialize;
+use change::Change;
+use serde_json::json;
+use std::path::{Path, PathBuf};
 
-#[derive(Serialize)]
-struct Answer {
-    written: String,
-    format: &'static str,
-    records: usize,
-    warnings: Vec<String>,
+#[derive(Debug, clap::Args)]
+pub struct Convert {
+    /// File to read
+    input: PathBuf,
+    /// File to write: .uff .unv (UFF-58), .csv .tsv, .wav, .npy
+    output: PathBuf,
+    /// Write UFF-58 as binary (58b)
+    #[arg(long)]
+    binary: bool,
+    /// Write single instead of double precision, where the format has both
+    #[arg(long)]
+    single: bool,
+    #[command(flatten)]
+    change: Change,
+    #[command(flatten)]
+    channel: Channel,
+    #[command(flatten)]
+    reading: Reading,
 }
 
-pub fn run(typed: &args::Convert, json: bool) -> Result<()> {
-    let target = Target::of(&typed.output)?;
-    apart(&typed.input, &typed.output)?;
-    if (typed.binary || typed.single) && matches!(target, Target::Csv | Target::Tsv | Target::Npy) {
-        return Err(Error::usage(
-            format!("--binary and --single say nothing for {}", target.name()),
-            "a .uff or .wav file with them",
+impl Convert {
+    /// Writes the file and prints what is in it.
+    pub fn run(&self, json: bool) -> Result<()> {
+        let target = Target::of(&self.output)?;
+        apart(&self.input, &self.output)?;
+        let one = self.channel.channel.is_some() || self.channel.calibration.is_some();
+        let reader = self.reading.reader()?;
+        let reader = if one || self.change.wanted() { reader.rate_of_base_band() } else { reader };
+        let mut recording = reader.from_path(&self.input)?;
+        if one {
+            let trace = recording.trace(self.channel.channel.as_deref(), self.channel.calibration)?;
+            recording.records = vec![Record::Trace(trace)];
+        }
+        let changes = self.change.apply(&mut recording.records)?;
+        let mut bytes = Vec::new();
+        let precision = if self.single { Precision::Single } else { Precision::Double };
+        target.write(&recording.records, Storage { binary: self.binary, precision }, &mut bytes)?;
+        let existed = self.output.exists();
+        let written = write_beside(&self.output, &bytes)?.display().to_string();
+        let (format, records) = (target.name(), recording.records.len());
+        let mut answer = Answer::of(&json!({ "written": written, "format": format, "records": records }))?;
+        answer.tell("", recording.all_findings());
+        answer.tell("", changes);
+        answer.tell("", (target == Target::Npy).then(|| Finding::caution("values-only")));
+        answer.tell("", existed.then(|| Finding::caution("file-replaced").name("file", &*written)));
+        answer.tables.push(table(
+            "",
+            [()],
+            &[
+                ("written", "", &|()| written.as_str().into()),
+                ("records", "", &|()| records.into()),
+                ("format", "", &|()| format.into()),
+            ],
         ));
+        print::answer(answer, None, json)
     }
-    let one = typed.channel.channel.is_some() || typed.channel.calibration.is_some();
-    let reader = typed.reading.reader()?;
-    let reader = if one || typed.change.wanted() { reader.rate_of_base_band() } else { reader };
-    let mut recording = reader.from_path(&typed.input)?;
-    if one {
-        let trace = recording.trace(typed.channel.channel.as_deref(), typed.channel.calibration)?;
-        recording.records = vec![Record::Trace(trace)];
+}
+
+/// Refuses two names of one file: what is read must not be written.
+pub fn apart(a: &Path, b: &Path) -> Result<()> {
+    let same = match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => a == b,
+    };
+    let found = || format!("{} and {} are the same file", a.display(), b.display());
+    if same { Err(Error::usage(found(), "two files").hint("name another file to write")) } else { Ok(()) }
+}
+
+/// Writes a file whole, in a folder that must exist.
+pub fn write_beside(path: &Path, bytes: impl AsRef<[u8]>) -> Result<PathBuf> {
+    let name = path
+        .file_name()
+        .ok_or_else(|| Error::usage(format!("{} is no file name", path.display()), "a file"))?;
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        let found = format!("the folder {} does not exist", folder.display());
+        return Err(Error::usage(found, "an existing folder"));
     }
-    let changes = typed.change.apply(&mut recording.records)?;
-    let mut bytes = Vec::new();
-    let precision = if typed.single { Precision::Single } else { Precision::Double };
-    target.write(&recording.records, Storage { binary: typed.binary, precision }, &mut bytes)?;
-    let mut warnings = words::sentences(&recording.all_findings(), Voice::Command);
-    warnings.extend(changes);
-    if target == Target::Npy {
-        warnings.push("An array file holds values only: axis and unit are not in it.".to_owned());
-    }
-    let existed = typed.output.exists();
-    let written = write_beside(&typed.output, &bytes)?;
-    if existed {
-        warnings.push(format!("{} existed and was replaced.", typed.output.display()));
-    }
-    if json {
-        return print::json(&Answer {
-            written: written.display().to_string(),
-            format: target.name(),
-            records: recording.records.len(),
-            warnings,
-        });
-    }
-    complain::warn(&warnings);
-    print::text(&format!(
-        "{}: {} record(s) as {}\n",
-        written.display(),
-        recording.records.len(),
-        target.name()
-    ))
+    Output::new(folder)?.write(&name.to_string_lossy(), bytes)
 }

@@ -1,124 +1,104 @@
 //! `vibro info`: what is in a file.
 
-use super::{args, complain, print};
+use super::{complain, print};
+use crate::campaign::Reading;
 use crate::error::Result;
 use crate::read::Header;
 use crate::record::Finding;
-use crate::report::words::{Voice, told, with_record};
-use serde::Serialize;
+use crate::report::words::{Voice, put, told};
+use crate::units::notation::shortest;
+use serde_json::{Map, json};
 use std::fmt::Write as _;
+use std::path::PathBuf;
 
-#[derive(Serialize)]
-struct Answer {
-    files: Vec<File>,
-    /// Complaints about files that could not be listed.
-    errors: Vec<String>,
-    findings: Vec<Finding>,
+#[derive(Debug, clap::Args)]
+pub struct Info {
+    /// Measurement files
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+    #[command(flatten)]
+    reading: Reading,
 }
 
-#[derive(Serialize)]
-struct File {
-    path: String,
-    format: &'static str,
-    records: Vec<Header>,
-}
+/// Notes of a file that are shown to a person, and characters of each.
+const NOTES: usize = 8;
+const WIDE: usize = 90;
 
-/// Lists what can be listed and complains of the rest; gives the exit code of the first failure.
-pub fn run(typed: &args::Info, json: bool) -> Result<u8> {
-    let reader = typed.reading.reader()?;
-    let mut answer = Answer { files: Vec::new(), errors: Vec::new(), findings: Vec::new() };
-    let mut about = Vec::new();
-    let mut code = 0;
-    for path in &typed.files {
-        let (format, records, mut findings) = match reader.survey(path) {
-            Ok(found) => found,
-            // The other files are still worth listing; the first failure decides the exit code.
-            Err(error) => {
-                let failed = complain::error(&error, Voice::Command, false);
-                code = if code == 0 { failed } else { code };
-                answer.errors.push(error.to_string());
-                continue;
+impl Info {
+    /// Lists what can be listed and complains of the rest; gives the exit code of the first failure.
+    pub fn run(&self, json: bool) -> Result<u8> {
+        let reader = self.reading.reader()?;
+        let (mut files, mut errors, mut about) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut text, mut code) = (String::new(), 0);
+        for path in &self.files {
+            let (format, records, mut findings) = match reader.survey(path) {
+                Ok(found) => found,
+                // The other files are still worth listing; the first failure decides the exit code.
+                Err(error) => {
+                    let failed = complain::error(&error, Voice::Command, false);
+                    code = if code == 0 { failed } else { code };
+                    errors.push(error.to_string());
+                    continue;
+                }
+            };
+            let of_records: Vec<_> =
+                records.iter().map(|r| (r.name.as_str(), r.findings.as_slice())).collect();
+            findings.extend(Finding::gathered(&of_records));
+            let path = path.display().to_string();
+            let file = if self.files.len() > 1 { path.as_str() } else { "" };
+            about.extend(findings.into_iter().map(|finding| (file.to_owned(), finding)));
+            let _ = writeln!(text, "{path} ({})", format.name());
+            for record in &records {
+                line(&mut text, record);
             }
-        };
-        let of_records: Vec<_> = records.iter().map(|r| (r.name.as_str(), r.findings.as_slice())).collect();
-        findings.extend(Finding::gathered(&of_records));
-        let file = if typed.files.len() > 1 { path.display().to_string() } else { String::new() };
-        about.extend(findings.into_iter().map(|finding| (file.clone(), finding)));
-        answer.files.push(File { path: path.display().to_string(), format: format.name(), records });
-    }
-    if json {
-        answer.findings = about.into_iter().map(with_record).collect();
-        print::json(&answer)?;
-    } else {
-        complain::warn(&told(&about, Voice::Command, true));
-        print::text(&table(&answer.files))?;
-    }
-    Ok(code)
-}
-
-fn table(files: &[File]) -> String {
-    let mut text = String::new();
-    for file in files {
-        let _ = writeln!(text, "{} ({})", file.path, file.format);
-        for r in &file.records {
-            let n = match r.declared_n {
-                Some(declared) if declared != r.n => format!("{} of {declared}", r.n),
-                _ => r.n.to_string(),
-            };
-            let step = r.dx.map_or_else(|| "uneven".to_owned(), |dx| format!("step {}", short(dx)));
-            let max = match (r.max_abs, r.max_at) {
-                (Some(max), Some(at)) => format!("max {} at {}", short(max), short(at)),
-                _ => "max not known".to_owned(),
-            };
-            let complex = if r.complex { "complex " } else { "" };
-            let name = if r.name.is_empty() { "(no name)" } else { &r.name };
-            let what = match (r.quantity, r.unit.as_str()) {
-                ("other", "") => ", unit not known".to_owned(),
-                ("other", unit) => format!(" in {unit}"),
-                (quantity, unit) => format!(" of {quantity} [{unit}]"),
-            };
-            // What a universal file calls itself; the name is made of its points.
-            let title = r.notes.iter().find_map(|n| n.strip_prefix("id line 1: ")).filter(|t| *t != name);
-            let title = title.map_or_else(String::new, |t| format!(" ({t})"));
-            let _ = writeln!(
-                text,
-                "  {name}{title}: {complex}{}{what}, {n} values from {}, {step}, {max}",
-                r.kind,
-                short(r.x0)
-            );
+            notes(&mut text, records.first().map_or(&[], |r| &r.notes));
+            files.push(json!({ "path": path, "format": format.name(), "records": records }));
         }
-        let notes: Vec<&String> =
-            file.records.first().map_or(&[][..], |r| &r.notes).iter().filter(|n| !shown_before(n)).collect();
-        if !notes.is_empty() {
-            let shown: Vec<String> = notes.iter().take(NOTES).map(|n| shortened(n)).collect();
-            let more = notes.len().saturating_sub(NOTES);
-            let more = if more > 0 { format!(" | and {more} more (--json)") } else { String::new() };
-            let _ = writeln!(text, "  notes: {}{more}", shown.join(" | "));
+        if json {
+            let mut answer = Map::new();
+            answer.insert("files".to_owned(), json!(files));
+            answer.insert("errors".to_owned(), json!(errors));
+            put(&mut answer, &about, Voice::Command);
+            print::object(answer)?;
+        } else {
+            complain::warn(&told(&about, Voice::Command, true));
+            print::text(&text)?;
         }
+        Ok(code)
     }
-    text
 }
 
-/// Whether a note of a universal file stands in the line of its record: title, point, function.
-fn shown_before(note: &str) -> bool {
-    ["id line 1: ", "record 6: ", "point: "].iter().any(|key| note.starts_with(key))
+fn line(text: &mut String, r: &Header) {
+    let n = match r.declared_n {
+        Some(declared) if declared != r.n => format!("{} of {declared}", r.n),
+        _ => r.n.to_string(),
+    };
+    let step = r.dx.map_or_else(|| "uneven".to_owned(), |dx| format!("step {}", shortest(dx)));
+    let max = match (r.max_abs, r.max_at) {
+        (Some(max), Some(at)) => format!("max {} at {}", shortest(max), shortest(at)),
+        _ => "max not known".to_owned(),
+    };
+    let complex = if r.complex { "complex " } else { "" };
+    let name = if r.name.is_empty() { "(no name)" } else { &r.name };
+    let what = match (r.quantity, r.unit.as_str()) {
+        ("other", "") => ", unit not known".to_owned(),
+        ("other", unit) => format!(" in {unit}"),
+        (quantity, unit) => format!(" of {quantity} [{unit}]"),
+    };
+    let (kind, start) = (r.kind, shortest(r.x0));
+    let _ = writeln!(text, "  {name}: {complex}{kind}{what}, {n} values from {start}, {step}, {max}");
 }
 
-/// A note, or the beginning of a long one: a line of a universal file with its key stands whole.
-fn shortened(note: &str) -> String {
-    if note.chars().count() <= WIDE {
-        return note.to_owned();
+fn notes(text: &mut String, notes: &[String]) {
+    let shown = notes.iter().take(NOTES).map(|note| {
+        let long = note.chars().count() > WIDE;
+        if long { note.chars().take(WIDE - 1).chain(['…']).collect() } else { note.clone() }
+    });
+    let mut shown: Vec<String> = shown.collect();
+    if notes.len() > NOTES {
+        shown.push(format!("and {} more (--json)", notes.len() - NOTES));
     }
-    note.chars().take(WIDE - 1).chain(['…']).collect()
-}
-
-/// Characters of a note that a table shows.
-const WIDE: usize = 100;
-
-/// Notes of a file that a table shows.
-const NOTES: usize = 4;
-
-/// Twelve digits: what is behind them is rounding.
-fn short(value: f64) -> f64 {
-    format!("{value:.11e}").parse().unwrap_or(value)
+    if !shown.is_empty() {
+        let _ = writeln!(text, "  notes: {}", shown.join(" | "));
+    }
 }

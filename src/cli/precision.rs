@@ -1,94 +1,129 @@
 //! `vibro precision`: speed against accuracy, and where methods break.
 
+use super::print;
+use crate::analysis::Answer;
 use crate::analysis::precision as shown;
-use crate::cli::{args, complain, print, progress};
 use crate::compare::precision::{Family, Results, Scene};
 use crate::error::{Error, Result};
-use crate::report::{Figure, Output, files};
-use serde::Serialize;
-use std::fmt::Write as _;
+use crate::record::Finding;
+use crate::report::files;
+use clap::ValueEnum;
+use std::path::PathBuf;
 
-#[derive(Serialize)]
-struct Answer<'a> {
-    #[serde(flatten)]
-    results: &'a Results,
-    warnings: &'a [String],
-    files: &'a [String],
+#[derive(Debug, clap::Args)]
+pub struct Precision {
+    /// Fewer settings, repeats, records and cycles, so rougher errors: seconds instead of minutes
+    #[arg(long)]
+    quick: bool,
+    /// Methods of this kind
+    #[arg(long, value_name = "KIND", default_value = "both")]
+    family: Kind,
+    /// Tell also what the methods do at the borders of what they can: right, refused, wrong, stalled, crashed, not asked
+    #[arg(long)]
+    failures: bool,
+    /// Measure nothing: take scenes and failures from what `vibro precision --json` printed into this file
+    #[arg(long, value_name = "FILE", conflicts_with = "quick")]
+    from: Option<PathBuf>,
+    /// Add the lines that another program has measured and written into this file
+    ///
+    /// The file is a JSON list with an object for each method and setting: scene (its name as printed here), method
+    /// (program, version and method), error (in what the scene's "Error:" names; null where it failed), `time_ns` (ns
+    /// of one answer), and, where wanted, setting and why (the reason of a failure). For example:
+    ///
+    /// `[{"scene": "scene C", "method": "Peer 1.0", "error": 2e-4, "time_ns": 7e5}]`
+    ///
+    /// docs/precision.md says what each scene asks; benches/peers/peers.py writes such a file.
+    #[arg(long, value_name = "FILE")]
+    add: Vec<PathBuf>,
+    /// Folder for charts as SVG and PNG, and tables as CSV
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Kind {
+    Models,
+    Estimators,
+    Both,
+}
+
+impl Kind {
+    /// Whether methods of this family are meant.
+    fn holds(self, family: Family) -> bool {
+        match self {
+            Kind::Models => family == Family::Models,
+            Kind::Estimators => family == Family::Estimators,
+            Kind::Both => true,
+        }
+    }
 }
 
 const FAMILIES: [Family; 2] = [Family::Models, Family::Estimators];
 
-pub fn run(typed: &args::Precision, json: bool) -> Result<()> {
-    let mut results = match &typed.from {
-        Some(path) => Results::from_path(path)?,
-        None => Results::default(),
-    };
-    if typed.from.is_none() {
-        let bar = progress::bar(json);
-        let mut tell = |scene: &str| {
-            bar.set_message(scene.to_owned());
-            bar.inc(1);
+impl Precision {
+    /// Measures, or takes up what was measured, and prints it.
+    pub fn run(&self, json: bool) -> Result<()> {
+        let mut results = match &self.from {
+            Some(path) => Results::from_path(path)?,
+            None => self.measured(json)?,
         };
-        for family in FAMILIES.into_iter().filter(|f| typed.family.holds(*f)) {
-            results.measure(family, typed.quick, typed.failures, &mut tell)?;
+        results.retain(|family| self.family.holds(family));
+        let nothing = results.failures.is_empty();
+        if nothing && (self.failures || results.scenes.is_empty()) {
+            let missing = if self.failures { "failures" } else { "scenes" };
+            return Err(Error::usage(format!("no {missing} of this kind in the file"), "one at least")
+                .hint("write it with `vibro precision --failures --json > FILE`"));
         }
-        bar.finish_and_clear();
-    }
-    results.retain(|family| typed.family.holds(family));
-    let nothing = results.failures.is_empty();
-    if nothing && (typed.failures || results.scenes.is_empty()) {
-        let missing = if typed.failures { "failures" } else { "scenes" };
-        return Err(Error::usage(format!("no {missing} of this kind in the file"), "one at least")
-            .hint("write it with `vibro precision --failures --json > FILE`"));
-    }
-    let mut warnings = Vec::new();
-    for path in &typed.add {
-        let left = results.add(path)?;
-        let lines = left.chunk_by(|a, b| a == b);
-        warnings.extend(lines.map(|l| {
-            format!(
-                "{}: left out, as not measured: {} lines of the scene {:?}.",
-                path.display(),
-                l.len(),
-                l[0]
-            )
-        }));
-    }
-    if typed.from.is_none() && cfg!(debug_assertions) {
-        warnings
-            .push("This is a build for development: its times are not those of the released program.".into());
-    }
-    let Results { scenes, failures } = &results;
-    let maps = FAMILIES.map(|family| (family, failures.of(family)));
-    let mut written = Vec::new();
-    if let Some(folder) = &typed.out {
-        let mut output = Output::new(folder)?;
-        let chart = |s: &Scene| (format!("precision_{}", files::slug(&s.name)), shown::chart(s));
-        let map = |(name, figure): (String, Figure)| (format!("failures_{}", files::slug(&name)), figure);
-        let drawn = maps.iter().flat_map(|(family, part)| shown::maps(*family, part)).map(map);
-        let drawn: Vec<_> = scenes.iter().map(chart).chain(drawn).collect();
-        files::figures(&mut output, &drawn, &|| ())?;
-        output.write("precision.csv", shown::precision(scenes).csv())?;
+        let mut findings = Vec::new();
+        for path in &self.add {
+            let left = results.add(path)?;
+            let lines = left.chunk_by(|a, b| a == b);
+            findings.extend(lines.map(|l| {
+                let left = Finding::caution("lines-of-unknown-scene").count("n", l.len());
+                left.name("scene", l[0].as_str()).about(path.display().to_string())
+            }));
+        }
+        if self.from.is_none() && cfg!(debug_assertions) {
+            findings.push(Finding::caution("development-build"));
+        }
+        let mut answer = Answer::of(&results)?;
+        answer.tell("", &findings);
+        let Results { scenes, failures } = &results;
+        for scene in scenes {
+            answer.figure(format!("precision_{}", files::slug(&scene.name)), shown::chart(scene));
+            let bound = scene.bound.map_or(String::new(), |b| format!("; Cramér–Rao bound: {b:.1e}"));
+            let Scene { name, says, error_of, .. } = scene;
+            let mut table = shown::scene(scene);
+            table.title = format!("{name}\n{says}\nError: {error_of}{bound}");
+            answer.tables.push(table);
+        }
+        answer.csv("precision", &shown::precision(scenes));
         if !nothing {
-            output.write("failures.csv", shown::failures(failures).csv())?;
+            answer.csv("failures", &shown::failures(failures));
         }
-        written = output.written().to_vec();
+        for family in FAMILIES {
+            let part = failures.of(family);
+            for (name, figure) in shown::maps(family, &part) {
+                answer.figure(format!("failures_{}", files::slug(&name)), figure);
+            }
+            if !part.is_empty() {
+                answer.tables.push(shown::borders(family, &part));
+            }
+        }
+        print::answer(answer, self.out.as_deref(), json)
     }
-    if json {
-        return print::json(&Answer { results: &results, warnings: &warnings, files: &written });
+
+    fn measured(&self, json: bool) -> Result<Results> {
+        print::busy(json, "scenes", |bar| {
+            let mut results = Results::default();
+            let mut tell = |scene: &str| {
+                bar.set_message(scene.to_owned());
+                bar.inc(1);
+            };
+            for family in FAMILIES.into_iter().filter(|f| self.family.holds(*f)) {
+                results.measure(family, self.quick, self.failures, &mut tell)?;
+            }
+            Ok(results)
+        })
     }
-    complain::warn(&warnings);
-    let mut text = String::new();
-    for scene in scenes {
-        let bound = scene.bound.map_or(String::new(), |b| format!("; Cramér–Rao bound: {b:.1e}"));
-        let Scene { name, says, error_of, .. } = scene;
-        let _ = writeln!(text, "{name}\n{says}\nError: {error_of}{bound}\n{}", shown::scene(scene).text());
-    }
-    for (family, map) in maps.iter().filter(|(_, map)| !map.is_empty()) {
-        let _ = writeln!(text, "{}", shown::borders(*family, map).text());
-    }
-    for file in written {
-        let _ = writeln!(text, "wrote {file}");
-    }
-    print::text(&text)
 }

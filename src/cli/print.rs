@@ -1,79 +1,75 @@
-//! Standard output: one JSON object, or text.
+//! Standard output: one JSON object, or text; progress for a person at a terminal.
 
 use super::complain;
-use crate::analysis::Answer;
+use crate::analysis::{Answer, Progress};
 use crate::error::{Error, Result};
-use crate::report::words::{Voice, add_warnings, put, told};
+use crate::report::words::{Voice, put, told};
 use crate::report::{Output, Table, files};
-use serde::Serialize;
-use serde_json::Value;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde_json::{Map, Value};
 use std::fmt::Write as _;
-use std::io::{ErrorKind, Write};
+use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
+use std::time::Duration;
 
-/// Writes the figures and files of an answer where a folder is named, and prints it: as JSON, or its tables and a note.
+/// Writes the figures and files of an answer where a folder is named, and prints it: as JSON, or its tables.
 ///
 /// # Errors
 /// If a file or standard output cannot be written.
-pub fn answer(
-    mut answer: Answer,
-    out: Option<&Path>,
-    beside: &[String],
-    note: &str,
-    json: bool,
-) -> Result<()> {
-    let mut written = Vec::new();
-    if let Some(folder) = out {
-        let mut output = Output::set(folder)?;
-        files::figures(&mut output, &answer.figures, &|| ())?;
-        for (name, bytes) in &answer.files {
-            output.write(name, bytes)?;
-        }
-        output.commit()?;
-        written = output.written().to_vec();
+pub fn answer(answer: Answer, out: Option<&Path>, json: bool) -> Result<()> {
+    let written = written(&answer, out)?;
+    if !json && out.is_none() && !answer.files.is_empty() {
+        complain::line("all numbers: --json, or files with --out DIR");
     }
-    written.extend(beside.iter().cloned());
+    shown(answer, written, json)
+}
+
+/// Writes the figures and files of an answer into a folder, all together; gives their names.
+///
+/// # Errors
+/// If a file cannot be written.
+pub fn written(answer: &Answer, out: Option<&Path>) -> Result<Vec<String>> {
+    let Some(folder) = out else { return Ok(Vec::new()) };
+    let mut output = Output::set(folder)?;
+    files::figures(&mut output, &answer.figures, &|| ())?;
+    for (name, bytes) in &answer.files {
+        output.write(name, bytes)?;
+    }
+    output.commit()?;
+    Ok(output.written().to_vec())
+}
+
+/// Prints an answer and the names of its files.
+///
+/// # Errors
+/// If standard output cannot be written.
+pub fn shown(mut answer: Answer, written: Vec<String>, json: bool) -> Result<()> {
     if json {
+        answer.result.entry("files").or_insert_with(|| written.into());
         put(&mut answer.result, &answer.findings, Voice::Command);
-        answer.result.insert("files".to_owned(), written.into());
-        return object(&Value::Object(answer.result));
+        return object(answer.result);
     }
     complain::warn(&told(&answer.findings, Voice::Command, true));
     let shown = answer.tables.iter().chain(&answer.details).filter(|t| !t.rows.is_empty());
     let mut all = shown.map(Table::text).collect::<Vec<_>>().join("\n");
-    if !note.is_empty() {
-        let _ = writeln!(all, "\n{note}");
-    }
     for file in written {
         let _ = writeln!(all, "wrote {file}");
     }
     text(&all)
 }
 
-/// Prints one JSON object. NaN becomes null.
+/// Prints one JSON object.
 ///
 /// # Errors
-/// If standard output cannot be written; a closed pipe is no error.
-pub fn json(value: &impl Serialize) -> Result<()> {
-    let unwritten = |e| Error::refused(format!("the result cannot be written as JSON: {e}"));
-    let mut value = serde_json::to_value(value).map_err(unwritten)?;
-    add_warnings(&mut value, Voice::Command);
-    object(&value)
-}
-
-/// Prints one JSON object whose findings have their words already.
-///
-/// # Errors
-/// As [`json`].
-pub fn object(value: &Value) -> Result<()> {
-    let unwritten = |e| Error::refused(format!("the result cannot be written as JSON: {e}"));
-    text(&(serde_json::to_string_pretty(value).map_err(unwritten)? + "\n"))
+/// As [`text`].
+pub fn object(object: Map<String, Value>) -> Result<()> {
+    text(&format!("{:#}\n", Value::Object(object)))
 }
 
 /// Prints text.
 ///
 /// # Errors
-/// As [`json`].
+/// If standard output cannot be written; a closed pipe is no error.
 pub fn text(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
     match out.write_all(printable(text).as_bytes()).and_then(|()| out.flush()) {
@@ -86,6 +82,39 @@ pub fn text(text: &str) -> Result<()> {
 pub(crate) fn printable(text: &str) -> String {
     let steers = |c: char| c.is_control() && c != '\n' && c != '\t';
     text.chars().map(|c| if steers(c) { '\u{fffd}' } else { c }).collect()
+}
+
+/// Works with a bar on standard error, where that is a terminal and no JSON was asked for.
+///
+/// # Errors
+/// Those of the work.
+pub fn busy<T>(json: bool, what: &'static str, work: impl FnOnce(&ProgressBar) -> Result<T>) -> Result<T> {
+    let bar = ProgressBar::no_length();
+    if json || !std::io::stderr().is_terminal() {
+        bar.set_draw_target(ProgressDrawTarget::hidden());
+    } else if let Ok(style) =
+        ProgressStyle::with_template("{spinner} {msg:24} {wide_bar} {pos}/{len} {elapsed}")
+    {
+        bar.set_style(style);
+        bar.enable_steady_tick(Duration::from_millis(200));
+    }
+    bar.set_message(what);
+    let done = work(&bar);
+    // Before a complaint, too.
+    bar.finish_and_clear();
+    done
+}
+
+impl Progress for ProgressBar {
+    fn start(&self, what: &str, steps: usize) {
+        self.set_length(steps as u64);
+        self.set_position(0);
+        self.set_message(what.to_owned());
+    }
+
+    fn step(&self) {
+        self.inc(1);
+    }
 }
 
 #[cfg(test)]

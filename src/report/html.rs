@@ -10,7 +10,6 @@ use vibro_figure::escaped;
 /// ```
 /// use vibroimpact::report::{Page, Table};
 /// let page = Page::new("Two-mass rig")
-///     .summary("The grazing resonance lies at 5.58 Hz.")
 ///     .warning("The gap was measured before the test only.")
 ///     .heading("Resonances")
 ///     .table(&Table::new("").column("Frequency", "Hz").row([5.58.into()]));
@@ -19,7 +18,6 @@ use vibro_figure::escaped;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Page {
     title: String,
-    summary: Vec<String>,
     warnings: Vec<String>,
     body: String,
 }
@@ -30,13 +28,7 @@ impl Page {
         Page { title: title.into(), ..Page::default() }
     }
 
-    /// Adds a paragraph to the summary at the top.
-    pub fn summary(mut self, text: impl Into<String>) -> Page {
-        self.summary.push(text.into());
-        self
-    }
-
-    /// Adds a sentence to the box under the summary that says what the result rests on.
+    /// Adds a sentence to the box at the top that says what the result rests on.
     pub fn warning(mut self, sentence: impl Into<String>) -> Page {
         self.warnings.push(sentence.into());
         self
@@ -63,7 +55,7 @@ impl Page {
         let mut below =
             format!("<b>{}.</b> {}", escaped(drawing.name().trim_end_matches('.')), escaped(caption));
         for file in files {
-            let _ = write!(below, " <a href=\"{}\">{}</a>", link(file), escaped(file));
+            let _ = write!(below, " <a href=\"./{0}\">{0}</a>", escaped(file));
         }
         self.element(&format!(
             "<figure style=\"--width:{}\">\n{}<figcaption>{}</figcaption>\n</figure>",
@@ -92,24 +84,12 @@ impl Page {
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
              <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n<h1>{title}</h1>\n"
         );
-        for text in &self.summary {
-            let _ = writeln!(out, "<p class=\"summary\">{}</p>", escaped(text));
-        }
         if !self.warnings.is_empty() {
             out.push_str("<section class=\"warnings\" aria-label=\"Warnings\">\n<h2>What this result rests on</h2>\n<ul>\n");
-            let shown = self.warnings.len().min(SHOWN);
-            for sentence in &self.warnings[..shown] {
+            for sentence in &self.warnings {
                 let _ = writeln!(out, "<li>{}</li>", escaped(sentence));
             }
             out.push_str("</ul>\n");
-            let folded = &self.warnings[shown..];
-            if !folded.is_empty() {
-                let _ = writeln!(out, "<details><summary>{} more</summary>\n<ul>", folded.len());
-                for sentence in folded {
-                    let _ = writeln!(out, "<li>{}</li>", escaped(sentence));
-                }
-                out.push_str("</ul></details>\n");
-            }
             out.push_str("</section>\n");
         }
         out.push_str(&self.body);
@@ -123,26 +103,6 @@ impl Page {
         self
     }
 }
-
-/// A relative file name as an address: everything but plain characters percent-encoded (RFC 3986, 2.1), so
-/// that it can be no scheme.
-fn link(file: &str) -> String {
-    let mut out = String::new();
-    for byte in file.bytes() {
-        match byte {
-            b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'~' | b'/' => {
-                out.push(char::from(byte));
-            }
-            byte => {
-                let _ = write!(out, "%{byte:02X}");
-            }
-        }
-    }
-    out
-}
-
-/// Warnings that stand before the results; the others are folded behind them.
-const SHOWN: usize = 8;
 
 const STYLE: &str = include_str!("assets/page.css");
 
@@ -159,7 +119,6 @@ mod tests {
         ));
         let drawing = Figure::single("A \"title\" <i>").panel(plot).draw();
         Page::new("Rig <1> & more")
-            .summary("x < y")
             .warning("<script>alert(1)</script>")
             .heading("A & B")
             .paragraph("p > q")
@@ -176,7 +135,7 @@ mod tests {
             assert!(!html.contains(foreign) || foreign == "javascript:", "{foreign}");
         }
         assert!(!html.contains("href=\"javascript:"));
-        assert!(html.contains("href=\"figures/a%20b.svg\""));
+        assert!(html.contains("href=\"./figures/a b.svg\"") && html.contains("href=\"./javascript:x\""));
         // All but the void elements and the document type is XML, which the parser of usvg can check.
         let body = html.replace("<!DOCTYPE html>", "").replace("<br>", "<br/>");
         let body = body

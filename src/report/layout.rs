@@ -1,6 +1,6 @@
 //! Parts that tables and figures of all analyses share.
 
-use super::{Cell, Figure, Panel, Table};
+use super::{Cell, Figure, Ink, Marker, Panel, Plot, Series, Stroke, Table};
 
 /// A column: name, unit, and what it shows of an item.
 pub type Shown<'a, T> = (&'a str, &'a str, &'a dyn Fn(&T) -> Cell);
@@ -23,6 +23,30 @@ pub fn table<T>(
 /// A value with its standard uncertainty.
 pub fn pair(value: f64, std: Option<f64>) -> Cell {
     Cell::Estimate { value, std }
+}
+
+/// Adds a line through places to a plot; nothing where there are none.
+pub fn line(
+    plot: Plot,
+    name: &str,
+    places: impl IntoIterator<Item = (f64, f64)>,
+    ink: Ink,
+    stroke: Stroke,
+) -> Plot {
+    let (x, y): (Vec<f64>, Vec<f64>) = places.into_iter().unzip();
+    if x.is_empty() { plot } else { plot.with(Series::line(name, x, y).ink(ink).stroke(stroke)) }
+}
+
+/// Adds points at places to a plot; nothing where there are none.
+pub fn points(
+    plot: Plot,
+    name: &str,
+    places: impl IntoIterator<Item = (f64, f64)>,
+    ink: Ink,
+    marker: Marker,
+) -> Plot {
+    let (x, y): (Vec<f64>, Vec<f64>) = places.into_iter().unzip();
+    if x.is_empty() { plot } else { plot.with(Series::points(name, x, y).ink(ink).marker(marker)) }
 }
 
 /// Letters (a), (b), … before the titles of the plots of a figure that has several.

@@ -90,9 +90,15 @@ impl From<&Estimate> for Cell {
     }
 }
 
-impl From<Option<f64>> for Cell {
-    fn from(value: Option<f64>) -> Cell {
-        value.map_or(Cell::Missing, Cell::Number)
+impl From<bool> for Cell {
+    fn from(yes: bool) -> Cell {
+        Cell::from(if yes { "yes" } else { "no" })
+    }
+}
+
+impl<T: Into<Cell>> From<Option<T>> for Cell {
+    fn from(value: Option<T>) -> Cell {
+        value.map_or(Cell::Missing, Into::into)
     }
 }
 
@@ -315,11 +321,10 @@ fn exact(value: f64) -> String {
 }
 
 fn quoted(text: &str) -> String {
-    if text.contains(['"', ',', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
-    }
+    // A spreadsheet takes what begins so for a formula.
+    let formula = text.len() > 1 && text.starts_with(['=', '+', '-', '@']);
+    let text = if formula { format!("'{text}") } else { text.to_owned() };
+    if text.contains(['"', ',', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
 }
 
 #[cfg(test)]
@@ -369,6 +374,8 @@ none           7.49            0.35                 –
         assert_eq!(lines[1], "grazing,5.5831,0.0123,0.004213,4.1e-5,56");
         assert_eq!(lines[2], "\"clapping, up\",10.59,0.1,,,107");
         assert_eq!(lines[3], "none,7.49,,3.5e-4,,".replace("3.5e-4", "0.00035"));
+        let formula = Table::new("").column("=1+1", "").row(["@x".into()]).row(["-".into()]).csv();
+        assert_eq!(formula, "'=1+1\n'@x\n-\n");
         let third = Table::new("").column("a", "m").row([(1.0f64 / 3.0).into()]).csv();
         assert_eq!(third.lines().nth(1).unwrap().parse::<f64>().unwrap(), 1.0 / 3.0);
     }

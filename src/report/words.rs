@@ -17,7 +17,7 @@
 
 use crate::record::{Fact, Finding, Severity};
 use crate::units::notation::{quantity, significant};
-use serde_json::Value;
+use serde_json::{Map, Value, json};
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
@@ -52,71 +52,7 @@ impl Voice {
 
 /// The sentence of a finding. A code without a sentence shows itself.
 pub fn sentence(finding: &Finding, voice: Voice) -> String {
-    let facts = |name: &str| finding.fact(name).cloned();
-    said(finding.code, &Told { subject: finding.subject.as_deref(), facts: &facts, voice })
-}
-
-fn said(code: &str, told: &Told<'_>) -> String {
-    SENTENCES.get(code).map_or_else(|| code.to_owned(), |text| told.filled(text))
-}
-
-/// Adds `warnings` to each object of an answer that has `findings`: the sentences of those that are not notes.
-pub(crate) fn add_warnings(answer: &mut Value, voice: Voice) {
-    match answer {
-        Value::Object(object) => {
-            if let Some(Value::Array(findings)) = object.get("findings") {
-                let mut all: Vec<Value> = Vec::new();
-                for severity in ["doubt", "caution"] {
-                    for finding in findings.iter().filter(|f| f["severity"] == severity) {
-                        let facts = |name: &str| fact(finding.get("numbers")?.get(name)?);
-                        let told = Told { subject: finding["subject"].as_str(), facts: &facts, voice };
-                        let sentence = Value::String(said(finding["code"].as_str().unwrap_or(""), &told));
-                        if !all.contains(&sentence) {
-                            all.push(sentence);
-                        }
-                    }
-                }
-                match object.entry("warnings").or_insert_with(|| Value::Array(Vec::new())) {
-                    Value::Array(known) => known.extend(all),
-                    other => *other = Value::Array(all),
-                }
-            }
-            object.values_mut().for_each(|value| add_warnings(value, voice));
-        }
-        Value::Array(all) => all.iter_mut().for_each(|value| add_warnings(value, voice)),
-        _ => {}
-    }
-}
-
-fn fact(value: &Value) -> Option<Fact> {
-    Some(match value {
-        Value::Array(all) => Fact::Numbers(all.iter().map(|v| v.as_f64().unwrap_or(f64::NAN)).collect()),
-        Value::String(name) => Fact::Name(name.clone()),
-        number => Fact::Number(number.as_f64()?),
-    })
-}
-
-/// The sentences of findings that are not notes, once each, doubts first.
-pub fn warnings(findings: &[Finding], voice: Voice) -> Vec<String> {
-    in_order(findings, &[Severity::Doubt, Severity::Caution], voice)
-}
-
-/// The sentences of all findings, once each, doubts first and notes last.
-pub fn sentences(findings: &[Finding], voice: Voice) -> Vec<String> {
-    in_order(findings, &[Severity::Doubt, Severity::Caution, Severity::Note], voice)
-}
-
-fn in_order(findings: &[Finding], severities: &[Severity], voice: Voice) -> Vec<String> {
-    let mut all: Vec<String> = Vec::new();
-    for severity in severities {
-        for finding in findings.iter().filter(|f| f.severity == *severity) {
-            let text = sentence(finding, voice);
-            if !all.contains(&text) {
-                all.push(text);
-            }
-        }
-    }
-    all
+    SENTENCES.get(finding.code).map_or_else(|| finding.code.to_owned(), |text| filled(text, finding, voice))
 }
 
 /// A finding, and the record that it is about: empty for all of them.
@@ -145,115 +81,90 @@ pub fn told(findings: &[About], voice: Voice, notes: bool) -> Vec<String> {
     all
 }
 
-/// A finding with its record as subject where it names none itself.
-pub(crate) fn with_record((record, finding): About) -> Finding {
-    if record.is_empty() || finding.subject.is_some() { finding } else { finding.about(record) }
-}
-
 /// Puts `findings` and `warnings` into an answer: each finding with its record as subject where it names none itself, and the sentences
 /// of those that are not notes.
-pub fn put(answer: &mut serde_json::Map<String, Value>, findings: &[About], voice: Voice) {
-    let subjects: Vec<Finding> = findings.iter().cloned().map(with_record).collect();
-    answer.insert("findings".to_owned(), serde_json::json!(subjects));
-    answer.insert("warnings".to_owned(), serde_json::json!(told(findings, voice, false)));
+pub fn put(answer: &mut Map<String, Value>, findings: &[About], voice: Voice) {
+    let subjects = findings.iter().cloned().map(|(record, finding)| {
+        if record.is_empty() || finding.subject.is_some() { finding } else { finding.about(record) }
+    });
+    answer.insert("findings".to_owned(), json!(subjects.collect::<Vec<Finding>>()));
+    answer.insert("warnings".to_owned(), json!(told(findings, voice, false)));
 }
 
-/// What a finding says, and to whom.
-struct Told<'a> {
-    subject: Option<&'a str>,
-    facts: &'a dyn Fn(&str) -> Option<Fact>,
-    voice: Voice,
-}
-
-impl Told<'_> {
-    /// A template with the facts in place.
-    fn filled(&self, template: &str) -> String {
-        let mut out = String::new();
-        let mut rest = template;
-        while let Some(at) = rest.find(['{', '[', '<']) {
-            out.push_str(&rest[..at]);
-            let (close, inner) = match rest.as_bytes()[at] {
-                b'{' => ('}', &rest[at + 1..]),
-                b'[' => (']', &rest[at + 1..]),
-                _ => ('>', &rest[at + 1..]),
-            };
-            let Some(end) = inner.find(close) else {
-                out.push_str(&rest[at..]);
-                return out;
-            };
-            let inside = &inner[..end];
-            match close {
-                '}' => out.push_str(&self.shown(inside).unwrap_or_else(|| "?".to_owned())),
-                ']' => out.push_str(&self.voice.setting(inside)),
-                _ if self.known(inside) => out.push_str(&self.filled(inside)),
-                _ => {}
+/// A template with the facts of a finding in place.
+fn filled(template: &str, finding: &Finding, voice: Voice) -> String {
+    let mut out = String::new();
+    let mut rest = template;
+    while let Some(at) = rest.find(['{', '[', '<']) {
+        out.push_str(&rest[..at]);
+        let inner = &rest[at + 1..];
+        let close = match rest.as_bytes()[at] {
+            b'{' => '}',
+            b'[' => ']',
+            _ => '>',
+        };
+        let Some(end) = inner.find(close) else { return out + &rest[at..] };
+        let inside = &inner[..end];
+        // An optional part is there where all of its facts are.
+        let mut facts = inside.split('{').skip(1).filter_map(|part| part.split('}').next());
+        match close {
+            '}' => out.push_str(&shown(inside, finding).unwrap_or_else(|| "?".to_owned())),
+            ']' => out.push_str(&voice.setting(inside)),
+            _ if facts.all(|fact| shown(fact, finding).is_some()) => {
+                out.push_str(&filled(inside, finding, voice));
             }
-            rest = &inner[end + 1..];
+            _ => {}
         }
-        out + rest
+        rest = &inner[end + 1..];
     }
-
-    /// Whether all facts of an optional part are there.
-    fn known(&self, part: &str) -> bool {
-        part.split('{').skip(1).filter_map(|p| p.split('}').next()).all(|p| self.shown(p).is_some())
-    }
-
-    /// What stands for a pair of braces; `None` where the fact is missing.
-    fn shown(&self, inside: &str) -> Option<String> {
-        let (name, how) = inside.split_at(inside.find([' ', '.', ':', '?']).unwrap_or(inside.len()));
-        if name == "subject" {
-            return self.subject.map(str::to_owned);
-        }
-        let (digits, how) = match how.strip_prefix('.') {
-            Some(rest) => {
-                let (digits, how) = rest.split_at(rest.find(' ').unwrap_or(rest.len()));
-                (digits.parse().ok()?, how)
-            }
-            None => (3, how),
-        };
-        let all = match (self.facts)(name)? {
-            Fact::Name(text) => return Some(text),
-            Fact::Number(value) => vec![value],
-            Fact::Numbers(values) => values,
-        };
-        let one = all.first() == Some(&1.0);
-        if let Some(nouns) = how.strip_prefix(':') {
-            let (singular, plural) =
-                nouns.split_once('/').map_or((nouns, format!("{nouns}s")), |(s, p)| (s, p.to_owned()));
-            return Some(format!("{} {}", all.first()?, if one { singular } else { &plural }));
-        }
-        if let Some((singular, plural)) = how.strip_prefix('?').and_then(|words| words.split_once('/')) {
-            return Some(if one { singular } else { plural }.to_owned());
-        }
-        let unit = match how.trim_start() {
-            "%" => return Some(joined(&all, |v| format!("{} %", significant(100.0 * v, digits)))),
-            at if at.starts_with('@') => match (self.facts)(&at[1..]) {
-                Some(Fact::Name(unit)) => unit,
-                _ => String::new(),
-            },
-            unit => unit.to_owned(),
-        };
-        let show = |v: f64| match unit.as_str() {
-            "" if v.fract() == 0.0 && v.abs() < 1e15 => v.to_string(),
-            "" => significant(v, digits),
-            unit => quantity(v, unit, digits),
-        };
-        Some(joined(&all, show))
-    }
+    out + rest
 }
 
-fn joined(values: &[f64], show: impl Fn(f64) -> String) -> String {
-    values.iter().map(|v| show(*v)).collect::<Vec<String>>().join(", ")
+/// What stands for a pair of braces; `None` where the fact is missing.
+fn shown(inside: &str, finding: &Finding) -> Option<String> {
+    let (name, how) = inside.split_at(inside.find([' ', '.', ':', '?']).unwrap_or(inside.len()));
+    if name == "subject" {
+        return finding.subject.clone();
+    }
+    let (digits, how) = match how.strip_prefix('.') {
+        Some(rest) => {
+            let (digits, how) = rest.split_at(rest.find(' ').unwrap_or(rest.len()));
+            (digits.parse().ok()?, how)
+        }
+        None => (3, how),
+    };
+    let all = match finding.fact(name)? {
+        Fact::Name(text) => return Some(text.clone()),
+        Fact::Number(value) => std::slice::from_ref(value),
+        Fact::Numbers(values) => values,
+    };
+    let one = all.first() == Some(&1.0);
+    if let Some(nouns) = how.strip_prefix(':') {
+        let (singular, plural) =
+            nouns.split_once('/').map_or((nouns, format!("{nouns}s")), |(s, p)| (s, p.to_owned()));
+        return Some(format!("{} {}", all.first()?, if one { singular } else { &plural }));
+    }
+    if let Some((singular, plural)) = how.strip_prefix('?').and_then(|words| words.split_once('/')) {
+        return Some(if one { singular } else { plural }.to_owned());
+    }
+    let how = how.trim_start();
+    let unit = match how.strip_prefix('@').map(|name| finding.fact(name)) {
+        Some(Some(Fact::Name(unit))) => unit,
+        Some(_) => "",
+        None => how,
+    };
+    let show = |v: &f64| match unit {
+        "%" => format!("{} %", significant(100.0 * v, digits)),
+        "" if v.fract() == 0.0 && v.abs() < 1e15 => v.to_string(),
+        "" => significant(*v, digits),
+        unit => quantity(*v, unit, digits),
+    };
+    Some(all.iter().map(show).collect::<Vec<String>>().join(", "))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn filled(template: &str, finding: &Finding, voice: Voice) -> String {
-        let facts = |name: &str| finding.fact(name).cloned();
-        Told { subject: finding.subject.as_deref(), facts: &facts, voice }.filled(template)
-    }
 
     fn said(template: &str, finding: &Finding) -> String {
         filled(template, finding, Voice::Command)
@@ -283,8 +194,9 @@ mod tests {
     #[test]
     fn doubts_come_first_and_each_sentence_once() {
         let found = [Finding::note("a"), Finding::caution("b"), Finding::doubt("c"), Finding::doubt("c")];
-        assert_eq!(sentences(&found, Voice::Command), ["c", "b", "a"]);
-        assert_eq!(warnings(&found, Voice::Command), ["c", "b"]);
+        let found = found.map(|finding| (String::new(), finding));
+        assert_eq!(told(&found, Voice::Command, true), ["c", "b", "a"]);
+        assert_eq!(told(&found, Voice::Command, false), ["c", "b"]);
     }
 
     #[test]
@@ -293,7 +205,7 @@ mod tests {
         let all =
             [of("a", "x-code"), of("b", "x-code"), of("a", "x-code"), of("", "y-code"), of("c", "y-code")];
         assert_eq!(told(&all, Voice::Campaign, true), ["a; b: x-code", "y-code"]);
-        let mut answer = serde_json::Map::new();
+        let mut answer = Map::new();
         put(&mut answer, &all[..1], Voice::Campaign);
         assert_eq!(answer["findings"][0]["subject"], "a");
         assert_eq!(answer["warnings"], serde_json::json!(["a: x-code"]));
@@ -303,15 +215,6 @@ mod tests {
     fn every_row_of_the_documentation_is_read_and_no_code_has_two() {
         let rows = include_str!("../../docs/findings.md").lines().filter(|line| line.starts_with("| `"));
         assert_eq!(rows.count(), SENTENCES.len());
-    }
-
-    #[test]
-    fn an_answer_says_its_findings_in_words() {
-        let found = Finding::doubt("a-code").number("gap", 1e-3);
-        let mut answer = serde_json::json!({ "inner": { "findings": [found, Finding::note("b-code")] } });
-        add_warnings(&mut answer, Voice::Command);
-        assert_eq!(answer["inner"]["warnings"], serde_json::json!(["a-code"]));
-        assert_eq!(answer["inner"]["findings"][0]["numbers"]["gap"], 1e-3);
     }
 
     /// Codes that the sources of all crates make.

@@ -15,6 +15,7 @@ mod uff_text;
 
 /// What a person reads of findings.
 fn sentences(findings: &[vibroimpact::record::Finding]) -> Vec<String> {
-    use vibroimpact::report::words::{self, Voice};
-    words::sentences(findings, Voice::Command)
+    use vibroimpact::report::words::{Voice, told};
+    let about = findings.iter().map(|finding| (String::new(), finding.clone()));
+    told(&about.collect::<Vec<_>>(), Voice::Command, true)
 }

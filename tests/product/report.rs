@@ -216,11 +216,11 @@ fn a_folder_of_results_is_written_whole() {
     let dir = tempfile::tempdir().unwrap();
     let mut out = Output::new(dir.path().join("results")).unwrap();
     let drawing = everything().draw();
-    out.write("figures/all.svg", drawing.svg()).unwrap();
-    out.write("figures/all.png", drawing.png(100.0).unwrap()).unwrap();
-    let page = Page::new("Report").figure(&drawing, "", &["figures/all.svg"]);
+    out.write("all.svg", drawing.svg()).unwrap();
+    out.write("all.png", drawing.png(100.0).unwrap()).unwrap();
+    let page = Page::new("Report").figure(&drawing, "", &["all.svg"]);
     let path = out.write("report.html", page.html()).unwrap();
-    assert_eq!(out.written(), ["figures/all.svg", "figures/all.png", "report.html"]);
+    assert_eq!(out.written(), ["all.svg", "all.png", "report.html"]);
     assert_eq!(std::fs::read_to_string(path).unwrap(), page.html());
     assert!(out.write("../report.html", "").is_err());
 }

@@ -32,7 +32,7 @@ impl Source {
         let info = std::fs::metadata(path).map_err(|e| Error::io("open", path, e))?;
         if info.is_dir() {
             return Err(Error::input(Place::file(path), "this is a folder", "a measurement file")
-                .hint("name the files in it, e.g. folder/*.DAT, or a campaign.toml that lists them"));
+                .hint("name a file in it"));
         }
         if !info.is_file() {
             return Err(Error::input(Place::file(path), "not a regular file", "a measurement file")

@@ -6,10 +6,10 @@
 
 use super::{NoImpact, Orbit, Softened};
 use num_complex::Complex64;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How a motion was measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Observable {
     /// Line at the excitation of a displacement spectrum, peak amplitude in m.

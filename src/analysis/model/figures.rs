@@ -3,14 +3,12 @@
 mod branches;
 mod ladder;
 mod motion;
-mod orbit;
 mod regimes;
 mod sweep;
 
 pub use branches::branches;
 pub use ladder::ladder;
-pub(crate) use ladder::ladder_over;
-pub use motion::{phase_plane, poincare, traces};
-pub use orbit::orbit;
+pub use motion::{orbit, phase_plane, poincare, traces};
+pub(super) use regimes::counted;
 pub use regimes::regimes;
 pub use sweep::sweep;

@@ -1,21 +1,16 @@
-//! Sweeps against the model: overlay and fit.
+//! Sweeps against the model: overlay and fit, in `vibro compare` and in a campaign.
 
-use super::{figures, tables};
-use crate::analysis::Job;
-use crate::analysis::model::tables::climbed;
+use super::{figures, responses, tables, told};
+use crate::analysis::model::{choose::climbed, rig_left_out};
+use crate::analysis::{Answer, Job, JobOptions, Progress};
 use crate::campaign::Campaign;
 use crate::compare::{Fit, Overlay, Predicting, overlay};
-use crate::error::Result;
+use crate::error::{Error, Place, Result};
 use crate::measure::response::Response;
 use crate::model::Rig;
+use crate::model::map::Key;
 use crate::record::Finding;
-
-/// The finding that keys of the rig are not given and were taken from the thesis' rig.
-pub(crate) fn rig_left_out(campaign: &Campaign) -> Option<Finding> {
-    let keys = campaign.rig_left_out();
-    let found = Finding::doubt("rig-left-out").name("table", "[rig]").name("keys", keys.join(", "));
-    (!keys.is_empty()).then_some(found)
-}
+use serde_json::{Value, json};
 
 /// The parameters that a campaign asks for; `None` where it asks for none.
 ///
@@ -33,17 +28,47 @@ pub fn fit(campaign: &Campaign, rig: &Rig, responses: &[Response]) -> Result<Opt
     crate::compare::fit(rig, force, contact, pace, responses, &campaign.fit).map(Some)
 }
 
-fn overlaid(job: &mut Job<'_>, responses: &[Response]) -> Result<Option<(Rig, Overlay)>> {
-    let campaign = job.campaign;
-    let Some(rig) = campaign.rig.filter(|_| campaign.compute.overlay) else { return Ok(None) };
-    if responses.iter().all(|r| r.mass.is_none() || r.direction.is_none()) {
-        if !responses.is_empty() {
-            job.tell("", &Finding::caution("no-mass-named"));
-        }
-        return Ok(None);
+fn overlaid(campaign: &Campaign, rig: &Rig, responses: &[Response]) -> Result<Overlay> {
+    overlay(rig, campaign.excitation.and_then(|e| e.force), &campaign.into(), responses)
+}
+
+/// The sweeps of a campaign over its rig, with the fit that it asks for.
+///
+/// # Errors
+/// If the campaign has no rig, a sweep cannot be read, or the data allow no overlay or no fit.
+pub fn compared(campaign: &Campaign, options: JobOptions, progress: &dyn Progress) -> Result<Answer> {
+    let rig = campaign.rig.ok_or_else(|| {
+        Error::input(Place::file(campaign.path()), "the campaign has no [rig]", "the rig to compare with")
+            .hint("add a [rig] table; keys left out take the values of the thesis' rig")
+    })?;
+    let responses = responses(campaign, options, progress)?;
+    let overlay = overlaid(campaign, &rig, &responses)?;
+    let fit = fit(campaign, &rig, &responses)?;
+    let mut answer = shown(campaign, &responses, &overlay, fit.as_ref());
+    answer.result = Answer::of(&overlay)?.result;
+    answer.result.insert("fit".to_owned(), json!(fit));
+    answer.findings.extend(told(&responses));
+    Ok(answer)
+}
+
+/// What is shown of overlay and fit.
+fn shown(campaign: &Campaign, responses: &[Response], overlay: &Overlay, fit: Option<&Fit>) -> Answer {
+    let mut answer = Answer::default();
+    // All that follows rests on it.
+    answer.tell("", rig_left_out("[rig]", &campaign.rig_left_out()));
+    answer.tell("", &overlay.findings);
+    answer.figure("overlay", figures::overlay(&campaign.name, overlay, responses));
+    answer.csv("pairs", &tables::pairs(overlay));
+    answer.table("peaks", tables::peaks(overlay));
+    answer.tables.extend([tables::scores(overlay), climbed(overlay)]);
+    if let Some(fit) = fit {
+        answer.tell("", &fit.findings);
+        answer.figure("fit", figures::fit(&campaign.name, fit));
+        answer.table("fit", tables::fitted(fit));
+        answer.tables.push(tables::fit_rungs(fit));
+        answer.csv("fit_points", &tables::fit_points(fit));
     }
-    let force = campaign.excitation.and_then(|e| e.force);
-    Ok(Some((rig, overlay(&rig, force, &campaign.into(), responses)?)))
+    answer
 }
 
 /// Overlays the responses of a campaign on its rig and fits the parameters that it asks for.
@@ -51,44 +76,27 @@ fn overlaid(job: &mut Job<'_>, responses: &[Response]) -> Result<Option<(Rig, Ov
 /// # Errors
 /// If the overlay is not possible. Data that allow no fit are no reason to give up the rest.
 pub fn run(job: &mut Job<'_>, responses: &[Response]) -> Result<()> {
-    let (rig, overlay) = overlaid(job, responses)?.unzip();
-    let mut found = None;
-    if let Some((rig, overlay)) = rig.as_ref().zip(overlay.as_ref()) {
-        // All that follows rests on it.
-        job.tell("", &rig_left_out(job.campaign).into_iter().collect::<Vec<_>>());
-        job.tell("", &overlay.findings);
-        let title = job.title.clone();
-        job.shown.figures.push(("overlay".to_owned(), figures::overlay(&title, overlay, responses)));
-        job.shown.tables.extend([tables::peaks(overlay), tables::scores(overlay), climbed(overlay)]);
-        job.shown.constants = constants(rig);
-        job.file("pairs.csv".to_owned(), tables::pairs(overlay).csv());
-        job.file("peaks.csv".to_owned(), tables::peaks(overlay).csv());
-        let fitted = fit(job.campaign, rig, responses);
-        found = job.found("fit", fitted)?.flatten();
+    let campaign = job.campaign;
+    let mut rig = campaign.rig.filter(|_| campaign.compute.overlay && !responses.is_empty());
+    if rig.is_some() && responses.iter().all(|r| r.mass.is_none() || r.direction.is_none()) {
+        job.all.tell("", [Finding::caution("no-mass-named")]);
+        rig = None;
     }
-    if let Some(fit) = &found {
-        job.tell("", &fit.findings);
-        let title = job.title.clone();
-        job.shown.figures.push(("fit".to_owned(), figures::fit(&title, fit)));
-        job.shown.tables.extend([tables::fitted(fit), tables::fit_rungs(fit)]);
-        job.file("fit.csv".to_owned(), tables::fitted(fit).csv());
-        job.file("fit_points.csv".to_owned(), tables::fit_points(fit).csv());
+    let (mut laid, mut found) = (None, None);
+    if let Some(rig) = &rig {
+        let overlay = overlaid(campaign, rig, responses)?;
+        found = job.found("fit", fit(campaign, rig, responses))?.flatten();
+        job.show("", "", shown(campaign, responses, &overlay, found.as_ref()));
+        job.constants = constants(rig);
+        laid = Some(overlay);
     }
     job.put("rig", &rig)?;
-    job.put("overlay", &overlay)?;
+    job.put("overlay", &laid)?;
     job.put("fit", &found)
 }
 
 fn constants(rig: &Rig) -> Vec<(String, String)> {
-    let all = [
-        ("m1, excited mass", format!("{} kg", rig.m1)),
-        ("m2, passive mass", format!("{} kg", rig.m2)),
-        ("k1", format!("{} N/m", rig.k1)),
-        ("k2", format!("{} N/m", rig.k2)),
-        ("c1", format!("{} N s/m", rig.c1)),
-        ("c2", format!("{} N s/m", rig.c2)),
-        ("gap", format!("{} m", rig.gap)),
-        ("restitution", rig.restitution.to_string()),
-    ];
-    all.map(|(name, value)| (name.to_owned(), value)).to_vec()
+    let Value::Object(keys) = json!(rig) else { return Vec::new() };
+    let unit = |key: &str| Key::named(key).map_or("", |key| key.label().1);
+    keys.iter().map(|(key, value)| (key.clone(), format!("{value} {}", unit(key)))).collect()
 }

@@ -89,20 +89,14 @@ pub(super) fn all_crossings(responses: &[Response]) -> Vec<Crossing> {
     found
 }
 
-/// What is open about levels of force: sweeps of one mass, direction and level, of which naming and crossings know only the first, and
-/// sweeps whose level is not known.
+/// Sweeps of one mass, direction and level of force, of which naming and crossings know only the first.
 pub(super) fn twice(responses: &[Response]) -> Vec<About> {
     let mut found = Vec::new();
-    let levels = by_level(responses.iter());
-    if levels.len() > 1 {
-        let unknown = responses.iter().filter(|r| forced(r).is_none());
-        found.extend(unknown.map(|r| (r.name.clone(), Finding::caution("force-level-unknown"))));
-    }
-    for level in levels {
+    for level in by_level(responses.iter()) {
         let members: Vec<&Response> = level.iter().filter_map(|i| responses.get(*i)).collect();
         for (i, r) in members.iter().enumerate() {
             let Some((mass, direction)) = r.mass.zip(r.direction) else { continue };
-            if let Some(known) = members.get(..i).and_then(|before| first(before, mass, direction)) {
+            if let Some(known) = first(&members[..i], mass, direction) {
                 let finding = Finding::caution("swept-twice").name("first", format!("{:?}", known.name));
                 found.push((r.name.clone(), finding));
             }

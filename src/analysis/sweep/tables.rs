@@ -1,9 +1,219 @@
 //! Tables of sweeps, and of sweeps against the model.
 
-mod fit;
-mod overlay;
-mod response;
+use crate::compare::{Fit, Kind, Overlay};
+use crate::measure::response::{Response, ResponsePoint};
+use crate::report::layout::{pair, table};
+use crate::report::{Cell, Column, Table};
 
-pub(crate) use fit::{fit_points, fit_rungs, fitted};
-pub(crate) use overlay::{pairs, peaks, scores};
-pub(crate) use response::{curve, jumps, resonances, response};
+/// Point by point, what fits a page: excitation, force, response, and a limit where an amplitude is faint.
+pub fn curve(response: &Response) -> Table {
+    let mut table = points(response);
+    if response.points.iter().all(|p| p.upper_limit.is_none()) {
+        table.columns.pop();
+        for row in &mut table.rows {
+            row.pop();
+        }
+    }
+    table
+}
+
+fn points(response: &Response) -> Table {
+    table(
+        format!("Response, {}", response.name),
+        &response.points,
+        &[
+            ("excitation", "Hz", &|p| pair(p.excitation, p.excitation_std)),
+            ("force", "N", &|p| p.force.map(|force| pair(force, p.force_std)).into()),
+            ("response at", "Hz", &|p| pair(p.frequency, p.frequency_std)),
+            ("amplitude", response.unit, &|p| Cell::from(&p.amplitude)),
+            ("largest at", "Hz", &|p| {
+                if p.largest_elsewhere { Cell::Number(p.largest_at) } else { Cell::from("excitation") }
+            }),
+            ("upper limit", response.unit, &|p| p.upper_limit.into()),
+        ],
+    )
+}
+
+/// Point by point with harmonics and sub-harmonics, for files.
+pub fn response(response: &Response) -> Table {
+    let mut table = points(response);
+    let before = table.columns.len() - 2;
+    let orders = |p: &ResponsePoint| p.harmonics.iter().chain(&p.subharmonics).cloned().collect::<Vec<_>>();
+    let heads = response.points.first().map(orders).unwrap_or_default();
+    let heads =
+        heads.iter().flat_map(|h| ["", " upper limit"].map(|what| format!("order {}{what}", h.order)));
+    let heads = heads.map(|name| Column { name, unit: response.unit.to_owned() });
+    drop(table.columns.splice(before..before, heads));
+    for (row, point) in table.rows.iter_mut().zip(&response.points) {
+        let cells = orders(point).into_iter().flat_map(|h| match h.upper_limit {
+            // Noise is no amplitude.
+            Some(limit) => [Cell::Missing, Cell::Number(limit)],
+            None => [Cell::from(&h.amplitude), Cell::Missing],
+        });
+        drop(row.splice(before..before, cells));
+    }
+    table
+}
+
+/// Resonances and antiresonances.
+pub fn resonances(responses: &[Response]) -> Table {
+    let unit = responses.first().map_or("", |r| r.unit);
+    table(
+        "Resonances",
+        responses.iter().flat_map(|sweep| sweep.resonances.iter().map(move |r| (sweep, r))),
+        &[
+            ("sweep", "", &|(sweep, _)| Cell::from(sweep.name.as_str())),
+            ("kind", "", &|(_, r)| Cell::from(r.kind.name())),
+            ("frequency", "Hz", &|(_, r)| pair(r.frequency, r.frequency_std)),
+            ("amplitude", unit, &|(_, r)| pair(r.amplitude, r.amplitude_std)),
+            ("ends in a jump", "", &|(_, r)| r.at_jump.into()),
+        ],
+    )
+}
+
+/// Jumps.
+pub fn jumps(responses: &[Response]) -> Table {
+    let unit = responses.first().map_or("", |r| r.unit);
+    table(
+        "Jumps",
+        responses.iter().flat_map(|sweep| sweep.jumps.iter().map(move |j| (sweep, j))),
+        &[
+            ("sweep", "", &|(sweep, _)| Cell::from(sweep.name.as_str())),
+            ("change", "", &|(_, j)| Cell::from(j.change.name())),
+            ("at", "Hz", &|(_, j)| pair(j.frequency, Some(j.frequency_std))),
+            ("before", unit, &|(_, j)| pair(j.amplitude_before, j.amplitude_before_std)),
+            ("after", unit, &|(_, j)| pair(j.amplitude_after, j.amplitude_after_std)),
+        ],
+    )
+}
+
+/// Measured against predicted, point by point.
+pub fn pairs(overlay: &Overlay) -> Table {
+    table(
+        "Measured against predicted",
+        &overlay.pairs,
+        &[
+            ("sweep", "", &|p| p.sweep.as_str().into()),
+            ("mass", "", &|p| usize::from(p.mass).into()),
+            ("direction", "", &|p| p.direction.name().into()),
+            ("frequency", "Hz", &|p| Cell::Number(p.frequency)),
+            ("force", "N", &|p| Cell::Number(p.force)),
+            ("measured", "m", &|p| Cell::from(&p.measured)),
+            ("predicted", "m", &|p| p.predicted.into()),
+            ("residual", "m", &|p| p.residual.into()),
+            ("scatter of the prediction", "m", &|p| p.scatter.into()),
+            ("predicted by", "", &|p| p.model.name().into()),
+            ("impacts/cycles", "", &|p| p.regime.as_deref().unwrap_or("-").into()),
+            ("predicted motion", "", &|p| {
+                Cell::from(match p.motion {
+                    Some(Kind::Impacting) => "impacting",
+                    Some(Kind::Free) => "free",
+                    Some(Kind::Pattern) => "another pattern",
+                    Some(Kind::Irregular) => "irregular",
+                    None => "not predicted",
+                })
+            }),
+        ],
+    )
+}
+
+/// Measured against predicted resonances; a difference is as uncertain as what was measured.
+pub fn peaks(overlay: &Overlay) -> Table {
+    let difference = |value: Option<f64>, std| Cell::from(value.map(|v| pair(v, std)));
+    table(
+        "Resonances against the model",
+        &overlay.peaks,
+        &[
+            ("sweep", "", &|p| p.sweep.as_str().into()),
+            ("kind", "", &|p| p.kind.name().into()),
+            ("measured", "Hz", &|p| Cell::from(&p.measured_frequency)),
+            ("predicted", "Hz", &|p| p.predicted_frequency.into()),
+            ("off by", "Hz", &|p| difference(p.frequency_difference, p.measured_frequency.std)),
+            ("measured", "m", &|p| Cell::from(&p.measured_amplitude)),
+            ("predicted", "m", &|p| p.predicted_amplitude.into()),
+            ("off by", "%", &|p| {
+                let std = p.measured_amplitude.std.zip(p.predicted_amplitude).map(|(s, a)| 100.0 * s / a);
+                difference(p.amplitude_difference.map(|d| 100.0 * d), std)
+            }),
+        ],
+    )
+}
+
+/// How well each sweep is predicted.
+pub fn scores(overlay: &Overlay) -> Table {
+    table(
+        "Agreement with the model",
+        &overlay.scores,
+        &[
+            ("sweep", "", &|s| s.sweep.as_str().into()),
+            ("points predicted", "", &|s| s.n.into()),
+            ("not predicted", "", &|s| s.without.into()),
+            ("too faint", "", &|s| s.faint.into()),
+            ("median deviation", "%", &|s| s.median_relative.map(|r| 100.0 * r).into()),
+            ("largest deviation", "%", &|s| s.max_relative.map(|r| 100.0 * r).into()),
+            ("at", "Hz", &|s| s.max_at.into()),
+            ("RMS deviation", "m", &|s| s.rms.into()),
+        ],
+    )
+}
+
+/// Parameters found; each with its own unit, so in SI units as they are.
+pub fn fitted(fit: &Fit) -> Table {
+    // Each row has its own unit, so no common number of decimals would do.
+    let six = |value: f64| format!("{value:.5e}").parse::<f64>().unwrap_or(value).to_string();
+    let end = |interval: Option<[f64; 2]>, side: usize| Cell::from(interval.map(|i| six(i[side])));
+    table(
+        "Parameters found",
+        &fit.parameters,
+        &[
+            ("parameter", "", &|p| p.parameter.name().into()),
+            ("unit", "", &|p| p.estimate.unit.into()),
+            ("start", "", &|p| p.start.into()),
+            ("found", "", &|p| pair(p.estimate.value, p.estimate.std)),
+            ("from", "", &|p| end(p.interval, 0)),
+            ("to (95 %)", "", &|p| end(p.interval, 1)),
+            ("determined by", "", &|p| {
+                Cell::from(match (p.identifiable, p.rests_on_prior) {
+                    _ if fit.doubt.is_some() => "–: the answer is in doubt",
+                    (false, _) => "–: not identifiable",
+                    (true, true) => "its prior",
+                    (true, false) => "the points",
+                })
+            }),
+        ],
+    )
+}
+
+/// Point by point.
+pub fn fit_points(fit: &Fit) -> Table {
+    table(
+        "Points of the fit",
+        &fit.points,
+        &[
+            ("sweep", "", &|p| p.sweep.as_str().into()),
+            ("mass", "", &|p| usize::from(p.mass).into()),
+            ("frequency", "Hz", &|p| p.frequency.into()),
+            ("measured", "m", &|p| p.measured.into()),
+            ("fitted", "m", &|p| p.fitted.into()),
+            ("residual", "std", &|p| p.residual.into()),
+        ],
+    )
+}
+
+/// Models by what they predict of points held out.
+pub fn fit_rungs(fit: &Fit) -> Table {
+    let percent = |value: Option<f64>| Cell::from(value.map(|v| 100.0 * v));
+    table(
+        "Models by hold-out error",
+        &fit.rungs,
+        &[
+            ("model", "", &|r| r.model.name().into()),
+            ("parameters", "", &|r| r.parameters.len().into()),
+            ("error", "%", &|r| percent(r.held_out)),
+            ("standard error", "%", &|r| percent(r.held_out_std)),
+            ("AICc", "", &|r| r.aicc.into()),
+            ("white with p", "", &|r| r.whiteness.into()),
+            ("chosen", "", &|r| Cell::from(if r.chosen { "yes" } else { "" })),
+        ],
+    )
+}

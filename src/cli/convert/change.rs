@@ -1,13 +1,34 @@
-//! Time traces filtered, integrated and differentiated, and the sentences that say how.
+//! Time traces filtered, integrated and differentiated, and what that did to them.
 
-use super::super::args::Change;
 use crate::campaign::above_zero;
 use crate::error::{Error, Result};
-use crate::record::{Record, Trace};
+use crate::record::{Finding, Record, Trace};
 use crate::signal::filter::Filter;
 use crate::signal::{differentiate, integrate};
 use crate::units::Quantity;
-use crate::units::notation::quantity;
+
+/// What is done to time traces on the way.
+#[derive(Debug, clap::Args)]
+pub struct Change {
+    /// Corner in Hz of a zero-phase Butterworth low-pass of order 4
+    #[arg(long, value_name = "HZ")]
+    low_pass: Option<f64>,
+    /// Time constant in s of exponential smoothing, which is late, instead of a zero-phase low-pass
+    #[arg(long, value_name = "TIME", conflicts_with = "low_pass")]
+    smoothing: Option<f64>,
+    /// Corner in Hz of a zero-phase Butterworth high-pass of order 4
+    #[arg(long, value_name = "HZ")]
+    high_pass: Option<f64>,
+    /// Integrations in time: 1 takes velocity to displacement, −1 to acceleration
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = clap::value_parser!(i8).range(-2..=2))]
+    integrate: i8,
+    /// Cut-off in Hz: corner of the zero-phase high-pass of order 4 after each integration, or before a differentiation
+    #[arg(long, value_name = "HZ", requires = "integrate")]
+    fmin: Option<f64>,
+    /// Frequency of the excitation in Hz: the mean is taken over whole periods before it is taken out
+    #[arg(long, value_name = "HZ", requires = "integrate")]
+    excitation: Option<f64>,
+}
 
 /// Order of one pass of every filter here.
 const ORDER: usize = 4;
@@ -18,116 +39,90 @@ impl Change {
         self.integrate != 0 || self.smoothing.is_some() || self.low_pass.is_some() || self.high_pass.is_some()
     }
 
-    /// Does it to all records; gives what was done, a sentence a step.
+    /// Does it to all records; gives what was done.
     ///
     /// # Errors
     /// If options contradict each other, a record is no time trace, or it cannot be filtered or integrated.
-    pub fn apply(&self, records: &mut [Record]) -> Result<Vec<String>> {
-        let corners = [("--low-pass", self.low_pass), ("--high-pass", self.high_pass), ("--fmin", self.fmin)];
-        for (name, value) in
-            corners.into_iter().chain([("--excitation", self.excitation), ("--smoothing", self.smoothing)])
-        {
-            above_zero(name, value)?;
-        }
+    pub fn apply(&self, records: &mut [Record]) -> Result<Vec<Finding>> {
+        above_zero("low_pass", self.low_pass)?;
+        above_zero("high_pass", self.high_pass)?;
+        above_zero("fmin", self.fmin)?;
+        above_zero("excitation", self.excitation)?;
+        above_zero("smoothing", self.smoothing)?;
         if self.integrate > 0 && self.fmin.is_none() {
-            return Err(Error::usage(
-                "--integrate in time without a cut-off",
-                "--fmin HZ: below it noise and drift would be all that is seen",
-            )
-            .hint(
-                "half the lowest frequency that matters; the answer says from where on amplitudes are right",
-            ));
+            let expected = "a cut-off in Hz: below it noise and drift would be all that is seen";
+            return Err(Error::usage("an integration in time without a cut-off", expected)
+                .setting("fmin")
+                .hint("half the lowest frequency that matters; the answer says from where on amplitudes are right"));
         }
-        let alone = [
-            ("--fmin", self.fmin, self.integrate == 0),
-            ("--excitation", self.excitation, self.integrate < 1),
+        let idle = [
+            ("fmin", self.fmin.is_some() && self.integrate == 0),
+            ("excitation", self.excitation.is_some() && self.integrate < 1),
         ];
-        if let Some((name, ..)) = alone.iter().find(|(_, value, idle)| value.is_some() && *idle) {
-            let found = format!("{name} with --integrate {}", self.integrate);
-            return Err(Error::usage(found, "an integration"));
+        if let Some((name, _)) = idle.iter().find(|(_, idle)| *idle) {
+            let found = format!("{name} with {} integrations", self.integrate);
+            return Err(Error::usage(found, "an integration").setting(name).setting("integrate"));
         }
-        let mut said = Vec::new();
-        if self.wanted() {
-            for record in records {
-                let (kind, name) = (record.kind(), record.meta().name.clone());
-                let Record::Trace(trace) = record else {
-                    return Err(Error::refused(format!("{name:?} is a {kind}, no time trace"))
-                        .hint("choose a trace with --channel; `vibro spectrum` integrates in frequency"));
-                };
-                self.trace(trace, &mut said).map_err(|e| e.of_record(&name))?;
-            }
+        let mut done = Vec::new();
+        for record in records.iter_mut().filter(|_| self.wanted()) {
+            let (kind, name) = (record.kind(), record.meta().name.clone());
+            let Record::Trace(trace) = record else {
+                return Err(Error::refused(format!("{name:?} is a {kind}, no time trace"))
+                    .hint("choose a trace; `vibro spectrum` integrates in frequency")
+                    .setting("channel"));
+            };
+            self.trace(trace, &mut done).map_err(|e| e.of_record(&name))?;
         }
-        Ok(said)
+        Ok(done)
     }
 
-    fn trace(&self, trace: &mut Trace, said: &mut Vec<String>) -> Result<()> {
-        let rate = trace
-            .rate()
-            .ok_or_else(|| Error::refused("the sampling rate is not known").hint("state it with --rate"))?;
+    fn trace(&self, trace: &mut Trace, done: &mut Vec<Finding>) -> Result<()> {
+        let rate =
+            trace.rate().ok_or_else(|| Error::refused("the sampling rate is not known").setting("rate"))?;
         let name = trace.meta.name.clone();
+        let was = |code: Finding| code.about(name.as_str());
         if let Some(time) = self.smoothing {
             let corner = 1.0 / (std::f64::consts::TAU * time);
             let filter = Filter::smoothing(corner, rate)?;
             if let Some(i) = trace.values.iter().position(|v| !v.is_finite()) {
-                return Err(Error::refused(format!(
-                    "sample {i} is missing: smoothing would lose all behind it"
-                ))
-                .hint("cut the record before the gap"));
+                let found = format!("sample {i} is missing: smoothing would lose all behind it");
+                return Err(Error::refused(found).hint("cut the record before the gap"));
             }
             if let Some(first) = trace.values.first().copied() {
                 filter.settled_at(first).apply(&mut trace.values);
             }
             trace.meta.step("filter", &[("filter", &filter), ("passes", &1)]);
-            said.push(format!(
-                "{name}: exponential smoothing with a time constant of {time} s, corner {corner:.6} Hz: slow changes come {time} s late. A low-pass of zero phase (--low-pass) does not delay."
-            ));
+            done.push(was(Finding::caution("smoothed")).number("time", time).number("corner", corner));
         }
-        let mut filters = Vec::new();
-        if let Some(corner) = self.low_pass {
-            filters.push(Filter::low_pass(corner, ORDER, rate)?);
-        }
-        for corner in self.high_pass.into_iter().chain(self.fmin.filter(|_| self.integrate < 0)) {
-            filters.push(Filter::high_pass(corner, ORDER, rate)?);
-        }
-        for filter in filters {
+        let low = self.low_pass.map(|corner| Filter::low_pass(corner, ORDER, rate));
+        let high = [self.high_pass, self.fmin.filter(|_| self.integrate < 0)].into_iter().flatten();
+        for filter in low.into_iter().chain(high.map(|corner| Filter::high_pass(corner, ORDER, rate))) {
+            let filter = filter?;
             trace.values = filter.zero_phase(&trace.values)?;
             trace.meta.step("filter", &[("filter", &filter), ("passes", &2)]);
-            said.push(format!(
-                "{name}: {filter}, forwards and backwards: no delay, half the amplitude at the corner."
-            ));
+            done.push(was(Finding::caution("filtered")).name("filter", filter.to_string()));
         }
         if let (1.., Some(corner)) = (self.integrate, self.fmin) {
-            let how = integrate::InTime {
-                times: self.integrate,
-                corner,
-                order: ORDER,
-                period: self.excitation.map(f64::recip),
-            };
+            let (times, period) = (self.integrate, self.excitation.map(f64::recip));
+            let how = integrate::InTime { times, corner, order: ORDER, period };
             let found = integrate::in_time(trace, &how)?;
             let [low, high] = found.band;
-            let unit = found.trace.meta.unit.symbol();
-            said.push(format!(
-                "{name}: integrated {} in time, each time with a Butterworth high-pass of order {ORDER}, corner {corner} Hz, forwards and backwards. Amplitudes are right within 1 % from {low:.4} to {high:.4} Hz, but for the first and the last {:.3} s. Drift left: {}.",
-                often(self.integrate),
-                found.edge,
-                quantity(found.drift, unit, 2)
-            ));
+            let facts = was(Finding::caution("integrated")).name("times", often(times));
+            let facts = facts.count("order", ORDER).number("corner", corner).number("low", low);
+            let facts = facts.number("high", high).number("edge", found.edge).number("drift", found.drift);
+            done.push(facts.name("unit", found.trace.meta.unit.symbol()));
             if let Some(f) = self.excitation {
-                let what = if (low..=high).contains(&f) { "" } else { ", which lies outside of that band," };
-                said.push(format!(
-                    "{name}: of a sine of {f} Hz{what} high-pass and trapezoid leave {:.6} of the amplitude, by which it may be divided.",
-                    how.gain(f, rate)?
-                ));
+                let facts = was(Finding::caution("integration-gain")).number("frequency", f);
+                let facts = facts.number("gain", how.gain(f, rate)?);
+                let inside = (low..=high).contains(&f);
+                done.push(if inside { facts } else { facts.number("outside", f) });
             }
             *trace = renamed(found.trace, trace);
         }
         if self.integrate < 0 {
             let found = differentiate::in_time(trace, self.integrate.unsigned_abs())?;
-            said.push(format!(
-                "{name}: differentiated {} in time. Amplitudes are right within 1 % up to {:.4} Hz.",
-                often(self.integrate),
-                found.highest
-            ));
+            let facts = was(Finding::caution("differentiated")).name("times", often(self.integrate));
+            done.push(facts.number("highest", found.highest));
             *trace = renamed(found.trace, trace);
         }
         Ok(())

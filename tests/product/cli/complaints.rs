@@ -56,14 +56,6 @@ fn wrong_usage() {
 fn numbers_that_are_not_written_as_expected() {
     let comma = complaint(&["restitution", "--height", "0,57", "--interval", "0.1"], 2);
     has(&comma, &["--height", "try: a decimal point: 0.57"]);
-    for (option, unit) in [("--frequency", "in Hz,"), ("--force", "in N,"), ("--width", "in s,")] {
-        let word = complaint(&["model", "orbit", option, "abc"], 2);
-        has(&word, &[option, "'abc'", "try: a number", unit]);
-    }
-    has(
-        &complaint(&["impacts", "a.csv", "--excitation", "-3"], 2),
-        &["-3", "try: a number that is not negative"],
-    );
     has(
         &complaint(&["restitution", "--intervals", "0.3"], 1),
         &["one flight time", "try: state two", "--intervals"],

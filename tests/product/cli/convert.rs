@@ -100,10 +100,10 @@ fn what_cannot_be_integrated_writes_nothing() {
     let why = |options: &[&str], code| {
         complaint(&[&["convert", text(&input), text(&out), "--channel", "velocity"], options].concat(), code)
     };
-    assert!(why(&["--integrate", "1"], 2).contains("--fmin HZ"));
+    assert!(why(&["--integrate", "1"], 2).contains("--fmin"));
     assert!(why(&["--fmin", "5"], 2).contains("--integrate"));
     assert!(why(&["--integrate", "-1", "--excitation", "20"], 2).contains("--excitation"));
-    assert!(why(&["--integrate", "1", "--fmin=-5"], 2).contains("--fmin is -5"));
+    assert!(why(&["--integrate", "1", "--fmin=-5"], 2).contains("fmin is -5"));
     assert!(why(&["--integrate", "1", "--fmin", "500"], 1).contains("no band"));
     why(&["--low-pass", "1000"], 2);
     why(&["--integrate", "3", "--fmin", "5"], 2);

@@ -81,6 +81,10 @@ impl Column<'_> {
         if name.is_empty() {
             name = format!("record {}", index + 1);
         }
+        // A spreadsheet takes what begins so for a formula.
+        if name.starts_with(['=', '+', '-', '@']) {
+            name.insert(0, '\'');
+        }
         // Square brackets end where the unit ends.
         let unit = plain(meta.unit.symbol()).replace('[', "(").replace(']', ")");
         Column { record, name, unit }

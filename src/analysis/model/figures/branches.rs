@@ -1,8 +1,8 @@
 //! Response curves with all branches.
 
-use crate::model::{ChangeKind, Orbit, Response};
-use crate::report::layout::lettered;
-use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
+use crate::model::{ChangeKind, Orbit, Response, ResponsePoint};
+use crate::report::layout::{lettered, line, points};
+use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Stroke};
 
 /// How a motion is drawn.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -37,10 +37,9 @@ impl Pieces {
         }
     }
 
-    /// All of them as one series, broken by missing values: each line whole, so that dashes run along it.
-    fn series(self, name: &str) -> Series {
-        let (x, y): (Vec<f64>, Vec<f64>) = self.lines.join(&(f64::NAN, f64::NAN)).into_iter().unzip();
-        Series::line(name, x, y)
+    /// All of them as one line, broken by missing values: each line whole, so that dashes run along it.
+    fn places(self) -> Vec<(f64, f64)> {
+        self.lines.join(&(f64::NAN, f64::NAN))
     }
 }
 
@@ -58,46 +57,33 @@ pub fn branches(title: &str, response: &Response) -> Figure {
 }
 
 fn panel(response: &Response, mass: usize) -> Plot {
-    let top = response
-        .points
-        .iter()
-        .flat_map(|p| p.orbits.iter().filter(|o| look(o).is_some_and(|l| l != Look::Impossible)))
-        .map(|o| o.peak_to_peak[mass] / 2.0)
-        .chain(
-            response
-                .points
-                .iter()
-                .filter_map(|p| p.no_impact.filter(|n| n.possible && mass == 0))
-                .map(|n| n.amplitude),
-        )
-        .fold(0.0, f64::max);
-    let y = AxisSpec::new(if mass == 0 { "Amplitude of x₁" } else { "Amplitude of x₂" }, "mm");
-    let (first, last) = (response.points.first(), response.points.last());
-    let ends = [first, last].map(|p| p.map_or(f64::NAN, |p| p.frequency));
+    let seen = |o: &&Orbit| look(o).is_some_and(|l| l != Look::Impossible);
+    let orbits = response.points.iter().flat_map(|p| p.orbits.iter().filter(seen));
+    let free = response.points.iter().filter_map(|p| p.no_impact.filter(|n| n.possible && mass == 0));
+    let heights = orbits.map(|o| o.peak_to_peak[mass] / 2.0).chain(free.map(|n| n.amplitude));
+    let top = heights.fold(0.0, f64::max);
+    let (label, title) = [("Amplitude of x₁", "excited mass"), ("Amplitude of x₂", "passive mass")][mass];
+    let ends = [response.points.first(), response.points.last()];
+    let ends = ends.map(|p| p.map_or(f64::NAN, |p| p.frequency));
+    let y = AxisSpec::new(label, "mm");
     // Three decades are shown.
     let y = if top > 0.0 { y.log().limits(1.0 * top, 2.0e3 * top) } else { y };
-    let mut plot = Plot::new(AxisSpec::frequency().limits(ends[0], ends[1]), y).title(if mass == 0 {
-        "excited mass"
-    } else {
-        "passive mass"
-    });
+    let mut plot = Plot::new(AxisSpec::frequency().limits(ends[0], ends[1]), y).title(title);
     let mut lines: [Pieces; 3] = Default::default();
     let (mut free, mut back) = (Pieces::default(), Pieces::default());
+    let place = |o: &Orbit| (o.frequency, 1e3 * o.peak_to_peak[mass] / 2.0);
     for pair in response.points.windows(2) {
         let [a, b] = pair else { continue };
-        let place = |o: &Orbit| (o.frequency, 1e3 * o.peak_to_peak[mass] / 2.0);
         for orbit in &a.orbits {
             let Some(next) = orbit.continued(&b.orbits) else { continue };
             if let (Some(_), Some(seen)) = (look(orbit), look(next)) {
                 lines[seen as usize].join(place(orbit), place(next));
             }
         }
-        if let (Some(n), Some(m)) = (a.no_impact, b.no_impact)
-            && n.possible
-            && m.possible
-        {
+        let still = |p: &ResponsePoint| p.no_impact.filter(|n| n.possible).map(|n| n.amplitude);
+        if let Some((n, m)) = still(a).zip(still(b)) {
             let height = |amplitude: f64| if mass == 0 { 1e3 * amplitude } else { 0.0 };
-            free.join((a.frequency, height(n.amplitude)), (b.frequency, height(m.amplitude)));
+            free.join((a.frequency, height(n)), (b.frequency, height(m)));
         }
         if let (Some(n), Some(m)) = (&a.backbone, &b.backbone) {
             // Poles are no lines.
@@ -115,9 +101,7 @@ fn panel(response: &Response, mass: usize) -> Plot {
         ("unstable", unstable, Ink::Nth(0), Stroke::Dashed),
         ("stable", real, Ink::Nth(0), Stroke::Solid),
     ] {
-        if !pieces.lines.is_empty() {
-            plot = plot.with(pieces.series(name).ink(ink).stroke(stroke));
-        }
+        plot = line(plot, name, pieces.places(), ink, stroke);
     }
     for (kinds, name, marker) in [
         (&[ChangeKind::Fold][..], "fold", Marker::FilledSquare),
@@ -125,13 +109,10 @@ fn panel(response: &Response, mass: usize) -> Plot {
         (&[ChangeKind::NeimarkSacker], "Neimark–Sacker", Marker::Triangle),
         (&[ChangeKind::Grazing, ChangeKind::SecondContact], "grazing", Marker::OpenCircle),
     ] {
-        let at = response.changes.iter().filter(|c| {
-            kinds.contains(&c.kind) && c.amplitude[mass] < 2.0 * top && c.amplitude[mass] > 1e-3 * top
-        });
-        let (x, y): (Vec<f64>, Vec<f64>) = at.map(|c| (c.frequency, 1e3 * c.amplitude[mass])).unzip();
-        if !x.is_empty() {
-            plot = plot.with(Series::points(name, x, y).ink(Ink::Nth(3)).marker(marker));
-        }
+        let shown = 1e-3 * top..2.0 * top;
+        let at =
+            response.changes.iter().filter(|c| kinds.contains(&c.kind) && shown.contains(&c.amplitude[mass]));
+        plot = points(plot, name, at.map(|c| (c.frequency, 1e3 * c.amplitude[mass])), Ink::Nth(3), marker);
     }
     plot
 }
@@ -148,7 +129,7 @@ mod tests {
             pieces.join((x, 0.0), (x + 1.0, 0.0));
             pieces.join((x, 5.0 + x), (x + 1.0, 6.0 + x));
         }
-        let Series { x, y, .. } = pieces.series("");
+        let (x, y): (Vec<f64>, Vec<f64>) = pieces.places().into_iter().unzip();
         assert_eq!((&x[..4], &y[..4]), (&[0.0, 1.0, 2.0, 3.0][..], &[0.0; 4][..]));
         assert!(x[4].is_nan() && y[4].is_nan());
         assert_eq!((&x[5..], &y[5..]), (&[0.0, 1.0, 2.0, 3.0][..], &[5.0, 6.0, 7.0, 8.0][..]));

@@ -1,28 +1,31 @@
-//! A simulated motion: traces of both masses, the phase plane, and Poincaré sections.
+//! A simulated motion: traces of both masses, the phase plane, and Poincaré sections; one periodic motion.
 
-use crate::model::State;
 use crate::model::portrait::Portrait;
-use crate::report::layout::lettered;
-use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
+use crate::model::{Orbit, Rig, State};
+use crate::report::layout::{lettered, line, points};
+use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Stroke};
+
+/// Names and series of both masses.
+const MASSES: [(&str, usize); 2] = [("excited mass", 0), ("passive mass", 1)];
+
+/// Displacement in mm and velocity in m/s of a mass.
+fn place(state: &State, mass: usize) -> (f64, f64) {
+    [(1e3 * state.x1, state.v1), (1e3 * state.x2, state.v2)][mass]
+}
 
 /// Displacements over time, both from the plane in which the masses meet, and velocities.
 pub fn traces(title: &str, portrait: &Portrait, gap: f64) -> Figure {
-    let time = &portrait.time;
-    let of = |value: fn(&State) -> f64| -> Vec<f64> { portrait.states.iter().map(value).collect() };
-    let shifted: Vec<f64> = portrait.states.iter().map(|s| 1e3 * (s.x2 + gap)).collect();
     let axis = || AxisSpec::new("Time", "s");
-    let line = |name: &str, y: Vec<f64>, nth: usize| {
-        let stroke = if nth == 0 { Stroke::Solid } else { Stroke::Dashed };
-        Series::line(name, time.clone(), y).ink(Ink::Nth(nth)).stroke(stroke)
-    };
-    let displacement = Plot::new(axis(), AxisSpec::new("Displacement", "mm"))
-        .with(line("excited mass x₁", of(|s| 1e3 * s.x1), 0))
-        .with(line("passive mass x₂ + gap", shifted, 1))
-        .legend(Legend::Above);
-    let velocity = Plot::new(axis(), AxisSpec::new("Velocity", "m/s"))
-        .with(line("excited mass", of(|s| s.v1), 0))
-        .with(line("passive mass", of(|s| s.v2), 1))
-        .legend(Legend::Hidden);
+    let mut displacement = Plot::new(axis(), AxisSpec::new("Displacement", "mm")).legend(Legend::Above);
+    let mut velocity = Plot::new(axis(), AxisSpec::new("Velocity", "m/s")).legend(Legend::Hidden);
+    for (name, mass) in MASSES {
+        let look = (Ink::Nth(mass), [Stroke::Solid, Stroke::Dashed][mass]);
+        let label = ["excited mass x₁", "passive mass x₂ + gap"][mass];
+        let states = || portrait.time.iter().zip(&portrait.states);
+        let moved = states().map(|(t, s)| (*t, place(s, mass).0 + 1e3 * gap * mass as f64));
+        displacement = line(displacement, label, moved, look.0, look.1);
+        velocity = line(velocity, name, states().map(|(t, s)| (*t, place(s, mass).1)), look.0, look.1);
+    }
     lettered(
         Figure::double(title).height(120.0).shared_x().panel(displacement).panel(velocity).caption(
             "(a) Displacements, that of the passive mass moved by the gap: the masses meet where the lines do. (b) Velocities.",
@@ -56,50 +59,37 @@ fn roomy(axis: AxisSpec, values: &[f64]) -> AxisSpec {
     axis.limits(middle - 0.6 * width, middle + 0.6 * width)
 }
 
+/// Axes of velocity over displacement with room around these places.
+fn plane(places: &[(f64, f64)]) -> Plot {
+    let (x, v): (Vec<f64>, Vec<f64>) = places.iter().copied().unzip();
+    Plot::new(roomy(AxisSpec::new("Displacement", "mm"), &x), roomy(AxisSpec::new("Velocity", "m/s"), &v))
+}
+
 /// Velocity over displacement of each mass.
 pub fn phase_plane(title: &str, portrait: &Portrait) -> Figure {
     let states = whole(portrait);
-    let plot = |name: &str, nth: usize, x: fn(&State) -> f64, v: fn(&State) -> f64| {
-        let (xs, vs): (Vec<f64>, Vec<f64>) = states.iter().map(|s| (1e3 * x(s), v(s))).unzip();
-        Plot::new(
-            roomy(AxisSpec::new("Displacement", "mm"), &xs),
-            roomy(AxisSpec::new("Velocity", "m/s"), &vs),
-        )
-        .title(name)
-        .with(Series::line("", xs, vs).ink(Ink::Nth(nth)).stroke(Stroke::Thin))
-        .legend(Legend::Hidden)
-    };
-    lettered(
-        Figure::double(title)
-            .columns(2)
-            .panel(plot("excited mass", 0, |s| s.x1, |s| s.v1))
-            .panel(plot("passive mass", 1, |s| s.x2, |s| s.v2))
-            .caption("Phase plane of each mass over the last cycles; an impact is a vertical step."),
-    )
+    let mut figure = Figure::double(title).columns(2);
+    for (name, mass) in MASSES {
+        let places: Vec<(f64, f64)> = states.iter().map(|s| place(s, mass)).collect();
+        let plot = plane(&places).title(name).legend(Legend::Hidden);
+        figure = figure.panel(line(plot, "", places, Ink::Nth(mass), Stroke::Thin));
+    }
+    lettered(figure.caption("Phase plane of each mass over the last cycles; an impact is a vertical step."))
 }
 
 /// States once a cycle, and approach speed over phase at the impacts.
 pub fn poincare(title: &str, portrait: &Portrait) -> Figure {
-    let points = |name: &str, nth: usize, x: fn(&State) -> f64, v: fn(&State) -> f64| {
-        let (xs, vs): (Vec<f64>, Vec<f64>) = portrait.section.iter().map(|s| (1e3 * x(s), v(s))).unzip();
-        let marker = if nth == 0 { Marker::Circle } else { Marker::Square };
-        Series::points(name, xs, vs).ink(Ink::Nth(nth)).marker(marker)
-    };
-    let both = |of: fn(&State) -> [f64; 2]| portrait.section.iter().flat_map(of).collect::<Vec<f64>>();
-    let displacement = roomy(AxisSpec::new("Displacement", "mm"), &both(|s| [1e3 * s.x1, 1e3 * s.x2]));
-    let velocity = roomy(AxisSpec::new("Velocity", "m/s"), &both(|s| [s.v1, s.v2]));
-    let section = Plot::new(displacement, velocity)
-        .with(points("excited mass", 0, |s| s.x1, |s| s.v1))
-        .with(points("passive mass", 1, |s| s.x2, |s| s.v2))
-        .legend(Legend::Above);
-    let (phase, speed): (Vec<f64>, Vec<f64>) =
-        portrait.impacts.iter().map(|i| (i.phase.to_degrees(), i.approach_velocity)).unzip();
-    let impacts = Plot::new(
-        AxisSpec::new("Phase of the excitation at the impact", "°").limits(0.0, 360.0),
-        roomy(AxisSpec::new("Approach speed", "m/s"), &speed),
-    )
-    .with(Series::points("", phase, speed).ink(Ink::Nth(0)).marker(Marker::Circle))
-    .legend(Legend::Hidden);
+    let of = |mass| portrait.section.iter().map(move |s| place(s, mass));
+    let mut section = plane(&of(0).chain(of(1)).collect::<Vec<_>>()).legend(Legend::Above);
+    for (name, mass) in MASSES {
+        let marker = [Marker::Circle, Marker::Square][mass];
+        section = points(section, name, of(mass), Ink::Nth(mass), marker);
+    }
+    let struck = portrait.impacts.iter().map(|i| (i.phase.to_degrees(), i.approach_velocity));
+    let speeds: Vec<f64> = portrait.impacts.iter().map(|i| i.approach_velocity).collect();
+    let phase = AxisSpec::new("Phase of the excitation at the impact", "°").limits(0.0, 360.0);
+    let impacts = Plot::new(phase, roomy(AxisSpec::new("Approach speed", "m/s"), &speeds));
+    let impacts = points(impacts, "", struck, Ink::Nth(0), Marker::Circle).legend(Legend::Hidden);
     lettered(
         Figure::double(title)
             .columns(2)
@@ -107,4 +97,49 @@ pub fn poincare(title: &str, portrait: &Portrait) -> Figure {
             .panel(impacts)
             .caption("(a) Poincaré section: both masses at the beginning of each cycle of the excitation. (b) The impacts. A motion that repeats itself is a few points."),
     )
+}
+
+/// Samples of a period.
+const POINTS: usize = 800;
+
+/// Both masses over two periods, x₂ counted from the rest of x₁'s contact face, so that the curves meet at the impacts; velocities over
+/// displacements beside it.
+pub fn orbit(title: &str, rig: &Rig, orbit: &Orbit) -> Figure {
+    let at = |i: usize| orbit.period() * i as f64 / POINTS as f64;
+    let states: Vec<(f64, State)> =
+        (0..=2 * POINTS).map(|i| (i as f64 / POINTS as f64, orbit.state(at(i)))).collect();
+    let ends: Vec<f64> = states.iter().flat_map(|(_, s)| [1e3 * s.x1, 1e3 * s.x2]).collect();
+    let axis = AxisSpec::new("Time in periods from impact to impact", "").limits(0.0, 2.0);
+    let plot = Plot::new(axis, AxisSpec::new("Displacement", "mm")).title("displacements");
+    let second = states.iter().map(|(t, s)| (*t, 1e3 * (s.x2 + rig.gap)));
+    let plot = line(plot, "gap + x₂", second, Ink::Nth(1), Stroke::Solid);
+    let plot = line(plot, "x₁", states.iter().map(|(t, s)| (*t, 1e3 * s.x1)), Ink::Nth(0), Stroke::Solid);
+    let met = 1e3 * orbit.before_impact().x1;
+    let impacts = [0.0, 1.0, 2.0].map(|t| (t, met));
+    let traces = points(plot, "impact", impacts, Ink::Black, Marker::OpenCircle);
+    let x = roomy(AxisSpec::new("Displacement from rest", "mm"), &ends);
+    let mut plane = Plot::new(x, AxisSpec::new("Velocity", "m/s")).title("phase plane");
+    for (i, name) in ["x₁", "x₂"].into_iter().enumerate() {
+        let of = |s: State| if i == 0 { (1e3 * s.x1, s.v1) } else { (1e3 * s.x2, s.v2) };
+        let (before, after) = (orbit.before_impact(), orbit.state(0.0));
+        let period = (0..POINTS).map(|k| orbit.state(at(k))).chain([before]);
+        plane = line(plane, "", [of(before), of(after)], Ink::Nth(i), Stroke::Dotted);
+        plane = line(plane, name, period.map(of), Ink::Nth(i), Stroke::Solid);
+    }
+    let v = &orbit.validity;
+    let verdict = match (v.exists, v.admissible, v.instability) {
+        (false, ..) => "It does not exist: the masses would have to pull.".to_owned(),
+        (_, false, _) => format!(
+            "It is impossible: the masses would pass through each other by {:.3} mm.",
+            -1e3 * v.min_gap
+        ),
+        (.., Some(loss)) => format!("It is unstable ({}).", loss.name()),
+        _ => format!("It is possible and {}.", v.stability.name()),
+    };
+    let figure = Figure::double(title).columns(2).panel(traces).panel(plane);
+    lettered(figure.caption(format!(
+        "Motion with one impact a period at {:.4} Hz, impact speed {:.4} m/s. Left, the masses touch where the curves meet; right, dotted: \
+         the impact. {verdict}",
+        orbit.frequency, orbit.approach_velocity
+    )))
 }

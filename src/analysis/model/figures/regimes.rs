@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::model::Regime;
 use crate::model::map::{Axis, Cell, Plan, Rows};
-use crate::report::layout::lettered;
+use crate::report::layout::{capital, lettered};
 use crate::report::{AxisSpec, Figure, Heatmap, Legend, Plot};
 use ndarray::Array2;
 
@@ -21,15 +21,18 @@ pub fn regimes(plan: &Plan, rows: &Rows) -> Result<Figure> {
             rows.get(row).map_or(f64::NAN, |cells| of(&cells[column]))
         })
     };
-    let all: Vec<Cell> = (0..y.len()).filter_map(|row| rows.get(row)).flatten().copied().collect();
-    let own = frequent(&all);
-    let (names, class) = classes(&own);
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let regime = cells(&|c| c.regime.map_or(f64::NAN, |r| class(r) as f64));
+    let all = (0..y.len()).filter_map(|row| rows.get(row)).flatten();
+    let patterns = counted(all).into_iter().map(|c| c.0).filter(|r| matches!(r, Regime::Periodic { .. }));
+    let own: Vec<Regime> = patterns.take(OWN).collect();
+    let names: Vec<String> = own.iter().map(Regime::to_string).collect();
+    let others = ["other patterns", "irregular or not settled", "chatter", "no impact"];
+    let names: Vec<&str> = names.iter().map(String::as_str).chain(others).collect();
+    let regime = cells(&|c| c.regime.map_or(f64::NAN, |r| class(&own, r) as f64));
     let radius = cells(&|c| c.spectral_radius.unwrap_or(f64::NAN));
     let axis = |axis: &Axis| {
         let (name, unit) = axis.key.label();
-        AxisSpec::new(label(name), unit)
+        // A letter with a number is a symbol.
+        AxisSpec::new(if name.len() == 2 { name.to_owned() } else { capital(name) }, unit)
     };
     let plot = |title: &str| Plot::new(axis(&plan.x), axis(&plan.y)).title(title);
     let scale = AxisSpec::new("Spectral radius", "").limits(f64::NAN, 1.0);
@@ -48,43 +51,25 @@ pub fn regimes(plan: &Plan, rows: &Rows) -> Result<Figure> {
     Ok(lettered(figure))
 }
 
-/// The most frequent patterns.
-fn frequent(cells: &[Cell]) -> Vec<Regime> {
+/// Regimes with the number of their cells, the most frequent first.
+pub(in crate::analysis::model) fn counted<'a>(cells: impl Iterator<Item = &'a Cell>) -> Vec<(Regime, usize)> {
     let mut counts: Vec<(Regime, usize)> = Vec::new();
-    for regime in cells.iter().filter_map(|c| c.regime) {
-        if !matches!(regime, Regime::Periodic { .. }) {
-            continue;
-        }
+    for regime in cells.filter_map(|c| c.regime) {
         match counts.iter_mut().find(|c| c.0 == regime) {
             Some(count) => count.1 += 1,
             None => counts.push((regime, 1)),
         }
     }
     counts.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.to_string().cmp(&b.0.to_string())));
-    counts.into_iter().take(OWN).map(|c| c.0).collect()
+    counts
 }
 
-/// Names of the classes, and the class of a regime.
-fn classes(own: &[Regime]) -> (Vec<String>, impl Fn(Regime) -> usize) {
-    let mut names: Vec<String> = own.iter().map(Regime::to_string).collect();
-    let n = names.len();
-    names.extend(["other patterns", "irregular or not settled", "chatter", "no impact"].map(str::to_owned));
-    let own = own.to_vec();
-    let class = move |regime: Regime| {
-        own.iter().position(|r| *r == regime).unwrap_or(match regime {
-            Regime::Periodic { .. } => n,
-            Regime::Irregular => n + 1,
-            Regime::Chatter { .. } => n + 2,
-            Regime::NoImpact => n + 3,
-        })
-    };
-    (names, class)
-}
-
-fn label(name: &str) -> String {
-    match name {
-        "frequency" => "Excitation frequency".to_owned(),
-        "m1" | "m2" | "k1" | "k2" | "c1" | "c2" => name.to_owned(),
-        _ => name[..1].to_uppercase() + &name[1..],
-    }
+/// The class of a regime, where these patterns have their own.
+fn class(own: &[Regime], regime: Regime) -> usize {
+    own.iter().position(|r| *r == regime).unwrap_or(match regime {
+        Regime::Periodic { .. } => own.len(),
+        Regime::Irregular => own.len() + 1,
+        Regime::Chatter { .. } => own.len() + 2,
+        Regime::NoImpact => own.len() + 3,
+    })
 }

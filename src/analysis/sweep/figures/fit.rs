@@ -2,7 +2,7 @@
 
 use crate::compare::{Fit, Profile};
 use crate::record::Direction;
-use crate::report::layout::lettered;
+use crate::report::layout::{lettered, line, points};
 use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
 use std::fmt::Write as _;
 
@@ -18,12 +18,9 @@ pub fn fit(title: &str, fit: &Fit) -> Figure {
         (2, Direction::Down, Marker::Square),
     ] {
         let mine = fit.points.iter().filter(|p| p.mass == mass && p.direction == direction);
-        let (x, y): (Vec<f64>, Vec<f64>) = mine.map(|p| (p.frequency, p.residual)).unzip();
-        if !x.is_empty() {
-            let name = format!("mass {mass}, {}", direction.name());
-            above =
-                above.with(Series::points(name, x, y).ink(Ink::Nth(usize::from(mass) - 1)).marker(marker));
-        }
+        let places = mine.map(|p| (p.frequency, p.residual));
+        let name = format!("mass {mass}, {}", direction.name());
+        above = points(above, &name, places, Ink::Nth(usize::from(mass) - 1), marker);
     }
     above = above.with(Series::horizontal("", 0.0));
     let mut figure = Figure::double(title).panel(above.title("Residuals")).height(80.0);
@@ -60,7 +57,6 @@ fn profiled(profile: &Profile, sure: bool) -> Plot {
     .title(format!("Profile of {}", profile.parameter.name()))
     .legend(Legend::Hidden);
     let plot = if sure { plot.with(Series::horizontal("95 %", profile.limit)) } else { plot };
-    plot.with(
-        Series::line("", profile.value.clone(), profile.rise.clone()).ink(Ink::Nth(0)).stroke(Stroke::Solid),
-    )
+    let places = profile.value.iter().copied().zip(profile.rise.iter().copied());
+    line(plot, "", places, Ink::Nth(0), Stroke::Solid)
 }

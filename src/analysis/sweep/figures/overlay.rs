@@ -1,11 +1,11 @@
 //! Measured responses over the predicted branches.
 
 use super::response::{MARKS, log_limits, rank, series, shown};
-use crate::compare::{Kind, Level, Motion, Overlay, Pair, Prediction, Verdict};
+use crate::compare::{Kind, Motion, Overlay, Pair, Prediction, Verdict};
 use crate::measure::response::Response;
 use crate::model::ladder::Model;
-use crate::report::layout::lettered;
-use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
+use crate::report::layout::{lettered, line, points};
+use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Stroke};
 use crate::units::notation::significant;
 
 /// Height of a panel in mm.
@@ -31,9 +31,11 @@ pub fn overlay(title: &str, overlay: &Overlay, responses: &[Response]) -> Figure
                 .map(|(i, r)| (rank(responses, i), r))
                 .collect();
             if !measured.is_empty() {
-                let name = if overlay.levels.len() > 1 { level_name(level) } else { String::new() };
-                let plot = panel(mass, &level.curve, &overlay.pairs, &measured);
-                figure = figure.panel(plot.title(name));
+                let mut plot = panel(mass, &level.curve, &overlay.pairs, &measured);
+                if overlay.levels.len() > 1 {
+                    plot = plot.title(format!("Force {} N", significant(level.force, 3)));
+                }
+                figure = figure.panel(plot);
             }
         }
     }
@@ -41,70 +43,47 @@ pub fn overlay(title: &str, overlay: &Overlay, responses: &[Response]) -> Figure
     lettered(figure.height(PANEL * panels))
 }
 
-fn level_name(level: &Level) -> String {
-    format!("Force {} N", significant(level.force, 3))
-}
-
 fn panel(mass: u8, curve: &Prediction, pairs: &[Pair], measured: &[(usize, &Response)]) -> Plot {
     let (factor, unit) = shown("m");
     let y = AxisSpec::new(format!("Displacement of mass {mass}"), unit).log();
     // The branches may run out of the picture: what is measured decides its size.
     let limits = log_limits(measured.iter().map(|m| m.1)).map(|(low, high)| (factor * low, factor * high));
-    let y = match limits {
-        Some((low, high)) => y.limits(low, high),
-        None => y,
-    };
+    let y = limits.map_or(y.clone(), |(low, high)| y.limits(low, high));
     let mut plot = Plot::new(AxisSpec::new("Excitation frequency", "Hz"), y);
     let swept = |p: &&Pair| p.mass == mass && measured.iter().any(|(_, r)| r.name == p.sweep);
     let lasting = [Model::KelvinVoigt, Model::HuntCrossley];
     let lasts = pairs.iter().filter(swept).any(|p| lasting.contains(&p.model));
+    let (seen, other) = if lasts {
+        ("one impact a cycle, at once", "predicted with the contact")
+    } else {
+        ("one impact a cycle", "another motion, simulated")
+    };
+    let add = |plot: Plot, name: &str, heights: Vec<f64>, ink: Ink, stroke: Stroke| {
+        let y: Vec<f64> = heights.iter().map(|v| factor * v).collect();
+        let places = curve.frequency.iter().copied().zip(y.iter().copied());
+        if is_within(&y, limits) { line(plot, name, places, ink, stroke) } else { plot }
+    };
     for (verdict, name, stroke) in [
-        (
-            Verdict::Seen,
-            if lasts { "one impact a cycle, at once" } else { "one impact a cycle" },
-            Stroke::Solid,
-        ),
+        (Verdict::Seen, seen, Stroke::Solid),
         (Verdict::Unstable, "unstable", Stroke::Dashed),
         (Verdict::Neutral, "neutral", Stroke::DashDot),
     ] {
         // Both branches have one entry in the legend.
         for rank in 0..2 {
-            let y: Vec<f64> = branch(curve, mass, rank, verdict).iter().map(|v| factor * v).collect();
-            if is_within(&y, limits) {
-                plot =
-                    plot.with(Series::line(name, curve.frequency.clone(), y).ink(Ink::Black).stroke(stroke));
-            }
+            plot = add(plot, name, branch(curve, mass, rank, verdict), Ink::Black, stroke);
         }
     }
     if mass == 1 {
-        let y: Vec<f64> = curve.motions.iter().map(|m| factor * free(m, usize::from(mass) - 1)).collect();
-        if is_within(&y, limits) {
-            plot = plot.with(
-                Series::line("without impacts", curve.frequency.clone(), y)
-                    .ink(Ink::Grey)
-                    .stroke(Stroke::Thin),
-            );
-        }
+        let free = curve.motions.iter().map(|m| free(m)).collect();
+        plot = add(plot, "without impacts", free, Ink::Grey, Stroke::Thin);
     }
     for (rank, response) in measured {
         let [points, faint] = series(response, *rank, &[], limits);
         plot = plot.with(faint).with(points);
     }
-    let other = pairs.iter().filter(swept).filter(|p| p.model != Model::ClosedForm);
-    let (x, y): (Vec<f64>, Vec<f64>) =
-        other.filter_map(|p| Some((p.frequency, factor * p.predicted?))).unzip();
-    if !x.is_empty() {
-        plot = plot.with(
-            Series::points(
-                if lasts { "predicted with the contact" } else { "another motion, simulated" },
-                x,
-                y,
-            )
-            .ink(Ink::Black)
-            .marker(Marker::Cross),
-        );
-    }
-    plot
+    let others = pairs.iter().filter(swept).filter(|p| p.model != Model::ClosedForm);
+    let places = others.filter_map(|p| Some((p.frequency, factor * p.predicted?)));
+    points(plot, other, places, Ink::Black, Marker::Cross)
 }
 
 /// Whether anything of a line is seen between these limits.
@@ -115,8 +94,9 @@ fn is_within(y: &[f64], limits: Option<(f64, f64)>) -> bool {
     })
 }
 
-fn free(motions: &[Motion], mass: usize) -> f64 {
-    motions.iter().find(|m| m.kind == Kind::Free && m.is_seen()).map_or(f64::NAN, |m| m.amplitude[mass])
+/// Amplitude of the excited mass without impacts.
+fn free(motions: &[Motion]) -> f64 {
+    motions.iter().find(|m| m.kind == Kind::Free && m.is_seen()).map_or(f64::NAN, |m| m.amplitude[0])
 }
 
 /// Amplitudes of the impacting motion of this rank where this is its verdict, and NaN elsewhere. Parts that cannot be seen

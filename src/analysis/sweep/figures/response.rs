@@ -85,15 +85,15 @@ pub(super) fn series(
     axis: Option<(f64, f64)>,
 ) -> [Series; 2] {
     let (mut x, mut y, mut std) = (Vec::new(), Vec::new(), Vec::new());
-    let mut limits = (Vec::new(), Vec::new());
+    let (mut at, mut limits) = (Vec::new(), Vec::new());
     let (factor, _) = shown(response.unit);
     // The middle of a triangle that stands on the edge, as a part of the axis.
     let edge = axis.map_or(0.0, |(low, high)| low * (high / low).powf(0.02));
     for (i, point) in response.points.iter().enumerate() {
         let limit = point.upper_limit;
         if let Some(limit) = limit {
-            limits.0.push(point.excitation);
-            limits.1.push((factor * limit).max(edge));
+            at.push(point.excitation);
+            limits.push((factor * limit).max(edge));
         }
         x.push(point.excitation);
         y.push(if limit.is_some() { f64::NAN } else { factor * point.amplitude.value });
@@ -115,7 +115,7 @@ pub(super) fn series(
         (None, _) => None,
     };
     let measured = Series { marker, ..Series::points(response.name.clone(), x, y).y_error(std) };
-    let limits = Series::points("", limits.0, limits.1).marker(Marker::Limit);
+    let limits = Series::points("", at, limits).marker(Marker::Limit);
     let ink = response.mass.map_or(2 * rank, |mass| 2 * rank + usize::from(mass.saturating_sub(1)));
     [measured, limits].map(|series| series.ink(Ink::Nth(ink)))
 }
@@ -131,30 +131,26 @@ pub(super) fn shown(unit: &str) -> (f64, &str) {
 
 /// Names of resonances at the larger of the curves that show them; one name where both directions agree.
 fn names(responses: &[Response]) -> Vec<(String, f64, f64)> {
-    let mut found: Vec<(String, Vec<Direction>, f64, f64)> = Vec::new();
+    let mut found: Vec<(String, Vec<&str>, f64, f64)> = Vec::new();
     for response in responses {
-        let Some(direction) = response.direction else { continue };
+        let Some(direction) = response.direction.map(Direction::name) else { continue };
         let named = |r: &&Resonance| matches!(r.kind, ResonanceKind::Grazing | ResonanceKind::Clapping);
         for r in response.resonances.iter().filter(named) {
-            // Equal to what the label prints.
-            match found.iter_mut().find(|f| f.0 == r.kind.name() && (f.2 - r.frequency).abs() < 0.01) {
-                Some(known) => {
-                    if !known.1.contains(&direction) {
-                        known.1.push(direction);
-                    }
-                    if known.3 < r.amplitude {
-                        (known.2, known.3) = (r.frequency, r.amplitude);
-                    }
-                }
-                None => found.push((r.kind.name().to_owned(), vec![direction], r.frequency, r.amplitude)),
+            let text = format!("{} {:.2} Hz", r.kind.name(), r.frequency);
+            let Some(known) = found.iter_mut().find(|f| f.0 == text) else {
+                found.push((text, vec![direction], r.frequency, r.amplitude));
+                continue;
+            };
+            if !known.1.contains(&direction) {
+                known.1.push(direction);
+            }
+            if known.3 < r.amplitude {
+                (known.2, known.3) = (r.frequency, r.amplitude);
             }
         }
     }
-    found
-        .into_iter()
-        .map(|(kind, directions, f, a)| {
-            let going: Vec<&str> = directions.iter().map(|d| d.name()).collect();
-            (format!("{kind} {f:.2} Hz, {}", going.join(" and ")), f, a)
-        })
-        .collect()
+    let name = |(text, directions, f, a): (String, Vec<&str>, _, _)| {
+        (format!("{text}, {}", directions.join(" and ")), f, a)
+    };
+    found.into_iter().map(name).collect()
 }

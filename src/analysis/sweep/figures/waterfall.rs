@@ -5,14 +5,12 @@ use crate::measure::waterfall::Waterfall as Matrix;
 use crate::report::layout::capital;
 use crate::report::{AxisSpec, Figure, Heatmap, Legend, Plot, Waterfall};
 use crate::units::decibel;
-use ndarray::{Array2, Axis};
+use ndarray::Axis;
 
 /// Reference of levels in SI units: 1 µm, 1 µm/s, …
 const REFERENCE: f64 = 1e-6;
-/// Least and largest range of a map in dB.
-const RANGE: (f64, f64) = (60.0, 120.0);
-/// The part of a map's lines that may lie below its range.
-const BELOW: f64 = 0.05;
+/// Range of a map in dB: that of a 16-bit analyser.
+const RANGE: f64 = 90.0;
 
 /// Waterfall from the cut-off to `fmax` (Hz; the last line where it is `None`).
 ///
@@ -43,31 +41,20 @@ pub fn map(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     let values = matrix.magnitude.select(Axis(0), &order).select(Axis(1), &columns);
     let key = AxisSpec::new(format!("{} level", capital(matrix.quantity.name())), matrix.unit.clone())
         .db(REFERENCE);
-    let (key, colours) = match levels(&values) {
-        Some((bottom, top)) => {
-            let span = format!(" Colours span {:.0} dB; what lies deeper has the darkest.", top - bottom);
-            (key.limits(bottom, top), span)
-        }
-        None => (key, String::new()),
-    };
-    let caption = format!("{}{colours} White: not measured.", caption(matrix));
+    // A level needs a reference; a millionth of the unit is the usual one for vibration amplitudes.
+    let largest = values.iter().copied().filter(|v| v.is_finite()).fold(REFERENCE, f64::max);
+    let top = (decibel(largest, REFERENCE) / 10.0).ceil() * 10.0;
+    let key = key.limits(top - RANGE, top);
+    let caption = format!(
+        "{} Colours span {RANGE:.0} dB; what lies deeper has the darkest. White: not measured.",
+        caption(matrix)
+    );
     let heatmap = Heatmap::new(&x, &y, &values, key)?;
     let frequency = AxisSpec::frequency().limits(low, high);
     let plot = Plot::new(frequency, AxisSpec::new("Excitation frequency", "Hz"))
         .heatmap(heatmap)
         .legend(Legend::Hidden);
     Ok(Figure::double(matrix.name.clone()).height(100.0).panel(plot).caption(caption))
-}
-
-/// Limits of the colours in dB, in whole tens: the largest line, and what nearly all lines lie above.
-fn levels(values: &Array2<f64>) -> Option<(f64, f64)> {
-    // A level needs a reference; a millionth of the unit is the usual one for vibration amplitudes.
-    let levels = values.iter().filter(|v| v.is_finite() && **v > 0.0).map(|v| decibel(*v, REFERENCE));
-    let mut levels: Vec<f64> = levels.collect();
-    levels.sort_by(f64::total_cmp);
-    let top = (levels.last()? / 10.0).ceil() * 10.0;
-    let low = (levels.get((BELOW * levels.len() as f64) as usize)? / 10.0).floor() * 10.0;
-    Some((low.clamp(top - RANGE.1, top - RANGE.0), top))
 }
 
 fn range(matrix: &Matrix, fmax: Option<f64>) -> Result<(f64, f64)> {

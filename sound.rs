@@ -1,0 +1,31 @@
+//! What a transform or a filter asks of samples.
+
+use vibro_record::{Error, Result, Trace};
+
+/// The sampling rate in Hz.
+pub(crate) fn rate_of(trace: &Trace) -> Result<f64> {
+    trace.rate().ok_or_else(|| {
+        Error::refused(format!("the sampling rate of {:?} is not known", trace.meta.name))
+            .hint("state the sampling rate in Hz")
+            .setting("rate")
+    })
+}
+
+/// Refuses missing samples of a channel, the first of them `before` samples behind its start: they would spread over all of the
+/// result.
+pub(crate) fn no_gaps(values: &[f64], channel: &str, before: usize) -> Result<()> {
+    match values.iter().position(|v| !v.is_finite()) {
+        Some(i) => Err(Error::refused(format!(
+            "sample {} of channel {channel:?} is missing: it would spread over all of the result",
+            before + i
+        ))
+        .hint("cut the record before the gap, or bridge it")),
+        None => Ok(()),
+    }
+}
+
+/// A channel of one value has no spectrum.
+pub(crate) fn constant(channel: &str, value: f64) -> Error {
+    Error::refused(format!("channel {channel:?} is constant at {value}: it has no spectrum"))
+        .hint("check the sensor, its cable and the range of the input")
+}

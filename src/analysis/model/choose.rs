@@ -1,0 +1,319 @@
+//! The simplest model that is good enough: `vibro model choose`.
+
+use super::{Driven, SceneKeys, figures};
+use crate::analysis::Answer;
+use crate::analysis::answer::unwritten;
+use crate::compare::Overlay;
+use crate::error::{Error, Result};
+use crate::model::Observable;
+use crate::model::ladder::{
+    Change, Choice, Model, Question, Rung, Sensitivity, Stretch, Survey, choose, choose_over,
+};
+use crate::record::{Direction, Finding, Severity};
+use crate::report::layout::table;
+use crate::report::words::{Voice, sentence, told};
+use crate::report::{Cell, Table};
+use crate::units::notation::significant;
+use serde_json::{Value, json};
+
+/// What is asked.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
+pub struct Keys {
+    /// The scene.
+    #[cfg_attr(feature = "cli", command(flatten))]
+    pub scene: SceneKeys,
+    /// Excitation frequency in Hz
+    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", allow_negative_numbers = true, conflicts_with_all = ["from", "to", "points"]))]
+    pub frequency: Option<f64>,
+    /// Lowest excitation frequency in Hz of an axis
+    #[cfg_attr(
+        feature = "cli",
+        arg(long, value_name = "HZ", allow_negative_numbers = true, requires = "to")
+    )]
+    pub from: Option<f64>,
+    /// Highest excitation frequency in Hz of an axis
+    #[cfg_attr(
+        feature = "cli",
+        arg(long, value_name = "HZ", allow_negative_numbers = true, requires = "from")
+    )]
+    pub to: Option<f64>,
+    /// Number of frequencies of an axis
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N", default_value_t = 100))]
+    pub points: usize,
+    /// What is looked at: fundamental, the amplitude of both masses at the excitation frequency; peak, half of peak-to-peak; impact-speed;
+    /// impulse
+    #[cfg_attr(feature = "cli", arg(long, value_name = "WHAT", value_parser = crate::campaign::word::<Observable>, default_value = "fundamental"))]
+    pub observable: Observable,
+    /// Part by which it may be off
+    #[cfg_attr(
+        feature = "cli",
+        arg(long, value_name = "PART", default_value_t = 0.02, allow_negative_numbers = true)
+    )]
+    pub tolerance: f64,
+    /// Noise floor of the measurement, in the unit of what is looked at: less than it does not matter
+    #[cfg_attr(
+        feature = "cli",
+        arg(long, value_name = "SIZE", default_value_t = 0.0, allow_negative_numbers = true)
+    )]
+    pub noise: f64,
+    /// Standard uncertainty of the gap in m: a closed form nearer to grazing is not relied on
+    #[cfg_attr(
+        feature = "cli",
+        arg(long, value_name = "M", default_value_t = 0.0, allow_negative_numbers = true)
+    )]
+    pub gap_std: f64,
+    /// Which way the frequency came, up or down, for where several motions are possible
+    #[cfg_attr(feature = "cli", arg(long, value_name = "WAY", value_parser = crate::campaign::word::<Direction>))]
+    pub history: Option<Direction>,
+}
+
+impl Keys {
+    /// The rung that is chosen, at one frequency or along an axis, and why.
+    ///
+    /// # Errors
+    /// If the scene or a key cannot be, or nothing drives the rig.
+    pub fn answer(&self) -> Result<Answer> {
+        let question = Question {
+            observable: self.observable,
+            tolerance: self.tolerance,
+            noise: self.noise,
+            gap_std: self.gap_std,
+            history: self.history,
+        };
+        question.check()?;
+        let Driven { scene, excitation, finding } = self.scene.driven(self.frequency.or(self.from))?;
+        let mut answer = Answer::of(&json!({ "scene": scene }))?;
+        if let Value::Object(asked) = json!(question) {
+            answer.result.extend(asked);
+        }
+        answer.tell("", finding);
+        if let Some((from, to)) = self.from.zip(self.to) {
+            along(&choose_over(&scene, from, to, self.points, &question)?, &question, &mut answer)?;
+            return Ok(answer);
+        }
+        let frequency = self.frequency.unwrap_or(excitation.frequency());
+        if frequency.is_nan() {
+            let expected = "a frequency, or from and to for an axis";
+            return Err(Error::usage("no frequency", expected).setting("frequency"));
+        }
+        single(&choose(&scene, frequency, &question)?, &question, &mut answer)?;
+        Ok(answer)
+    }
+}
+
+fn single(choice: &Choice, question: &Question, answer: &mut Answer) -> Result<()> {
+    if let Value::Object(mut found) = worded(choice)? {
+        found.shift_remove("findings");
+        answer.result.extend(found);
+    }
+    answer.tell("", &choice.findings);
+    answer.table("rungs", rungs(choice, question));
+    if !choice.sensitivity.is_empty() {
+        answer.table("sensitivity", sensitivity(&choice.sensitivity, question));
+    }
+    answer.tables.push(table(
+        "Why",
+        fates(choice),
+        &[
+            ("rungs", "", &|(names, ..)| names.as_str().into()),
+            ("", "", &|(_, fate, _)| (*fate).into()),
+            ("because", "", &|(.., why)| why.as_str().into()),
+        ],
+    ));
+    Ok(())
+}
+
+fn along(survey: &Survey, question: &Question, answer: &mut Answer) -> Result<()> {
+    let points = survey.points.len();
+    let mut found = serde_json::to_value(survey).map_err(unwritten)?;
+    for (rung, summary) in survey.rungs.iter().enumerate() {
+        let (valid, chosen) = (summary.valid_at, summary.chosen_at);
+        found["rungs"][rung]["why"] =
+            format!("Valid at {valid} and chosen at {chosen} of {points} points.").into();
+    }
+    found["points"] = survey.points.iter().map(worded).collect::<Result<Vec<Value>>>()?.into();
+    if let Value::Object(found) = found {
+        answer.result.extend(found);
+    }
+    // Of each code the first, and at how many points it was found.
+    let all = || survey.points.iter().flat_map(|c| c.findings.iter().map(move |f| (c.frequency, f)));
+    let mut seen: Vec<&str> = Vec::new();
+    for (first, finding) in all().filter(|(_, f)| f.severity != Severity::Note) {
+        if !seen.contains(&finding.code) {
+            seen.push(finding.code);
+            let n = all().filter(|(_, f)| f.code == finding.code).count();
+            let first = significant(first, 6);
+            answer.tell(&format!("At {n} of {points} frequencies, first at {first} Hz"), [finding]);
+        }
+    }
+    answer.tell(
+        "",
+        [match survey.chosen {
+            Some(model) => Finding::note("rung-for-all").name("model", model.name()),
+            None => Finding::note("no-rung-for-all"),
+        }],
+    );
+    answer.table("stretches", stretches(&survey.stretches));
+    answer.table("rungs", summaries(survey));
+    answer.csv("points", &chosen(&survey.points, question));
+    answer.figure("ladder", figures::ladder(survey, question)?);
+    Ok(())
+}
+
+/// Why a rung answers for its scene, or does not.
+fn why(rung: &Rung) -> String {
+    let refused = rung.refused.as_ref().map(|why| format!("Not computed: {why}."));
+    let reasons = rung.reasons.iter().map(|reason| sentence(reason, Voice::Command));
+    refused.into_iter().chain(reasons).collect::<Vec<String>>().join(" ")
+}
+
+/// Names of rungs that share a fate up to the chosen one, with the fate and why.
+fn fates(choice: &Choice) -> Vec<(String, &'static str, String)> {
+    let top = choice.chosen.map_or(choice.rungs.len(), |model| model as usize + 1);
+    let alike = choice.rungs[..top].chunk_by(|a, b| (a.valid, why(a)) == (b.valid, why(b)));
+    alike
+        .map(|rungs| {
+            let names: Vec<&str> = rungs.iter().map(|r| r.model.name()).collect();
+            let fate = match rungs[0].valid {
+                _ if choice.chosen == Some(rungs[0].model) => "chosen",
+                true => "valid",
+                false => "not valid",
+            };
+            (names.join(", "), fate, why(&rungs[0]))
+        })
+        .collect()
+}
+
+/// A choice as JSON, with `why` of each rung and `reasons` in words.
+fn worded(choice: &Choice) -> Result<Value> {
+    let mut value = serde_json::to_value(choice).map_err(unwritten)?;
+    for (rung, found) in choice.rungs.iter().enumerate() {
+        value["rungs"][rung]["why"] = why(found).into();
+    }
+    let rungs = fates(choice).into_iter().map(|(names, fate, why)| format!("{names}: {fate}. {why}"));
+    let found: Vec<_> = choice.findings.iter().map(|f| (String::new(), f.clone())).collect();
+    value["reasons"] = rungs.chain(told(&found, Voice::Command, true)).collect();
+    Ok(value)
+}
+
+fn percent(part: Option<f64>) -> Cell {
+    part.map(|p| 100.0 * p).into()
+}
+
+/// Adds the columns of an answer to a table that has a row for each of these: one for both masses, or one for each.
+fn answered(mut table: Table, question: &Question, answers: impl Iterator<Item = Option<[f64; 2]>>) -> Table {
+    let heads: &[&str] =
+        if question.observable.is_of_impacts() { &["answer"] } else { &["answer, x1", "answer, x2"] };
+    for name in heads {
+        table = table.column(*name, question.observable.unit());
+    }
+    for (row, answer) in table.rows.iter_mut().zip(answers) {
+        row.extend((0..heads.len()).map(|mass| Cell::from(answer.map(|a| a[mass]))));
+    }
+    table
+}
+
+/// What was found of each rung.
+fn rungs(choice: &Choice, question: &Question) -> Table {
+    let worst = |r: &Rung| r.changes.iter().copied().max_by(|a, b| a.change.abs().total_cmp(&b.change.abs()));
+    let found = table(
+        "Rungs",
+        &choice.rungs,
+        &[
+            ("rung", "", &|r| r.model.name().into()),
+            ("valid", "", &|r| r.valid.into()),
+            ("moves by", "%", &|r| percent(worst(r).map(|c| c.change))),
+            ("at", "", &|r| worst(r).map(|c| c.at.name()).into()),
+            ("good enough", "", &|r| r.sufficient.into()),
+            ("chosen", "", &|r| (choice.chosen == Some(r.model)).into()),
+            ("time in µs", "", &|r| r.cost_ns.map(|t| t / 1000.0).into()),
+        ],
+    );
+    answered(found, question, choice.rungs.iter().map(|r| r.answer))
+}
+
+/// The answer over an unknown stiffness of the contact.
+fn sensitivity(rows: &[Sensitivity], question: &Question) -> Table {
+    let found = table(
+        "Over the stiffness of the contact",
+        rows,
+        &[
+            ("contact stiffness in N/m", "", &|r| r.stiffness.into()),
+            ("in contact", "% of the cycle", &|r| percent(Some(r.share))),
+            ("moves by", "%", &|r| percent(Some(r.change))),
+            ("within", "", &|r| r.enough.into()),
+        ],
+    );
+    answered(found, question, rows.iter().map(|r| Some(r.answer)))
+}
+
+fn needed(needs: &[&str]) -> Cell {
+    (!needs.is_empty()).then(|| needs.join(", ")).into()
+}
+
+fn moved(audit: Option<Change>) -> Cell {
+    percent(audit.map(|a| a.change))
+}
+
+/// Which rung is chosen where.
+fn stretches(stretches: &[Stretch]) -> Table {
+    table(
+        "Simplest adequate model, by frequency range",
+        stretches,
+        &[
+            ("from", "Hz", &|s| s.from.into()),
+            ("to", "Hz", &|s| s.to.into()),
+            ("points", "", &|s| s.points.into()),
+            ("chosen", "", &|s| s.chosen.map(Model::name).into()),
+            ("needs", "", &|s| needed(&s.needs)),
+            ("moves at most by", "%", &|s| moved(s.audit)),
+            ("at rung", "", &|s| s.audit.map(|a| a.at.name()).into()),
+            ("at", "Hz", &|s| s.worst_at.into()),
+        ],
+    )
+}
+
+/// Which model is good enough where along the sweeps of a campaign.
+pub(crate) fn climbed(overlay: &Overlay) -> Table {
+    let mut all = stretches(&[]).column("force", "N").column("direction", "");
+    for rungs in &overlay.rungs {
+        for mut row in stretches(&rungs.stretches).rows {
+            row.extend([rungs.force.into(), rungs.direction.name().into()]);
+            all.rows.push(row);
+        }
+    }
+    all
+}
+
+/// Each rung over the whole axis.
+fn summaries(survey: &Survey) -> Table {
+    table(
+        "Rungs",
+        &survey.rungs,
+        &[
+            ("rung", "", &|r| r.model.name().into()),
+            ("valid everywhere", "", &|r| r.valid.into()),
+            ("moves at most by", "%", &|r| percent(r.error)),
+            ("median time in µs", "", &|r| r.cost_ns.map(|t| t / 1000.0).into()),
+            ("valid at", "points", &|r| r.valid_at.into()),
+            ("chosen at", "points", &|r| r.chosen_at.into()),
+        ],
+    )
+}
+
+/// The choice at each point.
+fn chosen(points: &[Choice], question: &Question) -> Table {
+    let found = table(
+        "Points",
+        points,
+        &[
+            ("frequency", "Hz", &|c| c.frequency.into()),
+            ("chosen", "", &|c| c.chosen.map(Model::name).into()),
+            ("needs", "", &|c| needed(&c.needs)),
+            ("moves by", "%", &|c| moved(c.audit)),
+            ("at rung", "", &|c| c.audit.map(|a| a.at.name()).into()),
+        ],
+    );
+    answered(found, question, points.iter().map(Choice::answer))
+}

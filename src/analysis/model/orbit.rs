@@ -1,0 +1,173 @@
+//! All motions with one impact a period at one frequency: `vibro model orbit`.
+
+use super::{Driven, SceneKeys, check_gap_std, figures, judged};
+use crate::analysis::Answer;
+use crate::campaign::above_zero;
+use crate::error::Result;
+use crate::model::{Compliance, NoImpact, Orbit, Orbits, Rig, Softened, orbits_of, softened};
+use crate::record::Finding;
+use crate::report::layout::table;
+use crate::report::{Cell, Table};
+use serde_json::{Value, json};
+
+/// What is asked.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
+pub struct Keys {
+    /// The scene.
+    #[cfg_attr(feature = "cli", command(flatten))]
+    pub scene: SceneKeys,
+    /// Excitation frequency in Hz
+    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", allow_negative_numbers = true))]
+    pub frequency: Option<f64>,
+    /// Cycles of the excitation from impact to impact
+    #[cfg_attr(feature = "cli", arg(long, value_name = "Q", default_value_t = 1))]
+    pub cycles: u32,
+    /// Standard uncertainty of the gap in m: a motion nearer to grazing is not relied on
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M", allow_negative_numbers = true))]
+    pub gap_std: Option<f64>,
+}
+
+impl Keys {
+    /// The motions, each with its verdicts and figure.
+    ///
+    /// # Errors
+    /// If the scene or a key cannot be, or nothing drives the rig.
+    pub fn answer(&self) -> Result<Answer> {
+        above_zero("frequency", self.frequency)?;
+        check_gap_std(self.gap_std)?;
+        let driven = self.scene.driven(self.frequency)?;
+        let Driven { scene, excitation, finding } = &driven;
+        let found = orbits_of(&scene.rig, excitation, self.cycles)?;
+        let mut softening = Vec::new();
+        let (contact, soft) = soften(&driven, &found, &mut softening)?;
+        let told = found.orbits.iter().zip(&soft).map(|(orbit, soft)| {
+            let mut all = judged(orbit, self.gap_std);
+            all["soft"] = json!(soft);
+            all
+        });
+        let mut answer = Answer::of(&json!({
+            "scene": scene,
+            "orbits": told.collect::<Vec<Value>>(),
+            "no_impact": found.no_impact,
+            "contact": contact,
+        }))?;
+        answer.tell("", finding);
+        answer.tell("", softening);
+        if found.orbits.is_empty() {
+            answer.tell("", [Finding::note("no-orbit")]);
+        }
+        for (i, orbit) in (1..).zip(&found.orbits).filter(|(_, orbit)| orbit.validity.exists) {
+            let distance = orbit.validity.grazing_distance;
+            if let Some(std) = self.gap_std.filter(|std| distance <= *std) {
+                let near = Finding::caution("verdicts-near-grazing").count("motion", i);
+                answer.tell("", [near.number("distance", distance).number("std", std)]);
+            }
+            let title = format!("Motion {i}");
+            answer.figure(format!("orbit_{i}"), figures::orbit(&title, &scene.rig, orbit));
+        }
+        answer.table("orbits", orbits(&found.orbits));
+        answer.table("verdicts", verdicts(&found.orbits, self.gap_std));
+        answer.tables.extend([no_impact(&found.no_impact), self::soft(&soft)]);
+        Ok(answer)
+    }
+}
+
+/// The contact and what it changes in each orbit; a finding where that is not known.
+fn soften(
+    driven: &Driven,
+    found: &Orbits,
+    told: &mut Vec<Finding>,
+) -> Result<(Option<Compliance>, Vec<Option<Softened>>)> {
+    let none = vec![None; found.orbits.len()];
+    let Driven { scene, excitation, .. } = driven;
+    let Some(keys) = scene.contact else { return Ok((None, none)) };
+    let Some(stiffness) = keys.stiffness.filter(|_| keys.exponent.is_none_or(|n| n == 1.0)) else {
+        told.push(match keys.stiffness {
+            Some(_) => Finding::caution("contact-curved"),
+            None => Finding::caution("contact-stiffness-missing"),
+        });
+        return Ok((None, none));
+    };
+    let contact = Compliance::new(&scene.rig, stiffness, keys.damping)?;
+    let of_rig = scene.rig.restitution;
+    if (contact.restitution - of_rig).abs() > 1e-3 {
+        let differs = Finding::caution("contact-restitution-differs");
+        told.push(differs.number("contact", contact.restitution).number("rig", of_rig));
+    }
+    let rig = Rig { restitution: contact.restitution, ..scene.rig };
+    let soft = softened(&rig, excitation, found, &contact).unwrap_or_else(|error| {
+        told.push(Finding::caution("contact-not-corrected").name("why", error.to_string()));
+        none
+    });
+    Ok((Some(contact), soft))
+}
+
+/// What each motion does.
+fn orbits(orbits: &[Orbit]) -> Table {
+    let unit = orbits.first().map_or("rad", Orbit::timing_unit);
+    table(
+        "Motions with one impact a period",
+        orbits.iter().enumerate(),
+        &[
+            ("no.", "", &|(i, _)| Cell::from(i + 1)),
+            ("impulse", "N s", &|(_, o)| Cell::from(o.impulse)),
+            ("approach speed", "m/s", &|(_, o)| Cell::from(o.approach_velocity)),
+            ("timing", unit, &|(_, o)| Cell::from(o.timing)),
+            ("x1 peak to peak", "m", &|(_, o)| Cell::from(o.peak_to_peak[0])),
+            ("x2 peak to peak", "m", &|(_, o)| Cell::from(o.peak_to_peak[1])),
+            ("x1 fundamental", "m", &|(_, o)| Cell::from(o.fundamental[0].norm())),
+            ("x2 fundamental", "m", &|(_, o)| Cell::from(o.fundamental[1].norm())),
+        ],
+    )
+}
+
+/// What each motion is worth; `gap_std` is the standard uncertainty of the gap in m.
+fn verdicts(orbits: &[Orbit], gap_std: Option<f64>) -> Table {
+    table(
+        "Verdicts",
+        orbits.iter().enumerate(),
+        &[
+            ("no.", "", &|(i, _)| Cell::from(i + 1)),
+            ("exists", "", &|(_, o)| o.validity.exists.into()),
+            ("admissible", "", &|(_, o)| o.validity.admissible.into()),
+            ("stability", "", &|(_, o)| match o.validity.instability {
+                Some(loss) => Cell::from(format!("{}: {}", o.validity.stability.name(), loss.name())),
+                None if o.validity.exists => Cell::from(o.validity.stability.name()),
+                None => Cell::Missing,
+            }),
+            ("robust", "", &|(_, o)| gap_std.map(|std| o.robust(std)).into()),
+            ("largest multiplier", "", &|(_, o)| Cell::from(o.spectral_radius())),
+            ("least gap", "m", &|(_, o)| Cell::from(o.validity.min_gap)),
+            ("closest approach", "m", &|(_, o)| Cell::from(o.validity.clearance)),
+            ("grazing distance, first order", "m", &|(_, o)| Cell::from(o.validity.grazing_distance)),
+            ("energy rule", "", &|(_, o)| o.validity.energy_rule.into()),
+        ],
+    )
+}
+
+/// The motion without impacts.
+fn no_impact(motion: &NoImpact) -> Table {
+    Table::new("Motion without impacts")
+        .column("possible", "")
+        .column("amplitude", "m")
+        .column("largest x1", "m")
+        .row([motion.possible.into(), motion.amplitude.into(), motion.largest.into()])
+}
+
+/// What the duration of the contact changes in each motion.
+fn soft(all: &[Option<Softened>]) -> Table {
+    table(
+        "With the contact's duration",
+        all.iter().enumerate().filter_map(|(i, soft)| soft.map(|s| (i, s))),
+        &[
+            ("no.", "", &|(i, _)| Cell::from(i + 1)),
+            ("impulse", "N s", &|(_, s)| Cell::from(s.impulse)),
+            ("approach speed", "m/s", &|(_, s)| Cell::from(s.approach_velocity)),
+            ("change of impulse", "1", &|(_, s)| Cell::from(s.change)),
+            ("in contact", "1", &|(_, s)| Cell::from(s.share)),
+            ("x1 peak to peak", "m", &|(_, s)| Cell::from(s.peak_to_peak[0])),
+            ("x2 peak to peak", "m", &|(_, s)| Cell::from(s.peak_to_peak[1])),
+        ],
+    )
+}

@@ -1,0 +1,122 @@
+//! Motions with one impact a period over frequency: `vibro model response`.
+
+use super::{Driven, SceneKeys, check_gap_std, figures, judged};
+use crate::analysis::Answer;
+use crate::campaign::above_zero;
+use crate::error::Result;
+use crate::model::{Response, ResponsePoint, response};
+use crate::record::Finding;
+use crate::report::layout::table;
+use crate::report::{Cell, Table};
+use num_complex::Complex64;
+use serde_json::{Value, json};
+
+/// What is asked.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
+pub struct Keys {
+    /// The scene.
+    #[cfg_attr(feature = "cli", command(flatten))]
+    pub scene: SceneKeys,
+    /// Lowest excitation frequency in Hz
+    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", allow_negative_numbers = true))]
+    pub from: f64,
+    /// Highest excitation frequency in Hz
+    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", allow_negative_numbers = true))]
+    pub to: f64,
+    /// Number of frequencies
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N", default_value_t = 400))]
+    pub points: usize,
+    /// Cycles of the excitation from impact to impact
+    #[cfg_attr(feature = "cli", arg(long, value_name = "Q", default_value_t = 1))]
+    pub cycles: u32,
+    /// Standard uncertainty of the gap in m: a motion nearer to grazing is not relied on
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M", allow_negative_numbers = true))]
+    pub gap_std: Option<f64>,
+}
+
+impl Keys {
+    /// The motions at each frequency, with the places where they appear, vanish and change.
+    ///
+    /// # Errors
+    /// If the scene or a key cannot be, or nothing drives the rig.
+    pub fn answer(&self) -> Result<Answer> {
+        above_zero("from", Some(self.from))?;
+        above_zero("to", Some(self.to))?;
+        check_gap_std(self.gap_std)?;
+        let Driven { scene, excitation, finding } = self.scene.driven(Some(self.from))?;
+        let found = response(&scene.rig, &excitation, self.from, self.to, self.points, self.cycles)?;
+        let mut answer = Answer::of(&json!({
+            "scene": scene,
+            "points": found.points.iter().map(|p| self.point(p)).collect::<Vec<Value>>(),
+            "changes": found.changes,
+        }))?;
+        answer.tell("", finding);
+        let refused = found.points.iter().filter_map(|p| p.refused.as_deref());
+        if let Some(why) = refused.clone().next() {
+            let some = Finding::caution("frequencies-without-answer").count("n", refused.count());
+            answer.tell("", [some.name("why", why.trim_end_matches('.'))]);
+        }
+        let real = |p: &&ResponsePoint| {
+            p.orbits.iter().any(|o| o.validity.admissible && o.validity.stable == Some(true))
+        };
+        let stable = Finding::note("orbits-stable").count("n", found.points.iter().filter(real).count());
+        answer.tell("", [stable.count("all", found.points.len())]);
+        answer.figure("response", figures::branches("Response with one impact a period", &found));
+        answer.csv("response", &branches(&found));
+        answer.table("changes", changes(&found));
+        Ok(answer)
+    }
+
+    fn point(&self, point: &ResponsePoint) -> Value {
+        json!({
+            "frequency": point.frequency,
+            "orbits": point.orbits.iter().map(|o| judged(o, self.gap_std)).collect::<Vec<Value>>(),
+            "no_impact": point.no_impact,
+            "backbone": point.backbone.as_ref().map(|o| json!({
+                "impulse": o.impulse,
+                "peak_to_peak": o.peak_to_peak,
+                "fundamental": o.fundamental.map(Complex64::norm),
+                "admissible": o.validity.admissible,
+            })),
+            "refused": point.refused,
+        })
+    }
+}
+
+/// Every motion at every frequency.
+fn branches(response: &Response) -> Table {
+    let rows = response.points.iter().flat_map(|p| p.orbits.iter().filter(|o| o.validity.exists));
+    table(
+        "Motions with one impact a period",
+        rows,
+        &[
+            ("frequency", "Hz", &|o| Cell::from(o.frequency)),
+            ("impulse", "N s", &|o| Cell::from(o.impulse)),
+            ("approach speed", "m/s", &|o| Cell::from(o.approach_velocity)),
+            ("x1 peak to peak", "m", &|o| Cell::from(o.peak_to_peak[0])),
+            ("x2 peak to peak", "m", &|o| Cell::from(o.peak_to_peak[1])),
+            ("x1 fundamental", "m", &|o| Cell::from(o.fundamental[0].norm())),
+            ("x2 fundamental", "m", &|o| Cell::from(o.fundamental[1].norm())),
+            ("admissible", "", &|o| o.validity.admissible.into()),
+            ("stability", "", &|o| Cell::from(o.validity.stability.name())),
+            ("largest multiplier", "", &|o| Cell::from(o.spectral_radius())),
+            ("least gap", "m", &|o| Cell::from(o.validity.min_gap)),
+            ("grazing distance, first order", "m", &|o| Cell::from(o.validity.grazing_distance)),
+        ],
+    )
+}
+
+/// Where motions change.
+fn changes(response: &Response) -> Table {
+    table(
+        "Changes",
+        &response.changes,
+        &[
+            ("frequency", "Hz", &|c| Cell::from(c.frequency)),
+            ("change", "", &|c| Cell::from(c.kind.name())),
+            ("x1 amplitude", "m", &|c| Cell::from(c.amplitude[0])),
+            ("x2 amplitude", "m", &|c| Cell::from(c.amplitude[1])),
+        ],
+    )
+}

@@ -1,0 +1,221 @@
+//! A motion from impact to impact: `vibro model simulate`.
+
+use super::contact::{self, Contact};
+use super::{Driven, SceneKeys, figures};
+use crate::analysis::Answer;
+use crate::campaign::above_zero;
+use crate::error::{Error, Result};
+use crate::model::portrait::{Portrait, Sitting};
+use crate::model::{Motion, Regime, Rig, Simulation, State};
+use crate::record::Finding;
+use crate::report::Table;
+use crate::report::layout::table;
+use serde_json::json;
+
+/// What is asked.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
+pub struct Keys {
+    /// The scene.
+    #[cfg_attr(feature = "cli", command(flatten))]
+    pub scene: SceneKeys,
+    /// Excitation frequency in Hz
+    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", allow_negative_numbers = true))]
+    pub frequency: Option<f64>,
+    /// Law of the contact: restitution, kelvin-voigt, hertz, hunt-crossley, loose-mass
+    #[cfg_attr(feature = "cli", arg(long, value_name = "LAW", value_parser = crate::campaign::word::<Contact>, default_value = "restitution"))]
+    pub model: Contact,
+    /// Cycles of the excitation that are looked at
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N", default_value_t = 100))]
+    pub cycles: u32,
+    /// Cycles that the motion is given to settle before
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N", default_value_t = 500))]
+    pub settle: u32,
+    /// Displacements in m and velocities in m/s at the start [default: at rest]
+    #[cfg_attr(
+        feature = "cli",
+        arg(long, value_name = "X1,V1,X2,V2", value_delimiter = ',', allow_hyphen_values = true)
+    )]
+    pub initial: Vec<f64>,
+    /// Phase of the excitation's cycle at the start, in rad: 0 is the crest of a sine and the beginning of a pulse
+    #[cfg_attr(
+        feature = "cli",
+        arg(long, value_name = "RAD", default_value_t = 0.0, allow_negative_numbers = true)
+    )]
+    pub phase: f64,
+    /// Approach speed in m/s below which an impact counts as grazing
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M/S", allow_negative_numbers = true, default_value_t = crate::model::simulate::GRAZING_SPEED))]
+    pub grazing: f64,
+}
+
+/// Cycles that the traces show, and samples of each.
+const SHOWN: u32 = 12;
+const SAMPLES: u32 = 400;
+
+/// What a motion did in the cycles that were looked at.
+struct Seen {
+    portrait: Portrait,
+    /// Time in s, phase in rad and state at the end.
+    end: (f64, f64, State),
+    /// Grazing impacts, where they are counted.
+    grazing: Option<u64>,
+    /// Stretches in closed form, with those before, where they are counted.
+    flights: Option<u64>,
+}
+
+impl Keys {
+    /// The motion with its impacts and its regime.
+    ///
+    /// # Errors
+    /// If the scene or a key cannot be, nothing drives the rig, or the motion cannot be followed.
+    pub fn answer(&self) -> Result<Answer> {
+        let Driven { scene, excitation, finding } = self.scene.driven(self.frequency)?;
+        let start = self.start(&scene.rig)?;
+        let seen = match self.model {
+            Contact::Restitution => {
+                above_zero("grazing", Some(self.grazing))?;
+                let motion = Simulation::from_state(&scene.rig, &excitation, start, self.phase)?;
+                let mut motion = motion.grazing_below(self.grazing);
+                self.settle(&mut motion)?;
+                let before = motion.counts().grazing;
+                let seen = self.seen(&mut motion)?;
+                let counts = motion.counts();
+                Seen { grazing: Some(counts.grazing - before), flights: Some(counts.flights), ..seen }
+            }
+            Contact::LooseMass => self.settled(contact::loose(&scene)?(&excitation, start, self.phase)?)?,
+            _ => self.settled(contact::compliant(&scene, self.model)?(&excitation, start, self.phase)?)?,
+        };
+        let Seen { portrait, end: (time, phase, state), grazing, flights } = &seen;
+        let State { x1, v1, x2, v2 } = state;
+        let mut answer = Answer::of(&json!({
+            "scene": scene,
+            "impacts": portrait.impacts,
+            "regime": portrait.pattern.regime,
+            "grazing": grazing,
+            "chatter": portrait.sticks,
+            "final_state": { "time": time, "phase": phase, "x1": x1, "v1": v1, "x2": x2, "v2": v2 },
+            "flights": flights,
+        }))?;
+        answer.tell("", finding);
+        answer.tell("", contact::buffer(&scene, self.model));
+        answer.tell("", self.doubts(&seen, &scene.rig));
+        answer.tables.push(summary(&seen));
+        answer.figure("traces", figures::traces("Traces of both masses", portrait, scene.rig.gap));
+        answer.figure("phase_plane", figures::phase_plane("Phase plane", portrait));
+        answer.figure("poincare", figures::poincare("Poincaré sections", portrait));
+        answer.csv("traces", &states(&portrait.time, &portrait.states));
+        answer.csv("poincare", &states(&portrait.beginnings, &portrait.section));
+        answer.csv("impacts", &impacts(portrait));
+        Ok(answer)
+    }
+
+    /// The state at the start.
+    fn start(&self, rig: &Rig) -> Result<State> {
+        match self.initial[..] {
+            [] => Ok(Simulation::at_rest(rig)),
+            [x1, v1, x2, v2] => Ok(State { x1, v1, x2, v2 }),
+            _ => {
+                let found = format!("{} numbers of a state", self.initial.len());
+                Err(Error::usage(found, "four: x1,v1,x2,v2 in m and m/s").setting("initial"))
+            }
+        }
+    }
+
+    fn settle(&self, motion: &mut impl Motion) -> Result<()> {
+        let end = motion.time() + f64::from(self.settle) / motion.frequency();
+        motion.advance(end, &mut |_| {})
+    }
+
+    fn seen(&self, motion: &mut impl Motion) -> Result<Seen> {
+        let sitting = Sitting { cycles: self.cycles, samples: SAMPLES, shown: SHOWN };
+        let portrait = Portrait::take(motion, &sitting)?;
+        let end = (motion.time(), motion.phase(), motion.state());
+        Ok(Seen { portrait, end, grazing: None, flights: None })
+    }
+
+    /// What a motion does after it has settled.
+    fn settled(&self, mut motion: impl Motion) -> Result<Seen> {
+        self.settle(&mut motion)?;
+        self.seen(&mut motion)
+    }
+
+    /// What is not to be relied on.
+    fn doubts(&self, seen: &Seen, rig: &Rig) -> Vec<Finding> {
+        let mut found = Vec::new();
+        let pattern = &seen.portrait.pattern;
+        if let Some(grazing) = seen.grazing.filter(|n| *n > 0) {
+            let some = Finding::caution("impacts-grazing").number("n", grazing as f64);
+            found.push(some.count("all", seen.portrait.impacts.len()).number("below", self.grazing));
+        }
+        if pattern.regime == Regime::Irregular {
+            found.push(Finding::caution("motion-irregular"));
+        } else if !pattern.settled {
+            let moving = Finding::caution("motion-not-settled");
+            found.push(match pattern.distance {
+                Some(distance) => moving.number("distance", distance),
+                None => moving,
+            });
+        }
+        if self.model == Contact::Hertz && rig.restitution < 1.0 {
+            found.push(Finding::caution("hertz-lossless").number("restitution", rig.restitution));
+        }
+        let State { x1, x2, .. } = seen.end.2;
+        // Apart by less than a millionth of their ways.
+        if pattern.regime == Regime::NoImpact && rig.gap + x2 - x1 <= 1e-6 * (x1.abs() + x2.abs()) {
+            found.push(Finding::caution("masses-pressed"));
+        }
+        found
+    }
+}
+
+fn summary(seen: &Seen) -> Table {
+    let Portrait { impacts, pattern, sticks, .. } = &seen.portrait;
+    let many = |n: u32, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+    let regime = match pattern.regime {
+        Regime::Periodic { impacts, cycles } => {
+            format!("{} in {}", many(impacts, "impact"), many(cycles, "cycle"))
+        }
+        other => other.to_string(),
+    };
+    let last = impacts.last();
+    table(
+        "Motion",
+        [()],
+        &[
+            ("regime", "", &|()| regime.as_str().into()),
+            ("impacts", "", &|()| impacts.len().into()),
+            ("grazing", "", &|()| seen.grazing.map(|n| n as f64).into()),
+            ("chatter", "", &|()| (*sticks as f64).into()),
+            ("last impulse", "N s", &|()| last.map(|i| i.impulse).into()),
+            ("approach speed", "m/s", &|()| last.map(|i| i.approach_velocity).into()),
+            ("phase", "rad", &|()| last.map(|i| i.phase).into()),
+        ],
+    )
+}
+
+fn states(times: &[f64], states: &[State]) -> Table {
+    table(
+        "States",
+        times.iter().zip(states),
+        &[
+            ("time", "s", &|(t, _)| (**t).into()),
+            ("x1", "m", &|(_, s)| s.x1.into()),
+            ("v1", "m/s", &|(_, s)| s.v1.into()),
+            ("x2", "m", &|(_, s)| s.x2.into()),
+            ("v2", "m/s", &|(_, s)| s.v2.into()),
+        ],
+    )
+}
+
+fn impacts(portrait: &Portrait) -> Table {
+    table(
+        "Impacts",
+        &portrait.impacts,
+        &[
+            ("time", "s", &|i| i.time.into()),
+            ("phase", "rad", &|i| i.phase.into()),
+            ("approach speed", "m/s", &|i| i.approach_velocity.into()),
+            ("impulse", "N s", &|i| i.impulse.into()),
+        ],
+    )
+}

@@ -1,0 +1,81 @@
+//! `vibro run` and `vibro compare`: what a campaign asks for.
+
+use super::{complain, print};
+use crate::analysis::sweep::modelled;
+use crate::analysis::{self, JobOptions};
+use crate::campaign::Parameter;
+use crate::error::Result;
+use crate::report::words::{Voice, told};
+use crate::report::{Output, Table};
+use serde_json::{Map, Value, json};
+use std::path::PathBuf;
+
+#[derive(Debug, clap::Args)]
+pub struct Run {
+    /// campaign.toml
+    campaign: PathBuf,
+    /// Folder for results [default: `out` in the campaign, else `results` beside it]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Allow names in lists that lead outside their folder
+    #[arg(long)]
+    allow_outside: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Compare {
+    /// campaign.toml with a rig, an excitation and sweeps
+    campaign: PathBuf,
+    /// Allow names in lists that lead outside their folder
+    #[arg(long)]
+    allow_outside: bool,
+    /// Parameters to be found from the responses, with commas between: force, restitution, c1, c2, gap, k1, k2, and m1, m2 with a prior in
+    /// [fit] [default: those of [fit] in the campaign]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    fit: Vec<String>,
+    /// Folder for the overlay and the fit as SVG, PNG and CSV
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+impl Run {
+    /// Does all that the campaign asks for. Gives the exit code: 1 where nothing that was asked for could be answered.
+    pub fn run(&self, json: bool) -> Result<u8> {
+        let campaign = analysis::open(&self.campaign)?;
+        let folder = self.out.clone().unwrap_or_else(|| campaign.out());
+        let options = JobOptions { allow_outside: self.allow_outside };
+        let mut output = Output::set(&folder)?;
+        let outcome =
+            print::busy(json, "campaign", |bar| analysis::run(&campaign, options, &mut output, bar))?;
+        output.commit()?;
+        let files = output.written();
+        if json {
+            let mut answer = Map::new();
+            answer.insert("warnings".to_owned(), outcome.results["warnings"].clone());
+            answer.insert("results".to_owned(), Value::Object(outcome.results));
+            answer.insert("files".to_owned(), json!(files));
+            answer.insert("folder".to_owned(), json!(folder.display().to_string()));
+            print::object(answer)?;
+        } else {
+            complain::warn(&told(&outcome.findings, Voice::Campaign, true));
+            let tables = outcome.tables.iter().map(Table::text).collect::<Vec<String>>().join("\n");
+            let n = files.len();
+            print::text(&format!("{tables}\n{n} files in {}; open report.html there\n", folder.display()))?;
+        }
+        Ok(u8::from(!outcome.answered && !campaign.is_empty()))
+    }
+}
+
+impl Compare {
+    /// Prints measured responses over the model.
+    pub fn run(&self, json: bool) -> Result<()> {
+        let mut campaign = analysis::open(&self.campaign)?;
+        if !self.fit.is_empty() {
+            let names = self.fit.iter().map(|name| Parameter::from_name(name.trim()));
+            campaign.fit.ask(names.collect::<Result<_>>()?)?;
+        }
+        let options = JobOptions { allow_outside: self.allow_outside };
+        let answer = print::busy(json, "comparing", |bar| modelled::compared(&campaign, options, bar))?;
+        print::answer(answer, self.out.as_deref(), json)
+    }
+}

@@ -1,0 +1,252 @@
+//! Commands on the record of a file: `vibro spectrum`, `impacts`, `modal`, `pulse`, `restitution`, `drill`.
+
+use super::print;
+use super::sweep::of_script;
+use crate::analysis::drill::cycles;
+use crate::analysis::{Answer, Source, drill, drop, frf, impacts, pulse, spectrum};
+use crate::campaign::{Channel, Reading};
+use crate::error::{Error, Result};
+use crate::measure::drill::Cycle;
+use crate::measure::{Estimate, legacy};
+use crate::record::{Finding, Trace};
+use crate::report::Output;
+use crate::report::layout::table;
+use clap::Args;
+use serde_json::json;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Which record, how its file is read, and where results go.
+#[derive(Debug, Args)]
+pub struct Record {
+    #[command(flatten)]
+    channel: Channel,
+    #[command(flatten)]
+    reading: Reading,
+    /// Folder for figures as SVG and PNG, and tables as CSV
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+/// A file, and how it is measured.
+#[derive(Debug, Args)]
+pub struct Measured<K: Args> {
+    /// Measurement file
+    file: PathBuf,
+    #[command(flatten)]
+    keys: K,
+    #[command(flatten)]
+    record: Record,
+}
+
+pub type Spectrum = Measured<spectrum::Keys>;
+pub type Modal = Measured<frf::Keys>;
+
+#[derive(Debug, Args)]
+pub struct Impacts {
+    /// Print what the thesis' script timeav printed, mistakes included
+    #[arg(long)]
+    legacy: bool,
+    #[command(flatten)]
+    of: Measured<impacts::Keys>,
+}
+
+#[derive(Debug, Args)]
+pub struct Drill {
+    /// Write every impact with the speed of its turn, and beside it the velocity of every turn over the phase
+    #[arg(long, value_name = "CSV")]
+    each_cycle: Option<PathBuf>,
+    #[command(flatten)]
+    of: Measured<drill::Keys>,
+}
+
+#[derive(Debug, Args)]
+pub struct Pulse {
+    /// Record of the acceleration (or force) of a contact
+    file: Option<PathBuf>,
+    #[command(flatten)]
+    keys: pulse::Keys,
+    #[command(flatten)]
+    record: Record,
+}
+
+#[derive(Debug, Args)]
+pub struct Restitution {
+    /// Traces of drops or of trains of bounces, one a drop
+    files: Vec<PathBuf>,
+    #[command(flatten)]
+    keys: drop::Keys,
+    #[command(flatten)]
+    record: Record,
+}
+
+impl Record {
+    /// Measures the record of a file, with a bar of progress.
+    fn measured<T>(
+        &self,
+        file: &Path,
+        json: bool,
+        measure: impl FnOnce(&Source<'_>) -> Result<T>,
+    ) -> Result<T> {
+        let name = file.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        print::busy(json, "samples", |bar| {
+            let progress = |done: usize, all: usize| {
+                bar.set_length(all as u64);
+                bar.set_position(done as u64);
+            };
+            measure(&Source {
+                name: &name,
+                path: file,
+                channel: &self.channel,
+                reading: &self.reading,
+                beside: &|_, file| Ok(file.to_owned()),
+                progress: &progress,
+            })
+        })
+    }
+
+    fn print(&self, answer: Answer, json: bool) -> Result<()> {
+        print::answer(answer, self.out.as_deref(), json)
+    }
+}
+
+impl<K: Args> Measured<K> {
+    fn by<T>(&self, json: bool, measure: impl FnOnce(&K, &Source<'_>) -> Result<T>) -> Result<T> {
+        self.record.measured(&self.file, json, |source| measure(&self.keys, source))
+    }
+}
+
+impl Spectrum {
+    /// Prints the lines of a channel, or the response of one channel to another.
+    pub fn run(&self, json: bool) -> Result<()> {
+        self.record.print(self.by(json, spectrum::Keys::measure)?, json)
+    }
+}
+
+impl Impacts {
+    /// Prints the impacts.
+    pub fn run(&self, json: bool) -> Result<()> {
+        let answer = self.of.by(json, |keys, source| {
+            if self.legacy {
+                return of_timeav(&source.trace(&source.recording()?)?);
+            }
+            keys.measure(source).map_err(|e| e.of_record(&source.path.display().to_string()))
+        })?;
+        self.of.record.print(answer, json)
+    }
+}
+
+/// What timeav printed: a mean and the times. It knew nothing of the rest.
+fn of_timeav(trace: &Trace) -> Result<Answer> {
+    let found = legacy::contact_times(trace)?;
+    let n = found.times.len();
+    let method = "(last − first)/(peaks − 1), as timeav";
+    let mut answer = Answer::of(&json!({
+        "n": n,
+        "maxima": found.maxima,
+        "interval": Estimate::new(found.interval, None, "s", n, method),
+        "frequency": Estimate::new(found.frequency, None, "Hz", n, method),
+        "median_interval": null,
+        "spread": null,
+        "missed": null,
+        "doubled": null,
+        "per_cycle": null,
+        "regular": null,
+        "times": found.times,
+    }))?;
+    answer.tell("", [of_script("timeav")]);
+    answer.tell("", (n == 1).then(|| Finding::caution("timeav-one-peak")));
+    answer.tables.push(table(
+        "timeav",
+        [()],
+        &[
+            ("maxp", "", &|()| found.maxima.into()),
+            ("maxpeak", "", &|()| n.into()),
+            ("diffav", "s", &|()| found.interval.into()),
+            ("diffreq", "Hz", &|()| found.frequency.into()),
+        ],
+    ));
+    answer.table("impacts", table("Peaks", &found.times, &[("peakt", "s", &|t| (**t).into())]));
+    Ok(answer)
+}
+
+impl Modal {
+    /// Prints the modes.
+    pub fn run(&self, json: bool) -> Result<()> {
+        let mut answers = self.by(json, frf::Keys::measure)?;
+        if answers.len() > 1 {
+            let names: Vec<&str> = answers.iter().filter_map(|a| a.result["channel"].as_str()).collect();
+            let found = format!("{} frequency response functions, and none was chosen", names.len());
+            return Err(Error::usage(found, format!("one of {}", names.join(", "))).setting("channel"));
+        }
+        let mut answer = answers.pop().ok_or_else(|| Error::refused("no frequency response function"))?;
+        answer.refused.take().map_or(Ok(()), Err)?;
+        self.record.print(answer, json)
+    }
+}
+
+impl Pulse {
+    /// Prints damping ratio and frequency of a contact.
+    pub fn run(&self, json: bool) -> Result<()> {
+        self.keys.usable(self.file.is_some())?;
+        let answer = match &self.file {
+            Some(file) => self.record.measured(file, json, |source| self.keys.measure(source))?,
+            None => self.keys.times("")?,
+        };
+        self.record.print(answer, json)
+    }
+}
+
+impl Restitution {
+    /// Prints the restitution by every method that the data allow.
+    pub fn run(&self, json: bool) -> Result<()> {
+        self.keys.usable(!self.files.is_empty())?;
+        let mut series = drop::Series::new(&self.keys);
+        series.add_numbers(&self.keys);
+        for (i, file) in self.files.iter().enumerate() {
+            self.record.measured(file, json, |source| series.add_record(&self.keys, source, i + 1))?;
+        }
+        self.record.print(series.answer("")?, json)
+    }
+}
+
+impl Drill {
+    /// Prints speed, impacts and the average turn.
+    pub fn run(&self, json: bool) -> Result<()> {
+        let Some(path) = &self.each_cycle else {
+            let each = &mut |_: &Cycle<'_>| Ok(());
+            let answer = self.of.by(json, |keys, source| keys.measure(source, each))?;
+            return self.of.record.print(answer, json);
+        };
+        let named =
+            path.file_name().zip(path.file_stem()).map(|(n, s)| (n.to_string_lossy(), s.to_string_lossy()));
+        let (name, stem) = named
+            .ok_or_else(|| Error::usage("no file name for each cycle", "NAME.csv").setting("each_cycle"))?;
+        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        // Turns are written as they come, beside the table of impacts; a record that allows no answer leaves nothing.
+        let mut output = Output::set(folder)?;
+        let velocities = format!("{stem}_velocity.csv");
+        let mut turns = None;
+        let mut each = |cycle: &Cycle<'_>| {
+            let head = if turns.is_none() { cycles::head(cycle.velocity.len()) } else { String::new() };
+            let file = match &mut turns {
+                Some(file) => file,
+                none => none.insert(output.growing(&velocities)?),
+            };
+            let rows = head + &cycles::row(cycle);
+            file.write_all(rows.as_bytes())
+                .map_err(|e| Error::io("write", path.with_file_name(&velocities), e))
+        };
+        let answer = self.of.by(json, |keys, source| keys.measure(source, &mut each))?;
+        if let Some(mut file) = turns {
+            file.flush().map_err(|e| Error::io("write", path.with_file_name(&velocities), e))?;
+        }
+        if let Some((_, impacts)) = answer.files.iter().find(|(name, _)| name == "impacts.csv") {
+            output.write(&name, impacts)?;
+        }
+        output.commit()?;
+        let mut written = print::written(&answer, self.of.record.out.as_deref())?;
+        written.extend(output.written().iter().map(|name| folder.join(name).display().to_string()));
+        print::shown(answer, written, json)
+    }
+}

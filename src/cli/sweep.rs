@@ -1,0 +1,268 @@
+//! `vibro response`, `vibro waterfall`, `vibro excitation`: the jobs of sinesw3, sinesw and sineswpf.
+
+use super::convert::{apart, write_beside};
+use super::print;
+use crate::analysis::sweep::{Stored, figures, named, tables};
+use crate::analysis::{self, Answer};
+use crate::campaign::above_zero;
+use crate::error::{Error, Result};
+use crate::measure::response::{ResponseOptions, response, to_displacement};
+use crate::measure::waterfall::{Waterfall as Matrix, waterfall};
+use crate::measure::{Estimate, excitation, legacy};
+use crate::read::{SweepList, SweepReader};
+use crate::record::{Finding, Sweep};
+use crate::report::files;
+use crate::report::layout::{pair, table};
+use ndarray::Array2;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+/// A stepped-sine sweep, and what its analyser stored.
+#[derive(Debug, clap::Args)]
+pub struct Source {
+    /// List file, hand-over file, or campaign.toml#name
+    #[arg(value_name = "SWEEP")]
+    path: String,
+    /// Reproduce the thesis' script, mistakes included
+    #[arg(long)]
+    legacy: bool,
+    /// Allow names in the list that lead outside its folder
+    #[arg(long)]
+    allow_outside: bool,
+    #[command(flatten)]
+    stored: Stored,
+    /// Lowest frequency looked at, in Hz [default: two lines or a quarter of the lowest excitation]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    fmin: Option<f64>,
+}
+
+/// How a response is taken from a spectrum.
+#[derive(Debug, clap::Args)]
+pub struct Taken {
+    #[command(flatten)]
+    sweep: Source,
+    /// Integrations in frequency: 1 takes velocity to displacement [default: what takes the stored quantity to displacement]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(i8).range(-2..=2))]
+    integrate: Option<i8>,
+    /// Lines on both sides of the excitation in which the peak is looked for
+    #[arg(long, value_name = "LINES", allow_negative_numbers = true, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    band: u16,
+    /// Folder for figures as SVG and PNG, and tables as CSV
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Waterfall {
+    #[command(flatten)]
+    taken: Taken,
+    /// Highest frequency drawn, in Hz [default: the base band]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    fmax: Option<f64>,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Excitation {
+    #[command(flatten)]
+    sweep: Source,
+    /// Write the two hand-over files of sineswpf, with force and with response names
+    #[arg(long, num_args = 2, value_names = ["FORCE", "RESPONSE"])]
+    write_lists: Option<Vec<PathBuf>>,
+}
+
+/// The finding that an answer is that of a script of the thesis.
+pub fn of_script(script: &str) -> Finding {
+    Finding::caution("legacy-script").name("script", script)
+}
+
+impl Source {
+    /// The list of the sweep, and how to read it.
+    fn listed(&self) -> Result<(SweepList, SweepReader)> {
+        let (path, name) = self.place();
+        let (list, mut how) = if path.to_lowercase().ends_with(".toml") {
+            named(&analysis::open(path)?, name, self.allow_outside)?
+        } else {
+            (SweepList::from_path(path, self.allow_outside)?, SweepReader::default())
+        };
+        if how.name.is_empty() {
+            let stem = Path::new(path).file_stem();
+            how.name = stem.map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        }
+        above_zero("fmin", self.fmin)?;
+        self.stored.apply(&mut how)?;
+        Ok((list, how))
+    }
+
+    /// The file, and the name of a sweep in a campaign.
+    fn place(&self) -> (&str, Option<&str>) {
+        match self.path.rsplit_once('#') {
+            Some((path, name)) if path.to_lowercase().ends_with(".toml") => (path, Some(name)),
+            _ => (&self.path, None),
+        }
+    }
+}
+
+impl Taken {
+    fn read(&self) -> Result<(Sweep, ResponseOptions)> {
+        let (list, how) = self.sweep.listed()?;
+        let sweep = how.read(&list)?;
+        let integrate = self.integrate.unwrap_or_else(|| to_displacement(sweep.unit().quantity()));
+        let options = ResponseOptions { band: usize::from(self.band), integrate, fmin: self.sweep.fmin };
+        Ok((sweep, options))
+    }
+
+    /// Prints the response.
+    pub fn run(&self, json: bool) -> Result<()> {
+        let (sweep, options) = self.read()?;
+        let answer = if self.sweep.legacy {
+            largest_lines(&sweep)?
+        } else {
+            let found = response(&sweep, &options)?;
+            let all = std::slice::from_ref(&found);
+            let mut answer = Answer::of(&found)?;
+            answer.tell("", &found.findings);
+            answer.figure("response", figures::response(&found.name, all));
+            answer.csv("response", &tables::response(&found));
+            answer.tables = vec![tables::curve(&found), tables::resonances(all), tables::jumps(all)];
+            answer
+        };
+        print::answer(answer, self.out.as_deref(), json)
+    }
+}
+
+/// What sinesw3 printed: a frequency and a largest line. It knew nothing of the rest.
+fn largest_lines(sweep: &Sweep) -> Result<Answer> {
+    let unit = sweep.unit().quantity().symbol();
+    let points = legacy::response(sweep)?;
+    let told = points.iter().map(|(excitation, amplitude)| {
+        json!({
+            "excitation": excitation,
+            "frequency": excitation,
+            "amplitude": Estimate::new(*amplitude, None, unit, 1, "largest line, as sinesw3"),
+            "harmonics": [],
+            "subharmonics": [],
+            "largest_elsewhere": null,
+        })
+    });
+    let told = told.collect::<Vec<Value>>();
+    let mut answer = Answer::of(&json!({ "points": told, "resonances": [], "jumps": [] }))?;
+    answer.tell("", [of_script("sinesw3")]);
+    answer.table(
+        "response",
+        table(
+            "Largest lines",
+            &points,
+            &[("excitation", "Hz", &|p| p.0.into()), ("amplitude", unit, &|p| p.1.into())],
+        ),
+    );
+    Ok(answer)
+}
+
+impl Waterfall {
+    /// Prints the matrix of spectra.
+    pub fn run(&self, json: bool) -> Result<()> {
+        above_zero("fmax", self.fmax)?;
+        let (sweep, options) = self.taken.read()?;
+        let matrix = if self.taken.sweep.legacy {
+            let excitation = legacy::rounded(&legacy::excitation(&sweep)?);
+            let rows = legacy::waterfall(&sweep);
+            let shape = (excitation.len(), sweep.axis.len());
+            Matrix {
+                name: sweep.name.clone(),
+                frequency: sweep.axis.values(),
+                excitation,
+                magnitude: Array2::from_shape_fn(shape, |(i, k)| rows[i][k]),
+                quantity: sweep.unit().quantity(),
+                unit: sweep.unit().symbol().to_owned(),
+                fmin: 0.0,
+                findings: vec![of_script("sinesw")],
+            }
+        } else {
+            waterfall(&sweep, &options)?
+        };
+        let rows = matrix.magnitude.rows();
+        let mut answer = Answer::of(&json!({
+            "frequency": matrix.frequency,
+            "excitation": matrix.excitation,
+            "magnitude": rows.into_iter().map(|r| r.to_vec()).collect::<Vec<_>>(),
+            "unit": matrix.unit,
+            "fmin": matrix.fmin,
+        }))?;
+        answer.tell("", &matrix.findings);
+        answer.figure("waterfall", figures::waterfall(&matrix, self.fmax)?);
+        answer.figure("map", figures::map(&matrix, self.fmax)?);
+        answer.files.push(("waterfall.csv".to_owned(), files::matrix_csv(&matrix).into_bytes()));
+        let (points, lines) = matrix.magnitude.dim();
+        answer.tables.push(table(
+            "Waterfall",
+            [()],
+            &[
+                ("spectra", "", &|()| points.into()),
+                ("lines", "", &|()| lines.into()),
+                ("quantity", "", &|()| matrix.quantity.name().into()),
+                ("unit", "", &|()| matrix.unit.as_str().into()),
+            ],
+        ));
+        print::answer(answer, self.taken.out.as_deref(), json)
+    }
+}
+
+impl Excitation {
+    /// Prints the excitation of each point.
+    pub fn run(&self, json: bool) -> Result<()> {
+        let (list, how) = self.sweep.listed()?;
+        let sweep = how.read(&list)?;
+        let points = if self.sweep.legacy {
+            let found = legacy::excitation(&sweep)?.into_iter().zip(&sweep.points);
+            let point = |(frequency, point): (f64, &crate::record::SweepPoint)| excitation::Excitation {
+                file: point.name(),
+                frequency,
+                std: None,
+                force: None,
+                force_std: None,
+            };
+            found.map(point).collect()
+        } else {
+            excitation::excitations(&sweep, self.sweep.fmin.unwrap_or(0.0))?
+        };
+        let frequencies: Vec<f64> = points.iter().map(|p| p.frequency).collect();
+        let written = self.lists(&list, &frequencies)?;
+        let mut answer = Answer::of(&json!({ "points": points, "written": written }))?;
+        if self.sweep.legacy {
+            answer.tell("", [of_script("sineswpf")]);
+        } else {
+            answer.tell("", &sweep.findings);
+        }
+        answer.tables.push(table(
+            "Excitation",
+            &points,
+            &[
+                ("file", "", &|p| p.file.as_str().into()),
+                ("frequency", "Hz", &|p| pair(p.frequency, p.std)),
+                ("force", "N", &|p| p.force.map(|force| pair(force, p.force_std)).into()),
+            ],
+        ));
+        print::answer(answer, None, json)
+    }
+
+    /// Writes the hand-over files; gives their paths.
+    fn lists(&self, list: &SweepList, frequencies: &[f64]) -> Result<Vec<String>> {
+        let Some([force, response]) = self.write_lists.as_deref() else { return Ok(Vec::new()) };
+        if list.force.is_empty() {
+            let found = "hand-over files of a sweep without force names";
+            return Err(Error::usage(found, "a list file with them").setting("write_lists"));
+        }
+        let path = Path::new(self.sweep.place().0);
+        apart(force, response)?;
+        apart(path, force)?;
+        apart(path, response)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut written = Vec::new();
+        for (path, names) in [(force, &list.force), (response, &list.response)] {
+            let names: Vec<_> = names.iter().map(|n| n.strip_prefix(folder).unwrap_or(n)).collect();
+            let text = legacy::hand_over(list.lines, list.base_band, frequencies, &names);
+            written.push(write_beside(path, &text)?.display().to_string());
+        }
+        Ok(written)
+    }
+}
