@@ -20,11 +20,10 @@ use vibro_record::{Spectrum, Sweep, SweepPoint};
 pub(crate) fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Vec<Scene> {
     let parts: [fn(bool) -> Vec<Scene>; 5] =
         [sine::scenes, integration::scenes, damping::scenes, impacts::scenes, pulse::scenes];
-    let mut all = Vec::new();
+    let mut all: Vec<Scene> = Vec::new();
     for scenes in parts {
-        let part = scenes(quick);
-        part.iter().for_each(|scene| progress(&scene.name));
-        all.extend(part);
+        all.extend(scenes(quick));
+        progress(all.last().map_or("", |scene| &scene.name));
     }
     all
 }

@@ -1,7 +1,7 @@
 //! Impacts of a contact trace: how often, and when.
 
 use super::bound::bounds;
-use super::trial::{Answer, Case, Kind, Method, each, measured, questions, trace};
+use super::trial::{Answer, Case, Change, Kind, Method, each, measured, questions, trace};
 use super::{rivals, scene};
 use crate::Scene;
 use crate::failure::Question;
@@ -185,7 +185,7 @@ pub(crate) fn borders(quick: bool) -> Vec<Question> {
         .map(|n| kind(&format!("noise of {} % of the height", 100.0 * n), Train { noise: n, ..PLAIN }));
     let uneven = [0.02, 0.1, 0.3]
         .map(|jitter| kind(&format!("onsets scatter by {} %", 100.0 * jitter), Train { jitter, ..PLAIN }));
-    let changes: [(&str, fn(&mut Trace)); 9] = [
+    let changes: [Change<Trace>; 9] = [
         ("three spikes in front", |t| [20, 50, 110].into_iter().for_each(|i| t.values[i] = 0.9)),
         ("pulses point downwards", |t| each(t, |_, v| -v)),
         ("clipped at half height", |t| each(t, |_, v| v.min(0.5))),

@@ -1,7 +1,7 @@
 //! Damping ratio of a contact from the pulse of its force.
 
 use super::bound::bounds;
-use super::trial::{Answer, Case, Kind, Method, each, measured, questions, trace};
+use super::trial::{Answer, Case, Change, Kind, Method, each, measured, questions, trace};
 use super::{rivals, scene};
 use crate::Scene;
 use crate::failure::Question;
@@ -143,7 +143,7 @@ pub(crate) fn borders(quick: bool) -> Vec<Question> {
     });
     let few = [2.0, 4.0, 6.0, 8.0]
         .map(|n| Kind::new(format!("{n} samples in the pulse"), 54_000, pulses(0.2, n, 0.01)));
-    let changes: [(&str, fn(&mut Pulse)); 10] = [
+    let changes: [Change<Pulse>; 10] = [
         ("clipped at 80 % of the height", |p| {
             let high = height(p);
             each(&mut p.trace, |_, v| v.min(0.8 * high));

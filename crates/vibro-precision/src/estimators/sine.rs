@@ -1,7 +1,7 @@
 //! Frequency and amplitude of sines in noise.
 
 use super::bound::bounds;
-use super::trial::{Answer, Case, Kind, Method, each, measured, questions, trace};
+use super::trial::{Answer, Case, Change, Kind, Method, each, measured, questions, trace};
 use super::{one_point, rivals, scene};
 use crate::Scene;
 use crate::failure::Question;
@@ -193,7 +193,7 @@ pub(crate) fn borders(quick: bool) -> Vec<Question> {
         at("0.4 lines from half the rate", N, 511.6, 0.0),
         at("half the rate", N, 512.0, 0.0),
     ];
-    let changes: [(&str, fn(&mut Trace)); 6] = [
+    let changes: [Change<Trace>; 6] = [
         ("drift of 20 amplitudes", |t| each(t, |part, v| v + 20.0 * part)),
         ("clipped at half the amplitude", |t| each(t, |_, v| v.clamp(-0.5, 0.5))),
         ("one sample missing", |t| t.values[300] = f64::NAN),

@@ -77,13 +77,18 @@ pub struct Case<D> {
     pub tolerance: f64,
 }
 
+/// A change of a record after it was made, by its name.
+pub type Change<D> = (&'static str, fn(&mut D));
+
+type Make<D> = dyn Fn(&mut Noise) -> Case<D> + Send + Sync;
+
 /// Random records of one kind.
 pub struct Kind<D> {
     /// Its name: the setting of a scene, or the scene at a border.
     name: String,
     /// Seed of its first record; the next have the next.
     seed: u64,
-    make: Box<dyn Fn(&mut Noise) -> Case<D> + Send + Sync>,
+    make: Box<Make<D>>,
 }
 
 impl<D: 'static> Kind<D> {

@@ -86,14 +86,14 @@ pub fn speed(told: &Told, truth: &Told) -> Found {
 }
 
 /// Orbits in closed form by the motion itself: it repeats each that is called admissible, and none that is not, in which the masses would pass through
-/// each other; and what it settles on with one impact a cycle is among the stable ones.
+/// each other, slow impacts aside; and what it settles on with one impact a cycle is among the stable ones.
 pub fn closed_form(task: &Task) -> Result<Found, Found> {
     let found = orbits(&task.rig, task.force, task.frequency)?;
     judged(task, &found.orbits.iter().filter(|o| o.validity.exists).collect::<Vec<_>>())
 }
 
 fn judged(task: &Task, told: &[&Orbit]) -> Result<Found, Found> {
-    for orbit in told {
+    for orbit in told.iter().filter(|o| o.approach_velocity > SLOW) {
         let (speed, admissible) = (orbit.approach_velocity, orbit.validity.admissible);
         let motion = repeats(task, None, orbit.period(), &rigid(orbit));
         let repeated = motion.is_some_and(|one| one.off(speed, orbit.force_phase) < CLOSES);

@@ -13,6 +13,7 @@ use vibro_record::{Error, Result};
 
 /// What a judge says of the motions that are told: their error, or why there is none.
 type Verdict = std::result::Result<f64, String>;
+type Judge = dyn Fn(&[Told]) -> Verdict;
 
 /// A method with its settings.
 type Asked = (Method, &'static [f64]);
@@ -26,7 +27,7 @@ struct Ask {
     /// Motions that are followed one after another; the time of one answer is the mean.
     tasks: Vec<Task>,
     methods: Vec<Asked>,
-    judge: Box<dyn Fn(&[Told]) -> Verdict>,
+    judge: Box<Judge>,
 }
 
 /// Every scene of the models, each method measured; `quick` takes fewer settings, repeats and scenes.
@@ -68,11 +69,8 @@ impl Ask {
             let (name, setting) = ((method.name, method.ours), method.words(setting));
             Measured::new(name, setting, time / self.tasks.len() as f64, answer)
         };
-        let of = |settings: &'static [f64]| match quick {
-            true => &settings[..settings.len().div_ceil(2)],
-            false => settings,
-        };
-        let methods = self.methods.iter().flat_map(|(m, settings)| of(settings).iter().map(|s| one(m, *s)));
+        let of = |settings: &[f64]| if quick { settings.len().div_ceil(2) } else { settings.len() };
+        let methods = self.methods.iter().flat_map(|(m, all)| all[..of(all)].iter().map(|s| one(m, *s)));
         Scene {
             methods: methods.collect(),
             name: self.name,
@@ -126,7 +124,7 @@ pub(super) fn task_b(until: f64) -> Task {
 fn scene_b(seconds: f64) -> Result<Ask> {
     let task = task_b(seconds);
     let golden = GOLDEN_B.iter().filter(|g| g.1 < seconds);
-    let count = golden.clone().last().map_or(0, |g| g.0);
+    let count = golden.clone().next_back().map_or(0, |g| g.0);
     // Time of each impact, and how far off it may be.
     let followed = truth::motion(&task, None)?.impacts;
     let mut truth: Vec<[f64; 2]> = followed.iter().take(count).map(|i| [i.0, FOLLOWED]).collect();
@@ -379,8 +377,8 @@ fn chaos() -> Result<Ask> {
     let judge = move |told: &[Told]| -> Verdict {
         let found = statistics(&told[0]);
         let off = [0, 1].map(|i| (found[i] / truth[i][0] - 1.0).abs());
-        // Written so that not a number is no statistics either.
-        if let Some(i) = (0..2).find(|i| !(off[*i] <= ALLOWED * scatter[*i])) {
+        // Not a number is no statistics either.
+        if let Some(i) = (0..2).find(|i| off[*i].is_nan() || off[*i] > ALLOWED * scatter[*i]) {
             let (name, part) = (["mean", "standard deviation"][i], 100.0 * off[i]);
             return Err(format!(
                 "the {name} of the approach speeds is {part:.1} % off: those of another motion"

@@ -17,6 +17,8 @@ const SMALL: f64 = 1e-7;
 /// A motion closes where it misses by no more than this in these units: errors of some ten steps, enlarged by what near grazing
 /// does so.
 const CLOSED: f64 = 1e-9;
+/// Part of the period within which an impact after another is the same.
+const AT_ONCE: f64 = 1e-6;
 /// What is left of the start, relative, where Newton's method takes over.
 const NEARLY: f64 = 1e-3;
 
@@ -73,7 +75,12 @@ pub fn repeats(task: &Task, contact: Option<Spring>, period: f64, guess: &Repeat
         let task = Task { phase, start: y, until: 1.5 * period, rests: true, ..*task };
         let mut course = Course::new(&task, contact, KIND, Locate::Summed);
         course.meet(0, 0.0, y);
-        let (time, then) = meeting(&mut course).ok()??;
+        let mut met = meeting(&mut course).ok()??;
+        // At R = 0 rounding makes them meet at once again.
+        while met.0 < AT_ONCE * period {
+            met = meeting(&mut course).ok()??;
+        }
+        let (time, then) = met;
         let [x1, v1, _, v2] = std::array::from_fn(|i| then[i] - y[i]);
         Some(Vector4::new(x1 / LENGTH, v1 / speed, v2 / speed, omega * (time - period)))
     };

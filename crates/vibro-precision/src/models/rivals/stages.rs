@@ -235,10 +235,12 @@ pub fn through(task: &Task, kind: Kind) -> Result<Told, Found> {
             touch = Some(step.start + at);
         }
         t = step.start + step.duration;
-        gap = task.gap(&step.end);
-        if gap > 0.0 {
-            told.sticks.extend(touch.take().and_then(|from| spring.rest(from, t)));
+        let after = task.gap(&step.end);
+        if after > 0.0 {
+            let parts = step.crossing(f, -gap, |_, y| -task.gap(y)).map_or(t, |at| step.start + at);
+            told.sticks.extend(touch.take().and_then(|from| spring.rest(from, parts)));
         }
+        gap = after;
     }
     told.sticks.extend(touch.and_then(|from| spring.rest(from, f64::INFINITY)));
     Ok(told)
