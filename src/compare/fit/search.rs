@@ -11,7 +11,7 @@ use super::data::{Data, Reading, Step};
 use super::setting::Setting;
 use super::unknown::{Unknown, at, coordinates, fold};
 use crate::campaign::Parameter;
-use crate::math::approach;
+use crate::math::minimise;
 use rayon::prelude::*;
 
 /// κ of the search, in turn: the starts are off by up to a half.
@@ -32,6 +32,8 @@ const LOGIT: f64 = 1.5;
 const SCREENED: usize = 16;
 /// Places beside an answer in one turn.
 const AROUND: usize = 8;
+/// A fit to given motions ends where a step gains less than this.
+const GAIN: f64 = 1e-3;
 /// Rounds of choosing motions and fitting for each κ: motions stay after two or three.
 const ROUNDS: usize = 4;
 
@@ -151,7 +153,7 @@ pub fn approached(
         r.iter_mut().zip(points.chain(priors)).for_each(|(r, value)| *r = value);
     };
     let n = data.clear() + unknowns.len();
-    let Ok(mut minimum) = approach(residuals, n, &u, &vec![0.1; u.len()]) else { return u };
+    let Ok(mut minimum) = minimise(residuals, n, &u, &vec![0.1; u.len()], Some(GAIN)) else { return u };
     fold(unknowns, &mut minimum.parameters);
     minimum.parameters
 }
