@@ -57,20 +57,6 @@ impl Grid {
         self
     }
 
-    /// Places of the rows' upper edges below the first, and their end, in points.
-    pub(super) fn places(&self) -> (Vec<f64>, f64) {
-        let mut at = 0.0;
-        let mut places = Vec::with_capacity(self.rows.len());
-        for (i, row) in self.rows.iter().enumerate() {
-            if i > 0 && self.rows[i - 1].group != row.group {
-                at += BETWEEN;
-            }
-            places.push(at);
-            at += ROW;
-        }
-        (places, at)
-    }
-
     /// Names of the columns, cut into words that stand under each other.
     pub(super) fn heads(&self) -> Vec<Vec<String>> {
         self.columns
@@ -79,9 +65,15 @@ impl Grid {
             .collect()
     }
 
+    /// Lines that the names of the columns take.
+    pub(super) fn lines(&self) -> usize {
+        self.heads().iter().map(Vec::len).max().unwrap_or(0)
+    }
+
     /// Height in mm of a figure that it fills.
     pub fn height(&self) -> f64 {
-        let lines = self.heads().iter().map(Vec::len).max().unwrap_or(0) as f64;
-        (self.places().1 + lines * ROW + KEY + 12.0) * 25.4 / 72.0
+        let groups = self.rows.chunk_by(|a, b| a.group == b.group).count();
+        let rows = (self.lines() + self.rows.len()) as f64 * ROW;
+        (rows + groups.saturating_sub(1) as f64 * BETWEEN + KEY + 12.0) * 25.4 / 72.0
     }
 }

@@ -6,8 +6,7 @@
 use super::draw::{Drawing, Image};
 use super::font;
 use resvg::tiny_skia::{Color, FilterQuality, Pixmap, PixmapPaint, Transform};
-use resvg::usvg::{self, fontdb};
-use std::sync::{Arc, OnceLock};
+use resvg::usvg;
 use vibro_record::{Error, Result};
 
 /// Pixels of a drawing at `dpi` dots per inch (30 to 1200), on white, with the resolution noted in the file.
@@ -37,7 +36,8 @@ pub(super) fn rasterised(drawing: &Drawing, dpi: f64) -> Result<Vec<u8>> {
         let paint = PixmapPaint { quality: FilterQuality::Nearest, ..PixmapPaint::default() };
         pixmap.draw_pixmap(0, 0, pixels.as_ref(), &paint, transform, None);
     }
-    let options = usvg::Options { fontdb: fonts(), font_family: font::NAME.to_owned(), ..Default::default() };
+    let mut options = usvg::Options { font_family: font::NAME.to_owned(), ..usvg::Options::default() };
+    options.fontdb_mut().load_font_data(font::BYTES.to_vec());
     let tree = usvg::Tree::from_str(&drawing.lines_and_texts(), &options)
         .map_err(|e| refused(format!("cannot be turned into pixels: {e}")))?;
     let transform =
@@ -48,16 +48,6 @@ pub(super) fn rasterised(drawing: &Drawing, dpi: f64) -> Result<Vec<u8>> {
 
 /// Pixels of the largest picture: four times a double column as high as wide at 1200 dots per inch, in memory 1.1 GB.
 const MOST: u64 = 280_000_000;
-
-fn fonts() -> Arc<fontdb::Database> {
-    static FONTS: OnceLock<Arc<fontdb::Database>> = OnceLock::new();
-    let load = || {
-        let mut fonts = fontdb::Database::new();
-        fonts.load_font_data(font::BYTES.to_vec());
-        Arc::new(fonts)
-    };
-    FONTS.get_or_init(load).clone()
-}
 
 /// Pixels that are opaque or not there, as a file with its resolution where one is stated.
 pub(super) fn encoded(pixmap: &Pixmap, dpi: Option<f64>) -> Vec<u8> {

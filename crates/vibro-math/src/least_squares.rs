@@ -80,7 +80,7 @@ pub fn least_squares(
     start: &[f64],
     scale: &[f64],
 ) -> Result<Fit> {
-    let found = minimise(residuals, n, start, scale)?;
+    let found = minimise(residuals, n, start, scale, None)?;
     Ok(Fit {
         cofactor: cofactor(found.jacobian)?,
         parameters: found.parameters,
@@ -103,7 +103,8 @@ pub struct Minimum {
 }
 
 /// As [`least_squares`], for callers that look into the Jacobian themselves: a combination of parameters on which nothing depends is no
-/// error, and stays about where it started.
+/// error, and stays about where it started. With a `gain`, such as a thousandth, no farther than to where a step gains less than that, over
+/// twenty evaluations a parameter at most: for searches that go on from there.
 ///
 /// # Errors
 /// As [`least_squares`], but for that.
@@ -112,33 +113,10 @@ pub fn minimise(
     n: usize,
     start: &[f64],
     scale: &[f64],
+    gain: Option<f64>,
 ) -> Result<Minimum> {
-    run(residuals, n, start, scale, &LevenbergMarquardt::new().with_patience(200))
-}
-
-/// As [`minimise`], but no farther than to the neighbourhood of a minimum: until a step gains less than a thousandth, and over twenty
-/// evaluations a parameter at most. For searches that go on from there.
-///
-/// # Errors
-/// As [`minimise`].
-pub fn approach(
-    residuals: impl Fn(&[f64], &mut [f64]),
-    n: usize,
-    start: &[f64],
-    scale: &[f64],
-) -> Result<Minimum> {
-    const GAIN: f64 = 1e-3;
-    let near = LevenbergMarquardt::new().with_patience(20).with_ftol(GAIN).with_xtol(GAIN);
-    run(residuals, n, start, scale, &near)
-}
-
-fn run(
-    residuals: impl Fn(&[f64], &mut [f64]),
-    n: usize,
-    start: &[f64],
-    scale: &[f64],
-    algorithm: &LevenbergMarquardt<f64>,
-) -> Result<Minimum> {
+    let whole = LevenbergMarquardt::new().with_patience(200);
+    let algorithm = gain.map_or(whole, |gain| whole.with_patience(20).with_ftol(gain).with_xtol(gain));
     let scaled = scale.iter().all(|s| s.is_finite() && *s != 0.0);
     if start.is_empty() || scale.len() != start.len() || !scaled {
         return Err(Error::usage(

@@ -11,7 +11,7 @@ pub mod root;
 pub mod runge_kutta;
 pub mod swing;
 
-pub use least_squares::{Fit, Minimum, approach, least_squares, minimise};
+pub use least_squares::{Fit, Minimum, least_squares, minimise};
 pub use noise::Noise;
 pub use oscillator::Oscillator;
 pub use polynomial::Polynomial;

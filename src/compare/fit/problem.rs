@@ -212,7 +212,7 @@ impl Problem<'_> {
     pub fn solve(&self, start: &[f64]) -> Result<Minimum> {
         let (data, priors) = self.rows();
         let residuals = |u: &[f64], r: &mut [f64]| r.copy_from_slice(&self.at(u));
-        let mut minimum = minimise(residuals, data + priors, start, &vec![0.1; start.len()])?;
+        let mut minimum = minimise(residuals, data + priors, start, &vec![0.1; start.len()], None)?;
         for (i, turned) in self.fold(&mut minimum.parameters).into_iter().enumerate() {
             if turned {
                 minimum.jacobian.column_mut(i).neg_mut();

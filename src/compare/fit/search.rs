@@ -12,7 +12,7 @@ use super::problem::Problem;
 use super::setting::Setting;
 use super::unknown::Unknown;
 use crate::campaign::Parameter;
-use crate::math::approach;
+use crate::math::minimise;
 use rayon::prelude::*;
 
 /// κ of the search, in turn: the starts are off by up to a half.
@@ -33,6 +33,8 @@ const LOGIT: f64 = 1.5;
 const SCREENED: usize = 16;
 /// Places beside an answer in one turn.
 const AROUND: usize = 8;
+/// A fit to given motions ends where a step gains less than this.
+const GAIN: f64 = 1e-3;
 /// Rounds of choosing motions and fitting for each κ: motions stay after two or three.
 const ROUNDS: usize = 4;
 
@@ -136,7 +138,7 @@ impl Problem<'_> {
             r.iter_mut().zip(points.chain(priors)).for_each(|(r, value)| *r = value);
         };
         let n = self.data.clear() + self.unknowns.len();
-        let Ok(mut minimum) = approach(residuals, n, &u, &vec![0.1; u.len()]) else { return u };
+        let Ok(mut minimum) = minimise(residuals, n, &u, &vec![0.1; u.len()], Some(GAIN)) else { return u };
         self.fold(&mut minimum.parameters);
         minimum.parameters
     }

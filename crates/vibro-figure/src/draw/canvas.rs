@@ -170,26 +170,19 @@ impl Canvas {
 /// The whole document of `width` by `height` mm, with a name for readers that cannot see it.
 pub(super) fn document((width, height): (f64, f64), name: &str, images: &[Image], body: &str) -> String {
     const POINTS: f64 = 72.0 / 25.4;
+    let [across, down, w, h] = [width, height, width * POINTS, height * POINTS].map(decimal);
     let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {} {}\" \
-         role=\"img\" aria-label=\"{}\" style=\"background:#ffffff\">\n",
-        decimal(width),
-        decimal(height),
-        decimal(width * POINTS),
-        decimal(height * POINTS),
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{across}mm\" height=\"{down}mm\" \
+         viewBox=\"0 0 {w} {h}\" role=\"img\" aria-label=\"{}\" style=\"background:#ffffff\">\n",
         escaped(name)
     );
-    for image in images {
-        let Rect { x, y, w, h } = image.place;
+    for Image { place, pixels } in images {
+        let [x, y, w, h] = [place.x, place.y, place.w, place.h].map(decimal);
+        let data = STANDARD.encode(png::encoded(pixels, None));
         let _ = writeln!(
             svg,
-            "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" \
-             style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{}\"/>",
-            decimal(x),
-            decimal(y),
-            decimal(w),
-            decimal(h),
-            STANDARD.encode(png::encoded(&image.pixels, None))
+            "<image x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" preserveAspectRatio=\"none\" \
+             style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{data}\"/>"
         );
     }
     let family = font::FAMILY;

@@ -97,36 +97,35 @@ pub(super) fn markers(canvas: &mut Canvas, points: &[Point], marker: Marker, siz
         let at = |p: &Point| corners.iter().map(|c| (p.0 + c.0 * size, p.1 + c.1 * size)).collect();
         points.iter().map(at).collect()
     };
+    let pen = Pen::solid(colour, OUTLINE);
+    let (fill, outline) = if is_open(marker) { (WHITE, Some(pen)) } else { (colour, None) };
     let square = [(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)];
-    let pen = Some(Pen::solid(colour, OUTLINE));
-    match marker {
-        Marker::Circle => canvas.circles(points, size, colour, None),
-        Marker::OpenCircle => canvas.circles(points, size, WHITE, pen),
-        Marker::Square => canvas.areas(&polygon(&square), WHITE, pen),
-        Marker::FilledSquare => canvas.areas(&polygon(&square), colour, None),
-        Marker::Triangle => canvas.areas(&polygon(&[(0.0, -1.3), (1.2, 0.85), (-1.2, 0.85)]), colour, None),
-        Marker::Limit => canvas.areas(&polygon(&[(0.0, 1.3), (1.2, -0.85), (-1.2, -0.85)]), WHITE, pen),
-        Marker::Diamond => {
-            canvas.areas(&polygon(&[(0.0, -1.3), (1.2, 0.0), (0.0, 1.3), (-1.2, 0.0)]), WHITE, pen);
-        }
+    let upright = [[(-1.2, 0.0), (1.2, 0.0)], [(0.0, -1.2), (0.0, 1.2)]];
+    let slanting = [[square[0], square[2]], [square[3], square[1]]];
+    let corners: &[Point] = match marker {
+        Marker::Circle | Marker::OpenCircle => return canvas.circles(points, size, fill, outline),
+        Marker::Square | Marker::FilledSquare => &square,
+        Marker::Triangle => &[(0.0, -1.3), (1.2, 0.85), (-1.2, 0.85)],
+        Marker::Limit => &[(0.0, 1.3), (1.2, -0.85), (-1.2, -0.85)],
+        Marker::Diamond => &[(0.0, -1.3), (1.2, 0.0), (0.0, 1.3), (-1.2, 0.0)],
         Marker::Cross | Marker::Saltire | Marker::Star => {
-            let upright = [[(-1.2, 0.0), (1.2, 0.0)], [(0.0, -1.2), (0.0, 1.2)]];
-            let slanting = [[(-0.9, -0.9), (0.9, 0.9)], [(-0.9, 0.9), (0.9, -0.9)]];
-            let strokes: &[_] = match marker {
-                Marker::Cross => &[upright],
-                Marker::Saltire => &[slanting],
-                _ => &[upright, slanting],
+            let strokes = [upright, slanting].concat();
+            let drawn = match marker {
+                Marker::Cross => &strokes[..2],
+                Marker::Saltire => &strokes[2..],
+                _ => &strokes,
             };
-            let parts: Vec<_> = strokes.iter().flatten().flat_map(|stroke| polygon(stroke)).collect();
-            canvas.lines(&parts, Pen::solid(colour, OUTLINE));
+            return canvas.lines(&drawn.iter().flat_map(|stroke| polygon(stroke)).collect::<Vec<_>>(), pen);
         }
         Marker::Letter(letter) => {
             for &(x, y) in points {
                 let at = (x, y + font::DIGIT_HEIGHT * SMALL / 2.0);
                 canvas.label(&letter.to_string(), at, SMALL, Anchor::Middle);
             }
+            return;
         }
-    }
+    };
+    canvas.areas(&polygon(corners), fill, outline);
 }
 
 /// A curve cut to the frame, with no more points than are seen.

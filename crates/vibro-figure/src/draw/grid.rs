@@ -4,7 +4,7 @@ use super::canvas::{Anchor, Canvas, Pen};
 use super::style::{FRAME, GAP, SMALL};
 use crate::colour::{GREY, WHITE};
 use crate::font;
-use crate::grid::{Grid, KEY, ROW};
+use crate::grid::{BETWEEN, Grid, KEY, ROW};
 use crate::path::Rect;
 
 /// Size of names and letters.
@@ -21,11 +21,9 @@ pub(super) fn draw(canvas: &mut Canvas, grid: &Grid, cell: Rect) {
     let groups = widest(&mut grid.rows.iter().map(|r| &r.group)) + 2.0 * GAP;
     let names = widest(&mut grid.rows.iter().map(|r| &r.name)) + 2.0 * GAP;
     let heads = grid.heads();
-    let lines = heads.iter().map(Vec::len).max().unwrap_or(0) as f64;
-    let (left, top) = (cell.x + groups + names, cell.y + lines * ROW + GAP);
+    let (left, top) = (cell.x + groups + names, cell.y + grid.lines() as f64 * ROW + GAP);
     let count = grid.columns.len().max(1) as f64;
     let width = ((cell.right() - left) / count).clamp(4.0, 60.0);
-    let (places, _) = grid.places();
     // All heads as large as the widest word lets them be.
     let word = widest(&mut heads.iter().flatten());
     let size = (SIZE * (width - 1.0) / word.max(1.0)).clamp(LEAST, SIZE);
@@ -37,19 +35,21 @@ pub(super) fn draw(canvas: &mut Canvas, grid: &Grid, cell: Rect) {
         }
     }
     let base = 0.5 * ROW + font::DIGIT_HEIGHT * SIZE / 2.0;
-    for (i, (row, place)) in grid.rows.iter().zip(&places).enumerate() {
-        let y = top + place;
-        if i == 0 || grid.rows[i - 1].group != row.group {
-            canvas.label(&row.group, (cell.x, y + base), SIZE, Anchor::Start);
-            canvas.line((cell.x, y), (left + count * width, y), Pen::solid(GREY, 0.4));
+    let mut y = top;
+    for group in grid.rows.chunk_by(|a, b| a.group == b.group) {
+        canvas.label(&group[0].group, (cell.x, y + base), SIZE, Anchor::Start);
+        canvas.line((cell.x, y), (left + count * width, y), Pen::solid(GREY, 0.4));
+        for row in group {
+            canvas.label(&row.name, (left - GAP, y + base), SIZE, Anchor::End);
+            for (k, kind) in row.cells.iter().enumerate() {
+                let Some(kind) = kind.and_then(|kind| grid.kinds.get(kind)) else { continue };
+                let area = Rect { x: left + k as f64 * width, y, w: width, h: ROW };
+                canvas.rect(area, kind.colour, Some(Pen::solid(WHITE, 0.6)));
+                canvas.label(&kind.letter, (area.middle().0, y + base), SIZE, Anchor::Middle);
+            }
+            y += ROW;
         }
-        canvas.label(&row.name, (left - GAP, y + base), SIZE, Anchor::End);
-        for (k, kind) in row.cells.iter().enumerate() {
-            let Some(kind) = kind.and_then(|kind| grid.kinds.get(kind)) else { continue };
-            let area = Rect { x: left + k as f64 * width, y, w: width, h: ROW };
-            canvas.rect(area, kind.colour, Some(Pen::solid(WHITE, 0.6)));
-            canvas.label(&kind.letter, (area.middle().0, y + base), SIZE, Anchor::Middle);
-        }
+        y += BETWEEN;
     }
     let (mut x, y) = (cell.x + GAP, cell.bottom() - KEY + 4.0);
     for kind in &grid.kinds {

@@ -88,16 +88,9 @@ impl KeyList {
         places.into_iter().find(|place| clutter.under(place.grown(INSET / 2.0)) == 0.0)
     }
 
-    /// Draws the entries under each other.
-    pub fn draw_column(&self, canvas: &mut Canvas, place: Rect) {
-        for (i, entry) in self.entries.iter().enumerate() {
-            entry.draw(canvas, (place.x, place.y + (i as f64 + 0.5) * LEADING), self.sample(), place.w);
-        }
-    }
-
-    /// Draws the entries in rows from the upper left.
-    pub fn draw_rows(&self, canvas: &mut Canvas, place: Rect) {
-        for (entry, (x, row)) in self.entries.iter().zip(self.flow(place.w)) {
+    /// Draws the entries from the upper left, in rows of the width `room`, under each other where that is 0.
+    pub fn draw(&self, canvas: &mut Canvas, place: Rect, room: f64) {
+        for (entry, (x, row)) in self.entries.iter().zip(self.flow(room)) {
             entry.draw(canvas, (place.x + x, place.y + (row as f64 + 0.5) * LEADING), self.sample(), place.w);
         }
     }

@@ -53,11 +53,8 @@ pub(super) fn name_lines(canvas: &mut Canvas, series: &[Series], place: &Place<'
 /// off.
 pub(super) fn write_notes(canvas: &mut Canvas, notes: &[Note], place: &Place<'_>, clutter: &mut Clutter) {
     let inside = place.frame.grown(0.01);
-    let points: Vec<(&Note, Point)> = notes
-        .iter()
-        .map(|note| (note, place.at(note.x, note.y)))
-        .filter(|(_, at)| inside.contains(*at))
-        .collect();
+    let points = notes.iter().map(|note| (note, place.at(note.x, note.y)));
+    let points: Vec<(&Note, Point)> = points.filter(|(_, at)| inside.contains(*at)).collect();
     for (_, at) in &points {
         clutter.add_box(Rect::around(*at, MARKER));
     }
@@ -99,11 +96,8 @@ fn beside(name: &str, line: f64, upright: bool, frame: Rect, clutter: &Clutter) 
             Rect { x: along, y: side, w: length, h: SMALL }
         };
         let outside = if frame.holds(area) { 0.0 } else { 1e5 };
-        Spot {
-            area,
-            leader: None,
-            cost: outside + clutter.under(area.grown(0.7)) + 0.1 * part.min(1.1 - part),
-        }
+        let cost = outside + clutter.under(area.grown(0.7)) + 0.1 * part.min(1.1 - part);
+        Spot { area, leader: None, cost }
     }))
 }
 

@@ -125,17 +125,17 @@ impl<'a> Sheet<'a> {
         match self.names {
             Legend::Auto => {
                 if let Some(free) = self.free_place(&place, &clutter) {
-                    self.keys.draw_column(canvas, free);
+                    self.keys.draw(canvas, free, 0.0);
                     clutter.add_box(free);
                 }
             }
             Legend::Right => {
                 let (w, h) = self.keys.column(BESIDE * frame.w);
-                self.keys.draw_column(canvas, Rect { x: frame.right() + LEADING, y: frame.y, w, h });
+                self.keys.draw(canvas, Rect { x: frame.right() + LEADING, y: frame.y, w, h }, 0.0);
             }
             Legend::Above => {
                 let h = self.keys.rows(frame.w);
-                self.keys.draw_rows(canvas, Rect { y: frame.y - h - 2.0, h, ..frame });
+                self.keys.draw(canvas, Rect { y: frame.y - h - 2.0, h, ..frame }, frame.w);
             }
             Legend::Hidden => {}
         }

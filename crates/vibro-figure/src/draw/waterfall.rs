@@ -32,33 +32,14 @@ pub(super) fn draw(canvas: &mut Canvas, waterfall: &Waterfall, cell: Rect) {
         canvas.outline(rough, FRAME);
         return canvas.label("no data", rough.middle(), LARGE, Anchor::Middle);
     };
-    // With the numbers known, the room beside them is too.
+    // With the numbers known, the room beside them is too, and that of the names beyond them.
     let sheet = Sheet::new(&cube, rough);
     let numbers = |axis: &Axis, length: f64| TICK + 2.0 + frame::widest(&frame::upward(axis, length));
     let left = numbers(&cube.up, sheet.rise) + GAP + DESCENT + LARGE;
-    let beside = numbers(&cube.depth, sheet.back.1);
-    let right = sheet.slope(beside).overhang(&cube.depth.title);
-    let sheet = Sheet::new(&cube, framed(left, beside.max(right)));
+    let right = numbers(&cube.depth, sheet.back.1) + 2.0 * GAP + LARGE;
+    let sheet = Sheet::new(&cube, framed(left, right));
     sheet.draw_spectra(canvas);
     sheet.draw_axes(canvas);
-}
-
-/// The direction of the axis to the back, with a name along it.
-struct Slope {
-    length: f64,
-    /// Parts of a step along the axis that lead to the right and up.
-    right: f64,
-    up: f64,
-    /// Distance of the name's baseline from the axis.
-    off: f64,
-}
-
-impl Slope {
-    /// How far the name reaches to the right of the back end of the axis.
-    fn overhang(&self, name: &str) -> f64 {
-        let half = font::width(name, LARGE).min(self.length + LEADING) / 2.0;
-        self.off * self.up + (half - self.length / 2.0) * self.right + 1.0
-    }
 }
 
 /// A cube in its frame.
@@ -87,16 +68,6 @@ impl<'a> Sheet<'a> {
     fn at(&self, x: f64, depth: f64, up: f64) -> Point {
         let right = x * self.along + depth * self.back.0;
         (self.frame.x + right, self.frame.bottom() - depth * self.back.1 - up * self.rise)
-    }
-
-    /// The axis to the back, with numbers that take this much room beside it.
-    fn slope(&self, numbers: f64) -> Slope {
-        let (dx, dy) = self.back;
-        let length = dx.hypot(dy).max(1.0);
-        let (right, up) = (dx / length, dy / length);
-        // The lower right corner of a number is what comes nearest to the name.
-        let corner = numbers * up + font::DIGIT_HEIGHT * SMALL / 2.0 * right;
-        Slope { length, right, up, off: corner + 2.0 * GAP + 0.75 * LARGE }
     }
 
     /// Draws from back to front: each spectrum is white below its line and hides what stands behind it.
@@ -141,15 +112,19 @@ impl<'a> Sheet<'a> {
         let (name, size) = fitted(&x.title, LARGE, self.along + 2.0 * LEADING);
         let below = self.frame.bottom() + TICK + 2.0 + LEADING + 0.8 * LARGE;
         canvas.label(&name, (self.frame.x + self.along / 2.0, below), size, Anchor::Middle);
-        let slope = self.slope(TICK + 2.0 + frame::widest(&tz));
-        let (name, size) = fitted(&depth.title, LARGE, slope.length + LEADING);
+        // Along the axis to the back, clear of the lower right corners of its numbers.
+        let length = self.back.0.hypot(self.back.1).max(1.0);
+        let (right, rise) = (self.back.0 / length, self.back.1 / length);
+        let corner = (TICK + 2.0 + frame::widest(&tz)) * rise + font::DIGIT_HEIGHT * SMALL / 2.0 * right;
+        let off = corner + 2.0 * GAP + 0.75 * LARGE;
+        let (name, size) = fitted(&depth.title, LARGE, length + LEADING);
         let middle = (f64::midpoint(front.0, far.0), f64::midpoint(front.1, far.1));
         canvas.text(Text {
             words: &name,
-            at: (middle.0 + slope.off * slope.up, middle.1 + slope.off * slope.right),
+            at: (middle.0 + off * rise, middle.1 + off * right),
             size,
             anchor: Anchor::Middle,
-            turn: slope.up.atan2(slope.right).to_degrees(),
+            turn: rise.atan2(right).to_degrees(),
             colour: BLACK,
             halo: false,
         });
