@@ -122,20 +122,10 @@ impl Keys {
         needed("from", self.from)?;
         // A beam from which nothing is seen leaves its own record out.
         self.options(Beam::new(0.0, From::Axis)?)?.check()?;
-        let handle = self.handle.is_empty();
-        let contradictions = [
-            (
-                "smoothing",
-                self.low_pass.is_some() && self.smoothing.is_some(),
-                "one of smoothing and low_pass",
-            ),
-            ("handle_sensitivity", self.handle_sensitivity.is_some() && handle, "a handle"),
-            ("exposure", self.exposure.is_some() && handle, "a handle"),
-        ];
-        match contradictions.into_iter().find(|(_, holds, _)| *holds) {
-            Some((key, _, expected)) => Err(Error::usage(key.replace('_', " "), expected).setting(key)),
-            None => Ok(()),
+        if self.low_pass.is_some() && self.smoothing.is_some() {
+            return Err(Error::usage("low_pass and smoothing", "one of them").setting("smoothing"));
         }
+        Ok(())
     }
 
     /// Without a sensitivity the file must say that the channel is a velocity.

@@ -1,6 +1,6 @@
 //! What a person should know of a drill's record.
 
-use super::{Drill, DrillOptions, Edges, Smoothing, Survey};
+use super::{Drill, DrillOptions, Edges, Survey};
 use vibro_record::Finding;
 
 /// Relative change of velocities for a degree of error in the beam angle that is worth a word.
@@ -16,7 +16,6 @@ pub(super) fn findings(
 ) -> Vec<Finding> {
     let (r, f, bandwidth, pulses) = (&d.reference, &d.faults, &d.bandwidth, options.pulses_per_turn);
     let limit = options.instrument.unwrap_or(f64::INFINITY);
-    let corner = d.smoothing.map_or(f64::NAN, |s| s.corner);
     let means =
         [&d.speed, &d.displacement.stroke].into_iter().chain(d.groups.iter().map(|g| &g.before)).map(|e| e.n);
     let few = means.filter(|n| *n < 4).max();
@@ -48,10 +47,6 @@ pub(super) fn findings(
         (d.beam.per_degree > STEEP, Finding::caution("drill-beam-angle").number("share", d.beam.per_degree)),
         (bandwidth.sampling_limited, Finding::doubt("drill-sampling-limited").number("f2", bandwidth.f2)),
         (bandwidth.f2 > limit, limited.number("limit", limit)),
-        (
-            !corner.is_nan() && options.smoothing != Smoothing::Phases,
-            Finding::note("drill-smoothed").number("corner", corner),
-        ),
         (still && d.noise_floor.is_none(), Finding::caution("drill-noise-floor-short")),
     ];
     let mut all: Vec<Finding> =

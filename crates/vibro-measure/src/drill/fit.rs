@@ -6,8 +6,6 @@ use std::ops::RangeInclusive;
 
 /// Fewest samples of a fit: twice its parameters.
 pub(super) const FEWEST: usize = 6;
-/// Fewest impacts whose residuals are compared.
-const FEWEST_IMPACTS: usize = 4;
 /// How many times the mean square that chance leaves a common residual must have. In noise the ratio is 1 ± √(2/f), f the number of
 /// residuals of a fit that do not depend on each other: five or more behind any decoder that passes the inverse of the fit's duration.
 const SIGNIFICANT: f64 = 5.0;
@@ -89,9 +87,6 @@ impl LackOfFit {
     /// a root mean square of 1.
     pub fn of(residuals: &[&[f64]], gap: usize) -> Option<LackOfFit> {
         let (n, places) = (residuals.len() as f64, residuals.first()?.len());
-        if residuals.len() < FEWEST_IMPACTS {
-            return None;
-        }
         let (mut common, mut chance) = (0.0, 0.0);
         for k in 0..places {
             let mean = residuals.iter().map(|r| r[k]).sum::<f64>() / n;
@@ -168,6 +163,5 @@ mod tests {
             (found.residual * 7f64.sqrt() - 1.0).abs() < 1e-5 && (found.bias - 1.0).abs() < 1e-5,
             "{found:?}"
         );
-        assert_eq!(LackOfFit::of(&[&residuals[..]; 3], 0), None);
     }
 }
