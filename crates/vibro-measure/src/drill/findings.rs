@@ -3,6 +3,8 @@
 use super::{Drill, DrillOptions, Edges, Survey};
 use vibro_record::Finding;
 
+/// A displacement that drifts by more than this part of the stroke in a turn has an offset, or the machine moves.
+const DRIFTING: f64 = 0.1;
 /// Relative change of velocities for a degree of error in the beam angle that is worth a word.
 const STEEP: f64 = 0.005;
 
@@ -30,6 +32,8 @@ pub(super) fn findings(
     let lost = Finding::caution("drill-samples-lost").count("n", f.lost);
     let several = Finding::caution("drill-groups").count("n", phases.len()).number("phase", phase);
     let limited = Finding::doubt("drill-instrument-limited").number("f2", bandwidth.f2);
+    let [stroke, drift] = [d.displacement.stroke.value, d.displacement.drift.value];
+    let drifts = Finding::caution("drill-drift").number("drift", drift).number("stroke", stroke);
     let found = [
         (r.missing > 0, Finding::caution("drill-edges-missing").count("n", r.missing)),
         (r.extra > 0, Finding::caution("drill-edges-extra").count("n", r.extra)),
@@ -40,6 +44,7 @@ pub(super) fn findings(
         (f.lost > 0, lost.count("turns", d.cycles - d.averaged)),
         (f.clipped > 0, over_range.number("low", velocity.low).number("high", velocity.high)),
         (d.hidden > 0, Finding::caution("drill-impacts-hidden").count("n", d.hidden)),
+        (drift.abs() > DRIFTING * stroke, drifts),
         (d.impacts.is_empty(), Finding::caution("drill-no-impact").number("contact", options.contact)),
         (few.is_some(), Finding::caution("drill-few-values").count("n", few.unwrap_or(0))),
         (phases.len() > 1, several.numbers("phases", phases)),
