@@ -13,8 +13,8 @@ use crate::measure::drill::{Beam, Cycle, DrillOptions, Edge, From, Slices, Smoot
 use file::Channels;
 use serde::Deserialize;
 use std::path::PathBuf;
+use vibro_record::Finding;
 use vibro_record::units::Quantity;
-use vibro_record::{Finding, Place};
 
 /// Where the channels of a drill are, and how they are measured.
 #[derive(Debug, Clone, Default, Deserialize)]
@@ -122,20 +122,10 @@ impl Keys {
         needed("from", self.from)?;
         // A beam from which nothing is seen leaves its own record out.
         self.options(Beam::new(0.0, From::Axis)?)?.check()?;
-        let handle = self.handle.is_empty();
-        let contradictions = [
-            (
-                "smoothing",
-                self.low_pass.is_some() && self.smoothing.is_some(),
-                "one of smoothing and low_pass",
-            ),
-            ("handle_sensitivity", self.handle_sensitivity.is_some() && handle, "a handle"),
-            ("exposure", self.exposure.is_some() && handle, "a handle"),
-        ];
-        match contradictions.into_iter().find(|(_, holds, _)| *holds) {
-            Some((key, _, expected)) => Err(Error::usage(key.replace('_', " "), expected).setting(key)),
-            None => Ok(()),
+        if self.low_pass.is_some() && self.smoothing.is_some() {
+            return Err(Error::usage("low_pass and smoothing", "one of them").setting("smoothing"));
         }
+        Ok(())
     }
 
     /// Without a sensitivity the file must say that the channel is a velocity.
@@ -182,39 +172,25 @@ impl Keys {
         let mut names = vec![velocity, needed("reference", self.reference.as_deref())?];
         names.extend(self.handle.iter().map(String::as_str));
         let mut channels = Channels::read(source.reader()?, source.path, &names, source.progress)?;
-        match (channels.is(0, Quantity::Velocity), self.sensitivity) {
-            (true, Some(sensitivity)) if sensitivity != 1.0 => {
-                let found = Finding::doubt("drill-velocity-scaled-twice").number("sensitivity", sensitivity);
-                channels.findings.push(found);
-            }
-            (false, None) => {
-                let expected = "the sensitivity in m/s for one unit of the velocity channel";
-                return Err(Error::usage("no sensitivity", expected).setting("sensitivity"));
-            }
-            _ => {}
+        if !channels.is(0, Quantity::Velocity) {
+            needed("sensitivity", self.sensitivity)?;
+        } else if options.sensitivity != 1.0 {
+            let found = Finding::doubt("drill-velocity-scaled-twice");
+            channels.findings.push(found.number("sensitivity", options.sensitivity));
         }
-        let foreign = (2..names.len()).find(|channel| !channels.is(*channel, Quantity::Acceleration));
-        match (self.handle_sensitivity, foreign) {
-            (None, Some(channel)) => {
-                let found = format!("the handle channel {:?}, no acceleration", names[channel]);
-                let expected = "an acceleration, or the sensitivity of the handle in m/s² a unit";
-                let place = Place::file(source.path);
-                return Err(Error::input(place, found, expected).setting("handle_sensitivity"));
-            }
-            (factor, _) => channels.scale(2, factor.unwrap_or(1.0)),
+        if (2..names.len()).any(|channel| !channels.is(channel, Quantity::Acceleration)) {
+            needed("handle_sensitivity", self.handle_sensitivity)?;
         }
-        let still = match source.further("noise", self.noise.as_ref())? {
-            None => None,
-            Some(path) => {
-                let still = Channels::read(source.reader()?, &path, &[velocity], &|_, _| ())?;
-                if (still.rate - channels.rate).abs() > 1e-9 * channels.rate {
-                    let found =
-                        format!("{} Hz, but the motion was sampled at {} Hz", still.rate, channels.rate);
-                    return Err(Error::input(Place::file(path), found, "a record of the same rate"));
-                }
-                still.values.into_iter().next()
-            }
-        };
+        channels.scale(2, self.handle_sensitivity.unwrap_or(1.0));
+        let still = source.further("noise", self.noise.as_ref())?;
+        let still =
+            still.map(|path| Channels::read(source.reader()?, &path, &[velocity], &|_, _| ())).transpose()?;
+        if let Some(rate) = still.as_ref().map(|s| s.rate).filter(|r| (r / channels.rate - 1.0).abs() > 1e-9)
+        {
+            let why = format!("the noise was sampled at {rate} Hz, the motion at {} Hz", channels.rate);
+            return Err(Error::refused(why).setting("noise"));
+        }
+        let still = still.and_then(|s| s.values.into_iter().next());
         let record =
             Slices { rate: channels.rate, channels: channels.values.iter().map(Vec::as_slice).collect() };
         let mut found = drill_each(&record, &options, still.as_deref(), each)?;

@@ -91,7 +91,7 @@ pub fn drill_each(
         volts.iter().map(|v| v * (options.sensitivity * options.beam.factor)).collect()
     };
     let mut velocity = scaled(record.channels[0]);
-    let survey = Survey::of(&velocity);
+    let survey = moving(&velocity)?;
     let (edges, turns) = turns(reference, velocity.len(), options, options.delay * rate)?;
     let edge = edges.std(survey::noise(reference));
     let whole = &turns.whole;
@@ -136,7 +136,7 @@ pub fn drill_each(
     let slow: Vec<&str> = slow.into_iter().filter(|(_, wanders)| *wanders).map(|(name, _)| name).collect();
     let mut result = Drill {
         speed,
-        speed_variation: scatter(&speeds),
+        speed_variation: cycles::scatter(&speeds),
         cycles: whole.len(),
         averaged,
         reference: Pulses {
@@ -183,18 +183,13 @@ pub fn drill_each(
     Ok(result)
 }
 
-/// Whether there are a rate, a velocity that moves, and a reference that differs from it.
+/// Whether there are a rate, and a velocity and a reference that differ.
 fn check(record: &Slices<'_>) -> Result<()> {
     let rate = record.rate;
     if !(rate.is_finite() && rate > 0.0) {
         let found = format!("a sampling rate of {rate} Hz");
         return Err(Error::usage(found, "a finite number above 0").setting("rate"));
     }
-    let constant = |values: &[f64]| {
-        let mut known = values.iter().filter(|v| v.is_finite());
-        let first = known.next();
-        known.all(|v| Some(v) == first)
-    };
     match record.channels.as_slice() {
         [velocity, reference, ..] if velocity == reference => {
             Err(Error::refused("velocity and reference are the same channel")
@@ -202,14 +197,20 @@ fn check(record: &Slices<'_>) -> Result<()> {
                 .setting("velocity")
                 .setting("reference"))
         }
-        [velocity, _, ..] if constant(velocity) => {
-            Err(Error::refused("the velocity is constant, or missing")
-                .hint("check that the laser sees the target")
-                .setting("velocity"))
-        }
         [_, _, ..] => Ok(()),
         few => Err(Error::usage(format!("{} channels", few.len()), "a velocity and a reference")),
     }
+}
+
+/// What a velocity looks like.
+///
+/// # Errors
+/// If it does not move.
+fn moving(velocity: &[f64]) -> Result<Survey> {
+    let survey = Survey::of(velocity);
+    let error = Error::refused("the velocity is constant, or missing");
+    let error = error.hint("check that the laser sees the target").setting("velocity");
+    if survey.low < survey.high { Ok(survey) } else { Err(error) }
 }
 
 /// Edges and turns in the clock of the velocity of so many samples, which comes `delay` samples late.
@@ -235,13 +236,6 @@ fn excerpt(turns: &[Turn], velocity: &[f64], reference: &[f64], delay: f64) -> (
     let earlier = |i: usize| i.saturating_add_signed((-delay).round() as isize);
     let beside = reference.iter().take(earlier(to)).skip(earlier(from));
     (from, velocity[from..to].to_vec(), beside.copied().collect())
-}
-
-/// Standard deviation; NaN for fewer than two values.
-fn scatter(values: &[f64]) -> f64 {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt()
 }
 
 #[cfg(test)]

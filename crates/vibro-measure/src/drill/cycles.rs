@@ -68,6 +68,18 @@ impl Running {
         self.mean += step / self.n as f64;
         self.squares += step * (value - self.mean);
     }
+
+    /// Standard deviation; NaN for fewer than two values.
+    fn std(&self) -> f64 {
+        if self.n < 2 { f64::NAN } else { (self.squares / (self.n - 1) as f64).sqrt() }
+    }
+}
+
+/// Standard deviation of some values.
+pub(super) fn scatter(values: &[f64]) -> f64 {
+    let mut running = Running::default();
+    values.iter().copied().for_each(|v| running.push(v));
+    running.std()
 }
 
 /// Turns as they come.
@@ -149,11 +161,10 @@ impl Cycles {
     pub fn phases(&self) -> Phases {
         let n = self.points.len() as f64;
         let mean = |p: &Running| if p.n == 0 { f64::NAN } else { p.mean };
-        let std = |p: &Running| if p.n < 2 { f64::NAN } else { (p.squares / (p.n - 1) as f64).sqrt() };
         Phases {
             phase: (0..self.points.len()).map(|k| k as f64 / n).collect(),
             mean: self.points.iter().map(mean).collect(),
-            std: self.points.iter().map(std).collect(),
+            std: self.points.iter().map(Running::std).collect(),
         }
     }
 

@@ -44,8 +44,6 @@ const AROUND: usize = 16;
 const SPIKE: usize = 3;
 /// Samples on both sides of a spike that must be calm: an impact is followed by ringing.
 const CALM: usize = 4;
-/// A laser that comes back for fewer samples than these has not come back.
-const JOIN: usize = 3;
 /// A spike stands this many standard deviations of the noise off its neighbours, which normal noise never does.
 const SPIKE_NOISE: f64 = 10.0;
 /// … and this part of the range of the channel; smaller ones move neither impacts nor averages.
@@ -108,20 +106,12 @@ impl Velocity<'_> {
         let mut all: Vec<(Kind, Range<usize>)> = Vec::new();
         let mut at = 0;
         while at < self.raw.len() {
-            let Some((kind, end)) = self.fault(at) else {
+            if let Some((kind, end)) = self.fault(at) {
+                all.push((kind, at..end));
+                at = end;
+            } else {
                 at += 1;
-                continue;
-            };
-            match all.last_mut() {
-                Some((last, range))
-                    if at < range.end + JOIN && kind != Kind::OverRange && *last != Kind::OverRange =>
-                {
-                    range.end = end;
-                    *last = if kind == Kind::Dropout { kind } else { *last };
-                }
-                _ => all.push((kind, at..end)),
             }
-            at = end;
         }
         all
     }

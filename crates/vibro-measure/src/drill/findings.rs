@@ -1,8 +1,10 @@
 //! What a person should know of a drill's record.
 
-use super::{Drill, DrillOptions, Edges, Smoothing, Survey};
+use super::{Drill, DrillOptions, Edges, Survey};
 use vibro_record::Finding;
 
+/// A displacement that drifts by more than this part of the stroke in a turn has an offset, or the machine moves.
+const DRIFTING: f64 = 0.1;
 /// Relative change of velocities for a degree of error in the beam angle that is worth a word.
 const STEEP: f64 = 0.005;
 
@@ -16,7 +18,6 @@ pub(super) fn findings(
 ) -> Vec<Finding> {
     let (r, f, bandwidth, pulses) = (&d.reference, &d.faults, &d.bandwidth, options.pulses_per_turn);
     let limit = options.instrument.unwrap_or(f64::INFINITY);
-    let corner = d.smoothing.map_or(f64::NAN, |s| s.corner);
     let means =
         [&d.speed, &d.displacement.stroke].into_iter().chain(d.groups.iter().map(|g| &g.before)).map(|e| e.n);
     let few = means.filter(|n| *n < 4).max();
@@ -31,6 +32,8 @@ pub(super) fn findings(
     let lost = Finding::caution("drill-samples-lost").count("n", f.lost);
     let several = Finding::caution("drill-groups").count("n", phases.len()).number("phase", phase);
     let limited = Finding::doubt("drill-instrument-limited").number("f2", bandwidth.f2);
+    let [stroke, drift] = [d.displacement.stroke.value, d.displacement.drift.value];
+    let drifts = Finding::caution("drill-drift").number("drift", drift).number("stroke", stroke);
     let found = [
         (r.missing > 0, Finding::caution("drill-edges-missing").count("n", r.missing)),
         (r.extra > 0, Finding::caution("drill-edges-extra").count("n", r.extra)),
@@ -41,6 +44,7 @@ pub(super) fn findings(
         (f.lost > 0, lost.count("turns", d.cycles - d.averaged)),
         (f.clipped > 0, over_range.number("low", velocity.low).number("high", velocity.high)),
         (d.hidden > 0, Finding::caution("drill-impacts-hidden").count("n", d.hidden)),
+        (drift.abs() > DRIFTING * stroke, drifts),
         (d.impacts.is_empty(), Finding::caution("drill-no-impact").number("contact", options.contact)),
         (few.is_some(), Finding::caution("drill-few-values").count("n", few.unwrap_or(0))),
         (phases.len() > 1, several.numbers("phases", phases)),
@@ -48,10 +52,6 @@ pub(super) fn findings(
         (d.beam.per_degree > STEEP, Finding::caution("drill-beam-angle").number("share", d.beam.per_degree)),
         (bandwidth.sampling_limited, Finding::doubt("drill-sampling-limited").number("f2", bandwidth.f2)),
         (bandwidth.f2 > limit, limited.number("limit", limit)),
-        (
-            !corner.is_nan() && options.smoothing != Smoothing::Phases,
-            Finding::note("drill-smoothed").number("corner", corner),
-        ),
         (still && d.noise_floor.is_none(), Finding::caution("drill-noise-floor-short")),
     ];
     let mut all: Vec<Finding> =

@@ -1,15 +1,13 @@
 //! Parabolas on both sides of a contact, and what they leave.
 
 use super::faults::State;
+use crate::residuals::Whiteness;
 use nalgebra::{Matrix3, Vector3};
 use std::ops::RangeInclusive;
 
 /// Fewest samples of a fit: twice its parameters.
 pub(super) const FEWEST: usize = 6;
-/// Fewest impacts whose residuals are compared.
-const FEWEST_IMPACTS: usize = 4;
-/// How many times the mean square that chance leaves a common residual must have. In noise the ratio is 1 ± √(2/f), f the number of
-/// residuals of a fit that do not depend on each other: five or more behind any decoder that passes the inverse of the fit's duration.
+/// Standard deviations above 1 that the mean square of a common residual over that which chance leaves must have.
 const SIGNIFICANT: f64 = 5.0;
 
 /// A parabola, continued to the middle of the contact.
@@ -84,14 +82,12 @@ pub(super) struct LackOfFit {
 impl LackOfFit {
     /// Significant lack of fit of the parabolas that left these residuals, each with `gap` samples to the middle of the contact.
     ///
-    /// n residuals of p places have the mean m and the variances s²: n|m|²/Σs² is 1 in noise. The bias is the common residual continued
+    /// n residuals of p places have the mean m and the variances s²: n|m|²/Σs² is 1 ± √(2/f) in noise, f the number of places that do not
+    /// depend on each other. The bias is the common residual continued
     /// to the middle of the contact: the least bent curve that a parabola leaves is the third of Legendre's polynomials, √7 P₃ for
     /// a root mean square of 1.
     pub fn of(residuals: &[&[f64]], gap: usize) -> Option<LackOfFit> {
         let (n, places) = (residuals.len() as f64, residuals.first()?.len());
-        if residuals.len() < FEWEST_IMPACTS {
-            return None;
-        }
         let (mut common, mut chance) = (0.0, 0.0);
         for k in 0..places {
             let mean = residuals.iter().map(|r| r[k]).sum::<f64>() / n;
@@ -99,10 +95,12 @@ impl LackOfFit {
             common += mean * mean;
             chance += squares / (n - 1.0) / n;
         }
+        let independent = places as f64 / Whiteness::of(residuals).inflation.powi(2);
+        let significant = common > chance * (1.0 + SIGNIFICANT * (2.0 / independent).sqrt());
         let residual = ((common - chance).max(0.0) / places as f64).sqrt();
         let x = 1.0 + 2.0 * gap as f64 / places as f64;
         let bias = residual * 7f64.sqrt() * 0.5 * x * (5.0 * x * x - 3.0);
-        (common > SIGNIFICANT * chance).then_some(LackOfFit { residual, bias })
+        significant.then_some(LackOfFit { residual, bias })
     }
 }
 #[cfg(test)]
@@ -168,6 +166,5 @@ mod tests {
             (found.residual * 7f64.sqrt() - 1.0).abs() < 1e-5 && (found.bias - 1.0).abs() < 1e-5,
             "{found:?}"
         );
-        assert_eq!(LackOfFit::of(&[&residuals[..]; 3], 0), None);
     }
 }

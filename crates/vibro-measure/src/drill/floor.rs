@@ -56,10 +56,9 @@ impl NoiseFloor {
         let lines: Vec<(f64, bool)> = (0..motion.len()).map(|k| ((k + 1) as f64 * step, above(k))).collect();
         let bands = lines.chunk_by(|a, b| a.1 == b.1).filter(|band| band[0].1);
         let bands = bands.map(|band| [band[0].0, band[band.len() - 1].0]);
-        let wide = |b: &[f64; 2]| b[1] - b[0] >= SMOOTH as f64 * step;
         let level = |v: &f64| decibel(v.max(f64::MIN_POSITIVE), 1.0);
         Some(NoiseFloor {
-            bands: bands.filter(wide).collect(),
+            bands: bands.filter(|b| b[1] - b[0] >= SMOOTH as f64 * step).collect(),
             frequency: lines.iter().map(|line| line.0).collect(),
             motion: motion.iter().map(level).collect(),
             noise: noise.iter().map(level).collect(),

@@ -97,12 +97,8 @@ pub(super) fn groups(
     }
     let count = if impacts.is_empty() { 0 } else { 1 + usize::from(both) };
     let group = |number| {
-        let fits = |side: usize, impacts: &[usize]| {
-            let own: Vec<&[f64]> =
-                impacts.iter().filter_map(|k| Some(residuals.get(*k)?[side].as_slice())).collect();
-            LackOfFit::of(&own, gap)
-        };
-        let mut group = Group::new(impacts, number, &fits, options);
+        let members = impacts.iter().zip(residuals).filter(|(i, _)| i.group == number);
+        let mut group = Group::new(&members.collect::<Vec<_>>(), number == 0, gap, options);
         group.share = group.n as f64 / turns as f64;
         if both {
             group.findings = group.findings.into_iter().map(|found| found.count("group", number)).collect();
@@ -113,29 +109,25 @@ pub(super) fn groups(
 }
 
 impl Group {
-    /// Means over the impacts of group `number`; those of group 0 go towards the struck mass.
-    fn new(
-        all: &[Impact],
-        number: usize,
-        fits: &dyn Fn(usize, &[usize]) -> Option<LackOfFit>,
-        options: &DrillOptions,
-    ) -> Group {
-        let members: Vec<usize> = (0..all.len()).filter(|k| all[*k].group == number).collect();
+    /// Means over impacts with the residuals of their fits; `front`: they go towards the struck mass.
+    fn new(members: &[(&Impact, &[Vec<f64>; 2])], front: bool, gap: usize, options: &DrillOptions) -> Group {
         // The means are of impacts that the instrument could follow, unless it could follow none.
-        let clipped = members.iter().filter(|k| all[**k].clipped).count();
-        let used = |k: &usize| clipped == members.len() || !all[*k].clipped;
-        let numbers: Vec<usize> = members.iter().copied().filter(used).collect();
-        let own: Vec<Impact> = numbers.iter().map(|k| all[*k]).collect();
-        let mean = |of: &dyn Fn(&Impact) -> f64| Mean::of(&own.iter().map(of).collect::<Vec<f64>>());
+        let clipped = members.iter().filter(|(i, _)| i.clipped).count();
+        let used = |i: &Impact| clipped == members.len() || !i.clipped;
+        let (own, residuals): (Vec<&Impact>, Vec<&[Vec<f64>; 2]>) =
+            members.iter().copied().filter(|(i, _)| used(i)).unzip();
+        let mean = |of: &dyn Fn(&Impact) -> f64| Mean::of(&own.iter().map(|i| of(i)).collect::<Vec<f64>>());
         let (before, after) = (mean(&|i| i.before), mean(&|i| i.after));
         let mut findings = Vec::new();
         if clipped > 0 {
             let found = Finding::doubt("drill-impacts-over-range");
             findings.push(found.count("n", clipped).count("all", members.len()));
         }
-        let mut open = |side, name, mean: &Mean| {
+        let mut open = |side: usize, name, mean: &Mean| {
+            let fits: Vec<&[f64]> = residuals.iter().map(|r| r[side].as_slice()).collect();
             // A mean that is moved by less than its scatter leaves open keeps its uncertainty.
-            let moved = fits(side, &numbers).filter(|l| mean.std.is_some_and(|std| l.bias > BIAS * std));
+            let lack = LackOfFit::of(&fits, gap);
+            let moved = lack.filter(|l| mean.std.is_some_and(|std| l.bias > BIAS * std));
             findings.extend(moved.map(|lack| {
                 Finding::doubt("drill-lack-of-fit").name("side", name).number("residual", lack.residual)
             }));
@@ -156,7 +148,7 @@ impl Group {
             findings.push(Finding::doubt("drill-phase-undirected"));
         }
         let phase = Mean { value: (from + along.value).rem_euclid(1.0), ..along };
-        let (restitution, doubt) = restitution(&own, number == 0, options);
+        let (restitution, doubt) = restitution(&own, front, options);
         findings.extend(doubt);
         Group {
             n: members.len(),
@@ -188,7 +180,7 @@ impl Group {
 /// There is none where the approach is consistent with 0, as that of a bit, which is struck; nor where it would be negative or above
 /// 1 by more than its uncertainty explains. Without an uncertainty nothing is explained, and a value above 1 stays.
 fn restitution(
-    impacts: &[Impact],
+    impacts: &[&Impact],
     front: bool,
     options: &DrillOptions,
 ) -> (Option<Estimate>, Option<Finding>) {
@@ -206,7 +198,7 @@ fn restitution(
         None => (0.0, "−after/before, what is struck does not move; ratio of the sums over impacts"),
     };
     let separation = |i: &Impact| ratio * (i.before - i.after) - i.after;
-    let value = impacts.iter().map(separation).sum::<f64>() / n / approach;
+    let value = impacts.iter().map(|i| separation(i)).sum::<f64>() / n / approach;
     let off: Vec<f64> = impacts.iter().map(|i| (separation(i) - value * i.before) / approach).collect();
     let estimate = Estimate::new(value, Mean::of(&off).std, "1", impacts.len(), method);
     match estimate.std {

@@ -221,9 +221,8 @@ impl DrillOptions {
         let positive =
             positive.map(|(key, v)| (key, v.unwrap_or(1.0), v.is_none_or(above), "a finite number above 0"));
         let (sensitivity, pulses, points) = (self.sensitivity, self.pulses_per_turn, self.points);
-        let known = sensitivity.is_finite() && sensitivity != 0.0;
         let others = [
-            ("sensitivity", sensitivity, known, "a finite number, not 0"),
+            ("sensitivity", sensitivity, sensitivity.is_normal(), "a finite number, not 0"),
             ("delay", self.delay, self.delay.is_finite(), "a finite number"),
             ("margin", self.margin, self.margin.is_finite(), "a finite number"),
             ("pulses_per_turn", pulses as f64, (1..=MOST_PULSES).contains(&pulses), "1 to 10000"),
