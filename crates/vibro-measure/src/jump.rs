@@ -114,9 +114,7 @@ const SIGMA_OF_BOTH: f64 = 5.0;
 /// sides predict. `None` where it does not, or where there is no step on a side.
 pub(super) fn echo(curve: &[(f64, f64, f64)], other: &Jump) -> Option<Jump> {
     let high = curve.partition_point(|p| p.0 < other.frequency);
-    let low = high.checked_sub(1)?;
-    let points: [_; 4] = curve.get(low.checked_sub(1)?..=high + 1)?.try_into().ok()?;
-    let [a, b, c, d]: [(f64, f64, f64); 4] = points;
+    let [a, b, c, d]: [_; 4] = curve.get(high.checked_sub(2)?..=high + 1)?.try_into().ok()?;
     // Change from `near` to `across` less what the step from `far` to `near` predicts, if it is beyond noise.
     let excess = |far: (f64, f64, f64), near: (f64, f64, f64), across: (f64, f64, f64)| {
         let stretch = (across.0 - near.0) / (near.0 - far.0);

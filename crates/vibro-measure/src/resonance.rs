@@ -249,33 +249,36 @@ const TOGETHER: f64 = 0.1;
 /// resonance (in phase), the largest above it the clapping one (out of phase).
 ///
 /// Where one mass jumps, the motion of both has changed: a change of the other there that its slopes do not predict is entered in
-/// its jumps, and resonances are found again with the jumps of both.
-/// A maximum at which the other mass of the same sweep rests keeps its kind, as do all where the other mass was not
-/// measured. A sweep without an antiresonance of mass 1 uses that of the other direction.
+/// its jumps, and resonances are found again with the jumps of both. A maximum at which the other mass of the same sweep rests keeps
+/// its kind, as do all where the other mass was not measured. A sweep without an antiresonance of mass 1 uses that of the other
+/// direction.
 pub fn name_modes(curves: &mut [NamedCurve<'_>]) {
+    let partner = |curves: &[NamedCurve<'_>], i: usize| {
+        let own = &curves[i];
+        curves.iter().position(|c| c.mass != own.mass && c.direction == own.direction)
+    };
     for i in 0..curves.len() {
-        let other = curves.iter().find(|c| c.mass != curves[i].mass && c.direction == curves[i].direction);
-        let Some(foreign) = other.map(|o| o.jumps.clone()).filter(|j| !j.is_empty()) else { continue };
+        let foreign = partner(curves, i).map_or_else(Vec::new, |other| curves[other].jumps.clone());
+        if foreign.is_empty() {
+            continue;
+        }
         let own = &mut curves[i];
         for jump in &foreign {
             let known = own.jumps.iter().any(|j| (j.frequency - jump.frequency).abs() < j.frequency_std);
-            if !known && let Some(found) = echo(&own.curve, jump) {
-                own.jumps.push(found);
-            }
+            own.jumps.extend(echo(&own.curve, jump).filter(|_| !known));
         }
         let all = [own.jumps.as_slice(), &foreign].concat();
         let column = |of: fn(&(f64, f64, f64)) -> f64| own.curve.iter().map(of).collect::<Vec<f64>>();
         *own.resonances =
             resonances(&column(|p| p.0), &column(|p| p.1), &column(|p| p.2), &all, Some(own.mass));
     }
-    let up = antiresonance(curves, Direction::Up);
-    let down = antiresonance(curves, Direction::Down);
+    let between =
+        |direction| deepest(curves.iter().find(|c| c.mass == 1 && c.direction == direction)?.resonances);
+    let (up, down) = (between(Direction::Up), between(Direction::Down));
     for i in 0..curves.len() {
-        let (mass, direction) = (curves[i].mass, curves[i].direction);
-        let between = if direction == Direction::Up { up.or(down) } else { down.or(up) };
-        let partner = curves.iter().find(|c| c.mass != mass && c.direction == direction);
-        let partner = partner.map(|p| p.curve.clone());
-        let (Some(between), Some(partner)) = (between, partner) else { continue };
+        let between = if curves[i].direction == Direction::Up { up.or(down) } else { down.or(up) };
+        let (Some(between), Some(partner)) = (between, partner(curves, i)) else { continue };
+        let partner = curves[partner].curve.clone();
         for (kind, below) in [(ResonanceKind::Grazing, true), (ResonanceKind::Clapping, false)] {
             let largest = curves[i]
                 .resonances
@@ -290,22 +293,6 @@ pub fn name_modes(curves: &mut [NamedCurve<'_>]) {
         // A maximum at a jump of one mass alone is the jump's edge.
         curves[i].resonances.retain(|r| !(r.at_jump && r.kind == ResonanceKind::Resonance));
     }
-}
-
-/// Frequency of the antiresonance of mass 1 between its modes: the one that lies deepest below the largest maxima on both of its sides, or the
-/// deepest where none has both.
-fn antiresonance(curves: &[NamedCurve<'_>], direction: Direction) -> Option<f64> {
-    let found: &[Resonance] = curves.iter().find(|c| c.mass == 1 && c.direction == direction)?.resonances;
-    let largest = |side: &dyn Fn(f64) -> bool| {
-        let tops = found.iter().filter(|r| r.kind.is_maximum() && side(r.frequency));
-        tops.map(|r| r.amplitude).fold(0.0, f64::max)
-    };
-    let depth =
-        |m: &Resonance| largest(&|f| f < m.frequency).min(largest(&|f| f > m.frequency)) / m.amplitude;
-    let between =
-        found.iter().filter(|r| r.kind == ResonanceKind::Antiresonance).map(|m| (depth(m), m.frequency));
-    let between = between.filter(|m| m.0 > 0.0).max_by(|a, b| a.0.total_cmp(&b.0));
-    between.map(|m| m.1).or_else(|| deepest(found))
 }
 
 /// Frequency of the deepest antiresonance of a curve.

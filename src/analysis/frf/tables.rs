@@ -49,7 +49,7 @@ pub(crate) fn modal_methods(result: &ModalResult) -> Table {
     let mut table = headed("By method", &columns);
     for by in result.modes.iter().flat_map(|m| &m.by) {
         table.push([
-            Cell::from(by.method.name()),
+            Cell::from(by.method),
             Cell::from(&by.frequency),
             by.zeta.as_ref().map_or(Cell::Missing, Cell::from),
             by.modal_constant.as_ref().map_or(Cell::Missing, Cell::from),

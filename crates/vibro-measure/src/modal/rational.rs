@@ -13,8 +13,7 @@ use vibro_record::{Error, Result};
 pub(super) struct Rational {
     /// By frequency.
     pub modes: Vec<Pole>,
-    /// Standard uncertainties of frequency, damping ratio, magnitude and phase in rad of the modal constant; the last is NaN without
-    /// phases.
+    /// Standard uncertainties of frequency, damping ratio, magnitude and phase in rad of the modal constant.
     pub std: Vec<[f64; 4]>,
     /// The fitted response at its lines.
     pub fitted: Vec<Complex64>,
@@ -204,38 +203,43 @@ pub(super) fn rational(
         scaled.start(width, &equal).ok_or_else(refuse)?
     };
     let first = scaled.fit(&start, &equal)?;
-    let height = |i: usize| scaled.at(&first.parameters, i).norm();
-    let unlikely = |fit: &Fit, weight: &[f64]| {
+    let at = first.parameters.clone();
+    let height = |i: usize| scaled.at(&at, i).norm();
+    let unlikely = |(fit, weight, _): &(Fit, Vec<f64>, &str)| {
         let n = fit.residuals.len() as f64;
         n * (fit.sum_of_squares() / n).ln() + spread(weight, fit.residuals.len())
     };
-    let (fit, noise, weight) = if let Some(coherence) = &measured.coherence {
-        // Variance of a line: |H|²(1 − γ²)/(2γ²) over the averages (Bendat & Piersol 2010, 9.90), whose number is left to the fit.
-        // That of few averages is hardly known from the line alone, and one that is small by chance would draw the fit to it.
-        let part = part.clone().map(|i| coherence[i]);
-        let share: Vec<f64> = part.map(|c| (1.0 - c).max(1e-5) / c).collect();
-        let level: Vec<f64> =
-            share.iter().zip(&scaled.values).map(|(s, v)| s * v.norm_sqr().max(1e-12)).collect();
-        let level: Vec<f64> = smoothed(&level).into_iter().map(f64::sqrt).collect();
-        let relative: Vec<f64> =
-            smoothed(&share).iter().enumerate().map(|(i, s)| height(i).max(1e-6) * s.sqrt()).collect();
-        let by_level = scaled.fit(&first.parameters, &level);
-        let by_share = scaled.fit(&first.parameters, &relative);
-        let (fit, weight) = match (by_level, by_share) {
-            (Ok(one), Ok(other)) if unlikely(&other, &relative) < unlikely(&one, &level) => (other, relative),
-            (Ok(one), _) => (one, level),
-            (Err(_), other) => (other?, relative),
-        };
-        (fit, "noise by the coherence", weight)
-    } else {
-        let relative: Vec<f64> = (0..lines).map(|i| height(i).max(1e-2)).collect();
-        match scaled.fit(&first.parameters, &relative) {
-            Ok(second) if unlikely(&second, &relative) < unlikely(&first, &equal) => {
-                (second, "noise proportional to the response", relative)
-            }
-            _ => (first, "equal noise on all lines", equal),
+    let (mut best, rivals) = match &measured.coherence {
+        None => {
+            let relative = (0..lines).map(|i| height(i).max(1e-2)).collect();
+            let rivals = vec![(relative, "noise proportional to the response")];
+            (Some((first, equal, "equal noise on all lines")), rivals)
+        }
+        Some(coherence) => {
+            // Variance of a line: |H|²(1 − γ²)/(2γ²) over the averages (Bendat & Piersol 2010, 9.90), whose number is left to the fit.
+            // That of few averages is hardly known from the line alone, and one that is small by chance would draw the fit to it.
+            let share: Vec<f64> = coherence[part].iter().map(|c| (1.0 - c).max(1e-5) / c).collect();
+            let level: Vec<f64> =
+                share.iter().zip(&scaled.values).map(|(s, v)| s * v.norm_sqr().max(1e-12)).collect();
+            let level: Vec<f64> = smoothed(&level).into_iter().map(f64::sqrt).collect();
+            let relative: Vec<f64> =
+                smoothed(&share).iter().enumerate().map(|(i, s)| height(i).max(1e-6) * s.sqrt()).collect();
+            (None, [level, relative].map(|weight| (weight, "noise by the coherence")).to_vec())
         }
     };
+    let mut failed = None;
+    for (weight, noise) in rivals {
+        match scaled.fit(&at, &weight) {
+            Ok(fit) => {
+                let rival = (fit, weight, noise);
+                if best.as_ref().is_none_or(|best| unlikely(&rival) < unlikely(best)) {
+                    best = Some(rival);
+                }
+            }
+            Err(error) => failed = Some(error),
+        }
+    }
+    let (fit, weight, noise) = best.ok_or_else(|| failed.unwrap_or_else(refuse))?;
     let mut result = scaled.result(&fit, noise, &weight);
     result.fitted.iter_mut().zip(f).for_each(|(v, f)| *v += taken(*f));
     Ok(result)
@@ -309,41 +313,35 @@ impl Scaled<'_> {
         let place = |i: usize| free.iter().position(|f| *f == i).unwrap_or(0);
         let p = &fit.parameters;
         let to_constant = self.height * (TAU * self.unit).powi(2 - self.power);
-        let (mut modes, mut std): (Vec<Pole>, Vec<[f64; 4]>) = (Vec::new(), Vec::new());
-        for (m, (f, zeta)) in self.starts.iter().enumerate() {
+        // Fits of fewer than three degrees of freedom were refused.
+        let widened = whiteness.inflation * student(fit.degrees_of_freedom()).unwrap_or(f64::NAN);
+        let mode = |(m, (f, zeta)): (usize, &(f64, f64))| {
             let (own, damping) = self.shape(p, m);
             let a = Complex64::new(p[4 * m + 2], if self.magnitude_only { 0.0 } else { p[4 * m + 3] });
-            modes.push(Pole { frequency: own * self.unit, zeta: damping, constant: a * to_constant });
-            // |a| moves with its real part by cos and with its imaginary part by sin of its phase.
-            let (cos, sin) = (a.re / a.norm(), a.im / a.norm());
+            let pole = Pole { frequency: own * self.unit, zeta: damping, constant: a * to_constant };
             let (re, im) = (place(4 * m + 2), place(4 * m + 3));
-            // The phase, times |a|, moves with its real part by −sin and with its imaginary part by cos.
             let along = |re_part: f64, im_part: f64| {
-                re_part * re_part * fit.covariance(re, re)
+                let variance = re_part * re_part * fit.covariance(re, re);
+                if self.magnitude_only {
+                    return variance;
+                }
+                variance
                     + im_part * im_part * fit.covariance(im, im)
                     + 2.0 * re_part * im_part * fit.covariance(re, im)
             };
-            let (variance, across) = if self.magnitude_only {
-                (fit.covariance(re, re), f64::NAN)
-            } else {
-                (along(cos, sin), along(-sin, cos))
-            };
-            // Fits of fewer than three degrees of freedom were refused.
-            let widened = whiteness.inflation * student(fit.degrees_of_freedom()).unwrap_or(f64::NAN);
-            std.push(
-                [
-                    f * zeta * fit.std(place(4 * m)),
-                    zeta * fit.std(place(4 * m + 1)),
-                    to_constant * variance.sqrt(),
-                    across.sqrt() / a.norm(),
-                ]
-                .map(|s| s * widened),
-            );
-        }
-        let mut order: Vec<usize> = (0..modes.len()).collect();
-        order.sort_by(|a, b| modes[*a].frequency.total_cmp(&modes[*b].frequency));
-        let (modes, std) =
-            (order.iter().map(|i| modes[*i]).collect(), order.iter().map(|i| std[*i]).collect());
+            // |a| moves with its real part by cos and with its imaginary part by sin of its phase; the phase, times |a|, by −sin and cos.
+            let (cos, sin) = (a.re / a.norm(), a.im / a.norm());
+            let std = [
+                f * zeta * fit.std(place(4 * m)),
+                zeta * fit.std(place(4 * m + 1)),
+                to_constant * along(cos, sin).sqrt(),
+                along(-sin, cos).sqrt() / a.norm(),
+            ];
+            (pole, std.map(|s| s * widened))
+        };
+        let mut found: Vec<(Pole, [f64; 4])> = self.starts.iter().enumerate().map(mode).collect();
+        found.sort_by(|a, b| a.0.frequency.total_cmp(&b.0.frequency));
+        let (modes, std) = found.into_iter().unzip();
         let fitted: Vec<Complex64> = (0..n).map(|i| self.at(p, i)).collect();
         // Without weights, so that fits with different weights can be compared.
         let sum: f64 = fitted

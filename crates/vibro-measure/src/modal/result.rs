@@ -61,40 +61,11 @@ pub struct Mode {
     pub picture: ModePicture,
 }
 
-/// A method for natural frequency and damping.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub enum ModalMethod {
-    /// Modes and residual terms fitted in the complex plane.
-    #[serde(rename = "rational fit")]
-    RationalFit,
-    /// Circle of the mobility in the Nyquist plane.
-    #[serde(rename = "circle fit")]
-    CircleFit,
-    /// Half-power bandwidth.
-    #[serde(rename = "half power")]
-    HalfPower,
-    /// Largest line.
-    #[serde(rename = "peak")]
-    Peak,
-}
-
-impl ModalMethod {
-    /// Its name, as in JSON.
-    pub fn name(self) -> &'static str {
-        match self {
-            ModalMethod::RationalFit => "rational fit",
-            ModalMethod::CircleFit => "circle fit",
-            ModalMethod::HalfPower => "half power",
-            ModalMethod::Peak => "peak",
-        }
-    }
-}
-
 /// What one method gives.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ByMethod {
-    /// The method.
-    pub method: ModalMethod,
+    /// `rational fit` in the complex plane, `circle fit` in the Nyquist plane, `half power` or largest line (`peak`).
+    pub method: &'static str,
     /// Natural frequency in Hz; NaN where the method gives none.
     pub frequency: Estimate,
     /// Damping ratio.

@@ -1,9 +1,9 @@
 //! Which peaks are modes, and on which lines they are fitted.
 
-use super::Measured;
 use super::bands::{Group, Peak};
 use super::rational::{Rational, rational};
-use vibro_record::{Error, Finding, Result};
+use super::{Fitted, Measured, Pole};
+use vibro_record::{Finding, Result};
 
 /// Modes of one group at most: beyond, parameters outgrow the lines.
 const TOGETHER: usize = 6;
@@ -26,7 +26,7 @@ fn starts(lines: &Measured, peaks: &[Peak], known: Option<(&Rational, &[Peak])>)
 ///
 /// The highest peaks are fitted all at once: with a strong one left out the others explain its lines. Those that are not known, or
 /// not needed beside the others, are dropped; then the rest is added in the order of height as long as the lines need it.
-pub(super) fn chosen(lines: &Measured, group: &mut Group, unsupported: &mut Vec<f64>) -> Result<Rational> {
+pub(super) fn chosen(lines: &Measured, group: &mut Group, unsupported: &mut Vec<Peak>) -> Result<Rational> {
     let mut waiting = std::mem::take(&mut group.peaks);
     waiting.sort_by(|a, b| b.rise.total_cmp(&a.rise));
     let mut later = waiting.split_off(waiting.len().min(TOGETHER));
@@ -58,7 +58,7 @@ pub(super) fn chosen(lines: &Measured, group: &mut Group, unsupported: &mut Vec<
             _ => dropped.push(peak),
         }
     }
-    unsupported.extend(dropped.iter().map(|p| lines.frequency[p.at]));
+    unsupported.extend(dropped);
     Ok(if best.whiteness.rejected() { narrowed(lines, group, best) } else { best })
 }
 
@@ -92,65 +92,46 @@ fn pruned(lines: &Measured, group: &mut Group, mut fit: Rational) -> (Rational, 
     (fit, dropped)
 }
 
-/// Fits the modes that were found around each peak of a band together, to all its lines.
-///
-/// # Errors
-/// If the only peak of the band cannot be fitted.
+/// Fits the modes that were found around each peak of a band together, to all its lines; keeps each fitted around its peak where they
+/// do not explain all lines as well.
 pub(super) fn together(
     lines: &Measured,
-    (low, high): (f64, f64),
-    groups: Vec<Group>,
-    fits: Vec<Result<Rational>>,
-    unsupported: &mut Vec<f64>,
+    band: (f64, f64),
+    fits: Vec<Fitted>,
+    unsupported: &mut Vec<Peak>,
     findings: &mut Vec<Finding>,
-) -> Result<(Vec<Group>, Vec<Result<Rational>>)> {
-    if let [Err(error)] = fits.as_slice() {
-        return Err(Error::refused(error.to_string()));
-    }
-    let f = &lines.frequency;
-    let part = f.partition_point(|f| *f < low)..f.partition_point(|f| *f <= high);
+) -> Vec<Fitted> {
     // What is no mode by itself is not fitted together with the others.
-    let (mut found, mut left) = (Vec::new(), Vec::new());
-    for (group, fit) in groups.into_iter().zip(fits) {
-        match fit {
-            Ok(fit) if fit.explains() && fit.sound(lines, &group.peaks).contains(&true) => {
-                found.push((group, fit));
+    let is_mode = |(group, fit): &Fitted| fit.explains() && fit.sound(lines, &group.peaks).contains(&true);
+    let (mut found, left): (Vec<Fitted>, Vec<Fitted>) = fits.into_iter().partition(is_mode);
+    let part = lines.within(band);
+    if found.iter().any(|(group, _)| group.lines != part) {
+        let (mut peaks, mut guess, mut weak) = (Vec::new(), Vec::new(), Vec::new());
+        for (group, fit) in &found {
+            let sound = fit.sound(lines, &group.peaks);
+            for ((peak, mode), sound) in group.peaks.iter().zip(&fit.modes).zip(sound) {
+                if sound {
+                    peaks.push(*peak);
+                    guess.push((mode.frequency, mode.zeta));
+                } else {
+                    weak.push(*peak);
+                }
             }
-            fit => left.push((group, fit)),
+        }
+        let one_explains = found.iter().any(|(_, fit)| !fit.whiteness.rejected());
+        let all = rational(lines, part.clone(), &guess, &[]).ok();
+        if let Some(fit) = all.filter(|fit| !(fit.whiteness.rejected() && one_explains)) {
+            let mut group = Group { peaks, lines: part };
+            let (fit, dropped) = pruned(lines, &mut group, fit);
+            unsupported.extend(weak.into_iter().chain(dropped));
+            found = vec![(group, fit)];
+        } else {
+            let unexplained = Finding::caution("modal-band-unexplained");
+            findings.push(unexplained.number("low", band.0).number("high", band.1));
         }
     }
-    let (mut peaks, mut guess): (Vec<Peak>, Vec<(f64, f64)>) = (Vec::new(), Vec::new());
-    for (group, fit) in &found {
-        for ((peak, mode), sound) in group.peaks.iter().zip(&fit.modes).zip(fit.sound(lines, &group.peaks)) {
-            if sound {
-                peaks.push(*peak);
-                guess.push((mode.frequency, mode.zeta));
-            }
-        }
-    }
-    let alone = found.iter().all(|(group, _)| group.lines == part);
-    let all = if alone { None } else { Some(rational(lines, part.clone(), &guess, &[])) };
-    match all {
-        Some(Ok(fit))
-            if fit.whiteness.rejected() && found.iter().any(|(_, fit)| !fit.whiteness.rejected()) =>
-        {
-            findings.push(Finding::caution("modal-band-unexplained").number("low", low).number("high", high));
-        }
-        Some(Ok(fit)) => {
-            for peak in found.iter().flat_map(|(group, _)| &group.peaks).filter(|p| !peaks.contains(p)) {
-                unsupported.push(f[peak.at]);
-            }
-            let mut all = Group { peaks, lines: part };
-            let (fit, dropped) = pruned(lines, &mut all, fit);
-            unsupported.extend(dropped.iter().map(|p| f[p.at]));
-            found = vec![(all, fit)];
-        }
-        Some(Err(_)) => {
-            findings.push(Finding::caution("modal-band-not-fitted").number("low", low).number("high", high));
-        }
-        None => {}
-    }
-    Ok(found.into_iter().map(|(group, fit)| (group, Ok(fit))).chain(left).unzip())
+    found.extend(left);
+    found
 }
 
 /// Fewest lines on either side of the outer peaks of a band that is made narrower.
@@ -178,4 +159,29 @@ fn narrowed(lines: &Measured, group: &mut Group, wide: Rational) -> Rational {
         }
     }
     wide
+}
+
+/// An additional mode under one peak must lower Akaike's criterion by this much: its four numbers then explain 28 of χ², as chance does
+/// in one of 10⁵ peaks; ten (Burnham & Anderson 2002, 2.6) would be chance in one of a thousand.
+const SPLIT: f64 = 20.0;
+
+/// How much lower Akaike's criterion is with mode `m` of a fit split in two, where the lines support that: its frequency and damping
+/// are then those of neither. `others` are the modes of other groups, which were subtracted before the fit.
+pub(super) fn support_for_two(
+    lines: &Measured,
+    (group, fit): (&Group, &Rational),
+    m: usize,
+    others: &[Pole],
+) -> Option<f64> {
+    // Anything would explain residuals better that are not white.
+    if lines.magnitude_only || fit.whiteness.rejected() {
+        return None;
+    }
+    let mut starts: Vec<(f64, f64)> = fit.modes.iter().map(|o| (o.frequency, o.zeta)).collect();
+    let (frequency, zeta) = starts[m];
+    let half = 0.5 * zeta * frequency;
+    starts.splice(m..=m, [(frequency - half, zeta), (frequency + half, zeta)]);
+    let both = rational(lines, group.lines.clone(), &starts, others).ok()?;
+    let better = fit.aicc - both.aicc;
+    (better > SPLIT && both.modes.iter().all(|m| m.zeta > 0.0)).then_some(better)
 }

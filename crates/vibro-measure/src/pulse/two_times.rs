@@ -59,15 +59,11 @@ pub fn two_times(
             variance = std * std;
         } else {
             let least = damping(rho + 2.0 * spread);
-            findings.push(
-                Finding::doubt("pulse-ratio-near-zero")
-                    .number("rho", rho)
-                    .number("std", spread)
-                    .number("xi", least),
-            );
+            let near = Finding::doubt("pulse-ratio-near-zero").number("rho", rho).number("std", spread);
+            findings.push(near.number("xi", least));
         }
         if rho + 2.0 * spread >= 0.5 {
-            findings.push(Finding::caution("pulse-ratio-near-half").number("rho", rho).number("std", spread));
+            findings.push(Finding::caution("pulse-no-damping").number("xi", damping(rho)));
         }
     }
     let contact = |times: &[f64]| {

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 use vibro_math::Noise;
 use vibro_measure::Estimate;
 use vibro_measure::response::{ResponseOptions, response};
-use vibro_measure::sine::sine;
+use vibro_measure::tones::sine;
 use vibro_record::units::Unit;
 use vibro_record::{Axis, Error, Finding, Meta, Result, Scaling, Sweep, SweepPoint, Trace, Window};
 use vibro_signal::integrate::{InTime, in_time};
@@ -112,7 +112,7 @@ fn filtered(v: &Vibration) -> Result<Answer> {
     let axis = Axis::time(0.0, 1.0 / RATE, inner.len());
     let sine = sine(&Trace { values: inner.to_vec(), axis, meta: found.trace.meta.clone() }, Some(f))?;
     let gain = how.gain(f, RATE)?;
-    let amplitude = &sine.amplitude;
+    let amplitude = &sine.tones[0].amplitude;
     let stated =
         Estimate { value: amplitude.value / gain, std: amplitude.std.map(|s| s / gain), ..amplitude.clone() };
     Ok(Answer::found(&stated, &sine.findings))

@@ -7,8 +7,7 @@ use crate::{Family, Scene};
 use std::f64::consts::TAU;
 use vibro_math::Noise;
 use vibro_measure::excitation::{Excitation, excitations};
-use vibro_measure::sine::{Sine, sine};
-use vibro_measure::tones::tones;
+use vibro_measure::tones::{sine, tones};
 use vibro_record::units::Unit;
 use vibro_record::{Axis, Error, Meta, Result, Scaling, Sweep, SweepPoint, Trace, Window};
 use vibro_signal::spectrum;
@@ -69,10 +68,6 @@ fn silent(value: f64, std: Option<f64>) -> Answer {
     Answer { std, ..Answer::bare(value) }
 }
 
-fn of_sine(found: &Sine) -> Answer {
-    Answer::found(&found.frequency, &found.findings)
-}
-
 const FREQUENCY: [Method<Trace>; 5] = [
     Method { name: "zero crossings", ours: false, estimate: |t| Ok(Answer::bare(rivals::crossings(t))) },
     Method {
@@ -96,7 +91,11 @@ const FREQUENCY: [Method<Trace>; 5] = [
         ours: true,
         estimate: |t| three_lines(t).map(|e| silent(e.frequency, e.std)),
     },
-    Method { name: "least squares", ours: true, estimate: |t| sine(t, None).map(|s| of_sine(&s)) },
+    Method {
+        name: "least squares",
+        ours: true,
+        estimate: |t| sine(t, None).map(|s| Answer::found(&s.tones[0].frequency, &s.findings)),
+    },
 ];
 
 const AMPLITUDE: [Method<Trace>; 6] = [
@@ -124,7 +123,7 @@ const AMPLITUDE: [Method<Trace>; 6] = [
     Method {
         name: "least squares",
         ours: true,
-        estimate: |t| sine(t, None).map(|s| Answer::found(&s.amplitude, &s.findings)),
+        estimate: |t| sine(t, None).map(|s| Answer::found(&s.tones[0].amplitude, &s.findings)),
     },
 ];
 
