@@ -21,7 +21,7 @@ pub use result::{ByMethod, ModalOptions, ModalResult, Mode, ModePicture};
 use bands::{Group, groups};
 use rational::{Rational, rational};
 use report::Report;
-use selection::{chosen, together};
+use selection::chosen;
 use vibro_record::{Error, Finding, FrfKind, Result};
 
 /// Peaks and the modes that were fitted to them.
@@ -30,8 +30,8 @@ type Fitted = (Group, Rational);
 /// Finds the modes of a frequency response function.
 ///
 /// Each peak that stands a factor of two above its valleys is a candidate; peaks too near each other to be parted are fitted
-/// together, and modes of other bands are subtracted before the last fit of a band. In a band that is given, the modes that were so
-/// found are then fitted together, to all its lines.
+/// together, and modes of other groups are subtracted before the last fit of a group. Up to six peaks of a band that is given are fitted
+/// together, to all its lines.
 ///
 /// # Errors
 /// If the band is not one, holds no peak or fewer lines than the parameters of a mode, or no line can be used.
@@ -65,9 +65,6 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
         return Err(error);
     }
     refine(&lines, &mut fits);
-    if let Some(band) = options.band {
-        fits = together(&lines, band, fits, &mut unsupported, &mut findings);
-    }
     let mut report = Report { measured: &lines, options, modes: Vec::new(), findings };
     for (at, (group, fit)) in fits.iter().enumerate() {
         report.add(group, fit, &poles_beside(&fits, at));

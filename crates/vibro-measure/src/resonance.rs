@@ -94,6 +94,18 @@ pub fn resonances(
 /// r² = A/B or its inverse. Where they cancel, it falls to what damping leaves.
 const DEEP: f64 = 2.0;
 
+impl Resonance {
+    fn moved(self, top: Vertex) -> Resonance {
+        Resonance {
+            frequency: top.frequency,
+            frequency_std: known(top.frequency_std),
+            amplitude: top.height,
+            amplitude_std: known(top.height_std),
+            ..self
+        }
+    }
+}
+
 /// A response curve of rising frequency.
 struct Curve<'a> {
     frequency: &'a [f64],
@@ -127,7 +139,7 @@ impl Curve<'_> {
         low..=high
     }
 
-    /// Frequency, height and their uncertainties between the points around the highest, `i`; `None` where the points do not determine it.
+    /// The top between the points around the highest, `i`; `None` where they do not determine it.
     fn interpolated(&self, values: &[f64], i: usize) -> Option<Vertex> {
         let range = self.flanks(values, i);
         let stretch = self.frequency.get(range.clone())?;
@@ -141,22 +153,13 @@ impl Curve<'_> {
     }
 
     fn maximum(&self, i: usize) -> Resonance {
-        let jump = self.jump_at(i);
-        let kind = ResonanceKind::Resonance;
-        if jump.is_none()
-            && let Some(vertex) = self.interpolated(self.amplitude, i)
-        {
-            return Resonance {
-                frequency: vertex.frequency,
-                frequency_std: known(vertex.frequency_std),
-                amplitude: vertex.height,
-                amplitude_std: known(vertex.height_std),
-                kind,
-                at_jump: false,
-            };
+        let (jump, kind) = (self.jump_at(i), ResonanceKind::Resonance);
+        if let Some(jump) = jump {
+            let std = at_a_jump(self.frequency, self.amplitude, self.std, i, jump);
+            return Resonance { at_jump: true, ..self.point(i, [i - 1, i + 1], kind, std) };
         }
-        let amplitude_std = jump.and_then(|j| at_a_jump(self.frequency, self.amplitude, self.std, i, j));
-        Resonance { at_jump: jump.is_some(), ..self.point(i, [i - 1, i + 1], kind, amplitude_std) }
+        let here = self.point(i, [i - 1, i + 1], kind, None);
+        self.interpolated(self.amplitude, i).map_or(here.clone(), |top| here.moved(top))
     }
 
     /// The maximum or minimum at point `i`, which lies anywhere between those on its two `sides`.
@@ -167,15 +170,10 @@ impl Curve<'_> {
         kind: ResonanceKind,
         amplitude_std: Option<f64>,
     ) -> Resonance {
-        let reach = sides.map(|k| (self.frequency[k] - self.frequency[i]).abs());
-        Resonance {
-            frequency: self.frequency[i],
-            frequency_std: Some(reach[0].max(reach[1]) / f64::sqrt(3.0)),
-            amplitude: self.amplitude[i],
-            amplitude_std,
-            kind,
-            at_jump: false,
-        }
+        let [a, b] = sides.map(|k| (self.frequency[k] - self.frequency[i]).abs());
+        let (frequency, amplitude) = (self.frequency[i], self.amplitude[i]);
+        let frequency_std = Some(a.max(b) / f64::sqrt(3.0));
+        Resonance { frequency, frequency_std, amplitude, amplitude_std, kind, at_jump: false }
     }
 
     /// `None` at the foot of a jump.
@@ -191,16 +189,9 @@ impl Curve<'_> {
             return None;
         }
         let here = self.point(i, [i - 1, i + 1], kind, None);
-        Some(match self.interpolated(inverse, i) {
-            None => here,
-            Some(v) => Resonance {
-                frequency: v.frequency,
-                frequency_std: known(v.frequency_std),
-                amplitude: 1.0 / v.height,
-                amplitude_std: known(v.height_std / (v.height * v.height)),
-                ..here
-            },
-        })
+        let Some(top) = self.interpolated(inverse, i) else { return Some(here) };
+        let (height, height_std) = (1.0 / top.height, top.height_std / (top.height * top.height));
+        Some(here.moved(Vertex { height, height_std, ..top }))
     }
 
     /// Whether the curve stands [`DEEP`] above a minimum at the last point before half-way to its neighbours, on both sides.

@@ -2,11 +2,11 @@
 
 use super::bands::{Group, Peak};
 use super::rational::{Rational, rational};
-use super::{Fitted, Measured, Pole};
-use vibro_record::{Finding, Result};
+use super::{Measured, Pole};
+use vibro_record::Result;
 
 /// Modes of one group at most: beyond, parameters outgrow the lines.
-const TOGETHER: usize = 6;
+pub(super) const TOGETHER: usize = 6;
 
 /// An additional mode must lower Akaike's criterion by this much (Burnham & Anderson 2002, 2.6).
 const NEEDED: f64 = 10.0;
@@ -25,46 +25,26 @@ fn starts(lines: &Measured, peaks: &[Peak], known: Option<(&Rational, &[Peak])>)
 /// Finds the peaks of a group that the lines need. The group keeps those; the others are added to `unsupported`.
 ///
 /// The highest peaks are fitted all at once: with a strong one left out the others explain its lines. Those that are not known, or
-/// not needed beside the others, are dropped; then the rest is added in the order of height as long as the lines need it.
+/// not needed beside the others, are dropped.
 pub(super) fn chosen(lines: &Measured, group: &mut Group, unsupported: &mut Vec<Peak>) -> Result<Rational> {
-    let mut waiting = std::mem::take(&mut group.peaks);
-    waiting.sort_by(|a, b| b.rise.total_cmp(&a.rise));
-    let mut later = waiting.split_off(waiting.len().min(TOGETHER));
-    // Where not all can be fitted at once, the lowest waits.
-    let mut best = loop {
-        group.peaks.clone_from(&waiting);
+    let mut highest = group.peaks.clone();
+    highest.sort_by(|a, b| b.rise.total_cmp(&a.rise));
+    unsupported.extend(highest.split_off(highest.len().min(TOGETHER)));
+    let fit = loop {
+        group.peaks.clone_from(&highest);
         group.peaks.sort_by_key(|p| p.at);
         match rational(lines, group.lines.clone(), &starts(lines, &group.peaks, None), &[]) {
-            Err(_) if waiting.len() > 1 => later.extend(waiting.pop()),
+            // Where not all can be fitted at once, the lowest is left out.
+            Err(_) if highest.len() > 1 => unsupported.extend(highest.pop()),
             fit => break fit?,
         }
     };
-    let mut dropped;
-    (best, dropped) = pruned(lines, group, best);
-    later.sort_by(|a, b| b.rise.total_cmp(&a.rise));
-    for peak in later {
-        let mut with = group.peaks.clone();
-        with.push(peak);
-        with.sort_by_key(|p| p.at);
-        let guess = starts(lines, &with, Some((&best, &group.peaks)));
-        match rational(lines, group.lines.clone(), &guess, &[]) {
-            Ok(fit)
-                if with.len() <= TOGETHER
-                    && fit.aicc < best.aicc - NEEDED
-                    && fit.sound(lines, &with).iter().all(|s| *s) =>
-            {
-                (best, group.peaks) = (fit, with);
-            }
-            _ => dropped.push(peak),
-        }
-    }
-    unsupported.extend(dropped);
-    Ok(if best.whiteness.rejected() { narrowed(lines, group, best) } else { best })
+    let fit = pruned(lines, group, fit, unsupported);
+    Ok(if fit.whiteness.rejected() { narrowed(lines, group, fit) } else { fit })
 }
 
 /// Drops the modes that are not known, the lowest peak first, then those that the lines do not need beside the others.
-fn pruned(lines: &Measured, group: &mut Group, mut fit: Rational) -> (Rational, Vec<Peak>) {
-    let mut dropped = Vec::new();
+fn pruned(lines: &Measured, group: &mut Group, mut fit: Rational, unsupported: &mut Vec<Peak>) -> Rational {
     let without = |group: &Group, fit: &Rational, at: usize| {
         let mut fewer = group.peaks.clone();
         fewer.remove(at);
@@ -86,52 +66,10 @@ fn pruned(lines: &Measured, group: &mut Group, mut fit: Rational) -> (Rational, 
                 .min_by(|a, b| a.1.0.aicc.total_cmp(&b.1.0.aicc)),
         };
         let Some((at, (less, fewer))) = less else { break };
-        dropped.push(group.peaks[at]);
+        unsupported.push(group.peaks[at]);
         (fit, group.peaks) = (less, fewer);
     }
-    (fit, dropped)
-}
-
-/// Fits the modes that were found around each peak of a band together, to all its lines; keeps each fitted around its peak where they
-/// do not explain all lines as well.
-pub(super) fn together(
-    lines: &Measured,
-    band: (f64, f64),
-    fits: Vec<Fitted>,
-    unsupported: &mut Vec<Peak>,
-    findings: &mut Vec<Finding>,
-) -> Vec<Fitted> {
-    // What is no mode by itself is not fitted together with the others.
-    let is_mode = |(group, fit): &Fitted| fit.explains() && fit.sound(lines, &group.peaks).contains(&true);
-    let (mut found, left): (Vec<Fitted>, Vec<Fitted>) = fits.into_iter().partition(is_mode);
-    let part = lines.within(band);
-    if found.iter().any(|(group, _)| group.lines != part) {
-        let (mut peaks, mut guess, mut weak) = (Vec::new(), Vec::new(), Vec::new());
-        for (group, fit) in &found {
-            let sound = fit.sound(lines, &group.peaks);
-            for ((peak, mode), sound) in group.peaks.iter().zip(&fit.modes).zip(sound) {
-                if sound {
-                    peaks.push(*peak);
-                    guess.push((mode.frequency, mode.zeta));
-                } else {
-                    weak.push(*peak);
-                }
-            }
-        }
-        let one_explains = found.iter().any(|(_, fit)| !fit.whiteness.rejected());
-        let all = rational(lines, part.clone(), &guess, &[]).ok();
-        if let Some(fit) = all.filter(|fit| !(fit.whiteness.rejected() && one_explains)) {
-            let mut group = Group { peaks, lines: part };
-            let (fit, dropped) = pruned(lines, &mut group, fit);
-            unsupported.extend(weak.into_iter().chain(dropped));
-            found = vec![(group, fit)];
-        } else {
-            let unexplained = Finding::caution("modal-band-unexplained");
-            findings.push(unexplained.number("low", band.0).number("high", band.1));
-        }
-    }
-    found.extend(left);
-    found
+    fit
 }
 
 /// Fewest lines on either side of the outer peaks of a band that is made narrower.

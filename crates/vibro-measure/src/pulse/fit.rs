@@ -74,40 +74,39 @@ impl Samples {
     /// The best fit of a model, from a coarse search over onset and shape.
     pub fn fit(&self, model: ContactModel) -> Result<Fitted> {
         let starts = self.starts(model)?;
-        let near = if model == ContactModel::KelvinVoigt { self.nearer(&starts[0]) } else { Vec::new() };
-        let at = |onset: f64| [&[onset], &near[1..]].concat();
-        let least = |fits: Vec<(bool, Fitted)>| {
-            let sum = |f: &(bool, Fitted)| f.1.fit.sum_of_squares();
-            let best = fits.into_iter().min_by(|a, b| a.0.cmp(&b.0).then(sum(a).total_cmp(&sum(b))));
-            let refuse =
-                || Error::refused(format!("the fit of the model {} does not converge", model.name()));
-            best.map(|f| f.1).ok_or_else(refuse)
-        };
-        if let Some(filter) = self.filter.as_ref().filter(|_| model == ContactModel::KelvinVoigt) {
-            // The rise of a fast low-pass falls, like a jump, between a few samples: each of them then holds a minimum of its own.
-            let fast = filter.corner * self.step > FAST;
-            let stepped = (-3..=3).filter(|_| fast).map(|by: i32| at(near[0] + f64::from(by) * self.step));
-            let all = starts.iter().take(3).cloned().chain(stepped);
-            return least(all.filter_map(|p| Some((false, self.from(model, &p, None)?))).collect());
-        }
-        if model != ContactModel::KelvinVoigt {
-            let all = starts.iter().take(3);
-            return least(all.filter_map(|p| Some((false, self.from(model, p, None)?))).collect());
+        let corner = self.filter.as_ref().map(|f| f.corner);
+        let mut from: Vec<(Vec<f64>, Option<usize>)> = Vec::new();
+        if model != ContactModel::KelvinVoigt || corner.is_some() {
+            from.extend(starts.iter().take(3).map(|p| (p.clone(), None)));
         }
         // The jump of the force at the onset makes the sum of squares jump where the onset passes a sample. So the onset is
-        // fitted between each two samples near the guess, the contact going on smoothly beyond them, and the best is taken.
-        // A jump that is lost in the noise does not tell where it is: then any of them will do.
-        let middle = self.times.partition_point(|t| *t < near[0]).clamp(1, self.times.len() - 1);
-        let cells = middle.saturating_sub(3).max(1)..=(middle + 3).min(self.times.len() - 1);
-        let within = |first: usize| {
-            let (low, high) = (self.times[first - 1], self.times[first]);
-            let fitted = self.from(model, &at(f64::midpoint(low, high)), Some(first))?;
-            // Noise may take the onset a little beyond the two samples.
-            let slack = self.step / 2.0;
-            let outside = !(low - slack..=high + slack).contains(&fitted.fit.parameters[0]);
-            Some((outside, fitted))
+        // fitted between each two samples near the guess, the contact going on smoothly beyond them, and the best is taken. The
+        // rise of a fast low-pass falls, like a jump, between a few samples: each of them then holds a minimum of its own.
+        if model == ContactModel::KelvinVoigt && corner.is_none_or(|c| c * self.step > FAST) {
+            let near = self.nearer(&starts[0]);
+            let at = |onset: f64| [&[onset], &near[1..]].concat();
+            let last = self.times.len() - 1;
+            let middle = self.times.partition_point(|t| *t < near[0]).clamp(1, last);
+            from.extend((-3..=3).filter_map(|by: i32| {
+                if corner.is_some() {
+                    return Some((at(near[0] + f64::from(by) * self.step), None));
+                }
+                let first = middle.checked_add_signed(by as isize).filter(|k| (1..=last).contains(k))?;
+                Some((at(f64::midpoint(self.times[first - 1], self.times[first])), Some(first)))
+            }));
+        }
+        // Noise may take the onset a little beyond the two samples. One that is lost in the noise does not tell where it is: then any
+        // of them will do.
+        let slack = self.step / 2.0;
+        let outside = |fit: &Fitted| {
+            let between = |k: usize| self.times[k - 1] - slack..=self.times[k] + slack;
+            fit.first.is_some_and(|k| !between(k).contains(&fit.fit.parameters[0]))
         };
-        least(cells.filter_map(within).collect())
+        let fits = from.into_iter().filter_map(|(start, first)| self.from(model, &start, first));
+        let fits = fits.map(|fit| (outside(&fit), fit.fit.sum_of_squares(), fit));
+        let best = fits.min_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        best.map(|f| f.2)
+            .ok_or_else(|| Error::refused(format!("the fit of the model {} does not converge", model.name())))
     }
 
     /// Factor for the uncertainties by the fit's covariance. `None` where more is left around the onset than elsewhere, and is not

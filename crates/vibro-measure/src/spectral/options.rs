@@ -71,26 +71,36 @@ impl SpectralOptions {
         self.fmin.unwrap_or(if self.integrate > 0 { 2.0 * step } else { 0.0 })
     }
 
+    /// Names of what may contradict another option, and whether it is given.
+    fn given(&self) -> [(&'static str, bool); 13] {
+        [
+            ("method", self.method.is_some()),
+            ("reference", self.estimator.is_some()),
+            ("segment", self.segment.is_some()),
+            ("overlap", self.overlap.is_some()),
+            ("window", self.window.is_some()),
+            ("detrend", self.detrend.is_some()),
+            ("integrate", self.integrate != 0),
+            ("fmin", self.fmin.is_some()),
+            ("scaling", self.scaling.is_some()),
+            ("hammer", self.hammer),
+            ("force_window", self.force_window.is_some()),
+            ("left_at_end", self.left_at_end.is_some()),
+            ("delay", self.delay.is_some()),
+        ]
+    }
+
+    /// The first of these that is given.
+    pub fn first(&self) -> Option<&'static str> {
+        self.given().into_iter().find(|(_, given)| *given).map(|(name, _)| name)
+    }
+
     /// Checks that no option contradicts another.
     ///
     /// # Errors
     /// It names the two that do.
     pub fn check(&self) -> Result<()> {
         let (tones, function) = (self.tones.is_some(), self.estimator.is_some());
-        let given = [
-            ("method", self.method.is_some()),
-            ("reference", function),
-            ("segment", self.segment.is_some()),
-            ("overlap", self.overlap.is_some()),
-            ("window", self.window.is_some()),
-            ("detrend", self.detrend.is_some()),
-            ("integrate", self.integrate != 0),
-            ("scaling", self.scaling.is_some()),
-            ("hammer", self.hammer),
-            ("force_window", self.force_window.is_some()),
-            ("left_at_end", self.left_at_end.is_some()),
-            ("delay", self.delay.is_some()),
-        ];
         let whole = "tones of the whole record of one channel as it is";
         let rules: [(bool, &[&str], &str, &str); 8] = [
             (tones && self.method == Some(Method::Welch), &["method"], "with tones", whole),
@@ -113,7 +123,8 @@ impl SpectralOptions {
             (function, &["scaling"], "with a reference", "a function has no scaling"),
         ];
         for (holds, names, with, expected) in rules {
-            let clash = given.iter().find(|(name, given)| holds && *given && names.contains(name));
+            let clash =
+                self.given().into_iter().find(|(name, given)| holds && *given && names.contains(name));
             if let Some((name, _)) = clash {
                 return Err(Error::usage(format!("{name} {with}"), expected).setting(name));
             }
