@@ -204,8 +204,6 @@ impl Keys {
         answer.csv("methods", &methods);
         answer.details.push(methods);
         answer.figure("frf", figures::frf(source.name, meta, measured, &found.modes));
-        let nyquist = figures::nyquist(source.name, &found.modes);
-        answer.figures.extend(nyquist.map(|figure| ("nyquist".to_owned(), figure)));
         if !records.is_empty() {
             let (files, unwritten) = files::records("frf", records)?;
             answer.files.extend(files);

@@ -50,29 +50,24 @@ impl Keys {
     /// # Errors
     /// With the key that does not.
     pub fn usable(&self, file: bool) -> Result<()> {
-        let wrong = |key, found: String, expected: &str| Err(Error::usage(found, expected).setting(key));
         above_zero("mass", self.mass)?;
-        let times = self.time_to_peak.is_some();
-        if times != self.duration.is_some() {
-            let key = if times { "time_to_peak" } else { "duration" };
-            return wrong(key, "only one of time_to_peak and duration".to_owned(), "both, or none");
+        let given = [
+            ("time_to_peak", self.time_to_peak.is_some()),
+            ("duration", self.duration.is_some()),
+            ("std", self.std.is_some()),
+            ("low_pass", self.low_pass.is_some()),
+            ("order", self.order.is_some()),
+        ];
+        let (clash, beside) =
+            if file { (&given[..3], "beside a file") } else { (&given[3..], "without a file") };
+        if let Some((key, _)) = clash.iter().find(|(_, given)| *given) {
+            return Err(Error::usage(format!("{key} {beside}"), "a file, or two times").setting(key));
         }
-        if self.std.is_some() && !times {
-            return wrong("std", "std without time_to_peak and duration".to_owned(), "both times");
+        if !file && !(given[0].1 && given[1].1) {
+            let expected = "a file, or time_to_peak and duration";
+            return Err(Error::usage("neither a file nor two times", expected));
         }
-        match (file, times) {
-            (true, true) => return wrong("time_to_peak", "a file and two times".to_owned(), "one of them"),
-            (false, false) => {
-                let expected = "a file, or time_to_peak and duration";
-                return Err(Error::usage("neither a file nor two times", expected));
-            }
-            _ => {}
-        }
-        let key = if self.low_pass.is_some() { "low_pass" } else { "order" };
-        if times && (self.low_pass.is_some() || self.order.is_some()) {
-            return wrong(key, format!("{key} beside two times"), "a file, or leave it out");
-        }
-        self.instrument().map(drop).map_err(|e| e.setting(key))
+        self.instrument().map(drop)
     }
 
     fn instrument(&self) -> Result<Instrument> {

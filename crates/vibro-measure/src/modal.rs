@@ -13,10 +13,9 @@ mod response;
 mod result;
 mod selection;
 
-pub use classical::Circle;
 pub use pole::Pole;
 pub use response::Measured;
-pub use result::{ByMethod, ModalOptions, ModalResult, Mode, ModePicture};
+pub use result::{ByMethod, ModalOptions, ModalResult, Mode};
 
 use bands::{Group, groups};
 use rational::{Rational, rational};
@@ -97,7 +96,9 @@ fn poles_beside(fits: &[Fitted], at: usize) -> Vec<Pole> {
 
 /// Fits each group again with the modes of the others subtracted, twice.
 fn refine(lines: &Measured, fits: &mut [Fitted]) {
-    for at in (0..fits.len()).cycle().take(2 * fits.len()) {
+    // Without phases nothing can be subtracted.
+    let turns = if lines.magnitude_only { 0 } else { 2 * fits.len() };
+    for at in (0..fits.len()).cycle().take(turns) {
         let others = poles_beside(fits, at);
         let (group, fit) = &mut fits[at];
         let starts: Vec<(f64, f64)> = fit.modes.iter().map(|m| (m.frequency, m.zeta)).collect();

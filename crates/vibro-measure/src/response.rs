@@ -174,9 +174,15 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
         findings.push(Finding::caution("sweep-too-few-points").count("n", points.len()));
     }
     if wrong.is_some() {
-        points.iter_mut().for_each(|p| (p.frequency_std, p.amplitude.std) = (None, None));
-        jumps.iter_mut().for_each(|j| (j.amplitude_before_std, j.amplitude_after_std) = (None, None));
-        resonances.iter_mut().for_each(|r| (r.frequency_std, r.amplitude_std) = (None, None));
+        for point in &mut points {
+            (point.frequency_std, point.amplitude.std) = (None, None);
+        }
+        for jump in &mut jumps {
+            (jump.amplitude_before_std, jump.amplitude_after_std) = (None, None);
+        }
+        for resonance in &mut resonances {
+            (resonance.frequency_std, resonance.amplitude_std) = (None, None);
+        }
     }
     let undone = sweep.analyser_integrated;
     let taken: [(_, &dyn std::fmt::Display); 4] = [

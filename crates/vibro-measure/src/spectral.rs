@@ -53,7 +53,10 @@ pub fn spectral(
         Some(estimator) => response(traces, options, estimator, progress),
     }?;
     if let Some(reference) = options.decibel {
-        found.over(reference);
+        let channel = traces.channels().first().map(|meta| meta.unit.times_seconds(options.integrate));
+        let unit = channel.filter(|_| options.estimator.is_none());
+        let unit = unit.map_or_else(|| found.unit.clone(), |unit| unit.symbol().to_owned());
+        found.over(reference, &unit);
     }
     Ok(found)
 }

@@ -24,19 +24,6 @@ pub(super) fn half_power(measured: &Measured, at: usize, part: &Range<usize>) ->
     Some((f, (high - low) / (2.0 * f)))
 }
 
-/// A circle of the mobility in the Nyquist plane and the mode that runs along it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Circle {
-    /// Frequency, damping and modal constant.
-    pub pole: Pole,
-    /// Centre of the circle, (m/s)/N.
-    pub centre: Complex64,
-    /// Its radius.
-    pub radius: f64,
-    /// Frequencies and mobilities that were fitted.
-    pub points: Vec<(f64, Complex64)>,
-}
-
 /// Fewest points of a circle fit: twice the three parameters of a circle.
 const POINTS: usize = 6;
 
@@ -46,9 +33,15 @@ const ROUND: f64 = 0.1;
 /// Fits a circle to the mobility at the lines within 2.4 half bandwidths of the mode (270° of the circle), by the method of Pratt
 /// (1987), then natural frequency and damping to the angles: tan(θ/2) = (ωᵣ² − ω²)/(2ζωᵣω) from the resonance.
 ///
+/// Gives the mode and the number of lines.
+///
 /// # Errors
 /// If there are fewer than six such lines, or they lie on no circle.
-pub(super) fn circle(measured: &Measured, near: &Pole, part: &Range<usize>) -> Result<Circle, Finding> {
+pub(super) fn circle(
+    measured: &Measured,
+    near: &Pole,
+    part: &Range<usize>,
+) -> Result<(Pole, usize), Finding> {
     let reach = 2.4 * near.zeta * near.frequency;
     let points: Vec<(f64, Complex64)> = part
         .clone()
@@ -61,10 +54,10 @@ pub(super) fn circle(measured: &Measured, near: &Pole, part: &Range<usize>) -> R
     if points.len() < POINTS {
         return Err(Finding::caution("circle-few-lines").count("n", points.len()).count("needed", POINTS));
     }
-    on_circle(points, near).ok_or_else(|| Finding::caution("circle-not-round"))
+    on_circle(&points, near).ok_or_else(|| Finding::caution("circle-not-round"))
 }
 
-fn on_circle(points: Vec<(f64, Complex64)>, near: &Pole) -> Option<Circle> {
+fn on_circle(points: &[(f64, Complex64)], near: &Pole) -> Option<(Pole, usize)> {
     let (centre, radius) = pratt(&points.iter().map(|p| p.1).collect::<Vec<_>>())?;
     let off: f64 = points.iter().map(|p| ((p.1 - centre).norm() - radius).powi(2)).sum();
     if (off / points.len() as f64).sqrt() > ROUND * radius {
@@ -86,7 +79,7 @@ fn on_circle(points: Vec<(f64, Complex64)>, near: &Pole) -> Option<Circle> {
     // The mobility at resonance is A/(2ζωᵣ), a diameter.
     let constant = Complex64::cis(at + fit.parameters[2]) * (2.0 * radius * 2.0 * zeta * TAU * frequency);
     let pole = Pole { frequency, zeta, constant };
-    (fit.converged && zeta > 0.0).then_some(Circle { pole, centre, radius, points })
+    (fit.converged && zeta > 0.0).then_some((pole, points.len()))
 }
 
 /// Circle through points by Pratt's algebraic fit: Σ(A|z|² + Bx + Cy + D)² is least under B² + C² − 4AD = 1, here by Newton's

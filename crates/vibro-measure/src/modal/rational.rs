@@ -53,16 +53,16 @@ impl Scaled<'_> {
 
     /// The model at line `i`: modes, and what lies above (U) and below (L/x²) as receptances.
     fn at(&self, p: &[f64], i: usize) -> Complex64 {
+        let amplitude = |at: usize| Complex64::new(p[at], p[at + 1]);
         let modes = self.starts.len();
-        let mut sum = Complex64::new(0.0, 0.0);
-        for m in 0..modes {
-            let a = Complex64::new(p[4 * m + 2], if self.magnitude_only { 0.0 } else { p[4 * m + 3] });
-            sum += a * self.mode(i, self.shape(p, m));
-        }
-        let r = &p[4 * modes..];
-        let above = Complex64::new(r[0], r[1]);
-        let below = if self.magnitude_only { Complex64::new(0.0, 0.0) } else { Complex64::new(r[2], r[3]) };
+        let sum: Complex64 = (0..modes).map(|m| amplitude(4 * m + 2) * self.mode(i, self.shape(p, m))).sum();
+        let (above, below) = (amplitude(4 * modes), amplitude(4 * modes + 2));
         sum + self.factor[i] * (above + below / (self.x[i] * self.x[i]))
+    }
+
+    /// Numbers that the lines hold.
+    fn rows(&self) -> usize {
+        if self.magnitude_only { self.x.len() } else { 2 * self.x.len() }
     }
 
     /// The parameters that enter linearly, for given shapes, by least squares; and the sum of squares.
@@ -136,8 +136,7 @@ impl Scaled<'_> {
         let q: Vec<f64> = free.iter().map(|i| start[*i]).collect();
         let largest = q.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
         let scale: Vec<f64> = q.iter().map(|v| v.abs().max(1e-3 * largest.min(1.0))).collect();
-        let rows = if self.magnitude_only { n } else { 2 * n };
-        let mut fit = least_squares(residuals, rows, &q, &scale)?;
+        let mut fit = least_squares(residuals, self.rows(), &q, &scale)?;
         if !fit.converged {
             return Err(Error::refused("the fit did not converge"));
         }
@@ -166,18 +165,7 @@ pub(super) fn rational(
 ) -> Result<Rational> {
     let power = measured.power();
     let lines = part.len();
-    let parameters = 4 * starts.len() + 4 - if measured.magnitude_only { starts.len() + 3 } else { 0 };
-    let numbers = if measured.magnitude_only { lines } else { 2 * lines };
-    if numbers < parameters + 3 {
-        return Err(Error::refused(format!(
-            "{lines} lines hold {numbers} numbers, too few for {parameters} parameters and their uncertainty"
-        ))
-        .hint("take a wider band")
-        .setting("band"));
-    }
     let f = &measured.frequency[part.clone()];
-    // Without phases nothing can be subtracted.
-    let others = if measured.magnitude_only { &[] } else { others };
     let taken = |f: f64| others.iter().map(|o| o.at(f, power)).sum::<Complex64>();
     let values: Vec<Complex64> =
         f.iter().zip(&measured.values[part.clone()]).map(|(f, v)| v - taken(*f)).collect();
@@ -194,6 +182,14 @@ pub(super) fn rational(
         power,
         magnitude_only: measured.magnitude_only,
     };
+    let (numbers, parameters) = (scaled.rows(), scaled.free().len());
+    if numbers < parameters + 3 {
+        return Err(Error::refused(format!(
+            "{lines} lines hold {numbers} numbers, too few for {parameters} parameters and their uncertainty"
+        ))
+        .hint("take a wider band")
+        .setting("band"));
+    }
     let width = (f[f.len() - 1] - f[0]) / (f.len() - 1) as f64;
     let equal = vec![1.0; lines];
     let refuse = || Error::refused("no first guess of the modes fits the lines");
@@ -310,32 +306,29 @@ impl Scaled<'_> {
             Whiteness::of(&[re, im])
         };
         let free = self.free();
-        let place = |i: usize| free.iter().position(|f| *f == i).unwrap_or(0);
+        let place = |i: usize| free.iter().position(|f| *f == i);
+        let covariance =
+            |i: usize, j: usize| place(i).zip(place(j)).map_or(0.0, |(i, j)| fit.covariance(i, j));
         let p = &fit.parameters;
         let to_constant = self.height * (TAU * self.unit).powi(2 - self.power);
         // Fits of fewer than three degrees of freedom were refused.
         let widened = whiteness.inflation * student(fit.degrees_of_freedom()).unwrap_or(f64::NAN);
         let mode = |(m, (f, zeta)): (usize, &(f64, f64))| {
             let (own, damping) = self.shape(p, m);
-            let a = Complex64::new(p[4 * m + 2], if self.magnitude_only { 0.0 } else { p[4 * m + 3] });
+            let a = Complex64::new(p[4 * m + 2], p[4 * m + 3]);
             let pole = Pole { frequency: own * self.unit, zeta: damping, constant: a * to_constant };
-            let (re, im) = (place(4 * m + 2), place(4 * m + 3));
+            let (re, im) = (4 * m + 2, 4 * m + 3);
             let along = |re_part: f64, im_part: f64| {
-                let variance = re_part * re_part * fit.covariance(re, re);
-                if self.magnitude_only {
-                    return variance;
-                }
-                variance
-                    + im_part * im_part * fit.covariance(im, im)
-                    + 2.0 * re_part * im_part * fit.covariance(re, im)
+                let own = re_part * re_part * covariance(re, re) + im_part * im_part * covariance(im, im);
+                (own + 2.0 * re_part * im_part * covariance(re, im)).sqrt()
             };
             // |a| moves with its real part by cos and with its imaginary part by sin of its phase; the phase, times |a|, by −sin and cos.
             let (cos, sin) = (a.re / a.norm(), a.im / a.norm());
             let std = [
-                f * zeta * fit.std(place(4 * m)),
-                zeta * fit.std(place(4 * m + 1)),
-                to_constant * along(cos, sin).sqrt(),
-                along(-sin, cos).sqrt() / a.norm(),
+                f * zeta * covariance(4 * m, 4 * m).sqrt(),
+                zeta * covariance(4 * m + 1, 4 * m + 1).sqrt(),
+                to_constant * along(cos, sin),
+                along(-sin, cos) / a.norm(),
             ];
             (pole, std.map(|s| s * widened))
         };

@@ -1,10 +1,10 @@
 //! Fitted modes with their uncertainties, beside what the classical methods give.
 
 use super::bands::Group;
-use super::classical::{Circle, circle, half_power};
+use super::classical::{circle, half_power};
 use super::rational::Rational;
 use super::selection::support_for_two;
-use super::{ByMethod, Measured, ModalOptions, Mode, ModePicture, Pole};
+use super::{ByMethod, Measured, ModalOptions, Mode, Pole};
 use crate::Estimate;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -135,7 +135,6 @@ impl Estimates<'_> {
             Estimate::new(k, std, "N/m", n, "k = m(2πf)²")
         });
         let decay = options.decay.unwrap_or(0.0);
-        let circle = phases.then(|| self.circle(decay));
         let mut by = vec![ByMethod {
             method: "rational fit",
             frequency: frequency.clone(),
@@ -143,21 +142,20 @@ impl Estimates<'_> {
             modal_constant: Some(modal_constant.clone()),
             note: None,
         }];
-        by.extend(circle.as_ref().map(by_circle));
+        by.extend(phases.then(|| by_circle(&self.circle(decay))));
         by.extend(self.by_magnitudes(decay));
         let fitted = f.iter().zip(&fit.fitted).map(|(f, v)| (*f, v.re, v.im)).collect();
-        let picture = ModePicture { fitted, circle: circle.and_then(Result::ok) };
         let lines = (f[0], f[n - 1], n);
-        Mode { frequency, zeta, modal_constant, phase, method, stiffness, lines, by, picture }
+        Mode { frequency, zeta, modal_constant, phase, method, stiffness, lines, by, fitted }
     }
 
     /// The circle of the response as measured, and its mode without the decay of a window.
-    fn circle(&self, decay: f64) -> Result<Circle, Finding> {
+    fn circle(&self, decay: f64) -> Result<(Pole, usize), Finding> {
         let power = self.measured.power();
         let seen = self.own.without_decay(-decay, power).unwrap_or(self.own);
-        let found = circle(self.measured, &seen, &self.group.lines)?;
-        let pole = found.pole.without_decay(decay, power);
-        Ok(Circle { pole: pole.ok_or_else(|| Finding::caution("circle-not-round"))?, ..found })
+        let (pole, n) = circle(self.measured, &seen, &self.group.lines)?;
+        let pole = pole.without_decay(decay, power).ok_or_else(|| Finding::caution("circle-not-round"))?;
+        Ok((pole, n))
     }
 
     /// The methods that read the magnitudes.
@@ -182,10 +180,10 @@ impl Estimates<'_> {
     }
 }
 
-fn by_circle(found: &Result<Circle, Finding>) -> ByMethod {
-    let n = found.as_ref().map_or(0, |circle| circle.points.len());
+fn by_circle(found: &Result<(Pole, usize), Finding>) -> ByMethod {
+    let pole = found.as_ref().ok().map(|circle| circle.0);
+    let n = found.as_ref().map_or(0, |circle| circle.1);
     let plain = |value, unit| Estimate::new(value, None, unit, n, "circle fit");
-    let pole = found.as_ref().ok().map(|circle| circle.pole);
     ByMethod {
         method: "circle fit",
         frequency: plain(pole.map_or(f64::NAN, |p| p.frequency), "Hz"),

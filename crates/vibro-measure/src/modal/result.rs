@@ -1,6 +1,5 @@
 //! What is known of each mode.
 
-use super::classical::Circle;
 use crate::Estimate;
 use serde::{Serialize, Serializer};
 use vibro_record::Finding;
@@ -56,9 +55,9 @@ pub struct Mode {
     pub lines: (f64, f64, usize),
     /// What every method gives.
     pub by: Vec<ByMethod>,
-    /// Curves for a figure.
+    /// Frequency and fitted response of the lines that were used, real and imaginary.
     #[serde(skip)]
-    pub picture: ModePicture,
+    pub fitted: Vec<(f64, f64, f64)>,
 }
 
 /// What one method gives.
@@ -81,13 +80,4 @@ pub struct ByMethod {
 #[allow(clippy::ref_option)]
 fn code<S: Serializer>(note: &Option<Finding>, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(note.as_ref().map_or("", |n| n.code))
-}
-
-/// A mode, to be drawn.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct ModePicture {
-    /// Frequency and fitted response of the lines that were used, real and imaginary.
-    pub fitted: Vec<(f64, f64, f64)>,
-    /// The circle, where one was fitted.
-    pub circle: Option<Circle>,
 }

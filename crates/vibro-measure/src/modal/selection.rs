@@ -11,15 +11,9 @@ pub(super) const TOGETHER: usize = 6;
 /// An additional mode must lower Akaike's criterion by this much (Burnham & Anderson 2002, 2.6).
 const NEEDED: f64 = 10.0;
 
-/// First guesses for `peaks`: what a fit gave where that lies at its peak, else the peak.
-fn starts(lines: &Measured, peaks: &[Peak], known: Option<(&Rational, &[Peak])>) -> Vec<(f64, f64)> {
-    let of = |peak: &Peak| {
-        let (fit, fitted) = known?;
-        let at = fitted.iter().position(|p| p.at == peak.at)?;
-        let mode = &fit.modes[at];
-        fit.sound(lines, fitted)[at].then_some((mode.frequency, mode.zeta))
-    };
-    peaks.iter().map(|p| of(p).unwrap_or_else(|| p.start(lines))).collect()
+/// First guesses for `peaks`.
+fn starts(lines: &Measured, peaks: &[Peak]) -> Vec<(f64, f64)> {
+    peaks.iter().map(|p| p.start(lines)).collect()
 }
 
 /// Finds the peaks of a group that the lines need. The group keeps those; the others are added to `unsupported`.
@@ -33,7 +27,7 @@ pub(super) fn chosen(lines: &Measured, group: &mut Group, unsupported: &mut Vec<
     let fit = loop {
         group.peaks.clone_from(&highest);
         group.peaks.sort_by_key(|p| p.at);
-        match rational(lines, group.lines.clone(), &starts(lines, &group.peaks, None), &[]) {
+        match rational(lines, group.lines.clone(), &starts(lines, &group.peaks), &[]) {
             // Where not all can be fitted at once, the lowest is left out.
             Err(_) if highest.len() > 1 => unsupported.extend(highest.pop()),
             fit => break fit?,
@@ -45,27 +39,24 @@ pub(super) fn chosen(lines: &Measured, group: &mut Group, unsupported: &mut Vec<
 
 /// Drops the modes that are not known, the lowest peak first, then those that the lines do not need beside the others.
 fn pruned(lines: &Measured, group: &mut Group, mut fit: Rational, unsupported: &mut Vec<Peak>) -> Rational {
-    let without = |group: &Group, fit: &Rational, at: usize| {
-        let mut fewer = group.peaks.clone();
-        fewer.remove(at);
-        let guess = starts(lines, &fewer, Some((fit, &group.peaks)));
-        rational(lines, group.lines.clone(), &guess, &[]).ok().map(|less| (less, fewer))
-    };
     while group.peaks.len() > 1 {
         let sound = fit.sound(lines, &group.peaks);
-        let weakest = (0..sound.len())
-            .filter(|at| !sound[*at])
-            .min_by(|a, b| group.peaks[*a].rise.total_cmp(&group.peaks[*b].rise));
-        let less = match weakest {
-            Some(at) => without(group, &fit, at).map(|less| (at, less)),
-            None => (0..group.peaks.len())
-                .filter_map(|at| without(group, &fit, at).map(|less| (at, less)))
-                .filter(|(_, (less, _))| less.aicc <= fit.aicc + NEEDED)
-                // A mode that leaves its peak for the one taken away is not the other's.
-                .filter(|(_, (less, fewer))| less.sound(lines, fewer).iter().all(|s| *s))
-                .min_by(|a, b| a.1.0.aicc.total_cmp(&b.1.0.aicc)),
+        let unknown = (0..sound.len()).filter(|at| !sound[*at]);
+        let lowest = unknown.min_by(|a, b| group.peaks[*a].rise.total_cmp(&group.peaks[*b].rise));
+        let without = |at: usize| {
+            let mut fewer = group.peaks.clone();
+            fewer.remove(at);
+            let less = rational(lines, group.lines.clone(), &starts(lines, &fewer), &[]).ok()?;
+            // A mode that leaves its peak for the one taken away is not the other's.
+            let needless =
+                less.aicc <= fit.aicc + NEEDED && less.sound(lines, &fewer).iter().all(|sound| *sound);
+            (lowest.is_some() || needless).then_some((less, fewer, at))
         };
-        let Some((at, (less, fewer))) = less else { break };
+        let less = match lowest {
+            Some(at) => without(at),
+            None => (0..sound.len()).filter_map(without).min_by(|a, b| a.0.aicc.total_cmp(&b.0.aicc)),
+        };
+        let Some((less, fewer, at)) = less else { break };
         unsupported.push(group.peaks[at]);
         (fit, group.peaks) = (less, fewer);
     }
@@ -82,7 +73,7 @@ fn narrowed(lines: &Measured, group: &mut Group, wide: Rational) -> Rational {
     else {
         return wide;
     };
-    let starts: Vec<(f64, f64)> = group.peaks.iter().map(|p| p.start(lines)).collect();
+    let starts = starts(lines, &group.peaks);
     let (mut below, mut above) = (first - group.lines.start, group.lines.end - last - 1);
     while below.max(above) > BESIDE {
         below = below.min((2 * below / 3).max(BESIDE));

@@ -5,15 +5,19 @@ use crate::residuals::{Whiteness, student};
 use vibro_math::{Fit, least_squares};
 use vibro_record::{Error, Result};
 
-/// Samples in units of about the pulse: time from its rising flank over its length, value over its height.
-pub(super) struct Samples {
-    pub times: Vec<f64>,
-    pub values: Vec<f64>,
+/// What the models see of an instrument, in units of about the pulse's length.
+pub(super) struct Seen {
     /// Distance of two samples.
     pub step: f64,
-    /// The instrument's low-pass in the same unit of time.
     pub filter: Option<LowPass>,
     pub hertz: HuntCrossley,
+}
+
+/// Samples in units of about the pulse: time from its rising flank over its length, value over its height.
+pub(super) struct Samples<'a> {
+    pub seen: &'a Seen,
+    pub times: Vec<f64>,
+    pub values: Vec<f64>,
 }
 
 /// A model at its best, its parameters onset, baseline, velocity of approach, and those of its shape: ξ and f, duration, or
@@ -34,7 +38,7 @@ const FAST: f64 = 0.1;
 /// Part of the pulse's length around the onset in which a wrong low-pass shows.
 const AROUND: f64 = 0.1;
 
-impl Samples {
+impl Samples<'_> {
     /// The model at these rising times; `first` is the first time inside the contact where that is settled.
     pub fn model(
         &self,
@@ -43,7 +47,7 @@ impl Samples {
         times: &[f64],
         first: Option<usize>,
     ) -> Option<Vec<f64>> {
-        let filter = self.filter.as_ref();
+        let filter = self.seen.filter.as_ref();
         let since = times.iter().map(|t| t - p[0]);
         let shape: Vec<f64> = match model {
             ContactModel::KelvinVoigt => {
@@ -61,7 +65,7 @@ impl Samples {
                 }
             }
             ContactModel::Hertz if p[3] > 0.0 => {
-                self.hertz.decelerations(p[3], filter, &since.collect::<Vec<_>>())
+                self.seen.hertz.decelerations(p[3], filter, &since.collect::<Vec<_>>())
             }
             ContactModel::HuntCrossley if p[3] > 0.0 => {
                 HuntCrossley::new(p[4])?.decelerations(p[3], filter, &since.collect::<Vec<_>>())
@@ -74,7 +78,7 @@ impl Samples {
     /// The best fit of a model, from a coarse search over onset and shape.
     pub fn fit(&self, model: ContactModel) -> Result<Fitted> {
         let starts = self.starts(model)?;
-        let corner = self.filter.as_ref().map(|f| f.corner);
+        let corner = self.seen.filter.as_ref().map(|f| f.corner);
         let mut from: Vec<(Vec<f64>, Option<usize>)> = Vec::new();
         if model != ContactModel::KelvinVoigt || corner.is_some() {
             from.extend(starts.iter().take(3).map(|p| (p.clone(), None)));
@@ -82,14 +86,14 @@ impl Samples {
         // The jump of the force at the onset makes the sum of squares jump where the onset passes a sample. So the onset is
         // fitted between each two samples near the guess, the contact going on smoothly beyond them, and the best is taken. The
         // rise of a fast low-pass falls, like a jump, between a few samples: each of them then holds a minimum of its own.
-        if model == ContactModel::KelvinVoigt && corner.is_none_or(|c| c * self.step > FAST) {
+        if model == ContactModel::KelvinVoigt && corner.is_none_or(|c| c * self.seen.step > FAST) {
             let near = self.nearer(&starts[0]);
             let at = |onset: f64| [&[onset], &near[1..]].concat();
             let last = self.times.len() - 1;
             let middle = self.times.partition_point(|t| *t < near[0]).clamp(1, last);
             from.extend((-3..=3).filter_map(|by: i32| {
                 if corner.is_some() {
-                    return Some((at(near[0] + f64::from(by) * self.step), None));
+                    return Some((at(near[0] + f64::from(by) * self.seen.step), None));
                 }
                 let first = middle.checked_add_signed(by as isize).filter(|k| (1..=last).contains(k))?;
                 Some((at(f64::midpoint(self.times[first - 1], self.times[first])), Some(first)))
@@ -97,7 +101,7 @@ impl Samples {
         }
         // Noise may take the onset a little beyond the two samples. One that is lost in the noise does not tell where it is: then any
         // of them will do.
-        let slack = self.step / 2.0;
+        let slack = self.seen.step / 2.0;
         let outside = |fit: &Fitted| {
             let between = |k: usize| self.times[k - 1] - slack..=self.times[k] + slack;
             fit.first.is_some_and(|k| !between(k).contains(&fit.fit.parameters[0]))
@@ -113,7 +117,7 @@ impl Samples {
     /// white noise: the pulse begins otherwise than the model can, and the parameters may be anything.
     pub(crate) fn widening(&self, fitted: &Fitted, whiteness: &Whiteness) -> Option<f64> {
         let onset = fitted.fit.parameters[0];
-        let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
+        let delay = self.seen.filter.as_ref().map_or(0.0, LowPass::delay);
         let around = onset - AROUND..=onset + AROUND + delay;
         if whiteness.rejected() && self.more_left(fitted, |t| around.contains(&t)) {
             return None;
@@ -152,7 +156,7 @@ impl Samples {
         let Some(duration) = KelvinVoigt::new(guess[3], guess[4]).map(|c| c.duration()) else {
             return guess.to_vec();
         };
-        let (reach, steps) = (0.12 * duration, (0.12 * duration / self.step).ceil().clamp(1.0, 10.0));
+        let (reach, steps) = (0.12 * duration, (0.12 * duration / self.seen.step).ceil().clamp(1.0, 10.0));
         let mut least = (f64::INFINITY, guess.to_vec());
         for onset in -(steps as i32)..=steps as i32 {
             for longer in -2..=2 {
@@ -178,7 +182,7 @@ impl Samples {
         let stride = self.times.len().div_ceil(COARSE).max(1);
         let thin = |all: &[f64]| all.iter().copied().step_by(stride).collect::<Vec<f64>>();
         let (times, values) = (thin(&self.times), thin(&self.values));
-        let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
+        let delay = self.seen.filter.as_ref().map_or(0.0, LowPass::delay);
         let shapes: &[f64] = match model {
             ContactModel::KelvinVoigt => &[0.03, 0.15, 0.3, 0.5, 0.75],
             ContactModel::Hertz => &[0.0],
@@ -230,7 +234,7 @@ impl Samples {
 
 impl Fitted {
     /// The fitted model at any rising times.
-    pub fn at(&self, samples: &Samples, times: &[f64]) -> Option<Vec<f64>> {
+    pub fn at(&self, samples: &Samples<'_>, times: &[f64]) -> Option<Vec<f64>> {
         let first = self.first.and_then(|f| samples.times.get(f)).map(|first| {
             let onset = self.fit.parameters[0].min(*first);
             times.partition_point(|t| *t < onset)

@@ -1,6 +1,6 @@
 //! A record in units of its pulse, and the way back.
 
-use super::fit::{Fitted, Samples};
+use super::fit::{Fitted, Samples, Seen};
 use super::locate::Located;
 use super::result::{PulseCurve, PulseFit, PulsePicture, propagated};
 use super::{ContactModel, HuntCrossley, LowPass};
@@ -21,13 +21,13 @@ pub(super) struct Normalised<'a> {
     pub length: f64,
     /// Unit of the values.
     height: f64,
-    filter: Option<LowPass>,
+    seen: Seen,
 }
 
 /// What is fitted of a record.
-pub(super) struct Window {
+pub(super) struct Window<'a> {
     /// The samples.
-    pub samples: Samples,
+    pub samples: Samples<'a>,
     /// Their places in the record.
     pub used: Vec<usize>,
     /// Whether the record comes back to the level before the pulse.
@@ -54,7 +54,9 @@ impl<'a> Normalised<'a> {
         // A half sine is above half its height for two thirds of its length.
         let length = 1.5 * (found.flanks.1 - found.flanks.0) * step;
         let filter = filter.map(|f| LowPass::new(f.corner * length, f.order)).transpose()?;
-        Ok(Normalised { trace, found, step, length, height: found.height.abs(), filter })
+        let hertz = HuntCrossley::new(0.0).ok_or_else(|| Error::refused("no shape of a Hertzian contact"))?;
+        let seen = Seen { step: step / length, filter, hertz };
+        Ok(Normalised { trace, found, step, length, height: found.height.abs(), seen })
     }
 
     fn time(&self, index: usize) -> f64 {
@@ -72,27 +74,22 @@ impl<'a> Normalised<'a> {
     }
 
     /// The usable samples of a part of the record, and their places.
-    fn samples(&self, range: Range<usize>) -> Result<(Samples, Vec<usize>)> {
+    fn samples(&self, range: Range<usize>) -> (Samples<'_>, Vec<usize>) {
         let usable = |i: &usize| self.trace.values[*i].is_finite() && !self.found.clipped.contains(i);
         let used: Vec<usize> = range.filter(usable).collect();
-        let samples = Samples {
-            times: used.iter().map(|i| self.time(*i)).collect(),
-            values: used.iter().map(|i| self.trace.values[*i] / self.height).collect(),
-            step: self.step / self.length,
-            filter: self.filter.clone(),
-            hertz: HuntCrossley::new(0.0).ok_or_else(|| Error::refused("no shape of a Hertzian contact"))?,
-        };
-        Ok((samples, used))
+        let times = used.iter().map(|i| self.time(*i)).collect();
+        let values = used.iter().map(|i| self.trace.values[*i] / self.height).collect();
+        (Samples { seen: &self.seen, times, values }, used)
     }
 
     /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record does not rest after it.
     ///
     /// # Errors
     /// If there are too few samples, or no contact of spring and damper fits the pulse, as `unlike` says.
-    pub fn window(&self, findings: &mut Vec<Finding>, unlike: impl Fn(Error) -> Error) -> Result<Window> {
-        let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
+    pub fn window(&self, findings: &mut Vec<Finding>, unlike: impl Fn(Error) -> Error) -> Result<Window<'_>> {
+        let delay = self.seen.filter.as_ref().map_or(0.0, LowPass::delay);
         let from = self.index(-BESIDE - delay);
-        let (first, used) = self.samples(from..self.found.low)?;
+        let (first, used) = self.samples(from..self.found.low);
         if used.len() < FEWEST {
             return Err(Error::refused(format!(
                 "the pulse has {} usable samples, and {FEWEST} are needed for five parameters",
@@ -104,7 +101,7 @@ impl<'a> Normalised<'a> {
         let fitted = first.fit(ContactModel::KelvinVoigt).map_err(unlike)?;
         let settled = self.index(fitted.end() + 3.0 * delay);
         let far = self.index(fitted.end() + 3.0 * delay + BESIDE);
-        let (after, _) = self.samples(settled..far)?;
+        let (after, _) = self.samples(settled..far);
         // Mean and root of the mean square of what is left after the pulse.
         let n = after.times.len() as f64;
         let left: Vec<f64> = fitted
@@ -123,7 +120,7 @@ impl<'a> Normalised<'a> {
             });
         }
         let end = if restless { self.index(fitted.end()).max(self.found.low) } else { far };
-        let (samples, used) = self.samples(from..end)?;
+        let (samples, used) = self.samples(from..end);
         Ok(Window { samples, used, level })
     }
 
@@ -156,7 +153,7 @@ impl<'a> Normalised<'a> {
     }
 
     /// A fit in SI units; without uncertainties unless the instrument is `known`.
-    pub fn report(&self, samples: &Samples, fitted: &Fitted, mass: Option<f64>, known: bool) -> PulseFit {
+    pub fn report(&self, samples: &Samples<'_>, fitted: &Fitted, mass: Option<f64>, known: bool) -> PulseFit {
         let whiteness = Whiteness::of(&[&fitted.fit.residuals]);
         let n = fitted.fit.residuals.len();
         let method = "least squares";
@@ -203,7 +200,7 @@ impl<'a> Normalised<'a> {
     }
 
     /// What a figure needs.
-    pub fn picture(&self, samples: &Samples, used: &[usize], fits: &[Fitted]) -> PulsePicture {
+    pub fn picture(&self, samples: &Samples<'_>, used: &[usize], fits: &[Fitted]) -> PulsePicture {
         let from = self.index(-1.5);
         let end = fits.iter().map(Fitted::end).fold(1.0, f64::max);
         let to = self.index(end + 1.5);

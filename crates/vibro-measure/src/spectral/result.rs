@@ -134,25 +134,19 @@ impl SpectralResult {
         SpectralResult { findings, ..result }
     }
 
-    /// Adds levels over a reference: 20 lg of amplitudes, 10 lg of powers over its square (ISO 1683).
-    pub(super) fn over(&mut self, reference: f64) {
-        let power =
-            matches!(&self.found, Lines::Spectrum(s) if matches!(s.scaling, Scaling::Power | Scaling::Psd));
-        let level = |v: &f64| {
-            let level =
-                if power { 10.0 * (v / reference.powi(2)).log10() } else { 20.0 * (v / reference).log10() };
-            if level.is_finite() { level } else { f64::NAN }
-        };
-        self.level = self.value.iter().map(level).collect();
-        let unit = match self.unit.strip_prefix('(').and_then(|u| u.split_once(")²")) {
-            Some((base, rest)) if power => format!("({})²{rest}", notation::reference(reference, base)),
-            _ if power => match self.unit.split_once('²') {
-                Some((base, rest)) => format!("({})²{rest}", notation::reference(reference, base)),
-                None => format!("{reference}² {}", self.unit),
-            },
-            _ => notation::reference(reference, &self.unit),
-        };
-        self.level_unit = Some(format!("dB re {unit}"));
+    /// Adds levels over a reference: 20 lg of amplitudes in `unit`, 10 lg of powers over its square (ISO 1683).
+    pub(super) fn over(&mut self, reference: f64, unit: &str) {
+        let power = ["power", "psd"].contains(&self.scaling);
+        let factor = if power { 10.0 } else { 20.0 };
+        let over = if power { reference * reference } else { reference };
+        let level = self.value.iter().map(|v| factor * (v / over).log10());
+        self.level = level.map(|level| if level.is_finite() { level } else { f64::NAN }).collect();
+        let reference = notation::reference(reference, unit);
+        self.level_unit = Some(match self.scaling {
+            "power" => format!("dB re ({reference})²"),
+            "psd" => format!("dB re ({reference})²/Hz"),
+            _ => format!("dB re {reference}"),
+        });
     }
 
     /// Spectrum, or function and coherence, without the lines that have no value: files have no word for them.
