@@ -51,21 +51,23 @@ impl Keys {
     /// With the key that does not.
     pub fn usable(&self, file: bool) -> Result<()> {
         above_zero("mass", self.mass)?;
-        let given = [
+        let times = [
             ("time_to_peak", self.time_to_peak.is_some()),
             ("duration", self.duration.is_some()),
             ("std", self.std.is_some()),
-            ("low_pass", self.low_pass.is_some()),
-            ("order", self.order.is_some()),
         ];
-        let (clash, beside) =
-            if file { (&given[..3], "beside a file") } else { (&given[3..], "without a file") };
-        if let Some((key, _)) = clash.iter().find(|(_, given)| *given) {
-            return Err(Error::usage(format!("{key} {beside}"), "a file, or two times").setting(key));
-        }
-        if !file && !(given[0].1 && given[1].1) {
+        let low_pass = [("low_pass", self.low_pass.is_some()), ("order", self.order.is_some())];
+        let first = |keys: &[(&'static str, bool)]| keys.iter().find(|k| k.1).map(|k| k.0);
+        if !file && !(times[0].1 && times[1].1) {
             let expected = "a file, or time_to_peak and duration";
-            return Err(Error::usage("neither a file nor two times", expected));
+            return Err(match first(&times) {
+                Some(key) => Error::usage("only one of time_to_peak and duration", expected).setting(key),
+                None => Error::usage("neither a file nor two times", expected),
+            });
+        }
+        let clash = if file { (first(&times), "a file") } else { (first(&low_pass), "two times") };
+        if let (Some(key), beside) = clash {
+            return Err(Error::usage(format!("{key} beside {beside}"), "one of them").setting(key));
         }
         self.instrument().map(drop)
     }

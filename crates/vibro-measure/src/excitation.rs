@@ -34,7 +34,11 @@ const ABOVE_FLOOR: f64 = 8.0;
 pub fn excitations(sweep: &Sweep, fmin: f64) -> Result<Vec<Excitation>> {
     let df =
         sweep.line_width().ok_or_else(|| Error::refused("the lines of the sweep are not evenly spaced"))?;
-    let start = sweep.axis.start();
+    let (start, last) = (sweep.axis.start(), sweep.axis.at(sweep.axis.len().saturating_sub(1)));
+    if fmin >= last {
+        let found = format!("a cut-off of {fmin} Hz, above the last line at {last} Hz");
+        return Err(Error::usage(found, "a cut-off below the last line").setting("fmin"));
+    }
     let first = ((fmin - start) / df).ceil().max(0.0) as usize;
     let one = |point: &SweepPoint| {
         let file = point.name();

@@ -22,30 +22,10 @@ pub struct Jump {
     pub amplitude_after: f64,
     /// Its standard uncertainty.
     pub amplitude_after_std: Option<f64>,
-    /// Whether the amplitude rises.
-    pub change: Change,
+    /// `rise` or `drop`.
+    pub change: &'static str,
     /// Direction of the sweep.
     pub direction: Direction,
-}
-
-/// Which way an amplitude jumps.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Change {
-    /// It rises.
-    Rise,
-    /// It drops.
-    Drop,
-}
-
-impl Change {
-    /// Its name, as in JSON.
-    pub fn name(self) -> &'static str {
-        match self {
-            Change::Rise => "rise",
-            Change::Drop => "drop",
-        }
-    }
 }
 
 /// A jump changes the amplitude by at least this factor …
@@ -102,7 +82,7 @@ pub(super) fn jump([before, after]: [(f64, f64, f64); 2], direction: Direction) 
         amplitude_before_std: known(before.2),
         amplitude_after: after.1,
         amplitude_after_std: known(after.2),
-        change: if after.1 > before.1 { Change::Rise } else { Change::Drop },
+        change: if after.1 > before.1 { "rise" } else { "drop" },
         direction,
     }
 }

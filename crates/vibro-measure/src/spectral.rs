@@ -146,22 +146,16 @@ fn averages(
 
 /// All samples of all channels.
 fn whole<const N: usize>(traces: &mut Traces, mut progress: impl FnMut(usize)) -> Result<[Trace; N]> {
-    let (mut block, mut columns) = (Vec::new(), vec![Vec::new(); N]);
-    while traces.next_block(&mut block)? > 0 {
-        for (column, part) in columns.iter_mut().zip(&block) {
-            column.extend_from_slice(part);
-        }
+    let mut columns = vec![Vec::new(); N];
+    while traces.append(&mut columns)? > 0 {
         progress(columns.first().map_or(0, Vec::len));
     }
     let (start, step) = (traces.start(), 1.0 / traces.rate());
-    let all: Vec<Trace> = columns
-        .into_iter()
-        .zip(traces.channels())
-        .map(|(values, meta)| Trace {
-            meta: meta.clone(),
-            axis: Axis::time(start, step, values.len()),
-            values,
-        })
-        .collect();
+    let trace = |(values, meta): (Vec<f64>, &Meta)| Trace {
+        meta: meta.clone(),
+        axis: Axis::time(start, step, values.len()),
+        values,
+    };
+    let all: Vec<Trace> = columns.into_iter().zip(traces.channels()).map(trace).collect();
     all.try_into().map_err(|all: Vec<Trace>| Error::usage(format!("{} channels", all.len()), N.to_string()))
 }

@@ -100,22 +100,17 @@ pub fn tones(trace: &Trace, count: usize) -> Result<Tones> {
     let mut fewer = None;
     while fitted.omega.len() < count && fewer.is_none() {
         match fitted.one_more(trace, lines.spacing) {
-            Ok(more) => fitted = more,
-            Err(why) => fewer = Some(why.count("known", fitted.omega.len()).count("count", count)),
+            Some(more) => fitted = more,
+            None => {
+                fewer = Some(
+                    Finding::caution("tones-fewer").count("known", fitted.omega.len()).count("count", count),
+                )
+            }
         }
     }
     let mut found = fitted.estimates(trace);
     found.findings.extend(fewer);
     found.tones.sort_by(|a, b| b.amplitude.value.total_cmp(&a.amplitude.value));
-    let at: Vec<f64> = found.tones.iter().map(|t| t.frequency.value).collect();
-    let pairs = (0..at.len()).flat_map(|i| (0..i).map(move |k| (k, i)));
-    for (first, second) in pairs.map(|(k, i)| (at[k], at[i])) {
-        let apart = (first - second).abs();
-        if apart < lines.spacing {
-            let close = Finding::caution("tones-close").number("first", first).number("second", second);
-            found.findings.push(close.number("apart", apart).number("resolution", lines.spacing));
-        }
-    }
     Ok(found)
 }
 
@@ -274,25 +269,21 @@ impl Fit {
             .hint("look at the spectrum: two close lines, or a frequency that drifts"))
     }
 
-    /// The fit with one more sine, or why there is none.
-    fn one_more(&self, trace: &Trace, spacing: f64) -> std::result::Result<Fit, Finding> {
+    /// The fit with one more sine; `None` where no other line stands out of the noise, or it cannot be parted from the others.
+    fn one_more(&self, trace: &Trace, spacing: f64) -> Option<Fit> {
         // What rounding leaves of exact sines has lines, too.
         if self.is_exact() {
-            return Err(Finding::caution("tones-none-above-noise"));
+            return None;
         }
-        let next = Lines::of(&self.rest(trace)).and_then(|left| left.strongest(None));
-        let next = next.map_err(|_| Finding::caution("tones-none-above-noise"))?;
         let frequencies =
             |fit: &Fit| -> Vec<f64> { fit.omega.iter().map(|w| w / (TAU * fit.half)).collect() };
         let mut start = frequencies(self);
-        start.push(next);
-        let parted = |more: &Fit| {
-            let mut f = frequencies(more);
-            f.sort_by(f64::total_cmp);
-            f.windows(2).all(|w| w[1] - w[0] >= NEAREST * spacing) && more.noise < self.noise
-        };
-        let more = Fit::new(trace, &start).ok().filter(parted);
-        more.ok_or_else(|| Finding::caution("tones-not-parted").number("frequency", next))
+        start.push(Lines::of(&self.rest(trace)).ok()?.strongest(None).ok()?);
+        let more = Fit::new(trace, &start).ok()?;
+        let mut f = frequencies(&more);
+        f.sort_by(f64::total_cmp);
+        let parted = f.windows(2).all(|w| w[1] - w[0] >= NEAREST * spacing) && more.noise < self.noise;
+        parted.then_some(more)
     }
 
     /// Whether nothing is left but rounding.

@@ -44,9 +44,12 @@ fn pruned(lines: &Measured, group: &mut Group, mut fit: Rational, unsupported: &
         let unknown = (0..sound.len()).filter(|at| !sound[*at]);
         let lowest = unknown.min_by(|a, b| group.peaks[*a].rise.total_cmp(&group.peaks[*b].rise));
         let without = |at: usize| {
-            let mut fewer = group.peaks.clone();
+            let (mut fewer, mut guess) = (group.peaks.clone(), starts(lines, &group.peaks));
+            let known = guess.iter_mut().zip(&fit.modes).zip(&sound).filter(|(_, sound)| **sound);
+            known.for_each(|((guess, mode), _)| *guess = (mode.frequency, mode.zeta));
             fewer.remove(at);
-            let less = rational(lines, group.lines.clone(), &starts(lines, &fewer), &[]).ok()?;
+            guess.remove(at);
+            let less = rational(lines, group.lines.clone(), &guess, &[]).ok()?;
             // A mode that leaves its peak for the one taken away is not the other's.
             let needless =
                 less.aicc <= fit.aicc + NEEDED && less.sound(lines, &fewer).iter().all(|sound| *sound);

@@ -4,7 +4,7 @@ use crate::excitation::Excitation;
 use crate::line::deviation;
 use crate::median::upper_median;
 use std::cmp::Ordering;
-use vibro_record::{Direction, Finding, Sweep, Window};
+use vibro_record::{Direction, Finding, Sweep, SweepPoint, Window};
 
 /// Force lines further than this part of the largest from their window's shape are not under that window: a clean sine under Hann,
 /// read as under any other window, is off by more.
@@ -29,13 +29,16 @@ pub(crate) fn wrong_window(sweep: &Sweep, excitations: &[Excitation], df: f64) -
     })
 }
 
-/// Steps that share a file: a name was typed twice.
+/// Steps that share a file or hold the same values: a name was typed twice.
 pub(crate) fn repeated(sweep: &Sweep) -> Option<Finding> {
-    let files: Vec<_> = sweep.points.iter().map(|p| (&p.response_path, &p.force_path)).collect();
-    let earlier =
-        |k: usize| files[..k].iter().position(|f| f.0 == files[k].0 || f.1.is_some() && f.1 == files[k].1);
-    let repeats: Vec<(usize, usize)> =
-        (0..files.len()).filter_map(|k| Some((earlier(k)? + 1, k + 1))).collect();
+    let points = &sweep.points;
+    let same = |a: &SweepPoint, b: &SweepPoint| {
+        a.response_path == b.response_path
+            || a.force_path.is_some() && a.force_path == b.force_path
+            || a.response.values == b.response.values && a.force == b.force && a.given == b.given
+    };
+    let earlier = |k: usize| Some((points[..k].iter().position(|p| same(p, &points[k]))? + 1, k + 1));
+    let repeats: Vec<(usize, usize)> = (0..points.len()).filter_map(earlier).collect();
     let (first, second) = *repeats.first()?;
     let finding = Finding::caution("sweep-steps-repeated").count("n", repeats.len());
     Some(finding.count("first", first).count("second", second))

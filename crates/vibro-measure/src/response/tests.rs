@@ -109,4 +109,6 @@ fn a_file_that_is_named_twice_is_found() {
     };
     assert_eq!(steps(vec![point("a", 1.0), point("b", 2.0), point("c", 3.0)]), None);
     assert_eq!(steps(vec![point("a", 1.0), point("b", 2.0), point("a", 1.0)]), Some([1.0, 3.0]));
+    // A copy under another name.
+    assert_eq!(steps(vec![point("a", 1.0), point("b", 2.0), point("c", 2.0)]), Some([2.0, 3.0]));
 }

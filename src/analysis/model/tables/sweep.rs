@@ -49,7 +49,7 @@ pub(crate) fn sweep_named(resonances: &[Named<Resonance>], jumps: &[Named<Jump>]
         table.push([
             usize::from(j.mass).into(),
             j.direction.name().into(),
-            format!("jump, {}", j.found.change.name()).into(),
+            format!("jump, {}", j.found.change).into(),
             pair(j.found.frequency, Some(j.found.frequency_std)),
             j.found.amplitude_after.into(),
         ]);
