@@ -58,7 +58,8 @@ impl Keys {
         ];
         let low_pass = [("low_pass", self.low_pass.is_some()), ("order", self.order.is_some())];
         let first = |keys: &[(&'static str, bool)]| keys.iter().find(|k| k.1).map(|k| k.0);
-        if !file && !(times[0].1 && times[1].1) {
+        let both = times[0].1 && times[1].1;
+        if !file && !both {
             let expected = "a file, or time_to_peak and duration";
             return Err(match first(&times) {
                 Some(key) => Error::usage("only one of time_to_peak and duration", expected).setting(key),
@@ -69,7 +70,7 @@ impl Keys {
         if let (Some(key), beside) = clash {
             return Err(Error::usage(format!("{key} beside {beside}"), "one of them").setting(key));
         }
-        self.instrument().map(drop)
+        self.instrument().map(drop).map_err(|e| e.setting(first(&low_pass).unwrap_or("order")))
     }
 
     fn instrument(&self) -> Result<Instrument> {

@@ -101,15 +101,12 @@ pub fn tones(trace: &Trace, count: usize) -> Result<Tones> {
     while fitted.omega.len() < count && fewer.is_none() {
         match fitted.one_more(trace, lines.spacing) {
             Some(more) => fitted = more,
-            None => {
-                fewer = Some(
-                    Finding::caution("tones-fewer").count("known", fitted.omega.len()).count("count", count),
-                )
-            }
+            None => fewer = Some(Finding::caution("tones-fewer")),
         }
     }
+    let known = fitted.omega.len();
     let mut found = fitted.estimates(trace);
-    found.findings.extend(fewer);
+    found.findings.extend(fewer.map(|f| f.count("known", known).count("count", count)));
     found.tones.sort_by(|a, b| b.amplitude.value.total_cmp(&a.amplitude.value));
     Ok(found)
 }

@@ -72,22 +72,17 @@ const BESIDE: usize = 8;
 /// Makes the band of a fit whose residuals are not white narrower, as long as they are not: what else is in a band matters the
 /// less the narrower it is. Keeps the wide band where that does not help.
 fn narrowed(lines: &Measured, group: &mut Group, wide: Rational) -> Rational {
-    let (Some(first), Some(last)) = (group.peaks.first().map(|p| p.at), group.peaks.last().map(|p| p.at))
-    else {
-        return wide;
-    };
+    let (first, last) = (group.peaks[0].at, group.peaks[group.peaks.len() - 1].at);
     let starts = starts(lines, &group.peaks);
     let (mut below, mut above) = (first - group.lines.start, group.lines.end - last - 1);
     while below.max(above) > BESIDE {
         below = below.min((2 * below / 3).max(BESIDE));
         above = above.min((2 * above / 3).max(BESIDE));
         let part = first - below..last + above + 1;
-        match rational(lines, part.clone(), &starts, &[]) {
-            Ok(fit) if !fit.whiteness.rejected() => {
-                group.lines = part;
-                return fit;
-            }
-            _ => {}
+        let fit = rational(lines, part.clone(), &starts, &[]).ok();
+        if let Some(fit) = fit.filter(|fit| !fit.whiteness.rejected()) {
+            group.lines = part;
+            return fit;
         }
     }
     wide
