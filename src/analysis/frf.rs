@@ -114,34 +114,18 @@ impl Keys {
     /// With the key that does not.
     pub fn usable(&self) -> Result<()> {
         above_zero("mass", self.mass)?;
+        let taken = self.taken();
         if self.reference.is_some() {
             if self.coherence.is_some() {
                 let found = "coherence beside a reference, from which it follows";
                 return Err(Error::usage(found, "one of them").setting("coherence"));
             }
-            return self.taken().options().map(drop);
+            return taken.options().map(drop);
         }
-        let given = [
-            ("estimator", self.estimator.is_some()),
-            ("segment", self.segment.is_some()),
-            ("overlap", self.overlap.is_some()),
-            ("detrend", self.detrend.is_some()),
-            ("window", self.window.is_some()),
-            ("integrate", self.integrate.is_some()),
-            ("fmin", self.fmin.is_some()),
-            ("hammer", self.hammer),
-            ("force_window", self.force_window.is_some()),
-            ("left_at_end", self.left_at_end.is_some()),
-            ("delay", self.delay.is_some()),
-        ];
-        match given.into_iter().find(|(_, given)| *given) {
-            Some((key, _)) => {
-                let expected =
-                    "the channel of the excitation as reference: the function is taken from two channels";
-                Err(Error::usage(format!("{key} without a reference"), expected).setting(key))
-            }
-            None => Ok(()),
-        }
+        let estimator = self.estimator.map(|_| "estimator");
+        let Some(key) = estimator.or_else(|| taken.unchecked().first()) else { return Ok(()) };
+        let expected = "the channel of the excitation as reference: the function is taken from two channels";
+        Err(Error::usage(format!("{key} without a reference"), expected).setting(key))
     }
 
     /// The functions of a file with their modes, figures, tables and files; the one that is taken from two of its channels, where a
@@ -174,14 +158,11 @@ impl Keys {
         }
         let recording = source.reader()?.from_path(source.path)?;
         told.tell("", &recording.findings);
-        let coherence = match source.further("coherence", self.coherence.as_ref())? {
-            Some(path) => Some(source.reader()?.from_path(path)?),
-            None => None,
-        };
+        let coherence = source.further("coherence", self.coherence.as_ref())?;
+        let coherence = coherence.map(|path| source.reader()?.from_path(path)).transpose()?;
         let all = Measured::all(&recording.records, source.channel.channel.as_deref())
             .map_err(|e| e.of_record(&recording.path.display().to_string()).in_file(&recording.path))?;
-        let mut functions = Vec::with_capacity(all.len());
-        for (mut meta, mut measured) in all {
+        let function = |(mut meta, mut measured): (Meta, Measured)| {
             if let Some(coherence) = &coherence {
                 let joined = measured.with_coherence_of(&coherence.records);
                 measured = joined.map_err(|e| e.in_file(&coherence.path))?;
@@ -190,9 +171,9 @@ impl Keys {
                 meta.step("calibrate", &[("factor", &factor)]);
                 measured.values.iter_mut().for_each(|v| *v *= factor);
             }
-            functions.push(Function { meta, measured, records: Vec::new() });
-        }
-        Ok(functions)
+            Ok(Function { meta, measured, records: Vec::new() })
+        };
+        all.into_iter().map(function).collect()
     }
 
     fn modes(&self, source: &Source<'_>, function: &Function) -> Result<Answer> {
@@ -222,8 +203,6 @@ impl Keys {
         answer.csv("methods", &methods);
         answer.details.push(methods);
         answer.figure("frf", figures::frf(source.name, meta, measured, &found.modes));
-        let nyquist = figures::nyquist(source.name, measured, &found.modes);
-        answer.figures.extend(nyquist.map(|figure| ("nyquist".to_owned(), figure)));
         if !records.is_empty() {
             let (files, unwritten) = files::records("frf", records)?;
             answer.files.extend(files);

@@ -50,29 +50,27 @@ impl Keys {
     /// # Errors
     /// With the key that does not.
     pub fn usable(&self, file: bool) -> Result<()> {
-        let wrong = |key, found: String, expected: &str| Err(Error::usage(found, expected).setting(key));
         above_zero("mass", self.mass)?;
-        let times = self.time_to_peak.is_some();
-        if times != self.duration.is_some() {
-            let key = if times { "time_to_peak" } else { "duration" };
-            return wrong(key, "only one of time_to_peak and duration".to_owned(), "both, or none");
+        let times = [
+            ("time_to_peak", self.time_to_peak.is_some()),
+            ("duration", self.duration.is_some()),
+            ("std", self.std.is_some()),
+        ];
+        let low_pass = [("low_pass", self.low_pass.is_some()), ("order", self.order.is_some())];
+        let first = |keys: &[(&'static str, bool)]| keys.iter().find(|k| k.1).map(|k| k.0);
+        let both = times[0].1 && times[1].1;
+        if !file && !both {
+            let expected = "a file, or time_to_peak and duration";
+            return Err(match first(&times) {
+                Some(key) => Error::usage("only one of time_to_peak and duration", expected).setting(key),
+                None => Error::usage("neither a file nor two times", expected),
+            });
         }
-        if self.std.is_some() && !times {
-            return wrong("std", "std without time_to_peak and duration".to_owned(), "both times");
+        let clash = if file { (first(&times), "a file") } else { (first(&low_pass), "two times") };
+        if let (Some(key), beside) = clash {
+            return Err(Error::usage(format!("{key} beside {beside}"), "one of them").setting(key));
         }
-        match (file, times) {
-            (true, true) => return wrong("time_to_peak", "a file and two times".to_owned(), "one of them"),
-            (false, false) => {
-                let expected = "a file, or time_to_peak and duration";
-                return Err(Error::usage("neither a file nor two times", expected));
-            }
-            _ => {}
-        }
-        let key = if self.low_pass.is_some() { "low_pass" } else { "order" };
-        if times && (self.low_pass.is_some() || self.order.is_some()) {
-            return wrong(key, format!("{key} beside two times"), "a file, or leave it out");
-        }
-        self.instrument().map(drop).map_err(|e| e.setting(key))
+        self.instrument().map(drop).map_err(|e| e.setting(first(&low_pass).unwrap_or("order")))
     }
 
     fn instrument(&self) -> Result<Instrument> {

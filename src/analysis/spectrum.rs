@@ -89,7 +89,14 @@ impl Keys {
             let expected = "the channel of the excitation as reference";
             return Err(Error::usage("estimator without a reference", expected).setting("estimator"));
         }
-        let options = SpectralOptions {
+        let options = self.unchecked();
+        options.check()?;
+        Ok(options)
+    }
+
+    /// The options of the estimator, contradictions included.
+    pub(crate) fn unchecked(&self) -> SpectralOptions {
+        SpectralOptions {
             method: self.method,
             segment: self.segment,
             overlap: self.overlap,
@@ -105,9 +112,7 @@ impl Keys {
             delay: self.delay,
             decibel: self.decibel,
             tones: self.tones,
-        };
-        options.check()?;
-        Ok(options)
+        }
     }
 
     /// The lines of a record.

@@ -29,26 +29,19 @@ pub(crate) fn apex(
     if high < low + 3 || low >= i || high <= i || a[0] < 0.5 * a[1] || a[2] < 0.5 * a[1] {
         return simple();
     }
-    let points: Option<Vec<Point>> = (low..=high)
-        .map(|k| {
-            let ratio = frequency.get(k)? / f[1];
-            let height = heights.get(k)? / a[1];
-            Some(Point {
-                x: (ratio - 1.0) * (ratio + 1.0),
-                height,
-                std: std.get(k)? / a[1],
-                beside: k.abs_diff(i) <= 1,
-            })
-        })
-        .collect();
-    points.and_then(|points| fitted(&points)).map_or_else(simple, |[x, height]| {
-        let ratio = (1.0 + x.value).sqrt();
-        Some(Vertex {
-            frequency: f[1] * ratio,
-            frequency_std: f[1] * x.std / (2.0 * ratio),
-            height: a[1] * height.value,
-            height_std: a[1] * height.std,
-        })
+    let point = |k: usize| {
+        let ratio = frequency.get(k)? / f[1];
+        let (x, height, std) = ((ratio - 1.0) * (ratio + 1.0), heights.get(k)? / a[1], std.get(k)? / a[1]);
+        Some(Point { x, height, std, beside: k.abs_diff(i) <= 1 })
+    };
+    let points: Option<Vec<Point>> = (low..=high).map(point).collect();
+    let Some([x, height]) = points.and_then(|points| fitted(&points)) else { return simple() };
+    let ratio = (1.0 + x.0).sqrt();
+    Some(Vertex {
+        frequency: f[1] * ratio,
+        frequency_std: f[1] * x.1 / (2.0 * ratio),
+        height: a[1] * height.0,
+        height_std: a[1] * height.1,
     })
 }
 
@@ -78,13 +71,8 @@ struct Point {
     beside: bool,
 }
 
-struct Found {
-    value: f64,
-    std: f64,
-}
-
-/// Place and height of the top; `None` where the polynomial through all points has no single one.
-fn fitted(points: &[Point]) -> Option<[Found; 2]> {
+/// Place and height of the top with their uncertainties; `None` where the polynomial through all points has no single one.
+fn fitted(points: &[Point]) -> Option<[(f64, f64); 2]> {
     let found = extremum(points)?;
     let near: Vec<Point> = points.iter().filter(|p| p.beside).copied().collect();
     let mut open = [0.0f64; 2];
@@ -109,8 +97,7 @@ fn fitted(points: &[Point]) -> Option<[Found; 2]> {
             variance[q] += (other[q] - found[q]).powi(2);
         }
     }
-    let [x, height] = [0, 1].map(|q| Found { value: found[q], std: variance[q].sqrt() });
-    (x.std.is_finite() && height.std.is_finite()).then_some([x, height])
+    variance.iter().all(|v| v.is_finite()).then(|| [0, 1].map(|q| (found[q], variance[q].sqrt())))
 }
 
 /// Where the polynomial through 1/height² is lowest between the points beside the highest, and the height there.

@@ -1,6 +1,7 @@
 //! Where two response curves cross.
 
 use super::jump::{Jump, known};
+use std::collections::BTreeMap;
 
 /// Two points of a curve, and their weights in its logarithm between them.
 type Between = [(usize, f64); 2];
@@ -83,15 +84,14 @@ pub fn crossings(
             let mut variance = 0.0;
             for (which, curve) in curves.iter().enumerate() {
                 // One point may stand behind both.
-                let parts: Vec<(usize, f64)> = [(slopes[0], low.2[which]), (slopes[1], high.2[which])]
-                    .iter()
-                    .flat_map(|(slope, points)| points.map(|(i, weight)| (i, slope * weight)))
-                    .filter(|part| part.1 != 0.0)
-                    .collect();
-                for (i, a) in &parts {
-                    let shared: f64 = parts.iter().filter(|p| p.0 == *i).map(|p| p.1).sum();
-                    variance += a * shared * (curve[*i].2 / curve[*i].1).powi(2);
+                let mut parts = BTreeMap::new();
+                for (slope, points) in [(slopes[0], low.2[which]), (slopes[1], high.2[which])] {
+                    for (i, weight) in points.into_iter().filter(|p| p.1 != 0.0) {
+                        *parts.entry(i).or_insert(0.0) += slope * weight;
+                    }
                 }
+                let square = |(i, part): (&usize, &f64)| (part * curve[*i].2 / curve[*i].1).powi(2);
+                variance += parts.iter().map(square).sum::<f64>();
             }
             Crossing {
                 frequency: low.0 + width * low.1 / turn,

@@ -22,30 +22,10 @@ pub struct Jump {
     pub amplitude_after: f64,
     /// Its standard uncertainty.
     pub amplitude_after_std: Option<f64>,
-    /// Whether the amplitude rises.
-    pub change: Change,
+    /// `rise` or `drop`.
+    pub change: &'static str,
     /// Direction of the sweep.
     pub direction: Direction,
-}
-
-/// Which way an amplitude jumps.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Change {
-    /// It rises.
-    Rise,
-    /// It drops.
-    Drop,
-}
-
-impl Change {
-    /// Its name, as in JSON.
-    pub fn name(self) -> &'static str {
-        match self {
-            Change::Rise => "rise",
-            Change::Drop => "drop",
-        }
-    }
 }
 
 /// A jump changes the amplitude by at least this factor …
@@ -102,7 +82,7 @@ pub(super) fn jump([before, after]: [(f64, f64, f64); 2], direction: Direction) 
         amplitude_before_std: known(before.2),
         amplitude_after: after.1,
         amplitude_after_std: known(after.2),
-        change: if after.1 > before.1 { Change::Rise } else { Change::Drop },
+        change: if after.1 > before.1 { "rise" } else { "drop" },
         direction,
     }
 }
@@ -114,9 +94,7 @@ const SIGMA_OF_BOTH: f64 = 5.0;
 /// sides predict. `None` where it does not, or where there is no step on a side.
 pub(super) fn echo(curve: &[(f64, f64, f64)], other: &Jump) -> Option<Jump> {
     let high = curve.partition_point(|p| p.0 < other.frequency);
-    let low = high.checked_sub(1)?;
-    let points: [_; 4] = curve.get(low.checked_sub(1)?..=high + 1)?.try_into().ok()?;
-    let [a, b, c, d]: [(f64, f64, f64); 4] = points;
+    let [a, b, c, d]: [_; 4] = curve.get(high.checked_sub(2)?..=high + 1)?.try_into().ok()?;
     // Change from `near` to `across` less what the step from `far` to `near` predicts, if it is beyond noise.
     let excess = |far: (f64, f64, f64), near: (f64, f64, f64), across: (f64, f64, f64)| {
         let stretch = (across.0 - near.0) / (near.0 - far.0);

@@ -2,12 +2,10 @@
 
 mod apex;
 mod bisection;
-pub mod coloured;
 pub mod crossing;
 pub mod drill;
 pub mod excitation;
 pub mod exposure;
-mod folded;
 pub mod impacts;
 pub mod jump;
 pub mod legacy;
@@ -23,10 +21,9 @@ pub mod residuals;
 pub mod resonance;
 pub mod response;
 pub mod restitution;
-pub mod sine;
-mod sinusoids;
 pub mod spectral;
 #[cfg(test)]
+#[path = "tests/synthetic.rs"]
 pub(crate) mod synthetic;
 pub mod tones;
 pub mod waterfall;

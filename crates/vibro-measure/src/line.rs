@@ -36,36 +36,32 @@ pub fn interpolate(
     window: Option<Window>,
     noise: Option<f64>,
 ) -> Option<SubLine> {
-    let lines: [f64; 3] = magnitudes.get(k.checked_sub(1)?..=k + 1)?.try_into().ok()?;
+    let lines = three(magnitudes, k)?;
     let [left, middle, right] = lines;
-    if !lines.iter().all(|m| m.is_finite() && *m >= 0.0) || middle == 0.0 {
+    if !lines.iter().all(|m| *m >= 0.0) || middle == 0.0 {
         return None;
     }
-    let Some(window) = window else {
-        let (delta, amplitude) = log_parabola(lines);
-        return Some(SubLine {
-            position: k as f64 + delta,
-            position_std: None,
-            amplitude,
-            amplitude_std: None,
-        });
-    };
-    let (delta, amplitude) = solve(lines, window);
-    let (position_std, amplitude_std) = match noise {
-        // At the limit the lines have not the shape of one sine, and slopes mean nothing.
-        Some(_) if delta.abs() >= LIMIT => (None, None),
-        // Without a window noise may choose the wrong neighbour: then no small uncertainty is true.
-        Some(noise) if window == Window::Rectangular && (right - left).abs() < 6.0 * noise => (None, None),
-        Some(noise) => propagate(lines, window, noise),
-        None => (None, None),
-    };
+    let (delta, amplitude) = window.map_or_else(|| log_parabola(lines), |window| solve(lines, window));
+    let known = window.zip(noise).filter(|(window, noise)| {
+        // At the limit the lines have not the shape of one sine, and slopes mean nothing. Without a window noise may choose the wrong
+        // neighbour: then no small uncertainty is true.
+        delta.abs() < LIMIT && (*window != Window::Rectangular || (right - left).abs() >= 6.0 * noise)
+    });
+    let [position_std, amplitude_std] =
+        known.map_or([None; 2], |(window, noise)| propagate(lines, window, noise).map(Some));
     Some(SubLine { position: k as f64 + delta, position_std, amplitude, amplitude_std })
+}
+
+/// Line `k` and its neighbours; `None` where one is missing.
+fn three(magnitudes: &[f64], k: usize) -> Option<[f64; 3]> {
+    let lines: [f64; 3] = magnitudes.get(k.checked_sub(1)?..=k.checked_add(1)?)?.try_into().ok()?;
+    lines.iter().all(|m| m.is_finite()).then_some(lines)
 }
 
 /// The largest deviation of the lines within `reach` of line `k` from the shape of the sine that the three in the middle show: what
 /// noise, another sine near by, the sine's own image at the ends of the band or a wrong window add. `None` as in [`interpolate`].
 pub fn deviation(magnitudes: &[f64], k: usize, reach: usize, window: Window) -> Option<f64> {
-    let lines: [f64; 3] = magnitudes.get(k.checked_sub(1)?..=k + 1)?.try_into().ok()?;
+    let lines = three(magnitudes, k)?;
     let (delta, amplitude) = solve(lines, window);
     let off = |i: usize| {
         let shape = line_shape(window, i as f64 - k as f64 - delta).abs();
@@ -73,7 +69,7 @@ pub fn deviation(magnitudes: &[f64], k: usize, reach: usize, window: Window) -> 
     };
     let near = k.saturating_sub(reach)..(k + reach + 1).min(magnitudes.len());
     let largest = near.map(off).fold(0.0, f64::max);
-    (lines[1] > 0.0 && lines.iter().all(|m| m.is_finite()) && largest.is_finite()).then_some(largest)
+    (lines[1] > 0.0 && largest.is_finite()).then_some(largest)
 }
 
 /// Amplitude of a sine at a known `position` in lines, with its standard uncertainty: the three nearest lines against
@@ -88,10 +84,7 @@ pub(crate) fn amplitude_at(
         return None;
     }
     let k = position.round() as usize;
-    let lines: [f64; 3] = magnitudes.get(k.checked_sub(1)?..=k + 1)?.try_into().ok()?;
-    if !lines.iter().all(|m| m.is_finite()) {
-        return None;
-    }
+    let lines = three(magnitudes, k)?;
     let Some(window) = window else { return Some((lines[1], None)) };
     let weights = weights(window);
     let shape = shapes(window, position - k as f64);
@@ -122,12 +115,9 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 /// Standard deviation of a weighted sum of three neighbouring lines in noise of one unit a component.
 fn spread(weights: [f64; 3], window: Window) -> f64 {
-    let mut variance = 0.0;
-    for i in 0..3 {
-        for j in 0..3 {
-            variance += weights[i] * weights[j] * noise_correlation(window, i.abs_diff(j));
-        }
-    }
+    let pairs = (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));
+    let variance: f64 =
+        pairs.map(|(i, j)| weights[i] * weights[j] * noise_correlation(window, i.abs_diff(j))).sum();
     variance.sqrt()
 }
 
@@ -152,22 +142,19 @@ fn solve(lines: [f64; 3], window: Window) -> (f64, f64) {
 }
 
 /// First-order propagation of the noise of three correlated lines.
-fn propagate(lines: [f64; 3], window: Window, noise: f64) -> (Option<f64>, Option<f64>) {
+fn propagate(lines: [f64; 3], window: Window, noise: f64) -> [f64; 2] {
     // A step that is small against the line and large against rounding.
     let step = 1e-6 * lines[1];
     let mut slopes = [[0.0; 3]; 2];
     for i in 0..3 {
-        let mut up = lines;
-        let mut down = lines;
+        let (mut up, mut down) = (lines, lines);
         up[i] += step;
         down[i] = (down[i] - step).max(0.0);
         let width = up[i] - down[i];
         let (a, b) = (solve(up, window), solve(down, window));
-        slopes[0][i] = (a.0 - b.0) / width;
-        slopes[1][i] = (a.1 - b.1) / width;
+        (slopes[0][i], slopes[1][i]) = ((a.0 - b.0) / width, (a.1 - b.1) / width);
     }
-    let [position, amplitude] = slopes.map(|s| Some(noise * spread(s, window)).filter(|v| v.is_finite()));
-    (position, amplitude)
+    slopes.map(|s| noise * spread(s, window))
 }
 
 /// Vertex of the parabola through the logarithms of three lines: its distance from the middle one, at most half a line, and the height

@@ -12,77 +12,74 @@ mod report;
 mod response;
 mod result;
 mod selection;
-mod unresolved;
 
-pub use classical::Circle;
 pub use pole::Pole;
 pub use response::Measured;
-pub use result::{ByMethod, ModalMethod, ModalOptions, ModalResult, Mode, ModePicture};
+pub use result::{ByMethod, ModalOptions, ModalResult, Mode};
 
 use bands::{Group, groups};
 use rational::{Rational, rational};
 use report::Report;
-use selection::{chosen, together};
+use selection::chosen;
 use vibro_record::{Error, Finding, FrfKind, Result};
+
+/// Peaks and the modes that were fitted to them.
+type Fitted = (Group, Rational);
 
 /// Finds the modes of a frequency response function.
 ///
 /// Each peak that stands a factor of two above its valleys is a candidate; peaks too near each other to be parted are fitted
-/// together, and modes of other bands are subtracted before the last fit of a band. In a band that is given, the modes that were so
-/// found are then fitted together, to all its lines.
+/// together, and modes of other groups are subtracted before the last fit of a group. Up to six peaks of a band that is given are fitted
+/// together, to all its lines.
 ///
 /// # Errors
 /// If the band is not one, holds no peak or fewer lines than the parameters of a mode, or no line can be used.
 pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult> {
-    check(options)?;
+    let least = options.least_coherence;
+    if !(0.0..1.0).contains(&least) {
+        return Err(Error::usage(format!("a least coherence of {least}"), "a number from 0 to below 1"));
+    }
     let mut findings = Vec::new();
     if let Some(decay) = options.decay {
         findings.push(Finding::note("modal-window-decay").number("decay", decay));
     }
-    let lines = measured.clone().usable(options.least_coherence, &mut findings)?;
+    let lines = measured.clone().usable(least, &mut findings)?;
     if lines.kind == FrfKind::Other {
         findings.push(Finding::caution("modal-unit-unknown"));
     }
     if lines.magnitude_only {
         findings.push(Finding::doubt("modal-magnitudes-only"));
     }
-    let mut groups = groups(&lines, options.band)?;
-    let mut unsupported = Vec::new();
-    let mut fits: Vec<Result<Rational>> =
-        groups.iter_mut().map(|group| chosen(&lines, group, &mut unsupported)).collect();
-    refine(&lines, &groups, &mut fits);
-    if let Some(band) = options.band {
-        (groups, fits) = together(&lines, band, groups, fits, &mut unsupported, &mut findings)?;
-    }
-    let mut report = Report { measured: &lines, options, modes: Vec::new(), findings, reversed: 0 };
-    for (at, (group, fit)) in groups.iter().zip(&fits).enumerate() {
-        let others = poles_beside(&fits, at);
-        match (fit, group.peaks.first()) {
-            (Ok(fit), _) => report.add(group, fit, &others),
-            (Err(_), Some(peak)) => report.findings.push(
-                Finding::caution("modal-peak-not-fitted").number("frequency", lines.frequency[peak.at]),
-            ),
-            (Err(_), None) => {}
+    let (mut fits, mut unsupported, mut failed) = (Vec::new(), Vec::new(), None);
+    for mut group in groups(&lines, options.band)? {
+        match chosen(&lines, &mut group, &mut unsupported) {
+            Ok(fit) => fits.push((group, fit)),
+            Err(error) => {
+                unsupported.extend(group.peaks);
+                failed.get_or_insert(error);
+            }
         }
     }
-    let Report { mut modes, mut findings, reversed, .. } = report;
-    if !unsupported.is_empty() {
-        unsupported.sort_by(f64::total_cmp);
-        let n = unsupported.len();
-        unsupported.truncate(NAMED);
-        findings.push(Finding::caution("modal-peaks-of-noise").count("n", n).numbers("lines", unsupported));
+    if let Some(error) = failed.filter(|_| fits.is_empty()) {
+        return Err(error);
     }
-    let against = 2 * reversed > groups.iter().map(|g| g.peaks.len()).sum();
+    refine(&lines, &mut fits);
+    let mut report = Report { measured: &lines, options, modes: Vec::new(), findings };
+    for (at, (group, fit)) in fits.iter().enumerate() {
+        report.add(group, fit, &poles_beside(&fits, at));
+    }
+    let Report { mut modes, mut findings, .. } = report;
     if modes.is_empty() {
-        let refused = Error::refused("no peak of the function is supported as a mode");
-        return Err(if against {
-            refused.hint("most phases rise through the peak: check the sign of the phase, and that response and force are not exchanged")
-        } else {
-            refused.hint("choose a band around one peak").setting("band")
-        });
+        return Err(Error::refused("no peak of the function is supported as a mode")
+            .hint("choose a band around one peak, or check the sign of the phase")
+            .setting("band"));
     }
-    if against {
-        findings.push(Finding::doubt("modal-phase-reversed"));
+    if !unsupported.is_empty() {
+        let mut at: Vec<f64> = unsupported.iter().map(|p| lines.frequency[p.at]).collect();
+        at.sort_by(f64::total_cmp);
+        at.truncate(NAMED);
+        let finding = Finding::caution("modal-peaks-of-noise").count("n", unsupported.len());
+        findings.push(finding.numbers("lines", at));
     }
     modes.sort_by(|a, b| a.frequency.value.total_cmp(&b.frequency.value));
     Ok(ModalResult { modes, findings })
@@ -91,39 +88,25 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
 /// Most lines that a finding names.
 const NAMED: usize = 8;
 
-fn check(options: &ModalOptions) -> Result<()> {
-    if let Some(mass) = options.mass.filter(|m| !(m.is_finite() && *m > 0.0)) {
-        return Err(Error::usage(format!("a mass of {mass} kg"), "a finite mass above 0"));
-    }
-    if let Some(decay) = options.decay.filter(|d| !(d.is_finite() && *d > 0.0)) {
-        return Err(Error::usage(format!("an added decay of {decay} 1/s"), "a finite decay above 0"));
-    }
-    let least = options.least_coherence;
-    if !(0.0..1.0).contains(&least) {
-        return Err(Error::usage(format!("a least coherence of {least}"), "a number from 0 to below 1"));
-    }
-    Ok(())
-}
-
 /// The modes of all groups but one.
-fn poles_beside(fits: &[Result<Rational>], at: usize) -> Vec<Pole> {
+fn poles_beside(fits: &[Fitted], at: usize) -> Vec<Pole> {
     let others = fits.iter().enumerate().filter(|(other, _)| *other != at);
-    others.filter_map(|(_, fit)| fit.as_ref().ok()).flat_map(|fit| fit.modes.iter().copied()).collect()
+    others.flat_map(|(_, (_, fit))| fit.modes.iter().copied()).collect()
 }
 
 /// Fits each group again with the modes of the others subtracted, twice.
-fn refine(lines: &Measured, groups: &[Group], fits: &mut [Result<Rational>]) {
-    for _ in 0..2 {
-        for (at, group) in groups.iter().enumerate() {
-            let others = poles_beside(fits, at);
-            let Ok(fit) = &fits[at] else { continue };
-            let starts: Vec<(f64, f64)> = fit.modes.iter().map(|m| (m.frequency, m.zeta)).collect();
-            if !others.is_empty()
-                && starts.iter().all(|s| s.0 > 0.0 && s.1 > 0.0)
-                && let Ok(better) = rational(lines, group.lines.clone(), &starts, &others)
-            {
-                fits[at] = Ok(better);
-            }
+fn refine(lines: &Measured, fits: &mut [Fitted]) {
+    // Without phases nothing can be subtracted.
+    let turns = if lines.magnitude_only { 0 } else { 2 * fits.len() };
+    for at in (0..fits.len()).cycle().take(turns) {
+        let others = poles_beside(fits, at);
+        let (group, fit) = &mut fits[at];
+        let starts: Vec<(f64, f64)> = fit.modes.iter().map(|m| (m.frequency, m.zeta)).collect();
+        if !others.is_empty()
+            && starts.iter().all(|s| s.0 > 0.0 && s.1 > 0.0)
+            && let Ok(better) = rational(lines, group.lines.clone(), &starts, &others)
+        {
+            *fit = better;
         }
     }
 }
@@ -168,7 +151,7 @@ mod tests {
             assert!((of_k / (2.0 * of_f) - 1.0).abs() < 1e-9);
         }
         // A mode of bandwidth 1.6 Hz has seven lines on 270° of its circle. That circle is exact but for the other mode's part.
-        let circle = result.modes[0].by.iter().find(|b| b.method == ModalMethod::CircleFit).unwrap();
+        let circle = result.modes[0].by.iter().find(|b| b.method == "circle fit").unwrap();
         assert!((circle.frequency.value - 80.3).abs() < 0.02, "{circle:?}");
         assert!((circle.zeta.as_ref().unwrap().value / 0.01 - 1.0).abs() < 0.02, "{circle:?}");
     }
@@ -190,7 +173,7 @@ mod tests {
             let phase = mode.phase.as_ref().unwrap();
             assert!((phase.value.abs() - degrees).abs() < 0.1 && phase.unit == "°", "{mode:?}");
             assert!(phase.std.is_some() && mode.modal_constant.std.is_some());
-            let circle = mode.by.iter().find(|b| b.method == ModalMethod::CircleFit).unwrap();
+            let circle = mode.by.iter().find(|b| b.method == "circle fit").unwrap();
             assert!(circle.modal_constant.as_ref().is_none_or(|c| c.value * a > 0.0), "{circle:?}");
         }
         assert_eq!(result.modes.len(), 2);
@@ -243,7 +226,7 @@ mod tests {
         assert!((mode.zeta.value / zeta - 1.0).abs() < 1e-4, "{mode:?}");
         assert!((mode.frequency.value * std::f64::consts::TAU / own - 1.0).abs() < 1e-6, "{mode:?}");
         assert!((mode.modal_constant.value / 2.0 - 1.0).abs() < 1e-4, "{mode:?}");
-        let circle = mode.by.iter().find(|b| b.method == ModalMethod::CircleFit).unwrap();
+        let circle = mode.by.iter().find(|b| b.method == "circle fit").unwrap();
         assert!((circle.zeta.as_ref().unwrap().value / zeta - 1.0).abs() < 0.02, "{circle:?}");
         assert!(says(&result, "modal-window-decay"), "{:?}", result.findings);
         let without = found(&measured, &ModalOptions::default());
@@ -278,7 +261,7 @@ mod tests {
         let mode = &result.modes[0];
         assert!([&mode.frequency, &mode.zeta, &mode.modal_constant].iter().all(|e| e.std.is_none()));
         assert!(mode.phase.is_none());
-        assert!(result.modes[0].by.iter().all(|b| b.method != ModalMethod::CircleFit));
+        assert!(result.modes[0].by.iter().all(|b| b.method != "circle fit"));
     }
 
     #[test]

@@ -4,8 +4,8 @@ use super::line::interpolate;
 use vibro_record::Window;
 use vibro_signal::window::line_shape;
 
-/// Lines on either side that are read.
-const REACH: usize = 40;
+/// Lines on either side that are read where noise is taken for white.
+pub const REACH: usize = 40;
 
 /// Lines next to the peak that are left out: they belong to it.
 const GUARD: usize = 4;
@@ -27,7 +27,7 @@ const MEDIAN: [(f64, f64); 10] = [
 ];
 
 /// Standard deviation of the noise in one component (real or imaginary) of a line, from the magnitudes of the lines
-/// around `centre`, not nearer than four lines to it and not below line 2.
+/// `reach` on either side of `centre`, not nearer than four lines to it and not below line 2.
 ///
 /// What the sine at `centre` spreads over these lines under `window` is taken out: without a window, or under Hamming's, it is
 /// far above the noise. The median of the rest is not moved by a few further peaks. What cannot be taken out counts as
@@ -35,9 +35,9 @@ const MEDIAN: [(f64, f64); 10] = [
 /// sine's own lines as much as those beside it, so the uncertainty made of this floor is of its size.
 ///
 /// `None` where fewer than eight lines are left.
-pub fn around(magnitudes: &[f64], centre: usize, window: Option<Window>) -> Option<f64> {
-    let low = centre.saturating_sub(REACH).max(2);
-    let high = centre.saturating_add(REACH + 1).min(magnitudes.len());
+pub fn around(magnitudes: &[f64], centre: usize, reach: usize, window: Option<Window>) -> Option<f64> {
+    let low = centre.saturating_sub(reach).max(2);
+    let high = centre.saturating_add(reach + 1).min(magnitudes.len());
     let sine = window.zip(sine(magnitudes, centre, window));
     // Leakage of each line, and what is left of it.
     let lines: Vec<(f64, f64)> = (low..high)
@@ -107,7 +107,7 @@ mod tests {
         for line in &mut lines[38..=42] {
             *line = 1e3;
         }
-        let sigma = around(&lines, 40, Some(Window::Hann)).unwrap();
+        let sigma = around(&lines, 40, REACH, Some(Window::Hann)).unwrap();
         // The median of 70 draws scatters by about 7 %; the stride leaves it within twice that.
         assert!((sigma / 2.0 - 1.0).abs() < 0.15, "{sigma}");
     }
@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn too_few_lines_give_no_floor() {
-        assert_eq!(around(&[1.0; 12], 6, None), None);
+        assert_eq!(around(&[1.0; 12], 6, REACH, None), None);
     }
 
     /// Ratios of the scatter seen to the uncertainty stated, of position and amplitude, in `draws` spectra of a sine at `truth`
@@ -148,7 +148,7 @@ mod tests {
             sines.extend(image.map(|at| (at, phase.conj())));
             let lines = spectrum(window, &sines, sigma, normal);
             let top = if lines[81] > lines[80] { 81 } else { 80 };
-            let noise = around(&lines, top, Some(window)).unwrap();
+            let noise = around(&lines, top, REACH, Some(window)).unwrap();
             let found = interpolate(&lines, top, Some(window), Some(noise)).unwrap();
             sums[0] += (found.position - truth).powi(2);
             sums[1] += found.position_std?.powi(2);

@@ -3,7 +3,6 @@
 //! The model of spring and damper (Kelvin–Voigt) gives the answer; those of Hertz and of Hunt and Crossley are fitted beside it,
 //! to see whether the record prefers them. The instrument's low-pass is applied to the models in closed form.
 
-mod findings;
 mod fit;
 mod hunt_crossley;
 mod kelvin_voigt;
@@ -20,7 +19,7 @@ pub use two_times::two_times;
 
 use super::Estimate;
 use super::residuals::Whiteness;
-use findings::findings;
+use fit::Fitted;
 use hunt_crossley::HuntCrossley;
 use locate::locate;
 use normalised::{Normalised, Window};
@@ -55,29 +54,19 @@ impl Instrument {
     /// # Errors
     /// If corner and order do not come together; as [`LowPass::new`].
     pub fn stated(low_pass: Option<Option<f64>>, order: Option<usize>) -> Result<Instrument> {
+        let without = |found: String, key, expected| Err(Error::usage(found, expected).setting(key));
         match (low_pass, order) {
             (None, None) => Ok(Instrument::Unknown),
             (Some(None), None) => Ok(Instrument::Flat),
             (Some(Some(corner)), Some(order)) => Ok(Instrument::LowPass(LowPass::new(corner, order)?)),
-            (Some(Some(corner)), None) => Err(Error::usage(
-                format!("a low-pass of {corner} Hz without its order"),
-                "the order of the low-pass, 1 to 10",
-            )
-            .setting("order")),
-            (_, Some(order)) => Err(Error::usage(
-                format!("a low-pass of order {order} without its corner"),
-                "the corner of the low-pass in Hz",
-            )
-            .setting("low_pass")),
-        }
-    }
-
-    /// Whether its effect is known at this sampling rate: not where its rise falls between two samples.
-    fn is_known_at(&self, rate: f64) -> bool {
-        match self {
-            Instrument::Unknown => false,
-            Instrument::Flat => true,
-            Instrument::LowPass(filter) => filter.corner() < 0.5 * rate,
+            (Some(Some(corner)), None) => {
+                let found = format!("a low-pass of {corner} Hz without its order");
+                without(found, "order", "the order of the low-pass, 1 to 10")
+            }
+            (_, Some(order)) => {
+                let found = format!("a low-pass of order {order} without its corner");
+                without(found, "low_pass", "the corner of the low-pass in Hz")
+            }
         }
     }
 
@@ -117,94 +106,94 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
         ))
         .hint("sample faster"));
     }
-    let mut found = Vec::new();
     let filter = options.instrument.low_pass();
-    if let Some(filter) = filter.filter(|f| f.corner() >= 0.5 * rate) {
-        found.push(
-            Finding::doubt("pulse-corner-above-half-rate")
-                .number("corner", filter.corner())
-                .number("rate", rate),
-        );
+    let (mut found, mut known) = (Vec::new(), true);
+    if options.instrument == Instrument::Unknown {
+        known = false;
+        found.push(Finding::doubt("pulse-instrument-unknown"));
     }
-    let unlike = |error: Error| unlike(&error, filter, 1.5 * seen / rate);
+    if let Some(filter) = filter.filter(|f| f.corner >= 0.5 * rate) {
+        // Its rise falls between two samples.
+        known = false;
+        let above = Finding::doubt("pulse-corner-above-half-rate");
+        found.push(above.number("corner", filter.corner).number("rate", rate));
+    }
+    let unlike = |error: Error| {
+        let lasts = 1.5e3 * seen / rate;
+        Error::refused(format!("no contact of spring and damper fits the pulse, which lasts about {lasts:.3} ms ({error})"))
+            .hint("choose a record with one clean pulse and its baseline; a low-pass lengthens a pulse to 1/corner at least")
+            .setting("low_pass")
+    };
     let scale = Normalised::new(trace, rate, &located, filter)?;
     let Window { samples, used, level } = scale.window(&mut found, unlike)?;
+    known = known && level;
     let main = samples.fit(ContactModel::KelvinVoigt).map_err(unlike)?;
     let whiteness = Whiteness::of(&[&main.fit.residuals]);
     let n = samples.times.len();
-    let method = match filter {
-        Some(filter) => format!(
-            "least squares, spring and damper through a Butterworth low-pass of order {} at {} Hz",
-            filter.order(),
-            shortest(filter.corner())
-        ),
-        None => "least squares, spring and damper".to_owned(),
+    let through = |f: &LowPass| {
+        format!(" through a Butterworth low-pass of order {} at {} Hz", f.order, shortest(f.corner))
     };
+    let method = format!("least squares, spring and damper{}", filter.map_or_else(String::new, through));
     let unit = [1.0, 1.0 / scale.length];
     let shape = [main.fit.parameters[3], main.fit.parameters[4] * unit[1]];
     let widening = samples.widening(&main, &whiteness);
-    let known = level && options.instrument.is_known_at(rate);
     let widened = widening.filter(|_| known).unwrap_or(f64::NAN);
     let covariance =
-        |i: usize, j: usize| widened.powi(2) * unit[i] * unit[j] * samples.covariance(&main, 3 + i, 3 + j);
+        |i: usize, j: usize| widened.powi(2) * unit[i] * unit[j] * main.fit.covariance(3 + i, 3 + j);
     let contact = |p: &[f64]| KelvinVoigt::new(p[0], p[1]);
     let mut result = contact_estimates((&shape, &unit), covariance, contact, options.mass, n, &method)
         .ok_or_else(|| {
             Error::refused("the fitted contact lies at the border of what is possible (ξ near 1)")
         })?;
-    match scale.to_velocity(options.mass) {
-        Ok(factor) => {
-            let std = factor * samples.std(&main, 2) * widened;
-            let value = factor * main.fit.parameters[2].abs();
-            result.initial_velocity = Some(Estimate::new(value, Some(std), "m/s", n, method));
-        }
-        Err(why) => found.push(why),
-    }
-    let mut fits = vec![(main, whiteness)];
-    for rival in [ContactModel::Hertz, ContactModel::HuntCrossley] {
-        match samples.fit(rival) {
-            Ok(fitted) => {
-                let whiteness = Whiteness::of(&[&fitted.fit.residuals]);
-                fits.push((fitted, whiteness));
-            }
-            Err(_) => found.push(Finding::caution("pulse-model-not-fitted").name("model", rival.name())),
-        }
-    }
+    result.initial_velocity = scale.to_velocity(options.mass).map(|factor| {
+        let std = factor * main.fit.std(2) * widened;
+        Estimate::new(factor * main.fit.parameters[2].abs(), Some(std), "m/s", n, method)
+    });
     // Beyond rounding a contact gives back no more than it took.
-    let gains = result.xi.value + 2.0 * result.xi.std.unwrap_or(0.1) < 0.0;
+    let gains = result.xi.value + 2.0 * result.xi.std.unwrap_or(UNKNOWN) < 0.0;
     if gains {
-        found.push(
-            Finding::doubt("pulse-gains-energy")
-                .number("xi", result.xi.value)
-                .number("restitution", result.restitution.value),
-        );
+        let gained = Finding::doubt("pulse-gains-energy").number("xi", result.xi.value);
+        found.push(gained.number("restitution", result.restitution.value));
     }
     if gains || widening.is_none() {
         result = result.refused();
     }
-    result.fits = fits.iter().map(|(f, w)| scale.report(&samples, f, w, options.mass, known)).collect();
-    found.extend(findings(&fits[0].0, widening, &fits[0].1, &result.fits, &result, options));
+    let xi = result.xi.value;
+    let spread = result.xi.std.map_or(UNKNOWN, |s| 2.0 * s);
+    let duration = result.duration.value;
+    let mut say = |holds: bool, finding: Finding| found.extend(holds.then_some(finding));
+    say(xi + spread >= 0.5, Finding::caution("pulse-no-inner-peak").number("xi", xi));
+    say(xi - spread < 0.0, Finding::caution("pulse-no-damping").number("xi", xi));
+    say(widening.is_none() && filter.is_none(), Finding::doubt("pulse-low-pass-missing"));
+    say(widening.is_none() && filter.is_some(), Finding::doubt("pulse-onset-unlike"));
+    let coloured = Finding::caution("pulse-residuals-coloured").number("factor", whiteness.inflation);
+    say(widening.is_some() && whiteness.rejected(), coloured);
+    if let Some(filter) = filter {
+        let near = Finding::caution("pulse-near-corner").number("duration", duration);
+        say(duration * filter.corner < 2.0, near.number("corner", filter.corner));
+    }
+    let rivals = [ContactModel::Hertz, ContactModel::HuntCrossley];
+    let fits: Vec<Fitted> =
+        std::iter::once(main).chain(rivals.into_iter().filter_map(|m| samples.fit(m).ok())).collect();
+    result.fits = fits.iter().map(|f| scale.report(&samples, f, options.mass, known)).collect();
+    if let Some(best) = result.fits.iter().min_by(|a, b| a.aicc.total_cmp(&b.aicc)) {
+        let ahead = result.fits[0].aicc - best.aicc;
+        if ahead > NO_SUPPORT {
+            let other = Finding::caution("pulse-other-model").name("model", best.model.name());
+            found.push(other.number("ahead", ahead));
+        }
+    }
     result.findings = found;
-    result.picture = Some(scale.picture(&samples, &used, fits.iter().map(|f| &f.0)));
+    result.picture = Some(scale.picture(&samples, &used, &fits));
     Ok(result)
 }
 
-/// That no contact of spring and damper fits a pulse of about this duration in s.
-fn unlike(error: &Error, filter: Option<&LowPass>, duration: f64) -> Error {
-    match filter {
-        Some(filter) => Error::refused(format!(
-            "no contact behind a low-pass of order {} at {} Hz fits the pulse, which lasts about {:.3} ms ({error})",
-            filter.order(),
-            shortest(filter.corner()),
-            1e3 * duration
-        ))
-        .hint("check corner and order: a low-pass lengthens a pulse to 1/corner at least")
-        .setting("low_pass")
-        .setting("order"),
-        None => Error::refused(format!("no contact of spring and damper fits the pulse ({error})"))
-            .hint("choose a record with one clean pulse and its baseline"),
-    }
-}
+/// A difference of Akaike's criterion that leaves no support for the worse model (Burnham & Anderson, Model Selection and Multimodel
+/// Inference, 2002, section 2.6).
+const NO_SUPPORT: f64 = 10.0;
+
+/// Half of the interval in which ξ lies where it has no uncertainty, as behind an unknown instrument.
+const UNKNOWN: f64 = 0.1;
 
 #[cfg(test)]
 mod tests;

@@ -94,6 +94,18 @@ pub fn resonances(
 /// r² = A/B or its inverse. Where they cancel, it falls to what damping leaves.
 const DEEP: f64 = 2.0;
 
+impl Resonance {
+    fn moved(self, top: Vertex) -> Resonance {
+        Resonance {
+            frequency: top.frequency,
+            frequency_std: known(top.frequency_std),
+            amplitude: top.height,
+            amplitude_std: known(top.height_std),
+            ..self
+        }
+    }
+}
+
 /// A response curve of rising frequency.
 struct Curve<'a> {
     frequency: &'a [f64],
@@ -127,7 +139,7 @@ impl Curve<'_> {
         low..=high
     }
 
-    /// Frequency, height and their uncertainties between the points around the highest, `i`; `None` where the points do not determine it.
+    /// The top between the points around the highest, `i`; `None` where they do not determine it.
     fn interpolated(&self, values: &[f64], i: usize) -> Option<Vertex> {
         let range = self.flanks(values, i);
         let stretch = self.frequency.get(range.clone())?;
@@ -141,22 +153,13 @@ impl Curve<'_> {
     }
 
     fn maximum(&self, i: usize) -> Resonance {
-        let jump = self.jump_at(i);
-        let kind = ResonanceKind::Resonance;
-        if jump.is_none()
-            && let Some(vertex) = self.interpolated(self.amplitude, i)
-        {
-            return Resonance {
-                frequency: vertex.frequency,
-                frequency_std: known(vertex.frequency_std),
-                amplitude: vertex.height,
-                amplitude_std: known(vertex.height_std),
-                kind,
-                at_jump: false,
-            };
+        let (jump, kind) = (self.jump_at(i), ResonanceKind::Resonance);
+        if let Some(jump) = jump {
+            let std = at_a_jump(self.frequency, self.amplitude, self.std, i, jump);
+            return Resonance { at_jump: true, ..self.point(i, [i - 1, i + 1], kind, std) };
         }
-        let amplitude_std = jump.and_then(|j| at_a_jump(self.frequency, self.amplitude, self.std, i, j));
-        Resonance { at_jump: jump.is_some(), ..self.point(i, [i - 1, i + 1], kind, amplitude_std) }
+        let here = self.point(i, [i - 1, i + 1], kind, None);
+        self.interpolated(self.amplitude, i).map_or(here.clone(), |top| here.moved(top))
     }
 
     /// The maximum or minimum at point `i`, which lies anywhere between those on its two `sides`.
@@ -167,15 +170,10 @@ impl Curve<'_> {
         kind: ResonanceKind,
         amplitude_std: Option<f64>,
     ) -> Resonance {
-        let reach = sides.map(|k| (self.frequency[k] - self.frequency[i]).abs());
-        Resonance {
-            frequency: self.frequency[i],
-            frequency_std: Some(reach[0].max(reach[1]) / f64::sqrt(3.0)),
-            amplitude: self.amplitude[i],
-            amplitude_std,
-            kind,
-            at_jump: false,
-        }
+        let [a, b] = sides.map(|k| (self.frequency[k] - self.frequency[i]).abs());
+        let (frequency, amplitude) = (self.frequency[i], self.amplitude[i]);
+        let frequency_std = Some(a.max(b) / f64::sqrt(3.0));
+        Resonance { frequency, frequency_std, amplitude, amplitude_std, kind, at_jump: false }
     }
 
     /// `None` at the foot of a jump.
@@ -191,16 +189,9 @@ impl Curve<'_> {
             return None;
         }
         let here = self.point(i, [i - 1, i + 1], kind, None);
-        Some(match self.interpolated(inverse, i) {
-            None => here,
-            Some(v) => Resonance {
-                frequency: v.frequency,
-                frequency_std: known(v.frequency_std),
-                amplitude: 1.0 / v.height,
-                amplitude_std: known(v.height_std / (v.height * v.height)),
-                ..here
-            },
-        })
+        let Some(top) = self.interpolated(inverse, i) else { return Some(here) };
+        let (height, height_std) = (1.0 / top.height, top.height_std / (top.height * top.height));
+        Some(here.moved(Vertex { height, height_std, ..top }))
     }
 
     /// Whether the curve stands [`DEEP`] above a minimum at the last point before half-way to its neighbours, on both sides.
@@ -249,33 +240,36 @@ const TOGETHER: f64 = 0.1;
 /// resonance (in phase), the largest above it the clapping one (out of phase).
 ///
 /// Where one mass jumps, the motion of both has changed: a change of the other there that its slopes do not predict is entered in
-/// its jumps, and resonances are found again with the jumps of both.
-/// A maximum at which the other mass of the same sweep rests keeps its kind, as do all where the other mass was not
-/// measured. A sweep without an antiresonance of mass 1 uses that of the other direction.
+/// its jumps, and resonances are found again with the jumps of both. A maximum at which the other mass of the same sweep rests keeps
+/// its kind, as do all where the other mass was not measured. A sweep without an antiresonance of mass 1 uses that of the other
+/// direction.
 pub fn name_modes(curves: &mut [NamedCurve<'_>]) {
+    let partner = |curves: &[NamedCurve<'_>], i: usize| {
+        let own = &curves[i];
+        curves.iter().position(|c| c.mass != own.mass && c.direction == own.direction)
+    };
     for i in 0..curves.len() {
-        let other = curves.iter().find(|c| c.mass != curves[i].mass && c.direction == curves[i].direction);
-        let Some(foreign) = other.map(|o| o.jumps.clone()).filter(|j| !j.is_empty()) else { continue };
+        let foreign = partner(curves, i).map_or_else(Vec::new, |other| curves[other].jumps.clone());
+        if foreign.is_empty() {
+            continue;
+        }
         let own = &mut curves[i];
         for jump in &foreign {
             let known = own.jumps.iter().any(|j| (j.frequency - jump.frequency).abs() < j.frequency_std);
-            if !known && let Some(found) = echo(&own.curve, jump) {
-                own.jumps.push(found);
-            }
+            own.jumps.extend(echo(&own.curve, jump).filter(|_| !known));
         }
         let all = [own.jumps.as_slice(), &foreign].concat();
         let column = |of: fn(&(f64, f64, f64)) -> f64| own.curve.iter().map(of).collect::<Vec<f64>>();
         *own.resonances =
             resonances(&column(|p| p.0), &column(|p| p.1), &column(|p| p.2), &all, Some(own.mass));
     }
-    let up = antiresonance(curves, Direction::Up);
-    let down = antiresonance(curves, Direction::Down);
+    let between =
+        |direction| deepest(curves.iter().find(|c| c.mass == 1 && c.direction == direction)?.resonances);
+    let (up, down) = (between(Direction::Up), between(Direction::Down));
     for i in 0..curves.len() {
-        let (mass, direction) = (curves[i].mass, curves[i].direction);
-        let between = if direction == Direction::Up { up.or(down) } else { down.or(up) };
-        let partner = curves.iter().find(|c| c.mass != mass && c.direction == direction);
-        let partner = partner.map(|p| p.curve.clone());
-        let (Some(between), Some(partner)) = (between, partner) else { continue };
+        let between = if curves[i].direction == Direction::Up { up.or(down) } else { down.or(up) };
+        let (Some(between), Some(partner)) = (between, partner(curves, i)) else { continue };
+        let partner = curves[partner].curve.clone();
         for (kind, below) in [(ResonanceKind::Grazing, true), (ResonanceKind::Clapping, false)] {
             let largest = curves[i]
                 .resonances
@@ -290,22 +284,6 @@ pub fn name_modes(curves: &mut [NamedCurve<'_>]) {
         // A maximum at a jump of one mass alone is the jump's edge.
         curves[i].resonances.retain(|r| !(r.at_jump && r.kind == ResonanceKind::Resonance));
     }
-}
-
-/// Frequency of the antiresonance of mass 1 between its modes: the one that lies deepest below the largest maxima on both of its sides, or the
-/// deepest where none has both.
-fn antiresonance(curves: &[NamedCurve<'_>], direction: Direction) -> Option<f64> {
-    let found: &[Resonance] = curves.iter().find(|c| c.mass == 1 && c.direction == direction)?.resonances;
-    let largest = |side: &dyn Fn(f64) -> bool| {
-        let tops = found.iter().filter(|r| r.kind.is_maximum() && side(r.frequency));
-        tops.map(|r| r.amplitude).fold(0.0, f64::max)
-    };
-    let depth =
-        |m: &Resonance| largest(&|f| f < m.frequency).min(largest(&|f| f > m.frequency)) / m.amplitude;
-    let between =
-        found.iter().filter(|r| r.kind == ResonanceKind::Antiresonance).map(|m| (depth(m), m.frequency));
-    let between = between.filter(|m| m.0 > 0.0).max_by(|a, b| a.0.total_cmp(&b.0));
-    between.map(|m| m.1).or_else(|| deepest(found))
 }
 
 /// Frequency of the deepest antiresonance of a curve.

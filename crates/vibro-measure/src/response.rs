@@ -3,17 +3,16 @@
 mod findings;
 
 use super::excitation::{Excitation, excitations};
-use super::jump::{Jump, jumps};
+use super::jump::Jump;
 use super::limit::upper_limit;
-use super::line::{amplitude_at, interpolate, nearest};
-use super::resonance::{Resonance, resonances};
+use super::line::{SubLine, amplitude_at, interpolate, nearest};
+use super::resonance::Resonance;
 use super::{Estimate, noise};
-use findings::{direction, hidden_by_lines, repeated, wrong_window};
+use findings::{direction, repeated, wrong_window};
 use serde::Serialize;
-use std::f64::consts::PI;
+use std::f64::consts::TAU;
 use vibro_record::units::Quantity;
 use vibro_record::{Direction, Error, Finding, Result, Step, Sweep, SweepPoint, Window};
-use vibro_signal::window::line_shape;
 
 /// How a response is to be taken.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,7 +50,7 @@ pub struct Harmonic {
     pub frequency: f64,
     /// Amplitude; no value where the frequency lies outside the lines or below the cut-off. In the noise the nearest line as it is.
     pub amplitude: Estimate,
-    /// 95 % upper limit of the true amplitude, where it does not stand out of the noise or leakage (Read 2002).
+    /// 95 % upper limit of the true amplitude, where it does not stand out of the noise (Read 2002).
     pub upper_limit: Option<f64>,
 }
 
@@ -73,7 +72,7 @@ pub struct ResponsePoint {
     /// Peak amplitude at the excitation. Where the response does not stand out of the noise, the line nearest to the excitation
     /// as it is: noise lifts it, so a faint amplitude is more likely too large than too small.
     pub amplitude: Estimate,
-    /// 95 % upper limit of the true amplitude, where it does not stand out of the noise or leakage (Read 2002).
+    /// 95 % upper limit of the true amplitude, where it does not stand out of the noise (Read 2002).
     pub upper_limit: Option<f64>,
     /// Orders 2 to 5.
     pub harmonics: Vec<Harmonic>,
@@ -128,11 +127,9 @@ pub(crate) fn default_cutoff(line_width: f64, excitations: &[Excitation]) -> f64
 /// # Errors
 /// If an excitation frequency cannot be found, or the lines are not evenly spaced.
 pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
-    let df =
-        sweep.line_width().ok_or_else(|| Error::refused("the lines of the sweep are not evenly spaced"))?;
     let excitations = excitations(sweep, options.fmin.unwrap_or(0.0))?;
+    let df = sweep.line_width().unwrap_or(f64::NAN);
     let fmin = options.fmin.unwrap_or_else(|| default_cutoff(df, &excitations));
-    let mut findings = sweep.findings.clone();
     let quantity = sweep.unit().times_seconds(options.integrate).quantity();
     if quantity == Quantity::Other {
         return Err(Error::refused(format!(
@@ -145,41 +142,38 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
     }
     let unit = quantity.symbol();
     let wrong = wrong_window(sweep, &excitations, df);
-    findings.extend(repeated(sweep));
     let taker = Taker { sweep, options, df, fmin, unit };
-    let (mut points, hiders): (Vec<ResponsePoint>, Vec<Option<f64>>) =
-        sweep.points.iter().zip(&excitations).map(|(p, e)| taker.point(p, e)).unzip();
-
+    let mut points: Vec<ResponsePoint> =
+        sweep.points.iter().zip(&excitations).map(|(p, e)| taker.point(p, e)).collect();
     let frequency: Vec<f64> = excitations.iter().map(|e| e.frequency).collect();
+    let mut findings: Vec<Finding> =
+        wrong.iter().chain(&sweep.findings).cloned().chain(repeated(sweep)).collect();
     let direction = direction(&frequency, sweep.direction, &mut findings);
-    let amplitude: Vec<f64> = points.iter().map(|p| p.amplitude.value).collect();
-    let std: Vec<f64> = points.iter().map(|p| p.amplitude.std.unwrap_or(f64::NAN)).collect();
-    let faint = points.iter().zip(&hiders).filter(|(p, h)| p.upper_limit.is_some() && h.is_none()).count();
+    let faint = points.iter().filter(|p| p.upper_limit.is_some()).count();
     if faint > 0 {
         findings.push(Finding::caution("sweep-below-noise").count("n", faint));
     }
-    findings.extend(hidden_by_lines(&frequency, &hiders));
-    let below = amplitude.iter().filter(|a| a.is_nan()).count();
+    let below = points.iter().filter(|p| p.amplitude.value.is_nan()).count();
     if below > 0 {
         findings.push(Finding::caution("sweep-below-cutoff").count("n", below).number("fmin", fmin));
     }
-    let (mut jumps, mut resonances) = match direction {
-        Some(direction) if points.len() >= 3 => {
-            let jumps = jumps(&frequency, &amplitude, &std, direction);
-            let mut order: Vec<usize> = (0..points.len()).collect();
-            order.sort_by(|a, b| frequency[*a].total_cmp(&frequency[*b]));
-            let sorted = |v: &[f64]| -> Vec<f64> { order.iter().map(|i| v[*i]).collect() };
-            let [rising, height, std] = [&frequency, &amplitude, &std].map(|v| sorted(v));
-            let resonances = resonances(&rising, &height, &std, &jumps, sweep.mass);
-            (jumps, resonances)
-        }
-        _ => {
-            findings.push(Finding::caution("sweep-too-few-points").count("n", points.len()));
-            (Vec::new(), Vec::new())
-        }
-    };
-    if let Some(wrong) = wrong {
-        findings.insert(0, wrong);
+    let (mut jumps, mut resonances) = (Vec::new(), Vec::new());
+    if let Some(direction) = direction.filter(|_| points.len() >= 3) {
+        let curve = |order: &[usize]| {
+            let of = |value: &dyn Fn(usize) -> f64| order.iter().map(|i| value(*i)).collect::<Vec<f64>>();
+            let std = |i: usize| points[i].amplitude.std.unwrap_or(f64::NAN);
+            [of(&|i| frequency[i]), of(&|i| points[i].amplitude.value), of(&std)]
+        };
+        let mut order: Vec<usize> = (0..points.len()).collect();
+        let [f, amplitude, std] = curve(&order);
+        jumps = super::jump::jumps(&f, &amplitude, &std, direction);
+        order.sort_by(|a, b| frequency[*a].total_cmp(&frequency[*b]));
+        let [f, amplitude, std] = curve(&order);
+        resonances = super::resonance::resonances(&f, &amplitude, &std, &jumps, sweep.mass);
+    } else {
+        findings.push(Finding::caution("sweep-too-few-points").count("n", points.len()));
+    }
+    if wrong.is_some() {
         for point in &mut points {
             (point.frequency_std, point.amplitude.std) = (None, None);
         }
@@ -190,16 +184,13 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
             (resonance.frequency_std, resonance.amplitude_std) = (None, None);
         }
     }
-    let mut history = sweep.history().to_vec();
-    history.push(Step::new(
-        "response",
-        &[
-            ("band", &options.band),
-            ("integrate", &options.integrate),
-            ("analyser_integrated", &sweep.analyser_integrated),
-            ("fmin", &fmin),
-        ],
-    ));
+    let undone = sweep.analyser_integrated;
+    let taken: [(_, &dyn std::fmt::Display); 4] = [
+        ("band", &options.band),
+        ("integrate", &options.integrate),
+        ("analyser_integrated", &undone),
+        ("fmin", &fmin),
+    ];
     Ok(Response {
         name: sweep.name.clone(),
         direction,
@@ -211,7 +202,7 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
         resonances,
         jumps,
         findings,
-        history,
+        history: sweep.history().iter().cloned().chain([Step::new("response", &taken)]).collect(),
     })
 }
 
@@ -239,21 +230,25 @@ impl Taker<'_> {
         (frequency - self.sweep.axis.start()) / self.df
     }
 
-    /// (2πf)ⁿ from the measured signal to the wanted quantity.
-    fn divisor(&self, frequency: f64) -> f64 {
-        (2.0 * PI * frequency)
-            .powi(i32::from(self.sweep.analyser_integrated) + i32::from(self.options.integrate))
+    /// An amplitude of the wanted quantity from one of the measured signal at `frequency`, and the same of its upper limit.
+    fn estimate(
+        &self,
+        frequency: f64,
+        (value, std, limit): (f64, Option<f64>, Option<f64>),
+        method: impl Into<String>,
+    ) -> (Estimate, Option<f64>) {
+        // (2πf)ⁿ from the measured signal to the wanted quantity.
+        let times = i32::from(self.sweep.analyser_integrated) + i32::from(self.options.integrate);
+        let divisor = (TAU * frequency).powi(times);
+        let std = std.map(|s| s / divisor);
+        (Estimate::new(value / divisor, std, self.unit, 3, method), limit.map(|l| l / divisor))
     }
 
-    /// The point, and the frequency of another line where that hides its response.
-    fn point(&self, point: &SweepPoint, excitation: &Excitation) -> (ResponsePoint, Option<f64>) {
+    fn point(&self, point: &SweepPoint, excitation: &Excitation) -> ResponsePoint {
         let stored = point.response.values.magnitudes();
         let undo = i32::from(self.sweep.analyser_integrated);
-        let measured: Vec<f64> = stored
-            .iter()
-            .enumerate()
-            .map(|(k, m)| m * (2.0 * PI * self.frequency(k as f64)).powi(undo))
-            .collect();
+        let measured: Vec<f64> =
+            stored.iter().enumerate().map(|(k, m)| m * (TAU * self.frequency(k as f64)).powi(undo)).collect();
         let at = self.position(excitation.frequency);
         let centre = at.round().max(0.0) as usize;
         let window = point.response.window;
@@ -262,46 +257,30 @@ impl Taker<'_> {
         let top = (low..=high)
             .filter(|&k| measured[k] >= measured[k - 1] && measured[k] >= measured[k + 1])
             .max_by(|a, b| measured[*a].total_cmp(&measured[*b]));
-        let floor = noise::around(&measured, top.unwrap_or(centre), window);
-        let other = window.zip(floor).and_then(|(w, f)| intruder(&measured, at, w, f));
-        let leakage = other.map_or(0.0, |o| o.1);
-        let peak = top
-            .and_then(|k| interpolate(&measured, k, window, floor))
-            // A hump of noise or leakage, or another line beside the excitation, is not the response.
-            .filter(|p| {
-                floor.is_none_or(|f| p.amplitude >= PEAK_ABOVE * f.hypot(leakage))
-                    && (p.position - at).abs() <= NEAR
-            });
-        let (mut limit, mut hider) = (None, None);
+        let floor = noise::around(&measured, top.unwrap_or(centre), noise::REACH, window);
+        // A hump of noise is not the response, nor is another line beside the excitation, which hides it.
+        let clear = |p: &SubLine| floor.is_none_or(|f| p.amplitude >= PEAK_ABOVE * f);
+        let peak = top.and_then(|k| interpolate(&measured, k, window, floor)).filter(clear);
+        let hidden = peak.is_some_and(|p| (p.position - at).abs() > NEAR);
         let (frequency, frequency_std, amplitude, method) = if excitation.frequency < self.fmin {
-            (excitation.frequency, None, (f64::NAN, None), "below the cut-off".to_owned())
-        } else if let Some(peak) = peak {
+            (excitation.frequency, None, (f64::NAN, None, None), "below the cut-off".to_owned())
+        } else if let Some(peak) = peak.filter(|_| !hidden) {
             let method = match window {
                 Some(w) => format!("peak of three lines, {} window", w.name()),
                 None => "parabola through log magnitudes, window unknown".to_owned(),
             };
-            let frequency = self.frequency(peak.position);
-            // Leakage tilts the three lines and lifts them by its part of their height, about.
-            let std = peak.position_std.map(|s| s.hypot(leakage / peak.amplitude) * self.df);
-            let amplitude_std = peak.amplitude_std.map(|s| s.hypot(leakage));
-            (frequency, std, (peak.amplitude, amplitude_std), method)
+            let std = peak.position_std.map(|s| s * self.df);
+            (self.frequency(peak.position), std, (peak.amplitude, peak.amplitude_std, None), method)
         } else {
-            let (line, std, upper_limit) = faint(&measured, at, window, floor, leakage);
-            limit = upper_limit;
-            hider = other.filter(|_| limit.is_some()).map(|o| self.frequency(o.0));
             let method = "line nearest to the excitation, no peak of its own, noise not taken out".to_owned();
-            (excitation.frequency, excitation.std, (line, std), method)
+            let floor = floor.filter(|_| !hidden);
+            (excitation.frequency, excitation.std, faint(&measured, at, window, floor), method)
         };
-        let divisor = self.divisor(frequency);
-        let amplitude =
-            Estimate::new(amplitude.0 / divisor, amplitude.1.map(|s| s / divisor), self.unit, 3, method);
-        let harmonic = |numerator: u32, denominator: u32| {
-            let order = if denominator == 1 { numerator.to_string() } else { format!("1/{denominator}") };
-            let f = excitation.frequency * f64::from(numerator) / f64::from(denominator);
-            self.harmonic(&measured, order, f, window)
-        };
+        let (amplitude, upper_limit) = self.estimate(frequency, amplitude, method);
+        let harmonic =
+            |order: String, ratio: f64| self.harmonic(&measured, order, excitation.frequency * ratio, window);
         let largest = self.largest(&stored);
-        let point = ResponsePoint {
+        ResponsePoint {
             excitation: excitation.frequency,
             excitation_std: excitation.std,
             force: excitation.force,
@@ -309,85 +288,49 @@ impl Taker<'_> {
             frequency,
             frequency_std,
             amplitude,
-            upper_limit: limit.map(|l| l / divisor),
-            harmonics: (2..=5).map(|n| harmonic(n, 1)).collect(),
-            subharmonics: (2..=4).map(|n| harmonic(1, n)).collect(),
+            upper_limit,
+            harmonics: (2..=5).map(|n| harmonic(n.to_string(), f64::from(n))).collect(),
+            subharmonics: (2..=4).map(|n| harmonic(format!("1/{n}"), 1.0 / f64::from(n))).collect(),
             largest_elsewhere: largest.abs_diff(centre) > self.options.band,
             largest_at: self.frequency(largest as f64),
-        };
-        (point, hider)
+        }
     }
 
     fn harmonic(&self, measured: &[f64], order: String, frequency: f64, window: Option<Window>) -> Harmonic {
         let at = self.position(frequency);
         let inside = frequency >= self.fmin && at >= 1.0 && at.round() < measured.len() as f64 - 1.0;
-        let floor = noise::around(measured, at.round().max(0.0) as usize, window);
+        let floor = noise::around(measured, at.round().max(0.0) as usize, noise::REACH, window);
         let found = inside.then(|| amplitude_at(measured, at, window, floor)).flatten();
-        let ((value, std, limit), method) = match (found, floor) {
+        let (found, method) = match (found, floor) {
             (Some((value, _)), Some(floor)) if value < PEAK_ABOVE * floor => {
-                (faint(measured, at, window, Some(floor), 0.0), "nearest line, noise not taken out")
+                (faint(measured, at, window, Some(floor)), "nearest line, noise not taken out")
             }
             (Some((value, std)), _) => ((value, std, None), "three lines at a known frequency"),
             (None, _) => ((f64::NAN, None, None), "outside the lines or below the cut-off"),
         };
-        let divisor = self.divisor(frequency);
-        let amplitude = Estimate::new(value / divisor, std.map(|s| s / divisor), self.unit, 3, method);
-        Harmonic { order, frequency, amplitude, upper_limit: limit.map(|l| l / divisor) }
+        let (amplitude, upper_limit) = self.estimate(frequency, found, method);
+        Harmonic { order, frequency, amplitude, upper_limit }
     }
 
     /// Index of the largest line of the wanted quantity, cut-off and above.
     fn largest(&self, stored: &[f64]) -> usize {
         let first = self.position(self.fmin).ceil().max(1.0) as usize;
-        let wanted = |k: usize| {
-            stored[k] / (2.0 * PI * self.frequency(k as f64)).powi(i32::from(self.options.integrate))
-        };
+        let wanted =
+            |k: usize| stored[k] / (TAU * self.frequency(k as f64)).powi(i32::from(self.options.integrate));
         (first..stored.len()).max_by(|a, b| wanted(*a).total_cmp(&wanted(*b))).unwrap_or(first)
     }
 }
 
-/// Lines on either side in which another line is looked for that may hide a response.
-const REACH: usize = 40;
-
-/// The line further than [`NEAR`] from `position` that reaches highest there: its own position, and its height at the line nearest
-/// to `position`. `None` where that is within the noise.
-fn intruder(measured: &[f64], position: f64, window: Window, floor: f64) -> Option<(f64, f64)> {
-    let centre = position.round().max(0.0) as usize;
-    let high = centre.saturating_add(REACH).min(measured.len().saturating_sub(2));
-    (centre.saturating_sub(REACH).max(1)..=high)
-        .filter(|&k| measured[k] >= measured[k - 1] && measured[k] >= measured[k + 1])
-        // Half a line off, a line is 2/π of the amplitude or more.
-        .filter(|&k| measured[k] >= 0.5 * PEAK_ABOVE * floor)
-        .filter_map(|k| interpolate(measured, k, Some(window), None))
-        .filter(|p| p.amplitude >= PEAK_ABOVE * floor && (p.position - position).abs() > NEAR)
-        .map(|p| (p.position, p.amplitude * line_shape(window, centre as f64 - p.position).abs()))
-        .filter(|p| p.1 > floor)
-        .max_by(|a, b| a.1.total_cmp(&b.1))
-}
-
-/// The normal distribution leaves 5 % above this many standard deviations.
-const ONE_IN_TWENTY: f64 = 1.645;
-
 /// Amplitude in the noise, its uncertainty and its upper limit, from one line, because the distribution of its magnitude is known.
-///
-/// `leakage` of another line adds to the response or takes away from it, as their phases, which are not known, will have it: at the
-/// worst all of the line is missing what the other took. So it adds to the limit as a whole; a line far above both has none.
 fn faint(
     measured: &[f64],
     position: f64,
     window: Option<Window>,
     floor: Option<f64>,
-    leakage: f64,
 ) -> (f64, Option<f64>, Option<f64>) {
     let (line, gain) = nearest(measured, position, window).unwrap_or((f64::NAN, 1.0));
-    let floor = window.and(floor);
-    let std = floor.map(|f| f.hypot(leakage));
-    let limit = floor.and_then(|f| {
-        let in_noise = upper_limit(line, f);
-        if leakage == 0.0 || line >= PEAK_ABOVE * f.hypot(leakage) {
-            return in_noise;
-        }
-        Some(in_noise.unwrap_or(line + ONE_IN_TWENTY * f) + leakage).filter(|l| l.is_finite())
-    });
+    let std = window.and(floor);
+    let limit = std.and_then(|f| upper_limit(line, f));
     (line / gain, std.map(|s| s / gain), limit.map(|l| l / gain))
 }
 

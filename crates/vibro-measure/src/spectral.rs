@@ -10,7 +10,7 @@ use super::tones;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibro_record::units::Unit;
-use vibro_record::{Axis, Error, Meta, Record, Result, Scaling, Spectrum, Trace, Traces, Values};
+use vibro_record::{Axis, Error, Meta, Result, Scaling, Trace, Traces};
 use vibro_signal::impact::{Blows, from_blows};
 use vibro_signal::integrate::in_frequency;
 use vibro_signal::segment::Segments;
@@ -21,7 +21,7 @@ use vibro_signal::welch::{Averages, Welch};
 /// Samples of a segment where none is stated.
 const SEGMENT: usize = 8192;
 /// One part in so many of a hammer record stands before the blow.
-pub(crate) const BEFORE: usize = 50;
+const BEFORE: usize = 50;
 
 /// The spectrum of the only channel, or with an estimator the frequency response function from the first channel to the second.
 /// `progress` gets the number of samples read.
@@ -53,7 +53,10 @@ pub fn spectral(
         Some(estimator) => response(traces, options, estimator, progress),
     }?;
     if let Some(reference) = options.decibel {
-        found.over(reference);
+        let channel = traces.channels().first().map(|meta| meta.unit.times_seconds(options.integrate));
+        let unit = channel.filter(|_| options.estimator.is_none());
+        let unit = unit.map_or_else(|| found.unit.clone(), |unit| unit.symbol().to_owned());
+        found.over(reference, &unit);
     }
     Ok(found)
 }
@@ -64,7 +67,6 @@ fn lines(
     progress: impl FnMut(usize) + Send,
 ) -> Result<SpectralResult> {
     let (scaling, window) = (options.scaling.unwrap_or(Scaling::Peak), options.window());
-    let detrend = options.detrended();
     let mut tones = None;
     let (spectrum, averages, mut scatter) = if options.method() == Method::Welch {
         let averages = averages(traces, options, progress)?;
@@ -73,28 +75,21 @@ fn lines(
         (spectrum::averaged(&averages, 0, &meta, window, scaling)?, averages.count, scatter)
     } else {
         let [trace] = whole(traces, progress)?;
-        let spectrum = spectrum::plain(&trace, window, scaling, detrend)?;
-        if let Some(count) = options.tones {
-            tones = Some(tones::tones(&trace, count)?);
-        }
+        let spectrum = spectrum::plain(&trace, window, scaling, options.detrended())?;
+        tones = options.tones.map(|count| tones::tones(&trace, count)).transpose()?;
         let unknown = vec![f64::NAN; spectrum.axis.len()];
         (spectrum, 1, unknown)
     };
     let fmin = options.lowest(spectrum.axis.step().unwrap_or(0.0));
     let spectrum = in_frequency(&spectrum, options.integrate, fmin)?;
     scatter.drain(..scatter.len() - spectrum.axis.len());
-    let mut found = SpectralResult::lines(
-        spectrum,
-        averages,
-        &scatter,
-        if detrend { "mean" } else { "none" },
-        traces.findings(),
-    );
+    let mut found = SpectralResult::of(Lines::Spectrum(spectrum), options, fmin, traces.findings());
+    found.averages = averages;
+    found.value_std = found.value.iter().zip(scatter).map(|(v, part)| v * part).collect();
     if let Some(tones) = tones {
         found.findings.extend(tones.findings);
         found.tones = tones.tones;
     }
-    found.left_out(options.integrate, fmin);
     Ok(found)
 }
 
@@ -104,8 +99,7 @@ fn response(
     estimator: Estimator,
     progress: impl FnMut(usize) + Send,
 ) -> Result<SpectralResult> {
-    let window = options.window();
-    let (found, step, window, detrend, blows) = if options.hammer {
+    let (found, step, blows) = if options.hammer {
         let length = options.segment.unwrap_or(SEGMENT);
         let how = Blows {
             length,
@@ -115,13 +109,11 @@ fn response(
         };
         let [force, response] = whole(traces, progress)?;
         let found = from_blows(&force, &response, &how, estimator)?;
-        let window = (found.window, found.enbw);
-        (found.transfer, traces.rate() / length as f64, window, "level before the blow", found.blows)
+        let blows = (found.window, found.enbw, found.blows);
+        (found.transfer, traces.rate() / length as f64, Some(blows))
     } else {
         let averages = averages(traces, options, progress)?;
-        let found = transfer(&averages, 1, traces.channels(), estimator)?;
-        let detrend = if options.detrended() { "mean" } else { "none" };
-        (found, averages.step(), (window.name(), window.enbw()), detrend, Vec::new())
+        (transfer(&averages, 1, traces.channels(), estimator)?, averages.step(), None)
     };
     let fmin = options.lowest(step);
     let mut found = found.integrated(options.integrate, fmin)?;
@@ -132,8 +124,11 @@ fn response(
         }
         found.frf.meta.step("delay", &[("seconds", &delay)]);
     }
-    let mut result = SpectralResult::response(found, estimator, window, detrend, blows, traces.findings());
-    result.left_out(options.integrate, fmin);
+    let mut result = SpectralResult::of(Lines::Transfer(found), options, fmin, traces.findings());
+    if let Some((window, enbw, blows)) = blows {
+        (result.window, result.enbw, result.detrend) = (window, enbw, "level before the blow");
+        result.response.iter_mut().for_each(|r| r.blows.clone_from(&blows));
+    }
     Ok(result)
 }
 
@@ -151,34 +146,16 @@ fn averages(
 
 /// All samples of all channels.
 fn whole<const N: usize>(traces: &mut Traces, mut progress: impl FnMut(usize)) -> Result<[Trace; N]> {
-    let (mut block, mut columns) = (Vec::new(), vec![Vec::new(); N]);
-    while traces.next_block(&mut block)? > 0 {
-        for (column, part) in columns.iter_mut().zip(&block) {
-            column.extend_from_slice(part);
-        }
+    let mut columns = vec![Vec::new(); N];
+    while traces.append(&mut columns)? > 0 {
         progress(columns.first().map_or(0, Vec::len));
     }
     let (start, step) = (traces.start(), 1.0 / traces.rate());
-    let all: Vec<Trace> = columns
-        .into_iter()
-        .zip(traces.channels())
-        .map(|(values, meta)| Trace {
-            meta: meta.clone(),
-            axis: Axis::time(start, step, values.len()),
-            values,
-        })
-        .collect();
+    let trace = |(values, meta): (Vec<f64>, &Meta)| Trace {
+        meta: meta.clone(),
+        axis: Axis::time(start, step, values.len()),
+        values,
+    };
+    let all: Vec<Trace> = columns.into_iter().zip(traces.channels()).map(trace).collect();
     all.try_into().map_err(|all: Vec<Trace>| Error::usage(format!("{} channels", all.len()), N.to_string()))
-}
-
-/// The coherence of a function as a record.
-fn coherence(axis: &Axis, values: &[f64]) -> Record {
-    Record::Spectrum(Spectrum {
-        meta: Meta::new("coherence", Unit::parse_or_opaque("1")),
-        axis: axis.clone(),
-        values: Values::Real(values.to_vec()),
-        scaling: Scaling::Coherence,
-        window: None,
-        enbw: None,
-    })
 }

@@ -242,7 +242,7 @@ fn found(resonances: &[Named<Resonance>], jumps: &[Named<Jump>]) -> Table {
     }
     for Named { mass, direction, found } in jumps {
         let place = pair(found.frequency, Some(found.frequency_std));
-        let kind = format!("jump, {}", found.change.name()).into();
+        let kind = format!("jump, {}", found.change).into();
         let after = found.amplitude_after.into();
         table.push([usize::from(*mass).into(), direction.name().into(), kind, place, after]);
     }

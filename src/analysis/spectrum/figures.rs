@@ -1,14 +1,12 @@
 //! Spectra, and frequency response functions with their band and coherence.
 
-use crate::analysis::frf::figures::{TOLD, phase_label};
+use crate::analysis::frf::figures::phase_plot;
 use crate::measure::spectral::{Lines, SpectralResult};
 use crate::record::{Scaling, Spectrum};
-use crate::report::layout::capital;
-use crate::report::layout::lettered;
+use crate::report::layout::{capital, lettered};
 use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series};
 use crate::signal::transfer::Transfer;
 use crate::units::Quantity;
-use num_complex::Complex64;
 
 /// A spectrum, or a frequency response function.
 pub fn lines(title: &str, result: &SpectralResult) -> Figure {
@@ -31,44 +29,30 @@ pub fn lines(title: &str, result: &SpectralResult) -> Figure {
 const LINES: usize = 4000;
 
 /// The curve, or of very many lines the largest of as many as print shows side by side; and the sines that were fitted.
-fn drawn(title: &str, plot: Plot, lines: (Vec<f64>, Vec<f64>), result: &SpectralResult) -> Figure {
-    let together = lines.0.len().div_ceil(LINES).max(1);
-    let at = |f: f64| {
+fn drawn(title: &str, plot: Plot, (f, v): (Vec<f64>, Vec<f64>), result: &SpectralResult) -> Figure {
+    let together = f.len().div_ceil(LINES).max(1);
+    let on_line = |at: f64| {
         // A sine stands on the higher of the lines beside it.
-        let next = lines.0.partition_point(|x| *x < f);
-        let beside = [next.checked_sub(1), Some(next)];
-        beside.into_iter().flatten().filter_map(|k| lines.1.get(k)).copied().fold(f64::NAN, f64::max)
+        let next = f.partition_point(|f| *f < at);
+        v[next.saturating_sub(1)..v.len().min(next + 1)].iter().copied().fold(f64::NAN, f64::max)
     };
-    let tones: Vec<(f64, f64)> =
-        result.tones.iter().map(|t| (t.frequency.value, at(t.frequency.value))).collect();
-    let (x, y): (Vec<f64>, Vec<f64>) = if together == 1 {
-        lines
-    } else {
-        let parts = lines.0.chunks(together).zip(lines.1.chunks(together));
-        let largest = |(f, v): (&[f64], &[f64])| {
-            let lines = f.iter().copied().zip(v.iter().copied()).filter(|line| !line.1.is_nan());
-            lines.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((f[0], f64::NAN))
-        };
-        parts.map(largest).unzip()
+    let tones = result.tones.iter().map(|t| t.frequency.value);
+    let (at, heights): (Vec<f64>, Vec<f64>) = tones.map(|at| (at, on_line(at))).unzip();
+    let largest = |(f, v): (&[f64], &[f64])| {
+        let lines = f.iter().copied().zip(v.iter().copied()).filter(|line| !line.1.is_nan());
+        lines.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((f[0], f64::NAN))
     };
+    let (x, y): (Vec<f64>, Vec<f64>) = f.chunks(together).zip(v.chunks(together)).map(largest).unzip();
     let mut plot = plot.with(Series::line("", x, y));
     let mut said = Vec::new();
-    if !tones.is_empty() {
-        let (f, v): (Vec<f64>, Vec<f64>) = tones.into_iter().unzip();
-        plot = plot.with(Series::points("", f, v).marker(Marker::OpenCircle).ink(Ink::Nth(1)));
+    if !at.is_empty() {
+        plot = plot.with(Series::points("", at, heights).marker(Marker::OpenCircle).ink(Ink::Nth(1)));
         said.push("Circles mark the sines that were fitted.".to_owned());
     }
     if together > 1 {
         said.push(format!("Of {together} lines side by side the largest is drawn."));
     }
-    let figure = Figure::double(title).panel(plot);
-    if said.is_empty() { figure } else { figure.caption(said.join(" ")) }
-}
-
-/// Lines of a spectrum over a logarithmic axis.
-pub fn spectrum(title: &str, spectrum: &Spectrum) -> Figure {
-    let (plot, (f, values)) = axes(spectrum);
-    Figure::double(title).panel(plot.with(Series::line("", f, values)))
+    Figure::double(title).panel(plot).caption(said.join(" "))
 }
 
 /// The axes of a spectrum, and its lines.
@@ -91,28 +75,20 @@ fn axes(spectrum: &Spectrum) -> (Plot, (Vec<f64>, Vec<f64>)) {
 }
 
 /// Magnitude with a band of two standard deviations, phase (where the coherence is 0.5 or more), coherence.
-pub fn transfer(title: &str, transfer: &Transfer) -> Figure {
+fn transfer(title: &str, transfer: &Transfer) -> Figure {
     let frf = &transfer.frf;
     let f = frf.axis.values();
     let magnitude: Vec<f64> = frf.values.iter().map(|v| v.norm()).collect();
-    let edge = |sign: f64| -> Vec<f64> {
-        magnitude
-            .iter()
-            .zip(&transfer.magnitude_std)
-            .map(|(m, std)| (m + sign * 2.0 * std).max(0.05 * m))
-            .collect()
+    let edge = |by: f64| -> Vec<f64> {
+        let lines = magnitude.iter().zip(&transfer.magnitude_std);
+        lines.map(|(m, std)| (m + by * std).max(0.05 * m)).collect()
     };
-    let shown =
-        |(v, coherence): (&Complex64, &f64)| if *coherence < TOLD { f64::NAN } else { v.arg().to_degrees() };
-    let phase: Vec<f64> = frf.values.iter().zip(&transfer.coherence).map(shown).collect();
-    let label = phase_label(phase.iter().any(|p| p.is_nan()));
     let y = AxisSpec::new(capital(frf.meta.quantity.name()), frf.meta.unit.symbol()).log();
     let above = Plot::new(AxisSpec::frequency(), y)
-        .with(Series::band("two standard deviations", f.clone(), edge(-1.0), edge(1.0)).ink(Ink::Nth(0)))
+        .with(Series::band("two standard deviations", f.clone(), edge(-2.0), edge(2.0)).ink(Ink::Nth(0)))
         .with(Series::line("", f.clone(), magnitude).ink(Ink::Nth(0)))
         .legend(Legend::Above);
-    let middle = Plot::new(AxisSpec::frequency(), AxisSpec::new(label, "°").limits(-180.0, 180.0))
-        .with(Series::phase("", &f, &phase).ink(Ink::Nth(0)));
+    let middle = phase_plot(&f, frf.values.iter().copied(), &transfer.coherence, Ink::Nth(0));
     let below = Plot::new(AxisSpec::frequency(), AxisSpec::new("Coherence", "").limits(0.0, 1.0))
         .with(Series::line("", f, transfer.coherence.clone()).ink(Ink::Nth(0)));
     lettered(Figure::double(title).height(140.0).shared_x().panel(above).panel(middle).panel(below))

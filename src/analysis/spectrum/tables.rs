@@ -1,7 +1,7 @@
 //! Spectra and their tones.
 
 use crate::measure::spectral::SpectralResult;
-use crate::report::layout::headed;
+use crate::report::layout::table;
 use crate::report::{Cell, Table};
 
 /// Largest peaks of a record that a table shows.
@@ -9,70 +9,53 @@ const SHOWN: usize = 8;
 
 /// The largest peaks of a record, one row a peak.
 pub fn peaks(name: &str, found: &SpectralResult) -> Table {
-    let columns = [
-        ("record", ""),
-        ("frequency", "Hz"),
-        ("value", ""),
-        ("unit", ""),
-        ("scaling", ""),
-        ("phase", "°"),
-        ("coherence", ""),
-    ];
-    let mut table = headed("Largest peaks of spectra", &columns);
-    for k in found.peaks(SHOWN) {
-        let of = |values: &[f64]| values.get(k).copied().filter(|v| v.is_finite());
-        let response = found.response.as_ref();
-        table.push([
-            Cell::from(name),
-            Cell::from(of(&found.frequency)),
-            Cell::Estimate { value: found.value[k], std: of(&found.value_std) },
-            Cell::from(found.unit.as_str()),
-            Cell::from(found.scaling),
-            Cell::from(response.and_then(|r| of(&r.phase))),
-            Cell::from(response.and_then(|r| of(&r.coherence))),
-        ]);
-    }
-    table
+    let of = |values: &[f64], k: usize| values.get(k).copied().filter(|v| v.is_finite());
+    let response = found.response.as_ref();
+    table(
+        "Largest peaks of spectra",
+        found.peaks(SHOWN),
+        &[
+            ("record", "", &|_| Cell::from(name)),
+            ("frequency", "Hz", &|k| Cell::from(of(&found.frequency, *k))),
+            ("value", "", &|k| Cell::Estimate { value: found.value[*k], std: of(&found.value_std, *k) }),
+            ("unit", "", &|_| Cell::from(found.unit.as_str())),
+            ("scaling", "", &|_| Cell::from(found.scaling)),
+            ("phase", "°", &|k| Cell::from(response.and_then(|r| of(&r.phase, *k)))),
+            ("coherence", "", &|k| Cell::from(response.and_then(|r| of(&r.coherence, *k)))),
+        ],
+    )
 }
 
 /// How the lines of a record were taken.
 pub fn taken(found: &SpectralResult) -> Table {
-    let columns = [
-        ("record", ""),
-        ("lines", ""),
-        ("scaling", ""),
-        ("unit", ""),
-        ("levels in", ""),
-        ("window", ""),
-        ("ENBW", "lines"),
-        ("detrend", ""),
-        ("averages", ""),
-    ];
-    headed("How they were taken", &columns).row([
-        Cell::from(found.name.as_str()),
-        Cell::from(found.frequency.len()),
-        Cell::from(found.scaling),
-        Cell::from(found.unit.as_str()),
-        Cell::from(found.level_unit.as_deref().unwrap_or("-")),
-        Cell::from(found.window),
-        Cell::Number(found.enbw),
-        Cell::from(found.detrend),
-        Cell::from(found.averages),
-    ])
+    table(
+        "How they were taken",
+        [found],
+        &[
+            ("record", "", &|f| Cell::from(f.name.as_str())),
+            ("lines", "", &|f| Cell::from(f.frequency.len())),
+            ("scaling", "", &|f| Cell::from(f.scaling)),
+            ("unit", "", &|f| Cell::from(f.unit.as_str())),
+            ("levels in", "", &|f| Cell::from(f.level_unit.as_deref().unwrap_or("-"))),
+            ("window", "", &|f| Cell::from(f.window)),
+            ("ENBW", "lines", &|f| Cell::Number(f.enbw)),
+            ("detrend", "", &|f| Cell::from(f.detrend)),
+            ("averages", "", &|f| Cell::from(f.averages)),
+        ],
+    )
 }
 
 /// The sines fitted to a record, one row a sine.
 pub fn tones(name: &str, found: &SpectralResult) -> Table {
-    let columns = [("record", ""), ("frequency", "Hz"), ("amplitude", ""), ("unit", ""), ("phase", "rad")];
-    let mut table = headed("Tones", &columns);
-    for tone in &found.tones {
-        table.push([
-            Cell::from(name),
-            Cell::from(&tone.frequency),
-            Cell::from(&tone.amplitude),
-            Cell::from(tone.amplitude.unit),
-            Cell::from(&tone.phase),
-        ]);
-    }
-    table
+    table(
+        "Tones",
+        &found.tones,
+        &[
+            ("record", "", &|_| Cell::from(name)),
+            ("frequency", "Hz", &|t| Cell::from(&t.frequency)),
+            ("amplitude", "", &|t| Cell::from(&t.amplitude)),
+            ("unit", "", &|t| Cell::from(t.amplitude.unit)),
+            ("phase", "rad", &|t| Cell::from(&t.phase)),
+        ],
+    )
 }

@@ -79,7 +79,7 @@ pub fn jumps(responses: &[Response]) -> Table {
         responses.iter().flat_map(|sweep| sweep.jumps.iter().map(move |j| (sweep, j))),
         &[
             ("sweep", "", &|(sweep, _)| Cell::from(sweep.name.as_str())),
-            ("change", "", &|(_, j)| Cell::from(j.change.name())),
+            ("change", "", &|(_, j)| Cell::from(j.change)),
             ("at", "Hz", &|(_, j)| pair(j.frequency, Some(j.frequency_std))),
             ("before", unit, &|(_, j)| pair(j.amplitude_before, j.amplitude_before_std)),
             ("after", unit, &|(_, j)| pair(j.amplitude_after, j.amplitude_after_std)),

@@ -3,8 +3,7 @@
 use super::draws::Draws;
 use super::noise::Noise;
 use std::f64::consts::TAU;
-use vibroimpact::measure::sine::sine;
-use vibroimpact::measure::tones::tones;
+use vibroimpact::measure::tones::{sine, tones};
 use vibroimpact::record::{Axis, Meta, Trace};
 use vibroimpact::units::Unit;
 
@@ -44,7 +43,8 @@ fn reached(decibel: f64, draws: Draws) -> ([Reached; 2], usize) {
         let n = n as f64;
         // Kay 1993, eq. 3.41, for a real sine.
         let bounds = [RATE / TAU * (12.0 / (eta * n * (n * n - 1.0))).sqrt(), amplitude / (n * eta).sqrt()];
-        let estimates = [(&found.frequency, f), (&found.amplitude, amplitude)];
+        let tone = &found.tones[0];
+        let estimates = [(&tone.frequency, f), (&tone.amplitude, amplitude)];
         for (k, (estimate, truth)) in estimates.into_iter().enumerate() {
             let error = estimate.value - truth;
             errors[k].push(error / bounds[k]);
@@ -165,7 +165,9 @@ fn coloured_noise_is_counted_where_the_sine_is(draws: Draws) {
             one.findings.iter().chain(&several.findings).any(|f| f.code == "sine-noise-coloured"),
         );
         let of_tones = (&several.tones[0].frequency, &several.tones[0].amplitude);
-        for (k, (frequency, size)) in [(&one.frequency, &one.amplitude), of_tones].into_iter().enumerate() {
+        for (k, (frequency, size)) in
+            [(&one.tones[0].frequency, &one.tones[0].amplitude), of_tones].into_iter().enumerate()
+        {
             let (Some(f_std), Some(size_std)) = (frequency.std, size.std) else { continue };
             stated[k] += 1;
             inside[k][0] += usize::from((frequency.value - f).abs() < draws.reach() * f_std);

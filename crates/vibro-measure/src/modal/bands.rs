@@ -1,6 +1,7 @@
 //! Which lines belong to which peak.
 
 use super::Measured;
+use super::selection::TOGETHER;
 use crate::median::upper_median;
 use crate::peaks::local_maxima;
 use std::ops::Range;
@@ -59,30 +60,20 @@ pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Ve
             return Err(Error::usage(format!("a band from {low} to {high} Hz"), "LO:HI in Hz, LO below HI")
                 .setting("band"));
         }
-        within = f.partition_point(|f| *f < low)..f.partition_point(|f| *f <= high);
+        within = measured.within((low, high));
         peaks.retain(|p| within.contains(&p.at));
-        if within.is_empty() {
-            return Err(Error::refused(format!(
-                "no line between {low} and {high} Hz: the function runs from {} to {} Hz",
-                shortest(f[0]),
-                shortest(f[f.len() - 1])
-            ))
-            .hint("choose a band within it")
-            .setting("band"));
-        }
-        if peaks.is_empty() {
-            return Err(Error::refused(format!(
-                "no peak between {low} and {high} Hz stands a factor of {PROMINENCE} above its valleys and clear of the noise ({} lines)",
-                within.len()
-            ))
-            .hint("choose a band around a peak")
-            .setting("band"));
-        }
     }
     if peaks.is_empty() {
+        let [first, last] = [f[0], f[f.len() - 1]].map(shortest);
+        let between = band.map_or_else(String::new, |(low, high)| format!(" between {low} and {high} Hz"));
         return Err(Error::refused(format!(
-            "no peak stands a factor of {PROMINENCE} above its valleys and clear of the noise"
-        )));
+            "no peak{between} stands a factor of {PROMINENCE} above its valleys and clear of the noise; the function runs from {first} to {last} Hz"
+        ))
+        .hint("choose a band around a peak")
+        .setting("band"));
+    }
+    if band.is_some() && peaks.len() <= TOGETHER {
+        return Ok(vec![Group { peaks, lines: within }]);
     }
     let mut groups: Vec<Vec<Peak>> = Vec::new();
     for peak in peaks {
@@ -98,21 +89,16 @@ pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Ve
         low..high
     };
     let spans: Vec<(usize, usize)> = groups.iter().map(|g| (g[0].at, g[g.len() - 1].at)).collect();
-    Ok(groups
-        .into_iter()
-        .enumerate()
-        .map(|(i, peaks)| {
-            let mut low = peaks.iter().map(|p| reach(p).start).min().unwrap_or(0);
-            let mut high = peaks.iter().map(|p| reach(p).end).max().unwrap_or(f.len());
-            if let Some((_, before)) = i.checked_sub(1).and_then(|i| spans.get(i)) {
-                low = low.max(usize::midpoint(*before, spans[i].0));
-            }
-            if let Some((after, _)) = spans.get(i + 1) {
-                high = high.min(usize::midpoint(*after, spans[i].1) + 1);
-            }
-            Group { peaks, lines: low.max(within.start)..high.min(within.end) }
-        })
-        .collect())
+    let group = |(i, peaks): (usize, Vec<Peak>)| {
+        let low = peaks.iter().map(|p| reach(p).start).min().unwrap_or(0);
+        let high = peaks.iter().map(|p| reach(p).end).max().unwrap_or(f.len());
+        // No further than half-way to the groups beside it.
+        let below = i.checked_sub(1).map_or(0, |before| usize::midpoint(spans[before].1, spans[i].0));
+        let above = spans.get(i + 1).map_or(f.len(), |after| usize::midpoint(after.0, spans[i].1) + 1);
+        let lines = low.max(below).max(within.start)..high.min(above).min(within.end);
+        Group { peaks, lines }
+    };
+    Ok(groups.into_iter().enumerate().map(group).collect())
 }
 
 /// Standard deviation of the noise of one component of the lines around `at`, from the median of their second differences, in which what is smooth

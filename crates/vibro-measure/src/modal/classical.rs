@@ -5,6 +5,7 @@ use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 use vibro_math::least_squares;
+use vibro_record::Finding;
 
 /// Natural frequency and damping from the half-power points of the peak at line `at`, those interpolated between lines on |H|².
 /// `None` where the response does not fall to half its power on both sides inside `part`.
@@ -23,30 +24,8 @@ pub(super) fn half_power(measured: &Measured, at: usize, part: &Range<usize>) ->
     Some((f, (high - low) / (2.0 * f)))
 }
 
-/// A circle of the mobility in the Nyquist plane and the mode that runs along it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Circle {
-    /// Frequency, damping and modal constant.
-    pub pole: Pole,
-    /// Centre of the circle, (m/s)/N.
-    pub centre: Complex64,
-    /// Its radius.
-    pub radius: f64,
-    /// Frequencies and mobilities that were fitted.
-    pub points: Vec<(f64, Complex64)>,
-}
-
-/// Why there is no circle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum NoCircle {
-    /// So many lines lie around the mode.
-    FewLines(usize),
-    /// The lines lie on no circle.
-    NotRound,
-}
-
 /// Fewest points of a circle fit: twice the three parameters of a circle.
-pub(super) const POINTS: usize = 6;
+const POINTS: usize = 6;
 
 /// Largest deviation from a circle, by root mean square over its radius, that is still taken for one.
 const ROUND: f64 = 0.1;
@@ -54,9 +33,15 @@ const ROUND: f64 = 0.1;
 /// Fits a circle to the mobility at the lines within 2.4 half bandwidths of the mode (270° of the circle), by the method of Pratt
 /// (1987), then natural frequency and damping to the angles: tan(θ/2) = (ωᵣ² − ω²)/(2ζωᵣω) from the resonance.
 ///
+/// Gives the mode and the number of lines.
+///
 /// # Errors
 /// If there are fewer than six such lines, or they lie on no circle.
-pub(super) fn circle(measured: &Measured, near: &Pole, part: &Range<usize>) -> Result<Circle, NoCircle> {
+pub(super) fn circle(
+    measured: &Measured,
+    near: &Pole,
+    part: &Range<usize>,
+) -> Result<(Pole, usize), Finding> {
     let reach = 2.4 * near.zeta * near.frequency;
     let points: Vec<(f64, Complex64)> = part
         .clone()
@@ -67,22 +52,20 @@ pub(super) fn circle(measured: &Measured, near: &Pole, part: &Range<usize>) -> R
         })
         .collect();
     if points.len() < POINTS {
-        return Err(NoCircle::FewLines(points.len()));
+        return Err(Finding::caution("circle-few-lines").count("n", points.len()).count("needed", POINTS));
     }
-    let failed = Err(NoCircle::NotRound);
-    let Some((centre, radius)) = pratt(&points.iter().map(|p| p.1).collect::<Vec<_>>()) else {
-        return failed;
-    };
+    on_circle(&points, near).ok_or_else(|| Finding::caution("circle-not-round"))
+}
+
+fn on_circle(points: &[(f64, Complex64)], near: &Pole) -> Option<(Pole, usize)> {
+    let (centre, radius) = pratt(&points.iter().map(|p| p.1).collect::<Vec<_>>())?;
     let off: f64 = points.iter().map(|p| ((p.1 - centre).norm() - radius).powi(2)).sum();
     if (off / points.len() as f64).sqrt() > ROUND * radius {
-        return failed;
+        return None;
     }
     let angles: Vec<f64> = points.iter().map(|p| (p.1 - centre).arg()).collect();
-    let nearest = points
-        .iter()
-        .zip(&angles)
-        .min_by(|a, b| (a.0.0 - near.frequency).abs().total_cmp(&(b.0.0 - near.frequency).abs()));
-    let Some((_, at)) = nearest else { return failed };
+    let away = |i: &usize| (points[*i].0 - near.frequency).abs();
+    let at = angles[(0..points.len()).min_by(|a, b| away(a).total_cmp(&away(b)))?];
     let unit = near.zeta * near.frequency;
     let residuals = |p: &[f64], out: &mut [f64]| {
         let (own, zeta, turn) = (near.frequency + p[0] * unit, near.zeta * p[1], at + p[2]);
@@ -91,16 +74,12 @@ pub(super) fn circle(measured: &Measured, near: &Pole, part: &Range<usize>) -> R
             *out = (angle - expected + PI).rem_euclid(TAU) - PI;
         }
     };
-    let Ok(fit) = least_squares(residuals, points.len(), &[0.0, 1.0, 0.0], &[1.0, 1.0, 1.0]) else {
-        return failed;
-    };
+    let fit = least_squares(residuals, points.len(), &[0.0, 1.0, 0.0], &[1.0, 1.0, 1.0]).ok()?;
     let (frequency, zeta) = (near.frequency + fit.parameters[0] * unit, near.zeta * fit.parameters[1]);
     // The mobility at resonance is A/(2ζωᵣ), a diameter.
     let constant = Complex64::cis(at + fit.parameters[2]) * (2.0 * radius * 2.0 * zeta * TAU * frequency);
-    if !(fit.converged && zeta > 0.0) {
-        return failed;
-    }
-    Ok(Circle { pole: Pole { frequency, zeta, constant }, centre, radius, points })
+    let pole = Pole { frequency, zeta, constant };
+    (fit.converged && zeta > 0.0).then_some((pole, points.len()))
 }
 
 /// Circle through points by Pratt's algebraic fit: Σ(A|z|² + Bx + Cy + D)² is least under B² + C² − 4AD = 1, here by Newton's

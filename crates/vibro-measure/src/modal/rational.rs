@@ -13,8 +13,7 @@ use vibro_record::{Error, Result};
 pub(super) struct Rational {
     /// By frequency.
     pub modes: Vec<Pole>,
-    /// Standard uncertainties of frequency, damping ratio, magnitude and phase in rad of the modal constant; the last is NaN without
-    /// phases.
+    /// Standard uncertainties of frequency, damping ratio, magnitude and phase in rad of the modal constant.
     pub std: Vec<[f64; 4]>,
     /// The fitted response at its lines.
     pub fitted: Vec<Complex64>,
@@ -54,16 +53,16 @@ impl Scaled<'_> {
 
     /// The model at line `i`: modes, and what lies above (U) and below (L/x²) as receptances.
     fn at(&self, p: &[f64], i: usize) -> Complex64 {
+        let amplitude = |at: usize| Complex64::new(p[at], p[at + 1]);
         let modes = self.starts.len();
-        let mut sum = Complex64::new(0.0, 0.0);
-        for m in 0..modes {
-            let a = Complex64::new(p[4 * m + 2], if self.magnitude_only { 0.0 } else { p[4 * m + 3] });
-            sum += a * self.mode(i, self.shape(p, m));
-        }
-        let r = &p[4 * modes..];
-        let above = Complex64::new(r[0], r[1]);
-        let below = if self.magnitude_only { Complex64::new(0.0, 0.0) } else { Complex64::new(r[2], r[3]) };
+        let sum: Complex64 = (0..modes).map(|m| amplitude(4 * m + 2) * self.mode(i, self.shape(p, m))).sum();
+        let (above, below) = (amplitude(4 * modes), amplitude(4 * modes + 2));
         sum + self.factor[i] * (above + below / (self.x[i] * self.x[i]))
+    }
+
+    /// Numbers that the lines hold.
+    fn rows(&self) -> usize {
+        if self.magnitude_only { self.x.len() } else { 2 * self.x.len() }
     }
 
     /// The parameters that enter linearly, for given shapes, by least squares; and the sum of squares.
@@ -137,8 +136,7 @@ impl Scaled<'_> {
         let q: Vec<f64> = free.iter().map(|i| start[*i]).collect();
         let largest = q.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
         let scale: Vec<f64> = q.iter().map(|v| v.abs().max(1e-3 * largest.min(1.0))).collect();
-        let rows = if self.magnitude_only { n } else { 2 * n };
-        let mut fit = least_squares(residuals, rows, &q, &scale)?;
+        let mut fit = least_squares(residuals, self.rows(), &q, &scale)?;
         if !fit.converged {
             return Err(Error::refused("the fit did not converge"));
         }
@@ -167,18 +165,7 @@ pub(super) fn rational(
 ) -> Result<Rational> {
     let power = measured.power();
     let lines = part.len();
-    let parameters = 4 * starts.len() + 4 - if measured.magnitude_only { starts.len() + 3 } else { 0 };
-    let numbers = if measured.magnitude_only { lines } else { 2 * lines };
-    if numbers < parameters + 3 {
-        return Err(Error::refused(format!(
-            "{lines} lines hold {numbers} numbers, too few for {parameters} parameters and their uncertainty"
-        ))
-        .hint("take a wider band")
-        .setting("band"));
-    }
     let f = &measured.frequency[part.clone()];
-    // Without phases nothing can be subtracted.
-    let others = if measured.magnitude_only { &[] } else { others };
     let taken = |f: f64| others.iter().map(|o| o.at(f, power)).sum::<Complex64>();
     let values: Vec<Complex64> =
         f.iter().zip(&measured.values[part.clone()]).map(|(f, v)| v - taken(*f)).collect();
@@ -195,6 +182,14 @@ pub(super) fn rational(
         power,
         magnitude_only: measured.magnitude_only,
     };
+    let (numbers, parameters) = (scaled.rows(), scaled.free().len());
+    if numbers < parameters + 3 {
+        return Err(Error::refused(format!(
+            "{lines} lines hold {numbers} numbers, too few for {parameters} parameters and their uncertainty"
+        ))
+        .hint("take a wider band")
+        .setting("band"));
+    }
     let width = (f[f.len() - 1] - f[0]) / (f.len() - 1) as f64;
     let equal = vec![1.0; lines];
     let refuse = || Error::refused("no first guess of the modes fits the lines");
@@ -204,38 +199,43 @@ pub(super) fn rational(
         scaled.start(width, &equal).ok_or_else(refuse)?
     };
     let first = scaled.fit(&start, &equal)?;
-    let height = |i: usize| scaled.at(&first.parameters, i).norm();
-    let unlikely = |fit: &Fit, weight: &[f64]| {
+    let at = first.parameters.clone();
+    let height = |i: usize| scaled.at(&at, i).norm();
+    let unlikely = |(fit, weight, _): &(Fit, Vec<f64>, &str)| {
         let n = fit.residuals.len() as f64;
         n * (fit.sum_of_squares() / n).ln() + spread(weight, fit.residuals.len())
     };
-    let (fit, noise, weight) = if let Some(coherence) = &measured.coherence {
-        // Variance of a line: |H|²(1 − γ²)/(2γ²) over the averages (Bendat & Piersol 2010, 9.90), whose number is left to the fit.
-        // That of few averages is hardly known from the line alone, and one that is small by chance would draw the fit to it.
-        let part = part.clone().map(|i| coherence[i]);
-        let share: Vec<f64> = part.map(|c| (1.0 - c).max(1e-5) / c).collect();
-        let level: Vec<f64> =
-            share.iter().zip(&scaled.values).map(|(s, v)| s * v.norm_sqr().max(1e-12)).collect();
-        let level: Vec<f64> = smoothed(&level).into_iter().map(f64::sqrt).collect();
-        let relative: Vec<f64> =
-            smoothed(&share).iter().enumerate().map(|(i, s)| height(i).max(1e-6) * s.sqrt()).collect();
-        let by_level = scaled.fit(&first.parameters, &level);
-        let by_share = scaled.fit(&first.parameters, &relative);
-        let (fit, weight) = match (by_level, by_share) {
-            (Ok(one), Ok(other)) if unlikely(&other, &relative) < unlikely(&one, &level) => (other, relative),
-            (Ok(one), _) => (one, level),
-            (Err(_), other) => (other?, relative),
-        };
-        (fit, "noise by the coherence", weight)
-    } else {
-        let relative: Vec<f64> = (0..lines).map(|i| height(i).max(1e-2)).collect();
-        match scaled.fit(&first.parameters, &relative) {
-            Ok(second) if unlikely(&second, &relative) < unlikely(&first, &equal) => {
-                (second, "noise proportional to the response", relative)
-            }
-            _ => (first, "equal noise on all lines", equal),
+    let (mut best, rivals) = match &measured.coherence {
+        None => {
+            let relative = (0..lines).map(|i| height(i).max(1e-2)).collect();
+            let rivals = vec![(relative, "noise proportional to the response")];
+            (Some((first, equal, "equal noise on all lines")), rivals)
+        }
+        Some(coherence) => {
+            // Variance of a line: |H|²(1 − γ²)/(2γ²) over the averages (Bendat & Piersol 2010, 9.90), whose number is left to the fit.
+            // That of few averages is hardly known from the line alone, and one that is small by chance would draw the fit to it.
+            let share: Vec<f64> = coherence[part].iter().map(|c| (1.0 - c).max(1e-5) / c).collect();
+            let level: Vec<f64> =
+                share.iter().zip(&scaled.values).map(|(s, v)| s * v.norm_sqr().max(1e-12)).collect();
+            let level: Vec<f64> = smoothed(&level).into_iter().map(f64::sqrt).collect();
+            let relative: Vec<f64> =
+                smoothed(&share).iter().enumerate().map(|(i, s)| height(i).max(1e-6) * s.sqrt()).collect();
+            (None, [level, relative].map(|weight| (weight, "noise by the coherence")).to_vec())
         }
     };
+    let mut failed = None;
+    for (weight, noise) in rivals {
+        match scaled.fit(&at, &weight) {
+            Ok(fit) => {
+                let rival = (fit, weight, noise);
+                if best.as_ref().is_none_or(|best| unlikely(&rival) < unlikely(best)) {
+                    best = Some(rival);
+                }
+            }
+            Err(error) => failed = Some(error),
+        }
+    }
+    let (fit, weight, noise) = best.ok_or_else(|| failed.unwrap_or_else(refuse))?;
     let mut result = scaled.result(&fit, noise, &weight);
     result.fitted.iter_mut().zip(f).for_each(|(v, f)| *v += taken(*f));
     Ok(result)
@@ -306,44 +306,35 @@ impl Scaled<'_> {
             Whiteness::of(&[re, im])
         };
         let free = self.free();
-        let place = |i: usize| free.iter().position(|f| *f == i).unwrap_or(0);
+        let place = |i: usize| free.iter().position(|f| *f == i);
+        let covariance =
+            |i: usize, j: usize| place(i).zip(place(j)).map_or(0.0, |(i, j)| fit.covariance(i, j));
         let p = &fit.parameters;
         let to_constant = self.height * (TAU * self.unit).powi(2 - self.power);
-        let (mut modes, mut std): (Vec<Pole>, Vec<[f64; 4]>) = (Vec::new(), Vec::new());
-        for (m, (f, zeta)) in self.starts.iter().enumerate() {
+        // Fits of fewer than three degrees of freedom were refused.
+        let widened = whiteness.inflation * student(fit.degrees_of_freedom()).unwrap_or(f64::NAN);
+        let mode = |(m, (f, zeta)): (usize, &(f64, f64))| {
             let (own, damping) = self.shape(p, m);
-            let a = Complex64::new(p[4 * m + 2], if self.magnitude_only { 0.0 } else { p[4 * m + 3] });
-            modes.push(Pole { frequency: own * self.unit, zeta: damping, constant: a * to_constant });
-            // |a| moves with its real part by cos and with its imaginary part by sin of its phase.
-            let (cos, sin) = (a.re / a.norm(), a.im / a.norm());
-            let (re, im) = (place(4 * m + 2), place(4 * m + 3));
-            // The phase, times |a|, moves with its real part by −sin and with its imaginary part by cos.
+            let a = Complex64::new(p[4 * m + 2], p[4 * m + 3]);
+            let pole = Pole { frequency: own * self.unit, zeta: damping, constant: a * to_constant };
+            let (re, im) = (4 * m + 2, 4 * m + 3);
             let along = |re_part: f64, im_part: f64| {
-                re_part * re_part * fit.covariance(re, re)
-                    + im_part * im_part * fit.covariance(im, im)
-                    + 2.0 * re_part * im_part * fit.covariance(re, im)
+                let own = re_part * re_part * covariance(re, re) + im_part * im_part * covariance(im, im);
+                (own + 2.0 * re_part * im_part * covariance(re, im)).sqrt()
             };
-            let (variance, across) = if self.magnitude_only {
-                (fit.covariance(re, re), f64::NAN)
-            } else {
-                (along(cos, sin), along(-sin, cos))
-            };
-            // Fits of fewer than three degrees of freedom were refused.
-            let widened = whiteness.inflation * student(fit.degrees_of_freedom()).unwrap_or(f64::NAN);
-            std.push(
-                [
-                    f * zeta * fit.std(place(4 * m)),
-                    zeta * fit.std(place(4 * m + 1)),
-                    to_constant * variance.sqrt(),
-                    across.sqrt() / a.norm(),
-                ]
-                .map(|s| s * widened),
-            );
-        }
-        let mut order: Vec<usize> = (0..modes.len()).collect();
-        order.sort_by(|a, b| modes[*a].frequency.total_cmp(&modes[*b].frequency));
-        let (modes, std) =
-            (order.iter().map(|i| modes[*i]).collect(), order.iter().map(|i| std[*i]).collect());
+            // |a| moves with its real part by cos and with its imaginary part by sin of its phase; the phase, times |a|, by −sin and cos.
+            let (cos, sin) = (a.re / a.norm(), a.im / a.norm());
+            let std = [
+                f * zeta * covariance(4 * m, 4 * m).sqrt(),
+                zeta * covariance(4 * m + 1, 4 * m + 1).sqrt(),
+                to_constant * along(cos, sin),
+                along(-sin, cos) / a.norm(),
+            ];
+            (pole, std.map(|s| s * widened))
+        };
+        let mut found: Vec<(Pole, [f64; 4])> = self.starts.iter().enumerate().map(mode).collect();
+        found.sort_by(|a, b| a.0.frequency.total_cmp(&b.0.frequency));
+        let (modes, std) = found.into_iter().unzip();
         let fitted: Vec<Complex64> = (0..n).map(|i| self.at(p, i)).collect();
         // Without weights, so that fits with different weights can be compared.
         let sum: f64 = fitted

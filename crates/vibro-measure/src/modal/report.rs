@@ -1,10 +1,10 @@
 //! Fitted modes with their uncertainties, beside what the classical methods give.
 
 use super::bands::Group;
-use super::classical::{Circle, NoCircle, POINTS, circle, half_power};
+use super::classical::{circle, half_power};
 use super::rational::Rational;
-use super::unresolved::support_for_two;
-use super::{ByMethod, Measured, ModalMethod, ModalOptions, Mode, ModePicture, Pole};
+use super::selection::support_for_two;
+use super::{ByMethod, Measured, ModalOptions, Mode, Pole};
 use crate::Estimate;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -12,9 +12,6 @@ use vibro_record::Finding;
 
 /// A modal constant within this of 0 or 180°, in degrees, has a sign.
 const IN_STEP: f64 = 45.0;
-
-/// The share of a blow's record that lies before the blow.
-const BEFORE: f64 = 1.0 / crate::spectral::BEFORE as f64;
 
 /// Bandwidths in lines below which the half-power method is tens of per cent off.
 const LINES_OF_HALF_POWER: f64 = 8.0;
@@ -25,8 +22,6 @@ pub(super) struct Report<'a> {
     pub options: &'a ModalOptions,
     pub modes: Vec<Mode>,
     pub findings: Vec<Finding>,
-    /// Modes whose phase rises through the resonance.
-    pub reversed: usize,
 }
 
 impl Report<'_> {
@@ -35,15 +30,14 @@ impl Report<'_> {
         let sound = fit.sound(self.measured, &group.peaks);
         for (m, sound) in sound.into_iter().enumerate() {
             let (pole, std) = (&fit.modes[m], fit.std[m]);
-            let at = self.measured.frequency[group.peaks[m].at];
-            if sound && fit.explains() {
-                self.mode(group, fit, m, others);
+            let own = pole.without_decay(self.options.decay.unwrap_or(0.0), self.measured.power());
+            if let Some(own) = own.filter(|_| sound && fit.explains()) {
+                self.mode((group, fit), m, own, others);
                 continue;
             }
-            self.reversed += usize::from(pole.zeta < 0.0 && std[1] < -pole.zeta / 2.0);
             self.findings.push(
                 Finding::caution("modal-peak-unsupported")
-                    .number("frequency", at)
+                    .number("frequency", self.measured.frequency[group.peaks[m].at])
                     .number("zeta", pole.zeta)
                     .number("std", std[1])
                     .number("unexplained", fit.unexplained),
@@ -51,18 +45,16 @@ impl Report<'_> {
         }
     }
 
-    /// Adds mode `m` of a fit.
-    fn mode(&mut self, group: &Group, fit: &Rational, m: usize, others: &[Pole]) {
-        let (measured, options) = (self.measured, self.options);
+    /// Adds mode `m` of a fit, `own` without the decay of a window.
+    fn mode(&mut self, (group, fit): (&Group, &Rational), m: usize, own: Pole, others: &[Pole]) {
+        let measured = self.measured;
         let (pole, mut std) = (&fit.modes[m], fit.std[m]);
         let at = measured.frequency[group.peaks[m].at];
-        let decay = options.decay.unwrap_or(0.0);
+        let finding = |found: Finding| found.number("frequency", at);
+        let mut found = Vec::new();
         if fit.whiteness.rejected() {
-            self.findings.push(
-                Finding::caution("modal-residuals-coloured")
-                    .number("frequency", pole.frequency)
-                    .number("factor", fit.whiteness.inflation),
-            );
+            let coloured = finding(Finding::caution("modal-residuals-coloured"));
+            found.push(coloured.number("factor", fit.whiteness.inflation));
         }
         let span = measured.frequency[group.lines.end - 1] - measured.frequency[group.lines.start];
         let spacing = span / (group.lines.len() - 1) as f64;
@@ -70,59 +62,34 @@ impl Report<'_> {
         // pole that fits 1/s − 2κ/s³ best has a decay larger by 2κ/a of a.
         let bandwidth = 2.0 * pole.zeta * pole.frequency / spacing;
         let leakage = 4.0 / 3.0 / bandwidth.powi(2);
-        let leaks = !options.from_blows && measured.coherence.is_some() && leakage * pole.zeta > std[1];
+        let blows = self.options.from_blows;
+        let leaks = !blows && measured.coherence.is_some() && leakage * pole.zeta > std[1];
         if leaks {
-            self.findings.push(
-                Finding::caution("modal-leakage")
-                    .number("frequency", at)
-                    .number("bandwidth", bandwidth)
-                    .number("part", leakage),
-            );
+            let leaks = finding(Finding::caution("modal-leakage")).number("bandwidth", bandwidth);
+            found.push(leaks.number("part", leakage));
         }
-        let Some(own) = pole.without_decay(decay, measured.power()) else {
-            self.findings.push(
-                Finding::caution("modal-no-oscillation").number("frequency", at).number("zeta", pole.zeta),
-            );
-            return;
-        };
-        if options.from_blows {
-            // A record that ends T after the blow lacks e^(sT − iωT) of a mode's part. On lines 1/(T + t) apart, t before the blow,
-            // that is a factor on A, which turns by t·ω from line to line as a delay of t would: seen over the width of the
-            // peak, t·ζωᵣ, it changes ζ and ωᵣ, too.
-            let decay = TAU * pole.frequency * pole.zeta;
-            let left = (-decay * (1.0 - BEFORE) / spacing).exp();
-            let turned = left * decay * BEFORE / spacing;
+        if blows {
+            // A record that ends T after the blow lacks e^(sT − iωT) of a mode's part: a factor on A.
+            let left = (-TAU * pole.frequency * pole.zeta / spacing).exp();
             if left * pole.constant.norm() > std[2] {
-                self.findings.push(
-                    Finding::caution("modal-blow-cut-off").number("frequency", at).number("part", left),
-                );
+                found.push(finding(Finding::caution("modal-blow-cut-off")).number("part", left));
             }
-            let [of_frequency, of_zeta, of_constant, of_phase] = &mut std;
-            *of_frequency = of_frequency.hypot(turned * pole.zeta * pole.frequency);
-            *of_zeta = of_zeta.hypot(turned * pole.zeta);
-            *of_constant = of_constant.hypot(left * pole.constant.norm());
-            *of_phase = of_phase.hypot(left);
+            (std[2], std[3]) = (std[2].hypot(left * pole.constant.norm()), std[3].hypot(left));
         }
         let phase = own.constant.arg().to_degrees();
         if !measured.magnitude_only && (IN_STEP..180.0 - IN_STEP).contains(&phase.abs()) {
-            self.findings.push(
-                Finding::caution("modal-constant-no-sign").number("frequency", at).number("phase", phase),
-            );
+            found.push(finding(Finding::caution("modal-constant-no-sign")).number("phase", phase));
         }
         // ζωᵣ is known as before, and the constant has the factor that its uncertainty has.
         std[1] *= pole.frequency / own.frequency;
         std[2] *= own.constant.norm() / pole.constant.norm();
         // A peak that leakage widens has no longer the form of one mode.
-        let two = if leaks { None } else { support_for_two(measured, group, fit, m, others) };
-        if let Some(ahead) = two {
-            self.findings.push(
-                Finding::doubt("modal-two-modes").number("frequency", pole.frequency).number("ahead", ahead),
-            );
-        }
+        let two = if leaks { None } else { support_for_two(measured, (group, fit), m, others) };
+        found.extend(two.map(|ahead| finding(Finding::doubt("modal-two-modes")).number("ahead", ahead)));
+        self.findings.extend(found);
         // What the phases of residual terms and other modes do to magnitudes is in no residual.
         let std = (two.is_none() && !measured.magnitude_only).then_some(std);
-        let estimates = Estimates { measured, group, fit, m, own, std };
-        let mode = estimates.mode(options);
+        let mode = Estimates { measured, group, fit, m, own, std }.mode(self.options);
         self.modes.push(mode);
     }
 }
@@ -167,82 +134,61 @@ impl Estimates<'_> {
             let std = frequency.std.map(|u| 2.0 * k * u / own.frequency);
             Estimate::new(k, std, "N/m", n, "k = m(2πf)²")
         });
+        let decay = options.decay.unwrap_or(0.0);
         let mut by = vec![ByMethod {
-            method: ModalMethod::RationalFit,
+            method: "rational fit",
             frequency: frequency.clone(),
             zeta: Some(zeta.clone()),
             modal_constant: Some(modal_constant.clone()),
             note: None,
         }];
-        let decay = options.decay.unwrap_or(0.0);
-        let circle = phases.then(|| self.circle(decay));
-        by.extend(circle.as_ref().map(by_circle));
+        by.extend(phases.then(|| by_circle(&self.circle(decay))));
         by.extend(self.by_magnitudes(decay));
         let fitted = f.iter().zip(&fit.fitted).map(|(f, v)| (*f, v.re, v.im)).collect();
-        Mode {
-            stiffness,
-            frequency,
-            zeta,
-            modal_constant,
-            phase,
-            method,
-            lines: (f[0], f[n - 1], n),
-            by,
-            picture: ModePicture { fitted, circle: circle.and_then(Result::ok) },
-        }
+        let lines = (f[0], f[n - 1], n);
+        Mode { frequency, zeta, modal_constant, phase, method, stiffness, lines, by, fitted }
     }
 
     /// The circle of the response as measured, and its mode without the decay of a window.
-    fn circle(&self, decay: f64) -> Result<Circle, NoCircle> {
+    fn circle(&self, decay: f64) -> Result<(Pole, usize), Finding> {
         let power = self.measured.power();
         let seen = self.own.without_decay(-decay, power).unwrap_or(self.own);
-        let found = circle(self.measured, &seen, &self.group.lines)?;
-        let pole = found.pole.without_decay(decay, power).ok_or(NoCircle::NotRound)?;
-        Ok(Circle { pole, ..found })
+        let (pole, n) = circle(self.measured, &seen, &self.group.lines)?;
+        let pole = pole.without_decay(decay, power).ok_or_else(|| Finding::caution("circle-not-round"))?;
+        Ok((pole, n))
     }
 
     /// The methods that read the magnitudes.
     fn by_magnitudes(&self, decay: f64) -> Vec<ByMethod> {
         let (f, at) = (&self.measured.frequency, self.group.peaks[self.m].at);
         let line = (f[at + 1] - f[at - 1]) / 2.0;
-        let near = |f: f64, method| Estimate::new(f, None, "Hz", 1, method);
-        let mut by = Vec::new();
-        if let Some((frequency, zeta)) = half_power(self.measured, at, &self.group.lines) {
-            let lines = 2.0 * zeta * frequency / line;
-            let coarse = lines < LINES_OF_HALF_POWER;
-            by.push(ByMethod {
-                method: ModalMethod::HalfPower,
-                frequency: near(frequency, "half power"),
-                zeta: Some(Estimate::new(zeta - decay / (TAU * frequency), None, "1", 4, "half power")),
-                modal_constant: None,
-                note: coarse.then(|| Finding::caution("half-power-few-lines").number("bandwidth", lines)),
-            });
-        }
-        by.push(ByMethod {
-            method: ModalMethod::Peak,
-            frequency: near(f[at], "largest line"),
-            zeta: None,
+        let found = |(method, how), frequency, zeta: Option<f64>, note| ByMethod {
+            method,
+            frequency: Estimate::new(frequency, None, "Hz", 1, how),
+            zeta: zeta.map(|zeta| Estimate::new(zeta, None, "1", 4, how)),
             modal_constant: None,
-            note: Some(Finding::note("peak-within-a-line").number("half", line / 2.0)),
+            note,
+        };
+        let half = half_power(self.measured, at, &self.group.lines).map(|(frequency, zeta)| {
+            let lines = 2.0 * zeta * frequency / line;
+            let coarse = (lines < LINES_OF_HALF_POWER)
+                .then(|| Finding::caution("half-power-few-lines").number("bandwidth", lines));
+            found(("half power", "half power"), frequency, Some(zeta - decay / (TAU * frequency)), coarse)
         });
-        by
+        let within = Finding::note("peak-within-a-line").number("half", line / 2.0);
+        half.into_iter().chain([found(("peak", "largest line"), f[at], None, Some(within))]).collect()
     }
 }
 
-fn by_circle(found: &Result<Circle, NoCircle>) -> ByMethod {
-    let n = found.as_ref().map_or(0, |circle| circle.points.len());
+fn by_circle(found: &Result<(Pole, usize), Finding>) -> ByMethod {
+    let pole = found.as_ref().ok().map(|circle| circle.0);
+    let n = found.as_ref().map_or(0, |circle| circle.1);
     let plain = |value, unit| Estimate::new(value, None, unit, n, "circle fit");
-    let pole = found.as_ref().map(|circle| circle.pole);
     ByMethod {
-        method: ModalMethod::CircleFit,
+        method: "circle fit",
         frequency: plain(pole.map_or(f64::NAN, |p| p.frequency), "Hz"),
-        zeta: pole.ok().map(|p| plain(p.zeta, "1")),
-        modal_constant: pole.ok().map(|p| plain(signed(p.constant), "1/kg")),
-        note: pole.err().map(|why| match why {
-            NoCircle::FewLines(n) => {
-                Finding::caution("circle-few-lines").count("n", *n).count("needed", POINTS)
-            }
-            NoCircle::NotRound => Finding::caution("circle-not-round"),
-        }),
+        zeta: pole.map(|p| plain(p.zeta, "1")),
+        modal_constant: pole.map(|p| plain(signed(p.constant), "1/kg")),
+        note: found.as_ref().err().cloned(),
     }
 }

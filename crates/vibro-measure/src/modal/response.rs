@@ -1,8 +1,9 @@
 //! The lines of a frequency response function that may be fitted.
 
 use num_complex::Complex64;
-use vibro_record::units::notation::significant;
-use vibro_record::{Error, Finding, Frf, FrfKind, Meta, Place, Record, Result, Scaling, Spectrum, Values};
+use vibro_record::{
+    Axis, Error, Finding, Frf, FrfKind, Meta, Place, Record, Result, Scaling, Spectrum, Values,
+};
 
 /// A frequency response function as the estimates of modes take it, complex or in magnitude only, with its coherence where known.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,62 +23,45 @@ pub struct Measured {
 impl Measured {
     /// All lines of a complex function.
     pub fn complex(frf: &Frf) -> Measured {
-        Measured {
-            frequency: frf.axis.values(),
-            values: frf.values.clone(),
-            magnitude_only: false,
-            kind: frf.kind,
-            coherence: None,
-        }
+        Measured::of(&frf.axis, frf.values.clone(), frf.kind)
     }
 
-    /// All lines of a spectrum of magnitudes whose unit is that of a response over a force; `None` for any other spectrum.
-    pub fn magnitudes(spectrum: &Spectrum) -> Option<Measured> {
+    fn of(axis: &Axis, values: Vec<Complex64>, kind: FrfKind) -> Measured {
+        Measured { frequency: axis.values(), values, magnitude_only: false, kind, coherence: None }
+    }
+
+    /// A record that may be one: a function, a complex spectrum, or magnitudes in the unit of a response over a force.
+    fn record(record: &Record) -> Option<Measured> {
+        let spectrum = match record {
+            Record::Frf(frf) => return Some(Measured::complex(frf)),
+            Record::Spectrum(spectrum) => spectrum,
+            Record::Trace(_) => return None,
+        };
         let kind = FrfKind::of(spectrum.meta.quantity);
         match &spectrum.values {
-            Values::Real(values) if kind != FrfKind::Other => Some(Measured {
-                frequency: spectrum.axis.values(),
-                values: values.iter().map(|v| Complex64::new(v.abs(), 0.0)).collect(),
-                magnitude_only: true,
-                kind,
-                coherence: None,
-            }),
-            _ => None,
+            Values::Complex(values) => Some(Measured::of(&spectrum.axis, values.clone(), kind)),
+            Values::Real(values) if kind != FrfKind::Other => {
+                let values = values.iter().map(|v| Complex64::new(v.abs(), 0.0)).collect();
+                Some(Measured { magnitude_only: true, ..Measured::of(&spectrum.axis, values, kind) })
+            }
+            Values::Real(_) => None,
         }
     }
 
-    /// All functions among records, or those of one name, each with its record's meta data: complex ones, and magnitudes in the
-    /// unit of a response over a force. A coherence of the same lines among them is theirs where there is just one of each.
+    /// All functions among records, or those of one name or number, each with its record's meta data: complex ones, and magnitudes in
+    /// the unit of a response over a force. A coherence of the same lines among them is theirs where there is just one of each.
     ///
     /// # Errors
     /// If there is none.
     pub fn all(records: &[Record], channel: Option<&str>) -> Result<Vec<(Meta, Measured)>> {
-        let mut found: Vec<(Meta, Measured)> = Vec::new();
-        for record in records {
-            let measured = match record {
-                Record::Frf(frf) => Some(Measured::complex(frf)),
-                Record::Spectrum(s) => match &s.values {
-                    Values::Complex(values) => Some(Measured {
-                        frequency: s.axis.values(),
-                        values: values.clone(),
-                        magnitude_only: false,
-                        kind: FrfKind::of(s.meta.quantity),
-                        coherence: None,
-                    }),
-                    Values::Real(_) => Measured::magnitudes(s),
-                },
-                Record::Trace(_) => None,
-            };
-            found.extend(measured.map(|m| (record.meta().clone(), m)));
-        }
-        let names: Vec<String> = found.iter().map(|f| f.0.name.clone()).collect();
+        let functions = records.iter().filter_map(|r| Some((r.meta().clone(), Measured::record(r)?)));
+        let mut found: Vec<(Meta, Measured)> = functions.collect();
         if let Some(name) = channel {
-            let number = name.parse::<usize>().ok().filter(|n| *n >= 1 && !names.iter().any(|n| n == name));
-            let mut at = 0;
-            found.retain(|f| {
-                at += 1;
-                number.map_or(f.0.name == name, |n| n == at)
-            });
+            let named = found.iter().any(|f| f.0.name == name);
+            let number = name.parse::<usize>().ok().filter(|_| !named);
+            let chosen = found.into_iter().enumerate();
+            let chosen = chosen.filter(|(i, f)| number.map_or(f.0.name == name, |n| n == i + 1));
+            found = chosen.map(|f| f.1).collect();
         }
         if found.is_empty() {
             let what = channel.map_or_else(String::new, |c| format!(" named {c:?}"));
@@ -117,23 +101,9 @@ impl Measured {
         let Values::Real(values) = &coherence.values else {
             return Err(Error::refused("the coherence is complex: it is no coherence"));
         };
-        if 2 * values.iter().filter(|c| is_impossible(**c)).count() > values.len() {
-            let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            return Err(Error::input(
-                Place::default(),
-                format!("a coherence up to {}", significant(largest, 4)),
-                "values between 0 and 1",
-            )
-            .hint("divide a coherence in per cent by 100, or leave it out")
-            .setting("coherence"));
-        }
         let width = self.frequency.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
-        let same = values.len() == self.frequency.len()
-            && self
-                .frequency
-                .iter()
-                .enumerate()
-                .all(|(i, f)| (coherence.axis.at(i) - f).abs() <= 1e-3 * width);
+        let near = |(i, f): (usize, &f64)| (coherence.axis.at(i) - f).abs() <= 1e-3 * width;
+        let same = values.len() == self.frequency.len() && self.frequency.iter().enumerate().all(near);
         if !same {
             return Err(Error::refused(format!(
                 "the coherence has other lines ({}) than the function ({})",
@@ -143,6 +113,11 @@ impl Measured {
         }
         self.coherence = Some(values.clone());
         Ok(self)
+    }
+
+    /// The lines of a band in Hz.
+    pub(super) fn within(&self, (low, high): (f64, f64)) -> std::ops::Range<usize> {
+        self.frequency.partition_point(|f| *f < low)..self.frequency.partition_point(|f| *f <= high)
     }
 
     /// How often iω multiplies a receptance to give the values.
@@ -162,26 +137,27 @@ impl Measured {
         let coherence = self.coherence.take();
         let n = self.frequency.len();
         let of = |i: usize| coherence.as_ref().and_then(|c| c.get(i)).copied();
-        let missing = |i: usize| !self.values[i].is_finite() || of(i).is_some_and(f64::is_nan);
-        let impossible = |i: usize| !missing(i) && of(i).is_some_and(is_impossible);
-        let low = |i: usize| !missing(i) && !impossible(i) && of(i).is_some_and(|c| c < least);
-        let left_out: [(Finding, &dyn Fn(usize) -> bool); 3] = [
-            (Finding::caution("frf-lines-missing"), &missing),
-            (Finding::caution("frf-lines-impossible-coherence"), &impossible),
-            (Finding::caution("frf-lines-low-coherence").number("least", least), &low),
-        ];
-        let mut good: Vec<bool> = self.frequency.iter().map(|f| *f > 0.0).collect();
-        for (finding, is_left_out) in left_out {
-            let lines: Vec<usize> = (0..n).filter(|i| is_left_out(*i)).collect();
-            for i in &lines {
-                good[*i] = false;
-            }
+        // Rounding takes a coherence of 1 a little beyond.
+        let possible = -1e-6..=1.0 + 1e-6;
+        let wrong = |i: usize| match of(i) {
+            _ if !self.values[i].is_finite() => Some("frf-lines-missing"),
+            Some(c) if c.is_nan() => Some("frf-lines-missing"),
+            Some(c) if !possible.contains(&c) => Some("frf-lines-impossible-coherence"),
+            Some(c) if c < least => Some("frf-lines-low-coherence"),
+            _ => None,
+        };
+        for finding in [
+            Finding::caution("frf-lines-missing"),
+            Finding::caution("frf-lines-impossible-coherence"),
+            Finding::caution("frf-lines-low-coherence").number("least", least),
+        ] {
+            let lines: Vec<usize> = (0..n).filter(|i| wrong(*i) == Some(finding.code)).collect();
             if !lines.is_empty() {
                 let first: Vec<f64> = lines.iter().take(NAMED).map(|i| self.frequency[*i]).collect();
                 findings.push(finding.count("n", lines.len()).numbers("lines", first));
             }
         }
-        let kept: Vec<usize> = (0..n).filter(|i| good[*i]).collect();
+        let kept: Vec<usize> = (0..n).filter(|i| self.frequency[*i] > 0.0 && wrong(*i).is_none()).collect();
         if kept.len() < 5 {
             return Err(Error::refused(format!(
                 "{} of {n} lines can be used: there is nothing to fit",
@@ -200,11 +176,6 @@ impl Measured {
 
 /// Most lines that a finding names.
 const NAMED: usize = 6;
-
-/// Whether no measurement has this coherence. Rounding takes one of 1 a little beyond.
-fn is_impossible(coherence: f64) -> bool {
-    !coherence.is_nan() && !(-1e-6..=1.0 + 1e-6).contains(&coherence)
-}
 
 /// Whether a record says that it is a coherence, or is named so and has no unit.
 fn is_coherence(record: &Record) -> bool {

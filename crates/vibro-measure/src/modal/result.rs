@@ -1,6 +1,5 @@
 //! What is known of each mode.
 
-use super::classical::Circle;
 use crate::Estimate;
 use serde::{Serialize, Serializer};
 use vibro_record::Finding;
@@ -56,45 +55,16 @@ pub struct Mode {
     pub lines: (f64, f64, usize),
     /// What every method gives.
     pub by: Vec<ByMethod>,
-    /// Curves for a figure.
+    /// Frequency and fitted response of the lines that were used, real and imaginary.
     #[serde(skip)]
-    pub picture: ModePicture,
-}
-
-/// A method for natural frequency and damping.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub enum ModalMethod {
-    /// Modes and residual terms fitted in the complex plane.
-    #[serde(rename = "rational fit")]
-    RationalFit,
-    /// Circle of the mobility in the Nyquist plane.
-    #[serde(rename = "circle fit")]
-    CircleFit,
-    /// Half-power bandwidth.
-    #[serde(rename = "half power")]
-    HalfPower,
-    /// Largest line.
-    #[serde(rename = "peak")]
-    Peak,
-}
-
-impl ModalMethod {
-    /// Its name, as in JSON.
-    pub fn name(self) -> &'static str {
-        match self {
-            ModalMethod::RationalFit => "rational fit",
-            ModalMethod::CircleFit => "circle fit",
-            ModalMethod::HalfPower => "half power",
-            ModalMethod::Peak => "peak",
-        }
-    }
+    pub fitted: Vec<(f64, f64, f64)>,
 }
 
 /// What one method gives.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ByMethod {
-    /// The method.
-    pub method: ModalMethod,
+    /// `rational fit` in the complex plane, `circle fit` in the Nyquist plane, `half power` or largest line (`peak`).
+    pub method: &'static str,
     /// Natural frequency in Hz; NaN where the method gives none.
     pub frequency: Estimate,
     /// Damping ratio.
@@ -110,13 +80,4 @@ pub struct ByMethod {
 #[allow(clippy::ref_option)]
 fn code<S: Serializer>(note: &Option<Finding>, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(note.as_ref().map_or("", |n| n.code))
-}
-
-/// A mode, to be drawn.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct ModePicture {
-    /// Frequency and fitted response of the lines that were used, real and imaginary.
-    pub fitted: Vec<(f64, f64, f64)>,
-    /// The circle, where one was fitted.
-    pub circle: Option<Circle>,
 }

@@ -1,156 +1,69 @@
 //! Which peaks are modes, and on which lines they are fitted.
 
-use super::Measured;
 use super::bands::{Group, Peak};
 use super::rational::{Rational, rational};
-use vibro_record::{Error, Finding, Result};
+use super::{Measured, Pole};
+use vibro_record::Result;
 
 /// Modes of one group at most: beyond, parameters outgrow the lines.
-const TOGETHER: usize = 6;
+pub(super) const TOGETHER: usize = 6;
 
 /// An additional mode must lower Akaike's criterion by this much (Burnham & Anderson 2002, 2.6).
 const NEEDED: f64 = 10.0;
 
-/// First guesses for `peaks`: what a fit gave where that lies at its peak, else the peak.
-fn starts(lines: &Measured, peaks: &[Peak], known: Option<(&Rational, &[Peak])>) -> Vec<(f64, f64)> {
-    let of = |peak: &Peak| {
-        let (fit, fitted) = known?;
-        let at = fitted.iter().position(|p| p.at == peak.at)?;
-        let mode = &fit.modes[at];
-        fit.sound(lines, fitted)[at].then_some((mode.frequency, mode.zeta))
-    };
-    peaks.iter().map(|p| of(p).unwrap_or_else(|| p.start(lines))).collect()
+/// First guesses for `peaks`.
+fn starts(lines: &Measured, peaks: &[Peak]) -> Vec<(f64, f64)> {
+    peaks.iter().map(|p| p.start(lines)).collect()
 }
 
 /// Finds the peaks of a group that the lines need. The group keeps those; the others are added to `unsupported`.
 ///
 /// The highest peaks are fitted all at once: with a strong one left out the others explain its lines. Those that are not known, or
-/// not needed beside the others, are dropped; then the rest is added in the order of height as long as the lines need it.
-pub(super) fn chosen(lines: &Measured, group: &mut Group, unsupported: &mut Vec<f64>) -> Result<Rational> {
-    let mut waiting = std::mem::take(&mut group.peaks);
-    waiting.sort_by(|a, b| b.rise.total_cmp(&a.rise));
-    let mut later = waiting.split_off(waiting.len().min(TOGETHER));
-    // Where not all can be fitted at once, the lowest waits.
-    let mut best = loop {
-        group.peaks.clone_from(&waiting);
+/// not needed beside the others, are dropped.
+pub(super) fn chosen(lines: &Measured, group: &mut Group, unsupported: &mut Vec<Peak>) -> Result<Rational> {
+    let mut highest = group.peaks.clone();
+    highest.sort_by(|a, b| b.rise.total_cmp(&a.rise));
+    unsupported.extend(highest.split_off(highest.len().min(TOGETHER)));
+    let fit = loop {
+        group.peaks.clone_from(&highest);
         group.peaks.sort_by_key(|p| p.at);
-        match rational(lines, group.lines.clone(), &starts(lines, &group.peaks, None), &[]) {
-            Err(_) if waiting.len() > 1 => later.extend(waiting.pop()),
+        match rational(lines, group.lines.clone(), &starts(lines, &group.peaks), &[]) {
+            // Where not all can be fitted at once, the lowest is left out.
+            Err(_) if highest.len() > 1 => unsupported.extend(highest.pop()),
             fit => break fit?,
         }
     };
-    let mut dropped;
-    (best, dropped) = pruned(lines, group, best);
-    later.sort_by(|a, b| b.rise.total_cmp(&a.rise));
-    for peak in later {
-        let mut with = group.peaks.clone();
-        with.push(peak);
-        with.sort_by_key(|p| p.at);
-        let guess = starts(lines, &with, Some((&best, &group.peaks)));
-        match rational(lines, group.lines.clone(), &guess, &[]) {
-            Ok(fit)
-                if with.len() <= TOGETHER
-                    && fit.aicc < best.aicc - NEEDED
-                    && fit.sound(lines, &with).iter().all(|s| *s) =>
-            {
-                (best, group.peaks) = (fit, with);
-            }
-            _ => dropped.push(peak),
-        }
-    }
-    unsupported.extend(dropped.iter().map(|p| lines.frequency[p.at]));
-    Ok(if best.whiteness.rejected() { narrowed(lines, group, best) } else { best })
+    let fit = pruned(lines, group, fit, unsupported);
+    Ok(if fit.whiteness.rejected() { narrowed(lines, group, fit) } else { fit })
 }
 
 /// Drops the modes that are not known, the lowest peak first, then those that the lines do not need beside the others.
-fn pruned(lines: &Measured, group: &mut Group, mut fit: Rational) -> (Rational, Vec<Peak>) {
-    let mut dropped = Vec::new();
-    let without = |group: &Group, fit: &Rational, at: usize| {
-        let mut fewer = group.peaks.clone();
-        fewer.remove(at);
-        let guess = starts(lines, &fewer, Some((fit, &group.peaks)));
-        rational(lines, group.lines.clone(), &guess, &[]).ok().map(|less| (less, fewer))
-    };
+fn pruned(lines: &Measured, group: &mut Group, mut fit: Rational, unsupported: &mut Vec<Peak>) -> Rational {
     while group.peaks.len() > 1 {
         let sound = fit.sound(lines, &group.peaks);
-        let weakest = (0..sound.len())
-            .filter(|at| !sound[*at])
-            .min_by(|a, b| group.peaks[*a].rise.total_cmp(&group.peaks[*b].rise));
-        let less = match weakest {
-            Some(at) => without(group, &fit, at).map(|less| (at, less)),
-            None => (0..group.peaks.len())
-                .filter_map(|at| without(group, &fit, at).map(|less| (at, less)))
-                .filter(|(_, (less, _))| less.aicc <= fit.aicc + NEEDED)
-                // A mode that leaves its peak for the one taken away is not the other's.
-                .filter(|(_, (less, fewer))| less.sound(lines, fewer).iter().all(|s| *s))
-                .min_by(|a, b| a.1.0.aicc.total_cmp(&b.1.0.aicc)),
+        let unknown = (0..sound.len()).filter(|at| !sound[*at]);
+        let lowest = unknown.min_by(|a, b| group.peaks[*a].rise.total_cmp(&group.peaks[*b].rise));
+        let without = |at: usize| {
+            let (mut fewer, mut guess) = (group.peaks.clone(), starts(lines, &group.peaks));
+            let known = guess.iter_mut().zip(&fit.modes).zip(&sound).filter(|(_, sound)| **sound);
+            known.for_each(|((guess, mode), _)| *guess = (mode.frequency, mode.zeta));
+            fewer.remove(at);
+            guess.remove(at);
+            let less = rational(lines, group.lines.clone(), &guess, &[]).ok()?;
+            // A mode that leaves its peak for the one taken away is not the other's.
+            let needless =
+                less.aicc <= fit.aicc + NEEDED && less.sound(lines, &fewer).iter().all(|sound| *sound);
+            (lowest.is_some() || needless).then_some((less, fewer, at))
         };
-        let Some((at, (less, fewer))) = less else { break };
-        dropped.push(group.peaks[at]);
+        let less = match lowest {
+            Some(at) => without(at),
+            None => (0..sound.len()).filter_map(without).min_by(|a, b| a.0.aicc.total_cmp(&b.0.aicc)),
+        };
+        let Some((less, fewer, at)) = less else { break };
+        unsupported.push(group.peaks[at]);
         (fit, group.peaks) = (less, fewer);
     }
-    (fit, dropped)
-}
-
-/// Fits the modes that were found around each peak of a band together, to all its lines.
-///
-/// # Errors
-/// If the only peak of the band cannot be fitted.
-pub(super) fn together(
-    lines: &Measured,
-    (low, high): (f64, f64),
-    groups: Vec<Group>,
-    fits: Vec<Result<Rational>>,
-    unsupported: &mut Vec<f64>,
-    findings: &mut Vec<Finding>,
-) -> Result<(Vec<Group>, Vec<Result<Rational>>)> {
-    if let [Err(error)] = fits.as_slice() {
-        return Err(Error::refused(error.to_string()));
-    }
-    let f = &lines.frequency;
-    let part = f.partition_point(|f| *f < low)..f.partition_point(|f| *f <= high);
-    // What is no mode by itself is not fitted together with the others.
-    let (mut found, mut left) = (Vec::new(), Vec::new());
-    for (group, fit) in groups.into_iter().zip(fits) {
-        match fit {
-            Ok(fit) if fit.explains() && fit.sound(lines, &group.peaks).contains(&true) => {
-                found.push((group, fit));
-            }
-            fit => left.push((group, fit)),
-        }
-    }
-    let (mut peaks, mut guess): (Vec<Peak>, Vec<(f64, f64)>) = (Vec::new(), Vec::new());
-    for (group, fit) in &found {
-        for ((peak, mode), sound) in group.peaks.iter().zip(&fit.modes).zip(fit.sound(lines, &group.peaks)) {
-            if sound {
-                peaks.push(*peak);
-                guess.push((mode.frequency, mode.zeta));
-            }
-        }
-    }
-    let alone = found.iter().all(|(group, _)| group.lines == part);
-    let all = if alone { None } else { Some(rational(lines, part.clone(), &guess, &[])) };
-    match all {
-        Some(Ok(fit))
-            if fit.whiteness.rejected() && found.iter().any(|(_, fit)| !fit.whiteness.rejected()) =>
-        {
-            findings.push(Finding::caution("modal-band-unexplained").number("low", low).number("high", high));
-        }
-        Some(Ok(fit)) => {
-            for peak in found.iter().flat_map(|(group, _)| &group.peaks).filter(|p| !peaks.contains(p)) {
-                unsupported.push(f[peak.at]);
-            }
-            let mut all = Group { peaks, lines: part };
-            let (fit, dropped) = pruned(lines, &mut all, fit);
-            unsupported.extend(dropped.iter().map(|p| f[p.at]));
-            found = vec![(all, fit)];
-        }
-        Some(Err(_)) => {
-            findings.push(Finding::caution("modal-band-not-fitted").number("low", low).number("high", high));
-        }
-        None => {}
-    }
-    Ok(found.into_iter().map(|(group, fit)| (group, Ok(fit))).chain(left).unzip())
+    fit
 }
 
 /// Fewest lines on either side of the outer peaks of a band that is made narrower.
@@ -159,23 +72,43 @@ const BESIDE: usize = 8;
 /// Makes the band of a fit whose residuals are not white narrower, as long as they are not: what else is in a band matters the
 /// less the narrower it is. Keeps the wide band where that does not help.
 fn narrowed(lines: &Measured, group: &mut Group, wide: Rational) -> Rational {
-    let (Some(first), Some(last)) = (group.peaks.first().map(|p| p.at), group.peaks.last().map(|p| p.at))
-    else {
-        return wide;
-    };
-    let starts: Vec<(f64, f64)> = group.peaks.iter().map(|p| p.start(lines)).collect();
+    let (first, last) = (group.peaks[0].at, group.peaks[group.peaks.len() - 1].at);
+    let starts = starts(lines, &group.peaks);
     let (mut below, mut above) = (first - group.lines.start, group.lines.end - last - 1);
     while below.max(above) > BESIDE {
         below = below.min((2 * below / 3).max(BESIDE));
         above = above.min((2 * above / 3).max(BESIDE));
         let part = first - below..last + above + 1;
-        match rational(lines, part.clone(), &starts, &[]) {
-            Ok(fit) if !fit.whiteness.rejected() => {
-                group.lines = part;
-                return fit;
-            }
-            _ => {}
+        let fit = rational(lines, part.clone(), &starts, &[]).ok();
+        if let Some(fit) = fit.filter(|fit| !fit.whiteness.rejected()) {
+            group.lines = part;
+            return fit;
         }
     }
     wide
+}
+
+/// An additional mode under one peak must lower Akaike's criterion by this much: its four numbers then explain 28 of χ², as chance does
+/// in one of 10⁵ peaks; ten (Burnham & Anderson 2002, 2.6) would be chance in one of a thousand.
+const SPLIT: f64 = 20.0;
+
+/// How much lower Akaike's criterion is with mode `m` of a fit split in two, where the lines support that: its frequency and damping
+/// are then those of neither. `others` are the modes of other groups, which were subtracted before the fit.
+pub(super) fn support_for_two(
+    lines: &Measured,
+    (group, fit): (&Group, &Rational),
+    m: usize,
+    others: &[Pole],
+) -> Option<f64> {
+    // Anything would explain residuals better that are not white.
+    if lines.magnitude_only || fit.whiteness.rejected() {
+        return None;
+    }
+    let mut starts: Vec<(f64, f64)> = fit.modes.iter().map(|o| (o.frequency, o.zeta)).collect();
+    let (frequency, zeta) = starts[m];
+    let half = 0.5 * zeta * frequency;
+    starts.splice(m..=m, [(frequency - half, zeta), (frequency + half, zeta)]);
+    let both = rational(lines, group.lines.clone(), &starts, others).ok()?;
+    let better = fit.aicc - both.aicc;
+    (better > SPLIT && both.modes.iter().all(|m| m.zeta > 0.0)).then_some(better)
 }

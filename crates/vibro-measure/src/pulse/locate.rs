@@ -10,8 +10,6 @@ pub(super) struct Located {
     pub baseline: f64,
     /// Largest excursion from it, with its sign.
     pub height: f64,
-    /// Step of the converter; 0 where none shows.
-    pub step: f64,
     /// Places, in samples, where the flanks cross half the height.
     pub flanks: (f64, f64),
     /// Place, in samples, where the falling flank has come down to a fifth of the height.
@@ -22,9 +20,6 @@ pub(super) struct Located {
 
 /// Fewest samples of a flat top.
 const FLAT: f64 = 3.0;
-
-/// Most converter steps in the height of a pulse that matter: with more, rounding is a ten-thousandth of the height.
-const STEPS: f64 = 4096.0;
 
 /// Standard deviations of the noise within which samples count as equal to the largest.
 const BAND: f64 = 8.0;
@@ -48,18 +43,16 @@ pub(super) fn locate(values: &[f64]) -> Result<Located> {
             .setting("channel"));
     }
     let baseline = mode(&sorted);
-    let step = quantum(&sorted);
     // Median to standard deviation of a normal distribution, and of a difference to that of a value.
     let differences = values.windows(2).map(|w| (w[1] - w[0]).abs());
-    let white = 1.4826 * upper_median(differences).unwrap_or(0.0) / f64::sqrt(2.0);
-    let noise = white.max(step / f64::sqrt(12.0));
+    let noise = 1.4826 * upper_median(differences).unwrap_or(0.0) / f64::sqrt(2.0);
     let far = |v: &f64| if v.is_finite() { (v - baseline).abs() } else { -1.0 };
     let peak = (0..values.len()).max_by(|a, b| far(&values[*a]).total_cmp(&far(&values[*b]))).unwrap_or(0);
     let height = values[peak] - baseline;
-    if height.abs() < LEAST * white {
+    if height.abs() < LEAST * noise {
         return Err(Error::refused(format!(
             "no pulse stands out: the largest excursion is {:.1} times the noise, {LEAST} times are needed",
-            height.abs() / white
+            height.abs() / noise
         ))
         .hint("choose a record with one clean pulse and its baseline"));
     }
@@ -75,30 +68,14 @@ pub(super) fn locate(values: &[f64]) -> Result<Located> {
     let cross = |a: usize, b: usize| a as f64 + (0.5 - part(a)) / (part(b) - part(a)) * (b as f64 - a as f64);
     let low = (after..values.len()).find(|i| part(*i) < 0.2).unwrap_or(after);
     let flanks = (cross(before, before + 1), cross(after - 1, after));
-    // At a converter's step, or within the noise: each sees tops that the other does not.
-    let clipped = [step, BAND * noise].into_iter().find_map(|depth| {
-        let near = |i: &usize| height.abs() * (1.0 - part(*i)) <= depth;
-        let from = (before..=peak).rev().take_while(near).last()?;
-        let to = (peak..after).take_while(near).last()?;
-        let run = (to + 1 - from) as f64;
-        flat(run, flanks.1 - flanks.0, depth / height.abs()).then(|| (from..=to).collect())
-    });
-    let clipped = clipped.unwrap_or_default();
-    Ok(Located { baseline, height, step, flanks, low, clipped })
-}
-
-/// Step of a converter with few bits: the smallest between rising values, where all are whole numbers of it apart.
-fn quantum(sorted: &[f64]) -> f64 {
-    let [first, .., last] = sorted else { return 0.0 };
-    // Codes in decimals or single precision are a small part of a step apart though they are the same.
-    let least = (last - first) / (2.0 * STEPS);
-    let steps = sorted.windows(2).map(|w| w[1] - w[0]).filter(|d| *d > least);
-    let step = steps.fold(f64::INFINITY, f64::min);
-    let whole = |v: &f64| {
-        let codes = (v - first) / step;
-        (codes - codes.round()).abs() < 0.05
-    };
-    if step > 2.0 * least && step.is_finite() && sorted.iter().all(whole) { step } else { 0.0 }
+    let depth = BAND * noise;
+    let near = |i: &usize| height.abs() * (1.0 - part(*i)) <= depth;
+    let from = (before..=peak).rev().take_while(near).last().unwrap_or(peak);
+    let to = (peak..after).take_while(near).last().unwrap_or(peak);
+    let run = (to + 1 - from) as f64;
+    let is_flat = flat(run, flanks.1 - flanks.0, depth / height.abs());
+    let clipped = if is_flat { (from..=to).collect() } else { Vec::new() };
+    Ok(Located { baseline, height, flanks, low, clipped })
 }
 
 /// Whether `run` samples within `depth` (a part of the height) of the largest are a flat top of a pulse `width` samples wide at half

@@ -7,8 +7,10 @@ use vibro_record::{Error, Result};
 /// Causal analog Butterworth low-pass as a sum of first-order parts: h(t) = Σ rₖ e^{pₖt}.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LowPass {
-    corner: f64,
-    order: usize,
+    /// Frequency of −3 dB in Hz.
+    pub corner: f64,
+    /// Number of poles.
+    pub order: usize,
     /// Poles pₖ in 1/s and residues rₖ in 1/s.
     parts: Vec<(Complex64, Complex64)>,
 }
@@ -23,16 +25,12 @@ impl LowPass {
     /// If the corner is not above 0 or the order not between 1 and 10.
     pub fn new(corner: f64, order: usize) -> Result<LowPass> {
         if !(corner.is_finite() && corner > 0.0) {
-            return Err(Error::usage(
-                format!("a low-pass corner of {corner} Hz"),
-                "a finite number of hertz above 0",
-            ));
+            let found = format!("a low-pass corner of {corner} Hz");
+            return Err(Error::usage(found, "a finite number of hertz above 0"));
         }
         if !(1..=HIGHEST_ORDER).contains(&order) {
-            return Err(Error::usage(
-                format!("a low-pass of order {order}"),
-                format!("an order between 1 and {HIGHEST_ORDER}"),
-            ));
+            let found = format!("a low-pass of order {order}");
+            return Err(Error::usage(found, format!("an order between 1 and {HIGHEST_ORDER}")));
         }
         let n = order as f64;
         let unit: Vec<Complex64> =
@@ -47,16 +45,6 @@ impl LowPass {
             })
             .collect();
         Ok(LowPass { corner, order, parts })
-    }
-
-    /// Frequency of −3 dB in Hz.
-    pub fn corner(&self) -> f64 {
-        self.corner
-    }
-
-    /// Number of poles.
-    pub fn order(&self) -> usize {
-        self.order
     }
 
     /// Delay at low frequency in s: −dφ/dω at 0.

@@ -1,6 +1,6 @@
 //! A record in units of its pulse, and the way back.
 
-use super::fit::{Fitted, Samples};
+use super::fit::{Fitted, Samples, Seen};
 use super::locate::Located;
 use super::result::{PulseCurve, PulseFit, PulsePicture, propagated};
 use super::{ContactModel, HuntCrossley, LowPass};
@@ -21,13 +21,13 @@ pub(super) struct Normalised<'a> {
     pub length: f64,
     /// Unit of the values.
     height: f64,
-    filter: Option<LowPass>,
+    seen: Seen,
 }
 
 /// What is fitted of a record.
-pub(super) struct Window {
+pub(super) struct Window<'a> {
     /// The samples.
-    pub samples: Samples,
+    pub samples: Samples<'a>,
     /// Their places in the record.
     pub used: Vec<usize>,
     /// Whether the record comes back to the level before the pulse.
@@ -53,8 +53,10 @@ impl<'a> Normalised<'a> {
         let step = 1.0 / rate;
         // A half sine is above half its height for two thirds of its length.
         let length = 1.5 * (found.flanks.1 - found.flanks.0) * step;
-        let filter = filter.map(|f| LowPass::new(f.corner() * length, f.order())).transpose()?;
-        Ok(Normalised { trace, found, step, length, height: found.height.abs(), filter })
+        let filter = filter.map(|f| LowPass::new(f.corner * length, f.order)).transpose()?;
+        let hertz = HuntCrossley::new(0.0).ok_or_else(|| Error::refused("no shape of a Hertzian contact"))?;
+        let seen = Seen { step: step / length, filter, hertz };
+        Ok(Normalised { trace, found, step, length, height: found.height.abs(), seen })
     }
 
     fn time(&self, index: usize) -> f64 {
@@ -71,29 +73,23 @@ impl<'a> Normalised<'a> {
         self.trace.axis.start() + self.found.flanks.0 * self.step + time * self.length
     }
 
-    fn samples(&self, range: Range<usize>) -> Result<(Samples, Vec<usize>)> {
+    /// The usable samples of a part of the record, and their places.
+    fn samples(&self, range: Range<usize>) -> (Samples<'_>, Vec<usize>) {
         let usable = |i: &usize| self.trace.values[*i].is_finite() && !self.found.clipped.contains(i);
         let used: Vec<usize> = range.filter(usable).collect();
         let times = used.iter().map(|i| self.time(*i)).collect();
         let values = used.iter().map(|i| self.trace.values[*i] / self.height).collect();
-        let samples = Samples::new(
-            times,
-            values,
-            self.step / self.length,
-            self.filter.clone(),
-            self.found.step / self.height,
-        )?;
-        Ok((samples, used))
+        (Samples { seen: &self.seen, times, values }, used)
     }
 
     /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record does not rest after it.
     ///
     /// # Errors
     /// If there are too few samples, or no contact of spring and damper fits the pulse, as `unlike` says.
-    pub fn window(&self, findings: &mut Vec<Finding>, unlike: impl Fn(Error) -> Error) -> Result<Window> {
-        let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
+    pub fn window(&self, findings: &mut Vec<Finding>, unlike: impl Fn(Error) -> Error) -> Result<Window<'_>> {
+        let delay = self.seen.filter.as_ref().map_or(0.0, LowPass::delay);
         let from = self.index(-BESIDE - delay);
-        let (first, used) = self.samples(from..self.found.low)?;
+        let (first, used) = self.samples(from..self.found.low);
         if used.len() < FEWEST {
             return Err(Error::refused(format!(
                 "the pulse has {} usable samples, and {FEWEST} are needed for five parameters",
@@ -105,91 +101,75 @@ impl<'a> Normalised<'a> {
         let fitted = first.fit(ContactModel::KelvinVoigt).map_err(unlike)?;
         let settled = self.index(fitted.end() + 3.0 * delay);
         let far = self.index(fitted.end() + 3.0 * delay + BESIDE);
-        let (after, _) = self.samples(settled..far)?;
+        let (after, _) = self.samples(settled..far);
         // Mean and root of the mean square of what is left after the pulse.
-        let left = |samples: &Samples| {
-            let model = fitted.at(samples, &samples.times)?;
-            let off = || model.iter().zip(&samples.values).map(|(m, v)| v - m);
-            let n = samples.times.len() as f64;
-            Some((off().sum::<f64>() / n, (off().map(|d| d * d).sum::<f64>() / n).sqrt()))
-        };
-        let rounded = self.found.step / self.height / 12f64.sqrt();
-        let inside = (fitted.fit.sum_of_squares() / used.len() as f64).sqrt().max(rounded).max(1e-6);
-        let behind = left(&after).filter(|(_, rms)| after.times.len() >= 4 && *rms > 4.0 * inside);
-        let level = behind.is_none_or(|(mean, rms)| mean.abs() <= LEVEL * rms);
-        if behind.is_some() {
+        let n = after.times.len() as f64;
+        let left: Vec<f64> = fitted
+            .at(&after, &after.times)
+            .map_or_else(Vec::new, |model| model.iter().zip(&after.values).map(|(m, v)| v - m).collect());
+        let mean = left.iter().sum::<f64>() / n;
+        let rms = (left.iter().map(|d| d * d).sum::<f64>() / n).sqrt();
+        let inside = (fitted.fit.sum_of_squares() / used.len() as f64).sqrt().max(1e-6);
+        let restless = left.len() >= 4 && rms > 4.0 * inside;
+        let level = !restless || mean.abs() <= LEVEL * rms;
+        if restless {
             findings.push(if level {
                 Finding::caution("pulse-no-rest-after")
             } else {
                 Finding::doubt("pulse-level-changes")
             });
         }
-        let end = if behind.is_some() { self.index(fitted.end()).max(self.found.low) } else { far };
-        let (samples, used) = self.samples(from..end)?;
+        let end = if restless { self.index(fitted.end()).max(self.found.low) } else { far };
+        let (samples, used) = self.samples(from..end);
         Ok(Window { samples, used, level })
     }
 
     /// What is wrong with the record around the pulse.
     fn faults(&self, range: Range<usize>, findings: &mut Vec<Finding>) {
-        if let Some(first) = self.found.clipped.first() {
-            findings.push(
-                Finding::caution("pulse-clipped")
-                    .count("n", self.found.clipped.len())
-                    .number("level", self.trace.values[*first])
-                    .name("unit", self.trace.meta.unit.symbol()),
-            );
+        let Normalised { trace, found, .. } = self;
+        if let Some(first) = found.clipped.first() {
+            let clipped = Finding::caution("pulse-clipped").count("n", found.clipped.len());
+            let level = clipped.number("level", trace.values[*first]);
+            findings.push(level.name("unit", trace.meta.unit.symbol()));
         }
-        let missing = range.filter(|i| self.trace.values[*i].is_nan()).count();
+        let missing = range.filter(|i| trace.values[*i].is_nan()).count();
         if missing > 0 {
             findings.push(Finding::caution("pulse-samples-missing").count("n", missing));
         }
-        let before = -self.time(0);
-        if before < 0.5 {
-            findings.push(Finding::caution("pulse-baseline-short").number("lengths", before));
-        }
-        let other = (0..self.trace.values.len())
+        let other = (0..trace.values.len())
             .filter(|i| !(-0.5..=2.0).contains(&self.time(*i)))
-            .find(|i| (self.trace.values[*i] - self.found.baseline) / self.found.height > 0.5);
-        if let Some(i) = other {
-            findings.push(Finding::caution("pulse-not-alone").number("time", self.trace.axis.at(i)));
-        }
+            .find(|i| (trace.values[*i] - found.baseline) / found.height > 0.5);
+        findings.extend(other.map(|i| Finding::caution("pulse-not-alone").number("time", trace.axis.at(i))));
     }
 
-    /// Factor from the fitted velocity to m/s, or why there is none.
-    pub(crate) fn to_velocity(&self, mass: Option<f64>) -> std::result::Result<f64, Finding> {
+    /// Factor from the fitted velocity to m/s, where the record is an acceleration, or a force on a known mass.
+    pub(crate) fn to_velocity(&self, mass: Option<f64>) -> Option<f64> {
         let unit = self.height * self.length;
-        match (self.trace.meta.quantity, mass) {
-            (Quantity::Acceleration, _) => Ok(unit),
-            (Quantity::Force, Some(mass)) => Ok(unit / mass),
-            (Quantity::Force, None) => Err(Finding::caution("pulse-velocity-needs-mass")),
-            (quantity, _) => Err(Finding::caution("pulse-no-acceleration").name("quantity", quantity.name())),
+        match self.trace.meta.quantity {
+            Quantity::Acceleration => Some(unit),
+            Quantity::Force => mass.map(|mass| unit / mass),
+            _ => None,
         }
     }
 
     /// A fit in SI units; without uncertainties unless the instrument is `known`.
-    pub fn report(
-        &self,
-        samples: &Samples,
-        fitted: &Fitted,
-        whiteness: &Whiteness,
-        mass: Option<f64>,
-        known: bool,
-    ) -> PulseFit {
+    pub fn report(&self, samples: &Samples<'_>, fitted: &Fitted, mass: Option<f64>, known: bool) -> PulseFit {
+        let whiteness = Whiteness::of(&[&fitted.fit.residuals]);
         let n = fitted.fit.residuals.len();
         let method = "least squares";
-        let widening = samples.widening(fitted, whiteness);
+        let widening = samples.widening(fitted, &whiteness);
         let valued = |value: f64| widening.map_or(f64::NAN, |_| value);
         let widened = widening.filter(|_| known).unwrap_or(f64::NAN);
         let mut parameters = BTreeMap::new();
         let mut put = |name, i: usize, factor: f64, shift: f64, unit| {
             let value = shift + factor * fitted.fit.parameters[i];
-            let std = factor.abs() * samples.std(fitted, i) * widened;
+            let std = factor.abs() * fitted.fit.std(i) * widened;
             parameters.insert(name, Estimate::new(valued(value), Some(std), unit, n, method));
         };
         put("onset", 0, self.length, self.seconds(0.0), "s");
         let unit = self.trace.meta.quantity.symbol();
         put("baseline", 1, self.height, 0.0, unit);
-        if let Ok(factor) = self.to_velocity(mass) {
+        if let Some(factor) = self.to_velocity(mass) {
             put("initial_velocity", 2, factor * self.found.height.signum(), 0.0, "m/s");
         }
         match fitted.model {
@@ -202,11 +182,10 @@ impl<'a> Normalised<'a> {
                 put("duration", 3, self.length, 0.0, "s");
                 put("alpha", 4, 1.0, 0.0, "1");
                 let restitution = |p: &[f64]| HuntCrossley::new(p[0]).map(|c| c.restitution());
-                let variance = |_, _| (samples.std(fitted, 4) * widened).powi(2);
-                if let Some((r, std)) = propagated(&fitted.fit.parameters[4..], &[1e3], variance, restitution)
-                {
-                    let e = Estimate::new(valued(r), Some(std), "1", n, method);
-                    parameters.insert("restitution", e);
+                let variance = |_, _| (fitted.fit.std(4) * widened).powi(2);
+                let found = propagated(&fitted.fit.parameters[4..], &[1e3], variance, restitution);
+                if let Some((r, std)) = found {
+                    parameters.insert("restitution", Estimate::new(valued(r), Some(std), "1", n, method));
                 }
             }
         }
@@ -221,36 +200,24 @@ impl<'a> Normalised<'a> {
     }
 
     /// What a figure needs.
-    pub fn picture<'f>(
-        &self,
-        samples: &Samples,
-        used: &[usize],
-        fits: impl Iterator<Item = &'f Fitted> + Clone,
-    ) -> PulsePicture {
+    pub fn picture(&self, samples: &Samples<'_>, used: &[usize], fits: &[Fitted]) -> PulsePicture {
         let from = self.index(-1.5);
-        let end = fits.clone().map(Fitted::end).fold(1.0, f64::max);
+        let end = fits.iter().map(Fitted::end).fold(1.0, f64::max);
         let to = self.index(end + 1.5);
-        let shown = (from..to)
-            .map(|i| (self.seconds(self.time(i)), self.trace.values[i], used.binary_search(&i).is_ok()));
+        let shown = |i: usize| (self.trace.axis.at(i), self.trace.values[i], used.binary_search(&i).is_ok());
         let (a, b) = (self.time(from), self.time(to));
         let times: Vec<f64> = (0..=600).map(|i| a + (b - a) * f64::from(i) / 600.0).collect();
-        let curves = fits.filter_map(|fit| {
-            let values = fit.at(samples, &times)?;
-            Some(PulseCurve {
-                model: fit.model,
-                points: times.iter().zip(values).map(|(t, v)| (self.seconds(*t), v * self.height)).collect(),
-                residuals: samples
-                    .times
-                    .iter()
-                    .zip(&fit.fit.residuals)
-                    .map(|(t, r)| (self.seconds(*t), r * self.height))
-                    .collect(),
-            })
-        });
+        let si = |times: &[f64], values: &[f64]| {
+            times.iter().zip(values).map(|(t, v)| (self.seconds(*t), v * self.height)).collect()
+        };
+        let curve = |fit: &Fitted| {
+            let points = si(&times, &fit.at(samples, &times)?);
+            Some(PulseCurve { model: fit.model, points, residuals: si(&samples.times, &fit.fit.residuals) })
+        };
         PulsePicture {
             quantity: (self.trace.meta.quantity.name(), self.trace.meta.unit.symbol().to_owned()),
-            samples: shown.collect(),
-            curves: curves.collect(),
+            samples: (from..to).map(shown).collect(),
+            curves: fits.iter().filter_map(curve).collect(),
         }
     }
 }

@@ -37,12 +37,9 @@ pub fn two_times(
     }
     let rho = time_to_peak / duration;
     if rho >= 0.5 {
-        let why = if rho > 1.0 {
-            "the peak lies after the end; the two times are probably swapped"
-        } else {
-            "a contact of spring and damper has its peak in the first half of the pulse (ρ < 1/2); the times may be swapped"
-        };
-        return Err(Error::refused(format!("time to peak / duration is ρ = {rho:.4}: {why}"))
+        return Err(Error::refused(format!(
+            "time to peak / duration is ρ = {rho:.4}: a contact of spring and damper has its peak in the first half of the pulse (ρ < 1/2); the times may be swapped"
+        ))
             .hint("count both times from the onset of the pulse")
             .setting("time_to_peak")
             .setting("duration"));
@@ -59,15 +56,11 @@ pub fn two_times(
             variance = std * std;
         } else {
             let least = damping(rho + 2.0 * spread);
-            findings.push(
-                Finding::doubt("pulse-ratio-near-zero")
-                    .number("rho", rho)
-                    .number("std", spread)
-                    .number("xi", least),
-            );
+            let near = Finding::doubt("pulse-ratio-near-zero").number("rho", rho).number("std", spread);
+            findings.push(near.number("xi", least));
         }
         if rho + 2.0 * spread >= 0.5 {
-            findings.push(Finding::caution("pulse-ratio-near-half").number("rho", rho).number("std", spread));
+            findings.push(Finding::caution("pulse-no-damping").number("xi", damping(rho)));
         }
     }
     let contact = |times: &[f64]| {

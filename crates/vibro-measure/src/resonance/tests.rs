@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::crossing::crossings;
-use crate::jump::Change;
 use crate::jump::{jump, jumps};
 use num_complex::Complex64;
 
@@ -20,9 +19,6 @@ fn a_mass_that_moves_alone_does_not_clap() {
         resonance(5.5, 10.0, ResonanceKind::Resonance),
         resonance(7.5, 0.1, ResonanceKind::Antiresonance),
         resonance(10.6, 2.0, ResonanceKind::Resonance),
-        // A deeper minimum behind both modes, and a bump behind it: no mode.
-        resonance(10.8, 0.05, ResonanceKind::Antiresonance),
-        resonance(10.9, 0.06, ResonanceKind::Resonance),
     ];
     let mut second = vec![resonance(5.5, 9.0, ResonanceKind::Resonance)];
     let curve = |above| vec![(4.0, 1.0, 0.0), (5.5, 9.0, 0.0), (9.0, above, 0.0), (13.0, above, 0.0)];
@@ -47,7 +43,6 @@ fn a_mass_that_moves_alone_does_not_clap() {
             },
         ]);
         assert_eq!((first[0].kind, first[2].kind), (ResonanceKind::Grazing, expected));
-        assert_eq!(first[4].kind, ResonanceKind::Resonance);
         assert_eq!(second[0].kind, ResonanceKind::Grazing);
     }
 }
@@ -138,7 +133,7 @@ fn a_hardening_peak_ends_in_a_drop() {
     let a: Vec<f64> = f.iter().map(|f| if *f < 10.6 { 1.0 + (f - 8.0) } else { 0.8 }).collect();
     let jumps = jumps(&f, &a, &[0.01; 12], Direction::Up);
     assert_eq!(jumps.len(), 1);
-    assert_eq!((jumps[0].change, jumps[0].from), (Change::Drop, f[8]));
+    assert_eq!((jumps[0].change, jumps[0].from), ("drop", f[8]));
     let peaks = resonances(&f, &a, &[0.01; 12], &jumps, None);
     assert_eq!(peaks.len(), 1);
     assert!(peaks[0].at_jump && peaks[0].frequency == f[8]);
@@ -254,7 +249,7 @@ fn where_one_mass_jumps_the_other_does_if_its_slopes_do_not_tell() {
         ]);
         assert_eq!((found[0].len(), found[1].len()), (expected, 1), "{fall}");
         for jump in &found[0] {
-            assert_eq!((jump.from, jump.to, jump.change), (6.0, 5.0, Change::Drop));
+            assert_eq!((jump.from, jump.to, jump.change), (6.0, 5.0, "drop"));
         }
     }
 }

@@ -71,89 +71,82 @@ impl SpectralOptions {
         self.fmin.unwrap_or(if self.integrate > 0 { 2.0 * step } else { 0.0 })
     }
 
+    /// Names of what may contradict another option, and whether it is given.
+    fn given(&self) -> [(&'static str, bool); 13] {
+        [
+            ("method", self.method.is_some()),
+            ("reference", self.estimator.is_some()),
+            ("segment", self.segment.is_some()),
+            ("overlap", self.overlap.is_some()),
+            ("window", self.window.is_some()),
+            ("detrend", self.detrend.is_some()),
+            ("integrate", self.integrate != 0),
+            ("fmin", self.fmin.is_some()),
+            ("scaling", self.scaling.is_some()),
+            ("hammer", self.hammer),
+            ("force_window", self.force_window.is_some()),
+            ("left_at_end", self.left_at_end.is_some()),
+            ("delay", self.delay.is_some()),
+        ]
+    }
+
+    /// The first of these that is given.
+    pub fn first(&self) -> Option<&'static str> {
+        self.given().into_iter().find(|(_, given)| *given).map(|(name, _)| name)
+    }
+
     /// Checks that no option contradicts another.
     ///
     /// # Errors
     /// It names the two that do.
     pub fn check(&self) -> Result<()> {
-        let (given, fft) = (|o: bool, name| o.then_some(name), self.method() == Method::Fft);
-        let first = |names: &[Option<&'static str>]| names.iter().flatten().next().copied();
-        let averaged = [
-            given(self.segment.is_some(), "segment"),
-            given(self.overlap.is_some(), "overlap"),
-            given(self.estimator.is_some(), "reference"),
-        ];
-        let own = [
-            given(self.window.is_some(), "window"),
-            given(self.overlap.is_some(), "overlap"),
-            given(self.method.is_some(), "method"),
-            given(self.detrend.is_some(), "detrend"),
-        ];
-        let of_hammer = [
-            given(self.force_window.is_some(), "force_window"),
-            given(self.left_at_end.is_some(), "left_at_end"),
-        ];
-        let of_tones = [
-            given(self.method == Some(Method::Welch), "method"),
-            given(self.estimator.is_some(), "reference"),
-            given(self.segment.is_some(), "segment"),
-            given(self.overlap.is_some(), "overlap"),
-            given(self.integrate != 0, "integrate"),
-        ];
-        let rules = [
+        let (tones, function) = (self.tones.is_some(), self.estimator.is_some());
+        let whole = "tones of the whole record of one channel as it is";
+        let rules: [(bool, &[&str], &str, &str); 8] = [
+            (tones && self.method == Some(Method::Welch), &["method"], "with tones", whole),
+            (tones, &["reference", "segment", "overlap", "integrate"], "with tones", whole),
             (
-                self.tones.is_some(),
-                first(&of_tones),
-                "with tones",
-                "tones of the whole record of one channel as it is",
+                self.method() == Method::Fft,
+                &["segment", "overlap", "reference"],
+                "with method fft",
+                "method welch, or the whole record of one channel",
             ),
-            (fft, first(&averaged), "with method fft", "method welch, or the whole record of one channel"),
-            (self.hammer, first(&own), "with a hammer", "the hammer's own windows alone"),
-            (!self.hammer, first(&of_hammer), "without a hammer", "hammer = true, too"),
             (
                 self.hammer,
-                given(self.estimator.is_none(), "hammer"),
-                "without a reference",
-                "the force channel as reference",
+                &["window", "overlap", "method", "detrend"],
+                "with a hammer",
+                "the hammer's own windows alone",
             ),
-            (
-                self.estimator.is_some(),
-                given(self.scaling.is_some(), "scaling"),
-                "with a reference",
-                "a function has no scaling",
-            ),
+            (!self.hammer, &["force_window", "left_at_end"], "without a hammer", "hammer = true, too"),
+            (!function, &["hammer"], "without a reference", "the force channel as reference"),
+            (!function, &["delay"], "without a reference", "two channels that are compared"),
+            (function, &["scaling"], "with a reference", "a function has no scaling"),
         ];
-        for (holds, name, with, expected) in rules {
-            if let Some(name) = name.filter(|_| holds) {
+        for (holds, names, with, expected) in rules {
+            let clash =
+                self.given().into_iter().find(|(name, given)| holds && *given && names.contains(name));
+            if let Some((name, _)) = clash {
                 return Err(Error::usage(format!("{name} {with}"), expected).setting(name));
             }
         }
-        if let Some(delay) = self.delay {
-            if self.estimator.is_none() {
-                return Err(Error::usage("delay without a reference", "two channels that are compared")
-                    .setting("delay"));
-            }
-            if !delay.is_finite() {
-                return Err(Error::usage(format!("delay = {delay}"), "seconds").setting("delay"));
-            }
-        }
-        if let Some(re) = self.decibel.filter(|r| !(r.is_finite() && *r > 0.0)) {
-            return Err(Error::usage(format!("decibel = {re}"), "a reference above 0, such as 1e-6")
-                .setting("decibel"));
-        }
-        if !(-2..=2).contains(&self.integrate) {
-            return Err(
-                Error::usage(format!("integrate = {}", self.integrate), "-2 to 2").setting("integrate")
-            );
-        }
-        if let Some(fmin) = self.fmin.filter(|f| !(f.is_finite() && *f > 0.0)) {
-            return Err(Error::usage(format!("fmin = {fmin}"), "a finite number above 0").setting("fmin"));
-        }
+        let above_zero = |v: &f64| v.is_finite() && *v > 0.0;
         let known = [Scaling::Peak, Scaling::Rms, Scaling::Power, Scaling::Psd];
-        if let Some(scaling) = self.scaling.filter(|s| !known.contains(s)) {
-            return Err(Error::usage(format!("scaling {}", scaling.name()), "peak, rms, power or psd")
-                .setting("scaling"));
-        }
-        Ok(())
+        let wrong = |value: Option<f64>, holds: bool| value.filter(|_| !holds).map(|v| v.to_string());
+        let scaling = self.scaling.filter(|s| !known.contains(s)).map(|s| s.name().to_owned());
+        let times = wrong(Some(f64::from(self.integrate)), (-2..=2).contains(&self.integrate));
+        let values = [
+            ("delay", wrong(self.delay, self.delay.is_none_or(f64::is_finite)), "seconds"),
+            (
+                "decibel",
+                wrong(self.decibel, self.decibel.as_ref().is_none_or(above_zero)),
+                "a reference above 0, such as 1e-6",
+            ),
+            ("integrate", times, "-2 to 2"),
+            ("fmin", wrong(self.fmin, self.fmin.as_ref().is_none_or(above_zero)), "a finite number above 0"),
+            ("scaling", scaling, "peak, rms, power or psd"),
+        ];
+        let Some((name, value, expected)) = values.into_iter().find(|v| v.1.is_some()) else { return Ok(()) };
+        let found = format!("{name} = {}", value.unwrap_or_default());
+        Err(Error::usage(found, expected).setting(name))
     }
 }

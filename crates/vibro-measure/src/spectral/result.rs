@@ -1,10 +1,11 @@
 //! What a spectrum or a frequency response function says.
 
-use super::coherence;
+use super::SpectralOptions;
 use crate::tones::Tone;
 use serde::Serialize;
+use vibro_record::units::Unit;
 use vibro_record::units::notation;
-use vibro_record::{Axis, Finding, Frf, Grid, Record, Scaling, Spectrum, Values, Window};
+use vibro_record::{Axis, Finding, Frf, Grid, Meta, Record, Scaling, Spectrum, Values};
 use vibro_signal::impact::Blow;
 use vibro_signal::transfer::{Estimator, Transfer};
 
@@ -74,157 +75,122 @@ pub struct Response {
 }
 
 impl SpectralResult {
-    /// Of a spectrum, with the standard deviations of its lines over their values.
-    pub(super) fn lines(
-        spectrum: Spectrum,
-        averages: usize,
-        scatter: &[f64],
-        detrend: &'static str,
-        findings: Vec<Finding>,
+    pub(super) fn of(
+        found: Lines,
+        options: &SpectralOptions,
+        fmin: f64,
+        mut findings: Vec<Finding>,
     ) -> SpectralResult {
-        let value = spectrum.values.magnitudes();
-        SpectralResult {
-            name: spectrum.meta.name.clone(),
-            frequency: spectrum.axis.values(),
-            value_std: value.iter().zip(scatter).map(|(v, part)| v * part).collect(),
-            value,
-            scaling: spectrum.scaling.name(),
-            unit: spectrum.meta.unit.symbol().to_owned(),
-            quantity: spectrum.meta.quantity.name(),
+        let (meta, axis) = match &found {
+            Lines::Spectrum(spectrum) => (&spectrum.meta, &spectrum.axis),
+            Lines::Transfer(found) => (&found.frf.meta, &found.frf.axis),
+        };
+        let mut result = SpectralResult {
+            name: meta.name.clone(),
+            frequency: axis.values(),
+            value: Vec::new(),
+            value_std: Vec::new(),
+            scaling: "frf",
+            unit: meta.unit.symbol().to_owned(),
+            quantity: meta.quantity.name(),
             level: Vec::new(),
             level_unit: None,
-            window: spectrum.window.map_or("unknown", Window::name),
-            enbw: spectrum.enbw.unwrap_or(f64::NAN),
-            detrend,
-            averages,
+            window: options.window().name(),
+            enbw: options.window().enbw(),
+            detrend: if options.detrended() { "mean" } else { "none" },
+            averages: 0,
             response: None,
             tones: Vec::new(),
-            findings,
-            found: Lines::Spectrum(spectrum),
+            findings: Vec::new(),
+            found,
+        };
+        match &result.found {
+            Lines::Spectrum(spectrum) => {
+                (result.value, result.scaling) = (spectrum.values.magnitudes(), spectrum.scaling.name());
+                result.enbw = spectrum.enbw.unwrap_or(f64::NAN);
+            }
+            Lines::Transfer(found) => {
+                result.value = found.frf.values.iter().map(|v| v.norm()).collect();
+                result.value_std.clone_from(&found.magnitude_std);
+                result.averages = found.averages;
+                result.response = Some(Response {
+                    estimator: options.estimator.map_or("", Estimator::name),
+                    phase: found.frf.values.iter().map(|v| v.arg().to_degrees()).collect(),
+                    phase_std: found.phase_std.iter().map(|v| v.to_degrees()).collect(),
+                    coherence: found.coherence.clone(),
+                    blows: Vec::new(),
+                });
+                findings.extend(found.findings.iter().cloned());
+            }
         }
+        if options.integrate > 0 {
+            // Integrated, lines below would be noise divided by the frequency.
+            findings.push(Finding::note("lines-below-cutoff").number("fmin", fmin));
+        }
+        SpectralResult { findings, ..result }
     }
 
-    pub(super) fn response(
-        found: Transfer,
-        estimator: Estimator,
-        window: (&'static str, f64),
-        detrend: &'static str,
-        blows: Vec<Blow>,
-        findings: Vec<Finding>,
-    ) -> SpectralResult {
-        let degrees = |v: &f64| v.to_degrees();
-        SpectralResult {
-            name: found.frf.meta.name.clone(),
-            frequency: found.frf.axis.values(),
-            value: found.frf.values.iter().map(|v| v.norm()).collect(),
-            value_std: found.magnitude_std.clone(),
-            scaling: "frf",
-            unit: found.frf.meta.unit.symbol().to_owned(),
-            quantity: found.frf.meta.quantity.name(),
-            level: Vec::new(),
-            level_unit: None,
-            window: window.0,
-            enbw: window.1,
-            detrend,
-            averages: found.averages,
-            response: Some(Response {
-                estimator: estimator.name(),
-                phase: found.frf.values.iter().map(|v| v.arg().to_degrees()).collect(),
-                phase_std: found.phase_std.iter().map(degrees).collect(),
-                coherence: found.coherence.clone(),
-                blows,
-            }),
-            tones: Vec::new(),
-            findings: [findings, found.findings.clone()].concat(),
-            found: Lines::Transfer(found),
-        }
-    }
-
-    /// Adds levels over a reference: 20 lg of amplitudes, 10 lg of powers over its square (ISO 1683).
-    pub(super) fn over(&mut self, reference: f64) {
-        let power = match &self.found {
-            Lines::Spectrum(spectrum) => matches!(spectrum.scaling, Scaling::Power | Scaling::Psd),
-            Lines::Transfer(_) => false,
-        };
-        let level = |v: &f64| {
-            let level = if power {
-                10.0 * (v / (reference * reference)).log10()
-            } else {
-                20.0 * (v / reference).log10()
-            };
-            if level.is_finite() { level } else { f64::NAN }
-        };
-        self.level = self.value.iter().map(level).collect();
-        let unit = match self.unit.strip_prefix('(').and_then(|u| u.split_once(")²")) {
-            Some((base, rest)) if power => format!("({})²{rest}", notation::reference(reference, base)),
-            _ if power => match self.unit.split_once('²') {
-                Some((base, rest)) => format!("({})²{rest}", notation::reference(reference, base)),
-                None => format!("{reference}² {}", self.unit),
-            },
-            _ => notation::reference(reference, &self.unit),
-        };
-        self.level_unit = Some(format!("dB re {unit}"));
-    }
-
-    /// Notes which lines an integration leaves out.
-    pub(super) fn left_out(&mut self, integrated: i8, fmin: f64) {
-        if integrated > 0 {
-            // Integrated they would be noise divided by the frequency.
-            self.findings.push(Finding::note("lines-below-cutoff").number("fmin", fmin));
-        }
+    /// Adds levels over a reference: 20 lg of amplitudes in `unit`, 10 lg of powers over its square (ISO 1683).
+    pub(super) fn over(&mut self, reference: f64, unit: &str) {
+        let power = ["power", "psd"].contains(&self.scaling);
+        let factor = if power { 10.0 } else { 20.0 };
+        let over = if power { reference * reference } else { reference };
+        let level = self.value.iter().map(|v| factor * (v / over).log10());
+        self.level = level.map(|level| if level.is_finite() { level } else { f64::NAN }).collect();
+        let reference = notation::reference(reference, unit);
+        self.level_unit = Some(match self.scaling {
+            "power" => format!("dB re ({reference})²"),
+            "psd" => format!("dB re ({reference})²/Hz"),
+            _ => format!("dB re {reference}"),
+        });
     }
 
     /// Spectrum, or function and coherence, without the lines that have no value: files have no word for them.
     pub fn records(&self) -> Vec<Record> {
+        let known = |spectrum: Spectrum| {
+            let (axis, values) = match &spectrum.values {
+                Values::Real(v) => finite(&spectrum.axis, v, Values::Real, |v| v.is_finite()),
+                Values::Complex(v) => finite(&spectrum.axis, v, Values::Complex, |v| v.is_finite()),
+            };
+            Record::Spectrum(Spectrum { axis, values, ..spectrum })
+        };
         match &self.found {
-            Lines::Spectrum(spectrum) => vec![known(Record::Spectrum(spectrum.clone()))],
+            Lines::Spectrum(spectrum) => vec![known(spectrum.clone())],
             Lines::Transfer(found) => {
-                let coherence = coherence(&found.frf.axis, &found.coherence);
-                vec![known(Record::Frf(found.frf.clone())), known(coherence)]
+                let frf = found.frf.clone();
+                let coherence = Spectrum {
+                    meta: Meta::new("coherence", Unit::parse_or_opaque("1")),
+                    axis: frf.axis.clone(),
+                    values: Values::Real(found.coherence.clone()),
+                    scaling: Scaling::Coherence,
+                    window: None,
+                    enbw: None,
+                };
+                let (axis, values) = finite(&frf.axis, &frf.values, |v| v, |v| v.is_finite());
+                vec![Record::Frf(Frf { axis, values, ..frf }), known(coherence)]
             }
         }
     }
 
     /// Indices of the largest peaks, at most so many, in order of frequency.
     pub fn peaks(&self, most: usize) -> Vec<usize> {
-        let at = |k: Option<usize>| {
-            k.and_then(|k| self.value.get(k)).copied().filter(|v| v.is_finite()).unwrap_or(0.0)
-        };
-        let is_peak = |k: &usize| at(Some(*k)) > at(k.checked_sub(1)) && at(Some(*k)) >= at(Some(k + 1));
+        let height = |k: usize| self.value.get(k).copied().filter(|v| v.is_finite()).unwrap_or(0.0);
+        let is_peak = |k: &usize| height(*k) > height(k.wrapping_sub(1)) && height(*k) >= height(k + 1);
         let mut largest: Vec<usize> = (0..self.value.len()).filter(is_peak).collect();
-        largest.sort_by(|a, b| at(Some(*b)).total_cmp(&at(Some(*a))));
+        largest.sort_by(|a, b| height(*b).total_cmp(&height(*a)));
         largest.truncate(most);
         largest.sort_unstable();
         largest
     }
 }
 
-/// The record without lines that have no value.
-fn known(record: Record) -> Record {
-    match record {
-        Record::Frf(frf) => {
-            let (axis, values) = finite(&frf.axis, &frf.values, |v| v.is_finite());
-            Record::Frf(Frf { axis, values, ..frf })
-        }
-        Record::Spectrum(spectrum) => {
-            let (axis, values) = match &spectrum.values {
-                Values::Real(v) => {
-                    let (axis, values) = finite(&spectrum.axis, v, |v| v.is_finite());
-                    (axis, Values::Real(values))
-                }
-                Values::Complex(v) => {
-                    let (axis, values) = finite(&spectrum.axis, v, |v| v.is_finite());
-                    (axis, Values::Complex(values))
-                }
-            };
-            Record::Spectrum(Spectrum { axis, values, ..spectrum })
-        }
-        Record::Trace(trace) => Record::Trace(trace),
-    }
-}
-
 /// Lines with a value, evenly spaced where none is missing between them.
-fn finite<T: Copy>(axis: &Axis, values: &[T], is_finite: impl Fn(&T) -> bool) -> (Axis, Vec<T>) {
+fn finite<T: Copy, V>(
+    axis: &Axis,
+    values: &[T],
+    of: fn(Vec<T>) -> V,
+    is_finite: impl Fn(&T) -> bool,
+) -> (Axis, V) {
     let kept: Vec<usize> = (0..values.len()).filter(|k| is_finite(&values[*k])).collect();
     let [first, last] = [kept.first(), kept.last()].map(|k| k.copied().unwrap_or(0));
     let grid = match axis.step() {
@@ -233,5 +199,5 @@ fn finite<T: Copy>(axis: &Axis, values: &[T], is_finite: impl Fn(&T) -> bool) ->
         }
         _ => Grid::Uneven(kept.iter().map(|k| axis.at(*k)).collect()),
     };
-    (Axis { kind: axis.kind.clone(), grid }, kept.iter().map(|k| values[*k]).collect())
+    (Axis { kind: axis.kind.clone(), grid }, of(kept.iter().map(|k| values[*k]).collect()))
 }

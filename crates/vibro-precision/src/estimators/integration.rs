@@ -7,7 +7,7 @@ use crate::failure::Question;
 use std::f64::consts::TAU;
 use vibro_math::Noise;
 use vibro_measure::response::{ResponseOptions, response};
-use vibro_measure::sine::sine;
+use vibro_measure::tones::sine;
 use vibro_record::{Error, Result, Scaling, Trace, Window};
 use vibro_signal::integrate::{InTime, in_time};
 use vibro_signal::spectrum;
@@ -75,7 +75,7 @@ fn filtered(v: &Vibration) -> Result<Answer> {
     }
     let sine = sine(&trace("laser", "m", 1.0 / RATE, inner.to_vec()), Some(f))?;
     let gain = how.gain(f, RATE)?;
-    let Answer { value, std, doubt } = Answer::found(&sine.amplitude, &sine.findings);
+    let Answer { value, std, doubt } = Answer::found(&sine.tones[0].amplitude, &sine.findings);
     Ok(Answer { value: value / gain, std: std.map(|s| s / gain), doubt })
 }
 

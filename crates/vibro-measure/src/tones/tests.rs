@@ -1,0 +1,153 @@
+use super::*;
+use crate::synthetic::trace;
+use std::f64::consts::TAU;
+use vibro_math::Noise;
+#[test]
+fn a_clean_sine_is_exact_from_two_periods_on() {
+    for f in [12.0, 47.3, 211.0, 455.5] {
+        let truth = |i: i32| 3.0 * (TAU * f * f64::from(i) * 1e-3 + 0.7).cos() - 1.0;
+        let found = sine(&trace((0..200).map(truth).collect()), None).unwrap();
+        assert!(
+            (found.tones[0].frequency.value / f - 1.0).abs() < 1e-11,
+            "{f}: {:?}",
+            found.tones[0].frequency
+        );
+        assert!((found.tones[0].amplitude.value - 3.0).abs() < 1e-10);
+        assert!((found.tones[0].phase.value - 0.7).abs() < 1e-9, "{:?}", found.tones[0].phase);
+    }
+}
+
+#[test]
+fn the_line_that_is_meant_is_fitted() {
+    let two = |i: i32| (0.5 * f64::from(i)).cos() + 0.01 * (1.1 * f64::from(i)).cos();
+    let found = sine(&trace((0..2000).map(two).collect()), Some(1.1e3 / TAU)).unwrap();
+    // The larger sine is what the smaller one has for noise: 1/√2 over 2000 samples.
+    assert!((found.tones[0].frequency.value - 1.1e3 / TAU).abs() < 0.1, "{:?}", found.tones[0].frequency);
+    assert!((found.tones[0].amplitude.value - 0.01).abs() < 5e-3);
+}
+
+#[test]
+fn another_sine_beside_is_said_and_half_the_rate_is_refused() {
+    // 200 Hz and 201.5 Hz in lines of 1 Hz: 1.5 lines apart.
+    let two = |i: i32| {
+        let t = f64::from(i) * 1e-3;
+        (TAU * 200.0 * t).cos() + 0.5 * (TAU * 201.5 * t + 1.0).cos() + 0.01 * (f64::from(i * i) * 0.7).sin()
+    };
+    let found = sine(&trace((0..1000).map(two).collect()), None).unwrap();
+    assert!(found.findings.iter().any(|f| f.code == "sine-not-alone"), "{:?}", found.findings);
+    let alone = [&found.tones[0].frequency, &found.tones[0].amplitude, &found.tones[0].phase];
+    assert!(alone.iter().all(|e| e.value.is_finite() && e.std.is_none()), "{found:?}");
+    let noise = |i: i32| (TAU * 0.2 * f64::from(i)).cos() + 0.01 * (f64::from(i * i) * 0.7).sin();
+    let found = sine(&trace((0..1000).map(noise).collect()), None).unwrap();
+    assert!(found.findings.is_empty() && found.tones[0].frequency.std.is_some(), "{found:?}");
+    // An eighth of a line below half the rate.
+    let last = |i: i32| (TAU * 499.875 * f64::from(i) * 1e-3 + 0.4).cos();
+    let error = sine(&trace((0..1000).map(last).collect()), None).unwrap_err().to_string();
+    assert!(error.contains("half the sampling rate"), "{error}");
+}
+
+/// What is found of a sine of amplitude 1 with another of amplitude `size` so many lines apart, in noise; frequency and phase of the first.
+fn beside_another(seed: u64, apart: f64, size: f64, floor: f64) -> (Tones, f64, f64) {
+    let mut noise = Noise::new(seed);
+    let (f, p, q) = (noise.between(50.0, 400.0), noise.between(0.0, TAU), noise.between(0.0, TAU));
+    let mut value = |i: i32| {
+        let t = f64::from(i) * 1e-3;
+        (TAU * f * t + p).cos() + size * (TAU * (f + apart) * t + q).cos() + floor * noise.normal()
+    };
+    (sine(&trace((0..1000).map(&mut value).collect()), None).unwrap(), f, p)
+}
+
+/// A sine of half a hundredth of the amplitude 0.7 to 2 lines off is allowed for.
+#[test]
+fn a_small_sine_beside_is_allowed_for() {
+    for apart in [0.7, 1.0, 2.0] {
+        let mut wide = 0;
+        for seed in 0..100 {
+            let (found, f, p) = beside_another(seed, apart, 0.005, 1e-5);
+            let turn = |a: f64| (a + PI).rem_euclid(TAU) - PI;
+            let off = [
+                (&found.tones[0].frequency, found.tones[0].frequency.value - f),
+                (&found.tones[0].amplitude, found.tones[0].amplitude.value - 1.0),
+                (&found.tones[0].phase, turn(found.tones[0].phase.value - p)),
+            ];
+            for (estimate, off) in off {
+                // What is allowed is the most that can be, but for the half that the fit may have taken up.
+                let std = estimate.std.unwrap();
+                assert!(off.abs() < 3.0 * std, "{apart} lines apart, seed {seed}: {off} with {std}");
+            }
+            wide += usize::from(found.tones[0].frequency.std.unwrap() > 5e-4);
+        }
+        assert!(wide > 50, "{apart} lines apart: {wide}");
+    }
+}
+
+/// A sine of half the amplitude 5 to 40 lines off is noise to this one, and counted in its uncertainty; 1 to 2 lines off there is none.
+#[test]
+fn what_is_stated_beside_another_sine_holds() {
+    for (apart, stated) in [(1.0, 0), (2.0, 0), (5.0, 100), (16.0, 100), (40.0, 100)] {
+        let mut all = 0;
+        for seed in 0..100 {
+            let (found, f, _) = beside_another(seed, apart, 0.5, 7e-3);
+            if let Some(std) = found.tones[0].frequency.std {
+                all += 1;
+                let off = (found.tones[0].frequency.value - f).abs() / std;
+                // Four standard uncertainties of 300: one of 50 cases.
+                assert!(off < 4.0, "{apart} lines apart, seed {seed}: {off}");
+            }
+        }
+        assert!(if stated == 0 { all == 0 } else { 2 * all > stated }, "{apart} lines apart: {all}");
+    }
+}
+
+#[test]
+fn what_is_no_sine_is_refused() {
+    let mut state = 3u64;
+    let mut noise = |_| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 40) as f64
+    };
+    let error = sine(&trace((0..1000).map(&mut noise).collect()), None).err().unwrap().to_string();
+    assert!(error.contains("stands out"), "{error}");
+    assert!(sine(&trace(vec![1.0; 100]), None).is_err());
+    let short = sine(&trace((0..100).map(|i| (0.06 * f64::from(i)).sin()).collect()), None);
+    assert!(short.err().unwrap().to_string().contains("periods"));
+}
+
+/// Of three sines two are asked for; what is left stands 1.5 lines beside one of them, 40 lines from the other.
+#[test]
+fn the_tone_beside_which_another_is_left_has_no_uncertainty() {
+    let mut noise = Noise::new(5);
+    let mut value = |i: i32| {
+        let t = f64::from(i) * 1e-3;
+        let sines = [(100.0, 1.0), (140.0, 2.0), (141.5, 0.3)];
+        sines.iter().map(|(f, a)| a * (TAU * f * t + f).cos()).sum::<f64>() + 0.02 * noise.normal()
+    };
+    let trace = trace((0..1000).map(&mut value).collect());
+    let found = tones(&trace, 2).unwrap();
+    let near = |f: f64| found.tones.iter().find(|t| (t.frequency.value - f).abs() < 1.0).unwrap();
+    let (doubtful, clear) = (near(140.0), near(100.0));
+    assert!(clear.frequency.std.is_some() && clear.amplitude.std.is_some(), "{found:?}");
+    let all = [&doubtful.frequency, &doubtful.amplitude, &doubtful.phase];
+    assert!(all.iter().all(|e| e.std.is_none()), "{found:?}");
+    assert!(found.findings.iter().any(|f| f.code == "sine-not-alone"), "{found:?}");
+    // With the third nothing is left beside any.
+    let found = tones(&trace, 3).unwrap();
+    assert!(found.tones.iter().all(|t| t.frequency.std.is_some()), "{found:?}");
+}
+
+#[test]
+fn clean_sines_are_exact() {
+    let truth = [(47.3, 2.0, 0.7), (211.0, 0.1, -1.2), (305.5, 1e-3, 2.5)];
+    let value = |i: i32| {
+        let sine = |(f, a, p): &(f64, f64, f64)| a * (TAU * f * f64::from(i) * 1e-3 + p).cos();
+        truth.iter().map(sine).sum::<f64>() - 4.0
+    };
+    let found = tones(&trace((0..1000).map(value).collect()), 3).unwrap();
+    assert!(found.findings.is_empty() && found.noise < 1e-11, "{found:?}");
+    for (tone, (f, a, p)) in found.tones.iter().zip(truth) {
+        assert!((tone.frequency.value - f).abs() < 1e-7 && (tone.amplitude.value - a).abs() < 1e-9);
+        assert!((tone.phase.value - p).abs() < 1e-6, "{tone:?}");
+    }
+    let more = tones(&trace((0..1000).map(value).collect()), 4).unwrap();
+    assert!(more.tones.len() == 3 && more.findings[0].code == "tones-fewer", "{:?}", more.findings);
+}
