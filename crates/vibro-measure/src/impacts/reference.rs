@@ -1,14 +1,14 @@
 //! Cycles of the excitation as a reference channel shows them.
 
 use crate::drill::{Edge, Edges, Numbered, Survey};
-use vibro_record::{Error, Result};
+use vibro_record::{Error, Finding, Result};
 
 /// Relative standard uncertainty of a mean interval whose first and last edge, so many samples apart, each lie anywhere within one
 /// sample: 1/√6 over that distance.
 ///
 /// Where the interval is near a whole number of samples, all edges lie alike between theirs: the scatter of the intervals does not
 /// show it, and no number of edges averages it.
-pub(crate) fn quantised(samples: f64) -> f64 {
+pub fn quantised(samples: f64) -> f64 {
     1.0 / (6f64.sqrt() * samples)
 }
 
@@ -17,9 +17,9 @@ pub struct Reference {
     /// Cycle that each rising edge begins, and its place in samples; at least two.
     edges: Vec<(usize, f64)>,
     /// Edges that are not there.
-    pub missing: usize,
+    missing: usize,
     /// Edges that should not be there; they are passed over.
-    pub extra: usize,
+    extra: usize,
     /// Whether they rise within one sample, so that nothing is known of them between samples.
     sharp: bool,
 }
@@ -32,32 +32,30 @@ impl Reference {
     pub fn new(channel: &[f64]) -> Result<Reference> {
         let mut survey = Survey::default();
         survey.push(channel);
-        let refused = |why: String| {
-            Err(Error::refused(why)
-                .hint("name another reference channel, or state the frequency of the excitation")
-                .setting("reference")
-                .setting("excitation"))
-        };
-        let Some((low, high)) = survey.levels() else {
-            return refused("the reference channel has one level only: it shows no cycle".to_owned());
-        };
+        let (low, high) = survey.levels().unwrap_or_default();
         let mut edges = Edges::new(low, high, Edge::Rising);
         edges.push(channel);
         let found = edges.finish();
         let Numbered { mut runs, missing, extra, pauses } = Numbered::new(&found.edges);
         let edges = runs.pop().unwrap_or_default();
-        if pauses > 0 {
-            return refused(format!(
-                "the reference channel misses more than three edges in a row, {pauses} times: cycles cannot be counted across"
-            ));
-        }
-        if edges.len() < 2 {
-            return refused(format!(
-                "rising edges of the reference channel: {}, a cycle needs two",
-                edges.len()
-            ));
-        }
-        Ok(Reference { edges, missing, extra, sharp: found.sharp })
+        let why = match (pauses, edges.len()) {
+            (0, 2..) => return Ok(Reference { edges, missing, extra, sharp: found.sharp }),
+            (0, n) => format!("rising edges of the reference channel: {n}, a cycle needs two"),
+            (n, _) => format!(
+                "the reference channel misses more than three edges in a row, {n} times: cycles cannot be counted across"
+            ),
+        };
+        Err(Error::refused(why)
+            .hint("name another reference channel, or state the frequency of the excitation")
+            .setting("reference")
+            .setting("excitation"))
+    }
+
+    /// Edges that were missing or too many.
+    pub fn finding(&self) -> Option<Finding> {
+        let odd =
+            Finding::caution("reference-edges").count("missing", self.missing).count("extra", self.extra);
+        (self.missing + self.extra > 0).then_some(odd)
     }
 
     /// Position `t` in samples, counted in cycles; beyond the first and last edge by the mean cycle.
@@ -73,18 +71,18 @@ impl Reference {
 
     /// Relative standard uncertainty of the mean cycle from samples that stand still to it: see [`quantised`].
     pub fn std(&self) -> f64 {
-        match self.edges.as_slice() {
-            [first, .., last] if self.sharp => quantised(last.1 - first.1),
-            _ => 0.0,
-        }
+        if self.sharp { quantised(self.span()) } else { 0.0 }
     }
 
     /// Mean length of a cycle in samples.
-    pub(crate) fn mean_cycle(&self) -> f64 {
-        match self.edges.as_slice() {
-            [first, .., last] => (last.1 - first.1) / (last.0 - first.0) as f64,
-            _ => f64::NAN,
-        }
+    pub fn mean_cycle(&self) -> f64 {
+        let cycles = self.edges.last().map_or(0, |e| e.0) - self.edges.first().map_or(0, |e| e.0);
+        self.span() / cycles as f64
+    }
+
+    /// Samples from the first to the last edge.
+    fn span(&self) -> f64 {
+        self.edges.last().map_or(f64::NAN, |e| e.1) - self.edges.first().map_or(f64::NAN, |e| e.1)
     }
 }
 

@@ -6,7 +6,7 @@ use super::trial::{Answer, Case, Kind, Method, Task, cells, measured};
 use crate::{Family, Scene};
 use std::f64::consts::TAU;
 use vibro_math::Noise;
-use vibro_measure::impacts::{Impacts, ImpactsOptions, Shape, impacts};
+use vibro_measure::impacts::{Impacts, ImpactsOptions, impacts};
 use vibro_measure::legacy::contact_times;
 use vibro_record::units::Unit;
 use vibro_record::{Axis, Error, Meta, Result, Severity, Trace};
@@ -149,7 +149,7 @@ fn between(found: &Impacts) -> Result<Answer> {
     Ok(Answer { value, std: found.onset_std.map(|s| s * f64::sqrt(2.0)), said: Vec::new() })
 }
 
-const TIMES: [Method<Trace>; 5] = [
+const TIMES: [Method<Trace>; 4] = [
     Method {
         name: "highest sample",
         ours: false,
@@ -169,14 +169,6 @@ const TIMES: [Method<Trace>; 5] = [
         name: "fit of the average",
         ours: true,
         estimate: |t| between(&impacts(t, &ImpactsOptions::default())?),
-    },
-    Method {
-        name: "fit of a known shape",
-        ours: true,
-        estimate: |t| {
-            let shape = Shape::known(pulse, -12.0..45.0, 0.5);
-            between(&impacts(t, &ImpactsOptions { shape, ..ImpactsOptions::default() })?)
-        },
     },
 ];
 
@@ -285,11 +277,6 @@ pub(crate) fn cells_of_impacts(quick: bool) -> Vec<Task> {
         }),
         changed("mains hum of half the height", plain(), |v, _| {
             v.iter_mut().enumerate().for_each(|(i, v)| *v += 0.5 * (TAU * 50.0 * i as f64 / RATE).sin());
-        }),
-        changed("one sample in 40 kept", plain(), |v, _| {
-            // Pulses of a sample or none: the contact is sampled at 50 Hz, but the rate is said to be 2000 Hz still.
-            let kept: Vec<f64> = v.iter().copied().step_by(40).collect();
-            v.iter_mut().enumerate().for_each(|(i, v)| *v = kept[(i / 40).min(kept.len() - 1)]);
         }),
         changed("one sample missing", plain(), |v, _| v[300] = f64::NAN),
         changed("all equal", plain(), |v, _| v.fill(0.25)),
