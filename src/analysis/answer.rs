@@ -84,13 +84,6 @@ impl Tells for Finding {
     }
 }
 
-/// Readers and estimators that still tell it in sentences.
-impl Tells for Vec<String> {
-    fn findings(&self) -> Vec<Finding> {
-        self.iter().map(|text| Finding::caution("said").name("text", text.as_str())).collect()
-    }
-}
-
 /// The finding that a record allows no answer; the error itself where it is another.
 ///
 /// # Errors

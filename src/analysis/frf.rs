@@ -164,7 +164,6 @@ impl Keys {
     fn functions(&self, source: &Source<'_>, told: &mut Answer) -> Result<Vec<Function>> {
         if self.reference.is_some() {
             let found = self.taken().lines(source)?;
-            told.tell("", &found.warnings);
             told.tell("", &found.findings);
             let records = found.records();
             let [Record::Frf(frf), Record::Spectrum(coherence)] = records.as_slice() else {

@@ -132,7 +132,6 @@ impl Keys {
         let found = self.lines(source)?;
         let mut answer = Answer::of(&found)?;
         answer.result.insert("channel".to_owned(), found.name.clone().into());
-        answer.tell("", &found.warnings);
         answer.tell("", &found.findings);
         answer.tables = vec![tables::peaks(source.name, &found), tables::tones(source.name, &found)];
         answer.details.push(tables::taken(&found));

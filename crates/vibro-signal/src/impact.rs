@@ -12,8 +12,8 @@ use super::welch::Sums;
 use left::Left;
 use serde::Serialize;
 use std::f64::consts::PI;
-use vibro_record::units::notation::{shortest, significant};
-use vibro_record::{Error, Meta, Result, Trace};
+use vibro_record::units::notation::shortest;
+use vibro_record::{Error, Finding, Meta, Result, Trace};
 
 /// Part of the largest force, above the level before it, at which a blow is noticed, and of a blow's own peak at which a second one is.
 const TRIGGER: f64 = 0.2;
@@ -32,10 +32,12 @@ const ROUNDED: f64 = 8.0;
 /// Steps in a record of which only few different values are known: at least so many up to its extreme.
 const COARSEST: f64 = 250.0;
 
-/// Blows left out that a sentence names.
-const NAMED: usize = 8;
-/// Less than this part of a response at the end of its record is not worth a sentence: sensors are not as good.
+/// Less than this part of a response at the end of its record is not worth a finding: sensors are not as good.
 const TOLD: f64 = 1e-3;
+
+const CUT_OFF: &str = "the record cuts it off";
+const DOUBLE: &str = "double hit";
+const OVERLOAD: &str = "overload";
 
 /// How blows are taken out of a long record.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -121,16 +123,12 @@ pub fn from_blows(
     let kept: Vec<usize> =
         blows.iter().filter(|(_, b)| b.rejected.is_none()).map(|(start, _)| *start).collect();
     if kept.len() < 2 {
-        let why: Vec<String> = blows
-            .iter()
-            .filter_map(|(_, b)| b.rejected.map(|why| format!("{:.3} s: {why}", b.time)))
-            .take(8)
-            .collect();
+        let named = |(_, b): &(usize, Blow)| b.rejected.map(|why| format!("{:.3} s: {why}", b.time));
+        let why: Vec<String> = blows.iter().filter_map(named).take(8).collect();
         return Err(Error::refused(format!(
-            "{} of {} blows are clean, two are needed at least{}{}",
+            "{} of {} blows are clean, two are needed at least; {}",
             kept.len(),
             blows.len(),
-            if why.is_empty() { "" } else { ": " },
             why.join(", ")
         )));
     }
@@ -155,15 +153,14 @@ pub fn from_blows(
     let metas: [Meta; 2] = [force.meta.clone(), response.meta.clone()];
     let mut transfer = transfer(&averages, 1, &metas, estimator)?;
     transfer.frf.meta.step("blows", &[("length", &how.length), ("before", &how.before)]);
-    transfer.warnings.extend(left_out(&blows));
+    transfer.findings.extend(left_out(&blows));
     if let Some(left) = Left::of(&response.values, &kept, how, &weights[1]) {
         unfinished(&mut transfer, &left);
     }
     if decay > 0.0 {
-        transfer.warnings.push(format!(
-            "The exponential window adds a decay of {decay:.4} 1/s: the damping ratio of a mode at f Hz is too large by {:.4}/f.",
-            decay / (2.0 * PI)
-        ));
+        let ratio = decay / (2.0 * PI);
+        let added = Finding::caution("window-adds-decay").number("decay", decay).number("ratio", ratio);
+        transfer.findings.push(added);
         transfer.frf.meta.step("exponential_window", &[("decay", &decay)]);
     }
     let [sum, squares] = weights[1].iter().fold([0.0, 0.0], |[s, q], w| [s + w, q + w * w]);
@@ -181,39 +178,31 @@ pub fn from_blows(
     })
 }
 
-/// Which blows are left out, and why.
-fn left_out(blows: &[(usize, Blow)]) -> Option<String> {
-    let named: Vec<String> =
-        blows.iter().filter_map(|(_, b)| b.rejected.map(|why| format!("{:.3} s, {why}", b.time))).collect();
-    let more = if named.len() > NAMED { "; …" } else { "" };
-    let are = if named.len() == 1 { "is" } else { "are" };
-    (!named.is_empty()).then(|| {
-        let shown = named[..named.len().min(NAMED)].join("; ");
-        format!("{} of {} blows {are} left out: {shown}{more}.", named.len(), blows.len())
-    })
+/// How many blows are left out, and why.
+fn left_out(blows: &[(usize, Blow)]) -> Option<Finding> {
+    let count = |why| blows.iter().filter(|(_, b)| b.rejected == Some(why)).count();
+    let reasons = [("double", DOUBLE), ("overload", OVERLOAD), ("cut_off", CUT_OFF)];
+    let counts = reasons.map(|(name, why)| (name, count(why))).into_iter().filter(|(_, n)| *n > 0);
+    let all = Finding::caution("blows-left-out").count("all", blows.len());
+    let found = counts.fold(all, |found, (name, n)| found.count(name, n));
+    blows.iter().any(|(_, b)| b.rejected.is_some()).then_some(found)
 }
 
-/// Takes what is left of the response into the standard deviations, and says so where it is most.
+/// Takes what is left of the response into the standard deviations, with a finding where it is most.
 fn unfinished(transfer: &mut Transfer, left: &Left) {
-    let mut most = (0.0, 0);
+    let (mut most, mut finding) = (0.0, None);
     for (k, h) in transfer.frf.values.iter().enumerate() {
         // The first line of a function is one above 0 Hz.
         let part = left.at(k + 1);
         transfer.magnitude_std[k] = transfer.magnitude_std[k].hypot(part * h.norm());
         transfer.phase_std[k] = transfer.phase_std[k].hypot(part);
-        if part > TOLD && left.strong(k + 1) && part * h.norm() > most.0 {
-            most = (part * h.norm(), k);
+        if part > TOLD && left.strong(k + 1) && part * h.norm() > most {
+            most = part * h.norm();
+            let here = Finding::caution("response-cut-off").number("frequency", transfer.frf.axis.at(k));
+            finding = Some(here.number("left", part));
         }
     }
-    if most.0 > 0.0 {
-        let part = left.at(most.1 + 1);
-        transfer.warnings.push(format!(
-            "Around {} Hz {} % of the response are left when the record of a blow ends: |H| may be off by as much there, its phase by {}°, which is in the standard deviations but not in the coherence. Longer records (--segment) or an exponential window (--left-at-end) help.",
-            significant(transfer.frf.axis.at(most.1), 3),
-            significant(100.0 * part, 2),
-            significant(part.to_degrees(), 2)
-        ));
-    }
+    transfer.findings.extend(finding);
 }
 
 /// First sample of each record, and its blow.
@@ -255,11 +244,11 @@ fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<(usize, 
             rails.extend(rail);
         }
         let rejected = if trigger < how.before || end - trigger < how.length - how.before {
-            Some("the record cuts it off")
+            Some(CUT_OFF)
         } else if second {
-            Some("double hit")
+            Some(DOUBLE)
         } else if clipped {
-            Some("overload")
+            Some(OVERLOAD)
         } else {
             None
         };
@@ -274,7 +263,7 @@ fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<(usize, 
             rails.iter().any(|rail| *rail == lowest || *rail == highest)
         };
         if blow.rejected.is_none() && channels.iter().zip(&rails).any(reaches) {
-            blow.rejected = Some("overload");
+            blow.rejected = Some(OVERLOAD);
         }
     }
     found

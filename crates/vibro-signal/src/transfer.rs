@@ -60,8 +60,6 @@ pub struct Transfer {
     pub phase_std: Vec<f64>,
     /// Segments averaged.
     pub averages: usize,
-    /// Sentences on the blows of a hammer.
-    pub warnings: Vec<String>,
     /// What limits the function.
     pub findings: Vec<Finding>,
 }
@@ -148,7 +146,6 @@ pub fn transfer(
         magnitude_std: Vec::with_capacity(lines),
         phase_std: Vec::with_capacity(lines),
         averages: averages.count,
-        warnings: Vec::new(),
         findings: Vec::new(),
     };
     result.frf.kind = FrfKind::of(result.frf.meta.quantity);

@@ -57,12 +57,16 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
         );
     }
     let quiet = background(&values);
-    values.iter_mut().for_each(|v| *v -= quiet.level);
+    for v in &mut values {
+        *v -= quiet.level;
+    }
     let pause = options.refractory.map(|s| ((s * rate) as usize).max(1));
     let (mut bursts, stable) = bursts(&values, quiet.reach, pause);
     if median(&heights(&values, &bursts, -1.0)) > INVERTED * median(&heights(&values, &bursts, 1.0)) {
         findings.push(Finding::note("pulses-inverted"));
-        values.iter_mut().for_each(|v| *v = -*v);
+        for v in &mut values {
+            *v = -*v;
+        }
     }
     let all = heights(&values, &bursts, 1.0);
     let least = (options.threshold * median(&all)).max(quiet.reach);

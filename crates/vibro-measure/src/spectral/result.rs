@@ -42,8 +42,6 @@ pub struct SpectralResult {
     pub response: Option<Response>,
     /// Sines fitted to the whole record, the strongest first; empty where none were asked for.
     pub tones: Vec<Tone>,
-    /// What the reader of the channels doubts, and what was found of a hammer's blows, in words.
-    pub warnings: Vec<String>,
     /// What was left out, and what limits the lines.
     pub findings: Vec<Finding>,
     /// The lines as they were found.
@@ -101,7 +99,6 @@ impl SpectralResult {
             averages,
             response: None,
             tones: Vec::new(),
-            warnings: Vec::new(),
             findings,
             found: Lines::Spectrum(spectrum),
         }
@@ -138,7 +135,6 @@ impl SpectralResult {
                 blows,
             }),
             tones: Vec::new(),
-            warnings: found.warnings.clone(),
             findings: [findings, found.findings.clone()].concat(),
             found: Lines::Transfer(found),
         }
