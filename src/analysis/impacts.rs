@@ -7,7 +7,7 @@ use super::job::Marks;
 use super::{Analysis, Answer, Job, Source, no_file};
 use crate::campaign::{Entry, channel};
 use crate::error::{Error, Result};
-use crate::measure::impacts::{ImpactsOptions, Scatter, impacts};
+use crate::measure::impacts::{ImpactsOptions, impacts};
 use serde::Deserialize;
 
 /// How impacts are found, and what is known of them.
@@ -34,9 +34,6 @@ pub struct Keys {
     /// Leave mains hum in the trace
     #[cfg_attr(feature = "cli", arg(long))]
     pub keep_hum: bool,
-    /// What is known to scatter: the onsets about even times, the intervals, each on its own, or unknown [default: unknown]
-    #[cfg_attr(feature = "cli", arg(long, value_parser = crate::campaign::word::<Scatter>, default_value = "unknown", hide_default_value = true))]
-    pub scatter: Scatter,
     /// No impact is missed and none is too many, however uneven the intervals
     #[cfg_attr(feature = "cli", arg(long))]
     pub none_missed: bool,
@@ -75,7 +72,6 @@ impl Keys {
             excitation_std: self.excitation_std,
             hum: !self.keep_hum,
             reference: reference.transpose()?.map(|r| r.values),
-            scatter: self.scatter,
             complete: self.none_missed,
         };
         let found = impacts(&trace, &options)?;

@@ -19,7 +19,7 @@ mod shape;
 pub use detect::{Detected, detect};
 pub use excitation::{PerCycle, Phase};
 pub use hum::Hum;
-pub use interval::{Interval, Scatter, interval};
+pub use interval::{Interval, interval};
 pub use options::ImpactsOptions;
 
 pub(crate) use options::rate_of;
@@ -94,7 +94,7 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     let counted = count(&times, &steps, options.complete || pattern.is_some());
     let kept: Vec<f64> = counted.kept.iter().map(|i| times[*i]).collect();
     let even = pattern.map_or_else(|| kept.clone(), |length| evened(&kept, length));
-    let fitted = interval(&even, &counted.index, options.scatter)
+    let fitted = interval(&even, &counted.index)
         .ok_or_else(|| Error::refused("one impact alone counts: an interval needs two"))?;
     if fitted.wanders {
         findings.push(Finding::caution("intervals-drift"));

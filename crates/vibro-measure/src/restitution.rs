@@ -9,7 +9,7 @@ mod train;
 mod velocities;
 
 pub use drop::{Drop, GRAVITY};
-pub use train::{Outlier, Train};
+pub use train::Train;
 pub use velocities::Velocities;
 
 use super::Estimate;
@@ -42,8 +42,6 @@ pub struct Restitution {
     pub bootstrap_std: Option<f64>,
     /// Intervals between impacts in s, one list a drop or train.
     pub intervals: Vec<Vec<f64>>,
-    /// Flight times that do not fit the train.
-    pub outliers: Vec<Outlier>,
     /// What was assumed, and what is doubtful.
     pub findings: Vec<Finding>,
 }
@@ -73,7 +71,7 @@ pub struct Measured {
 /// Where nothing is given from which it follows, and where what is given is impossible: a height of 0, an interval longer than the
 /// fall allows, masses that do not approach.
 pub fn restitution(measured: &Measured) -> Result<Restitution> {
-    let (mut by, mut findings, mut outliers) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut by, mut findings) = (Vec::new(), Vec::new());
     let mut intervals: Vec<Vec<f64>> = measured.trains.iter().map(|t| t.intervals.clone()).collect();
     if let Some(drop) = &measured.drop {
         by.push(drop.answer(&mut findings)?);
@@ -81,7 +79,7 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
             intervals = drop.intervals.iter().map(|d| vec![*d]).collect();
         }
     }
-    match train::answer(&measured.trains, &mut outliers, &mut findings) {
+    match train::answer(&measured.trains, &mut findings) {
         Ok(way) => by.extend(way),
         // What follows a drop may be no train of bounces; the drop answers nevertheless.
         Err(error) if measured.drop.is_some() && error.exit_code() == 1 => {
@@ -92,24 +90,16 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
     if let Some(velocities) = &measured.velocities {
         by.extend(velocities.answers()?);
     }
-    if by.is_empty() && !measured.trains.is_empty() {
-        return Err(Error::refused("one flight time has no ratio, from which restitution follows")
-            .hint("state two flight times or more, or the height of the fall with the interval")
-            .setting("intervals")
-            .setting("height")
-            .setting("interval"));
-    }
     let uncertainty = |way: &Way| way.restitution.std.unwrap_or(f64::INFINITY);
     let Some(surest) = by.iter().min_by(|a, b| uncertainty(a).total_cmp(&uncertainty(b))) else {
-        return Err(Error::usage(
-            "nothing from which restitution follows",
-            "a height with an interval, flight times, or velocities before and after",
-        )
-        .hint("state one of them")
-        .setting("height")
-        .setting("interval")
-        .setting("intervals")
-        .setting("before"));
+        let none = if measured.trains.is_empty() {
+            Error::usage("nothing from which restitution follows", "what was measured of an impact")
+        } else {
+            Error::refused("one flight time has no ratio, from which restitution follows")
+        };
+        let settings = ["intervals", "height", "interval", "before"];
+        let hint = "state two flight times or more, a height and an interval, or velocities before and after";
+        return Err(settings.into_iter().fold(none.hint(hint), Error::setting));
     };
     let agree = agreement(&by, &mut findings);
     let restitution = if agree == Some(false) {
@@ -118,7 +108,7 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
         surest.restitution.clone()
     };
     let bootstrap_std = measured.drop.as_ref().and_then(Drop::bootstrap);
-    Ok(Restitution { restitution, by, agree, bootstrap_std, intervals, outliers, findings })
+    Ok(Restitution { restitution, by, agree, bootstrap_std, intervals, findings })
 }
 
 /// Whether every pair of answers agrees at 95 %; `None` where one has no uncertainty and the others agree. Methods may share numbers, as a drop

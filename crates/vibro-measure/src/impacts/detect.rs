@@ -86,12 +86,20 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
         findings.push(Finding::doubt("impacts-lost-in-noise").number("sigmas", above));
     }
     let Onsets { each, averaged, sharp } = onsets(&values, &bursts, quiet.sigma);
-    if each.len() < bursts.len() {
-        findings.push(Finding::note("pulses-cut").count("n", bursts.len() - each.len()));
-    }
     if each.len() < 2 {
         let highest = values.iter().fold(0.0f64, |h, v| h.max(v.abs()));
-        return Err(too_few(each.len(), [quiet.reach, highest].map(|v| quantity(v, unit, 3)), low));
+        let [noise, highest] = [quiet.reach, highest].map(|v| quantity(v, unit, 3));
+        let n = each.len();
+        let why = format!(
+            "{n} impact{} found, an interval needs two; noise reaches {noise} from the level, the trace {highest}",
+            if n == 1 { "" } else { "s" }
+        );
+        let (hint, setting) = if low > 0 {
+            ("a lower threshold, as lower bursts were ignored", "threshold")
+        } else {
+            ("a shorter pause, or a high-pass where hum or a slow level hides the impacts", "refractory")
+        };
+        return Err(Error::refused(why).hint(hint).setting(setting));
     }
     let mut std = median(&each.iter().map(|o| o.std).collect::<Vec<f64>>()) / rate;
     if sharp {
@@ -114,18 +122,4 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
 /// Largest value of each burst, of −`values` with a `sign` of −1.
 fn heights(values: &[f64], bursts: &[Range<usize>], sign: f64) -> Vec<f64> {
     bursts.iter().map(|b| values[b.clone()].iter().map(|v| sign * v).fold(0.0, f64::max)).collect()
-}
-
-/// Why there is no interval, and what may help.
-fn too_few(n: usize, [noise, highest]: [String; 2], low: usize) -> Error {
-    let error = Error::refused(format!(
-        "{n} impact{} found, an interval needs two; noise reaches {noise} from the level, the trace {highest}",
-        if n == 1 { "" } else { "s" }
-    ));
-    if low > 0 {
-        return error.hint("a lower threshold, as lower bursts were ignored").setting("threshold");
-    }
-    error
-        .hint("a shorter pause between impacts, or a high-pass where hum or a slow level hides them")
-        .setting("refractory")
 }

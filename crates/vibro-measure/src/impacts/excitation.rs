@@ -2,10 +2,11 @@
 
 use super::background::median;
 use super::count::Counted;
-use super::interval::{Scatter, interval};
+use super::interval::interval;
 use super::reference::Reference;
 use super::{Impacts, ImpactsOptions};
 use crate::Estimate;
+use num_complex::Complex64;
 use serde::Serialize;
 use std::f64::consts::TAU;
 use vibro_record::{Finding, Result};
@@ -61,7 +62,7 @@ pub fn compare(
     match locking {
         Locking::Locked(fraction) => {
             answer.per_cycle = Some(fraction);
-            answer.phases = phases(&at, fraction);
+            answer.phases = phases(&kept, &counted.index, fraction);
         }
         Locking::Drifting(near, slip) => {
             let beat = (slip * frequency).abs();
@@ -115,7 +116,7 @@ enum Locking {
 /// `index` is m/n within three standard uncertainties and every place of the pattern keeps its phase within [`REPEATS`]: what is
 /// merely near a fraction wanders through all phases.
 fn locking(cycles: &[f64], index: &[usize], std: f64) -> Locking {
-    let Some(step) = interval(cycles, index, Scatter::Unknown).filter(|s| s.mean > 0.0) else {
+    let Some(step) = interval(cycles, index).filter(|s| s.mean > 0.0) else {
         return Locking::Irregular;
     };
     let rate = step.mean.recip();
@@ -134,12 +135,13 @@ fn locking(cycles: &[f64], index: &[usize], std: f64) -> Locking {
             && slip(f).abs() <= FITS * (rate - slip(f)) + 2.0 * own
             && (median(&off) / 0.454_936).sqrt() <= REPEATS
     });
-    // Of cycles that were counted, roundings alone are left.
-    let widest = |f: PerCycle| phases(cycles, f).iter().map(|p| p.spread).fold(0.0, f64::max);
+    let widest = |f: PerCycle| phases(cycles, index, f).iter().map(|p| p.spread).fold(0.0, f64::max);
     let holds = |f: &&PerCycle| {
         let spread = widest(**f);
         // 2/2 is no 1/1 seen twice: its places differ by more than they scatter.
-        let single = reduced(**f).is_none_or(|r| spread <= DOUBLED * widest(r));
+        let same = |r: &&PerCycle| r.impacts * f.cycles == f.impacts * r.cycles && r.impacts < f.impacts;
+        let single = fractions.iter().find(same).is_none_or(|r| spread <= DOUBLED * widest(*r));
+        // Of cycles that were counted, roundings alone are left.
         slip(f).abs() <= 3.0 * std + 1e-9 && spread <= REPEATS && single
     };
     match (fractions.iter().find(holds), fractions.first()) {
@@ -149,48 +151,20 @@ fn locking(cycles: &[f64], index: &[usize], std: f64) -> Locking {
     }
 }
 
-/// A fraction in lowest terms, where that is another one.
-fn reduced(of: PerCycle) -> Option<PerCycle> {
-    let divides = |by: &usize| of.impacts.is_multiple_of(*by) && of.cycles.is_multiple_of(*by);
-    let by = (2..=of.impacts.min(of.cycles)).rev().find(divides)?;
-    Some(PerCycle { impacts: of.impacts / by, cycles: of.cycles / by })
-}
-
-/// Phases of the impacts in a pattern of `pattern.cycles` cycles, one a place of the pattern.
-///
-/// Impacts belong to a place by their phase: the widest pauses between phases separate the places.
-pub fn phases(cycles: &[f64], pattern: PerCycle) -> Vec<Phase> {
+/// Phases of the places of a pattern: circular mean and standard deviation (Mardia 1972) on a circle of its cycles.
+fn phases(cycles: &[f64], index: &[usize], pattern: PerCycle) -> Vec<Phase> {
     let length = pattern.cycles as f64;
-    let mut phase: Vec<f64> = cycles.iter().map(|c| c.rem_euclid(length)).collect();
-    phase.sort_by(f64::total_cmp);
-    if phase.is_empty() {
-        return Vec::new();
-    }
-    let gap = |i: usize| (phase[(i + 1) % phase.len()] - phase[i]).rem_euclid(length);
-    let mut cuts: Vec<usize> = (0..phase.len()).collect();
-    cuts.sort_by(|a, b| gap(*b).total_cmp(&gap(*a)));
-    cuts.truncate(pattern.impacts);
-    cuts.sort_unstable();
-    let mut places: Vec<Phase> = Vec::new();
-    for (k, cut) in cuts.iter().enumerate() {
-        let from = cut + 1;
-        let to = cuts.get(k + 1).map_or(cuts[0] + 1 + phase.len(), |next| next + 1);
-        let members: Vec<f64> = (from..to).map(|i| phase[i % phase.len()]).collect();
-        places.push(circular(&members, length));
-    }
-    places.sort_by(|a, b| a.mean.total_cmp(&b.mean));
-    places
-}
-
-/// Circular mean and standard deviation (Mardia 1972) on a circle of `length`.
-fn circular(values: &[f64], length: f64) -> Phase {
-    let n = values.len() as f64;
-    let (s, c) = values.iter().fold((0.0, 0.0), |(s, c), v| {
-        let (y, x) = (TAU * v / length).sin_cos();
-        (s + y / n, c + x / n)
-    });
-    let spread = (-2.0 * s.hypot(c).min(1.0).ln()).sqrt() * length / TAU;
-    Phase { mean: (s.atan2(c) / TAU * length).rem_euclid(length), spread, n: values.len() }
+    let phase = |place: usize| {
+        let same = cycles.iter().zip(index).filter(|(_, i)| *i % pattern.impacts == place);
+        let sum: Complex64 = same.clone().map(|(c, _)| Complex64::cis(TAU * c / length)).sum();
+        let n = same.count();
+        let mean = (sum.arg() / TAU * length).rem_euclid(length);
+        let spread = (-2.0 * (sum.norm() / n as f64).min(1.0).ln()).sqrt() * length / TAU;
+        Phase { mean, spread, n }
+    };
+    let mut phases: Vec<Phase> = (0..pattern.impacts).map(phase).collect();
+    phases.sort_by(|a, b| a.mean.total_cmp(&b.mean));
+    phases
 }
 
 #[cfg(test)]
@@ -204,7 +178,7 @@ mod tests {
         let index: Vec<usize> = (0..40).collect();
         let found = PerCycle { impacts: 2, cycles: 3 };
         assert_eq!(locking(&cycles, &index, 1e-4), Locking::Locked(found));
-        let places = phases(&cycles, found);
+        let places = phases(&cycles, &index, found);
         assert_eq!(places.len(), 2);
         // Means of equal numbers, a few roundings.
         assert!((places[0].mean - 0.3).abs() < 1e-12 && (places[1].mean - 1.9).abs() < 1e-12, "{places:?}");
@@ -218,7 +192,7 @@ mod tests {
             (0..40).map(|k| f64::from(k) + if k % 2 == 0 { 0.835 } else { 0.669 }).collect();
         let found = PerCycle { impacts: 2, cycles: 2 };
         assert_eq!(locking(&doubled, &index, 1e-4), Locking::Locked(found));
-        let places: Vec<f64> = phases(&doubled, found).iter().map(|p| p.mean).collect();
+        let places: Vec<f64> = phases(&doubled, &index, found).iter().map(|p| p.mean).collect();
         // Means of equal numbers, a few roundings.
         assert!((places[0] - 0.835).abs() < 1e-12 && (places[1] - 1.669).abs() < 1e-12, "{places:?}");
         let quadrupled: Vec<f64> =

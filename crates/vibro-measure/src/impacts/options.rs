@@ -1,9 +1,7 @@
 //! How impacts are found, and whether a trace allows it.
 
-use super::Scatter;
-use super::background::median;
 use vibro_record::units::notation::shortest;
-use vibro_record::{AxisKind, Error, Grid, Result, Trace};
+use vibro_record::{Error, Grid, Result, Trace};
 
 /// How impacts are found.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,8 +20,6 @@ pub struct ImpactsOptions {
     pub excitation_std: Option<f64>,
     /// Samples of a channel that rises once a cycle of the excitation, recorded with the trace.
     pub reference: Option<Vec<f64>>,
-    /// Whether onsets or intervals scatter. Default: unknown.
-    pub scatter: Scatter,
 }
 
 impl Default for ImpactsOptions {
@@ -36,7 +32,6 @@ impl Default for ImpactsOptions {
             excitation: None,
             excitation_std: None,
             reference: None,
-            scatter: Scatter::Unknown,
         }
     }
 }
@@ -77,28 +72,14 @@ pub(super) fn check(trace: &Trace, options: &ImpactsOptions) -> Result<f64> {
 /// # Errors
 /// Where it has none.
 pub(crate) fn rate_of(trace: &Trace) -> Result<f64> {
-    trace.rate().filter(|r| r.is_finite() && *r > 0.0).ok_or_else(|| {
-        uneven(trace).unwrap_or_else(|| {
-            Error::usage("the sampling rate of the trace is not known", "")
-                .hint("state the sampling rate in Hz, or the base band of an analyser: it samples at 2.56 times that")
-                .setting("rate")
-                .setting("base_band")
-        })
+    trace.rate().filter(|r| r.is_finite() && *r > 0.0).ok_or_else(|| match trace.axis.grid {
+        Grid::Uneven(_) => Error::refused("the trace is sampled unevenly: it has no sampling rate")
+            .hint("cut the file where samples are lost, or write them"),
+        _ => Error::usage("the sampling rate of the trace is not known", "")
+            .hint("state the sampling rate in Hz, or the base band of an analyser: it samples at 2.56 times that")
+            .setting("rate")
+            .setting("base_band"),
     })
-}
-
-/// Where times differ most from the usual step; `None` for an even axis.
-fn uneven(trace: &Trace) -> Option<Error> {
-    let (AxisKind::Time, Grid::Uneven(times)) = (&trace.axis.kind, &trace.axis.grid) else { return None };
-    let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
-    let usual = median(&steps);
-    let off = |i: &usize| (steps[*i] - usual).abs();
-    let odd = (0..steps.len()).max_by(|a, b| off(a).total_cmp(&off(b)))?;
-    let [from, to, step, usual] = [times[odd], times[odd + 1], steps[odd], usual].map(shortest);
-    let why = format!(
-        "the trace is sampled unevenly: from {from} s to {to} s is a step of {step} s, most are {usual} s"
-    );
-    Some(Error::refused(why).hint("cut the file there, or write the lost samples"))
 }
 
 /// Refuses missing values: an impact, or the begin of a cycle, may stand in any of them.

@@ -57,12 +57,14 @@ fn a_train_of_bounces_and_one_that_does_not_fit() {
         ..Measured::default()
     });
     assert!((clean.restitution.value - 0.7).abs() < 1e-12, "{clean:?}");
-    assert!(clean.outliers.is_empty());
+    assert!(finding(&clean, "flight-outlier").is_none());
     intervals[3] *= 1.3;
     let found =
         of(&Measured { trains: vec![Train { intervals, ..Train::default() }], ..Measured::default() });
-    assert_eq!(found.outliers.iter().map(|o| (o.train, o.flight)).collect::<Vec<_>>(), [(1, 4)]);
-    assert!((found.outliers[0].expected / (0.4 * 0.343) - 1.0).abs() < 1e-9);
+    let outlier = finding(&found, "flight-outlier").unwrap();
+    assert_eq!((outlier.get("train"), outlier.get("flight")), (Some(1.0), Some(4.0)));
+    assert!((outlier.get("expected").unwrap() / (0.4 * 0.343) - 1.0).abs() < 1e-9);
+    assert_eq!(found.findings.iter().filter(|f| f.code == "flight-outlier").count(), 1);
     assert!((found.restitution.value - 0.7).abs() < 1e-9, "{found:?}");
 }
 

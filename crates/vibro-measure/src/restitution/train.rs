@@ -4,7 +4,6 @@ use super::bounces::{Flight, fit};
 use super::{Way, above_zero, not_negative, repeated, together};
 use crate::Estimate;
 use crate::impacts::{Detected, ImpactsOptions, detect};
-use serde::Serialize;
 use vibro_record::{Error, Finding, Result, Trace};
 
 /// Flight times of one train of bounces.
@@ -45,26 +44,8 @@ impl Train {
     }
 }
 
-/// A flight time that does not fit the train.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[non_exhaustive]
-pub struct Outlier {
-    /// Train, counted from 1.
-    pub train: usize,
-    /// Flight, counted from 1.
-    pub flight: usize,
-    /// Its time in s.
-    pub interval: f64,
-    /// What the others say it should be, in s.
-    pub expected: f64,
-}
-
 /// R of trains of bounces, the mean of their ln R; `None` where no train has two flights.
-pub(super) fn answer(
-    trains: &[Train],
-    outliers: &mut Vec<Outlier>,
-    findings: &mut Vec<Finding>,
-) -> Result<Option<Way>> {
+pub(super) fn answer(trains: &[Train], findings: &mut Vec<Finding>) -> Result<Option<Way>> {
     let (mut logs, mut stds, mut n) = (Vec::new(), Vec::new(), 0);
     for (train, t) in trains.iter().enumerate().map(|(i, t)| (i + 1, t)) {
         not_negative("an uncertainty of the time of an impact", t.onset_std)?;
@@ -79,13 +60,11 @@ pub(super) fn answer(
             t.intervals.iter().enumerate().map(|(place, d)| Flight { place, log: d.ln() }).collect();
         while let Some((worst, expected)) = worst(&flights) {
             let bad = flights.remove(worst);
-            let (flight, interval) = (bad.place + 1, bad.log.exp());
-            outliers.push(Outlier { train, flight, interval, expected });
             findings.push(
                 Finding::caution("flight-outlier")
-                    .count("flight", flight)
+                    .count("flight", bad.place + 1)
                     .count("train", train)
-                    .number("interval", interval)
+                    .number("interval", bad.log.exp())
                     .number("expected", expected),
             );
         }
