@@ -18,9 +18,6 @@ pub struct Keys {
     /// Frequency of the excitation in Hz
     #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
     pub excitation: Option<f64>,
-    /// Its standard uncertainty in Hz [default: that of its digits]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
-    pub excitation_std: Option<f64>,
     /// Record of the same file that rises once a cycle of the excitation, by name or by number from 1
     #[serde(deserialize_with = "channel")]
     #[cfg_attr(feature = "cli", arg(long, value_name = "NAME"))]
@@ -49,9 +46,6 @@ impl Keys {
         if self.reference.is_some() && self.excitation.is_some() {
             return wrong("excitation", "both reference and excitation", "one of them");
         }
-        if self.excitation_std.is_some() && self.excitation.is_none() {
-            return wrong("excitation_std", "excitation_std without excitation", "both, or none");
-        }
         Ok(())
     }
 
@@ -69,7 +63,6 @@ impl Keys {
             threshold: self.threshold.unwrap_or(default.threshold),
             refractory: self.refractory,
             excitation: self.excitation,
-            excitation_std: self.excitation_std,
             hum: !self.keep_hum,
             reference: reference.transpose()?.map(|r| r.values),
             complete: self.none_missed,

@@ -12,7 +12,6 @@ mod hum;
 mod interval;
 mod onset;
 mod options;
-mod reference;
 mod ringing;
 mod shape;
 
@@ -99,14 +98,15 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     if fitted.wanders {
         findings.push(Finding::caution("intervals-drift"));
     }
-    // What onsets anywhere within a sample leave open, as a part of the interval.
-    let span = counted.index.last().copied().unwrap_or(0) as f64;
-    let sampled = resolution.map_or(0.0, |step| reference::quantised(span * fitted.mean / step));
+    // First and last onset lie each anywhere within a sample. Where the interval is near a whole number of samples all lie alike between theirs:
+    // the scatter of the intervals does not show it, and no number of impacts averages it.
+    let intervals = counted.index.last().copied().unwrap_or(0) as f64;
+    let sampled = resolution.map_or(0.0, |step| step / (6f64.sqrt() * intervals));
     // The shifts of the places of a pattern are fitted with the interval.
     let free = |parameters: usize| even.len().saturating_sub(parameters) as f64;
     let widened = (free(2) / free(1 + pattern.unwrap_or(1))).sqrt();
     let doubted = findings.iter().any(|f| f.severity == Severity::Doubt);
-    let std = (widened * fitted.std).hypot(sampled * fitted.mean);
+    let std = (widened * fitted.std).hypot(sampled);
     let std = Some(std).filter(|s| s.is_finite() && !doubted);
     let method = format!(
         "{}; {}",
@@ -145,7 +145,7 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
         times,
         findings,
     };
-    excitation::compare(&mut answer, &counted, (trace.axis.start(), rate_of(trace)?, sampled), options)?;
+    excitation::compare(&mut answer, &counted, (trace.axis.start(), rate_of(trace)?), options)?;
     let of_train = of_train(&answer);
     answer.findings.extend(of_train);
     Ok(answer)

@@ -299,7 +299,6 @@ fn keys_of_contacts_are_checked_before_anything_is_measured() {
             "line 4",
             "both reference and excitation",
         ),
-        ("[[impacts]]\nfile = \"a\"\nexcitation_std = 1.0", "line 3", "without excitation"),
     ] {
         let path = folder.path().join("campaign.toml");
         fs::write(&path, keys).unwrap();

@@ -16,8 +16,6 @@ pub struct ImpactsOptions {
     pub complete: bool,
     /// Frequency of the excitation in Hz, for impacts per cycle.
     pub excitation: Option<f64>,
-    /// Its standard uncertainty in Hz. Default: that of the digits it is written with.
-    pub excitation_std: Option<f64>,
     /// Samples of a channel that rises once a cycle of the excitation, recorded with the trace.
     pub reference: Option<Vec<f64>>,
 }
@@ -30,7 +28,6 @@ impl Default for ImpactsOptions {
             hum: true,
             complete: false,
             excitation: None,
-            excitation_std: None,
             reference: None,
         }
     }
@@ -43,11 +40,7 @@ pub(super) fn check(trace: &Trace, options: &ImpactsOptions) -> Result<f64> {
         let found = format!("a threshold of {}", options.threshold);
         return Err(Error::usage(found, "a part of the median height, from 0 to 1"));
     }
-    for (name, value) in [
-        ("a refractory time", options.refractory),
-        ("an excitation", options.excitation),
-        ("an uncertainty of the excitation", options.excitation_std),
-    ] {
+    for (name, value) in [("a refractory time", options.refractory), ("an excitation", options.excitation)] {
         if let Some(v) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
             return Err(Error::usage(format!("{name} of {v}"), "a finite number above 0"));
         }
