@@ -121,10 +121,11 @@ fn trains_together_are_covered(draws: Draws) {
             "restitution, trains together with {name}: seeds 115000.., 95 % coverage {:.1} %, {n_out} outliers, {open} without uncertainty",
             100.0 * coverage
         );
-        // Two or three trains that by chance differ as if R did have none: one in twenty, and more as the uncertainty of each is uncertain itself.
-        assert!(open * 8 < draws.of(CASES), "{name}: {open}");
-        // 1000 cases scatter the coverage by 0.7 %. That R does not scatter at all these flights do not show: it errs to the safe side.
-        let most = if per_bounce == 0.0 { 1.0 } else { 0.98 };
+        // Two or three trains that by chance differ as if R did have none.
+        assert!(open * 20 < draws.of(CASES), "{name}: {open}");
+        // 1000 cases scatter the coverage by 0.7 %. That R does not scatter at all these flights do not show: it errs to the safe side, as it does by
+        // a per cent where two or three trains, each of an uncertainty of few flights, are taken together.
+        let most = if per_bounce == 0.0 { 1.0 } else { 0.99 };
         assert!(draws.part(0.92..=most).contains(&coverage), "{name}: {coverage}");
     }
 }

@@ -68,7 +68,7 @@ pub(crate) fn rate_of(trace: &Trace) -> Result<f64> {
     trace.rate().filter(|r| r.is_finite() && *r > 0.0).ok_or_else(|| match trace.axis.grid {
         Grid::Uneven(_) => Error::refused("the trace is sampled unevenly: it has no sampling rate")
             .hint("cut the file where samples are lost, or write them"),
-        _ => Error::usage("the sampling rate of the trace is not known", "")
+        Grid::Even { .. } => Error::usage("the sampling rate of the trace is not known", "")
             .hint("state the sampling rate in Hz, or the base band of an analyser: it samples at 2.56 times that")
             .setting("rate")
             .setting("base_band"),
