@@ -8,7 +8,7 @@ use super::{Analysis, Answer, Job, Source, impacts};
 use crate::campaign::Entry;
 use crate::error::{Error, Result};
 use crate::measure::impacts::ImpactsOptions;
-use crate::measure::restitution::{Bounces, Drop, GRAVITY, Train, Velocities, restitution};
+use crate::measure::restitution::{Drop, GRAVITY, Measured, Train, Velocities, restitution};
 use serde::Deserialize;
 
 /// What is known of drops of one series beside their records.
@@ -69,69 +69,57 @@ pub struct Keys {
     pub velocity_std: Option<f64>,
 }
 
-/// Velocities after an impact: of mass 1 and of mass 2.
-type After = (Option<f64>, Option<f64>);
-
 impl Keys {
     /// Whether the keys go together, beside a file or without one.
     ///
     /// # Errors
     /// With the key that does not.
     pub fn usable(&self, file: bool) -> Result<()> {
-        let wrong = |key, found: String, expected: &str| Err(Error::usage(found, expected).setting(key));
-        let typed = self.interval.is_some() || !self.intervals.is_empty();
-        if self.interval.is_some() && !self.intervals.is_empty() {
-            let expected = "one of them: the first of intervals is that after the fall";
-            return wrong("intervals", "both interval and intervals".to_owned(), expected);
-        }
-        if file && typed {
-            let key = if self.interval.is_some() { "interval" } else { "intervals" };
-            return wrong(key, "a file and an interval".to_owned(), "one of them");
-        }
-        if self.interval.is_some() && self.height.is_none() {
-            let found = "interval without a height".to_owned();
-            return Err(Error::usage(found, "both, or flight times as intervals")
-                .setting("interval")
-                .setting("height"));
-        }
-        let moving = [
-            ("after", !self.after.is_empty()),
-            ("after2", self.after2.is_some()),
-            ("velocity_std", self.velocity_std.is_some()),
+        let (interval, intervals) = (self.interval.is_some(), !self.intervals.is_empty());
+        let (before, after) = (self.before.is_some(), !self.after.is_empty() || self.after2.is_some());
+        let one_of = "one of them: the first of intervals is that after the fall";
+        let velocities = "after = V1 and V2, or with masses after = V1 or after2 = V2";
+        let wrong: [(bool, &'static str, &str, &str); 8] = [
+            (interval && intervals, "intervals", "both interval and intervals", one_of),
+            (file && interval, "interval", "a file and an interval", "one of them"),
+            (file && intervals, "intervals", "a file and intervals", "one of them"),
+            (
+                interval && self.height.is_none(),
+                "height",
+                "interval without a height",
+                "both, or flight times as intervals",
+            ),
+            (after && !before, "after", "velocities after the impact without before", "both"),
+            (self.velocity_std.is_some() && !before, "velocity_std", "velocity_std without before", "both"),
+            (
+                !file && !interval && !intervals && !before,
+                "height",
+                "nothing that was measured",
+                "a file, an interval and a height, intervals, or before and after",
+            ),
+            (before && !after, "before", "before without velocities after the impact", velocities),
         ];
-        if let Some((key, _)) = moving.into_iter().find(|(_, given)| *given && self.before.is_none()) {
-            return wrong(key, format!("{key} without before"), "both");
+        if let Some((_, key, found, expected)) = wrong.into_iter().find(|w| w.0) {
+            return Err(Error::usage(found, expected).setting(key));
         }
-        if !file && !typed && self.before.is_none() {
-            let expected = "a file, an interval and a height, intervals, or before and after";
-            return Err(Error::usage("nothing that was measured", expected)
-                .setting("interval")
-                .setting("height"));
-        }
-        if self.before.is_some() && self.after().is_none() {
-            let found = match (self.after.len(), self.after2) {
-                (0, _) => "before without velocities after the impact".to_owned(),
-                (n, Some(_)) => format!("{n} velocities in after, and after2"),
-                (n, None) => format!("{n} velocities in after"),
-            };
-            return wrong("before", found, "after = V1 and V2, or with masses after = V1 or after2 = V2");
+        let given = self.after.len() + usize::from(self.after2.is_some());
+        if given > 2 {
+            let found = format!("{given} velocities after the impact");
+            return Err(Error::usage(found, velocities).setting("before"));
         }
         Ok(())
     }
 
-    fn after(&self) -> Option<After> {
-        match (self.after.as_slice(), self.after2) {
-            ([one], two) => Some((Some(*one), two)),
-            ([one, two], None) => Some((Some(*one), Some(*two))),
-            ([], Some(two)) => Some((None, Some(two))),
-            _ => None,
-        }
-    }
-
+    /// Velocities before and after, in the order of the masses.
     fn velocities(&self) -> Option<Velocities> {
-        let before = self.before?;
-        let (after1, after2) = self.after()?;
-        Some(Velocities { before, after1, after2, masses: self.masses, std: self.velocity_std })
+        let mut after = self.after.iter().copied();
+        Some(Velocities {
+            before: self.before?,
+            after1: after.next(),
+            after2: self.after2.or(after.next()),
+            masses: self.masses,
+            std: self.velocity_std,
+        })
     }
 
     /// The first key of which two drops of one series have different values.
@@ -145,7 +133,6 @@ impl Keys {
             ("threshold", self.threshold == other.threshold),
             ("refractory", self.refractory == other.refractory),
             ("keep_hum", self.keep_hum == other.keep_hum),
-            ("masses", self.masses == other.masses),
         ];
         equal.into_iter().find(|(_, equal)| !equal).map(|(key, _)| key)
     }
@@ -154,7 +141,6 @@ impl Keys {
 /// Drops of one name, whose mean is taken.
 pub struct Series {
     drop: Drop,
-    bounces: Bounces,
     trains: Vec<Train>,
     velocities: Option<Velocities>,
     files: Vec<String>,
@@ -170,22 +156,15 @@ impl Series {
             interval_std: keys.interval_std,
             gravity: keys.gravity.unwrap_or(GRAVITY),
             gravity_std: keys.gravity_std,
-            masses: keys.masses,
             ..Drop::default()
         };
-        Series {
-            drop,
-            bounces: Bounces::default(),
-            trains: Vec::new(),
-            velocities: None,
-            files: Vec::new(),
-            answer: Answer::default(),
-        }
+        let (trains, files) = (Vec::new(), Vec::new());
+        Series { drop, trains, velocities: None, files, answer: Answer::default() }
     }
 
     /// Adds what the keys say of a drop without a record.
     pub(crate) fn add_numbers(&mut self, keys: &Keys) {
-        self.drop.intervals.extend(keys.interval.or(keys.intervals.first().copied()));
+        self.drop.intervals.extend(keys.interval);
         if !keys.intervals.is_empty() {
             let onset_std = keys.interval_std.map(|s| s / 2f64.sqrt());
             self.trains.push(Train { intervals: keys.intervals.clone(), onset_std });
@@ -202,12 +181,13 @@ impl Series {
         let recording = source.recording()?;
         let trace = source.trace(&recording)?;
         let how = ImpactsOptions {
-            threshold: keys.threshold.unwrap_or(Bounces::THRESHOLD),
+            threshold: keys.threshold.unwrap_or(Train::THRESHOLD),
             refractory: keys.refractory,
             hum: !keys.keep_hum,
             ..ImpactsOptions::default()
         };
-        let found = self.bounces.add(&trace, &how)?;
+        let (train, found) = Train::of(&trace, &how)?;
+        self.trains.push(train);
         self.answer.tell(&file, &recording.findings);
         self.answer.tell(&file, &trace.meta.findings);
         self.answer.tell(&file, &found.findings);
@@ -218,10 +198,7 @@ impl Series {
     }
 
     fn is_empty(&self) -> bool {
-        self.files.is_empty()
-            && self.drop.intervals.is_empty()
-            && self.trains.is_empty()
-            && self.velocities.is_none()
+        self.drop.intervals.is_empty() && self.trains.is_empty() && self.velocities.is_none()
     }
 
     /// The restitution by every method that the drops allow.
@@ -229,11 +206,10 @@ impl Series {
     /// # Errors
     /// If they allow none.
     pub fn answer(self, name: &str) -> Result<Answer> {
-        let falls = self.drop.height.is_finite();
-        let mut measured = self.bounces.measured(self.drop, falls);
-        measured.trains.extend(self.trains);
-        measured.velocities = self.velocities;
-        let found = restitution(&measured)?;
+        let drop = self.drop.beginning(&self.trains);
+        let fell = drop.height.is_finite() && !drop.intervals.is_empty();
+        let drop = fell.then_some(drop);
+        let found = restitution(&Measured { drop, trains: self.trains, velocities: self.velocities })?;
         let mut answer = Answer::of(&found)?;
         answer.figures = self.answer.figures;
         answer.findings = self.answer.findings;

@@ -5,12 +5,10 @@ pub mod tables;
 
 use super::job::Marks;
 use super::{Analysis, Answer, Job, Source, no_file};
-use crate::campaign::{Entry, above_zero, channel};
+use crate::campaign::{Entry, channel};
 use crate::error::{Error, Result};
-use crate::measure::impacts::{ImpactsOptions, Scatter, Shape, impacts, typed};
-use crate::read::Reader;
-use serde::{Deserialize, Deserializer};
-use std::path::PathBuf;
+use crate::measure::impacts::{ImpactsOptions, impacts};
+use serde::Deserialize;
 
 /// How impacts are found, and what is known of them.
 #[derive(Debug, Clone, Default, Deserialize)]
@@ -18,11 +16,8 @@ use std::path::PathBuf;
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {
     /// Frequency of the excitation in Hz
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", value_parser = Frequency::typed))]
-    pub excitation: Option<Frequency>,
-    /// Its standard uncertainty in Hz [default: that of the digits typed]
     #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
-    pub excitation_std: Option<f64>,
+    pub excitation: Option<f64>,
     /// Record of the same file that rises once a cycle of the excitation, by name or by number from 1
     #[serde(deserialize_with = "channel")]
     #[cfg_attr(feature = "cli", arg(long, value_name = "NAME"))]
@@ -36,44 +31,9 @@ pub struct Keys {
     /// Leave mains hum in the trace
     #[cfg_attr(feature = "cli", arg(long))]
     pub keep_hum: bool,
-    /// Record of one pulse of the shape that all have: each impact is matched to it
-    #[cfg_attr(feature = "cli", arg(long, value_name = "FILE"))]
-    pub shape: Option<PathBuf>,
-    /// Sampling rate of that record in Hz, where its file does not say
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", allow_negative_numbers = true))]
-    pub shape_rate: Option<f64>,
-    /// What is known to scatter: the onsets about even times, the intervals, each on its own, or unknown [default: unknown]
-    #[cfg_attr(feature = "cli", arg(long, value_parser = crate::campaign::word::<Scatter>, default_value = "unknown", hide_default_value = true))]
-    pub scatter: Scatter,
     /// No impact is missed and none is too many, however uneven the intervals
     #[cfg_attr(feature = "cli", arg(long))]
     pub none_missed: bool,
-}
-
-/// A frequency as sure as the digits it is typed with.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Frequency {
-    /// Hz.
-    pub value: f64,
-    /// Its standard uncertainty in Hz; `None` for that of its shortest digits.
-    pub std: Option<f64>,
-}
-
-impl Frequency {
-    /// A frequency as it is typed: zeros at its end are digits.
-    ///
-    /// # Errors
-    /// If it is no number.
-    pub fn typed(text: &str) -> std::result::Result<Frequency, String> {
-        let number = typed(text).ok_or_else(|| "expected a number".to_owned())?;
-        Ok(Frequency { value: number.0, std: Some(number.1) })
-    }
-}
-
-impl<'de> Deserialize<'de> for Frequency {
-    fn deserialize<D: Deserializer<'de>>(from: D) -> std::result::Result<Frequency, D::Error> {
-        Ok(Frequency { value: f64::deserialize(from)?, std: None })
-    }
 }
 
 impl Keys {
@@ -86,13 +46,7 @@ impl Keys {
         if self.reference.is_some() && self.excitation.is_some() {
             return wrong("excitation", "both reference and excitation", "one of them");
         }
-        if self.excitation_std.is_some() && self.excitation.is_none() {
-            return wrong("excitation_std", "excitation_std without excitation", "both, or none");
-        }
-        if self.shape_rate.is_some() && self.shape.is_none() {
-            return wrong("shape_rate", "shape_rate without shape", "both, or none");
-        }
-        above_zero("shape_rate", self.shape_rate)
+        Ok(())
     }
 
     /// The impacts of a record, with their figure and tables.
@@ -103,27 +57,14 @@ impl Keys {
         self.usable()?;
         let recording = source.recording()?;
         let trace = source.trace(&recording)?;
-        let reference = match &self.reference {
-            Some(channel) => Some(recording.trace(Some(channel), None)?.values),
-            None => None,
-        };
-        let shape = match source.further("shape", self.shape.as_ref())? {
-            Some(path) => {
-                let pulse = Reader::new().rate(self.shape_rate).from_path(path)?.trace(None, None)?;
-                Some(Shape::of(&pulse, &trace)?)
-            }
-            None => None,
-        };
+        let reference = self.reference.as_ref().map(|channel| recording.trace(Some(channel), None));
         let default = ImpactsOptions::default();
         let options = ImpactsOptions {
             threshold: self.threshold.unwrap_or(default.threshold),
             refractory: self.refractory,
-            excitation: self.excitation.map(|f| f.value),
-            excitation_std: self.excitation_std.or(self.excitation.and_then(|f| f.std)),
+            excitation: self.excitation,
             hum: !self.keep_hum,
-            reference,
-            shape,
-            scatter: self.scatter,
+            reference: reference.transpose()?.map(|r| r.values),
             complete: self.none_missed,
         };
         let found = impacts(&trace, &options)?;

@@ -22,9 +22,6 @@ const ENDED: f64 = 0.05;
 const SIGMAS: f64 = 3.0;
 /// So many samples in a row at the very extreme are a clipped signal.
 const CLIPPED: usize = 3;
-/// Two in a row are where both neighbours are more steps of the converter away: the two highest samples of a round top are the same
-/// step once in half as many blows.
-const PAIR: f64 = 200.0;
 /// An extreme nearer the quiet level than this part of the other one is no rail: a force does not go below zero.
 const RAIL: f64 = 0.1;
 /// Steps of the converter by which a round top of three equal samples or more may fall to the next: (5/3)² for three, and noise.
@@ -311,13 +308,8 @@ fn overloaded(values: &[f64], before: usize) -> Option<f64> {
             let (first, next) = (at, at + run.len());
             at = next;
             let beside = [first.checked_sub(1).and_then(|i| values.get(i)), values.get(next)];
-            let falls = |by: f64| move |v: &f64| (v - rail).abs() > by * step;
-            run[0] == *rail
-                && match run.len() {
-                    0 | 1 => false,
-                    n if n < CLIPPED => beside.into_iter().flatten().all(falls(PAIR)),
-                    _ => beside.into_iter().flatten().any(falls(ROUNDED)),
-                }
+            let falls = |v: &f64| (v - rail).abs() > ROUNDED * step;
+            run.len() >= CLIPPED && run[0] == *rail && beside.into_iter().flatten().any(falls)
         })
     })
 }

@@ -11,7 +11,7 @@ pub fn restitution(name: &str, found: &Restitution) -> Table {
     for way in &found.by {
         table.push([
             Cell::from(name),
-            Cell::from(way.method.name()),
+            Cell::from(way.method),
             Cell::from(&way.restitution),
             Cell::from(way.restitution.n),
             Cell::from(way.restitution.method.as_str()),

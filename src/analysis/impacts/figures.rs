@@ -13,21 +13,11 @@ pub fn impacts(title: &str, trace: &Trace, found: &Impacts) -> Figure {
     let intervals: Vec<f64> = found.times.windows(2).map(|w| 1e3 * (w[1] - w[0])).collect();
     let axis = |name: &str| AxisSpec::new(name, "ms");
     let (low, high) = limits(&intervals);
-    let inside: Vec<f64> = intervals.iter().copied().filter(|v| (low..=high).contains(v)).collect();
-    let beyond = intervals.len() - inside.len();
-    let mut histogram = Plot::new(axis("Interval").limits(low, high), AxisSpec::new("Intervals", ""))
-        .with(Series::histogram("", &inside).ink(Ink::Nth(0)))
+    let histogram = Plot::new(axis("Interval").limits(low, high), AxisSpec::new("Intervals", ""))
+        .with(Series::histogram("", &intervals).ink(Ink::Nth(0)))
+        .with(Series::vertical("mean", 1e3 * found.interval.value))
         .legend(Legend::Hidden);
-    let mean = 1e3 * found.interval.value;
-    if (low..=high).contains(&mean) {
-        histogram = histogram.with(Series::vertical("mean", mean));
-    }
-    if beyond > 0 {
-        histogram = histogram.title(format!("{beyond} of {} intervals outside", intervals.len()));
-    }
-    let both = |w: &&[f64]| w.iter().all(|v| (low..=high).contains(v));
-    let (before, after): (Vec<f64>, Vec<f64>) =
-        intervals.windows(2).filter(both).map(|w| (w[0], w[1])).unzip();
+    let (before, after): (Vec<f64>, Vec<f64>) = intervals.windows(2).map(|w| (w[0], w[1])).unzip();
     let map = Plot::new(axis("Interval").limits(low, high), axis("Interval after it").limits(low, high))
         .with(Series::line("", [low, high], [low, high]).ink(Ink::Grey).stroke(Stroke::Thin))
         .with(Series::points("", before, after).marker(Marker::Circle).ink(Ink::Nth(0)))
@@ -47,7 +37,7 @@ pub fn impacts(title: &str, trace: &Trace, found: &Impacts) -> Figure {
         .panel(marked(trace, &found.times, near))
         .panel(histogram)
         .panel(map)
-        .caption("(a) The trace with the impacts that were found, (b) about ten intervals of it. (c) Intervals between successive impacts, (d) each over the one before; a periodic motion is a point there, or a few. Intervals far outside the others, as a missed impact makes them, are counted and not shown.");
+        .caption("(a) The trace with the impacts that were found, (b) about ten intervals of it. (c) Intervals between successive impacts, (d) each over the one before; a periodic motion is a point there, or a few.");
     lettered(figure)
 }
 
@@ -89,32 +79,21 @@ fn marked(trace: &Trace, times: &[f64], (from, to): (f64, f64)) -> Plot {
 fn outline(trace: &Trace, from: f64, to: f64) -> (Vec<f64>, Vec<f64>) {
     let inside: Vec<usize> =
         (0..trace.values.len()).filter(|i| (from..=to).contains(&trace.axis.at(*i))).collect();
-    let stretch = inside.len().div_ceil(SHOWN / 2).max(1);
-    let mut kept: Vec<usize> = Vec::new();
-    for part in inside.chunks(stretch) {
+    let kept = inside.chunks(inside.len().div_ceil(SHOWN / 2).max(1)).flat_map(|part| {
         let by = |a: &&usize, b: &&usize| trace.values[**a].total_cmp(&trace.values[**b]);
-        let (low, high) = (part.iter().min_by(by), part.iter().max_by(by));
-        kept.extend(low.min(high));
-        if low != high {
-            kept.extend(low.max(high));
-        }
-    }
-    kept.into_iter().map(|i| (trace.axis.at(i), trace.values[i])).unzip()
+        let mut ends: Vec<usize> =
+            part.iter().min_by(by).into_iter().chain(part.iter().max_by(by)).copied().collect();
+        ends.sort_unstable();
+        ends.dedup();
+        ends
+    });
+    kept.map(|i| (trace.axis.at(i), trace.values[i])).unzip()
 }
 
-/// Both axes of the return map from the same to the same: all values but those further than five interquartile ranges from the
-/// quartiles, where these are a few, so that one missed impact does not squeeze the others into a point.
+/// Both axes of the return map from the same to the same.
 fn limits(values: &[f64]) -> (f64, f64) {
-    let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-    sorted.sort_by(f64::total_cmp);
-    let at = |part: usize| sorted.get(sorted.len() * part / 4).copied().unwrap_or(f64::NAN);
-    let (lower, upper) = (at(1), at(3));
-    let reach = 5.0 * (upper - lower);
-    let central: Vec<f64> =
-        sorted.iter().copied().filter(|v| (lower - reach..=upper + reach).contains(v)).collect();
-    // More than one in ten are no outliers but another kind of interval.
-    let shown = if 10 * (sorted.len() - central.len()) <= sorted.len() { &central } else { &sorted };
-    let (low, high) = (shown.first().copied().unwrap_or(0.0), shown.last().copied().unwrap_or(1.0));
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
     let margin = (0.1 * (high - low)).max(0.01 * high.abs());
     (low - margin, high + margin)
 }

@@ -2,7 +2,7 @@
 
 use super::draws::Draws;
 use super::noise::Noise;
-use super::restitution::train;
+use super::restitution::{outliers, train};
 use vibroimpact::measure::restitution::{Measured, restitution};
 
 const CASES: u64 = 600;
@@ -22,7 +22,7 @@ fn held(
         let mut one = train(&mut Noise::new(from + seed), r, flights, per_bounce, timing);
         one.onset_std = one.onset_std.filter(|_| stated);
         let found = restitution(&Measured { trains: vec![one], ..Measured::default() }).unwrap();
-        named += usize::from(!found.outliers.is_empty());
+        named += usize::from(outliers(&found) > 0);
         let std = found.restitution.std.unwrap();
         inside += usize::from((found.restitution.value - r).abs() < draws.reach() * std);
     }

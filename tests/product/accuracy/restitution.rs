@@ -2,9 +2,14 @@
 
 use super::draws::Draws;
 use super::noise::Noise;
-use vibroimpact::measure::restitution::{Drop, Measured, Train, Velocities, restitution};
+use vibroimpact::measure::restitution::{Drop, Measured, Restitution, Train, Velocities, restitution};
 
 const CASES: u64 = 1000;
+
+/// Flights that were left out.
+pub fn outliers(found: &Restitution) -> usize {
+    found.findings.iter().filter(|f| f.code == "flight-outlier").count()
+}
 
 fn of_drop(drop: Drop) -> (f64, f64) {
     let found = restitution(&Measured { drop: Some(drop), ..Measured::default() }).unwrap().restitution;
@@ -62,7 +67,7 @@ fn trains_of_bounces_are_covered_whether_impacts_or_clock_scatter() {
             let intervals: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
             let train = Train { intervals, onset_std: (timing > 0.0).then_some(timing) };
             let found = restitution(&Measured { trains: vec![train], ..Measured::default() }).unwrap();
-            n_out += found.outliers.len();
+            n_out += outliers(&found);
             inside +=
                 usize::from((found.restitution.value - truth).abs() < 1.96 * found.restitution.std.unwrap());
         }
@@ -77,7 +82,7 @@ fn trains_of_bounces_are_covered_whether_impacts_or_clock_scatter() {
     }
 }
 
-/// Two to four trains of one R, of three to six flights each, started at different speeds.
+/// Two to four trains of one R, of five to eight flights each, started at different speeds.
 fn trains_together_are_covered(draws: Draws) {
     let truth: f64 = 0.6;
     for (name, per_bounce, timing, stated) in [
@@ -94,7 +99,7 @@ fn trains_together_are_covered(draws: Draws) {
                 .map(|_| {
                     let (mut flight, mut at) = (noise.between(0.3, 0.5), 0.0);
                     let mut times = vec![timing * noise.normal()];
-                    for _ in 0..noise.between(3.0, 7.0) as usize {
+                    for _ in 0..noise.between(5.0, 9.0) as usize {
                         at += flight;
                         times.push(at + timing * noise.normal());
                         flight *= truth * (per_bounce * noise.normal()).exp();
@@ -104,7 +109,7 @@ fn trains_together_are_covered(draws: Draws) {
                 })
                 .collect();
             let found = restitution(&Measured { trains, ..Measured::default() }).unwrap();
-            n_out += found.outliers.len();
+            n_out += outliers(&found);
             let off = (found.restitution.value - truth).abs();
             match found.restitution.std {
                 Some(u) => inside += usize::from(off < draws.reach() * u),
@@ -118,8 +123,9 @@ fn trains_together_are_covered(draws: Draws) {
         );
         // Two or three trains that by chance differ as if R did have none.
         assert!(open * 20 < draws.of(CASES), "{name}: {open}");
-        // 1000 cases scatter the coverage by 0.7 %. That R does not scatter at all these flights do not show: it errs to the safe side.
-        let most = if per_bounce == 0.0 { 1.0 } else { 0.98 };
+        // 1000 cases scatter the coverage by 0.7 %. That R does not scatter at all these flights do not show: it errs to the safe side, as it does by
+        // a per cent where two or three trains, each of an uncertainty of few flights, are taken together.
+        let most = if per_bounce == 0.0 { 1.0 } else { 0.99 };
         assert!(draws.part(0.92..=most).contains(&coverage), "{name}: {coverage}");
     }
 }
@@ -203,13 +209,11 @@ fn scatter_between_trains_is_covered_or_refused(draws: Draws) {
             "restitution, {trains} trains that differ by 1 %, bounces by {per_bounce}: seeds 140000.., 95 % coverage {:.1} % of {stated}",
             100.0 * inside as f64 / stated as f64
         );
-        // Fewer than six trains that clearly differ have no uncertainty: by 1 % where timing scatters by 1e-5 all but a few per cent of them,
-        // fewer where the bounces scatter, too.
+        // Fewer than four trains that clearly differ have no uncertainty: by 1 % where timing scatters by 1e-5 all but a few per cent of them.
         if draws == Draws::Few {
-            assert!(inside as u64 == stated && (trains < 6 || open == 0), "{trains}: {inside} of {stated}");
-        } else if trains < 6 {
-            let least = if per_bounce == 0.0 { 0.97 } else { 0.5 };
-            assert!(open as f64 > least * CASES as f64, "{trains}: {open}");
+            assert!(inside as u64 == stated && (trains < 4 || open == 0), "{trains}: {inside} of {stated}");
+        } else if trains < 4 {
+            assert!(open as f64 > 0.97 * CASES as f64, "{trains}: {open}");
         } else {
             let coverage = inside as f64 / stated as f64;
             assert!(open == 0 && (0.92..=0.985).contains(&coverage), "{trains}, {per_bounce}: {coverage}");

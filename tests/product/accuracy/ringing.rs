@@ -4,7 +4,7 @@ use super::draws::Draws;
 use super::noise::Noise;
 use std::f64::consts::TAU;
 use vibroimpact::measure::impacts::{Impacts, ImpactsOptions, impacts};
-use vibroimpact::measure::restitution::{Bounces, GRAVITY};
+use vibroimpact::measure::restitution::{GRAVITY, Train};
 use vibroimpact::record::{Axis, Meta, Trace};
 use vibroimpact::units::Unit;
 
@@ -58,7 +58,7 @@ impl Ring {
 
 /// Whether a finding says that the number of impacts is doubtful.
 fn doubted(found: &Impacts) -> bool {
-    let doubts = ["count-depends-on-ringing", "impacts-near-noise", "impacts-lost-in-noise"];
+    let doubts = ["count-depends-on-ringing", "impacts-lost-in-noise"];
     found.missed > 0 || found.findings.iter().any(|f| doubts.contains(&f.code))
 }
 
@@ -107,9 +107,8 @@ fn ringing_bounces_are_counted_once(draws: Draws) {
             flight *= r;
         }
         let trace = ring.trace(&mut noise, &times, &heights, times[6] + 0.1);
-        let options =
-            ImpactsOptions { hum: false, threshold: Bounces::THRESHOLD, ..ImpactsOptions::default() };
-        let found = Bounces::default().add(&trace, &options);
+        let options = ImpactsOptions { hum: false, threshold: Train::THRESHOLD, ..ImpactsOptions::default() };
+        let found = Train::of(&trace, &options).map(|(_, found)| found);
         // Bounces that are lost are the last.
         let good = found.as_ref().is_ok_and(|f| f.times.len() <= times.len() && ring.fits(&f.times, &times));
         let doubt =

@@ -21,37 +21,31 @@ const MEDIAN: f64 = 0.674_489_750_196_081_7;
 /// Starts from the median and the lower quartile of the distances from it, so that impacts may fill half of the record; then
 /// leaves out the samples beyond the noise limit with their neighbours, and repeats.
 pub fn background(values: &[f64]) -> Background {
-    let all = |x: f64| values.iter().map(|v| (v - x).abs()).collect::<Vec<f64>>();
-    let level = quantile(&mut values.to_vec(), 0.5);
-    let sigma = quantile(&mut all(level), 0.25) / QUARTILE;
     let (low, high) =
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
     // P(|x| > zσ) < exp(−z²/2), for each of n samples.
     let z = (2.0 * (values.len().max(1) as f64 / 1e-3).ln()).sqrt();
-    // A digital trace has σ = 0: the limit is at least a thousandth of the range.
-    let reach = |sigma: f64| (z * sigma).max(1e-3 * (high - low));
-    let mut found = Background { level, sigma, reach: reach(sigma) };
+    let of = |quiet: &[f64], part: f64, normal: f64| {
+        let level = median(quiet);
+        let sigma = quantile(quiet.iter().map(|v| (v - level).abs()).collect(), part) / normal;
+        // A digital trace has σ = 0: the limit is at least a thousandth of the range.
+        Background { level, sigma, reach: (z * sigma).max(1e-3 * (high - low)) }
+    };
+    let mut found = of(values, 0.25, QUARTILE);
     for _ in 0..4 {
-        let out = |i: usize| values.get(i).is_none_or(|v| (v - found.level).abs() > found.reach);
-        let mut quiet: Vec<f64> = (0..values.len())
-            .filter(|i| !(out(*i) || *i > 0 && out(i - 1) || i + 1 < values.len() && out(i + 1)))
-            .map(|i| values[i])
-            .collect();
+        let out = |i: usize| (values[i] - found.level).abs() > found.reach;
+        let beside = |i: usize| i.saturating_sub(1)..(i + 2).min(values.len());
+        let quiet: Vec<f64> = (0..values.len()).filter(|i| !beside(*i).any(out)).map(|i| values[i]).collect();
         if quiet.len() < 8 {
             break;
         }
-        let level = quantile(&mut quiet, 0.5);
-        for v in &mut quiet {
-            *v = (*v - level).abs();
-        }
-        let sigma = quantile(&mut quiet, 0.5) / MEDIAN;
-        found = Background { level, sigma, reach: reach(sigma) };
+        found = of(&quiet, 0.5, MEDIAN);
     }
     found
 }
 
-/// Quantile `q` of values in any order, which it reorders; NaN of none.
-pub fn quantile(values: &mut [f64], q: f64) -> f64 {
+/// Quantile `q` of values in any order; NaN of none.
+fn quantile(mut values: Vec<f64>, q: f64) -> f64 {
     if values.is_empty() {
         return f64::NAN;
     }
@@ -64,7 +58,7 @@ pub fn quantile(values: &mut [f64], q: f64) -> f64 {
 
 /// The median of values in any order; NaN of none.
 pub fn median(values: &[f64]) -> f64 {
-    quantile(&mut values.to_vec(), 0.5)
+    quantile(values.to_vec(), 0.5)
 }
 
 #[cfg(test)]
@@ -85,8 +79,8 @@ mod tests {
 
     #[test]
     fn quantiles_interpolate() {
-        assert_eq!(quantile(&mut [4.0, 1.0, 3.0, 2.0], 0.5), 2.5);
-        assert_eq!(quantile(&mut [4.0, 1.0, 3.0], 1.0), 4.0);
-        assert!(quantile(&mut [], 0.5).is_nan());
+        assert_eq!(quantile(vec![4.0, 1.0, 3.0, 2.0], 0.5), 2.5);
+        assert_eq!(quantile(vec![4.0, 1.0, 3.0], 1.0), 4.0);
+        assert!(quantile(Vec::new(), 0.5).is_nan());
     }
 }

@@ -1,9 +1,6 @@
-//! Missed and doubled impacts: which place in a series each impact has.
+//! Missed and doubled impacts, and intervals that repeat a pattern.
 
 use super::background::median;
-use super::multiples::multiples;
-use super::pattern::{Step, pattern};
-use vibro_record::Finding;
 
 /// Which impacts count, and their indices in a series without missed ones.
 pub struct Counted {
@@ -11,105 +8,78 @@ pub struct Counted {
     pub kept: Vec<usize>,
     /// Their indices; those of missed impacts are left out.
     pub index: Vec<usize>,
-    /// Their places in the pattern; 0 without one.
-    pub place: Vec<usize>,
-    /// Impacts of the pattern that repeats; 1 where intervals are alike, or repeat nothing.
-    pub length: usize,
     /// Impacts that should stand in intervals that are several of the others.
     pub missed: usize,
     /// Impacts that follow another too soon.
     pub doubled: usize,
-    /// Why it is not known how many there are.
-    pub unsure: Option<Finding>,
 }
 
 /// Robust standard deviations of the intervals beyond which one is no chance.
 const OUTSIDE: f64 = 5.0;
+/// As many odd intervals as this part of all are no accident, but belong to the motion: so are those of every second impact of a cycle.
+const ACCIDENTS: f64 = 0.4;
 
-/// Numbers the impacts at `times`, which are `steps` apart. With `complete` none is missed and none is too many.
+/// Numbers the impacts at `times`, which are `steps` apart; with `complete` none is missed and none is too many.
+///
+/// An interval below half of the median ends with an impact too many, one beyond one and a half lacks impacts. Intervals that scatter as far
+/// as that say nothing of either: all count as they are.
 pub fn count(times: &[f64], steps: &[f64], complete: bool) -> Counted {
-    match pattern(steps) {
-        repeated if complete => {
-            let (length, first) = repeated.map_or((1, 0), |p| (p.intervals.len(), p.first));
-            numbered(times, length, first, |_, _, _| Step::Several(1))
-        }
-        Some(pattern) => {
-            let step = |place, d, later| pattern.step(place, d, later);
-            numbered(times, pattern.intervals.len(), pattern.first, step)
-        }
-        None => even(times, steps),
-    }
-}
-
-/// Numbers impacts by what each interval is to the train, from the place of the first; an interval after it is given, too.
-fn numbered(
-    times: &[f64],
-    length: usize,
-    first: usize,
-    step: impl Fn(usize, f64, Option<f64>) -> Step,
-) -> Counted {
-    let mut counted = Counted {
-        kept: vec![0],
-        index: vec![0],
-        place: vec![first],
-        length,
-        missed: 0,
-        doubled: 0,
-        unsure: None,
-    };
-    let (mut last, mut at, mut place) = (0, 0, first);
+    let typical = median(steps);
+    let off: Vec<f64> = steps.iter().map(|d| (d - typical).abs()).collect();
+    let scatter = OUTSIDE * median(&off) / 0.674_5;
+    let odd = |d: f64| (d - typical).abs() > scatter.max(0.5 * typical);
+    let accidents = steps.iter().filter(|d| odd(**d)).count() as f64 <= ACCIDENTS * steps.len() as f64;
+    let judged = !complete && accidents && scatter <= 0.5 * typical;
+    let mut counted = Counted { kept: vec![0], index: vec![0], missed: 0, doubled: 0 };
+    let (mut last, mut at) = (0, 0);
     for i in 1..times.len() {
-        let later = times.get(i + 1).map(|t| t - times[i]);
-        let steps = match step(place, times[i] - times[last], later) {
-            Step::Part => {
-                counted.doubled += 1;
-                continue;
-            }
-            Step::Several(n) => n,
-            Step::At(other) => {
-                place = other;
-                1
-            }
-        };
-        counted.missed += steps - 1;
-        (last, at, place) = (i, at + steps, (place + steps) % length);
+        let step = times[i] - times[last];
+        let odd = judged && odd(step);
+        if odd && step < typical {
+            counted.doubled += 1;
+            continue;
+        }
+        let intervals = if odd { (step / typical).round().clamp(1.0, 1e9) as usize } else { 1 };
+        counted.missed += intervals - 1;
+        (last, at) = (i, at + intervals);
         counted.kept.push(i);
         counted.index.push(at);
-        counted.place.push(place);
     }
     counted
 }
 
-/// Numbers impacts of equal intervals, or of intervals that repeat nothing.
-fn even(times: &[f64], steps: &[f64]) -> Counted {
-    let typical = median(steps);
-    let spread = median(&steps.iter().map(|d| (d - typical).abs()).collect::<Vec<f64>>()) / 0.674_5;
-    let short = |d: f64| d < 0.5 * typical && typical - d > OUTSIDE * spread;
-    // As many short intervals as a fifth of all are no accident.
-    let many = steps.iter().filter(|d| short(**d)).count() * 5 > steps.len();
-    let mut counted = numbered(times, 1, 0, |_, d, _| {
-        if !many && short(d) {
-            return Step::Part;
-        }
-        let long = d > 1.5 * typical && d - typical > OUTSIDE * spread;
-        Step::Several(if long { (d / typical).round().clamp(1.0, 1e9) as usize } else { 1 })
-    });
-    counted.unsure = unsure(steps, &counted, OUTSIDE * spread > 0.5 * typical);
-    counted
+/// Intervals are alike where they differ by less than this part of the shorter.
+const ALIKE: f64 = 0.1;
+/// Most impacts of a pattern, and how often it must be seen.
+const LONGEST: usize = 8;
+const SEEN: usize = 3;
+/// One unlike interval in each round of p makes 2/p of all neighbours unlike; so much of that is enough at the ends of a record.
+const UNLIKE: f64 = 0.8;
+
+/// Impacts after which all intervals repeat though they are unlike in between, as those of two impacts a cycle are; `None` where there is no such
+/// number.
+pub fn pattern(steps: &[f64]) -> Option<usize> {
+    let unlike = |lag: usize| {
+        let pairs = steps.iter().zip(steps.iter().skip(lag));
+        pairs.filter(|(a, b)| (*a - *b).abs() > ALIKE * a.min(**b)).count()
+    };
+    let part = unlike(1) as f64 / steps.len() as f64;
+    let repeats = |p: &usize| unlike(*p) == 0 && part >= UNLIKE * 2.0 / *p as f64;
+    (2..=LONGEST).take_while(|p| steps.len() >= SEEN * p).find(repeats)
 }
 
-/// Why the count of even intervals may be another: all of them are multiples of a common one and were counted otherwise, or impacts
-/// count as missed or doubled though the intervals `scatter` as far as one more or less would change them.
-fn unsure(steps: &[f64], counted: &Counted, scatter: bool) -> Option<Finding> {
-    let span = counted.index.last().copied().unwrap_or(0);
-    let other = multiples(steps).map(|m| (m.interval, m.counts.iter().sum::<usize>()));
-    if let Some((interval, all)) = other.filter(|(_, all)| *all != span) {
-        let missed = all - steps.len().min(all);
-        return Some(
-            Finding::doubt("missed-or-skipped").number("interval", interval).count("missed", missed),
-        );
-    }
-    (scatter && counted.missed + counted.doubled > 0).then(|| Finding::doubt("count-within-scatter"))
+/// Times without what their places in a pattern of `length` impacts shift them by: an even train.
+pub fn evened(times: &[f64], length: usize) -> Vec<f64> {
+    let rounds: f64 = times.windows(length + 1).map(|w| w[length] - w[0]).sum();
+    let interval = rounds / (length * (times.len() - length)) as f64;
+    let shifts: Vec<f64> = times.iter().enumerate().map(|(i, t)| t - interval * i as f64).collect();
+    let mean = |place: usize| {
+        let same = shifts.iter().skip(place).step_by(length);
+        same.clone().sum::<f64>() / same.count() as f64
+    };
+    let means: Vec<f64> = (0..length).map(mean).collect();
+    let common = means.iter().sum::<f64>() / length as f64;
+    times.iter().enumerate().map(|(i, t)| t - means[i % length] + common).collect()
 }
 
 #[cfg(test)]
@@ -118,35 +88,39 @@ mod tests {
     use vibro_math::Noise;
 
     #[test]
-    fn a_missed_and_a_doubled_impact_of_a_pattern() {
-        let mut times: Vec<f64> =
-            (0..100).map(|i| 0.12 * f64::from(i / 2) + if i % 2 == 1 { 0.045 } else { 0.0 }).collect();
-        times.remove(21);
-        times.insert(30, times[29] + 0.02);
-        let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
-        let found = count(&times, &steps, false);
-        assert_eq!((found.length, found.missed, found.doubled), (2, 1, 1));
-        assert_eq!(found.index.last(), Some(&99));
-        assert!(found.index.iter().zip(&found.place).all(|(i, p)| i % 2 == *p));
-        let all = count(&times, &steps, true);
-        assert_eq!((all.kept.len(), all.missed, all.doubled), (100, 0, 0));
+    fn intervals_that_repeat_are_a_pattern_and_chance_is_none() {
+        let twin: Vec<f64> = (0..30).map(|i| if i % 2 == 0 { 0.03 } else { 0.09 }).collect();
+        assert_eq!((pattern(&twin), pattern(&twin[1..])), (Some(2), Some(2)));
+        let three: Vec<f64> = (0..30).map(|i| [0.1, 0.1, 0.2][i % 3]).collect();
+        assert_eq!(pattern(&three), Some(3));
+        assert_eq!(pattern(&[0.1; 30]), None);
+        for seed in 0..500 {
+            let mut noise = Noise::new(seed);
+            // One impact in five is missed by chance; then intervals of any length.
+            let missing: Vec<f64> = (0..40).map(|_| if noise.uniform() < 0.2 { 0.2 } else { 0.1 }).collect();
+            assert_eq!(pattern(&missing), None, "seed {seed}");
+            let any: Vec<f64> = (0..40).map(|_| -noise.uniform().max(1e-9).ln()).collect();
+            assert_eq!(pattern(&any), None, "seed {seed}");
+        }
     }
 
-    /// A gap of any length counts all that it lacks, to the last impact.
     #[test]
-    fn a_gap_in_a_pattern_counts_every_impact() {
-        let at = |i: usize| 0.1 * (i / 2) as f64 + if i % 2 == 1 { 0.04 } else { 0.0 };
-        for seed in 0..200 {
-            let mut noise = Noise::new(seed);
-            let jitter = if seed % 2 == 0 { 0.0 } else { 2e-4 };
-            for missed in [1, 2, 3, 8, 14, 15, 40] {
-                let kept = (0..60 + missed).filter(|i| !(21..21 + missed).contains(i));
-                let times: Vec<f64> = kept.map(|i| at(i) + jitter * noise.normal()).collect();
-                let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
-                let found = count(&times, &steps, false);
-                assert_eq!((found.length, found.missed, found.doubled), (2, missed, 0), "seed {seed}");
-                assert_eq!(found.index.last(), Some(&(59 + missed)), "seed {seed}");
-            }
+    fn evened_times_are_even() {
+        let times: Vec<f64> = (0..20).map(|i| 0.06 * i as f64 + [0.0, -0.03][i % 2]).collect();
+        for (i, t) in evened(&times, 2).iter().enumerate() {
+            // The mean shift is left; numbers near 1, a few roundings.
+            assert!((t - (0.06 * i as f64 - 0.015)).abs() < 1e-14, "{t}");
         }
+    }
+
+    /// A pattern that an accident breaks is none, and nothing is counted as missed for it.
+    #[test]
+    fn a_broken_pattern_misses_nothing() {
+        let mut times: Vec<f64> =
+            (0..100).map(|i| 0.12 * f64::from(i / 2) + if i % 2 == 1 { 0.03 } else { 0.0 }).collect();
+        times.remove(21);
+        let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+        let found = count(&times, &steps, false);
+        assert_eq!((pattern(&steps), found.kept.len(), found.missed, found.doubled), (None, 99, 0, 0));
     }
 }

@@ -28,92 +28,61 @@ const PIECE: f64 = 10.0;
 /// The noise between impacts must fall to this part of what it was, or it was no hum.
 const WORTH: f64 = 0.8;
 
-/// What was done about hum.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Treated {
-    /// Hum that was removed.
-    pub removed: Option<Hum>,
-    /// How far hum that was kept and noise reach from the level.
-    pub reach: Option<f64>,
-}
-
-/// Removes the hum from `values`, sampled at `rate` in Hz, where there is any that matters; with `keep` it stays, and its reach is given.
+/// Removes the hum from `values`, sampled at `rate` in Hz, where there is any that matters, and gives it.
 ///
 /// Each piece of at least five cycles is fitted by least squares with bisquare weights (Beaton and Tukey 1974), so impacts do not
 /// count; nothing is removed where that does not lower the noise between impacts by a fifth. Where impacts come as often as the hum
 /// or half as often, a sine with its harmonics fits them as well: the hum stays, and a finding says so.
-pub fn remove(values: &mut [f64], rate: f64, keep: bool, findings: &mut Vec<Finding>) -> Treated {
+pub fn remove(values: &mut [f64], rate: f64, findings: &mut Vec<Finding>) -> Option<Hum> {
     let piece = (PIECE * rate).min(values.len() as f64) as usize;
     if (piece as f64) < 0.1 * rate || piece < 32 {
-        return Treated::default();
+        return None;
     }
-    let mut cleaned = Vec::with_capacity(values.len());
-    let mut highest = 0.0f64;
+    let mut cleaned = values.to_vec();
     let mut hums: Vec<Hum> = Vec::new();
-    let mut rest: &[f64] = values;
-    while !rest.is_empty() {
-        // A short remainder goes with the piece before it.
-        let take = if rest.len() < 2 * piece { rest.len() } else { piece };
-        let (now, later) = rest.split_at(take);
-        match fitted(now, rate) {
-            Some((hum, model)) => {
-                highest = model.iter().fold(highest, |h, m| h.max(m.abs()));
-                cleaned.extend(now.iter().zip(model).map(|(v, m)| v - m));
-                hums.push(hum);
-            }
-            None => cleaned.extend_from_slice(now),
+    // What is shorter than a piece goes with the last one.
+    let pieces = values.len() / piece;
+    for k in 0..pieces {
+        let end = if k + 1 == pieces { values.len() } else { (k + 1) * piece };
+        let now = &mut cleaned[k * piece..end];
+        if let Some((hum, model)) = fitted(now, rate) {
+            now.iter_mut().zip(model).for_each(|(v, m)| *v -= m);
+            hums.push(hum);
         }
-        rest = later;
     }
-    if hums.is_empty() {
-        return Treated::default();
-    }
-    // A sine ends at its amplitude: what exceeds hum and noise together is neither.
-    let kept = Treated { removed: None, reach: Some(highest + background(&cleaned).reach) };
-    let mean = |f: &dyn Fn(&Hum) -> f64| hums.iter().map(f).sum::<f64>() / hums.len() as f64;
-    let frequency = mean(&|h| h.frequency);
-    if keep {
-        return kept;
-    }
-    if let Some(impacts) = burst_rate(&cleaned, rate).filter(|r| shares_lines(*r, frequency)) {
-        findings.push(
-            Finding::caution("hum-or-impacts").number("frequency", frequency).number("impacts", impacts),
-        );
-        return kept;
+    let harmonics = hums.iter().map(|h| h.harmonics).max()?;
+    let mean = |f: fn(&Hum) -> f64| hums.iter().map(f).sum::<f64>() / hums.len() as f64;
+    let found = Hum { frequency: mean(|h| h.frequency), amplitude: mean(|h| h.amplitude), harmonics };
+    if let Some(impacts) = burst_rate(&cleaned, rate)
+        && (impacts > 0.9 * found.frequency || (impacts / found.frequency - 0.5).abs() < 0.01)
+    {
+        let either = Finding::caution("hum-or-impacts").number("frequency", found.frequency);
+        findings.push(either.number("impacts", impacts));
+        return None;
     }
     values.copy_from_slice(&cleaned);
-    let harmonics = hums.iter().map(|h| h.harmonics).max().unwrap_or(1);
-    let removed = Hum { frequency, amplitude: mean(&|h| h.amplitude), harmonics };
-    Treated { removed: Some(removed), reach: None }
+    Some(found)
 }
 
 /// Bursts a second in what remains without the hum, from the median of their distances.
 fn burst_rate(cleaned: &[f64], rate: f64) -> Option<f64> {
     let found = background(cleaned);
     let centred: Vec<f64> = cleaned.iter().map(|v| v - found.level).collect();
-    let starts: Vec<f64> = bursts(&centred, found.reach, None).each.iter().map(|b| b.start as f64).collect();
+    let starts: Vec<f64> = bursts(&centred, found.reach, None).0.iter().map(|b| b.start as f64).collect();
     let steps: Vec<f64> = starts.windows(2).map(|w| w[1] - w[0]).collect();
     (steps.len() > 1).then(|| rate / median(&steps))
-}
-
-/// Whether a train of so many impacts a second has spectral lines where the hum has its own.
-fn shares_lines(impacts: f64, hum: f64) -> bool {
-    impacts > 0.9 * hum || (impacts / hum - 0.5).abs() < 0.01
 }
 
 /// The sine that lowers the noise most, and its samples without the offset.
 fn fitted(values: &[f64], rate: f64) -> Option<(Hum, Vec<f64>)> {
     let before = background(values);
-    let limited: Vec<f64> =
-        values.iter().map(|v| (v - before.level).clamp(-3.0 * before.sigma, 3.0 * before.sigma)).collect();
-    let length = values.len() as f64 / rate;
+    let limit = 3.0 * before.sigma;
+    let limited: Vec<f64> = values.iter().map(|v| (v - before.level).clamp(-limit, limit)).collect();
+    let steps = (TOLERANCE * 4.0 * values.len() as f64 / rate).ceil().max(1.0) as i64;
     let (frequency, power) = [50.0, 60.0]
         .into_iter()
         .filter(|nominal| nominal + TOLERANCE < 0.5 * rate)
-        .flat_map(|nominal| {
-            let steps = (TOLERANCE * 4.0 * length).ceil().max(1.0) as i64;
-            (-steps..=steps).map(move |k| nominal + TOLERANCE * k as f64 / steps as f64)
-        })
+        .flat_map(|nominal| (-steps..=steps).map(move |k| nominal + TOLERANCE * k as f64 / steps as f64))
         .map(|f| (f, power(&limited, f / rate)))
         .max_by(|a, b| a.1.total_cmp(&b.1))?;
     // A sine of amplitude 2√power/n has half its square of the variance; a tenth cannot lower the noise by a fifth.
@@ -121,12 +90,10 @@ fn fitted(values: &[f64], rate: f64) -> Option<(Hum, Vec<f64>)> {
     if 2.0 * power / n < 0.1 * limited.iter().map(|v| v * v).sum::<f64>() {
         return None;
     }
-    let orders = HARMONICS.min((0.5 * rate / frequency * 0.98) as usize).max(1);
-    let (frequency, model) = refined(values, frequency, rate, orders)?;
-    let amplitude = model.0[1].hypot(model.0[2]);
-    let after: Vec<f64> = values.iter().zip(&model.1).map(|(v, m)| v - m).collect();
-    (background(&after).sigma < WORTH * before.sigma)
-        .then_some((Hum { frequency, amplitude, harmonics: orders }, model.1))
+    let harmonics = HARMONICS.min((0.5 * rate / frequency * 0.98) as usize).max(1);
+    let (hum, model) = refined(values, frequency, rate, harmonics)?;
+    let after: Vec<f64> = values.iter().zip(&model).map(|(v, m)| v - m).collect();
+    (background(&after).sigma < WORTH * before.sigma).then_some((hum, model))
 }
 
 /// Squared amplitude of the sine of `f` cycles a sample.
@@ -141,58 +108,45 @@ fn power(values: &[f64], f: f64) -> f64 {
     sum.norm_sqr()
 }
 
-type Model = (DVector<f64>, Vec<f64>);
-
 /// Weighted linear fits at a frequency that a Gauss-Newton step refines with each change of the weights.
-fn refined(values: &[f64], mut frequency: f64, rate: f64, orders: usize) -> Option<(f64, Model)> {
-    let p = 2 * orders + 2;
+fn refined(values: &[f64], mut frequency: f64, rate: f64, harmonics: usize) -> Option<(Hum, Vec<f64>)> {
     let mut weights = vec![1.0; values.len()];
-    let mut model = None;
+    let mut found: Option<(DVector<f64>, Vec<f64>)> = None;
     for _ in 0..8 {
-        // Offset, cosine and sine of each order, and the derivative of the fundamental by frequency after the first fit.
-        let (a, b) = model.as_ref().map_or((0.0, 0.0), |(c, _): &Model| (c[1], c[2]));
-        let columns = if a == 0.0 && b == 0.0 { p - 1 } else { p };
-        let row = |i: usize| -> Vec<f64> {
+        // Offset, cosine and sine of each order, and after the first fit the derivative of the fundamental by frequency.
+        let fundamental = found.as_ref().map(|(c, _)| (c[1], c[2]));
+        let row = |i: usize| -> DVector<f64> {
             let t = (i as f64 - 0.5 * values.len() as f64) / rate;
-            let mut row = Vec::with_capacity(columns);
-            row.push(1.0);
-            for order in 1..=orders {
+            let mut row = vec![1.0];
+            for order in 1..=harmonics {
                 let (s, c) = (TAU * frequency * order as f64 * t).sin_cos();
                 row.extend([c, s]);
             }
-            if columns == p {
-                let (c, s) = (row[1], row[2]);
-                row.push(TAU * t * (b * c - a * s));
-            }
-            row
+            row.extend(fundamental.map(|(a, b)| TAU * t * (b * row[1] - a * row[2])));
+            DVector::from_vec(row)
         };
-        let mut normal = DMatrix::<f64>::zeros(columns, columns);
-        let mut right = DVector::<f64>::zeros(columns);
+        let columns = 2 * harmonics + 1 + usize::from(fundamental.is_some());
+        let (mut normal, mut right) = (DMatrix::zeros(columns, columns), DVector::zeros(columns));
         for (i, (v, w)) in values.iter().zip(&weights).enumerate().filter(|(_, (_, w))| **w > 0.0) {
             let row = row(i);
-            for (j, x) in row.iter().enumerate() {
-                right[j] += w * x * v;
-                for (k, y) in row.iter().enumerate().take(j + 1) {
-                    normal[(j, k)] += w * x * y;
-                }
-            }
+            normal.syger(*w, &row, &row, 1.0);
+            right.axpy(w * v, &row, 1.0);
         }
-        normal.fill_upper_triangle_with_lower_triangle();
         let solved = normal.cholesky()?.solve(&right);
-        let samples: Vec<f64> = (0..values.len())
-            .map(|i| row(i).iter().zip(solved.iter()).skip(1).map(|(x, c)| x * c).sum())
-            .collect();
-        let residual: Vec<f64> = values.iter().zip(&samples).map(|(v, m)| v - m - solved[0]).collect();
-        let spread = 4.685 * median(&residual.iter().map(|r| r.abs()).collect::<Vec<f64>>()) / 0.674_5;
+        let model: Vec<f64> = (0..values.len()).map(|i| row(i).dot(&solved) - solved[0]).collect();
+        let residual = values.iter().zip(&model).map(|(v, m)| v - m - solved[0]);
+        let residual: Vec<f64> = residual.map(f64::abs).collect();
+        let spread = 4.685 * median(&residual) / 0.674_5;
         if spread > 0.0 {
             weights = residual.iter().map(|r| (1.0 - (r / spread).powi(2)).max(0.0).powi(2)).collect();
         }
-        if columns == p {
-            frequency += solved[p - 1].clamp(-TOLERANCE, TOLERANCE);
+        if fundamental.is_some() {
+            frequency += solved[columns - 1].clamp(-TOLERANCE, TOLERANCE);
         }
-        model = Some((solved, samples));
+        found = Some((solved, model));
     }
-    model.filter(|_| frequency > 0.0).map(|m| (frequency, m))
+    let (solved, model) = found.filter(|_| frequency > 0.0)?;
+    Some((Hum { frequency, amplitude: solved[1].hypot(solved[2]), harmonics }, model))
 }
 
 #[cfg(test)]
@@ -211,7 +165,7 @@ mod tests {
             1.5 * (x + 0.4).sin() + 0.3 * (3.0 * x).cos()
         };
         let mut values: Vec<f64> = clean.iter().enumerate().map(|(i, v)| v + hum(i)).collect();
-        let found = remove(&mut values, rate, false, &mut Vec::new()).removed.unwrap();
+        let found = remove(&mut values, rate, &mut Vec::new()).unwrap();
         // A sine of amplitude A in N samples of noise σ: u(f) = √6 σ/(π A T √N) = 2e-5 Hz, u(A) = σ√(2/N) = 2.2e-4.
         // Bisquare weights cost 5 %, impacts in the tails of the weights more: five times as much.
         assert!((found.frequency - 50.07).abs() < 1e-4, "{found:?}");
@@ -227,7 +181,7 @@ mod tests {
         let values: Vec<f64> =
             (0..4000).map(|i| 0.01 * noise.normal() + if i % 125 < 4 { 1.0 } else { 0.0 }).collect();
         let mut after = values.clone();
-        assert_eq!(remove(&mut after, 1000.0, false, &mut Vec::new()), Treated::default());
+        assert_eq!(remove(&mut after, 1000.0, &mut Vec::new()), None);
         assert_eq!(values, after);
     }
 
@@ -239,7 +193,7 @@ mod tests {
         let values: Vec<f64> =
             (0..10_000).map(|i| 0.01 * noise.normal() + (-f64::from(i % 100) / 20.0).exp()).collect();
         let (mut after, mut findings) = (values.clone(), Vec::new());
-        assert_eq!(remove(&mut after, rate, false, &mut findings).removed, None);
+        assert_eq!(remove(&mut after, rate, &mut findings), None);
         assert_eq!(values, after);
         assert!(findings.iter().any(|f| f.code == "hum-or-impacts"), "{findings:?}");
     }

@@ -19,8 +19,7 @@
 //! | 60 | 100 | 99.2 | 93.2 | 94.6 | 96.7 | 96.2 |
 //!
 //! Where no jitter is there, u is some three times what a straight line would state, at any n: jitter of r = 7/n, which n impacts hardly
-//! show, more than doubles the uncertainty of a straight line. Where the onsets alone are known to scatter, that line is surer: see
-//! [`Scatter`].
+//! show, more than doubles the uncertainty of a straight line.
 //!
 //! Neither noise of the onsets nor jitter makes neighbouring intervals positively correlated; a speed that wanders does. Where they are, u is not less
 //! than the standard uncertainty of the mean of values that depend on those before (Müller 2007). Of 60 intervals with a correlation of 0.3, 0.5 and 0.7
@@ -29,21 +28,7 @@
 use super::background::median;
 use crate::mean::Mean;
 use crate::residuals::student;
-use serde::Deserialize;
 use std::f64::consts::FRAC_PI_2;
-
-/// What is known to scatter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Scatter {
-    /// Onsets about even times: the straight line through (index, time).
-    Onsets,
-    /// Intervals, each on its own: the mean of the intervals.
-    Intervals,
-    /// Both may: averaged over what the record says.
-    #[default]
-    Unknown,
-}
 
 /// Interval and what disturbs it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,41 +47,29 @@ pub struct Interval {
 /// The mean interval of `times` in s at increasing `indices`, of which those of missed impacts are left out.
 ///
 /// `None` for fewer than two.
-pub fn interval(times: &[f64], indices: &[usize], scatter: Scatter) -> Option<Interval> {
+pub fn interval(times: &[f64], indices: &[usize]) -> Option<Interval> {
     let d: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
     let m: Vec<f64> = indices.windows(2).map(|w| (w[1] - w[0]) as f64).collect();
     if d.is_empty() || m.len() != d.len() {
         return None;
     }
     if d.len() == 1 {
-        let mean = d[0] / m[0];
-        return Some(Interval { mean, std: f64::NAN, correlation: f64::NAN, wanders: false });
+        return Some(Interval { mean: d[0] / m[0], std: f64::NAN, correlation: f64::NAN, wanders: false });
     }
-    let nodes = match scatter {
-        Scatter::Onsets => vec![Node::new(&d, &m, 0.0, 1.0)],
-        Scatter::Intervals => vec![Node::new(&d, &m, f64::INFINITY, 1.0)],
-        Scatter::Unknown => nodes(&d, &m),
-    };
-    let highest = nodes.iter().map(|n| n.weight).fold(f64::NEG_INFINITY, f64::max);
-    let parts: Vec<f64> = nodes.iter().map(|n| (n.weight - highest).exp()).collect();
+    let nodes = nodes(&d, &m);
+    let highest = nodes.iter().map(|n| n.likelihood).fold(f64::NEG_INFINITY, f64::max);
+    let parts: Vec<f64> = nodes.iter().map(|n| (n.likelihood - highest).exp()).collect();
     let total: f64 = parts.iter().sum();
-    let over =
-        |f: &dyn Fn(&Gls) -> f64| nodes.iter().zip(&parts).map(|(n, p)| p * f(&n.fit)).sum::<f64>() / total;
+    let over = |f: &dyn Fn(&Gls) -> f64| nodes.iter().zip(&parts).map(|(n, p)| p * f(n)).sum::<f64>() / total;
     let mean = over(&|g| g.mean);
     let widened = widened(d.len() - 1).powi(2);
     let variance = over(&|g| widened * g.variance * g.cofactor + (g.mean - mean).powi(2));
     let correlation = correlation(&d, &m);
-    let slow = if correlation > 0.0 {
-        Some(Mean::of(&d.iter().zip(&m).map(|(d, m)| d / m).collect::<Vec<f64>>()))
-    } else {
-        None
-    };
-    Some(Interval {
-        mean,
-        std: slow.and_then(|s| s.std).map_or(variance.sqrt(), |s| s.max(variance.sqrt())),
-        correlation,
-        wanders: slow.is_some_and(|s| s.wanders),
-    })
+    let each: Vec<f64> = d.iter().zip(&m).map(|(d, m)| d / m).collect();
+    let slow = (correlation > 0.0).then(|| Mean::of(&each));
+    let least = slow.and_then(|s| s.std).unwrap_or(0.0);
+    let wanders = slow.is_some_and(|s| s.wanders);
+    Some(Interval { mean, std: variance.sqrt().max(least), correlation, wanders })
 }
 
 /// Prior probability that intervals jitter and onsets carry no noise.
@@ -113,37 +86,26 @@ const NEGLIGIBLE: f64 = -9.0;
 /// Steps of the logarithm of the ratio that no record needs finer.
 const FINEST: f64 = 0.005;
 
-/// One ratio of jitter to onset noise.
-struct Node {
-    fit: Gls,
-    /// Logarithm of prior probability times likelihood.
-    weight: f64,
-}
-
-impl Node {
-    fn new(d: &[f64], m: &[f64], ratio: f64, prior: f64) -> Node {
+/// Fits with ratios of jitter to onset noise from 0 to ∞, those between evenly spaced in the logarithm where the likelihood is, which has the prior
+/// probability in it.
+fn nodes(d: &[f64], m: &[f64]) -> Vec<Gls> {
+    let node = |ratio: f64, prior: f64| {
         let fit = gls(d, m, ratio.atan());
-        Node { fit, weight: prior.ln() + fit.likelihood }
-    }
-}
-
-/// Ratios from 0 to ∞, those between evenly spaced in the logarithm where the likelihood is.
-fn nodes(d: &[f64], m: &[f64]) -> Vec<Node> {
+        Gls { likelihood: prior.ln() + fit.likelihood, ..fit }
+    };
     // Below it the jitter does not show in the mean.
     let least = 0.3 / (m.iter().sum::<f64>() + 1.0);
     let below = |ratio: f64| (1.0 - JITTER_ALONE) * (ratio / SCALE).atan() / FRAC_PI_2;
     let (mut from, mut to) = (least.ln(), LARGEST.ln());
-    let between = loop {
+    let mut all = loop {
         let step = (to - from) / (RATIOS - 1) as f64;
-        let at = |i: f64| (from + i * step).exp();
-        let between: Vec<Node> = (0..RATIOS)
-            .map(|i| {
-                let (low, high) = ((i as f64 - 0.5).max(0.0), (i as f64 + 0.5).min((RATIOS - 1) as f64));
-                Node::new(d, m, at(i as f64), below(at(high)) - below(at(low)))
-            })
+        let at = |i: f64| (from + i.clamp(0.0, (RATIOS - 1) as f64) * step).exp();
+        let between: Vec<Gls> = (0..RATIOS)
+            .map(|i| i as f64)
+            .map(|i| node(at(i), below(at(i + 0.5)) - below(at(i - 0.5))))
             .collect();
-        let highest = between.iter().map(|n| n.weight).fold(f64::NEG_INFINITY, f64::max);
-        let counts = |n: &Node| n.weight > highest + NEGLIGIBLE;
+        let highest = between.iter().map(|n| n.likelihood).fold(f64::NEG_INFINITY, f64::max);
+        let counts = |n: &Gls| n.likelihood > highest + NEGLIGIBLE;
         let first = between.iter().position(counts).unwrap_or(0).saturating_sub(1);
         let last = (between.iter().rposition(counts).unwrap_or(RATIOS) + 1).min(RATIOS - 1);
         // A long record knows its ratio well: it is looked at more closely.
@@ -152,9 +114,8 @@ fn nodes(d: &[f64], m: &[f64]) -> Vec<Node> {
         }
         (from, to) = (from + first as f64 * step, from + last as f64 * step);
     };
-    let mut all = vec![Node::new(d, m, 0.0, below(least))];
-    all.extend(between);
-    all.push(Node::new(d, m, f64::INFINITY, 1.0 - below(LARGEST)));
+    all.push(node(0.0, below(least)));
+    all.push(node(f64::INFINITY, 1.0 - below(LARGEST)));
     all
 }
 
@@ -252,9 +213,9 @@ mod tests {
     #[test]
     fn a_missed_impact_counts_in_the_index() {
         let times: Vec<f64> = [0.0, 1.0, 3.0, 4.0, 6.0].iter().map(|k| 2.0 + 0.5 * k).collect();
-        let found = interval(&times, &[0, 1, 3, 4, 6], Scatter::Unknown).unwrap();
+        let found = interval(&times, &[0, 1, 3, 4, 6]).unwrap();
         assert!((found.mean - 0.5).abs() < 1e-15 && found.std < 1e-15, "{found:?}");
-        assert_eq!(interval(&[1.0], &[0], Scatter::Unknown), None);
+        assert_eq!(interval(&[1.0], &[0]), None);
     }
 
     #[test]
@@ -265,19 +226,6 @@ mod tests {
         // Products 0.02 and 0.02 over squares of 0.1 and three pairs for two; few roundings of numbers near 1.
         assert!((correlation(&d, &m) - 0.04 / 0.1 * 3.0 / 2.0).abs() < 1e-13);
         assert!(correlation(&[1.1, 0.9, 2.0, 1.2], &[1.0, 1.0, 2.0, 1.0]).is_nan());
-    }
-
-    #[test]
-    fn what_is_known_to_scatter_is_believed() {
-        let indices: Vec<usize> = (0..6).collect();
-        let (d, m) = parts();
-        for (scatter, angle) in [(Scatter::Onsets, 0.0), (Scatter::Intervals, FRAC_PI_2)] {
-            let found = interval(&TIMES, &indices, scatter).unwrap();
-            let fit = gls(&d, &m, angle);
-            // Four degrees of freedom: √(4/2).
-            let std = (2.0 * fit.variance * fit.cofactor).sqrt();
-            assert!((found.mean - fit.mean).abs() < 1e-14 && (found.std / std - 1.0).abs() < 1e-12);
-        }
     }
 
     #[test]
@@ -343,7 +291,7 @@ mod tests {
                     .collect();
                 let d: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
                 let (mean, plain_std) = plain(&d, &vec![1.0; n - 1], 4000);
-                let found = interval(&times, &(0..n).collect::<Vec<_>>(), Scatter::Unknown).unwrap();
+                let found = interval(&times, &(0..n).collect::<Vec<_>>()).unwrap();
                 // Intervals that chance has correlated have that of a mean of such values at least.
                 let least = if found.correlation > 0.0 { Mean::of(&d).std.unwrap() } else { 0.0 };
                 let std = plain_std.max(least);

@@ -1,9 +1,7 @@
 //! How impacts are found, and whether a trace allows it.
 
-use super::background::median;
-use super::{Scatter, Shape};
 use vibro_record::units::notation::shortest;
-use vibro_record::{AxisKind, Error, Grid, Result, Trace};
+use vibro_record::{Error, Grid, Result, Trace};
 
 /// How impacts are found.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,14 +16,8 @@ pub struct ImpactsOptions {
     pub complete: bool,
     /// Frequency of the excitation in Hz, for impacts per cycle.
     pub excitation: Option<f64>,
-    /// Its standard uncertainty in Hz. Default: that of the digits it is written with.
-    pub excitation_std: Option<f64>,
     /// Samples of a channel that rises once a cycle of the excitation, recorded with the trace.
     pub reference: Option<Vec<f64>>,
-    /// Known shape of the pulses; its origin is the time of the impact.
-    pub shape: Option<Shape>,
-    /// Whether onsets or intervals scatter. Default: unknown.
-    pub scatter: Scatter,
 }
 
 impl Default for ImpactsOptions {
@@ -36,10 +28,7 @@ impl Default for ImpactsOptions {
             hum: true,
             complete: false,
             excitation: None,
-            excitation_std: None,
             reference: None,
-            shape: None,
-            scatter: Scatter::Unknown,
         }
     }
 }
@@ -48,33 +37,26 @@ impl Default for ImpactsOptions {
 pub(super) fn check(trace: &Trace, options: &ImpactsOptions) -> Result<f64> {
     let rate = rate_of(trace)?;
     if !(0.0..1.0).contains(&options.threshold) {
-        return Err(Error::usage(
-            format!("a threshold of {}", options.threshold),
-            "a part of the median height, from 0 to 1",
-        ));
+        let found = format!("a threshold of {}", options.threshold);
+        return Err(Error::usage(found, "a part of the median height, from 0 to 1"));
     }
-    for (name, value) in [
-        ("a refractory time", options.refractory),
-        ("an excitation", options.excitation),
-        ("an uncertainty of the excitation", options.excitation_std),
-    ] {
+    for (name, value) in [("a refractory time", options.refractory), ("an excitation", options.excitation)] {
         if let Some(v) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
             return Err(Error::usage(format!("{name} of {v}"), "a finite number above 0"));
         }
     }
-    missing_values(trace, &trace.values, "the trace")?;
+    no_gaps(trace, &trace.values, "the trace")?;
     if trace.values.iter().all(|v| Some(v) == trace.values.first()) {
         return Err(Error::refused("all values of the trace are equal: it has no impacts"));
     }
-    let reference = options.reference.as_deref().unwrap_or_default();
-    if options.reference.is_some() && reference.len() != trace.values.len() {
-        return Err(Error::refused(format!(
-            "the reference channel has {} samples, the trace {}",
-            reference.len(),
-            trace.values.len()
-        )));
+    if let Some(reference) = &options.reference {
+        let (n, expected) = (reference.len(), trace.values.len());
+        if n != expected {
+            let why = format!("the reference channel has {n} samples, the trace {expected}");
+            return Err(Error::refused(why));
+        }
+        no_gaps(trace, reference, "the reference channel")?;
     }
-    missing_values(trace, reference, "the reference channel")?;
     Ok(rate)
 }
 
@@ -83,33 +65,18 @@ pub(super) fn check(trace: &Trace, options: &ImpactsOptions) -> Result<f64> {
 /// # Errors
 /// Where it has none.
 pub(crate) fn rate_of(trace: &Trace) -> Result<f64> {
-    trace.rate().filter(|r| r.is_finite() && *r > 0.0).ok_or_else(|| {
-        uneven_sampling(trace).unwrap_or_else(|| {
-            Error::usage("the sampling rate of the trace is not known", "")
-                .hint("state the sampling rate in Hz, or the base band of an analyser: it samples at 2.56 times that")
-                .setting("rate")
-                .setting("base_band")
-        })
+    trace.rate().filter(|r| r.is_finite() && *r > 0.0).ok_or_else(|| match trace.axis.grid {
+        Grid::Uneven(_) => Error::refused("the trace is sampled unevenly: it has no sampling rate")
+            .hint("cut the file where samples are lost, or write them"),
+        Grid::Even { .. } => Error::usage("the sampling rate of the trace is not known", "")
+            .hint("state the sampling rate in Hz, or the base band of an analyser: it samples at 2.56 times that")
+            .setting("rate")
+            .setting("base_band"),
     })
 }
 
-/// Where times first differ by another step than most; `None` for an even axis.
-fn uneven_sampling(trace: &Trace) -> Option<Error> {
-    let (AxisKind::Time, Grid::Uneven(times)) = (&trace.axis.kind, &trace.axis.grid) else { return None };
-    let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
-    let usual = median(&steps);
-    let off = |i: &usize| (steps[*i] - usual).abs();
-    let first = (0..steps.len()).find(|i| off(i) > 0.5 * usual.abs());
-    let odd = first.or_else(|| (0..steps.len()).max_by(|a, b| off(a).total_cmp(&off(b))))?;
-    let [from, to, step, usual] = [times[odd], times[odd + 1], steps[odd], usual].map(shortest);
-    let why = format!(
-        "the trace is sampled unevenly: from {from} s to {to} s is a step of {step} s, most are {usual} s"
-    );
-    Some(Error::refused(why).hint("cut the file there, or write the lost samples"))
-}
-
 /// Refuses missing values: an impact, or the begin of a cycle, may stand in any of them.
-fn missing_values(trace: &Trace, values: &[f64], name: &str) -> Result<()> {
+fn no_gaps(trace: &Trace, values: &[f64], name: &str) -> Result<()> {
     let missing: Vec<usize> = (0..values.len()).filter(|i| !values[*i].is_finite()).collect();
     let (Some(first), Some(last)) = (missing.first(), missing.last()) else { return Ok(()) };
     let [first, last] = [first, last].map(|i| shortest(trace.axis.at(*i)));

@@ -2,15 +2,6 @@
 
 use std::ops::Range;
 
-/// Bursts, one an impact.
-pub struct Bursts {
-    /// The samples of each, from its first beyond the noise to its last.
-    pub each: Vec<Range<usize>>,
-    /// Factor by which the decay that is assumed of the ringing may change without another number of bursts; `None` where a pause was
-    /// given instead.
-    pub stable: Option<f64>,
-}
-
 /// An impact rises above what is left of the ringing before it by this factor.
 const RISE: f64 = 2.0;
 /// Ratio of one candidate decay time to the one before.
@@ -18,63 +9,47 @@ const STEP: f64 = 1.25;
 /// Numbers of bursts that differ by less than this part are the same.
 const SAME: f64 = 0.02;
 
-/// Bursts of samples further than `reach` from 0, joined over pauses of up to `pause` samples; without `pause`, a burst goes on until
-/// something rises above the envelope of its ringing.
-pub fn bursts(values: &[f64], reach: f64, pause: Option<usize>) -> Bursts {
+/// Bursts of samples further than `reach` from 0, one an impact, joined over pauses of up to `pause` samples; without `pause`, a burst goes on
+/// until something rises above the envelope of its ringing. Then there is also the factor by which the decay that is assumed of the ringing may
+/// change without another number of bursts.
+pub fn bursts(values: &[f64], reach: f64, pause: Option<usize>) -> (Vec<Range<usize>>, Option<f64>) {
     let runs = runs(values, reach);
     let (firsts, stable) = match pause {
         Some(pause) => {
-            let apart = |j: &usize| *j == 0 || runs[*j].samples.start + 1 - runs[j - 1].samples.end >= pause;
+            let apart = |j: &usize| *j == 0 || runs[*j].start + 1 - runs[j - 1].end >= pause;
             ((0..runs.len()).filter(apart).collect(), None)
         }
         None => most_stable(values, &runs),
     };
     let ends = firsts.iter().skip(1).copied().chain([runs.len()]);
-    let each = firsts
-        .iter()
-        .zip(ends)
-        .map(|(first, next)| runs[*first].samples.start..runs[next - 1].samples.end)
-        .collect();
-    Bursts { each, stable }
+    let whole = |(first, next): (&usize, usize)| runs[*first].start..runs[next - 1].end;
+    (firsts.iter().zip(ends).map(whole).collect(), stable)
 }
 
-/// Neighbouring samples beyond the noise.
-struct Run {
-    samples: Range<usize>,
-    height: f64,
-}
-
-fn runs(values: &[f64], reach: f64) -> Vec<Run> {
-    let mut runs: Vec<Run> = Vec::new();
-    for (i, v) in values.iter().map(|v| v.abs()).enumerate().filter(|(_, v)| *v > reach) {
-        match runs.last_mut() {
-            Some(last) if last.samples.end == i => {
-                last.samples.end = i + 1;
-                last.height = last.height.max(v);
-            }
-            _ => runs.push(Run { samples: i..i + 1, height: v }),
-        }
-    }
-    runs
+/// Stretches of samples beyond the noise.
+fn runs(values: &[f64], reach: f64) -> Vec<Range<usize>> {
+    let beyond: Vec<usize> = (0..values.len()).filter(|i| values[*i].abs() > reach).collect();
+    beyond.chunk_by(|a, b| a + 1 == *b).map(|run| run[0]..run[0] + run.len()).collect()
 }
 
 /// Runs that begin an impact if ringing decays by e in `decay` samples at least: those that rise above an envelope which follows every
 /// peak and falls with that time. What follows within the same time is the impact's own rise.
-fn firsts(values: &[f64], runs: &[Run], decay: f64) -> Vec<usize> {
+fn firsts(values: &[f64], runs: &[Range<usize>], decay: f64) -> Vec<usize> {
     let keep = (-1.0 / decay).exp();
     let (mut envelope, mut at) = (0.0f64, 0);
     let mut found: Vec<usize> = Vec::new();
     for (j, run) in runs.iter().enumerate() {
         // The flank that leads up to a run is its own, and nothing that rings.
         let rises = |i: &usize| values[i - 1].abs() < values[*i].abs();
-        let foot = (at + 1..=run.samples.start).rev().take_while(rises).last().unwrap_or(run.samples.start);
+        let foot = (at + 1..=run.start).rev().take_while(rises).last().unwrap_or(run.start);
         for v in &values[at..foot] {
             envelope = (envelope * keep).max(v.abs());
         }
-        envelope *= keep.powi((run.samples.start - foot) as i32);
-        at = run.samples.start;
-        let own = found.last().is_some_and(|f| (at - runs[*f].samples.start) as f64 <= decay);
-        if !own && run.height > RISE * envelope {
+        envelope *= keep.powi((run.start - foot) as i32);
+        at = run.start;
+        let own = found.last().is_some_and(|f| (at - runs[*f].start) as f64 <= decay);
+        let height = values[run.clone()].iter().fold(0.0, |h: f64, v| h.max(v.abs()));
+        if !own && height > RISE * envelope {
             found.push(j);
         }
     }
@@ -86,17 +61,12 @@ fn firsts(values: &[f64], runs: &[Run], decay: f64) -> Vec<usize> {
 /// The envelope follows each peak of the ringing, so that it need not fall as slowly as the ringing does: from a few half waves on, and up
 /// to the pause between impacts, the number of bursts stays the same. A decay that first parts bursts as it should far beyond the half waves
 /// belongs to a rest in the record.
-fn most_stable(values: &[f64], runs: &[Run]) -> (Vec<usize>, Option<f64>) {
+fn most_stable(values: &[f64], runs: &[Range<usize>]) -> (Vec<usize>, Option<f64>) {
     // Length of a half wave, or of a pulse: half of all samples beyond the noise lie in runs no longer.
-    let mut lengths: Vec<usize> = runs.iter().map(|r| r.samples.len()).collect();
+    let mut lengths: Vec<usize> = runs.iter().flat_map(|r| vec![r.len(); r.len()]).collect();
     lengths.sort_unstable();
-    let total: usize = lengths.iter().sum();
-    let mut sum = 0;
-    let typical = lengths.into_iter().find(|n| {
-        sum += n;
-        2 * sum >= total
-    });
-    let Some(length) = typical.map(|n| n as f64) else { return (Vec::new(), Some(1.0)) };
+    let Some(length) = lengths.get(lengths.len().saturating_sub(1) / 2) else { return (Vec::new(), None) };
+    let length = *length as f64;
     let counts: Vec<(f64, usize)> =
         std::iter::successors(Some((0.5 * length).max(1.0)), |decay| Some(decay * STEP))
             .take_while(|decay| *decay < 0.5 * values.len() as f64)
@@ -125,7 +95,7 @@ mod tests {
             values[100 + i * 20] = 1.0;
             values[15_000 + i * 20] = 1.0;
         }
-        assert_eq!(bursts(&values, 0.5, None).each.len(), 100);
+        assert_eq!(bursts(&values, 0.5, None).0.len(), 100);
     }
 
     #[test]
@@ -134,8 +104,8 @@ mod tests {
         for i in [10, 13, 20, 21, 60] {
             values[i] = 1.0;
         }
-        assert_eq!(bursts(&values, 0.5, Some(5)).each, [10..14, 20..22, 60..61]);
-        assert_eq!(bursts(&values, 0.5, Some(20)).each, [10..22, 60..61]);
-        assert!(bursts(&values, 2.0, None).each.is_empty());
+        assert_eq!(bursts(&values, 0.5, Some(5)).0, [10..14, 20..22, 60..61]);
+        assert_eq!(bursts(&values, 0.5, Some(20)).0, [10..22, 60..61]);
+        assert!(bursts(&values, 2.0, None).0.is_empty());
     }
 }

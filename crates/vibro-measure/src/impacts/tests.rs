@@ -1,4 +1,3 @@
-use super::recorder::sample_and_hold;
 use super::*;
 use vibro_math::Noise;
 use vibro_record::units::Unit;
@@ -75,17 +74,6 @@ fn pulses_that_point_downwards_are_turned() {
 }
 
 #[test]
-fn clipped_pulses_are_found() {
-    let times: Vec<f64> = (0..10).map(|k| 0.05 + 0.1 * f64::from(k)).collect();
-    let mut trace = pulses(&times, 1100, 1000.0, 0.005);
-    trace.values.iter_mut().for_each(|v| *v = v.min(0.3));
-    let found = impacts(&trace, &ImpactsOptions::default()).unwrap();
-    assert_eq!(found.n, 10);
-    let clipped = found.findings.iter().find(|f| f.code == "pulses-clipped").unwrap();
-    assert_eq!((clipped.get("n"), clipped.get("of")), (Some(10.0), Some(10.0)));
-}
-
-#[test]
 fn what_holds_no_impacts_is_refused() {
     let refused = |trace: &Trace| impacts(trace, &ImpactsOptions::default()).unwrap_err();
     assert!(refused(&trace(vec![1.0; 100], 100.0)).to_string().contains("equal"));
@@ -109,7 +97,7 @@ fn what_holds_no_impacts_is_refused() {
 }
 
 /// Pulses of 4 V and 1 ms, sin² each, over a sine of 50 Hz, at 10 kHz for 2 s.
-fn over_hum(times: &[f64], hum: f64, drift: f64) -> Trace {
+fn over_hum(times: &[f64], hum: f64) -> Trace {
     let mut noise = Noise::new(21);
     let values = (0..20_000)
         .map(|i| {
@@ -119,7 +107,6 @@ fn over_hum(times: &[f64], hum: f64, drift: f64) -> Trace {
             };
             0.05 * noise.normal()
                 + hum * (std::f64::consts::TAU * 50.0 * t).sin()
-                + drift * t
                 + 4.0 * times.iter().map(|at| pulse(t - at)).sum::<f64>()
         })
         .collect();
@@ -128,43 +115,14 @@ fn over_hum(times: &[f64], hum: f64, drift: f64) -> Trace {
 
 #[test]
 fn no_impact_higher_than_the_hum_is_lost() {
-    none_lost(&[13.37]);
-}
-
-#[test]
-#[ignore = "Monte Carlo: cargo test --release -- --ignored"]
-fn no_impact_higher_than_the_hum_is_lost_at_any_rate() {
-    none_lost(&[13.37, 25.0, 50.0, 100.0]);
-}
-
-fn none_lost(rates: &[f64]) {
-    for &rate in rates {
-        let times: Vec<f64> =
-            (0..1000).map(|k| 0.013 + f64::from(k) / rate).take_while(|t| *t < 1.99).collect();
-        for hum in [0.0, 0.2, 0.4, 0.5, 1.0] {
-            for kept in [false, true] {
-                let options = ImpactsOptions { hum: !kept, ..ImpactsOptions::default() };
-                let found = impacts(&over_hum(&times, hum, 0.0), &options).unwrap();
-                assert_eq!(found.n, times.len(), "{rate} Hz, hum {hum}, kept {kept}: {:?}", found.findings);
-                // The slope of hum of 1 V is 314 V/s, that of the flanks 2π·10³ V/s or more where the hum shifts them by its 1 V: 0.2 ms at most, and the
-                // same in each of these trains but for those of 13.37 Hz.
-                let off = (found.frequency.value / rate - 1.0).abs();
-                assert!(
-                    off < 2e-4 / found.interval.value / (times.len() - 1) as f64,
-                    "{rate} Hz, hum {hum}: {off}"
-                );
-            }
-        }
-    }
-}
-
-#[test]
-fn impacts_on_a_drifting_level_are_found() {
-    let times: Vec<f64> = (0..38).map(|k| 0.02 + 0.05 * f64::from(k)).collect();
-    for drift in [0.5, -2.0, 4.0] {
-        let found = impacts(&over_hum(&times, 0.0, drift), &ImpactsOptions::default()).unwrap();
-        assert_eq!(found.n, times.len(), "{drift} V/s: {:?}", found.findings);
-        assert!(has(&found, "drift-removed"), "{drift} V/s: {:?}", found.findings);
+    let rate = 13.37;
+    let times: Vec<f64> = (0..1000).map(|k| 0.013 + f64::from(k) / rate).take_while(|t| *t < 1.99).collect();
+    for hum in [0.0, 0.2, 0.4, 0.5, 1.0] {
+        let found = impacts(&over_hum(&times, hum), &ImpactsOptions::default()).unwrap();
+        assert_eq!(found.n, times.len(), "hum {hum}: {:?}", found.findings);
+        // The slope of hum of 1 V is 314 V/s, that of the flanks 2π·10³ V/s or more where the hum shifts them by its 1 V: 0.2 ms at most.
+        let off = (found.frequency.value / rate - 1.0).abs();
+        assert!(off < 2e-4 / found.interval.value / (times.len() - 1) as f64, "hum {hum}: {off}");
     }
 }
 
@@ -172,7 +130,7 @@ fn impacts_on_a_drifting_level_are_found() {
 fn a_refusal_says_what_may_help() {
     // Impacts as high as the hum, at its rate.
     let times: Vec<f64> = (0..98).map(|k| 0.013 + 0.02 * f64::from(k)).collect();
-    let mut low = over_hum(&times, 0.0, 0.0);
+    let mut low = over_hum(&times, 0.0);
     for (i, v) in low.values.iter_mut().enumerate() {
         *v = *v * 0.05 + (std::f64::consts::TAU * 50.0 * i as f64 / 1e4).sin();
     }
@@ -190,9 +148,8 @@ fn two_unequal_intervals_a_cycle_are_a_pattern_and_miss_nothing() {
     for (second, excitation) in [(0.03, 8.3333), (0.045, 8.3333), (0.05, 8.3333)] {
         let times: Vec<f64> =
             (0..32).map(|k| 0.02 + 0.12 * f64::from(k / 2) + if k % 2 == 1 { second } else { 0.0 }).collect();
-        let trace = over_hum(&times, 0.0, 0.0);
-        let options =
-            ImpactsOptions { excitation: Some(excitation), excitation_std: Some(1e-3), ..Default::default() };
+        let trace = over_hum(&times, 0.0);
+        let options = ImpactsOptions { excitation: Some(excitation), ..Default::default() };
         let found = impacts(&trace, &options).unwrap();
         assert_eq!((found.n, found.missed, found.doubled, found.pattern), (32, 0, 0, Some(2)), "{found:?}");
         // Noise of 0.05 on a slope of 6e3 V/s is 8 µs an onset; a line through 32 of them knows T to 8e-6·√(12/32³) = 0.15 µs; four of these.
@@ -207,7 +164,7 @@ fn two_unequal_intervals_a_cycle_are_a_pattern_and_miss_nothing() {
 fn what_is_known_to_be_complete_misses_nothing() {
     let mut times: Vec<f64> = (0..30).map(|k| 0.02 + 0.05 * f64::from(k)).collect();
     times.remove(12);
-    let trace = over_hum(&times, 0.0, 0.0);
+    let trace = over_hum(&times, 0.0);
     let known = ImpactsOptions { complete: true, ..ImpactsOptions::default() };
     assert_eq!(impacts(&trace, &ImpactsOptions::default()).unwrap().missed, 1);
     let found = impacts(&trace, &known).unwrap();
@@ -237,12 +194,8 @@ fn edges_within_one_sample_leave_the_interval_unsure() {
                 let at = edge.ceil() as usize;
                 values[at..at + 12].iter_mut().for_each(|v| *v += 5.0);
             }
-            let options = ImpactsOptions {
-                excitation: Some(rate / period),
-                excitation_std: Some(1e-6),
-                hum: false,
-                ..ImpactsOptions::default()
-            };
+            let options =
+                ImpactsOptions { excitation: Some(rate / period), hum: false, ..ImpactsOptions::default() };
             let found = impacts(&trace(values, rate), &options).unwrap();
             assert!(has(&found, "onset-within-sample"), "{:?}", found.findings);
             assert!(found.onset_std.unwrap() > 0.28 / rate, "{:?}", found.onset_std);
@@ -259,17 +212,10 @@ fn edges_within_one_sample_leave_the_interval_unsure() {
     // What is wrong by more than the samples hide does drift, by a beat that is stated.
     let mut values = vec![0.0; 4400];
     (0..n as usize).for_each(|k| values[200 + 100 * k..212 + 100 * k].fill(5.0));
-    let options = ImpactsOptions {
-        excitation: Some(10.02),
-        excitation_std: Some(1e-6),
-        hum: false,
-        ..ImpactsOptions::default()
-    };
+    let options = ImpactsOptions { excitation: Some(10.1), hum: false, ..ImpactsOptions::default() };
     let found = impacts(&trace(values, rate), &options).unwrap();
     let beat = found.beat.as_ref().unwrap();
-    assert!((beat.value - 0.02).abs() < 1e-9 && beat.std.is_some(), "{beat:?}");
-    // 12 samples closed and 88 open are multiples of 4, but nothing repeats for 4.
-    assert!(!has(&found, "sample-and-hold"), "{:?}", found.findings);
+    assert!((beat.value - 0.1).abs() < 1e-9 && beat.std.is_some(), "{beat:?}");
 }
 
 #[test]
@@ -282,70 +228,5 @@ fn uneven_times_and_missing_values_are_named() {
     times[300..].iter_mut().for_each(|t| *t += 0.03);
     odd.axis.grid = Grid::Uneven(times);
     let why = impacts(&odd, &ImpactsOptions::default()).unwrap_err().to_string();
-    assert!(why.contains("from 0.299 s to 0.33 s is a step of 0.031 s"), "{why}");
-}
-
-#[test]
-fn a_sample_and_hold_is_known_to_what_it_was_sampled_at() {
-    held_traces(2);
-}
-
-#[test]
-#[ignore = "Monte Carlo: cargo test --release -- --ignored"]
-fn a_sample_and_hold_is_known_to_what_it_was_sampled_at_in_all_draws() {
-    held_traces(20);
-}
-
-fn held_traces(seeds: u64) {
-    for hold in [1, 2, 40] {
-        for seed in 0..seeds {
-            let mut noise = Noise::new(seed);
-            let interval = 200.3 + 40.0 * noise.uniform();
-            let train = |i: usize| {
-                let since = (i as f64 + 17.0) % interval;
-                if since < 90.0 { 1.0 } else { 0.0 }
-            };
-            let values: Vec<f64> =
-                (0..12_000).map(|i| train(i / hold * hold) + 0.01 * (i / hold % 7) as f64).collect();
-            assert_eq!(sample_and_hold(&values), hold, "seed {seed}");
-            let axis = Axis::time(0.0, 1e-3, values.len());
-            let trace = Trace { meta: Meta::new("contact", Unit::parse("V").unwrap()), axis, values };
-            let found = impacts(&trace, &ImpactsOptions::default()).unwrap();
-            let off = found.interval.value - interval * 1e-3;
-            // Quantised times are off by evenly spread errors, of which none lies beyond three standard deviations.
-            assert!(
-                off.abs() < 3.0 * found.interval.std.unwrap(),
-                "hold {hold}, seed {seed}: {off} {:?}",
-                found.interval
-            );
-            assert_eq!(has(&found, "sample-and-hold"), hold > 1);
-        }
-    }
-    // A contact that closes and opens at any sample is no sample-and-hold, however long it stays.
-    assert_eq!(sample_and_hold(&[0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]), 1);
-}
-
-/// A train that is locked to the sampling clock has few distances between its changes, with a common divisor: it is no sample-and-hold.
-#[test]
-fn a_train_locked_to_the_sampling_clock_is_no_sample_and_hold() {
-    let of = |closed: usize, period: usize, height: &dyn Fn(usize) -> f64| -> Vec<f64> {
-        (0..200 * period).map(|i| if i % period < closed { height(i / period) } else { 0.0 }).collect()
-    };
-    let even = |_: usize| 5.0;
-    // Missed by no pattern, as bits of a product of large odd numbers; as high as no other; both half of the time.
-    let gaps = |k: usize| if ((k * k * 2_654_435_761) >> 20).is_multiple_of(4) { 0.0 } else { 5.0 };
-    let heights = |k: usize| 5.0 + (k as f64).sqrt();
-    for (closed, period) in [(12, 100), (12, 96), (4, 8), (10, 100), (40, 120)] {
-        assert_eq!(sample_and_hold(&of(closed, period, &even)), 1, "{closed} of {period}");
-        assert_eq!(sample_and_hold(&of(closed, period, &gaps)), 1, "{closed} of {period}, some missed");
-        assert_eq!(sample_and_hold(&of(closed, period, &heights)), 1, "{closed} of {period}, heights");
-    }
-    // Pulses of stairs, all alike, four samples a stair.
-    let stairs: Vec<f64> = (0..20_000).map(|i| f64::from((i % 100 / 4).min(6))).collect();
-    assert_eq!(sample_and_hold(&stairs), 1);
-    // The same train in noise of which one sample in 40 is kept.
-    let mut noise = Noise::new(3);
-    let kept: Vec<f64> = of(12, 96, &even).iter().step_by(40).map(|v| v + 0.01 * noise.normal()).collect();
-    let values: Vec<f64> = (0..40 * kept.len()).map(|i| kept[i / 40]).collect();
-    assert_eq!(sample_and_hold(&values), 40);
+    assert!(why.contains("sampled unevenly"), "{why}");
 }

@@ -50,17 +50,6 @@ fn impossible_drops_are_refused() {
 }
 
 #[test]
-fn a_free_struck_mass_is_a_finding_with_its_size() {
-    // m₁ = m₂ and R = 1: the falling mass stops, so R looks like 0; here 0.2 rebound and m₁/m₂ = 1/4.
-    let d = Drop { masses: Some((0.1, 0.4)), ..drop(0.57, 0.2 * 2.0 * (2.0 * 0.57 / GRAVITY).sqrt()) };
-    let found = of(&Measured { drop: Some(d), ..Measured::default() });
-    assert!((found.restitution.value - 0.2).abs() < 1e-12);
-    // v₁⁺ = (m₁ − R m₂)/(m₁ + m₂) v: (0.1 − 0.5·0.4)/0.5 = −0.2.
-    let free = finding(&found, "struck-mass-free").unwrap().get("free").unwrap();
-    assert!((free - 0.5).abs() < 1e-12, "{free}");
-}
-
-#[test]
 fn a_train_of_bounces_and_one_that_does_not_fit() {
     let mut intervals: Vec<f64> = (0..7).map(|k| 0.4 * 0.7f64.powi(k)).collect();
     let clean = of(&Measured {
@@ -68,12 +57,14 @@ fn a_train_of_bounces_and_one_that_does_not_fit() {
         ..Measured::default()
     });
     assert!((clean.restitution.value - 0.7).abs() < 1e-12, "{clean:?}");
-    assert!(clean.outliers.is_empty());
+    assert!(finding(&clean, "flight-outlier").is_none());
     intervals[3] *= 1.3;
     let found =
         of(&Measured { trains: vec![Train { intervals, ..Train::default() }], ..Measured::default() });
-    assert_eq!(found.outliers.iter().map(|o| (o.train, o.flight)).collect::<Vec<_>>(), [(1, 4)]);
-    assert!((found.outliers[0].expected / (0.4 * 0.343) - 1.0).abs() < 1e-9);
+    let outlier = finding(&found, "flight-outlier").unwrap();
+    assert_eq!((outlier.get("train"), outlier.get("flight")), (Some(1.0), Some(4.0)));
+    assert!((outlier.get("expected").unwrap() / (0.4 * 0.343) - 1.0).abs() < 1e-9);
+    assert_eq!(found.findings.iter().filter(|f| f.code == "flight-outlier").count(), 1);
     assert!((found.restitution.value - 0.7).abs() < 1e-9, "{found:?}");
 }
 
@@ -82,16 +73,10 @@ fn two_flights_give_their_ratio_without_an_uncertainty() {
     let train = Train { intervals: vec![0.3, 0.18], ..Train::default() };
     let found = of(&Measured { trains: vec![train.clone()], ..Measured::default() });
     assert!((found.restitution.value - 0.6).abs() < 1e-14 && found.restitution.std.is_none(), "{found:?}");
+    // However well the onsets are timed: one ratio does not show how R scatters.
     let timed = Train { onset_std: Some(1e-4), ..train };
     let found = of(&Measured { trains: vec![timed], ..Measured::default() });
-    // y = ln b − ln a over three onsets: derivatives 1/a, −(1/a + 1/b), 1/b. That leaves out the scatter of R, which one ratio does not show.
-    let (a, b): (f64, f64) = (1.0 / 0.3, 1.0 / 0.18);
-    let expected = 0.6 * 1e-4 * (a * a + (a + b).powi(2) + b * b).sqrt();
-    let onsets = finding(&found, "too-few-flights").unwrap().get("onsets").unwrap();
-    assert!(
-        found.restitution.std.is_none() && (onsets / expected - 1.0).abs() < 1e-9,
-        "{found:?} {expected}"
-    );
+    assert!(found.restitution.std.is_none() && finding(&found, "too-few-flights").is_some(), "{found:?}");
 }
 
 #[test]
@@ -172,16 +157,12 @@ fn a_restitution_outside_its_range_within_its_uncertainty_is_an_answer() {
     // R = 1.005, u = 0.02·√(2 + 2·1.005²) or less.
     let elastic = velocities((-0.3, 0.705), None, Some(0.02));
     assert!((of_velocities(&elastic).unwrap().restitution.value - 1.005).abs() < 1e-12);
-    // Beyond 2 u, or where nothing is known of u: refused, unless another method answers.
+    // Beyond 2 u, or where nothing is known of u: refused.
     for std in [Some(0.001), None] {
         let sure = Velocities { std, ..elastic.clone() };
         assert!(of_velocities(&sure).unwrap_err().to_string().contains("outside 0 to 1"));
-        let found =
-            of(&Measured { drop: Some(drop(0.57, 0.144)), velocities: Some(sure), ..Measured::default() });
-        assert!(found.by.len() == 1 && finding(&found, "velocities-ignored").is_some());
     }
-    let found = of_velocities(&Velocities { std: Some(1e-5), ..plastic }).unwrap();
-    assert!(found.by.len() == 2 && finding(&found, "restitution-out-of-range").is_some());
+    assert!(of_velocities(&Velocities { std: Some(1e-5), ..plastic }).is_err());
 }
 
 #[test]
@@ -198,33 +179,11 @@ fn methods_that_disagree_are_not_averaged() {
 }
 
 #[test]
-fn methods_by_velocity_are_compared_with_what_they_share() {
-    // As above, with mass 2 off by δ: only the balance of momentum tests that, with u = σ√(2(m₁² + m₂²)) against m₂δ.
-    let (m1, m2, u) = (0.2f64, 0.5f64, 0.01);
-    let off = |deviates: f64| {
-        let delta = deviates * u * (2.0 * (m1 * m1 + m2 * m2)).sqrt() / m2;
-        let all = Velocities {
-            before: (3.0, 0.0),
-            after1: Some(0.0),
-            after2: Some(1.2 + delta),
-            masses: Some((m1, m2)),
-            std: Some(u),
-        };
-        of(&Measured { velocities: Some(all), ..Measured::default() })
-    };
-    // Three pairs, each at 1 − 0.05/3: 2.394.
-    assert_eq!(off(2.3).agree, Some(true));
-    assert_eq!(off(2.5).agree, Some(false));
-    assert!(off(0.0).by.iter().all(|w| w.restitution.unit == "1"));
-}
-
-#[test]
 fn what_cannot_be_compared_is_left_open() {
     let train = Train { intervals: vec![0.144, 0.03], ..Train::default() };
     let d = Drop { interval_std: Some(0.001), height_std: Some(0.001), ..drop(0.57, 0.144) };
     let found = of(&Measured { drop: Some(d), trains: vec![train], ..Measured::default() });
     assert!(found.agree.is_none() && found.restitution.value.is_finite(), "{found:?}");
-    assert!(finding(&found, "gravity-without-uncertainty").is_some(), "{:?}", found.findings);
 }
 
 #[test]
@@ -238,7 +197,7 @@ fn few_drops_have_no_uncertainty_and_five_a_bootstrap() {
     for n in 2..=3 {
         let found = drops(&all[..n]);
         assert!(found.restitution.std.is_none() && found.bootstrap_std.is_none(), "{found:?}");
-        assert!(finding(&found, "too-few-drops").is_some(), "{:?}", found.findings);
+        assert!(finding(&found, "drop-without-uncertainty").is_some(), "{:?}", found.findings);
     }
     assert!(drops(&all[..4]).restitution.std.is_some());
     let found = drops(&all);
@@ -263,7 +222,7 @@ fn two_drops_have_an_uncertainty_only_where_what_is_stated_explains_their_scatte
     assert!(of_two(1.45e-3).restitution.std.is_some());
     let found = of_two(1.43e-3);
     assert!(found.restitution.std.is_none(), "{found:?}");
-    assert!(finding(&found, "drops-scatter-too-much").is_some(), "{:?}", found.findings);
+    assert!(finding(&found, "drop-without-uncertainty").is_some(), "{:?}", found.findings);
 }
 
 #[test]
@@ -277,17 +236,17 @@ fn there_is_no_uncertainty_without_that_of_the_height_and_of_the_timing() {
     for intervals in [&four[..1], &four] {
         let found = of_drops(None, Some(1e-6), intervals);
         assert!(found.restitution.std.is_none(), "{found:?}");
-        assert!(finding(&found, "height-without-uncertainty").is_some(), "{:?}", found.findings);
+        assert!(finding(&found, "drop-without-uncertainty").is_some(), "{:?}", found.findings);
         assert!(of_drops(Some(1e-3), Some(1e-6), intervals).restitution.std.is_some());
     }
     // Σd²/(n(n − 1)) = 20e-6/12, and √3 of Student's distribution.
     let timing = (20e-6f64 / 12.0 * 3.0).sqrt() / 0.143 * of_drops(None, None, &four).restitution.value;
     let found = of_drops(None, None, &four);
-    let alone = finding(&found, "height-without-uncertainty").unwrap().get("timing").unwrap();
+    let alone = finding(&found, "drop-without-uncertainty").unwrap().get("timing").unwrap();
     assert!((alone / timing - 1.0).abs() < 1e-12, "{alone} {timing}");
     let found = of_drops(Some(1e-4), None, &four[..1]);
     assert!(found.restitution.std.is_none(), "{found:?}");
-    assert!(finding(&found, "interval-without-uncertainty").is_some(), "{:?}", found.findings);
+    assert!(finding(&found, "drop-without-uncertainty").is_some(), "{:?}", found.findings);
     assert!(of_drops(Some(1e-4), None, &four).restitution.std.is_some());
 }
 
@@ -317,6 +276,6 @@ fn findings_of_steady_trains_do_not_concern_bounces() {
         findings.iter().any(|f| ["impacts-irregular", "intervals-drift"].contains(&f.code))
     };
     assert!(irregular(&impacts(&trace, &ImpactsOptions::default()).unwrap().findings));
-    let found = Bounces::default().add(&trace, &ImpactsOptions::default()).unwrap();
+    let found = Train::of(&trace, &ImpactsOptions::default()).unwrap().1;
     assert!(found.times.len() == 8 && !irregular(&found.findings), "{:?}", found.findings);
 }

@@ -7,9 +7,9 @@ use crate::Scene;
 use crate::failure::Question;
 use std::f64::consts::TAU;
 use vibro_math::Noise;
-use vibro_measure::impacts::{ImpactsOptions, Shape, impacts};
+use vibro_measure::impacts::{ImpactsOptions, impacts};
 use vibro_measure::legacy::contact_times;
-use vibro_record::{Result, Trace};
+use vibro_record::Trace;
 
 /// Samples a second of the contact trace.
 const RATE: f64 = 2000.0;
@@ -102,19 +102,16 @@ fn middle(times: &[f64]) -> f64 {
     if times.len() == COUNT { times[COUNT / 2] - times[COUNT / 2 - 1] } else { f64::NAN }
 }
 
-fn between(trace: &Trace, shape: Option<Shape>) -> Result<Answer> {
-    let found = impacts(trace, &ImpactsOptions { shape, ..ImpactsOptions::default() })?;
-    let std = found.onset_std.map(|s| s * f64::sqrt(2.0));
-    Ok(Answer { value: middle(&found.times), std, doubt: None })
-}
-
-const TIMES: [Method<Trace>; 4] = [
+const TIMES: [Method<Trace>; 3] = [
     Method::rival("threshold, sample", |t| middle(&rivals::threshold(&t.values)) / RATE),
     Method::rival("threshold, between", |t| {
         middle(&rivals::passages(&t.values, rivals::half(&t.values))) / RATE
     }),
-    Method::own("fit of the average", |t| between(t, None)),
-    Method::own("fit of a known shape", |t| between(t, Shape::known(pulse, -12.0..45.0, 0.5))),
+    Method::own("fit of the average", |t| {
+        let found = impacts(t, &ImpactsOptions::default())?;
+        let std = found.onset_std.map(|s| s * f64::sqrt(2.0));
+        Ok(Answer { value: middle(&found.times), std, doubt: None })
+    }),
 ];
 
 /// The scenes of impacts.
@@ -185,7 +182,7 @@ pub(crate) fn borders(quick: bool) -> Vec<Question> {
         .map(|n| kind(&format!("noise of {} % of the height", 100.0 * n), Train { noise: n, ..PLAIN }));
     let uneven = [0.02, 0.1, 0.3]
         .map(|jitter| kind(&format!("onsets scatter by {} %", 100.0 * jitter), Train { jitter, ..PLAIN }));
-    let changes: [Change<Trace>; 9] = [
+    let changes: [Change<Trace>; 8] = [
         ("three spikes in front", |t| [20, 50, 110].into_iter().for_each(|i| t.values[i] = 0.9)),
         ("pulses point downwards", |t| each(t, |_, v| -v)),
         ("clipped at half height", |t| each(t, |_, v| v.min(0.5))),
@@ -194,10 +191,6 @@ pub(crate) fn borders(quick: bool) -> Vec<Question> {
         ("mains hum of half the height", |t| {
             let cycles = 50.0 * t.values.len() as f64 / RATE;
             each(t, |part, v| v + 0.5 * (TAU * cycles * part).sin());
-        }),
-        ("one sample in 40 kept", |t| {
-            // Pulses of a sample or none: the contact is sampled at 50 Hz, but the rate is said to be 2000 Hz still.
-            t.values.chunks_mut(40).for_each(|held| held.fill(held[0]));
         }),
         ("one sample missing", |t| t.values[300] = f64::NAN),
         ("all equal", |t| t.values.fill(0.25)),
