@@ -1,5 +1,6 @@
 //! What drives mass 1.
 
+use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use vibro_record::{Error, Result};
@@ -118,6 +119,25 @@ impl Excitation {
                 Excitation::Sines(Sines { parts: sines.parts.iter().map(part).collect() })
             }
         }
+    }
+
+    /// Complex amplitude in N of the force's `n`-th harmonic (n ≥ 1), the cycle being at `phase` (rad) at time 0; not a number for
+    /// several sines, which need have none.
+    ///
+    /// Impulses F have 2F/T in every harmonic; pulses (2f/T)(1 − e^{−inωw})/(inω).
+    pub(super) fn harmonic(&self, n: u32, phase: f64) -> Complex64 {
+        let size = match *self {
+            Excitation::Sine(sine) if n == 1 => sine.force.into(),
+            Excitation::Sine(_) => Complex64::ZERO,
+            Excitation::Impulse(train) => (2.0 * train.impulse * train.frequency).into(),
+            Excitation::Pulse(Pulses { force, width, frequency }) => {
+                // 1 − e^{−2ih} = 2i sin h e^{−ih}.
+                let half = f64::from(n) * TAU * frequency * width / 2.0;
+                Complex64::cis(-half) * (2.0 * force * frequency * width * half.sin() / half)
+            }
+            Excitation::Sines(_) => f64::NAN.into(),
+        };
+        Complex64::cis(f64::from(n) * phase) * size
     }
 
     /// Whether it does nothing.

@@ -103,22 +103,6 @@ impl Waves {
         }
         sum
     }
-
-    /// The `order`-th derivative at `t`, the next one, and a bound on the one after.
-    #[inline]
-    pub fn derivative(&self, order: u32, t: f64) -> (f64, f64, f64) {
-        let mut sum = (0.0, 0.0, 0.0);
-        for wave in self.terms.iter().take(self.count) {
-            let (mut re, mut im) = turned(wave, t);
-            for _ in 0..order {
-                (re, im) = (-wave.omega * im, wave.omega * re);
-            }
-            sum.0 += re;
-            sum.1 -= wave.omega * im;
-            sum.2 += wave.re.hypot(wave.im) * wave.omega.powi(order as i32 + 2);
-        }
-        sum
-    }
 }
 
 /// Xe^{iωt}.

@@ -3,7 +3,7 @@ use crate::{Orbit, Rig, Validity, orbits};
 use std::f64::consts::TAU;
 
 fn one(rig: &Rig, force: f64, frequency: f64) -> PeriodicOrbit {
-    let orbit = orbits(rig, force, frequency).unwrap().orbits[0];
+    let orbit = orbits(rig, force, frequency).unwrap().orbits.remove(0);
     PeriodicOrbit::near(rig, &Sine { force, frequency }, 1, &[(orbit.force_phase, orbit.impulse)]).unwrap()
 }
 

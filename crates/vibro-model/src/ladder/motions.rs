@@ -199,7 +199,7 @@ impl Motions {
             _ if self.reading.end != End::Settled => On::Other,
             Regime::NoImpact => On::Free,
             Regime::Periodic { impacts: 1, cycles: 1 } => {
-                self.near(self.stable(), fine).map_or(On::Other, |orbit| On::Orbit(Box::new(*orbit)))
+                self.near(self.stable(), fine).map_or(On::Other, |orbit| On::Orbit(Box::new(orbit.clone())))
             }
             _ => On::Other,
         }

@@ -42,7 +42,7 @@ fn cells_are_the_simulation_and_the_orbit() {
 fn one_settled_cell_has_the_radius_of_the_closed_form() {
     let (rig, sine) = (Rig { restitution: 0.5, ..Rig::thesis() }, Sine { force: 0.5, frequency: 10.0 });
     let cell = cell(&rig, &sine.into(), 400);
-    let orbit = orbits(&rig, sine.force, sine.frequency).unwrap().orbits[0];
+    let orbit = orbits(&rig, sine.force, sine.frequency).unwrap().orbits.remove(0);
     assert_eq!(cell.regime, Some(Regime::Periodic { impacts: 1, cycles: 1 }));
     // Within 1e-6 of the orbit, and a radius below 1 by a tenth.
     assert!((cell.spectral_radius.unwrap() - orbit.spectral_radius().unwrap()).abs() < 1e-4);

@@ -5,15 +5,24 @@ use num_complex::Complex64;
 use vibro_math::Oscillator;
 use vibro_math::cis::sin_cos;
 
-/// What is looked at.
+/// What is looked at: x₁, x₂, or the gap g = Δ + x₂ − x₁.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Signal {
-    /// g = Δ + x₂ − x₁.
-    Gap,
-    /// x₁.
     X1,
-    /// x₂.
     X2,
+    Gap,
+}
+
+impl Signal {
+    /// Of both masses' values the signal's, the rest gap left out.
+    #[inline]
+    fn of(self, [one, two]: [f64; 2]) -> f64 {
+        match self {
+            Signal::X1 => one,
+            Signal::X2 => two,
+            Signal::Gap => two - one,
+        }
+    }
 }
 
 /// Both masses in free motion, mass 1 about `rest` and with one forced wave on top; time counts from the stretch's start.
@@ -64,24 +73,16 @@ impl Stretch {
 
     /// Value, slope and acceleration of a signal.
     #[inline]
-    pub fn signal(&self, signal: Signal, t: f64) -> [f64; 3] {
+    fn signal(&self, signal: Signal, t: f64) -> [f64; 3] {
         let [one, two] = self.series(t);
-        match signal {
-            Signal::X1 => one,
-            Signal::X2 => two,
-            Signal::Gap => [self.gap + two[0] - one[0], two[1] - one[1], two[2] - one[2]],
-        }
-    }
-
-    /// A bound on the displacements for ever, in m, without `rest` and gap.
-    pub fn reach(&self) -> f64 {
-        let free: f64 = self.oscillators.iter().zip(self.free).map(|(o, (x, v))| o.bound(x, v)).sum();
-        self.forced.norm() + free
+        let [value, slope, bend] = [0, 1, 2].map(|n| signal.of([one[n], two[n]]));
+        [if signal == Signal::Gap { self.gap + value } else { value }, slope, bend]
     }
 
     /// Rounding error of a computed gap in m: a few ε of the largest term.
     pub fn noise(&self) -> f64 {
-        2.0 * f64::EPSILON * (self.gap.abs() + self.rest.abs() + self.reach())
+        let free: f64 = self.oscillators.iter().zip(self.free).map(|(o, (x, v))| o.bound(x, v)).sum();
+        2.0 * f64::EPSILON * (self.gap.abs() + self.rest.abs() + self.forced.norm() + free)
     }
 
     /// Visits every smallest and largest value of x₁, x₂ and the gap inside `0..duration`: its time, its value, and the signal's
@@ -114,16 +115,10 @@ impl Stretch {
             }
             let right = self.rates(free, forced);
             for signal in [Signal::X1, Signal::X2, Signal::Gap] {
-                let ends = (left.of(signal), right.of(signal));
-                self.turns_between(
-                    signal,
-                    right_t - step,
-                    step,
-                    ends,
-                    left.limit(signal),
-                    duration,
-                    &mut visit,
-                );
+                let limit = if signal == Signal::Gap { left.limit[0] + left.limit[1] } else { signal.of(left.limit) };
+                let ends = [&left, &right].map(|r| (signal.of(r.rate), signal.of(r.slope)));
+                let part = Part { signal, start: right_t - step, width: step, limit, duration };
+                self.turns_between(&part, ends, &mut visit);
             }
             left = right;
         }
@@ -146,18 +141,14 @@ impl Stretch {
         rates
     }
 
-    /// Turns of a signal between two points with these rates and slopes.
-    #[expect(clippy::too_many_arguments, reason = "a recursion that carries what it knows")]
+    /// Turns of a signal within a part, between whose ends it has these rates and slopes.
     fn turns_between(
         &self,
-        signal: Signal,
-        start: f64,
-        width: f64,
-        (left, right): ((f64, f64), (f64, f64)),
-        limit: f64,
-        duration: f64,
+        part: &Part,
+        [left, right]: [(f64, f64); 2],
         visit: &mut impl FnMut(Signal, f64, f64, f64),
     ) {
+        let Part { signal, start, width, limit, duration } = *part;
         let change = left.0 * right.0 <= 0.0;
         if !change {
             // The chord bounds the rate from below but for M width²/8.
@@ -165,9 +156,8 @@ impl Stretch {
                 return;
             }
             let sign = left.0.signum();
-            let (from, back) =
-                (reach(sign * left.0, sign * left.1, limit), reach(sign * right.0, -sign * right.1, limit));
-            if from + back > width {
+            let from = reach(sign * left.0, sign * left.1, limit);
+            if from + reach(sign * right.0, -sign * right.1, limit) > width {
                 return;
             }
         } else if left.0 == 0.0 && right.0 == 0.0 && left.1 == 0.0 {
@@ -182,15 +172,9 @@ impl Stretch {
                 let t = start + cubic_zero(left, right, width);
                 let [value, rate, bend] = self.signal(signal, t);
                 // The rate is zero a little off: the value's change to there is of second order.
-                let (ahead, gain) =
-                    if bend == 0.0 { (0.0, 0.0) } else { (-rate / bend, -rate * rate / (2.0 * bend)) };
-                let within = ahead.abs() <= width;
-                visit(
-                    signal,
-                    if within { t + ahead } else { t },
-                    if within { value + gain } else { value },
-                    bend,
-                );
+                let ahead = if bend == 0.0 { 0.0 } else { -rate / bend };
+                let ahead = if ahead.abs() <= width { ahead } else { 0.0 };
+                visit(signal, t + ahead, value + rate * ahead / 2.0, bend);
             }
             return;
         }
@@ -199,37 +183,28 @@ impl Stretch {
         }
         let half = width / 2.0;
         let [_, rate, slope] = self.signal(signal, start + half);
-        self.turns_between(signal, start, half, (left, (rate, slope)), limit, duration, visit);
-        self.turns_between(signal, start + half, half, ((rate, slope), right), limit, duration, visit);
+        self.turns_between(&Part { width: half, ..*part }, [left, (rate, slope)], visit);
+        let second = Part { start: start + half, width: half, ..*part };
+        self.turns_between(&second, [(rate, slope), right], visit);
     }
 }
 
-/// A signal's rates at a point of the grid.
+/// A part of a stretch of `duration`, in which a signal's rate has a curvature of `limit` at most.
+#[derive(Clone, Copy)]
+struct Part {
+    signal: Signal,
+    start: f64,
+    width: f64,
+    limit: f64,
+    duration: f64,
+}
+
+/// Rates and slopes of both masses at a point of the grid, with bounds on the curvature of the rates for all later times.
 #[derive(Clone, Copy)]
 struct Rates {
     rate: [f64; 2],
     slope: [f64; 2],
     limit: [f64; 2],
-}
-
-impl Rates {
-    #[inline]
-    fn of(&self, signal: Signal) -> (f64, f64) {
-        match signal {
-            Signal::X1 => (self.rate[0], self.slope[0]),
-            Signal::X2 => (self.rate[1], self.slope[1]),
-            Signal::Gap => (self.rate[1] - self.rate[0], self.slope[1] - self.slope[0]),
-        }
-    }
-
-    #[inline]
-    fn limit(&self, signal: Signal) -> f64 {
-        match signal {
-            Signal::X1 => self.limit[0],
-            Signal::X2 => self.limit[1],
-            Signal::Gap => self.limit[0] + self.limit[1],
-        }
-    }
 }
 
 /// One step of a free motion.

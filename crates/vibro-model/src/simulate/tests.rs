@@ -49,7 +49,7 @@ fn it_settles_on_the_closed_form_orbit() {
     motion.run(150.0, |_| {}).unwrap();
     let mut last = None;
     motion.run(150.2, |leg| last = leg.impact().or(last)).unwrap();
-    let orbit = orbits(motion.rig(), 0.5, motion.frequency()).unwrap().orbits[0];
+    let orbit = orbits(motion.rig(), 0.5, motion.frequency()).unwrap().orbits.remove(0);
     let impact = last.unwrap();
     // Rounding of a state near 10 mm, enlarged by 1/(1 − 0.97).
     let tolerance = 16.0 * f64::EPSILON / 0.03;

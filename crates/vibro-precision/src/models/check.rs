@@ -295,16 +295,16 @@ mod tests {
             Steady::new(&task.rig, &Sine { force: 1.0, frequency: task.frequency }).unwrap().amplitude();
         let task = Task { force: task.rig.gap / unit * (1.0 - 1e-3), ..task };
         let found = orbits(&task.rig, task.force, task.frequency).unwrap().orbits;
-        let [first, second] = found[..] else { panic!("{}", found.len()) };
+        let [first, second] = &found[..] else { panic!("{}", found.len()) };
         let outcome = |told: &[&Orbit]| judged(&task, told).unwrap().0;
-        assert_eq!(outcome(&[&first, &second]), Outcome::Right);
-        assert_eq!(outcome(&[&first]), Outcome::Wrong);
-        assert_eq!(outcome(&[&second]), Outcome::Wrong);
+        assert_eq!(outcome(&[first, second]), Outcome::Right);
+        assert_eq!(outcome(&[first]), Outcome::Wrong);
+        assert_eq!(outcome(&[second]), Outcome::Wrong);
         assert_eq!(outcome(&[]), Outcome::Wrong);
-        assert_eq!(outcome(&[&first, &first]), Outcome::Wrong);
-        assert_eq!(outcome(&[&first, &second, &second]), Outcome::Wrong);
+        assert_eq!(outcome(&[first, first]), Outcome::Wrong);
+        assert_eq!(outcome(&[first, second, second]), Outcome::Wrong);
         let changed = |change: &dyn Fn(&mut Orbit)| {
-            [first, second].map(|mut orbit| {
+            [first.clone(), second.clone()].map(|mut orbit| {
                 change(&mut orbit);
                 unlike(&orbit, &growth(&task, &told_by(&orbit)).unwrap()).is_some()
             })
