@@ -1,11 +1,9 @@
 //! A slow continuous sweep of the frequency, in steps so fine that they do not matter.
 
-use super::{Motion, Piece};
+use super::{Motion, Piece, scales};
 use std::f64::consts::PI;
 use vibro_record::{Error, Result};
 
-/// The most steps that one call takes.
-const MOST_STEPS: f64 = 2e7;
 
 /// A sweep at a constant rate.
 ///
@@ -57,15 +55,9 @@ impl Chirp {
             ));
         }
         let (start, first) = (motion.time(), motion.frequency());
+        scales::check_time(start, until)?;
         let count = ((until - start) / self.step()).ceil().max(1.0);
-        if count.is_nan() || count > MOST_STEPS {
-            return Err(Error::usage(
-                format!("a sweep of {count:.0} steps until {until} s"),
-                format!(
-                    "a finite time, and at most {MOST_STEPS:.0} steps: sweep in parts, or allow a larger deviation"
-                ),
-            ));
-        }
+        scales::check_work(count)?;
         let h = (until - start) / count;
         for i in 0..count as u64 {
             motion.set_frequency(first + self.rate * h * (i as f64 + 0.5))?;

@@ -84,16 +84,40 @@ pub struct Part {
 }
 
 impl Excitation {
-    /// Checks that the numbers can belong to an excitation.
+    /// Checks that the numbers can belong to an excitation: all finite, frequencies above 0, amplitudes of sines not negative (impulses and
+    /// pulses may pull), a width above 0 and below the cycle, and one to [`MOST_SINES`] sines.
     ///
     /// # Errors
-    /// As [`Sine::check`], [`Impulses::check`], [`Pulses::check`] and [`Sines::check`].
+    /// If it is not so; it names the key as a setting.
     pub fn check(&self) -> Result<()> {
         match self {
             Excitation::Sine(sine) => sine.check(),
-            Excitation::Impulse(impulses) => impulses.check(),
-            Excitation::Pulse(pulses) => pulses.check(),
-            Excitation::Sines(sines) => sines.check(),
+            Excitation::Impulse(train) => {
+                finite("impulse", train.impulse, "N s")?;
+                rising(train.frequency)
+            }
+            Excitation::Pulse(train) => {
+                finite("force", train.force, "N")?;
+                rising(train.frequency)?;
+                let cycle = 1.0 / train.frequency;
+                if train.width > 0.0 && train.width < cycle {
+                    return Ok(());
+                }
+                let expected =
+                    format!("a value above 0 and below the cycle of {cycle} s at {} Hz", train.frequency);
+                Err(Error::usage(format!("width is {} s", train.width), expected).setting("width"))
+            }
+            Excitation::Sines(Sines { parts }) => {
+                if !(1..=MOST_SINES).contains(&parts.len()) {
+                    let expected = format!("parts = [{{ force = …, frequency = … }}], 1 to {MOST_SINES}");
+                    return Err(Error::usage(format!("{} sines", parts.len()), expected).setting("parts"));
+                }
+                for Part { force, frequency, phase } in parts.iter().copied() {
+                    Sine { force, frequency }.check()?;
+                    finite("phase", phase, "rad")?;
+                }
+                Ok(())
+            }
         }
     }
 
@@ -167,95 +191,37 @@ impl From<Sine> for Excitation {
     }
 }
 
+fn finite(key: &'static str, value: f64, unit: &str) -> Result<()> {
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(Error::usage(format!("{key} is {value} {unit}"), "a finite value").setting(key))
+}
+
 /// A frequency that is finite and above 0.
 fn rising(frequency: f64) -> Result<()> {
     if frequency.is_finite() && frequency > 0.0 {
         return Ok(());
     }
-    Err(Error::usage(format!("frequency is {frequency} Hz"), "a finite value above 0"))
-}
-
-/// A force that is finite and not negative.
-fn pushing(force: f64) -> Result<()> {
-    if force.is_finite() && force >= 0.0 {
-        return Ok(());
-    }
-    Err(Error::usage(format!("force is {force} N"), "a finite amplitude of 0 or more"))
+    Err(Error::usage(format!("frequency is {frequency} Hz"), "a finite value above 0").setting("frequency"))
 }
 
 impl Sine {
-    /// Checks that amplitude and frequency are finite, the amplitude not negative and the frequency above 0.
+    /// As [`Excitation::check`].
     ///
     /// # Errors
-    /// If one of them is not.
+    /// If a number cannot be.
     pub fn check(&self) -> Result<()> {
-        pushing(self.force)?;
+        if !(self.force.is_finite() && self.force >= 0.0) {
+            let found = format!("force is {} N", self.force);
+            return Err(Error::usage(found, "a finite amplitude of 0 or more").setting("force"));
+        }
         rising(self.frequency)
     }
 
     /// Angular frequency ω in rad/s.
     pub fn omega(&self) -> f64 {
         TAU * self.frequency
-    }
-}
-
-impl Impulses {
-    /// Checks that impulse and frequency are finite and the frequency above 0. An impulse may pull.
-    ///
-    /// # Errors
-    /// If one of them is not.
-    pub fn check(&self) -> Result<()> {
-        if !self.impulse.is_finite() {
-            return Err(Error::usage(format!("impulse is {} N s", self.impulse), "a finite value"));
-        }
-        rising(self.frequency)
-    }
-}
-
-impl Pulses {
-    /// Checks that force, width and frequency are finite, the frequency above 0 and the width above 0 and below the cycle. A force may
-    /// pull.
-    ///
-    /// # Errors
-    /// If one of them is not.
-    pub fn check(&self) -> Result<()> {
-        if !self.force.is_finite() {
-            return Err(Error::usage(format!("force is {} N", self.force), "a finite value"));
-        }
-        rising(self.frequency)?;
-        if !(self.width > 0.0 && self.width < 1.0 / self.frequency) {
-            let expected = format!(
-                "a value above 0 and below the cycle of {} s at {} Hz",
-                1.0 / self.frequency,
-                self.frequency
-            );
-            return Err(Error::usage(format!("width is {} s", self.width), expected));
-        }
-        Ok(())
-    }
-}
-
-impl Sines {
-    /// Checks that there are one to [`MOST_SINES`] sines, and each as [`Sine::check`], with a finite phase.
-    ///
-    /// # Errors
-    /// If it is not so.
-    pub fn check(&self) -> Result<()> {
-        if self.parts.is_empty() {
-            return Err(Error::usage("sines without parts", "parts = [{ force = …, frequency = … }]"));
-        }
-        if self.parts.len() > MOST_SINES {
-            let found = format!("{} sines", self.parts.len());
-            return Err(Error::usage(found, format!("no more than {MOST_SINES}")));
-        }
-        for part in &self.parts {
-            pushing(part.force)?;
-            rising(part.frequency)?;
-            if !part.phase.is_finite() {
-                return Err(Error::usage(format!("phase is {} rad", part.phase), "a finite value"));
-            }
-        }
-        Ok(())
     }
 }
 
@@ -284,10 +250,10 @@ mod tests {
         let refused = |e: &Excitation| e.check().unwrap_err().to_string();
         let pulses = Pulses { force: 0.5, width: 0.2, frequency: 5.0 };
         assert!(refused(&Excitation::Pulse(pulses)).starts_with("width is 0.2 s"));
-        assert!(Pulses { width: 0.199, ..pulses }.check().is_ok());
+        assert!(Excitation::Pulse(Pulses { width: 0.199, ..pulses }).check().is_ok());
         assert!(refused(&Excitation::Sines(Sines { parts: Vec::new() })).starts_with("sines without parts"));
         let part = Part { force: 0.1, frequency: 5.0, phase: 0.0 };
-        assert!(Sines { parts: vec![part; MOST_SINES] }.check().is_ok());
+        assert!(Excitation::Sines(Sines { parts: vec![part; MOST_SINES] }).check().is_ok());
         let many = Excitation::Sines(Sines { parts: vec![part; MOST_SINES + 1] });
         assert!(refused(&many).starts_with("5 sines"));
         let impulse = Impulses { impulse: f64::NAN, frequency: 5.0 };

@@ -1,7 +1,6 @@
 //! A scene: the rig, what drives it, and how its contact is made.
 
 mod draft;
-mod given;
 
 pub use draft::Draft;
 
@@ -40,7 +39,7 @@ pub struct Scene {
 
 /// Numbers of a contact that gives way; which are needed depends on its law.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default, deny_unknown_fields, expecting = "a table")]
 pub struct ContactKeys {
     /// Stiffness k of the force kδⁿ, in N/mⁿ.
     pub stiffness: Option<f64>,
@@ -51,7 +50,8 @@ pub struct ContactKeys {
 }
 
 /// Stop behind the loose mass 1.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 pub struct Buffer {
     /// Way in m that mass 1 can go freely before its spring acts.
     pub gap: f64,

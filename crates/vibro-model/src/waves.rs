@@ -86,6 +86,12 @@ impl Waves {
         self.limits.sixth * self.fastest().powi(N as i32 - 6)
     }
 
+    /// A bound on the fourth derivative.
+    pub fn snap(&self) -> f64 {
+        let one = |wave: &Wave| wave.re.hypot(wave.im) * wave.omega.powi(4);
+        self.terms.iter().take(self.count).map(one).sum()
+    }
+
     #[inline]
     fn sum(&self, turn: impl Fn(&Wave) -> (f64, f64)) -> [f64; 6] {
         let mut sum = [0.0; 6];

@@ -9,7 +9,7 @@ use crate::cli::{complain, print};
 use crate::error::{Error, Result};
 use crate::model::portrait::{Portrait, Sitting};
 use crate::model::regime::Regime;
-use crate::model::{Compliant, Impact, Loose, Motion, Scene, Simulation, State};
+use crate::model::{Compliant, Impact, Motion, Scene, Simulation, State};
 use crate::report::{Output, Table, files};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -72,12 +72,8 @@ pub fn run(typed: &args::Simulate, json: bool) -> Result<()> {
         Law::LooseMass => {
             let (excitation, start) = (super::excitation(&scene)?, start(&scene, typed)?);
             let gap = scene.buffer.map_or(0.0, |b| b.gap);
-            let motion = if scene.contact.is_some() {
-                let law = contact::law(&scene, Law::KelvinVoigt)?;
-                Loose::with_law(&scene.rig, excitation, gap, law, start, typed.phase)?
-            } else {
-                Loose::new(&scene.rig, excitation, gap, start, typed.phase)?
-            };
+            let law = scene.contact.map(|_| contact::law(&scene, Law::KelvinVoigt)).transpose()?;
+            let motion = Compliant::loose(&scene.rig, excitation, gap, law, start, typed.phase)?;
             whole(motion, typed)?
         }
     };

@@ -12,7 +12,7 @@ use crate::measure::resonance::Resonance;
 use crate::model::continuation::{Branch, Parameter, follow};
 use crate::model::sweep::{Observable, Pace, Plan, Point, Swept, apart, at_size, size};
 use crate::model::{
-    Compliant, Excitation, Loose, Motion, PeriodicOrbit, Rig, Scene, Simulation, State, orbits,
+    Compliant, Excitation, Motion, PeriodicOrbit, Rig, Scene, Simulation, State, orbits,
 };
 use crate::record::Direction;
 use crate::report::{Output, files};
@@ -117,17 +117,8 @@ fn sweep(scene: &Scene, excitation: &Excitation, plan: &Plan, typed: &args::Mode
         }
         Law::LooseMass => {
             let gap = scene.buffer.map_or(0.0, |b| b.gap);
-            if scene.contact.is_none() {
-                return over(
-                    |e, state, phase| Loose::new(rig, e, gap, state, phase),
-                    rig,
-                    excitation,
-                    plan,
-                    typed,
-                );
-            }
-            let law = contact::law(scene, Law::KelvinVoigt)?;
-            let make = |e: &Excitation, state, phase| Loose::with_law(rig, e, gap, law, state, phase);
+            let law = scene.contact.map(|_| contact::law(scene, Law::KelvinVoigt)).transpose()?;
+            let make = |e: &Excitation, state, phase| Compliant::loose(rig, e, gap, law, state, phase);
             over(make, rig, excitation, plan, typed)
         }
     }

@@ -1,5 +1,6 @@
 //! Orbits against their own conditions, their energy balance, other computations of them, and golden numbers.
 
+use crate::Motion;
 use super::*;
 use crate::{Flight, Impulses, Pulses, Simulation, Sines, floquet};
 

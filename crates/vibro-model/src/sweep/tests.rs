@@ -1,5 +1,5 @@
 use super::*;
-use crate::{Compliant, Excitation, Law, Loose, Pulses, Rig, Simulation, Sine, State, orbits, orbits_of};
+use crate::{Compliant, Excitation, Law, Pulses, Rig, Simulation, Sine, State, orbits, orbits_of};
 
 const BOTH: [Direction; 2] = [Direction::Up, Direction::Down];
 
@@ -73,7 +73,7 @@ fn the_thesis_contact_that_gives_way_has_the_known_peaks() {
     let [grazing, clapping, down] = tops(&swept);
     assert!((grazing - 5.58).abs() < 0.05 && (clapping - 10.71).abs() < 0.1 && (down - 5.42).abs() < 0.1);
     assert!((below - 2.81).abs() < 0.05, "{below}");
-    let mut loose = Loose::with_law(&rig, &sine(3.0), 0.0, law, State::REST, 0.0).unwrap();
+    let mut loose = Compliant::loose(&rig, &sine(3.0), 0.0, Some(law), State::REST, 0.0).unwrap();
     let up = plan(3.0).frequency(&mut loose, 0.1, Direction::Up).unwrap();
     println!("loose: {}", highest(&up, 3.0, 14.0).frequency);
     assert!((highest(&up, 3.0, 14.0).frequency - 4.63).abs() < 0.1);

@@ -1,7 +1,7 @@
 //! The ladder of models as tables.
 
 use crate::compare::{Overlay, Rungs};
-use crate::model::ladder::{Choice, Known, Question, Rung, Sensitivity, Stretch, Summary, Survey};
+use crate::model::ladder::{Choice, Known, Need, Question, Rung, Sensitivity, Stretch, Summary, Survey};
 use crate::report::layout::table;
 use crate::report::words::{Voice, sentence};
 use crate::report::{Cell, Table};
@@ -100,7 +100,7 @@ pub fn stretches(stretches: &[Stretch]) -> Table {
             ("points", "", &|s| Cell::from(s.points)),
             ("chosen", "", &|s| s.chosen.map_or(Cell::Missing, |m| Cell::from(m.name()))),
             ("needs", "", &|s| {
-                if s.needs.is_empty() { Cell::Missing } else { Cell::from(s.needs.join(", ")) }
+                if s.needs.is_empty() { Cell::Missing } else { Cell::from(Need::names(&s.needs)) }
             }),
             ("moves at most by", "%", &|s| percent(s.audit.map(|a| a.change))),
             ("at rung", "", &|s| s.audit.map_or(Cell::Missing, |a| Cell::from(a.at.name()))),
@@ -123,7 +123,7 @@ pub(crate) fn climbed(overlay: &Overlay) -> Table {
             ("to", "Hz", &|(_, s)| Cell::from(s.to)),
             ("model", "", &|(_, s)| s.chosen.map_or(Cell::Missing, |m| Cell::from(m.name()))),
             ("needs", "", &|(_, s)| {
-                if s.needs.is_empty() { Cell::Missing } else { Cell::from(s.needs.join(", ")) }
+                if s.needs.is_empty() { Cell::Missing } else { Cell::from(Need::names(&s.needs)) }
             }),
             ("moves at most by", "%", &|(_, s)| percent(s.audit.map(|a| a.change))),
             ("at rung", "", &|(_, s)| s.audit.map_or(Cell::Missing, |a| Cell::from(a.at.name()))),
@@ -160,7 +160,7 @@ pub fn chosen(points: &[Choice], question: &Question) -> Table {
             ("frequency", "Hz", &|c| Cell::from(c.frequency)),
             ("chosen", "", &|c| c.chosen.map_or(Cell::Missing, |m| Cell::from(m.name()))),
             ("needs", "", &|c| {
-                if c.needs.is_empty() { Cell::Missing } else { Cell::from(c.needs.join(", ")) }
+                if c.needs.is_empty() { Cell::Missing } else { Cell::from(Need::names(&c.needs)) }
             }),
             ("moves by", "%", &|c| percent(c.audit.map(|a| a.change))),
             ("at rung", "", &|c| c.audit.map_or(Cell::Missing, |a| Cell::from(a.at.name()))),
