@@ -4,7 +4,6 @@ use super::{Motion, Piece, scales};
 use std::f64::consts::PI;
 use vibro_record::{Error, Result};
 
-
 /// A sweep at a constant rate.
 ///
 /// The frequency goes in steps of duration h, each at the frequency of its middle; the phase is right at both ends of a step and

@@ -1,5 +1,6 @@
 //! What drives mass 1.
 
+use super::scales::{Least, number};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -93,12 +94,12 @@ impl Excitation {
         match self {
             Excitation::Sine(sine) => sine.check(),
             Excitation::Impulse(train) => {
-                finite("impulse", train.impulse, "N s")?;
-                rising(train.frequency)
+                check("impulse", train.impulse, "N s", Least::Any)?;
+                check("frequency", train.frequency, "Hz", Least::AboveZero)
             }
             Excitation::Pulse(train) => {
-                finite("force", train.force, "N")?;
-                rising(train.frequency)?;
+                check("force", train.force, "N", Least::Any)?;
+                check("frequency", train.frequency, "Hz", Least::AboveZero)?;
                 let cycle = 1.0 / train.frequency;
                 if train.width > 0.0 && train.width < cycle {
                     return Ok(());
@@ -114,7 +115,7 @@ impl Excitation {
                 }
                 for Part { force, frequency, phase } in parts.iter().copied() {
                     Sine { force, frequency }.check()?;
-                    finite("phase", phase, "rad")?;
+                    check("phase", phase, "rad", Least::Any)?;
                 }
                 Ok(())
             }
@@ -164,13 +165,27 @@ impl Excitation {
         Complex64::cis(f64::from(n) * phase) * size
     }
 
-    /// Whether it does nothing.
-    pub(super) fn is_idle(&self) -> bool {
+    /// Its size: the force of a sine or pulse in N, of several sines that of the first; the impulse in N s.
+    pub fn size(&self) -> f64 {
         match self {
-            Excitation::Sine(sine) => sine.force == 0.0,
-            Excitation::Impulse(train) => train.impulse == 0.0,
-            Excitation::Pulse(train) => train.force == 0.0,
-            Excitation::Sines(sines) => sines.parts.iter().all(|part| part.force == 0.0),
+            Excitation::Sine(sine) => sine.force,
+            Excitation::Impulse(train) => train.impulse,
+            Excitation::Pulse(train) => train.force,
+            Excitation::Sines(sines) => sines.parts.first().map_or(f64::NAN, |p| p.force),
+        }
+    }
+
+    /// The same excitation of another size; the ratios of several sines stay.
+    pub fn at_size(&self, size: f64) -> Excitation {
+        match self {
+            Excitation::Sine(sine) => Excitation::Sine(Sine { force: size, ..*sine }),
+            Excitation::Impulse(train) => Excitation::Impulse(Impulses { impulse: size, ..*train }),
+            Excitation::Pulse(train) => Excitation::Pulse(Pulses { force: size, ..*train }),
+            Excitation::Sines(sines) => {
+                let ratio = size / self.size();
+                let part = |p: &Part| Part { force: p.force * ratio, ..*p };
+                Excitation::Sines(Sines { parts: sines.parts.iter().map(part).collect() })
+            }
         }
     }
 
@@ -191,19 +206,8 @@ impl From<Sine> for Excitation {
     }
 }
 
-fn finite(key: &'static str, value: f64, unit: &str) -> Result<()> {
-    if value.is_finite() {
-        return Ok(());
-    }
-    Err(Error::usage(format!("{key} is {value} {unit}"), "a finite value").setting(key))
-}
-
-/// A frequency that is finite and above 0.
-fn rising(frequency: f64) -> Result<()> {
-    if frequency.is_finite() && frequency > 0.0 {
-        return Ok(());
-    }
-    Err(Error::usage(format!("frequency is {frequency} Hz"), "a finite value above 0").setting("frequency"))
+fn check(key: &'static str, value: f64, unit: &str, least: Least) -> Result<()> {
+    number(key, value, unit, least).map_err(|error| error.setting(key))
 }
 
 impl Sine {
@@ -212,11 +216,8 @@ impl Sine {
     /// # Errors
     /// If a number cannot be.
     pub fn check(&self) -> Result<()> {
-        if !(self.force.is_finite() && self.force >= 0.0) {
-            let found = format!("force is {} N", self.force);
-            return Err(Error::usage(found, "a finite amplitude of 0 or more").setting("force"));
-        }
-        rising(self.frequency)
+        check("force", self.force, "N", Least::Zero)?;
+        check("frequency", self.frequency, "Hz", Least::AboveZero)
     }
 
     /// Angular frequency ω in rad/s.
@@ -251,7 +252,7 @@ mod tests {
         let pulses = Pulses { force: 0.5, width: 0.2, frequency: 5.0 };
         assert!(refused(&Excitation::Pulse(pulses)).starts_with("width is 0.2 s"));
         assert!(Excitation::Pulse(Pulses { width: 0.199, ..pulses }).check().is_ok());
-        assert!(refused(&Excitation::Sines(Sines { parts: Vec::new() })).starts_with("sines without parts"));
+        assert!(refused(&Excitation::Sines(Sines { parts: Vec::new() })).starts_with("0 sines"));
         let part = Part { force: 0.1, frequency: 5.0, phase: 0.0 };
         assert!(Excitation::Sines(Sines { parts: vec![part; MOST_SINES] }).check().is_ok());
         let many = Excitation::Sines(Sines { parts: vec![part; MOST_SINES + 1] });

@@ -122,7 +122,9 @@ impl Flight {
     /// the gap opens like t³, and is long smaller than its rounding.
     pub(super) fn parting(mut self) -> Flight {
         let [[_, _, a1, j1, ..], [_, _, a2, j2, ..]] = self.series(0.0);
-        let bound = |i: usize| self.free[i].oscillator.bound(self.free[i].series(0.0)[4], self.free[i].series(0.0)[5]);
+        let bound = |i: usize| {
+            self.free[i].oscillator.bound(self.free[i].series(0.0)[4], self.free[i].series(0.0)[5])
+        };
         let fourth = bound(1) + self.waves.snap() + bound(0);
         let (bend, jerk) = ((a2 - a1).max(0.0), j2 - j1);
         let root = (jerk / 6.0 + (jerk * jerk / 36.0 + fourth * bend / 12.0).sqrt()) / (fourth / 12.0);

@@ -95,7 +95,8 @@ impl Forcing {
 
     /// The force in N at `t` seconds from now, before its next tick.
     pub fn force(&self, t: f64) -> f64 {
-        self.tones().map(|tone| tone.force * (tone.phase + tone.omega() * t).cos()).sum::<f64>() + self.clock.constant()
+        self.tones().map(|tone| tone.force * (tone.phase + tone.omega() * t).cos()).sum::<f64>()
+            + self.clock.constant()
     }
 
     /// Terms of the force in powers of time over `duration` seconds.

@@ -37,7 +37,6 @@ use climb::Climb;
 use question::Answer;
 use serde::Serialize;
 use stage::{Stage, curved, is_curved, keys};
-use vibro_record::units::notation::significant;
 use vibro_record::{Error, Finding, Result};
 
 /// The rung that is good enough for a scene, and how that was found.
@@ -146,21 +145,13 @@ fn chosen(scene: &Scene, frequency: f64, question: &Question, bend: bool) -> Res
     };
     let excitation = excitation.at_frequency(frequency);
     scales::check(&scene.rig, &excitation)?;
-    if excitation.is_idle() {
+    if excitation.size() == 0.0 {
         return Err(Error::usage(
             "nothing drives the rig: its excitation is 0",
             "a force or impulse above 0",
         ));
     }
-    let fastest = scene.rig.natural_frequencies().into_iter().filter(|f| f.is_finite()).fold(0.0, f64::max);
-    if fastest > MOST_SWINGS * frequency {
-        return Err(Error::refused(format!(
-            "a mass swings {} times in a cycle of {} Hz: more than {MOST_SWINGS:.0} are not followed",
-            significant(fastest / frequency, 3),
-            significant(frequency, 6)
-        ))
-        .hint("at such frequencies springs alone decide: x₁ = F/k₁ until the masses meet"));
-    }
+    scales::check_swings(&scene.rig, frequency, MOST_SWINGS)?;
     let stage = Stage { scene, excitation: &excitation, question };
     let mut choice = Climb::new(stage)?.choose(bend);
     if bend && question.gap_std > 0.0 {

@@ -217,6 +217,7 @@ impl PeriodicOrbit {
             surveys.iter().filter_map(|s| s.closest).reduce(f64::min),
             flights.iter().map(Course::noise).fold(0.0, f64::max),
             stable,
+            multipliers.as_ref(),
         );
         let spread = |mass: usize| {
             let ranges = surveys.iter().map(|s| s.ranges[mass]);
@@ -233,7 +234,7 @@ impl PeriodicOrbit {
             cycles,
             fundamental: [system.response * Complex64::cis(u[0]) - l1 * train, l2 * train],
             peak_to_peak: [0, 1].map(spread),
-            validity: validity.lost_by(multipliers.as_ref()),
+            validity,
             multipliers,
             monodromy,
             beats,

@@ -1,6 +1,7 @@
 //! The rig: two masses on springs and dampers, a gap and a restitution.
 
 use super::State;
+use super::scales::{Least, number};
 use serde::{Deserialize, Serialize};
 use vibro_math::Oscillator;
 use vibro_record::{Error, Result};
@@ -59,27 +60,19 @@ impl Rig {
 
     /// The first value that no rig can have: its key, and the complaint.
     pub fn fault(&self) -> Option<(&'static str, Error)> {
-        let wall = self.has_wall();
-        for (key, value, unit, zero) in [
-            ("m1", self.m1, "kg", false),
-            ("m2", self.m2, "kg", false),
-            ("k1", self.k1, "N/m", false),
-            ("k2", self.k2, "N/m", false),
-            ("c1", self.c1, "N s/m", true),
-            ("c2", self.c2, "N s/m", true),
+        for (key, value, unit, least) in [
+            ("m1", self.m1, "kg", Least::AboveZero),
+            ("m2", self.m2, "kg", Least::AboveZero),
+            ("k1", self.k1, "N/m", Least::AboveZero),
+            ("k2", self.k2, "N/m", Least::AboveZero),
+            ("c1", self.c1, "N s/m", Least::Zero),
+            ("c2", self.c2, "N s/m", Least::Zero),
+            ("gap", self.gap, "m", Least::Any),
         ] {
-            let counts = !(wall && key.ends_with('2'));
-            if counts && !(value.is_finite() && (value > 0.0 || zero && value == 0.0)) {
-                let expected = if zero {
-                    "a finite value of 0 or more: a damper that feeds energy in has no steady motion"
-                } else {
-                    "a finite value above 0"
-                };
-                return Some((key, Error::usage(format!("{key} is {value} {unit}"), expected)));
+            let counts = !(self.has_wall() && key.ends_with('2'));
+            if let Some(error) = number(key, value, unit, least).err().filter(|_| counts) {
+                return Some((key, error));
             }
-        }
-        if !self.gap.is_finite() {
-            return Some(("gap", Error::usage(format!("gap is {} m", self.gap), "a finite value")));
         }
         if (0.0..=1.0).contains(&self.restitution) {
             return None;

@@ -17,6 +17,30 @@ const LARGEST: f64 = 1e50;
 /// Swings, or decays by e, of a mass in a cycle of the excitation.
 const MOST_SWINGS: f64 = 1e7;
 
+/// What a number may be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Least {
+    Any,
+    Zero,
+    AboveZero,
+}
+
+/// Checks that a number is finite, and not too small.
+///
+/// # Errors
+/// If it is not.
+pub(super) fn number(name: &str, value: f64, unit: &str, least: Least) -> Result<()> {
+    let (fine, expected) = match least {
+        Least::Any => (true, "a finite value"),
+        Least::Zero => (value >= 0.0, "a finite value of 0 or more"),
+        Least::AboveZero => (value > 0.0, "a finite value above 0"),
+    };
+    if fine && value.is_finite() {
+        return Ok(());
+    }
+    Err(Error::usage(format!("{name} is {value} {unit}").trim_end(), expected))
+}
+
 /// Checks that a rig and its excitation are possible, and that their motion can be computed in double precision.
 ///
 /// # Errors
@@ -43,11 +67,19 @@ pub(super) fn check(rig: &Rig, excitation: &Excitation) -> Result<()> {
             .hint("give 0, or a size between 1e-50 and 1e50 in SI units"));
         }
     }
+    check_swings(rig, frequency, MOST_SWINGS)
+}
+
+/// Checks that no mass swings, or is slowed by its damper, more than `most` times in a cycle of `frequency` (Hz).
+///
+/// # Errors
+/// If one does.
+pub(super) fn check_swings(rig: &Rig, frequency: f64, most: f64) -> Result<()> {
     let swings = rig.oscillators().map(|o| o.omega2().sqrt().max(o.decay()) / (TAU * frequency));
     for (mass, swings) in ["mass 1", "mass 2"].into_iter().zip(swings) {
-        if swings > MOST_SWINGS {
+        if swings > most {
             return Err(Error::refused(format!(
-                "{mass} swings or slows {} times in a cycle of {} Hz: more than {MOST_SWINGS:.0e} lose half of all digits",
+                "{mass} swings or slows {} times in a cycle of {} Hz: more than {most:.0e} are not followed",
                 significant(swings, 3),
                 significant(frequency, 3)
             ))
@@ -77,8 +109,10 @@ pub(super) fn check_work(cycles: f64) -> Result<()> {
     if cycles <= 1e8 {
         return Ok(());
     }
-    Err(Error::refused(format!("{cycles:.3e} cycles of the excitation: more than 1e8 are not computed at a time"))
-        .hint("ask for less time, fewer points or cells, or fewer cycles of each"))
+    Err(Error::refused(format!(
+        "{cycles:.3e} cycles of the excitation: more than 1e8 are not computed at a time"
+    ))
+    .hint("ask for less time, fewer points or cells, or fewer cycles of each"))
 }
 
 #[cfg(test)]

@@ -6,7 +6,6 @@ pub use draft::Draft;
 
 use super::{Excitation, Law, Rig};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
 use vibro_record::Result;
 
 /// All that a computation of the rig's motion starts from.
@@ -61,14 +60,6 @@ impl Scene {
     /// The thesis' rig, driven by nothing.
     pub fn thesis() -> Scene {
         Scene { rig: Rig::thesis(), excitation: None, contact: None, buffer: None }
-    }
-
-    /// Reads a file.
-    ///
-    /// # Errors
-    /// As [`Draft::from_path`] and [`Draft::scene`].
-    pub fn from_path(path: impl AsRef<Path>) -> Result<Scene> {
-        Draft::from_path(path)?.scene()
     }
 
     /// Reads the text of a file.

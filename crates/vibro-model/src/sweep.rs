@@ -1,19 +1,16 @@
 //! Sweeps: a motion whose excitation changes in steps or slowly, up and down, its state carried on all the way.
 
 mod gauge;
-mod size;
 
 pub use gauge::Gauge;
 #[cfg(test)]
 use gauge::LOW_PASS;
 pub use gauge::Observable;
-pub use size::{at_size, size};
 
 use super::{Motion, parallel, scales};
 use serde::Serialize;
 use std::f64::consts::TAU;
 use vibro_record::{Direction, Error, Result};
-
 
 /// Steps a cycle of a continuous sweep. A step has the frequency of its middle, so the phase is exact at its ends and errs by at
 /// most 2πrh²/8 inside, r being the rate in Hz/s and h the step in s: 7e-6 rad at 3 Hz and 0.02 Hz/s.

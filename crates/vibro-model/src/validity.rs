@@ -102,6 +102,7 @@ impl Validity {
         clearance: Option<f64>,
         noise: f64,
         stable: Option<bool>,
+        multipliers: Option<&[Complex64; 4]>,
     ) -> Validity {
         // The gap is zero at the impacts, so wherever it is negative it has a smallest value between them.
         let min_gap = clearance.filter(|gap| *gap < -8.0 * noise).unwrap_or(0.0);
@@ -114,18 +115,12 @@ impl Validity {
                 Some(false) => Stability::Unstable,
                 None => Stability::Neutral,
             },
-            instability: None,
+            instability: (exists && stable == Some(false)).then(|| Loss::of(multipliers)),
             energy_rule: exists && energy_rule,
             min_gap,
             clearance,
             grazing_distance: clearance.map_or(own, |c| own.min(c.max(0.0))),
         }
-    }
-
-    /// The same, with how the motion lost its stability, if it did.
-    pub(super) fn lost_by(self, multipliers: Option<&[Complex64; 4]>) -> Validity {
-        let lost = self.exists && self.stable == Some(false);
-        Validity { instability: lost.then(|| Loss::of(multipliers)), ..self }
     }
 
     /// Whether the motion can be measured: it exists, is admissible and stable.

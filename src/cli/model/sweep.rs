@@ -9,8 +9,8 @@ use crate::compare::{Named, named};
 use crate::error::{Error, Result};
 use crate::measure::jump::Jump;
 use crate::measure::resonance::Resonance;
-use crate::model::continuation::{Branch, Parameter, follow};
-use crate::model::sweep::{Observable, Pace, Plan, Point, Swept, apart, at_size, size};
+use crate::model::continuation::{Branch, follow};
+use crate::model::sweep::{Observable, Pace, Plan, Point, Swept, apart};
 use crate::model::{
     Compliant, Excitation, Motion, PeriodicOrbit, Rig, Scene, Simulation, State, orbits,
 };
@@ -142,12 +142,12 @@ fn over<M: Motion>(
         let start = if direction == Direction::Up { plan.from } else { plan.to };
         if typed.over == Over::Frequency {
             let mut motion = make(&excitation.at_frequency(start), rest, 0.0)?;
-            return plan.frequency(&mut motion, size(excitation), direction);
+            return plan.frequency(&mut motion, excitation.size(), direction);
         }
-        let mut motion = make(&at_size(excitation, start), rest, 0.0)?;
+        let mut motion = make(&excitation.at_size(start), rest, 0.0)?;
         let frequency = excitation.frequency();
         plan.steps(&mut motion, direction, |motion, value| {
-            motion.set_excitation(&at_size(excitation, value))?;
+            motion.set_excitation(&excitation.at_size(value))?;
             Ok((frequency, value))
         })
     })
@@ -184,7 +184,7 @@ fn branches(rig: &Rig, excitation: &Excitation, plan: &Plan) -> Vec<Branch> {
             }
             let start = [(orbit.force_phase, orbit.impulse)];
             let branch = PeriodicOrbit::near(rig, &here, 1, &start)
-                .and_then(|start| follow(&start, Parameter::Frequency, plan.from, plan.to, 0.05));
+                .and_then(|start| follow(&start, plan.from, plan.to, 0.05));
             found.extend(branch);
         }
     }

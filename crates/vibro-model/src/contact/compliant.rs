@@ -126,12 +126,11 @@ impl Compliant {
         phase: f64,
     ) -> Result<Compliant> {
         if law.is_some_and(|law| !matches!(law, Law::KelvinVoigt { .. })) {
-            let expected = "rebounds at once or a Kelvin–Voigt contact: the other laws are for masses on their springs";
+            let expected =
+                "rebounds at once or a Kelvin–Voigt contact: the other laws are for masses on their springs";
             return Err(Error::usage("a loose mass with a contact law that is not linear", expected));
         }
-        if !(gap.is_finite() && gap >= 0.0) {
-            return Err(Error::usage(format!("buffer gap is {gap} m"), "a finite value of 0 or more"));
-        }
+        scales::number("buffer gap", gap, "m", scales::Least::Zero)?;
         Compliant::start(rig, excitation, law, Some(gap), state, phase)
     }
 

@@ -37,16 +37,12 @@ impl<'a> Climb<'a> {
             return Ok(Climb { stage, motions: None, rungs, stiffness });
         }
         let mut motions = Motions::new(&stage)?;
-        let closed = stage.closed_form(&motions);
-        let rungs = vec![
-            stage.linear(&motions),
-            stage.soft_corrected(&motions, closed.valid),
-            Stage::restitution(&motions),
-            stage.kelvin_voigt(&mut motions),
-            stage.hunt_crossley(&mut motions),
-            stage.loose_mass(None),
-        ];
-        let rungs = [&rungs[..1], &[closed], &rungs[1..]].concat();
+        let (linear, closed) = (stage.linear(&motions), stage.closed_form(&motions));
+        let soft = stage.soft_corrected(&motions, closed.valid);
+        let followed = [stage.kelvin_voigt(&mut motions), stage.hunt_crossley(&mut motions)];
+        let restitution = Stage::restitution(&motions);
+        let [spring, curved] = followed;
+        let rungs = vec![linear, closed, soft, restitution, spring, curved, stage.loose_mass(None)];
         Ok(Climb { stage, motions: Some(motions), rungs, stiffness })
     }
 
@@ -152,7 +148,7 @@ impl<'a> Climb<'a> {
         match choice.chosen {
             None => {
                 let (scene, rebounds) = (self.stage.scene, self.stage.scene.rig.restitution > 0.0);
-                let missing = |need: &Need| !need.known(scene) && !(*need == Need::Damping && rebounds);
+                let missing = |need: &Need| !(need.known(scene) || *need == Need::Damping && rebounds);
                 choice.needs = [Need::Stiffness, Need::Damping].into_iter().filter(missing).collect();
             }
             Some(model @ (Model::KelvinVoigt | Model::SoftCorrected)) if bend => {
@@ -206,8 +202,7 @@ impl<'a> Climb<'a> {
                 None => self.stage.loose_mass(Some(stiffness)).full()?,
             };
             let ratio = damping / (2.0 * (stiffness * mass).sqrt());
-            let Change { change, enough, .. } =
-                base.change(&answer, Model::KelvinVoigt, self.stage.question);
+            let Change { change, enough, .. } = base.change(&answer, Model::KelvinVoigt, self.stage.question);
             let share = conversion::duration(ratio, stiffness, mass) * frequency;
             Some(Sensitivity { stiffness, share, answer: answer.value, change, enough })
         };

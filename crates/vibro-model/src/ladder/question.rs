@@ -2,6 +2,7 @@
 
 use super::Model;
 use crate::Observable;
+use crate::scales::{Least, number};
 use serde::Serialize;
 use vibro_record::{Direction, Error, Result};
 
@@ -46,16 +47,8 @@ impl Question {
             let error = Error::usage(format!("a tolerance of {}", self.tolerance), expected);
             return Err(error.hint("2 % is 0.02"));
         }
-        for (name, value, unit) in [
-            ("a noise floor", self.noise, self.observable.unit()),
-            ("an uncertainty of the gap", self.gap_std, "m"),
-        ] {
-            if !(value.is_finite() && value >= 0.0) {
-                let found = format!("{name} of {value} {unit}");
-                return Err(Error::usage(found, "a finite value of 0 or more"));
-            }
-        }
-        Ok(())
+        number("the noise floor", self.noise, self.observable.unit(), Least::Zero)?;
+        number("the gap's uncertainty", self.gap_std, "m", Least::Zero)
     }
 }
 

@@ -86,14 +86,9 @@ impl Reader {
         let decays = rig.oscillators().map(|o| o.decay()).into_iter().filter(|b| *b > 0.0);
         let slowest = decays.fold(f64::INFINITY, f64::min);
         let wanted = (DECAY / slowest * frequency / f64::from(BLOCK)).ceil().clamp(1.0, MULTIPLE);
-        // Under a slow force a motion settles within a few cycles, each of which holds many swings.
+        let block = BLOCK * wanted as u32;
         let swings =
             rig.natural_frequencies().into_iter().filter(|f| f.is_finite()).fold(0.0, f64::max) / frequency;
-        let block = match swings {
-            s if s <= 5.0 => BLOCK * wanted as u32,
-            s if s <= 25.0 => BLOCK / 5,
-            _ => BLOCK / 10,
-        };
         let blocks = (SWINGS / (swings * f64::from(block))).clamp(BLOCKS.0 as f64, BLOCKS.1 as f64) as usize;
         let Question { observable, tolerance, .. } = *question;
         Reader { observable, tolerance, block, blocks, clearance: None }

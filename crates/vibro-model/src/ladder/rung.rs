@@ -7,10 +7,11 @@ use serde::Serialize;
 use vibro_record::{Error, Finding};
 
 /// A model of the rig, from the least to the most that it knows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Model {
     /// The motion without impacts, of mass 1 alone.
+    #[default]
     Linear,
     /// One impact a cycle, in closed form.
     ClosedForm,
@@ -136,7 +137,7 @@ pub struct Needed {
 }
 
 /// What was found of a rung.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Rung {
     /// The model.
     pub model: Model,
@@ -170,26 +171,13 @@ pub struct Rung {
 impl Rung {
     /// A rung without an answer, for these reasons.
     pub(super) fn without(model: Model, reasons: Vec<Finding>) -> Rung {
-        Rung {
-            model,
-            cost_ns: None,
-            error: None,
-            valid: false,
-            sufficient: false,
-            settled: false,
-            reasons,
-            refused: None,
-            needs: Vec::new(),
-            answer: None,
-            spread: [0.0; 2],
-            changes: Vec::new(),
-        }
+        Rung { model, reasons, ..Rung::default() }
     }
 
     /// A rung that cannot be computed.
     pub(super) fn refused(model: Model, error: &Error) -> Rung {
         let refused = error.to_string().lines().next().map(str::to_owned);
-        Rung { refused, ..Rung::without(model, Vec::new()) }
+        Rung { model, refused, ..Rung::default() }
     }
 
     /// The same with an answer, which took this time in ns.

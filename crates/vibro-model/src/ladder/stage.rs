@@ -6,8 +6,8 @@ use super::reading::{End, Reader, Reading};
 use super::rung::{Model, Rung};
 use crate::contact::conversion;
 use crate::{
-    Compliance, Compliant, ContactKeys, Excitation, Law, Motion, Observable, Orbit, Rig, Scene,
-    Simulation, no_impact, orbits_of, softened,
+    Compliance, Compliant, ContactKeys, Excitation, Law, Motion, Observable, Orbit, Rig, Scene, Simulation,
+    no_impact, orbits_of, softened,
 };
 use std::f64::consts::TAU;
 use std::time::Instant;

@@ -1,6 +1,8 @@
 //! From where motions are followed: the way the frequency came, or states all around.
 
-use crate::{Compliant, Excitation, Law, Motion, Orbits, Rig, Simulation, State, Steady, no_impact, orbits_of};
+use crate::{
+    Compliant, Excitation, Law, Motion, Orbits, Rig, Simulation, State, Steady, no_impact, orbits_of,
+};
 use serde::Serialize;
 use std::f64::consts::TAU;
 use vibro_record::{Direction, Result};

@@ -1,5 +1,5 @@
-use crate::Motion;
 use super::{Choice, Model, Need, Question, Rung, choose, choose_over};
+use crate::Motion;
 use crate::{
     Buffer, Compliance, ContactKeys, Excitation, Green, Impulses, Observable, Rig, Scene, Simulation, Sine,
     orbits,
@@ -400,10 +400,8 @@ fn impossible_questions_are_named() {
     for tolerance in [0.0, -0.02, f64::NAN, 1e-9, 2.0, f64::INFINITY] {
         assert!(ask(Question { tolerance, ..good }, 11.0).starts_with("a tolerance of"));
     }
-    assert!(ask(Question { noise: -1.0, ..good }, 11.0).starts_with("a noise floor of -1 m"));
-    assert!(
-        ask(Question { gap_std: f64::NAN, ..good }, 11.0).starts_with("an uncertainty of the gap of NaN m")
-    );
+    assert!(ask(Question { noise: -1.0, ..good }, 11.0).starts_with("the noise floor is -1 m"));
+    assert!(ask(Question { gap_std: f64::NAN, ..good }, 11.0).starts_with("the gap's uncertainty is NaN m"));
     for frequency in [0.0, -3.0, f64::NAN, f64::INFINITY] {
         assert!(ask(good, frequency).starts_with("frequency is"));
     }

@@ -1,13 +1,12 @@
 //! What all orbits of a rig at one period share.
 
 use super::{Course, Orbit};
-use crate::{Excitation, Green, Rig, Validity, floquet};
+use crate::{Excitation, Green, Rig, Validity, floquet, scales};
 use num_complex::Complex64;
-use std::f64::consts::{PI, TAU};
 use vibro_record::{Error, Result};
 
-/// The most half swings of a mass, or half cycles of the force, that a period may hold.
-const MOST_SWINGS: f64 = 1e5;
+/// The most swings of a mass that a period may hold.
+const MOST_SWINGS: f64 = 5e4;
 
 /// With y the steady motion of mass 1 alone, the masses meet where y = Δ + JC and part as the impact law says where ẏ = JP (Babitsky,
 /// *Theory of Vibro-Impact Systems* (1998), periodic Green's functions).
@@ -52,16 +51,8 @@ impl Conditions {
             return Err(Error::usage("0 cycles between impacts", "at least one cycle"));
         }
         let period = f64::from(cycles) / frequency;
+        scales::check_swings(rig, 1.0 / period, MOST_SWINGS)?;
         let [first, second] = rig.oscillators();
-        let fastest = (TAU * frequency).powi(2).max(first.omega2()).max(second.omega2()).sqrt();
-        let swings = fastest * period / PI;
-        if swings.is_nan() || swings > MOST_SWINGS {
-            return Err(Error::refused(format!(
-                "{cycles} cycles at {frequency} Hz last {period} s, {swings:.0} half swings: more than {MOST_SWINGS:.0} are \
-                 not followed"
-            ))
-            .hint("ask for fewer cycles or a higher frequency"));
-        }
         let greens = [Green::new(rig.m1, first, period)?, Green::new(rig.m2, second, period)?];
         let [first, second] = &greens;
         Ok(Conditions {
@@ -98,7 +89,7 @@ impl Conditions {
         let survey = course.survey();
         let exists = root.impulse > 0.0;
         let own = root.impulse.abs() / root.sensitivity;
-        let validity = Validity::judge(exists, root.upper, own, survey.closest, course.noise(), stable);
+        let (closest, noise) = (survey.closest, course.noise());
         let mut orbit = Orbit {
             frequency: self.frequency,
             cycles: self.cycles,
@@ -108,7 +99,7 @@ impl Conditions {
             approach_velocity: root.impulse / rig.exchange(),
             fundamental: [Complex64::ZERO; 2],
             peak_to_peak: survey.ranges.map(|(low, high)| high - low),
-            validity: validity.lost_by(multipliers.as_ref()),
+            validity: Validity::judge(exists, root.upper, own, closest, noise, stable, multipliers.as_ref()),
             multipliers,
             upper: root.upper,
             rig: *rig,

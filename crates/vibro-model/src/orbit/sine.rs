@@ -3,10 +3,11 @@
 use super::conditions::{Conditions, Root};
 use super::stretch::Stretch;
 use super::{Course, Orbit, driven};
+use crate::scales::{Least, number};
 use crate::{Excitation, Rig, Sine, Steady};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
-use vibro_record::{Error, Result};
+use vibro_record::Result;
 
 /// (C² + (P/ω)²)J² + 2ΔCJ + Δ² − A² = 0, from y = A cos φ = Δ + JC and ẏ = −Aω sin φ = JP.
 #[derive(Debug, Clone, Copy)]
@@ -135,9 +136,7 @@ pub fn shown(rig: &Rig, sine: &Sine) -> Result<Shown> {
 /// If a parameter is impossible, or the frequency is a whole part of a natural frequency.
 pub fn backbone(rig: &Rig, frequency: f64) -> Result<Option<Orbit>> {
     rig.check()?;
-    if !(frequency.is_finite() && frequency > 0.0) {
-        return Err(Error::usage(format!("frequency is {frequency} Hz"), "a finite value above 0"));
-    }
+    number("frequency", frequency, "Hz", Least::AboveZero)?;
     let lossless = Rig { c1: 0.0, c2: 0.0, restitution: 1.0, ..*rig };
     let conditions = Conditions::new(&lossless, frequency, 1, 0.0)?;
     let impulse = -rig.gap / conditions.c;

@@ -115,7 +115,8 @@ impl Stretch {
             }
             let right = self.rates(free, forced);
             for signal in [Signal::X1, Signal::X2, Signal::Gap] {
-                let limit = if signal == Signal::Gap { left.limit[0] + left.limit[1] } else { signal.of(left.limit) };
+                let limit =
+                    if signal == Signal::Gap { left.limit[0] + left.limit[1] } else { signal.of(left.limit) };
                 let ends = [&left, &right].map(|r| (signal.of(r.rate), signal.of(r.slope)));
                 let part = Part { signal, start: right_t - step, width: step, limit, duration };
                 self.turns_between(&part, ends, &mut visit);

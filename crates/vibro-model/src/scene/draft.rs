@@ -2,7 +2,8 @@
 
 use super::{Buffer, ContactKeys, Scene};
 use crate::Rig;
-use crate::excitation::{Excitation, Impulses, Part, Pulses, Sine, Sines};
+use crate::excitation::{Excitation, Part};
+use crate::scales::{Least, number};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use toml::de::DeTable;
@@ -33,22 +34,23 @@ struct Keys {
     c2: Option<f64>,
     gap: Option<f64>,
     restitution: Option<f64>,
+    #[expect(dead_code, reason = "read by its kind")]
     excitation: Option<Driven>,
     contact: Option<ContactKeys>,
     buffer: Option<Buffer>,
 }
 
-/// Keys of the excitation.
+/// Keys of the excitation, whatever its kind.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
+#[expect(dead_code, reason = "what is read is that each is known and of its kind")]
 struct Driven {
     kind: Option<String>,
     force: Option<f64>,
     impulse: Option<f64>,
     width: Option<f64>,
     frequency: Option<f64>,
-    #[serde(default)]
-    parts: Vec<Part>,
+    parts: Option<Vec<Part>>,
 }
 
 /// Keys of a scene, of which later ones replace earlier ones.
@@ -144,7 +146,9 @@ impl Draft {
         let section = self.table.entry(section).or_insert_with(|| Value::Table(Table::new()));
         // Other values have been refused.
         let Value::Table(section) = section else { return };
-        if let Some((_, belonging)) = KINDS.iter().find(|k| key == "excitation.kind" && value.as_str() == Some(k.0)) {
+        if let Some((_, belonging)) =
+            KINDS.iter().find(|k| key == "excitation.kind" && value.as_str() == Some(k.0))
+        {
             section.retain(|key, _| belonging.contains(&key));
         }
         section.insert(inner.to_owned(), value);
@@ -186,66 +190,49 @@ impl Draft {
         }
         let contact = keys.contact.unwrap_or_default();
         for (key, value, unit, least) in [
-            ("contact.stiffness", contact.stiffness, " N/m", f64::MIN_POSITIVE),
-            ("contact.damping", contact.damping, " N s/m", 0.0),
-            ("contact.exponent", contact.exponent, "", f64::MIN_POSITIVE),
-            ("buffer.gap", keys.buffer.map(|b| b.gap), " m", 0.0),
+            ("contact.stiffness", contact.stiffness, "N/m", Least::AboveZero),
+            ("contact.damping", contact.damping, "N s/m", Least::Zero),
+            ("contact.exponent", contact.exponent, "", Least::AboveZero),
+            ("buffer.gap", keys.buffer.map(|b| b.gap), "m", Least::Zero),
         ] {
-            if let Some(value) = value.filter(|v| !(v.is_finite() && *v >= least)) {
-                let expected = if least > 0.0 { "a finite value above 0" } else { "a finite value of 0 or more" };
-                return Err(self.at(key, Error::usage(format!("{key} is {value}{unit}"), expected)));
-            }
+            let checked = value.map_or(Ok(()), |value| number(key, value, unit, least));
+            checked.map_err(|error| self.at(key, error))?;
         }
-        let excitation = keys.excitation.map(|driven| self.excitation(driven)).transpose()?;
+        let driven = self.table.get("excitation").and_then(Value::as_table);
+        let excitation = driven.map(|section| self.excitation(section.clone())).transpose()?;
         let contact = Some(contact).filter(|c| *c != ContactKeys::default());
         Ok(Scene { rig, excitation, contact, buffer: keys.buffer })
     }
 
-    fn excitation(&self, driven: Driven) -> Result<Excitation> {
-        let Driven { kind, force, impulse, width, frequency, parts } = driven;
-        let inferred = match (impulse, width, parts.is_empty()) {
-            (Some(_), ..) => "impulse",
-            (_, Some(_), _) => "pulse",
-            (.., false) => "sines",
-            _ => "sine",
-        };
-        let kind = kind.as_deref().unwrap_or(inferred);
+    fn excitation(&self, mut section: Table) -> Result<Excitation> {
+        // Each kind but a sine has a key of its own.
+        let inferred = [("impulse", "impulse"), ("width", "pulse"), ("parts", "sines")];
+        let inferred = inferred.into_iter().find(|(key, _)| section.contains_key(*key));
+        let kind = section.get("kind").and_then(Value::as_str);
+        let kind = kind.unwrap_or(inferred.map_or("sine", |(_, kind)| kind)).to_owned();
         let Some((_, belonging)) = KINDS.iter().find(|k| k.0 == kind) else {
             let found = format!("the excitation {kind:?} is not known");
             return Err(self.at("excitation.kind", Error::usage(found, "sine, impulse, pulse or sines")));
         };
-        let given = self.table.get("excitation").and_then(Value::as_table).into_iter().flat_map(Table::keys);
-        if let Some(stray) = given.into_iter().find(|key| *key != "kind" && !belonging.contains(&key.as_str())) {
+        if let Some(stray) = section.keys().find(|key| *key != "kind" && !belonging.contains(&key.as_ref())) {
             let found = format!("excitation.{stray} does not belong to the excitation {kind:?}");
             let expected = format!("its keys: {}", belonging.join(", "));
             return Err(self.at(&format!("excitation.{stray}"), Error::usage(found, expected)));
         }
-        let need = |key: &'static str, value: Option<f64>| {
-            value.ok_or_else(|| {
-                let found = format!("the excitation {kind:?} has no {key}");
-                let error = Error::usage(found, format!("excitation.{key}")).setting(key);
-                self.at("excitation.kind", error).hint(format!("state {key}, in [excitation] of a rig's file"))
-            })
-        };
-        let excitation = match kind {
-            "sine" => Excitation::Sine(Sine {
-                force: need("force", force)?,
-                frequency: need("frequency", frequency)?,
-            }),
-            "impulse" => Excitation::Impulse(Impulses {
-                impulse: need("impulse", impulse)?,
-                frequency: need("frequency", frequency)?,
-            }),
-            "pulse" => Excitation::Pulse(Pulses {
-                force: need("force", force)?,
-                width: need("width", width)?,
-                frequency: need("frequency", frequency)?,
-            }),
-            _ => {
-                let sines = Excitation::Sines(Sines { parts });
-                frequency.map_or_else(|| sines.clone(), |hz| sines.at_frequency(hz))
-            }
-        };
+        // Several sines have their own frequencies; one of the whole keeps their ratios.
+        let whole = if kind == "sines" { section.remove("frequency") } else { None };
+        let whole = whole.and_then(|hz| f64::deserialize(hz).ok());
+        let optional = if kind == "sines" { "frequency" } else { "" };
+        let missing = |key: &&&str| **key != optional && !section.contains_key(**key);
+        if let Some(key) = belonging.iter().find(missing) {
+            let found = format!("the excitation {kind:?} has no {key}");
+            let error = Error::usage(found, format!("excitation.{key}")).setting(key);
+            let error = self.at("excitation.kind", error);
+            return Err(error.hint(format!("state {key}, in [excitation] of a rig's file")));
+        }
+        section.insert("kind".to_owned(), Value::String(kind));
+        let excitation = Excitation::deserialize(section).map_err(|e| complaint(&e, ""))?;
+        let excitation = whole.map_or_else(|| excitation.clone(), |hz| excitation.at_frequency(hz));
         excitation.check().map_err(|error| {
             let key = error.settings().first().map_or("kind", |key| *key);
             self.at(&format!("excitation.{key}"), error)
@@ -256,13 +243,15 @@ impl Draft {
     /// Points an error at the line of a key that has its value from the file.
     fn at(&self, key: &str, error: Error) -> Error {
         let (section, inner) = key.split_once('.').map_or((None, key), |(s, k)| (Some(s), k));
-        let span = DeTable::parse(&self.text).ok().filter(|_| !self.later.iter().any(|k| k == key)).and_then(|all| {
-            let place = match section {
-                Some(section) => all.get_ref().get(section)?.get_ref().as_table()?,
-                None => all.get_ref(),
-            };
-            place.keys().find(|name| name.get_ref() == inner).map(toml::Spanned::span)
-        });
+        let span = DeTable::parse(&self.text).ok().filter(|_| !self.later.iter().any(|k| k == key)).and_then(
+            |all| {
+                let place = match section {
+                    Some(section) => all.get_ref().get(section)?.get_ref().as_table()?,
+                    None => all.get_ref(),
+                };
+                place.keys().find(|name| name.get_ref() == inner).map(toml::Spanned::span)
+            },
+        );
         match span {
             Some(span) => self.path.iter().fold(error.excerpt(&self.text, span), Error::in_file),
             None => error,
@@ -296,7 +285,7 @@ fn campaign(path: &Path, text: &str) -> Option<Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::excitation::Part;
+    use crate::{Impulses, Pulses, Sine, Sines};
 
     #[test]
     fn a_scene_of_every_part() {

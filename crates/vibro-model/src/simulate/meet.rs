@@ -27,7 +27,12 @@ impl Simulation {
         {
             self.settle(approach)?;
         }
-        Ok(Impact { time: self.time, phase: self.drive.forcing.phase(), approach_velocity: approach, impulse })
+        Ok(Impact {
+            time: self.time,
+            phase: self.drive.forcing.phase(),
+            approach_velocity: approach,
+            impulse,
+        })
     }
 
     /// Scale of the speeds in m/s: of velocities and of displacements times ω.

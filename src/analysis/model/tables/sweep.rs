@@ -4,7 +4,8 @@ use crate::compare::Named;
 use crate::measure::jump::Jump;
 use crate::measure::resonance::Resonance;
 use crate::model::PeriodicOrbit;
-use crate::model::continuation::{Branch, MarkKind};
+use crate::model::Loss;
+use crate::model::continuation::Branch;
 use crate::model::sweep::{Observable, Swept};
 use crate::report::layout::{headed, pair};
 use crate::report::{Cell, Table};
@@ -93,7 +94,7 @@ pub struct FollowedPoint {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FollowedMark {
     /// What happens.
-    pub kind: MarkKind,
+    pub kind: Loss,
     /// Frequency in Hz.
     pub frequency: f64,
     /// Force in N.

@@ -85,7 +85,8 @@ fn the_upward_sweep_has_its_resonance_where_the_thesis_has() {
     // The thesis' contact: 1e5 N/m with a damper of 0.1 N s/m; 0.1 N, 0.02 Hz/s in steps of 1 ms. Its running RMS through a
     // 10 rad/s low-pass peaks at 4.63 Hz.
     let law = Law::KelvinVoigt { stiffness: 1e5, damping: 0.1 };
-    let mut motion = Compliant::loose(&Rig::thesis(), &sine(0.1, 3.0), 0.0, Some(law), State::REST, 0.0).unwrap();
+    let mut motion =
+        Compliant::loose(&Rig::thesis(), &sine(0.1, 3.0), 0.0, Some(law), State::REST, 0.0).unwrap();
     let (mut square, mut peak) = (0.0, (0.0, 0.0));
     let steps = 150_000;
     for i in 0..steps {

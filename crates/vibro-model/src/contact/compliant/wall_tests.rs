@@ -40,8 +40,7 @@ fn rebounds_are_those_of_the_closed_form_flights() {
     let mut plain = Vec::new();
     Simulation::new(&rig, &sine).unwrap().run(2.0, |leg| plain.extend(leg.impact())).unwrap();
     let mut found = Vec::new();
-    let mut motion =
-        Compliant::start(&rig, &Excitation::Sine(sine), None, None, State::REST, 0.0).unwrap();
+    let mut motion = Compliant::start(&rig, &Excitation::Sine(sine), None, None, State::REST, 0.0).unwrap();
     motion
         .advance(2.0, &mut |piece| {
             if let Event::Impact(impact) = piece.event {

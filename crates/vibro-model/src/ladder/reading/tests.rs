@@ -1,5 +1,5 @@
-use crate::Motion;
 use super::{End, Reader, drifts, mean};
+use crate::Motion;
 use crate::ladder::Question;
 use crate::ladder::question::APART;
 use crate::ladder::tests::fastest;
