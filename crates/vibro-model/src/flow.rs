@@ -76,11 +76,11 @@ pub(super) struct Landing {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flight {
     /// Forced displacement of mass 1.
-    waves: Waves,
+    pub(super) waves: Waves,
     /// Where mass 1 would rest under the constant force, in m.
-    rest: f64,
-    gap: f64,
-    free: [Free; 2],
+    pub(super) rest: f64,
+    pub(super) gap: f64,
+    pub(super) free: [Free; 2],
     /// Time before which the gap is known to be open.
     open: f64,
 }
@@ -102,18 +102,20 @@ impl Flight {
         gap: f64,
         state: &State,
     ) -> Flight {
-        let [first, second] = oscillators;
         let [x, v, ..] = waves.start();
-        Flight {
-            waves,
-            rest,
-            gap,
-            free: [
-                Free { oscillator: first, x: state.x1 - x - rest, v: state.v1 - v },
-                Free { oscillator: second, x: state.x2, v: state.v2 },
-            ],
-            open: 0.0,
-        }
+        Flight::of(oscillators, waves, rest, gap, [(state.x1 - x - rest, state.v1 - v), (state.x2, state.v2)])
+    }
+
+    /// Flight with these free parts, displacement and velocity, on top of the forced motion about `rest` (m) of mass 1.
+    pub(super) fn of(
+        oscillators: [Oscillator; 2],
+        waves: Waves,
+        rest: f64,
+        gap: f64,
+        free: [(f64, f64); 2],
+    ) -> Flight {
+        let part = |i: usize| Free { oscillator: oscillators[i], x: free[i].0, v: free[i].1 };
+        Flight { waves, rest, gap, free: [part(0), part(1)], open: 0.0 }
     }
 
     /// The same flight of masses that part from rest against each other: no contact is sought where the gap can but open.

@@ -5,14 +5,13 @@ mod course;
 mod driven;
 mod sine;
 mod soft;
-mod stretch;
 mod train;
+mod turns;
 
 pub use sine::{Shown, backbone, shown};
 pub use soft::{Compliance, Softened, softened};
 
 pub(super) use course::Course;
-pub(super) use stretch::Stretch;
 
 use super::{Excitation, NoImpact, Rig, Sine, State, Steady, Validity, scales};
 use conditions::Conditions;

@@ -7,9 +7,10 @@ mod system;
 
 pub(super) use system::System;
 
-use super::orbit::{Course, Stretch};
+use super::orbit::Course;
 use super::regime::Strike;
-use super::{Rig, Sine, State, Validity, floquet};
+use super::waves::Waves;
+use super::{Flight, Rig, Sine, State, Validity, floquet};
 use nalgebra::{DVector, Matrix4};
 use num_complex::Complex64;
 use serde::Serialize;
@@ -181,15 +182,9 @@ impl PeriodicOrbit {
             .collect();
         let flights: Vec<Course> = (0..p)
             .map(|i| {
-                let stretch = Stretch {
-                    oscillators: rig.oscillators(),
-                    free: system.free_after(u, i),
-                    forced: system.response * Complex64::cis(u[i]),
-                    omega,
-                    rest: 0.0,
-                    gap: rig.gap,
-                };
-                Course::smooth(beats[i].interval.max(0.0), stretch)
+                let forced = Waves::one(system.response * Complex64::cis(u[i]), omega);
+                let flight = Flight::of(rig.oscillators(), forced, 0.0, rig.gap, system.free_after(u, i));
+                Course::smooth(beats[i].interval.max(0.0), &flight)
             })
             .collect();
         let sensitivity = sensitivity(system, u);

@@ -43,6 +43,13 @@ impl Waves {
         self.limits.sixth += snap * square;
     }
 
+    /// A single wave, from its complex displacement at the start.
+    pub fn one(start: Complex64, omega: f64) -> Waves {
+        let mut waves = Waves::default();
+        waves.add(start, omega, start.norm());
+        waves
+    }
+
     /// Bounds on derivatives.
     #[inline]
     pub fn limits(&self) -> Limits {

@@ -94,7 +94,7 @@ impl<'a> Climb<'a> {
             };
         // What curved bodies change is said of the choice.
         let audited = rung.changes.iter().filter(|c| c.at != Model::HuntCrossley).map(|c| {
-            let found = Finding::note(if c.enough { "answer-holds" } else { "answer-moves" });
+            let found = if c.enough { Finding::note("answer-holds") } else { Finding::note("answer-moves") };
             found.number("change", c.change).name("rung", c.at.name())
         });
         let audited: Vec<Finding> = match rung.valid {

@@ -1,21 +1,21 @@
 //! The motion of an orbit from just after an impact to just before the next, stretch by stretch.
 
-use super::stretch::{Signal, Stretch};
-use crate::State;
+use super::turns::Signal;
+use crate::{Flight, State};
 
-/// Stretches without an impulse or a step of the force inside, one after the other.
+/// Flightes without an impulse or a step of the force inside, one after the other.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Course {
     /// Time from impact to impact in s.
     pub period: f64,
     /// Duration of each stretch in s, and its motion; at least one.
-    pub stretches: Vec<(f64, Stretch)>,
+    pub stretches: Vec<(f64, Flight)>,
 }
 
 impl Course {
     /// A course of one stretch.
-    pub fn smooth(period: f64, stretch: Stretch) -> Course {
-        Course { period, stretches: vec![(period, stretch)] }
+    pub fn smooth(period: f64, flight: &Flight) -> Course {
+        Course { period, stretches: vec![(period, *flight)] }
     }
 
     /// State at `t`, 0 ≤ `t` ≤ T; at 0 that after the impact, at T that before the next.
@@ -31,7 +31,7 @@ impl Course {
     }
 
     /// Visits the stretches with their starts and durations, in order.
-    pub fn each(&self, mut visit: impl FnMut(f64, f64, &Stretch)) {
+    pub fn each(&self, mut visit: impl FnMut(f64, f64, &Flight)) {
         let mut start = 0.0;
         for (duration, stretch) in &self.stretches {
             visit(start, *duration, stretch);

@@ -1,10 +1,10 @@
 //! Orbits under a sine force, and without any: a quadratic.
 
 use super::conditions::{Conditions, Root};
-use super::stretch::Stretch;
 use super::{Course, Orbit, driven};
 use crate::scales::{Least, number};
-use crate::{Excitation, Rig, Sine, Steady};
+use crate::waves::Waves;
+use crate::{Excitation, Flight, Rig, Sine, Steady};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibro_record::Result;
@@ -55,14 +55,14 @@ impl Quadratic {
 }
 
 /// The motion after an impact J under a forced motion of mass 1: mass 1 has −Jχ₁ on top, mass 2 Jχ₂.
-fn course(conditions: &Conditions, impulse: f64, forced: Complex64, omega: f64) -> Course {
+fn course(conditions: &Conditions, impulse: f64, forced: Waves) -> Course {
     let [one, two] = &conditions.greens;
     let free = [
         (-impulse * one.start, -impulse * one.slope_after),
         (impulse * two.start, impulse * two.slope_after),
     ];
-    let (oscillators, gap) = (conditions.rig.oscillators(), conditions.rig.gap);
-    Course::smooth(conditions.period(), Stretch { oscillators, free, forced, omega, rest: 0.0, gap })
+    let rig = &conditions.rig;
+    Course::smooth(conditions.period(), &Flight::of(rig.oscillators(), forced, 0.0, rig.gap, free))
 }
 
 /// Orbits under the force `sine` whose steady motion is `steady`, larger impulse first.
@@ -84,7 +84,8 @@ pub fn orbits(conditions: &Conditions, steady: &Steady, sine: &Sine) -> Vec<Orbi
             size: gap.abs() + amplitude,
             upper,
         };
-        let course = course(conditions, impulse, Complex64::from_polar(amplitude, timing), steady.omega);
+        let course =
+            course(conditions, impulse, Waves::one(Complex64::from_polar(amplitude, timing), steady.omega));
         conditions.orbit(&root, course, Some(Excitation::Sine(*sine)))
     };
     let [larger, smaller] = quadratic.roots();
@@ -151,7 +152,7 @@ pub fn backbone(rig: &Rig, frequency: f64) -> Result<Option<Orbit>> {
         size: rig.gap.abs(),
         upper: false,
     };
-    Ok(Some(conditions.orbit(&root, course(&conditions, impulse, Complex64::ZERO, 0.0), None)))
+    Ok(Some(conditions.orbit(&root, course(&conditions, impulse, Waves::default()), None)))
 }
 
 #[cfg(test)]

@@ -2,10 +2,9 @@
 
 use super::conditions::{Conditions, Root};
 use super::driven::{Piece, Response};
-use super::stretch::Stretch;
 use super::{Course, Orbit};
-use crate::Excitation;
-use num_complex::Complex64;
+use crate::waves::Waves;
+use crate::{Excitation, Flight};
 use std::f64::consts::TAU;
 use vibro_math::bracket::bracketed;
 use vibro_math::swing::passages;
@@ -53,9 +52,8 @@ fn course(conditions: &Conditions, response: &Response, impulse: f64, delay: f64
         let (x, v) = oscillators[0].free(piece.free.0, piece.free.1, inside);
         let [(c1, d1), (c2, d2)] = conditions.greens.map(|green| green.at(t));
         let free = [(x - impulse * c1, v - impulse * d1), (impulse * c2, impulse * d2)];
-        let (forced, omega) = (Complex64::ZERO, 0.0);
-        let stretch = Stretch { oscillators, free, forced, omega, rest: piece.rest, gap };
-        stretches.push((left.min(period - t), stretch));
+        let flight = Flight::of(oscillators, Waves::default(), piece.rest, gap, free);
+        stretches.push((left.min(period - t), flight));
         t += left;
         inside = 0.0;
         let [on, off] = response.pieces();

@@ -1,9 +1,7 @@
-//! A stretch of a periodic motion: no impact, impulse or step of the force inside.
+//! Where x₁, x₂ and the gap turn in a flight: no impact, impulse or step of the force inside.
 
-use crate::State;
-use num_complex::Complex64;
+use crate::Flight;
 use vibro_math::Oscillator;
-use vibro_math::cis::sin_cos;
 
 /// What is looked at: x₁, x₂, or the gap g = Δ + x₂ − x₁.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,64 +23,13 @@ impl Signal {
     }
 }
 
-/// Both masses in free motion, mass 1 about `rest` and with one forced wave on top; time counts from the stretch's start.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stretch {
-    pub oscillators: [Oscillator; 2],
-    /// Displacement and velocity of the free parts at the start.
-    pub free: [(f64, f64); 2],
-    /// Complex forced displacement of mass 1 at the start, in m.
-    pub forced: Complex64,
-    pub omega: f64,
-    /// Where mass 1 would rest under the constant force, in m.
-    pub rest: f64,
-    pub gap: f64,
-}
-
-impl Stretch {
-    /// Both displacements with their first two derivatives.
-    #[inline]
-    pub fn series(&self, t: f64) -> [[f64; 3]; 2] {
-        let mut all = [[0.0; 3]; 2];
-        for ((series, oscillator), free) in all.iter_mut().zip(&self.oscillators).zip(self.free) {
-            let (x, v) = oscillator.free(free.0, free.1, t);
-            *series = [x, v, oscillator.acceleration(x, v)];
-        }
-        all[0][0] += self.rest;
-        if self.forced != Complex64::ZERO {
-            let (sin, cos) = sin_cos(self.omega * t);
-            let wave = self.forced * Complex64::new(cos, sin);
-            all[0][0] += wave.re;
-            all[0][1] -= self.omega * wave.im;
-            all[0][2] -= self.omega * self.omega * wave.re;
-        }
-        all
-    }
-
-    /// State at `t`.
-    pub fn state(&self, t: f64) -> State {
-        let [[x1, v1, _], [x2, v2, _]] = self.series(t);
-        State { x1, v1, x2, v2 }
-    }
-
-    /// Rate of change of the state at `t`.
-    pub fn rate(&self, t: f64) -> [f64; 4] {
-        let [[_, v1, a1], [_, v2, a2]] = self.series(t);
-        [v1, a1, v2, a2]
-    }
-
+impl Flight {
     /// Value, slope and acceleration of a signal.
     #[inline]
     fn signal(&self, signal: Signal, t: f64) -> [f64; 3] {
         let [one, two] = self.series(t);
         let [value, slope, bend] = [0, 1, 2].map(|n| signal.of([one[n], two[n]]));
         [if signal == Signal::Gap { self.gap + value } else { value }, slope, bend]
-    }
-
-    /// Rounding error of a computed gap in m: a few ε of the largest term.
-    pub fn noise(&self) -> f64 {
-        let free: f64 = self.oscillators.iter().zip(self.free).map(|(o, (x, v))| o.bound(x, v)).sum();
-        2.0 * f64::EPSILON * (self.gap.abs() + self.rest.abs() + self.forced.norm() + free)
     }
 
     /// Visits every smallest and largest value of x₁, x₂ and the gap inside `0..duration`: its time, its value, and the signal's
@@ -93,27 +40,25 @@ impl Stretch {
     /// and s cannot; what is neither is halved. Pairs closer than a millionth of the duration may be taken for none: between them the
     /// signal changes by less than M(1e-6 duration)³.
     pub(crate) fn each_turn(&self, duration: f64, mut visit: impl FnMut(Signal, f64, f64, f64)) {
-        let fastest = self.oscillators.iter().map(|o| o.omega2().sqrt()).fold(self.omega, f64::max);
+        let own = self.free.map(|part| part.oscillator.omega2().sqrt());
+        let fastest = self.waves.fastest().max(own[0]).max(own[1]);
         // At 0.35 a step, the cubic through both ends errs by 0.35⁴/384 = 4e-5 of the rate.
         let steps = (fastest * duration / 0.35).ceil().max(1.0);
         let step = duration / steps;
-        let kernels = self.oscillators.map(|o| Carry::new(&o, step));
-        let turn = Complex64::cis(self.omega * step);
-        let (mut free, mut forced) = (self.free, self.forced);
-        let mut left = self.rates(free, forced);
+        let kernels = self.free.map(|part| Carry::new(&part.oscillator, step));
+        let mut free = self.free.map(|part| (part.x, part.v));
+        let mut left = self.rates(free, 0.0);
         let mut n = 0.0;
         while n < steps {
             let right_t = (n + 1.0) * step;
             n += 1.0;
             // Afresh now and then: roundings of the steps add up.
-            if n % 64.0 == 0.0 {
-                free = [0, 1].map(|i| self.oscillators[i].free(self.free[i].0, self.free[i].1, right_t));
-                forced = self.forced * Complex64::cis(self.omega * right_t);
+            free = if n % 64.0 == 0.0 {
+                self.free.map(|part| part.oscillator.free(part.x, part.v, right_t))
             } else {
-                free = [kernels[0].on(free[0]), kernels[1].on(free[1])];
-                forced *= turn;
-            }
-            let right = self.rates(free, forced);
+                [kernels[0].on(free[0]), kernels[1].on(free[1])]
+            };
+            let right = self.rates(free, right_t);
             for signal in [Signal::X1, Signal::X2, Signal::Gap] {
                 let limit =
                     if signal == Signal::Gap { left.limit[0] + left.limit[1] } else { signal.of(left.limit) };
@@ -126,19 +71,17 @@ impl Stretch {
     }
 
     /// Rates and slopes of both masses, with bounds on the curvature of the rates for all later times.
-    fn rates(&self, free: [(f64, f64); 2], forced: Complex64) -> Rates {
-        let mut rates = Rates { rate: [0.0; 2], slope: [0.0; 2], limit: [0.0; 2] };
-        for (i, (oscillator, (x, v))) in self.oscillators.iter().zip(free).enumerate() {
-            let a = oscillator.acceleration(x, v);
-            let jerk = oscillator.acceleration(v, a);
-            rates.rate[i] = v;
-            rates.slope[i] = a;
-            rates.limit[i] = oscillator.bound(jerk, oscillator.acceleration(a, jerk));
+    fn rates(&self, free: [(f64, f64); 2], t: f64) -> Rates {
+        let [_, v, a, ..] = self.waves.at(t);
+        let limit = self.waves.limits().jerk;
+        let mut rates = Rates { rate: [v, 0.0], slope: [a, 0.0], limit: [limit, 0.0] };
+        for (i, (part, (x, v))) in self.free.iter().zip(free).enumerate() {
+            let a = part.oscillator.acceleration(x, v);
+            let jerk = part.oscillator.acceleration(v, a);
+            rates.rate[i] += v;
+            rates.slope[i] += a;
+            rates.limit[i] += part.oscillator.bound(jerk, part.oscillator.acceleration(a, jerk));
         }
-        let omega2 = self.omega * self.omega;
-        rates.rate[0] -= self.omega * forced.im;
-        rates.slope[0] -= omega2 * forced.re;
-        rates.limit[0] += self.omega * omega2 * (forced.re.abs() + forced.im.abs());
         rates
     }
 
