@@ -48,7 +48,7 @@ impl Question {
             return Err(error.hint("2 % is 0.02"));
         }
         number("the noise floor", self.noise, self.observable.unit(), Least::Zero)?;
-        number("the gap's uncertainty", self.gap_std, "m", Least::Zero)
+        number("the uncertainty of the gap", self.gap_std, "m", Least::Zero)
     }
 }
 
