@@ -10,7 +10,7 @@ use vibro_record::{Error, Result};
 /// deviates by no more than π|rate|h²/4 within it, so a sine force deviates by that fraction of its amplitude.
 ///
 /// ```
-/// use vibro_model::{Chirp, Rig, Simulation, Sine};
+/// use vibro_model::{Chirp, Motion, Rig, Simulation, Sine};
 /// let mut motion = Simulation::new(&Rig::thesis(), &Sine { force: 0.1, frequency: 3.0 })?;
 /// Chirp::new(0.02).advance(&mut motion, 50.0, &mut |_| {})?;
 /// assert!((motion.frequency() - 4.0).abs() < 1e-12);
