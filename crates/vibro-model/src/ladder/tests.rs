@@ -401,7 +401,9 @@ fn impossible_questions_are_named() {
         assert!(ask(Question { tolerance, ..good }, 11.0).starts_with("a tolerance of"));
     }
     assert!(ask(Question { noise: -1.0, ..good }, 11.0).starts_with("the noise floor is -1 m"));
-    assert!(ask(Question { gap_std: f64::NAN, ..good }, 11.0).starts_with("the uncertainty of the gap is NaN m"));
+    assert!(
+        ask(Question { gap_std: f64::NAN, ..good }, 11.0).starts_with("the uncertainty of the gap is NaN m")
+    );
     for frequency in [0.0, -3.0, f64::NAN, f64::INFINITY] {
         assert!(ask(good, frequency).starts_with("frequency is"));
     }
