@@ -3,7 +3,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::hint::black_box;
-use vibroimpact::model::{Chirp, Part, Rig, Simulation, Sine, Sines, State};
+use vibroimpact::model::{Chirp, Motion, Part, Rig, Simulation, Sine, Sines, State};
 use vibroimpact::model::{Excitation, Impulses};
 
 /// From rest under F₀ sin ωt, ν 2.1: 1098 impacts in 100 s.

@@ -8,7 +8,7 @@ use vibroimpact::Result;
 use vibroimpact::analysis::model::figures;
 use vibroimpact::model::contact::conversion;
 use vibroimpact::model::sweep::{Observable, Pace, Plan, Point, Swept, apart};
-use vibroimpact::model::{Compliant, Excitation, Law, Loose, Motion, Pulses, Rig, Simulation, Sine, State};
+use vibroimpact::model::{Compliant, Excitation, Law, Motion, Pulses, Rig, Simulation, Sine, State};
 use vibroimpact::record::Direction;
 use vibroimpact::report::{AxisSpec, Figure, Marker, Panel, Plot, Series};
 
@@ -241,12 +241,12 @@ fn pulse() -> Result<Sheet> {
 fn loose() -> Result<Sheet> {
     let rig = Rig::thesis();
     let swept = swept(&plan(3.0, 14.0), 0.1, |f| {
-        Loose::with_law(&rig, &sine_of(0.1, f), 0.0, CONTACT, State::REST, 0.0)
+        Compliant::loose(&rig, &sine_of(0.1, f), 0.0, Some(CONTACT), State::REST, 0.0)
     })?;
     let grazing = highest(&swept.up, 3.0, 14.0).0;
     let mut others = (Vec::new(), Vec::new());
     for force in [0.05, 0.1, 0.2, 0.5] {
-        let mut motion = Loose::with_law(&rig, &sine_of(force, 3.0), 0.0, CONTACT, State::REST, 0.0)?;
+        let mut motion = Compliant::loose(&rig, &sine_of(force, 3.0), 0.0, Some(CONTACT), State::REST, 0.0)?;
         let up = plan(3.0, 14.0).frequency(&mut motion, force, Direction::Up)?;
         others.0.push(highest(&up, 3.0, 8.0).0);
         others.1.push(highest(&up, 8.0, 14.0).0);

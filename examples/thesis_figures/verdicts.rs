@@ -19,7 +19,7 @@ pub fn sheets() -> Result<Vec<Sheet>> {
 /// The motion that the energy rule accepts.
 fn one(restitution: f64, force: f64, nu: f64) -> Result<Orbit> {
     let found = under_sine(&rig(restitution), force, nu);
-    accepted(&found).copied().ok_or_else(|| Error::refused(format!("no motion at ν {nu}")))
+    accepted(&found).cloned().ok_or_else(|| Error::refused(format!("no motion at ν {nu}")))
 }
 
 fn multipliers() -> Result<Sheet> {

@@ -3,7 +3,7 @@
 use super::simulated::Pace;
 use crate::campaign::{Campaign, Follows};
 use crate::error::Result;
-use crate::model::ladder::{self, Choice, Model, Question, Stretch, choose_over};
+use crate::model::ladder::{self, Choice, Model, Need, Question, Stretch, choose_over};
 use crate::model::{ContactKeys, Excitation, Law, Observable, Rig, Scene, Sine};
 use crate::record::{Direction, Finding};
 use serde::Serialize;
@@ -83,10 +83,10 @@ pub fn rungs(
     let moves = |p: &&Choice| p.sensitivity.iter().map(|s| s.change.abs()).fold(0.0, f64::max);
     let open = survey.points.iter().filter(|p| p.chosen.is_none());
     let open = open.max_by(|a, b| moves(a).total_cmp(&moves(b)));
-    let needs = open.map(|p| p.needs.join(", "));
+    let needs = open.map(|p| Need::names(&p.needs));
     let finding = open.map(|p| {
         let finding = Finding::caution("model-not-chosen").number("frequency", p.frequency);
-        let finding = finding.name("needs", p.needs.join(", "));
+        let finding = finding.name("needs", Need::names(&p.needs));
         if p.sensitivity.is_empty() { finding } else { finding.number("part", moves(&p)) }
     });
     Ok(Rungs { force, direction, stretches: survey.stretches, open: needs, finding })

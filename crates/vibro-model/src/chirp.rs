@@ -1,11 +1,8 @@
 //! A slow continuous sweep of the frequency, in steps so fine that they do not matter.
 
-use super::{Motion, Piece};
+use super::{Motion, Piece, scales};
 use std::f64::consts::PI;
 use vibro_record::{Error, Result};
-
-/// The most steps that one call takes.
-const MOST_STEPS: f64 = 2e7;
 
 /// A sweep at a constant rate.
 ///
@@ -13,7 +10,7 @@ const MOST_STEPS: f64 = 2e7;
 /// deviates by no more than π|rate|h²/4 within it, so a sine force deviates by that fraction of its amplitude.
 ///
 /// ```
-/// use vibro_model::{Chirp, Rig, Simulation, Sine};
+/// use vibro_model::{Chirp, Motion, Rig, Simulation, Sine};
 /// let mut motion = Simulation::new(&Rig::thesis(), &Sine { force: 0.1, frequency: 3.0 })?;
 /// Chirp::new(0.02).advance(&mut motion, 50.0, &mut |_| {})?;
 /// assert!((motion.frequency() - 4.0).abs() < 1e-12);
@@ -57,15 +54,9 @@ impl Chirp {
             ));
         }
         let (start, first) = (motion.time(), motion.frequency());
+        scales::check_time(start, until)?;
         let count = ((until - start) / self.step()).ceil().max(1.0);
-        if count.is_nan() || count > MOST_STEPS {
-            return Err(Error::usage(
-                format!("a sweep of {count:.0} steps until {until} s"),
-                format!(
-                    "a finite time, and at most {MOST_STEPS:.0} steps: sweep in parts, or allow a larger deviation"
-                ),
-            ));
-        }
+        scales::check_work(count)?;
         let h = (until - start) / count;
         for i in 0..count as u64 {
             motion.set_frequency(first + self.rate * h * (i as f64 + 0.5))?;

@@ -1,5 +1,6 @@
 //! The clock of an excitation: where in its cycle it is, and when its next impulse or step of force is due.
 
+use super::scales::{Least, number};
 use super::{Excitation, Sine};
 use std::f64::consts::TAU;
 use vibro_record::{Error, Result};
@@ -50,9 +51,7 @@ impl Clock {
     /// The clock of an excitation at `phase` (rad).
     pub fn new(excitation: &Excitation, phase: f64) -> Result<Clock> {
         excitation.check()?;
-        if !phase.is_finite() {
-            return Err(Error::usage(format!("phase is {phase} rad"), "a finite value"));
-        }
+        number("phase", phase, "rad", Least::Any)?;
         let frequency = excitation.frequency();
         let phase = phase.rem_euclid(TAU);
         // The remainder of a tiny negative phase rounds to 2π.

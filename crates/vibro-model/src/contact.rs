@@ -16,13 +16,12 @@
 //! # Ok::<(), vibro_record::Error>(())
 //! ```
 
+mod change;
 mod compliant;
 pub mod conversion;
-mod follow;
 mod law;
 mod modes;
 mod within;
 
 pub use compliant::Compliant;
-pub(super) use follow::{Contact, Follow, Followed};
 pub use law::Law;

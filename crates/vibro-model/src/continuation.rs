@@ -1,59 +1,18 @@
-//! Branches of periodic motions over frequency or force, followed through folds, with every border of stability marked.
+//! Branches of periodic motions over frequency, followed through folds, with every border of stability marked.
 
-mod border;
 mod walk;
 
-use super::{PeriodicOrbit, Sine};
-use serde::{Deserialize, Serialize};
+use super::{Loss, PeriodicOrbit};
+use serde::Serialize;
 use vibro_record::{Error, Result};
 use walk::Walk;
-
-/// What changes along a branch.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Parameter {
-    /// Frequency in Hz.
-    Frequency,
-    /// Force amplitude in N.
-    Force,
-}
-
-impl Parameter {
-    /// Its value in `sine`.
-    pub fn of(self, sine: &Sine) -> f64 {
-        match self {
-            Parameter::Frequency => sine.frequency,
-            Parameter::Force => sine.force,
-        }
-    }
-
-    fn set(self, sine: &Sine, value: f64) -> Sine {
-        match self {
-            Parameter::Frequency => Sine { frequency: value, ..*sine },
-            Parameter::Force => Sine { force: value, ..*sine },
-        }
-    }
-}
-
-/// What happens to a branch at a mark.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum MarkKind {
-    /// The branch turns back: a multiplier passes +1.
-    Fold,
-    /// A multiplier passes −1: motions of twice the period branch off.
-    Flip,
-    /// A pair of complex multipliers leaves or enters the unit circle.
-    NeimarkSacker,
-    /// A further contact appears inside a flight, or an impact fades to a touch.
-    Grazing,
-}
 
 /// A marked motion on a branch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
-    /// What happens there.
-    pub kind: MarkKind,
+    /// What happens there: the branch turns back at a fold (a multiplier passes +1), motions of twice the period branch off at a flip (−1), a
+    /// pair of complex multipliers leaves or enters the unit circle, or an impact fades to a touch or a further contact appears (grazing).
+    pub kind: Loss,
     /// The motion there.
     pub orbit: PeriodicOrbit,
     /// It lies behind the point of this index.
@@ -64,7 +23,7 @@ pub struct Mark {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum End {
-    /// The end of the range asked for.
+    /// The end of the range.
     Range,
     /// An impact fades to a touch: beyond it its impulse would have to pull.
     Grazing,
@@ -79,8 +38,6 @@ pub enum End {
 /// Motions along a branch, in its order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Branch {
-    /// The parameter that changes.
-    pub parameter: Parameter,
     /// Points.
     pub points: Vec<PeriodicOrbit>,
     /// Marks, in order.
@@ -89,39 +46,35 @@ pub struct Branch {
     pub ends: [End; 2],
 }
 
-/// Follows the branch of `start` both ways while the parameter lies in `low..=high`.
+/// Follows the branch of `start` both ways while the frequency lies in `low..=high` (Hz).
 ///
 /// Steps along the branch have at most the length `step` (0.05 is fine), measured in phases (rad), impulses (shares of the gap or
-/// amplitude times ω) and the logarithm of the parameter together (pseudo-arclength; H. B. Keller 1977).
+/// amplitude times ω) and the logarithm of the frequency together (pseudo-arclength; H. B. Keller 1977).
 ///
 /// # Errors
 /// If the range or the step is impossible or does not hold the start.
-pub fn follow(start: &PeriodicOrbit, parameter: Parameter, low: f64, high: f64, step: f64) -> Result<Branch> {
-    let value = parameter.of(&start.sine);
+pub fn follow(start: &PeriodicOrbit, low: f64, high: f64, step: f64) -> Result<Branch> {
+    let value = start.sine.frequency;
     if !(low > 0.0 && high.is_finite() && (low..=high).contains(&value) && step > 1e-6 && step <= 1.0) {
         return Err(Error::usage(
             format!("a branch from {value} within {low} to {high} by steps of {step}"),
             "a range above 0 that holds the start, and a step from 1e-6 to 1",
         ));
     }
-    let walk = Walk { start, parameter, low, high, step };
+    let walk = Walk { start, low, high, step };
     let origin = walk.point(start)?;
     let mut forth = walk.run(&origin, 1.0)?;
     if forth.end == End::Closed {
-        return Ok(Branch { parameter, points: forth.points, marks: forth.marks, ends: [End::Closed; 2] });
+        return Ok(Branch { points: forth.points, marks: forth.marks, ends: [End::Closed; 2] });
     }
     let back = walk.run(&origin, -1.0)?;
     let behind = back.points.len() - 1;
     let mut points: Vec<_> = back.points.into_iter().skip(1).rev().collect();
     points.append(&mut forth.points);
-    let mut marks: Vec<Mark> = back
-        .marks
-        .into_iter()
-        .rev()
-        .map(|m| Mark { after: (behind - m.after).saturating_sub(1), ..m })
-        .collect();
-    marks.extend(forth.marks.into_iter().map(|m| Mark { after: m.after + behind, ..m }));
-    Ok(Branch { parameter, points, marks, ends: [back.end, forth.end] })
+    let before = |m: Mark| Mark { after: (behind - m.after).saturating_sub(1), ..m };
+    let beyond = |m: Mark| Mark { after: m.after + behind, ..m };
+    let marks = back.marks.into_iter().rev().map(before).chain(forth.marks.into_iter().map(beyond)).collect();
+    Ok(Branch { points, marks, ends: [back.end, forth.end] })
 }
 
 #[cfg(test)]

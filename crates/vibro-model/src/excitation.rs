@@ -1,5 +1,7 @@
 //! What drives mass 1.
 
+use super::scales::{Least, number};
+use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use vibro_record::{Error, Result};
@@ -83,16 +85,40 @@ pub struct Part {
 }
 
 impl Excitation {
-    /// Checks that the numbers can belong to an excitation.
+    /// Checks that the numbers can belong to an excitation: all finite, frequencies above 0, amplitudes of sines not negative (impulses and
+    /// pulses may pull), a width above 0 and below the cycle, and one to [`MOST_SINES`] sines.
     ///
     /// # Errors
-    /// As [`Sine::check`], [`Impulses::check`], [`Pulses::check`] and [`Sines::check`].
+    /// If it is not so; it names the key as a setting.
     pub fn check(&self) -> Result<()> {
         match self {
             Excitation::Sine(sine) => sine.check(),
-            Excitation::Impulse(impulses) => impulses.check(),
-            Excitation::Pulse(pulses) => pulses.check(),
-            Excitation::Sines(sines) => sines.check(),
+            Excitation::Impulse(train) => {
+                check("impulse", train.impulse, "N s", Least::Any)?;
+                check("frequency", train.frequency, "Hz", Least::AboveZero)
+            }
+            Excitation::Pulse(train) => {
+                check("force", train.force, "N", Least::Any)?;
+                check("frequency", train.frequency, "Hz", Least::AboveZero)?;
+                let cycle = 1.0 / train.frequency;
+                if train.width > 0.0 && train.width < cycle {
+                    return Ok(());
+                }
+                let expected =
+                    format!("a value above 0 and below the cycle of {cycle} s at {} Hz", train.frequency);
+                Err(Error::usage(format!("width is {} s", train.width), expected).setting("width"))
+            }
+            Excitation::Sines(Sines { parts }) => {
+                if !(1..=MOST_SINES).contains(&parts.len()) {
+                    let expected = format!("parts = [{{ force = …, frequency = … }}], 1 to {MOST_SINES}");
+                    return Err(Error::usage(format!("{} sines", parts.len()), expected).setting("parts"));
+                }
+                for Part { force, frequency, phase } in parts.iter().copied() {
+                    Sine { force, frequency }.check()?;
+                    check("phase", phase, "rad", Least::Any)?;
+                }
+                Ok(())
+            }
         }
     }
 
@@ -120,13 +146,46 @@ impl Excitation {
         }
     }
 
-    /// Whether it does nothing.
-    pub(super) fn is_idle(&self) -> bool {
+    /// Complex amplitude in N of the force's `n`-th harmonic (n ≥ 1), the cycle being at `phase` (rad) at time 0; not a number for
+    /// several sines, which need have none.
+    ///
+    /// Impulses F have 2F/T in every harmonic; pulses (2f/T)(1 − e^{−inωw})/(inω).
+    pub(super) fn harmonic(&self, n: u32, phase: f64) -> Complex64 {
+        let size = match *self {
+            Excitation::Sine(sine) if n == 1 => sine.force.into(),
+            Excitation::Sine(_) => Complex64::ZERO,
+            Excitation::Impulse(train) => (2.0 * train.impulse * train.frequency).into(),
+            Excitation::Pulse(Pulses { force, width, frequency }) => {
+                // 1 − e^{−2ih} = 2i sin h e^{−ih}.
+                let half = f64::from(n) * TAU * frequency * width / 2.0;
+                Complex64::cis(-half) * (2.0 * force * frequency * width * half.sin() / half)
+            }
+            Excitation::Sines(_) => f64::NAN.into(),
+        };
+        Complex64::cis(f64::from(n) * phase) * size
+    }
+
+    /// Its size: the force of a sine or pulse in N, of several sines that of the first; the impulse in N s.
+    pub fn size(&self) -> f64 {
         match self {
-            Excitation::Sine(sine) => sine.force == 0.0,
-            Excitation::Impulse(train) => train.impulse == 0.0,
-            Excitation::Pulse(train) => train.force == 0.0,
-            Excitation::Sines(sines) => sines.parts.iter().all(|part| part.force == 0.0),
+            Excitation::Sine(sine) => sine.force,
+            Excitation::Impulse(train) => train.impulse,
+            Excitation::Pulse(train) => train.force,
+            Excitation::Sines(sines) => sines.parts.first().map_or(f64::NAN, |p| p.force),
+        }
+    }
+
+    /// The same excitation of another size; the ratios of several sines stay.
+    pub fn at_size(&self, size: f64) -> Excitation {
+        match self {
+            Excitation::Sine(sine) => Excitation::Sine(Sine { force: size, ..*sine }),
+            Excitation::Impulse(train) => Excitation::Impulse(Impulses { impulse: size, ..*train }),
+            Excitation::Pulse(train) => Excitation::Pulse(Pulses { force: size, ..*train }),
+            Excitation::Sines(sines) => {
+                let ratio = size / self.size();
+                let part = |p: &Part| Part { force: p.force * ratio, ..*p };
+                Excitation::Sines(Sines { parts: sines.parts.iter().map(part).collect() })
+            }
         }
     }
 
@@ -147,95 +206,23 @@ impl From<Sine> for Excitation {
     }
 }
 
-/// A frequency that is finite and above 0.
-fn rising(frequency: f64) -> Result<()> {
-    if frequency.is_finite() && frequency > 0.0 {
-        return Ok(());
-    }
-    Err(Error::usage(format!("frequency is {frequency} Hz"), "a finite value above 0"))
-}
-
-/// A force that is finite and not negative.
-fn pushing(force: f64) -> Result<()> {
-    if force.is_finite() && force >= 0.0 {
-        return Ok(());
-    }
-    Err(Error::usage(format!("force is {force} N"), "a finite amplitude of 0 or more"))
+fn check(key: &'static str, value: f64, unit: &str, least: Least) -> Result<()> {
+    number(key, value, unit, least).map_err(|error| error.setting(key))
 }
 
 impl Sine {
-    /// Checks that amplitude and frequency are finite, the amplitude not negative and the frequency above 0.
+    /// As [`Excitation::check`].
     ///
     /// # Errors
-    /// If one of them is not.
+    /// If a number cannot be.
     pub fn check(&self) -> Result<()> {
-        pushing(self.force)?;
-        rising(self.frequency)
+        check("force", self.force, "N", Least::Zero)?;
+        check("frequency", self.frequency, "Hz", Least::AboveZero)
     }
 
     /// Angular frequency ω in rad/s.
     pub fn omega(&self) -> f64 {
         TAU * self.frequency
-    }
-}
-
-impl Impulses {
-    /// Checks that impulse and frequency are finite and the frequency above 0. An impulse may pull.
-    ///
-    /// # Errors
-    /// If one of them is not.
-    pub fn check(&self) -> Result<()> {
-        if !self.impulse.is_finite() {
-            return Err(Error::usage(format!("impulse is {} N s", self.impulse), "a finite value"));
-        }
-        rising(self.frequency)
-    }
-}
-
-impl Pulses {
-    /// Checks that force, width and frequency are finite, the frequency above 0 and the width above 0 and below the cycle. A force may
-    /// pull.
-    ///
-    /// # Errors
-    /// If one of them is not.
-    pub fn check(&self) -> Result<()> {
-        if !self.force.is_finite() {
-            return Err(Error::usage(format!("force is {} N", self.force), "a finite value"));
-        }
-        rising(self.frequency)?;
-        if !(self.width > 0.0 && self.width < 1.0 / self.frequency) {
-            let expected = format!(
-                "a value above 0 and below the cycle of {} s at {} Hz",
-                1.0 / self.frequency,
-                self.frequency
-            );
-            return Err(Error::usage(format!("width is {} s", self.width), expected));
-        }
-        Ok(())
-    }
-}
-
-impl Sines {
-    /// Checks that there are one to [`MOST_SINES`] sines, and each as [`Sine::check`], with a finite phase.
-    ///
-    /// # Errors
-    /// If it is not so.
-    pub fn check(&self) -> Result<()> {
-        if self.parts.is_empty() {
-            return Err(Error::usage("sines without parts", "parts = [{ force = …, frequency = … }]"));
-        }
-        if self.parts.len() > MOST_SINES {
-            let found = format!("{} sines", self.parts.len());
-            return Err(Error::usage(found, format!("no more than {MOST_SINES}")));
-        }
-        for part in &self.parts {
-            pushing(part.force)?;
-            rising(part.frequency)?;
-            if !part.phase.is_finite() {
-                return Err(Error::usage(format!("phase is {} rad", part.phase), "a finite value"));
-            }
-        }
-        Ok(())
     }
 }
 
@@ -264,10 +251,10 @@ mod tests {
         let refused = |e: &Excitation| e.check().unwrap_err().to_string();
         let pulses = Pulses { force: 0.5, width: 0.2, frequency: 5.0 };
         assert!(refused(&Excitation::Pulse(pulses)).starts_with("width is 0.2 s"));
-        assert!(Pulses { width: 0.199, ..pulses }.check().is_ok());
-        assert!(refused(&Excitation::Sines(Sines { parts: Vec::new() })).starts_with("sines without parts"));
+        assert!(Excitation::Pulse(Pulses { width: 0.199, ..pulses }).check().is_ok());
+        assert!(refused(&Excitation::Sines(Sines { parts: Vec::new() })).starts_with("0 sines"));
         let part = Part { force: 0.1, frequency: 5.0, phase: 0.0 };
-        assert!(Sines { parts: vec![part; MOST_SINES] }.check().is_ok());
+        assert!(Excitation::Sines(Sines { parts: vec![part; MOST_SINES] }).check().is_ok());
         let many = Excitation::Sines(Sines { parts: vec![part; MOST_SINES + 1] });
         assert!(refused(&many).starts_with("5 sines"));
         let impulse = Impulses { impulse: f64::NAN, frequency: 5.0 };

@@ -7,7 +7,7 @@ use super::waves::Waves;
 use num_complex::Complex64;
 use serde::Serialize;
 use vibro_math::Oscillator;
-use vibro_math::root::{Bent, Bounded, each_root, first_landing};
+use vibro_math::root::{Bent, Limits, first_landing};
 
 /// Displacements in m and velocities in m/s of both masses, each from its own rest.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
@@ -32,17 +32,6 @@ impl State {
     }
 }
 
-/// What is looked at in a flight.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Signal {
-    /// g = Δ + x₂ − x₁.
-    Gap,
-    /// x₁.
-    X1,
-    /// x₂.
-    X2,
-}
-
 /// Free part of one mass' motion, by its start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Free {
@@ -52,18 +41,6 @@ pub(super) struct Free {
 }
 
 impl Free {
-    /// The `order`-th derivative at `t`, the next one, and a bound on the one after for all later times.
-    #[inline]
-    pub(super) fn derivative(&self, order: u32, t: f64) -> (f64, f64, f64) {
-        let (mut x, mut v) = self.oscillator.free(self.x, self.v, t);
-        for _ in 0..order {
-            (x, v) = (v, self.oscillator.acceleration(x, v));
-        }
-        let a = self.oscillator.acceleration(x, v);
-        let jerk = self.oscillator.acceleration(v, a);
-        (x, v, self.oscillator.bound(a, jerk))
-    }
-
     /// Displacement and its first five derivatives at `t`.
     #[inline]
     pub(super) fn series(&self, t: f64) -> [f64; 6] {
@@ -99,11 +76,11 @@ pub(super) struct Landing {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flight {
     /// Forced displacement of mass 1.
-    waves: Waves,
+    pub(super) waves: Waves,
     /// Where mass 1 would rest under the constant force, in m.
-    rest: f64,
-    gap: f64,
-    free: [Free; 2],
+    pub(super) rest: f64,
+    pub(super) gap: f64,
+    pub(super) free: [Free; 2],
     /// Time before which the gap is known to be open.
     open: f64,
 }
@@ -125,18 +102,20 @@ impl Flight {
         gap: f64,
         state: &State,
     ) -> Flight {
-        let [first, second] = oscillators;
         let [x, v, ..] = waves.start();
-        Flight {
-            waves,
-            rest,
-            gap,
-            free: [
-                Free { oscillator: first, x: state.x1 - x - rest, v: state.v1 - v },
-                Free { oscillator: second, x: state.x2, v: state.v2 },
-            ],
-            open: 0.0,
-        }
+        Flight::of(oscillators, waves, rest, gap, [(state.x1 - x - rest, state.v1 - v), (state.x2, state.v2)])
+    }
+
+    /// Flight with these free parts, displacement and velocity, on top of the forced motion about `rest` (m) of mass 1.
+    pub(super) fn of(
+        oscillators: [Oscillator; 2],
+        waves: Waves,
+        rest: f64,
+        gap: f64,
+        free: [(f64, f64); 2],
+    ) -> Flight {
+        let part = |i: usize| Free { oscillator: oscillators[i], x: free[i].0, v: free[i].1 };
+        Flight { waves, rest, gap, free: [part(0), part(1)], open: 0.0 }
     }
 
     /// The same flight of masses that part from rest against each other: no contact is sought where the gap can but open.
@@ -145,7 +124,10 @@ impl Flight {
     /// the gap opens like t³, and is long smaller than its rounding.
     pub(super) fn parting(mut self) -> Flight {
         let [[_, _, a1, j1, ..], [_, _, a2, j2, ..]] = self.series(0.0);
-        let fourth = self.bounded(Signal::Gap, 2, 0.0).curvature;
+        let bound = |i: usize| {
+            self.free[i].oscillator.bound(self.free[i].series(0.0)[4], self.free[i].series(0.0)[5])
+        };
+        let fourth = bound(1) + self.waves.snap() + bound(0);
         let (bend, jerk) = ((a2 - a1).max(0.0), j2 - j1);
         let root = (jerk / 6.0 + (jerk * jerk / 36.0 + fourth * bend / 12.0).sqrt()) / (fourth / 12.0);
         // Half of it, where more than an eighth of the leading term is left.
@@ -191,32 +173,6 @@ impl Flight {
         [v1, a1, v2, a2]
     }
 
-    /// The `order`-th derivative of a signal with its slope and a bound on its curvature for all later times.
-    ///
-    /// The bound sums the forced amplitudes and the energy bounds of the free parts, so it falls as these die out.
-    #[inline]
-    pub fn bounded(&self, signal: Signal, order: u32, t: f64) -> Bounded {
-        let mut sum = Bounded { value: 0.0, slope: 0.0, curvature: 0.0 };
-        let mut add = |sign: f64, (value, slope, curvature): (f64, f64, f64)| {
-            sum.value += sign * value;
-            sum.slope += sign * slope;
-            sum.curvature += curvature;
-        };
-        let sign = if signal == Signal::Gap { -1.0 } else { 1.0 };
-        if order == 0 {
-            add(1.0, (if signal == Signal::Gap { self.gap } else { 0.0 }, 0.0, 0.0));
-            add(sign, (if signal == Signal::X2 { 0.0 } else { self.rest }, 0.0, 0.0));
-        }
-        if signal != Signal::X1 {
-            add(1.0, self.free[1].derivative(order, t));
-        }
-        if signal != Signal::X2 {
-            add(sign, self.waves.derivative(order, t));
-            add(sign, self.free[0].derivative(order, t));
-        }
-        sum
-    }
-
     /// Rounding error of a computed gap in m: a few ε of the largest term.
     pub fn noise(&self) -> f64 {
         2.0 * f64::EPSILON * (self.gap.abs() + self.rest.abs() + self.reach())
@@ -259,21 +215,9 @@ impl Flight {
                 }
             },
             |t| {
-                let mut limits = self.waves.limits();
-                let mut reach = self.waves.amplitude();
-                for part in &self.free {
-                    let [x, v, a, jerk, ..] = part.series(t);
-                    let (curvature, gain) = (part.oscillator.bound(a, jerk), part.oscillator.gain());
-                    let snap = curvature * gain * gain;
-                    limits.curvature += curvature;
-                    limits.jerk += curvature * gain;
-                    limits.snap += snap;
-                    limits.sixth += snap * gain * gain;
-                    // At the beginning most flights end in contact.
-                    if t > self.open {
-                        reach += part.oscillator.bound(x, v);
-                    }
-                }
+                let (limits, free) = self.limits(t);
+                // At the beginning most flights end in contact.
+                let reach = self.waves.amplitude() + free;
                 (t == self.open || self.gap - self.rest <= reach).then_some(limits)
             },
         )?;
@@ -290,29 +234,26 @@ impl Flight {
         Some(Landing { time: at + ahead, state })
     }
 
+    /// Bounds on the derivatives of the gap from `t` on, and on the free parts' displacements together, in m.
+    fn limits(&self, t: f64) -> (Limits, f64) {
+        let (mut limits, mut reach) = (self.waves.limits(), 0.0);
+        for part in &self.free {
+            let [x, v, a, jerk, ..] = part.series(t);
+            let (curvature, gain) = (part.oscillator.bound(a, jerk), part.oscillator.gain());
+            let snap = curvature * gain * gain;
+            limits.curvature += curvature;
+            limits.jerk += curvature * gain;
+            limits.snap += snap;
+            limits.sixth += snap * gain * gain;
+            reach += part.oscillator.bound(x, v);
+        }
+        (limits, reach)
+    }
+
     /// A bound on |x₁ − x₂| for the whole flight, in m, about the rest positions.
     fn reach(&self) -> f64 {
         let free: f64 = self.free.iter().map(|part| part.oscillator.bound(part.x, part.v)).sum();
         self.waves.amplitude() + free
-    }
-
-    /// Smallest and largest value of a signal in `0..=duration`, found from every stationary point.
-    pub fn range(&self, signal: Signal, duration: f64) -> (f64, f64) {
-        let at = |t: f64| self.bounded(signal, 0, t).value;
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        let mut take = |value: f64| {
-            low = low.min(value);
-            high = high.max(value);
-        };
-        take(at(0.0));
-        take(at(duration));
-        self.each_stationary(signal, duration, |t| take(at(t)));
-        (low, high)
-    }
-
-    /// Visits every time in `0..=duration` at which a signal's rate is zero.
-    pub(crate) fn each_stationary(&self, signal: Signal, duration: f64, visit: impl FnMut(f64)) {
-        each_root(0.0, duration, |t| self.bounded(signal, 1, t), visit);
     }
 }
 

@@ -1,6 +1,7 @@
-//! The exciting force as series in time, and its clock.
+//! The exciting force from now on: its sines, as series in time, and its clock.
 
-use super::clock::{Clock, Tick, within};
+use super::clock::{Clock, within};
+use super::excitation::MOST_SINES;
 use super::linear::{ORDER, Terms};
 use super::{Excitation, Part};
 use std::f64::consts::TAU;
@@ -8,17 +9,24 @@ use vibro_record::Result;
 
 /// One sine force, with its phase now.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Tone {
-    force: f64,
-    omega: f64,
-    phase: f64,
+pub(super) struct Tone {
+    pub force: f64,
+    pub frequency: f64,
+    pub phase: f64,
+}
+
+impl Tone {
+    #[inline]
+    pub fn omega(&self) -> f64 {
+        TAU * self.frequency
+    }
 }
 
 /// The exciting force from now on.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Forcing {
-    tones: Vec<Tone>,
-    clock: Clock,
+    tones: [Option<Tone>; MOST_SINES],
+    pub clock: Clock,
 }
 
 impl Forcing {
@@ -27,19 +35,29 @@ impl Forcing {
     pub fn new(excitation: &Excitation, phase: f64) -> Result<Forcing> {
         let clock = Clock::new(excitation, phase)?;
         let (phase, frequency) = (clock.phase(), clock.frequency());
-        let tone = |p: &Part| {
-            let start = (p.phase + phase * (p.frequency / frequency)).rem_euclid(TAU);
-            Tone { force: p.force, omega: TAU * p.frequency, phase: start }
-        };
-        let tones = match excitation {
-            Excitation::Sine(sine) => vec![Tone { force: sine.force, omega: TAU * frequency, phase }],
-            Excitation::Sines(sines) => sines.parts.iter().map(tone).collect(),
-            Excitation::Impulse(_) | Excitation::Pulse(_) => Vec::new(),
-        };
+        let mut tones = [None; MOST_SINES];
+        match excitation {
+            Excitation::Sine(sine) => tones[0] = Some(Tone { force: sine.force, frequency, phase }),
+            Excitation::Sines(sines) => {
+                for (tone, part) in tones.iter_mut().zip(&sines.parts) {
+                    let Part { force, frequency: own, phase: start } = *part;
+                    let phase = (start + phase * (own / frequency)).rem_euclid(TAU);
+                    *tone = Some(Tone { force, frequency: own, phase });
+                }
+            }
+            Excitation::Impulse(_) | Excitation::Pulse(_) => {}
+        }
         Ok(Forcing { tones, clock })
     }
 
+    /// Its sines.
+    #[inline]
+    pub fn tones(&self) -> impl Iterator<Item = &Tone> {
+        self.tones.iter().flatten()
+    }
+
     /// Phase of the cycle in 0..2π.
+    #[inline]
     pub fn phase(&self) -> f64 {
         self.clock.phase()
     }
@@ -53,9 +71,9 @@ impl Forcing {
     pub fn set_frequency(&mut self, hz: f64) -> Result<()> {
         let before = self.frequency();
         self.clock.set_frequency(hz)?;
-        for tone in &mut self.tones {
+        for tone in self.tones.iter_mut().flatten() {
             // The first sine counts the cycles: no rounding of its frequency.
-            tone.omega = if tone.omega == TAU * before { TAU * hz } else { tone.omega * (hz / before) };
+            tone.frequency = if tone.frequency == before { hz } else { tone.frequency * (hz / before) };
         }
         Ok(())
     }
@@ -64,61 +82,48 @@ impl Forcing {
     pub fn set_excitation(&mut self, excitation: &Excitation) -> Result<()> {
         self.clock.set_excitation(excitation)?;
         let next = Forcing::new(excitation, 0.0)?;
-        for (tone, next) in self.tones.iter_mut().zip(next.tones) {
-            *tone = Tone { phase: tone.phase, ..next };
+        for (tone, next) in self.tones.iter_mut().flatten().zip(next.tones()) {
+            *tone = Tone { phase: tone.phase, ..*next };
         }
         Ok(())
     }
 
     /// Largest angular frequency in rad/s within a smooth stretch of the force.
     pub fn fastest(&self) -> f64 {
-        self.tones.iter().map(|t| t.omega).fold(0.0, f64::max)
+        self.tones().map(Tone::omega).fold(0.0, f64::max)
     }
 
     /// The force in N at `t` seconds from now, before its next tick.
     pub fn force(&self, t: f64) -> f64 {
-        self.tones.iter().map(|tone| tone.force * (tone.phase + tone.omega * t).cos()).sum::<f64>()
-            + self.steady()
+        self.tones().map(|tone| tone.force * (tone.phase + tone.omega() * t).cos()).sum::<f64>()
+            + self.clock.constant()
     }
 
     /// Terms of the force in powers of time over `duration` seconds.
     #[inline]
     pub fn terms(&self, duration: f64) -> Terms {
         let mut terms = [0.0; ORDER + 1];
-        for tone in &self.tones {
+        for tone in self.tones() {
             let (sin, cos) = tone.phase.sin_cos();
             let (mut re, mut im) = (tone.force * cos, tone.force * sin);
-            let turn = tone.omega * duration;
+            let turn = tone.omega() * duration;
             for (k, term) in terms.iter_mut().enumerate() {
                 *term += re;
                 let step = turn / (k + 1) as f64;
                 (re, im) = (-step * im, step * re);
             }
         }
-        terms[0] += self.steady();
+        terms[0] += self.clock.constant();
         terms
     }
 
-    fn steady(&self) -> f64 {
-        self.clock.constant()
-    }
-
-    /// As [`Clock::next`].
-    pub fn next(&self, span: f64, end: f64) -> (f64, Option<Tick>) {
-        self.clock.next(span, end)
-    }
-
     /// Lets `t` seconds pass, at most up to the next tick.
+    #[inline]
     pub fn pass(&mut self, t: f64) {
-        for tone in &mut self.tones {
-            tone.phase = within(tone.phase + tone.omega * t);
+        for tone in self.tones.iter_mut().flatten() {
+            tone.phase = within(tone.phase + tone.omega() * t);
         }
         self.clock.advance(t);
-    }
-
-    /// Does what is due now.
-    pub fn tick(&mut self, tick: Tick) {
-        self.clock.tick(tick);
     }
 }
 

@@ -17,34 +17,26 @@
 //! ```
 
 mod axis;
-mod change;
 mod climb;
 mod findings;
-mod history;
-mod laws;
 mod motions;
-mod outcome;
 mod question;
 mod reading;
 mod rung;
-mod sensitivity;
 mod stage;
 mod starts;
 
 pub use axis::{MOST_POINTS, Stretch, Summary, Survey, choose_over};
-pub use change::Change;
 pub use motions::Known;
-pub use question::Question;
-pub use rung::{Model, Need, Rung};
-pub use sensitivity::Sensitivity;
+pub use question::{Change, Question};
+pub use rung::{Model, Need, Needed, Rung};
 pub use starts::Followed;
 
 use super::{Law, Rig, Scene, scales};
-use change::Answer;
 use climb::Climb;
+use question::Answer;
 use serde::Serialize;
-use stage::Stage;
-use vibro_record::units::notation::significant;
+use stage::{Stage, curved, is_curved, keys};
 use vibro_record::{Error, Finding, Result};
 
 /// The rung that is good enough for a scene, and how that was found.
@@ -56,8 +48,8 @@ pub struct Choice {
     pub chosen: Option<Model>,
     /// All rungs, the simplest first.
     pub rungs: Vec<Rung>,
-    /// What must be known before a rung can be chosen: keys of the scene, or `history`.
-    pub needs: Vec<&'static str>,
+    /// What must be known before a rung can be chosen.
+    pub needs: Vec<Need>,
     /// The change of the chosen answer at the next rung that follows the motion.
     pub audit: Option<Change>,
     /// What curved bodies (exponent 1.5) that meet for as long and rebound alike would change, where a spring and a damper were chosen, or the
@@ -65,16 +57,29 @@ pub struct Choice {
     pub law: Option<Change>,
     /// The changes of the chosen answer where the gap is smaller or larger by its uncertainty; `None` where there is then no such answer.
     pub gap: Vec<Option<Change>>,
-    /// The answer over the contact's stiffness, where that is not known and matters.
+    /// The answer over the contact's stiffness, where that is not known and matters; empty where that cannot be computed.
     pub sensitivity: Vec<Sensitivity>,
-    /// Stiffnesses in N/m at which that could not be computed.
-    pub sensitivity_failed: Vec<f64>,
     /// Motions that the rig can be in, as far as they are known.
     pub motions: Vec<Known>,
     /// States that others were looked for from; `None` with a history and for a loose mass.
     pub followed: Option<Followed>,
     /// What is to be known of it; why a rung is passed over stands with the rung.
     pub findings: Vec<Finding>,
+}
+
+/// The answer with one stiffness of the contact.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Sensitivity {
+    /// k₃ in N/m.
+    pub stiffness: f64,
+    /// Part of the cycle in contact.
+    pub share: f64,
+    /// The answer: of x₁ and x₂; of impacts the same number twice.
+    pub answer: [f64; 2],
+    /// Its change, from impacts without duration.
+    pub change: f64,
+    /// Whether that is allowed, and the motion had settled.
+    pub enough: bool,
 }
 
 impl Choice {
@@ -95,24 +100,23 @@ impl Choice {
 /// # Errors
 /// If the model needs a number that the scene does not state, or one is impossible.
 pub fn law(scene: &Scene, model: Model) -> Result<Option<Law>> {
-    let keys = laws::keys(scene);
+    let keys = keys(scene);
     let missing = |key: &str| {
         Error::usage(format!("{} without contact.{key}", model.name()), format!("{key} in [contact]"))
             .hint("measure it: no value fits all contacts, and results depend on it")
     };
+    let stiffness = || keys.stiffness.ok_or_else(|| missing("stiffness"));
     match model {
         Model::Linear | Model::ClosedForm | Model::Restitution => Ok(None),
-        Model::SoftCorrected | Model::KelvinVoigt if laws::is_curved(scene) => {
+        Model::SoftCorrected | Model::KelvinVoigt if is_curved(scene) => {
             Err(Error::usage(format!("{} with contact.exponent", model.name()), "a spring, exponent 1"))
         }
-        Model::SoftCorrected | Model::KelvinVoigt => {
-            scene.spring(keys.stiffness.ok_or_else(|| missing("stiffness"))?).map(Some)
-        }
+        Model::SoftCorrected | Model::KelvinVoigt => scene.spring(stiffness()?).map(Some),
         Model::HuntCrossley => {
             keys.damping.ok_or_else(|| missing("damping"))?;
-            keys.stiffness.ok_or_else(|| missing("stiffness"))?;
+            stiffness()?;
             // A damping that is stated does not depend on the speed.
-            laws::curved(scene, 1.0).map(Some)
+            curved(scene, 1.0).map(Some)
         }
         Model::LooseMass => {
             Err(Error::refused("a loose mass has another law of its spring, not of its contact"))
@@ -141,21 +145,13 @@ fn chosen(scene: &Scene, frequency: f64, question: &Question, bend: bool) -> Res
     };
     let excitation = excitation.at_frequency(frequency);
     scales::check(&scene.rig, &excitation)?;
-    if excitation.is_idle() {
+    if excitation.size() == 0.0 {
         return Err(Error::usage(
             "nothing drives the rig: its excitation is 0",
             "a force or impulse above 0",
         ));
     }
-    let fastest = scene.rig.natural_frequencies().into_iter().filter(|f| f.is_finite()).fold(0.0, f64::max);
-    if fastest > MOST_SWINGS * frequency {
-        return Err(Error::refused(format!(
-            "a mass swings {} times in a cycle of {} Hz: more than {MOST_SWINGS:.0} are not followed",
-            significant(fastest / frequency, 3),
-            significant(frequency, 6)
-        ))
-        .hint("at such frequencies springs alone decide: x₁ = F/k₁ until the masses meet"));
-    }
+    scales::check_swings(&scene.rig, frequency, MOST_SWINGS)?;
     let stage = Stage { scene, excitation: &excitation, question };
     let mut choice = Climb::new(stage)?.choose(bend);
     if bend && question.gap_std > 0.0 {

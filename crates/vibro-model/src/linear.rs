@@ -145,11 +145,6 @@ impl Quantity {
             + self.offset
     }
 
-    /// The same quantity with the other sign.
-    pub fn reversed(&self) -> Quantity {
-        Quantity { weights: self.weights.map(|w| -w), force: -self.force, offset: -self.offset }
-    }
-
     /// The same quantity times a factor.
     pub fn times(&self, factor: f64) -> Quantity {
         let scaled = self.weights.map(|w| factor * w);

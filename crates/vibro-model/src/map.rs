@@ -11,99 +11,62 @@ use super::{
 };
 use nalgebra::Matrix4;
 use num_complex::Complex64;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::f64::consts::TAU;
 use vibro_record::{Error, Result};
 
-/// Cycles of all cells together beyond which a map is refused: some minutes of work.
-pub(crate) const MOST_CYCLES: f64 = 5e8;
-
-/// A parameter that can be varied.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Key {
-    /// m₁ in kg.
-    M1,
-    /// m₂ in kg.
-    M2,
-    /// k₁ in N/m.
-    K1,
-    /// k₂ in N/m.
-    K2,
-    /// c₁ in N s/m.
-    C1,
-    /// c₂ in N s/m.
-    C2,
-    /// Gap in m.
-    Gap,
-    /// Coefficient of restitution.
-    Restitution,
-    /// Frequency in Hz.
-    Frequency,
-    /// Force amplitude of a sine, or force of a pulse, in N.
-    Force,
-    /// Impulse of impulses in N s.
-    Impulse,
-    /// Width of pulses in s.
-    Width,
-}
+/// A parameter that can be varied: a key of the rig, or of the excitation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(transparent)]
+pub struct Key(&'static str);
 
 impl Key {
-    /// All keys with their names and units.
-    pub const ALL: [(Key, &'static str, &'static str); 12] = [
-        (Key::M1, "m1", "kg"),
-        (Key::M2, "m2", "kg"),
-        (Key::K1, "k1", "N/m"),
-        (Key::K2, "k2", "N/m"),
-        (Key::C1, "c1", "N s/m"),
-        (Key::C2, "c2", "N s/m"),
-        (Key::Gap, "gap", "m"),
-        (Key::Restitution, "restitution", ""),
-        (Key::Frequency, "frequency", "Hz"),
-        (Key::Force, "force", "N"),
-        (Key::Impulse, "impulse", "N s"),
-        (Key::Width, "width", "s"),
+    /// Names of all parameters, with their units.
+    pub const ALL: [(&'static str, &'static str); 12] = [
+        ("m1", "kg"),
+        ("m2", "kg"),
+        ("k1", "N/m"),
+        ("k2", "N/m"),
+        ("c1", "N s/m"),
+        ("c2", "N s/m"),
+        ("gap", "m"),
+        ("restitution", ""),
+        ("frequency", "Hz"),
+        ("force", "N"),
+        ("impulse", "N s"),
+        ("width", "s"),
     ];
 
     /// Name and unit.
     pub fn label(self) -> (&'static str, &'static str) {
-        let (_, name, unit) = Key::ALL[self as usize];
-        (name, unit)
+        Key::ALL.into_iter().find(|k| k.0 == self.0).unwrap_or((self.0, ""))
     }
 
     /// The key of this name.
     pub fn named(name: &str) -> Option<Key> {
-        Key::ALL.iter().find(|k| k.1 == name).map(|k| k.0)
+        Key::ALL.iter().find(|k| k.0 == name).map(|k| Key(k.0))
     }
 
     /// Enters a value; `None` where the excitation has no such number.
     fn set(self, rig: &mut Rig, excitation: &mut Excitation, value: f64) -> Option<()> {
-        *match self {
-            Key::M1 => &mut rig.m1,
-            Key::M2 => &mut rig.m2,
-            Key::K1 => &mut rig.k1,
-            Key::K2 => &mut rig.k2,
-            Key::C1 => &mut rig.c1,
-            Key::C2 => &mut rig.c2,
-            Key::Gap => &mut rig.gap,
-            Key::Restitution => &mut rig.restitution,
-            Key::Frequency => {
+        *match (self.0, excitation) {
+            ("m1", _) => &mut rig.m1,
+            ("m2", _) => &mut rig.m2,
+            ("k1", _) => &mut rig.k1,
+            ("k2", _) => &mut rig.k2,
+            ("c1", _) => &mut rig.c1,
+            ("c2", _) => &mut rig.c2,
+            ("gap", _) => &mut rig.gap,
+            ("restitution", _) => &mut rig.restitution,
+            ("frequency", excitation) => {
                 *excitation = excitation.at_frequency(value);
                 return Some(());
             }
-            Key::Force => match excitation {
-                Excitation::Sine(sine) => &mut sine.force,
-                Excitation::Pulse(pulses) => &mut pulses.force,
-                _ => return None,
-            },
-            Key::Impulse => match excitation {
-                Excitation::Impulse(impulses) => &mut impulses.impulse,
-                _ => return None,
-            },
-            Key::Width => match excitation {
-                Excitation::Pulse(pulses) => &mut pulses.width,
-                _ => return None,
-            },
+            ("force", Excitation::Sine(sine)) => &mut sine.force,
+            ("force", Excitation::Pulse(pulses)) => &mut pulses.force,
+            ("impulse", Excitation::Impulse(impulses)) => &mut impulses.impulse,
+            ("width", Excitation::Pulse(pulses)) => &mut pulses.width,
+            _ => return None,
         } = value;
         Some(())
     }
@@ -148,7 +111,7 @@ impl std::str::FromStr for Axis {
             (parts.next().is_none() && low < high && n >= 2).then_some(Axis { key, low, high, n })
         };
         parse().ok_or_else(|| {
-            let names: Vec<_> = Key::ALL.iter().map(|k| k.1).collect();
+            let names: Vec<_> = Key::ALL.iter().map(|k| k.0).collect();
             Error::usage(format!("axis {text:?}"), "NAME:LOW:HIGH:N with LOW below HIGH and N of 2 or more")
                 .hint(format!("NAME is one of {}", names.join(", ")))
         })
@@ -191,7 +154,7 @@ impl Plan {
     /// Checks the plan.
     ///
     /// # Errors
-    /// If both axes vary the same parameter, a corner of the map is impossible, or there is more work than [`MOST_CYCLES`].
+    /// If both axes vary the same parameter, a corner of the map is impossible, or there are more than 1e8 cycles in all.
     pub fn check(&self) -> Result<()> {
         if self.x.key == self.y.key {
             return Err(Error::usage(format!("both axes vary {}", self.x.key.label().0), "two parameters"));
@@ -213,13 +176,7 @@ impl Plan {
         if self.cycles < 4 {
             return Err(Error::usage(format!("{} cycles a cell", self.cycles), "at least 4"));
         }
-        let work = self.x.n as f64 * self.y.n as f64 * f64::from(self.cycles);
-        if work > MOST_CYCLES {
-            return Err(Error::refused(format!(
-                "the map has {work:.3e} cycles, more than {MOST_CYCLES:.0e}"
-            ))
-            .hint("take fewer cells or fewer cycles a cell"));
-        }
+        scales::check_work(self.x.n as f64 * self.y.n as f64 * f64::from(self.cycles))?;
         for (column, row) in [(0, 0), (self.x.n - 1, 0), (0, self.y.n - 1), (self.x.n - 1, self.y.n - 1)] {
             let (rig, excitation) = self.at(column, row);
             scales::check(&rig, &excitation)?;
@@ -272,32 +229,40 @@ fn judged(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Cell> {
     let mut motion = Simulation::new(rig, excitation)?;
     let frequency = excitation.frequency();
     let settling = (SETTLING * f64::from(cycles)) as u32;
-    let mut passed = 0;
     let mut watch = Watch::new(&motion);
+    let mut follow = |motion: &mut Simulation, cycles: u32| {
+        watch.restart(motion);
+        let until = motion.time() + f64::from(cycles) / frequency;
+        motion.advance(until, &mut |piece| watch.take(&piece))?;
+        Ok((watch.pattern(), watch.strikes().len()))
+    };
+    let mut passed = 0;
     while passed < settling {
         let look = LOOK.min(settling - passed);
-        watch.restart(&motion);
-        motion.advance(motion.time() + f64::from(look) / frequency, &mut |piece| watch.take(&piece))?;
+        let (found, seen) = follow(&mut motion, look)?;
         passed += look;
-        let found = watch.pattern();
-        if let Some(cell) = early(rig, excitation, &watch, &found, look) {
+        if let Regime::Periodic { impacts, cycles } = found.regime
+            // Seen at least three times, and settled or drawing near a stable motion.
+            && seen >= 3 * impacts as usize
+            && 3 * cycles <= look
+            && (found.settled
+                || matches!(excitation, Excitation::Sine(_)) && found.distance.is_some_and(|d| d < SOON))
+            && let Some(cell) = periodic(rig, excitation, &found)
+            && cell.spectral_radius.is_some_and(|r| r < 1.0)
+        {
             return Ok(cell);
         }
         if found.regime == Regime::NoImpact && found.settled && clear(rig, excitation, &motion) {
             break;
         }
     }
-    watch.restart(&motion);
-    let rest = f64::from(cycles - passed) / frequency;
-    motion.advance(motion.time() + rest, &mut |piece| watch.take(&piece))?;
-    let found = watch.pattern();
+    let (found, _) = follow(&mut motion, cycles - passed)?;
+    let regime = Some(found.regime);
     Ok(match found.regime {
         Regime::Periodic { .. } => periodic(rig, excitation, &found)
             .unwrap_or(Cell { regime: Some(Regime::Irregular), spectral_radius: None }),
-        Regime::NoImpact => {
-            Cell { regime: Some(found.regime), spectral_radius: Some(free_radius(rig, excitation)) }
-        }
-        other => Cell { regime: Some(other), spectral_radius: None },
+        Regime::NoImpact => Cell { regime, spectral_radius: Some(free_radius(rig, excitation)) },
+        _ => Cell { regime, spectral_radius: None },
     })
 }
 
@@ -305,11 +270,11 @@ fn judged(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Cell> {
 /// what its shortest period is.
 fn periodic(rig: &Rig, excitation: &Excitation, found: &Pattern) -> Option<Cell> {
     let Regime::Periodic { cycles, .. } = found.regime else { return None };
-    let as_seen = || Cell {
-        regime: Some(found.regime),
-        spectral_radius: radius(rig, excitation, cycles, &found.strikes),
+    let seen = |settled: bool| {
+        let spectral_radius = radius(rig, excitation, cycles, &found.strikes);
+        settled.then_some(Cell { regime: Some(found.regime), spectral_radius })
     };
-    let Excitation::Sine(sine) = excitation else { return Some(as_seen()) };
+    let Excitation::Sine(sine) = excitation else { return seen(true) };
     let orbit =
         PeriodicOrbit::from_strikes(rig, sine, cycles, &found.strikes).and_then(PeriodicOrbit::shortest);
     match orbit {
@@ -317,20 +282,8 @@ fn periodic(rig: &Rig, excitation: &Excitation, found: &Pattern) -> Option<Cell>
             regime: Some(Regime::Periodic { impacts: orbit.impacts(), cycles: orbit.cycles }),
             spectral_radius: orbit.spectral_radius(),
         }),
-        _ => found.settled.then(as_seen),
+        _ => seen(found.settled),
     }
-}
-
-/// The cell of a pattern that has settled, or draws near a stable motion, before all cycles have passed.
-fn early(rig: &Rig, excitation: &Excitation, watch: &Watch, found: &Pattern, look: u32) -> Option<Cell> {
-    let Regime::Periodic { impacts, cycles } = found.regime else { return None };
-    // Seen at least three times.
-    if watch.strikes().len() < 3 * impacts as usize || 3 * cycles > look {
-        return None;
-    }
-    let near = found.settled || (matches!(excitation, Excitation::Sine(_)) && found.distance? < SOON);
-    let cell = if near { periodic(rig, excitation, found)? } else { return None };
-    cell.spectral_radius.is_some_and(|r| r < 1.0).then_some(cell)
 }
 
 /// Whether a motion under a sine cannot meet the other mass any more: forced and free parts together stay below the gap.
@@ -346,24 +299,19 @@ fn clear(rig: &Rig, excitation: &Excitation, motion: &Simulation) -> bool {
 
 /// Spectral radius along a pattern of impacts; `None` under several sines, whose force is not told by the phase of one.
 fn radius(rig: &Rig, excitation: &Excitation, cycles: u32, strikes: &[Strike]) -> Option<f64> {
-    let share = rig.reduced_mass() * (1.0 + rig.restitution);
     let force = |phase: f64| match excitation {
         Excitation::Sine(sine) => Some(sine.force * phase.cos()),
         Excitation::Impulse(_) => Some(0.0),
         Excitation::Pulse(p) => Some(if phase < TAU * p.width * p.frequency { p.force } else { 0.0 }),
-        _ => None,
+        Excitation::Sines(_) => None,
     };
+    let [first, second] = rig.oscillators();
     let rate = |s: &State, force: f64| {
-        [
-            s.v1,
-            (force - rig.c1 * s.v1 - rig.k1 * s.x1) / rig.m1,
-            s.v2,
-            (-rig.c2 * s.v2 - rig.k2 * s.x2) / rig.m2,
-        ]
+        [s.v1, force / rig.m1 + first.acceleration(s.x1, s.v1), s.v2, second.acceleration(s.x2, s.v2)]
     };
     let mut whole = Matrix4::identity();
     for (i, strike) in strikes.iter().enumerate() {
-        let impulse = share * strike.approach_velocity;
+        let impulse = rig.exchange() * strike.approach_velocity;
         let before = strike.before;
         let after = State { v1: before.v1 - impulse / rig.m1, v2: before.v2 + impulse / rig.m2, ..before };
         let end = strikes

@@ -51,21 +51,21 @@ impl Observable {
 
     /// What it shows of an orbit: x₁ and x₂ in m; of its impacts, which both masses share, the same number twice.
     pub fn of_orbit(self, orbit: &Orbit) -> [f64; 2] {
-        match self {
-            Observable::Fundamental => orbit.fundamental.map(Complex64::norm),
-            Observable::HalfPeakToPeak => orbit.peak_to_peak.map(|p| p / 2.0),
-            Observable::ImpactSpeed => [orbit.approach_velocity; 2],
-            Observable::Impulse => [orbit.impulse; 2],
-        }
+        let fundamental = orbit.fundamental.map(Complex64::norm);
+        self.of(fundamental, orbit.peak_to_peak, orbit.approach_velocity, orbit.impulse)
     }
 
     /// What it shows of an orbit with the duration of its contact taken into account.
     pub(crate) fn of_softened(self, orbit: &Softened) -> [f64; 2] {
+        self.of(orbit.fundamental, orbit.peak_to_peak, orbit.approach_velocity, orbit.impulse)
+    }
+
+    fn of(self, fundamental: [f64; 2], peak_to_peak: [f64; 2], speed: f64, impulse: f64) -> [f64; 2] {
         match self {
-            Observable::Fundamental => orbit.fundamental,
-            Observable::HalfPeakToPeak => orbit.peak_to_peak.map(|p| p / 2.0),
-            Observable::ImpactSpeed => [orbit.approach_velocity; 2],
-            Observable::Impulse => [orbit.impulse; 2],
+            Observable::Fundamental => fundamental,
+            Observable::HalfPeakToPeak => peak_to_peak.map(|p| p / 2.0),
+            Observable::ImpactSpeed => [speed; 2],
+            Observable::Impulse => [impulse; 2],
         }
     }
 

@@ -1,35 +1,31 @@
 //! Periodic motions with one impact a period, in closed form.
 
-mod backbone;
 mod conditions;
 mod course;
-mod drive;
-mod listed;
-mod response;
-mod shown;
+mod driven;
 mod sine;
 mod soft;
-mod stretch;
-
 mod train;
+mod turns;
 
-pub use backbone::backbone;
-pub use shown::{Shown, shown};
+pub use sine::{Shown, backbone, shown};
 pub use soft::{Compliance, Softened, softened};
 
-pub(super) use conditions::Root;
 pub(super) use course::Course;
 
 use super::{Excitation, NoImpact, Rig, Sine, State, Steady, Validity, scales};
 use conditions::Conditions;
-use drive::Drive;
+use driven::Response;
 use num_complex::Complex64;
-use response::Response;
+use serde::{Serialize, Serializer};
+use serde_json::json;
 use std::f64::consts::TAU;
 use vibro_record::{Error, Result};
 
 /// One periodic motion with one impact a period; its time counts from the impact.
-#[derive(Debug, Clone, Copy, PartialEq)]
+///
+/// As JSON all verdicts and amplitudes stand beside each other; a neutral motion is not stable.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Orbit {
     /// Excitation frequency in Hz.
     pub frequency: f64,
@@ -55,8 +51,38 @@ pub struct Orbit {
     pub validity: Validity,
     upper: bool,
     rig: Rig,
-    drive: Drive,
+    excitation: Option<Excitation>,
     course: Course,
+}
+
+impl Serialize for Orbit {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        let v = &self.validity;
+        json!({
+            "frequency": self.frequency,
+            "cycles": self.cycles,
+            "impulse": self.impulse,
+            "timing": self.timing,
+            "timing_unit": self.timing_unit(),
+            "force_phase": self.force_phase,
+            "approach_velocity": self.approach_velocity,
+            "min_gap": v.min_gap,
+            "clearance": v.clearance,
+            "multipliers": self.multipliers.map(|all| all.map(|z| [z.re, z.im])),
+            "spectral_radius": self.spectral_radius(),
+            "exists": v.exists,
+            "admissible": v.admissible,
+            "stable": v.stable == Some(true),
+            "stability": v.stability,
+            "instability": v.instability,
+            "energy_rule": v.energy_rule,
+            "grazing_distance": v.grazing_distance,
+            "peak_to_peak": self.peak_to_peak,
+            "fundamental": self.fundamental.map(Complex64::norm),
+            "fundamental_phase": self.fundamental.map(Complex64::arg),
+        })
+        .serialize(serializer)
+    }
 }
 
 impl Orbit {
@@ -67,12 +93,12 @@ impl Orbit {
 
     /// State at `t` seconds after an impact, any `t`; at the impact itself, the state after it.
     pub fn state(&self, t: f64) -> State {
-        self.course.state(t.rem_euclid(self.course.period()))
+        self.course.state(t.rem_euclid(self.course.period))
     }
 
     /// State just before the impact.
     pub fn before_impact(&self) -> State {
-        self.course.state(self.course.period())
+        self.course.state(self.course.period)
     }
 
     /// Complex amplitudes X₁, X₂ in m of the line at `n`/T, n ≥ 1, T being the time from impact to impact: the line n = `cycles` lies
@@ -84,10 +110,9 @@ impl Orbit {
         let [l1, l2] = self.rig.receptances(TAU * f64::from(n) / period);
         // Every line of a train of impulses J is 2J/T high.
         let train = 2.0 * self.impulse / period;
-        let force = if n.is_multiple_of(self.cycles) {
-            self.drive.harmonic(n / self.cycles, self.frequency, self.force_phase)
-        } else {
-            Complex64::ZERO
+        let force = match &self.excitation {
+            Some(force) if n.is_multiple_of(self.cycles) => force.harmonic(n / self.cycles, self.force_phase),
+            _ => Complex64::ZERO,
         };
         [(force - train) * l1, l2 * train]
     }
@@ -96,17 +121,15 @@ impl Orbit {
     /// same side of the fold, and within a sixth of a cycle in timing.
     pub fn continued<'a>(&self, others: &'a [Orbit]) -> Option<&'a Orbit> {
         let same = others.iter().filter(|other| other.upper == self.upper);
-        match self.course {
+        if self.timing_unit() == "rad" {
             // One on each side of the fold.
-            Course::Smooth { .. } => same.min_by(|a, b| a.impulse.total_cmp(&b.impulse)),
-            Course::Broken { .. } => {
-                let apart = |other: &Orbit| {
-                    let way = (other.force_phase - self.force_phase).rem_euclid(TAU);
-                    way.min(TAU - way)
-                };
-                same.filter(|other| apart(other) < TAU / 6.0).min_by(|a, b| apart(a).total_cmp(&apart(b)))
-            }
+            return same.min_by(|a, b| a.impulse.total_cmp(&b.impulse));
         }
+        let apart = |other: &Orbit| {
+            let way = (other.force_phase - self.force_phase).rem_euclid(TAU);
+            way.min(TAU - way)
+        };
+        same.filter(|other| apart(other) < TAU / 6.0).min_by(|a, b| apart(a).total_cmp(&apart(b)))
     }
 
     /// Whether the motion is real, and stays so where the gap differs by up to `gap_uncertainty` (m): farther from grazing than that by
@@ -115,11 +138,11 @@ impl Orbit {
         if !self.validity.real() || self.validity.grazing_distance <= gap_uncertainty {
             return false;
         }
-        let Some(excitation) = self.drive.excitation(self.frequency) else { return false };
+        let Some(excitation) = &self.excitation else { return false };
         gap_uncertainty == 0.0
             || [-1.0, -0.5, 0.5, 1.0].iter().all(|part| {
                 let rig = Rig { gap: self.rig.gap + part * gap_uncertainty, ..self.rig };
-                orbits_of(&rig, &excitation, self.cycles)
+                orbits_of(&rig, excitation, self.cycles)
                     .is_ok_and(|found| self.continued(&found.orbits).is_some_and(|o| o.validity.real()))
             })
     }
@@ -131,9 +154,9 @@ impl Orbit {
 
     /// Unit of [`Orbit::timing`]: `rad` or `s`.
     pub fn timing_unit(&self) -> &'static str {
-        match self.course {
-            Course::Smooth { .. } => "rad",
-            Course::Broken { .. } => "s",
+        match self.excitation {
+            None | Some(Excitation::Sine(_)) => "rad",
+            Some(_) => "s",
         }
     }
 
@@ -144,7 +167,7 @@ impl Orbit {
 }
 
 /// All answers at one frequency.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Orbits {
     /// One for each real root, the larger impulse first; each says whether it is real.
     pub orbits: Vec<Orbit>,
@@ -165,17 +188,7 @@ pub fn orbits(rig: &Rig, force: f64, frequency: f64) -> Result<Orbits> {
 /// # Errors
 /// As [`orbits`], and if `cycles` is 0 or the force is 0.
 pub fn orbits_over(rig: &Rig, sine: &Sine, cycles: u32) -> Result<Orbits> {
-    under_sine(rig, sine, cycles, 0.0)
-}
-
-fn under_sine(rig: &Rig, sine: &Sine, cycles: u32, delay: f64) -> Result<Orbits> {
-    let steady = Steady::new(rig, sine)?;
-    driven(sine.force)?;
-    let conditions = Conditions::new(rig, sine.frequency, cycles)?.delayed(delay);
-    Ok(Orbits {
-        orbits: sine::orbits(&conditions, &steady, sine.force).collect(),
-        no_impact: NoImpact::new(&steady, rig.gap),
-    })
+    orbits_of(rig, &Excitation::Sine(*sine), cycles)
 }
 
 /// All motions with one impact in `cycles` cycles of the excitation, and the one without impacts.
@@ -195,44 +208,42 @@ pub fn orbits_of(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Orbi
 /// As [`orbits_of`].
 pub fn no_impact(rig: &Rig, excitation: &Excitation) -> Result<NoImpact> {
     scales::check(rig, excitation)?;
-    if let Excitation::Sine(sine) = excitation {
-        return Ok(NoImpact::new(&Steady::new(rig, sine)?, rig.gap));
+    match excitation {
+        Excitation::Sine(sine) => Ok(NoImpact::new(&Steady::new(rig, sine)?, rig.gap)),
+        _ => Ok(train(rig, excitation)?.no_impact(rig.gap)),
     }
-    Ok(train(rig, excitation)?.0.no_impact(rig.gap))
 }
 
 /// As [`orbits_of`], the impact following the first touch by `delay` (s).
 fn solve(rig: &Rig, excitation: &Excitation, cycles: u32, delay: f64) -> Result<Orbits> {
     scales::check(rig, excitation)?;
+    let conditions = || Conditions::new(rig, excitation.frequency(), cycles, delay);
     if let Excitation::Sine(sine) = excitation {
-        return under_sine(rig, sine, cycles, delay);
+        let steady = Steady::new(rig, sine)?;
+        driven(sine.force)?;
+        let orbits = sine::orbits(&conditions()?, &steady, sine);
+        return Ok(Orbits { orbits, no_impact: NoImpact::new(&steady, rig.gap) });
     }
-    let (response, drive) = train(rig, excitation)?;
-    let conditions = Conditions::new(rig, excitation.frequency(), cycles)?.delayed(delay);
-    Ok(Orbits {
-        orbits: train::orbits(&conditions, &response, drive),
-        no_impact: response.no_impact(rig.gap),
-    })
+    let response = train(rig, excitation)?;
+    let orbits = train::orbits(&conditions()?, &response, excitation);
+    Ok(Orbits { orbits, no_impact: response.no_impact(rig.gap) })
 }
 
 /// Response of mass 1 alone to a train of impulses or pulses.
-fn train(rig: &Rig, excitation: &Excitation) -> Result<(Response, Drive)> {
-    let oscillator = rig.oscillators()[0];
-    let cycle = 1.0 / excitation.frequency();
+fn train(rig: &Rig, excitation: &Excitation) -> Result<Response> {
+    let (oscillator, cycle) = (rig.oscillators()[0], 1.0 / excitation.frequency());
     match *excitation {
         Excitation::Impulse(train) => {
             driven(train.impulse)?;
-            let response = Response::impulse(rig.m1, oscillator, cycle, train.impulse)?;
-            Ok((response, Drive::Impulse(train.impulse)))
+            Response::impulse(rig.m1, oscillator, cycle, train.impulse)
         }
         Excitation::Pulse(train) => {
             driven(train.force)?;
-            let response = Response::pulse(rig.m1, oscillator, cycle, train.force, train.width)?;
-            Ok((response, Drive::Pulse(train.force, train.width)))
+            Response::pulse(rig.m1, oscillator, cycle, train.force, train.width)
         }
         Excitation::Sine(_) | Excitation::Sines(_) => {
             Err(Error::refused("several sines at once have no closed form")
-                .hint("`vibro model simulate` follows the motion"))
+                .hint("follow the motion by simulating it"))
         }
     }
 }
@@ -240,10 +251,8 @@ fn train(rig: &Rig, excitation: &Excitation) -> Result<(Response, Drive)> {
 /// An excitation that drives.
 fn driven(size: f64) -> Result<()> {
     if size == 0.0 {
-        return Err(Error::usage(
-            "a force or impulse of 0",
-            "a value other than 0: nothing moves the masses",
-        ));
+        let expected = "a value other than 0: nothing moves the masses";
+        return Err(Error::usage("a force or impulse of 0", expected));
     }
     Ok(())
 }

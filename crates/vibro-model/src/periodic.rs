@@ -4,12 +4,12 @@
 //! form. Each motion comes with the verdicts of those with one impact ([`Validity`]).
 
 mod system;
-mod verdict;
 
 pub(super) use system::System;
 
-use super::flow::Signal;
+use super::orbit::Course;
 use super::regime::Strike;
+use super::waves::Waves;
 use super::{Flight, Rig, Sine, State, Validity, floquet};
 use nalgebra::{DVector, Matrix4};
 use num_complex::Complex64;
@@ -51,7 +51,8 @@ pub struct PeriodicOrbit {
     pub validity: Validity,
     /// Monodromy matrix, from just before the first impact.
     pub(super) monodromy: Option<Matrix4<f64>>,
-    flights: Vec<Flight>,
+    /// The motion after each impact, up to the next.
+    flights: Vec<Course>,
 }
 
 /// Newton's steps before it gives up.
@@ -139,11 +140,11 @@ impl PeriodicOrbit {
     pub fn state(&self, t: f64) -> State {
         let mut t = t.rem_euclid(self.period());
         let last = self.flights.len() - 1;
-        for (flight, beat) in self.flights.iter().zip(&self.beats).take(last) {
-            if t < beat.interval {
+        for flight in &self.flights[..last] {
+            if t < flight.period {
                 return flight.state(t);
             }
-            t -= beat.interval;
+            t -= flight.period;
         }
         self.flights[last].state(t)
     }
@@ -179,12 +180,11 @@ impl PeriodicOrbit {
                 Beat { phase: u[i], impulse, approach_velocity, interval: interval(i) }
             })
             .collect();
-        let flights: Vec<Flight> = (0..p)
+        let flights: Vec<Course> = (0..p)
             .map(|i| {
-                let forced = system.response * Complex64::cis(u[i]);
-                let [(x1, v1), (x2, v2)] = system.free_after(u, i);
-                let state = State { x1: x1 + forced.re, v1: v1 - omega * forced.im, x2, v2 };
-                Flight::new(rig.oscillators(), &system.steady, rig.gap, &state, u[i])
+                let forced = Waves::one(system.response * Complex64::cis(u[i]), omega);
+                let flight = Flight::of(rig.oscillators(), forced, 0.0, rig.gap, system.free_after(u, i));
+                Course::smooth(beats[i].interval.max(0.0), &flight)
             })
             .collect();
         let sensitivity = sensitivity(system, u);
@@ -196,23 +196,27 @@ impl PeriodicOrbit {
         let exists = beats.iter().all(|b| b.impulse > 0.0 && b.interval > 0.0);
         let (mut monodromy, mut multipliers, mut stable) = (None, None, Some(false));
         if exists {
-            let (whole, rounding) = product(rig, &flights, &beats);
+            let (whole, rounding) = product(rig, &flights);
             multipliers = floquet::multipliers(&whole).ok();
             stable =
                 multipliers.as_ref().map_or(stable, |m| floquet::inside(&whole, m, amplified * rounding));
             monodromy = Some(whole);
         }
-        let own = beats
-            .iter()
-            .zip(&sensitivity)
-            .map(|(beat, s)| beat.impulse.abs() / s.abs())
-            .fold(f64::INFINITY, f64::min);
-        let validity =
-            verdict::judge(&flights, &beats, own, stable, multipliers.as_ref(), monodromy.as_ref());
-        let spread = |signal| {
-            let ranges = flights.iter().zip(&beats).map(|(f, b)| f.range(signal, b.interval.max(0.0)));
-            let (low, high) =
-                ranges.fold((f64::INFINITY, f64::NEG_INFINITY), |r, x| (r.0.min(x.0), r.1.max(x.1)));
+        let own = beats.iter().zip(&sensitivity).map(|(beat, s)| beat.impulse.abs() / s.abs());
+        let surveys: Vec<_> = flights.iter().map(Course::survey).collect();
+        let validity = Validity::judge(
+            exists,
+            // The energy rule of one impact is that the multipliers beyond +1 are even in number. So it is taken here.
+            monodromy.is_some_and(|m| (Matrix4::identity() - m).determinant() > 0.0),
+            own.fold(f64::INFINITY, f64::min),
+            surveys.iter().filter_map(|s| s.closest).reduce(f64::min),
+            flights.iter().map(Course::noise).fold(0.0, f64::max),
+            stable,
+            multipliers.as_ref(),
+        );
+        let spread = |mass: usize| {
+            let ranges = surveys.iter().map(|s| s.ranges[mass]);
+            let (low, high) = ranges.reduce(|r, x| (r.0.min(x.0), r.1.max(x.1))).unwrap_or_default();
             high - low
         };
         // Every harmonic of a train of impulses has the amplitude 2/T times their sum with their phases.
@@ -224,9 +228,9 @@ impl PeriodicOrbit {
             sine,
             cycles,
             fundamental: [system.response * Complex64::cis(u[0]) - l1 * train, l2 * train],
-            peak_to_peak: [spread(Signal::X1), spread(Signal::X2)],
-            multipliers,
+            peak_to_peak: [0, 1].map(spread),
             validity,
+            multipliers,
             monodromy,
             beats,
             flights,
@@ -274,15 +278,13 @@ fn sensitivity(system: &System, u: &DVector<f64>) -> Vec<f64> {
 }
 
 /// Monodromy as the product over the impacts of Φ(τ)S, and a bound on its rounding.
-fn product(rig: &Rig, flights: &[Flight], beats: &[Beat]) -> (Matrix4<f64>, f64) {
+fn product(rig: &Rig, flights: &[Course]) -> (Matrix4<f64>, f64) {
     let p = flights.len();
     let (mut whole, mut norms, mut relative) = (Matrix4::identity(), 1.0, 0.0);
-    for i in 0..p {
-        let into = (i + p - 1) % p;
-        let before = flights[into].rate(beats[into].interval);
-        let after = flights[i].rate(0.0);
-        let part = floquet::monodromy(rig, beats[i].interval, &before, &after);
-        relative += floquet::rounding(rig, beats[i].interval, &before, &after) / part.norm();
+    for (i, flight) in flights.iter().enumerate() {
+        let (before, after) = (flights[(i + p - 1) % p].rates().0, flight.rates().1);
+        let part = floquet::monodromy(rig, flight.period, &before, &after);
+        relative += floquet::rounding(rig, flight.period, &before, &after) / part.norm();
         norms *= part.norm();
         whole = part * whole;
     }

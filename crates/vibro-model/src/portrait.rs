@@ -57,8 +57,8 @@ impl Portrait {
         let shown = sitting.shown.min(sitting.cycles);
         let first = end - f64::from(shown) * period;
         let whole = start + (TAU - motion.phase()) / TAU % 1.0 * period;
-        let mut samples = Comb::new(first, period / f64::from(sitting.samples.max(1)), end);
-        let mut section = Comb::new(whole, period, end);
+        let mut samples = Samples::new(first, period / f64::from(sitting.samples.max(1)), end);
+        let mut section = Samples::new(whole, period, end);
         let mut watch = Watch::new(motion);
         let (mut impacts, mut sticks) = (Vec::new(), 0);
         let mut jumps = Vec::new();
@@ -93,22 +93,26 @@ impl Portrait {
     }
 }
 
-/// Samples at equal distances.
-struct Comb {
+/// States of a motion at equal distances.
+#[derive(Debug, Clone)]
+pub struct Samples {
     first: f64,
     step: f64,
     end: f64,
-    time: Vec<f64>,
-    states: Vec<State>,
+    /// Times in s.
+    pub time: Vec<f64>,
+    /// States at these times; at an impact, the state after it.
+    pub states: Vec<State>,
 }
 
-impl Comb {
-    fn new(first: f64, step: f64, end: f64) -> Comb {
-        Comb { first, step, end, time: Vec::new(), states: Vec::new() }
+impl Samples {
+    /// Samples every `step` seconds from `first` to before `end` (s).
+    pub fn new(first: f64, step: f64, end: f64) -> Samples {
+        Samples { first, step, end, time: Vec::new(), states: Vec::new() }
     }
 
     /// Takes the samples of a piece; one at its end belongs to what follows.
-    fn take(&mut self, piece: &Piece<'_>) {
+    pub fn take(&mut self, piece: &Piece<'_>) {
         loop {
             let time = self.first + self.step * self.time.len() as f64;
             // The end, as nearly as sums of steps meet it.

@@ -20,8 +20,6 @@ pub const SAME: f64 = 1e-6;
 const NEAR: f64 = 1e-2;
 /// From one third of what was watched to the next the differences must fall to this fraction or less.
 const FALLING: f64 = 0.95;
-/// A pattern is clearly off where its differences are larger than those of a longer one by this factor.
-const OFF: f64 = 100.0;
 /// Impacts kept: nine blocks of the longest pattern and more.
 const KEPT: usize = 320;
 
@@ -63,17 +61,16 @@ impl std::str::FromStr for Regime {
 
     fn from_str(text: &str) -> std::result::Result<Regime, ()> {
         let number = |text: &str| text.parse::<u32>().map_err(|_| ());
-        match text {
-            "no impact" => Ok(Regime::NoImpact),
-            "chatter" => Ok(Regime::Chatter { cycles: None }),
-            "irregular" => Ok(Regime::Irregular),
-            _ => match text.split_once('/').ok_or(())? {
-                ("chatter", cycles) => Ok(Regime::Chatter { cycles: Some(number(cycles)?) }),
-                (impacts, cycles) => {
-                    Ok(Regime::Periodic { impacts: number(impacts)?, cycles: number(cycles)? })
-                }
-            },
-        }
+        Ok(match (text, text.split_once('/')) {
+            ("no impact", _) => Regime::NoImpact,
+            ("chatter", _) => Regime::Chatter { cycles: None },
+            ("irregular", _) => Regime::Irregular,
+            (_, Some(("chatter", cycles))) => Regime::Chatter { cycles: Some(number(cycles)?) },
+            (_, Some((impacts, cycles))) => {
+                Regime::Periodic { impacts: number(impacts)?, cycles: number(cycles)? }
+            }
+            _ => return Err(()),
+        })
     }
 }
 
@@ -131,12 +128,6 @@ pub struct Pattern {
     pub strikes: Vec<Strike>,
 }
 
-impl Pattern {
-    fn without(regime: Regime, settled: bool) -> Pattern {
-        Pattern { regime, settled, distance: None, strikes: Vec::new() }
-    }
-}
-
 /// Gathers the impacts of a motion under an excitation of one frequency.
 #[derive(Debug, Clone)]
 pub struct Watch {
@@ -151,14 +142,9 @@ pub struct Watch {
 impl Watch {
     /// Watches `motion` from now on.
     pub fn new(motion: &impl Motion) -> Watch {
-        Watch {
-            frequency: motion.frequency(),
-            start: motion.time(),
-            now: motion.time(),
-            phase: motion.phase(),
-            strikes: VecDeque::with_capacity(KEPT),
-            sticks: VecDeque::new(),
-        }
+        let (frequency, start, phase) = (motion.frequency(), motion.time(), motion.phase());
+        let (strikes, sticks) = (VecDeque::with_capacity(KEPT), VecDeque::new());
+        Watch { frequency, start, now: start, phase, strikes, sticks }
     }
 
     /// Forgets what was watched and watches `motion` from now on.
@@ -172,29 +158,19 @@ impl Watch {
     /// Takes the next piece of the motion.
     pub fn take(&mut self, piece: &Piece<'_>) {
         self.now = piece.start + piece.duration;
-        match piece.event {
-            Event::Impact(impact) => {
-                keep(
-                    &mut self.strikes,
-                    Strike {
-                        time: impact.time,
-                        phase: impact.phase,
-                        before: piece.path.state(piece.duration),
-                        impulse: impact.impulse,
-                        approach_velocity: impact.approach_velocity,
-                    },
-                );
-            }
+        let (kept, time, phase, impulse, approach_velocity) = match piece.event {
+            Event::Impact(i) => (&mut self.strikes, i.time, i.phase, i.impulse, i.approach_velocity),
             Event::Stick => {
                 let phase = self.phase + TAU * self.frequency * (self.now - self.start);
-                let before = piece.path.state(piece.duration);
-                keep(
-                    &mut self.sticks,
-                    Strike { time: self.now, phase, before, impulse: 0.0, approach_velocity: 0.0 },
-                );
+                (&mut self.sticks, self.now, phase, 0.0, 0.0)
             }
-            _ => {}
+            _ => return,
+        };
+        if kept.len() == KEPT {
+            kept.pop_front();
         }
+        let before = piece.path.state(piece.duration);
+        kept.push_back(Strike { time, phase, before, impulse, approach_velocity });
     }
 
     /// Impacts kept, oldest first.
@@ -208,44 +184,30 @@ impl Watch {
         let quiet = |strikes: &VecDeque<Strike>| {
             strikes.back().is_none_or(|last| self.now - last.time > watched / 2.0)
         };
-        if !quiet(&self.sticks) {
-            let repeated = self.repeated(&self.sticks);
-            let cycles = repeated.as_ref().map(|r| r.cycles);
-            return Pattern {
-                regime: Regime::Chatter { cycles },
-                settled: repeated.as_ref().is_some_and(|r| r.distance <= SAME),
-                distance: repeated.map(|r| r.distance),
-                strikes: Vec::new(),
-            };
+        let pattern = |regime, settled| Pattern { regime, settled, distance: None, strikes: Vec::new() };
+        let chatters = !quiet(&self.sticks);
+        if !chatters && quiet(&self.strikes) {
+            return pattern(Regime::NoImpact, self.strikes.is_empty());
         }
-        if quiet(&self.strikes) {
-            return Pattern::without(Regime::NoImpact, self.strikes.is_empty());
-        }
-        self.repeated(&self.strikes).map_or_else(
-            || Pattern::without(Regime::Irregular, true),
-            |r| Pattern {
-                regime: Regime::Periodic { impacts: r.impacts as u32, cycles: r.cycles },
-                settled: r.distance <= SAME,
-                distance: Some(r.distance),
-                strikes: self.strikes.range(self.strikes.len() - r.impacts..).copied().collect(),
-            },
-        )
+        let Some(found) = self.repeated(if chatters { &self.sticks } else { &self.strikes }) else {
+            let regime = if chatters { Regime::Chatter { cycles: None } } else { Regime::Irregular };
+            return pattern(regime, !chatters);
+        };
+        let Repeated { impacts, cycles, distance } = found;
+        let (regime, strikes) = if chatters {
+            (Regime::Chatter { cycles: Some(cycles) }, Vec::new())
+        } else {
+            let strikes = self.strikes.range(self.strikes.len() - impacts..).copied().collect();
+            (Regime::Periodic { impacts: impacts as u32, cycles }, strikes)
+        };
+        Pattern { regime, settled: distance <= SAME, distance: Some(distance), strikes }
     }
 
     /// The shortest pattern that repeats.
     fn repeated(&self, strikes: &VecDeque<Strike>) -> Option<Repeated> {
         let compared = Compared::new(strikes, self.frequency);
-        (1..=(LONGEST as usize).min(strikes.len() / 2)).find_map(|p| {
-            let found = compared.last(p)?;
-            if found.distance > SAME && !compared.falls(p) {
-                return None;
-            }
-            // Impacts that take turns about a single one draw near each other in pairs before they do one by one: a longer pattern
-            // counts only where the shorter one is clearly off, and stays so.
-            let draws = |d: &usize| compared.near(*d, OFF * found.distance) || compared.vanishes(*d, p);
-            let shorter = (1..p).filter(|d| p.is_multiple_of(*d)).find(draws);
-            shorter.and_then(|d| compared.counted(d)).or(Some(found))
-        })
+        let longest = (LONGEST as usize).min(strikes.len() / 2);
+        (1..=longest).find_map(|p| compared.last(p).filter(|r| r.distance <= SAME || compared.falls(p)))
     }
 }
 
@@ -269,59 +231,26 @@ impl Compared<'_> {
         range.map(far).fold(0.0, f64::max)
     }
 
-    /// The last `p` impacts against those before; `None` where they differ by more than [`NEAR`], or as [`Compared::counted`].
+    /// The last `p` impacts against those before; `None` where they differ by more than [`NEAR`], do not take whole cycles, or too many.
     fn last(&self, p: usize) -> Option<Repeated> {
         let n = self.strikes.len();
         // Most patterns are turned down by the last impact alone.
-        (self.largest(n - 1..n, p) <= NEAR).then(|| self.counted(p)).flatten().filter(|r| r.distance <= NEAR)
-    }
-
-    /// Whether the last `p` impacts are within `distance` of those before.
-    fn near(&self, p: usize, distance: f64) -> bool {
-        let n = self.strikes.len();
-        distance < NEAR && self.largest(n - p..n, p) <= distance
-    }
-
-    /// The last `p` impacts against those before; `None` where they do not take whole cycles, or too many.
-    fn counted(&self, p: usize) -> Option<Repeated> {
-        let n = self.strikes.len();
+        if self.largest(n - 1..n, p) > NEAR {
+            return None;
+        }
         let cycles = ((self.strikes[n - 1].time - self.strikes[n - 1 - p].time) * self.frequency).round();
-        (1.0..=f64::from(LONGEST)).contains(&cycles).then(|| Repeated {
-            impacts: p,
-            cycles: cycles as u32,
-            distance: self.largest(n - p..n, p),
-        })
+        let distance = self.largest(n - p..n, p);
+        let counts = (1.0..=f64::from(LONGEST)).contains(&cycles) && distance <= NEAR;
+        counts.then_some(Repeated { impacts: p, cycles: cycles as u32, distance })
     }
 
-    /// The largest differences over `p` impacts in each third of what was watched, so that complex multipliers do no harm; `None`
-    /// where that is too short.
-    fn thirds(&self, p: usize, reach: usize) -> Option<[f64; 3]> {
-        let n = self.strikes.len();
-        let third = (n - reach) / 3;
-        (third >= reach.max(3))
-            .then(|| [3, 2, 1].map(|k| self.largest(n - k * third..n - (k - 1) * third, p)))
-    }
-
-    /// Whether the differences over `p` impacts fall.
+    /// Whether the differences over `p` impacts fall: the largest in each third of what was watched, so that complex multipliers do no harm.
     fn falls(&self, p: usize) -> bool {
-        self.thirds(p, p).is_some_and(|[a, b, c]| b <= FALLING * a && c <= FALLING * b)
+        let n = self.strikes.len();
+        let third = (n - p) / 3;
+        let [a, b, c] = [3, 2, 1].map(|k| n - k * third).map(|from| self.largest(from..from + third, p));
+        third >= p.max(3) && b <= FALLING * a && c <= FALLING * b
     }
-
-    /// Whether differences over `short` impacts tend to nothing at the rate at which those over `long` fall: a geometric sequence
-    /// that falls from b to c with the ratio ρ ends at c − (b − c)ρ/(1 − ρ).
-    fn vanishes(&self, short: usize, long: usize) -> bool {
-        let thirds = [short, long].map(|p| self.thirds(p, long));
-        let [Some([_, b, c]), Some([_, slow, slower])] = thirds else { return false };
-        let ratio = (slower / slow).clamp(0.0, 0.9999);
-        c - (b - c) * ratio / (1.0 - ratio) <= 0.3 * c
-    }
-}
-
-fn keep(strikes: &mut VecDeque<Strike>, strike: Strike) {
-    if strikes.len() == KEPT {
-        strikes.pop_front();
-    }
-    strikes.push_back(strike);
 }
 
 /// A pattern that repeats.

@@ -1,7 +1,7 @@
 //! Response curves: all motions with one impact a period over a range of frequencies, and where they change.
 
 use super::orbit::{backbone, orbits_of};
-use super::{Excitation, NoImpact, Orbit, Rig, parallel};
+use super::{Excitation, Loss, NoImpact, Orbit, Rig, parallel};
 use serde::Serialize;
 use vibro_record::{Error, Result};
 
@@ -92,18 +92,8 @@ pub fn response(
     points: usize,
     cycles: u32,
 ) -> Result<Response> {
-    if !(from.is_finite() && to.is_finite() && from > 0.0 && to > from) {
-        return Err(Error::usage(
-            format!("frequencies from {from} to {to} Hz"),
-            "0 < from < to, both finite",
-        ));
-    }
-    if !(2..=MOST_POINTS).contains(&points) {
-        return Err(Error::usage(format!("{points} points"), format!("2 to {MOST_POINTS}")));
-    }
+    let at = axis(from, to, points, MOST_POINTS)?;
     rig.check()?;
-    let step = (to - from) / (points - 1) as f64;
-    let at = |i: usize| if i + 1 == points { to } else { from + i as f64 * step };
     let points = parallel::each(points, |i| point(rig, excitation, at(i), cycles));
     if let Some(ResponsePoint { frequency, .. }) =
         points.first().filter(|_| points.iter().all(|p| p.refused.is_some()))
@@ -111,18 +101,28 @@ pub fn response(
         // The reason as it stands at the first.
         orbits_of(rig, &excitation.at_frequency(*frequency), cycles)?;
     }
-    let mut changes = Vec::new();
     let solve = |frequency: f64| point(rig, excitation, frequency, cycles);
-    for pair in points.windows(2) {
-        if let [a, b] = pair
-            && a.refused.is_none()
-            && b.refused.is_none()
-        {
-            between(a, b, &solve, &mut changes);
-        }
-    }
+    let known = |pair: &&[ResponsePoint]| pair.iter().all(|p| p.refused.is_none());
+    let pairs = points.windows(2).filter(known);
+    let mut changes: Vec<Change> = pairs.flat_map(|pair| between(&pair[0], &pair[1], &solve)).collect();
     changes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
     Ok(Response { points, changes })
+}
+
+/// Frequencies with equal distances, by their number.
+///
+/// # Errors
+/// If the ends are none, or there are fewer than 2 or more than `most`.
+pub(crate) fn axis(from: f64, to: f64, points: usize, most: usize) -> Result<impl Fn(usize) -> f64 + Sync> {
+    if !(from.is_finite() && to.is_finite() && from > 0.0 && to > from) {
+        let expected = "finite frequencies above 0, the lower one first";
+        return Err(Error::usage(format!("an axis from {from} to {to} Hz"), expected));
+    }
+    if !(2..=most).contains(&points) {
+        return Err(Error::usage(format!("{points} points"), format!("2 to {most}")));
+    }
+    let step = (to - from) / (points - 1) as f64;
+    Ok(move |i: usize| if i + 1 == points { to } else { from + i as f64 * step })
 }
 
 fn point(rig: &Rig, excitation: &Excitation, frequency: f64, cycles: u32) -> ResponsePoint {
@@ -163,92 +163,80 @@ fn standing(orbit: Option<&Orbit>) -> Standing {
 }
 
 /// Changes between two neighbouring points.
-fn between(
-    a: &ResponsePoint,
-    b: &ResponsePoint,
-    solve: &impl Fn(f64) -> ResponsePoint,
-    changes: &mut Vec<Change>,
-) {
+fn between(a: &ResponsePoint, b: &ResponsePoint, solve: &impl Fn(f64) -> ResponsePoint) -> Vec<Change> {
+    let mut changes = Vec::new();
     // From the left, then what appears from the right; of a fold both motions are gone, the upper one tells it.
     for (here, there) in [(a, b), (b, a)] {
         for orbit in &here.orbits {
             let next = orbit.continued(&there.orbits);
             let (was, is) = (standing(Some(orbit)), standing(next));
             let seen_from_left = here.frequency > there.frequency && next.is_some();
-            if was == is || seen_from_left || was == Standing::Parted && is == Standing::Gone {
-                continue;
+            let gone = is == Standing::Gone;
+            if was != is && !seen_from_left && !(gone && (was == Standing::Parted || !orbit.is_upper())) {
+                changes.extend(locate(orbit, here.frequency, there, solve));
             }
-            let fold = is == Standing::Gone;
-            if fold && !orbit.is_upper() {
-                continue;
-            }
-            let Some((frequency, before, after)) = locate(orbit, here.frequency, there.frequency, solve)
-            else {
-                continue;
-            };
-            let kind = match (was, standing(after.as_ref())) {
-                (_, Standing::Gone) => ChangeKind::Fold,
-                (Standing::Parted, _) | (_, Standing::Parted) => ChangeKind::Grazing,
-                (Standing::Passing, _) | (_, Standing::Passing) => ChangeKind::SecondContact,
-                _ => {
-                    let lost =
-                        [Some(before), after].into_iter().flatten().find_map(|o| o.validity.instability);
-                    match lost {
-                        Some(super::Loss::Flip) => ChangeKind::Flip,
-                        Some(super::Loss::NeimarkSacker) => ChangeKind::NeimarkSacker,
-                        Some(super::Loss::Fold) => ChangeKind::Fold,
-                        _ => ChangeKind::Grazing,
-                    }
-                }
-            };
-            changes.push(Change { frequency, kind, amplitude: before.peak_to_peak.map(|p| p / 2.0) });
         }
     }
     if let (Some(here), Some(there)) = (a.no_impact, b.no_impact)
         && here.possible != there.possible
     {
-        let (mut low, mut high, mut amplitude) = (a.frequency, b.frequency, here.amplitude);
-        for _ in 0..20 {
-            let middle = f64::midpoint(low, high);
-            let Some(there) = solve(middle).no_impact else { break };
-            if there.possible == here.possible {
-                low = middle;
-            } else {
-                high = middle;
-            }
+        let mut amplitude = here.amplitude;
+        let same = |middle: f64| {
+            let there = solve(middle).no_impact?;
             amplitude = there.amplitude;
+            Some(there.possible == here.possible)
+        };
+        if let Some(frequency) = halved(a.frequency, b.frequency, same) {
+            changes.push(Change { frequency, kind: ChangeKind::NoImpact, amplitude: [amplitude, 0.0] });
         }
-        changes.push(Change {
-            frequency: f64::midpoint(low, high),
-            kind: ChangeKind::NoImpact,
-            amplitude: [amplitude, 0.0],
-        });
     }
+    changes
 }
 
-/// Frequency of the change of the standing of `orbit` between `from` and `to`, with the orbit on this side of it and, if it is there, on
-/// the other.
+/// The change of the standing of `orbit` on the way from the frequency `from` (Hz) to the point `to`.
 fn locate(
     orbit: &Orbit,
     from: f64,
-    to: f64,
+    to: &ResponsePoint,
     solve: &impl Fn(f64) -> ResponsePoint,
-) -> Option<(f64, Orbit, Option<Orbit>)> {
+) -> Option<Change> {
     let was = standing(Some(orbit));
-    let (mut near, mut far, mut here) = (from, to, *orbit);
-    let mut there = orbit.continued(&solve(to).orbits).copied();
-    for _ in 0..20 {
-        let middle = f64::midpoint(near, far);
+    let (mut here, mut there) = (orbit.clone(), orbit.continued(&to.orbits).cloned());
+    let same = |middle: f64| {
         let found = solve(middle);
         if found.refused.is_some() {
             return None;
         }
-        match here.continued(&found.orbits) {
-            Some(next) if standing(Some(next)) == was => (near, here) = (middle, *next),
-            other => (far, there) = (middle, other.copied()),
+        let next = here.continued(&found.orbits).cloned();
+        let same = standing(next.as_ref()) == was;
+        match next {
+            Some(next) if same => here = next,
+            other => there = other,
         }
+        Some(same)
+    };
+    let frequency = halved(from, to.frequency, same)?;
+    let kind = match (was, standing(there.as_ref())) {
+        (_, Standing::Gone) => ChangeKind::Fold,
+        (Standing::Parted, _) | (_, Standing::Parted) => ChangeKind::Grazing,
+        (Standing::Passing, _) | (_, Standing::Passing) => ChangeKind::SecondContact,
+        _ => match [Some(&here), there.as_ref()].into_iter().flatten().find_map(|o| o.validity.instability) {
+            Some(Loss::Flip) => ChangeKind::Flip,
+            Some(Loss::NeimarkSacker) => ChangeKind::NeimarkSacker,
+            Some(Loss::Fold) => ChangeKind::Fold,
+            _ => ChangeKind::Grazing,
+        },
+    };
+    Some(Change { frequency, kind, amplitude: here.peak_to_peak.map(|p| p / 2.0) })
+}
+
+/// Where between `near` and `far` it ceases to be the `same`, to a millionth of the way; `None` where that cannot be told on the way.
+fn halved(mut near: f64, mut far: f64, mut same: impl FnMut(f64) -> Option<bool>) -> Option<f64> {
+    for _ in 0..20 {
+        let middle = f64::midpoint(near, far);
+        if same(middle)? { near = middle } else { far = middle }
     }
-    Some((f64::midpoint(near, far), here, there))
+    Some(f64::midpoint(near, far))
 }
 
 #[cfg(test)]
@@ -308,7 +296,7 @@ mod tests {
         let flips: Vec<_> = found.changes.iter().filter(|c| c.kind == ChangeKind::Flip).collect();
         assert!(!flips.is_empty(), "{:?}", found.changes);
         for flip in flips {
-            let orbit = orbits_of(&rig, &sine.at_frequency(flip.frequency), 1).unwrap().orbits[0];
+            let orbit = orbits_of(&rig, &sine.at_frequency(flip.frequency), 1).unwrap().orbits.remove(0);
             let nearest =
                 orbit.multipliers.unwrap().iter().map(|z| (z + 1.0).norm()).fold(f64::INFINITY, f64::min);
             // Frequency to 1e-6 of 0.01 Hz, multipliers change by some tens a Hz.

@@ -1,6 +1,7 @@
 //! The rig: two masses on springs and dampers, a gap and a restitution.
 
 use super::State;
+use super::scales::{Least, number};
 use serde::{Deserialize, Serialize};
 use vibro_math::Oscillator;
 use vibro_record::{Error, Result};
@@ -59,38 +60,25 @@ impl Rig {
 
     /// The first value that no rig can have: its key, and the complaint.
     pub fn fault(&self) -> Option<(&'static str, Error)> {
-        let above_zero =
-            [("m1", self.m1, "kg"), ("m2", self.m2, "kg"), ("k1", self.k1, "N/m"), ("k2", self.k2, "N/m")];
-        for (name, value, unit) in above_zero {
-            if self.has_wall() && matches!(name, "m2" | "k2") {
-                continue;
-            }
-            if !(value.is_finite() && value > 0.0) {
-                return Some((
-                    name,
-                    Error::usage(format!("{name} is {value} {unit}"), "a finite value above 0"),
-                ));
-            }
-        }
-        for (name, value) in [("c1", self.c1), ("c2", self.c2)] {
-            if self.has_wall() && name == "c2" {
-                continue;
-            }
-            if !(value.is_finite() && value >= 0.0) {
-                let expected =
-                    "a finite value of 0 or more: a damper that feeds energy in has no steady motion";
-                return Some((name, Error::usage(format!("{name} is {value} N s/m"), expected)));
+        for (key, value, unit, least) in [
+            ("m1", self.m1, "kg", Least::AboveZero),
+            ("m2", self.m2, "kg", Least::AboveZero),
+            ("k1", self.k1, "N/m", Least::AboveZero),
+            ("k2", self.k2, "N/m", Least::AboveZero),
+            ("c1", self.c1, "N s/m", Least::Zero),
+            ("c2", self.c2, "N s/m", Least::Zero),
+            ("gap", self.gap, "m", Least::Any),
+        ] {
+            let counts = !(self.has_wall() && key.ends_with('2'));
+            if let Some(error) = number(key, value, unit, least).err().filter(|_| counts) {
+                return Some((key, error));
             }
         }
-        if !self.gap.is_finite() {
-            return Some(("gap", Error::usage(format!("gap is {} m", self.gap), "a finite value")));
+        if (0.0..=1.0).contains(&self.restitution) {
+            return None;
         }
-        if !(0.0..=1.0).contains(&self.restitution) {
-            let expected = "a value from 0 (no rebound) to 1 (no loss)";
-            let found = format!("restitution is {}", self.restitution);
-            return Some(("restitution", Error::usage(found, expected)));
-        }
-        None
+        let found = format!("restitution is {}", self.restitution);
+        Some(("restitution", Error::usage(found, "a value from 0 (no rebound) to 1 (no loss)")))
     }
 
     /// Whether the passive mass is infinite: a wall.
@@ -98,14 +86,32 @@ impl Rig {
         self.m2 == f64::INFINITY
     }
 
-    /// Checks that a start leaves a wall where it is.
-    pub(super) fn check_wall(&self, state: &State) -> Result<()> {
-        let State { x2, v2, .. } = *state;
+    /// Checks that a motion can start so: from finite values, a wall where it is.
+    pub(super) fn check_start(&self, state: &State, phase: f64) -> Result<()> {
+        let State { x1, v1, x2, v2 } = *state;
+        if ![x1, v1, x2, v2, phase].iter().all(|v| v.is_finite()) {
+            let found = format!("initial state {x1}, {v1}, {x2}, {v2} with phase {phase}");
+            return Err(Error::usage(found, "finite values"));
+        }
         if !self.has_wall() || x2 == 0.0 && v2 == 0.0 {
             return Ok(());
         }
         let found = format!("mass 2 is a wall (m2 is infinite) and starts at {x2} m with {v2} m/s");
         Err(Error::usage(found, "0 m and 0 m/s"))
+    }
+
+    /// What is wrong with a start at which the masses overlap.
+    pub(super) fn overlap(&self, state: &State) -> Error {
+        Error::usage(
+            format!("the masses overlap by {} m at the start", state.x1 - state.x2 - self.gap),
+            "x1 − x2 of at most the gap; give an initial state in which they are apart",
+        )
+    }
+
+    /// Speed in m/s of both masses together with their common momentum.
+    pub(super) fn common_speed(&self, state: &State) -> f64 {
+        let momentum = self.m1 * state.v1 + self.m2 * state.v2;
+        if self.has_wall() { 0.0 } else { momentum / (self.m1 + self.m2) }
     }
 
     /// Reduced mass M = m₁m₂/(m₁ + m₂) in kg.

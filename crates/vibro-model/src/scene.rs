@@ -1,13 +1,11 @@
 //! A scene: the rig, what drives it, and how its contact is made.
 
 mod draft;
-mod given;
 
 pub use draft::Draft;
 
 use super::{Excitation, Law, Rig};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
 use vibro_record::Result;
 
 /// All that a computation of the rig's motion starts from.
@@ -40,7 +38,7 @@ pub struct Scene {
 
 /// Numbers of a contact that gives way; which are needed depends on its law.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default, deny_unknown_fields, expecting = "a table")]
 pub struct ContactKeys {
     /// Stiffness k of the force kδⁿ, in N/mⁿ.
     pub stiffness: Option<f64>,
@@ -51,7 +49,8 @@ pub struct ContactKeys {
 }
 
 /// Stop behind the loose mass 1.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 pub struct Buffer {
     /// Way in m that mass 1 can go freely before its spring acts.
     pub gap: f64,
@@ -61,14 +60,6 @@ impl Scene {
     /// The thesis' rig, driven by nothing.
     pub fn thesis() -> Scene {
         Scene { rig: Rig::thesis(), excitation: None, contact: None, buffer: None }
-    }
-
-    /// Reads a file.
-    ///
-    /// # Errors
-    /// As [`Draft::from_path`] and [`Draft::scene`].
-    pub fn from_path(path: impl AsRef<Path>) -> Result<Scene> {
-        Draft::from_path(path)?.scene()
     }
 
     /// Reads the text of a file.

@@ -9,9 +9,10 @@
 mod leg;
 mod meet;
 
-pub use leg::{Counts, Course, Impact, Leg, Recorded};
+pub use leg::{Counts, Course, Impact, Leg};
 
 use super::drive::Drive;
+use super::scales::{check_time, check_work};
 use super::stick::Pair;
 use super::{Event, Excitation, Flight, Motion, Piece, Rig, State};
 use vibro_math::Oscillator;
@@ -22,8 +23,8 @@ use vibro_record::{Error, Result};
 /// [`Simulation::grazing_below`] says otherwise.
 pub const GRAZING_SPEED: f64 = 1e-3;
 
-/// The most cycles of the excitation, and pieces, that one call follows: some ten seconds of work.
-const MOST_CYCLES: f64 = 2e7;
+/// The most legs that one call follows: some ten seconds of work.
+const MOST_LEGS: u64 = 20_000_000;
 
 /// How the masses are to each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,29 +98,20 @@ impl Simulation {
         phase: f64,
     ) -> Result<Simulation> {
         rig.check()?;
-        rig.check_wall(&state)?;
+        rig.check_start(&state, phase)?;
         let State { x1, v1, x2, v2 } = state;
-        if ![x1, v1, x2, v2, phase].iter().all(|v| v.is_finite()) {
-            return Err(Error::usage(
-                format!("initial state {x1}, {v1}, {x2}, {v2} with phase {phase}"),
-                "finite values",
-            ));
-        }
         let drive = Drive::new(rig, &excitation.clone().into(), phase)?;
         let overlap = x1 - x2 - rig.gap;
         // A state left behind by an impact overlaps by its rounding.
         let rounding = 4.0 * f64::EPSILON * (x1.abs() + x2.abs() + rig.gap.abs());
         if overlap > rounding {
-            return Err(Error::usage(
-                format!("the masses overlap by {overlap} m at the start"),
-                "x1 − x2 of at most the gap; give an initial state in which they are apart",
-            ));
+            return Err(rig.overlap(&state));
         }
         let mut motion = Simulation {
             rig: *rig,
             drive,
             oscillators: rig.oscillators(),
-            exchange: rig.reduced_mass() * (1.0 + rig.restitution),
+            exchange: rig.exchange(),
             time: 0.0,
             carry: 0.0,
             state,
@@ -143,31 +135,6 @@ impl Simulation {
         self
     }
 
-    /// Time in s.
-    pub fn time(&self) -> f64 {
-        self.time
-    }
-
-    /// State now; after an impact, if one happens now.
-    pub fn state(&self) -> State {
-        self.state
-    }
-
-    /// Phase in 0..2π of the excitation's cycle now; above 0 once the cycle's impulse has come or its pulse has begun.
-    pub fn phase(&self) -> f64 {
-        self.drive.phase()
-    }
-
-    /// Frequency of the excitation in Hz; of several sines, the first one's.
-    pub fn frequency(&self) -> f64 {
-        self.drive.frequency()
-    }
-
-    /// The rig.
-    pub fn rig(&self) -> &Rig {
-        &self.rig
-    }
-
     /// What the motion has met so far.
     pub fn counts(&self) -> Counts {
         self.counts
@@ -178,40 +145,15 @@ impl Simulation {
         self.hold == Hold::Together
     }
 
-    /// Changes the frequency (Hz) from now on; phase, state and time go on without a step, several sines keep the ratios of their
-    /// frequencies, and a pulse under way keeps its width.
-    ///
-    /// # Errors
-    /// If the frequency is impossible, pulses would not end within their cycle, or mass 1 is undamped and would be driven at
-    /// resonance.
-    pub fn set_frequency(&mut self, frequency: f64) -> Result<()> {
-        self.drive.set_frequency(&self.rig, frequency)
-    }
-
-    /// Goes on under an excitation of another size or frequency and of the same kind; phases, state and time go on without a step, and
-    /// a pulse under way keeps its width.
-    ///
-    /// # Errors
-    /// As [`Simulation::new`], and if the excitation is of another kind or has another number of sines.
-    pub fn set_excitation(&mut self, excitation: &(impl Clone + Into<Excitation>)) -> Result<()> {
-        self.drive.set_excitation(&self.rig, &excitation.clone().into())?;
-        self.look_again()
-    }
-
     /// Goes to the next event, or to the time `until` if that comes before; an impulse or a step of force at `until` itself is left to
     /// what follows. Does not allocate.
     ///
     /// # Errors
     /// If `until` is not finite or in the past, or the motion grows beyond all numbers.
     pub fn fly(&mut self, until: f64) -> Result<Leg> {
-        if !(until.is_finite() && until >= self.time) {
-            return Err(Error::usage(
-                format!("a flight until {until} s from {} s", self.time),
-                "a finite time that is not in the past",
-            ));
-        }
+        check_time(self.time, until)?;
         let remaining = ((until - self.time) - self.carry).max(0.0);
-        let (wait, tick) = self.drive.next(remaining, until);
+        let (wait, tick) = self.drive.forcing.clock.next(remaining, until);
         let ahead = remaining.min(wait);
         let start = self.time;
         self.counts.flights += 1;
@@ -277,22 +219,21 @@ impl Simulation {
         let time = self.time + step;
         self.carry = step - (time - self.time);
         self.time = time;
-        self.drive.advance(duration);
+        self.drive.forcing.pass(duration);
     }
 
     /// Motion of masses that are apart, from now on.
     #[inline]
     fn flight(&self) -> Flight {
-        let rest = self.drive.constant() / self.rig.k1;
+        let rest = self.drive.forcing.clock.constant() / self.rig.k1;
         Flight::with(self.oscillators, self.drive.alone(), rest, self.rig.gap, &self.state)
     }
 
     /// Motion of both masses together from now on, with their common momentum.
     fn pair(&self) -> Result<Pair> {
         let (rig, state) = (&self.rig, &self.state);
-        let v =
-            if rig.has_wall() { 0.0 } else { (rig.m1 * state.v1 + rig.m2 * state.v2) / (rig.m1 + rig.m2) };
-        let pair = Pair::new(rig, self.drive.together(), self.drive.constant(), state.x1, v);
+        let v = rig.common_speed(state);
+        let pair = Pair::new(rig, self.drive.together(), self.drive.forcing.clock.constant(), state.x1, v);
         if pair.is_finite() {
             return Ok(pair);
         }
@@ -306,63 +247,28 @@ impl Simulation {
     /// Follows the motion to the time `until`, showing each leg, the last with [`Event::Reached`].
     ///
     /// # Errors
-    /// As [`Simulation::fly`]; if more than 20 million cycles are asked for, or as many legs are needed.
+    /// As [`Simulation::fly`]; if more than 1e8 cycles are asked for, or more than 20 million legs are needed.
     pub fn run(&mut self, until: f64, mut visit: impl FnMut(&Leg)) -> Result<()> {
-        let cycles = (until - self.time) * self.frequency();
-        if cycles > MOST_CYCLES {
-            return Err(Error::usage(
-                format!("{cycles:.0} cycles of the excitation"),
-                format!("at most {MOST_CYCLES:.0} at a time: a motion that has not settled by then will not"),
-            ));
-        }
-        let mut legs = 0.0;
-        loop {
+        check_work((until - self.time) * self.frequency())?;
+        for _ in 0..MOST_LEGS {
             let leg = self.fly(until)?;
             visit(&leg);
             if leg.event == Event::Reached {
                 return Ok(());
             }
-            legs += 1.0;
-            if legs > MOST_CYCLES {
-                return Err(Error::refused(format!(
-                    "more than {MOST_CYCLES:.0} impacts and other events before {} s of {} s",
-                    significant(self.time, 6),
-                    significant(until, 6)
-                ))
-                .hint("ask for less time, or give the impacts some loss: restitution below 1"));
-            }
         }
-    }
-
-    /// Goes on for `n` intervals of `interval` seconds and takes the state at the start of each.
-    ///
-    /// # Errors
-    /// As [`Simulation::run`], and if there is no memory for so many.
-    pub fn record(&mut self, interval: f64, n: usize) -> Result<Recorded> {
-        let start = self.time;
-        let mut recorded = Recorded::default();
-        if recorded.states.try_reserve_exact(n).is_err() {
-            return Err(Error::usage(format!("{n} samples"), "as many as the memory holds"));
-        }
-        self.run(start + n as f64 * interval, |leg| {
-            let end = leg.start + leg.duration;
-            while recorded.states.len() < n {
-                let time = start + recorded.states.len() as f64 * interval;
-                // A sample at the very end belongs to what follows: to the state after the impact.
-                if time >= end {
-                    break;
-                }
-                recorded.states.push(leg.state((time - leg.start).max(0.0)));
-            }
-            recorded.impacts.extend(leg.impact());
-        })?;
-        Ok(recorded)
+        Err(Error::refused(format!(
+            "more than {MOST_LEGS} impacts and other events before {} s of {} s",
+            significant(self.time, 6),
+            significant(until, 6)
+        ))
+        .hint("ask for less time, or give the impacts some loss: restitution below 1"))
     }
 }
 
 impl Motion for Simulation {
     fn rig(&self) -> &Rig {
-        Simulation::rig(self)
+        &self.rig
     }
 
     fn time(&self) -> f64 {
@@ -374,19 +280,20 @@ impl Motion for Simulation {
     }
 
     fn phase(&self) -> f64 {
-        self.drive.phase()
+        self.drive.forcing.phase()
     }
 
     fn frequency(&self) -> f64 {
-        self.drive.frequency()
+        self.drive.forcing.frequency()
     }
 
     fn set_frequency(&mut self, hz: f64) -> Result<()> {
-        Simulation::set_frequency(self, hz)
+        self.drive.set_frequency(&self.rig, hz)
     }
 
     fn set_excitation(&mut self, excitation: &Excitation) -> Result<()> {
-        Simulation::set_excitation(self, excitation)
+        self.drive.set_excitation(&self.rig, excitation)?;
+        self.look_again()
     }
 
     fn advance(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<()> {

@@ -68,7 +68,8 @@ impl Pair {
     pub fn force(&self, t: f64) -> Bounded {
         match &self.course {
             Course::Still { force, stiffness } => {
-                let (sines, slope, curvature) = self.waves.derivative(0, t);
+                let [sines, slope, ..] = self.waves.at(t);
+                let curvature = self.waves.limits().curvature;
                 Bounded { value: sines + force - stiffness * self.gap, slope, curvature }
             }
             Course::Moving { rest, free, passive: [m, c, k] } => {

@@ -1,21 +1,16 @@
 //! Sweeps: a motion whose excitation changes in steps or slowly, up and down, its state carried on all the way.
 
 mod gauge;
-mod size;
 
 pub use gauge::Gauge;
 #[cfg(test)]
 use gauge::LOW_PASS;
 pub use gauge::Observable;
-pub use size::{at_size, size};
 
-use super::{Motion, parallel};
+use super::{Motion, parallel, scales};
 use serde::Serialize;
 use std::f64::consts::TAU;
 use vibro_record::{Direction, Error, Result};
-
-/// Cycles beyond which a sweep is refused: about a minute of work.
-pub(crate) const MOST_CYCLES: f64 = 1e8;
 
 /// Steps a cycle of a continuous sweep. A step has the frequency of its middle, so the phase is exact at its ends and errs by at
 /// most 2πrh²/8 inside, r being the rate in Hz/s and h the step in s: 7e-6 rad at 3 Hz and 0.02 Hz/s.
@@ -76,7 +71,7 @@ impl Plan {
     /// Checks the plan.
     ///
     /// # Errors
-    /// If an end is not a value that can be swept, no points or cycles are asked for, or more than [`MOST_CYCLES`] cycles.
+    /// If an end is not a value that can be swept, no points or cycles are asked for, or more than 1e8 cycles.
     pub fn check(&self) -> Result<()> {
         let Plan { from, to, .. } = *self;
         if !(from.is_finite() && to.is_finite() && from >= 0.0 && to > from) {
@@ -101,11 +96,7 @@ impl Plan {
                 (to * to - from * from) / (2.0 * rate)
             }
         };
-        if cycles <= MOST_CYCLES {
-            return Ok(());
-        }
-        Err(Error::refused(format!("the sweep has {cycles:.3e} cycles, more than {MOST_CYCLES:.0e}"))
-            .hint("take fewer points, fewer settling cycles, a faster rate or a shorter range"))
+        scales::check_work(cycles)
     }
 
     /// Sweeps the frequency of `motion` (driven with `force`) from one end to the other.

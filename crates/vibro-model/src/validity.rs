@@ -1,6 +1,5 @@
 //! Is a computed orbit real? Four verdicts, each on its own.
 
-use super::orbit::{Course, Root};
 use num_complex::Complex64;
 use serde::Serialize;
 
@@ -94,20 +93,19 @@ impl Loss {
 }
 
 impl Validity {
-    /// Judges the orbit `root` that follows `course` with this smallest gap away from the impact; `stable` is the verdict of the
-    /// `multipliers`.
+    /// Verdicts on a motion: whether its impacts push and the energy rule holds, the change of the gap in m at which an impact itself
+    /// grazes (`own`), its smallest gap between the impacts, known to `noise`, and what its multipliers say.
     pub(super) fn judge(
-        root: &Root,
-        course: &Course,
+        exists: bool,
+        energy_rule: bool,
+        own: f64,
         clearance: Option<f64>,
+        noise: f64,
         stable: Option<bool>,
         multipliers: Option<&[Complex64; 4]>,
     ) -> Validity {
-        let noise = 8.0 * course.noise();
-        // The gap is zero at both ends, so wherever it is negative it has a smallest value inside.
-        let min_gap = clearance.filter(|gap| *gap < -noise).unwrap_or(0.0);
-        let exists = root.impulse > 0.0;
-        let own = root.impulse.abs() / root.sensitivity;
+        // The gap is zero at the impacts, so wherever it is negative it has a smallest value between them.
+        let min_gap = clearance.filter(|gap| *gap < -8.0 * noise).unwrap_or(0.0);
         Validity {
             exists,
             admissible: exists && min_gap == 0.0,
@@ -118,7 +116,7 @@ impl Validity {
                 None => Stability::Neutral,
             },
             instability: (exists && stable == Some(false)).then(|| Loss::of(multipliers)),
-            energy_rule: exists && root.upper,
+            energy_rule: exists && energy_rule,
             min_gap,
             clearance,
             grazing_distance: clearance.map_or(own, |c| own.min(c.max(0.0))),

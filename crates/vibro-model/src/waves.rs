@@ -43,6 +43,13 @@ impl Waves {
         self.limits.sixth += snap * square;
     }
 
+    /// A single wave, from its complex displacement at the start.
+    pub fn one(start: Complex64, omega: f64) -> Waves {
+        let mut waves = Waves::default();
+        waves.add(start, omega, start.norm());
+        waves
+    }
+
     /// Bounds on derivatives.
     #[inline]
     pub fn limits(&self) -> Limits {
@@ -86,6 +93,12 @@ impl Waves {
         self.limits.sixth * self.fastest().powi(N as i32 - 6)
     }
 
+    /// A bound on the fourth derivative.
+    pub fn snap(&self) -> f64 {
+        let one = |wave: &Wave| wave.re.hypot(wave.im) * wave.omega.powi(4);
+        self.terms.iter().take(self.count).map(one).sum()
+    }
+
     #[inline]
     fn sum(&self, turn: impl Fn(&Wave) -> (f64, f64)) -> [f64; 6] {
         let mut sum = [0.0; 6];
@@ -100,22 +113,6 @@ impl Waves {
             sum[3] += square * v;
             sum[4] += square * a;
             sum[5] -= square * (square * v);
-        }
-        sum
-    }
-
-    /// The `order`-th derivative at `t`, the next one, and a bound on the one after.
-    #[inline]
-    pub fn derivative(&self, order: u32, t: f64) -> (f64, f64, f64) {
-        let mut sum = (0.0, 0.0, 0.0);
-        for wave in self.terms.iter().take(self.count) {
-            let (mut re, mut im) = turned(wave, t);
-            for _ in 0..order {
-                (re, im) = (-wave.omega * im, wave.omega * re);
-            }
-            sum.0 += re;
-            sum.1 -= wave.omega * im;
-            sum.2 += wave.re.hypot(wave.im) * wave.omega.powi(order as i32 + 2);
         }
         sum
     }

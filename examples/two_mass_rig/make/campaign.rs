@@ -6,7 +6,8 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use vibroimpact::Result;
-use vibroimpact::model::{Rig, Simulation, Sine, State};
+use vibroimpact::model::portrait::Samples;
+use vibroimpact::model::{Motion, Rig, Simulation, Sine, State};
 
 /// Force amplitude in N. With it and the thesis' masses, springs and dampers the in-phase (grazing) resonance is met in
 /// both directions and the out-of-phase (clapping) one only going up.
@@ -74,7 +75,10 @@ pub fn measure(direction: Direction, last: usize, mut show: impl FnMut(&Point) -
         motion.set_frequency(frequency)?;
         motion.run(motion.time() + SETTLE, |_| {})?;
         let (phase, pattern) = (motion.phase(), pattern(motion.clone())?);
-        let mut states = motion.record(INTERVAL, SAMPLES)?.states;
+        let until = motion.time() + SAMPLES as f64 * INTERVAL;
+        let mut samples = Samples::new(motion.time(), INTERVAL, until);
+        motion.advance(until, &mut |piece| samples.take(&piece))?;
+        let mut states = samples.states;
         states.push(motion.state());
         show(&Point { direction, number: i + 1, frequency, phase, states, pattern })?;
     }

@@ -248,8 +248,8 @@ fn sensitivity(rows: &[Sensitivity], question: &Question) -> Table {
     answered(found, question, rows.iter().map(|r| Some(r.answer)))
 }
 
-fn needed(needs: &[&str]) -> Cell {
-    (!needs.is_empty()).then(|| needs.join(", ")).into()
+fn needed(needs: &[Need]) -> Cell {
+    (!needs.is_empty()).then(|| Need::names(needs)).into()
 }
 
 fn moved(audit: Option<Change>) -> Cell {

@@ -1,7 +1,7 @@
 //! The contact law of a scene.
 
 use crate::error::{Error, Result};
-use crate::model::{Compliant, Excitation, Law, Loose, Scene, State};
+use crate::model::{Compliant, Excitation, Law, Scene, State};
 use crate::record::Finding;
 use serde::Deserialize;
 
@@ -58,7 +58,8 @@ fn law(scene: &Scene, wanted: Contact) -> Result<Law> {
     Ok(law)
 }
 
-/// Makes motions of a contact that gives way from an excitation, a state and a phase (rad).
+/// Makes motions of a contact that gives way, or of a loose mass, from an excitation, a state and a phase (rad). A loose mass has impacts, or
+/// a spring and a damper where the scene has a contact.
 ///
 /// # Errors
 /// As [`law`].
@@ -66,21 +67,12 @@ pub(super) fn compliant(
     scene: &Scene,
     wanted: Contact,
 ) -> Result<impl Fn(&Excitation, State, f64) -> Result<Compliant>> {
-    let law = law(scene, wanted)?;
-    Ok(move |excitation: &Excitation, state, phase| Compliant::new(&scene.rig, excitation, law, state, phase))
-}
-
-/// Makes motions of a loose mass from an excitation, a state and a phase (rad): with impacts, or a spring and a damper where the scene
-/// has a contact.
-///
-/// # Errors
-/// As [`law`].
-pub(super) fn loose(scene: &Scene) -> Result<impl Fn(&Excitation, State, f64) -> Result<Loose>> {
+    let loose = wanted == Contact::LooseMass;
+    let law = if loose && scene.contact.is_none() { None } else { Some(law(scene, wanted)?) };
     let (rig, gap) = (&scene.rig, scene.buffer.map_or(0.0, |b| b.gap));
-    let law = scene.contact.map(|_| law(scene, Contact::KelvinVoigt)).transpose()?;
     Ok(move |excitation: &Excitation, state, phase| match law {
-        Some(law) => Loose::with_law(rig, excitation, gap, law, state, phase),
-        None => Loose::new(rig, excitation, gap, state, phase),
+        Some(law) if !loose => Compliant::new(rig, excitation, law, state, phase),
+        law => Compliant::loose(rig, excitation, gap, law, state, phase),
     })
 }
 

@@ -82,7 +82,6 @@ impl Keys {
                 let counts = motion.counts();
                 Seen { grazing: Some(counts.grazing - before), flights: Some(counts.flights), ..seen }
             }
-            Contact::LooseMass => self.settled(contact::loose(&scene)?(&excitation, start, self.phase)?)?,
             _ => self.settled(contact::compliant(&scene, self.model)?(&excitation, start, self.phase)?)?,
         };
         let Seen { portrait, end: (time, phase, state), grazing, flights } = &seen;

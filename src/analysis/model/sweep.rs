@@ -7,8 +7,8 @@ use crate::compare::{Named, named};
 use crate::error::{Error, Result};
 use crate::measure::jump::Jump;
 use crate::measure::resonance::Resonance;
-use crate::model::continuation::{Branch, Mark, Parameter, follow};
-use crate::model::sweep::{Observable, Pace, Plan, Point, Swept, apart, at_size, size};
+use crate::model::continuation::{Branch, Mark, follow};
+use crate::model::sweep::{Observable, Pace, Plan, Point, Swept, apart};
 use crate::model::{Excitation, Motion, PeriodicOrbit, Rig, Simulation, Sine, State, orbits};
 use crate::record::{Direction, Finding};
 use crate::report::layout::{headed, pair, table};
@@ -109,7 +109,6 @@ impl Keys {
         let rigid = |e: &Excitation, state, phase| Simulation::from_state(rig, e, state, phase);
         let swept = match self.model {
             Contact::Restitution => self.swept(rigid, rig, &excitation, &plan),
-            Contact::LooseMass => self.swept(contact::loose(&scene)?, rig, &excitation, &plan),
             law => self.swept(contact::compliant(&scene, law)?, rig, &excitation, &plan),
         }?;
         let (resonances, jumps) = if over_force { (Vec::new(), Vec::new()) } else { named(&swept) };
@@ -157,12 +156,12 @@ impl Keys {
             let start = if direction == Direction::Up { plan.from } else { plan.to };
             if self.over == Over::Frequency {
                 let mut motion = make(&excitation.at_frequency(start), rest, 0.0)?;
-                return plan.frequency(&mut motion, size(excitation), direction);
+                return plan.frequency(&mut motion, excitation.size(), direction);
             }
-            let mut motion = make(&at_size(excitation, start), rest, 0.0)?;
+            let mut motion = make(&excitation.at_size(start), rest, 0.0)?;
             let frequency = excitation.frequency();
             plan.steps(&mut motion, direction, |motion, value| {
-                motion.set_excitation(&at_size(excitation, value))?;
+                motion.set_excitation(&excitation.at_size(value))?;
                 Ok((frequency, value))
             })
         })
@@ -195,7 +194,7 @@ fn branches(rig: &Rig, excitation: &Excitation, plan: &Plan) -> Vec<Branch> {
             }
             let start = [(orbit.force_phase, orbit.impulse)];
             let branch = PeriodicOrbit::near(rig, &here, 1, &start)
-                .and_then(|start| follow(&start, Parameter::Frequency, plan.from, plan.to, 0.05));
+                .and_then(|start| follow(&start, plan.from, plan.to, 0.05));
             found.extend(branch);
         }
     }

@@ -90,7 +90,7 @@ fn impossible_requests_are_named() {
     for tolerance in ["0", "-0.02", "nan", "1e-9", "inf"] {
         assert!(b(&["--tolerance", tolerance], 2).contains("a tolerance of"));
     }
-    assert!(b(&["--noise", "-1"], 2).contains("a noise floor of -1 m/s"));
+    assert!(b(&["--noise", "-1"], 2).contains("the noise floor is -1 m/s"));
     assert!(b(&["--gap-std", "nan"], 2).contains("uncertainty of the gap"));
     assert!(asked(&["--frequency", "5"], 2).contains("nothing drives"));
     assert!(asked(&["--frequency", "-5", "--force", "1"], 2).contains("frequency is -5 Hz"));

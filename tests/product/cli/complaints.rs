@@ -308,10 +308,6 @@ fn a_rig_and_a_campaign_are_told_apart() {
         let found = complaint(&["model", command, text(&campaign), "--frequency", "5"], 2);
         has(&found, &["campaign.toml: [rig]: this is a campaign, not a rig", "try:", "`vibro run "]);
     }
-    let half = folder.path().join("half.toml");
-    fs::write(&half, "m1 = 0.42\n[fit]\nparameters = [\"gap\"]\n").unwrap();
-    let found = complaint(&["model", "orbit", text(&half), "--frequency", "5"], 2);
-    has(&found, &["[fit] beside `m1` at the top", "in a campaign the rig's keys stand under [rig]"]);
     // A key in the wrong place is still told as one.
     fs::write(&campaign, "gap = 1e-3\n[[frf]]\nfile = \"a.uff\"\n").unwrap();
     has(&complaint(&["run", text(&campaign)], 2), &["line 1", "unknown key `gap`"]);

@@ -71,9 +71,7 @@ fn what_cannot_be_is_said() {
         orbit(&["--frequency", "5", "--force", "1", "--set", "restitution=1.1"], 2)
             .contains("restitution is 1.1")
     );
-    assert!(
-        orbit(&["--frequency", "5", "--force", "1", "--cycles", "1000000000"], 1).contains("half swings")
-    );
+    assert!(orbit(&["--frequency", "5", "--force", "1", "--cycles", "1000000000"], 1).contains("swings"));
     assert!(orbit(&["--frequency", "5", "--force", "0"], 2).contains("of 0"));
     assert!(
         complaint(&["model", "response", "--from", "5", "--to", "4", "--force", "1"], 2).contains("from")

@@ -1,8 +1,54 @@
-//! Any motion of the rig with a contact that gives way.
+//! Any motion of the rig with a contact that gives way, or a mass 1 that is loose on its spring: followed from event to event through its
+//! linear modes, and through integrated contacts between them.
 
-use super::{Contact, Follow, Followed, Law};
-use crate::{Excitation, Rig, State};
-use vibro_record::Result;
+use super::Law;
+use super::modes::{Between, Modes};
+use super::within::Within;
+use crate::clock::Tick;
+use crate::forcing::Forcing;
+use crate::linear::{Course, Linear, Quantity};
+use crate::motion::{Event, Motion, Path, Piece};
+use crate::{Excitation, Rig, State, scales};
+use vibro_record::{Error, Result};
+
+/// Pieces of one call at most, of linear motion: some minutes. An integrated one counts as ten.
+const MOST_WORK: f64 = 1e9;
+/// Events in a row without time passing after which a motion is given up.
+const MOST_AT_ONCE: u32 = 1000;
+
+/// Where a contact is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Stage {
+    /// Apart.
+    Apart,
+    /// Pushing each other.
+    Touching,
+    /// The force has come to zero with the surfaces not yet back at their rest.
+    Released,
+    /// Moving together (without rebound).
+    Together,
+}
+
+/// What a root of a watched quantity means.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Mark {
+    Meets,
+    ForceEnds,
+    ForceReturns,
+    Separates,
+    LetsGo,
+    SpringActs,
+    SpringFree,
+}
+
+/// The beginning of a contact.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Beginning {
+    pub time: f64,
+    pub phase: f64,
+    pub approach: f64,
+    pub impulse: f64,
+}
 
 /// A motion with a contact that gives way: where it is now, and what drives it on.
 ///
@@ -16,8 +62,28 @@ use vibro_record::Result;
 /// several pieces that end with `Reached`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Compliant {
-    law: Law,
-    follow: Follow,
+    pub(super) rig: Rig,
+    /// `None` where the masses meet at once, with the rig's restitution.
+    pub(super) law: Option<Law>,
+    loose: bool,
+    pub(super) modes: Modes,
+    pub(super) drive: Forcing,
+    pub(super) within: Within,
+    pub(super) time: f64,
+    pub(super) state: State,
+    pub(super) stage: Stage,
+    pub(super) spring_acts: bool,
+    pub(super) beginning: Beginning,
+    /// Overlap in m, of the size of roundings, that is not yet a meeting: masses that leave each other from rest.
+    pub(super) slack: f64,
+}
+
+/// How far the next piece may go.
+struct Ahead {
+    until: f64,
+    remaining: f64,
+    jump: f64,
+    tick: Option<Tick>,
 }
 
 impl Compliant {
@@ -27,25 +93,243 @@ impl Compliant {
     /// # Errors
     /// If a parameter is impossible, or the state or the phase is not finite.
     pub fn new(rig: &Rig, excitation: &Excitation, law: Law, state: State, phase: f64) -> Result<Compliant> {
-        let follow = Follow::new(rig, excitation, Contact::Law(law), None, state, phase)?;
-        Ok(Compliant { law, follow })
+        Compliant::start(rig, excitation, Some(law), None, state, phase)
     }
 
-    /// The law of the contact.
-    pub fn law(&self) -> Law {
-        self.law
+    /// A motion with a loose mass 1, whose contact with mass 2 gives way by a spring and a damper, or rebounds at once with the rig's
+    /// restitution.
+    ///
+    /// Behind mass 1, on the side away from mass 2, its spring is a buffer that begins `gap` (m) away from its rest: the force on mass 1 is
+    /// −k₁(x₁ + gap) for x₁ < −gap and none elsewhere, where only its damper holds it. Pieces end with `Switch` where it begins and ceases to
+    /// act; with rebounds at once, with `Impact`, with `Stick` where the masses have chattered to rest against each other and with `Release`
+    /// where they cease to move together.
+    ///
+    /// ```
+    /// use vibro_model::{Compliant, Event, Excitation, Motion, Rig, Sine, State};
+    /// let sine = Excitation::Sine(Sine { force: 0.1, frequency: 4.5 });
+    /// let mut motion = Compliant::loose(&Rig::thesis(), &sine, 0.0, None, State::REST, 0.0)?;
+    /// let mut switches = 0;
+    /// motion.advance(2.0, &mut |piece| switches += usize::from(piece.event == Event::Switch))?;
+    /// assert!(switches > 4);
+    /// # Ok::<(), vibro_record::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If a parameter is impossible, the state or the phase is not finite, the masses overlap without a law, or it is not that of Kelvin and
+    /// Voigt.
+    pub fn loose(
+        rig: &Rig,
+        excitation: &Excitation,
+        gap: f64,
+        law: Option<Law>,
+        state: State,
+        phase: f64,
+    ) -> Result<Compliant> {
+        if law.is_some_and(|law| !matches!(law, Law::KelvinVoigt { .. })) {
+            let expected =
+                "rebounds at once or a Kelvin–Voigt contact: the other laws are for masses on their springs";
+            return Err(Error::usage("a loose mass with a contact law that is not linear", expected));
+        }
+        scales::number("buffer gap", gap, "m", scales::Least::Zero)?;
+        Compliant::start(rig, excitation, law, Some(gap), state, phase)
+    }
+
+    fn start(
+        rig: &Rig,
+        excitation: &Excitation,
+        law: Option<Law>,
+        buffer: Option<f64>,
+        state: State,
+        phase: f64,
+    ) -> Result<Compliant> {
+        scales::check(rig, excitation)?;
+        rig.check_start(&state, phase)?;
+        law.map_or(Ok(()), |law| law.check())?;
+        let modes = Modes::new(rig, law, buffer.unwrap_or(0.0));
+        let mut motion = Compliant {
+            rig: *rig,
+            law,
+            loose: buffer.is_some(),
+            within: Within::new(rig, law, modes.reduced_mass),
+            drive: Forcing::new(excitation, phase)?,
+            time: 0.0,
+            state,
+            stage: Stage::Apart,
+            spring_acts: buffer.is_none() || modes.compression.value(&state, 0.0) > 0.0,
+            beginning: Beginning::default(),
+            slack: 0.0,
+            modes,
+        };
+        if motion.indentation() > motion.rounding() / 2.0 {
+            if law.is_none() {
+                return Err(rig.overlap(&state));
+            }
+            motion.touch();
+            motion.settle();
+        }
+        Ok(motion)
+    }
+
+    /// Whether contacts are integrated.
+    pub(crate) fn integrates(&self) -> bool {
+        self.within.integrates()
+    }
+
+    pub(super) fn indentation(&self) -> f64 {
+        self.modes.indentation.value(&self.state, 0.0)
+    }
+
+    /// Rounding of the indentation in m.
+    pub(super) fn rounding(&self) -> f64 {
+        8.0 * f64::EPSILON * (self.state.x1.abs() + self.state.x2.abs() + self.rig.gap.abs())
+    }
+
+    fn mode(&self) -> &Linear {
+        let between = match self.stage {
+            Stage::Apart | Stage::Released => Between::Apart,
+            Stage::Touching => Between::Pushing,
+            Stage::Together => Between::Together,
+        };
+        self.modes.mode(between, self.spring_acts)
+    }
+
+    /// Computes one piece; whether it reached `until`.
+    fn piece(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<bool> {
+        let remaining = until - self.time;
+        let (jump, tick) = self.drive.clock.next(remaining, until);
+        let ahead = Ahead { until, remaining, jump, tick };
+        if self.stage == Stage::Touching && self.within.integrates() {
+            let mode = self.modes.mode(Between::Apart, self.spring_acts);
+            let step = self.within.step(mode, &self.drive, &self.state, remaining.min(jump))?;
+            let fall = step.first_fall();
+            let duration = fall.unwrap_or(step.duration());
+            self.beginning.impulse += step.impulse(duration);
+            return Ok(self.pass(&step, duration, fall.map(|_| Mark::Separates), &ahead, visit));
+        }
+        let mode = self.mode();
+        let longest = 1.0 / mode.rate().max(self.drive.fastest());
+        let span = remaining.min(jump).min(longest);
+        let force = self.drive.terms(span);
+        let taylor = mode.fly(&self.state, &force, span);
+        let mut first: Option<(f64, Mark)> = None;
+        let read = |quantity: &Quantity| taylor.read(quantity, &force);
+        let mut watch = |course: &Course, mark: Mark| {
+            if let Some(t) = course.first_fall()
+                && first.is_none_or(|(earlier, _)| t < earlier)
+            {
+                first = Some((t, mark));
+            }
+        };
+        let modes = &self.modes;
+        match self.stage {
+            Stage::Apart => {
+                let mut gap = modes.indentation.times(-1.0);
+                gap.offset += self.slack;
+                watch(&read(&gap), Mark::Meets);
+            }
+            Stage::Touching => watch(&read(&modes.contact_force), Mark::ForceEnds),
+            Stage::Released => {
+                watch(&read(&modes.indentation), Mark::Separates);
+                watch(&read(&modes.contact_force.times(-1.0)), Mark::ForceReturns);
+            }
+            Stage::Together => watch(&read(&modes.pressing(self.spring_acts)), Mark::LetsGo),
+        }
+        if self.loose && self.spring_acts {
+            watch(&read(&modes.compression), Mark::SpringFree);
+        } else if self.loose {
+            watch(&read(&modes.compression.times(-1.0)), Mark::SpringActs);
+        }
+        let duration = first.map_or(span, |(t, _)| t);
+        if self.stage == Stage::Touching {
+            self.beginning.impulse += read(&self.modes.contact_force).integral(duration);
+        }
+        Ok(self.pass(&taylor, duration, first.map(|(_, mark)| mark), &ahead, visit))
+    }
+
+    /// Goes on along `path` for `duration` seconds, to a mark or to what the excitation does; whether it reached the end.
+    fn pass(
+        &mut self,
+        path: &dyn Path,
+        duration: f64,
+        mark: Option<Mark>,
+        ahead: &Ahead,
+        visit: &mut dyn FnMut(Piece<'_>),
+    ) -> bool {
+        let start = self.time;
+        self.state = path.state(duration);
+        self.drive.pass(duration);
+        let whole = mark.is_none() && duration == ahead.remaining;
+        self.time = if whole { ahead.until } else { start + duration };
+        let event = match (mark, ahead.tick) {
+            (Some(mark), _) => self.mark(mark),
+            (None, Some(tick)) if duration == ahead.jump => self.tick(tick),
+            _ => Event::Reached,
+        };
+        visit(Piece { start, duration, path, event });
+        if self.stage == Stage::Apart && matches!(event, Event::Impact(_)) {
+            self.come_to_rest(visit);
+        }
+        whole && event == Event::Reached
     }
 }
 
-impl Followed for Compliant {
-    fn follow(&self) -> &Follow {
-        &self.follow
+impl Motion for Compliant {
+    fn rig(&self) -> &Rig {
+        &self.rig
     }
 
-    fn follow_mut(&mut self) -> &mut Follow {
-        &mut self.follow
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn state(&self) -> State {
+        self.state
+    }
+
+    fn phase(&self) -> f64 {
+        self.drive.phase()
+    }
+
+    fn frequency(&self) -> f64 {
+        self.drive.frequency()
+    }
+
+    fn set_frequency(&mut self, hz: f64) -> Result<()> {
+        self.drive.set_frequency(hz)
+    }
+
+    fn set_excitation(&mut self, excitation: &Excitation) -> Result<()> {
+        self.drive.set_excitation(excitation)?;
+        self.settle();
+        Ok(())
+    }
+
+    fn advance(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<()> {
+        scales::check_time(self.time, until)?;
+        let fastest = self.modes.mode(Between::Apart, true).rate().max(self.drive.fastest());
+        let (mut at_once, mut last) = (0, f64::NAN);
+        let mut work = (until - self.time) * fastest.max(self.drive.frequency());
+        while work <= MOST_WORK && at_once <= MOST_AT_ONCE {
+            if self.piece(until, visit)? {
+                return Ok(());
+            }
+            work += if self.stage == Stage::Touching && self.within.integrates() { 10.0 } else { 1.0 };
+            at_once = if self.time == last { at_once + 1 } else { 0 };
+            last = self.time;
+        }
+        Err(Error::refused(format!(
+            "from {} s to {until} s the motion has more pieces than one call computes",
+            self.time
+        ))
+        .hint("ask for less time at once, or for a softer contact"))
     }
 }
 
 #[cfg(test)]
 mod tests;
+
+#[cfg(test)]
+mod wall_tests;
+
+#[cfg(test)]
+mod loose_tests;

@@ -1,6 +1,7 @@
 //! Contact laws.
 
 use super::conversion;
+use crate::scales::{Least, number};
 use serde::Serialize;
 use vibro_record::{Error, Result};
 
@@ -40,9 +41,7 @@ impl Law {
     /// If the stiffness or the mass is not above 0, or the restitution is outside 0 < R ≤ 1.
     pub fn kelvin_voigt(stiffness: f64, restitution: f64, mass: f64) -> Result<Law> {
         Law::KelvinVoigt { stiffness, damping: 0.0 }.check()?;
-        if !(mass.is_finite() && mass > 0.0) {
-            return Err(Error::usage(format!("reduced mass is {mass} kg"), "a finite value above 0"));
-        }
+        number("reduced mass", mass, "kg", Least::AboveZero)?;
         let ratio = conversion::damping_ratio(restitution)?;
         Ok(Law::KelvinVoigt { stiffness, damping: 2.0 * ratio * (stiffness * mass).sqrt() })
     }
@@ -52,9 +51,7 @@ impl Law {
     /// # Errors
     /// If the stiffness or the speed is not above 0, the exponent is below 1, or the restitution is outside 0 < R ≤ 1.
     pub fn hunt_crossley(stiffness: f64, exponent: f64, restitution: f64, speed: f64) -> Result<Law> {
-        if !(speed.is_finite() && speed > 0.0) {
-            return Err(Error::usage(format!("approach speed is {speed} m/s"), "a finite value above 0"));
-        }
+        number("approach speed", speed, "m/s", Least::AboveZero)?;
         let law = Law::HuntCrossley { stiffness, exponent, damping: conversion::loss(restitution)? / speed };
         law.check().map(|()| law)
     }
@@ -64,27 +61,24 @@ impl Law {
     /// # Errors
     /// If a stiffness is not above 0, a damping is negative, an exponent is outside 1 to 10, or a value is not finite.
     pub fn check(&self) -> Result<()> {
-        let (stiffness, unit, damping, damping_unit) = match *self {
-            Law::KelvinVoigt { stiffness, damping } => (stiffness, "N/m", damping, "N s/m"),
-            Law::Hertz { stiffness } => (stiffness, "N/m^1.5", 0.0, ""),
-            Law::HuntCrossley { stiffness, damping, .. } => (stiffness, "N/mⁿ", damping, "s/m"),
-        };
-        if !(stiffness.is_finite() && stiffness > 0.0) {
-            return Err(Error::usage(
-                format!("contact stiffness is {stiffness} {unit}"),
-                "a finite value above 0",
-            ));
-        }
-        if !(damping.is_finite() && damping >= 0.0) {
-            let found = format!("contact damping is {damping} {damping_unit}");
-            return Err(Error::usage(found, "a finite value of 0 or more"));
-        }
-        if let Law::HuntCrossley { exponent, .. } = *self
-            && !(1.0..=10.0).contains(&exponent)
-        {
+        let (stiffness, exponent, damping) = self.numbers();
+        let linear = matches!(self, Law::KelvinVoigt { .. });
+        let (unit, damping_unit) = if linear { ("N/m", "N s/m") } else { ("N/mⁿ", "s/m") };
+        number("contact stiffness", stiffness, unit, Least::AboveZero)?;
+        number("contact damping", damping, damping_unit, Least::Zero)?;
+        if !(1.0..=10.0).contains(&exponent) {
             return Err(Error::usage(format!("contact exponent is {exponent}"), "a value from 1 to 10"));
         }
         Ok(())
+    }
+
+    /// Stiffness, exponent and damping.
+    pub(super) fn numbers(&self) -> (f64, f64, f64) {
+        match *self {
+            Law::KelvinVoigt { stiffness, damping } => (stiffness, 1.0, damping),
+            Law::Hertz { stiffness } => (stiffness, 1.5, 0.0),
+            Law::HuntCrossley { stiffness, exponent, damping } => (stiffness, exponent, damping),
+        }
     }
 
     /// Force in N at an indentation (m) and its rate (m/s); 0 where the masses are apart, and where the law would pull.
@@ -93,17 +87,12 @@ impl Law {
         if indentation <= 0.0 {
             return 0.0;
         }
-        let force = match *self {
-            Law::KelvinVoigt { stiffness, damping } => stiffness * indentation + damping * rate,
-            Law::Hertz { stiffness } => stiffness * indentation * indentation.sqrt(),
-            Law::HuntCrossley { stiffness, exponent, damping } => {
-                let spring = if exponent == 1.5 {
-                    indentation * indentation.sqrt()
-                } else {
-                    indentation.powf(exponent)
-                };
-                stiffness * spring * (1.0 + damping * rate)
-            }
+        let (stiffness, exponent, damping) = self.numbers();
+        let force = match self {
+            Law::KelvinVoigt { .. } => stiffness * indentation + damping * rate,
+            Law::Hertz { .. } => stiffness * indentation * indentation.sqrt(),
+            _ if exponent == 1.5 => stiffness * (indentation * indentation.sqrt()) * (1.0 + damping * rate),
+            _ => stiffness * indentation.powf(exponent) * (1.0 + damping * rate),
         };
         force.max(0.0)
     }
@@ -119,7 +108,7 @@ mod tests {
             (Law::KelvinVoigt { stiffness: 0.0, damping: 1.0 }, "contact stiffness is 0 N/m"),
             (Law::KelvinVoigt { stiffness: 1e5, damping: -1.0 }, "contact damping is -1 N s/m"),
             (Law::KelvinVoigt { stiffness: f64::NAN, damping: 1.0 }, "contact stiffness is NaN N/m"),
-            (Law::Hertz { stiffness: f64::INFINITY }, "contact stiffness is inf N/m^1.5"),
+            (Law::Hertz { stiffness: f64::INFINITY }, "contact stiffness is inf N/mⁿ"),
             (Law::HuntCrossley { stiffness: 1e8, exponent: 0.5, damping: 1.0 }, "contact exponent is 0.5"),
             (
                 Law::HuntCrossley { stiffness: 1e8, exponent: f64::NAN, damping: 1.0 },

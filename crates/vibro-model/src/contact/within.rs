@@ -53,11 +53,7 @@ impl Within {
 
     /// Stiffness k and exponent n.
     fn spring(&self) -> (f64, f64) {
-        match self.law {
-            Some(Law::Hertz { stiffness }) => (stiffness, 1.5),
-            Some(Law::HuntCrossley { stiffness, exponent, .. }) => (stiffness, exponent),
-            _ => (0.0, 1.0),
-        }
+        self.law.map_or((0.0, 1.0), |law| (law.numbers().0, law.numbers().1))
     }
 
     /// Sizes below which errors need not fall: indentation and speed of the contact, and what roundings of the displacements

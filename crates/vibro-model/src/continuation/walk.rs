@@ -1,10 +1,10 @@
 //! A walk along a branch, by predictor and corrector.
 
-use super::border::{Test, clearance, confirmed, flip, pair};
-use super::{End, Mark, MarkKind, Parameter};
+use super::{End, Mark};
 use crate::periodic::{System, ordered};
-use crate::{PeriodicOrbit, Sine};
-use nalgebra::{DMatrix, DVector};
+use crate::{Loss, PeriodicOrbit, Sine};
+use nalgebra::{DMatrix, DVector, Matrix4, Matrix6};
+use num_complex::Complex64;
 use vibro_record::{Error, Result};
 
 /// Points at most, each way.
@@ -14,7 +14,6 @@ const CORRECTOR: usize = 12;
 /// Where a walk begins, how far it goes, and in what steps.
 pub struct Walk<'a> {
     pub start: &'a PeriodicOrbit,
-    pub parameter: Parameter,
     pub low: f64,
     pub high: f64,
     pub step: f64,
@@ -27,7 +26,7 @@ pub struct Way {
     pub end: End,
 }
 
-/// A point of the extended space: unknowns and the logarithm of the parameter; with its tangent.
+/// A point of the extended space: unknowns and the logarithm of the frequency; with its tangent.
 #[derive(Clone)]
 pub struct Spot {
     z: DVector<f64>,
@@ -36,7 +35,7 @@ pub struct Spot {
 
 impl Walk<'_> {
     fn sine(&self, z: &DVector<f64>) -> Sine {
-        self.parameter.set(&self.start.sine, z[z.len() - 1].exp())
+        Sine { frequency: z[z.len() - 1].exp(), ..self.start.sine }
     }
 
     fn system(&self, z: &DVector<f64>) -> Result<System> {
@@ -52,12 +51,12 @@ impl Walk<'_> {
         self.start.rig.gap.abs().max(range)
     }
 
-    /// Unknowns without the parameter.
+    /// Unknowns without the frequency.
     fn inner(z: &DVector<f64>) -> DVector<f64> {
         z.rows(0, z.len() - 1).into_owned()
     }
 
-    /// What is left of the equations, and the Jacobian with the derivative by the logarithm of the parameter as last column.
+    /// What is left of the equations, and the Jacobian with the derivative by the logarithm of the frequency as last column.
     fn evaluate(&self, z: &DVector<f64>) -> Result<(DVector<f64>, DMatrix<f64>)> {
         let n = z.len() - 1;
         let (left, jacobian) = self.system(z)?.evaluate(&Self::inner(z));
@@ -85,21 +84,21 @@ impl Walk<'_> {
         Ok(found.filter(|t| t.iter().all(|v| v.is_finite())))
     }
 
-    /// The place of `orbit` on the branch, with the direction in which the parameter grows.
+    /// The place of `orbit` on the branch, with the direction in which the frequency grows.
     ///
     /// # Errors
     /// If the branch folds there.
     pub fn point(&self, orbit: &PeriodicOrbit) -> Result<Spot> {
         let mut z = DVector::zeros(2 * orbit.beats.len() + 1);
         let n = z.len() - 1;
-        z[n] = self.parameter.of(&orbit.sine).ln();
+        z[n] = orbit.sine.frequency.ln();
         let system = self.system(&z)?;
         z.rows_mut(0, n).copy_from(&orbit.unknowns(&system));
         let mut along = DVector::zeros(n + 1);
         along[n] = 1.0;
         let tangent = self.tangent(&z, &along)?.ok_or_else(|| {
             Error::refused("the branch has no direction at its start: it folds there")
-                .hint("start from a motion at another frequency or force")
+                .hint("start from a motion at another frequency")
         })?;
         Ok(Spot { z, tangent })
     }
@@ -156,28 +155,21 @@ impl Walk<'_> {
             };
             let value = next.z[n].exp();
             let faded = (n / 2..n).any(|k| next.z[k] <= 0.0);
-            let outside = value < self.low || value > self.high;
-            if faded || outside {
-                // The end is where the impulse is zero or the parameter at its bound.
-                let bound = if value < self.low { self.low.ln() } else { self.high.ln() };
+            if faded || value < self.low || value > self.high {
+                // The end is where an impulse is zero or the frequency at its bound.
+                let bound = if value < self.low { self.low } else { self.high };
                 let distance = |spot: &Spot| {
-                    if faded {
-                        spot.z.rows(n / 2, n / 2).min()
-                    } else if value < self.low {
-                        spot.z[n] - bound
-                    } else {
-                        bound - spot.z[n]
-                    }
+                    if faded { spot.z.rows(n / 2, n / 2).min() } else { spot.z[n] - bound.ln() }
                 };
+                way.end = if faded { End::Grazing } else { End::Range };
                 if let Some(last) = self.locate(&here, s, &distance) {
                     let orbit = self.orbit(&last.z)?;
                     if faded {
                         let after = way.points.len() - 1;
-                        way.marks.push(Mark { kind: MarkKind::Grazing, orbit: orbit.clone(), after });
+                        way.marks.push(Mark { kind: Loss::Grazing, orbit: orbit.clone(), after });
                     }
                     way.points.push(orbit);
                 }
-                way.end = if faded { End::Grazing } else { End::Range };
                 return Ok(way);
             }
             if !ordered(&self.system(&next.z)?, &Self::inner(&next.z)) {
@@ -207,17 +199,21 @@ impl Walk<'_> {
         let n = here.z.len() - 1;
         let last = &way.points[way.points.len() - 1];
         let after = way.points.len() - 1;
-        let mut found: Vec<(MarkKind, Spot)> = Vec::new();
+        let mut found: Vec<(Loss, Spot)> = Vec::new();
         if here.tangent[n] * next.tangent[n] < 0.0
             && let Some(spot) = self.locate(here, s, &|spot: &Spot| spot.tangent[n])
         {
-            found.push((MarkKind::Fold, spot));
+            found.push((Loss::Fold, spot));
         }
         let of = |test: fn(&PeriodicOrbit) -> Option<f64>| {
             move |spot: &Spot| self.orbit(&spot.z).ok().and_then(|o| test(&o)).unwrap_or(f64::NAN)
         };
-        let tests: [(MarkKind, Test); 3] =
-            [(MarkKind::Flip, flip), (MarkKind::NeimarkSacker, pair), (MarkKind::Grazing, clearance)];
+        let clearance: fn(&PeriodicOrbit) -> Option<f64> = |orbit| orbit.validity.clearance;
+        let tests = [
+            (Loss::Flip, flip as fn(&PeriodicOrbit) -> _),
+            (Loss::NeimarkSacker, pair),
+            (Loss::Grazing, clearance),
+        ];
         for (kind, test) in tests {
             let (Some(a), Some(b)) = (test(last), test(orbit)) else { continue };
             if a * b < 0.0
@@ -265,5 +261,37 @@ impl Walk<'_> {
             }
         }
         best
+    }
+}
+
+/// det(M + I): changes its sign where a multiplier passes −1.
+fn flip(orbit: &PeriodicOrbit) -> Option<f64> {
+    orbit.monodromy.map(|m| (m + Matrix4::identity()).determinant())
+}
+
+/// det(M ∧ M − I), the product of λᵢλⱼ − 1 over all pairs of multipliers: changes its sign where a complex pair passes the unit circle
+/// (bialternate product; J. Guckenheimer, M. Myers, B. Sturmfels 1997), and where two real multipliers become each other's inverse.
+fn pair(orbit: &PeriodicOrbit) -> Option<f64> {
+    const PAIRS: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
+    let m = orbit.monodromy?;
+    let wedge = Matrix6::from_fn(|r, c| {
+        let ((i, j), (k, l)) = (PAIRS[r], PAIRS[c]);
+        m[(i, k)] * m[(j, l)] - m[(i, l)] * m[(j, k)]
+    });
+    Some((wedge - Matrix6::identity()).determinant())
+}
+
+/// Whether the motion found is what the mark says, not a step of a test.
+fn confirmed(kind: Loss, orbit: &PeriodicOrbit) -> bool {
+    let near = |distance: &dyn Fn(&Complex64) -> f64| {
+        orbit.multipliers.is_some_and(|m| m.iter().any(|z| distance(z) < 1e-5))
+    };
+    match kind {
+        Loss::Fold => true,
+        Loss::Flip => near(&|z| (z + 1.0).norm()),
+        Loss::NeimarkSacker => {
+            near(&|z| if z.im.abs() > 1e-6 { (z.norm() - 1.0).abs() } else { f64::INFINITY })
+        }
+        Loss::Grazing => orbit.validity.clearance.is_some_and(|c| c.abs() < 1e-6 * orbit.peak_to_peak[0]),
     }
 }

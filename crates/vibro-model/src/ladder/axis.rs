@@ -1,9 +1,10 @@
 //! The ladder along an axis of frequencies: it may choose differently, and says where.
 
-use super::{Change, Choice, Model, Question, choose, chosen};
+use super::{Change, Choice, Model, Need, Question, choose, chosen};
+use crate::response::axis;
 use crate::{Scene, parallel};
 use serde::Serialize;
-use vibro_record::{Error, Result};
+use vibro_record::Result;
 
 /// The most points of an axis.
 pub const MOST_POINTS: usize = 2000;
@@ -50,7 +51,7 @@ pub struct Stretch {
     /// The rung chosen.
     pub chosen: Option<Model>,
     /// What must be known before one can be chosen.
-    pub needs: Vec<&'static str>,
+    pub needs: Vec<Need>,
     /// The largest change of the chosen answer at the next rung that follows the motion.
     pub audit: Option<Change>,
     /// Frequency in Hz at which it is so large.
@@ -63,17 +64,7 @@ pub struct Stretch {
 /// As [`choose`]; if the ends are not finite and above 0 with the lower one first, or there are fewer than 2 or more than
 /// [`MOST_POINTS`] points.
 pub fn choose_over(scene: &Scene, from: f64, to: f64, points: usize, question: &Question) -> Result<Survey> {
-    if !(from.is_finite() && to.is_finite() && from > 0.0 && to > from) {
-        return Err(Error::usage(
-            format!("an axis from {from} to {to} Hz"),
-            "finite frequencies above 0, the lower one first",
-        ));
-    }
-    if !(2..=MOST_POINTS).contains(&points) {
-        return Err(Error::usage(format!("{points} points"), format!("2 to {MOST_POINTS}")));
-    }
-    let step = (to - from) / (points - 1) as f64;
-    let at = |i: usize| if i + 1 == points { to } else { from + i as f64 * step };
+    let at = axis(from, to, points, MOST_POINTS)?;
     let mut all: Vec<Choice> = parallel::each(points, |i| chosen(scene, at(i), question, false))
         .into_iter()
         .collect::<Result<_>>()?;

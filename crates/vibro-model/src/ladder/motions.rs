@@ -1,12 +1,10 @@
 //! The motions of a rig at one excitation, as far as they are known, and the one that it is in.
 
-use super::change::{APART, Answer};
-use super::history::{Way, several};
-use super::outcome::Outcome;
+use super::question::{APART, Answer, Question};
 use super::reading::{End, Reader, Reading};
+use super::rung::Model;
 use super::stage::{Stage, timed};
-use super::starts::{Followed, starts};
-use super::{Model, Question};
+use super::starts::{Followed, Way, several, starts};
 use crate::regime::Strike;
 use crate::{Motion, Orbit, Orbits, Regime, Simulation, State, orbits_of};
 use serde::Serialize;
@@ -16,7 +14,7 @@ use vibro_record::{Error, Result};
 /// Cycles up to which motions with one impact are looked for in closed form.
 pub(crate) const MOST_CYCLES: u32 = 6;
 /// Cycles after which no further state is started from.
-pub(crate) const MOST_FOLLOWED: u32 = 40_000;
+const MOST_FOLLOWED: u32 = 40_000;
 /// Part of the speeds by which a motion starts beside an orbit.
 const BESIDE: f64 = 0.02;
 
@@ -103,30 +101,15 @@ impl Motions {
         let longer = (2..=MOST_CYCLES).filter_map(|cycles| orbits_of(rig, excitation, cycles).ok());
         let longer = longer.flat_map(|found| found.orbits).filter(|o| o.validity.admissible).collect();
         let way = question.history.map(|direction| Way::new(rig, excitation, direction)).transpose()?;
-        let start = match &way {
+        let mut end = match &way {
             Some(way) => way.rigid()?,
             None => Simulation::new(rig, excitation)?,
         };
         let reader = Reader::new(rig, excitation.frequency(), question).clear_by(clearance);
-        let (followed, cost) = timed(|| {
-            let mut motion = start.clone();
-            reader.read(&mut motion).map(|reading| (reading, motion))
-        });
-        let (reading, end) = followed?;
-        let mut motions = Motions {
-            closed,
-            closed_cost,
-            longer,
-            known: Vec::new(),
-            on: On::Other,
-            clearance,
-            way,
-            followed: None,
-            reading,
-            cost,
-            end,
-        };
-        motions.on = motions.which(reader.fine());
+        let (reading, cost) = timed(|| reader.read(&mut end));
+        let (reading, on, known, followed) = (reading?, On::Other, Vec::new(), None);
+        let mut motions =
+            Motions { closed, closed_cost, longer, known, on, clearance, way, followed, reading, cost, end };
         motions.list(question, reader.fine());
         if motions.way.is_none() {
             motions.seek(stage, &reader);
@@ -144,8 +127,7 @@ impl Motions {
         let lost = orbits.filter(|o| o.validity.admissible && o.validity.stable == Some(false));
         let round = lost.map(|orbit| (beside(orbit), orbit.force_phase));
         let states: Vec<_> = round.chain(starts(rig, excitation)).collect();
-        let of = states.len() as u32;
-        let (mut followed, mut cycles) = (0, 0);
+        let (of, mut followed, mut cycles) = (states.len() as u32, 0, 0);
         for (state, phase) in states {
             if common(&self.known) > 1 || cycles > MOST_FOLLOWED {
                 break;
@@ -159,9 +141,8 @@ impl Motions {
         self.followed = Some(Followed { states: followed, of });
     }
 
-    /// Whether a contact that gives way leads from rest to another motion than the one that its answer is read from.
-    pub fn differs(&mut self, outcome: &Outcome, model: Model, question: &Question) {
-        let (Some(answer), Some(rest)) = (&outcome.answer, &outcome.from_rest) else { return };
+    /// Whether a contact that gives way leads from `rest` to another motion than the one that its `answer` is read from.
+    pub fn differs(&mut self, answer: &Answer, rest: &Reading, model: Model, question: &Question) {
         if rest.end == End::Under || !answer.steady || answer.agrees(&rest.answer, question, APART) {
             return;
         }
@@ -177,12 +158,9 @@ impl Motions {
 
     /// Adds a motion with impacts at once, where that is not on its way and answers differently from those known.
     fn add(&mut self, reading: &Reading, question: &Question) {
-        if reading.end == End::Under {
-            return;
-        }
-        let own = &self.reading;
-        let own = own.end != End::Under && own.answer.agrees(&reading.answer, question, APART);
-        if !own && !self.known.iter().any(|known| known.may_be(reading, question)) {
+        let settled = |reading: &Reading| reading.end != End::Under;
+        let own = settled(&self.reading) && self.reading.answer.agrees(&reading.answer, question, APART);
+        if settled(reading) && !own && !self.known.iter().any(|known| known.may_be(reading, question)) {
             let rare = matches!(reading.regime, Regime::Periodic { impacts, cycles } if impacts < cycles);
             self.known.push(Known::followed(reading, Model::Restitution, rare));
         }
@@ -190,40 +168,31 @@ impl Motions {
 
     /// Orbits with one impact a cycle that can be and stay.
     fn stable(&self) -> impl Iterator<Item = &Orbit> {
-        self.closed.iter().flat_map(|found| found.orbits.iter().filter(|orbit| orbit.validity.real()))
+        self.closed.iter().flat_map(|found| &found.orbits).filter(|orbit| orbit.validity.real())
     }
 
-    /// The motion that was followed, among those in closed form; `fine` is the part of its states to which it has settled.
-    fn which(&self, fine: f64) -> On {
-        match self.reading.regime {
-            _ if self.reading.end != End::Settled => On::Other,
-            Regime::NoImpact => On::Free,
-            Regime::Periodic { impacts: 1, cycles: 1 } => {
-                self.near(self.stable(), fine).map_or(On::Other, |orbit| On::Orbit(Box::new(*orbit)))
-            }
-            _ => On::Other,
-        }
-    }
-
-    /// The orbit nearest to the motion that was followed, if that is on it.
-    fn near<'a>(&self, orbits: impl Iterator<Item = &'a Orbit>, fine: f64) -> Option<&'a Orbit> {
-        let strike = self.reading.strike.as_ref()?;
-        let near = orbits.map(|orbit| (distance(strike, orbit), orbit));
+    /// The orbit that the motion which was followed is on; `fine` is the part of its states to which it has settled.
+    fn own(&self, fine: f64) -> Option<&Orbit> {
+        let (strike, Regime::Periodic { impacts: 1, cycles }) = (self.reading.strike?, self.reading.regime)
+        else {
+            return None;
+        };
+        let real = self.stable().chain(self.longer.iter().filter(|o| o.validity.real()));
+        let near = real.filter(|o| o.cycles == cycles).map(|orbit| (distance(&strike, orbit), orbit));
         let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0));
         nearest.filter(|(far, orbit)| *far <= reach(fine, orbit)).map(|(_, orbit)| orbit)
     }
 
-    /// The orbit with one impact in several cycles that the motion which was followed is on.
-    fn longer_own(&self, fine: f64) -> Option<&Orbit> {
-        let Regime::Periodic { impacts: 1, cycles } = self.reading.regime else { return None };
-        let alike = self.longer.iter().filter(|o| o.cycles == cycles && o.validity.real());
-        self.near(alike, fine).filter(|_| self.reading.end == End::Settled)
-    }
-
-    /// Lists the motions known.
+    /// Lists the motions known, and which of them was followed.
     fn list(&mut self, question: &Question, fine: f64) {
+        let own = self.own(fine).filter(|_| self.reading.end == End::Settled);
+        let on = match own {
+            _ if self.reading.end == End::Settled && self.reading.regime == Regime::NoImpact => On::Free,
+            Some(orbit) if orbit.cycles == 1 => On::Orbit(Box::new(orbit.clone())),
+            _ => On::Other,
+        };
         let mut known = Vec::new();
-        let (found, own) = (self.closed.as_ref().ok(), self.longer_own(fine));
+        let found = self.closed.as_ref().ok();
         if let Some(free) = found.map(|found| &found.no_impact).filter(|free| free.possible) {
             let answer = question.observable.of_no_impact(free);
             let (pattern, model, spread) = (Regime::NoImpact, Model::Linear, [0.0; 2]);
@@ -238,14 +207,14 @@ impl Motions {
             rare: orbit.cycles > 1 && own.is_none_or(|own| own != orbit),
         };
         known.extend(self.stable().chain(self.longer.iter().filter(|o| o.validity.real())).map(known_as));
-        if self.on == On::Other && self.reading.end != End::Under && own.is_none() {
+        if on == On::Other && self.reading.end != End::Under && own.is_none() {
             known.push(Known::followed(&self.reading, Model::Restitution, false));
         }
         // Where nothing else is known with impacts, orbits that have lost their stability tell of others round them.
         if let Some(found) = found.filter(|found| common(&known) == 1 && several(found)) {
             known.extend(found.orbits.iter().filter(|o| o.validity.admissible).map(known_as));
         }
-        self.known = known;
+        (self.known, self.on) = (known, on);
     }
 
     /// The orbit to speak of: the one the rig is in, else the first that can be and stay, else the first that exists.
@@ -253,8 +222,7 @@ impl Motions {
         if let On::Orbit(orbit) = &self.on {
             return Ok(Some(orbit));
         }
-        let found = self.closed.as_ref()?;
-        let existing = found.orbits.iter().find(|o| o.validity.exists);
+        let existing = self.closed.as_ref()?.orbits.iter().find(|o| o.validity.exists);
         Ok(self.stable().next().or(existing))
     }
 }

@@ -1,14 +1,10 @@
 //! What a motion shows, followed until it has settled.
 
-mod strobe;
-
-use super::Question;
-use super::change::Answer;
+use super::question::{Answer, Question};
 use crate::regime::{Regime, Strike, Watch};
 use crate::sweep::{self, Gauge};
 use crate::{Event, Motion, Observable, Rig};
 use std::f64::consts::TAU;
-use strobe::Strobe;
 use vibro_record::Result;
 
 /// Cycles read at once, or a multiple of them: whole patterns of 1 to 6, 10, 12, 15, 20 and 30 cycles. Of others several blocks are.
@@ -23,12 +19,16 @@ const BLOCKS: (usize, usize) = (6, 64);
 const BRIEF: usize = 12;
 /// Swings of the faster mass that are followed at most, where that leaves enough blocks: as many as with five in a cycle.
 const SWINGS: f64 = 5.0 * 60.0 * 64.0;
-/// The motion has settled where what is left of its way is this part of the tolerance.
+/// The motion has settled where what is left of its way is this part of the tolerance, and of no more than this tolerance.
 const SETTLED: f64 = 0.02;
-/// No coarser than this.
-const COARSE: f64 = 0.02;
 /// Of both masses, less than this part of what the larger one does is nothing.
 const NOTHING: f64 = 1e-3;
+/// Longest pattern of states looked for, in cycles.
+const LONGEST: usize = 32;
+/// Differences below this part of the state are roundings and what integrators leave.
+const ROUNDING: f64 = 1e-11;
+/// Standard deviations below its expectation from which von Neumann's ratio tells a drift: of a hundred steady motions less than one.
+const TOLD: f64 = 2.5;
 
 /// What a motion shows.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,39 +71,38 @@ pub struct Reader {
     clearance: Option<f64>,
 }
 
+/// What a block of cycles shows.
+struct Block {
+    value: [f64; 2],
+    /// What it counts beside other blocks.
+    weight: f64,
+    /// Mean approach speed in m/s.
+    speed: f64,
+}
+
 impl Reader {
     /// For motions of `rig` at `frequency` (Hz).
     pub fn new(rig: &Rig, frequency: f64, question: &Question) -> Reader {
         let decays = rig.oscillators().map(|o| o.decay()).into_iter().filter(|b| *b > 0.0);
         let slowest = decays.fold(f64::INFINITY, f64::min);
         let wanted = (DECAY / slowest * frequency / f64::from(BLOCK)).ceil().clamp(1.0, MULTIPLE);
-        // Under a slow force a motion settles within a few cycles, each of which holds many swings.
+        let block = BLOCK * wanted as u32;
         let swings =
             rig.natural_frequencies().into_iter().filter(|f| f.is_finite()).fold(0.0, f64::max) / frequency;
-        let block = match swings {
-            s if s <= 5.0 => BLOCK * wanted as u32,
-            s if s <= 25.0 => BLOCK / 5,
-            _ => BLOCK / 10,
-        };
         let blocks = (SWINGS / (swings * f64::from(block))).clamp(BLOCKS.0 as f64, BLOCKS.1 as f64) as usize;
-        Reader {
-            observable: question.observable,
-            tolerance: question.tolerance,
-            block,
-            blocks,
-            clearance: None,
-        }
+        let Question { observable, tolerance, .. } = *question;
+        Reader { observable, tolerance, block, blocks, clearance: None }
     }
 
     /// The same, for a rig whose motion without impacts stays clear of the other mass by `clearance` (m): no motion without impacts is
     /// taken as settled that may yet come nearer.
-    pub(crate) fn clear_by(self, clearance: Option<f64>) -> Reader {
+    pub fn clear_by(self, clearance: Option<f64>) -> Reader {
         Reader { clearance, ..self }
     }
 
     /// The part of the tolerance to which motions settle.
     pub fn fine(&self) -> f64 {
-        SETTLED * self.tolerance.min(COARSE)
+        SETTLED * self.tolerance.min(SETTLED)
     }
 
     /// The same, for motions whose contacts are integrated: no more blocks than can be had in a second or so.
@@ -114,40 +113,41 @@ impl Reader {
     /// Follows `motion` until its state, once a cycle, has nearly come to where it goes, and what is shown of it holds still; where it does
     /// not settle, the second half of all is averaged.
     pub fn read<M: Motion>(&self, motion: &mut M) -> Result<Reading> {
-        let mut values: Vec<[f64; 2]> = Vec::with_capacity(self.blocks);
-        let mut weights: Vec<f64> = Vec::with_capacity(self.blocks);
+        let mut blocks: Vec<Block> = Vec::with_capacity(self.blocks);
         let mut watch = Watch::new(motion);
-        let mut strobe = Strobe::new(motion, self.block as usize);
+        let mut states = Vec::new();
         loop {
-            let (value, weight, speed) = self.block(motion, &mut watch, &mut strobe)?;
-            values.push(value);
-            weights.push(weight);
+            blocks.push(self.block(motion, &mut watch, &mut states)?);
             let pattern = watch.pattern();
             let n = self.blocks_of(pattern.regime);
-            let whole = whole(&values, &weights, n);
+            let whole: Vec<[f64; 2]> = blocks.windows(n).map(mean_of).collect();
+            let strobe = Strobe { states: &states, block: self.block as usize };
             // Masses that chatter to rest may be in contact at the end of each cycle, too.
-            let pressed = pattern.regime == Regime::NoImpact && strobe.pressed();
-            let left = strobe.left(self.fine());
+            let pressed = pattern.regime == Regime::NoImpact && strobe.pressed(motion.rig().gap);
+            let left = (1..=LONGEST).find_map(|q| strobe.left(q, self.fine()));
             // What repeats is followed until three means hold whole patterns.
             let most = if left.is_some() { self.blocks.max(n + 2) } else { self.blocks };
-            let left = left.filter(|_| still(&whole, self.fine()));
             // Without impacts the motion is that of mass 1 alone, of which it is known how far it goes.
             let free = pattern.regime == Regime::NoImpact && !pressed;
             let apart = |left: f64| !free || self.clearance.is_none_or(|clear| left < clear);
-            let settled = left.is_some_and(apart);
-            if settled || values.len() >= most {
-                let half = &values[values.len() / 2..];
+            let settled = left.is_some_and(apart) && still(&whole, self.fine());
+            if settled || blocks.len() >= most {
+                let half: Vec<[f64; 2]> = blocks[blocks.len() / 2..].iter().map(|b| b.value).collect();
                 let end = match pattern.regime {
                     _ if settled && pressed => End::Pressed,
                     _ if settled => End::Settled,
-                    Regime::Irregular | Regime::Chatter { cycles: None } if !drifts(half) => End::Steady,
+                    Regime::Irregular | Regime::Chatter { cycles: None } if !drifts(&half) => End::Steady,
                     _ => End::Under,
                 };
                 let exact = whole.last().filter(|_| settled).map(|value| Answer::exact(*value));
-                let answer = exact.unwrap_or_else(|| mean(half, end == End::Steady));
-                let strike = pattern.strikes.last().copied();
-                let cycles = self.block * values.len() as u32;
-                return Ok(Reading { answer, regime: pattern.regime, strike, end, cycles, speed });
+                return Ok(Reading {
+                    answer: exact.unwrap_or_else(|| mean(&half, end == End::Steady)),
+                    regime: pattern.regime,
+                    strike: pattern.strikes.last().copied(),
+                    end,
+                    cycles: self.block * blocks.len() as u32,
+                    speed: blocks[blocks.len() - 1].speed,
+                });
             }
         }
     }
@@ -162,15 +162,14 @@ impl Reader {
         }
     }
 
-    /// One block: what is shown, what that counts beside other blocks, and the mean approach speed.
+    /// One block, and the states at the ends of its cycles: x₁, v₁/ω, x₂, v₂/ω in m.
     fn block<M: Motion>(
         &self,
         motion: &mut M,
         watch: &mut Watch,
-        strobe: &mut Strobe,
-    ) -> Result<([f64; 2], f64, f64)> {
-        let observable = self.observable;
-        let frequency = motion.frequency();
+        states: &mut Vec<[f64; 4]>,
+    ) -> Result<Block> {
+        let (observable, frequency) = (self.observable, motion.frequency());
         let omega = TAU * frequency;
         let read = match observable {
             Observable::HalfPeakToPeak => sweep::Observable::Peak,
@@ -194,7 +193,8 @@ impl Reader {
                 }
             })?;
             gauge.close_cycle();
-            strobe.take(&motion.state());
+            let s = motion.state();
+            states.push([s.x1, s.v1 / omega, s.x2, s.v2 / omega]);
             if let Some((speed, impulse)) = strongest {
                 with += 1.0;
                 speeds += speed;
@@ -207,20 +207,80 @@ impl Reader {
             Observable::Impulse => [per(impulses); 2],
             _ => gauge.read().map(|r| r.0),
         };
-        Ok((value, if observable.is_of_impacts() { with } else { 1.0 }, per(speeds)))
+        let weight = if observable.is_of_impacts() { with } else { 1.0 };
+        Ok(Block { value, weight, speed: per(speeds) })
     }
 }
 
-/// Means over each `n` successive values.
-fn whole(values: &[[f64; 2]], weights: &[f64], n: usize) -> Vec<[f64; 2]> {
-    let mean = |(values, weights): (&[[f64; 2]], &[f64])| {
-        let all: f64 = weights.iter().sum();
-        [0, 1].map(|i| {
-            let sum: f64 = values.iter().zip(weights).map(|(v, w)| v[i] * w).sum();
-            if all > 0.0 { sum / all } else { 0.0 }
-        })
-    };
-    values.windows(n).zip(weights.windows(n)).map(mean).collect()
+/// The state of a motion once a cycle, looked at in blocks.
+struct Strobe<'a> {
+    states: &'a [[f64; 4]],
+    block: usize,
+}
+
+impl Strobe<'_> {
+    /// The largest state of each mass over the last block.
+    fn sizes(&self) -> [f64; 2] {
+        let last = &self.states[self.states.len() - self.block..];
+        [0, 2].map(|i| last.iter().map(|s| s[i].hypot(s[i + 1])).fold(0.0, f64::max))
+    }
+
+    /// Whether the masses, `gap` (m) apart at rest, were in contact at the end of each cycle of the last block.
+    fn pressed(&self, gap: f64) -> bool {
+        let sizes = self.sizes();
+        let noise = ROUNDING * (sizes[0] + sizes[1] + gap.abs());
+        self.states[self.states.len() - self.block..].iter().all(|s| s[0] - s[2] >= gap - noise)
+    }
+
+    /// How far the masses together still go, in m, where the motion repeats in `q` cycles and that is the part `fine` of what each moves at
+    /// most; `None` where it is more, or cannot be told.
+    ///
+    /// What falls by the ratio ρ from one repetition to the next has dρ/(1 − ρ) of its last step d before it. Steps are the largest of a
+    /// block, and ρ is taken from those of the block before: so that neither beats nor a turning point look like the end.
+    fn left(&self, q: usize, fine: f64) -> Option<f64> {
+        let end = self.states.len();
+        if end < 2 * self.block + q {
+            return None;
+        }
+        let sizes = self.sizes();
+        let largest = sizes[0].max(sizes[1]);
+        // The largest way of a mass in q cycles.
+        let step = |range: std::ops::Range<usize>, mass: usize| {
+            let i = 2 * mass;
+            let way = |(a, b): (&[f64; 4], &[f64; 4])| (a[i] - b[i]).hypot(a[i + 1] - b[i + 1]);
+            let before = &self.states[range.start - q..range.end - q];
+            self.states[range].iter().zip(before).map(way).fold(0.0, f64::max)
+        };
+        let allowed = |mass: usize| fine * sizes[mass].max(NOTHING * largest);
+        // Most patterns are turned down by the last cycle alone.
+        if (0..2).any(|mass| step(end - 1..end, mass) > allowed(mass)) {
+            return None;
+        }
+        let mut all = 0.0;
+        for mass in 0..2 {
+            let [last, before] = [end, end - self.block].map(|end| step(end - self.block..end, mass));
+            let fallen = (last / before).powf(q as f64 / self.block as f64);
+            let left = match last <= ROUNDING * largest {
+                true => last,
+                false if fallen >= 1.0 => return None,
+                false => last * (fallen / (1.0 - fallen)).max(1.0),
+            };
+            if left > allowed(mass) {
+                return None;
+            }
+            all += left;
+        }
+        Some(all)
+    }
+}
+
+/// Mean over successive blocks.
+fn mean_of(blocks: &[Block]) -> [f64; 2] {
+    let all: f64 = blocks.iter().map(|b| b.weight).sum();
+    [0, 1].map(|i| {
+        let sum: f64 = blocks.iter().map(|b| b.value[i] * b.weight).sum();
+        if all > 0.0 { sum / all } else { 0.0 }
+    })
 }
 
 /// Whether the last of these values is the end of the way: what falls by the ratio ρ a block has ρ/(1 − ρ) of its last step before it.
@@ -249,9 +309,6 @@ fn mean(values: &[[f64; 2]], steady: bool) -> Answer {
     }
     answer
 }
-
-/// Standard deviations below its expectation from which von Neumann's ratio tells a drift: of a hundred steady motions less than one.
-const TOLD: f64 = 2.5;
 
 /// Whether successive values are nearer to each other than independent ones are: Σ(xᵢ₊₁ − xᵢ)²/Σ(xᵢ − x̄)² has the mean 2 and the variance
 /// 4(n − 2)/(n² − 1) for independent ones (J. von Neumann, 1941).

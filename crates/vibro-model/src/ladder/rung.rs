@@ -1,14 +1,17 @@
 //! A rung of the ladder and what was found of it.
 
-use super::Change;
+use super::question::{Answer, Change};
+use super::reading::{End, Reading};
+use crate::Scene;
 use serde::Serialize;
-use vibro_record::Finding;
+use vibro_record::{Error, Finding};
 
 /// A model of the rig, from the least to the most that it knows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Model {
     /// The motion without impacts, of mass 1 alone.
+    #[default]
     Linear,
     /// One impact a cycle, in closed form.
     ClosedForm,
@@ -50,23 +53,91 @@ impl Model {
     }
 
     /// Parameters that it needs beside those of mass 1, the gap and the excitation.
-    pub fn needs(self) -> &'static [&'static str] {
+    pub fn needs(self) -> &'static [Need] {
         match self {
             Model::Linear => &[],
-            Model::ClosedForm | Model::Restitution => &["mass 2", "restitution"],
-            Model::SoftCorrected | Model::KelvinVoigt => {
-                &["mass 2", "restitution or contact.damping", "contact.stiffness"]
-            }
-            Model::HuntCrossley => {
-                &["mass 2", "restitution or contact.damping", "contact.stiffness", "contact.exponent"]
-            }
-            Model::LooseMass => &["mass 2", "restitution", "buffer.gap"],
+            Model::ClosedForm | Model::Restitution => &[Need::Mass2, Need::Restitution],
+            Model::SoftCorrected | Model::KelvinVoigt => &[Need::Mass2, Need::Rebound, Need::Stiffness],
+            Model::HuntCrossley => &[Need::Mass2, Need::Rebound, Need::Stiffness, Need::Exponent],
+            Model::LooseMass => &[Need::Mass2, Need::Restitution, Need::Buffer],
         }
     }
 }
 
+/// What a model needs to know.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(into = "&'static str")]
+pub enum Need {
+    /// Mass, stiffness and damping of mass 2.
+    Mass2,
+    /// The coefficient of restitution.
+    Restitution,
+    /// That, or the contact's damping: what the rebound loses.
+    Rebound,
+    /// The contact's stiffness.
+    Stiffness,
+    /// The contact's damping.
+    Damping,
+    /// The exponent of the contact's law.
+    Exponent,
+    /// The gap of the buffer behind mass 1.
+    Buffer,
+    /// The way the frequency came.
+    History,
+}
+
+impl Need {
+    /// Its key, or what it is.
+    pub fn name(self) -> &'static str {
+        match self {
+            Need::Mass2 => "mass 2",
+            Need::Restitution => "restitution",
+            Need::Rebound => "restitution or contact.damping",
+            Need::Stiffness => "contact.stiffness",
+            Need::Damping => "contact.damping",
+            Need::Exponent => "contact.exponent",
+            Need::Buffer => "buffer.gap",
+            Need::History => "history",
+        }
+    }
+
+    /// The names of several, with commas.
+    pub fn names(needs: &[Need]) -> String {
+        needs.iter().map(|need| need.name()).collect::<Vec<_>>().join(", ")
+    }
+
+    /// Whether a scene has it.
+    pub(super) fn known(self, scene: &Scene) -> bool {
+        let contact = scene.contact.unwrap_or_default();
+        match self {
+            Need::Mass2 | Need::Restitution => true,
+            Need::Rebound => contact.damping.is_some() || scene.rig.restitution > 0.0,
+            Need::Stiffness => contact.stiffness.is_some(),
+            Need::Damping => contact.damping.is_some(),
+            Need::Exponent => contact.exponent.is_some(),
+            Need::Buffer => scene.buffer.is_some(),
+            Need::History => false,
+        }
+    }
+}
+
+impl From<Need> for &'static str {
+    fn from(need: Need) -> &'static str {
+        need.name()
+    }
+}
+
+/// A parameter that a model needs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Needed {
+    /// What it is.
+    pub parameter: Need,
+    /// Whether the scene has it.
+    pub known: bool,
+}
+
 /// What was found of a rung.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Rung {
     /// The model.
     pub model: Model,
@@ -88,7 +159,7 @@ pub struct Rung {
     /// The error that left it without an answer.
     pub refused: Option<String>,
     /// Parameters it needs beside those of mass 1, the gap and the excitation, and whether the scene has them.
-    pub needs: Vec<Need>,
+    pub needs: Vec<Needed>,
     /// Its answer: of x₁ and x₂; of impacts the same number twice.
     pub answer: Option<[f64; 2]>,
     /// Standard error of the answer, where it is a mean over a motion that does not repeat; else 0.
@@ -97,11 +168,38 @@ pub struct Rung {
     pub changes: Vec<Change>,
 }
 
-/// A parameter that a model needs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Need {
-    /// Its key, or what it is.
-    pub parameter: &'static str,
-    /// Whether the scene has it.
-    pub known: bool,
+impl Rung {
+    /// A rung without an answer, for these reasons.
+    pub(super) fn without(model: Model, reasons: Vec<Finding>) -> Rung {
+        Rung { model, reasons, ..Rung::default() }
+    }
+
+    /// A rung that cannot be computed.
+    pub(super) fn refused(model: Model, error: &Error) -> Rung {
+        let refused = error.to_string().lines().next().map(str::to_owned);
+        Rung { model, refused, ..Rung::default() }
+    }
+
+    /// The same with an answer, which took this time in ns.
+    pub(super) fn answering(self, Answer { value, spread, steady }: Answer, cost: f64, valid: bool) -> Rung {
+        Rung { valid, answer: Some(value), spread, settled: steady, cost_ns: Some(cost), ..self }
+    }
+
+    /// What was read of a motion, with how it was read after other reasons.
+    pub(super) fn read(model: Model, reading: &Reading, cost: f64, mut reasons: Vec<Finding>) -> Rung {
+        let Answer { value, spread, .. } = reading.answer;
+        let part = |i: usize| if value[i] == 0.0 { 0.0 } else { spread[i] / value[i].abs() };
+        let how = match reading.end {
+            End::Settled | End::Pressed => Finding::note("settled"),
+            End::Under => Finding::caution("not-settled"),
+            End::Steady => Finding::note("mean-of-cycles").number("error", part(0).max(part(1))),
+        };
+        reasons.push(how.count("cycles", reading.cycles as usize));
+        Rung::without(model, reasons).answering(reading.answer, cost, true)
+    }
+
+    /// Its answer with all that is known of it.
+    pub(super) fn full(&self) -> Option<Answer> {
+        Some(Answer { value: self.answer?, spread: self.spread, steady: self.settled })
+    }
 }

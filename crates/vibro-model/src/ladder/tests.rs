@@ -1,4 +1,5 @@
-use super::{Choice, Model, Question, Rung, choose, choose_over};
+use super::{Choice, Model, Need, Question, Rung, choose, choose_over};
+use crate::Motion;
 use crate::{
     Buffer, Compliance, ContactKeys, Excitation, Green, Impulses, Observable, Rig, Scene, Simulation, Sine,
     orbits,
@@ -139,7 +140,7 @@ fn an_uncertain_gap_is_carried_to_the_answer() {
 #[test]
 fn without_a_stiffness_it_refuses_and_gives_the_sensitivity() {
     let choice = scene_b(None);
-    assert_eq!((choice.chosen, choice.needs.as_slice()), (None, &["contact.stiffness"][..]));
+    assert_eq!((choice.chosen, choice.needs.as_slice()), (None, &[Need::Stiffness][..]));
     assert!(choice.rung(Model::ClosedForm).valid && choice.rung(Model::ClosedForm).error.is_none());
     let rows = &choice.sensitivity;
     assert!(
@@ -187,7 +188,7 @@ fn where_the_masses_do_not_meet_nothing_more_than_linear_is_needed() {
 fn two_motions_ask_for_the_history() {
     let (scene, question) = (scene(0.1, Some(1e6)), Question::new(Observable::Fundamental));
     let open = choose(&scene, hz(1.5), &question).unwrap();
-    assert_eq!((open.chosen, open.needs.as_slice()), (None, &["history"][..]));
+    assert_eq!((open.chosen, open.needs.as_slice()), (None, &[Need::History][..]));
     let (linear, closed) = (open.rung(Model::Linear), open.rung(Model::ClosedForm));
     assert!(linear.valid && closed.valid && open.motions.len() == 2);
     let several = finding(&open, "several-motions");
@@ -218,7 +219,7 @@ fn an_inadmissible_orbit_is_followed_event_by_event() {
 #[test]
 fn noise_and_tolerance_count_the_larger() {
     let question = Question::new(Observable::Fundamental);
-    let orbit = orbits(&Rig::thesis(), 0.5, hz(2.1)).unwrap().orbits[0];
+    let orbit = orbits(&Rig::thesis(), 0.5, hz(2.1)).unwrap().orbits.remove(0);
     let largest = Observable::Fundamental.of_orbit(&orbit).into_iter().fold(0.0, f64::max);
     // Noise as large as the answers: a change of a fifth does not matter.
     let faint = Question { noise: 0.3 * largest, ..question };
@@ -227,7 +228,7 @@ fn noise_and_tolerance_count_the_larger() {
 
 #[test]
 fn an_orbit_near_grazing_is_not_relied_on() {
-    let orbit = orbits(&Rig::thesis(), 0.5, hz(2.1)).unwrap().orbits[0];
+    let orbit = orbits(&Rig::thesis(), 0.5, hz(2.1)).unwrap().orbits.remove(0);
     let near = 2.0 * orbit.validity.grazing_distance;
     let question = Question { gap_std: near, ..Question::new(Observable::ImpactSpeed) };
     let choice = choose(&scene(0.5, Some(1e6)), hz(2.1), &question).unwrap();
@@ -263,7 +264,7 @@ fn other_scenes_find_their_rung() {
     // No rebound: no finite damper makes it.
     let dead = Scene { rig: Rig { restitution: 0.0, ..Rig::thesis() }, ..scene(0.5, Some(1e6)) };
     let choice = choose(&dead, hz(2.1), &question).unwrap();
-    assert_eq!((choice.chosen, choice.needs.as_slice()), (None, &["contact.damping"][..]));
+    assert_eq!((choice.chosen, choice.needs.as_slice()), (None, &[Need::Damping][..]));
     // A wall, impulses, a gap below zero, whatever is looked at.
     let wall = Scene { rig: Rig { m2: f64::INFINITY, ..Rig::thesis() }, ..scene(0.5, Some(1e6)) };
     let kicked = Scene {
@@ -332,12 +333,11 @@ fn the_stiffest_contact_tried_is_not_taken_for_enough() {
     let from = choice.sensitivity.iter().find(|row| row.enough).unwrap().stiffness;
     let needed = finding(&choice, "stiffness-needed");
     assert_eq!((needed.get("still"), needed.get("enough_from")), (None, Some(from)));
-    assert!(choice.sensitivity_failed.is_empty());
 }
 
 #[test]
 fn a_motion_on_its_way_widens_nothing() {
-    use super::change::Answer;
+    use super::question::Answer;
     let question = Question::new(Observable::ImpactSpeed);
     let of = |value: f64, spread: f64, steady| Answer { value: [value; 2], spread: [spread; 2], steady };
     let enough = |a: Answer, b: Answer| a.change(&b, Model::KelvinVoigt, &question).enough;
@@ -400,9 +400,9 @@ fn impossible_questions_are_named() {
     for tolerance in [0.0, -0.02, f64::NAN, 1e-9, 2.0, f64::INFINITY] {
         assert!(ask(Question { tolerance, ..good }, 11.0).starts_with("a tolerance of"));
     }
-    assert!(ask(Question { noise: -1.0, ..good }, 11.0).starts_with("a noise floor of -1 m"));
+    assert!(ask(Question { noise: -1.0, ..good }, 11.0).starts_with("the noise floor is -1 m"));
     assert!(
-        ask(Question { gap_std: f64::NAN, ..good }, 11.0).starts_with("an uncertainty of the gap of NaN m")
+        ask(Question { gap_std: f64::NAN, ..good }, 11.0).starts_with("the uncertainty of the gap is NaN m")
     );
     for frequency in [0.0, -3.0, f64::NAN, f64::INFINITY] {
         assert!(ask(good, frequency).starts_with("frequency is"));

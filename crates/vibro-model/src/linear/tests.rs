@@ -132,6 +132,6 @@ fn falls_and_integrals_of_quantities() {
     assert!((fall - (std::f64::consts::FRAC_PI_2 - 1.0)).abs() < 4.0 * f64::EPSILON);
     assert!((course.integral(0.7) - (f64::sin(1.7) - f64::sin(1.0))).abs() < 4.0 * f64::EPSILON);
     assert!((quantity.value(&start, 2.0) - f64::cos(1.0)).abs() < 4.0 * f64::EPSILON);
-    assert_eq!(quantity.reversed().times(-1.0), quantity);
+    assert_eq!(quantity.times(-1.0).times(-1.0), quantity);
     assert_eq!(mode.fly(&start, &force, 0.0).read(&quantity, &force).first_fall(), None);
 }

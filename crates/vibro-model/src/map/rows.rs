@@ -68,20 +68,11 @@ impl Rows {
             .setting("out"));
         };
         let mut rows = Rows::none(plan);
-        let mut row: Vec<(usize, Cell)> = Vec::new();
         // Without its line break the last line may be cut within a number.
-        for line in body.split_inclusive('\n').filter_map(|l| l.strip_suffix('\n')) {
-            let Some((at, cell)) = parse(line).filter(|(at, _)| *at < plan.y.n) else {
-                row.clear();
-                continue;
-            };
-            if row.first().is_some_and(|first| first.0 != at) {
-                row.clear();
-            }
-            row.push((at, cell));
-            if row.len() == plan.x.n {
-                rows.set(at, row.drain(..).map(|(_, cell)| cell).collect());
-            }
+        let lines = body.split_inclusive('\n').filter_map(|line| line.strip_suffix('\n'));
+        let cells: Vec<(usize, Cell)> = lines.filter_map(parse).filter(|(at, _)| *at < plan.y.n).collect();
+        for row in cells.chunk_by(|a, b| a.0 == b.0).filter(|row| row.len() == plan.x.n) {
+            rows.set(row[0].0, row.iter().map(|(_, cell)| *cell).collect());
         }
         Ok(rows)
     }

@@ -5,8 +5,8 @@ fn plan(n: usize) -> Plan {
     Plan {
         rig: Rig::thesis(),
         excitation: Sine { force: 0.5, frequency: 11.0 }.into(),
-        x: Axis { key: Key::Frequency, low: 4.0, high: 14.0, n },
-        y: Axis { key: Key::Restitution, low: 0.3, high: 0.95, n },
+        x: Axis { key: Key::named("frequency").unwrap(), low: 4.0, high: 14.0, n },
+        y: Axis { key: Key::named("restitution").unwrap(), low: 0.3, high: 0.95, n },
         cycles: 200,
     }
 }
@@ -42,7 +42,7 @@ fn cells_are_the_simulation_and_the_orbit() {
 fn one_settled_cell_has_the_radius_of_the_closed_form() {
     let (rig, sine) = (Rig { restitution: 0.5, ..Rig::thesis() }, Sine { force: 0.5, frequency: 10.0 });
     let cell = cell(&rig, &sine.into(), 400);
-    let orbit = orbits(&rig, sine.force, sine.frequency).unwrap().orbits[0];
+    let orbit = orbits(&rig, sine.force, sine.frequency).unwrap().orbits.remove(0);
     assert_eq!(cell.regime, Some(Regime::Periodic { impacts: 1, cycles: 1 }));
     // Within 1e-6 of the orbit, and a radius below 1 by a tenth.
     assert!((cell.spectral_radius.unwrap() - orbit.spectral_radius().unwrap()).abs() < 1e-4);

@@ -1,4 +1,4 @@
-use crate::sweep::{Observable, Pace, Plan, at_size};
+use crate::sweep::{Observable, Pace, Plan};
 use crate::{Compliant, Excitation, Impulses, Law, Motion, Pulses, Rig, Simulation, Sine, State};
 use vibro_record::Direction;
 
@@ -56,7 +56,7 @@ fn swept<M: Motion>(make: impl Fn(&Rig, &Excitation, State, f64) -> M) {
             };
             plan.steps(&mut motion, Direction::Up, |motion, value| {
                 compare(motion, Some(value));
-                motion.set_excitation(&at_size(&excitation, value))?;
+                motion.set_excitation(&excitation.at_size(value))?;
                 Ok((frequency, value))
             })
             .unwrap();

@@ -1,20 +1,18 @@
 //! What all orbits of a rig at one period share.
 
-use super::Orbit;
-use super::course::Course;
-use super::drive::Drive;
-use crate::{Green, Rig, Validity, floquet};
-use std::f64::consts::{PI, TAU};
+use super::{Course, Orbit};
+use crate::{Excitation, Green, Rig, Validity, floquet, scales};
+use num_complex::Complex64;
 use vibro_record::{Error, Result};
 
-/// The most half swings of a mass, or half cycles of the force, that a period may hold.
-const MOST_SWINGS: f64 = 1e5;
+/// The most swings of a mass that a period may hold.
+const MOST_SWINGS: f64 = 5e4;
 
 /// With y the steady motion of mass 1 alone, the masses meet where y = Δ + JC and part as the impact law says where ẏ = JP (Babitsky,
 /// *Theory of Vibro-Impact Systems* (1998), periodic Green's functions).
 #[derive(Debug, Clone, Copy)]
-pub struct Conditions<'a> {
-    pub rig: &'a Rig,
+pub struct Conditions {
+    pub rig: Rig,
     pub cycles: u32,
     /// Cycles of the excitation a second, in Hz.
     pub frequency: f64,
@@ -42,43 +40,29 @@ pub struct Root {
     pub upper: bool,
 }
 
-impl<'a> Conditions<'a> {
-    /// Conditions of one impact in `cycles` cycles at `frequency` (Hz).
+impl Conditions {
+    /// Conditions of one impact in `cycles` cycles at `frequency` (Hz), each `delay` (s) after the first touch: the ways then overlap by
+    /// vᵣ times it.
     ///
     /// # Errors
     /// If `cycles` is 0, the period holds too many swings, or an undamped mass meets its own period.
-    pub fn new(rig: &'a Rig, frequency: f64, cycles: u32) -> Result<Conditions<'a>> {
+    pub fn new(rig: &Rig, frequency: f64, cycles: u32, delay: f64) -> Result<Conditions> {
         if cycles == 0 {
             return Err(Error::usage("0 cycles between impacts", "at least one cycle"));
         }
         let period = f64::from(cycles) / frequency;
-        let oscillators = rig.oscillators();
-        let swings =
-            oscillators.iter().map(|o| o.omega2().sqrt()).fold(TAU * frequency, f64::max) * period / PI;
-        if swings.is_nan() || swings > MOST_SWINGS {
-            return Err(Error::refused(format!(
-                "{cycles} cycles at {frequency} Hz last {period} s, {swings:.0} half swings: more than {MOST_SWINGS:.0} are \
-                 not followed"
-            ))
-            .hint("ask for fewer cycles or a higher frequency"));
-        }
-        let greens =
-            [Green::new(rig.m1, oscillators[0], period)?, Green::new(rig.m2, oscillators[1], period)?];
+        scales::check_swings(rig, 1.0 / period, MOST_SWINGS)?;
+        let [first, second] = rig.oscillators();
+        let greens = [Green::new(rig.m1, first, period)?, Green::new(rig.m2, second, period)?];
         let [first, second] = &greens;
         Ok(Conditions {
-            rig,
+            rig: *rig,
             cycles,
             frequency,
-            c: first.start + second.start,
+            c: first.start + second.start + delay / rig.exchange(),
             p: 1.0 / rig.exchange() + first.slope_before + second.slope_before,
             greens,
         })
-    }
-
-    /// The same conditions for impacts that follow the first touch by `delay` (s): the ways then overlap by vᵣ times it.
-    pub fn delayed(mut self, delay: f64) -> Conditions<'a> {
-        self.c += delay / self.rig.exchange();
-        self
     }
 
     /// T in s.
@@ -86,11 +70,11 @@ impl<'a> Conditions<'a> {
         self.greens[0].period()
     }
 
-    /// The orbit of a root, with its verdicts.
-    pub fn orbit(&self, root: &Root, course: &Course, drive: Drive) -> Orbit {
-        let (rig, period) = (self.rig, self.period());
+    /// The orbit of a root, with its verdicts; without an excitation a free motion.
+    pub fn orbit(&self, root: &Root, course: Course, excitation: Option<Excitation>) -> Orbit {
+        let (rig, period) = (&self.rig, self.period());
         let (mut multipliers, mut stable) = (None, Some(false));
-        if drive == Drive::None {
+        if excitation.is_none() {
             // One of a family of free motions: it neither dies away nor grows.
             stable = None;
         } else if root.impulse > 0.0 {
@@ -103,6 +87,9 @@ impl<'a> Conditions<'a> {
             stable = multipliers.as_ref().map_or(stable, |m| floquet::inside(&monodromy, m, rounding));
         }
         let survey = course.survey();
+        let exists = root.impulse > 0.0;
+        let own = root.impulse.abs() / root.sensitivity;
+        let (closest, noise) = (survey.closest, course.noise());
         let mut orbit = Orbit {
             frequency: self.frequency,
             cycles: self.cycles,
@@ -110,14 +97,14 @@ impl<'a> Conditions<'a> {
             timing: root.timing,
             force_phase: root.force_phase,
             approach_velocity: root.impulse / rig.exchange(),
-            fundamental: Default::default(),
-            peak_to_peak: survey.spread,
-            validity: Validity::judge(root, course, survey.closest, stable, multipliers.as_ref()),
+            fundamental: [Complex64::ZERO; 2],
+            peak_to_peak: survey.ranges.map(|(low, high)| high - low),
+            validity: Validity::judge(exists, root.upper, own, closest, noise, stable, multipliers.as_ref()),
             multipliers,
             upper: root.upper,
             rig: *rig,
-            drive,
-            course: *course,
+            excitation,
+            course,
         };
         orbit.fundamental = orbit.line(self.cycles);
         orbit

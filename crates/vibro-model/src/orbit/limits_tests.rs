@@ -218,7 +218,7 @@ fn a_contact_that_lasts_is_corrected_for() {
     {
         let excitation = Excitation::Sine(Sine { force: 0.5, frequency: at(&rig, nu) });
         let found = orbits_of(&rig, &excitation, 1).unwrap();
-        let orbit = found.orbits[0];
+        let orbit = &found.orbits[0];
         let contact = Compliance::new(&rig, stiffness, None).unwrap();
         assert!((contact.restitution - 0.7).abs() < 1e-14);
         let soft = softened(&rig, &excitation, &found, &contact).unwrap()[0].unwrap();

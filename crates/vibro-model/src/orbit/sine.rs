@@ -1,17 +1,17 @@
-//! Orbits under a sine force: a quadratic.
+//! Orbits under a sine force, and without any: a quadratic.
 
-use super::Orbit;
 use super::conditions::{Conditions, Root};
-use super::course::Course;
-use super::drive::Drive;
-use super::stretch::Stretch;
-use crate::Steady;
+use super::{Course, Orbit, driven};
+use crate::scales::{Least, number};
+use crate::waves::Waves;
+use crate::{Excitation, Flight, Rig, Sine, Steady};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
+use vibro_record::Result;
 
 /// (C² + (P/ω)²)J² + 2ΔCJ + Δ² − A² = 0, from y = A cos φ = Δ + JC and ẏ = −Aω sin φ = JP.
 #[derive(Debug, Clone, Copy)]
-pub struct Quadratic {
+struct Quadratic {
     /// C² + (P/ω)².
     a: f64,
     /// ΔC.
@@ -24,7 +24,7 @@ pub struct Quadratic {
 
 impl Quadratic {
     /// That of these conditions, for a steady motion of mass 1 alone of `amplitude` (m) at `omega` (rad/s).
-    pub fn new(conditions: &Conditions<'_>, amplitude: f64, omega: f64) -> Quadratic {
+    fn new(conditions: &Conditions, amplitude: f64, omega: f64) -> Quadratic {
         let (c, p, gap) = (conditions.c, conditions.p / omega, conditions.rig.gap);
         let a = c * c + p * p;
         Quadratic {
@@ -36,12 +36,12 @@ impl Quadratic {
     }
 
     /// Whether it has roots.
-    pub(crate) fn has_roots(&self) -> bool {
+    fn has_roots(&self) -> bool {
         self.a > 0.0 && self.discriminant >= 0.0
     }
 
     /// Its roots, the larger first; beyond the fold twice the place where they met.
-    pub fn roots(&self) -> [f64; 2] {
+    fn roots(&self) -> [f64; 2] {
         // The root in which the terms add up first, the other from their product.
         let root = self.discriminant.max(0.0).sqrt();
         let first = -(self.half + root.copysign(self.half)) / self.a;
@@ -54,46 +54,153 @@ impl Quadratic {
     }
 }
 
-/// Orbits under the force `force` cos ωt whose steady motion is `steady`, larger impulse first.
-pub fn orbits<'a>(
-    conditions: &'a Conditions<'a>,
-    steady: &'a Steady,
-    force: f64,
-) -> impl Iterator<Item = Orbit> + use<'a> {
+/// The motion after an impact J under a forced motion of mass 1: mass 1 has −Jχ₁ on top, mass 2 Jχ₂.
+fn course(conditions: &Conditions, impulse: f64, forced: Waves) -> Course {
+    let [one, two] = &conditions.greens;
+    let free = [
+        (-impulse * one.start, -impulse * one.slope_after),
+        (impulse * two.start, impulse * two.slope_after),
+    ];
+    let rig = &conditions.rig;
+    Course::smooth(conditions.period(), &Flight::of(rig.oscillators(), forced, 0.0, rig.gap, free))
+}
+
+/// Orbits under the force `sine` whose steady motion is `steady`, larger impulse first.
+pub fn orbits(conditions: &Conditions, steady: &Steady, sine: &Sine) -> Vec<Orbit> {
     let (c, p, gap) = (conditions.c, conditions.p / steady.omega, conditions.rig.gap);
     let amplitude = steady.amplitude();
     let quadratic = Quadratic::new(conditions, amplitude, steady.omega);
-    let discriminant = quadratic.discriminant;
-    let pair = quadratic.has_roots().then(|| {
-        let [larger, smaller] = quadratic.roots();
-        [(larger, true), (smaller, false)]
-    });
-    pair.into_iter().flatten().map(move |(impulse, upper)| {
-        let cosine = (gap + impulse * c) / amplitude;
-        let sine = -impulse * p / amplitude;
-        let timing = f64::atan2(sine, cosine).rem_euclid(TAU);
+    if !quadratic.has_roots() {
+        return Vec::new();
+    }
+    let one = |(impulse, upper): (f64, bool)| {
+        let timing = f64::atan2(-impulse * p / amplitude, (gap + impulse * c) / amplitude).rem_euclid(TAU);
         let root = Root {
             impulse,
             timing,
             force_phase: (timing - steady.response.arg()).rem_euclid(TAU),
             // From the quadratic: (aJ + ΔC) dJ = −(CJ + Δ) dΔ.
-            sensitivity: (c * impulse + gap).abs() / discriminant.max(0.0).sqrt(),
+            sensitivity: (c * impulse + gap).abs() / quadratic.discriminant.sqrt(),
             size: gap.abs() + amplitude,
             upper,
         };
-        let [chi1, chi2] = &conditions.greens;
-        let stretch = Stretch {
-            oscillators: conditions.rig.oscillators(),
-            free: [
-                (-impulse * chi1.start, -impulse * chi1.slope_after),
-                (impulse * chi2.start, impulse * chi2.slope_after),
-            ],
-            forced: Complex64::from_polar(amplitude, timing),
-            omega: steady.omega,
-            rest: 0.0,
-            gap,
-        };
-        let course = Course::Smooth { stretch, period: conditions.period() };
-        conditions.orbit(&root, &course, Drive::Sine(force))
+        let course =
+            course(conditions, impulse, Waves::one(Complex64::from_polar(amplitude, timing), steady.omega));
+        conditions.orbit(&root, course, Some(Excitation::Sine(*sine)))
+    };
+    let [larger, smaller] = quadratic.roots();
+    [(larger, true), (smaller, false)].map(one).into()
+}
+
+/// The orbit of the larger root as a spectrum shows it, without its verdicts: for fits, which ask for it a million times.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shown {
+    /// Impulse J in N s.
+    pub impulse: f64,
+    /// Amplitudes of x₁ and x₂ in m at the excitation frequency.
+    pub amplitude: [f64; 2],
+    /// Whether the orbit exists: its root is real and J > 0. Beyond the fold the numbers are those of the place where the roots would
+    /// have met, so that they change continuously; whether the orbit is admissible and stable, [`super::orbits`] tells.
+    pub exists: bool,
+}
+
+/// The orbit of the larger root with one impact a cycle under a sine force; X₁ = Ae^{iφ} − (2J/T)L₁, X₂ = (2J/T)L₂.
+///
+/// # Errors
+/// As [`super::orbits`].
+pub fn shown(rig: &Rig, sine: &Sine) -> Result<Shown> {
+    let steady = Steady::new(rig, sine)?;
+    driven(sine.force)?;
+    let conditions = Conditions::new(rig, sine.frequency, 1, 0.0)?;
+    let omega = steady.omega;
+    let quadratic = Quadratic::new(&conditions, steady.amplitude(), omega);
+    let [impulse, _] = quadratic.roots();
+    let [l1, l2] = rig.receptances(omega);
+    let train = 2.0 * impulse * sine.frequency;
+    // cos φ and sin φ times A; beyond the fold their squares do not add up to A².
+    let forced = Complex64::new(rig.gap + impulse * conditions.c, -impulse * conditions.p / omega);
+    let forced = forced * (steady.amplitude() / forced.norm());
+    Ok(Shown {
+        impulse,
+        amplitude: [(forced - train * l1).norm(), (train * l2).norm()],
+        exists: quadratic.has_roots() && impulse > 0.0,
     })
+}
+
+/// The motion with one impact a cycle at `frequency` (Hz) that the rig would keep up without force, dampers and losses in the impact;
+/// `None` where there is none.
+///
+/// Without losses P = 0, any size goes with the impact law, and the masses meet where Δ + JC = 0 (Babitsky, *Theory of Vibro-Impact
+/// Systems* (1998)). Resonances of the driven rig lie along this curve.
+///
+/// # Errors
+/// If a parameter is impossible, or the frequency is a whole part of a natural frequency.
+pub fn backbone(rig: &Rig, frequency: f64) -> Result<Option<Orbit>> {
+    rig.check()?;
+    number("frequency", frequency, "Hz", Least::AboveZero)?;
+    let lossless = Rig { c1: 0.0, c2: 0.0, restitution: 1.0, ..*rig };
+    let conditions = Conditions::new(&lossless, frequency, 1, 0.0)?;
+    let impulse = -rig.gap / conditions.c;
+    if !(impulse.is_finite() && impulse > 0.0) {
+        return Ok(None);
+    }
+    let root = Root {
+        impulse,
+        timing: 0.0,
+        force_phase: 0.0,
+        sensitivity: 1.0 / conditions.c.abs(),
+        size: rig.gap.abs(),
+        upper: false,
+    };
+    Ok(Some(conditions.orbit(&root, course(&conditions, impulse, Waves::default()), None)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::orbits;
+
+    #[test]
+    fn it_is_the_fundamental_of_the_upper_orbit() {
+        let rig = Rig { restitution: 0.98, ..Rig::thesis() };
+        let (mut compared, mut beyond) = (0, 0);
+        for i in 0..200 {
+            let frequency = 4.013 + 0.05 * f64::from(i);
+            let sine = Sine { force: 0.1, frequency };
+            let all = orbits(&rig, sine.force, frequency).unwrap();
+            let shown = shown(&rig, &sine).unwrap();
+            let Some(orbit) = all.orbits.first() else {
+                assert!(!shown.exists && shown.amplitude.iter().all(|a| a.is_finite()), "{shown:?}");
+                beyond += 1;
+                continue;
+            };
+            assert_eq!(shown.exists, orbit.validity.exists);
+            // The phase goes through an angle and back there: rounded to ε, and x₁ is a difference of parts that are up to so much larger.
+            for (a, x) in shown.amplitude.iter().zip(orbit.fundamental) {
+                let parts = 1.0 + all.no_impact.amplitude / x.norm();
+                assert!((a / x.norm() - 1.0).abs() < 64.0 * f64::EPSILON * parts, "{frequency}: {a} {x}");
+            }
+            compared += 1;
+        }
+        assert!(compared > 100 && beyond > 20, "{compared} {beyond}");
+    }
+
+    #[test]
+    fn beyond_the_fold_it_goes_on_without_a_step() {
+        // The fold is found by halving between a frequency with roots and one without.
+        let rig = Rig { restitution: 0.98, ..Rig::thesis() };
+        let at = |frequency| shown(&rig, &Sine { force: 0.1, frequency }).unwrap();
+        let (mut low, mut high) = (10.0, 11.0);
+        for _ in 0..60 {
+            let middle = f64::midpoint(low, high);
+            if at(middle).exists { low = middle } else { high = middle }
+        }
+        let (before, behind) = (at(low), at(high));
+        assert!(before.exists && !behind.exists);
+        // Beside a fold the root goes as the square root of the distance, here one rounding of the frequency.
+        for (a, b) in before.amplitude.iter().zip(behind.amplitude) {
+            assert!((a / b - 1.0).abs() < 64.0 * f64::EPSILON.sqrt(), "{a} {b}");
+        }
+        assert!(shown(&rig, &Sine { force: 0.0, frequency: 5.0 }).is_err());
+    }
 }

@@ -1,9 +1,10 @@
 //! What a contact that gives way changes in an orbit, to first order in the duration of the contact.
 
 use super::{Orbit, Orbits};
-use crate::{Excitation, Rig};
+use crate::contact::conversion;
+use crate::{Excitation, Law, Rig};
+use num_complex::Complex64;
 use serde::Serialize;
-use std::f64::consts::PI;
 use vibro_record::{Error, Result};
 
 /// The longest part of the period in contact for which the correction was checked.
@@ -39,23 +40,12 @@ impl Compliance {
     /// If stiffness or damping are impossible, the damper is critical or more, or no damper gives the rig's restitution.
     pub fn new(rig: &Rig, stiffness: f64, damping: Option<f64>) -> Result<Compliance> {
         rig.check()?;
-        if !(stiffness.is_finite() && stiffness > 0.0) {
-            return Err(Error::usage(
-                format!("contact stiffness is {stiffness} N/m"),
-                "a finite value above 0",
-            ));
-        }
+        Law::KelvinVoigt { stiffness, damping: damping.unwrap_or(0.0) }.check()?;
         let mass = rig.reduced_mass();
         let omega = (stiffness / mass).sqrt();
         let ratio = match damping {
-            Some(c) if c.is_finite() && c >= 0.0 => c / (2.0 * mass * omega),
-            Some(c) => {
-                return Err(Error::usage(
-                    format!("contact damping is {c} N s/m"),
-                    "a finite value of 0 or more",
-                ));
-            }
-            None => ratio_of(rig.restitution)?,
+            Some(c) => c / (2.0 * mass * omega),
+            None => conversion::damping_ratio(rig.restitution)?,
         };
         if ratio >= 1.0 {
             return Err(Error::refused(format!(
@@ -63,10 +53,9 @@ impl Compliance {
             ))
             .hint("simulate the motion with a contact of spring and damper"));
         }
-        let (decay, turn) = swing(ratio);
-        let damped = omega * (1.0 - ratio * ratio).sqrt();
-        let (restitution, duration) = ((-decay).exp(), turn / damped);
-        let left = restitution * (2.0 * ratio.asin()).sin() / damped;
+        let (restitution, duration) =
+            (conversion::restitution(ratio), conversion::duration(ratio, stiffness, mass));
+        let left = restitution * (2.0 * ratio.asin()).sin() / (omega * (1.0 - ratio * ratio).sqrt());
         Ok(Compliance {
             stiffness,
             damping: 2.0 * ratio * mass * omega,
@@ -77,30 +66,6 @@ impl Compliance {
             pressed: (1.0 - restitution) * duration - 2.0 * left,
         })
     }
-}
-
-/// `ζω₀t_c` and `ω_d t_c` at damping ratio ζ below 1.
-fn swing(ratio: f64) -> (f64, f64) {
-    let turn = PI - 2.0 * ratio.asin();
-    (ratio * turn / (1.0 - ratio * ratio).sqrt(), turn)
-}
-
-/// ζ of a restitution, by halving: `ζω₀t_c` rises from 0 to 2 with ζ.
-fn ratio_of(restitution: f64) -> Result<f64> {
-    let wanted = -restitution.ln();
-    // NaN cannot be; above critical damping R falls below e⁻².
-    if wanted >= 2.0 {
-        return Err(Error::refused(format!(
-            "a restitution of {restitution} needs a damper beyond the critical one, which the correction does not know"
-        ))
-        .hint("simulate the motion with a contact of spring and damper"));
-    }
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..60 {
-        let middle = f64::midpoint(low, high);
-        if swing(middle).0 < wanted { low = middle } else { high = middle }
-    }
-    Ok(low)
 }
 
 /// An orbit with the duration of its contact taken into account.
@@ -164,7 +129,7 @@ fn soften(
     if orbit.impulse <= 0.0 {
         return Ok(None);
     }
-    let (mut at, mut restitution) = (*orbit, rig.restitution);
+    let (mut at, mut restitution) = (orbit.clone(), rig.restitution);
     // κ = M(c₁/m₁² + c₂/m₂²): the rig's own dampers slow the masses' approach by κ times its speed.
     let second = if rig.has_wall() { 0.0 } else { rig.c2 / (rig.m2 * rig.m2) };
     let drag = rig.reduced_mass() * (rig.c1 / (rig.m1 * rig.m1) + second);
@@ -180,7 +145,7 @@ fn soften(
         restitution = changed;
         let soft = super::solve(&Rig { restitution, ..*rig }, excitation, orbit.cycles, compliance.delay)?;
         match orbit.continued(&soft.orbits) {
-            Some(next) if next.impulse > 0.0 => at = *next,
+            Some(next) if next.impulse > 0.0 => at = next.clone(),
             _ => return Ok(None),
         }
     }
@@ -190,7 +155,7 @@ fn soften(
         approach_velocity: at.approach_velocity - pressing(&at, drag)[0] * compliance.delay,
         restitution,
         peak_to_peak: at.peak_to_peak,
-        fundamental: at.fundamental.map(num_complex::Complex::norm),
+        fundamental: at.fundamental.map(Complex64::norm),
         change: at.impulse / orbit.impulse - 1.0,
         share: compliance.duration / orbit.period(),
     }))

@@ -1,10 +1,10 @@
 //! Orbits under impulses or pulses: every root of the timing.
 
-use super::Orbit;
 use super::conditions::{Conditions, Root};
-use super::course::Course;
-use super::drive::Drive;
-use super::response::{Piece, Response};
+use super::driven::{Piece, Response};
+use super::{Course, Orbit};
+use crate::waves::Waves;
+use crate::{Excitation, Flight};
 use std::f64::consts::TAU;
 use vibro_math::bracket::bracketed;
 use vibro_math::swing::passages;
@@ -13,7 +13,7 @@ use vibro_math::swing::passages;
 ///
 /// Both conditions together, y(τ) = Δ + JC and ẏ(τ) = JP, ask for G(τ) = P(y − Δ) − Cẏ = 0. In each piece Py − Cẏ is a free motion of
 /// mass 1 itself, so its stationary points are known in closed form, and between two of them lies one root at most.
-pub fn orbits(conditions: &Conditions<'_>, response: &Response, drive: Drive) -> Vec<Orbit> {
+pub fn orbits(conditions: &Conditions, response: &Response, excitation: &Excitation) -> Vec<Orbit> {
     let mut orbits = Vec::new();
     let Conditions { c, p, rig, .. } = *conditions;
     if c == 0.0 && p == 0.0 {
@@ -34,20 +34,36 @@ pub fn orbits(conditions: &Conditions<'_>, response: &Response, drive: Drive) ->
             // With τ from y = Δ + JC, d(JP − ẏ)/dJ = (Pẏ − Cÿ)/ẏ.
             upper: slope > 0.0,
         };
-        let course = Course::Broken {
-            response: *response,
-            greens: conditions.greens,
-            impulse,
-            delay: timing,
-            gap: rig.gap,
-        };
-        orbits.push(conditions.orbit(&root, &course, drive));
+        let course = course(conditions, response, impulse, timing);
+        orbits.push(conditions.orbit(&root, course, Some(excitation.clone())));
     });
     orbits
 }
 
+/// The steady motion less that of the impacts, from an impact that follows the beginning of the pulse by `delay` (s).
+fn course(conditions: &Conditions, response: &Response, impulse: f64, delay: f64) -> Course {
+    let (period, gap) = (conditions.period(), conditions.rig.gap);
+    let oscillators = conditions.rig.oscillators();
+    let mut stretches = Vec::new();
+    let (mut t, (mut piece, mut inside)) = (0.0, response.piece(delay));
+    // What remains by rounding only is no stretch.
+    while t < period * (1.0 - 4.0 * f64::EPSILON) {
+        let left = piece.duration - inside;
+        let (x, v) = oscillators[0].free(piece.free.0, piece.free.1, inside);
+        let [(c1, d1), (c2, d2)] = conditions.greens.map(|green| green.at(t));
+        let free = [(x - impulse * c1, v - impulse * d1), (impulse * c2, impulse * d2)];
+        let flight = Flight::of(oscillators, Waves::default(), piece.rest, gap, free);
+        stretches.push((left.min(period - t), flight));
+        t += left;
+        inside = 0.0;
+        let [on, off] = response.pieces();
+        piece = if piece.start == 0.0 && response.width > 0.0 || on.duration == 0.0 { off } else { on };
+    }
+    Course { period, stretches }
+}
+
 /// Visits every root τ of G with G's slope there.
-fn each_root(conditions: &Conditions<'_>, response: &Response, mut visit: impl FnMut(f64, f64)) {
+fn each_root(conditions: &Conditions, response: &Response, mut visit: impl FnMut(f64, f64)) {
     let Conditions { c, p, rig, .. } = *conditions;
     let oscillator = &response.oscillator;
     for piece in response.pieces() {

@@ -4,7 +4,6 @@ use crate::{Green, Rig, Sine, Steady};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
-use vibro_math::Oscillator;
 use vibro_record::Result;
 
 /// What impacts at the phases θᵢ with the impulses Jᵢ must fulfil, tᵢ = θᵢ/ω, T = 2πq/ω:
@@ -18,9 +17,7 @@ pub(crate) struct System {
     pub omega: f64,
     pub period: f64,
     pub response: Complex64,
-    pub steady: Steady,
     pub greens: [Green; 2],
-    oscillators: [Oscillator; 2],
     /// 1/M(1 + R) in 1/kg.
     pub contact: f64,
     /// Length that equations and impulses are measured with, in m.
@@ -31,17 +28,14 @@ impl System {
     pub fn new(rig: &Rig, sine: &Sine, cycles: u32) -> Result<System> {
         let steady = Steady::new(rig, sine)?;
         let period = f64::from(cycles) * TAU / steady.omega;
-        let oscillators = rig.oscillators();
-        let [first, second] = oscillators;
+        let [first, second] = rig.oscillators();
         Ok(System {
             rig: *rig,
             omega: steady.omega,
             period,
             response: steady.response,
-            steady,
             greens: [Green::new(rig.m1, first, period)?, Green::new(rig.m2, second, period)?],
-            oscillators,
-            contact: 1.0 / (rig.reduced_mass() * (1.0 + rig.restitution)),
+            contact: 1.0 / rig.exchange(),
             length: rig.gap.abs().max(steady.amplitude()).max(f64::MIN_POSITIVE),
         })
     }
@@ -54,11 +48,11 @@ impl System {
     /// χ, χ̇, χ̈ of both masses together, `t` in 0..T.
     fn chi(&self, t: f64) -> [f64; 3] {
         let mut sum = [0.0; 3];
-        for (green, oscillator) in self.greens.iter().zip(&self.oscillators) {
+        for green in &self.greens {
             let (x, v) = green.at(t);
             sum[0] += x;
             sum[1] += v;
-            sum[2] += oscillator.acceleration(x, v);
+            sum[2] += green.oscillator().acceleration(x, v);
         }
         sum
     }

@@ -76,7 +76,7 @@ fn patterns_that_simulations_settle_on_are_found() {
 #[test]
 fn a_motion_over_several_periods_is_brought_to_one() {
     let (rig, sine) = (Rig { restitution: 0.5, ..Rig::thesis() }, Sine { force: 0.5, frequency: 10.0 });
-    let orbit = orbits(&rig, 0.5, 10.0).unwrap().orbits[0];
+    let orbit = orbits(&rig, 0.5, 10.0).unwrap().orbits.remove(0);
     let thrice: Vec<_> =
         (0..3).map(|i| (orbit.force_phase + TAU * f64::from(i), orbit.impulse * 1.001)).collect();
     let found = PeriodicOrbit::near(&rig, &sine, 3, &thrice).unwrap();

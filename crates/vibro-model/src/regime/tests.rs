@@ -45,13 +45,13 @@ fn differences_that_do_not_fall_are_no_pattern() {
     let mut x = 0.3_f64;
     for i in 0..300 {
         x = 4.0 * x * (1.0 - x);
-        keep(&mut watch.strikes, strike(i, x));
+        watch.strikes.push_back(strike(i, x));
     }
     watch.now = 300.0;
     assert_eq!(watch.pattern().regime, Regime::Irregular);
     watch.strikes.clear();
     for i in 0..300 {
-        keep(&mut watch.strikes, strike(i, 1.0 + 1e-3 * (f64::from(i) * 2.0_f64.sqrt()).sin()));
+        watch.strikes.push_back(strike(i, 1.0 + 1e-3 * (f64::from(i) * 2.0_f64.sqrt()).sin()));
     }
     assert_eq!(watch.pattern().regime, Regime::Irregular);
     // Two values in turn, 1e-5 apart, are a pattern of two; of one while they approach each other.
@@ -60,7 +60,7 @@ fn differences_that_do_not_fall_are_no_pattern() {
         for i in 0..300_i32 {
             let size = 1e-5 * 2.0_f64.powf(if shrink < 1.0 { 5.0 } else { 0.0 }) * shrink.powi(i);
             let side = if i % 2 == 0 { 1.0 } else { -1.0 };
-            keep(&mut watch.strikes, strike(i as u32, 1.0 + TAU * size * side));
+            watch.strikes.push_back(strike(i as u32, 1.0 + TAU * size * side));
         }
         let expected = Regime::Periodic { impacts, cycles: impacts };
         assert_eq!(watch.pattern().regime, expected, "{shrink}");

@@ -1,12 +1,13 @@
-//! A scene in the making: keys from a file and from a command line, each with the line it stands on.
+//! A scene in the making: keys from a file and from a command line, read alike.
 
-use super::given::{Given, KEYS, Value, parse};
 use super::{Buffer, ContactKeys, Scene};
 use crate::Rig;
-use crate::excitation::{Excitation, Impulses, Pulses, Sine, Sines};
-use std::collections::BTreeMap;
+use crate::excitation::{Excitation, Part};
+use crate::scales::{Least, number};
+use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use toml::de::DeTable;
+use toml::{Table, Value};
 use vibro_record::{Error, Place, Result};
 
 /// Kinds of excitation, each with the keys that belong to it.
@@ -21,24 +22,35 @@ const KINDS: [(&str, &[&str]); 4] = [
 const CAMPAIGN: [&str; 11] =
     ["rig", "sweep", "spectrum", "frf", "impacts", "drop", "pulse", "drill", "model", "fit", "compute"];
 
-/// The complaint about a campaign where a rig file should stand.
-fn campaign(path: &Path, text: &str) -> Option<Error> {
-    let table = DeTable::parse(text).ok()?;
-    let own = |key: &&str| table.get_ref().keys().any(|name| name.get_ref() == *key);
-    let key = CAMPAIGN.iter().find(|key| own(key))?;
-    let expected = "the keys of a rig at the top, and [excitation], [contact], [buffer]";
-    if let Some(of_rig) = Rig::KEYS.iter().find(|key| own(key)) {
-        let found = format!("[{key}] beside `{of_rig}` at the top: half a campaign, half a rig");
-        return Some(
-            Error::usage(found, expected)
-                .hint(format!("take [{key}] out for a rig; in a campaign the rig's keys stand under [rig]")),
-        );
-    }
-    let found = format!("[{key}]: this is a campaign, not a rig");
-    Some(Error::usage(found, expected).hint(format!(
-        "put what stands under [rig] into a file of its own; `vibro run {}` does what the campaign asks for",
-        path.display()
-    )))
+/// All keys that a scene has; none is needed to read it.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Keys {
+    m1: Option<f64>,
+    m2: Option<f64>,
+    k1: Option<f64>,
+    k2: Option<f64>,
+    c1: Option<f64>,
+    c2: Option<f64>,
+    gap: Option<f64>,
+    restitution: Option<f64>,
+    #[expect(dead_code, reason = "read by its kind")]
+    excitation: Option<Driven>,
+    contact: Option<ContactKeys>,
+    buffer: Option<Buffer>,
+}
+
+/// Keys of the excitation, whatever its kind.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+#[expect(dead_code, reason = "what is read is that each is known and of its kind")]
+struct Driven {
+    kind: Option<String>,
+    force: Option<f64>,
+    impulse: Option<f64>,
+    width: Option<f64>,
+    frequency: Option<f64>,
+    parts: Option<Vec<Part>>,
 }
 
 /// Keys of a scene, of which later ones replace earlier ones.
@@ -56,7 +68,9 @@ fn campaign(path: &Path, text: &str) -> Option<Error> {
 pub struct Draft {
     path: Option<PathBuf>,
     text: String,
-    given: BTreeMap<String, Given>,
+    table: Table,
+    /// Keys that did not come from the text.
+    later: Vec<String>,
 }
 
 impl Draft {
@@ -71,10 +85,8 @@ impl Draft {
             let place = Place::byte(path, e.utf8_error().valid_up_to() as u64);
             Error::input(place, "bytes that are not UTF-8", "a rig as TOML text")
         })?;
-        let mut draft = Draft { path: Some(path.to_owned()), text, given: BTreeMap::new() };
-        draft.given =
-            parse(&draft.text).map_err(|e| campaign(path, &draft.text).unwrap_or(e).in_file(path))?;
-        Ok(draft)
+        let table = table(&text).map_err(|e| campaign(path, &text).unwrap_or(e).in_file(path))?;
+        Ok(Draft { path: Some(path.to_owned()), text, table, later: Vec::new() })
     }
 
     /// Reads TOML text.
@@ -82,7 +94,7 @@ impl Draft {
     /// # Errors
     /// If it is not TOML, or holds an unknown key or a value of the wrong kind.
     pub fn from_toml(text: &str) -> Result<Draft> {
-        Ok(Draft { path: None, text: text.to_owned(), given: parse(text)? })
+        Ok(Draft { path: None, text: text.to_owned(), table: table(text)?, later: Vec::new() })
     }
 
     /// Sets one key as `key=value`, tables with a dot: `excitation.force=0.5`. Words need no quotes.
@@ -90,63 +102,64 @@ impl Draft {
     /// # Errors
     /// If the key is unknown or the value of the wrong kind.
     pub fn set(&mut self, assignment: &str) -> Result<()> {
-        let wrong = || {
-            Error::usage(
-                format!("{assignment:?} sets no key"),
-                "KEY=VALUE, such as gap=0.5e-3 or excitation.force=0.5",
-            )
-        };
-        let (key, value) = assignment.split_once('=').ok_or_else(wrong)?;
+        let (key, value) = assignment.split_once('=').unwrap_or_default();
         let (key, value) = (key.trim(), value.trim());
         if key.is_empty() || value.is_empty() || value.contains('\n') {
-            return Err(wrong());
+            let expected = "KEY=VALUE, such as gap=0.5e-3 or excitation.force=0.5";
+            return Err(Error::usage(format!("{assignment:?} sets no key"), expected));
         }
-        // TOML knows no `.3` and no `5.`, people do.
-        let number = value.parse::<f64>().ok().map(|v| format!("{key} = {v:?}"));
+        // TOML knows no `.3` and no `5.`, people do; what is neither TOML nor a number is a word.
         let plain = format!("{key} = {value}");
-        let text = if DeTable::parse(&plain).is_ok() {
-            plain
-        } else {
-            number.unwrap_or_else(|| format!("{key} = {value:?}"))
+        let text = match value.parse::<f64>() {
+            _ if DeTable::parse(&plain).is_ok() => plain,
+            Ok(number) => format!("{key} = {number:?}"),
+            Err(_) => format!("{key} = {value:?}"),
         };
-        let given = parse(&text).map_err(|e| {
-            let e = e.aside(format!("in the assignment {assignment}"));
-            match value.replacen(',', ".", 1) {
-                point if point != value && point.parse::<f64>().is_ok() => {
-                    e.hint(format!("a decimal point: {key}={point}"))
+        let given = table(&text).map_err(|e| e.aside(format!("in the assignment {assignment}")))?;
+        for (name, value) in given {
+            match value {
+                Value::Table(inner) => {
+                    inner.into_iter().for_each(|(key, value)| self.insert(&format!("{name}.{key}"), value));
                 }
-                _ => e,
+                value => self.insert(&name, value),
             }
-        })?;
-        for (key, one) in given {
-            self.insert(&key, one.value);
         }
         Ok(())
     }
 
     /// Sets a key to a number; a table's key with a dot.
     pub fn put(&mut self, key: &str, value: f64) {
-        self.insert(key, Value::Number(value));
+        self.insert(key, Value::Float(value));
     }
 
     /// Sets the kind of the excitation; keys that do not belong to it are dropped.
     pub fn drive(&mut self, kind: &str) {
-        self.insert("excitation.kind", Value::Word(kind.to_owned()));
+        self.insert("excitation.kind", Value::String(kind.to_owned()));
     }
 
     fn insert(&mut self, key: &str, value: Value) {
-        if let (true, Value::Word(kind)) = (key == "excitation.kind", &value)
-            && let Some((_, keys)) = KINDS.iter().find(|k| k.0 == kind.as_str())
+        self.later.push(key.to_owned());
+        let Some((section, inner)) = key.split_once('.') else {
+            self.table.insert(key.to_owned(), value);
+            return;
+        };
+        let section = self.table.entry(section).or_insert_with(|| Value::Table(Table::new()));
+        // Other values have been refused.
+        let Value::Table(section) = section else { return };
+        if let Some((_, belonging)) =
+            KINDS.iter().find(|k| key == "excitation.kind" && value.as_str() == Some(k.0))
         {
-            self.given
-                .retain(|name, _| name.strip_prefix("excitation.").is_none_or(|key| keys.contains(&key)));
+            section.retain(|key, _| belonging.contains(&key));
         }
-        self.given.insert(key.to_owned(), Given { value, span: None });
+        section.insert(inner.to_owned(), value);
     }
 
     /// Whether a key was given.
     pub fn has(&self, key: &str) -> bool {
-        self.given.contains_key(key)
+        match key.split_once('.') {
+            Some((section, key)) => self.table.get(section).is_some_and(|section| section.get(key).is_some()),
+            None => self.table.contains_key(key),
+        }
     }
 
     /// Keys of the rig that were not given and take the values of [`Rig::thesis`].
@@ -160,136 +173,119 @@ impl Draft {
     /// If a value is impossible, or a key of the excitation is missing or belongs to another kind; the complaint points at its line
     /// where it stands in the file.
     pub fn scene(&self) -> Result<Scene> {
-        let mut rig = Rig::thesis();
-        let slots = [
-            &mut rig.m1,
-            &mut rig.m2,
-            &mut rig.k1,
-            &mut rig.k2,
-            &mut rig.c1,
-            &mut rig.c2,
-            &mut rig.gap,
-            &mut rig.restitution,
-        ];
-        for (key, slot) in Rig::KEYS.into_iter().zip(slots) {
-            *slot = self.number(key).unwrap_or(*slot);
-        }
+        let keys = Keys::deserialize(self.table.clone()).map_err(|e| complaint(&e, ""))?;
+        let thesis = Rig::thesis();
+        let rig = Rig {
+            m1: keys.m1.unwrap_or(thesis.m1),
+            m2: keys.m2.unwrap_or(thesis.m2),
+            k1: keys.k1.unwrap_or(thesis.k1),
+            k2: keys.k2.unwrap_or(thesis.k2),
+            c1: keys.c1.unwrap_or(thesis.c1),
+            c2: keys.c2.unwrap_or(thesis.c2),
+            gap: keys.gap.unwrap_or(thesis.gap),
+            restitution: keys.restitution.unwrap_or(thesis.restitution),
+        };
         if let Some((key, error)) = rig.fault() {
             return Err(self.at(key, error));
         }
-        let contact = ContactKeys {
-            stiffness: self.positive("contact.stiffness", "N/m", false)?,
-            damping: self.positive("contact.damping", "N s/m", true)?,
-            exponent: self.positive("contact.exponent", "", false)?,
-        };
-        let buffer = self.positive("buffer.gap", "m", true)?.map(|gap| Buffer { gap });
-        let contact = (contact != ContactKeys::default()).then_some(contact);
-        Ok(Scene { rig, excitation: self.excitation()?, contact, buffer })
+        let contact = keys.contact.unwrap_or_default();
+        for (key, value, unit, least) in [
+            ("contact.stiffness", contact.stiffness, "N/m", Least::AboveZero),
+            ("contact.damping", contact.damping, "N s/m", Least::Zero),
+            ("contact.exponent", contact.exponent, "", Least::AboveZero),
+            ("buffer.gap", keys.buffer.map(|b| b.gap), "m", Least::Zero),
+        ] {
+            let checked = value.map_or(Ok(()), |value| number(key, value, unit, least));
+            checked.map_err(|error| self.at(key, error))?;
+        }
+        let driven = self.table.get("excitation").and_then(Value::as_table);
+        let excitation = driven.map(|section| self.excitation(section.clone())).transpose()?;
+        let contact = Some(contact).filter(|c| *c != ContactKeys::default());
+        Ok(Scene { rig, excitation, contact, buffer: keys.buffer })
     }
 
-    fn number(&self, key: &str) -> Option<f64> {
-        match self.given.get(key)?.value {
-            Value::Number(value) => Some(value),
-            _ => None,
-        }
-    }
-
-    fn positive(&self, key: &str, unit: &str, zero: bool) -> Result<Option<f64>> {
-        let Some(value) = self.number(key) else { return Ok(None) };
-        if value.is_finite() && (value > 0.0 || (zero && value == 0.0)) {
-            return Ok(Some(value));
-        }
-        let expected = if zero { "a finite value of 0 or more" } else { "a finite value above 0" };
-        Err(self.at(key, Error::usage(format!("{key} is {value} {unit}").trim_end().to_owned(), expected)))
-    }
-
-    fn excitation(&self) -> Result<Option<Excitation>> {
-        let has = |key: &str| self.has(&format!("excitation.{key}"));
-        let keys = KEYS.iter().filter_map(|key| key.strip_prefix("excitation."));
-        if !keys.clone().any(has) {
-            return Ok(None);
-        }
-        let inferred = match (has("impulse"), has("width"), has("parts")) {
-            (true, ..) => "impulse",
-            (_, true, _) => "pulse",
-            (.., true) => "sines",
-            _ => "sine",
-        };
-        let kind = match self.given.get("excitation.kind").map(|g| &g.value) {
-            Some(Value::Word(kind)) => kind.as_str(),
-            _ => inferred,
-        };
+    fn excitation(&self, mut section: Table) -> Result<Excitation> {
+        // Each kind but a sine has a key of its own.
+        let inferred = [("impulse", "impulse"), ("width", "pulse"), ("parts", "sines")];
+        let inferred = inferred.into_iter().find(|(key, _)| section.contains_key(*key));
+        let kind = section.get("kind").and_then(Value::as_str);
+        let kind = kind.unwrap_or(inferred.map_or("sine", |(_, kind)| kind)).to_owned();
         let Some((_, belonging)) = KINDS.iter().find(|k| k.0 == kind) else {
-            let error = Error::usage(
-                format!("the excitation {kind:?} is not known"),
-                "sine, impulse, pulse or sines",
-            );
-            return Err(self.at("excitation.kind", error));
+            let found = format!("the excitation {kind:?} is not known");
+            return Err(self.at("excitation.kind", Error::usage(found, "sine, impulse, pulse or sines")));
         };
-        if let Some(stray) = keys.clone().find(|key| *key != "kind" && has(key) && !belonging.contains(key)) {
-            let error = Error::usage(
-                format!("excitation.{stray} does not belong to the excitation {kind:?}"),
-                format!("its keys: {}", belonging.join(", ")),
-            );
-            return Err(self.at(&format!("excitation.{stray}"), error));
+        if let Some(stray) = section.keys().find(|key| *key != "kind" && !belonging.contains(&key.as_ref())) {
+            let found = format!("excitation.{stray} does not belong to the excitation {kind:?}");
+            let expected = format!("its keys: {}", belonging.join(", "));
+            return Err(self.at(&format!("excitation.{stray}"), Error::usage(found, expected)));
         }
-        let need = |key: &'static str| {
-            self.number(&format!("excitation.{key}")).ok_or_else(|| {
-                let error = Error::usage(
-                    format!("the excitation {kind:?} has no {key}"),
-                    format!("excitation.{key}"),
-                );
-                self.at("excitation.kind", error)
-                    .hint(format!("state {key}, in [excitation] of a rig's file"))
-                    .setting(key)
-            })
-        };
-        let excitation = match kind {
-            "sine" => Excitation::Sine(Sine { force: need("force")?, frequency: need("frequency")? }),
-            "impulse" => {
-                Excitation::Impulse(Impulses { impulse: need("impulse")?, frequency: need("frequency")? })
-            }
-            "pulse" => Excitation::Pulse(Pulses {
-                force: need("force")?,
-                width: need("width")?,
-                frequency: need("frequency")?,
-            }),
-            _ => {
-                let parts = match self.given.get("excitation.parts").map(|g| &g.value) {
-                    Some(Value::Parts(parts)) => parts.clone(),
-                    _ => Vec::new(),
-                };
-                let sines = Excitation::Sines(Sines { parts });
-                match self.number("excitation.frequency") {
-                    Some(frequency) => sines.at_frequency(frequency),
-                    None => sines,
-                }
-            }
-        };
+        // Several sines have their own frequencies; one of the whole keeps their ratios.
+        let whole = if kind == "sines" { section.remove("frequency") } else { None };
+        let whole = whole.and_then(|hz| f64::deserialize(hz).ok());
+        let optional = if kind == "sines" { "frequency" } else { "" };
+        let missing = |key: &&&str| **key != optional && !section.contains_key(**key);
+        if let Some(key) = belonging.iter().find(missing) {
+            let found = format!("the excitation {kind:?} has no {key}");
+            let error = Error::usage(found, format!("excitation.{key}")).setting(key);
+            let error = self.at("excitation.kind", error);
+            return Err(error.hint(format!("state {key}, in [excitation] of a rig's file")));
+        }
+        section.insert("kind".to_owned(), Value::String(kind));
+        let excitation = Excitation::deserialize(section).map_err(|e| complaint(&e, ""))?;
+        let excitation = whole.map_or_else(|| excitation.clone(), |hz| excitation.at_frequency(hz));
         excitation.check().map_err(|error| {
-            let text = error.to_string();
-            let key = belonging.iter().find(|key| text.starts_with(*key)).unwrap_or(&"kind");
+            let key = error.settings().first().map_or("kind", |key| *key);
             self.at(&format!("excitation.{key}"), error)
         })?;
-        Ok(Some(excitation))
+        Ok(excitation)
     }
 
-    /// Points an error at the line of a key.
+    /// Points an error at the line of a key that has its value from the file.
     fn at(&self, key: &str, error: Error) -> Error {
-        match self.given.get(key).and_then(|g| g.span.clone()) {
-            Some(span) => {
-                let error = error.excerpt(&self.text, span);
-                self.path.iter().fold(error, Error::in_file)
-            }
+        let (section, inner) = key.split_once('.').map_or((None, key), |(s, k)| (Some(s), k));
+        let span = DeTable::parse(&self.text).ok().filter(|_| !self.later.iter().any(|k| k == key)).and_then(
+            |all| {
+                let place = match section {
+                    Some(section) => all.get_ref().get(section)?.get_ref().as_table()?,
+                    None => all.get_ref(),
+                };
+                place.keys().find(|name| name.get_ref() == inner).map(toml::Spanned::span)
+            },
+        );
+        match span {
+            Some(span) => self.path.iter().fold(error.excerpt(&self.text, span), Error::in_file),
             None => error,
         }
     }
 }
 
+/// Keys and values of a text, each known and of its kind.
+fn table(text: &str) -> Result<Table> {
+    toml::from_str::<Keys>(text).and_then(|_| toml::from_str(text)).map_err(|e| complaint(&e, text))
+}
+
+/// What serde complains of, with its place.
+fn complaint(error: &toml::de::Error, text: &str) -> Error {
+    let message = error.message().replace("unknown field", "unknown key").replace("f64", "a number");
+    let (found, expected) = message.split_once(", expected ").unwrap_or((&message, ""));
+    Error::usage(found, expected).excerpt(text, error.span().unwrap_or(0..0))
+}
+
+/// The complaint about a campaign where a rig file should stand.
+fn campaign(path: &Path, text: &str) -> Option<Error> {
+    let table: Table = toml::from_str(text).ok()?;
+    let key = CAMPAIGN.iter().find(|key| table.contains_key(**key))?;
+    let expected = "the keys of a rig at the top, and [excitation], [contact], [buffer]";
+    Some(Error::usage(format!("[{key}]: this is a campaign, not a rig"), expected).hint(format!(
+        "put what stands under [rig] into a file of its own; `vibro run {}` does what the campaign asks for",
+        path.display()
+    )))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::excitation::Part;
+    use crate::{Impulses, Pulses, Sine, Sines};
 
     #[test]
     fn a_scene_of_every_part() {
@@ -321,16 +317,16 @@ mod tests {
         for (text, line, words) in [
             ("gap = 1e-3\nmass1 = 1", "line 2", "unknown key `mass1`"),
             ("\n[excitation]\nkind = \"saw\"", "line 3", "the excitation \"saw\" is not known"),
-            ("[excitation]\nforce = 1\nphase = 0", "line 3", "unknown key `excitation.phase`"),
+            ("[excitation]\nforce = 1\nphase = 0", "line 3", "unknown key `phase`"),
             ("[excitation]\nkind = \"sine\"\nwidth = 1", "line 3", "excitation.width does not belong"),
             ("[excitation]\nforce = -1\nfrequency = 5", "line 2", "force is -1 N"),
             ("[excitation]\nkind = \"sine\"\nforce = 1", "line 2", "has no frequency"),
             ("m1 = -1", "line 1", "m1 is -1 kg"),
-            ("m1 = \"heavy\"", "line 1", "m1 is text; expected a number"),
+            ("m1 = \"heavy\"", "line 1", "string \"heavy\"; expected a number"),
             ("gap = 1\ngap = 2", "line 2", "duplicate key"),
-            ("excitation = 3", "line 1", "excitation is no table"),
+            ("excitation = 3", "line 1", "integer `3`; expected a table"),
             ("[contact]\nstiffness = 0", "line 2", "contact.stiffness is 0 N/m"),
-            ("[excitation]\nparts = [{force = 1}]", "line 2", "without force or frequency"),
+            ("[excitation]\nparts = [{force = 1}]", "line 2", "missing field `frequency`"),
             ("restitution = nan", "line 1", "restitution is NaN"),
             ("m1 =", "line 1", ""),
         ] {

@@ -75,12 +75,3 @@ pub struct Counts {
     /// Times the masses came to rest against each other.
     pub sticks: u64,
 }
-
-/// Displacements, velocities and impacts over an interval of time.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Recorded {
-    /// State at each sampling time; at an impact, the state after it.
-    pub states: Vec<State>,
-    /// Impacts in order.
-    pub impacts: Vec<Impact>,
-}

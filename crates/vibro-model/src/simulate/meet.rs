@@ -1,7 +1,7 @@
 //! Impacts, rests and kicks: what changes a simulated motion at an instant.
 
 use super::{Hold, Impact, Simulation};
-use crate::drive::Tick;
+use crate::clock::Tick;
 use crate::stick::Press;
 use crate::{Event, State};
 use std::f64::consts::TAU;
@@ -27,14 +27,19 @@ impl Simulation {
         {
             self.settle(approach)?;
         }
-        Ok(Impact { time: self.time, phase: self.drive.phase(), approach_velocity: approach, impulse })
+        Ok(Impact {
+            time: self.time,
+            phase: self.drive.forcing.phase(),
+            approach_velocity: approach,
+            impulse,
+        })
     }
 
     /// Scale of the speeds in m/s: of velocities and of displacements times ω.
     #[inline]
     fn speed(&self) -> f64 {
         let State { x1, v1, x2, v2 } = self.state;
-        v1.abs() + v2.abs() + TAU * self.drive.frequency() * (x1.abs() + x2.abs())
+        v1.abs() + v2.abs() + TAU * self.drive.forcing.frequency() * (x1.abs() + x2.abs())
     }
 
     /// Looks after an impact whether the masses come to rest against each other, at once or after a chatter.
@@ -77,7 +82,7 @@ impl Simulation {
 
     /// Does what the excitation does now.
     pub(super) fn tick(&mut self, tick: Tick) -> Result<Event> {
-        self.drive.tick(tick);
+        self.drive.forcing.clock.tick(tick);
         if let Tick::Kick(impulse) = tick {
             self.state.v1 += impulse / self.rig.m1;
             if impulse != 0.0 {

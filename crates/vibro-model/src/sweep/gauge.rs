@@ -37,7 +37,7 @@ pub(crate) const LOW_PASS: f64 = 10.0;
 /// error is h⁴/720 of the third derivative's step at each impact (Euler–Maclaurin): 3e-6 of the amplitude.
 const SAMPLES: f64 = 32.0;
 
-/// What was summed over a stretch of time, for both masses.
+/// What was summed over a stretch of time, of each mass.
 #[derive(Debug, Clone, Copy)]
 struct Sums {
     integral: [Complex64; 2],
@@ -54,16 +54,6 @@ impl Sums {
         duration: 0.0,
     };
 
-    fn add(&mut self, other: &Sums) {
-        for mass in 0..2 {
-            self.integral[mass] += other.integral[mass];
-            let (low, high) = other.range[mass];
-            self.range[mass] = (self.range[mass].0.min(low), self.range[mass].1.max(high));
-            self.root[mass] += other.root[mass];
-        }
-        self.duration += other.duration;
-    }
-
     fn value(&self, observable: Observable, mass: usize) -> f64 {
         match observable {
             Observable::Fundamental => 2.0 * self.integral[mass].norm() / self.duration,
@@ -73,14 +63,9 @@ impl Sums {
     }
 }
 
-/// Reads one observable of both masses, cycle by cycle.
-#[derive(Debug, Clone)]
-pub struct Gauge {
-    observable: Observable,
-    /// Fastest natural motion of the masses in rad/s.
-    natural: f64,
-    /// Running mean square.
-    square: [f64; 2],
+/// What was read since the last [`Gauge::clear`].
+#[derive(Debug, Clone, Copy)]
+struct Readings {
     /// The cycle under way.
     cycle: Sums,
     /// All cycles.
@@ -90,19 +75,26 @@ pub struct Gauge {
     scatter: [(f64, f64); 2],
 }
 
+const NOTHING: Readings =
+    Readings { cycle: Sums::NONE, total: Sums::NONE, cycles: 0.0, scatter: [(0.0, 0.0); 2] };
+
+/// Reads one observable of both masses, cycle by cycle.
+#[derive(Debug, Clone)]
+pub struct Gauge {
+    observable: Observable,
+    /// Fastest natural motion of the masses in rad/s.
+    natural: f64,
+    /// Running mean square.
+    square: [f64; 2],
+    read: Readings,
+}
+
 impl Gauge {
     /// For motions of `rig`.
     pub fn new(observable: Observable, rig: &Rig) -> Gauge {
         let natural = rig.oscillators().map(|o| o.omega2().sqrt());
-        Gauge {
-            observable,
-            natural: natural.into_iter().filter(|n| n.is_finite()).fold(0.0, f64::max),
-            square: [0.0; 2],
-            cycle: Sums::NONE,
-            total: Sums::NONE,
-            cycles: 0.0,
-            scatter: [(0.0, 0.0); 2],
-        }
+        let natural = natural.into_iter().filter(|n| n.is_finite()).fold(0.0, f64::max);
+        Gauge { observable, natural, square: [0.0; 2], read: NOTHING }
     }
 
     /// Whether it must see the whole motion, not only the cycles measured.
@@ -112,14 +104,7 @@ impl Gauge {
 
     /// Forgets the cycles read, not the running mean square.
     pub fn clear(&mut self) {
-        let nothing = Gauge {
-            cycle: Sums::NONE,
-            total: Sums::NONE,
-            cycles: 0.0,
-            scatter: [(0.0, 0.0); 2],
-            ..self.clone()
-        };
-        *self = nothing;
+        self.read = NOTHING;
     }
 
     /// Takes a piece of `duration` s that begins at `phase` (rad) under `omega` (rad/s).
@@ -131,6 +116,7 @@ impl Gauge {
         }
         let turn = Complex64::cis(-omega * h);
         let fade = (-LOW_PASS * h).exp();
+        let cycle = &mut self.read.cycle;
         let mut before = path.state(0.0);
         let mut wave = Complex64::cis(-phase);
         for i in 1..=n as u64 {
@@ -144,9 +130,9 @@ impl Gauge {
                         let (fa, fb) = (wave * a.0, next * b.0);
                         let da = wave * Complex64::new(a.1, -omega * a.0);
                         let db = next * Complex64::new(b.1, -omega * b.0);
-                        self.cycle.integral[mass] += (fa + fb) * (h / 2.0) + (da - db) * (h * h / 12.0);
+                        cycle.integral[mass] += (fa + fb) * (h / 2.0) + (da - db) * (h * h / 12.0);
                     }
-                    Observable::Peak => extend(&mut self.cycle.range[mass], a, b, h),
+                    Observable::Peak => extend(&mut cycle.range[mass], a, b, h),
                     Observable::Rms => {
                         let old = self.square[mass].sqrt();
                         // f = Ωx²e^{−Ω(h−t)}, ḟ = (2Ωxv + Ω²x²)e^{−Ω(h−t)}.
@@ -154,33 +140,39 @@ impl Gauge {
                         let d = |x: (f64, f64)| 2.0 * LOW_PASS * x.0 * x.1 + LOW_PASS * f(x);
                         let added = (f(a) * fade + f(b)) * (h / 2.0) + (d(a) * fade - d(b)) * (h * h / 12.0);
                         self.square[mass] = (self.square[mass] * fade + added).max(0.0);
-                        self.cycle.root[mass] += (old + self.square[mass].sqrt()) * (h / 2.0);
+                        cycle.root[mass] += (old + self.square[mass].sqrt()) * (h / 2.0);
                     }
                 }
             }
             (before, wave) = (after, next);
         }
-        self.cycle.duration += duration;
+        cycle.duration += duration;
     }
 
     /// Ends a cycle.
     pub fn close_cycle(&mut self) {
-        for mass in 0..2 {
-            let value = self.cycle.value(self.observable, mass);
-            self.scatter[mass].0 += value;
-            self.scatter[mass].1 += value * value;
+        let Readings { cycle, total, cycles, scatter } = &mut self.read;
+        for (mass, (sum, squares)) in scatter.iter_mut().enumerate() {
+            let value = cycle.value(self.observable, mass);
+            *sum += value;
+            *squares += value * value;
+            total.integral[mass] += cycle.integral[mass];
+            let ((low, high), (least, most)) = (cycle.range[mass], total.range[mass]);
+            total.range[mass] = (least.min(low), most.max(high));
+            total.root[mass] += cycle.root[mass];
         }
-        self.total.add(&self.cycle);
-        self.cycle = Sums::NONE;
-        self.cycles += 1.0;
+        total.duration += cycle.duration;
+        *cycle = Sums::NONE;
+        *cycles += 1.0;
     }
 
     /// Value over all cycles since [`Gauge::clear`] and standard deviation from cycle to cycle, for each mass.
     pub fn read(&self) -> [(f64, f64); 2] {
+        let Readings { total, cycles, scatter, .. } = &self.read;
         [0, 1].map(|mass| {
-            let (sum, squares) = self.scatter[mass];
-            let variance = (squares - sum * sum / self.cycles) / (self.cycles - 1.0).max(1.0);
-            (self.total.value(self.observable, mass), variance.max(0.0).sqrt())
+            let (sum, squares) = scatter[mass];
+            let variance = (squares - sum * sum / cycles) / (cycles - 1.0).max(1.0);
+            (total.value(self.observable, mass), variance.max(0.0).sqrt())
         })
     }
 }

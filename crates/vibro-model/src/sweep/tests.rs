@@ -1,5 +1,5 @@
 use super::*;
-use crate::{Compliant, Excitation, Law, Loose, Pulses, Rig, Simulation, Sine, State, orbits, orbits_of};
+use crate::{Compliant, Excitation, Law, Pulses, Rig, Simulation, Sine, State, orbits, orbits_of};
 
 const BOTH: [Direction; 2] = [Direction::Up, Direction::Down];
 
@@ -73,7 +73,7 @@ fn the_thesis_contact_that_gives_way_has_the_known_peaks() {
     let [grazing, clapping, down] = tops(&swept);
     assert!((grazing - 5.58).abs() < 0.05 && (clapping - 10.71).abs() < 0.1 && (down - 5.42).abs() < 0.1);
     assert!((below - 2.81).abs() < 0.05, "{below}");
-    let mut loose = Loose::with_law(&rig, &sine(3.0), 0.0, law, State::REST, 0.0).unwrap();
+    let mut loose = Compliant::loose(&rig, &sine(3.0), 0.0, Some(law), State::REST, 0.0).unwrap();
     let up = plan(3.0).frequency(&mut loose, 0.1, Direction::Up).unwrap();
     println!("loose: {}", highest(&up, 3.0, 14.0).frequency);
     assert!((highest(&up, 3.0, 14.0).frequency - 4.63).abs() < 0.1);
@@ -87,7 +87,7 @@ fn a_settled_step_is_the_closed_form() {
         let plan = Plan { from: 9.0, to: 11.0, pace, observable };
         let motion = Simulation::new(&rig, &Sine { force: 0.5, frequency: 9.0 }).unwrap();
         for point in both(&plan, &motion, 0.5, &[Direction::Up]).unwrap().up {
-            let orbit = orbits(&rig, 0.5, point.frequency).unwrap().orbits[0];
+            let orbit = orbits(&rig, 0.5, point.frequency).unwrap().orbits.remove(0);
             assert_eq!(orbit.validity.stable, Some(true));
             let expected = match read {
                 0 => orbit.fundamental.map(num_complex::Complex64::norm),
@@ -127,7 +127,7 @@ fn a_slow_rate_follows_the_steps_and_ends_in_phase() {
     let mut motion = Simulation::new(&rig, &Sine { force: 0.5, frequency: 9.9 }).unwrap();
     let points = plan.frequency(&mut motion, 0.5, Direction::Up).unwrap();
     for point in &points[5..] {
-        let orbit = orbits(&rig, 0.5, point.frequency).unwrap().orbits[0];
+        let orbit = orbits(&rig, 0.5, point.frequency).unwrap().orbits.remove(0);
         // The motion lags by the time it needs to settle, about 2 s: 0.004 Hz, over which the amplitude changes by less than 1 %.
         assert!((point.x1 / orbit.fundamental[0].norm() - 1.0).abs() < 0.01, "{point:?}");
     }
@@ -156,7 +156,7 @@ fn the_force_is_swept_like_the_frequency() {
     let down = swept.unwrap().down;
     assert_eq!(down.iter().map(|p| p.force).fold(f64::INFINITY, f64::min), 0.3);
     for point in down {
-        let orbit = orbits(&rig, point.force, 10.0).unwrap().orbits[0];
+        let orbit = orbits(&rig, point.force, 10.0).unwrap().orbits.remove(0);
         assert!((point.x2 / orbit.fundamental[1].norm() - 1.0).abs() < 1e-5, "{point:?}");
     }
 }

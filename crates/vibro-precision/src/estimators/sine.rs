@@ -57,7 +57,9 @@ const FREQUENCY: [Method<Trace>; 5] = [
     Method::rival("largest line", |t| hertz(t, Window::Rectangular, |l| rivals::largest(l) as f64)),
     Method::rival("parabola", |t| hertz(t, Window::Hann, |l| rivals::parabola(l, rivals::largest(l)))),
     Method::own("three lines, Hann", |t| three_lines(t, |e| (e.frequency, e.std))),
-    Method::own("least squares", |t| sine(t, None).map(|s| Answer::found(&s.tones[0].frequency, &s.findings))),
+    Method::own("least squares", |t| {
+        sine(t, None).map(|s| Answer::found(&s.tones[0].frequency, &s.findings))
+    }),
 ];
 
 const AMPLITUDE: [Method<Trace>; 6] = [
@@ -66,7 +68,9 @@ const AMPLITUDE: [Method<Trace>; 6] = [
     Method::rival("line, Hann", |t| highest(t, Window::Hann)),
     Method::rival("line, flat top", |t| highest(t, Window::FlatTop)),
     Method::own("three lines, Hann", |t| three_lines(t, |e| (e.force.unwrap_or(f64::NAN), e.force_std))),
-    Method::own("least squares", |t| sine(t, None).map(|s| Answer::found(&s.tones[0].amplitude, &s.findings))),
+    Method::own("least squares", |t| {
+        sine(t, None).map(|s| Answer::found(&s.tones[0].amplitude, &s.findings))
+    }),
 ];
 
 fn highest(trace: &Trace, window: Window) -> f64 {

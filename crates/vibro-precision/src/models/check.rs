@@ -166,14 +166,14 @@ mod tests {
         let force = task.rig.gap / unit * (1.0 - 1e-3);
         let task = Task { force, start: [-1e-3, 0.0, 0.0, 0.0], ..task };
         let found = orbits(&task.rig, task.force, task.frequency).unwrap().orbits;
-        let [first, second] = found[..] else { panic!("{}", found.len()) };
+        let [first, second] = &found[..] else { panic!("{}", found.len()) };
         let outcome = |told: &[&Orbit]| judged(&task, told).unwrap().outcome;
-        assert_eq!(outcome(&[&first, &second]), Outcome::Right);
+        assert_eq!(outcome(&[first, second]), Outcome::Right);
         assert_eq!(outcome(&[]), Outcome::Wrong);
         for change in
             [|o: &mut Orbit| o.validity.admissible ^= true, |o: &mut Orbit| o.validity.stable = Some(false)]
         {
-            let changed = [first, second].map(|mut orbit| {
+            let changed = [first.clone(), second.clone()].map(|mut orbit| {
                 change(&mut orbit);
                 orbit
             });

@@ -1,6 +1,6 @@
-use super::{Answer, Followed, Motions, On, Outcome, Reader, Stage};
+use super::{Answer, Followed, Motions, On, Reader, Stage};
 use crate::ladder::tests::fastest;
-use crate::ladder::{Choice, Model, Question, choose};
+use crate::ladder::{Choice, Model, Need, Question, choose};
 use crate::{Compliant, ContactKeys, Excitation, Motion, Observable, Rig, Scene, Simulation, Sine, State};
 use std::f64::consts::TAU;
 use vibro_math::runge_kutta::{Dop853, Integrator, Tolerance};
@@ -87,7 +87,7 @@ fn impacts_that_a_rising_frequency_keeps_are_followed() {
     assert_eq!(asked(0.7, 0.05, 6.8, Some(Direction::Down)).chosen, Some(Model::Linear));
     // Without the history nothing says which.
     let open = asked(0.7, 0.05, 6.8, None);
-    assert_eq!((open.chosen, open.needs.as_slice()), (None, &["history"][..]));
+    assert_eq!((open.chosen, open.needs.as_slice()), (None, &[Need::History][..]));
     assert!(open.motions.iter().any(|m| !m.stable));
     assert_eq!(open.findings[0].code, "several-motions");
     assert!(open.findings[0].fact("unstable").is_some());
@@ -170,7 +170,7 @@ fn a_contact_that_leads_from_rest_to_another_motion_asks_for_the_history() {
     };
     let question = Question { tolerance: 0.002, ..Question::new(Observable::HalfPeakToPeak) };
     let open = choose(&scene, 17.196, &question).unwrap();
-    assert_eq!((open.chosen, open.needs.as_slice()), (None, &["history"][..]), "{:?}", open.findings);
+    assert_eq!((open.chosen, open.needs.as_slice()), (None, &[Need::History][..]), "{:?}", open.findings);
     let soft = open.motions.last().unwrap();
     assert_eq!((soft.model, soft.pattern.to_string().as_str()), (Model::KelvinVoigt, "1/1"));
     // From rest the largest and the smallest x₁ of a cycle, from states at many instants.
@@ -214,7 +214,7 @@ fn one_motion_is_read_alike_from_wherever_it_starts() {
 fn a_motion_known_with_impacts_at_once_is_not_listed_again_with_a_contact_that_gives_way() {
     for (frequency, stiffness, pattern) in [(13.2, 1e7, "4/6"), (12.0, 1e8, "irregular")] {
         let open = speeds(0.9, 0.5, frequency, stiffness);
-        assert_eq!(open.needs, ["history"]);
+        assert_eq!(open.needs, [Need::History]);
         let patterns: Vec<String> = open.motions.iter().map(|m| m.pattern.to_string()).collect();
         assert_eq!(patterns, ["no impact", pattern]);
     }
@@ -234,9 +234,7 @@ fn a_motion_that_a_contact_comes_to_from_rest_is_not_rare() {
     let mut motion = Simulation::from_state(&scene.rig, &excitation, state, 0.0).unwrap();
     let from_rest = Reader::new(&scene.rig, 13.5986, &question).read(&mut motion).unwrap();
     assert_eq!(from_rest.regime, motions.known[1].pattern);
-    let outcome =
-        Outcome { answer: Some(Answer::exact([0.0; 2])), from_rest: Some(from_rest), ..Outcome::default() };
-    motions.differs(&outcome, Model::KelvinVoigt, &question);
+    motions.differs(&Answer::exact([0.0; 2]), &from_rest, Model::KelvinVoigt, &question);
     assert_eq!((rare(&motions), &motions.on), (vec![false, false], &On::Open));
 }
 

@@ -1,6 +1,7 @@
 use super::{End, Reader, drifts, mean};
+use crate::Motion;
 use crate::ladder::Question;
-use crate::ladder::change::APART;
+use crate::ladder::question::APART;
 use crate::ladder::tests::fastest;
 use crate::{Excitation, Observable, Rig, Simulation, Sine, State, no_impact};
 use std::f64::consts::TAU;

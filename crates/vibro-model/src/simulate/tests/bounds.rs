@@ -7,9 +7,8 @@ use crate::{Impulses, Pulses};
 fn a_thousand_million_cycles_are_refused_at_once() {
     let mut motion = scene_b();
     let text = motion.run(1e9 / motion.frequency(), |_| {}).unwrap_err().to_string();
-    assert!(text.contains("1000000000 cycles"), "{text}");
+    assert!(text.contains("1.000e9 cycles"), "{text}");
     assert_eq!(motion.time(), 0.0);
-    assert!(motion.record(1e-3, usize::MAX / 64).is_err());
 }
 
 #[test]

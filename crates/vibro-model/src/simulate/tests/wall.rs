@@ -1,5 +1,6 @@
 //! Mass 2 as a wall: what a huge mass on a huge spring tends to, and what a mass pressed against it does.
 
+use crate::Motion;
 use crate::{Event, Excitation, Pulses, Rig, Simulation, Sine, State};
 
 const WALL: Rig =

@@ -9,7 +9,7 @@ fn sticking_and_release_come_when_they_should() {
     let sine = Excitation::Sine(Sine { force: 0.35, frequency });
     let start = State { x1: -2e-3, ..State::REST };
     let phase = -std::f64::consts::FRAC_PI_2;
-    let mut motion = Follow::new(&rig, &sine, Contact::Rebound, None, start, phase).unwrap();
+    let mut motion = Compliant::start(&rig, &sine, None, None, start, phase).unwrap();
     let mut found = Vec::new();
     motion
         .advance(0.65, &mut |piece| {
@@ -40,8 +40,7 @@ fn rebounds_are_those_of_the_closed_form_flights() {
     let mut plain = Vec::new();
     Simulation::new(&rig, &sine).unwrap().run(2.0, |leg| plain.extend(leg.impact())).unwrap();
     let mut found = Vec::new();
-    let mut motion =
-        Follow::new(&rig, &Excitation::Sine(sine), Contact::Rebound, None, State::REST, 0.0).unwrap();
+    let mut motion = Compliant::start(&rig, &Excitation::Sine(sine), None, None, State::REST, 0.0).unwrap();
     motion
         .advance(2.0, &mut |piece| {
             if let Event::Impact(impact) = piece.event {

@@ -1,86 +1,69 @@
 //! What events change: the stage of a contact, the velocities, the spring of mass 1.
 
-use super::{Beginning, Contact, Follow, Mark, REST_SPEED, Stage};
+use super::compliant::{Beginning, Compliant, Mark, Stage};
 use crate::State;
 use crate::clock::Tick;
 use crate::motion::{Event, Path, Piece};
 use crate::simulate::Impact;
 
-impl Follow {
+/// Separation speed in m/s below which a rebound does not part masses that are pressed together.
+const REST_SPEED: f64 = 1e-9;
+
+impl Compliant {
     /// What a root changes, and what it is called.
     pub(super) fn mark(&mut self, mark: Mark) -> Event {
         match mark {
-            Mark::Meets => match self.contact {
-                Contact::Rebound => self.rebound(),
-                Contact::Law(_) => {
-                    self.touch();
-                    Event::Touch
-                }
-            },
-            Mark::ForceEnds => {
-                // Without a damper the force ends where the surfaces are back at their rest.
-                if self.indentation() <= 0.0 || self.modes.contact_force.weights[1] == 0.0 {
-                    self.separate()
-                } else {
-                    self.stage = Stage::Released;
-                    Event::Part
-                }
+            Mark::Meets if self.law.is_none() => self.rebound(),
+            Mark::Meets => {
+                self.touch();
+                Event::Touch
+            }
+            // Without a damper the force ends where the surfaces are back at their rest.
+            Mark::ForceEnds if self.indentation() > 0.0 && self.modes.contact_force.weights[1] != 0.0 => {
+                self.stage = Stage::Released;
+                Event::Part
             }
             Mark::ForceReturns => {
                 self.stage = Stage::Touching;
                 Event::Touch
             }
-            Mark::Separates => self.separate(),
+            Mark::ForceEnds | Mark::Separates => {
+                self.stage = Stage::Apart;
+                let Beginning { time, phase, approach, impulse } = self.beginning;
+                Event::Impact(Impact { time, phase, approach_velocity: approach, impulse })
+            }
             Mark::LetsGo => {
                 self.stage = Stage::Apart;
                 self.slack = self.rounding();
                 Event::Release
             }
-            Mark::SpringActs => {
-                self.spring_acts = true;
-                Event::Switch
-            }
-            Mark::SpringFree => {
-                self.spring_acts = false;
+            Mark::SpringActs | Mark::SpringFree => {
+                self.spring_acts = mark == Mark::SpringActs;
                 Event::Switch
             }
         }
     }
 
     pub(super) fn touch(&mut self) {
+        let approach = self.state.approach();
         self.stage = Stage::Touching;
-        self.beginning = Beginning {
-            time: self.time,
-            phase: self.drive.phase(),
-            approach: self.state.approach(),
-            impulse: 0.0,
-        };
-        self.within.begin(self.state.approach().abs());
-    }
-
-    pub(super) fn separate(&mut self) -> Event {
-        self.stage = Stage::Apart;
-        let Beginning { time, phase, approach, impulse } = self.beginning;
-        Event::Impact(Impact { time, phase, approach_velocity: approach, impulse })
+        self.beginning = Beginning { time: self.time, phase: self.drive.phase(), approach, impulse: 0.0 };
+        self.within.begin(approach.abs());
     }
 
     fn rebound(&mut self) -> Event {
         let approach = self.state.approach();
-        let impulse = self.modes.reduced_mass * (1.0 + self.rig.restitution) * approach;
+        let impulse = self.rig.exchange() * approach;
         self.slack = 0.0;
         self.state.v1 -= impulse / self.rig.m1;
         self.state.v2 += impulse / self.rig.m2;
-        Event::Impact(Impact {
-            time: self.time,
-            phase: self.drive.phase(),
-            approach_velocity: approach,
-            impulse,
-        })
+        let (time, phase) = (self.time, self.drive.phase());
+        Event::Impact(Impact { time, phase, approach_velocity: approach, impulse })
     }
 
     /// After a rebound too slow to part the masses against the force that presses them together, they move together.
     pub(super) fn come_to_rest(&mut self, visit: &mut dyn FnMut(Piece<'_>)) {
-        if self.contact != Contact::Rebound || -self.state.approach() >= REST_SPEED {
+        if self.law.is_some() || -self.state.approach() >= REST_SPEED {
             return;
         }
         let pressing = self.modes.pressing(self.spring_acts);
@@ -92,13 +75,8 @@ impl Follow {
             self.slack = self.rounding();
             return;
         }
-        let common = if self.rig.has_wall() {
-            0.0
-        } else {
-            (self.rig.m1 * s.v1 + self.rig.m2 * s.v2) / (self.rig.m1 + self.rig.m2)
-        };
-        self.state.v1 = common;
-        self.state.v2 = common;
+        let common = self.rig.common_speed(s);
+        (self.state.v1, self.state.v2) = (common, common);
         self.stage = Stage::Together;
         let end = Still(self.state);
         visit(Piece { start: self.time, duration: 0.0, path: &end, event: Event::Stick });
@@ -106,7 +84,7 @@ impl Follow {
 
     /// Does what the excitation does now.
     pub(super) fn tick(&mut self, tick: Tick) -> Event {
-        self.drive.tick(tick);
+        self.drive.clock.tick(tick);
         let event = match tick {
             Tick::Kick(impulse) => {
                 self.state.v1 += impulse / self.rig.m1;
@@ -122,7 +100,7 @@ impl Follow {
     pub(super) fn settle(&mut self) {
         let pulls = self.modes.contact_force.value(&self.state, 0.0) < 0.0;
         match self.stage {
-            Stage::Touching if pulls && !self.within.integrates() => self.stage = Stage::Released,
+            Stage::Touching if pulls && !self.integrates() => self.stage = Stage::Released,
             Stage::Released if !pulls => self.stage = Stage::Touching,
             Stage::Together => {
                 let force = self.drive.force(0.0);

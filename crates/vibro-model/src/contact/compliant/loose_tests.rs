@@ -11,7 +11,7 @@ fn a_loose_mass_drifts_with_its_damper_only() {
     // x = vτ(1 − e^{−t/τ}), τ = m₁/c₁, until it meets mass 2 at 1 mm.
     let rig = Rig::thesis();
     let start = State { v1: 0.01, ..State::REST };
-    let mut motion = Loose::new(&rig, &sine(0.0, 5.0), 2e-3, start, 0.0).unwrap();
+    let mut motion = Compliant::loose(&rig, &sine(0.0, 5.0), 2e-3, None, start, 0.0).unwrap();
     let mut met = None;
     motion
         .advance(0.2, &mut |piece| {
@@ -25,7 +25,7 @@ fn a_loose_mass_drifts_with_its_damper_only() {
     assert!((met.unwrap() - expected).abs() < 1e-15, "{met:?} {expected}");
     // The other way it meets its spring after 2 mm.
     let start = State { v1: -0.01, ..State::REST };
-    let mut motion = Loose::new(&rig, &sine(0.0, 5.0), 2e-3, start, 0.0).unwrap();
+    let mut motion = Compliant::loose(&rig, &sine(0.0, 5.0), 2e-3, None, start, 0.0).unwrap();
     let mut switches = Vec::new();
     motion
         .advance(0.5, &mut |piece| {
@@ -48,7 +48,7 @@ fn all_four_modes_agree_with_a_plain_integration() {
     let rig = Rig::thesis();
     let (k3, c3, buffer, force, omega) = (1e4, 5.0, 5e-4, 0.3, std::f64::consts::TAU * 5.0);
     let law = Law::KelvinVoigt { stiffness: k3, damping: c3 };
-    let mut motion = Loose::with_law(&rig, &sine(force, 5.0), buffer, law, State::REST, 0.3).unwrap();
+    let mut motion = Compliant::loose(&rig, &sine(force, 5.0), buffer, Some(law), State::REST, 0.3).unwrap();
     let (mut touches, mut switches) = (0, 0);
     motion
         .advance(1.0, &mut |piece| {
@@ -85,7 +85,8 @@ fn the_upward_sweep_has_its_resonance_where_the_thesis_has() {
     // The thesis' contact: 1e5 N/m with a damper of 0.1 N s/m; 0.1 N, 0.02 Hz/s in steps of 1 ms. Its running RMS through a
     // 10 rad/s low-pass peaks at 4.63 Hz.
     let law = Law::KelvinVoigt { stiffness: 1e5, damping: 0.1 };
-    let mut motion = Loose::with_law(&Rig::thesis(), &sine(0.1, 3.0), 0.0, law, State::REST, 0.0).unwrap();
+    let mut motion =
+        Compliant::loose(&Rig::thesis(), &sine(0.1, 3.0), 0.0, Some(law), State::REST, 0.0).unwrap();
     let (mut square, mut peak) = (0.0, (0.0, 0.0));
     let steps = 150_000;
     for i in 0..steps {
@@ -104,7 +105,7 @@ fn the_upward_sweep_has_its_resonance_where_the_thesis_has() {
 fn chatter_and_cuts_do_not_stop_a_loose_mass() {
     // Cut every millisecond, with a frequency that moves: rests against mass 2 begin and end many times.
     let rig = Rig { restitution: 0.2, ..Rig::thesis() };
-    let mut motion = Loose::new(&rig, &sine(0.1, 3.0), 0.0, State::REST, 0.0).unwrap();
+    let mut motion = Compliant::loose(&rig, &sine(0.1, 3.0), 0.0, None, State::REST, 0.0).unwrap();
     let (mut sticks, mut releases) = (0, 0);
     for i in 0..20_000 {
         motion.set_frequency(3.0 + f64::from(i) * 2e-5).unwrap();
@@ -123,7 +124,7 @@ fn chatter_and_cuts_do_not_stop_a_loose_mass() {
 #[test]
 fn impossible_ones_are_refused() {
     let rig = Rig::thesis();
-    let new = |rig: &Rig, gap, state| Loose::new(rig, &sine(0.1, 5.0), gap, state, 0.0);
+    let new = |rig: &Rig, gap, state| Compliant::loose(rig, &sine(0.1, 5.0), gap, None, state, 0.0);
     for gap in [-1e-3, f64::NAN, f64::INFINITY] {
         let text = new(&rig, gap, State::REST).unwrap_err().to_string();
         assert!(text.starts_with("buffer gap is"), "{text}");
@@ -131,5 +132,5 @@ fn impossible_ones_are_refused() {
     assert!(new(&rig, 0.0, State { x1: 2e-3, ..State::REST }).is_err());
     assert!(new(&Rig { m1: 0.0, ..rig }, 0.0, State::REST).is_err());
     let hertz = Law::Hertz { stiffness: 1e8 };
-    assert!(Loose::with_law(&rig, &sine(0.1, 5.0), 0.0, hertz, State::REST, 0.0).is_err());
+    assert!(Compliant::loose(&rig, &sine(0.1, 5.0), 0.0, Some(hertz), State::REST, 0.0).is_err());
 }
