@@ -7,7 +7,7 @@ use crate::compare::Overlay;
 use crate::error::{Error, Result};
 use crate::model::Observable;
 use crate::model::ladder::{
-    Change, Choice, Model, Question, Rung, Sensitivity, Stretch, Survey, choose, choose_over,
+    Change, Choice, Model, Need, Question, Rung, Sensitivity, Stretch, Survey, choose, choose_over,
 };
 use crate::record::{Direction, Finding, Severity};
 use crate::report::layout::table;
