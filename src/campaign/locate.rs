@@ -9,7 +9,8 @@ use std::path::Path;
 /// `beside` are keys that are known, too.
 pub(crate) fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&str]) -> Error {
     let (span, message) = (error.span().unwrap_or(0..0), error.message());
-    let (found, expected, hint) = decimal_comma(line_at(text, span.start)).unwrap_or_else(|| {
+    let line = line_at(text, span.start);
+    let (found, expected, hint) = decimal_comma(line).unwrap_or_else(|| {
         let (found, expected) = message.split_once(", expected ").unwrap_or((message, ""));
         let names: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
         match names.split_first() {
@@ -20,6 +21,21 @@ pub(crate) fn toml_error(path: &Path, text: &str, error: &toml::de::Error, besid
             Some((wrong, known)) if message.starts_with("unknown variant") => {
                 let hint = nearest(wrong, known).map(|near| format!("did you mean `{near}`?"));
                 (format!("the name `{wrong}`"), expected.to_owned(), hint.unwrap_or_default())
+            }
+            Some((key, _)) if message.starts_with("missing field") => {
+                (found.to_owned(), String::new(), format!("add {key} = …"))
+            }
+            _ if message.starts_with("wanted string") => {
+                let stated = line.split('#').next().unwrap_or_default().trim_end();
+                (stated.to_owned(), "a name between quotes".to_owned(), String::new())
+            }
+            _ if line.starts_with("[[") => {
+                let single = line.replace("[[", "[").replace("]]", "]");
+                (
+                    format!("{line} begins one table of several"),
+                    "a single table".into(),
+                    format!("write {single}"),
+                )
             }
             _ => (found.to_owned(), plain(expected).to_owned(), String::new()),
         }

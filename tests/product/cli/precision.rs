@@ -47,7 +47,7 @@ fn an_earlier_run_is_drawn_with_the_lines_of_other_programs() {
         .collect();
     assert_eq!(front, [("exact", ""), ("Peer 1.0", "")]);
     let warnings = answer["warnings"][0].as_str().unwrap();
-    assert!(warnings.contains("1 lines of the scene \"another\""), "{warnings}");
+    assert!(warnings.contains("1 line of the scene \"another\""), "{warnings}");
     let chart = std::fs::read_to_string(path("out/precision_scene_c.svg")).unwrap();
     // What failed is named: "events" has failed alone, the other program once out of twice.
     assert!(chart.contains("above: failed"));
