@@ -8,7 +8,9 @@ use super::{Analysis, Answer, Job, Source, no_file};
 use crate::campaign::{Entry, channel};
 use crate::error::{Error, Result};
 use crate::measure::impacts::{ImpactsOptions, impacts};
+use crate::read::Reader;
 use serde::Deserialize;
+use std::path::PathBuf;
 
 /// How impacts are found, and what is known of them.
 #[derive(Debug, Clone, Default, Deserialize)]
@@ -31,6 +33,12 @@ pub struct Keys {
     /// Leave mains hum in the trace
     #[cfg_attr(feature = "cli", arg(long))]
     pub keep_hum: bool,
+    /// Record of one pulse of the shape that all have: each impact is matched to it
+    #[cfg_attr(feature = "cli", arg(long, value_name = "FILE"))]
+    pub shape: Option<PathBuf>,
+    /// Sampling rate of that record in Hz, where its file does not state it
+    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", requires = "shape"))]
+    pub shape_rate: Option<f64>,
     /// No impact is missed and none is too many, however uneven the intervals
     #[cfg_attr(feature = "cli", arg(long))]
     pub none_missed: bool,
@@ -58,6 +66,8 @@ impl Keys {
         let recording = source.recording()?;
         let trace = source.trace(&recording)?;
         let reference = self.reference.as_ref().map(|channel| recording.trace(Some(channel), None));
+        let shape = source.further("shape", self.shape.as_ref())?;
+        let shape = shape.map(|path| Reader::new().rate(self.shape_rate).from_path(path)?.trace(None, None));
         let default = ImpactsOptions::default();
         let options = ImpactsOptions {
             threshold: self.threshold.unwrap_or(default.threshold),
@@ -65,6 +75,7 @@ impl Keys {
             excitation: self.excitation,
             hum: !self.keep_hum,
             reference: reference.transpose()?.map(|r| r.values),
+            shape: shape.transpose()?,
             complete: self.none_missed,
         };
         let found = impacts(&trace, &options)?;

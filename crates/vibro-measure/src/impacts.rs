@@ -86,7 +86,7 @@ pub struct Impacts {
 /// Where the trace has no sampling rate, missing or equal values, or fewer than two impacts; where the reference channel has fewer than two
 /// edges; on impossible options.
 pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
-    let Detected { times, heights, onset_std, hum, mut findings, averaged, resolution } =
+    let Detected { times, heights, onset_std, hum, mut findings, method, resolution } =
         detect(trace, options)?;
     let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
     let pattern = pattern(&steps);
@@ -108,19 +108,12 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     let doubted = findings.iter().any(|f| f.severity == Severity::Doubt);
     let std = (widened * fitted.std).hypot(sampled);
     let std = Some(std).filter(|s| s.is_finite() && !doubted);
-    let method = format!(
-        "{}; {}",
-        if kept.len() < 3 {
-            "difference of two onsets"
-        } else {
-            "generalised least squares of the intervals"
-        },
-        if averaged {
-            "onsets by matching each pulse to the average pulse"
-        } else {
-            "onsets at half height of the rising flanks"
-        }
-    );
+    let interval_by = if kept.len() < 3 {
+        "difference of two onsets"
+    } else {
+        "generalised least squares of the intervals"
+    };
+    let method = format!("{interval_by}; {method}");
     let of = |value, std, unit| Estimate::new(value, std, unit, kept.len(), method.as_str());
     let median_interval = median(&steps);
     let mut answer = Impacts {

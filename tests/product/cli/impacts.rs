@@ -2,6 +2,7 @@
 
 use super::{complaint, json};
 use serde_json::Value;
+use std::fmt::Write as _;
 
 fn trace(case: &str) -> String {
     format!("{}/fixtures/reference/scripts/timeav_{case}/TRACE01.DAT", env!("CARGO_MANIFEST_DIR"))
@@ -112,4 +113,42 @@ fn restitution_refuses_what_cannot_be() {
     assert!(complaint(&["restitution", "--before", "1,2", "--after", "1,2"], 1).contains("do not approach"));
     assert!(complaint(&["restitution"], 2).contains("--height"));
     assert!(complaint(&["restitution", "--interval", "0.1"], 2).contains("--height"));
+}
+
+#[test]
+fn impacts_are_matched_to_a_shape_that_is_known() {
+    let folder = tempfile::tempdir().unwrap();
+    // Pulses of 0.3 ms standard deviation at odd times, 10 kHz; their shape at 50 kHz.
+    let pulse = |t: f64| (-0.5 * (t / 3e-4).powi(2)).exp();
+    let times: Vec<f64> = (0..12).map(|k| 0.05 + 0.100_037 * f64::from(k)).collect();
+    let mut state = 5u64;
+    let mut trace = String::from("time [s],contact [V]\n");
+    for i in 0..12_500 {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let noise = 2e-3 * ((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5);
+        let t = f64::from(i) * 1e-4;
+        let value = 3.0 * times.iter().map(|at| pulse(t - at)).sum::<f64>() + 3.0 * noise;
+        let _ = writeln!(trace, "{t:.4},{value:.6}");
+    }
+    let shape: String = (0..150).fold("time [s],pulse [V]\n".to_owned(), |text, i| {
+        let t = f64::from(i) * 2e-5;
+        text + &format!("{t:.5},{:.9}\n", 0.2 * pulse(t - 1.5e-3))
+    });
+    let [file, known] = ["contact.csv", "shape.csv"].map(|name| folder.path().join(name));
+    std::fs::write(&file, trace).unwrap();
+    std::fs::write(&known, shape).unwrap();
+    let found = json(&["impacts", file.to_str().unwrap(), "--shape", known.to_str().unwrap()]);
+    assert!(found["interval"]["method"].as_str().unwrap().contains("known shape"), "{found}");
+    // The first flank passes half of its height √(2 ln 2) standard deviations before the top.
+    let early = 3e-4 * (2.0 * 2f64.ln()).sqrt();
+    let ours: Vec<f64> = found["times"].as_array().unwrap().iter().map(|t| t.as_f64().unwrap()).collect();
+    assert_eq!(ours.len(), times.len());
+    for (a, b) in ours.iter().zip(&times) {
+        // Noise of 2e-3/√12 over Σ(slope)² = √π/(2·3) a sample: 1.1e-3 samples; five of these.
+        assert!((a - (b - early)).abs() < 6e-7, "{a} {}", b - early);
+    }
+    let constant = folder.path().join("constant.csv");
+    std::fs::write(&constant, "time [s],a [V]\n0,1\n0.1,1\n0.2,1\n0.3,1\n0.4,1\n0.5,1\n").unwrap();
+    let said = complaint(&["impacts", file.to_str().unwrap(), "--shape", constant.to_str().unwrap()], 1);
+    assert!(said.contains("no shape of a pulse"), "{said}");
 }

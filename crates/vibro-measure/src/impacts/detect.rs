@@ -2,8 +2,9 @@
 
 use super::background::{background, median};
 use super::onset::{Onsets, onsets};
-use super::options::check;
+use super::options::{check, rate_of};
 use super::ringing::bursts;
+use super::shape::Shape;
 use super::{Hum, ImpactsOptions, hum};
 use std::ops::Range;
 use vibro_record::units::notation::quantity;
@@ -31,8 +32,8 @@ pub struct Detected {
     pub hum: Option<Hum>,
     /// What was done to the trace, and what is doubtful.
     pub findings: Vec<Finding>,
-    /// Whether pulses were timed by their average, not each by its flank.
-    pub(super) averaged: bool,
+    /// How the impacts were timed.
+    pub(super) method: &'static str,
     /// Time in s within which each onset may lie anywhere; `None` where samples on the flanks tell.
     pub(super) resolution: Option<f64>,
 }
@@ -85,7 +86,8 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
     if above < LOST {
         findings.push(Finding::doubt("impacts-lost-in-noise").number("sigmas", above));
     }
-    let Onsets { each, averaged, sharp } = onsets(&values, &bursts, quiet.sigma);
+    let shape = options.shape.as_ref().map(|pulse| recorded(pulse, rate)).transpose()?;
+    let Onsets { each, method, sharp } = onsets(&values, &bursts, quiet.sigma, shape.as_ref());
     if each.len() < 2 {
         let highest = values.iter().fold(0.0f64, |h, v| h.max(v.abs()));
         let [noise, highest] = [quiet.reach, highest].map(|v| quantity(v, unit, 3));
@@ -114,8 +116,20 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
         onset_std: Some(std).filter(|s| s.is_finite()),
         hum,
         findings,
-        averaged,
+        method,
         resolution: sharp.then_some(1.0 / rate),
+    })
+}
+
+/// The shape of a recorded pulse, for a trace of this sampling rate in Hz.
+fn recorded(pulse: &Trace, rate: f64) -> Result<Shape> {
+    let own = rate_of(pulse).map_err(|error| error.setting("shape_rate"))?;
+    Shape::recorded(&pulse.values, rate / own).ok_or_else(|| {
+        Error::refused(format!(
+            "{:?} is no shape of a pulse: its samples have no rising flank",
+            pulse.meta.name
+        ))
+        .hint("cut the record to one pulse with its level before it, without missing values")
     })
 }
 

@@ -1,7 +1,7 @@
 //! When each burst begins, below a sample.
 
 use super::background::median;
-use super::shape::{Matched, averaged};
+use super::shape::{Matched, Shape, averaged};
 use std::ops::Range;
 
 /// One impact.
@@ -36,22 +36,31 @@ struct Lobe {
 pub struct Onsets {
     /// One a burst that shows where it begins.
     pub each: Vec<Onset>,
-    /// Whether they were timed by the average pulse, not each by its flank.
-    pub averaged: bool,
+    /// How they were timed.
+    pub method: &'static str,
     /// Whether most pulses rise within one sample: nothing is known of their times between samples.
     pub sharp: bool,
 }
 
 /// Onsets of the bursts of `values`, whose background has the level 0 and the noise `sigma`: from eight like pulses on each is matched to their
-/// average, otherwise each rising flank is interpolated at half its height.
-pub fn onsets(values: &[f64], bursts: &[Range<usize>], sigma: f64) -> Onsets {
+/// average, or all to the shape that is known; otherwise each rising flank is interpolated at half its height.
+pub fn onsets(values: &[f64], bursts: &[Range<usize>], sigma: f64, known: Option<&Shape>) -> Onsets {
     let lobes: Vec<Lobe> = bursts.iter().filter_map(|b| lobe(values, b, sigma)).collect();
     let whole: Vec<&Lobe> = lobes.iter().filter(|l| l.onset.time.is_finite()).collect();
     let sharp = 2 * whole.iter().filter(|l| l.sharp).count() > whole.len();
-    let matched = by_average(values, &lobes, &whole, sigma);
-    let averaged = matched.is_some();
-    let each = matched.unwrap_or_else(|| whole.iter().map(|l| l.onset).collect());
-    Onsets { each, averaged, sharp }
+    if let Some(shape) = known {
+        let matched = |lobe: &&Lobe| {
+            let m = shape.matched(values, lobe.onset.time, lobe.onset.height)?;
+            Some(Onset { time: m.time, std: (m.cofactor * m.variance).sqrt(), height: m.height })
+        };
+        let each = whole.iter().filter_map(matched).collect();
+        return Onsets { each, method: "onsets by matching each pulse to the known shape", sharp };
+    }
+    let (each, method) = match by_average(values, &lobes, &whole, sigma) {
+        Some(each) => (each, "onsets by matching each pulse to the average pulse"),
+        None => (whole.iter().map(|l| l.onset).collect(), "onsets at half height of the rising flanks"),
+    };
+    Onsets { each, method, sharp }
 }
 
 /// By the average pulse; `None` where there are too few pulses, or most differ from their average.

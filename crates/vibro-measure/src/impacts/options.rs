@@ -12,6 +12,8 @@ pub struct ImpactsOptions {
     pub refractory: Option<f64>,
     /// Whether mains hum is removed. Default true.
     pub hum: bool,
+    /// One recorded pulse of the shape that all have. Default: the average of the pulses.
+    pub shape: Option<Trace>,
     /// Whether no impact is missed and none is too many, however uneven the intervals. Default false.
     pub complete: bool,
     /// Frequency of the excitation in Hz, for impacts per cycle.
@@ -26,6 +28,7 @@ impl Default for ImpactsOptions {
             threshold: 0.125,
             refractory: None,
             hum: true,
+            shape: None,
             complete: false,
             excitation: None,
             reference: None,

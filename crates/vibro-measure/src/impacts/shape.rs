@@ -20,6 +20,8 @@ pub struct Matched {
 
 /// Most knots of an average pulse.
 const KNOTS: usize = 48;
+/// Most knots of a recorded pulse: as many as a pulse has features, and its spline takes a tenth of a second.
+const RECORDED: usize = 400;
 /// Most rounds of averaging and matching.
 const ROUNDS: usize = 20;
 /// Rounds end where no pulse moves further, in samples.
@@ -95,6 +97,22 @@ impl Shape {
             part += &penalty;
         }
         Some(Shape { start, step, coefficients: normal.cholesky()?.solve(&right) })
+    }
+
+    /// The shape of a recorded pulse whose samples lie `spacing` samples of the trace apart, scaled to unit height. Its first sample is its level;
+    /// its origin is where the first flank passes half its height. `None` where there is no such flank.
+    pub fn recorded(values: &[f64], spacing: f64) -> Option<Shape> {
+        let level = *values.first()?;
+        let higher =
+            |highest: f64, v: &f64| if (v - level).abs() > highest.abs() { v - level } else { highest };
+        let height = values.iter().fold(0.0, higher);
+        let unit: Vec<f64> = values.iter().map(|v| (v - level) / height).collect();
+        let above = unit.iter().position(|v| *v >= 0.5).filter(|_| unit.iter().all(|v| v.is_finite()))?;
+        let origin = above as f64 - (unit[above] - 0.5) / (unit[above] - unit[above - 1]);
+        let points: Vec<(f64, f64)> =
+            unit.iter().enumerate().map(|(i, v)| ((i as f64 - origin) * spacing, *v)).collect();
+        let span = points.first()?.0..points.last()?.0;
+        Shape::through(&points, &span, (unit.len() - 1).clamp(4, RECORDED))
     }
 
     /// Value and slope at `x`; beyond its ends it goes on straight, since a break there would keep a match from converging.
