@@ -427,6 +427,26 @@ fn a_front_impact_and_a_rear_catch_are_two_groups() {
 }
 
 #[test]
+fn swapped_channels_and_a_vibration_as_reference_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let pulse = |i: usize| f64::from(u8::from(i % 200 < 20));
+    let file = csv(folder.path(), "swapped.csv", |i| (pulse(i), (i as f64 * 0.03).sin()));
+    let refusal = |output: &Output| {
+        assert_eq!(output.status.code(), Some(1));
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let swapped = refusal(&with(&file, &[]));
+    assert!(swapped.contains("are the two channels swapped?"), "{swapped}");
+    // Three sines of frequencies without a common period cross their middle at any distance.
+    let vibration = |i: usize| [0.11, 0.173, 0.291].iter().map(|w| (i as f64 * w).sin()).sum::<f64>();
+    let file = csv(folder.path(), "handle.csv", |i| ((i as f64 * 0.03).sin(), vibration(i)));
+    let handle = refusal(&with(&file, &[]));
+    assert!(handle.contains("no pulse of a shaft"), "{handle}");
+    let file = csv(folder.path(), "right.csv", |i| ((i as f64 * 0.03).sin(), pulse(i)));
+    assert!(with(&file, &[]).status.success());
+}
+
+#[test]
 fn impacts_beyond_the_range_are_in_no_mean() {
     let folder = tempfile::tempdir().unwrap();
     let made = record::record(1.0);

@@ -92,7 +92,7 @@ pub fn drill_each(
     };
     let mut velocity = scaled(record.channels[0]);
     let survey = moving(&velocity)?;
-    let (edges, turns) = turns(reference, velocity.len(), options, options.delay * rate)?;
+    let (edges, turns) = turns(reference, &velocity, options, options.delay * rate)?;
     let edge = edges.std(survey::noise(reference));
     let whole = &turns.whole;
     let typical = median(whole.iter().map(|t| (t.end - t.start) / rate));
@@ -213,14 +213,15 @@ fn moving(velocity: &[f64]) -> Result<Survey> {
     if survey.low < survey.high { Ok(survey) } else { Err(error) }
 }
 
-/// Edges and turns in the clock of the velocity of so many samples, which comes `delay` samples late.
-fn turns(reference: &[f64], samples: usize, options: &DrillOptions, delay: f64) -> Result<(Edges, Turns)> {
+/// Edges and turns in the clock of the velocity, which comes `delay` samples late.
+fn turns(reference: &[f64], velocity: &[f64], options: &DrillOptions, delay: f64) -> Result<(Edges, Turns)> {
     let (low, high) = levels(reference).unwrap_or((f64::NAN, f64::NAN));
     // A stated level stands in the middle; the nearer of both levels gives the height.
     let middle = options.level.unwrap_or(0.5 * (low + high));
     let half = (middle - low).min(high - middle);
     let mut edges = Edges::of(reference, (middle - half, middle + half), options.edge);
-    let last = samples.saturating_sub(1) as f64;
+    survey::check_pulses(velocity, reference, &edges.at)?;
+    let last = velocity.len().saturating_sub(1) as f64;
     edges.at.iter_mut().for_each(|edge| *edge += delay);
     edges.at.retain(|edge| (0.0..=last).contains(edge));
     let turns = Turns::new(&edges.at, options.pulses_per_turn)?;

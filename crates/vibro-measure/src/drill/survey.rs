@@ -1,6 +1,7 @@
 //! What a channel looks like: extremes, levels, noise.
 
 use crate::median::upper_median;
+use vibro_record::{Error, Result};
 
 /// Groups whose extremes show the levels of a pulse, however short its pulses are.
 const GROUPS: usize = 1 << 14;
@@ -69,6 +70,44 @@ pub(crate) fn levels(values: &[f64]) -> Option<(f64, f64)> {
     let threshold = best.1?;
     let side = |above: bool| median(values.iter().copied().filter(|v| (*v > threshold) == above));
     Some((side(false), side(true)))
+}
+
+/// A pulse stands on its two levels for more than this part of the time; a sine is near the medians of its halves for a quarter.
+const PULSED: f64 = 0.8;
+/// Turns of a shaft are as long as their neighbours within this part; what vibrates crosses its middle at any distance.
+const UNEVEN: f64 = 0.2;
+
+/// Refuses what is no reference: the velocity in its place, or a vibration. `edges` are those of the reference in samples.
+///
+/// # Errors
+/// If the reference does not stand on two levels, while the velocity does or the edges are uneven.
+pub(crate) fn check_pulses(velocity: &[f64], reference: &[f64], edges: &[f64]) -> Result<()> {
+    let pulsed = |values: &[f64]| {
+        let (low, high) = levels(values).unwrap_or_default();
+        let near = values.iter().filter(|v| (**v - low).abs().min((**v - high).abs()) < 0.1 * (high - low));
+        near.count() as f64 > PULSED * values.len() as f64
+    };
+    if pulsed(reference) {
+        return Ok(());
+    }
+    if pulsed(velocity) {
+        return Err(Error::refused(
+            "the velocity stands on two levels as a pulse does, the reference does not",
+        )
+        .hint("are the two channels swapped?")
+        .setting("velocity")
+        .setting("reference"));
+    }
+    let steps: Vec<f64> = edges.windows(2).map(|w| w[1] - w[0]).collect();
+    let change = median(steps.windows(2).map(|w| (w[1] - w[0]).abs()));
+    if change > UNEVEN * median(steps.iter().copied()) {
+        return Err(Error::refused(
+            "the reference is no pulse of a shaft: its edges come at uneven distances",
+        )
+        .hint("name the channel of the pulse; `vibro info` lists the channels")
+        .setting("reference"));
+    }
+    Ok(())
 }
 
 /// Lowest and highest value.
