@@ -185,13 +185,8 @@ const NEAR: [Near; 29] = [
     Near {
         method: "onset fit",
         border: "impact rate: faults",
-        scenes: &[
-            "pulses point downwards",
-            "clipped at half height",
-            "level of 100 heights",
-            "drift of 3 heights",
-        ],
-        why: "the sign, the level and what is slow say nothing of when, nor does the upper half",
+        scenes: &["pulses point downwards", "clipped at half height", "level of 100 heights"],
+        why: "the sign and the level say nothing of when, nor does the upper half",
     },
     Near {
         method: "whole pulse",
@@ -235,13 +230,17 @@ const NEAR: [Near; 29] = [
 fn estimators_are_right_or_refuse_at_their_borders() {
     let map = estimators::failures(true);
     check(&map);
+    let mut other = Vec::new();
     for Near { method, border, scenes, why } in NEAR {
         for scene in scenes {
             let is = |c: &&Cell| c.ours && c.method == method && c.border == border && c.scene == *scene;
             let cell = map.cells.iter().find(is).unwrap_or_else(|| panic!("{border}, {scene}, {method}"));
-            assert_eq!(cell.outcome, Outcome::Right, "{cell:?}: {why}");
+            if cell.outcome != Outcome::Right {
+                other.push(format!("{cell:?}: {why}"));
+            }
         }
     }
+    assert!(other.is_empty(), "{other:#?}");
     // Uncertainties are those of the errors, over all borders of a method.
     let listed: HashSet<&str> = NEAR.iter().map(|n| n.method).collect();
     for name in listed {

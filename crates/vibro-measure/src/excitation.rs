@@ -66,7 +66,8 @@ pub fn excitations(sweep: &Sweep, fmin: f64) -> Result<Vec<Excitation>> {
 /// The largest local maximum from `first` on, interpolated; what an offset spreads beside line 0 is passed over.
 fn largest(force: &[f64], window: Option<Window>, first: usize) -> std::result::Result<SubLine, String> {
     // The main lobe of an offset is as wide as the window has terms; of an unknown window the widest is feared.
-    let first = first.max(window.unwrap_or(Window::FlatTop).coefficients().len() + 1);
+    let lobe = window.unwrap_or(Window::FlatTop).coefficients().len() + 1;
+    let (cut, first) = (first > lobe, first.max(lobe));
     let n = force.len();
     if n < first.saturating_add(3) {
         return Err(format!("the force spectrum has {n} lines, too few above line {first}"));
@@ -76,6 +77,12 @@ fn largest(force: &[f64], window: Option<Window>, first: usize) -> std::result::
     let Some(k) = peak else { return Err("no line of the force stands above its neighbours".into()) };
     if force[k] == 0.0 {
         return Err("the force spectrum is zero".into());
+    }
+    // The lines of an offset end with its lobe, where nobody has cut off what is larger.
+    if !cut && force[first] > force[k] {
+        return Err(format!(
+            "the lines below line {first}, where a sine cannot be told from an offset, are higher than any above"
+        ));
     }
     if k + 2 >= n {
         let which = if k + 1 == n { "last one" } else { "last but one" };
@@ -124,6 +131,17 @@ mod tests {
                 line_shape(Window::Hann, k - position).abs() + offset * line_shape(Window::Hann, k).abs()
             })
             .collect()
+    }
+
+    #[test]
+    fn a_line_on_the_flank_of_a_sine_too_near_to_zero_is_not_the_excitation() {
+        let mut force: Vec<f64> =
+            (0..401).map(|k| line_shape(Window::Hann, f64::from(k) - 0.5).abs()).collect();
+        force[6] = 1.5 * force[5];
+        assert!(force[6] < force[3]);
+        assert!(largest(&force, Some(Window::Hann), 0).unwrap_err().contains("below line 3"));
+        // Whoever has cut that off wants the other.
+        assert!(largest(&force, Some(Window::Hann), 5).is_ok());
     }
 
     #[test]

@@ -20,7 +20,7 @@ pub use result::{ByMethod, ModalOptions, ModalResult, Mode};
 use bands::{Group, groups};
 use rational::{Rational, rational};
 use report::Report;
-use selection::chosen;
+use selection::{chosen, together};
 use vibro_record::{Error, Finding, FrfKind, Result};
 
 /// Peaks and the modes that were fitted to them.
@@ -29,8 +29,8 @@ type Fitted = (Group, Rational);
 /// Finds the modes of a frequency response function.
 ///
 /// Each peak that stands a factor of two above its valleys is a candidate; peaks too near each other to be parted are fitted
-/// together, and modes of other groups are subtracted before the last fit of a group. Up to six peaks of a band that is given are fitted
-/// together, to all its lines.
+/// together, and modes of other groups are subtracted before the last fit of a group. The modes of a band that is given are then fitted
+/// together to all its lines, where that explains them.
 ///
 /// # Errors
 /// If the band is not one, holds no peak or fewer lines than the parameters of a mode, or no line can be used.
@@ -62,6 +62,9 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
     }
     if let Some(error) = failed.filter(|_| fits.is_empty()) {
         return Err(error);
+    }
+    if let Some(band) = options.band {
+        together(&lines, lines.within(band), &mut fits, &mut unsupported);
     }
     refine(&lines, &mut fits);
     let mut report = Report { measured: &lines, options, modes: Vec::new(), findings };

@@ -8,6 +8,7 @@
 //! (1953) 423).
 
 use super::line::interpolate;
+use super::residuals::student;
 use super::{Estimate, noise};
 use nalgebra::{DMatrix, DVector, RowVector3};
 use serde::Serialize;
@@ -136,7 +137,12 @@ impl Lines {
         let floor = noise::around(&self.magnitudes, centre, AROUND, Some(Window::Hann));
         // Half of the samples, with the power of a one-sided line.
         let white = sigma * (Window::Hann.enbw() / (self.magnitudes.len() - 1) as f64).sqrt();
-        floor.map(|floor| floor / white).filter(|factor| *factor > COLOURED).unwrap_or(1.0)
+        // The median of so many lines, of two degrees of freedom each, knows it as the mean of half as many.
+        let known = student(2 * AROUND).unwrap_or(1.0);
+        floor
+            .map(|floor| floor / white)
+            .filter(|factor| *factor > COLOURED)
+            .map_or(1.0, |factor| known * factor)
     }
 
     /// The frequency of the strongest line that stands out of the noise, or of those within two lines of `near` Hz, interpolated

@@ -1,7 +1,6 @@
 //! Which lines belong to which peak.
 
 use super::Measured;
-use super::selection::TOGETHER;
 use crate::median::upper_median;
 use crate::peaks::local_maxima;
 use std::ops::Range;
@@ -71,9 +70,6 @@ pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Ve
         ))
         .hint("choose a band around a peak")
         .setting("band"));
-    }
-    if band.is_some() && peaks.len() <= TOGETHER {
-        return Ok(vec![Group { peaks, lines: within }]);
     }
     let mut groups: Vec<Vec<Peak>> = Vec::new();
     for peak in peaks {

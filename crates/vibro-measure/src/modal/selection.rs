@@ -3,10 +3,11 @@
 use super::bands::{Group, Peak};
 use super::rational::{Rational, rational};
 use super::{Measured, Pole};
+use std::ops::Range;
 use vibro_record::Result;
 
 /// Modes of one group at most: beyond, parameters outgrow the lines.
-pub(super) const TOGETHER: usize = 6;
+const TOGETHER: usize = 6;
 
 /// An additional mode must lower Akaike's criterion by this much (Burnham & Anderson 2002, 2.6).
 const NEEDED: f64 = 10.0;
@@ -64,6 +65,33 @@ fn pruned(lines: &Measured, group: &mut Group, mut fit: Rational, unsupported: &
         (fit, group.peaks) = (less, fewer);
     }
     fit
+}
+
+/// Fits the modes that were found around each peak of a band together, to all its lines, where that explains them.
+pub(super) fn together(
+    lines: &Measured,
+    part: Range<usize>,
+    fits: &mut Vec<(Group, Rational)>,
+    unsupported: &mut Vec<Peak>,
+) {
+    let sound = |(group, fit): &(Group, Rational)| {
+        let modes = group.peaks.clone().into_iter().zip(fit.modes.clone());
+        let sound = fit.sound(lines, &group.peaks).into_iter();
+        modes.zip(sound).filter(|(_, sound)| *sound).map(|(mode, _)| mode).collect::<Vec<_>>()
+    };
+    let (peaks, modes): (Vec<Peak>, Vec<_>) = fits.iter().flat_map(sound).unzip();
+    let guess: Vec<(f64, f64)> = modes.iter().map(|m| (m.frequency, m.zeta)).collect();
+    if guess.is_empty() || fits.iter().all(|(group, _)| group.lines == part) {
+        return;
+    }
+    let Ok(fit) = rational(lines, part.clone(), &guess, &[]) else { return };
+    let explained = fits.iter().any(|(_, fit)| !fit.whiteness.rejected());
+    if fit.whiteness.rejected() && explained {
+        return;
+    }
+    let mut all = Group { peaks, lines: part };
+    let fit = pruned(lines, &mut all, fit, unsupported);
+    *fits = vec![(all, fit)];
 }
 
 /// Fewest lines on either side of the outer peaks of a band that is made narrower.
