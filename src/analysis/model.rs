@@ -20,7 +20,7 @@ use std::path::PathBuf;
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct SceneKeys {
-    /// Rig as a TOML file: m1 m2 k1 k2 c1 c2 gap restitution, [excitation], [contact], [buffer] [default: the thesis' rig]
+    /// Rig as a TOML file: m1 m2 k1 k2 c1 c2 gap restitution, tables excitation, contact, buffer [default: the thesis' rig]
     pub rig: Option<PathBuf>,
     /// Set a key of the rig, tables with a dot: gap=0.5e-3, contact.stiffness=1e5
     #[cfg_attr(feature = "cli", arg(long = "set", value_name = "KEY=VALUE"))]

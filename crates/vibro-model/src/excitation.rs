@@ -86,7 +86,7 @@ pub struct Part {
 
 impl Excitation {
     /// Checks that the numbers can belong to an excitation: all finite, frequencies above 0, amplitudes of sines not negative (impulses and
-    /// pulses may pull), a width above 0 and below the cycle, and one to [`MOST_SINES`] sines.
+    /// pulses may pull), a width above 0 and below the cycle, and one to `MOST_SINES` sines.
     ///
     /// # Errors
     /// If it is not so; it names the key as a setting.

@@ -44,7 +44,7 @@ impl Portrait {
     /// Follows `motion` for so many cycles.
     ///
     /// # Errors
-    /// If no cycle or more than [`MOST_CYCLES`] are asked for, or as [`Motion::advance`].
+    /// If no cycle or more than `MOST_CYCLES` are asked for, or as [`Motion::advance`].
     pub fn take(motion: &mut impl Motion, sitting: &Sitting) -> Result<Portrait> {
         if !(1..=MOST_CYCLES).contains(&sitting.cycles) {
             return Err(Error::usage(

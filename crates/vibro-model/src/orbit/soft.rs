@@ -100,7 +100,7 @@ pub struct Softened {
 /// `κt_c/2`; so `R(1 + κt_c/2)` takes the place of R, and a is what presses without the dampers.
 ///
 /// # Errors
-/// If the contact lasts longer than [`LONGEST_CONTACT`] of the period.
+/// If the contact lasts longer than `LONGEST_CONTACT` of the period.
 pub fn softened(
     rig: &Rig,
     excitation: &Excitation,
