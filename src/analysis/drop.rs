@@ -40,10 +40,10 @@ pub struct Keys {
     /// Its standard uncertainty in m/s²
     #[cfg_attr(feature = "cli", arg(long, value_name = "M/S²"))]
     pub gravity_std: Option<f64>,
-    /// Lowest impact, as part of the median one [default: 0.02]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "PART"))]
+    /// Smallest impact counted, as a fraction of the median height [default: 0.02]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "FRACTION"))]
     pub threshold: Option<f64>,
-    /// Pause in s that parts two impacts [default: found from the trace]
+    /// Shortest time between two impacts in s: ringing within it counts once [default: found from the trace]
     #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub refractory: Option<f64>,
     /// Leave mains hum in the trace

@@ -20,14 +20,14 @@ pub struct Keys {
     /// Frequency of the excitation in Hz
     #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
     pub excitation: Option<f64>,
-    /// Record of the same file that rises once a cycle of the excitation, by name or by number from 1
+    /// Trigger channel of the same file, one rising edge per excitation cycle, by name or by number from 1
     #[serde(deserialize_with = "channel")]
     #[cfg_attr(feature = "cli", arg(long, value_name = "NAME"))]
     pub reference: Option<String>,
-    /// Lowest impact, as part of the median one [default: 0.125]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "PART"))]
+    /// Smallest impact counted, as a fraction of the median height [default: 0.125]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "FRACTION"))]
     pub threshold: Option<f64>,
-    /// Pause in s that parts two impacts [default: found from the trace]
+    /// Shortest time between two impacts in s: ringing within it counts once [default: found from the trace]
     #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub refractory: Option<f64>,
     /// Leave mains hum in the trace
@@ -39,7 +39,7 @@ pub struct Keys {
     /// Sampling rate of that record in Hz, where its file does not state it
     #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", requires = "shape"))]
     pub shape_rate: Option<f64>,
-    /// No impact is missed and none is too many, however uneven the intervals
+    /// Take the count as right: no impact is missed or doubled, however uneven the intervals
     #[cfg_attr(feature = "cli", arg(long))]
     pub none_missed: bool,
 }

@@ -42,18 +42,20 @@ pub fn compare(
     (start, rate): (f64, f64),
     options: &ImpactsOptions,
 ) -> Result<()> {
-    let (frequency, at): (f64, Vec<f64>) = if let Some(channel) = &options.reference {
+    let (frequency, part, at): (f64, f64, Vec<f64>) = if let Some(channel) = &options.reference {
         let reference = Reference::new(channel)?;
         answer.findings.extend(reference.finding());
         let at = answer.times.iter().map(|t| reference.counted((t - start) * rate)).collect();
-        (rate / reference.mean_cycle(), at)
+        (rate / reference.mean_cycle(), reference.part(), at)
     } else if let Some(frequency) = options.excitation {
-        (frequency, answer.times.iter().map(|t| t * frequency).collect())
+        (frequency, last_digit(frequency) / frequency, answer.times.iter().map(|t| t * frequency).collect())
     } else {
         return Ok(());
     };
     let kept: Vec<f64> = counted.kept.iter().map(|i| at[*i]).collect();
-    let locking = locking(&kept, &counted.index);
+    // Samples, too, leave the interval unsure.
+    let part = part.hypot(answer.interval.std.map_or(0.0, |std| std / answer.interval.value));
+    let locking = locking(&kept, &counted.index, part);
     answer.excitation = Some(frequency);
     answer.phase = at.iter().map(|c| c.rem_euclid(1.0)).collect();
     answer.regular = matches!(locking, Locking::Locked(_));
@@ -85,8 +87,16 @@ const DOUBLED: f64 = 0.5;
 const LARGEST: usize = 8;
 /// A pattern repeats where n impacts take m cycles within this part of a cycle (root mean square).
 const REPEATS: f64 = 0.1;
+/// A fraction that is kept agrees with the rate within so many standard uncertainties.
+const AGREES: f64 = 3.0;
 /// Fractions within this part of them from the rate are candidates.
 const FITS: f64 = 0.02;
+
+/// Standard uncertainty in Hz of a frequency that is stated: anywhere within half a unit of its last digit.
+fn last_digit(frequency: f64) -> f64 {
+    let decimals = frequency.to_string().split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    0.5 * 10f64.powi(-(decimals as i32)) / 3f64.sqrt()
+}
 
 /// How impacts go with the excitation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,8 +112,9 @@ enum Locking {
 /// Whether impacts repeat the simplest fraction n/m of impacts per cycle, up to 8/8, that is near their rate: 2/2 where 1/1 does not repeat.
 ///
 /// `cycles` are the times of the impacts counted in excitation cycles, `index` their places in the series without missed ones. A fraction
-/// holds where every place of the pattern keeps its phase within [`REPEATS`]: what is merely near a fraction wanders through all phases.
-fn locking(cycles: &[f64], index: &[usize]) -> Locking {
+/// holds where it agrees with the rate, the excitation being known to this `part` of itself, and every place of the pattern keeps its phase
+/// within [`REPEATS`]: what is merely near a fraction wanders through all phases.
+fn locking(cycles: &[f64], index: &[usize], part: f64) -> Locking {
     let Some(step) = interval(cycles, index).filter(|s| s.mean > 0.0) else {
         return Locking::Irregular;
     };
@@ -128,7 +139,9 @@ fn locking(cycles: &[f64], index: &[usize]) -> Locking {
         // 2/2 is no 1/1 seen twice: its places differ by more than they scatter.
         let same = |r: &&PerCycle| r.impacts * f.cycles == f.impacts * r.cycles && r.impacts < f.impacts;
         let single = fractions.iter().find(same).is_none_or(|r| spread <= DOUBLED * widest(*r));
-        spread <= REPEATS && single
+        // Beside that, rounding of counted cycles.
+        let agrees = slip(f).abs() <= AGREES * own.hypot(rate * part) + 1e-9 * rate;
+        spread <= REPEATS && single && agrees
     };
     match (fractions.iter().find(holds), fractions.first()) {
         (Some(f), _) => Locking::Locked(*f),
@@ -187,6 +200,12 @@ impl Reference {
         }
     }
 
+    /// Relative standard uncertainty of the mean cycle: first and last edge lie each anywhere within a sample.
+    fn part(&self) -> f64 {
+        let span = self.edges.last().map_or(0.0, |e| e.1) - self.edges.first().map_or(0.0, |e| e.1);
+        1.0 / (6f64.sqrt() * span)
+    }
+
     /// Mean length of a cycle in samples.
     fn mean_cycle(&self) -> f64 {
         match self.edges.as_slice() {
@@ -222,7 +241,7 @@ mod tests {
             (0..40).map(|k| f64::from(k / 2) * 3.0 + if k % 2 == 0 { 0.3 } else { 1.9 }).collect();
         let index: Vec<usize> = (0..40).collect();
         let found = PerCycle { impacts: 2, cycles: 3 };
-        assert_eq!(locking(&cycles, &index), Locking::Locked(found));
+        assert_eq!(locking(&cycles, &index, 1e-3), Locking::Locked(found));
         let places = phases(&cycles, &index, found);
         assert_eq!(places.len(), 2);
         // Means of equal numbers, a few roundings.
@@ -236,15 +255,15 @@ mod tests {
         let doubled: Vec<f64> =
             (0..40).map(|k| f64::from(k) + if k % 2 == 0 { 0.835 } else { 0.669 }).collect();
         let found = PerCycle { impacts: 2, cycles: 2 };
-        assert_eq!(locking(&doubled, &index), Locking::Locked(found));
+        assert_eq!(locking(&doubled, &index, 1e-3), Locking::Locked(found));
         let places: Vec<f64> = phases(&doubled, &index, found).iter().map(|p| p.mean).collect();
         // Means of equal numbers, a few roundings.
         assert!((places[0] - 0.835).abs() < 1e-12 && (places[1] - 1.669).abs() < 1e-12, "{places:?}");
         let quadrupled: Vec<f64> =
             (0..40).map(|k| f64::from(k) + [0.1, 0.4, 0.1, 0.7][k as usize % 4]).collect();
-        assert_eq!(locking(&quadrupled, &index), Locking::Locked(PerCycle { impacts: 4, cycles: 4 }));
+        assert_eq!(locking(&quadrupled, &index, 1e-3), Locking::Locked(PerCycle { impacts: 4, cycles: 4 }));
         let even: Vec<f64> = (0..40).map(|k| f64::from(k) + 0.01 * (f64::from(k) * 2.4).sin()).collect();
-        assert_eq!(locking(&even, &index), Locking::Locked(PerCycle { impacts: 1, cycles: 1 }));
+        assert_eq!(locking(&even, &index, 1e-3), Locking::Locked(PerCycle { impacts: 1, cycles: 1 }));
     }
 
     #[test]
@@ -252,7 +271,7 @@ mod tests {
         // Steps that grow by the golden ratio repeat nothing, at a rate of one a cycle.
         let cycles: Vec<f64> =
             (0..60).map(|k| f64::from(k) + 0.8 * (f64::from(k * k) * 0.618_034).fract()).collect();
-        assert_eq!(locking(&cycles, &(0..60).collect::<Vec<_>>()), Locking::Irregular);
+        assert_eq!(locking(&cycles, &(0..60).collect::<Vec<_>>(), 1e-3), Locking::Irregular);
     }
 
     #[test]
@@ -261,15 +280,23 @@ mod tests {
         let one = PerCycle { impacts: 1, cycles: 1 };
         for frequency in [14.75, 14.85, 15.15] {
             let cycles: Vec<f64> = (0..150).map(|k| 0.2 + 15.0 / frequency * f64::from(k)).collect();
-            let Locking::Drifting(near, slip) = locking(&cycles, &index) else {
+            let Locking::Drifting(near, slip) = locking(&cycles, &index, 1e-4) else {
                 panic!("{frequency} Hz is not seen to drift")
             };
             assert_eq!(near, one);
             assert!((15.0 * slip - (frequency - 15.0)).abs() < 1e-9, "{slip}");
         }
-        // A slip of 0.1 cycle in all is within a tenth of a cycle.
+        // A slip of 0.1 cycle in all is within a tenth of a cycle: whether it is one depends on how well the excitation is known.
         let slow: Vec<f64> = (0..150).map(|k| 1.0007 * f64::from(k)).collect();
-        assert_eq!(locking(&slow, &index), Locking::Locked(one));
+        assert_eq!(locking(&slow, &index, 1e-3), Locking::Locked(one));
+        assert!(matches!(locking(&slow, &index, 1e-5), Locking::Drifting(..)));
+    }
+
+    #[test]
+    fn a_stated_frequency_is_as_sure_as_its_digits() {
+        for (frequency, expected) in [(15.0, 0.5), (7.4, 0.05), (8.43, 0.005)] {
+            assert!((last_digit(frequency) * 3f64.sqrt() - expected).abs() < 1e-12, "{frequency}");
+        }
     }
 
     #[test]
