@@ -29,7 +29,7 @@ pub(crate) fn toml_error(path: &Path, text: &str, error: &toml::de::Error, besid
                 let stated = line.split('#').next().unwrap_or_default().trim_end();
                 (stated.to_owned(), "a name between quotes".to_owned(), String::new())
             }
-            _ if line.starts_with("[[") => {
+            _ if message.starts_with("invalid type: map") && line.starts_with("[[") => {
                 let single = line.replace("[[", "[").replace("]]", "]");
                 (
                     format!("{line} begins one table of several"),

@@ -220,7 +220,7 @@ fn turns(reference: &[f64], velocity: &[f64], options: &DrillOptions, delay: f64
     let middle = options.level.unwrap_or(0.5 * (low + high));
     let half = (middle - low).min(high - middle);
     let mut edges = Edges::of(reference, (middle - half, middle + half), options.edge);
-    survey::check_pulses(velocity, reference, &edges.at)?;
+    survey::check_pulses(velocity, (reference, (low, high)), &edges.at)?;
     let last = velocity.len().saturating_sub(1) as f64;
     edges.at.iter_mut().for_each(|edge| *edge += delay);
     edges.at.retain(|edge| (0.0..=last).contains(edge));

@@ -77,20 +77,24 @@ const PULSED: f64 = 0.8;
 /// Turns of a shaft are as long as their neighbours within this part; what vibrates crosses its middle at any distance.
 const UNEVEN: f64 = 0.2;
 
-/// Refuses what is no reference: the velocity in its place, or a vibration. `edges` are those of the reference in samples.
+/// Refuses what is no reference: the velocity in its place, or a vibration. The `reference` comes with its two levels, `edges` are its edges in
+/// samples.
 ///
 /// # Errors
 /// If the reference does not stand on two levels, while the velocity does or the edges are uneven.
-pub(crate) fn check_pulses(velocity: &[f64], reference: &[f64], edges: &[f64]) -> Result<()> {
-    let pulsed = |values: &[f64]| {
-        let (low, high) = levels(values).unwrap_or_default();
+pub(crate) fn check_pulses(
+    velocity: &[f64],
+    (reference, stands): (&[f64], (f64, f64)),
+    edges: &[f64],
+) -> Result<()> {
+    let pulsed = |values: &[f64], (low, high): (f64, f64)| {
         let near = values.iter().filter(|v| (**v - low).abs().min((**v - high).abs()) < 0.1 * (high - low));
         near.count() as f64 > PULSED * values.len() as f64
     };
-    if pulsed(reference) {
+    if pulsed(reference, stands) {
         return Ok(());
     }
-    if pulsed(velocity) {
+    if pulsed(velocity, levels(velocity).unwrap_or_default()) {
         return Err(Error::refused(
             "the velocity stands on two levels as a pulse does, the reference does not",
         )

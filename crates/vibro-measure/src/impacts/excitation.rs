@@ -112,7 +112,7 @@ enum Locking {
 /// Whether impacts repeat the simplest fraction n/m of impacts per cycle, up to 8/8, that is near their rate: 2/2 where 1/1 does not repeat.
 ///
 /// `cycles` are the times of the impacts counted in excitation cycles, `index` their places in the series without missed ones. A fraction
-/// holds where it agrees with the rate, the excitation being known to this `part` of itself, and every place of the pattern keeps its phase
+/// holds where it agrees with the rate, the ratio of both frequencies being known to this `part` of itself, and every place of the pattern keeps its phase
 /// within [`REPEATS`]: what is merely near a fraction wanders through all phases.
 fn locking(cycles: &[f64], index: &[usize], part: f64) -> Locking {
     let Some(step) = interval(cycles, index).filter(|s| s.mean > 0.0) else {
@@ -140,7 +140,7 @@ fn locking(cycles: &[f64], index: &[usize], part: f64) -> Locking {
         let same = |r: &&PerCycle| r.impacts * f.cycles == f.impacts * r.cycles && r.impacts < f.impacts;
         let single = fractions.iter().find(same).is_none_or(|r| spread <= DOUBLED * widest(*r));
         // Beside that, rounding of counted cycles.
-        let agrees = slip(f).abs() <= AGREES * own.hypot(rate * part) + 1e-9 * rate;
+        let agrees = slip(f).abs() <= AGREES * own.max(rate * part) + 1e-9 * rate;
         spread <= REPEATS && single && agrees
     };
     match (fractions.iter().find(holds), fractions.first()) {
