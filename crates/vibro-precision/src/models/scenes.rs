@@ -1,34 +1,14 @@
 //! Scenes of models: what is asked, of which methods with which settings, and what is true.
 
-use super::rivals::{self as by, Kind, Locate, Method, events};
+use super::ask::{Ask, Asked, Verdict};
+use super::rivals::{self as by, Kind, Locate, events};
 use super::task::{Task, Told};
 use super::{ours, truth};
-use crate::failure::Found;
-use crate::scene::timed;
-use crate::{Family, Measured, Scene};
+use crate::Scene;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use vibro_model::{Compliance, Rig, Sine, Steady};
 use vibro_record::{Error, Result};
-
-/// What a judge says of the motions that are told: their error, or why there is none.
-type Verdict = std::result::Result<f64, String>;
-type Judge = dyn Fn(&[Told]) -> Verdict;
-
-/// A method with its settings.
-type Asked = (Method, &'static [f64]);
-
-/// A scene before it is measured.
-struct Ask {
-    name: String,
-    says: String,
-    error_of: &'static str,
-    truth: String,
-    /// Motions that are followed one after another; the time of one answer is the mean.
-    tasks: Vec<Task>,
-    methods: Vec<Asked>,
-    judge: Box<Judge>,
-}
 
 /// Every scene of the models, each method measured; `quick` takes fewer settings, repeats and scenes.
 pub fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Vec<Scene>> {
@@ -49,38 +29,6 @@ pub fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Vec<Scene>>
     add(chaos()?);
     add(slow_sweep()?);
     Ok(found)
-}
-
-/// Repeats of an answer: in full, and quick.
-const REPEATS: [usize; 2] = [15, 3];
-
-impl Ask {
-    /// Runs, times and judges every method; `quick` with the first half of its settings.
-    fn measured(self, quick: bool) -> Scene {
-        let one = |method: &Method, setting: f64| {
-            let (told, time) = timed(REPEATS[usize::from(quick)], quick, || {
-                self.tasks
-                    .iter()
-                    .map(|task| (method.follow)(task, setting))
-                    .collect::<std::result::Result<Vec<_>, Found>>()
-            });
-            let fault = |f: Found| format!("{}: {}", f.outcome.name(), f.why);
-            let answer = told.map_err(fault).and_then(|told| (self.judge)(&told));
-            let (name, setting) = ((method.name, method.ours), method.words(setting));
-            Measured::new(name, setting, time / self.tasks.len() as f64, answer)
-        };
-        let of = |settings: &[f64]| if quick { settings.len().div_ceil(2) } else { settings.len() };
-        let methods = self.methods.iter().flat_map(|(m, all)| all[..of(all)].iter().map(|s| one(m, *s)));
-        Scene {
-            methods: methods.collect(),
-            name: self.name,
-            family: Family::Models,
-            says: self.says,
-            error_of: self.error_of.to_owned(),
-            truth: self.truth,
-            bound: None,
-        }
-    }
 }
 
 /// For a method without a setting.
