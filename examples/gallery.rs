@@ -7,10 +7,10 @@ use ndarray::Array2;
 use std::f64::consts::{PI, TAU};
 use std::time::Instant;
 use vibroimpact::Result;
-use vibroimpact::report::{
-    AxisSpec, Cell, Figure, Heatmap, Ink, Legend, Marker, Output, Page, Peak, Plot, Series, Stroke, Table,
-    Waterfall,
+use vibroimpact::figure::{
+    AxisSpec, Figure, Heatmap, Ink, Legend, Marker, Peak, Plot, Series, Stroke, Waterfall,
 };
+use vibroimpact::report::{Cell, Output, Page, Table};
 
 fn main() -> Result<()> {
     let folder = std::env::args().nth(1).unwrap_or_else(|| "gallery".to_owned());

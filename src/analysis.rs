@@ -1,26 +1,41 @@
 //! Analyses, one folder a kind of record: its keys, its run, its figures, its tables.
 //!
 //! A table of a campaign and a command line fill the same keys: `[[impacts]] refractory = 0.005` and `vibro impacts --refractory 0.005`
-//! run one function. A new kind of record is a folder here and a row in [`KINDS`].
+//! run one function. A new kind of record is a folder here and a row in `KINDS`.
 
-pub mod answer;
-pub mod drill;
-pub mod drop;
-pub mod frf;
-pub mod impacts;
-pub mod job;
-pub mod model;
-pub mod precision;
-pub mod pulse;
-pub mod source;
-pub mod spectrum;
-pub mod sweep;
+pub(crate) mod answer;
+pub(crate) mod drill;
+pub(crate) mod drop;
+pub(crate) mod frf;
+pub(crate) mod impacts;
+pub(crate) mod job;
+pub(crate) mod model;
+pub(crate) mod precision;
+pub(crate) mod pulse;
+pub(crate) mod source;
+pub(crate) mod spectrum;
+pub(crate) mod sweep;
 
 mod page;
 
 pub use answer::Answer;
-pub use job::{Job, JobOptions, Outcome, Progress, run};
-pub use source::Source;
+pub use job::{JobOptions, Outcome, Progress, run};
+pub use sweep::modelled::fit;
+pub use sweep::{named, responses};
+
+pub(crate) use job::Job;
+pub(crate) use source::Source;
+
+/// Figures of results, as data.
+pub mod figures {
+    pub use super::drill::figures::drill;
+    pub use super::frf::figures::frf;
+    pub use super::impacts::figures::{drop, impacts};
+    pub use super::model::figures::{branches, ladder, orbit, phase_plane, poincare, regimes, sweep, traces};
+    pub use super::pulse::figures::pulse;
+    pub use super::spectrum::figures::lines;
+    pub use super::sweep::figures::{fit, map, overlay, response, waterfall};
+}
 
 use crate::campaign::{Campaign, Entry};
 use crate::error::{Error, Result};
@@ -28,7 +43,7 @@ use serde::de::DeserializeOwned;
 use std::path::Path;
 
 /// The keys of a kind of record.
-pub trait Analysis: DeserializeOwned {
+pub(crate) trait Analysis: DeserializeOwned {
     /// Its section of a campaign: `impacts` for `[[impacts]]`.
     const SECTION: &'static str;
     /// Whether records lie in files: their tables then have the keys of how a file is read.
@@ -49,7 +64,7 @@ pub trait Analysis: DeserializeOwned {
 
 /// A row of the table of kinds.
 #[derive(Clone, Copy)]
-pub struct Kind {
+pub(crate) struct Kind {
     section: &'static str,
     check: fn(&Campaign) -> Result<()>,
     run: fn(&mut Job<'_>) -> Result<()>,
@@ -62,7 +77,7 @@ impl Kind {
 }
 
 /// All kinds of records, in the order in which they are measured and shown.
-pub const KINDS: [Kind; 7] = [
+pub(crate) const KINDS: [Kind; 7] = [
     Kind::of::<sweep::Keys>(),
     Kind::of::<spectrum::Keys>(),
     Kind::of::<frf::Keys>(),
@@ -86,7 +101,7 @@ pub fn open(path: impl AsRef<Path>) -> Result<Campaign> {
 ///
 /// # Errors
 /// As [`Campaign::entries`].
-pub fn entries<A: Analysis>(campaign: &Campaign) -> Result<Vec<Entry<A>>> {
+pub(crate) fn entries<A: Analysis>(campaign: &Campaign) -> Result<Vec<Entry<A>>> {
     campaign.entries(A::SECTION, A::OF_FILES)
 }
 

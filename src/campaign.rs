@@ -37,14 +37,15 @@ mod prediction;
 mod reading;
 mod value;
 
-pub use channel::{one as channel, several as channels};
 pub use compute::{Compute, Drive};
-pub use entry::Entry;
 pub use fit::FitEntry;
 pub use parameter::Parameter;
 pub use prediction::{Follows, ModelEntry};
-pub use reading::{Channel, Decimal, Reading, above_zero};
-pub use value::{LowPass, Word, two, word};
+
+pub(crate) use channel::{one as channel, several as channels};
+pub(crate) use entry::Entry;
+pub(crate) use reading::{Channel, Reading, above_zero};
+pub(crate) use value::{LowPass, two, word};
 
 use crate::error::{Error, Place, Result};
 use crate::model::{ContactKeys, Rig};
@@ -58,7 +59,7 @@ use toml::de::{DeTable, DeValue};
 /// Folder for results where none is named.
 const RESULTS: &str = "results";
 
-/// A campaign as its file has it: what holds for all records. The records themselves are [`Campaign::entries`].
+/// A campaign as its file has it: what holds for all records. [`crate::analysis`] reads the records themselves.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Campaign {
@@ -233,7 +234,7 @@ impl Campaign {
     ///
     /// # Errors
     /// If it leads outside the folder; if it does not exist.
-    pub fn file<K>(
+    pub(crate) fn file<K>(
         &self,
         entry: &Entry<K>,
         key: &'static str,

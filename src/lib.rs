@@ -12,10 +12,10 @@
 //! # Example
 //! The response of mass 1 in the example campaign, taken from velocity to displacement:
 //! ```
-//! use vibroimpact::analysis::{open, sweep};
+//! use vibroimpact::analysis::{named, open};
 //! use vibroimpact::measure::response::{ResponseOptions, response};
 //! let campaign = open("examples/two_mass_rig/campaign.toml")?;
-//! let (list, reader) = sweep::named(&campaign, Some("mass 1, up"), false)?;
+//! let (list, reader) = named(&campaign, Some("mass 1, up"), false)?;
 //! let found = response(&reader.read(&list)?, &ResponseOptions { integrate: 1, ..Default::default() })?;
 //! let largest = found.points.iter().map(|p| &p.amplitude).max_by(|a, b| a.value.total_cmp(&b.value)).unwrap();
 //! assert!((largest.value - 14.19e-3).abs() < 0.02e-3); // m
@@ -30,11 +30,13 @@ pub mod cli;
 pub mod compare;
 pub mod report;
 
+pub use vibro_figure as figure;
 pub use vibro_io as read;
 pub use vibro_io::write;
 pub use vibro_math as math;
 pub use vibro_measure as measure;
 pub use vibro_model as model;
+pub use vibro_precision as precision;
 pub use vibro_record as record;
 pub use vibro_record::units;
 pub use vibro_record::{Error, Result};

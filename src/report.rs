@@ -1,7 +1,7 @@
 //! What a person reads: tables, figures, files, one page, and the words for findings. Nothing here knows an analysis.
 
-pub mod files;
-pub mod layout;
+pub(crate) mod files;
+pub(crate) mod layout;
 pub mod words;
 
 mod html;
@@ -11,7 +11,7 @@ mod table;
 pub use html::Page;
 pub use output::Output;
 pub use table::{Cell, Column, Table};
-pub use vibro_figure::{
-    AxisSpec, Drawing, Figure, Grid, Heatmap, Ink, Key, Kind, Legend, Marker, Note, Panel, Peak, Plot, Row,
-    Scale, Series, Shape, Stroke, Waterfall, colour,
+pub(crate) use vibro_figure::{
+    AxisSpec, Drawing, Figure, Grid, Heatmap, Ink, Kind, Legend, Marker, Panel, Plot, Series, Stroke,
+    Waterfall, colour,
 };

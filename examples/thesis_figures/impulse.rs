@@ -4,10 +4,10 @@ use crate::scene::{accepted, add_orbits, border, grid, hertz, ratio, rig, under_
 use crate::sheet::{Claim, Sheet};
 use std::f64::consts::PI;
 use vibroimpact::Result;
-use vibroimpact::analysis::model::figures;
+use vibroimpact::analysis::figures;
+use vibroimpact::figure::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
 use vibroimpact::model::portrait::{Portrait, Sitting};
 use vibroimpact::model::{Excitation, Green, Impulses, Motion, Rig, Simulation};
-use vibroimpact::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
 
 /// Impulse of the thesis' examples in N s.
 const IMPULSE: f64 = 0.009;

@@ -3,11 +3,11 @@
 use crate::scene::{hertz, rig, under_sine};
 use crate::sheet::{Claim, Sheet};
 use crate::sweeps::CONTACT;
-use vibroimpact::analysis::model::figures;
+use vibroimpact::analysis::figures;
+use vibroimpact::figure::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series};
 use vibroimpact::model::portrait::{Portrait, Sitting};
 use vibroimpact::model::regime::regime;
 use vibroimpact::model::{Chirp, Compliant, Excitation, Motion, Regime, Rig, Simulation, Sine, State};
-use vibroimpact::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series};
 use vibroimpact::{Error, Result};
 
 pub fn sheets() -> Result<Vec<Sheet>> {

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 use vibroimpact::Result;
 use vibroimpact::analysis;
-use vibroimpact::analysis::sweep::{self, figures};
+use vibroimpact::analysis::figures;
 use vibroimpact::measure::drill::{Beam, From};
 use vibroimpact::measure::pulse::two_times;
 use vibroimpact::measure::response::{ResponseOptions, response};
@@ -19,7 +19,7 @@ pub fn spectra() -> Result<Sheet> {
         analysis::open(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/two_mass_rig/campaign.toml"))?;
     let options = ResponseOptions { integrate: 1, ..Default::default() };
     let points = |name: &str| -> Result<_> {
-        let (list, reader) = sweep::named(&campaign, Some(name), false)?;
+        let (list, reader) = analysis::named(&campaign, Some(name), false)?;
         Ok(response(&reader.read(&list)?, &options)?.points)
     };
     let (up, down) = (points("mass 1, up")?, points("mass 1, down")?);
@@ -29,7 +29,7 @@ pub fn spectra() -> Result<Sheet> {
     // Steps up and down have the same frequencies.
     let there = down.iter().min_by(|a, b| (a.excitation - at).abs().total_cmp(&(b.excitation - at).abs()));
     let low = there.map_or(f64::NAN, |p| p.amplitude.value);
-    let (list, reader) = sweep::named(&campaign, Some("mass 1, up"), false)?;
+    let (list, reader) = analysis::named(&campaign, Some("mass 1, up"), false)?;
     let figure = figures::waterfall(&waterfall(&reader.read(&list)?, &options)?, Some(20.0))?
         .height(95.0)
         .caption("Spectra of the excited mass of the example campaign (a simulated rig with the numbers of the thesis' one, 0.1 N), sweeping up.");

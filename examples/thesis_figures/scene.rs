@@ -1,7 +1,7 @@
 //! What the figures of the closed form have in common: the rig, the frequency ratio, and how orbits become curves.
 
+use vibroimpact::figure::{AxisSpec, Ink, Plot, Series, Stroke};
 use vibroimpact::model::{Excitation, Impulses, Orbit, Rig, orbits, orbits_of};
-use vibroimpact::report::{AxisSpec, Ink, Plot, Series, Stroke};
 
 /// The thesis' rig with this restitution.
 pub fn rig(restitution: f64) -> Rig {

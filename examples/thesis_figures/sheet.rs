@@ -1,6 +1,6 @@
 //! One figure of the thesis' matter with what the thesis says of it and what comes out here.
 
-use vibroimpact::report::Figure;
+use vibroimpact::figure::Figure;
 
 /// A figure, or a table alone, and the claims that go with it.
 pub struct Sheet {

@@ -3,8 +3,8 @@
 use crate::scene::{accepted, add_orbits, border, grid, hertz, peak, ratio, real, rig, under_sine};
 use crate::sheet::{Claim, Sheet};
 use vibroimpact::Result;
+use vibroimpact::figure::{AxisSpec, Figure, Ink, Legend, Plot, Series, Stroke};
 use vibroimpact::model::{Green, Orbit, Rig, Sine, Steady};
-use vibroimpact::report::{AxisSpec, Figure, Ink, Legend, Plot, Series, Stroke};
 
 pub fn sheets() -> Result<Vec<Sheet>> {
     Ok(vec![forces(), restitutions(), sign()?, phases()?, additional_peak()])

@@ -5,12 +5,12 @@ use crate::sheet::{Claim, Sheet};
 use crate::sine;
 use std::f64::consts::TAU;
 use vibroimpact::Result;
-use vibroimpact::analysis::model::figures;
+use vibroimpact::analysis::figures;
+use vibroimpact::figure::{AxisSpec, Figure, Marker, Panel, Plot, Series};
 use vibroimpact::model::contact::conversion;
 use vibroimpact::model::sweep::{Observable, Pace, Plan, Point, Swept, apart};
 use vibroimpact::model::{Compliant, Excitation, Law, Motion, Pulses, Rig, Simulation, Sine, State};
 use vibroimpact::record::Direction;
-use vibroimpact::report::{AxisSpec, Figure, Marker, Panel, Plot, Series};
 
 /// Contact of the thesis' simulations.
 pub const CONTACT: Law = Law::KelvinVoigt { stiffness: 1e5, damping: 0.1 };

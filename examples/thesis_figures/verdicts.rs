@@ -3,9 +3,9 @@
 use crate::scene::{accepted, grid, ratio, real, rig, under_sine};
 use crate::sheet::{Claim, Sheet};
 use ndarray::Array2;
-use vibroimpact::analysis::model::figures;
+use vibroimpact::analysis::figures;
+use vibroimpact::figure::{AxisSpec, Figure, Heatmap, Ink, Legend, Plot, Series};
 use vibroimpact::model::{ChangeKind, Excitation, Loss, Orbit, Sine, response};
-use vibroimpact::report::{AxisSpec, Figure, Heatmap, Ink, Legend, Plot, Series};
 use vibroimpact::{Error, Result};
 
 pub fn sheets() -> Result<Vec<Sheet>> {

@@ -6,7 +6,7 @@ mod map;
 pub use chart::chart;
 pub use map::maps;
 
-use crate::compare::precision::{Cell as Asked, FailureMap, Family, Measured, Scene};
+use crate::precision::{Cell as Asked, FailureMap, Family, Measured, Scene};
 use crate::report::layout::{headed, table};
 use crate::report::{Cell, Table};
 use map::OUTCOMES;

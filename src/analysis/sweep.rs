@@ -6,7 +6,6 @@ pub mod pairing;
 pub mod stored;
 pub mod tables;
 
-pub use pairing::Crossing;
 pub use stored::Stored;
 
 use super::{Analysis, Answer, Job, JobOptions, Progress, entries};

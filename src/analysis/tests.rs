@@ -64,7 +64,7 @@ fn mistakes_point_at_their_line() {
 #[test]
 fn a_sweep_is_chosen_by_name() {
     let campaign = of(&format!("{SWEEP}[[sweep]]\nname = \"b\"\nlist = \"M.TXT\"\n")).unwrap();
-    let chosen = |name| sweep::named(&campaign, name, false).unwrap_err().to_string();
+    let chosen = |name| named(&campaign, name, false).unwrap_err().to_string();
     assert!(chosen(None).contains("a, b") && chosen(Some("c")).contains("a, b"));
     assert!(chosen(Some("a")).contains("does not exist"));
 }

@@ -45,11 +45,15 @@ impl<K> Entry<K> {
 }
 
 impl Campaign {
-    /// The tables of a section in their order; those of a record in a file have the keys of [`Reading`] and [`Channel`], too.
+    /// The tables of a section in their order; those of a record in a file have the keys of `Reading` and `Channel`, too.
     ///
     /// # Errors
     /// If one has an unknown key, or a value of the wrong kind.
-    pub fn entries<K: DeserializeOwned>(&self, section: &str, of_a_file: bool) -> Result<Vec<Entry<K>>> {
+    pub(crate) fn entries<K: DeserializeOwned>(
+        &self,
+        section: &str,
+        of_a_file: bool,
+    ) -> Result<Vec<Entry<K>>> {
         let mut table = self.table()?;
         let Some(all) = table.remove(section) else { return Ok(Vec::new()) };
         let several = |span: Range<usize>| {
@@ -98,7 +102,7 @@ impl Campaign {
     }
 
     /// An error about a table: it points at the line of the key that the error names as its setting, else at the table.
-    pub fn fault<K>(&self, entry: &Entry<K>, error: Error) -> Error {
+    pub(crate) fn fault<K>(&self, entry: &Entry<K>, error: Error) -> Error {
         let place = |key: &&str| entry.places.iter().find(|(name, _)| name == key);
         let span = error.settings().iter().find_map(place);
         let span = span.map_or(&entry.head, |(_, span)| span);

@@ -3,8 +3,8 @@
 use super::print;
 use crate::analysis::Answer;
 use crate::analysis::precision as shown;
-use crate::compare::precision::{Family, Results, Scene};
 use crate::error::{Error, Result};
+use crate::precision::{Family, Results, Scene};
 use crate::record::Finding;
 use crate::report::files;
 use clap::ValueEnum;

@@ -10,8 +10,8 @@ mod noise;
 use campaign::{Direction, list, measure, truth_header};
 use rayon::prelude::*;
 use std::path::Path;
-use vibroimpact::analysis::sweep::{modelled::fit, responses};
-use vibroimpact::analysis::{JobOptions, open};
+
+use vibroimpact::analysis::{JobOptions, fit, open, responses};
 use vibroimpact::campaign::{FitEntry, Parameter};
 use vibroimpact::compare::Fit;
 

@@ -2,7 +2,7 @@
 //! stalls or crashes.
 
 use std::collections::HashSet;
-use vibroimpact::compare::precision::{Cell, FailureMap, Outcome, estimators, models};
+use vibroimpact::precision::{Cell, FailureMap, Outcome, estimators, models};
 
 fn check(map: &FailureMap) {
     let broken: Vec<String> = map

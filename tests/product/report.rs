@@ -4,10 +4,10 @@
 use ndarray::Array2;
 use proptest::prelude::*;
 use resvg::usvg::{self, roxmltree};
-use vibroimpact::report::{
-    AxisSpec, Drawing, Figure, Heatmap, Legend, Output, Page, Panel, Peak, Plot, Series, Shape, Stroke,
-    Table, Waterfall,
+use vibroimpact::figure::{
+    AxisSpec, Drawing, Figure, Heatmap, Legend, Panel, Peak, Plot, Series, Shape, Stroke, Waterfall,
 };
+use vibroimpact::report::{Output, Page, Table};
 
 /// Parses a drawing as XML and as a picture, and returns the texts it shows.
 fn texts(drawing: &Drawing) -> Vec<String> {

@@ -1,6 +1,6 @@
 //! Speed against accuracy.
 
-use crate::compare::precision::{Family, Measured, Scene};
+use crate::precision::{Family, Measured, Scene};
 use crate::report::layout::capital;
 use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
 use crate::units::notation::typeset;

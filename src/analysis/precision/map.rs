@@ -1,6 +1,6 @@
 //! Where methods break.
 
-use crate::compare::precision::{FailureMap, Family, Outcome};
+use crate::precision::{FailureMap, Family, Outcome};
 use crate::report::colour::{BLACK, Rgb, SERIES, WHITE};
 use crate::report::{Figure, Grid, Kind};
 use crate::units::notation::typeset;
