@@ -46,7 +46,7 @@ pub(super) fn sniff(head: &[u8], source: &Source) -> bool {
 
 pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
     let bytes = source.all()?;
-    let mut stream = Stream::new(source.path(), &bytes);
+    let mut stream = Stream::new(&bytes);
     let (mut records, mut findings): (Vec<Record>, Vec<Finding>) = (Vec::new(), Vec::new());
     // Other data sets with their counts, and lines outside any, with the place of the first.
     let mut others: Vec<(u32, usize)> = Vec::new();
@@ -67,9 +67,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         // The delimiter that closes this set may open the next one, where a file has lost one of the two.
         delimited = true;
         if number == 58 {
-            match uff58::read(&mut stream, (line, binary), &system, options, &source.name())
-                .map_err(|e| e.in_file(source.path()))?
-            {
+            match uff58::read(&mut stream, (line, binary), &system, options, &source.name())? {
                 Ok(record) => {
                     records.push(record);
                     continue;
@@ -102,8 +100,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         findings.push(Finding::note("sets-passed-over").name("sets", names.join(", ")));
     }
     if let Some((place, lines)) = outside {
-        let place = Place { path: None, ..place }.to_string();
-        findings.push(Finding::caution("lines-outside").count("n", lines).name("place", place));
+        findings.push(Finding::caution("lines-outside").count("n", lines).name("place", place.to_string()));
     }
     if records.is_empty() {
         findings.push(Finding::caution("no-function"));

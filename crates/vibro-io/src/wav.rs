@@ -16,9 +16,10 @@ mod scales;
 pub(crate) use scales::{Scale, Scales};
 
 use super::format::Format;
+use super::missing::Missing;
 use super::reader::{Options, Recording};
 use super::source::ReadSeek;
-use super::{Header, Source, missing};
+use super::{Header, Source};
 use layout::Layout;
 use std::io::{Read, SeekFrom};
 use std::path::PathBuf;
@@ -206,21 +207,13 @@ impl Stream for Wave {
             let seen = lanes::survey(values);
             *largest = largest.max(seen.high).max(-seen.low);
             if !seen.finite {
-                let places: Vec<usize> = (0..frames).filter(|i| !values[*i].is_finite()).collect();
-                if !self.allow_missing {
-                    let listed = places.iter().take(missing::LISTED).map(|i| first + *i as u64);
-                    let listed: Vec<String> =
-                        listed.map(|frame| format!("{frame} of channel {}", channel + 1)).collect();
-                    let found = format!(
-                        "{} sample(s) are NaN or infinite: frame {}",
-                        places.len(),
-                        listed.join(", ")
-                    );
-                    return Err(missing::refusal(Place::file(&self.path), found));
+                let mut missing = Missing::default();
+                for i in (0..frames).filter(|i| !values[*i].is_finite()) {
+                    let frame = first + i as u64;
+                    missing.take(&Place::file(&self.path), format!("{frame} of channel {}", channel + 1));
                 }
-                for i in places {
-                    values[i] = f64::NAN;
-                }
+                missing.check("sample(s) are NaN or infinite: frame", self.allow_missing)?;
+                values.iter_mut().filter(|v| !v.is_finite()).for_each(|v| *v = f64::NAN);
             }
             let factor = self.factors.get(*channel).copied().unwrap_or(1.0);
             if factor != 1.0 {

@@ -111,6 +111,14 @@ fn parts(record: &Record, i: usize) -> impl Iterator<Item = f64> + use<> {
     std::iter::once(re).chain(im)
 }
 
+/// The first of records that share one axis; `what` says what has one, for the complaint.
+fn together<'a>(records: &'a [Record], what: &str) -> Result<&'a Record> {
+    let first = records.first().ok_or_else(|| Error::refused("there is no record to write"))?;
+    let Some(other) = records.iter().find(|r| r.axis() != first.axis()) else { return Ok(first) };
+    let why = format!("{} and {} have different {what}", label(first), label(other));
+    Err(Error::refused(why).hint("write them one by one"))
+}
+
 /// How a record is called in a complaint.
 fn label(record: &Record) -> String {
     format!("the {} {:?}", record.kind(), record.meta().name)

@@ -20,33 +20,30 @@ const SMALLEST_PIECE: u64 = 1024 * 1024;
 const ENOUGH: usize = 24;
 
 /// How clean rows look, as bytes.
-pub struct Shape {
+pub struct Shape<'a> {
+    dialect: &'a Dialect,
     /// Byte offset of the first row.
     first_byte: u64,
-    columns: usize,
-    separator: Separator,
-    decimal: u8,
     /// Parser of unsigned numbers and their width, where the first rows print them all like `1.234e+05`.
     exponential: Option<(Exponential, usize)>,
     /// Length of a row of one such number and the end of its number, where the first rows are all alike.
     fixed: Option<(usize, usize)>,
 }
 
-impl Shape {
+impl<'a> Shape<'a> {
     /// The shape of rows of real numbers that begin in `head`; `None` for others.
-    pub fn of(dialect: &Dialect, head: &[u8]) -> Option<Shape> {
+    pub fn of(dialect: &'a Dialect, head: &[u8]) -> Option<Shape<'a>> {
         if dialect.complex {
             return None;
         }
-        let Dialect { columns, separator, decimal, .. } = *dialect;
         let first_byte = dialect.first_byte(head);
         let rows = head[first_byte..].split_inclusive(|b| *b == b'\n').take(ENOUGH);
         let rows: Vec<&[u8]> = rows.filter(|row| row.ends_with(b"\n")).collect();
-        let exponential = exponential(&rows, separator).filter(|_| decimal == b'.');
+        let exponential = exponential(&rows, dialect.separator).filter(|_| dialect.decimal == b'.');
         let size = |row: &&[u8]| (row.len(), row.trim_ascii_end().len());
         let alike = rows.first().map(size).filter(|first| rows.iter().all(|row| size(row) == *first));
-        let fixed = alike.filter(|_| columns == 1 && exponential.is_some());
-        Some(Shape { first_byte: first_byte as u64, columns, separator, decimal, exponential, fixed })
+        let fixed = alike.filter(|_| dialect.columns == 1 && exponential.is_some());
+        Some(Shape { dialect, first_byte: first_byte as u64, exponential, fixed })
     }
 }
 
@@ -70,7 +67,7 @@ pub fn read(source: &Source, shape: &Shape) -> Result<Option<Vec<Values>>> {
         None if shape.fixed.is_some() => values(source, &Shape { fixed: None, ..*shape })?,
         values => values,
     };
-    let columns = shape.columns;
+    let columns = shape.dialect.columns;
     Ok(values.map(|values| match columns {
         1 => vec![Values::Real(values)],
         _ => (0..columns)
@@ -91,7 +88,7 @@ fn values(source: &Source, shape: &Shape) -> Result<Option<Vec<f64>>> {
         .collect::<Result<_>>()?;
     let pieces: Vec<(u64, u64)> = bounds.windows(2).map(|w| (w[0], w[1])).collect();
     let counts: Vec<usize> = pieces.par_iter().map(|p| rows_in(source, shape, *p)).collect::<Result<_>>()?;
-    let total = counts.iter().sum::<usize>().saturating_mul(shape.columns);
+    let total = counts.iter().sum::<usize>().saturating_mul(shape.dialect.columns);
     // A value takes two bytes with what ends it: blank lines must not claim room for rows of many columns.
     if total as u64 > (to - from) / 2 + 1 {
         return Ok(None);
@@ -100,7 +97,7 @@ fn values(source: &Source, shape: &Shape) -> Result<Option<Vec<f64>>> {
     let mut rest = values.as_mut_slice();
     let mut parts = Vec::new();
     for (rows, piece) in counts.iter().zip(pieces) {
-        let (part, behind) = std::mem::take(&mut rest).split_at_mut(rows * shape.columns);
+        let (part, behind) = std::mem::take(&mut rest).split_at_mut(rows * shape.dialect.columns);
         rest = behind;
         parts.push((Part { values: part, used: 0, ended: false }, piece));
     }
@@ -256,7 +253,7 @@ fn value(bytes: &[u8], shape: &Shape) -> Option<(f64, usize)> {
             return Some((if first == b'-' { -magnitude } else { magnitude }, sign + width));
         }
     }
-    number::prefix(bytes, shape.decimal)
+    number::prefix(bytes, shape.dialect.decimal)
 }
 
 /// Reads one row, which may be blank behind the last values; gives its bytes with its line end.
@@ -284,9 +281,9 @@ fn row(bytes: &[u8], shape: &Shape, part: &mut Part) -> Option<usize> {
     if part.ended {
         return None;
     }
-    for column in 0..shape.columns {
+    for column in 0..shape.dialect.columns {
         if column > 0
-            && let Separator::Char(mark) = shape.separator
+            && let Separator::Char(mark) = shape.dialect.separator
             && mark != b'\t'
         {
             if bytes.get(at) != Some(&mark) {
@@ -302,8 +299,8 @@ fn row(bytes: &[u8], shape: &Shape, part: &mut Part) -> Option<usize> {
         let before = at;
         blank(&mut at);
         let touching = before == at
-            && column + 1 < shape.columns
-            && !matches!(shape.separator, Separator::Char(mark) if bytes.get(at) == Some(&mark));
+            && column + 1 < shape.dialect.columns
+            && !matches!(shape.dialect.separator, Separator::Char(mark) if bytes.get(at) == Some(&mark));
         if touching {
             return None;
         }

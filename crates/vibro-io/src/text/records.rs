@@ -7,14 +7,12 @@ use super::header::Stated;
 use super::names::{Name, Part};
 use super::rows::Rows;
 use super::tail;
-use crate::assemble::{self, Spectral, from_values, short, to_si};
+use crate::assemble::{self, Spectral, domain, from_values, short, to_si};
 use crate::{Format, Options, number};
 use num_complex::Complex64;
 use std::borrow::Cow;
 use vibro_record::units::Unit;
-use vibro_record::{
-    Axis, AxisKind, Error, Finding, Grid, Meta, Place, Record, Result, Scaling, Values, Window,
-};
+use vibro_record::{Axis, AxisKind, Error, Finding, Grid, Meta, Record, Result, Scaling, Values, Window};
 
 /// Records of all columns but the abscissa; findings about the file as a whole are added.
 ///
@@ -43,12 +41,12 @@ pub fn build(
     let first = if counts { table.remove(0).reals().first().copied() } else { None };
     let printed = printed.map(|column| made.printed(&column, &table)).transpose()?;
     let has_axis = printed.is_some();
-    let mut axis = choose(text.path(), printed, n, &made.stated, options, &mut of_axis)?;
+    let mut axis = choose(printed, n, &made.stated, options, &mut of_axis)?;
     if let (AxisKind::Index, Some(first), Grid::Even { start, .. }) = (&axis.kind, first, &mut axis.grid) {
         *start = first;
     }
     if table.is_empty() {
-        return Err(made.error("only an abscissa", "at least one column of values"));
+        return Err(Error::usage("only an abscissa", "at least one column of values"));
     }
     let lines = made.stated.lines.filter(|_| axis.kind == AxisKind::Frequency && !has_axis);
     let declared = lines.map(|lines| lines as usize + 1).filter(|all| n != *all && n + 1 != *all);
@@ -117,10 +115,6 @@ struct Made<'a> {
 }
 
 impl Made<'_> {
-    fn error(&self, found: impl Into<String>, expected: &str) -> Error {
-        Error::input(Place::file(self.text.path()), found, expected)
-    }
-
     /// Which column is the abscissa. A column of times need not be it, for it may hold intervals: by name it is, or if it rises.
     fn abscissa(&self, table: &[Column]) -> Option<usize> {
         let by_name = |column: &Column| {
@@ -149,13 +143,13 @@ impl Made<'_> {
         let (kind, factor) = if let Some(kind) = by_name.clone() {
             let (factor, assumed) = column.name.to_axis(&kind).map_err(|found| {
                 let found = format!("{found} {:?}", column.label());
-                self.error(found, "s, ms, Hz, kHz, …").hint("name another unit in its header, e.g. time [s]")
+                Error::usage(found, "s, ms, Hz, kHz, …")
+                    .hint("name another unit in its header, e.g. time [s]")
             })?;
             findings.extend(assumed);
             (kind, factor)
         } else if let Some(kind) = self.domain(n) {
-            let unit = if kind == AxisKind::Time { "s" } else { "Hz" };
-            findings.push(Finding::caution("axis-unit-assumed").name("unit", unit));
+            findings.push(Finding::caution("axis-unit-assumed").name("unit", domain(&kind).1));
             (kind, 1.0)
         } else {
             findings.push(Finding::caution("axis-kind-unsaid"));
@@ -201,7 +195,7 @@ impl Made<'_> {
                 let (one, two) = (axis.label(), other.label());
                 let found = format!("{one:?} and {two:?} run over {} and {}", short(a), short(b));
                 let hint = "write each of them with its channels to a file of its own";
-                return Err(self.error(found, "one clock for all columns").hint(hint));
+                return Err(Error::usage(found, "one clock for all columns").hint(hint));
             }
         }
         Ok(())
@@ -228,7 +222,7 @@ impl Made<'_> {
             // A unit that stands in one header holds for both.
             if real.name.unit.is_some() && column.name.unit.is_some() && real.name.unit != column.name.unit {
                 let found = format!("{:?} and {:?} have different units", real.label(), column.label());
-                return Err(self.error(found, "one unit for real and imaginary part"));
+                return Err(Error::usage(found, "one unit for real and imaginary part"));
             }
             let both = real
                 .reals()
@@ -245,8 +239,7 @@ impl Made<'_> {
         if stated && out.iter().all(|column| matches!(column.values, Values::Real(_))) {
             let over = if axis.kind == AxisKind::Time { " over time" } else { " of values" };
             let found = format!("{} column(s){over}, where complex values were stated", out.len());
-            return Err(self
-                .error(found, "two columns over frequency, real and imaginary part")
+            return Err(Error::usage(found, "two columns over frequency, real and imaginary part")
                 .hint("leave out that values are complex, or state the base band")
                 .setting("complex")
                 .setting("base_band"));
@@ -282,12 +275,14 @@ impl Made<'_> {
         }
         meta.step("read", &how);
         let factor = self.options.adopt(&mut meta, unit.as_deref().or(self.stated.unit.as_deref()));
-        to_si(&mut values, factor).map_err(|e| e.in_file(self.text.path()))?;
+        to_si(&mut values, factor)?;
         if axis.kind == AxisKind::Time && matches!(values, Values::Complex(_)) {
-            return Err(self
-                .error("complex values over time", "complex values over frequency, or real values over time")
-                .hint("state the base band, and no sampling rate")
-                .setting("base_band"));
+            return Err(Error::usage(
+                "complex values over time",
+                "complex values over frequency, or real values over time",
+            )
+            .hint("state the base band, and no sampling rate")
+            .setting("base_band"));
         }
         let spectral = self.spectral(&meta.name, unit.as_deref());
         Ok(assemble::record(meta, axis.clone(), values, spectral))

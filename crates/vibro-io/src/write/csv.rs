@@ -8,7 +8,7 @@
 //! The first column is the abscissa; a complex record takes two. Numbers have the fewest digits that read back as the
 //! same double; an uneven abscissa has all its digits, so that its values cannot be taken for rounded even ones.
 
-use super::{failed, label, parts};
+use super::{failed, label, parts, together};
 use std::fmt::Write as _;
 use std::io::Write;
 use vibro_record::{Axis, AxisKind, Error, FROM_BLOWS, Grid, Record, Result, Scaling, Values};
@@ -18,15 +18,9 @@ use vibro_record::{Axis, AxisKind, Error, FROM_BLOWS, Grid, Record, Result, Scal
 /// # Errors
 /// If there are none, they have no values, their axes differ, or the output cannot be written.
 pub fn write(records: &[Record], separator: char, out: &mut impl Write) -> Result<()> {
-    let Some(first) = records.first() else {
-        return Err(Error::refused("there is no record to write"));
-    };
+    let first = together(records, "abscissae: a table has one")?;
     if let Some(empty) = records.iter().find(|r| r.is_empty()) {
         return Err(Error::refused(format!("{} has no values to write", label(empty))));
-    }
-    if let Some(other) = records.iter().find(|r| r.axis() != first.axis()) {
-        let why = format!("{} and {} have different abscissae: a table has one", label(first), label(other));
-        return Err(Error::refused(why).hint("write them one by one"));
     }
     let mut text = String::new();
     let columns: Vec<Column> = records.iter().enumerate().map(|(i, r)| Column::of(i, r)).collect();

@@ -9,7 +9,6 @@ mod header;
 use super::{failed, label, parts};
 use crate::number;
 use crate::uff58::Layout;
-use header::Header;
 use std::io::Write;
 use vibro_record::{Error, Grid, Record, Result};
 
@@ -67,7 +66,7 @@ pub fn write_uff58(records: &[Record], out: &mut impl Write, storage: Storage) -
         let double = storage.precision == Precision::Double;
         let layout = Layout { complex: record.is_complex(), double, even };
         let size = storage.binary.then_some(layout.point_size(false) * record.len());
-        let mut bytes = Header::of(record).text(layout, size, form, record).into_bytes();
+        let mut bytes = header::text(record, layout, size, form).into_bytes();
         if storage.binary {
             binary(record, layout, &mut bytes);
         } else {

@@ -78,7 +78,7 @@ fn what_a_wave_file_cannot_hold_is_refused_with_the_reason() {
     assert!(refused(&[trace("a", "m", even(1e-10), values.clone())]).contains("4.29 GHz"));
     assert!(refused(&[trace("a", "m", Axis::time(0.0, 0.1, 0), vec![])]).contains("no samples"));
     let two = [trace("a", "m", even(0.1), values.clone()), trace("b", "m", even(0.2), values)];
-    assert!(refused(&two).contains("\"a\" and \"b\" have different time axes"));
+    assert!(refused(&two).contains("\"a\" and the trace \"b\" have different time axes"));
     let (meta, axis) = (Meta::new("H", Unit::none()), Axis::frequency(0.0, 1.0, 0));
     let frf = Record::Frf(Frf { meta, axis, values: vec![], kind: FrfKind::Other });
     assert!(refused(&[frf]).contains("the frf \"H\" is not over time"));
