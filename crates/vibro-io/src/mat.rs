@@ -16,7 +16,7 @@ use super::format::Format;
 use super::missing::{self, Missing};
 use super::reader::{Options, Recording};
 use crate::assemble::{self, Spectral, from_values, short, to_si};
-use variable::{Array, Content, Elements};
+use variable::{Array, Content};
 use vibro_record::units::Unit;
 use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Place, Record, Result, Values};
 
@@ -59,8 +59,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
                 .hint("open it in MATLAB and save it again with -v7 or -v6, e.g. save('name.mat', '-v7')")
         })?;
     let bytes = source.all()?;
-    let place = Place::file(source.path());
-    let variables = variable::all(Elements { rest: &bytes[HEADER..], big_endian, place }, bytes.len())?;
+    let variables = variable::all(&bytes, HEADER, big_endian)?;
     let mut findings = Vec::new();
     let (mut arrays, mut notes, mut rates) = (Vec::new(), Vec::new(), Vec::new());
     for (name, content) in variables {
@@ -245,9 +244,6 @@ impl<'a> Axes<'a> {
             return Err(Error::usage(found, "one channel a column")
                 .hint(format!("transpose it and save it again: {name} = {name}.';")));
         }
-        fn every<T: Copy>(all: &[T], from: usize, step: usize, n: usize) -> Vec<T> {
-            all.iter().skip(from).step_by(step).take(n).copied().collect()
-        }
         let (rows, columns) = (rows as usize, columns as usize);
         let record = |k: usize| {
             let (name, from, step, n) = if lying {
@@ -263,6 +259,10 @@ impl<'a> Axes<'a> {
         };
         Ok((0..if lying { rows } else { columns }).map(record).collect())
     }
+}
+
+fn every<T: Copy>(all: &[T], from: usize, step: usize, n: usize) -> Vec<T> {
+    all.iter().skip(from).step_by(step).take(n).copied().collect()
 }
 
 #[cfg(test)]

@@ -22,7 +22,9 @@ pub(super) fn kept(count: usize) -> Option<Finding> {
 pub(super) fn mark(values: &mut Values) -> Vec<usize> {
     fn of<T: Copy>(values: &mut [T], finite: impl Fn(&T) -> bool, gap: T) -> Vec<usize> {
         let odd: Vec<usize> = (0..values.len()).filter(|i| !finite(&values[*i])).collect();
-        odd.iter().for_each(|i| values[*i] = gap);
+        for i in &odd {
+            values[*i] = gap;
+        }
         odd
     }
     match values {

@@ -148,27 +148,20 @@ impl Wave {
         let start = layout.scales.as_ref().map_or(0.0, |s| s.start);
         let axis = Axis::time(start, 1.0 / options.rate.unwrap_or(layout.rate), self.frames());
         let mut trace = Trace { meta, axis, values: Vec::new() };
-        let factor = match (&options.unit, scale) {
-            (Some(unit), _) => {
-                trace.calibrate(1.0, unit)?;
-                trace.meta.found(Finding::note("full-scale-stated").name("unit", unit.symbol()));
-                unit.factor()
-            }
+        let (full_scale, unit, said) = match (&options.unit, scale) {
+            (Some(unit), _) => (1.0, unit.clone(), Finding::note("full-scale-stated")),
             (None, Some(scale)) => {
-                let unit = Unit::parse_or_opaque(&scale.unit);
-                trace.calibrate(scale.factor, &unit)?;
-                trace.meta.found(if scale.unit == FULL_SCALE {
-                    // Only the level was kept: there never was a calibration.
-                    Finding::caution(Trace::UNCALIBRATED)
-                } else {
-                    let said = Finding::caution("full-scale-by-comment").number("factor", scale.factor);
-                    said.name("unit", scale.unit.as_str())
-                });
-                scale.factor * unit.factor()
+                let said = Finding::caution("full-scale-by-comment").number("factor", scale.factor);
+                (scale.factor, Unit::parse_or_opaque(&scale.unit), said)
             }
-            (None, None) => 1.0,
+            (None, None) => return Ok((trace, 1.0)),
         };
-        Ok((trace, factor))
+        trace.calibrate(full_scale, &unit)?;
+        // Where only the level was kept there never was a calibration.
+        let calibrated = options.unit.is_some() || unit.symbol() != FULL_SCALE;
+        let said = said.name("unit", unit.symbol());
+        trace.meta.found(if calibrated { said } else { Finding::caution(Trace::UNCALIBRATED) });
+        Ok((trace, full_scale * unit.factor()))
     }
 
     /// Number of frames (samples a channel) that the file holds, whatever it declares.

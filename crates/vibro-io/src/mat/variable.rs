@@ -29,11 +29,11 @@ pub struct Array {
 }
 
 /// Elements one after the other.
-pub struct Elements<'a> {
-    pub rest: &'a [u8],
-    pub big_endian: bool,
+struct Elements<'a> {
+    rest: &'a [u8],
+    big_endian: bool,
     /// Where the variable stands in the file.
-    pub place: Place,
+    place: Place,
 }
 
 impl<'a> Elements<'a> {
@@ -51,7 +51,7 @@ impl<'a> Elements<'a> {
     }
 
     /// Kind and content of the next element; `None` behind the last.
-    pub fn next(&mut self) -> Result<Option<(u32, &'a [u8])>> {
+    fn next(&mut self) -> Result<Option<(u32, &'a [u8])>> {
         if self.rest.is_empty() {
             return Ok(None);
         }
@@ -113,14 +113,14 @@ impl<'a> Elements<'a> {
     }
 }
 
-/// All variables behind the header of a file, with their names.
-pub fn all(mut file: Elements, length: usize) -> Result<Vec<(String, Content)>> {
+/// All variables of a file behind its header, with their names.
+pub fn all(bytes: &[u8], header: usize, big_endian: bool) -> Result<Vec<(String, Content)>> {
     let mut variables = Vec::new();
-    let path = file.place.path.clone().unwrap_or_default();
+    let mut file = Elements { rest: &bytes[header..], big_endian, place: Place::default() };
     loop {
-        let place = Place::byte(&path, (length - file.rest.len()) as u64);
-        file.place = place.clone();
+        file.place.byte = Some((bytes.len() - file.rest.len()) as u64);
         let Some((kind, content)) = file.next()? else { return Ok(variables) };
+        let within = |rest| Elements { rest, big_endian, place: file.place.clone() };
         let mut inflated = Vec::new();
         let content = match kind {
             14 => content,
@@ -130,13 +130,11 @@ pub fn all(mut file: Elements, length: usize) -> Result<Vec<(String, Content)>> 
                 done.map_err(|e| {
                     file.fault(format!("a variable that cannot be unpacked: {e}"), "intact data")
                 })?;
-                let mut outer =
-                    Elements { rest: &inflated, big_endian: file.big_endian, place: place.clone() };
-                outer.part("variable")?.1
+                within(&inflated).part("variable")?.1
             }
             _ => continue,
         };
-        variables.push(variable(&mut Elements { rest: content, big_endian: file.big_endian, place })?);
+        variables.push(variable(&mut within(content))?);
     }
 }
 

@@ -156,7 +156,7 @@ impl Made<'_> {
             (AxisKind::Other(label.trim_start_matches("column ").trim_matches('"').to_owned()), 1.0)
         };
         let own = tail::resolution(self.text, self.tail, self.dialect, column.at - 1);
-        self.one_clock(&kind, column, (factor, own), others)?;
+        one_clock(&kind, column, (factor, own), others)?;
         let values = values.iter().map(|v| v * factor).collect();
         let (axis, finding) = from_values(kind, values, own * factor, &label);
         let findings =
@@ -173,32 +173,6 @@ impl Made<'_> {
         }
         let spectrum = spectrum || stated.spacing(n).is_some() || self.dialect.complex;
         spectrum.then_some(AxisKind::Frequency)
-    }
-
-    /// Refuses a second column of the axis that runs over another `span`: which columns are whose cannot be told.
-    fn one_clock(
-        &self,
-        kind: &AxisKind,
-        axis: &Column,
-        (factor, resolution): (f64, f64),
-        others: &[Column],
-    ) -> Result<()> {
-        let span = |column: &Column, factor: f64| {
-            let values = column.reals();
-            column.rises().then(|| factor * (values.last().unwrap_or(&0.0) - values.first().unwrap_or(&0.0)))
-        };
-        for other in others.iter().filter(|c| c.name.axis(true).as_ref() == Some(kind)) {
-            if let Ok((theirs, _)) = other.name.to_axis(kind)
-                && let (Some(a), Some(b)) = (span(axis, factor), span(other, theirs))
-                && (b - a).abs() > 4.0 * resolution * factor.max(theirs) + 1e-6 * a.abs()
-            {
-                let (one, two) = (axis.label(), other.label());
-                let found = format!("{one:?} and {two:?} run over {} and {}", short(a), short(b));
-                let hint = "write each of them with its channels to a file of its own";
-                return Err(Error::usage(found, "one clock for all columns").hint(hint));
-            }
-        }
-        Ok(())
     }
 
     /// Joins real and imaginary parts that belong together; over time there are none.
@@ -314,6 +288,31 @@ impl Made<'_> {
         let value = own.or_else(|| self.remarks(key).find(|v| !v.contains(" of ")))?;
         Some(value.trim().to_lowercase())
     }
+}
+
+/// Refuses a second column of the axis that runs over another `span`: which columns are whose cannot be told.
+fn one_clock(
+    kind: &AxisKind,
+    axis: &Column,
+    (factor, resolution): (f64, f64),
+    others: &[Column],
+) -> Result<()> {
+    let span = |column: &Column, factor: f64| {
+        let values = column.reals();
+        column.rises().then(|| factor * (values.last().unwrap_or(&0.0) - values.first().unwrap_or(&0.0)))
+    };
+    for other in others.iter().filter(|c| c.name.axis(true).as_ref() == Some(kind)) {
+        if let Ok((theirs, _)) = other.name.to_axis(kind)
+            && let (Some(a), Some(b)) = (span(axis, factor), span(other, theirs))
+            && (b - a).abs() > 4.0 * resolution * factor.max(theirs) + 1e-6 * a.abs()
+        {
+            let (one, two) = (axis.label(), other.label());
+            let found = format!("{one:?} and {two:?} run over {} and {}", short(a), short(b));
+            let hint = "write each of them with its channels to a file of its own";
+            return Err(Error::usage(found, "one clock for all columns").hint(hint));
+        }
+    }
+    Ok(())
 }
 
 /// `g²/Hz`, `(m/s^2)^2/Hz`: a square over hertz is a power spectral density.

@@ -43,7 +43,7 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
             continue;
         }
         let fields = dialect.cut(&line).map_err(|at| {
-            reader.fault(&line, at, "text behind a closing quote", "a separator or the end of the line")
+            fault(&line, at, "text behind a closing quote", "a separator or the end of the line")
         })?;
         if fields.len() != n {
             return Err(reader.ragged(&line, &fields));
@@ -69,7 +69,7 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
             }
             if abscissa == Some(i) {
                 let expected = "a number in every row of the abscissa";
-                let fault = reader.fault(&line, *at, &format!("found {field:?}"), expected);
+                let fault = fault(&line, *at, &format!("found {field:?}"), expected);
                 return Err(fault.hint("remove the row"));
             }
             let name = dialect.names.as_ref().map_or("", |names| &names[i].name);
@@ -91,6 +91,10 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
 }
 
 const MISSING: Complex64 = Complex64::new(f64::NAN, 0.0);
+
+fn fault(line: &Line, at: usize, found: &str, expected: &str) -> Error {
+    Error::input(in_line(line.number).column(line.column(at)), found, expected)
+}
 
 /// What is read, for values and complaints.
 struct Reader<'a> {
@@ -114,10 +118,6 @@ impl Reader<'_> {
         half || number::is_missing(field.as_bytes())
     }
 
-    fn fault(&self, line: &Line, at: usize, found: &str, expected: &str) -> Error {
-        Error::input(in_line(line.number).column(line.column(at)), found, expected)
-    }
-
     fn ragged(&self, line: &Line, fields: &Fields) -> Error {
         let n = self.dialect.columns;
         // A field that is no number says more than the number of fields.
@@ -128,7 +128,7 @@ impl Reader<'_> {
         let at = fields.get(n).map_or(line.text.len(), |(at, _)| *at);
         let found = format!("{} field(s) in this row", fields.len());
         let expected = format!("{n}, as many as in line {}", self.dialect.columns_from);
-        self.fault(line, at, &found, &expected).hint(self.hint(line, "mend or remove the row"))
+        fault(line, at, &found, &expected).hint(self.hint(line, "mend or remove the row"))
     }
 
     fn not_a_number(&self, line: &Line, at: usize, field: &str) -> Error {
@@ -137,7 +137,7 @@ impl Reader<'_> {
             (false, b',') => ("a number with a decimal comma", b'.'),
             (false, _) => ("a number", b','),
         };
-        let error = self.fault(line, at, &format!("found {:?}", shorten(field)), expected);
+        let error = fault(line, at, &format!("found {:?}", shorten(field)), expected);
         if number::parse_with(field.as_bytes(), other).is_some()
             || (field.contains('.') && field.contains(','))
         {

@@ -61,7 +61,7 @@ pub fn text(record: &Record, layout: Layout, bytes: Option<usize>, [start, step]
     ];
     let id = id.iter().map(|line| plain(line, 80));
     let lines = ["    -1".to_owned(), number].into_iter().chain(id).chain(ends);
-    lines.map(|line| format!("{line:80}\n")).collect()
+    lines.map(|line| format!("{line:80}")).collect::<Vec<_>>().join("\n") + "\n"
 }
 
 /// Function type of record 6; `before` is that of the file the record was read from, and stands where the record still
