@@ -100,12 +100,13 @@ pub(crate) fn read_numbers(source: &Source, options: &Options) -> Result<Recordi
 
 fn read(text: &Text, dialect: &Dialect, options: &Options) -> Result<Recording> {
     let shape = Shape::of(dialect, text.source.head());
-    let clean = shape.map(|shape| fast::read(text.source, &shape)).transpose()?.flatten();
+    let tail = tail::of(text.source)?;
+    let end = text.source.len() - (tail.len() - tail.trim_ascii_end().len()) as u64;
+    let clean = shape.map(|shape| fast::read(text.source, &shape, end)).transpose()?.flatten();
     let rows = match clean {
         Some(columns) => Rows { columns, ..Rows::default() },
         None => carefully(text, dialect, options)?,
     };
-    let tail = tail::of(text.source)?;
     let mut findings: Vec<Finding> =
         tail::cut_off(&tail, dialect.separator, dialect.decimal).into_iter().collect();
     findings.extend(missing::kept(rows.missing));

@@ -11,7 +11,7 @@
 use super::{failed, label, parts, together};
 use std::fmt::Write as _;
 use std::io::Write;
-use vibro_record::{Axis, AxisKind, Error, FROM_BLOWS, Grid, Record, Result, Scaling, Values};
+use vibro_record::{Axis, AxisKind, Error, FROM_BLOWS, Frf, Grid, Record, Result, Scaling, Spectrum, Values};
 
 /// Writes records over one axis, `separator` between the columns (comma, semicolon or tab).
 ///
@@ -85,33 +85,25 @@ impl Column<'_> {
     }
 
     fn remarks(&self, text: &mut String) {
-        let mut remark = |key: &str, value: &str| {
-            let _ = writeln!(text, "# {key}: {value} of {}", self.name);
-        };
-        match self.record {
-            Record::Trace(_) => {}
-            Record::Frf(frf) => {
-                remark("kind", "frf");
-                if let Some(decay) = frf.meta.added_decay() {
-                    remark("added decay", &decay.to_string());
-                }
-                if frf.meta.from_blows() {
-                    remark(FROM_BLOWS, "yes");
-                }
-            }
-            Record::Spectrum(spectrum) => {
-                let complex = matches!(spectrum.values, Values::Complex(_));
+        let remarks = match self.record {
+            Record::Trace(_) => [None, None, None],
+            Record::Frf(Frf { meta, .. }) => [
+                Some(("kind", "frf".to_owned())),
+                meta.added_decay().map(|decay| ("added decay", decay.to_string())),
+                meta.from_blows().then(|| (FROM_BLOWS, "yes".to_owned())),
+            ],
+            Record::Spectrum(Spectrum { values, scaling, window, enbw, .. }) => {
                 // A complex one must say that it is no frequency response.
-                if complex || spectrum.scaling != Scaling::Unknown {
-                    remark("scaling", spectrum.scaling.name());
-                }
-                if let Some(window) = spectrum.window {
-                    remark("window", window.name());
-                }
-                if let Some(enbw) = spectrum.enbw {
-                    remark("enbw", &enbw.to_string());
-                }
+                let scaled = matches!(values, Values::Complex(_)) || *scaling != Scaling::Unknown;
+                [
+                    scaled.then(|| ("scaling", scaling.name().to_owned())),
+                    window.map(|window| ("window", window.name().to_owned())),
+                    enbw.map(|enbw| ("enbw", enbw.to_string())),
+                ]
             }
+        };
+        for (key, value) in remarks.into_iter().flatten() {
+            let _ = writeln!(text, "# {key}: {value} of {}", self.name);
         }
     }
 }
