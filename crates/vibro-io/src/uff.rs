@@ -79,10 +79,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
                 }
             }
         } else {
-            match others.iter_mut().find(|(n, _)| *n == number) {
-                Some((_, count)) => *count += 1,
-                None => others.push((number, 1)),
-            }
+            count(&mut others, number);
             if number == 164 {
                 match System::read(&mut stream) {
                     Some(stated) => system = stated,
@@ -113,12 +110,19 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
 fn tell_apart(records: &mut [Record]) {
     let mut seen: Vec<(String, usize)> = Vec::new();
     for name in records.iter_mut().map(|r| &mut r.meta_mut().name).filter(|n| !n.is_empty()) {
-        match seen.iter_mut().find(|(first, _)| first == name) {
-            Some((first, count)) => {
-                *count += 1;
-                *name = format!("{first} #{count}");
-            }
-            None => seen.push((name.clone(), 1)),
+        let n = count(&mut seen, name.clone());
+        if n > 1 {
+            *name = format!("{name} #{n}");
         }
     }
+}
+
+/// Counts `item` in a list; gives how often it has come.
+fn count<T: PartialEq>(list: &mut Vec<(T, usize)>, item: T) -> usize {
+    let at = list.iter().position(|(known, _)| *known == item).unwrap_or_else(|| {
+        list.push((item, 0));
+        list.len() - 1
+    });
+    list[at].1 += 1;
+    list[at].1
 }

@@ -42,8 +42,8 @@ impl<'a> Shape<'a> {
         let rows: Vec<&[u8]> = rows.filter(|row| row.ends_with(b"\n")).collect();
         let exponential = exponential(&rows, dialect.separator).filter(|_| dialect.decimal == b'.');
         let size = |row: &&[u8]| (row.len(), row.trim_ascii_end().len());
-        let alike = rows.first().map(size).filter(|first| rows.iter().all(|row| size(row) == *first));
-        let fixed = alike.filter(|_| dialect.columns == 1 && exponential.is_some());
+        let common = rows.first().map(size).filter(|first| rows.iter().all(|row| size(row) == *first));
+        let fixed = common.filter(|_| dialect.columns == 1 && exponential.is_some());
         Some(Shape { dialect, first_byte: first_byte as u64, exponential, fixed })
     }
 }

@@ -258,9 +258,9 @@ fn begins(text: &str, word: &str) -> bool {
 fn cannot_be_name(name: &str, unit: &str) -> bool {
     let quantity = Unit::parse(unit).map(|u| u.quantity());
     let key = name.to_lowercase();
-    let says =
+    let named =
         |quantity: Quantity| key.contains(quantity.name()) || (quantity == Quantity::Time && key == "t");
-    unit.contains('/') || unit.ends_with("Hz") || quantity.is_some_and(says)
+    unit.contains('/') || unit.ends_with("Hz") || quantity.is_some_and(named)
 }
 
 #[cfg(test)]

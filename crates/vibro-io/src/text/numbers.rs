@@ -97,7 +97,7 @@ fn marks(rows: &[Line], options: &Options) -> Result<(Separator, u8)> {
     if !any(&|line| line.contains(',')) {
         return Ok((explicit.unwrap_or(Separator::Blank), b'.'));
     }
-    let ask = || {
+    let doubtful = || {
         let Line { number, text: row, .. } = rows[0];
         let found = format!("{:?} may be one number or two numbers", shorten(row.trim()));
         Error::input(in_line(number), found, "a file where this can be told")
@@ -106,7 +106,7 @@ fn marks(rows: &[Line], options: &Options) -> Result<(Separator, u8)> {
     };
     let comma = match options.decimal_comma {
         Some(comma) => comma,
-        None if explicit.is_none() && grouped(rows) => return Err(ask()),
+        None if explicit.is_none() && grouped(rows) => return Err(doubtful()),
         // Points are decimal marks, so commas separate.
         None if any(&|line| line.contains('.')) => false,
         None if explicit.is_some() => true,
@@ -121,7 +121,7 @@ fn marks(rows: &[Line], options: &Options) -> Result<(Separator, u8)> {
         }
         // Several fields between blanks, each with at most one comma; or one that no integer column would print.
         None if any(&|line| line.split_ascii_whitespace().count() > 1) || any(&no_integers) => true,
-        None => return Err(ask()),
+        None => return Err(doubtful()),
     };
     Ok(if comma { (explicit.unwrap_or(Separator::Blank), b',') } else { (explicit.unwrap_or(COMMA), b'.') })
 }

@@ -98,17 +98,15 @@ impl Heading {
     /// file ends before the eleventh; the delimiter that ended it is then left in the stream.
     pub fn read(stream: &mut Stream) -> Result<std::result::Result<Heading, usize>> {
         let mut lines = Vec::with_capacity(LINES);
-        let mut places = Vec::with_capacity(LINES);
         while lines.len() < LINES {
             let Some(line) = stream.line_within() else { return Ok(Err(lines.len())) };
-            lines.push(encoding::decode(line));
-            places.push(stream.place());
+            lines.push((encoding::decode(line), stream.place()));
         }
-        let (function, response, reference) = dof(&lines[5], &places[5])?;
-        let (layout, n, start, step) = form(&lines[6], &places[6])?;
+        let (function, response, reference) = dof(&lines[5].0).map_err(|e| e.at(&lines[5].1))?;
+        let (layout, n, start, step) = form(&lines[6].0).map_err(|e| e.at(&lines[6].1))?;
         Ok(Ok(Heading {
-            id: std::array::from_fn(|i| given(&lines[i])),
-            record6: lines[5].trim_end().to_owned(),
+            id: std::array::from_fn(|i| given(&lines[i].0)),
+            record6: lines[5].0.trim_end().to_owned(),
             function,
             response,
             reference,
@@ -116,10 +114,10 @@ impl Heading {
             n,
             start,
             step,
-            abscissa: axis(&lines[7]),
-            ordinate: axis(&lines[8]),
-            denominator: axis(&lines[9]),
-            place: places.swap_remove(6),
+            abscissa: axis(&lines[7].0),
+            ordinate: axis(&lines[8].0),
+            denominator: axis(&lines[9].0),
+            place: lines.swap_remove(6).1,
         }))
     }
 
@@ -158,28 +156,24 @@ fn real(field: &str) -> Option<f64> {
 }
 
 /// Record 6, format `2(I5,I10),2(1X,A10,I10,I4)`: function type, response and reference point.
-fn dof(text: &str, place: &Place) -> Result<(i64, Point, Point)> {
+fn dof(text: &str) -> Result<(i64, Point, Point)> {
     let [function, _, _, _, _, response, node, direction, _, reference, of, along] =
         cut(text, [5, 10, 5, 10, 1, 10, 10, 4, 1, 10, 10, 4]);
     let point = |entity: &str, node: &str, direction: &str| {
         Some(Point { entity: given(entity), node: whole(node)?, direction: whole(direction)? })
     };
     let function = whole(&function).filter(|f| (0..100).contains(f));
-    let points = point(&response, &node, &direction).zip(point(&reference, &of, &along));
-    function.zip(points).map(|(function, (response, reference))| (function, response, reference)).ok_or_else(
-        || {
-            Error::input(
-                place.clone(),
-                format!("record 6 of data set 58 is {:?}", text.trim_end()),
-                "a function type from 0 to 99, identification numbers, response and reference point",
-            )
-            .hint("the header has 11 lines behind the line with 58: five of text, then this one")
-        },
-    )
+    let points = || Some((point(&response, &node, &direction)?, point(&reference, &of, &along)?));
+    let Some((function, (response, reference))) = function.zip(points()) else {
+        let expected = "a function type from 0 to 99, identification numbers, response and reference point";
+        return Err(Error::usage(format!("record 6 of data set 58 is {:?}", text.trim_end()), expected)
+            .hint("the header has 11 lines behind the line with 58: five of text, then this one"));
+    };
+    Ok((function, response, reference))
 }
 
 /// Record 7, format `3I10,3E13.5`, or its numbers between blanks.
-fn form(text: &str, place: &Place) -> Result<(Layout, usize, f64, f64)> {
+fn form(text: &str) -> Result<(Layout, usize, f64, f64)> {
     let columns = cut(text.trim_end(), [10, 10, 10, 13, 13]);
     let words: Vec<String> = text.split_whitespace().map(str::to_owned).collect();
     let numbers = |cells: &[String]| {
@@ -187,7 +181,7 @@ fn form(text: &str, place: &Place) -> Result<(Layout, usize, f64, f64)> {
         Some((whole(kind)?, whole(n)?, whole(spacing)?, real(start)?, real(step)?))
     };
     let refuse = |found: String, expected: &str| {
-        Err(Error::input(place.clone(), found, expected)
+        Err(Error::usage(found, expected)
             .hint("the sizes of a data set 58 stand here: it cannot be read without them"))
     };
     let fixed = numbers(&columns).filter(|form| form.0 != 0 && text.trim_end().chars().count() > 20);

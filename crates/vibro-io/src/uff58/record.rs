@@ -101,16 +101,18 @@ fn function(heading: &Heading, axis: &AxisKind, said: &mut Spectral, meta: &mut 
             meta.found(Finding::caution("function-as-trace").name("function", name));
         }
     } else if said.scaling.is_none() {
-        let doubt = |found: Finding| Some(found.name("function", name.as_str()));
-        (said.scaling, said.doubt) = match kind {
-            Kind::Scaled(scaling) => (Some(scaling), None),
-            Kind::Ratio if heading.layout.complex => (None, None),
-            Kind::Ratio => (Some(Scaling::Unknown), doubt(Finding::caution("function-real-only"))),
-            Kind::Squared => (Some(Scaling::Unknown), doubt(Finding::caution("scaling-unsaid-squared"))),
-            Kind::Amplitude => (Some(Scaling::Unknown), None),
-            Kind::Other => (Some(Scaling::Unknown), doubt(Finding::caution("function-as-spectrum"))),
-        };
         said.frf = kind == Kind::Ratio && heading.layout.complex;
+        said.scaling = match kind {
+            Kind::Scaled(scaling) => Some(scaling),
+            _ => (!said.frf).then_some(Scaling::Unknown),
+        };
+        let doubt = match kind {
+            Kind::Ratio if !said.frf => Some("function-real-only"),
+            Kind::Squared => Some("scaling-unsaid-squared"),
+            Kind::Other => Some("function-as-spectrum"),
+            _ => None,
+        };
+        said.doubt = doubt.map(|code| Finding::caution(code).name("function", name));
     }
 }
 

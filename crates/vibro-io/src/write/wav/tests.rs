@@ -48,7 +48,11 @@ fn the_comment_undoes_the_scaling_with_a_doubt() {
     assert_eq!((traces[0].values.as_slice(), traces[0].meta.unit.symbol()), ([3.0, -1.0].as_slice(), "m/s"));
     assert_eq!((traces[0].meta.name.as_str(), traces[0].axis.start()), ("v", 0.5));
     assert!(
-        crate::tests::says(&traces[0].meta.findings, "full-scale-by-comment", &["factor=4", "unit=m/s"]),
+        crate::tests::has_finding(
+            &traces[0].meta.findings,
+            "full-scale-by-comment",
+            &["factor=4", "unit=m/s"]
+        ),
         "{:?}",
         traces[0].meta.findings
     );
