@@ -87,15 +87,20 @@ impl Options {
     }
 }
 
+/// Quantity and unit of an abscissa; empty where it is neither time nor frequency.
+pub fn domain(kind: &AxisKind) -> (&'static str, &'static str) {
+    match kind {
+        AxisKind::Time => ("time", "s"),
+        AxisKind::Frequency => ("frequency", "Hz"),
+        AxisKind::Index | AxisKind::Other(_) => ("", ""),
+    }
+}
+
 /// Axis of `values` (SI) and a finding where it is uneven or was printed with too few digits.
 ///
 /// `resolution` is half a unit in the last digit, `what` names the values, e.g. `column "t"`.
 pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64, what: &str) -> (Axis, Option<Finding>) {
-    let unit = match kind {
-        AxisKind::Time => "s",
-        AxisKind::Frequency => "Hz",
-        AxisKind::Index | AxisKind::Other(_) => "",
-    };
+    let unit = domain(&kind).1;
     let steps: Vec<f64> = values.windows(2).map(|w| w[1] - w[0]).collect();
     let (smallest, largest) =
         steps.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), d| (a.min(*d), b.max(*d)));

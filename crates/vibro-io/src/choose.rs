@@ -3,10 +3,7 @@
 use super::{Format, Reader, Recording, Source};
 use crate::wav::Wave;
 use std::path::Path;
-use vibro_record::{
-    Error, Finding, Frf, FrfKind, Meta, Place, Record, Result, Scaling, Spectrum, Stream as _, Trace, Traces,
-    Values, find_channel,
-};
+use vibro_record::{Error, Meta, Place, Record, Result, Stream as _, Trace, Traces, find_channel};
 
 impl Reader {
     /// Opens all time traces of a file to be read block by block.
@@ -34,7 +31,7 @@ impl Reader {
             return Traces::of_stream(path, findings, &traces, frames, Box::new(wave));
         }
         let recording = self.read(&source)?;
-        let nothing = recording.none("trace");
+        let nothing = recording.no_trace();
         let traces = recording.records.into_iter().filter_map(|record| match record {
             Record::Trace(trace) => Some(Some(trace)),
             _ => None,
@@ -118,11 +115,23 @@ impl Recording {
     /// If there is no such trace, or several and none was named; if a calibration is not a number other than 0, or is given
     /// for fractions of full scale without a unit.
     pub fn trace(&self, channel: Option<&str>, calibration: Option<f64>) -> Result<Trace> {
-        let traces: Vec<&Record> = self.records.iter().filter(|r| matches!(r, Record::Trace(_))).collect();
-        let Record::Trace(trace) = self.choose("trace", &traces, channel)? else {
-            return Err(self.none("trace"));
+        let traces = self.records.iter().filter_map(|record| match record {
+            Record::Trace(trace) => Some(trace),
+            _ => None,
+        });
+        let traces: Vec<&Trace> = traces.collect();
+        let chosen = match (channel, traces.len()) {
+            (_, 0) => return Err(self.no_trace()),
+            (None, 1) => Ok(0),
+            (None, n) => {
+                let names: Vec<&str> = traces.iter().map(|t| t.meta.name.as_str()).collect();
+                let found = format!("{n} records of kind trace, and none was chosen");
+                Err(Error::input(Place::file(&self.path), found, names.join(", ")))
+            }
+            (Some(name), _) => find_channel(&self.path, name, traces.iter().map(|t| &t.meta)),
         };
-        let mut trace = trace.clone();
+        let hint = "name one, by its name or its number from 1; `vibro info` lists all";
+        let mut trace = traces[chosen.map_err(|e| e.hint(hint).setting("channel"))?].clone();
         if let Some(factor) = calibration {
             if trace.meta.has(Trace::UNCALIBRATED) {
                 let found = format!("a calibration of {factor} without a unit");
@@ -134,73 +143,9 @@ impl Recording {
         Ok(trace)
     }
 
-    /// The frequency response function that `channel` names, as [`Recording::trace`] does. A complex spectrum whose scaling
-    /// is not stated is taken for one, with a finding.
-    ///
-    /// # Errors
-    /// If there is no such function, or several and none was named; if it is a spectrum of amplitudes or powers.
-    pub fn frf(&self, channel: Option<&str>) -> Result<Frf> {
-        const KIND: &str = "frequency response function";
-        let complex = |r: &&Record| r.is_complex();
-        let all: Vec<&Record> = self.records.iter().filter(complex).collect();
-        match self.choose(KIND, &all, channel)? {
-            Record::Frf(frf) => Ok(frf.clone()),
-            Record::Spectrum(Spectrum { meta, axis, values: Values::Complex(values), scaling, .. }) => {
-                if *scaling != Scaling::Unknown {
-                    let found = format!("{:?} is a complex spectrum scaled as {}", meta.name, scaling.name());
-                    let expected = "a frequency response function: response per force";
-                    return Err(Error::input(Place::file(&self.path), found, expected).hint(
-                        "export the frequency response function (H1 or H2), not the spectrum of one channel",
-                    ));
-                }
-                let kind = FrfKind::of(meta.quantity);
-                let mut frf = Frf { meta: meta.clone(), axis: axis.clone(), values: values.clone(), kind };
-                frf.meta.found(Finding::caution("spectrum-taken-for-frf"));
-                Ok(frf)
-            }
-            _ => Err(self.none(KIND)),
-        }
-    }
-
-    fn none(&self, kind: &str) -> Error {
-        let place = Place::file(&self.path);
-        Error::input(place, format!("no {kind}"), format!("a file that holds a {kind}"))
+    fn no_trace(&self) -> Error {
+        Error::input(Place::file(&self.path), "no trace", "a file that holds a trace")
             .hint("`vibro info` lists what is in the file; samples over time need a sampling rate")
             .setting("rate")
-    }
-
-    /// The one of these records that is named, or the only one.
-    fn choose<'a>(&self, kind: &str, all: &[&'a Record], channel: Option<&str>) -> Result<&'a Record> {
-        let chosen = match (channel, all) {
-            (_, []) => return Err(self.none(kind)),
-            (None, [only]) => return Ok(only),
-            (None, _) => {
-                let names: Vec<&str> = all.iter().map(|r| r.meta().name.as_str()).collect();
-                let found = format!("{} records of kind {kind}, and none was chosen", names.len());
-                Err(Error::input(Place::file(&self.path), found, names.join(", ")))
-            }
-            (Some(name), _) => find_channel(&self.path, name, all.iter().map(|r| r.meta())),
-        };
-        let hint = "name one, by its name or its number from 1; `vibro info` lists all";
-        chosen.map(|i| all[i]).map_err(|e| e.hint(hint).setting("channel"))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::Reader;
-
-    #[test]
-    fn a_complex_spectrum_is_taken_for_a_function_only_where_nothing_says_otherwise() {
-        let of = |preamble: &str| {
-            let text = format!("{preamble}f [Hz],X_re [m/s],X_im [m/s]\n0,1,2\n1,3,4\n2,5,6\n");
-            Reader::new().from_reader("x.csv", text.as_bytes()).unwrap().frf(None)
-        };
-        let frf = of("").unwrap();
-        assert!(frf.meta.has("spectrum-taken-for-frf"), "{:?}", frf.meta.findings);
-        for scaling in ["peak", "rms", "psd"] {
-            let error = of(&format!("# scaling: {scaling}\n")).unwrap_err().to_string();
-            assert!(error.contains("\"X\" is a complex spectrum scaled as"), "{scaling}: {error}");
-        }
     }
 }

@@ -56,7 +56,7 @@ mod tests {
     use vibro_record::{Fact, Finding};
 
     /// Findings as text, numbers with six digits: `axis-uneven column=column "t" smallest=0.1`.
-    pub fn told(findings: &[Finding]) -> Vec<String> {
+    pub fn texts(findings: &[Finding]) -> Vec<String> {
         let fact = |(name, fact): &(&str, Fact)| match fact {
             Fact::Number(value) => format!("{name}={}", crate::assemble::short(*value)),
             Fact::Numbers(values) => format!("{name}={values:?}"),
@@ -67,8 +67,8 @@ mod tests {
     }
 
     /// Whether one of the findings, as text, begins with `code` and holds all `facts`.
-    pub fn says(findings: &[Finding], code: &str, facts: &[&str]) -> bool {
-        told(findings)
+    pub fn has_finding(findings: &[Finding], code: &str, facts: &[&str]) -> bool {
+        texts(findings)
             .iter()
             .any(|t| t.split(' ').next() == Some(code) && facts.iter().all(|f| t.contains(f)))
     }

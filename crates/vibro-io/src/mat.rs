@@ -11,12 +11,12 @@
 
 mod variable;
 
+use super::Source;
 use super::format::Format;
+use super::missing::{self, Missing};
 use super::reader::{Options, Recording};
-use super::{Source, missing};
 use crate::assemble::{self, Spectral, from_values, short, to_si};
-use num_complex::Complex64;
-use variable::{Array, Content, Elements};
+use variable::{Array, Content};
 use vibro_record::units::Unit;
 use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Place, Record, Result, Values};
 
@@ -26,52 +26,40 @@ const HEADER: usize = 128;
 /// More columns than this are taken for a matrix that lies on its side.
 const MOST_COLUMNS: u64 = 1000;
 
-/// The levels of the format.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Level {
-    Four,
-    Five { big_endian: bool },
-    Hdf5,
-}
-
-fn level(head: &[u8], source: &Source) -> Option<Level> {
+/// Whether the numbers of a MAT-file are big endian, or which MAT-file it is that is not read here; `None` for other files.
+fn big_endian(head: &[u8], source: &Source) -> Option<std::result::Result<bool, &'static str>> {
+    const LEVEL_7: &str = "a MAT-file of version 7.3, which is HDF5";
     match head.get(124..128) {
-        Some(b"\0\x01IM") => return Some(Level::Five { big_endian: false }),
-        Some(b"\x01\0MI") => return Some(Level::Five { big_endian: true }),
-        Some(b"\0\x02IM" | b"\x02\0MI") => return Some(Level::Hdf5),
+        Some(b"\0\x01IM") => return Some(Ok(false)),
+        Some(b"\x01\0MI") => return Some(Ok(true)),
+        Some(b"\0\x02IM" | b"\x02\0MI") => return Some(Err(LEVEL_7)),
         _ => {}
     }
     if source.extension() != "mat" {
         return None;
     }
     if head.starts_with(HDF5) || head.get(512..520) == Some(HDF5) {
-        return Some(Level::Hdf5);
+        return Some(Err(LEVEL_7));
     }
     // Level 4 has no signature: five words of type, rows, columns, complex or not, length of the name.
-    let word = |at: usize| head.get(at..)?.first_chunk().map(|b| u32::from_le_bytes(*b));
-    let words = [word(0)?, word(4)?, word(8)?, word(12)?, word(16)?];
+    let words: Vec<u32> = head.as_chunks().0.iter().take(5).map(|b| u32::from_le_bytes(*b)).collect();
+    let words: [u32; 5] = words.try_into().ok()?;
     let plausible = |w: [u32; 5]| w[0] < 5000 && w[0] % 10 <= 2 && w[3] <= 1 && (1..=64).contains(&w[4]);
-    (plausible(words) || plausible(words.map(u32::swap_bytes))).then_some(Level::Four)
+    (plausible(words) || plausible(words.map(u32::swap_bytes))).then_some(Err("a MAT-file of version 4"))
 }
 
 pub(super) fn sniff(head: &[u8], source: &Source) -> bool {
-    level(head, source).is_some()
+    big_endian(head, source).is_some()
 }
 
 pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
-    let refuse = |found: &str| {
-        Error::input(Place::file(source.path()), found, "a level 5 MAT-file")
-            .hint("open it in MATLAB and save it again with -v7 or -v6, e.g. save('name.mat', '-v7')")
-    };
-    let big_endian = match level(source.head(), source) {
-        Some(Level::Five { big_endian }) => big_endian,
-        Some(Level::Hdf5) => return Err(refuse("a MAT-file of version 7.3, which is HDF5")),
-        Some(Level::Four) => return Err(refuse("a MAT-file of version 4")),
-        None => return Err(refuse("no MAT-file header")),
-    };
+    let big_endian =
+        big_endian(source.head(), source).unwrap_or(Err("no MAT-file header")).map_err(|found| {
+            Error::usage(found, "a level 5 MAT-file")
+                .hint("open it in MATLAB and save it again with -v7 or -v6, e.g. save('name.mat', '-v7')")
+        })?;
     let bytes = source.all()?;
-    let place = Place::file(source.path());
-    let variables = variable::all(Elements { rest: &bytes[HEADER..], big_endian, place }, bytes.len())?;
+    let variables = variable::all(&bytes, HEADER, big_endian)?;
     let mut findings = Vec::new();
     let (mut arrays, mut notes, mut rates) = (Vec::new(), Vec::new(), Vec::new());
     for (name, content) in variables {
@@ -84,11 +72,13 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
             }
             // MATLAB keeps the inside of objects and functions in a nameless array.
             Content::Array(_) if name.is_empty() => {}
-            Content::Array(array) => match (array.real.as_slice(), &array.imaginary) {
-                ([], _) => findings.push(Finding::note("variable-empty").name("variable", name)),
-                ([value], None) => {
-                    rates.extend(rate(&name, *value).map(|rate| (name.clone(), rate)));
-                    notes.push((name, value.to_string()));
+            Content::Array(array) => match &array.values {
+                values if values.is_empty() => {
+                    findings.push(Finding::note("variable-empty").name("variable", name));
+                }
+                Values::Real(values) if values.len() == 1 => {
+                    rates.extend(rate(&name, values[0]).map(|rate| (name.clone(), rate)));
+                    notes.push((name, values[0].to_string()));
                 }
                 _ if array.dimensions.iter().filter(|d| **d > 1).count() > 2 => {
                     let found = Finding::note("variable-many-dimensions").name("variable", name);
@@ -98,18 +88,21 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
             },
         }
     }
-    let axes = Axes::find(source, &mut arrays, &rates, options, &mut findings)?;
+    let axes = Axes::find(&mut arrays, &rates, options, &mut findings)?;
     let mut records = Vec::new();
     for (name, array) in arrays {
-        for (name, values) in axes.split(source, name, array)? {
-            records.push((name, values));
-        }
+        records.extend(axes.split(name, array)?);
     }
     if records.is_empty() {
-        let expected = "at least one to make a record of";
-        return Err(Error::input(Place::file(source.path()), "no numeric vector or matrix", expected));
+        return Err(Error::usage("no numeric vector or matrix", "at least one to make a record of"));
     }
-    allow(source, &mut records, options, &mut findings)?;
+    let mut missing = Missing::default();
+    for (name, values) in &mut records {
+        for i in missing::mark(values) {
+            missing.take(&Place::default(), format!("{} of {name:?}", i + 1));
+        }
+    }
+    findings.extend(missing::kept(missing.check("value(s) are NaN or infinite:", options.allow_missing)?));
     if options.unit.is_none() {
         findings.push(Finding::caution("format-without-units"));
     }
@@ -119,7 +112,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         meta.notes.clone_from(&notes);
         meta.step("read", &[("file", &source.name()), ("format", &"mat")]);
         let factor = options.unit.as_ref().map_or(1.0, |unit| meta.adopt_unit(unit.symbol()));
-        to_si(&mut values, factor).map_err(|e| e.in_file(source.path()))?;
+        to_si(&mut values, factor)?;
         if axis.kind == AxisKind::Index {
             meta.found(Finding::caution("abscissa-unsaid"));
         }
@@ -127,38 +120,6 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
     };
     let records = records.into_iter().map(record).collect::<Result<Vec<Record>>>()?;
     Ok(Recording { path: source.path().to_owned(), format: Format::Mat, records, findings })
-}
-
-/// Makes values that are not finite missing, or refuses them all at once.
-fn allow(
-    source: &Source,
-    records: &mut [(String, Values)],
-    options: &Options,
-    findings: &mut Vec<Finding>,
-) -> Result<()> {
-    let mut missing = Vec::new();
-    for (name, values) in records {
-        for i in 0..values.len() {
-            let odd = match values {
-                Values::Real(values) => {
-                    Some(&mut values[i]).filter(|v| !v.is_finite()).map(|v| *v = f64::NAN)
-                }
-                Values::Complex(values) => {
-                    let gap = Complex64::new(f64::NAN, f64::NAN);
-                    Some(&mut values[i]).filter(|v| !v.is_finite()).map(|v| *v = gap)
-                }
-            };
-            missing.extend(odd.map(|()| format!("{} of {name:?}", i + 1)));
-        }
-    }
-    findings.extend(missing::kept(missing.len()));
-    if missing.is_empty() || options.allow_missing {
-        return Ok(());
-    }
-    let more = if missing.len() > missing::LISTED { ", …" } else { "" };
-    let first = missing[..missing.len().min(missing::LISTED)].join(", ");
-    let found = format!("{} value(s) are NaN or infinite: {first}{more}", missing.len());
-    Err(missing::refusal(Place::file(source.path()), found))
 }
 
 /// Sampling rate in Hz that a scalar of this name states.
@@ -184,29 +145,28 @@ fn kind(name: &str) -> Option<AxisKind> {
 /// What the file and the person say of abscissae.
 struct Axes<'a> {
     options: &'a Options,
-    time: Option<Axis>,
-    frequency: Option<Axis>,
+    /// Of vectors of the file: time, then frequency.
+    vectors: Vec<Axis>,
     rate: Option<f64>,
 }
 
 impl<'a> Axes<'a> {
     /// Takes the rising vectors named as abscissae out of `arrays` where another array has their length.
     fn find(
-        source: &Source,
         arrays: &mut Vec<(String, Array)>,
         rates: &[(String, f64)],
         options: &'a Options,
         findings: &mut Vec<Finding>,
     ) -> Result<Axes<'a>> {
         let rate = rates.first().map(|(_, rate)| *rate);
-        let mut axes = Axes { options, time: None, frequency: None, rate };
+        let mut axes = Axes { options, vectors: Vec::new(), rate };
         if let [(first, a), rest @ ..] = rates
             && let Some((other, b)) = rest.iter().find(|(_, b)| (b / a - 1.0).abs() > 1e-6)
             && options.rate.is_none()
         {
             let found =
                 format!("{first:?} says a sampling rate of {} Hz, {other:?} {} Hz", short(*a), short(*b));
-            return Err(Error::input(Place::file(source.path()), found, "one sampling rate")
+            return Err(Error::usage(found, "one sampling rate")
                 .hint("state the sampling rate")
                 .setting("rate"));
         }
@@ -214,41 +174,35 @@ impl<'a> Axes<'a> {
             let Some(at) = arrays.iter().position(|(name, _)| kind(name).as_ref() == Some(&axis_kind)) else {
                 continue;
             };
-            let (name, array) = &arrays[at];
-            let n = array.real.len() as u64;
-            let rises = array.real.windows(2).all(|w| w[1] > w[0]) && array.imaginary.is_none();
-            let vector = array.dimensions.contains(&n);
-            let fits = arrays.iter().enumerate().any(|(i, (_, a))| i != at && a.dimensions.contains(&n));
-            if !(rises && vector && fits) {
-                let found = if rises {
-                    Finding::caution("abscissa-of-other-length")
-                } else {
-                    Finding::caution("abscissa-not-rising")
-                };
-                findings.push(found.name("variable", name.as_str()));
-                continue;
-            }
-            let (name, Array { real: values, single, .. }) = arrays.remove(at);
+            let (name, Array { dimensions, values, single }) = arrays.remove(at);
+            let n = values.len() as u64;
+            let fits = dimensions.contains(&n) && arrays.iter().any(|(_, a)| a.dimensions.contains(&n));
+            let values = match values {
+                Values::Real(values) if fits && values.is_sorted_by(|a, b| a < b) => values,
+                values => {
+                    let rises = matches!(&values, Values::Real(v) if v.is_sorted_by(|a, b| a < b));
+                    let code = if rises { "abscissa-of-other-length" } else { "abscissa-not-rising" };
+                    findings.push(Finding::caution(code).name("variable", name.as_str()));
+                    arrays.insert(at, (name, Array { dimensions, values, single }));
+                    continue;
+                }
+            };
             let (first, last) = (values[0], values[values.len() - 1]);
             // Sums of steps drift by rounding: a millionth of a step is no unevenness. Floats of 32 bits round to 2⁻²⁴.
             let drift = 0.5e-6 * (last - first) / (values.len() - 1).max(1) as f64;
             let rounding =
                 if single { first.abs().max(last.abs()) * f64::from(f32::EPSILON) / 2.0 } else { 0.0 };
             let label = format!("vector {name:?}");
-            let (axis, finding) = from_values(axis_kind.clone(), values, drift.max(rounding), &label);
+            let (axis, finding) = from_values(axis_kind, values, drift.max(rounding), &label);
             findings.extend(finding);
-            if axis_kind == AxisKind::Frequency {
-                axes.frequency = Some(axis);
-                continue;
-            }
-            if let Some(rate) = options.rate.or(axes.rate)
+            if let Some(rate) = options.rate.or(rate).filter(|_| axis.kind == AxisKind::Time)
                 && axis.step().is_none_or(|dt| (dt * rate - 1.0).abs() > 1e-6)
             {
                 let used = if options.rate.is_some() { "rate" } else { "vector" };
                 let found = Finding::caution("vector-against-rate").name("variable", name).name("used", used);
                 findings.push(found.number("rate", rate));
             }
-            axes.time = Some(axis);
+            axes.vectors.push(axis);
         }
         Ok(axes)
     }
@@ -256,67 +210,59 @@ impl<'a> Axes<'a> {
     /// The axis of a record.
     fn of(&self, values: &Values, name: &str, findings: &mut Vec<Finding>) -> Axis {
         let (n, complex) = (values.len(), matches!(values, Values::Complex(_)));
-        let time = self.time.as_ref().filter(|t| t.len() == n && !complex);
-        let frequency = self.frequency.as_ref().filter(|f| f.len() == n);
+        let over = |axis: &&Axis| axis.len() == n && !(complex && axis.kind == AxisKind::Time);
+        let fitting: Vec<&Axis> = self.vectors.iter().filter(over).collect();
         match (self.options.rate, self.options.base_band) {
-            (Some(rate), _) if !complex => return Axis::time(time.map_or(0.0, Axis::start), 1.0 / rate, n),
+            (Some(rate), _) if !complex => {
+                let time = fitting.first().filter(|axis| axis.kind == AxisKind::Time);
+                return Axis::time(time.map_or(0.0, |axis| axis.start()), 1.0 / rate, n);
+            }
             (None, Some(band)) => return Axis::frequency(0.0, band / n.saturating_sub(1).max(1) as f64, n),
             _ => {}
         }
-        if time.is_some() && frequency.is_some() {
+        if fitting.len() > 1 {
             findings.push(Finding::caution("time-or-frequency").name("variable", name));
         }
-        match (time.or(frequency), self.rate.filter(|_| !complex)) {
-            (Some(axis), _) => axis.clone(),
+        match (fitting.first(), self.rate.filter(|_| !complex)) {
+            (Some(axis), _) => (*axis).clone(),
             (None, Some(rate)) => Axis::time(0.0, 1.0 / rate, n),
             (None, None) => Axis::index(n),
         }
     }
 
-    fn has(&self, n: u64) -> bool {
-        [&self.time, &self.frequency].into_iter().flatten().any(|axis| axis.len() as u64 == n)
-    }
-
     /// A vector is one record, a matrix one a column; or one a row, where only the rows have the length of the abscissa.
-    fn split(&self, source: &Source, name: String, array: Array) -> Result<Vec<(String, Values)>> {
-        let values = match &array.imaginary {
-            None => Values::Real(array.real),
-            Some(imaginary) => {
-                let pairs = array.real.iter().zip(imaginary);
-                Values::Complex(pairs.map(|(re, im)| Complex64::new(*re, *im)).collect())
-            }
-        };
-        let mut long = array.dimensions.iter().copied().filter(|d| *d > 1);
+    fn split(&self, name: String, Array { dimensions, values, .. }: Array) -> Result<Vec<(String, Values)>> {
+        let mut long = dimensions.into_iter().filter(|d| *d > 1);
         let (Some(rows), Some(columns)) = (long.next(), long.next()) else {
             return Ok(vec![(name, values)]);
         };
-        let lying = self.has(columns) && !self.has(rows) && rows <= columns.max(MOST_COLUMNS);
+        let has = |n: u64| self.vectors.iter().any(|axis| axis.len() as u64 == n);
+        let lying = has(columns) && !has(rows) && rows <= columns.max(MOST_COLUMNS);
         if !lying && columns > rows && columns > MOST_COLUMNS {
-            return Err(Error::input(
-                Place::file(source.path()),
-                format!("{name:?} has {rows} rows and {columns} columns: {columns} records of {rows} values"),
-                "one channel a column",
-            )
-            .hint(format!("transpose it and save it again: {name} = {name}.';")));
+            let found =
+                format!("{name:?} has {rows} rows and {columns} columns: {columns} records of {rows} values");
+            return Err(Error::usage(found, "one channel a column")
+                .hint(format!("transpose it and save it again: {name} = {name}.';")));
         }
         let (rows, columns) = (rows as usize, columns as usize);
-        // Value i of record k is `from(k)` plus i times `step`.
-        let (records, n, step) = if lying { (rows, columns, rows) } else { (columns, rows, 1) };
-        let part = |k: usize| {
-            let from = if lying { k } else { k * rows };
-            let name = if lying { format!("{name}({},:)", k + 1) } else { format!("{name}(:,{})", k + 1) };
-            let cut = match &values {
-                Values::Real(all) => {
-                    Values::Real(all.iter().skip(from).step_by(step).take(n).copied().collect())
-                }
-                Values::Complex(all) => {
-                    Values::Complex(all.iter().skip(from).step_by(step).take(n).copied().collect())
-                }
+        let record = |k: usize| {
+            let (name, from, step, n) = if lying {
+                (format!("{name}({},:)", k + 1), k, rows, columns)
+            } else {
+                (format!("{name}(:,{})", k + 1), k * rows, 1, rows)
             };
-            (name, cut)
+            let values = match &values {
+                Values::Real(all) => Values::Real(every(all, from, step, n)),
+                Values::Complex(all) => Values::Complex(every(all, from, step, n)),
+            };
+            (name, values)
         };
-        Ok((0..records).map(part).collect())
+        Ok((0..if lying { rows } else { columns }).map(record).collect())
     }
+}
+
+fn every<T: Copy>(all: &[T], from: usize, step: usize, n: usize) -> Vec<T> {
+    all.iter().skip(from).step_by(step).take(n).copied().collect()
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The complaint about values that are missing.
 
-use std::path::Path;
-use vibro_record::{Error, Finding, Place, Result};
+use num_complex::Complex64;
+use vibro_record::{Error, Finding, Place, Result, Values};
 
 /// How many places a complaint lists.
 pub(super) const LISTED: usize = 8;
@@ -18,37 +18,52 @@ pub(super) fn kept(count: usize) -> Option<Finding> {
     (count > 0).then(|| Finding::caution("missing-kept").count("n", count))
 }
 
+/// Makes values that are not finite missing; gives their indices.
+pub(super) fn mark(values: &mut Values) -> Vec<usize> {
+    fn of<T: Copy>(values: &mut [T], finite: impl Fn(&T) -> bool, gap: T) -> Vec<usize> {
+        let odd: Vec<usize> = (0..values.len()).filter(|i| !finite(&values[*i])).collect();
+        for i in &odd {
+            values[*i] = gap;
+        }
+        odd
+    }
+    match values {
+        Values::Real(values) => of(values, |v| v.is_finite(), f64::NAN),
+        Values::Complex(values) => of(values, |v| v.is_finite(), Complex64::new(f64::NAN, f64::NAN)),
+    }
+}
+
 /// Values that are missing: how many, and where the first of them stand.
 #[derive(Debug, Default)]
 pub(super) struct Missing {
-    /// Number of values.
-    pub count: usize,
-    places: Vec<(u64, String)>,
+    count: usize,
+    /// Where the first of them stands.
+    first: Place,
+    listed: Vec<String>,
 }
 
 impl Missing {
-    /// Counts one value of a line; `what` names the column where it has a name.
-    pub fn take(&mut self, line: u64, what: &str) {
+    /// Counts one value at `place`, which a complaint lists as `listed`.
+    pub fn take(&mut self, place: &Place, listed: String) {
+        if self.count == 0 {
+            self.first = place.clone();
+        }
         self.count += 1;
-        let place = (line, what.to_owned());
-        if self.places.len() <= LISTED && self.places.last() != Some(&place) {
-            self.places.push(place);
+        if self.listed.len() <= LISTED && self.listed.last() != Some(&listed) {
+            self.listed.push(listed);
         }
     }
 
-    /// Refuses all of them at once.
+    /// Refuses all of them at once; `what` stands between their number and their places.
     ///
     /// # Errors
     /// If there are any and they are not `allowed`.
-    pub fn check(&self, path: &Path, allowed: bool) -> Result<()> {
-        let Some((first, _)) = self.places.first().filter(|_| !allowed) else { return Ok(()) };
-        let name = |(line, what): &(u64, String)| {
-            if what.is_empty() { line.to_string() } else { format!("{line} ({what:?})") }
-        };
-        let listed: Vec<String> = self.places.iter().take(LISTED).map(name).collect();
-        let more = if self.places.len() > LISTED { ", …" } else { "" };
-        let (n, listed) = (self.count, listed.join(", "));
-        let found = format!("{n} missing value(s) (NaN, Inf or blank) in line(s) {listed}{more}");
-        Err(refusal(Place::line(path, *first), found))
+    pub fn check(self, what: &str, allowed: bool) -> Result<usize> {
+        if self.count == 0 || allowed {
+            return Ok(self.count);
+        }
+        let listed = self.listed[..self.listed.len().min(LISTED)].join(", ");
+        let more = if self.listed.len() > LISTED { ", …" } else { "" };
+        Err(refusal(self.first, format!("{} {what} {listed}{more}", self.count)))
     }
 }

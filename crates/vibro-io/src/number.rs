@@ -161,22 +161,11 @@ pub(crate) fn exponential_of(width: usize) -> Option<Exponential> {
     fn of<const W: usize>(field: &[u8]) -> Option<f64> {
         field.first_chunk::<W>().and_then(|field| exponential(field))
     }
-    Some(match width {
-        8 => of::<8>,
-        9 => of::<9>,
-        10 => of::<10>,
-        11 => of::<11>,
-        12 => of::<12>,
-        13 => of::<13>,
-        14 => of::<14>,
-        15 => of::<15>,
-        16 => of::<16>,
-        17 => of::<17>,
-        18 => of::<18>,
-        19 => of::<19>,
-        20 => of::<20>,
-        _ => return None,
-    })
+    const FROM_8: [Exponential; 13] = [
+        of::<8>, of::<9>, of::<10>, of::<11>, of::<12>, of::<13>, of::<14>, of::<15>, of::<16>, of::<17>,
+        of::<18>, of::<19>, of::<20>,
+    ];
+    FROM_8.get(width.checked_sub(8)?).copied()
 }
 
 /// `E+03`, `D-3`, `e5`, or a bare sign followed by digits; `None` where no exponent stands.

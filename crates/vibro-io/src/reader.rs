@@ -129,15 +129,17 @@ impl Reader {
     /// As [`Reader::from_path`], for the first file at fault; where its content is at fault, the others are named too.
     pub fn from_paths<P: AsRef<Path> + Sync>(&self, paths: &[P]) -> Result<Vec<Recording>> {
         let results: Vec<Result<Recording>> = paths.par_iter().map(|p| self.from_path(p)).collect();
-        let failed: Vec<&P> =
-            paths.iter().zip(&results).filter(|(_, r)| r.is_err()).map(|(p, _)| p).collect();
-        let names = failed.iter().take(LISTED).filter_map(|p| p.as_ref().file_name());
-        let names: Vec<String> = names.map(|name| name.to_string_lossy().into_owned()).collect();
-        let more = if failed.len() > LISTED { ", …" } else { "" };
-        let (n, all, names) = (failed.len(), paths.len(), names.join(", "));
-        let many = format!("{n} of {all} files cannot be read so: {names}{more}");
+        let failed = paths.iter().zip(&results).filter(|(_, result)| result.is_err());
+        let name = |path: &P| path.as_ref().file_name().map(|name| name.to_string_lossy().into_owned());
+        let mut names: Vec<String> = failed.filter_map(|(path, _)| name(path)).collect();
+        let n = names.len();
+        if n > LISTED {
+            names.truncate(LISTED);
+            names.push("…".to_owned());
+        }
+        let many = format!("{n} of {} files cannot be read so: {}", paths.len(), names.join(", "));
         let whole: Result<Vec<Recording>> = results.into_iter().collect();
-        whole.map_err(|error| if failed.len() > 1 { error.aside(many) } else { error })
+        whole.map_err(|error| if n > 1 { error.aside(many) } else { error })
     }
 
     /// Reads bytes; `name` stands for the path in messages and helps to tell the format.

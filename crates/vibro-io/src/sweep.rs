@@ -44,16 +44,6 @@ struct Said<'a> {
     calibration: Option<f64>,
 }
 
-/// What is used for one file.
-struct Settled {
-    /// Factor from the record's values to SI peak amplitudes.
-    factor: f64,
-    /// Peak amplitudes in SI units.
-    values: Vec<f64>,
-    unit: Unit,
-    window: Option<Window>,
-}
-
 impl SweepReader {
     /// Reads all spectra of a list.
     ///
@@ -64,7 +54,7 @@ impl SweepReader {
         // One batch, so that all missing files are named at once.
         let paths: Vec<_> = list.response.iter().chain(&list.force).collect();
         let mut recordings = reader.from_paths(&paths).map_err(|e| list.missing().unwrap_or(e))?;
-        let forces = recordings.split_off(list.response.len());
+        let mut forces = recordings.split_off(list.response.len()).into_iter();
         let axis = Axis::frequency(0.0, list.base_band / list.lines as f64, list.lines + 1);
         let newton = Unit::of(Quantity::Force);
         let (unit, quantity, calibration) = (self.unit.as_ref(), self.quantity, self.calibration);
@@ -72,41 +62,25 @@ impl SweepReader {
         let calibration = self.force_calibration;
         let of_force = Said { force: true, unit: Some(&newton), quantity: None, calibration };
         let mut findings = Vec::new();
+        let mut peaks = |recording: &Recording, said: &Said| {
+            self.peaks(recording, said, &axis, &mut findings).map_err(|e| e.in_file(&recording.path))
+        };
         let mut points: Vec<SweepPoint> = Vec::with_capacity(list.len());
-        for (i, response) in recordings.into_iter().enumerate() {
-            let force = match forces.get(i) {
-                Some(force) => self.settle(force, &of_force, &axis, &mut findings)?.values,
-                None => Vec::new(),
-            };
-            let Settled { factor, values, unit, window } =
-                self.settle(&response, &of_response, &axis, &mut findings)?;
-            if let Some(first) = points.first().map(|p| &p.response.meta.unit).filter(|first| **first != unit)
-            {
-                let found = format!("the values of this file are in {unit}");
+        for (i, response) in recordings.iter().enumerate() {
+            let force = forces.next().map(|force| peaks(&force, &of_force)).transpose()?;
+            let (meta, values, window) = peaks(response, &of_response)?;
+            if let Some(first) = points.first().map(|p| &p.response.meta.unit).filter(|u| **u != meta.unit) {
+                let found = format!("the values of this file are in {}", meta.unit);
                 let expected = format!("{first}, as in the files before");
                 return Err(Error::input(Place::file(&response.path), found, expected));
             }
-            gather(&response, &mut findings);
-            let mut records = response.records;
-            let mut meta = std::mem::replace(records[0].meta_mut(), Meta::new("", Unit::none()));
-            meta.quantity = unit.quantity();
-            meta.findings.clear(); // said once, for the sweep
-            meta.step("calibrate", &[("factor", &factor), ("unit", &unit)]);
-            meta.unit = unit;
-            let response = Spectrum {
-                meta,
-                axis: axis.clone(),
-                values: Values::Real(values),
-                scaling: Scaling::Peak,
-                window,
-                enbw: window.map(Window::enbw),
-            };
+            let (axis, values, enbw) = (axis.clone(), Values::Real(values), window.map(Window::enbw));
             points.push(SweepPoint {
                 force_path: list.force.get(i).cloned(),
                 response_path: list.response[i].clone(),
-                force,
+                force: force.map_or_else(Vec::new, |(_, values, _)| values),
                 given: list.excitation.get(i).copied(),
-                response,
+                response: Spectrum { meta, axis, values, scaling: Scaling::Peak, window, enbw },
             });
         }
         let displacement = points.iter().any(|p| p.response.meta.quantity == Quantity::Displacement);
@@ -124,19 +98,17 @@ impl SweepReader {
         })
     }
 
-    /// Brings together what a file states and what was stated for it.
-    fn settle(
+    /// Peak amplitudes in SI units, with what is known of them: by what the file states and what was stated for it.
+    fn peaks(
         &self,
         recording: &Recording,
         said: &Said,
         axis: &Axis,
         findings: &mut Vec<Finding>,
-    ) -> Result<Settled> {
+    ) -> Result<(Meta, Vec<f64>, Option<Window>)> {
         let [Record::Spectrum(spectrum)] = recording.records.as_slice() else {
-            return Err(no_spectrum(recording));
+            return Err(no_spectrum(&recording.records));
         };
-        let error =
-            |found: String, expected: &str| Error::input(Place::file(&recording.path), found, expected);
         let mut found = |finding: Finding| {
             if !findings.contains(&finding) {
                 findings.push(finding);
@@ -145,7 +117,7 @@ impl SweepReader {
         if let Some(words) = decibels(&spectrum.meta) {
             let Some(unit) = said.unit.filter(|unit| !said.force && unit.is_known()) else {
                 let words = format!("the file says that its values are decibels: {words:?}");
-                return Err(error(words, "linear amplitudes").hint(LINEAR));
+                return Err(Error::usage(words, "linear amplitudes").hint(LINEAR));
             };
             found(Finding::doubt("decibels-overruled").name("words", words).name("unit", unit.symbol()));
         }
@@ -159,7 +131,7 @@ impl SweepReader {
             }
             other => {
                 let scaled = format!("a spectrum scaled as {}", other.name());
-                return Err(error(scaled, "peak or RMS amplitudes")
+                return Err(Error::usage(scaled, "peak or RMS amplitudes")
                     .hint("export amplitudes; a density or a coherence has no amplitude of a single line"));
             }
         };
@@ -185,7 +157,7 @@ impl SweepReader {
                 (stated.factor() / taken, stated.si())
             }
             _ if meant.is_some_and(|meant| meant != written.quantity()) => {
-                return Err(other_quantity(recording, written, raw, said));
+                return Err(other_quantity(written, raw, said));
             }
             // A factor that a person states holds for what is stored.
             Some(stated) if !said.force && stated.factor() != taken => {
@@ -196,7 +168,16 @@ impl SweepReader {
             _ => (1.0, written.clone()),
         };
         let factor = factor * said.calibration.unwrap_or(1.0) * peak;
-        Ok(Settled { factor, values: magnitudes(recording, spectrum, axis, factor)?, unit, window })
+        let values = magnitudes(spectrum, axis, factor)?;
+        if !said.force {
+            gather(recording, findings);
+        }
+        let mut meta = spectrum.meta.clone();
+        meta.findings.clear(); // said once, for the sweep
+        meta.step("calibrate", &[("factor", &factor), ("unit", &unit)]);
+        meta.quantity = unit.quantity();
+        meta.unit = unit;
+        Ok((meta, values, window))
     }
 }
 
@@ -242,7 +223,7 @@ fn taken(meta: &Meta) -> f64 {
     steps.filter(|(key, _)| key == "factor").filter_map(|(_, factor)| factor.parse::<f64>().ok()).product()
 }
 
-fn other_quantity(recording: &Recording, written: &Unit, raw: bool, said: &Said) -> Error {
+fn other_quantity(written: &Unit, raw: bool, said: &Said) -> Error {
     let hint = match (raw, said.force) {
         (true, _) => "state unit and calibration: what one stored number stands for",
         (false, true) => "check that these are the force files, and not the response files",
@@ -250,43 +231,39 @@ fn other_quantity(recording: &Recording, written: &Unit, raw: bool, said: &Said)
             "leave quantity and unit out to believe the file; or check that this is the channel you mean"
         }
     };
-    let found = format!("the file says its values are in {written}, {}", written.quantity());
-    let expected = match (said.unit.map(Unit::quantity).or(said.quantity), said.force) {
-        (Some(meant), false) => format!("{meant}, as was stated"),
+    let expected = match said.unit.map(Unit::quantity).or(said.quantity) {
+        Some(meant) if !said.force => format!("{meant}, as was stated"),
         _ => "a force, in N".to_owned(),
     };
-    Error::input(Place::file(&recording.path), found, expected).hint(hint).setting(if said.force {
-        "force_calibration"
-    } else {
-        "calibration"
-    })
+    Error::usage(format!("the file says its values are in {written}, {}", written.quantity()), expected)
+        .hint(hint)
+        .setting(if said.force { "force_calibration" } else { "calibration" })
 }
 
-fn no_spectrum(recording: &Recording) -> Error {
-    let found = match recording.records.as_slice() {
+fn no_spectrum(records: &[Record]) -> Error {
+    let found = match records {
         [record] => format!("a {}", record.kind()),
         records => format!("{} records in the file", records.len()),
     };
-    Error::input(Place::file(&recording.path), found, "one spectrum a file")
+    Error::usage(found, "one spectrum a file")
         .hint("list the spectra of the analyser; time records and frequency responses have tables of their own in a campaign")
 }
 
 /// Peak magnitudes of a spectrum, which must have the lines of `axis`.
-fn magnitudes(recording: &Recording, spectrum: &Spectrum, axis: &Axis, factor: f64) -> Result<Vec<f64>> {
-    let error = |found: String, expected: String| Error::input(Place::file(&recording.path), found, expected);
+fn magnitudes(spectrum: &Spectrum, axis: &Axis, factor: f64) -> Result<Vec<f64>> {
     if let Values::Real(values) = &spectrum.values
         && let Some(i) = values.iter().position(|v| *v < 0.0)
     {
         let at =
             if i < spectrum.axis.len() { format!(" ({} Hz)", spectrum.axis.at(i)) } else { String::new() };
         let found = format!("negative magnitudes: are these decibels? Line {i}{at} holds {}", values[i]);
-        return Err(error(found, "linear amplitudes, 0 or more".to_owned()).hint(LINEAR));
+        return Err(Error::usage(found, "linear amplitudes, 0 or more").hint(LINEAR));
     }
     let magnitudes = spectrum.values.magnitudes();
     let n = axis.len();
     if magnitudes.len() != n {
         let expected = format!("{n} (the list says {} lines, and 0 Hz counts)", n - 1);
-        return Err(error(format!("the file holds {} values", magnitudes.len()), expected).hint(
+        return Err(Error::usage(format!("the file holds {} values", magnitudes.len()), expected).hint(
             "correct the number of lines in the list; or this one file was stored with another setting",
         ));
     }
@@ -294,10 +271,10 @@ fn magnitudes(recording: &Recording, spectrum: &Spectrum, axis: &Axis, factor: f
         && (step / expected - 1.0).abs() > 1e-6
     {
         let expected = format!("{expected} Hz, as base band and lines of the list say");
-        return Err(error(format!("the lines of this file are {step} Hz apart"), expected));
+        return Err(Error::usage(format!("the lines of this file are {step} Hz apart"), expected));
     }
     if let Some(i) = magnitudes.iter().position(|m| !m.is_finite()) {
-        return Err(error(format!("line {i} is missing"), "a number in every line".to_owned()));
+        return Err(Error::usage(format!("line {i} is missing"), "a number in every line"));
     }
     Ok(magnitudes.into_iter().map(|m| m * factor).collect())
 }

@@ -24,7 +24,6 @@ use dialect::Dialect;
 use fast::Shape;
 use rows::Rows;
 use std::borrow::Cow;
-use std::path::Path;
 use vibro_record::{Error, Finding, Place, Result};
 
 /// A text and what is known of it before its rows are read.
@@ -45,10 +44,6 @@ impl<'a> Text<'a> {
         let whole = &head[..whole];
         let ends = whole.iter().rposition(|b| *b != 0x1a).map_or(0, |last| last + 1);
         Text { source, head: encoding::decode(&whole[..ends]), encoding }
-    }
-
-    fn path(&self) -> &Path {
-        self.source.path()
     }
 
     /// Whether the file calls itself CSV: then one column will do, and names need not fit the rows.
@@ -90,8 +85,7 @@ pub(crate) fn is_text(head: &[u8], _: &Source) -> bool {
 pub(crate) fn read_table(source: &Source, options: &Options) -> Result<Recording> {
     with_text(source, |text| match table::detect(text, options) {
         Some(dialect) => read(text, &dialect, options),
-        None => Err(Error::input(
-            Place::file(text.path()),
+        None => Err(Error::usage(
             "no row of numbers with names of columns right above it",
             "e.g. `time [s],velocity [mm/s]`, then rows of numbers",
         )
@@ -106,12 +100,13 @@ pub(crate) fn read_numbers(source: &Source, options: &Options) -> Result<Recordi
 
 fn read(text: &Text, dialect: &Dialect, options: &Options) -> Result<Recording> {
     let shape = Shape::of(dialect, text.source.head());
-    let clean = shape.map(|shape| fast::read(text.source, &shape)).transpose()?.flatten();
+    let tail = tail::of(text.source)?;
+    let end = text.source.len() - (tail.len() - tail.trim_ascii_end().len()) as u64;
+    let clean = shape.map(|shape| fast::read(text.source, &shape, end)).transpose()?.flatten();
     let rows = match clean {
         Some(columns) => Rows { columns, ..Rows::default() },
         None => carefully(text, dialect, options)?,
     };
-    let tail = tail::of(text.source)?;
     let mut findings: Vec<Finding> =
         tail::cut_off(&tail, dialect.separator, dialect.decimal).into_iter().collect();
     findings.extend(missing::kept(rows.missing));
@@ -119,7 +114,7 @@ fn read(text: &Text, dialect: &Dialect, options: &Options) -> Result<Recording> 
         findings.push(Finding::caution("decimal-comma-assumed"));
     }
     let records = records::build(text, &tail, dialect, rows, options, &mut findings)?;
-    Ok(Recording { path: text.path().to_owned(), format: dialect.format, records, findings })
+    Ok(Recording { path: text.source.path().to_owned(), format: dialect.format, records, findings })
 }
 
 /// Row by row, each complaint with its place.
@@ -128,7 +123,12 @@ fn carefully(text: &Text, dialect: &Dialect, options: &Options) -> Result<Rows> 
     let bytes =
         if encoding::lone_cr(&bytes, false) { encoding::with_lf(bytes.into_owned()).into() } else { bytes };
     let whole = encoding::decode(&bytes);
-    rows::read(text.path(), whole.trim_end_matches('\u{1a}'), dialect, options.allow_missing)
+    rows::read(whole.trim_end_matches('\u{1a}'), dialect, options.allow_missing)
+}
+
+/// The place of a complaint; the reader adds the file.
+fn in_line(line: u64) -> Place {
+    Place { line: Some(line), ..Place::default() }
 }
 
 /// The first characters of a text, for messages.

@@ -46,7 +46,7 @@ pub(super) fn sniff(head: &[u8], source: &Source) -> bool {
 
 pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
     let bytes = source.all()?;
-    let mut stream = Stream::new(source.path(), &bytes);
+    let mut stream = Stream::new(&bytes);
     let (mut records, mut findings): (Vec<Record>, Vec<Finding>) = (Vec::new(), Vec::new());
     // Other data sets with their counts, and lines outside any, with the place of the first.
     let mut others: Vec<(u32, usize)> = Vec::new();
@@ -67,9 +67,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         // The delimiter that closes this set may open the next one, where a file has lost one of the two.
         delimited = true;
         if number == 58 {
-            match uff58::read(&mut stream, (line, binary), &system, options, &source.name())
-                .map_err(|e| e.in_file(source.path()))?
-            {
+            match uff58::read(&mut stream, (line, binary), &system, options, &source.name())? {
                 Ok(record) => {
                     records.push(record);
                     continue;
@@ -81,10 +79,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
                 }
             }
         } else {
-            match others.iter_mut().find(|(n, _)| *n == number) {
-                Some((_, count)) => *count += 1,
-                None => others.push((number, 1)),
-            }
+            count(&mut others, number);
             if number == 164 {
                 match System::read(&mut stream) {
                     Some(stated) => system = stated,
@@ -102,8 +97,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         findings.push(Finding::note("sets-passed-over").name("sets", names.join(", ")));
     }
     if let Some((place, lines)) = outside {
-        let place = Place { path: None, ..place }.to_string();
-        findings.push(Finding::caution("lines-outside").count("n", lines).name("place", place));
+        findings.push(Finding::caution("lines-outside").count("n", lines).name("place", place.to_string()));
     }
     if records.is_empty() {
         findings.push(Finding::caution("no-function"));
@@ -116,12 +110,19 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
 fn tell_apart(records: &mut [Record]) {
     let mut seen: Vec<(String, usize)> = Vec::new();
     for name in records.iter_mut().map(|r| &mut r.meta_mut().name).filter(|n| !n.is_empty()) {
-        match seen.iter_mut().find(|(first, _)| first == name) {
-            Some((first, count)) => {
-                *count += 1;
-                *name = format!("{first} #{count}");
-            }
-            None => seen.push((name.clone(), 1)),
+        let n = count(&mut seen, name.clone());
+        if n > 1 {
+            *name = format!("{name} #{n}");
         }
     }
+}
+
+/// Counts `item` in a list; gives how often it has come.
+fn count<T: PartialEq>(list: &mut Vec<(T, usize)>, item: T) -> usize {
+    let at = list.iter().position(|(known, _)| *known == item).unwrap_or_else(|| {
+        list.push((item, 0));
+        list.len() - 1
+    });
+    list[at].1 += 1;
+    list[at].1
 }

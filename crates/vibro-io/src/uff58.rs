@@ -29,6 +29,7 @@ use super::uff::stream::Stream;
 use heading::Heading;
 use vibro_record::{Error, Finding, Record, Result};
 
+pub(crate) use heading::KINDS;
 pub use heading::LINES;
 pub use ordinate::System;
 pub(crate) use values::Layout;
@@ -45,8 +46,9 @@ pub fn read(
     options: &Options,
     file: &str,
 ) -> Result<std::result::Result<Record, (usize, Error)>> {
-    let (start, place) = (stream.line(), stream.place());
+    let place = stream.place();
     let storage = if binary { Some(values::Storage::of(line, stream)?) } else { None };
+    let start = place.line;
     let heading = match Heading::read(stream)? {
         Ok(heading) => heading,
         Err(lines) => {

@@ -16,9 +16,10 @@ mod scales;
 pub(crate) use scales::{Scale, Scales};
 
 use super::format::Format;
+use super::missing::Missing;
 use super::reader::{Options, Recording};
 use super::source::ReadSeek;
-use super::{Header, Source, missing};
+use super::{Header, Source};
 use layout::Layout;
 use std::io::{Read, SeekFrom};
 use std::path::PathBuf;
@@ -147,27 +148,20 @@ impl Wave {
         let start = layout.scales.as_ref().map_or(0.0, |s| s.start);
         let axis = Axis::time(start, 1.0 / options.rate.unwrap_or(layout.rate), self.frames());
         let mut trace = Trace { meta, axis, values: Vec::new() };
-        let factor = match (&options.unit, scale) {
-            (Some(unit), _) => {
-                trace.calibrate(1.0, unit)?;
-                trace.meta.found(Finding::note("full-scale-stated").name("unit", unit.symbol()));
-                unit.factor()
-            }
+        let (full_scale, unit, said) = match (&options.unit, scale) {
+            (Some(unit), _) => (1.0, unit.clone(), Finding::note("full-scale-stated")),
             (None, Some(scale)) => {
-                let unit = Unit::parse_or_opaque(&scale.unit);
-                trace.calibrate(scale.factor, &unit)?;
-                trace.meta.found(if scale.unit == FULL_SCALE {
-                    // Only the level was kept: there never was a calibration.
-                    Finding::caution(Trace::UNCALIBRATED)
-                } else {
-                    let said = Finding::caution("full-scale-by-comment").number("factor", scale.factor);
-                    said.name("unit", scale.unit.as_str())
-                });
-                scale.factor * unit.factor()
+                let said = Finding::caution("full-scale-by-comment").number("factor", scale.factor);
+                (scale.factor, Unit::parse_or_opaque(&scale.unit), said)
             }
-            (None, None) => 1.0,
+            (None, None) => return Ok((trace, 1.0)),
         };
-        Ok((trace, factor))
+        trace.calibrate(full_scale, &unit)?;
+        // Where only the level was kept there never was a calibration.
+        let calibrated = options.unit.is_some() || unit.symbol() != FULL_SCALE;
+        let said = said.name("unit", unit.symbol());
+        trace.meta.found(if calibrated { said } else { Finding::caution(Trace::UNCALIBRATED) });
+        Ok((trace, full_scale * unit.factor()))
     }
 
     /// Number of frames (samples a channel) that the file holds, whatever it declares.
@@ -206,21 +200,13 @@ impl Stream for Wave {
             let seen = lanes::survey(values);
             *largest = largest.max(seen.high).max(-seen.low);
             if !seen.finite {
-                let places: Vec<usize> = (0..frames).filter(|i| !values[*i].is_finite()).collect();
-                if !self.allow_missing {
-                    let listed = places.iter().take(missing::LISTED).map(|i| first + *i as u64);
-                    let listed: Vec<String> =
-                        listed.map(|frame| format!("{frame} of channel {}", channel + 1)).collect();
-                    let found = format!(
-                        "{} sample(s) are NaN or infinite: frame {}",
-                        places.len(),
-                        listed.join(", ")
-                    );
-                    return Err(missing::refusal(Place::file(&self.path), found));
+                let mut missing = Missing::default();
+                for i in (0..frames).filter(|i| !values[*i].is_finite()) {
+                    let frame = first + i as u64;
+                    missing.take(&Place::file(&self.path), format!("{frame} of channel {}", channel + 1));
                 }
-                for i in places {
-                    values[i] = f64::NAN;
-                }
+                missing.check("sample(s) are NaN or infinite: frame", self.allow_missing)?;
+                values.iter_mut().filter(|v| !v.is_finite()).for_each(|v| *v = f64::NAN);
             }
             let factor = self.factors.get(*channel).copied().unwrap_or(1.0);
             if factor != 1.0 {

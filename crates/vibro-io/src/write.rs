@@ -41,6 +41,18 @@ pub enum Target {
     Npy,
 }
 
+/// Formats, the endings that stand for them, and their names.
+const TARGETS: [(Target, &str, &str); 8] = [
+    (Target::Uff, "uff", "uff"),
+    (Target::Uff, "unv", "uff"),
+    (Target::Uff, "58", "uff"),
+    (Target::UffBinary, "ufb", "uff"),
+    (Target::Csv, "csv", "csv"),
+    (Target::Tsv, "tsv", "tsv"),
+    (Target::Wav, "wav", "wav"),
+    (Target::Npy, "npy", "npy"),
+];
+
 impl Target {
     /// The format that the ending of a file name stands for; upper or lower case does not count.
     ///
@@ -49,34 +61,19 @@ impl Target {
     pub fn of(path: impl AsRef<Path>) -> Result<Target> {
         let path = path.as_ref();
         let ending = path.extension().map_or_else(String::new, |e| e.to_string_lossy().to_lowercase());
-        Ok(match ending.as_str() {
-            "uff" | "unv" | "58" => Target::Uff,
-            "ufb" => Target::UffBinary,
-            "csv" => Target::Csv,
-            "tsv" => Target::Tsv,
-            "wav" => Target::Wav,
-            "npy" => Target::Npy,
-            _ => {
-                let what =
-                    if ending.is_empty() { "has no ending".into() } else { format!("ends in .{ending}") };
-                return Err(Error::usage(
-                    format!("{} {what}, which stands for no format to write", path.display()),
-                    "a name that ends in .uff, .unv or .58 (UFF-58), .ufb (UFF-58b), .csv, .tsv, .wav or .npy",
-                )
-                .hint("give the file to write one of these endings"));
-            }
+        TARGETS.iter().find(|row| row.1 == ending).map(|row| row.0).ok_or_else(|| {
+            let what = if ending.is_empty() { "has no ending".into() } else { format!("ends in .{ending}") };
+            Error::usage(
+                format!("{} {what}, which stands for no format to write", path.display()),
+                "a name that ends in .uff, .unv or .58 (UFF-58), .ufb (UFF-58b), .csv, .tsv, .wav or .npy",
+            )
+            .hint("give the file to write one of these endings")
         })
     }
 
     /// Name, as in JSON.
     pub fn name(self) -> &'static str {
-        match self {
-            Target::Uff | Target::UffBinary => "uff",
-            Target::Csv => "csv",
-            Target::Tsv => "tsv",
-            Target::Wav => "wav",
-            Target::Npy => "npy",
-        }
+        TARGETS.iter().find(|row| row.0 == self).map_or("", |row| row.2)
     }
 
     /// Writes records in this format; `storage` says how a universal file keeps its numbers, and how exact a wave file is.
@@ -109,6 +106,14 @@ fn parts(record: &Record, i: usize) -> impl Iterator<Item = f64> + use<> {
         },
     };
     std::iter::once(re).chain(im)
+}
+
+/// The first of records that share one axis; `what` says what has one, for the complaint.
+fn together<'a>(records: &'a [Record], what: &str) -> Result<&'a Record> {
+    let first = records.first().ok_or_else(|| Error::refused("there is no record to write"))?;
+    let Some(other) = records.iter().find(|r| r.axis() != first.axis()) else { return Ok(first) };
+    let why = format!("{} and {} have different {what}", label(first), label(other));
+    Err(Error::refused(why).hint("write them one by one"))
 }
 
 /// How a record is called in a complaint.

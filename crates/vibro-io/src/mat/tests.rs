@@ -1,6 +1,6 @@
 use super::*;
 use crate::Reader;
-use crate::tests::{says, told};
+use crate::tests::{has_finding, texts};
 use num_complex::Complex64;
 use proptest::prelude::*;
 use std::io::Write;
@@ -124,7 +124,7 @@ fn sampling_from_scalars() {
     assert_eq!(stated.records[0].axis(), &Axis::time(0.0, 0.02, 3));
     let zero = of(&[LITTLE.column("fs", &[0.0]), x]).unwrap();
     assert_eq!(zero.records[0].axis().kind, AxisKind::Index);
-    assert!(says(&zero.records[0].meta().findings, "abscissa-unsaid", &[]));
+    assert!(has_finding(&zero.records[0].meta().findings, "abscissa-unsaid", &[]));
 }
 
 #[test]
@@ -147,7 +147,7 @@ fn abscissae_from_vectors() {
     let uneven =
         of(&[LITTLE.column("time", &[0.0, 0.1, 0.5]), LITTLE.column("x", &[1.0, 2.0, 3.0])]).unwrap();
     assert_eq!(uneven.records[0].axis().values(), [0.0, 0.1, 0.5]);
-    assert!(says(
+    assert!(has_finding(
         &uneven.findings,
         "axis-uneven",
         &["column=vector \"time\"", "smallest=0.1", "largest=0.4"]
@@ -163,15 +163,15 @@ fn abscissae_from_vectors() {
     // A force called f, and a torque called t, are no abscissae.
     let force = of(&[LITTLE.column("f", &[0.0, 2.0, 1.0]), LITTLE.column("x", &[1.0, 2.0, 3.0])]).unwrap();
     assert_eq!(force.records.len(), 2);
-    assert!(says(&force.findings, "abscissa-not-rising", &["variable=f"]));
+    assert!(has_finding(&force.findings, "abscissa-not-rising", &["variable=f"]));
     let alone = of(&[LITTLE.column("t", &[0.0, 2.0]), LITTLE.column("x", &[1.0, 2.0, 3.0])]).unwrap();
     assert_eq!(alone.records.len(), 2);
-    assert!(says(&alone.findings, "abscissa-of-other-length", &[]));
+    assert!(has_finding(&alone.findings, "abscissa-of-other-length", &[]));
     let both =
         of(&[LITTLE.column("fs", &[5.0]), LITTLE.column("t", &[0.0, 0.1]), LITTLE.column("x", &[1.0, 2.0])]);
     let both = both.unwrap();
     assert_eq!(both.records[0].axis(), &Axis::time(0.0, 0.1, 2));
-    assert!(says(&both.findings, "vector-against-rate", &["rate=5", "used=vector"]));
+    assert!(has_finding(&both.findings, "vector-against-rate", &["rate=5", "used=vector"]));
 }
 
 #[test]
@@ -235,8 +235,8 @@ fn texts_are_notes_and_the_rest_is_named() {
         "variable-empty variable=none",
         "variable-many-dimensions variable=cube dimensions=3",
     ] {
-        let told = told(&recording.findings);
-        assert!(told.iter().any(|t| t == expected), "{expected}: {told:?}");
+        let found = texts(&recording.findings);
+        assert!(found.iter().any(|t| t == expected), "{expected}: {found:?}");
     }
 }
 

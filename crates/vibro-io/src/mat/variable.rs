@@ -3,8 +3,9 @@
 //! Source: The `MathWorks`, "MAT-File Format", chapter 1, "Level 5 MAT-File Format".
 
 use flate2::read::ZlibDecoder;
+use num_complex::Complex64;
 use std::io::Read;
-use vibro_record::{Error, Place, Result};
+use vibro_record::{Error, Place, Result, Values};
 
 /// Longest text that is kept.
 const MOST_TEXT: u64 = 4096;
@@ -22,19 +23,17 @@ pub enum Content {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Array {
     pub dimensions: Vec<u64>,
-    pub real: Vec<f64>,
-    /// Of the same length, where the array is complex.
-    pub imaginary: Option<Vec<f64>>,
+    pub values: Values,
     /// Whether values have the precision of 32-bit floats only.
     pub single: bool,
 }
 
 /// Elements one after the other.
-pub struct Elements<'a> {
-    pub rest: &'a [u8],
-    pub big_endian: bool,
+struct Elements<'a> {
+    rest: &'a [u8],
+    big_endian: bool,
     /// Where the variable stands in the file.
-    pub place: Place,
+    place: Place,
 }
 
 impl<'a> Elements<'a> {
@@ -52,7 +51,7 @@ impl<'a> Elements<'a> {
     }
 
     /// Kind and content of the next element; `None` behind the last.
-    pub fn next(&mut self) -> Result<Option<(u32, &'a [u8])>> {
+    fn next(&mut self) -> Result<Option<(u32, &'a [u8])>> {
         if self.rest.is_empty() {
             return Ok(None);
         }
@@ -87,28 +86,23 @@ impl<'a> Elements<'a> {
 
     /// The next element as `count` numbers; integers beyond 2⁵³ are rounded.
     fn numbers(&mut self, count: u64) -> Result<Vec<f64>> {
-        fn of<const N: usize>(bytes: &[u8], swap: bool, value: impl Fn([u8; N]) -> f64) -> Vec<f64> {
-            let in_order = |mut b: [u8; N]| {
-                if swap {
-                    b.reverse();
-                }
-                b
-            };
-            bytes.as_chunks().0.iter().map(|b| value(in_order(*b))).collect()
+        fn of<const N: usize>(bytes: &[u8], big_endian: bool, value: fn([u8; N]) -> f64) -> Vec<f64> {
+            let little = |b: &[u8; N]| std::array::from_fn(|i| if big_endian { b[N - 1 - i] } else { b[i] });
+            bytes.as_chunks().0.iter().map(|b| value(little(b))).collect()
         }
         let (kind, bytes) = self.part("values")?;
-        let swap = self.big_endian;
+        let big = self.big_endian;
         let values = match kind {
-            1 => of(bytes, swap, |b| f64::from(i8::from_le_bytes(b))),
-            2 => of(bytes, swap, |b| f64::from(u8::from_le_bytes(b))),
-            3 => of(bytes, swap, |b| f64::from(i16::from_le_bytes(b))),
-            4 => of(bytes, swap, |b| f64::from(u16::from_le_bytes(b))),
-            5 => of(bytes, swap, |b| f64::from(i32::from_le_bytes(b))),
-            6 => of(bytes, swap, |b| f64::from(u32::from_le_bytes(b))),
-            7 => of(bytes, swap, |b| f64::from(f32::from_le_bytes(b))),
-            9 => of(bytes, swap, f64::from_le_bytes),
-            12 => of(bytes, swap, |b| i64::from_le_bytes(b) as f64),
-            13 => of(bytes, swap, |b| u64::from_le_bytes(b) as f64),
+            1 => of(bytes, big, |b| f64::from(i8::from_le_bytes(b))),
+            2 => of(bytes, big, |b| f64::from(u8::from_le_bytes(b))),
+            3 => of(bytes, big, |b| f64::from(i16::from_le_bytes(b))),
+            4 => of(bytes, big, |b| f64::from(u16::from_le_bytes(b))),
+            5 => of(bytes, big, |b| f64::from(i32::from_le_bytes(b))),
+            6 => of(bytes, big, |b| f64::from(u32::from_le_bytes(b))),
+            7 => of(bytes, big, |b| f64::from(f32::from_le_bytes(b))),
+            9 => of(bytes, big, f64::from_le_bytes),
+            12 => of(bytes, big, |b| i64::from_le_bytes(b) as f64),
+            13 => of(bytes, big, |b| u64::from_le_bytes(b) as f64),
             kind => return Err(self.fault(format!("values of kind {kind}"), "integers or floats")),
         };
         if values.len() as u64 != count {
@@ -119,14 +113,14 @@ impl<'a> Elements<'a> {
     }
 }
 
-/// All variables behind the header of a file, with their names.
-pub fn all(mut file: Elements, length: usize) -> Result<Vec<(String, Content)>> {
+/// All variables of a file behind its header, with their names.
+pub fn all(bytes: &[u8], header: usize, big_endian: bool) -> Result<Vec<(String, Content)>> {
     let mut variables = Vec::new();
-    let path = file.place.path.clone().unwrap_or_default();
+    let mut file = Elements { rest: &bytes[header..], big_endian, place: Place::default() };
     loop {
-        let place = Place::byte(&path, (length - file.rest.len()) as u64);
-        file.place = place.clone();
+        file.place.byte = Some((bytes.len() - file.rest.len()) as u64);
         let Some((kind, content)) = file.next()? else { return Ok(variables) };
+        let within = |rest| Elements { rest, big_endian, place: file.place.clone() };
         let mut inflated = Vec::new();
         let content = match kind {
             14 => content,
@@ -136,13 +130,11 @@ pub fn all(mut file: Elements, length: usize) -> Result<Vec<(String, Content)>> 
                 done.map_err(|e| {
                     file.fault(format!("a variable that cannot be unpacked: {e}"), "intact data")
                 })?;
-                let mut outer =
-                    Elements { rest: &inflated, big_endian: file.big_endian, place: place.clone() };
-                outer.part("variable")?.1
+                within(&inflated).part("variable")?.1
             }
             _ => continue,
         };
-        variables.push(variable(&mut Elements { rest: content, big_endian: file.big_endian, place })?);
+        variables.push(variable(&mut within(content))?);
     }
 }
 
@@ -173,8 +165,13 @@ fn variable(elements: &mut Elements) -> Result<(String, Content)> {
         4 => Content::Text(text(elements)?),
         6..=15 => {
             let real = elements.numbers(count)?;
-            let imaginary = if complex { Some(elements.numbers(count)?) } else { None };
-            Content::Array(Array { dimensions, real, imaginary, single: class == 7 })
+            let values = if complex {
+                let pairs = real.into_iter().zip(elements.numbers(count)?);
+                Values::Complex(pairs.map(|(re, im)| Complex64::new(re, im)).collect())
+            } else {
+                Values::Real(real)
+            };
+            Content::Array(Array { dimensions, values, single: class == 7 })
         }
         1 => Content::Other("cell array"),
         2 => Content::Other("struct"),
@@ -188,14 +185,10 @@ fn variable(elements: &mut Elements) -> Result<(String, Content)> {
 
 fn text(elements: &mut Elements) -> Result<String> {
     let (kind, bytes) = elements.part("text")?;
-    Ok(match kind {
-        4 | 17 => {
-            let swap = |b: &[u8; 2]| {
-                if elements.big_endian { u16::from_be_bytes(*b) } else { u16::from_le_bytes(*b) }
-            };
-            let units = bytes.as_chunks().0.iter().map(swap);
-            char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect()
-        }
-        _ => String::from_utf8_lossy(bytes).into_owned(),
-    })
+    if !matches!(kind, 4 | 17) {
+        return Ok(String::from_utf8_lossy(bytes).into_owned());
+    }
+    let unit = if elements.big_endian { u16::from_be_bytes } else { u16::from_le_bytes };
+    let units: Vec<u16> = bytes.as_chunks().0.iter().map(|b| unit(*b)).collect();
+    Ok(String::from_utf16_lossy(&units))
 }

@@ -52,9 +52,8 @@ pub(crate) fn with_lf(mut bytes: Vec<u8>) -> Vec<u8> {
 pub(crate) fn decode(bytes: &[u8]) -> Cow<'_, str> {
     if is_utf16(bytes) {
         let unit = if bytes[0] == 0xff { u16::from_le_bytes } else { u16::from_be_bytes };
-        let text = char::decode_utf16(bytes.as_chunks().0.iter().map(|pair| unit(*pair)));
-        let text = text.map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER));
-        return text.skip_while(|c| *c == '\u{feff}').collect::<String>().into();
+        let units: Vec<u16> = bytes.as_chunks().0.iter().map(|pair| unit(*pair)).collect();
+        return String::from_utf16_lossy(&units).trim_start_matches('\u{feff}').to_owned().into();
     }
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     match std::str::from_utf8(bytes) {

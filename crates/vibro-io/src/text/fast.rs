@@ -8,6 +8,7 @@ use crate::Source;
 use crate::number::{self, Exponential};
 use rayon::prelude::*;
 use std::io::{Read, SeekFrom};
+use std::slice::IterMut;
 use vibro_record::{Error, Result, Values};
 
 /// Bytes read at a time: small enough to stay in the second-level cache.
@@ -20,33 +21,30 @@ const SMALLEST_PIECE: u64 = 1024 * 1024;
 const ENOUGH: usize = 24;
 
 /// How clean rows look, as bytes.
-pub struct Shape {
+pub struct Shape<'a> {
+    dialect: &'a Dialect,
     /// Byte offset of the first row.
     first_byte: u64,
-    columns: usize,
-    separator: Separator,
-    decimal: u8,
     /// Parser of unsigned numbers and their width, where the first rows print them all like `1.234e+05`.
     exponential: Option<(Exponential, usize)>,
     /// Length of a row of one such number and the end of its number, where the first rows are all alike.
     fixed: Option<(usize, usize)>,
 }
 
-impl Shape {
+impl<'a> Shape<'a> {
     /// The shape of rows of real numbers that begin in `head`; `None` for others.
-    pub fn of(dialect: &Dialect, head: &[u8]) -> Option<Shape> {
+    pub fn of(dialect: &'a Dialect, head: &[u8]) -> Option<Shape<'a>> {
         if dialect.complex {
             return None;
         }
-        let Dialect { columns, separator, decimal, .. } = *dialect;
         let first_byte = dialect.first_byte(head);
         let rows = head[first_byte..].split_inclusive(|b| *b == b'\n').take(ENOUGH);
         let rows: Vec<&[u8]> = rows.filter(|row| row.ends_with(b"\n")).collect();
-        let exponential = exponential(&rows, separator).filter(|_| decimal == b'.');
+        let exponential = exponential(&rows, dialect.separator).filter(|_| dialect.decimal == b'.');
         let size = |row: &&[u8]| (row.len(), row.trim_ascii_end().len());
-        let alike = rows.first().map(size).filter(|first| rows.iter().all(|row| size(row) == *first));
-        let fixed = alike.filter(|_| columns == 1 && exponential.is_some());
-        Some(Shape { first_byte: first_byte as u64, columns, separator, decimal, exponential, fixed })
+        let common = rows.first().map(size).filter(|first| rows.iter().all(|row| size(row) == *first));
+        let fixed = common.filter(|_| dialect.columns == 1 && exponential.is_some());
+        Some(Shape { dialect, first_byte: first_byte as u64, exponential, fixed })
     }
 }
 
@@ -64,13 +62,13 @@ fn exponential(rows: &[&[u8]], separator: Separator) -> Option<(Exponential, usi
     number::exponential_of(width?).map(|parse| (parse, width.unwrap_or_default()))
 }
 
-/// All columns; `None` where the file is not clean.
-pub fn read(source: &Source, shape: &Shape) -> Result<Option<Vec<Values>>> {
-    let values = match values(source, shape)? {
-        None if shape.fixed.is_some() => values(source, &Shape { fixed: None, ..*shape })?,
+/// All columns, up to the byte `end` behind which only blanks stand; `None` where the file is not clean.
+pub fn read(source: &Source, shape: &Shape, end: u64) -> Result<Option<Vec<Values>>> {
+    let values = match values(source, shape, end)? {
+        None if shape.fixed.is_some() => values(source, &Shape { fixed: None, ..*shape }, end)?,
         values => values,
     };
-    let columns = shape.columns;
+    let columns = shape.dialect.columns;
     Ok(values.map(|values| match columns {
         1 => vec![Values::Real(values)],
         _ => (0..columns)
@@ -83,73 +81,44 @@ pub fn read(source: &Source, shape: &Shape) -> Result<Option<Vec<Values>>> {
 ///
 /// The rows are counted first, so that every thread writes its values where they belong: looking at the bytes twice costs less
 /// than joining vectors.
-fn values(source: &Source, shape: &Shape) -> Result<Option<Vec<f64>>> {
-    let (from, to) = (shape.first_byte, source.len());
+fn values(source: &Source, shape: &Shape, end: u64) -> Result<Option<Vec<f64>>> {
+    let from = shape.first_byte;
+    let to = end.max(from);
     let pieces = ((to - from) / SMALLEST_PIECE).clamp(1, rayon::current_num_threads().max(1) as u64);
-    let bounds: Vec<u64> = (0..=pieces)
-        .map(|i| if i == pieces { Ok(to) } else { row_start(source, shape, from + (to - from) * i / pieces) })
-        .collect::<Result<_>>()?;
+    let start =
+        |i: u64| if i == 0 { Ok(from) } else { row_start(source, from + (to - from) * i / pieces, to) };
+    let bounds: Vec<u64> = (0..pieces).map(start).chain([Ok(to)]).collect::<Result<_>>()?;
     let pieces: Vec<(u64, u64)> = bounds.windows(2).map(|w| (w[0], w[1])).collect();
     let counts: Vec<usize> = pieces.par_iter().map(|p| rows_in(source, shape, *p)).collect::<Result<_>>()?;
-    let total = counts.iter().sum::<usize>().saturating_mul(shape.columns);
+    let total = counts.iter().sum::<usize>().saturating_mul(shape.dialect.columns);
     // A value takes two bytes with what ends it: blank lines must not claim room for rows of many columns.
-    if total as u64 > (to - from) / 2 + 1 {
+    if total == 0 || total as u64 > (to - from) / 2 + 1 {
         return Ok(None);
     }
     let mut values = vec![0.0; total];
     let mut rest = values.as_mut_slice();
     let mut parts = Vec::new();
     for (rows, piece) in counts.iter().zip(pieces) {
-        let (part, behind) = std::mem::take(&mut rest).split_at_mut(rows * shape.columns);
+        let (part, behind) = std::mem::take(&mut rest).split_at_mut(rows * shape.dialect.columns);
         rest = behind;
-        parts.push((Part { values: part, used: 0, ended: false }, piece));
+        parts.push((part.iter_mut(), piece));
     }
-    let filled: Vec<Option<(usize, usize)>> = parts
+    let clean: Vec<bool> = parts
         .into_par_iter()
         .map(|(mut part, piece)| {
             let clean = blocks(source, piece, |block| rows(block, shape, &mut part))?;
-            Ok(clean.map(|()| (part.used, part.values.len())))
+            Ok(clean.is_some() && part.len() == 0)
         })
         .collect::<Result<_>>()?;
-    let (mut total, mut ended) = (0, false);
-    for part in filled {
-        let Some((used, room)) = part else { return Ok(None) };
-        if ended && used > 0 {
-            return Ok(None); // rows behind blank lines, or of another length
-        }
-        total += used;
-        ended |= used < room;
-    }
-    values.truncate(total);
-    Ok((!values.is_empty()).then_some(values))
+    Ok(clean.into_iter().all(|clean| clean).then_some(values))
 }
 
-/// Where the values of a piece go.
-struct Part<'a> {
-    values: &'a mut [f64],
-    used: usize,
-    /// Whether blank lines stand behind them.
-    ended: bool,
-}
-
-impl Part<'_> {
-    #[inline]
-    fn push(&mut self, value: f64) -> Option<()> {
-        *self.values.get_mut(self.used)? = value;
-        self.used += 1;
-        Some(())
-    }
-}
-
-/// The first row that starts at `at` or behind.
-fn row_start(source: &Source, shape: &Shape, at: u64) -> Result<u64> {
-    if at == shape.first_byte {
-        return Ok(at);
-    }
+/// The first row that starts at `at` or behind, before `to`.
+fn row_start(source: &Source, at: u64, to: u64) -> Result<u64> {
     // The end of the row before may be the byte before.
-    let mut start = source.len();
+    let mut start = to;
     let mut passed = 0;
-    blocks(source, (at - 1, source.len()), |block| {
+    blocks(source, (at - 1, to), |block| {
         let end = block.iter().position(|b| *b == b'\n');
         start = end.map_or(start, |end| at + passed + end as u64);
         passed += block.len() as u64;
@@ -207,19 +176,18 @@ fn blocks(
 }
 
 /// Reads whole rows; `None` where one is not clean or there are more than were counted.
-fn rows(block: &[u8], shape: &Shape, part: &mut Part) -> Option<()> {
+fn rows(block: &[u8], shape: &Shape, values: &mut IterMut<f64>) -> Option<()> {
     let mut at = 0;
     while at < block.len() {
         if let (Some((length, end)), Some((parse, width))) = (shape.fixed, shape.exponential)
             && let Some(value) =
                 block.get(at..at + length).and_then(|row| fixed(row, (end - width, end), parse))
-            && !part.ended
         {
-            part.push(value)?;
+            *values.next()? = value;
             at += length;
             continue;
         }
-        at += row(&block[at..], shape, part)?;
+        at += row(&block[at..], shape, values)?;
     }
     Some(())
 }
@@ -256,12 +224,12 @@ fn value(bytes: &[u8], shape: &Shape) -> Option<(f64, usize)> {
             return Some((if first == b'-' { -magnitude } else { magnitude }, sign + width));
         }
     }
-    number::prefix(bytes, shape.decimal)
+    number::prefix(bytes, shape.dialect.decimal)
 }
 
-/// Reads one row, which may be blank behind the last values; gives its bytes with its line end.
+/// Reads one row; gives its bytes with its line end.
 #[inline]
-fn row(bytes: &[u8], shape: &Shape, part: &mut Part) -> Option<usize> {
+fn row(bytes: &[u8], shape: &Shape, values: &mut IterMut<f64>) -> Option<usize> {
     let blank = |at: &mut usize| {
         while bytes.get(*at).is_some_and(|b| matches!(b, b' ' | b'\t')) {
             *at += 1;
@@ -277,16 +245,9 @@ fn row(bytes: &[u8], shape: &Shape, part: &mut Part) -> Option<usize> {
     let mut at = usize::from(bytes.first() == Some(&b' '));
     at += usize::from(bytes.get(at) == Some(&b' '));
     blank(&mut at);
-    if let Some(used) = line_end(at) {
-        part.ended = true;
-        return Some(used);
-    }
-    if part.ended {
-        return None;
-    }
-    for column in 0..shape.columns {
+    for column in 0..shape.dialect.columns {
         if column > 0
-            && let Separator::Char(mark) = shape.separator
+            && let Separator::Char(mark) = shape.dialect.separator
             && mark != b'\t'
         {
             if bytes.get(at) != Some(&mark) {
@@ -296,14 +257,14 @@ fn row(bytes: &[u8], shape: &Shape, part: &mut Part) -> Option<usize> {
             blank(&mut at);
         }
         let (value, used) = value(&bytes[at..], shape)?;
-        part.push(value)?;
+        *values.next()? = value;
         at += used;
         // Two numbers must not touch.
         let before = at;
         blank(&mut at);
         let touching = before == at
-            && column + 1 < shape.columns
-            && !matches!(shape.separator, Separator::Char(mark) if bytes.get(at) == Some(&mark));
+            && column + 1 < shape.dialect.columns
+            && !matches!(shape.dialect.separator, Separator::Char(mark) if bytes.get(at) == Some(&mark));
         if touching {
             return None;
         }

@@ -2,6 +2,7 @@
 
 use super::dialect::Separator;
 use super::header;
+use crate::assemble::domain;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{AxisKind, Finding};
 
@@ -62,12 +63,11 @@ impl Name {
     /// What was found, where the unit is not understood.
     pub(crate) fn to_axis(&self, kind: &AxisKind) -> Result<(f64, Option<Finding>), String> {
         let Some(text) = &self.unit else {
-            let si = if *kind == AxisKind::Time { "s" } else { "Hz" };
             let assumed = match bracketed(&self.name, '(', ')') {
                 Some((_, unit)) => Finding::caution("axis-unit-unknown").name("said", unit),
                 None => Finding::caution("axis-unit-assumed"),
             };
-            return Ok((1.0, Some(assumed.name("unit", si))));
+            return Ok((1.0, Some(assumed.name("unit", domain(kind).1))));
         };
         if text == HOUR {
             return Ok((3600.0, None));
@@ -258,9 +258,9 @@ fn begins(text: &str, word: &str) -> bool {
 fn cannot_be_name(name: &str, unit: &str) -> bool {
     let quantity = Unit::parse(unit).map(|u| u.quantity());
     let key = name.to_lowercase();
-    let says =
+    let named =
         |quantity: Quantity| key.contains(quantity.name()) || (quantity == Quantity::Time && key == "t");
-    unit.contains('/') || unit.ends_with("Hz") || quantity.is_some_and(says)
+    unit.contains('/') || unit.ends_with("Hz") || quantity.is_some_and(named)
 }
 
 #[cfg(test)]

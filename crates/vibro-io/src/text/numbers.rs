@@ -10,9 +10,10 @@
 
 use super::dialect::{Dialect, Separator};
 use super::lines::{Line, Lines, fields};
-use super::{Text, names, shorten};
+use super::{Text, in_line, names, shorten};
 use crate::{Format, Options, number};
-use vibro_record::{Error, Place, Result};
+use num_complex::Complex64;
+use vibro_record::{Error, Result};
 
 const REMARKS: &[&str] = &["#", "%", "!", "*", "'", "\"", "//"];
 
@@ -45,11 +46,11 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
             Some(line) => format!("no row of numbers (the first line is {:?})", shorten(line)),
             None => "no row of numbers".to_owned(),
         };
-        return Err(Error::input(Place::file(text.path()), found, "one or more numbers a line")
+        return Err(Error::usage(found, "one or more numbers a line")
             .hint("name the format if it is another; give a list of files to `vibro response`")
             .setting("format"));
     };
-    let (separator, decimal) = marks(text, &rows, options)?;
+    let (separator, decimal) = marks(&rows, options)?;
     let mut cells = fields(first.text, separator).unwrap_or_default();
     while cells.len() > 1 && cells.last().is_some_and(|(_, c)| c.is_empty()) {
         cells.pop();
@@ -88,7 +89,7 @@ fn is_row(line: &[u8]) -> bool {
 }
 
 /// Separator and decimal mark.
-fn marks(text: &Text, rows: &[Line], options: &Options) -> Result<(Separator, u8)> {
+fn marks(rows: &[Line], options: &Options) -> Result<(Separator, u8)> {
     const COMMA: Separator = Separator::Char(b',');
     let any = |test: &dyn Fn(&str) -> bool| rows.iter().any(|r| test(r.text.trim()));
     let explicit = [b';', b'\t'].into_iter().find(|mark| any(&|line| line.as_bytes().contains(mark)));
@@ -96,16 +97,16 @@ fn marks(text: &Text, rows: &[Line], options: &Options) -> Result<(Separator, u8
     if !any(&|line| line.contains(',')) {
         return Ok((explicit.unwrap_or(Separator::Blank), b'.'));
     }
-    let ask = || {
+    let doubtful = || {
         let Line { number, text: row, .. } = rows[0];
         let found = format!("{:?} may be one number or two numbers", shorten(row.trim()));
-        Error::input(Place::line(text.path(), number), found, "a file where this can be told")
+        Error::input(in_line(number), found, "a file where this can be told")
             .hint("say which mark is the decimal one: comma or point; export grouped digits without groups")
             .setting("decimal")
     };
     let comma = match options.decimal_comma {
         Some(comma) => comma,
-        None if explicit.is_none() && grouped(rows) => return Err(ask()),
+        None if explicit.is_none() && grouped(rows) => return Err(doubtful()),
         // Points are decimal marks, so commas separate.
         None if any(&|line| line.contains('.')) => false,
         None if explicit.is_some() => true,
@@ -120,7 +121,7 @@ fn marks(text: &Text, rows: &[Line], options: &Options) -> Result<(Separator, u8
         }
         // Several fields between blanks, each with at most one comma; or one that no integer column would print.
         None if any(&|line| line.split_ascii_whitespace().count() > 1) || any(&no_integers) => true,
-        None => return Err(ask()),
+        None => return Err(doubtful()),
     };
     Ok(if comma { (explicit.unwrap_or(Separator::Blank), b',') } else { (explicit.unwrap_or(COMMA), b'.') })
 }
@@ -151,7 +152,7 @@ fn grouped(rows: &[Line]) -> bool {
 }
 
 /// Reads `(re+imj)`, `re + im i` and the like; a bare number has no imaginary part and is accepted.
-pub fn complex(text: &[u8], decimal: u8) -> Option<(f64, f64)> {
+pub fn complex(text: &[u8], decimal: u8) -> Option<Complex64> {
     let text = text.trim_ascii();
     let text = match text.strip_prefix(b"(") {
         Some(inner) => inner.strip_suffix(b")")?.trim_ascii(),
@@ -159,8 +160,8 @@ pub fn complex(text: &[u8], decimal: u8) -> Option<(f64, f64)> {
     };
     let (first, used) = number::prefix(text, decimal)?;
     let (sign, rest) = match text[used..].trim_ascii_start() {
-        [] => return Some((first, 0.0)),
-        [b'i' | b'j' | b'I' | b'J'] => return Some((0.0, first)),
+        [] => return Some(first.into()),
+        [b'i' | b'j' | b'I' | b'J'] => return Some(Complex64::new(0.0, first)),
         [b'+', rest @ ..] => (1.0, rest.trim_ascii_start()),
         [b'-', rest @ ..] => (-1.0, rest.trim_ascii_start()),
         _ => return None,
@@ -168,7 +169,7 @@ pub fn complex(text: &[u8], decimal: u8) -> Option<(f64, f64)> {
     let (second, used) = number::prefix(rest, decimal)?;
     let rest = rest[used..].trim_ascii_start();
     let rest = rest.strip_prefix(b"*").unwrap_or(rest);
-    matches!(rest, [b'i' | b'j' | b'I' | b'J']).then_some((first, sign * second))
+    matches!(rest, [b'i' | b'j' | b'I' | b'J']).then_some(Complex64::new(first, sign * second))
 }
 
 #[cfg(test)]
@@ -232,9 +233,9 @@ mod tests {
     #[test]
     fn complex_spellings() {
         for text in ["(1.5-2e-3j)", "1.5-2e-3i", "1.5 - 2e-3i", "(1.5-2e-3*I)"] {
-            assert_eq!(complex(text.as_bytes(), b'.'), Some((1.5, -2e-3)), "{text}");
+            assert_eq!(complex(text.as_bytes(), b'.'), Some(Complex64::new(1.5, -2e-3)), "{text}");
         }
-        assert_eq!(complex(b"2j", b'.'), Some((0.0, 2.0)));
+        assert_eq!(complex(b"2j", b'.'), Some(Complex64::new(0.0, 2.0)));
         for text in ["(1+2j", "1+2", "1+2jj", "j", "1+j", "", "()"] {
             assert_eq!(complex(text.as_bytes(), b'.'), None, "{text}");
         }

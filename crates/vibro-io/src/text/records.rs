@@ -7,14 +7,12 @@ use super::header::Stated;
 use super::names::{Name, Part};
 use super::rows::Rows;
 use super::tail;
-use crate::assemble::{self, Spectral, from_values, short, to_si};
+use crate::assemble::{self, Spectral, domain, from_values, short, to_si};
 use crate::{Format, Options, number};
 use num_complex::Complex64;
 use std::borrow::Cow;
 use vibro_record::units::Unit;
-use vibro_record::{
-    Axis, AxisKind, Error, Finding, Grid, Meta, Place, Record, Result, Scaling, Values, Window,
-};
+use vibro_record::{Axis, AxisKind, Error, Finding, Grid, Meta, Record, Result, Scaling, Values, Window};
 
 /// Records of all columns but the abscissa; findings about the file as a whole are added.
 ///
@@ -43,12 +41,12 @@ pub fn build(
     let first = if counts { table.remove(0).reals().first().copied() } else { None };
     let printed = printed.map(|column| made.printed(&column, &table)).transpose()?;
     let has_axis = printed.is_some();
-    let mut axis = choose(text.path(), printed, n, &made.stated, options, &mut of_axis)?;
+    let mut axis = choose(printed, n, &made.stated, options, &mut of_axis)?;
     if let (AxisKind::Index, Some(first), Grid::Even { start, .. }) = (&axis.kind, first, &mut axis.grid) {
         *start = first;
     }
     if table.is_empty() {
-        return Err(made.error("only an abscissa", "at least one column of values"));
+        return Err(Error::usage("only an abscissa", "at least one column of values"));
     }
     let lines = made.stated.lines.filter(|_| axis.kind == AxisKind::Frequency && !has_axis);
     let declared = lines.map(|lines| lines as usize + 1).filter(|all| n != *all && n + 1 != *all);
@@ -117,10 +115,6 @@ struct Made<'a> {
 }
 
 impl Made<'_> {
-    fn error(&self, found: impl Into<String>, expected: &str) -> Error {
-        Error::input(Place::file(self.text.path()), found, expected)
-    }
-
     /// Which column is the abscissa. A column of times need not be it, for it may hold intervals: by name it is, or if it rises.
     fn abscissa(&self, table: &[Column]) -> Option<usize> {
         let by_name = |column: &Column| {
@@ -149,20 +143,20 @@ impl Made<'_> {
         let (kind, factor) = if let Some(kind) = by_name.clone() {
             let (factor, assumed) = column.name.to_axis(&kind).map_err(|found| {
                 let found = format!("{found} {:?}", column.label());
-                self.error(found, "s, ms, Hz, kHz, …").hint("name another unit in its header, e.g. time [s]")
+                Error::usage(found, "s, ms, Hz, kHz, …")
+                    .hint("name another unit in its header, e.g. time [s]")
             })?;
             findings.extend(assumed);
             (kind, factor)
         } else if let Some(kind) = self.domain(n) {
-            let unit = if kind == AxisKind::Time { "s" } else { "Hz" };
-            findings.push(Finding::caution("axis-unit-assumed").name("unit", unit));
+            findings.push(Finding::caution("axis-unit-assumed").name("unit", domain(&kind).1));
             (kind, 1.0)
         } else {
             findings.push(Finding::caution("axis-kind-unsaid"));
             (AxisKind::Other(label.trim_start_matches("column ").trim_matches('"').to_owned()), 1.0)
         };
         let own = tail::resolution(self.text, self.tail, self.dialect, column.at - 1);
-        self.one_clock(&kind, column, (factor, own), others)?;
+        one_clock(&kind, column, (factor, own), others)?;
         let values = values.iter().map(|v| v * factor).collect();
         let (axis, finding) = from_values(kind, values, own * factor, &label);
         let findings =
@@ -179,32 +173,6 @@ impl Made<'_> {
         }
         let spectrum = spectrum || stated.spacing(n).is_some() || self.dialect.complex;
         spectrum.then_some(AxisKind::Frequency)
-    }
-
-    /// Refuses a second column of the axis that runs over another `span`: which columns are whose cannot be told.
-    fn one_clock(
-        &self,
-        kind: &AxisKind,
-        axis: &Column,
-        (factor, resolution): (f64, f64),
-        others: &[Column],
-    ) -> Result<()> {
-        let span = |column: &Column, factor: f64| {
-            let values = column.reals();
-            column.rises().then(|| factor * (values.last().unwrap_or(&0.0) - values.first().unwrap_or(&0.0)))
-        };
-        for other in others.iter().filter(|c| c.name.axis(true).as_ref() == Some(kind)) {
-            if let Ok((theirs, _)) = other.name.to_axis(kind)
-                && let (Some(a), Some(b)) = (span(axis, factor), span(other, theirs))
-                && (b - a).abs() > 4.0 * resolution * factor.max(theirs) + 1e-6 * a.abs()
-            {
-                let (one, two) = (axis.label(), other.label());
-                let found = format!("{one:?} and {two:?} run over {} and {}", short(a), short(b));
-                let hint = "write each of them with its channels to a file of its own";
-                return Err(self.error(found, "one clock for all columns").hint(hint));
-            }
-        }
-        Ok(())
     }
 
     /// Joins real and imaginary parts that belong together; over time there are none.
@@ -228,7 +196,7 @@ impl Made<'_> {
             // A unit that stands in one header holds for both.
             if real.name.unit.is_some() && column.name.unit.is_some() && real.name.unit != column.name.unit {
                 let found = format!("{:?} and {:?} have different units", real.label(), column.label());
-                return Err(self.error(found, "one unit for real and imaginary part"));
+                return Err(Error::usage(found, "one unit for real and imaginary part"));
             }
             let both = real
                 .reals()
@@ -245,8 +213,7 @@ impl Made<'_> {
         if stated && out.iter().all(|column| matches!(column.values, Values::Real(_))) {
             let over = if axis.kind == AxisKind::Time { " over time" } else { " of values" };
             let found = format!("{} column(s){over}, where complex values were stated", out.len());
-            return Err(self
-                .error(found, "two columns over frequency, real and imaginary part")
+            return Err(Error::usage(found, "two columns over frequency, real and imaginary part")
                 .hint("leave out that values are complex, or state the base band")
                 .setting("complex")
                 .setting("base_band"));
@@ -282,12 +249,14 @@ impl Made<'_> {
         }
         meta.step("read", &how);
         let factor = self.options.adopt(&mut meta, unit.as_deref().or(self.stated.unit.as_deref()));
-        to_si(&mut values, factor).map_err(|e| e.in_file(self.text.path()))?;
+        to_si(&mut values, factor)?;
         if axis.kind == AxisKind::Time && matches!(values, Values::Complex(_)) {
-            return Err(self
-                .error("complex values over time", "complex values over frequency, or real values over time")
-                .hint("state the base band, and no sampling rate")
-                .setting("base_band"));
+            return Err(Error::usage(
+                "complex values over time",
+                "complex values over frequency, or real values over time",
+            )
+            .hint("state the base band, and no sampling rate")
+            .setting("base_band"));
         }
         let spectral = self.spectral(&meta.name, unit.as_deref());
         Ok(assemble::record(meta, axis.clone(), values, spectral))
@@ -319,6 +288,31 @@ impl Made<'_> {
         let value = own.or_else(|| self.remarks(key).find(|v| !v.contains(" of ")))?;
         Some(value.trim().to_lowercase())
     }
+}
+
+/// Refuses a second column of the axis that runs over another `span`: which columns are whose cannot be told.
+fn one_clock(
+    kind: &AxisKind,
+    axis: &Column,
+    (factor, resolution): (f64, f64),
+    others: &[Column],
+) -> Result<()> {
+    let span = |column: &Column, factor: f64| {
+        let values = column.reals();
+        column.rises().then(|| factor * (values.last().unwrap_or(&0.0) - values.first().unwrap_or(&0.0)))
+    };
+    for other in others.iter().filter(|c| c.name.axis(true).as_ref() == Some(kind)) {
+        if let Ok((theirs, _)) = other.name.to_axis(kind)
+            && let (Some(a), Some(b)) = (span(axis, factor), span(other, theirs))
+            && (b - a).abs() > 4.0 * resolution * factor.max(theirs) + 1e-6 * a.abs()
+        {
+            let (one, two) = (axis.label(), other.label());
+            let found = format!("{one:?} and {two:?} run over {} and {}", short(a), short(b));
+            let hint = "write each of them with its channels to a file of its own";
+            return Err(Error::usage(found, "one clock for all columns").hint(hint));
+        }
+    }
+    Ok(())
 }
 
 /// `g²/Hz`, `(m/s^2)^2/Hz`: a square over hertz is a power spectral density.

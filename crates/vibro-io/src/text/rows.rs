@@ -3,13 +3,12 @@
 use super::dialect::Dialect;
 use super::lines::{Fields, Line};
 use super::numbers::complex;
-use super::shorten;
 use super::tail::CUT_OFF;
+use super::{in_line, shorten};
 use crate::missing::Missing;
 use crate::{Format, number};
 use num_complex::Complex64;
-use std::path::Path;
-use vibro_record::{Error, Place, Result, Values};
+use vibro_record::{Error, Result, Values};
 
 /// Columns of numbers and what was met on the way.
 #[derive(Debug, Default, PartialEq)]
@@ -28,9 +27,9 @@ pub struct Rows {
 /// On the first field that is no number, the first row with another number of fields and, but for tables, the first blank line
 /// between rows of several columns; on missing values, all at once, unless they are allowed; on a missing value in a column that its name makes
 /// the abscissa always.
-pub fn read(path: &Path, text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> {
+pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> {
     let (n, abscissa) = (dialect.columns, dialect.named_abscissa());
-    let reader = Reader { path, text, dialect };
+    let reader = Reader { text, dialect };
     let mut rows = Rows::default();
     let mut columns: Vec<Vec<Complex64>> = vec![Vec::new(); n];
     let (mut missing, mut blank_since) = (Missing::default(), None);
@@ -44,7 +43,7 @@ pub fn read(path: &Path, text: &str, dialect: &Dialect, allow_missing: bool) -> 
             continue;
         }
         let fields = dialect.cut(&line).map_err(|at| {
-            reader.fault(&line, at, "text behind a closing quote", "a separator or the end of the line")
+            fault(&line, at, "text behind a closing quote", "a separator or the end of the line")
         })?;
         if fields.len() != n {
             return Err(reader.ragged(&line, &fields));
@@ -52,32 +51,34 @@ pub fn read(path: &Path, text: &str, dialect: &Dialect, allow_missing: bool) -> 
         if let Some(since) = blank_since.take().filter(|_| dialect.format == Format::Ascii) {
             if n > 1 {
                 let expected = "rows of numbers, one behind the other";
-                return Err(Error::input(Place::line(path, since), "a blank line between rows", expected)
+                return Err(Error::input(in_line(since), "a blank line between rows", expected)
                     .hint("remove it, or write NaN for the values that are missing there"));
             }
             for blank in since..line.number {
-                missing.take(blank, "");
-                columns[0].push(Complex64::new(f64::NAN, 0.0));
+                missing.take(&in_line(blank), blank.to_string());
+                columns[0].push(MISSING);
             }
         }
         for (i, ((at, field), values)) in fields.iter().zip(&mut columns).enumerate() {
-            values.push(match reader.value(field) {
-                Some(value) => value,
-                None if reader.is_missing(field) && abscissa == Some(i) => {
-                    let expected = "a number in every row of the abscissa";
-                    let fault = reader.fault(&line, *at, &format!("found {field:?}"), expected);
-                    return Err(fault.hint("remove the row"));
-                }
-                None if reader.is_missing(field) => {
-                    missing.take(line.number, dialect.names.as_ref().map_or("", |names| &names[i].name));
-                    Complex64::new(f64::NAN, 0.0)
-                }
-                None => return Err(reader.not_a_number(&line, *at, field)),
-            });
+            if let Some(value) = reader.value(field) {
+                values.push(value);
+                continue;
+            }
+            if !reader.is_missing(field) {
+                return Err(reader.not_a_number(&line, *at, field));
+            }
+            if abscissa == Some(i) {
+                let expected = "a number in every row of the abscissa";
+                let fault = fault(&line, *at, &format!("found {field:?}"), expected);
+                return Err(fault.hint("remove the row"));
+            }
+            let name = dialect.names.as_ref().map_or("", |names| &names[i].name);
+            let listed = if name.is_empty() { String::new() } else { format!(" ({name:?})") };
+            missing.take(&in_line(line.number), format!("{}{listed}", line.number));
+            values.push(MISSING);
         }
     }
-    missing.check(path, allow_missing)?;
-    rows.missing = missing.count;
+    rows.missing = missing.check("missing value(s) (NaN, Inf or blank) in line(s)", allow_missing)?;
     let kind = |values: Vec<Complex64>| {
         if dialect.complex {
             Values::Complex(values)
@@ -89,9 +90,14 @@ pub fn read(path: &Path, text: &str, dialect: &Dialect, allow_missing: bool) -> 
     Ok(rows)
 }
 
+const MISSING: Complex64 = Complex64::new(f64::NAN, 0.0);
+
+fn fault(line: &Line, at: usize, found: &str, expected: &str) -> Error {
+    Error::input(in_line(line.number).column(line.column(at)), found, expected)
+}
+
 /// What is read, for values and complaints.
 struct Reader<'a> {
-    path: &'a Path,
     text: &'a str,
     dialect: &'a Dialect,
 }
@@ -99,12 +105,11 @@ struct Reader<'a> {
 impl Reader<'_> {
     fn value(&self, field: &str) -> Option<Complex64> {
         let (field, decimal) = (field.as_bytes(), self.dialect.decimal);
-        let (re, im) = if self.dialect.complex {
-            complex(field, decimal)?
+        if self.dialect.complex {
+            complex(field, decimal)
         } else {
-            (number::parse_with(field, decimal)?, 0.0)
-        };
-        Some(Complex64::new(re, im))
+            Some(number::parse_with(field, decimal)?.into())
+        }
     }
 
     fn is_missing(&self, field: &str) -> bool {
@@ -113,26 +118,17 @@ impl Reader<'_> {
         half || number::is_missing(field.as_bytes())
     }
 
-    /// What to try, or else that the file ends within a row that does not end with a line end.
-    fn hint(&self, line: &Line, hint: &'static str) -> &'static str {
-        if line.at + line.text.len() == self.text.len() { CUT_OFF } else { hint }
-    }
-
-    fn fault(&self, line: &Line, at: usize, found: &str, expected: &str) -> Error {
-        Error::input(Place::line(self.path, line.number).column(line.column(at)), found, expected)
-    }
-
     fn ragged(&self, line: &Line, fields: &Fields) -> Error {
         let n = self.dialect.columns;
-        let at = fields.get(n).map_or(line.text.len(), |(at, _)| *at);
         // A field that is no number says more than the number of fields.
         let odd = fields.iter().find(|(_, f)| self.value(f).is_none() && !self.is_missing(f));
         if let Some((at, field)) = odd.filter(|_| self.dialect.names.is_none()) {
             return self.not_a_number(line, *at, field);
         }
+        let at = fields.get(n).map_or(line.text.len(), |(at, _)| *at);
         let found = format!("{} field(s) in this row", fields.len());
         let expected = format!("{n}, as many as in line {}", self.dialect.columns_from);
-        self.fault(line, at, &found, &expected).hint(self.hint(line, "mend or remove the row"))
+        fault(line, at, &found, &expected).hint(self.hint(line, "mend or remove the row"))
     }
 
     fn not_a_number(&self, line: &Line, at: usize, field: &str) -> Error {
@@ -141,7 +137,7 @@ impl Reader<'_> {
             (false, b',') => ("a number with a decimal comma", b'.'),
             (false, _) => ("a number", b','),
         };
-        let error = self.fault(line, at, &format!("found {:?}", shorten(field)), expected);
+        let error = fault(line, at, &format!("found {:?}", shorten(field)), expected);
         if number::parse_with(field.as_bytes(), other).is_some()
             || (field.contains('.') && field.contains(','))
         {
@@ -150,6 +146,11 @@ impl Reader<'_> {
         }
         let hint = "write NaN in place of a bad value and allow missing values; put # before a remark";
         error.hint(self.hint(line, hint)).setting("allow_missing")
+    }
+
+    /// What to try, or else that the file ends within a row that does not end with a line end.
+    fn hint(&self, line: &Line, hint: &'static str) -> &'static str {
+        if line.at + line.text.len() == self.text.len() { CUT_OFF } else { hint }
     }
 }
 
@@ -162,7 +163,7 @@ mod tests {
     fn rows(text: &str, allow_missing: bool) -> Result<Rows> {
         let source = Source::memory("x.csv", text.as_bytes()).unwrap();
         let dialect = table::detect(&Text::of(&source, None), &Options::default()).unwrap();
-        read(Path::new("x.csv"), text.trim_end_matches('\u{1a}'), &dialect, allow_missing)
+        read(text.trim_end_matches('\u{1a}'), &dialect, allow_missing)
     }
 
     fn column(rows: &Rows, at: usize) -> &[f64] {
@@ -186,10 +187,7 @@ mod tests {
 
     #[test]
     fn complaints_name_line_and_column() {
-        assert!(
-            complaint("t,a\n0,1\n1,x\n")
-                .starts_with("x.csv, line 3, column 3: found \"x\"; expected a number")
-        );
+        assert!(complaint("t,a\n0,1\n1,x\n").starts_with("line 3, column 3: found \"x\"; expected a number"));
         assert!(
             complaint("t;a\n0;1,5\n1;2.5\n")
                 .contains("line 3, column 3: found \"2.5\"; expected a number with a decimal comma")

@@ -27,7 +27,7 @@ const REMARKS: &[&str] = &["#", "%"];
 /// reading can name the row at fault.
 pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
     let mut above: Vec<Line> = Vec::new();
-    let mut unfit = None;
+    let mut misfit = None;
     for line in Lines::new(&text.head, 0, 1, REMARKS).filter(|l| !l.is_blank()) {
         if line.remark.is_none() {
             let rows = SEPARATORS.map(|mark| (Separator::Char(mark), row(line.text, mark, options)));
@@ -36,12 +36,12 @@ pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
             for (separator, count) in of(2) {
                 match fit(&above, line, *separator, count.unwrap_or(0)) {
                     Some((found, true)) => return Some(decided(found, text, options)),
-                    found => unfit = unfit.or(found.map(|(found, _)| found)),
+                    found => misfit = misfit.or(found.map(|(found, _)| found)),
                 }
             }
             // One column last: `1,5` under `a,b` is no decimal comma.
             if text.called_csv()
-                && unfit.is_none()
+                && misfit.is_none()
                 && let Some((separator, _)) = of(1).next()
                 && let Some((found, true)) = fit(&above, line, *separator, 1)
             {
@@ -50,7 +50,7 @@ pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
         }
         above.push(line);
     }
-    unfit.filter(|_| text.called_csv()).map(|found| decided(found, text, options))
+    misfit.filter(|_| text.called_csv()).map(|found| decided(found, text, options))
 }
 
 /// Number of fields, where all are numbers or missing and at least one is a number.

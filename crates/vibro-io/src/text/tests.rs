@@ -1,5 +1,5 @@
 use super::*;
-use crate::tests::says;
+use crate::tests::has_finding;
 use crate::{Format, Reader};
 use num_complex::Complex64;
 use proptest::prelude::*;
@@ -65,7 +65,7 @@ fn a_rate_in_the_preamble_or_stated() {
     let text = "Sampling rate;2;kHz\n# operator: A\na;b\n1;2\n3;4\n";
     let recording = of(text);
     assert_eq!(recording.records[1].axis(), &Axis::time(0.0, 1.0 / 2000.0, 2));
-    assert!(says(&recording.records[0].meta().findings, "unit-unsaid", &[]));
+    assert!(has_finding(&recording.records[0].meta().findings, "unit-unsaid", &[]));
     let stated = read_with(&Reader::new().rate(Some(100.0)).unit(Unit::parse("mm")), text).unwrap();
     assert_eq!(stated.records[0].axis(), &Axis::time(0.0, 0.01, 2));
     assert_eq!(values(&stated.records[0]), [1.0 * 1e-3, 3.0 * 1e-3]);
@@ -109,7 +109,11 @@ fn what_is_stated_may_refine_a_column_and_not_contradict_it() {
     assert_eq!(same.records[0].axis(), &Axis::time(1.0, 0.1, 3));
     let refined = read_with(&Reader::new().rate(Some(9.9)).unit(Unit::parse("g")), text).unwrap();
     assert_eq!(refined.records[0].axis(), &Axis::time(1.0, 1.0 / 9.9, 3));
-    assert!(says(&refined.records[0].meta().findings, "unit-overrides-file", &["file=m/s²", "used=g"]));
+    assert!(has_finding(
+        &refined.records[0].meta().findings,
+        "unit-overrides-file",
+        &["file=m/s²", "used=g"]
+    ));
     let other = read_with(&Reader::new().rate(Some(50.0)), text).unwrap_err().to_string();
     assert!(other.contains("\"t\" holds a time from 1 to 1.2 s in steps of 0.1 s"), "{other}");
     assert!(other.contains("sampling rate of 50 Hz"), "{other}");
@@ -118,7 +122,7 @@ fn what_is_stated_may_refine_a_column_and_not_contradict_it() {
     let contradicted = of("fs: 1000\nt [s],a [g]\n0.0,1\n0.1,2\n");
     assert_eq!(contradicted.records[0].axis().step(), Some(0.1));
     assert!(
-        says(&contradicted.findings, "header-step-differs", &["header=0.001", "step=0.1"]),
+        has_finding(&contradicted.findings, "header-step-differs", &["header=0.001", "step=0.1"]),
         "{:?}",
         contradicted.findings
     );
@@ -132,7 +136,7 @@ fn times_with_too_few_digits() {
     let axis = recording.records[0].axis();
     // Both ends are rounded by half a millisecond at most, spread over 2999 steps.
     assert!((axis.step().unwrap() - dt).abs() <= 1e-3 / 2999.0);
-    assert!(says(&recording.findings, "axis-rounded", &[]), "{:?}", recording.findings);
+    assert!(has_finding(&recording.findings, "axis-rounded", &[]), "{:?}", recording.findings);
 }
 
 #[test]
@@ -141,7 +145,7 @@ fn uneven_times_are_kept_and_said() {
     let axis = recording.records[0].axis();
     assert_eq!((axis.step(), axis.at(3)), (None, 0.5));
     assert!(
-        says(&recording.findings, "axis-uneven", &["unit=s", "smallest=0.1", "largest=0.3"]),
+        has_finding(&recording.findings, "axis-uneven", &["unit=s", "smallest=0.1", "largest=0.3"]),
         "{:?}",
         recording.findings
     );
@@ -153,7 +157,7 @@ fn a_column_of_intervals_is_no_abscissa() {
     assert_eq!(recording.records.len(), 2);
     assert_eq!(recording.records[0].meta().quantity, Quantity::Time);
     assert_eq!(recording.records[0].axis().kind, AxisKind::Index);
-    assert!(says(&recording.findings, "abscissa-unsaid", &[]));
+    assert!(has_finding(&recording.findings, "abscissa-unsaid", &[]));
 }
 
 #[test]
@@ -177,7 +181,7 @@ fn spectra_and_frequency_responses() {
     assert_eq!(kinds, ["spectrum", "spectrum", "frf", "spectrum"]);
     let Record::Spectrum(plain) = &recording.records[0] else { panic!() };
     assert_eq!((plain.scaling, plain.axis.clone()), (Scaling::Unknown, Axis::frequency(0.0, 0.5, 2)));
-    assert!(says(&plain.meta.findings, "scaling-unsaid", &[]));
+    assert!(has_finding(&plain.meta.findings, "scaling-unsaid", &[]));
     let Record::Spectrum(density) = &recording.records[1] else { panic!() };
     assert_eq!(density.scaling, Scaling::Psd);
     let Record::Frf(frf) = &recording.records[2] else { panic!() };
@@ -210,14 +214,14 @@ fn parts_must_agree_and_are_apart_over_time() {
 fn what_is_assumed_is_said() {
     let recording = of("time,a [EU]\n0.0,1\n0.1,2\n");
     assert!(
-        says(&recording.findings, "axis-unit-assumed", &["unit=s", "column=column \"time\""]),
+        has_finding(&recording.findings, "axis-unit-assumed", &["unit=s", "column=column \"time\""]),
         "{:?}",
         recording.findings
     );
-    assert!(says(&recording.records[0].meta().findings, "unit-unknown", &["unit=EU"]));
+    assert!(has_finding(&recording.records[0].meta().findings, "unit-unknown", &["unit=EU"]));
     let lone = read_with(&Reader::new(), "velocity [mm/s]\n1,5\n2,5\n").unwrap();
     assert_eq!(values(&lone.records[0]), [1.5 * 1e-3, 2.5 * 1e-3]);
-    assert!(says(&lone.findings, "decimal-comma-assumed", &[]));
+    assert!(has_finding(&lone.findings, "decimal-comma-assumed", &[]));
     let error = read_with(&Reader::new(), "time [h],a\n0,1\n1,2\n").unwrap_err().to_string();
     assert!(error.contains("the unit \"h\" of the abscissa"), "{error}");
     let error = read_with(&Reader::new(), "time [s]\n0\n1\n").unwrap_err().to_string();
@@ -246,7 +250,7 @@ fn units_of_an_abscissa_as_words() {
     assert_eq!(of("f (Hertz),a [g]\n0,1\n1,2\n").records[0].axis(), &Axis::frequency(0.0, 1.0, 2));
     let unknown = of("Time (moons),a [g]\n0,1\n1,2\n");
     assert!(
-        says(&unknown.findings, "axis-unit-unknown", &["said=moons", "unit=s"]),
+        has_finding(&unknown.findings, "axis-unit-unknown", &["said=moons", "unit=s"]),
         "{:?}",
         unknown.findings
     );
@@ -259,7 +263,7 @@ fn angular_frequencies_become_hertz() {
     let axis = recording.records[0].axis();
     // One division by 2π.
     assert_eq!((&axis.kind, axis.step()), (&AxisKind::Frequency, Some(1.0 / std::f64::consts::TAU)));
-    assert!(says(&recording.findings, "axis-angular", &[]), "{:?}", recording.findings);
+    assert!(has_finding(&recording.findings, "axis-angular", &[]), "{:?}", recording.findings);
 }
 
 #[test]
@@ -268,7 +272,7 @@ fn missing_values_kept_are_counted() {
     assert!(read_with(&Reader::new(), text).unwrap_err().to_string().contains("line 3"));
     let kept = read_with(&Reader::new().allow_missing(true), text).unwrap();
     assert!(values(&kept.records[0])[1].is_nan());
-    assert!(says(&kept.findings, "missing-kept", &["n=1"]));
+    assert!(has_finding(&kept.findings, "missing-kept", &["n=1"]));
 }
 
 /// Which texts are taken for CSV when nobody says so, under a name without an ending.
@@ -332,7 +336,7 @@ fn a_time_that_runs_backwards_is_refused_whatever_the_rate() {
 fn a_number_that_is_cut_off_is_seen_behind_every_line_end() {
     for end in ["\n", "\r\n", "\r"] {
         let text = ["t [s],a [g]", "0,1.25", "1,1.35", "2,1.45", "3,1.5"].join(end);
-        assert!(says(&of(text).findings, "last-number-cut-off", &["found=1.5"]), "{end:?}");
+        assert!(has_finding(&of(text).findings, "last-number-cut-off", &["found=1.5"]), "{end:?}");
     }
 }
 

@@ -1,6 +1,5 @@
 //! One file, taken line by line and in binary blocks, and the lines that open and close its data sets.
 
-use std::path::Path;
 use vibro_record::Place;
 
 /// Byte order mark of UTF-8, which some editors put first.
@@ -8,7 +7,6 @@ const MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// One file from its first to its last byte.
 pub struct Stream<'a> {
-    path: &'a Path,
     bytes: &'a [u8],
     at: usize,
     /// Where the line taken last begins.
@@ -19,9 +17,9 @@ pub struct Stream<'a> {
 
 impl<'a> Stream<'a> {
     /// Stands before the first byte.
-    pub fn new(path: &'a Path, bytes: &'a [u8]) -> Stream<'a> {
+    pub fn new(bytes: &'a [u8]) -> Stream<'a> {
         let at = if bytes.starts_with(MARK) { MARK.len() } else { 0 };
-        Stream { path, bytes, at, start: at, lines: Some(0) }
+        Stream { bytes, at, start: at, lines: Some(0) }
     }
 
     /// Takes the next line, without its line feed; `None` at the end of the file.
@@ -80,22 +78,15 @@ impl<'a> Stream<'a> {
         self.bytes[..self.at].ends_with(b"\n")
     }
 
-    /// Number of the line taken last, from 1; `None` behind a binary block.
-    pub fn line(&self) -> Option<u64> {
-        self.lines
-    }
-
-    /// Place of the line taken last.
+    /// Place of the line taken last; its byte behind a binary block.
     pub fn place(&self) -> Place {
-        match self.lines {
-            Some(line) => Place::line(self.path, line),
-            None => Place::byte(self.path, self.start as u64),
-        }
+        let byte = if self.lines.is_none() { Some(self.start as u64) } else { None };
+        Place { line: self.lines, byte, ..Place::default() }
     }
 
     /// Place of the byte that stands `back` bytes before those not taken.
     pub fn byte_place(&self, back: usize) -> Place {
-        Place::byte(self.path, (self.at - back) as u64)
+        Place { byte: Some((self.at - back) as u64), ..Place::default() }
     }
 }
 

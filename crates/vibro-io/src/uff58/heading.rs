@@ -7,6 +7,10 @@ use crate::text::encoding;
 use crate::uff::stream::Stream;
 use vibro_record::{Error, Place, Result};
 
+/// Ordinate data types of record 7: code, complex, double precision.
+pub(crate) const KINDS: [(i64, bool, bool); 4] =
+    [(2, false, false), (4, false, true), (5, true, false), (6, true, true)];
+
 /// Lines before the values.
 pub const LINES: usize = 11;
 
@@ -94,17 +98,15 @@ impl Heading {
     /// file ends before the eleventh; the delimiter that ended it is then left in the stream.
     pub fn read(stream: &mut Stream) -> Result<std::result::Result<Heading, usize>> {
         let mut lines = Vec::with_capacity(LINES);
-        let mut places = Vec::with_capacity(LINES);
         while lines.len() < LINES {
             let Some(line) = stream.line_within() else { return Ok(Err(lines.len())) };
-            lines.push(encoding::decode(line));
-            places.push(stream.place());
+            lines.push((encoding::decode(line), stream.place()));
         }
-        let (function, response, reference) = dof(&lines[5], &places[5])?;
-        let (layout, n, start, step) = form(&lines[6], &places[6])?;
+        let (function, response, reference) = dof(&lines[5].0).map_err(|e| e.at(&lines[5].1))?;
+        let (layout, n, start, step) = form(&lines[6].0).map_err(|e| e.at(&lines[6].1))?;
         Ok(Ok(Heading {
-            id: std::array::from_fn(|i| given(&lines[i])),
-            record6: lines[5].trim_end().to_owned(),
+            id: std::array::from_fn(|i| given(&lines[i].0)),
+            record6: lines[5].0.trim_end().to_owned(),
             function,
             response,
             reference,
@@ -112,10 +114,10 @@ impl Heading {
             n,
             start,
             step,
-            abscissa: axis(&lines[7]),
-            ordinate: axis(&lines[8]),
-            denominator: axis(&lines[9]),
-            place: places.swap_remove(6),
+            abscissa: axis(&lines[7].0),
+            ordinate: axis(&lines[8].0),
+            denominator: axis(&lines[9].0),
+            place: lines.swap_remove(6).1,
         }))
     }
 
@@ -138,101 +140,91 @@ fn given(text: &str) -> String {
     if text.eq_ignore_ascii_case("none") { String::new() } else { text.to_owned() }
 }
 
-/// Characters `from..to` of a line without blanks around them; empty beyond its end.
-fn columns(line: &[char], from: usize, to: usize) -> String {
-    line[from.min(line.len())..to.min(line.len())].iter().collect::<String>().trim().to_owned()
+/// Fields of so many characters, without blanks around them; empty beyond the end of the line.
+fn cut<const N: usize>(line: &str, widths: [usize; N]) -> [String; N] {
+    let mut rest = line.chars();
+    widths.map(|width| rest.by_ref().take(width).collect::<String>().trim().to_owned())
 }
 
-/// A whole number in columns `from..to`; a blank field is 0, as Fortran has it.
-fn whole(line: &[char], from: usize, to: usize) -> Option<i64> {
-    let field = columns(line, from, to);
+/// A whole number; a blank field is 0, as Fortran has it.
+fn whole(field: &str) -> Option<i64> {
     if field.is_empty() { Some(0) } else { field.parse().ok() }
 }
 
+fn real(field: &str) -> Option<f64> {
+    if field.is_empty() { Some(0.0) } else { number::parse(field.as_bytes()) }
+}
+
 /// Record 6, format `2(I5,I10),2(1X,A10,I10,I4)`: function type, response and reference point.
-fn dof(text: &str, place: &Place) -> Result<(i64, Point, Point)> {
-    let line: Vec<char> = text.trim_end().chars().collect();
-    let point = |from: usize| {
-        Some(Point {
-            entity: given(&columns(&line, from + 1, from + 11)),
-            node: whole(&line, from + 11, from + 21)?,
-            direction: whole(&line, from + 21, from + 25)?,
-        })
+fn dof(text: &str) -> Result<(i64, Point, Point)> {
+    let [function, _, _, _, _, response, node, direction, _, reference, of, along] =
+        cut(text, [5, 10, 5, 10, 1, 10, 10, 4, 1, 10, 10, 4]);
+    let point = |entity: &str, node: &str, direction: &str| {
+        Some(Point { entity: given(entity), node: whole(node)?, direction: whole(direction)? })
     };
-    let fixed = || Some((whole(&line, 0, 5).filter(|f| (0..100).contains(f))?, point(30)?, point(55)?));
-    fixed().ok_or_else(|| {
-        Error::input(
-            place.clone(),
-            format!("record 6 of data set 58 is {:?}", text.trim_end()),
-            "a function type from 0 to 99, identification numbers, response and reference point",
-        )
-        .hint("the header has 11 lines behind the line with 58: five of text, then this one")
-    })
+    let function = whole(&function).filter(|f| (0..100).contains(f));
+    let points = || Some((point(&response, &node, &direction)?, point(&reference, &of, &along)?));
+    let Some((function, (response, reference))) = function.zip(points()) else {
+        let expected = "a function type from 0 to 99, identification numbers, response and reference point";
+        return Err(Error::usage(format!("record 6 of data set 58 is {:?}", text.trim_end()), expected)
+            .hint("the header has 11 lines behind the line with 58: five of text, then this one"));
+    };
+    Ok((function, response, reference))
 }
 
 /// Record 7, format `3I10,3E13.5`, or its numbers between blanks.
-fn form(text: &str, place: &Place) -> Result<(Layout, usize, f64, f64)> {
-    let line: Vec<char> = text.trim_end().chars().collect();
-    let real = |from: usize, to: usize| {
-        let field = columns(&line, from, to);
-        if field.is_empty() { Some(0.0) } else { number::parse(field.as_bytes()) }
-    };
-    let fixed = || {
-        let kind = whole(&line, 0, 10).filter(|kind| *kind != 0 && line.len() > 20)?;
-        Some((kind, whole(&line, 10, 20)?, whole(&line, 20, 30)?, real(30, 43)?, real(43, 56)?))
-    };
-    let blanks = || {
-        let tokens: Vec<&str> = text.split_whitespace().collect();
-        let whole = |i: usize| tokens.get(i)?.parse::<i64>().ok();
-        let real = |i: usize| number::parse(tokens.get(i)?.as_bytes());
-        Some((whole(0)?, whole(1)?, whole(2)?, real(3)?, real(4)?))
+fn form(text: &str) -> Result<(Layout, usize, f64, f64)> {
+    let columns = cut(text.trim_end(), [10, 10, 10, 13, 13]);
+    let words: Vec<String> = text.split_whitespace().map(str::to_owned).collect();
+    let numbers = |cells: &[String]| {
+        let [kind, n, spacing, start, step] = cells.first_chunk()?;
+        Some((whole(kind)?, whole(n)?, whole(spacing)?, real(start)?, real(step)?))
     };
     let refuse = |found: String, expected: &str| {
-        Err(Error::input(place.clone(), found, expected)
+        Err(Error::usage(found, expected)
             .hint("the sizes of a data set 58 stand here: it cannot be read without them"))
     };
-    let Some((kind, n, spacing, start, step)) = fixed().or_else(blanks) else {
+    let fixed = numbers(&columns).filter(|form| form.0 != 0 && text.trim_end().chars().count() > 20);
+    let Some((kind, n, spacing, start, step)) = fixed.or_else(|| numbers(&words)) else {
         return refuse(
             format!("record 7 of data set 58 is {:?}", text.trim_end()),
             "ordinate type, number of values, spacing, abscissa start and increment",
         );
     };
-    if !matches!(kind, 2 | 4 | 5 | 6) {
+    let Some((_, complex, double)) = KINDS.into_iter().find(|(code, ..)| *code == kind) else {
         let expected = "2 (real single), 4 (real double), 5 (complex single) or 6 (complex double)";
         return refuse(format!("ordinate data type {kind}"), expected);
-    }
+    };
     if !matches!(spacing, 0 | 1) {
         return refuse(format!("abscissa spacing {spacing}"), "0 (uneven) or 1 (even)");
     }
     let Ok(n) = usize::try_from(n) else {
         return refuse(format!("{n} values declared"), "a number of values that is not negative");
     };
-    let layout = Layout { complex: kind > 4, double: kind % 2 == 0 && kind != 2, even: spacing == 1 };
-    Ok((layout, n, start, step))
+    Ok((Layout { complex, double, even: spacing == 1 }, n, start, step))
 }
 
 /// Records 8 to 11, format `I10,3I5,2(1X,A20)`.
 fn axis(text: &str) -> Axis {
-    let line: Vec<char> = text.trim_end().chars().collect();
+    let text = text.trim_end();
+    let [data_type, _, _, _, before, label, between, unit] = cut(text, [10, 5, 5, 5, 1, 20, 1, usize::MAX]);
     // Some writers count the bytes of UTF-8, some its characters: the column between the two fields tells which.
-    let between = |c: Option<&char>| c.is_none_or(|c| c.is_whitespace());
-    let (label, unit) = if between(line.get(25)) && between(line.get(46)) {
-        (columns(&line, 26, 46), columns(&line, 47, usize::MAX))
+    let (label, unit) = if before.is_empty() && between.is_empty() {
+        (label, unit)
     } else if text.is_char_boundary(46) {
         (text[..46].chars().skip(25).collect(), text[46..].to_owned())
     } else {
-        (columns(&line, 25, usize::MAX), String::new())
+        (text.chars().skip(25).collect(), String::new())
     };
-    Axis { data_type: whole(&line, 0, 10).unwrap_or(0), label: given(&label), unit: given(&unit) }
+    Axis { data_type: whole(&data_type).unwrap_or(0), label: given(&label), unit: given(&unit) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::path::Path;
 
     fn heading(text: &str) -> Result<std::result::Result<Heading, usize>> {
-        Heading::read(&mut Stream::new(Path::new("x.uff"), text.as_bytes()))
+        Heading::read(&mut Stream::new(text.as_bytes()))
     }
 
     fn header(record6: &str, record7: &str, record9: &str) -> String {

@@ -7,37 +7,25 @@ use crate::uff::stream::Stream;
 use vibro_record::units::{Dimension, Quantity, Unit};
 use vibro_record::{Finding, Scaling};
 
-/// Data set 164: factors by which numbers of the file must be divided to be SI; one each where the file does not say.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct System {
-    /// Whether the file says so.
-    stated: bool,
-    length: f64,
-    force: f64,
-    temperature: f64,
-}
-
-impl Default for System {
-    fn default() -> System {
-        System { stated: false, length: 1.0, force: 1.0, temperature: 1.0 }
-    }
-}
+/// Data set 164: length, force and temperature of the file that make one in SI; `None` where the file does not say.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct System(Option<[f64; 3]>);
 
 impl System {
     /// Reads two lines of data set 164. `None` where the second does not hold three positive factors, format `3D25.17`.
     pub fn read(stream: &mut Stream) -> Option<System> {
         stream.line_within()?;
         let line = stream.line_within()?;
-        let mut factors = line.chunks(25).map_while(number::parse).filter(|f| *f > 0.0 && f.is_finite());
-        let (length, force, temperature) = (factors.next()?, factors.next()?, factors.next()?);
-        Some(System { stated: true, length, force, temperature })
+        let factors = line.chunks(25).map_while(number::parse).filter(|f| *f > 0.0 && f.is_finite());
+        Some(System(Some(*factors.collect::<Vec<f64>>().first_chunk()?)))
     }
 
     /// SI units in one unit of the file, for a quantity of this dimension. Mass is force times time squared over length,
     /// and time is in seconds in every system.
     fn factor(&self, dimension: Dimension) -> f64 {
+        let [length, force, temperature] = self.0.unwrap_or([1.0; 3]);
         let [m, kg, _, _, kelvin, _] = dimension.0.map(|doubled| f64::from(doubled) / 2.0);
-        self.length.powf(kg - m) * self.force.powf(-kg) * self.temperature.powf(-kelvin)
+        length.powf(kg - m) * force.powf(-kg) * temperature.powf(-kelvin)
     }
 }
 
@@ -87,12 +75,8 @@ impl Part {
         let data_type = codes::data_type(axis.data_type, direction.abs() > 3);
         if axis.unit.is_empty() {
             let dimension = data_type.map_or(Dimension::NONE, |(_, dimension)| dimension);
-            return Part {
-                text: false,
-                data_type,
-                dimension: Some(dimension),
-                factor: system.factor(dimension),
-            };
+            let factor = system.factor(dimension);
+            return Part { text: false, data_type, dimension: Some(dimension), factor };
         }
         let unit = Unit::parse(&axis.unit).or_else(|| mend(&axis.unit, findings)).unwrap_or_else(|| {
             findings.push(Finding::caution("unit-unknown").name("unit", axis.unit.as_str()));
@@ -131,7 +115,7 @@ impl Ordinate {
         let (unit, factor) = match plain(heading, &above, &below) {
             Ok((dimension, power, seconds)) => {
                 let typed = |part: &Part| !part.text && part.dimension != Some(Dimension::NONE);
-                if !system.stated && (typed(&above) || typed(&below)) {
+                if system.0.is_none() && (typed(&above) || typed(&below)) {
                     let name = |part: &Part| part.data_type.map_or("a number", |(name, _)| name);
                     let types = match below.data_type {
                         Some((below, _)) => format!("{} over {below}", name(&above)),
@@ -232,10 +216,9 @@ fn label_against_unit(heading: &Heading, unit: &Unit, written: &str) -> Option<F
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::path::Path;
 
     fn system(text: &str) -> Option<System> {
-        System::read(&mut Stream::new(Path::new("x.unv"), text.as_bytes()))
+        System::read(&mut Stream::new(text.as_bytes()))
     }
 
     #[test]

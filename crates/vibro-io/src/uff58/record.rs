@@ -1,10 +1,10 @@
 //! What record a data set 58 becomes: axis, kind, scaling, unit, and the findings about each.
 
 use super::codes::{self, Kind};
-use super::heading::{self, Heading};
+use super::heading::Heading;
 use super::ordinate::{Ordinate, System};
 use super::values::Layout;
-use crate::assemble::{self, Spectral, from_values, to_si};
+use crate::assemble::{self, Spectral, domain, from_values, to_si};
 use crate::{Options, missing};
 use num_complex::Complex64;
 use vibro_record::units::{Quantity, Unit};
@@ -62,19 +62,17 @@ pub fn build(
 
 /// Abscissa values, where they are stored, and the values of whole points.
 fn split(numbers: Vec<f64>, layout: Layout) -> (Vec<f64>, Values) {
-    let complex = |re: &f64, im: &f64| Complex64::new(*re, *im);
-    let (pairs, triples) = (numbers.as_chunks::<2>().0.iter(), numbers.as_chunks::<3>().0.iter());
-    match (layout.complex, layout.even) {
-        (false, true) => (Vec::new(), Values::Real(numbers)),
-        (false, false) => {
-            (pairs.clone().map(|p| p[0]).collect(), Values::Real(pairs.map(|p| p[1]).collect()))
-        }
-        (true, true) => (Vec::new(), Values::Complex(pairs.map(|[re, im]| complex(re, im)).collect())),
-        (true, false) => (
-            triples.clone().map(|p| p[0]).collect(),
-            Values::Complex(triples.map(|[_, re, im]| complex(re, im)).collect()),
-        ),
-    }
+    let width = layout.columns();
+    let points = numbers.chunks_exact(width);
+    let stored = points.clone().filter(|_| !layout.even).map(|point| point[0]).collect();
+    let values = if layout.complex {
+        Values::Complex(points.map(|point| Complex64::new(point[width - 2], point[width - 1])).collect())
+    } else if layout.even {
+        Values::Real(numbers)
+    } else {
+        Values::Real(points.map(|point| point[1]).collect())
+    };
+    (stored, values)
 }
 
 /// What this crate's own writer puts into the fifth identification line: `scaling rms; window hann; enbw 1.5`.
@@ -103,16 +101,18 @@ fn function(heading: &Heading, axis: &AxisKind, said: &mut Spectral, meta: &mut 
             meta.found(Finding::caution("function-as-trace").name("function", name));
         }
     } else if said.scaling.is_none() {
-        let doubt = |found: Finding| Some(found.name("function", name.as_str()));
-        (said.scaling, said.doubt) = match kind {
-            Kind::Scaled(scaling) => (Some(scaling), None),
-            Kind::Ratio if heading.layout.complex => (None, None),
-            Kind::Ratio => (Some(Scaling::Unknown), doubt(Finding::caution("function-real-only"))),
-            Kind::Squared => (Some(Scaling::Unknown), doubt(Finding::caution("scaling-unsaid-squared"))),
-            Kind::Amplitude => (Some(Scaling::Unknown), None),
-            Kind::Other => (Some(Scaling::Unknown), doubt(Finding::caution("function-as-spectrum"))),
-        };
         said.frf = kind == Kind::Ratio && heading.layout.complex;
+        said.scaling = match kind {
+            Kind::Scaled(scaling) => Some(scaling),
+            _ => (!said.frf).then_some(Scaling::Unknown),
+        };
+        let doubt = match kind {
+            Kind::Ratio if !said.frf => Some("function-real-only"),
+            Kind::Squared => Some("scaling-unsaid-squared"),
+            Kind::Other => Some("function-as-spectrum"),
+            _ => None,
+        };
+        said.doubt = doubt.map(|code| Finding::caution(code).name("function", name));
     }
 }
 
@@ -131,50 +131,47 @@ fn abscissa(heading: &Heading, options: &Options, meta: &mut Meta) -> (AxisKind,
         0 | 1 => None,
         _ => return (AxisKind::Other(axis.described()), 1.0),
     };
-    let Some(kind) = by_unit else {
-        return match by_type {
-            Some(kind) => {
-                if !axis.unit.is_empty() {
-                    let assumed = Finding::caution("axis-unit-unknown").name("column", "abscissa");
-                    let si = if kind == AxisKind::Time { "s" } else { "Hz" };
-                    meta.found(assumed.name("said", axis.unit.as_str()).name("unit", si));
-                }
-                (kind, 1.0)
+    match (by_unit, by_type) {
+        (Some(kind), by_type) => {
+            if let Some(other) = by_type.filter(|other| *other != kind) {
+                let differs = Finding::caution("abscissa-type-against-unit").name("type", domain(&other).0);
+                meta.found(differs.name("unit", axis.unit.as_str()).name("quantity", domain(&kind).0));
             }
-            None if axis.label.is_empty() && axis.unit.is_empty() => {
-                (by_function(heading, options, meta), 1.0)
+            if unit.quantity() == Quantity::AngularVelocity {
+                meta.found(Finding::note("axis-angular").name("column", "abscissa"));
             }
-            None => (by_label(axis), 1.0),
-        };
-    };
-    if let Some(other) = by_type.filter(|other| *other != kind) {
-        let shown = |kind: &AxisKind| if *kind == AxisKind::Time { "time" } else { "frequency" };
-        let differs = Finding::caution("abscissa-type-against-unit").name("type", shown(&other));
-        meta.found(differs.name("unit", axis.unit.as_str()).name("quantity", shown(&kind)));
-    }
-    if unit.quantity() == Quantity::AngularVelocity {
-        meta.found(Finding::note("axis-angular").name("column", "abscissa"));
-    }
-    (kind, unit.hertz().unwrap_or(unit.factor()))
-}
-
-/// Kind of an abscissa without data type or unit.
-fn by_label(axis: &heading::Axis) -> AxisKind {
-    match axis.label.to_lowercase() {
-        label if !axis.unit.is_empty() || label.is_empty() => AxisKind::Other(axis.described()),
-        label if label.contains("time") => AxisKind::Time,
-        label if label.contains("freq") => AxisKind::Frequency,
-        label if label.contains("index") => AxisKind::Index,
-        _ => AxisKind::Other(axis.described()),
+            (kind, unit.hertz().unwrap_or(unit.factor()))
+        }
+        (None, Some(kind)) => {
+            if !axis.unit.is_empty() {
+                let assumed = Finding::caution("axis-unit-unknown").name("column", "abscissa");
+                meta.found(assumed.name("said", axis.unit.as_str()).name("unit", domain(&kind).1));
+            }
+            (kind, 1.0)
+        }
+        (None, None) => (untyped(heading, options, meta), 1.0),
     }
 }
 
-/// Kind of an abscissa of which the file says nothing.
-fn by_function(heading: &Heading, options: &Options, meta: &mut Meta) -> AxisKind {
+/// Kind of an abscissa without data type or known unit: by its label, else by what the function type makes likely.
+fn untyped(heading: &Heading, options: &Options, meta: &mut Meta) -> AxisKind {
+    let axis = &heading.abscissa;
+    let label = axis.label.to_lowercase();
+    let named = |word: &str| axis.unit.is_empty() && label.contains(word);
+    if named("time") {
+        return AxisKind::Time;
+    } else if named("freq") {
+        return AxisKind::Frequency;
+    } else if named("index") {
+        return AxisKind::Index;
+    } else if !label.is_empty() || !axis.unit.is_empty() {
+        return AxisKind::Other(axis.described());
+    }
     let (name, usual, _) = codes::function(heading.function);
     if let Some(kind) = usual {
-        let shown = if kind == AxisKind::Time { "time in s" } else { "frequency in Hz" };
-        meta.found(Finding::caution("abscissa-by-function").name("function", name).name("quantity", shown));
+        let (quantity, unit) = domain(&kind);
+        let by_function = Finding::caution("abscissa-by-function").name("function", name);
+        meta.found(by_function.name("quantity", format!("{quantity} in {unit}")));
         return kind;
     }
     if options.rate.is_some() {

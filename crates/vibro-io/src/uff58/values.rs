@@ -1,7 +1,7 @@
 //! Record 12 of data set 58: values in fixed columns, between blanks, or in binary.
 
 use super::heading::Heading;
-use crate::uff::stream::{Stream, closes};
+use crate::uff::stream::{Stream, closes, is_delimiter};
 use crate::{missing, number};
 use vibro_record::{Error, Finding, Result};
 
@@ -54,16 +54,16 @@ pub fn text(stream: &mut Stream, heading: &Heading, allow_missing: bool) -> Resu
     let mut numbers = Vec::with_capacity(due.min(stream.rest().len() / 13 + 1));
     while numbers.len() < due {
         let before = numbers.len();
-        if due - before >= widths.len() {
-            if let Some(used) = full_line(stream.rest(), widths, &mut numbers) {
-                stream.take_line(used);
-                continue;
-            }
-            numbers.truncate(before);
+        let used = by_columns(stream.rest(), widths, &mut numbers);
+        let full = numbers.len() - before == widths.len();
+        if let Some(used) = used.filter(|used| full || !is_delimiter(&stream.rest()[..*used])) {
+            stream.take_line(used);
+            continue;
         }
+        numbers.truncate(before);
         let Some(line) = stream.line_within() else { break };
         if stream.terminated() {
-            odd_line(stream, line, widths, allow_missing, &mut numbers)?;
+            by_blanks(stream, line, allow_missing, &mut numbers)?;
         } else {
             last_line(line, widths, &mut numbers);
         }
@@ -72,27 +72,33 @@ pub fn text(stream: &mut Stream, heading: &Heading, allow_missing: bool) -> Resu
     Ok(numbers)
 }
 
-/// Reads a line that holds a full row of fixed-width numbers, the usual case; gives its length.
+/// Reads the numbers of the line at the start of `bytes` in their columns and gives its length; the last field may lack its
+/// trailing blanks.
 #[inline]
-fn full_line(bytes: &[u8], widths: &[usize], numbers: &mut Vec<f64>) -> Option<usize> {
+fn by_columns(bytes: &[u8], widths: &[usize], numbers: &mut Vec<f64>) -> Option<usize> {
+    let line_end = |at: usize| Some(at + bytes[at..].iter().position(|b| *b == b'\n')?);
     let mut at = 0;
     for &width in widths {
-        let field = bytes.get(at..at + width)?;
-        let printed = match width {
-            13 => field.try_into().ok().and_then(number::scientific::<13>),
-            _ => field.try_into().ok().and_then(number::scientific::<20>),
-        };
-        let touches = || at > 0 && bytes[at - 1] != b' ';
-        numbers.push(printed.or_else(|| fixed_field(field, width, touches()))?);
-        at += width;
-    }
-    loop {
-        match bytes.get(at)? {
-            b'\n' => return Some(at + 1),
-            b' ' | b'\r' => at += 1,
-            _ => return None,
+        // A full row of what Fortran prints is the usual case.
+        let printed = bytes.get(at..at + width).and_then(|field| match width {
+            13 => number::scientific::<13>(field.try_into().ok()?),
+            _ => number::scientific::<20>(field.try_into().ok()?),
+        });
+        if let Some(value) = printed {
+            numbers.push(value);
+            at += width;
+            continue;
         }
+        let rest = bytes[at..line_end(at)?].trim_ascii_end();
+        if rest.is_empty() {
+            break;
+        }
+        let field = &rest[..width.min(rest.len())];
+        numbers.push(fixed_field(field, width, at > 0 && bytes[at - 1] != b' ')?);
+        at += field.len();
     }
+    let end = line_end(at)?;
+    bytes[at..end].trim_ascii().is_empty().then_some(end + 1)
 }
 
 /// The one number of a fixed-width field, which the end of the line may have cut short.
@@ -111,33 +117,8 @@ fn fixed_field(field: &[u8], width: usize, touches: bool) -> Option<f64> {
     separate.then_some(value)
 }
 
-/// Numbers of a line in fixed columns; the last field may lack its trailing blanks.
-fn by_columns(line: &[u8], widths: &[usize]) -> Option<Vec<f64>> {
-    let line = line.trim_ascii_end();
-    let (mut at, mut numbers) = (0, Vec::new());
-    for &width in widths.iter().take_while(|_| !line.is_empty()) {
-        let end = (at + width).min(line.len());
-        numbers.push(fixed_field(&line[at..end], width, at > 0 && line[at - 1] != b' ')?);
-        at = end;
-        if at == line.len() {
-            break;
-        }
-    }
-    (at == line.len()).then_some(numbers)
-}
-
-/// Numbers of a line that is not a full row: by columns where that works, else by blanks.
-fn odd_line(
-    stream: &Stream,
-    line: &[u8],
-    widths: &[usize],
-    allow_missing: bool,
-    numbers: &mut Vec<f64>,
-) -> Result<()> {
-    if let Some(found) = by_columns(line, widths) {
-        numbers.extend(found);
-        return Ok(());
-    }
+/// Numbers of a line between blanks.
+fn by_blanks(stream: &Stream, line: &[u8], allow_missing: bool, numbers: &mut Vec<f64>) -> Result<()> {
     for (column, token) in tokens(line) {
         match number::parse(token) {
             Some(value) => numbers.push(value),
@@ -162,17 +143,14 @@ fn odd_line(
 fn last_line(line: &[u8], widths: &[usize], numbers: &mut Vec<f64>) {
     let whole =
         widths.iter().fold(0, |whole, width| if whole + width <= line.len() { whole + width } else { whole });
-    let before = line[..whole].last().copied().unwrap_or(b' ');
     let behind = line.get(whole).copied().unwrap_or(b' ');
-    let between = before == b' ' || matches!(behind, b' ' | b'-' | b'+');
-    if between
-        && whole > 0
-        && let Some(found) = by_columns(&line[..whole], widths)
-    {
-        return numbers.extend(found);
+    let between = whole > 0 && (line[whole - 1] == b' ' || matches!(behind, b' ' | b'-' | b'+'));
+    let before = numbers.len();
+    if !between || by_columns(&[&line[..whole], b"\n"].concat(), widths, numbers).is_none() {
+        numbers.truncate(before);
+        let ended = tokens(line).filter(|(column, token)| column - 1 + token.len() < line.len());
+        numbers.extend(ended.map_while(|(_, token)| number::parse(token)));
     }
-    let ended = tokens(line).filter(|(column, token)| column - 1 + token.len() < line.len());
-    numbers.extend(ended.map_while(|(_, token)| number::parse(token)));
 }
 
 /// Tokens between blanks, with their columns from 1.

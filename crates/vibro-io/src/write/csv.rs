@@ -8,25 +8,19 @@
 //! The first column is the abscissa; a complex record takes two. Numbers have the fewest digits that read back as the
 //! same double; an uneven abscissa has all its digits, so that its values cannot be taken for rounded even ones.
 
-use super::{failed, label, parts};
+use super::{failed, label, parts, together};
 use std::fmt::Write as _;
 use std::io::Write;
-use vibro_record::{Axis, AxisKind, Error, FROM_BLOWS, Grid, Record, Result, Scaling, Values};
+use vibro_record::{Axis, AxisKind, Error, FROM_BLOWS, Frf, Grid, Record, Result, Scaling, Spectrum, Values};
 
 /// Writes records over one axis, `separator` between the columns (comma, semicolon or tab).
 ///
 /// # Errors
 /// If there are none, they have no values, their axes differ, or the output cannot be written.
 pub fn write(records: &[Record], separator: char, out: &mut impl Write) -> Result<()> {
-    let Some(first) = records.first() else {
-        return Err(Error::refused("there is no record to write"));
-    };
+    let first = together(records, "abscissae: a table has one")?;
     if let Some(empty) = records.iter().find(|r| r.is_empty()) {
         return Err(Error::refused(format!("{} has no values to write", label(empty))));
-    }
-    if let Some(other) = records.iter().find(|r| r.axis() != first.axis()) {
-        let why = format!("{} and {} have different abscissae: a table has one", label(first), label(other));
-        return Err(Error::refused(why).hint("write them one by one"));
     }
     let mut text = String::new();
     let columns: Vec<Column> = records.iter().enumerate().map(|(i, r)| Column::of(i, r)).collect();
@@ -91,33 +85,25 @@ impl Column<'_> {
     }
 
     fn remarks(&self, text: &mut String) {
-        let mut remark = |key: &str, value: &str| {
-            let _ = writeln!(text, "# {key}: {value} of {}", self.name);
-        };
-        match self.record {
-            Record::Trace(_) => {}
-            Record::Frf(frf) => {
-                remark("kind", "frf");
-                if let Some(decay) = frf.meta.added_decay() {
-                    remark("added decay", &decay.to_string());
-                }
-                if frf.meta.from_blows() {
-                    remark(FROM_BLOWS, "yes");
-                }
-            }
-            Record::Spectrum(spectrum) => {
-                let complex = matches!(spectrum.values, Values::Complex(_));
+        let remarks = match self.record {
+            Record::Trace(_) => [None, None, None],
+            Record::Frf(Frf { meta, .. }) => [
+                Some(("kind", "frf".to_owned())),
+                meta.added_decay().map(|decay| ("added decay", decay.to_string())),
+                meta.from_blows().then(|| (FROM_BLOWS, "yes".to_owned())),
+            ],
+            Record::Spectrum(Spectrum { values, scaling, window, enbw, .. }) => {
                 // A complex one must say that it is no frequency response.
-                if complex || spectrum.scaling != Scaling::Unknown {
-                    remark("scaling", spectrum.scaling.name());
-                }
-                if let Some(window) = spectrum.window {
-                    remark("window", window.name());
-                }
-                if let Some(enbw) = spectrum.enbw {
-                    remark("enbw", &enbw.to_string());
-                }
+                let scaled = matches!(values, Values::Complex(_)) || *scaling != Scaling::Unknown;
+                [
+                    scaled.then(|| ("scaling", scaling.name().to_owned())),
+                    window.map(|window| ("window", window.name().to_owned())),
+                    enbw.map(|enbw| ("enbw", enbw.to_string())),
+                ]
             }
+        };
+        for (key, value) in remarks.into_iter().flatten() {
+            let _ = writeln!(text, "# {key}: {value} of {}", self.name);
         }
     }
 }

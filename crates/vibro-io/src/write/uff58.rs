@@ -9,7 +9,6 @@ mod header;
 use super::{failed, label, parts};
 use crate::number;
 use crate::uff58::Layout;
-use header::Header;
 use std::io::Write;
 use vibro_record::{Error, Grid, Record, Result};
 
@@ -67,7 +66,7 @@ pub fn write_uff58(records: &[Record], out: &mut impl Write, storage: Storage) -
         let double = storage.precision == Precision::Double;
         let layout = Layout { complex: record.is_complex(), double, even };
         let size = storage.binary.then_some(layout.point_size(false) * record.len());
-        let mut bytes = Header::of(record).text(layout, size, form, record).into_bytes();
+        let mut bytes = header::text(record, layout, size, form).into_bytes();
         if storage.binary {
             binary(record, layout, &mut bytes);
         } else {
@@ -134,33 +133,33 @@ const WIDTH: usize = 13;
 /// # Errors
 /// If the format has too few digits for the abscissa of this record.
 fn form(record: &Record, binary: bool) -> Result<[String; 2]> {
+    let refused = |what: String| {
+        let why = format!("the abscissa of {} {what}: data set 58 has too few digits for it", label(record));
+        Error::refused(why)
+            .hint("write .csv or .npy, which keep every digit, or binary values (58b), or fewer at once")
+    };
     match &record.axis().grid {
         Grid::Even { start, step, n } => {
             let last = n.saturating_sub(1) as f64;
             // Start and step take half of the tolerance each; the error of the step adds up to the last value.
             let fitting = |value: f64, times: f64| {
-                let within = |part: f64| {
+                [WANTED, TOLERANCE].into_iter().find_map(|part| {
                     let bound = 0.5 * part * step.abs();
                     spellings(value).into_iter().find(|text| (read(text) - value).abs() * times <= bound)
-                };
-                within(WANTED).or_else(|| within(TOLERANCE))
+                })
             };
-            fitting(*start, 1.0).zip(fitting(*step, last)).map(|(start, step)| [start, step]).ok_or_else(
-                || refused(record, &format!("begins at {start} with a step of {step}, {n} values long")),
-            )
+            let found = fitting(*start, 1.0).zip(fitting(*step, last)).map(|(start, step)| [start, step]);
+            found.ok_or_else(|| refused(format!("begins at {start} with a step of {step}, {n} values long")))
         }
         Grid::Uneven(values) => {
             let steps = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 0.0);
-            let bound = TOLERANCE * steps.fold(f64::INFINITY, f64::min);
+            let smallest = steps.fold(f64::INFINITY, f64::min);
             let off = |value: f64| {
                 let kept = if binary { f64::from(value as f32) } else { read(&field(value, WIDTH, 5)) };
-                (kept - value).abs()
+                (kept - value).abs() / smallest
             };
-            match values.iter().find(|value| off(**value).is_nan() || off(**value) > bound) {
-                Some(value) => Err(refused(
-                    record,
-                    &format!("holds {value}, with neighbours {} apart", bound / TOLERANCE),
-                )),
+            match values.iter().find(|value| off(**value).is_nan() || off(**value) > TOLERANCE) {
+                Some(value) => Err(refused(format!("holds {value}, with neighbours {smallest} apart"))),
                 None => Ok([0.0, 0.0].map(|zero| field(zero, WIDTH, 6))),
             }
         }
@@ -180,12 +179,6 @@ fn spellings(value: f64) -> [String; 3] {
 
 fn read(text: &str) -> f64 {
     number::parse(text.trim().as_bytes()).unwrap_or(f64::NAN)
-}
-
-fn refused(record: &Record, what: &str) -> Error {
-    let why = format!("the abscissa of {} {what}: data set 58 has too few digits for it", label(record));
-    Error::refused(why)
-        .hint("write .csv or .npy, which keep every digit, or binary values (58b), or fewer at once")
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 //! rate and start in a comment (LIST INFO ICMT). [`crate::Reader`] reads the comment and undoes all of it; an audio program
 //! plays the file and ignores it.
 
-use super::{Precision, failed, label};
+use super::{Precision, failed, label, together};
 use crate::wav::{Scale, Scales};
 use std::io::Write;
 use vibro_record::{AxisKind, Error, Record, Result, Trace};
@@ -17,16 +17,8 @@ use vibro_record::{AxisKind, Error, Record, Result, Trace};
 /// between 1 Hz and 4.29 GHz, they take more than 4 GiB, or the output cannot be written.
 pub fn write(records: &[Record], precision: Precision, out: &mut impl Write) -> Result<()> {
     let traces = records.iter().map(checked).collect::<Result<Vec<&Trace>>>()?;
-    let Some(first) = traces.first() else {
-        return Err(Error::refused("there is no record to write"));
-    };
-    if let Some(other) = traces.iter().find(|t| t.axis != first.axis) {
-        let why = format!(
-            "the traces {:?} and {:?} have different time axes: a wave file has one",
-            first.meta.name, other.meta.name
-        );
-        return Err(Error::refused(why).hint("write them one by one"));
-    }
+    together(records, "time axes: a wave file has one")?;
+    let first = traces[0];
     let rate = first.rate().unwrap_or(f64::NAN);
     let whole_rate = rate.round();
     if !(1.0..=f64::from(u32::MAX)).contains(&whole_rate) {

@@ -1,88 +1,67 @@
 //! The eleven header lines of a record.
 
 use super::{Layout, field};
-use std::fmt::Write as _;
+use crate::uff58::KINDS;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{ADDED_DECAY, Axis, AxisKind, FROM_BLOWS, Meta, Record, Scaling, Spectrum};
-
-/// What records 1 to 6 say.
-pub struct Header {
-    id: [String; 5],
-    /// Record 6 behind the function type.
-    point: String,
-    function: u8,
-}
 
 /// Record 6 behind the function type, of a record without a degree of freedom.
 const NOWHERE: &str = "         0    0         0 NONE               0   0 NONE               0   0";
 
-impl Header {
-    /// Identification and function type of a record.
-    pub fn of(record: &Record) -> Header {
-        let meta = record.meta();
-        let note = |key: &str| meta.notes.iter().find(|(k, _)| k == key).map(|(_, text)| text.as_str());
-        let mut id: [String; 5] =
-            std::array::from_fn(|i| note(&format!("id line {}", i + 1)).unwrap_or_default().to_owned());
-        // The point that was read still stands, unless the record has another name by now.
-        let read = note("record 6").filter(|line| line.is_ascii() && line.len() > 5).filter(|_| {
-            // Readers number the channels of one name.
-            let first = meta.name.rsplit_once(" #").map(|(name, _)| name);
-            note("point").is_some_and(|point| point == meta.name || Some(point) == first)
-        });
-        if read.is_none() {
-            id[0].clone_from(&meta.name);
-        }
-        if id[4].starts_with("scaling ") {
-            id[4].clear(); // that of the file it was read from
-        }
-        if let Record::Spectrum(spectrum) = record
-            && let Some(line) = scaling_line(spectrum)
-        {
-            id[4] = line;
-        }
-        if let (Record::Frf(_), Some(decay)) = (record, meta.added_decay()) {
-            id[4] = format!("{ADDED_DECAY}{decay}");
-        }
-        if matches!(record, Record::Frf(_)) && meta.from_blows() {
-            FROM_BLOWS.clone_into(&mut id[3]);
-        }
-        let before = read.and_then(|line| line[..5].trim().parse().ok());
-        let point = read.map_or(NOWHERE, |line| &line[5..]).to_owned();
-        Header { id, point, function: function(record, before) }
+/// Delimiter, number line and header; `bytes` is the size of binary values, `start` and `step` stand in record 7.
+pub fn text(record: &Record, layout: Layout, bytes: Option<usize>, [start, step]: &[String; 2]) -> String {
+    let meta = record.meta();
+    let note = |key: &str| meta.notes.iter().find(|(k, _)| k == key).map(|(_, text)| text.as_str());
+    // The point that was read still stands, unless the record has another name by now.
+    let point = note("record 6").filter(|line| line.is_ascii() && line.len() > 5).filter(|_| {
+        // Readers number the channels of one name.
+        let first = meta.name.rsplit_once(" #").map(|(name, _)| name);
+        note("point").is_some_and(|point| point == meta.name || Some(point) == first)
+    });
+    let mut id: [String; 5] =
+        std::array::from_fn(|i| note(&format!("id line {}", i + 1)).unwrap_or_default().to_owned());
+    if point.is_none() {
+        id[0].clone_from(&meta.name);
     }
-
-    /// Delimiter, number line and header; `bytes` is the size of binary values, `start` and `step` stand in record 7.
-    pub fn text(
-        self,
-        layout: Layout,
-        bytes: Option<usize>,
-        [start, step]: &[String; 2],
-        record: &Record,
-    ) -> String {
-        let number = bytes.map_or_else(
-            || "    58".to_owned(),
-            |bytes| format!("    58b{:6}{:6}{:12}{bytes:12}{:6}{:6}{:12}{:12}", 1, 2, 11, 0, 0, 0, 0),
-        );
-        let kind = match (layout.complex, layout.double) {
-            (false, false) => 2,
-            (false, true) => 4,
-            (true, false) => 5,
-            (true, true) => 6,
-        };
-        let even = u8::from(layout.even);
-        let [above, below] = ordinate(record.meta());
-        let ends = [
-            format!("{:5}{}", self.function, self.point),
-            format!("{kind:10}{:10}{even:10}{start}{step}{}", record.len(), field(0.0, 13, 6)),
-            abscissa(record.axis()),
-            above,
-            below,
-            characteristics(0, "", ""),
-        ];
-        let id = self.id.iter().map(|line| text(line, 80));
-        let lines = ["    -1".to_owned(), number].into_iter().chain(id).chain(ends);
-        lines.map(|line| format!("{line:80}")).collect::<Vec<_>>().join("\n") + "\n"
+    if id[4].starts_with("scaling ") {
+        id[4].clear(); // that of the file it was read from
     }
+    match record {
+        Record::Spectrum(spectrum) => {
+            if let Some(line) = scaling_line(spectrum) {
+                id[4] = line;
+            }
+        }
+        Record::Frf(_) => {
+            if let Some(decay) = meta.added_decay() {
+                id[4] = format!("{ADDED_DECAY}{decay}");
+            }
+            if meta.from_blows() {
+                FROM_BLOWS.clone_into(&mut id[3]);
+            }
+        }
+        Record::Trace(_) => {}
+    }
+    let function = function(record, point.and_then(|line| line[..5].trim().parse().ok()));
+    let kind =
+        KINDS.iter().find(|(_, complex, double)| (*complex, *double) == (layout.complex, layout.double));
+    let (kind, even) = (kind.map_or(0, |(code, ..)| *code), u8::from(layout.even));
+    let number = bytes.map_or_else(
+        || "    58".to_owned(),
+        |bytes| format!("    58b{:6}{:6}{:12}{bytes:12}{:6}{:6}{:12}{:12}", 1, 2, 11, 0, 0, 0, 0),
+    );
+    let [above, below] = ordinate(meta);
+    let ends = [
+        format!("{function:5}{}", point.map_or(NOWHERE, |line| &line[5..])),
+        format!("{kind:10}{:10}{even:10}{start}{step}{}", record.len(), field(0.0, 13, 6)),
+        abscissa(record.axis()),
+        above,
+        below,
+        characteristics(0, "", ""),
+    ];
+    let id = id.iter().map(|line| plain(line, 80));
+    let lines = ["    -1".to_owned(), number].into_iter().chain(id).chain(ends);
+    lines.map(|line| format!("{line:80}")).collect::<Vec<_>>().join("\n") + "\n"
 }
 
 /// Function type of record 6; `before` is that of the file the record was read from, and stands where the record still
@@ -104,25 +83,18 @@ fn function(record: &Record, before: Option<u8>) -> u8 {
 }
 
 /// Fifth identification line, for what the function type does not tell.
-fn scaling_line(spectrum: &Spectrum) -> Option<String> {
-    let told =
-        matches!(spectrum.scaling, Scaling::Psd | Scaling::Energy | Scaling::Coherence | Scaling::Unknown);
-    if told && spectrum.window.is_none() && spectrum.enbw.is_none() {
-        return None;
-    }
-    let mut line = format!("scaling {}", spectrum.scaling.name());
-    if let Some(window) = spectrum.window {
-        let _ = write!(line, "; window {}", window.name());
-    }
-    if let Some(enbw) = spectrum.enbw {
-        let _ = write!(line, "; enbw {enbw}");
-    }
-    Some(line)
+fn scaling_line(Spectrum { scaling, window, enbw, .. }: &Spectrum) -> Option<String> {
+    let by_type = matches!(scaling, Scaling::Psd | Scaling::Energy | Scaling::Coherence | Scaling::Unknown);
+    let window = window.map(|window| format!("; window {}", window.name()));
+    let enbw = enbw.map(|enbw| format!("; enbw {enbw}"));
+    let needed = !by_type || window.is_some() || enbw.is_some();
+    let [window, enbw] = [window, enbw].map(Option::unwrap_or_default);
+    needed.then(|| format!("scaling {}{window}{enbw}", scaling.name()))
 }
 
 /// One of the records 8 to 11.
 fn characteristics(data_type: u8, label: &str, unit: &str) -> String {
-    format!("{data_type:10}{:5}{:5}{:5} {:20} {:20}", 0, 0, 0, text(label, 20), text(unit, 20))
+    format!("{data_type:10}{:5}{:5}{:5} {:20} {:20}", 0, 0, 0, plain(label, 20), plain(unit, 20))
 }
 
 fn abscissa(axis: &Axis) -> String {
@@ -178,7 +150,7 @@ fn unit_text(unit: &Unit) -> String {
 }
 
 /// Text of at most `width` characters on one line; `NONE` for nothing, and never a line that would end the data set.
-fn text(text: &str, width: usize) -> String {
+fn plain(text: &str, width: usize) -> String {
     let line: String =
         text.trim().chars().map(|c| if c.is_control() { ' ' } else { c }).take(width).collect();
     match line.trim() {

@@ -48,7 +48,11 @@ fn the_comment_undoes_the_scaling_with_a_doubt() {
     assert_eq!((traces[0].values.as_slice(), traces[0].meta.unit.symbol()), ([3.0, -1.0].as_slice(), "m/s"));
     assert_eq!((traces[0].meta.name.as_str(), traces[0].axis.start()), ("v", 0.5));
     assert!(
-        crate::tests::says(&traces[0].meta.findings, "full-scale-by-comment", &["factor=4", "unit=m/s"]),
+        crate::tests::has_finding(
+            &traces[0].meta.findings,
+            "full-scale-by-comment",
+            &["factor=4", "unit=m/s"]
+        ),
         "{:?}",
         traces[0].meta.findings
     );
@@ -78,7 +82,7 @@ fn what_a_wave_file_cannot_hold_is_refused_with_the_reason() {
     assert!(refused(&[trace("a", "m", even(1e-10), values.clone())]).contains("4.29 GHz"));
     assert!(refused(&[trace("a", "m", Axis::time(0.0, 0.1, 0), vec![])]).contains("no samples"));
     let two = [trace("a", "m", even(0.1), values.clone()), trace("b", "m", even(0.2), values)];
-    assert!(refused(&two).contains("\"a\" and \"b\" have different time axes"));
+    assert!(refused(&two).contains("\"a\" and the trace \"b\" have different time axes"));
     let (meta, axis) = (Meta::new("H", Unit::none()), Axis::frequency(0.0, 1.0, 0));
     let frf = Record::Frf(Frf { meta, axis, values: vec![], kind: FrfKind::Other });
     assert!(refused(&[frf]).contains("the frf \"H\" is not over time"));
