@@ -185,29 +185,6 @@ pub fn first_fall(from: f64, to: f64, noise: f64, f: impl Fn(f64) -> Bounded) ->
     }
 }
 
-/// Visits every root of `f` in `from..=to`, rising or falling.
-///
-/// Two roots closer than a millionth of the interval may be taken for none, which is harmless for a function whose
-/// integral is wanted: between them the integral changes by less than M(1e-6(to − from))³.
-pub fn each_root(from: f64, to: f64, f: impl Fn(f64) -> Bounded, mut visit: impl FnMut(f64)) {
-    let least = 1e-6 * (to - from);
-    let mut t = from;
-    while t <= to {
-        let here = f(t);
-        let sign = if here.value < 0.0 { -1.0 } else { 1.0 };
-        let flipped = |t: f64| {
-            let b = f(t);
-            Bounded { value: sign * b.value, slope: sign * b.slope, curvature: b.curvature }
-        };
-        let Some(root) = first_fall(t, to, 0.0, flipped) else { return };
-        visit(root);
-        // Half way to where the function could be back at zero.
-        let there = f(root);
-        let away = (there.slope / there.curvature).abs();
-        t = root + if away > least { away } else { least };
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -245,20 +222,6 @@ mod tests {
                 // 1 + cos t ≈ (t − π)²/2 dips 1e-12 below zero within √2e-6 of π.
                 assert!((root - (std::f64::consts::PI - 2e-12_f64.sqrt())).abs() < 1e-9);
             }
-        }
-    }
-
-    #[test]
-    fn every_root_of_a_cosine_is_visited_once() {
-        let mut roots = Vec::new();
-        each_root(0.0, 20.0, |t| sum(0.0, &[(2.0, 3.0, 0.5)], t), |t| roots.push(t));
-        let expected: Vec<f64> = (0..40)
-            .map(|n| ((f64::from(n) + 0.5) * std::f64::consts::PI - 0.5) / 3.0)
-            .filter(|t| *t < 20.0)
-            .collect();
-        assert_eq!(roots.len(), expected.len());
-        for (a, b) in roots.iter().zip(&expected) {
-            assert!((a - b).abs() < 8.0 * f64::EPSILON * 60.0);
         }
     }
 

@@ -90,11 +90,6 @@ pub struct Taylor {
 }
 
 impl Taylor {
-    /// Duration in s.
-    pub fn duration(&self) -> f64 {
-        self.duration
-    }
-
     /// The course of a quantity that is linear in the state.
     #[inline]
     pub fn read(&self, quantity: &Quantity, force: &Terms) -> Course {

@@ -2,8 +2,6 @@
 
 mod rows;
 
-pub use rows::Rows;
-
 use super::regime::{Strike, Watch};
 use super::{
     Excitation, Motion, Pattern, PeriodicOrbit, Regime, Rig, Simulation, State, Steady, floquet, parallel,
@@ -203,18 +201,19 @@ impl Plan {
     ///
     /// # Errors
     /// As [`Plan::check`], and those of `show`, which end the work.
-    pub fn run(&self, rows: &mut Rows, mut show: impl FnMut(usize, &[Cell]) -> Result<()>) -> Result<()> {
+    pub fn run(
+        &self,
+        rows: &mut Vec<Vec<Cell>>,
+        mut show: impl FnMut(usize, &[Cell]) -> Result<()>,
+    ) -> Result<()> {
         self.check()?;
-        for row in 0..self.y.n {
-            if rows.get(row).is_some() {
-                continue;
-            }
+        for row in rows.len()..self.y.n {
             let cells = parallel::each(self.x.n, |column| {
                 let (rig, excitation) = self.at(column, row);
                 cell(&rig, &excitation, self.cycles)
             });
             show(row, &cells)?;
-            rows.set(row, cells);
+            rows.push(cells);
         }
         Ok(())
     }
@@ -318,8 +317,8 @@ fn radius(rig: &Rig, excitation: &Excitation, cycles: u32, strikes: &[Strike]) -
             .get(i + 1)
             .map_or_else(|| strikes[0].time + f64::from(cycles) / excitation.frequency(), |next| next.time);
         let force = force(strike.phase)?;
-        whole =
-            floquet::monodromy(rig, end - strike.time, &rate(&before, force), &rate(&after, force)) * whole;
+        let (before, after) = (rate(&before, force), rate(&after, force));
+        whole = floquet::monodromy(rig, end - strike.time, &before, &after).0 * whole;
     }
     floquet::multipliers(&whole).ok().map(|m| m[0].norm())
 }

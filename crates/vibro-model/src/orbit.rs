@@ -73,7 +73,7 @@ impl Serialize for Orbit {
             "exists": v.exists,
             "admissible": v.admissible,
             "stable": v.stable == Some(true),
-            "stability": v.stability,
+            "stability": v.stability(),
             "instability": v.instability,
             "energy_rule": v.energy_rule,
             "grazing_distance": v.grazing_distance,
@@ -180,15 +180,7 @@ pub struct Orbits {
 /// # Errors
 /// If a parameter is impossible, or an undamped mass is driven at resonance.
 pub fn orbits(rig: &Rig, force: f64, frequency: f64) -> Result<Orbits> {
-    orbits_over(rig, &Sine { force, frequency }, 1)
-}
-
-/// As [`orbits`], with one impact in `cycles` cycles.
-///
-/// # Errors
-/// As [`orbits`], and if `cycles` is 0 or the force is 0.
-pub fn orbits_over(rig: &Rig, sine: &Sine, cycles: u32) -> Result<Orbits> {
-    orbits_of(rig, &Excitation::Sine(*sine), cycles)
+    orbits_of(rig, &Excitation::Sine(Sine { force, frequency }), 1)
 }
 
 /// All motions with one impact in `cycles` cycles of the excitation, and the one without impacts.

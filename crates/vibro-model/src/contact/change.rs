@@ -2,7 +2,7 @@
 
 use super::compliant::{Beginning, Compliant, Mark, Stage};
 use crate::State;
-use crate::clock::Tick;
+use crate::forcing::Tick;
 use crate::motion::{Event, Path, Piece};
 use crate::simulate::Impact;
 
@@ -84,7 +84,7 @@ impl Compliant {
 
     /// Does what the excitation does now.
     pub(super) fn tick(&mut self, tick: Tick) -> Event {
-        self.drive.clock.tick(tick);
+        self.drive.tick(tick);
         let event = match tick {
             Tick::Kick(impulse) => {
                 self.state.v1 += impulse / self.rig.m1;
@@ -115,7 +115,7 @@ impl Compliant {
 }
 
 /// A state that lasts no time.
-struct Still(State);
+pub(super) struct Still(pub State);
 
 impl Path for Still {
     fn state(&self, _: f64) -> State {

@@ -2,9 +2,10 @@
 //! linear modes, and through integrated contacts between them.
 
 use super::Law;
+use super::change::Still;
 use super::modes::{Between, Modes};
 use super::within::Within;
-use crate::clock::Tick;
+use crate::forcing::Tick;
 use crate::forcing::Forcing;
 use crate::linear::{Course, Linear, Quantity};
 use crate::motion::{Event, Motion, Path, Piece};
@@ -196,19 +197,23 @@ impl Compliant {
     /// Computes one piece; whether it reached `until`.
     fn piece(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<bool> {
         let remaining = until - self.time;
-        let (jump, tick) = self.drive.clock.next(remaining, until);
+        let (jump, tick) = self.drive.next(remaining, until);
         let ahead = Ahead { until, remaining, jump, tick };
+        let near = remaining.min(jump);
         if self.stage == Stage::Touching && self.within.integrates() {
+            if near <= 0.0 {
+                return Ok(self.pass(&Still(self.state), 0.0, None, &ahead, visit));
+            }
             let mode = self.modes.mode(Between::Apart, self.spring_acts);
-            let step = self.within.step(mode, &self.drive, &self.state, remaining.min(jump))?;
-            let fall = step.first_fall();
-            let duration = fall.unwrap_or(step.duration());
-            self.beginning.impulse += step.impulse(duration);
+            let step = self.within.step(mode, &self.drive, &self.state, near)?;
+            let fall = self.within.first_fall(&step);
+            let duration = fall.unwrap_or(step.duration);
+            self.beginning.impulse += step.at(duration)[4];
             return Ok(self.pass(&step, duration, fall.map(|_| Mark::Separates), &ahead, visit));
         }
         let mode = self.mode();
         let longest = 1.0 / mode.rate().max(self.drive.fastest());
-        let span = remaining.min(jump).min(longest);
+        let span = near.min(longest);
         let force = self.drive.terms(span);
         let taylor = mode.fly(&self.state, &force, span);
         let mut first: Option<(f64, Mark)> = None;

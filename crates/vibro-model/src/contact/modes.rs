@@ -41,38 +41,29 @@ impl Modes {
             Some(Law::KelvinVoigt { stiffness, damping }) => (stiffness, damping),
             _ => (0.0, 0.0),
         };
-        let mode = |between: Between, acting: bool| {
+        let own = |acting: bool| {
             let k1 = if acting { rig.k1 } else { 0.0 };
-            let own = [[-k1, -rig.c1, 0.0, 0.0], [0.0, 0.0, -k2, -c2]];
-            let preload = -k1 * buffer;
-            let scaled = |row: [f64; 4], by: f64| row.map(|v| v * by);
-            match between {
-                Between::Apart => Linear::new(
-                    [scaled(own[0], inverse[0]), scaled(own[1], inverse[1])],
-                    [preload * inverse[0], 0.0],
-                    [inverse[0], 0.0],
-                ),
-                Between::Pushing => {
-                    let push = [k3, c3, -k3, -c3];
-                    let with = |i: usize, sign: f64| {
-                        std::array::from_fn(|j| (own[i][j] + sign * push[j]) * inverse[i])
-                    };
-                    Linear::new(
-                        [with(0, -1.0), with(1, 1.0)],
-                        [(preload + k3 * rig.gap) * inverse[0], -k3 * rig.gap * inverse[1]],
-                        [inverse[0], 0.0],
-                    )
-                }
-                Between::Together => {
-                    let total = 1.0 / (rig.m1 + rig.m2);
-                    let both = std::array::from_fn(|j| (own[0][j] + own[1][j]) * total);
-                    Linear::new([both, both], [preload * total; 2], [total; 2])
-                }
-            }
+            ([[-k1, -rig.c1, 0.0, 0.0], [0.0, 0.0, -k2, -c2]], -k1 * buffer)
         };
-        let pair = |between| [mode(between, false), mode(between, true)];
+        // With a spring k and a damper c between the masses.
+        let free = |k: f64, c: f64| {
+            [false, true].map(|acting| {
+                let (own, preload) = own(acting);
+                let push = [k, c, -k, -c];
+                let with =
+                    |i: usize, sign: f64| std::array::from_fn(|j| (own[i][j] + sign * push[j]) * inverse[i]);
+                let constant = [(preload + k * rig.gap) * inverse[0], -k * rig.gap * inverse[1]];
+                Linear::new([with(0, -1.0), with(1, 1.0)], constant, [inverse[0], 0.0])
+            })
+        };
+        let together = [false, true].map(|acting| {
+            let (own, preload) = own(acting);
+            let total = 1.0 / (rig.m1 + rig.m2);
+            let both = std::array::from_fn(|j| (own[0][j] + own[1][j]) * total);
+            Linear::new([both, both], [preload * total; 2], [total; 2])
+        });
         Modes {
-            linear: [pair(Between::Apart), pair(Between::Pushing), pair(Between::Together)],
+            linear: [free(0.0, 0.0), free(k3, c3), together],
             indentation: Quantity { weights: [1.0, 0.0, -1.0, 0.0], force: 0.0, offset: -rig.gap },
             contact_force: Quantity { weights: [k3, c3, -k3, -c3], force: 0.0, offset: -k3 * rig.gap },
             compression: Quantity { weights: [-1.0, 0.0, 0.0, 0.0], force: 0.0, offset: -buffer },

@@ -133,7 +133,7 @@ impl Stage<'_> {
         let mut reasons = vec![if !v.admissible {
             Finding::note("orbit-overlaps").number("depth", v.min_gap.abs())
         } else if v.stable != Some(true) {
-            Finding::note("orbit-not-stable").name("stability", v.stability.name()).number("radius", radius)
+            Finding::note("orbit-not-stable").name("stability", v.stability()).number("radius", radius)
         } else if !real {
             Finding::note("orbit-near-grazing").number("distance", v.grazing_distance).number("std", std)
         } else {

@@ -40,7 +40,7 @@ fn fly_far(mode: &Linear, start: State, t: f64) -> State {
     let mut state = start;
     for _ in 0..pieces as usize {
         let piece = mode.fly(&state, &[0.0; ORDER + 1], t / pieces);
-        state = piece.state(piece.duration());
+        state = piece.state(piece.duration);
     }
     state
 }

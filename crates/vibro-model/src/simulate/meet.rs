@@ -1,7 +1,7 @@
 //! Impacts, rests and kicks: what changes a simulated motion at an instant.
 
 use super::{Hold, Impact, Simulation};
-use crate::clock::Tick;
+use crate::forcing::Tick;
 use crate::stick::Press;
 use crate::{Event, State};
 use std::f64::consts::TAU;
@@ -82,7 +82,7 @@ impl Simulation {
 
     /// Does what the excitation does now.
     pub(super) fn tick(&mut self, tick: Tick) -> Result<Event> {
-        self.drive.forcing.clock.tick(tick);
+        self.drive.forcing.tick(tick);
         if let Tick::Kick(impulse) = tick {
             self.state.v1 += impulse / self.rig.m1;
             if impulse != 0.0 {
