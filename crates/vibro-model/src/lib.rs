@@ -56,8 +56,7 @@ pub use green::Green;
 pub use motion::{Event, Motion, Path, Piece};
 pub use observable::Observable;
 pub use orbit::{
-    Compliance, Orbit, Orbits, Shown, Softened, backbone, no_impact, orbits, orbits_of, shown,
-    softened,
+    Compliance, Orbit, Orbits, Shown, Softened, backbone, no_impact, orbits, orbits_of, shown, softened,
 };
 pub use periodic::{Beat, PeriodicOrbit};
 pub use receptance::{NoImpact, Steady};

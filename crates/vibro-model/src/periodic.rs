@@ -9,8 +9,8 @@ pub(super) use system::System;
 
 use super::orbit::Course;
 use super::regime::Strike;
-use super::waves::Waves;
 use super::validity::Judged;
+use super::waves::Waves;
 use super::{Flight, Rig, Sine, State, Validity};
 use nalgebra::{DVector, Matrix4};
 use num_complex::Complex64;

@@ -168,25 +168,52 @@ pub struct Rung {
     pub changes: Vec<Change>,
 }
 
+/// A rung, its model left out, or why it has no answer.
+pub(super) type Found = Result<Rung, Miss>;
+
+/// Why a rung has no answer: for a reason, or since it cannot be computed.
+pub(super) enum Miss {
+    Reason(Finding),
+    Refused(String),
+}
+
+impl From<Finding> for Miss {
+    fn from(reason: Finding) -> Miss {
+        Miss::Reason(reason)
+    }
+}
+
+impl From<Error> for Miss {
+    fn from(error: Error) -> Miss {
+        Miss::from(&error)
+    }
+}
+
+impl From<&Error> for Miss {
+    fn from(error: &Error) -> Miss {
+        Miss::Refused(error.to_string().lines().next().unwrap_or_default().to_owned())
+    }
+}
+
 impl Rung {
-    /// A rung without an answer, for these reasons.
-    pub(super) fn without(model: Model, reasons: Vec<Finding>) -> Rung {
-        Rung { model, reasons, ..Rung::default() }
+    /// The rung of a model.
+    pub(super) fn of(model: Model, found: Found) -> Rung {
+        let rung = found.unwrap_or_else(|miss| match miss {
+            Miss::Reason(reason) => Rung { reasons: vec![reason], ..Rung::default() },
+            Miss::Refused(text) => Rung { refused: Some(text), ..Rung::default() },
+        });
+        Rung { model, ..rung }
     }
 
-    /// A rung that cannot be computed.
-    pub(super) fn refused(model: Model, error: &Error) -> Rung {
-        let refused = error.to_string().lines().next().map(str::to_owned);
-        Rung { model, refused, ..Rung::default() }
-    }
-
-    /// The same with an answer, which took this time in ns.
-    pub(super) fn answering(self, Answer { value, spread, steady }: Answer, cost: f64, valid: bool) -> Rung {
-        Rung { valid, answer: Some(value), spread, settled: steady, cost_ns: Some(cost), ..self }
+    /// One with an answer, which took this time in ns.
+    pub(super) fn answering(answer: Answer, cost: f64, valid: bool, reasons: Vec<Finding>) -> Rung {
+        let Answer { value, spread, steady } = answer;
+        let (answer, cost_ns) = (Some(value), Some(cost));
+        Rung { valid, answer, spread, settled: steady, cost_ns, reasons, ..Rung::default() }
     }
 
     /// What was read of a motion, with how it was read after other reasons.
-    pub(super) fn read(model: Model, reading: &Reading, cost: f64, mut reasons: Vec<Finding>) -> Rung {
+    pub(super) fn read(reading: &Reading, cost: f64, mut reasons: Vec<Finding>) -> Rung {
         let Answer { value, spread, .. } = reading.answer;
         let part = |i: usize| if value[i] == 0.0 { 0.0 } else { spread[i] / value[i].abs() };
         let how = match reading.end {
@@ -195,7 +222,7 @@ impl Rung {
             End::Steady => Finding::note("mean-of-cycles").number("error", part(0).max(part(1))),
         };
         reasons.push(how.count("cycles", reading.cycles as usize));
-        Rung::without(model, reasons).answering(reading.answer, cost, true)
+        Rung::answering(reading.answer, cost, true, reasons)
     }
 
     /// Its answer with all that is known of it.

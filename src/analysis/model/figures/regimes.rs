@@ -21,7 +21,10 @@ pub fn regimes(plan: &Plan, rows: &[Vec<Cell>]) -> Result<Figure> {
             rows.get(row).map_or(f64::NAN, |cells| of(&cells[column]))
         })
     };
-    let patterns = counted(rows.iter().flatten()).into_iter().map(|c| c.0).filter(|r| matches!(r, Regime::Periodic { .. }));
+    let patterns = counted(rows.iter().flatten())
+        .into_iter()
+        .map(|c| c.0)
+        .filter(|r| matches!(r, Regime::Periodic { .. }));
     let own: Vec<Regime> = patterns.take(OWN).collect();
     let names: Vec<String> = own.iter().map(Regime::to_string).collect();
     let others = ["other patterns", "irregular or not settled", "chatter", "no impact"];
