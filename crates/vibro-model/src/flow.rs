@@ -2,9 +2,7 @@
 
 mod hop;
 
-use super::receptance::Steady;
 use super::waves::Waves;
-use num_complex::Complex64;
 use serde::Serialize;
 use vibro_math::Oscillator;
 use vibro_math::root::{Bent, Limits, first_landing};
@@ -86,13 +84,6 @@ pub struct Flight {
 }
 
 impl Flight {
-    /// Flight from `state`, the force being F₀ cos(ωt + `phase`), across a rest gap `gap` in m.
-    pub fn new(oscillators: [Oscillator; 2], steady: &Steady, gap: f64, state: &State, phase: f64) -> Flight {
-        let mut waves = Waves::default();
-        waves.add(steady.response * Complex64::cis(phase), steady.omega, steady.amplitude());
-        Flight::with(oscillators, waves, 0.0, gap, state)
-    }
-
     /// Flight from `state` with forced motion `waves` about `rest` (m) of mass 1.
     #[inline]
     pub(super) fn with(
@@ -178,13 +169,7 @@ impl Flight {
         2.0 * f64::EPSILON * (self.gap.abs() + self.rest.abs() + self.reach())
     }
 
-    /// First contact in `0..=duration`: the gap falls to zero. No contact can be missed (see [`vibro_math::root`]).
-    #[cfg(test)]
-    pub(crate) fn first_contact(&self, duration: f64) -> Option<f64> {
-        self.land(duration).map(|landing| landing.time)
-    }
-
-    /// First contact in `0..=duration`, with the state there.
+    /// First contact in `0..=duration`, with the state there: the gap falls to zero. No contact can be missed (see [`vibro_math::root`]).
     #[inline]
     pub(super) fn land(&self, duration: f64) -> Option<Landing> {
         if self.open > duration {
@@ -258,4 +243,4 @@ impl Flight {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -140,11 +140,6 @@ impl Simulation {
         self.counts
     }
 
-    /// Whether the masses are in contact now, at rest against each other.
-    pub fn together(&self) -> bool {
-        self.hold == Hold::Together
-    }
-
     /// Goes to the next event, or to the time `until` if that comes before; an impulse or a step of force at `until` itself is left to
     /// what follows. Does not allocate.
     ///

@@ -3,7 +3,7 @@
 
 use super::Law;
 use super::change::Still;
-use super::modes::{Between, Modes};
+use super::modes::Modes;
 use super::within::Within;
 use crate::forcing::Forcing;
 use crate::forcing::Tick;
@@ -77,14 +77,6 @@ pub struct Compliant {
     pub(super) beginning: Beginning,
     /// Overlap in m, of the size of roundings, that is not yet a meeting: masses that leave each other from rest.
     pub(super) slack: f64,
-}
-
-/// How far the next piece may go.
-struct Ahead {
-    until: f64,
-    remaining: f64,
-    jump: f64,
-    tick: Option<Tick>,
 }
 
 impl Compliant {
@@ -186,30 +178,29 @@ impl Compliant {
     }
 
     fn mode(&self) -> &Linear {
-        let between = match self.stage {
-            Stage::Apart | Stage::Released => Between::Apart,
-            Stage::Touching => Between::Pushing,
-            Stage::Together => Between::Together,
+        let by_spring = match self.stage {
+            Stage::Apart | Stage::Released => &self.modes.apart,
+            Stage::Touching => &self.modes.pushing,
+            Stage::Together => &self.modes.together,
         };
-        self.modes.mode(between, self.spring_acts)
+        &by_spring[usize::from(self.spring_acts)]
     }
 
     /// Computes one piece; whether it reached `until`.
     fn piece(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<bool> {
         let remaining = until - self.time;
-        let (jump, tick) = self.drive.next(remaining, until);
-        let ahead = Ahead { until, remaining, jump, tick };
-        let near = remaining.min(jump);
+        let due = self.drive.next(remaining, until);
+        let near = remaining.min(due.0);
         if self.stage == Stage::Touching && self.within.integrates() {
             if near <= 0.0 {
-                return Ok(self.pass(&Still(self.state), 0.0, None, &ahead, visit));
+                return Ok(self.pass(&Still(self.state), 0.0, None, due, until, visit));
             }
-            let mode = self.modes.mode(Between::Apart, self.spring_acts);
+            let mode = &self.modes.apart[usize::from(self.spring_acts)];
             let step = self.within.step(mode, &self.drive, &self.state, near)?;
             let fall = self.within.first_fall(&step);
             let duration = fall.unwrap_or(step.duration);
             self.beginning.impulse += step.at(duration)[4];
-            return Ok(self.pass(&step, duration, fall.map(|_| Mark::Separates), &ahead, visit));
+            return Ok(self.pass(&step, duration, fall.map(|_| Mark::Separates), due, until, visit));
         }
         let mode = self.mode();
         let longest = 1.0 / mode.rate().max(self.drive.fastest());
@@ -248,7 +239,7 @@ impl Compliant {
         if self.stage == Stage::Touching {
             self.beginning.impulse += read(&self.modes.contact_force).integral(duration);
         }
-        Ok(self.pass(&taylor, duration, first.map(|(_, mark)| mark), &ahead, visit))
+        Ok(self.pass(&taylor, duration, first.map(|(_, mark)| mark), due, until, visit))
     }
 
     /// Goes on along `path` for `duration` seconds, to a mark or to what the excitation does; whether it reached the end.
@@ -257,17 +248,18 @@ impl Compliant {
         path: &dyn Path,
         duration: f64,
         mark: Option<Mark>,
-        ahead: &Ahead,
+        (wait, tick): (f64, Option<Tick>),
+        until: f64,
         visit: &mut dyn FnMut(Piece<'_>),
     ) -> bool {
         let start = self.time;
         self.state = path.state(duration);
         self.drive.pass(duration);
-        let whole = mark.is_none() && duration == ahead.remaining;
-        self.time = if whole { ahead.until } else { start + duration };
-        let event = match (mark, ahead.tick) {
+        let whole = mark.is_none() && duration == until - start;
+        self.time = if whole { until } else { start + duration };
+        let event = match (mark, tick) {
             (Some(mark), _) => self.mark(mark),
-            (None, Some(tick)) if duration == ahead.jump => self.tick(tick),
+            (None, Some(tick)) if duration == wait => self.tick(tick),
             _ => Event::Reached,
         };
         visit(Piece { start, duration, path, event });
@@ -311,7 +303,7 @@ impl Motion for Compliant {
 
     fn advance(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<()> {
         scales::check_time(self.time, until)?;
-        let fastest = self.modes.mode(Between::Apart, true).rate().max(self.drive.fastest());
+        let fastest = self.modes.apart[1].rate().max(self.drive.fastest());
         let (mut at_once, mut last) = (0, f64::NAN);
         let mut work = (until - self.time) * fastest.max(self.drive.frequency());
         while work <= MOST_WORK && at_once <= MOST_AT_ONCE {

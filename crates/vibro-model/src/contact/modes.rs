@@ -4,22 +4,15 @@ use super::Law;
 use crate::Rig;
 use crate::linear::{Linear, Quantity};
 
-/// How the masses stand to each other.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Between {
-    /// Apart.
-    Apart,
-    /// They push each other by a spring and a damper.
-    Pushing,
-    /// They move together.
-    Together,
-}
-
 /// All linear modes of a rig, each with the spring of mass 1 acting or not.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Modes {
-    /// By [`Between`], then by whether the spring of mass 1 acts.
-    linear: [[Linear; 2]; 3],
+    /// Apart, by whether the spring of mass 1 acts.
+    pub apart: [Linear; 2],
+    /// Pushing each other by a spring and a damper.
+    pub pushing: [Linear; 2],
+    /// Moving together.
+    pub together: [Linear; 2],
     /// δ = x₁ − x₂ − Δ.
     pub indentation: Quantity,
     /// Force of the contact's spring and damper, pulling included.
@@ -63,7 +56,9 @@ impl Modes {
             Linear::new([both, both], [preload * total; 2], [total; 2])
         });
         Modes {
-            linear: [free(0.0, 0.0), free(k3, c3), together],
+            apart: free(0.0, 0.0),
+            pushing: free(k3, c3),
+            together,
             indentation: Quantity { weights: [1.0, 0.0, -1.0, 0.0], force: 0.0, offset: -rig.gap },
             contact_force: Quantity { weights: [k3, c3, -k3, -c3], force: 0.0, offset: -k3 * rig.gap },
             compression: Quantity { weights: [-1.0, 0.0, 0.0, 0.0], force: 0.0, offset: -buffer },
@@ -71,15 +66,9 @@ impl Modes {
         }
     }
 
-    /// One mode.
-    #[inline]
-    pub fn mode(&self, between: Between, spring_acts: bool) -> &Linear {
-        &self.linear[between as usize][usize::from(spring_acts)]
-    }
-
     /// Force in N with which the masses would press on each other if they moved together: M(a₁ − a₂), each without the other.
     #[inline]
     pub fn pressing(&self, spring_acts: bool) -> Quantity {
-        self.mode(Between::Apart, spring_acts).closing().times(self.reduced_mass)
+        self.apart[usize::from(spring_acts)].closing().times(self.reduced_mass)
     }
 }

@@ -2,6 +2,7 @@
 
 use super::question::{Answer, Change};
 use super::reading::{End, Reading};
+use super::stage::keys;
 use crate::Scene;
 use serde::Serialize;
 use vibro_record::{Error, Finding};
@@ -87,18 +88,21 @@ pub enum Need {
 }
 
 impl Need {
+    /// Its key, or what it is, and whether a scene has it; in the order of the parameters.
+    const TABLE: [(&'static str, fn(&Scene) -> bool); 8] = [
+        ("mass 2", |_| true),
+        ("restitution", |_| true),
+        ("restitution or contact.damping", |s| keys(s).damping.is_some() || s.rig.restitution > 0.0),
+        ("contact.stiffness", |scene| keys(scene).stiffness.is_some()),
+        ("contact.damping", |scene| keys(scene).damping.is_some()),
+        ("contact.exponent", |scene| keys(scene).exponent.is_some()),
+        ("buffer.gap", |scene| scene.buffer.is_some()),
+        ("history", |_| false),
+    ];
+
     /// Its key, or what it is.
     pub fn name(self) -> &'static str {
-        match self {
-            Need::Mass2 => "mass 2",
-            Need::Restitution => "restitution",
-            Need::Rebound => "restitution or contact.damping",
-            Need::Stiffness => "contact.stiffness",
-            Need::Damping => "contact.damping",
-            Need::Exponent => "contact.exponent",
-            Need::Buffer => "buffer.gap",
-            Need::History => "history",
-        }
+        Need::TABLE[self as usize].0
     }
 
     /// The names of several, with commas.
@@ -108,16 +112,7 @@ impl Need {
 
     /// Whether a scene has it.
     pub(super) fn known(self, scene: &Scene) -> bool {
-        let contact = scene.contact.unwrap_or_default();
-        match self {
-            Need::Mass2 | Need::Restitution => true,
-            Need::Rebound => contact.damping.is_some() || scene.rig.restitution > 0.0,
-            Need::Stiffness => contact.stiffness.is_some(),
-            Need::Damping => contact.damping.is_some(),
-            Need::Exponent => contact.exponent.is_some(),
-            Need::Buffer => scene.buffer.is_some(),
-            Need::History => false,
-        }
+        Need::TABLE[self as usize].1(scene)
     }
 }
 

@@ -1,5 +1,5 @@
 use super::*;
-use crate::{Flight, Rig, Sine, Steady};
+use crate::{Rig, Sine, Steady};
 
 /// Product of two 5×5 matrices.
 fn product(p: &[[f64; 5]; 5], q: &[[f64; 5]; 5]) -> [[f64; 5]; 5] {
@@ -93,7 +93,7 @@ fn a_driven_flight_is_the_closed_form() {
     );
     let start = State { x1: 1e-3, v1: -0.1, x2: 2e-3, v2: 0.3 };
     let steady = Steady::new(&rig, &sine).unwrap();
-    let flight = Flight::new(rig.oscillators(), &steady, rig.gap, &start, 0.7);
+    let flight = crate::flow::tests::flight(&rig, &steady, rig.gap, &start, 0.7);
     let longest = 1.0 / mode.rate().max(sine.omega());
     let (mut state, mut time) = (start, 0.0);
     for _ in 0..40 {

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::Motion;
-use crate::{Flight, Impulses, Pulses, Simulation, Sines, floquet};
+use crate::{Impulses, Pulses, Simulation, Sines, floquet};
 
 /// ν = ω/Ω₁ to a frequency in Hz.
 fn at(rig: &Rig, nu: f64) -> f64 {
@@ -473,8 +473,8 @@ fn the_verdict_on_contacts_is_that_of_the_contact_search() {
             return;
         }
         let steady = Steady::new(rig, sine).unwrap();
-        let flight = Flight::new(rig.oscillators(), &steady, rig.gap, &orbit.state(0.0), orbit.force_phase);
-        let second = flight.first_contact(orbit.period() * (1.0 - 1e-9));
+        let flight = crate::flow::tests::flight(&rig, &steady, rig.gap, &orbit.state(0.0), orbit.force_phase);
+        let second = crate::flow::tests::first_contact(&flight, orbit.period() * (1.0 - 1e-9));
         assert_eq!(orbit.validity.admissible, second.is_none(), "{orbit:?}");
         if second.is_none() { clear += 1 } else { pierced += 1 }
     });

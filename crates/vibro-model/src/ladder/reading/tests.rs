@@ -5,15 +5,13 @@ use crate::ladder::question::APART;
 use crate::ladder::tests::fastest;
 use crate::{Excitation, Observable, Rig, Simulation, Sine, State, no_impact};
 use std::f64::consts::TAU;
+use vibro_math::Noise;
 use vibro_math::runge_kutta::{Dop853, Integrator, Tolerance};
 
-/// Values x ← ρx + noise, noise from a linear congruence: an autoregression whose mean of n has the variance σ²(1 + ρ)/(1 − ρ)/n.
+/// Values x ← ρx + noise, uniform noise: an autoregression whose mean of n has the variance σ²(1 + ρ)/(1 − ρ)/n.
 fn correlated(seed: u64, n: usize, rho: f64) -> Vec<[f64; 2]> {
-    let mut state = seed;
-    let mut even = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-    };
+    let mut noise = Noise::new(seed);
+    let mut even = || noise.uniform() - 0.5;
     let mut x = 0.0;
     let all: Vec<f64> = (0..n + 100)
         .map(|_| {
