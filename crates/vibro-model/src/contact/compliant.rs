@@ -9,6 +9,7 @@ use crate::forcing::Forcing;
 use crate::forcing::Tick;
 use crate::linear::{Course, Linear, Quantity};
 use crate::motion::{Event, Motion, Path, Piece};
+use crate::simulate::Impact;
 use crate::{Excitation, Rig, State, scales};
 use vibro_record::{Error, Result};
 
@@ -42,15 +43,6 @@ pub(super) enum Mark {
     SpringFree,
 }
 
-/// The beginning of a contact.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Beginning {
-    pub time: f64,
-    pub phase: f64,
-    pub approach: f64,
-    pub impulse: f64,
-}
-
 /// A motion with a contact that gives way: where it is now, and what drives it on.
 ///
 /// Flights and Kelvin–Voigt contacts are linear modes, exact to rounding; Hertz and Hunt–Crossley contacts are integrated to
@@ -74,7 +66,8 @@ pub struct Compliant {
     pub(super) state: State,
     pub(super) stage: Stage,
     pub(super) spring_acts: bool,
-    pub(super) beginning: Beginning,
+    /// The contact under way, with the impulse so far.
+    pub(super) impact: Impact,
     /// Overlap in m, of the size of roundings, that is not yet a meeting: masses that leave each other from rest.
     pub(super) slack: f64,
 }
@@ -149,7 +142,7 @@ impl Compliant {
             state,
             stage: Stage::Apart,
             spring_acts: buffer.is_none() || modes.compression.value(&state, 0.0) > 0.0,
-            beginning: Beginning::default(),
+            impact: Impact::default(),
             slack: 0.0,
             modes,
         };
@@ -199,7 +192,7 @@ impl Compliant {
             let step = self.within.step(mode, &self.drive, &self.state, near)?;
             let fall = self.within.first_fall(&step);
             let duration = fall.unwrap_or(step.duration);
-            self.beginning.impulse += step.at(duration)[4];
+            self.impact.impulse += step.at(duration)[4];
             return Ok(self.pass(&step, duration, fall.map(|_| Mark::Separates), due, until, visit));
         }
         let mode = self.mode();
@@ -237,7 +230,7 @@ impl Compliant {
         }
         let duration = first.map_or(span, |(t, _)| t);
         if self.stage == Stage::Touching {
-            self.beginning.impulse += read(&self.modes.contact_force).integral(duration);
+            self.impact.impulse += read(&self.modes.contact_force).integral(duration);
         }
         Ok(self.pass(&taylor, duration, first.map(|(_, mark)| mark), due, until, visit))
     }

@@ -4,7 +4,7 @@ use crate::{Event, Flight, Pair, Path, State};
 use serde::Serialize;
 
 /// One impact.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Impact {
     /// Time in s.
     pub time: f64,
