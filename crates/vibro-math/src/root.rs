@@ -116,16 +116,18 @@ pub fn first_landing(
     /// Calls after which the bounds are taken anew: they fall as free motions die away.
     const FRESH: u32 = 6;
     let mut bounds = limits(from)?;
-    let mut t = from;
     let mut calls = 0;
-    loop {
+    walk(from, to, |t| {
         let here = f(t);
         if here.slope < 0.0 && here.value <= 0.0 {
-            return Some((t, 0.0));
+            return Look::Root(0.0);
         }
         calls += 1;
         if calls % FRESH == 0 {
-            bounds = limits(t)?;
+            match limits(t) {
+                Some(fresh) => bounds = fresh,
+                None => return Look::Never,
+            }
         }
         if here.slope < 0.0 {
             // M₆(2h)⁵/5! of the slope, at twice Newton's step h.
@@ -135,13 +137,36 @@ pub fn first_landing(
             if error <= rounding * bounds.jerk
                 && let Some(last) = here.clear_root()
             {
-                return (t + last <= to).then_some((t, last));
+                return if t + last <= to { Look::Root(last) } else { Look::Never };
             }
         }
-        let step = here.step(bounds);
+        Look::Step { step: here.step(bounds), falls: here.slope < 0.0 }
+    })
+}
+
+/// What is seen of a function at an argument.
+pub(super) enum Look {
+    /// A root so far ahead.
+    Root(f64),
+    /// No root is to come.
+    Never,
+    /// None within a step; whether the function falls.
+    Step { step: f64, falls: bool },
+}
+
+/// Goes from `from` to `to` by steps that pass no root: the last argument looked at, and how far ahead of it the root is.
+#[inline]
+pub(super) fn walk(from: f64, to: f64, mut look: impl FnMut(f64) -> Look) -> Option<(f64, f64)> {
+    let mut t = from;
+    loop {
+        let (step, falls) = match look(t) {
+            Look::Root(ahead) => return Some((t, ahead)),
+            Look::Never => return None,
+            Look::Step { step, falls } => (step, falls),
+        };
         let next = t + step;
         if next <= t {
-            if here.slope < 0.0 {
+            if falls {
                 return Some((t, 0.0));
             }
             // At rest on zero to the last digit: one digit on, where the curvature has shown its sign.
@@ -149,7 +174,7 @@ pub fn first_landing(
         } else {
             t = next;
         }
-        // The last also where f is not a number.
+        // The last also where the function is not a number.
         if t > to || t.is_nan() {
             return None;
         }
@@ -162,27 +187,12 @@ pub fn first_landing(
 /// fall below `noise` is no root. Error of the root: that of f over its slope there.
 #[inline]
 pub fn first_fall(from: f64, to: f64, noise: f64, f: impl Fn(f64) -> Bounded) -> Option<f64> {
-    let mut t = from;
-    loop {
+    let look = |t| {
         let here = f(t);
-        if here.slope < 0.0 && here.value <= noise {
-            return Some(t);
-        }
-        let next = t + here.step();
-        if next <= t {
-            if here.slope < 0.0 {
-                return Some(t);
-            }
-            // At rest on zero to the last digit: one digit on, where the curvature has shown its sign.
-            t += f64::EPSILON * t.abs().max(to - from);
-        } else {
-            t = next;
-        }
-        // The last also where f is not a number.
-        if t > to || t.is_nan() {
-            return None;
-        }
-    }
+        let falls = here.slope < 0.0;
+        if falls && here.value <= noise { Look::Root(0.0) } else { Look::Step { step: here.step(), falls } }
+    };
+    walk(from, to, look).map(|(t, _)| t)
 }
 
 /// Root of `f` (value and slope) between `a` and `b`, where its values have opposite signs: Newton's steps, halving where one would

@@ -179,7 +179,7 @@ impl Flight {
         // A quarter ε of the terms that are summed.
         let rounding = 0.25
             * f64::EPSILON
-            * (self.gap.abs() + self.waves.amplitude() + self.free[0].x.abs() + self.free[1].x.abs());
+            * (self.gap.abs() + self.waves.amplitude + self.free[0].x.abs() + self.free[1].x.abs());
         if self.open == 0.0
             && let Some(landing) = self.hop(duration, rounding)
         {
@@ -202,7 +202,7 @@ impl Flight {
             |t| {
                 let (limits, free) = self.limits(t);
                 // At the beginning most flights end in contact.
-                let reach = self.waves.amplitude() + free;
+                let reach = self.waves.amplitude + free;
                 (t == self.open || self.gap - self.rest <= reach).then_some(limits)
             },
         )?;
@@ -221,7 +221,7 @@ impl Flight {
 
     /// Bounds on the derivatives of the gap from `t` on, and on the free parts' displacements together, in m.
     fn limits(&self, t: f64) -> (Limits, f64) {
-        let (mut limits, mut reach) = (self.waves.limits(), 0.0);
+        let (mut limits, mut reach) = (self.waves.limits, 0.0);
         for part in &self.free {
             let [x, v, a, jerk, ..] = part.series(t);
             let (curvature, gain) = (part.oscillator.bound(a, jerk), part.oscillator.gain());
@@ -238,7 +238,7 @@ impl Flight {
     /// A bound on |x₁ − x₂| for the whole flight, in m, about the rest positions.
     fn reach(&self) -> f64 {
         let free: f64 = self.free.iter().map(|part| part.oscillator.bound(part.x, part.v)).sum();
-        self.waves.amplitude() + free
+        self.waves.amplitude + free
     }
 }
 

@@ -60,8 +60,9 @@ pub(super) struct Forcing {
     tones: [Option<Tone>; MOST_SINES],
     train: Train,
     /// Cycles a second.
-    frequency: f64,
-    phase: f64,
+    pub frequency: f64,
+    /// Phase of the cycle in 0..2π.
+    pub phase: f64,
     /// Rest of the pulse under way in s; 0 where there is none.
     left: f64,
 }
@@ -104,17 +105,6 @@ impl Forcing {
     #[inline]
     pub fn tones(&self) -> impl Iterator<Item = &Tone> {
         self.tones.iter().flatten()
-    }
-
-    /// Phase of the cycle in 0..2π.
-    #[inline]
-    pub fn phase(&self) -> f64 {
-        self.phase
-    }
-
-    /// Frequency of the cycle in Hz.
-    pub fn frequency(&self) -> f64 {
-        self.frequency
     }
 
     /// Changes the frequency from now on; every phase goes on, and a pulse under way keeps its width.
@@ -276,13 +266,13 @@ mod tests {
     fn a_change_of_frequency_makes_no_step_and_impossible_ones_are_refused() {
         let mut drive = Forcing::new(&Excitation::Sine(Sine { force: 0.5, frequency: 5.0 }), 0.3).unwrap();
         drive.pass(0.123);
-        let (force, phase) = (drive.force(0.0), drive.phase());
+        let (force, phase) = (drive.force(0.0), drive.phase);
         drive.set_frequency(9.0).unwrap();
-        assert_eq!((drive.force(0.0), drive.phase(), drive.frequency()), (force, phase, 9.0));
+        assert_eq!((drive.force(0.0), drive.phase, drive.frequency), (force, phase, 9.0));
         for hz in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(drive.set_frequency(hz).is_err(), "{hz}");
         }
-        assert_eq!(drive.frequency(), 9.0);
+        assert_eq!(drive.frequency, 9.0);
         assert!(Forcing::new(&Excitation::Sine(Sine { force: 0.5, frequency: 5.0 }), f64::NAN).is_err());
     }
 
@@ -326,10 +316,10 @@ mod tests {
         // What falls on the end of a motion is left to what follows.
         assert_eq!(clock.next(0.0, 0.0), (f64::INFINITY, None));
         times(&mut clock, 1);
-        assert_eq!(Forcing::new(&impulses, clock.phase()).unwrap(), clock);
+        assert_eq!(Forcing::new(&impulses, clock.phase).unwrap(), clock);
         assert_eq!(clock.next(0.2, 0.2), (f64::INFINITY, None));
         clock.pass(0.2);
-        assert_eq!(Forcing::new(&impulses, clock.phase()).unwrap(), clock);
+        assert_eq!(Forcing::new(&impulses, clock.phase).unwrap(), clock);
         let (wait, tick) = clock.next(0.2, 0.4);
         assert!(wait < 1e-15 && tick == Some(Tick::Kick(0.009)), "{wait}");
     }

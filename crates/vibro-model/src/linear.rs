@@ -25,8 +25,8 @@ pub struct Linear {
     constant: [f64; 2],
     /// Acceleration of each mass by the exciting force, in 1/kg.
     gain: [f64; 2],
-    /// s in 1/s.
-    rate: f64,
+    /// s in 1/s: no part of the motion changes faster.
+    pub rate: f64,
 }
 
 impl Linear {
@@ -37,11 +37,6 @@ impl Linear {
         let (stiffness, damping) = (row_sum(0), row_sum(1));
         let rate = f64::midpoint(damping, (damping * damping + 4.0 * stiffness).sqrt());
         Linear { matrix, constant, gain, rate }
-    }
-
-    /// s in 1/s: no part of the motion changes faster.
-    pub fn rate(&self) -> f64 {
-        self.rate
     }
 
     /// a₁ − a₂: the acceleration with which the masses approach each other.

@@ -49,7 +49,8 @@ pub struct Orbit {
     pub multipliers: Option<[Complex64; 4]>,
     /// Is it real?
     pub validity: Validity,
-    upper: bool,
+    /// Whether it lies on that side of the fold where a larger impulse would take more energy than the force then gives.
+    pub(crate) upper: bool,
     rig: Rig,
     excitation: Option<Excitation>,
     course: Course,
@@ -145,11 +146,6 @@ impl Orbit {
                 orbits_of(&rig, excitation, self.cycles)
                     .is_ok_and(|found| self.continued(&found.orbits).is_some_and(|o| o.validity.real()))
             })
-    }
-
-    /// Whether the orbit lies on that side of the fold where a larger impulse would take more energy than the force then gives.
-    pub(crate) fn is_upper(&self) -> bool {
-        self.upper
     }
 
     /// Unit of [`Orbit::timing`]: `rad` or `s`.

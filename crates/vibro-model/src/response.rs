@@ -172,7 +172,7 @@ fn between(a: &ResponsePoint, b: &ResponsePoint, solve: &impl Fn(f64) -> Respons
             let (was, is) = (standing(Some(orbit)), standing(next));
             let seen_from_left = here.frequency > there.frequency && next.is_some();
             let gone = is == Standing::Gone;
-            if was != is && !seen_from_left && !(gone && (was == Standing::Parted || !orbit.is_upper())) {
+            if was != is && !seen_from_left && !(gone && (was == Standing::Parted || !orbit.upper)) {
                 changes.extend(locate(orbit, here.frequency, there, solve));
             }
         }

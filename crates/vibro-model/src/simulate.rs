@@ -275,11 +275,11 @@ impl Motion for Simulation {
     }
 
     fn phase(&self) -> f64 {
-        self.drive.forcing.phase()
+        self.drive.forcing.phase
     }
 
     fn frequency(&self) -> f64 {
-        self.drive.forcing.frequency()
+        self.drive.forcing.frequency
     }
 
     fn set_frequency(&mut self, hz: f64) -> Result<()> {

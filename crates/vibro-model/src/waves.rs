@@ -21,10 +21,10 @@ struct Wave {
 pub(super) struct Waves {
     terms: [Wave; MOST_SINES],
     count: usize,
-    /// Σ|X| in m.
-    amplitude: f64,
-    /// Σωⁿ|X|.
-    limits: Limits,
+    /// Σ|X| in m, a bound on |x|.
+    pub amplitude: f64,
+    /// Bounds on derivatives, Σωⁿ|X|.
+    pub limits: Limits,
 }
 
 impl Waves {
@@ -48,18 +48,6 @@ impl Waves {
         let mut waves = Waves::default();
         waves.add(start, omega, start.norm());
         waves
-    }
-
-    /// Bounds on derivatives.
-    #[inline]
-    pub fn limits(&self) -> Limits {
-        self.limits
-    }
-
-    /// Bound on |x| in m.
-    #[inline]
-    pub fn amplitude(&self) -> f64 {
-        self.amplitude
     }
 
     /// x and its first five derivatives at time 0.

@@ -45,7 +45,7 @@ impl Compliant {
 
     /// What an impact now is, without its impulse.
     fn met(&self) -> Impact {
-        let (time, phase) = (self.time, self.drive.phase());
+        let (time, phase) = (self.time, self.drive.phase);
         Impact { time, phase, approach_velocity: self.state.approach(), impulse: 0.0 }
     }
 

@@ -196,7 +196,7 @@ impl Compliant {
             return Ok(self.pass(&step, duration, fall.map(|_| Mark::Separates), due, until, visit));
         }
         let mode = self.mode();
-        let longest = 1.0 / mode.rate().max(self.drive.fastest());
+        let longest = 1.0 / mode.rate.max(self.drive.fastest());
         let span = near.min(longest);
         let force = self.drive.terms(span);
         let taylor = mode.fly(&self.state, &force, span);
@@ -277,11 +277,11 @@ impl Motion for Compliant {
     }
 
     fn phase(&self) -> f64 {
-        self.drive.phase()
+        self.drive.phase
     }
 
     fn frequency(&self) -> f64 {
-        self.drive.frequency()
+        self.drive.frequency
     }
 
     fn set_frequency(&mut self, hz: f64) -> Result<()> {
@@ -296,9 +296,9 @@ impl Motion for Compliant {
 
     fn advance(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<()> {
         scales::check_time(self.time, until)?;
-        let fastest = self.modes.apart[1].rate().max(self.drive.fastest());
+        let fastest = self.modes.apart[1].rate.max(self.drive.fastest());
         let (mut at_once, mut last) = (0, f64::NAN);
-        let mut work = (until - self.time) * fastest.max(self.drive.frequency());
+        let mut work = (until - self.time) * fastest.max(self.drive.frequency);
         while work <= MOST_WORK && at_once <= MOST_AT_ONCE {
             if self.piece(until, visit)? {
                 return Ok(());

@@ -68,7 +68,7 @@ impl Conditions {
 
     /// T in s.
     pub fn period(&self) -> f64 {
-        self.greens[0].period()
+        self.greens[0].period
     }
 
     /// The orbit of a root, with its verdicts; without an excitation a free motion.

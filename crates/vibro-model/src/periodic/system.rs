@@ -52,7 +52,7 @@ impl System {
             let (x, v) = green.at(t);
             sum[0] += x;
             sum[1] += v;
-            sum[2] += green.oscillator().acceleration(x, v);
+            sum[2] += green.oscillator.acceleration(x, v);
         }
         sum
     }

@@ -27,19 +27,14 @@ impl Simulation {
         {
             self.settle(approach)?;
         }
-        Ok(Impact {
-            time: self.time,
-            phase: self.drive.forcing.phase(),
-            approach_velocity: approach,
-            impulse,
-        })
+        Ok(Impact { time: self.time, phase: self.drive.forcing.phase, approach_velocity: approach, impulse })
     }
 
     /// Scale of the speeds in m/s: of velocities and of displacements times ω.
     #[inline]
     fn speed(&self) -> f64 {
         let State { x1, v1, x2, v2 } = self.state;
-        v1.abs() + v2.abs() + TAU * self.drive.forcing.frequency() * (x1.abs() + x2.abs())
+        v1.abs() + v2.abs() + TAU * self.drive.forcing.frequency * (x1.abs() + x2.abs())
     }
 
     /// Looks after an impact whether the masses come to rest against each other, at once or after a chatter.
