@@ -44,6 +44,11 @@ impl Oscillator {
         self.b
     }
 
+    /// The slowest rate in 1/s at which its free motion dies away: b, or that of the slower of two decays above critical damping.
+    pub fn slowest(&self) -> f64 {
+        self.slow
+    }
+
     /// Ω² = k/m in 1/s².
     pub fn omega2(&self) -> f64 {
         self.omega2

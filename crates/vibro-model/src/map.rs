@@ -2,6 +2,7 @@
 
 mod rows;
 
+use super::forcing::Forcing;
 use super::regime::{Strike, Watch};
 use super::{
     Excitation, Motion, Pattern, PeriodicOrbit, Regime, Rig, Simulation, State, Steady, floquet, parallel,
@@ -10,7 +11,6 @@ use super::{
 use nalgebra::Matrix4;
 use num_complex::Complex64;
 use serde::Serialize;
-use std::f64::consts::TAU;
 use vibro_record::{Error, Result};
 
 /// A parameter that can be varied: a key of the rig, or of the excitation.
@@ -294,12 +294,9 @@ fn clear(rig: &Rig, excitation: &Excitation, motion: &Simulation) -> bool {
 
 /// Spectral radius along a pattern of impacts; `None` under several sines, whose force is not told by the phase of one.
 fn radius(rig: &Rig, excitation: &Excitation, cycles: u32, strikes: &[Strike]) -> Option<f64> {
-    let force = |phase: f64| match excitation {
-        Excitation::Sine(sine) => Some(sine.force * phase.cos()),
-        Excitation::Impulse(_) => Some(0.0),
-        Excitation::Pulse(p) => Some(if phase < TAU * p.width * p.frequency { p.force } else { 0.0 }),
-        Excitation::Sines(_) => None,
-    };
+    if matches!(excitation, Excitation::Sines(_)) {
+        return None;
+    }
     let [first, second] = rig.oscillators();
     let rate = |s: &State, force: f64| {
         [s.v1, force / rig.m1 + first.acceleration(s.x1, s.v1), s.v2, second.acceleration(s.x2, s.v2)]
@@ -312,7 +309,7 @@ fn radius(rig: &Rig, excitation: &Excitation, cycles: u32, strikes: &[Strike]) -
         let end = strikes
             .get(i + 1)
             .map_or_else(|| strikes[0].time + f64::from(cycles) / excitation.frequency(), |next| next.time);
-        let force = force(strike.phase)?;
+        let force = Forcing::new(excitation, strike.phase).ok()?.force(0.0);
         let (before, after) = (rate(&before, force), rate(&after, force));
         whole = floquet::monodromy(rig, end - strike.time, &before, &after).0 * whole;
     }
@@ -321,10 +318,7 @@ fn radius(rig: &Rig, excitation: &Excitation, cycles: u32, strikes: &[Strike]) -
 
 /// Spectral radius of a cycle without impacts: e^{−bT}, or that of the slower decay above critical damping.
 fn free_radius(rig: &Rig, excitation: &Excitation) -> f64 {
-    let decay = rig.oscillators().map(|o| {
-        let (b, inside) = (o.decay(), o.decay().powi(2) - o.omega2());
-        if inside > 0.0 { o.omega2() / (b + inside.sqrt()) } else { b }
-    });
+    let decay = rig.oscillators().map(|o| o.slowest());
     (-decay[0].min(decay[1]) / excitation.frequency()).exp()
 }
 

@@ -219,16 +219,11 @@ fn solve(rig: &Rig, excitation: &Excitation, cycles: u32, delay: f64) -> Result<
 
 /// Response of mass 1 alone to a train of impulses or pulses.
 fn train(rig: &Rig, excitation: &Excitation) -> Result<Response> {
-    let (oscillator, cycle) = (rig.oscillators()[0], 1.0 / excitation.frequency());
+    driven(excitation.size())?;
+    let (m, oscillator, cycle) = (rig.m1, rig.oscillators()[0], 1.0 / excitation.frequency());
     match *excitation {
-        Excitation::Impulse(train) => {
-            driven(train.impulse)?;
-            Response::impulse(rig.m1, oscillator, cycle, train.impulse)
-        }
-        Excitation::Pulse(train) => {
-            driven(train.force)?;
-            Response::pulse(rig.m1, oscillator, cycle, train.force, train.width)
-        }
+        Excitation::Impulse(train) => Response::impulse(m, oscillator, cycle, train.impulse),
+        Excitation::Pulse(train) => Response::pulse(m, oscillator, cycle, train.force, train.width),
         Excitation::Sine(_) | Excitation::Sines(_) => {
             Err(Error::refused("several sines at once have no closed form")
                 .hint("follow the motion by simulating it"))

@@ -124,17 +124,12 @@ impl<'a> Climb<'a> {
     pub fn choose(mut self, bend: bool) -> Choice {
         let mut choice = Choice {
             frequency: self.stage.excitation.frequency(),
-            chosen: None,
             rungs: Model::ALL.iter().map(|model| self.rung(*model)).collect(),
-            needs: Vec::new(),
-            audit: None,
-            law: None,
-            gap: Vec::new(),
-            sensitivity: Vec::new(),
-            motions: self.motions.as_ref().map_or(Vec::new(), |m| m.known.clone()),
-            followed: self.motions.as_ref().and_then(|m| m.followed),
-            findings: Vec::new(),
+            ..Choice::default()
         };
+        if let Some(motions) = &self.motions {
+            (choice.motions, choice.followed) = (motions.known.clone(), motions.followed);
+        }
         if self.motions.as_ref().is_some_and(|m| m.on == On::Open) {
             choice.needs.push(Need::History);
             return choice;

@@ -105,7 +105,7 @@ impl Motions {
             Some(way) => way.rigid()?,
             None => Simulation::new(rig, excitation)?,
         };
-        let reader = Reader::new(rig, excitation.frequency(), question).clear_by(clearance);
+        let reader = Reader { clearance, ..Reader::new(rig, excitation.frequency(), question) };
         let (reading, cost) = timed(|| reader.read(&mut end));
         let (reading, on, known, followed) = (reading?, On::Other, Vec::new(), None);
         let mut motions =

@@ -15,8 +15,8 @@ const MULTIPLE: f64 = 50.0;
 const DECAY: f64 = 0.3;
 /// Blocks at most, and at least where a cycle holds many swings of a mass.
 const BLOCKS: (usize, usize) = (6, 64);
-/// Blocks at most of motions whose contacts are integrated.
-const BRIEF: usize = 12;
+/// Blocks at most of motions whose contacts are integrated: no more than can be had in a second or so.
+pub const BRIEF: usize = 12;
 /// Swings of the faster mass that are followed at most, where that leaves enough blocks: as many as with five in a cycle.
 const SWINGS: f64 = 5.0 * 60.0 * 64.0;
 /// The motion has settled where what is left of its way is this part of the tolerance, and of no more than this tolerance.
@@ -61,14 +61,15 @@ pub enum End {
 /// How motions are read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reader {
-    observable: Observable,
-    tolerance: f64,
+    pub observable: Observable,
+    pub tolerance: f64,
     /// Cycles of a block.
-    block: u32,
+    pub block: u32,
     /// Blocks at most.
-    blocks: usize,
-    /// How far the motion without impacts stays clear of the other mass, in m, where that is known: below 0 there is none.
-    clearance: Option<f64>,
+    pub blocks: usize,
+    /// How far the motion without impacts stays clear of the other mass, in m, where that is known: below 0 there is none. No motion without
+    /// impacts is taken as settled that may yet come nearer.
+    pub clearance: Option<f64>,
 }
 
 /// What a block of cycles shows.
@@ -94,20 +95,9 @@ impl Reader {
         Reader { observable, tolerance, block, blocks, clearance: None }
     }
 
-    /// The same, for a rig whose motion without impacts stays clear of the other mass by `clearance` (m): no motion without impacts is
-    /// taken as settled that may yet come nearer.
-    pub fn clear_by(self, clearance: Option<f64>) -> Reader {
-        Reader { clearance, ..self }
-    }
-
     /// The part of the tolerance to which motions settle.
     pub fn fine(&self) -> f64 {
         SETTLED * self.tolerance.min(SETTLED)
-    }
-
-    /// The same, for motions whose contacts are integrated: no more blocks than can be had in a second or so.
-    pub fn brief(self) -> Reader {
-        Reader { blocks: self.blocks.min(BRIEF), ..self }
     }
 
     /// Follows `motion` until its state, once a cycle, has nearly come to where it goes, and what is shown of it holds still; where it does

@@ -40,28 +40,25 @@ impl Model {
         Model::LooseMass,
     ];
 
+    /// The name of each, and the parameters that it needs beside those of mass 1, the gap and the excitation; in their order.
+    const TABLE: [(&'static str, &'static [Need]); 7] = [
+        ("linear", &[]),
+        ("closed-form", &[Need::Mass2, Need::Restitution]),
+        ("soft-corrected", &[Need::Mass2, Need::Rebound, Need::Stiffness]),
+        ("restitution", &[Need::Mass2, Need::Restitution]),
+        ("kelvin-voigt", &[Need::Mass2, Need::Rebound, Need::Stiffness]),
+        ("hunt-crossley", &[Need::Mass2, Need::Rebound, Need::Stiffness, Need::Exponent]),
+        ("loose-mass", &[Need::Mass2, Need::Restitution, Need::Buffer]),
+    ];
+
     /// `linear`, `closed-form`, `soft-corrected`, `restitution`, `kelvin-voigt`, `hunt-crossley` or `loose-mass`.
     pub fn name(self) -> &'static str {
-        match self {
-            Model::Linear => "linear",
-            Model::ClosedForm => "closed-form",
-            Model::SoftCorrected => "soft-corrected",
-            Model::Restitution => "restitution",
-            Model::KelvinVoigt => "kelvin-voigt",
-            Model::HuntCrossley => "hunt-crossley",
-            Model::LooseMass => "loose-mass",
-        }
+        Model::TABLE[self as usize].0
     }
 
     /// Parameters that it needs beside those of mass 1, the gap and the excitation.
     pub fn needs(self) -> &'static [Need] {
-        match self {
-            Model::Linear => &[],
-            Model::ClosedForm | Model::Restitution => &[Need::Mass2, Need::Restitution],
-            Model::SoftCorrected | Model::KelvinVoigt => &[Need::Mass2, Need::Rebound, Need::Stiffness],
-            Model::HuntCrossley => &[Need::Mass2, Need::Rebound, Need::Stiffness, Need::Exponent],
-            Model::LooseMass => &[Need::Mass2, Need::Restitution, Need::Buffer],
-        }
+        Model::TABLE[self as usize].1
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::motions::{Motions, On};
 use super::question::{Answer, Question};
-use super::reading::{End, Reader, Reading};
+use super::reading::{BRIEF, End, Reader, Reading};
 use super::rung::{Found, Model, Rung};
 use crate::contact::conversion;
 use crate::{
@@ -236,8 +236,10 @@ impl Stage<'_> {
     }
 
     fn follow(&self, motions: &Motions, mut start: Compliant) -> Result<(Reading, f64)> {
-        let reader = self.reader().clear_by(motions.clearance);
-        let reader = if start.integrates() { reader.brief() } else { reader };
+        let mut reader = Reader { clearance: motions.clearance, ..self.reader() };
+        if start.integrates() {
+            reader.blocks = reader.blocks.min(BRIEF);
+        }
         let (reading, cost) = timed(|| reader.read(&mut start));
         Ok((reading?, cost))
     }

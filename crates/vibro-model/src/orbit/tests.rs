@@ -75,7 +75,9 @@ fn work_of_the_force_is_what_dampers_and_impact_take() {
         let n = 10_000_u32;
         let omega = TAU * orbit.frequency;
         let (mut work, mut loss, mut put_in, mut before) = (0.0, 0.0, 0.0, None::<State>);
-        orbit.course.each(|start, duration, stretch| {
+        let mut start = 0.0;
+        for (duration, stretch) in &orbit.course.stretches {
+            let duration = *duration;
             // An impulse does the work F(v⁻ + v⁺)/2.
             if let (Excitation::Impulse(train), Some(before)) = (excitation, before) {
                 put_in += train.impulse * f64::midpoint(before.v1, stretch.state(0.0).v1);
@@ -95,7 +97,8 @@ fn work_of_the_force_is_what_dampers_and_impact_take() {
                 loss += panel * (rig.c1 * s.v1.powi(2) + rig.c2 * s.v2.powi(2));
             }
             before = Some(stretch.state(duration));
-        });
+            start += duration;
+        }
         let v = orbit.approach_velocity;
         let impact = rig.reduced_mass() * (1.0 - rig.restitution.powi(2)) * v * v / 2.0;
         // 1e-10 of what goes through; or of the largest energy, where nothing is lost.

@@ -78,16 +78,16 @@ impl System {
             jacobian[(p + i, p + i)] = (self.contact + slope) * unit * fast;
             for j in (0..p).filter(|j| *j != i) {
                 let t = ((u[i] - u[j]) / self.omega).rem_euclid(self.period);
-                let [x, v, a] = self.chi(t).map(|c| c * u[p + j] * unit);
+                let chi = self.chi(t);
+                let [x, v, a] = chi.map(|c| c * u[p + j] * unit);
                 gap += x;
                 speed += v;
                 gap_turn += v;
                 speed_turn += a;
                 jacobian[(i, j)] = -v / self.omega * far;
                 jacobian[(p + i, j)] = -a / self.omega * fast;
-                let [x, v, _] = self.chi(t);
-                jacobian[(i, p + j)] = x * unit * far;
-                jacobian[(p + i, p + j)] = v * unit * fast;
+                jacobian[(i, p + j)] = chi[0] * unit * far;
+                jacobian[(p + i, p + j)] = chi[1] * unit * fast;
             }
             left[i] = gap * far;
             left[p + i] = speed * fast;

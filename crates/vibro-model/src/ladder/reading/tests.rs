@@ -1,4 +1,4 @@
-use super::{End, Reader, drifts, mean};
+use super::{BRIEF, End, Reader, drifts, mean};
 use crate::Motion;
 use crate::ladder::Question;
 use crate::ladder::question::APART;
@@ -103,7 +103,8 @@ fn a_slow_growth_towards_the_gap_is_not_the_end() {
     // The amplitude grows by bA a second: a cycle earlier or later, and what the detuning of a damped resonance leaves.
     assert!((touched / closed - 1.0).abs() < 0.01 && touched * sine.frequency > 1800.0, "{touched} {closed}");
     let question = Question::new(Observable::ImpactSpeed);
-    let reader = Reader::new(&rig, sine.frequency, &question).clear_by(Some(rig.gap - found.largest));
+    let clearance = Some(rig.gap - found.largest);
+    let reader = Reader { clearance, ..Reader::new(&rig, sine.frequency, &question) };
     let mut motion = Simulation::new(&rig, &sine).unwrap();
     let reading = reader.read(&mut motion).unwrap();
     assert!(f64::from(reading.cycles) > touched * sine.frequency && reading.speed > 0.0, "{reading:?}");
@@ -119,7 +120,8 @@ fn a_motion_that_ends_a_thousandth_beyond_the_gap_does_not_settle_without_impact
     let question = Question::new(Observable::ImpactSpeed);
     let read = |part: f64| {
         let sine = Sine { force: part * rig.gap / unit, frequency: 9.0 };
-        let reader = Reader::new(&rig, 9.0, &question).clear_by(Some(rig.gap * (1.0 - part)));
+        let clearance = Some(rig.gap * (1.0 - part));
+        let reader = Reader { clearance, ..Reader::new(&rig, 9.0, &question) };
         reader.read(&mut Simulation::new(&rig, &sine).unwrap()).unwrap()
     };
     let over = read(1.001);
@@ -158,7 +160,8 @@ fn a_pattern_longer_than_a_brief_reading_is_read_to_its_end() {
     let mut motion = Simulation::new(&rig, &Sine { force: 0.9, frequency }).unwrap();
     motion.run(6000.0 / frequency, |_| {}).unwrap();
     let question = Question::new(Observable::ImpactSpeed);
-    let reading = Reader::new(&rig, frequency, &question).brief().read(&mut motion).unwrap();
+    let reader = Reader::new(&rig, frequency, &question);
+    let reading = Reader { blocks: reader.blocks.min(BRIEF), ..reader }.read(&mut motion).unwrap();
     assert_eq!((reading.end, reading.regime.to_string().as_str()), (End::Settled, "9/13"));
     let speeds = fastest(&mut motion, 13);
     let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
