@@ -93,7 +93,7 @@ impl Flight {
         gap: f64,
         state: &State,
     ) -> Flight {
-        let [x, v, ..] = waves.start();
+        let [x, v, ..] = waves.at(0.0);
         Flight::of(oscillators, waves, rest, gap, [(state.x1 - x - rest, state.v1 - v), (state.x2, state.v2)])
     }
 
@@ -118,7 +118,7 @@ impl Flight {
         let bound = |i: usize| {
             self.free[i].oscillator.bound(self.free[i].series(0.0)[4], self.free[i].series(0.0)[5])
         };
-        let fourth = bound(1) + self.waves.snap() + bound(0);
+        let fourth = bound(1) + self.waves.limits.snap + bound(0);
         let (bend, jerk) = ((a2 - a1).max(0.0), j2 - j1);
         let root = (jerk / 6.0 + (jerk * jerk / 36.0 + fourth * bend / 12.0).sqrt()) / (fourth / 12.0);
         // Half of it, where more than an eighth of the leading term is left.
@@ -137,8 +137,7 @@ impl Flight {
     #[inline]
     pub(super) fn series(&self, t: f64) -> [[f64; 6]; 2] {
         let mut first = self.free[0].series(t);
-        let forced = if t == 0.0 { self.waves.start() } else { self.waves.at(t) };
-        for (sum, term) in first.iter_mut().zip(forced) {
+        for (sum, term) in first.iter_mut().zip(self.waves.at(t)) {
             *sum += term;
         }
         first[0] += self.rest;

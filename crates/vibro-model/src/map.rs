@@ -226,7 +226,7 @@ fn judged(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Cell> {
     let settling = (SETTLING * f64::from(cycles)) as u32;
     let mut watch = Watch::new(&motion);
     let mut follow = |motion: &mut Simulation, cycles: u32| {
-        watch.restart(motion);
+        watch = Watch::new(motion);
         let until = motion.time() + f64::from(cycles) / frequency;
         motion.advance(until, &mut |piece| watch.take(&piece))?;
         Ok((watch.pattern(), watch.strikes().len()))

@@ -76,10 +76,8 @@ impl PeriodicOrbit {
             ));
         }
         let system = System::new(rig, sine, cycles)?;
-        let (p, unit) = (impacts.len(), system.impulse());
-        let guess =
-            DVector::from_fn(2 * p, |k, _| if k < p { impacts[k].0 } else { impacts[k - p].1 / unit });
-        let u = settle(&system, guess).ok_or_else(|| {
+        let p = impacts.len();
+        let u = newton(&system, system.unknowns(impacts)).ok_or_else(|| {
             Error::refused(format!(
                 "no motion with {p} impacts in {cycles} cycles was found near the impacts given, at {} Hz",
                 sine.frequency
@@ -123,8 +121,7 @@ impl PeriodicOrbit {
             .filter(|d| p.is_multiple_of(*d))
             .find_map(|d| Some((d, cycles(d)?)).filter(|(d, q)| repeats(*d, *q)));
         let Some((d, q)) = shorter else { return Ok(self) };
-        let impacts: Vec<_> = self.beats[..d].iter().map(|b| (b.phase, b.impulse)).collect();
-        PeriodicOrbit::near(&self.rig, &self.sine, q as u32, &impacts)
+        PeriodicOrbit::near(&self.rig, &self.sine, q as u32, &self.pairs()[..d])
     }
 
     /// Impacts p in a period.
@@ -147,15 +144,9 @@ impl PeriodicOrbit {
         self.multipliers.map(|m| m[0].norm())
     }
 
-    /// Unknowns as [`System`] takes them.
-    pub(super) fn unknowns(&self, system: &System) -> DVector<f64> {
-        let (p, unit) = (self.beats.len(), system.impulse());
-        DVector::from_fn(
-            2 * p,
-            |k, _| {
-                if k < p { self.beats[k].phase } else { self.beats[k - p].impulse / unit }
-            },
-        )
+    /// Phase and impulse of each impact.
+    pub(super) fn pairs(&self) -> Vec<(f64, f64)> {
+        self.beats.iter().map(|b| (b.phase, b.impulse)).collect()
     }
 
     /// All about the motion whose unknowns are `u`, phases rising within the period.
@@ -213,7 +204,7 @@ impl PeriodicOrbit {
 }
 
 /// Newton's method from `u`; `None` where it does not settle on impacts in the same order.
-pub(super) fn settle(system: &System, mut u: DVector<f64>) -> Option<DVector<f64>> {
+fn newton(system: &System, mut u: DVector<f64>) -> Option<DVector<f64>> {
     for _ in 0..STEPS {
         let (left, jacobian) = system.evaluate(&u);
         let mut step = jacobian.lu().solve(&left)?;

@@ -144,14 +144,6 @@ impl Watch {
         Watch { frequency, start, now: start, phase, strikes, sticks }
     }
 
-    /// Forgets what was watched and watches `motion` from now on.
-    pub(crate) fn restart(&mut self, motion: &impl Motion) {
-        self.frequency = motion.frequency();
-        (self.start, self.now, self.phase) = (motion.time(), motion.time(), motion.phase());
-        self.strikes.clear();
-        self.sticks.clear();
-    }
-
     /// Takes the next piece of the motion.
     pub fn take(&mut self, piece: &Piece<'_>) {
         self.now = piece.start + piece.duration;

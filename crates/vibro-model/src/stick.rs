@@ -45,7 +45,7 @@ impl Pair {
         if rig.has_wall() {
             return Pair { waves, gap: rig.gap, course: Course::Still { force, stiffness: rig.k1 } };
         }
-        let [x, slope, ..] = waves.start();
+        let [x, slope, ..] = waves.at(0.0);
         let rest = (force + rig.k2 * rig.gap) / (rig.k1 + rig.k2);
         let oscillator = Oscillator::new(rig.m1 + rig.m2, rig.c1 + rig.c2, rig.k1 + rig.k2);
         let free = Free { oscillator, x: x1 - rest - x, v: v - slope };
@@ -111,8 +111,7 @@ impl Pair {
         let limits = self.waves.limits;
         let bound = |n: usize| free.oscillator.bound(terms[n], terms[n + 1]);
         let bounds = [limits.curvature + bound(2), limits.jerk + bound(3), limits.snap + bound(4)];
-        let forced = if t == 0.0 { self.waves.start() } else { self.waves.at(t) };
-        for (sum, term) in terms.iter_mut().zip(forced) {
+        for (sum, term) in terms.iter_mut().zip(self.waves.at(t)) {
             *sum += term;
         }
         terms[0] += rest;

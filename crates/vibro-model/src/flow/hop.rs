@@ -57,7 +57,7 @@ impl Flight {
     #[inline]
     pub(super) fn hop(&self, duration: f64, rounding: f64) -> Option<Landing> {
         let [first, second] = &self.free;
-        let [x, v, a, ..] = self.waves.start();
+        let [x, v, a, ..] = self.waves.at(0.0);
         let w = second.v - first.v - v;
         let pressed = first.oscillator.acceleration(first.x, first.v) + a
             - second.oscillator.acceleration(second.x, second.v);

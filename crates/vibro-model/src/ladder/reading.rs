@@ -167,7 +167,7 @@ impl Reader {
         };
         let mut gauge = Gauge::new(read, motion.rig());
         let (mut with, mut speeds, mut impulses) = (0.0, 0.0, 0.0);
-        watch.restart(motion);
+        *watch = Watch::new(motion);
         for _ in 0..self.block {
             let (start, phase) = (motion.time(), motion.phase());
             let mut strongest: Option<(f64, f64)> = None;

@@ -45,6 +45,13 @@ impl System {
         self.length * self.omega / self.contact
     }
 
+    /// Unknowns of impacts with these phases (rad) and impulses (N s).
+    pub fn unknowns(&self, impacts: &[(f64, f64)]) -> DVector<f64> {
+        let (phases, impulses): (Vec<f64>, Vec<f64>) =
+            impacts.iter().map(|(phase, impulse)| (phase, impulse / self.impulse())).unzip();
+        DVector::from_vec([phases, impulses].concat())
+    }
+
     /// χ, χ̇, χ̈ of both masses together, `t` in 0..T.
     fn chi(&self, t: f64) -> [f64; 3] {
         let mut sum = [0.0; 3];
