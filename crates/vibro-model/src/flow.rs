@@ -24,6 +24,18 @@ impl State {
     /// Both masses at rest in their own rest positions.
     pub const REST: State = State { x1: 0.0, v1: 0.0, x2: 0.0, v2: 0.0 };
 
+    /// The state of x₁, v₁, x₂, v₂.
+    #[inline]
+    pub(super) fn of([x1, v1, x2, v2]: [f64; 4]) -> State {
+        State { x1, v1, x2, v2 }
+    }
+
+    /// x₁, v₁, x₂, v₂.
+    #[inline]
+    pub(super) fn array(&self) -> [f64; 4] {
+        [self.x1, self.v1, self.x2, self.v2]
+    }
+
     /// Approach speed vᵣ = v₁ − v₂ in m/s.
     pub fn approach(&self) -> f64 {
         self.v1 - self.v2

@@ -55,14 +55,7 @@ pub enum ChangeKind {
 impl ChangeKind {
     /// Name as it is printed.
     pub fn name(self) -> &'static str {
-        match self {
-            ChangeKind::Fold => "fold",
-            ChangeKind::Flip => "flip",
-            ChangeKind::NeimarkSacker => "neimark-sacker",
-            ChangeKind::Grazing => "grazing",
-            ChangeKind::SecondContact => "second contact",
-            ChangeKind::NoImpact => "no impact",
-        }
+        ["fold", "flip", "neimark-sacker", "grazing", "second contact", "no impact"][self as usize]
     }
 }
 

@@ -51,12 +51,7 @@ pub enum Loss {
 impl Loss {
     /// Name as it is printed.
     pub fn name(self) -> &'static str {
-        match self {
-            Loss::Fold => "fold",
-            Loss::Flip => "flip",
-            Loss::NeimarkSacker => "Neimark–Sacker",
-            Loss::Grazing => "grazing",
-        }
+        ["fold", "flip", "Neimark–Sacker", "grazing"][self as usize]
     }
 
     /// The loss that the largest of these multipliers shows.

@@ -95,12 +95,12 @@ impl Compliant {
             }
             Tick::On | Tick::Off => Event::Switch,
         };
-        self.settle();
+        self.find_stage();
         event
     }
 
     /// Finds the stage of a contact whose force has jumped.
-    pub(super) fn settle(&mut self) {
+    pub(super) fn find_stage(&mut self) {
         let pulls = self.modes.contact_force.value(&self.state, 0.0) < 0.0;
         match self.stage {
             Stage::Touching if pulls && !self.integrates() => self.stage = Stage::Released,

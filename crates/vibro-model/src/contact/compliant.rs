@@ -151,7 +151,7 @@ impl Compliant {
                 return Err(rig.overlap(&state));
             }
             motion.touch();
-            motion.settle();
+            motion.find_stage();
         }
         Ok(motion)
     }
@@ -290,7 +290,7 @@ impl Motion for Compliant {
 
     fn set_excitation(&mut self, excitation: &Excitation) -> Result<()> {
         self.drive.set_excitation(excitation)?;
-        self.settle();
+        self.find_stage();
         Ok(())
     }
 

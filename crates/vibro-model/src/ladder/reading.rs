@@ -28,7 +28,7 @@ const LONGEST: usize = 32;
 /// Differences below this part of the state are roundings and what integrators leave.
 const ROUNDING: f64 = 1e-11;
 /// Standard deviations below its expectation from which von Neumann's ratio tells a drift: of a hundred steady motions less than one.
-const TOLD: f64 = 2.5;
+const DRIFT: f64 = 2.5;
 
 /// What a motion shows.
 #[derive(Debug, Clone, PartialEq)]
@@ -304,7 +304,7 @@ fn mean(values: &[[f64; 2]], steady: bool) -> Answer {
 /// 4(n − 2)/(n² − 1) for independent ones (J. von Neumann, 1941).
 fn drifts(values: &[[f64; 2]]) -> bool {
     let n = values.len() as f64;
-    let least = 2.0 - TOLD * (4.0 * (n - 2.0) / (n * n - 1.0)).sqrt();
+    let least = 2.0 - DRIFT * (4.0 * (n - 2.0) / (n * n - 1.0)).sqrt();
     (0..2).any(|i| {
         let (_, square, eta) = scatter(values, i);
         square > 0.0 && eta < least

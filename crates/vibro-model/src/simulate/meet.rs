@@ -21,11 +21,10 @@ impl Simulation {
         self.state.v1 -= impulse / self.rig.m1;
         self.state.v2 += impulse / self.rig.m2;
         self.hold = Hold::Apart;
-        self.counts.impacts += 1;
         if approach < SLOW.max(self.grazing_speed).max(SLOW_PART * self.speed())
             || self.rig.restitution == 0.0
         {
-            self.settle(approach)?;
+            self.end_chatter(approach)?;
         }
         Ok(Impact { time: self.time, phase: self.drive.forcing.phase, approach_velocity: approach, impulse })
     }
@@ -38,7 +37,7 @@ impl Simulation {
     }
 
     /// Looks after an impact whether the masses come to rest against each other, at once or after a chatter.
-    fn settle(&mut self, approach: f64) -> Result<()> {
+    fn end_chatter(&mut self, approach: f64) -> Result<()> {
         let press = Press::of(&self.flight());
         if press.acceleration <= 0.0 && approach < self.grazing_speed {
             self.counts.grazing += 1;
