@@ -117,8 +117,8 @@ fn traces() -> Result<Vec<Sheet>> {
             let lead = lead(&orbit);
             let agrees = real(&orbit) && (lead.abs() < 90.0) == (thesis == "in phase");
             let what = format!("motion of both masses at ν {nu}, F₀ 0.5 N, R 0.7");
-            let here = format!("phase of x₂ to x₁ {lead:.0}°, {}", orbit.validity.stability.name())
-                .replace('-', "−");
+            let here =
+                format!("phase of x₂ to x₁ {lead:.0}°, {}", orbit.validity.stability()).replace('-', "−");
             let figure = figures::orbit(title, &rig, &orbit).height(70.0);
             Ok(Sheet::new(name, title, figure, vec![Claim::told(what, thesis, here, agrees, why)]))
         })

@@ -83,7 +83,7 @@ impl Found {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::sweep::{Observable, Pace, Plan, both};
+    use crate::model::sweep::{Observable, Pace, Plan, apart};
     use crate::model::{Rig, Simulation, Sine};
 
     /// The sweep of the thesis up has a peak of each kind: 5.58 Hz where the masses begin to meet, 10.59 Hz where they clap.
@@ -92,7 +92,7 @@ mod tests {
         let pace = Pace::Rate { rate: 0.02, points: 2200 };
         let plan = Plan { from: 3.0, to: 14.0, pace, observable: Observable::Rms };
         let motion = Simulation::new(&Rig::thesis(), &Sine { force: 0.1, frequency: 3.0 }).unwrap();
-        let swept = both(&plan, &motion, 0.1, &[Direction::Up]).unwrap();
+        let swept = apart(&[Direction::Up], |up| plan.frequency(&mut motion.clone(), 0.1, up)).unwrap();
         let (resonances, _) = named(&swept);
         let named = |kind, range: std::ops::Range<f64>| {
             resonances

@@ -80,13 +80,8 @@ pub fn least_squares(
     start: &[f64],
     scale: &[f64],
 ) -> Result<Fit> {
-    let found = minimise(residuals, n, start, scale, None)?;
-    Ok(Fit {
-        cofactor: cofactor(found.jacobian)?,
-        parameters: found.parameters,
-        residuals: found.residuals,
-        converged: found.converged,
-    })
+    let Minimum { parameters, residuals, jacobian, converged } = minimise(residuals, n, start, scale, None)?;
+    Ok(Fit { cofactor: cofactor(jacobian)?, parameters, residuals, converged })
 }
 
 /// Parameters that minimise a sum of squared residuals, with no word on how well they are determined.

@@ -1,6 +1,5 @@
 //! Numerical kernels, each with its source and its error bound.
 
-pub mod bracket;
 pub mod cis;
 pub mod lanes;
 mod least_squares;
@@ -9,7 +8,6 @@ pub mod oscillator;
 mod polynomial;
 pub mod root;
 pub mod runge_kutta;
-pub mod swing;
 
 pub use least_squares::{Fit, Minimum, least_squares, minimise};
 pub use noise::Noise;

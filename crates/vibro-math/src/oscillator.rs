@@ -4,6 +4,8 @@
 //! x(t) = x₀ C(t) + (v₀ + b x₀) S(t), C = e^{−bt} cos λt, S = e^{−bt} sin(λt)/λ.
 //! Above critical damping λ is imaginary and C, S are sums of two decays; at critical damping S = t e^{−bt}.
 
+use std::f64::consts::PI;
+
 /// One damped oscillator; its mass does not matter to its free motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Oscillator {
@@ -42,6 +44,11 @@ impl Oscillator {
         self.b
     }
 
+    /// The slowest rate in 1/s at which its free motion dies away: b, or that of the slower of two decays above critical damping.
+    pub fn slowest(&self) -> f64 {
+        self.slow
+    }
+
     /// Ω² = k/m in 1/s².
     pub fn omega2(&self) -> f64 {
         self.omega2
@@ -53,11 +60,6 @@ impl Oscillator {
     #[inline]
     pub fn gain(&self) -> f64 {
         self.gain
-    }
-
-    /// λ² = Ω² − b² in 1/s², negative above critical damping.
-    pub(crate) fn lambda2(&self) -> f64 {
-        self.lambda2
     }
 
     /// C(t) = e^{−bt} cos λt and S(t) = e^{−bt} sin(λt)/λ (in s), `t` ≥ 0 in s.
@@ -99,6 +101,26 @@ impl Oscillator {
     #[inline]
     pub fn bound(&self, x: f64, v: f64) -> f64 {
         if v == 0.0 { x.abs() } else { (x * x + v * v * self.compliance).sqrt() }
+    }
+
+    /// Times in `0 < t < until` at which the free motion from displacement `x` and velocity `v` passes through zero, in their order.
+    ///
+    /// x₀ cos λt + (v₀ + bx₀) sin(λt)/λ = 0, so tan λt = −x₀λ/(v₀ + bx₀): equal distances π/λ below critical damping, at most one passage
+    /// from there on.
+    pub fn passages(&self, x: f64, v: f64, until: f64) -> impl Iterator<Item = f64> + use<> {
+        let (lambda, w) = (self.lambda, v + self.b * x);
+        let (first, apart) = if x == 0.0 && w == 0.0 {
+            (f64::INFINITY, f64::INFINITY)
+        } else if self.lambda2 > 0.0 {
+            (f64::atan2(x * lambda, -w).rem_euclid(PI) / lambda, PI / lambda)
+        } else if lambda == 0.0 {
+            (-x / w, f64::INFINITY)
+        } else {
+            ((-x * lambda / w).atanh() / lambda, f64::INFINITY)
+        };
+        let passage = move |n: u32| if n == 0 { first } else { first + f64::from(n) * apart };
+        // No number is no passage, and the last.
+        (0..).map(passage).take_while(move |t| *t < until).filter(|t| *t > 0.0)
     }
 
     /// 1 − C(T) and det(I − Φ(T)) = (1 − C)² + λ²S², both without cancellation at small damping.
@@ -227,6 +249,27 @@ mod tests {
                     (determinant - plain).abs() < 64.0 * f64::EPSILON,
                     "{c} {period} {determinant} {plain}"
                 );
+            }
+        }
+    }
+
+    #[test]
+    fn passages_are_zeros_and_none_is_left_out() {
+        let critical = 2.0 * f64::sqrt(0.125 * 135.0);
+        for c in [0.0, 0.1, 3.0, 0.999_999_9 * critical, critical, 1.000_000_1 * critical, 2.0 * critical] {
+            let oscillator = Oscillator::new(0.125, c, 135.0);
+            for (x, v) in [(1e-3, 0.2), (1e-3, -0.5), (-2e-3, 0.01), (0.0, 0.3), (1e-3, 0.0), (0.0, 0.0)] {
+                let found: Vec<f64> = oscillator.passages(x, v, 1.0).collect();
+                for t in &found {
+                    // Rounding of λt, times the speed, against the size of the motion.
+                    let (at, speed) = oscillator.free(x, v, *t);
+                    let size = oscillator.bound(x, v);
+                    assert!(at.abs() <= 64.0 * f64::EPSILON * (size + speed.abs() * t), "c {c}: {at} at {t}");
+                }
+                // Signs between samples 0.1 ms apart, where the period is 0.19 s.
+                let at = |i: u32| oscillator.free(x, v, f64::from(i) * 1e-4).0;
+                let changes = (1..10_000).filter(|i| at(*i) * at(i + 1) < 0.0).count();
+                assert_eq!(found.len(), changes, "c {c}, {x} m, {v} m/s: {found:?}");
             }
         }
     }

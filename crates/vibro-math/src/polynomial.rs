@@ -1,6 +1,6 @@
 //! A polynomial over 0..1, with bounds that let none of its falls through zero be missed.
 
-use super::root::Bounded;
+use super::root::{Bounded, Look, walk};
 
 /// A polynomial of K terms over 0..1.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,33 +60,22 @@ impl<const K: usize> Polynomial<K> {
         if self.terms[0] > self.reach {
             return None;
         }
-        let mut part = 0.0;
-        loop {
+        let look = |part| {
             let here = self.at(part);
-            if here.slope < 0.0 && here.value <= 0.0 {
-                return Some(part);
+            let falls = here.slope < 0.0;
+            if falls && here.value <= 0.0 {
+                return Look::Root(0.0);
             }
-            let mut next = part + here.step();
-            if here.slope >= 0.0 {
-                let bend = self.bend(part);
-                if bend >= 0.0 && self.third > 0.0 {
-                    let value = (6.0 * here.value.max(0.0) / self.third).cbrt();
-                    let slope = (6.0 * here.slope / self.third).sqrt();
-                    next = next.max(part + value.max(slope).max(3.0 * bend / self.third));
-                }
+            let mut step = here.step();
+            let bend = if falls { 0.0 } else { self.bend(part) };
+            if !falls && bend >= 0.0 && self.third > 0.0 {
+                let value = (6.0 * here.value.max(0.0) / self.third).cbrt();
+                let slope = (6.0 * here.slope / self.third).sqrt();
+                step = step.max(value.max(slope).max(3.0 * bend / self.third));
             }
-            if next <= part {
-                if here.slope < 0.0 {
-                    return Some(part);
-                }
-                next = part + f64::EPSILON;
-            }
-            part = next;
-            // The last also where a term is not a number.
-            if part > 1.0 || part.is_nan() {
-                return None;
-            }
-        }
+            Look::Step { step, falls }
+        };
+        walk(0.0, 1.0, look).map(|(part, _)| part)
     }
 }
 

@@ -47,19 +47,10 @@ impl Drive {
         Ok(Drive { forcing, lines })
     }
 
-    /// Goes on at another frequency of the cycle in Hz; several sines keep the ratios of theirs.
-    pub fn set_frequency(&mut self, rig: &Rig, frequency: f64) -> Result<()> {
+    /// Goes on under a force that `change` makes of the present one.
+    pub fn change(&mut self, rig: &Rig, change: impl FnOnce(&mut Forcing) -> Result<()>) -> Result<()> {
         let mut forcing = self.forcing;
-        forcing.set_frequency(frequency)?;
-        *self = Drive::with(rig, forcing)?;
-        Ok(())
-    }
-
-    /// Goes on under another excitation of the same kind, whose phases are those of this one.
-    pub fn set_excitation(&mut self, rig: &Rig, excitation: &Excitation) -> Result<()> {
-        scales::check(rig, excitation)?;
-        let mut forcing = self.forcing;
-        forcing.set_excitation(excitation)?;
+        change(&mut forcing)?;
         *self = Drive::with(rig, forcing)?;
         Ok(())
     }

@@ -124,26 +124,48 @@ impl Excitation {
 
     /// Cycles a second, in Hz; of several sines, the first one's. NaN where there is none.
     pub fn frequency(&self) -> f64 {
+        self.first().0
+    }
+
+    /// Its size: the force of a sine or pulse in N, of several sines that of the first; the impulse in N s.
+    pub fn size(&self) -> f64 {
+        self.first().1
+    }
+
+    /// Frequency and size, of several sines the first one's.
+    fn first(&self) -> (f64, f64) {
         match self {
-            Excitation::Sine(sine) => sine.frequency,
-            Excitation::Impulse(impulses) => impulses.frequency,
-            Excitation::Pulse(pulses) => pulses.frequency,
-            Excitation::Sines(sines) => sines.parts.first().map_or(f64::NAN, |p| p.frequency),
+            Excitation::Sine(sine) => (sine.frequency, sine.force),
+            Excitation::Impulse(train) => (train.frequency, train.impulse),
+            Excitation::Pulse(train) => (train.frequency, train.force),
+            Excitation::Sines(sines) => {
+                sines.parts.first().map_or((f64::NAN, f64::NAN), |part| (part.frequency, part.force))
+            }
         }
     }
 
     /// The same excitation at another frequency in Hz; of several sines, the ratios of their frequencies stay.
     pub fn at_frequency(&self, frequency: f64) -> Excitation {
-        match self {
-            Excitation::Sine(sine) => Excitation::Sine(Sine { frequency, ..*sine }),
-            Excitation::Impulse(impulses) => Excitation::Impulse(Impulses { frequency, ..*impulses }),
-            Excitation::Pulse(pulses) => Excitation::Pulse(Pulses { frequency, ..*pulses }),
-            Excitation::Sines(sines) => {
-                let ratio = frequency / self.frequency();
-                let part = |p: &Part| Part { frequency: p.frequency * ratio, ..*p };
-                Excitation::Sines(Sines { parts: sines.parts.iter().map(part).collect() })
-            }
+        let ratio = frequency / self.frequency();
+        self.changed(frequency, self.size(), |part| part.frequency *= ratio)
+    }
+
+    /// The same excitation of another size; the ratios of several sines stay.
+    pub fn at_size(&self, size: f64) -> Excitation {
+        let ratio = size / self.size();
+        self.changed(self.frequency(), size, |part| part.force *= ratio)
+    }
+
+    /// The same with another frequency and size; of several sines with `change` in each.
+    fn changed(&self, frequency: f64, size: f64, change: impl FnMut(&mut Part)) -> Excitation {
+        let mut changed = self.clone();
+        match &mut changed {
+            Excitation::Sine(sine) => *sine = Sine { force: size, frequency },
+            Excitation::Impulse(train) => *train = Impulses { impulse: size, frequency },
+            Excitation::Pulse(train) => (train.force, train.frequency) = (size, frequency),
+            Excitation::Sines(sines) => sines.parts.iter_mut().for_each(change),
         }
+        changed
     }
 
     /// Complex amplitude in N of the force's `n`-th harmonic (n ≥ 1), the cycle being at `phase` (rad) at time 0; not a number for
@@ -163,30 +185,6 @@ impl Excitation {
             Excitation::Sines(_) => f64::NAN.into(),
         };
         Complex64::cis(f64::from(n) * phase) * size
-    }
-
-    /// Its size: the force of a sine or pulse in N, of several sines that of the first; the impulse in N s.
-    pub fn size(&self) -> f64 {
-        match self {
-            Excitation::Sine(sine) => sine.force,
-            Excitation::Impulse(train) => train.impulse,
-            Excitation::Pulse(train) => train.force,
-            Excitation::Sines(sines) => sines.parts.first().map_or(f64::NAN, |p| p.force),
-        }
-    }
-
-    /// The same excitation of another size; the ratios of several sines stay.
-    pub fn at_size(&self, size: f64) -> Excitation {
-        match self {
-            Excitation::Sine(sine) => Excitation::Sine(Sine { force: size, ..*sine }),
-            Excitation::Impulse(train) => Excitation::Impulse(Impulses { impulse: size, ..*train }),
-            Excitation::Pulse(train) => Excitation::Pulse(Pulses { force: size, ..*train }),
-            Excitation::Sines(sines) => {
-                let ratio = size / self.size();
-                let part = |p: &Part| Part { force: p.force * ratio, ..*p };
-                Excitation::Sines(Sines { parts: sines.parts.iter().map(part).collect() })
-            }
-        }
     }
 
     /// What the excitation is called in a file: `sine`, `impulse`, `pulse` or `sines`.

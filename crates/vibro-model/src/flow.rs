@@ -2,9 +2,7 @@
 
 mod hop;
 
-use super::receptance::Steady;
 use super::waves::Waves;
-use num_complex::Complex64;
 use serde::Serialize;
 use vibro_math::Oscillator;
 use vibro_math::root::{Bent, Limits, first_landing};
@@ -25,6 +23,18 @@ pub struct State {
 impl State {
     /// Both masses at rest in their own rest positions.
     pub const REST: State = State { x1: 0.0, v1: 0.0, x2: 0.0, v2: 0.0 };
+
+    /// The state of x₁, v₁, x₂, v₂.
+    #[inline]
+    pub(super) fn of([x1, v1, x2, v2]: [f64; 4]) -> State {
+        State { x1, v1, x2, v2 }
+    }
+
+    /// x₁, v₁, x₂, v₂.
+    #[inline]
+    pub(super) fn array(&self) -> [f64; 4] {
+        [self.x1, self.v1, self.x2, self.v2]
+    }
 
     /// Approach speed vᵣ = v₁ − v₂ in m/s.
     pub fn approach(&self) -> f64 {
@@ -86,13 +96,6 @@ pub struct Flight {
 }
 
 impl Flight {
-    /// Flight from `state`, the force being F₀ cos(ωt + `phase`), across a rest gap `gap` in m.
-    pub fn new(oscillators: [Oscillator; 2], steady: &Steady, gap: f64, state: &State, phase: f64) -> Flight {
-        let mut waves = Waves::default();
-        waves.add(steady.response * Complex64::cis(phase), steady.omega, steady.amplitude());
-        Flight::with(oscillators, waves, 0.0, gap, state)
-    }
-
     /// Flight from `state` with forced motion `waves` about `rest` (m) of mass 1.
     #[inline]
     pub(super) fn with(
@@ -102,7 +105,7 @@ impl Flight {
         gap: f64,
         state: &State,
     ) -> Flight {
-        let [x, v, ..] = waves.start();
+        let [x, v, ..] = waves.at(0.0);
         Flight::of(oscillators, waves, rest, gap, [(state.x1 - x - rest, state.v1 - v), (state.x2, state.v2)])
     }
 
@@ -127,7 +130,7 @@ impl Flight {
         let bound = |i: usize| {
             self.free[i].oscillator.bound(self.free[i].series(0.0)[4], self.free[i].series(0.0)[5])
         };
-        let fourth = bound(1) + self.waves.snap() + bound(0);
+        let fourth = bound(1) + self.waves.limits.snap + bound(0);
         let (bend, jerk) = ((a2 - a1).max(0.0), j2 - j1);
         let root = (jerk / 6.0 + (jerk * jerk / 36.0 + fourth * bend / 12.0).sqrt()) / (fourth / 12.0);
         // Half of it, where more than an eighth of the leading term is left.
@@ -146,8 +149,7 @@ impl Flight {
     #[inline]
     pub(super) fn series(&self, t: f64) -> [[f64; 6]; 2] {
         let mut first = self.free[0].series(t);
-        let forced = if t == 0.0 { self.waves.start() } else { self.waves.at(t) };
-        for (sum, term) in first.iter_mut().zip(forced) {
+        for (sum, term) in first.iter_mut().zip(self.waves.at(t)) {
             *sum += term;
         }
         first[0] += self.rest;
@@ -178,13 +180,7 @@ impl Flight {
         2.0 * f64::EPSILON * (self.gap.abs() + self.rest.abs() + self.reach())
     }
 
-    /// First contact in `0..=duration`: the gap falls to zero. No contact can be missed (see [`vibro_math::root`]).
-    #[cfg(test)]
-    pub(crate) fn first_contact(&self, duration: f64) -> Option<f64> {
-        self.land(duration).map(|landing| landing.time)
-    }
-
-    /// First contact in `0..=duration`, with the state there.
+    /// First contact in `0..=duration`, with the state there: the gap falls to zero. No contact can be missed (see [`vibro_math::root`]).
     #[inline]
     pub(super) fn land(&self, duration: f64) -> Option<Landing> {
         if self.open > duration {
@@ -194,7 +190,7 @@ impl Flight {
         // A quarter ε of the terms that are summed.
         let rounding = 0.25
             * f64::EPSILON
-            * (self.gap.abs() + self.waves.amplitude() + self.free[0].x.abs() + self.free[1].x.abs());
+            * (self.gap.abs() + self.waves.amplitude + self.free[0].x.abs() + self.free[1].x.abs());
         if self.open == 0.0
             && let Some(landing) = self.hop(duration, rounding)
         {
@@ -217,7 +213,7 @@ impl Flight {
             |t| {
                 let (limits, free) = self.limits(t);
                 // At the beginning most flights end in contact.
-                let reach = self.waves.amplitude() + free;
+                let reach = self.waves.amplitude + free;
                 (t == self.open || self.gap - self.rest <= reach).then_some(limits)
             },
         )?;
@@ -236,7 +232,7 @@ impl Flight {
 
     /// Bounds on the derivatives of the gap from `t` on, and on the free parts' displacements together, in m.
     fn limits(&self, t: f64) -> (Limits, f64) {
-        let (mut limits, mut reach) = (self.waves.limits(), 0.0);
+        let (mut limits, mut reach) = (self.waves.limits, 0.0);
         for part in &self.free {
             let [x, v, a, jerk, ..] = part.series(t);
             let (curvature, gain) = (part.oscillator.bound(a, jerk), part.oscillator.gain());
@@ -253,9 +249,9 @@ impl Flight {
     /// A bound on |x₁ − x₂| for the whole flight, in m, about the rest positions.
     fn reach(&self) -> f64 {
         let free: f64 = self.free.iter().map(|part| part.oscillator.bound(part.x, part.v)).sum();
-        self.waves.amplitude() + free
+        self.waves.amplitude + free
     }
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

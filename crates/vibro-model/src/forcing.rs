@@ -1,11 +1,40 @@
-//! The exciting force from now on: its sines, as series in time, and its clock.
+//! The exciting force from now on: its sines as series in time, where its cycle is, and when its next impulse or step is due.
 
-use super::clock::{Clock, within};
 use super::excitation::MOST_SINES;
 use super::linear::{ORDER, Terms};
-use super::{Excitation, Part};
+use super::scales::{Least, number};
+use super::{Excitation, Part, Pulses, Sine};
 use std::f64::consts::TAU;
-use vibro_record::Result;
+use std::mem::discriminant;
+use vibro_record::{Error, Result};
+
+/// 2π less [`TAU`].
+const TAU_REST: f64 = 2.449_293_598_294_706_4e-16;
+
+/// Part of a cycle to which the phase is known after thousands of flights: a few hundred roundings of it.
+const KNOWN: f64 = 1e-12;
+
+/// What an excitation does at an instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Tick {
+    /// An impulse in N s.
+    Kick(f64),
+    /// A pulse begins.
+    On,
+    /// A pulse ends.
+    Off,
+}
+
+/// What comes once a cycle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Train {
+    /// Nothing: the force is smooth.
+    None,
+    /// An impulse in N s.
+    Impulses(f64),
+    /// A force in N for a time in s.
+    Pulses { force: f64, width: f64 },
+}
 
 /// One sine force, with its phase now.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,31 +52,53 @@ impl Tone {
 }
 
 /// The exciting force from now on.
+///
+/// At phase 0, and only there, the cycle's impulse or pulse is still to come; once it has come the phase is above 0, if only by the
+/// least number there is. So a phase tells whether it is to come, and a motion that starts again from its phase has it once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Forcing {
     tones: [Option<Tone>; MOST_SINES],
-    pub clock: Clock,
+    train: Train,
+    /// Cycles a second.
+    pub frequency: f64,
+    /// Phase of the cycle in 0..2π.
+    pub phase: f64,
+    /// Rest of the pulse under way in s; 0 where there is none.
+    left: f64,
 }
 
 impl Forcing {
     /// The excitation in a cycle of which `phase` rad are past: a sine is F₀ cos(phase), an impulse falls on phase 0, a
     /// pulse begins there, and of several sines each is ahead by its own part of the time that the phase stands for.
     pub fn new(excitation: &Excitation, phase: f64) -> Result<Forcing> {
-        let clock = Clock::new(excitation, phase)?;
-        let (phase, frequency) = (clock.phase(), clock.frequency());
-        let mut tones = [None; MOST_SINES];
+        excitation.check()?;
+        number("phase", phase, "rad", Least::Any)?;
+        let frequency = excitation.frequency();
+        let phase = phase.rem_euclid(TAU);
+        // The remainder of a tiny negative phase rounds to 2π.
+        let phase = if phase < TAU { phase } else { 0.0 };
+        let tones = [None; MOST_SINES];
+        let mut forcing = Forcing { tones, train: Train::None, frequency, phase, left: 0.0 };
         match excitation {
-            Excitation::Sine(sine) => tones[0] = Some(Tone { force: sine.force, frequency, phase }),
+            Excitation::Sine(sine) => {
+                forcing.tones[0] = Some(Tone { force: sine.force, frequency, phase });
+            }
             Excitation::Sines(sines) => {
-                for (tone, part) in tones.iter_mut().zip(&sines.parts) {
+                for (tone, part) in forcing.tones.iter_mut().zip(&sines.parts) {
                     let Part { force, frequency: own, phase: start } = *part;
                     let phase = (start + phase * (own / frequency)).rem_euclid(TAU);
                     *tone = Some(Tone { force, frequency: own, phase });
                 }
             }
-            Excitation::Impulse(_) | Excitation::Pulse(_) => {}
+            Excitation::Impulse(impulses) => forcing.train = Train::Impulses(impulses.impulse),
+            Excitation::Pulse(Pulses { force, width, .. }) => {
+                forcing.train = Train::Pulses { force: *force, width: *width };
+                if phase > 0.0 {
+                    forcing.left = (width - phase / (TAU * frequency)).max(0.0);
+                }
+            }
         }
-        Ok(Forcing { tones, clock })
+        Ok(forcing)
     }
 
     /// Its sines.
@@ -56,21 +107,16 @@ impl Forcing {
         self.tones.iter().flatten()
     }
 
-    /// Phase of the cycle in 0..2π.
-    #[inline]
-    pub fn phase(&self) -> f64 {
-        self.clock.phase()
-    }
-
-    /// Frequency of the cycle in Hz.
-    pub fn frequency(&self) -> f64 {
-        self.clock.frequency()
-    }
-
-    /// Changes the frequency from now on; every phase goes on.
+    /// Changes the frequency from now on; every phase goes on, and a pulse under way keeps its width.
     pub fn set_frequency(&mut self, hz: f64) -> Result<()> {
-        let before = self.frequency();
-        self.clock.set_frequency(hz)?;
+        Sine { force: 0.0, frequency: hz }.check()?;
+        if let Train::Pulses { width, .. } = self.train
+            && width * hz >= 1.0
+        {
+            let found = format!("pulses of {width} s at {hz} Hz");
+            return Err(Error::usage(found, "a width below the cycle"));
+        }
+        let before = std::mem::replace(&mut self.frequency, hz);
         for tone in self.tones.iter_mut().flatten() {
             // The first sine counts the cycles: no rounding of its frequency.
             tone.frequency = if tone.frequency == before { hz } else { tone.frequency * (hz / before) };
@@ -78,13 +124,19 @@ impl Forcing {
         Ok(())
     }
 
-    /// Goes on under another excitation of the same kind, whose phases are those of this one.
+    /// Goes on under another excitation of the same kind, whose phases are those of this one; a pulse under way keeps its width.
     pub fn set_excitation(&mut self, excitation: &Excitation) -> Result<()> {
-        self.clock.set_excitation(excitation)?;
-        let next = Forcing::new(excitation, 0.0)?;
-        for (tone, next) in self.tones.iter_mut().flatten().zip(next.tones()) {
-            *tone = Tone { phase: tone.phase, ..*next };
+        let mut next = Forcing { phase: self.phase, left: self.left, ..Forcing::new(excitation, 0.0)? };
+        if discriminant(&self.train) != discriminant(&next.train)
+            || self.tones().count() != next.tones().count()
+        {
+            let found = format!("a change of the excitation to {}", excitation.kind());
+            return Err(Error::usage(found, "one of the same kind, with as many sines"));
         }
+        for (next, tone) in next.tones.iter_mut().flatten().zip(self.tones()) {
+            next.phase = tone.phase;
+        }
+        *self = next;
         Ok(())
     }
 
@@ -93,10 +145,19 @@ impl Forcing {
         self.tones().map(Tone::omega).fold(0.0, f64::max)
     }
 
+    /// Force in N that is constant up to the next tick.
+    #[inline]
+    pub fn constant(&self) -> f64 {
+        match self.train {
+            Train::Pulses { force, .. } if self.left > 0.0 => force,
+            _ => 0.0,
+        }
+    }
+
     /// The force in N at `t` seconds from now, before its next tick.
     pub fn force(&self, t: f64) -> f64 {
         self.tones().map(|tone| tone.force * (tone.phase + tone.omega() * t).cos()).sum::<f64>()
-            + self.clock.constant()
+            + self.constant()
     }
 
     /// Terms of the force in powers of time over `duration` seconds.
@@ -113,24 +174,72 @@ impl Forcing {
                 (re, im) = (-step * im, step * re);
             }
         }
-        terms[0] += self.clock.constant();
+        terms[0] += self.constant();
         terms
     }
 
-    /// Lets `t` seconds pass, at most up to the next tick.
+    /// Seconds to the next tick in a motion of `span` seconds up to the time `end`, and what it does; infinite where there is none.
+    ///
+    /// What falls on the end, as closely as time and phase are known, is left to what follows: a cycle begins with its impulse.
+    #[inline]
+    pub fn next(&self, span: f64, end: f64) -> (f64, Option<Tick>) {
+        let begin = match self.train {
+            Train::None => return (f64::INFINITY, None),
+            Train::Impulses(impulse) => Tick::Kick(impulse),
+            Train::Pulses { .. } => Tick::On,
+        };
+        let whole = if self.phase == 0.0 { 0.0 } else { (TAU - self.phase) / (TAU * self.frequency) };
+        let (wait, tick) =
+            if self.left > 0.0 && self.left < whole { (self.left, Tick::Off) } else { (whole, begin) };
+        let known = KNOWN / self.frequency + 4.0 * f64::EPSILON * end.abs();
+        if wait + known < span { (wait, Some(tick)) } else { (f64::INFINITY, None) }
+    }
+
+    /// Lets `t` seconds pass, no more than to the next tick, which stays to come.
     #[inline]
     pub fn pass(&mut self, t: f64) {
         for tone in self.tones.iter_mut().flatten() {
             tone.phase = within(tone.phase + tone.omega() * t);
         }
-        self.clock.advance(t);
+        let phase = self.phase + TAU * self.frequency * t;
+        if self.train == Train::None {
+            self.phase = within(phase);
+        } else if self.phase > 0.0 {
+            self.phase = phase.min(TAU.next_down());
+        }
+        if self.left > 0.0 {
+            self.left = (self.left - t).max(f64::MIN_POSITIVE);
+        }
     }
+
+    /// Does what is due now.
+    pub fn tick(&mut self, tick: Tick) {
+        if tick == Tick::Off {
+            self.left = 0.0;
+            return;
+        }
+        self.phase = f64::MIN_POSITIVE;
+        if let Train::Pulses { width, .. } = self.train {
+            self.left = width;
+        }
+    }
+}
+
+/// A phase of 0 or more within 0..2π.
+#[inline]
+fn within(phase: f64) -> f64 {
+    if phase < TAU {
+        return phase;
+    }
+    let turns = (phase / TAU).floor();
+    let rest = (phase - turns * TAU) - turns * TAU_REST;
+    if (0.0..TAU).contains(&rest) { rest } else { phase.rem_euclid(TAU) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Sine, Sines};
+    use crate::{Impulses, Pulses, Sine, Sines};
 
     #[test]
     fn the_series_is_the_force() {
@@ -157,13 +266,76 @@ mod tests {
     fn a_change_of_frequency_makes_no_step_and_impossible_ones_are_refused() {
         let mut drive = Forcing::new(&Excitation::Sine(Sine { force: 0.5, frequency: 5.0 }), 0.3).unwrap();
         drive.pass(0.123);
-        let (force, phase) = (drive.force(0.0), drive.phase());
+        let (force, phase) = (drive.force(0.0), drive.phase);
         drive.set_frequency(9.0).unwrap();
-        assert_eq!((drive.force(0.0), drive.phase(), drive.frequency()), (force, phase, 9.0));
+        assert_eq!((drive.force(0.0), drive.phase, drive.frequency), (force, phase, 9.0));
         for hz in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(drive.set_frequency(hz).is_err(), "{hz}");
         }
-        assert_eq!(drive.frequency(), 9.0);
+        assert_eq!(drive.frequency, 9.0);
         assert!(Forcing::new(&Excitation::Sine(Sine { force: 0.5, frequency: 5.0 }), f64::NAN).is_err());
+    }
+
+    /// Goes through the next `n` ticks and says when they come.
+    fn times(clock: &mut Forcing, n: usize) -> Vec<(f64, Tick)> {
+        let mut time = 0.0;
+        (0..n)
+            .map(|_| {
+                let (wait, tick) = clock.next(f64::INFINITY, 0.0);
+                clock.pass(wait);
+                clock.tick(tick.unwrap());
+                time += wait;
+                (time, tick.unwrap())
+            })
+            .collect()
+    }
+
+    #[test]
+    fn ticks_come_once_a_cycle() {
+        let pulses = Pulses { force: 0.5, width: 0.01, frequency: 5.0 };
+        let mut clock = Forcing::new(&Excitation::Pulse(pulses), 0.0).unwrap();
+        let expected = [(0.0, Tick::On), (0.01, Tick::Off), (0.2, Tick::On), (0.21, Tick::Off)];
+        for ((time, tick), (at, what)) in times(&mut clock, 4).into_iter().zip(expected) {
+            assert!((time - at).abs() < 1e-15 && tick == what, "{time} {at}");
+        }
+        let impulses = Excitation::Impulse(Impulses { impulse: 0.009, frequency: 5.0 });
+        let mut clock = Forcing::new(&impulses, 0.0).unwrap();
+        for ((time, tick), at) in times(&mut clock, 3).into_iter().zip([0.0, 0.2, 0.4]) {
+            assert!((time - at).abs() < 1e-15 && tick == Tick::Kick(0.009), "{time} {at}");
+        }
+        clock.pass(0.05);
+        clock.set_frequency(10.0).unwrap();
+        // Three quarters of a cycle are left.
+        assert!((clock.next(f64::INFINITY, 0.0).0 - 0.075).abs() < 1e-16);
+    }
+
+    #[test]
+    fn a_start_at_its_phase_has_every_impulse_once() {
+        let impulses = Excitation::Impulse(Impulses { impulse: 0.009, frequency: 5.0 });
+        let mut clock = Forcing::new(&impulses, 0.0).unwrap();
+        // What falls on the end of a motion is left to what follows.
+        assert_eq!(clock.next(0.0, 0.0), (f64::INFINITY, None));
+        times(&mut clock, 1);
+        assert_eq!(Forcing::new(&impulses, clock.phase).unwrap(), clock);
+        assert_eq!(clock.next(0.2, 0.2), (f64::INFINITY, None));
+        clock.pass(0.2);
+        assert_eq!(Forcing::new(&impulses, clock.phase).unwrap(), clock);
+        let (wait, tick) = clock.next(0.2, 0.4);
+        assert!(wait < 1e-15 && tick == Some(Tick::Kick(0.009)), "{wait}");
+    }
+
+    #[test]
+    fn a_pulse_under_way_keeps_its_width() {
+        let pulses = Pulses { force: 0.5, width: 0.01, frequency: 5.0 };
+        let mut clock = Forcing::new(&Excitation::Pulse(pulses), 0.0).unwrap();
+        times(&mut clock, 1);
+        clock.pass(0.004);
+        clock.set_frequency(20.0).unwrap();
+        let louder = Excitation::Pulse(Pulses { force: 2.0, frequency: 20.0, ..pulses });
+        clock.set_excitation(&louder).unwrap();
+        let (wait, tick) = clock.next(f64::INFINITY, 0.0);
+        assert!((wait - 0.006).abs() < 1e-17 && tick == Some(Tick::Off) && clock.constant() == 2.0);
+        assert!(clock.set_frequency(100.0).is_err());
+        assert!(clock.set_excitation(&Sine { force: 1.0, frequency: 5.0 }.into()).is_err());
     }
 }

@@ -10,8 +10,9 @@ use vibro_record::{Error, Result};
 /// damping. Relative error about ε/(ΩT)² where the period is short against the natural one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Green {
-    oscillator: Oscillator,
-    period: f64,
+    pub(crate) oscillator: Oscillator,
+    /// T in s.
+    pub(crate) period: f64,
     /// χ(0) in m/(N s).
     pub start: f64,
     /// χ̇ just after the impulse, in 1/kg.
@@ -57,16 +58,6 @@ impl Green {
     /// χ(t) and χ̇(t) for 0 ≤ t ≤ T, χ̇(0) being the slope just after the impulse.
     pub fn at(&self, t: f64) -> (f64, f64) {
         self.oscillator.free(self.start, self.slope_after, t)
-    }
-
-    /// The oscillator.
-    pub fn oscillator(&self) -> &Oscillator {
-        &self.oscillator
-    }
-
-    /// T in s.
-    pub fn period(&self) -> f64 {
-        self.period
     }
 }
 

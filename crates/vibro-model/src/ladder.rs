@@ -40,7 +40,7 @@ use stage::{Stage, curved, is_curved, keys};
 use vibro_record::{Error, Finding, Result};
 
 /// The rung that is good enough for a scene, and how that was found.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Choice {
     /// Excitation frequency in Hz.
     pub frequency: f64,

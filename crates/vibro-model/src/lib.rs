@@ -17,35 +17,34 @@
 //! # Ok::<(), vibro_record::Error>(())
 //! ```
 
-pub mod chirp;
-mod clock;
+mod chirp;
 pub mod contact;
 pub mod continuation;
 mod drive;
-pub mod excitation;
-pub mod floquet;
-pub mod flow;
+mod excitation;
+mod floquet;
+mod flow;
 mod forcing;
-pub mod green;
+mod green;
 pub mod ladder;
-pub mod linear;
+mod linear;
 pub mod map;
-pub mod motion;
-pub mod observable;
-pub mod orbit;
+mod motion;
+mod observable;
+mod orbit;
 mod parallel;
-pub mod periodic;
+mod periodic;
 pub mod portrait;
-pub mod receptance;
+mod receptance;
 pub mod regime;
 pub mod response;
-pub mod rig;
+mod rig;
 mod scales;
-pub mod scene;
+mod scene;
 pub mod simulate;
-pub mod stick;
+mod stick;
 pub mod sweep;
-pub mod validity;
+mod validity;
 mod waves;
 
 pub use chirp::Chirp;
@@ -57,8 +56,7 @@ pub use green::Green;
 pub use motion::{Event, Motion, Path, Piece};
 pub use observable::Observable;
 pub use orbit::{
-    Compliance, Orbit, Orbits, Shown, Softened, backbone, no_impact, orbits, orbits_of, orbits_over, shown,
-    softened,
+    Compliance, Orbit, Orbits, Shown, Softened, backbone, no_impact, orbits, orbits_of, shown, softened,
 };
 pub use periodic::{Beat, PeriodicOrbit};
 pub use receptance::{NoImpact, Steady};
@@ -68,4 +66,4 @@ pub use rig::Rig;
 pub use scene::{Buffer, ContactKeys, Draft, Scene};
 pub use simulate::{Counts, Impact, Leg, Simulation};
 pub use stick::Pair;
-pub use validity::{Loss, Stability, Validity};
+pub use validity::{Loss, Validity};

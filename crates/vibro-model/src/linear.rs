@@ -25,8 +25,8 @@ pub struct Linear {
     constant: [f64; 2],
     /// Acceleration of each mass by the exciting force, in 1/kg.
     gain: [f64; 2],
-    /// s in 1/s.
-    rate: f64,
+    /// s in 1/s: no part of the motion changes faster.
+    pub rate: f64,
 }
 
 impl Linear {
@@ -39,11 +39,6 @@ impl Linear {
         Linear { matrix, constant, gain, rate }
     }
 
-    /// s in 1/s: no part of the motion changes faster.
-    pub fn rate(&self) -> f64 {
-        self.rate
-    }
-
     /// a₁ − a₂: the acceleration with which the masses approach each other.
     pub fn closing(&self) -> Quantity {
         let [first, second] = &self.matrix;
@@ -54,28 +49,23 @@ impl Linear {
     /// Accelerations of both masses in m/s² at a state and an exciting force in N.
     #[inline]
     pub fn accelerations(&self, state: &State, force: f64) -> [f64; 2] {
-        std::array::from_fn(|i| {
-            let row = &self.matrix[i];
-            let own = row[0] * state.x1 + row[1] * state.v1 + row[2] * state.x2 + row[3] * state.v2;
-            own + self.gain[i] * force + self.constant[i]
-        })
+        let state = state.array();
+        std::array::from_fn(|i| dot(&self.matrix[i], &state) + self.gain[i] * force + self.constant[i])
     }
 
     /// The motion from `state` for `duration` seconds, at most 1/s, under a force of these terms.
     #[inline]
     pub fn fly(&self, state: &State, force: &Terms, duration: f64) -> Taylor {
         let mut terms = [[0.0; 4]; ORDER + 1];
-        terms[0] = [state.x1, state.v1, state.x2, state.v2];
+        terms[0] = state.array();
         for k in 0..ORDER {
             let here = terms[k];
             let step = duration / (k + 1) as f64;
-            let mut accelerations = [0.0; 2];
-            for (i, a) in accelerations.iter_mut().enumerate() {
-                let row = &self.matrix[i];
-                let own = row[0] * here[0] + row[1] * here[1] + row[2] * here[2] + row[3] * here[3];
-                *a = own + self.gain[i] * force[k] + if k == 0 { self.constant[i] } else { 0.0 };
-            }
-            terms[k + 1] = [step * here[1], step * accelerations[0], step * here[3], step * accelerations[1]];
+            let [a1, a2] = std::array::from_fn(|i| {
+                let constant = if k == 0 { self.constant[i] } else { 0.0 };
+                dot(&self.matrix[i], &here) + self.gain[i] * force[k] + constant
+            });
+            terms[k + 1] = [step * here[1], step * a1, step * here[3], step * a2];
         }
         Taylor { terms, duration }
     }
@@ -90,18 +80,12 @@ pub struct Taylor {
 }
 
 impl Taylor {
-    /// Duration in s.
-    pub fn duration(&self) -> f64 {
-        self.duration
-    }
-
     /// The course of a quantity that is linear in the state.
     #[inline]
     pub fn read(&self, quantity: &Quantity, force: &Terms) -> Course {
         let mut terms = [0.0; ORDER + 1];
-        let w = &quantity.weights;
         for ((term, y), force) in terms.iter_mut().zip(&self.terms).zip(force) {
-            *term = w[0] * y[0] + w[1] * y[1] + w[2] * y[2] + w[3] * y[3] + quantity.force * force;
+            *term = dot(&quantity.weights, y) + quantity.force * force;
         }
         terms[0] += quantity.offset;
         Course { polynomial: Polynomial::new(terms), duration: self.duration }
@@ -118,7 +102,7 @@ impl Path for Taylor {
                 *y = *y * part + term;
             }
         }
-        State { x1: y[0], v1: y[1], x2: y[2], v2: y[3] }
+        State::of(y)
     }
 }
 
@@ -136,13 +120,7 @@ pub struct Quantity {
 impl Quantity {
     /// Its value now.
     pub fn value(&self, state: &State, force: f64) -> f64 {
-        let w = &self.weights;
-        w[0] * state.x1
-            + w[1] * state.v1
-            + w[2] * state.x2
-            + w[3] * state.v2
-            + self.force * force
-            + self.offset
+        dot(&self.weights, &state.array()) + self.force * force + self.offset
     }
 
     /// The same quantity times a factor.
@@ -170,6 +148,11 @@ impl Course {
     pub fn first_fall(&self) -> Option<f64> {
         self.polynomial.first_fall().map(|part| part * self.duration)
     }
+}
+
+#[inline]
+fn dot(w: &[f64; 4], y: &[f64; 4]) -> f64 {
+    w[0] * y[0] + w[1] * y[1] + w[2] * y[2] + w[3] * y[3]
 }
 
 #[cfg(test)]

@@ -2,8 +2,7 @@
 
 mod rows;
 
-pub use rows::Rows;
-
+use super::forcing::Forcing;
 use super::regime::{Strike, Watch};
 use super::{
     Excitation, Motion, Pattern, PeriodicOrbit, Regime, Rig, Simulation, State, Steady, floquet, parallel,
@@ -12,7 +11,6 @@ use super::{
 use nalgebra::Matrix4;
 use num_complex::Complex64;
 use serde::Serialize;
-use std::f64::consts::TAU;
 use vibro_record::{Error, Result};
 
 /// A parameter that can be varied: a key of the rig, or of the excitation.
@@ -72,8 +70,9 @@ impl Key {
     }
 }
 
-/// Values of one parameter with equal distances.
+/// Values of one parameter with equal distances: the ends finite, the lower one first, and at least 2 values.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Axis {
     /// The parameter.
     pub key: Key,
@@ -167,11 +166,6 @@ impl Plan {
                     "a parameter that this excitation has",
                 ));
             }
-            if axis.n < 2 || !(axis.low.is_finite() && axis.high.is_finite() && axis.low < axis.high) {
-                let found =
-                    format!("{} from {} to {} in {} values", axis.key.label().0, axis.low, axis.high, axis.n);
-                return Err(Error::usage(found, "finite ends, the lower one first, and at least 2 values"));
-            }
         }
         if self.cycles < 4 {
             return Err(Error::usage(format!("{} cycles a cell", self.cycles), "at least 4"));
@@ -203,18 +197,19 @@ impl Plan {
     ///
     /// # Errors
     /// As [`Plan::check`], and those of `show`, which end the work.
-    pub fn run(&self, rows: &mut Rows, mut show: impl FnMut(usize, &[Cell]) -> Result<()>) -> Result<()> {
+    pub fn run(
+        &self,
+        rows: &mut Vec<Vec<Cell>>,
+        mut show: impl FnMut(usize, &[Cell]) -> Result<()>,
+    ) -> Result<()> {
         self.check()?;
-        for row in 0..self.y.n {
-            if rows.get(row).is_some() {
-                continue;
-            }
+        for row in rows.len()..self.y.n {
             let cells = parallel::each(self.x.n, |column| {
                 let (rig, excitation) = self.at(column, row);
                 cell(&rig, &excitation, self.cycles)
             });
             show(row, &cells)?;
-            rows.set(row, cells);
+            rows.push(cells);
         }
         Ok(())
     }
@@ -231,7 +226,7 @@ fn judged(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Cell> {
     let settling = (SETTLING * f64::from(cycles)) as u32;
     let mut watch = Watch::new(&motion);
     let mut follow = |motion: &mut Simulation, cycles: u32| {
-        watch.restart(motion);
+        watch = Watch::new(motion);
         let until = motion.time() + f64::from(cycles) / frequency;
         motion.advance(until, &mut |piece| watch.take(&piece))?;
         Ok((watch.pattern(), watch.strikes().len()))
@@ -299,12 +294,9 @@ fn clear(rig: &Rig, excitation: &Excitation, motion: &Simulation) -> bool {
 
 /// Spectral radius along a pattern of impacts; `None` under several sines, whose force is not told by the phase of one.
 fn radius(rig: &Rig, excitation: &Excitation, cycles: u32, strikes: &[Strike]) -> Option<f64> {
-    let force = |phase: f64| match excitation {
-        Excitation::Sine(sine) => Some(sine.force * phase.cos()),
-        Excitation::Impulse(_) => Some(0.0),
-        Excitation::Pulse(p) => Some(if phase < TAU * p.width * p.frequency { p.force } else { 0.0 }),
-        Excitation::Sines(_) => None,
-    };
+    if matches!(excitation, Excitation::Sines(_)) {
+        return None;
+    }
     let [first, second] = rig.oscillators();
     let rate = |s: &State, force: f64| {
         [s.v1, force / rig.m1 + first.acceleration(s.x1, s.v1), s.v2, second.acceleration(s.x2, s.v2)]
@@ -317,19 +309,16 @@ fn radius(rig: &Rig, excitation: &Excitation, cycles: u32, strikes: &[Strike]) -
         let end = strikes
             .get(i + 1)
             .map_or_else(|| strikes[0].time + f64::from(cycles) / excitation.frequency(), |next| next.time);
-        let force = force(strike.phase)?;
-        whole =
-            floquet::monodromy(rig, end - strike.time, &rate(&before, force), &rate(&after, force)) * whole;
+        let force = Forcing::new(excitation, strike.phase).ok()?.force(0.0);
+        let (before, after) = (rate(&before, force), rate(&after, force));
+        whole = floquet::monodromy(rig, end - strike.time, &before, &after).0 * whole;
     }
     floquet::multipliers(&whole).ok().map(|m| m[0].norm())
 }
 
 /// Spectral radius of a cycle without impacts: e^{−bT}, or that of the slower decay above critical damping.
 fn free_radius(rig: &Rig, excitation: &Excitation) -> f64 {
-    let decay = rig.oscillators().map(|o| {
-        let (b, inside) = (o.decay(), o.decay().powi(2) - o.omega2());
-        if inside > 0.0 { o.omega2() / (b + inside.sqrt()) } else { b }
-    });
+    let decay = rig.oscillators().map(|o| o.slowest());
     (-decay[0].min(decay[1]) / excitation.frequency()).exp()
 }
 

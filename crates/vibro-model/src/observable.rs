@@ -25,23 +25,18 @@ pub enum Observable {
 }
 
 impl Observable {
+    /// `fundamental`, `peak`, `impact-speed` or `impulse`, and its unit.
+    const TABLE: [(&'static str, &'static str); 4] =
+        [("fundamental", "m"), ("peak", "m"), ("impact-speed", "m/s"), ("impulse", "N s")];
+
     /// `fundamental`, `peak`, `impact-speed` or `impulse`.
     pub fn name(self) -> &'static str {
-        match self {
-            Observable::Fundamental => "fundamental",
-            Observable::HalfPeakToPeak => "peak",
-            Observable::ImpactSpeed => "impact-speed",
-            Observable::Impulse => "impulse",
-        }
+        Observable::TABLE[self as usize].0
     }
 
     /// Its unit: `m`, `m/s` or `N s`.
     pub fn unit(self) -> &'static str {
-        match self {
-            Observable::Fundamental | Observable::HalfPeakToPeak => "m",
-            Observable::ImpactSpeed => "m/s",
-            Observable::Impulse => "N s",
-        }
+        Observable::TABLE[self as usize].1
     }
 
     /// Whether it is one number of both masses instead of one of each.

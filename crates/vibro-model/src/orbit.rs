@@ -49,7 +49,8 @@ pub struct Orbit {
     pub multipliers: Option<[Complex64; 4]>,
     /// Is it real?
     pub validity: Validity,
-    upper: bool,
+    /// Whether it lies on that side of the fold where a larger impulse would take more energy than the force then gives.
+    pub(crate) upper: bool,
     rig: Rig,
     excitation: Option<Excitation>,
     course: Course,
@@ -73,7 +74,7 @@ impl Serialize for Orbit {
             "exists": v.exists,
             "admissible": v.admissible,
             "stable": v.stable == Some(true),
-            "stability": v.stability,
+            "stability": v.stability(),
             "instability": v.instability,
             "energy_rule": v.energy_rule,
             "grazing_distance": v.grazing_distance,
@@ -147,11 +148,6 @@ impl Orbit {
             })
     }
 
-    /// Whether the orbit lies on that side of the fold where a larger impulse would take more energy than the force then gives.
-    pub(crate) fn is_upper(&self) -> bool {
-        self.upper
-    }
-
     /// Unit of [`Orbit::timing`]: `rad` or `s`.
     pub fn timing_unit(&self) -> &'static str {
         match self.excitation {
@@ -180,15 +176,7 @@ pub struct Orbits {
 /// # Errors
 /// If a parameter is impossible, or an undamped mass is driven at resonance.
 pub fn orbits(rig: &Rig, force: f64, frequency: f64) -> Result<Orbits> {
-    orbits_over(rig, &Sine { force, frequency }, 1)
-}
-
-/// As [`orbits`], with one impact in `cycles` cycles.
-///
-/// # Errors
-/// As [`orbits`], and if `cycles` is 0 or the force is 0.
-pub fn orbits_over(rig: &Rig, sine: &Sine, cycles: u32) -> Result<Orbits> {
-    orbits_of(rig, &Excitation::Sine(*sine), cycles)
+    orbits_of(rig, &Excitation::Sine(Sine { force, frequency }), 1)
 }
 
 /// All motions with one impact in `cycles` cycles of the excitation, and the one without impacts.
@@ -231,16 +219,11 @@ fn solve(rig: &Rig, excitation: &Excitation, cycles: u32, delay: f64) -> Result<
 
 /// Response of mass 1 alone to a train of impulses or pulses.
 fn train(rig: &Rig, excitation: &Excitation) -> Result<Response> {
-    let (oscillator, cycle) = (rig.oscillators()[0], 1.0 / excitation.frequency());
+    driven(excitation.size())?;
+    let (m, oscillator, cycle) = (rig.m1, rig.oscillators()[0], 1.0 / excitation.frequency());
     match *excitation {
-        Excitation::Impulse(train) => {
-            driven(train.impulse)?;
-            Response::impulse(rig.m1, oscillator, cycle, train.impulse)
-        }
-        Excitation::Pulse(train) => {
-            driven(train.force)?;
-            Response::pulse(rig.m1, oscillator, cycle, train.force, train.width)
-        }
+        Excitation::Impulse(train) => Response::impulse(m, oscillator, cycle, train.impulse),
+        Excitation::Pulse(train) => Response::pulse(m, oscillator, cycle, train.force, train.width),
         Excitation::Sine(_) | Excitation::Sines(_) => {
             Err(Error::refused("several sines at once have no closed form")
                 .hint("follow the motion by simulating it"))

@@ -9,8 +9,9 @@ pub(super) use system::System;
 
 use super::orbit::Course;
 use super::regime::Strike;
+use super::validity::Judged;
 use super::waves::Waves;
-use super::{Flight, Rig, Sine, State, Validity, floquet};
+use super::{Flight, Rig, Sine, State, Validity};
 use nalgebra::{DVector, Matrix4};
 use num_complex::Complex64;
 use serde::Serialize;
@@ -51,8 +52,8 @@ pub struct PeriodicOrbit {
     pub validity: Validity,
     /// Monodromy matrix, from just before the first impact.
     pub(super) monodromy: Option<Matrix4<f64>>,
-    /// The motion after each impact, up to the next.
-    flights: Vec<Course>,
+    /// The motion after the first impact.
+    course: Course,
 }
 
 /// Newton's steps before it gives up.
@@ -75,10 +76,8 @@ impl PeriodicOrbit {
             ));
         }
         let system = System::new(rig, sine, cycles)?;
-        let (p, unit) = (impacts.len(), system.impulse());
-        let guess =
-            DVector::from_fn(2 * p, |k, _| if k < p { impacts[k].0 } else { impacts[k - p].1 / unit });
-        let u = settle(&system, guess).ok_or_else(|| {
+        let p = impacts.len();
+        let u = newton(&system, system.unknowns(impacts)).ok_or_else(|| {
             Error::refused(format!(
                 "no motion with {p} impacts in {cycles} cycles was found near the impacts given, at {} Hz",
                 sine.frequency
@@ -122,8 +121,7 @@ impl PeriodicOrbit {
             .filter(|d| p.is_multiple_of(*d))
             .find_map(|d| Some((d, cycles(d)?)).filter(|(d, q)| repeats(*d, *q)));
         let Some((d, q)) = shorter else { return Ok(self) };
-        let impacts: Vec<_> = self.beats[..d].iter().map(|b| (b.phase, b.impulse)).collect();
-        PeriodicOrbit::near(&self.rig, &self.sine, q as u32, &impacts)
+        PeriodicOrbit::near(&self.rig, &self.sine, q as u32, &self.pairs()[..d])
     }
 
     /// Impacts p in a period.
@@ -138,15 +136,7 @@ impl PeriodicOrbit {
 
     /// State at `t` seconds after the first impact, any `t`; at an impact, the state after it.
     pub fn state(&self, t: f64) -> State {
-        let mut t = t.rem_euclid(self.period());
-        let last = self.flights.len() - 1;
-        for flight in &self.flights[..last] {
-            if t < flight.period {
-                return flight.state(t);
-            }
-            t -= flight.period;
-        }
-        self.flights[last].state(t)
+        self.course.state(t.rem_euclid(self.period()))
     }
 
     /// Largest modulus of the multipliers over the period.
@@ -154,15 +144,9 @@ impl PeriodicOrbit {
         self.multipliers.map(|m| m[0].norm())
     }
 
-    /// Unknowns as [`System`] takes them.
-    pub(super) fn unknowns(&self, system: &System) -> DVector<f64> {
-        let (p, unit) = (self.beats.len(), system.impulse());
-        DVector::from_fn(
-            2 * p,
-            |k, _| {
-                if k < p { self.beats[k].phase } else { self.beats[k - p].impulse / unit }
-            },
-        )
+    /// Phase and impulse of each impact.
+    pub(super) fn pairs(&self) -> Vec<(f64, f64)> {
+        self.beats.iter().map(|b| (b.phase, b.impulse)).collect()
     }
 
     /// All about the motion whose unknowns are `u`, phases rising within the period.
@@ -194,31 +178,9 @@ impl PeriodicOrbit {
             .zip(&sensitivity)
             .fold(1.0_f64, |most, (b, s)| most.max(1.0 + reach * s.abs() / b.impulse.abs()));
         let exists = beats.iter().all(|b| b.impulse > 0.0 && b.interval > 0.0);
-        let (mut monodromy, mut multipliers, mut stable) = (None, None, Some(false));
-        if exists {
-            let (whole, rounding) = product(rig, &flights);
-            multipliers = floquet::multipliers(&whole).ok();
-            stable =
-                multipliers.as_ref().map_or(stable, |m| floquet::inside(&whole, m, amplified * rounding));
-            monodromy = Some(whole);
-        }
         let own = beats.iter().zip(&sensitivity).map(|(beat, s)| beat.impulse.abs() / s.abs());
-        let surveys: Vec<_> = flights.iter().map(Course::survey).collect();
-        let validity = Validity::judge(
-            exists,
-            // The energy rule of one impact is that the multipliers beyond +1 are even in number. So it is taken here.
-            monodromy.is_some_and(|m| (Matrix4::identity() - m).determinant() > 0.0),
-            own.fold(f64::INFINITY, f64::min),
-            surveys.iter().filter_map(|s| s.closest).reduce(f64::min),
-            flights.iter().map(Course::noise).fold(0.0, f64::max),
-            stable,
-            multipliers.as_ref(),
-        );
-        let spread = |mass: usize| {
-            let ranges = surveys.iter().map(|s| s.ranges[mass]);
-            let (low, high) = ranges.reduce(|r, x| (r.0.min(x.0), r.1.max(x.1))).unwrap_or_default();
-            high - low
-        };
+        let own = own.fold(f64::INFINITY, f64::min);
+        let judged = Judged::new(rig, &flights, exists, None, own, Some(amplified));
         // Every harmonic of a train of impulses has the amplitude 2/T times their sum with their phases.
         let train: Complex64 = beats.iter().map(|b| Complex64::from_polar(b.impulse, u[0] - b.phase)).sum();
         let [l1, l2] = rig.receptances(omega);
@@ -228,18 +190,21 @@ impl PeriodicOrbit {
             sine,
             cycles,
             fundamental: [system.response * Complex64::cis(u[0]) - l1 * train, l2 * train],
-            peak_to_peak: [0, 1].map(spread),
-            validity,
-            multipliers,
-            monodromy,
+            peak_to_peak: judged.peak_to_peak,
+            validity: judged.validity,
+            multipliers: judged.multipliers,
+            monodromy: judged.monodromy,
+            course: Course {
+                period: system.period,
+                stretches: flights.into_iter().flat_map(|flight| flight.stretches).collect(),
+            },
             beats,
-            flights,
         }
     }
 }
 
 /// Newton's method from `u`; `None` where it does not settle on impacts in the same order.
-pub(super) fn settle(system: &System, mut u: DVector<f64>) -> Option<DVector<f64>> {
+fn newton(system: &System, mut u: DVector<f64>) -> Option<DVector<f64>> {
     for _ in 0..STEPS {
         let (left, jacobian) = system.evaluate(&u);
         let mut step = jacobian.lu().solve(&left)?;
@@ -275,20 +240,6 @@ fn sensitivity(system: &System, u: &DVector<f64>) -> Vec<f64> {
         .lu()
         .solve(&pull)
         .map_or_else(|| vec![f64::INFINITY; p], |d| (0..p).map(|i| d[p + i] * system.impulse()).collect())
-}
-
-/// Monodromy as the product over the impacts of Φ(τ)S, and a bound on its rounding.
-fn product(rig: &Rig, flights: &[Course]) -> (Matrix4<f64>, f64) {
-    let p = flights.len();
-    let (mut whole, mut norms, mut relative) = (Matrix4::identity(), 1.0, 0.0);
-    for (i, flight) in flights.iter().enumerate() {
-        let (before, after) = (flights[(i + p - 1) % p].rates().0, flight.rates().1);
-        let part = floquet::monodromy(rig, flight.period, &before, &after);
-        relative += floquet::rounding(rig, flight.period, &before, &after) / part.norm();
-        norms *= part.norm();
-        whole = part * whole;
-    }
-    (whole, norms * relative)
 }
 
 #[cfg(test)]

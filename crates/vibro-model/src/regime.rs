@@ -4,8 +4,8 @@
 //! p-th impact before it did. Counting impacts would call two impacts in two cycles a pattern of one.
 
 use super::{Event, Motion, Piece, State};
-use serde::Serialize;
-use serde::ser::{SerializeStruct, Serializer};
+use serde::{Serialize, Serializer};
+use serde_json::json;
 use std::collections::VecDeque;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
@@ -79,10 +79,7 @@ impl Serialize for Regime {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         match self {
             Regime::Periodic { impacts, cycles } => {
-                let mut s = serializer.serialize_struct("Regime", 2)?;
-                s.serialize_field("impacts", impacts)?;
-                s.serialize_field("cycles", cycles)?;
-                s.end()
+                json!({ "impacts": impacts, "cycles": cycles }).serialize(serializer)
             }
             other => serializer.collect_str(other),
         }
@@ -145,14 +142,6 @@ impl Watch {
         let (frequency, start, phase) = (motion.frequency(), motion.time(), motion.phase());
         let (strikes, sticks) = (VecDeque::with_capacity(KEPT), VecDeque::new());
         Watch { frequency, start, now: start, phase, strikes, sticks }
-    }
-
-    /// Forgets what was watched and watches `motion` from now on.
-    pub(crate) fn restart(&mut self, motion: &impl Motion) {
-        self.frequency = motion.frequency();
-        (self.start, self.now, self.phase) = (motion.time(), motion.time(), motion.phase());
-        self.strikes.clear();
-        self.sticks.clear();
     }
 
     /// Takes the next piece of the motion.

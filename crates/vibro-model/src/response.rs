@@ -55,14 +55,7 @@ pub enum ChangeKind {
 impl ChangeKind {
     /// Name as it is printed.
     pub fn name(self) -> &'static str {
-        match self {
-            ChangeKind::Fold => "fold",
-            ChangeKind::Flip => "flip",
-            ChangeKind::NeimarkSacker => "neimark-sacker",
-            ChangeKind::Grazing => "grazing",
-            ChangeKind::SecondContact => "second contact",
-            ChangeKind::NoImpact => "no impact",
-        }
+        ["fold", "flip", "neimark-sacker", "grazing", "second contact", "no impact"][self as usize]
     }
 }
 
@@ -172,7 +165,7 @@ fn between(a: &ResponsePoint, b: &ResponsePoint, solve: &impl Fn(f64) -> Respons
             let (was, is) = (standing(Some(orbit)), standing(next));
             let seen_from_left = here.frequency > there.frequency && next.is_some();
             let gone = is == Standing::Gone;
-            if was != is && !seen_from_left && !(gone && (was == Standing::Parted || !orbit.is_upper())) {
+            if was != is && !seen_from_left && !(gone && (was == Standing::Parted || !orbit.upper)) {
                 changes.extend(locate(orbit, here.frequency, there, solve));
             }
         }

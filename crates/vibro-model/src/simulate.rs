@@ -12,7 +12,7 @@ mod meet;
 pub use leg::{Counts, Course, Impact, Leg};
 
 use super::drive::Drive;
-use super::scales::{check_time, check_work};
+use super::scales::{self, check_time, check_work};
 use super::stick::Pair;
 use super::{Event, Excitation, Flight, Motion, Piece, Rig, State};
 use vibro_math::Oscillator;
@@ -140,11 +140,6 @@ impl Simulation {
         self.counts
     }
 
-    /// Whether the masses are in contact now, at rest against each other.
-    pub fn together(&self) -> bool {
-        self.hold == Hold::Together
-    }
-
     /// Goes to the next event, or to the time `until` if that comes before; an impulse or a step of force at `until` itself is left to
     /// what follows. Does not allocate.
     ///
@@ -153,7 +148,7 @@ impl Simulation {
     pub fn fly(&mut self, until: f64) -> Result<Leg> {
         check_time(self.time, until)?;
         let remaining = ((until - self.time) - self.carry).max(0.0);
-        let (wait, tick) = self.drive.forcing.clock.next(remaining, until);
+        let (wait, tick) = self.drive.forcing.next(remaining, until);
         let ahead = remaining.min(wait);
         let start = self.time;
         self.counts.flights += 1;
@@ -225,7 +220,7 @@ impl Simulation {
     /// Motion of masses that are apart, from now on.
     #[inline]
     fn flight(&self) -> Flight {
-        let rest = self.drive.forcing.clock.constant() / self.rig.k1;
+        let rest = self.drive.forcing.constant() / self.rig.k1;
         Flight::with(self.oscillators, self.drive.alone(), rest, self.rig.gap, &self.state)
     }
 
@@ -233,7 +228,7 @@ impl Simulation {
     fn pair(&self) -> Result<Pair> {
         let (rig, state) = (&self.rig, &self.state);
         let v = rig.common_speed(state);
-        let pair = Pair::new(rig, self.drive.together(), self.drive.forcing.clock.constant(), state.x1, v);
+        let pair = Pair::new(rig, self.drive.together(), self.drive.forcing.constant(), state.x1, v);
         if pair.is_finite() {
             return Ok(pair);
         }
@@ -280,19 +275,20 @@ impl Motion for Simulation {
     }
 
     fn phase(&self) -> f64 {
-        self.drive.forcing.phase()
+        self.drive.forcing.phase
     }
 
     fn frequency(&self) -> f64 {
-        self.drive.forcing.frequency()
+        self.drive.forcing.frequency
     }
 
     fn set_frequency(&mut self, hz: f64) -> Result<()> {
-        self.drive.set_frequency(&self.rig, hz)
+        self.drive.change(&self.rig, |force| force.set_frequency(hz))
     }
 
     fn set_excitation(&mut self, excitation: &Excitation) -> Result<()> {
-        self.drive.set_excitation(&self.rig, excitation)?;
+        scales::check(&self.rig, excitation)?;
+        self.drive.change(&self.rig, |force| force.set_excitation(excitation))?;
         self.look_again()
     }
 

@@ -45,7 +45,7 @@ impl Pair {
         if rig.has_wall() {
             return Pair { waves, gap: rig.gap, course: Course::Still { force, stiffness: rig.k1 } };
         }
-        let [x, slope, ..] = waves.start();
+        let [x, slope, ..] = waves.at(0.0);
         let rest = (force + rig.k2 * rig.gap) / (rig.k1 + rig.k2);
         let oscillator = Oscillator::new(rig.m1 + rig.m2, rig.c1 + rig.c2, rig.k1 + rig.k2);
         let free = Free { oscillator, x: x1 - rest - x, v: v - slope };
@@ -69,7 +69,7 @@ impl Pair {
         match &self.course {
             Course::Still { force, stiffness } => {
                 let [sines, slope, ..] = self.waves.at(t);
-                let curvature = self.waves.limits().curvature;
+                let curvature = self.waves.limits.curvature;
                 Bounded { value: sines + force - stiffness * self.gap, slope, curvature }
             }
             Course::Moving { rest, free, passive: [m, c, k] } => {
@@ -87,7 +87,7 @@ impl Pair {
     pub(super) fn noise(&self) -> f64 {
         let size = match &self.course {
             Course::Still { force, stiffness } => {
-                self.waves.amplitude() + force.abs() + stiffness * self.gap.abs()
+                self.waves.amplitude + force.abs() + stiffness * self.gap.abs()
             }
             Course::Moving { rest, free, passive: [m, _, k] } => {
                 let ([x, ..], [bend, ..]) = self.series(*rest, free, 0.0);
@@ -108,11 +108,10 @@ impl Pair {
     /// x₁ with its first five derivatives at `t`, and bounds on the second to the fourth for all later times.
     fn series(&self, rest: f64, free: &Free, t: f64) -> ([f64; 6], [f64; 3]) {
         let mut terms = free.series(t);
-        let limits = self.waves.limits();
+        let limits = self.waves.limits;
         let bound = |n: usize| free.oscillator.bound(terms[n], terms[n + 1]);
         let bounds = [limits.curvature + bound(2), limits.jerk + bound(3), limits.snap + bound(4)];
-        let forced = if t == 0.0 { self.waves.start() } else { self.waves.at(t) };
-        for (sum, term) in terms.iter_mut().zip(forced) {
+        for (sum, term) in terms.iter_mut().zip(self.waves.at(t)) {
             *sum += term;
         }
         terms[0] += rest;
@@ -125,7 +124,7 @@ impl Pair {
             Course::Still { .. } => true,
             Course::Moving { free, .. } => free.x.is_finite() && free.v.is_finite(),
         };
-        self.waves.amplitude().is_finite() && free
+        self.waves.amplitude.is_finite() && free
     }
 }
 

@@ -7,7 +7,7 @@ pub use gauge::Gauge;
 use gauge::LOW_PASS;
 pub use gauge::Observable;
 
-use super::{Motion, parallel, scales};
+use super::{Motion, scales};
 use serde::Serialize;
 use std::f64::consts::TAU;
 use vibro_record::{Direction, Error, Result};
@@ -221,19 +221,6 @@ pub struct Swept {
     pub down: Vec<Point>,
 }
 
-/// Sweeps of the frequency in the `directions` asked for, each from a copy of `motion`, at the same time.
-///
-/// # Errors
-/// As [`Plan::frequency`].
-pub fn both<M: Motion + Sync>(
-    plan: &Plan,
-    motion: &M,
-    force: f64,
-    directions: &[Direction],
-) -> Result<Swept> {
-    apart(directions, |direction| plan.frequency(&mut motion.clone(), force, direction))
-}
-
 /// Does `one` for each direction asked for, at the same time.
 ///
 /// # Errors
@@ -243,7 +230,7 @@ pub fn apart(
     one: impl Fn(Direction) -> Result<Vec<Point>> + Sync,
 ) -> Result<Swept> {
     let wanted = |direction| if directions.contains(&direction) { one(direction) } else { Ok(Vec::new()) };
-    let (up, down) = parallel::both(|| wanted(Direction::Up), || wanted(Direction::Down));
+    let (up, down) = rayon::join(|| wanted(Direction::Up), || wanted(Direction::Down));
     Ok(Swept { up: up?, down: down? })
 }
 

@@ -1,5 +1,8 @@
 //! Is a computed orbit real? Four verdicts, each on its own.
 
+use super::orbit::Course;
+use super::{Rig, floquet};
+use nalgebra::Matrix4;
 use num_complex::Complex64;
 use serde::Serialize;
 
@@ -14,8 +17,6 @@ pub struct Validity {
     /// Every Floquet multiplier lies inside the unit circle; `None` where rounding cannot tell the largest from 1. False
     /// where there are no multipliers.
     pub stable: Option<bool>,
-    /// The same in a word.
-    pub stability: Stability,
     /// How an unstable motion has lost its stability; `None` for any other.
     pub instability: Option<Loss>,
     /// The energy rule: a larger impulse would take more energy than the force then gives. "The positive root is stable" is this rule for
@@ -31,29 +32,6 @@ pub struct Validity {
     /// appear; the motion may lose its stability before. Where this is not larger than the uncertainty of the gap, the verdicts and the
     /// multipliers are not to be relied on: near grazing the multipliers grow like the reciprocal of the approach speed.
     pub grazing_distance: f64,
-}
-
-/// Whether disturbances of a periodic motion die away.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Stability {
-    /// They die away.
-    Stable,
-    /// They grow.
-    Unstable,
-    /// Neither: the motion of a rig without losses, or one at the border of stability.
-    Neutral,
-}
-
-impl Stability {
-    /// `stable`, `unstable` or `neutral`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Stability::Stable => "stable",
-            Stability::Unstable => "unstable",
-            Stability::Neutral => "neutral",
-        }
-    }
 }
 
 /// How a periodic motion loses its stability, by the multiplier farthest outside the unit circle.
@@ -73,12 +51,7 @@ pub enum Loss {
 impl Loss {
     /// Name as it is printed.
     pub fn name(self) -> &'static str {
-        match self {
-            Loss::Fold => "fold",
-            Loss::Flip => "flip",
-            Loss::NeimarkSacker => "Neimark–Sacker",
-            Loss::Grazing => "grazing",
-        }
+        ["fold", "flip", "Neimark–Sacker", "grazing"][self as usize]
     }
 
     /// The loss that the largest of these multipliers shows.
@@ -93,38 +66,75 @@ impl Loss {
 }
 
 impl Validity {
-    /// Verdicts on a motion: whether its impacts push and the energy rule holds, the change of the gap in m at which an impact itself
-    /// grazes (`own`), its smallest gap between the impacts, known to `noise`, and what its multipliers say.
-    pub(super) fn judge(
-        exists: bool,
-        energy_rule: bool,
-        own: f64,
-        clearance: Option<f64>,
-        noise: f64,
-        stable: Option<bool>,
-        multipliers: Option<&[Complex64; 4]>,
-    ) -> Validity {
-        // The gap is zero at the impacts, so wherever it is negative it has a smallest value between them.
-        let min_gap = clearance.filter(|gap| *gap < -8.0 * noise).unwrap_or(0.0);
-        Validity {
-            exists,
-            admissible: exists && min_gap == 0.0,
-            stable,
-            stability: match stable {
-                Some(true) => Stability::Stable,
-                Some(false) => Stability::Unstable,
-                None => Stability::Neutral,
-            },
-            instability: (exists && stable == Some(false)).then(|| Loss::of(multipliers)),
-            energy_rule: exists && energy_rule,
-            min_gap,
-            clearance,
-            grazing_distance: clearance.map_or(own, |c| own.min(c.max(0.0))),
+    /// Whether disturbances die away (`stable`), grow (`unstable`), or neither, as in a rig without losses or at the border of
+    /// stability (`neutral`).
+    pub fn stability(&self) -> &'static str {
+        match self.stable {
+            Some(true) => "stable",
+            Some(false) => "unstable",
+            None => "neutral",
         }
     }
 
     /// Whether the motion can be measured: it exists, is admissible and stable.
     pub fn real(&self) -> bool {
         self.exists && self.admissible && self.stable == Some(true)
+    }
+}
+
+/// A periodic motion with its verdicts.
+pub(super) struct Judged {
+    pub validity: Validity,
+    /// Floquet multipliers, largest first, and their matrix, where the motion exists and is driven.
+    pub multipliers: Option<[Complex64; 4]>,
+    pub monodromy: Option<Matrix4<f64>>,
+    /// Largest minus smallest x₁ and x₂ in m.
+    pub peak_to_peak: [f64; 2],
+}
+
+impl Judged {
+    /// Verdicts on a motion along `courses`, each from an impact to the next: whether its impacts push, the energy rule where it is known, the
+    /// change of the gap in m at which an impact itself grazes (`own`), and by how much roundings are `amplified`; nothing for a free motion.
+    pub fn new(
+        rig: &Rig,
+        courses: &[Course],
+        exists: bool,
+        energy_rule: Option<bool>,
+        own: f64,
+        amplified: Option<f64>,
+    ) -> Judged {
+        let (mut multipliers, mut monodromy) = (None, None);
+        // A free motion is one of a family: it neither dies away nor grows.
+        let mut stable = amplified.map(|_| false);
+        if let Some(amplified) = amplified.filter(|_| exists) {
+            let (whole, rounding) = floquet::product(rig, courses);
+            multipliers = floquet::multipliers(&whole).ok();
+            stable =
+                multipliers.as_ref().map_or(stable, |m| floquet::inside(&whole, m, amplified * rounding));
+            monodromy = Some(whole);
+        }
+        // The energy rule of one impact is that the multipliers beyond +1 are even in number. So it is taken of several.
+        let even = || monodromy.is_some_and(|m| (Matrix4::identity() - m).determinant() > 0.0);
+        let surveys: Vec<_> = courses.iter().map(Course::survey).collect();
+        let clearance = surveys.iter().filter_map(|s| s.closest).reduce(f64::min);
+        let noise = courses.iter().map(Course::noise).fold(0.0, f64::max);
+        // The gap is zero at the impacts, so wherever it is negative it has a smallest value between them.
+        let min_gap = clearance.filter(|gap| *gap < -8.0 * noise).unwrap_or(0.0);
+        let validity = Validity {
+            exists,
+            admissible: exists && min_gap == 0.0,
+            stable,
+            instability: (exists && stable == Some(false)).then(|| Loss::of(multipliers.as_ref())),
+            energy_rule: exists && energy_rule.unwrap_or_else(even),
+            min_gap,
+            clearance,
+            grazing_distance: clearance.map_or(own, |c| own.min(c.max(0.0))),
+        };
+        let spread = |mass: usize| {
+            let ranges = surveys.iter().map(|s| s.ranges[mass]);
+            let (low, high) = ranges.reduce(|r, x| (r.0.min(x.0), r.1.max(x.1))).unwrap_or_default();
+            high - low
+        };
+        Judged { validity, multipliers, monodromy, peak_to_peak: [0, 1].map(spread) }
     }
 }

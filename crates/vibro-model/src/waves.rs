@@ -21,10 +21,10 @@ struct Wave {
 pub(super) struct Waves {
     terms: [Wave; MOST_SINES],
     count: usize,
-    /// Σ|X| in m.
-    amplitude: f64,
-    /// Σωⁿ|X|.
-    limits: Limits,
+    /// Σ|X| in m, a bound on |x|.
+    pub amplitude: f64,
+    /// Bounds on derivatives, Σωⁿ|X|.
+    pub limits: Limits,
 }
 
 impl Waves {
@@ -50,28 +50,23 @@ impl Waves {
         waves
     }
 
-    /// Bounds on derivatives.
-    #[inline]
-    pub fn limits(&self) -> Limits {
-        self.limits
-    }
-
-    /// Bound on |x| in m.
-    #[inline]
-    pub fn amplitude(&self) -> f64 {
-        self.amplitude
-    }
-
-    /// x and its first five derivatives at time 0.
-    #[inline]
-    pub fn start(&self) -> [f64; 6] {
-        self.sum(|wave| (wave.re, wave.im))
-    }
-
     /// x and its first five derivatives at `t`.
     #[inline]
     pub fn at(&self, t: f64) -> [f64; 6] {
-        self.sum(|wave| turned(wave, t))
+        let mut sum = [0.0; 6];
+        for wave in self.terms.iter().take(self.count) {
+            let (re, im) = if t == 0.0 { (wave.re, wave.im) } else { turned(wave, t) };
+            let omega = wave.omega;
+            let (v, a) = (omega * im, omega * (omega * re));
+            sum[0] += re;
+            sum[1] -= v;
+            sum[2] -= a;
+            let square = omega * omega;
+            sum[3] += square * v;
+            sum[4] += square * a;
+            sum[5] -= square * (square * v);
+        }
+        sum
     }
 
     /// Largest ω in rad/s.
@@ -91,30 +86,6 @@ impl Waves {
             }
         }
         self.limits.sixth * self.fastest().powi(N as i32 - 6)
-    }
-
-    /// A bound on the fourth derivative.
-    pub fn snap(&self) -> f64 {
-        let one = |wave: &Wave| wave.re.hypot(wave.im) * wave.omega.powi(4);
-        self.terms.iter().take(self.count).map(one).sum()
-    }
-
-    #[inline]
-    fn sum(&self, turn: impl Fn(&Wave) -> (f64, f64)) -> [f64; 6] {
-        let mut sum = [0.0; 6];
-        for wave in self.terms.iter().take(self.count) {
-            let (re, im) = turn(wave);
-            let omega = wave.omega;
-            let (v, a) = (omega * im, omega * (omega * re));
-            sum[0] += re;
-            sum[1] -= v;
-            sum[2] -= a;
-            let square = omega * omega;
-            sum[3] += square * v;
-            sum[4] += square * a;
-            sum[5] -= square * (square * v);
-        }
-        sum
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{Driven, SceneKeys, figures};
 use crate::analysis::{Answer, Progress};
 use crate::error::{Error, Result};
-use crate::model::map::{Axis, Cell, Plan, Rows};
+use crate::model::map::{Axis, Cell, Plan};
 use crate::record::Finding;
 use crate::report::layout::table;
 use serde_json::json;
@@ -61,14 +61,14 @@ impl Keys {
                 let (rows, file) = taken_up(part, &plan)?;
                 (rows, Some((part, file)))
             }
-            None => (Rows::none(&plan), None),
+            None => (Vec::new(), None),
         };
-        let kept = rows.done();
+        let kept = rows.len();
         progress.start("map", plan.y.n - kept);
         plan.run(&mut rows, |row, cells| {
             progress.step();
             store.as_mut().map_or(Ok(()), |(part, file)| {
-                let lines = Rows::lines(&plan, row, cells);
+                let lines = plan.lines(row, cells);
                 file.write_all(lines.as_bytes()).map_err(|e| Error::io("write", part, e))
             })
         })?;
@@ -76,9 +76,8 @@ impl Keys {
             drop(file);
             fs::remove_file(part).map_err(|e| Error::io("remove", part, e))?;
         }
-        let all: Vec<&[Cell]> = (0..plan.y.n).filter_map(|row| rows.get(row)).collect();
         let grid = |of: &dyn Fn(&Cell) -> serde_json::Value| -> Vec<Vec<serde_json::Value>> {
-            all.iter().map(|row| row.iter().map(of).collect()).collect()
+            rows.iter().map(|row| row.iter().map(of).collect()).collect()
         };
         let mut answer = Answer::of(&json!({
             "scene": scene,
@@ -93,11 +92,11 @@ impl Keys {
         if kept > 0 {
             answer.tell("", [Finding::caution("map-rows-kept").count("done", kept).count("rows", plan.y.n)]);
         }
-        let missing = all.iter().flat_map(|row| *row).filter(|c| c.regime.is_none()).count();
+        let missing = rows.iter().flatten().filter(|c| c.regime.is_none()).count();
         if missing > 0 {
             answer.tell("", [Finding::caution("map-cells-empty").count("n", missing)]);
         }
-        let counts = figures::counted(all.iter().flat_map(|row| *row));
+        let counts = figures::counted(rows.iter().flatten());
         answer.tables.push(table(
             "Regimes",
             &counts,
@@ -110,19 +109,19 @@ impl Keys {
 }
 
 /// The rows that stand.
-fn text(plan: &Plan, rows: &Rows) -> Result<String> {
-    let lines = (0..plan.y.n).filter_map(|row| Some(Rows::lines(plan, row, rows.get(row)?)));
-    Ok(Rows::header(plan)? + &lines.collect::<String>())
+fn text(plan: &Plan, rows: &[Vec<Cell>]) -> Result<String> {
+    let lines = rows.iter().enumerate().map(|(row, cells)| plan.lines(row, cells));
+    Ok(plan.header()? + &lines.collect::<String>())
 }
 
 /// What an earlier run has left of this map, in a file that can grow.
-fn taken_up(part: &Path, plan: &Plan) -> Result<(Rows, File)> {
+fn taken_up(part: &Path, plan: &Plan) -> Result<(Vec<Vec<Cell>>, File)> {
     if let Some(folder) = part.parent() {
         fs::create_dir_all(folder).map_err(|e| Error::io("create", folder, e))?;
     }
     let rows = match fs::read_to_string(part) {
-        Ok(earlier) if !earlier.is_empty() => Rows::read(plan, &earlier)?,
-        _ => Rows::none(plan),
+        Ok(earlier) if !earlier.is_empty() => plan.rows(&earlier)?,
+        _ => Vec::new(),
     };
     let whole = text(plan, &rows)?;
     let mut file = File::create(part).map_err(|e| Error::io("write", part, e))?;

@@ -132,8 +132,8 @@ fn verdicts(orbits: &[Orbit], gap_std: Option<f64>) -> Table {
             ("exists", "", &|(_, o)| o.validity.exists.into()),
             ("admissible", "", &|(_, o)| o.validity.admissible.into()),
             ("stability", "", &|(_, o)| match o.validity.instability {
-                Some(loss) => Cell::from(format!("{}: {}", o.validity.stability.name(), loss.name())),
-                None if o.validity.exists => Cell::from(o.validity.stability.name()),
+                Some(loss) => Cell::from(format!("{}: {}", o.validity.stability(), loss.name())),
+                None if o.validity.exists => Cell::from(o.validity.stability()),
                 None => Cell::Missing,
             }),
             ("robust", "", &|(_, o)| gap_std.map(|std| o.robust(std)).into()),

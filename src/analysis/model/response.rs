@@ -99,7 +99,7 @@ fn branches(response: &Response) -> Table {
             ("x1 fundamental", "m", &|o| Cell::from(o.fundamental[0].norm())),
             ("x2 fundamental", "m", &|o| Cell::from(o.fundamental[1].norm())),
             ("admissible", "", &|o| o.validity.admissible.into()),
-            ("stability", "", &|o| Cell::from(o.validity.stability.name())),
+            ("stability", "", &|o| Cell::from(o.validity.stability())),
             ("largest multiplier", "", &|o| Cell::from(o.spectral_radius())),
             ("least gap", "m", &|o| Cell::from(o.validity.min_gap)),
             ("grazing distance, first order", "m", &|o| Cell::from(o.validity.grazing_distance)),

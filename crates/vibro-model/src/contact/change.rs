@@ -1,8 +1,8 @@
 //! What events change: the stage of a contact, the velocities, the spring of mass 1.
 
-use super::compliant::{Beginning, Compliant, Mark, Stage};
+use super::compliant::{Compliant, Mark, Stage};
 use crate::State;
-use crate::clock::Tick;
+use crate::forcing::Tick;
 use crate::motion::{Event, Path, Piece};
 use crate::simulate::Impact;
 
@@ -29,8 +29,7 @@ impl Compliant {
             }
             Mark::ForceEnds | Mark::Separates => {
                 self.stage = Stage::Apart;
-                let Beginning { time, phase, approach, impulse } = self.beginning;
-                Event::Impact(Impact { time, phase, approach_velocity: approach, impulse })
+                Event::Impact(self.impact)
             }
             Mark::LetsGo => {
                 self.stage = Stage::Apart;
@@ -44,21 +43,25 @@ impl Compliant {
         }
     }
 
+    /// What an impact now is, without its impulse.
+    fn met(&self) -> Impact {
+        let (time, phase) = (self.time, self.drive.phase);
+        Impact { time, phase, approach_velocity: self.state.approach(), impulse: 0.0 }
+    }
+
     pub(super) fn touch(&mut self) {
-        let approach = self.state.approach();
         self.stage = Stage::Touching;
-        self.beginning = Beginning { time: self.time, phase: self.drive.phase(), approach, impulse: 0.0 };
-        self.within.begin(approach.abs());
+        self.impact = self.met();
+        self.within.begin(self.impact.approach_velocity.abs());
     }
 
     fn rebound(&mut self) -> Event {
-        let approach = self.state.approach();
-        let impulse = self.rig.exchange() * approach;
+        let met = self.met();
+        let impulse = self.rig.exchange() * met.approach_velocity;
         self.slack = 0.0;
         self.state.v1 -= impulse / self.rig.m1;
         self.state.v2 += impulse / self.rig.m2;
-        let (time, phase) = (self.time, self.drive.phase());
-        Event::Impact(Impact { time, phase, approach_velocity: approach, impulse })
+        Event::Impact(Impact { impulse, ..met })
     }
 
     /// After a rebound too slow to part the masses against the force that presses them together, they move together.
@@ -84,7 +87,7 @@ impl Compliant {
 
     /// Does what the excitation does now.
     pub(super) fn tick(&mut self, tick: Tick) -> Event {
-        self.drive.clock.tick(tick);
+        self.drive.tick(tick);
         let event = match tick {
             Tick::Kick(impulse) => {
                 self.state.v1 += impulse / self.rig.m1;
@@ -92,12 +95,12 @@ impl Compliant {
             }
             Tick::On | Tick::Off => Event::Switch,
         };
-        self.settle();
+        self.find_stage();
         event
     }
 
     /// Finds the stage of a contact whose force has jumped.
-    pub(super) fn settle(&mut self) {
+    pub(super) fn find_stage(&mut self) {
         let pulls = self.modes.contact_force.value(&self.state, 0.0) < 0.0;
         match self.stage {
             Stage::Touching if pulls && !self.integrates() => self.stage = Stage::Released,
@@ -115,7 +118,7 @@ impl Compliant {
 }
 
 /// A state that lasts no time.
-struct Still(State);
+pub(super) struct Still(pub State);
 
 impl Path for Still {
     fn state(&self, _: f64) -> State {

@@ -2,12 +2,14 @@
 //! linear modes, and through integrated contacts between them.
 
 use super::Law;
-use super::modes::{Between, Modes};
+use super::change::Still;
+use super::modes::Modes;
 use super::within::Within;
-use crate::clock::Tick;
 use crate::forcing::Forcing;
+use crate::forcing::Tick;
 use crate::linear::{Course, Linear, Quantity};
 use crate::motion::{Event, Motion, Path, Piece};
+use crate::simulate::Impact;
 use crate::{Excitation, Rig, State, scales};
 use vibro_record::{Error, Result};
 
@@ -41,15 +43,6 @@ pub(super) enum Mark {
     SpringFree,
 }
 
-/// The beginning of a contact.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Beginning {
-    pub time: f64,
-    pub phase: f64,
-    pub approach: f64,
-    pub impulse: f64,
-}
-
 /// A motion with a contact that gives way: where it is now, and what drives it on.
 ///
 /// Flights and Kelvin–Voigt contacts are linear modes, exact to rounding; Hertz and Hunt–Crossley contacts are integrated to
@@ -73,17 +66,10 @@ pub struct Compliant {
     pub(super) state: State,
     pub(super) stage: Stage,
     pub(super) spring_acts: bool,
-    pub(super) beginning: Beginning,
+    /// The contact under way, with the impulse so far.
+    pub(super) impact: Impact,
     /// Overlap in m, of the size of roundings, that is not yet a meeting: masses that leave each other from rest.
     pub(super) slack: f64,
-}
-
-/// How far the next piece may go.
-struct Ahead {
-    until: f64,
-    remaining: f64,
-    jump: f64,
-    tick: Option<Tick>,
 }
 
 impl Compliant {
@@ -156,7 +142,7 @@ impl Compliant {
             state,
             stage: Stage::Apart,
             spring_acts: buffer.is_none() || modes.compression.value(&state, 0.0) > 0.0,
-            beginning: Beginning::default(),
+            impact: Impact::default(),
             slack: 0.0,
             modes,
         };
@@ -165,7 +151,7 @@ impl Compliant {
                 return Err(rig.overlap(&state));
             }
             motion.touch();
-            motion.settle();
+            motion.find_stage();
         }
         Ok(motion)
     }
@@ -185,30 +171,33 @@ impl Compliant {
     }
 
     fn mode(&self) -> &Linear {
-        let between = match self.stage {
-            Stage::Apart | Stage::Released => Between::Apart,
-            Stage::Touching => Between::Pushing,
-            Stage::Together => Between::Together,
+        let by_spring = match self.stage {
+            Stage::Apart | Stage::Released => &self.modes.apart,
+            Stage::Touching => &self.modes.pushing,
+            Stage::Together => &self.modes.together,
         };
-        self.modes.mode(between, self.spring_acts)
+        &by_spring[usize::from(self.spring_acts)]
     }
 
     /// Computes one piece; whether it reached `until`.
     fn piece(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<bool> {
         let remaining = until - self.time;
-        let (jump, tick) = self.drive.clock.next(remaining, until);
-        let ahead = Ahead { until, remaining, jump, tick };
+        let due = self.drive.next(remaining, until);
+        let near = remaining.min(due.0);
         if self.stage == Stage::Touching && self.within.integrates() {
-            let mode = self.modes.mode(Between::Apart, self.spring_acts);
-            let step = self.within.step(mode, &self.drive, &self.state, remaining.min(jump))?;
-            let fall = step.first_fall();
-            let duration = fall.unwrap_or(step.duration());
-            self.beginning.impulse += step.impulse(duration);
-            return Ok(self.pass(&step, duration, fall.map(|_| Mark::Separates), &ahead, visit));
+            if near <= 0.0 {
+                return Ok(self.pass(&Still(self.state), 0.0, None, due, until, visit));
+            }
+            let mode = &self.modes.apart[usize::from(self.spring_acts)];
+            let step = self.within.step(mode, &self.drive, &self.state, near)?;
+            let fall = self.within.first_fall(&step);
+            let duration = fall.unwrap_or(step.duration);
+            self.impact.impulse += step.at(duration)[4];
+            return Ok(self.pass(&step, duration, fall.map(|_| Mark::Separates), due, until, visit));
         }
         let mode = self.mode();
-        let longest = 1.0 / mode.rate().max(self.drive.fastest());
-        let span = remaining.min(jump).min(longest);
+        let longest = 1.0 / mode.rate.max(self.drive.fastest());
+        let span = near.min(longest);
         let force = self.drive.terms(span);
         let taylor = mode.fly(&self.state, &force, span);
         let mut first: Option<(f64, Mark)> = None;
@@ -241,9 +230,9 @@ impl Compliant {
         }
         let duration = first.map_or(span, |(t, _)| t);
         if self.stage == Stage::Touching {
-            self.beginning.impulse += read(&self.modes.contact_force).integral(duration);
+            self.impact.impulse += read(&self.modes.contact_force).integral(duration);
         }
-        Ok(self.pass(&taylor, duration, first.map(|(_, mark)| mark), &ahead, visit))
+        Ok(self.pass(&taylor, duration, first.map(|(_, mark)| mark), due, until, visit))
     }
 
     /// Goes on along `path` for `duration` seconds, to a mark or to what the excitation does; whether it reached the end.
@@ -252,17 +241,18 @@ impl Compliant {
         path: &dyn Path,
         duration: f64,
         mark: Option<Mark>,
-        ahead: &Ahead,
+        (wait, tick): (f64, Option<Tick>),
+        until: f64,
         visit: &mut dyn FnMut(Piece<'_>),
     ) -> bool {
         let start = self.time;
         self.state = path.state(duration);
         self.drive.pass(duration);
-        let whole = mark.is_none() && duration == ahead.remaining;
-        self.time = if whole { ahead.until } else { start + duration };
-        let event = match (mark, ahead.tick) {
+        let whole = mark.is_none() && duration == until - start;
+        self.time = if whole { until } else { start + duration };
+        let event = match (mark, tick) {
             (Some(mark), _) => self.mark(mark),
-            (None, Some(tick)) if duration == ahead.jump => self.tick(tick),
+            (None, Some(tick)) if duration == wait => self.tick(tick),
             _ => Event::Reached,
         };
         visit(Piece { start, duration, path, event });
@@ -287,11 +277,11 @@ impl Motion for Compliant {
     }
 
     fn phase(&self) -> f64 {
-        self.drive.phase()
+        self.drive.phase
     }
 
     fn frequency(&self) -> f64 {
-        self.drive.frequency()
+        self.drive.frequency
     }
 
     fn set_frequency(&mut self, hz: f64) -> Result<()> {
@@ -300,15 +290,15 @@ impl Motion for Compliant {
 
     fn set_excitation(&mut self, excitation: &Excitation) -> Result<()> {
         self.drive.set_excitation(excitation)?;
-        self.settle();
+        self.find_stage();
         Ok(())
     }
 
     fn advance(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<()> {
         scales::check_time(self.time, until)?;
-        let fastest = self.modes.mode(Between::Apart, true).rate().max(self.drive.fastest());
+        let fastest = self.modes.apart[1].rate.max(self.drive.fastest());
         let (mut at_once, mut last) = (0, f64::NAN);
-        let mut work = (until - self.time) * fastest.max(self.drive.frequency());
+        let mut work = (until - self.time) * fastest.max(self.drive.frequency);
         while work <= MOST_WORK && at_once <= MOST_AT_ONCE {
             if self.piece(until, visit)? {
                 return Ok(());

@@ -4,22 +4,15 @@ use super::Law;
 use crate::Rig;
 use crate::linear::{Linear, Quantity};
 
-/// How the masses stand to each other.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Between {
-    /// Apart.
-    Apart,
-    /// They push each other by a spring and a damper.
-    Pushing,
-    /// They move together.
-    Together,
-}
-
 /// All linear modes of a rig, each with the spring of mass 1 acting or not.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Modes {
-    /// By [`Between`], then by whether the spring of mass 1 acts.
-    linear: [[Linear; 2]; 3],
+    /// Apart, by whether the spring of mass 1 acts.
+    pub apart: [Linear; 2],
+    /// Pushing each other by a spring and a damper.
+    pub pushing: [Linear; 2],
+    /// Moving together.
+    pub together: [Linear; 2],
     /// δ = x₁ − x₂ − Δ.
     pub indentation: Quantity,
     /// Force of the contact's spring and damper, pulling included.
@@ -41,38 +34,31 @@ impl Modes {
             Some(Law::KelvinVoigt { stiffness, damping }) => (stiffness, damping),
             _ => (0.0, 0.0),
         };
-        let mode = |between: Between, acting: bool| {
+        let own = |acting: bool| {
             let k1 = if acting { rig.k1 } else { 0.0 };
-            let own = [[-k1, -rig.c1, 0.0, 0.0], [0.0, 0.0, -k2, -c2]];
-            let preload = -k1 * buffer;
-            let scaled = |row: [f64; 4], by: f64| row.map(|v| v * by);
-            match between {
-                Between::Apart => Linear::new(
-                    [scaled(own[0], inverse[0]), scaled(own[1], inverse[1])],
-                    [preload * inverse[0], 0.0],
-                    [inverse[0], 0.0],
-                ),
-                Between::Pushing => {
-                    let push = [k3, c3, -k3, -c3];
-                    let with = |i: usize, sign: f64| {
-                        std::array::from_fn(|j| (own[i][j] + sign * push[j]) * inverse[i])
-                    };
-                    Linear::new(
-                        [with(0, -1.0), with(1, 1.0)],
-                        [(preload + k3 * rig.gap) * inverse[0], -k3 * rig.gap * inverse[1]],
-                        [inverse[0], 0.0],
-                    )
-                }
-                Between::Together => {
-                    let total = 1.0 / (rig.m1 + rig.m2);
-                    let both = std::array::from_fn(|j| (own[0][j] + own[1][j]) * total);
-                    Linear::new([both, both], [preload * total; 2], [total; 2])
-                }
-            }
+            ([[-k1, -rig.c1, 0.0, 0.0], [0.0, 0.0, -k2, -c2]], -k1 * buffer)
         };
-        let pair = |between| [mode(between, false), mode(between, true)];
+        // With a spring k and a damper c between the masses.
+        let free = |k: f64, c: f64| {
+            [false, true].map(|acting| {
+                let (own, preload) = own(acting);
+                let push = [k, c, -k, -c];
+                let with =
+                    |i: usize, sign: f64| std::array::from_fn(|j| (own[i][j] + sign * push[j]) * inverse[i]);
+                let constant = [(preload + k * rig.gap) * inverse[0], -k * rig.gap * inverse[1]];
+                Linear::new([with(0, -1.0), with(1, 1.0)], constant, [inverse[0], 0.0])
+            })
+        };
+        let together = [false, true].map(|acting| {
+            let (own, preload) = own(acting);
+            let total = 1.0 / (rig.m1 + rig.m2);
+            let both = std::array::from_fn(|j| (own[0][j] + own[1][j]) * total);
+            Linear::new([both, both], [preload * total; 2], [total; 2])
+        });
         Modes {
-            linear: [pair(Between::Apart), pair(Between::Pushing), pair(Between::Together)],
+            apart: free(0.0, 0.0),
+            pushing: free(k3, c3),
+            together,
             indentation: Quantity { weights: [1.0, 0.0, -1.0, 0.0], force: 0.0, offset: -rig.gap },
             contact_force: Quantity { weights: [k3, c3, -k3, -c3], force: 0.0, offset: -k3 * rig.gap },
             compression: Quantity { weights: [-1.0, 0.0, 0.0, 0.0], force: 0.0, offset: -buffer },
@@ -80,15 +66,9 @@ impl Modes {
         }
     }
 
-    /// One mode.
-    #[inline]
-    pub fn mode(&self, between: Between, spring_acts: bool) -> &Linear {
-        &self.linear[between as usize][usize::from(spring_acts)]
-    }
-
     /// Force in N with which the masses would press on each other if they moved together: M(a₁ − a₂), each without the other.
     #[inline]
     pub fn pressing(&self, spring_acts: bool) -> Quantity {
-        self.mode(Between::Apart, spring_acts).closing().times(self.reduced_mass)
+        self.apart[usize::from(spring_acts)].closing().times(self.reduced_mass)
     }
 }

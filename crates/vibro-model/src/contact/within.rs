@@ -68,8 +68,8 @@ impl Within {
         [way, speed, way, speed, speed * self.reduced_mass]
     }
 
-    /// One step of at most `span` seconds from `state`; `mode` holds what acts beside the contact.
-    pub fn step(&mut self, mode: &Linear, drive: &Forcing, state: &State, span: f64) -> Result<Bout> {
+    /// One step of at most `span` > 0 seconds from `state`; `mode` holds what acts beside the contact. Its last component is the impulse.
+    pub fn step(&mut self, mode: &Linear, drive: &Forcing, state: &State, span: f64) -> Result<Step<SIZE>> {
         let law = self.law;
         let [inverse1, inverse2] = self.inverse;
         let gap = self.gap;
@@ -79,48 +79,23 @@ impl Within {
             let [a1, a2] = mode.accelerations(&state, drive.force(t));
             [y[1], a1 - push * inverse1, y[3], a2 + push * inverse2, push]
         };
-        let floor = self.floor(state);
-        let tolerance = Tolerance { relative: RELATIVE, floor };
+        let tolerance = Tolerance { relative: RELATIVE, floor: self.floor(state) };
         let start = [state.x1, state.v1, state.x2, state.v2, 0.0];
-        if span <= 0.0 {
-            return Ok(Bout { step: None, state: *state, gap });
-        }
         let mut integrator = Integrator::<Dop853, SIZE>::new(rate, 0.0, start, self.next, tolerance);
         let step = integrator.step(rate, span)?;
         self.next = integrator.next_step();
-        Ok(Bout { step: Some(step), state: *state, gap })
+        Ok(step)
+    }
+
+    /// When in a step the surfaces are back at their rest.
+    pub fn first_fall(&self, step: &Step<SIZE>) -> Option<f64> {
+        step.first_fall(&[1.0, 0.0, -1.0, 0.0, 0.0], -self.gap)
     }
 }
 
-/// One step of a contact.
-pub(super) struct Bout {
-    step: Option<Step<SIZE>>,
-    state: State,
-    gap: f64,
-}
-
-impl Bout {
-    /// Duration in s.
-    pub fn duration(&self) -> f64 {
-        self.step.map_or(0.0, |step| step.duration)
-    }
-
-    /// When the surfaces are back at their rest.
-    pub fn first_fall(&self) -> Option<f64> {
-        self.step.and_then(|step| step.first_fall(&[1.0, 0.0, -1.0, 0.0, 0.0], -self.gap))
-    }
-
-    /// Impulse in N s over the first `t` seconds.
-    pub fn impulse(&self, t: f64) -> f64 {
-        self.step.map_or(0.0, |step| step.at(t)[4])
-    }
-}
-
-impl Path for Bout {
+impl Path for Step<SIZE> {
     fn state(&self, t: f64) -> State {
-        self.step.map_or(self.state, |step| {
-            let y = step.at(t);
-            State { x1: y[0], v1: y[1], x2: y[2], v2: y[3] }
-        })
+        let [x1, v1, x2, v2, _] = self.at(t);
+        State { x1, v1, x2, v2 }
     }
 }

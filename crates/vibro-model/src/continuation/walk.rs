@@ -93,7 +93,7 @@ impl Walk<'_> {
         let n = z.len() - 1;
         z[n] = orbit.sine.frequency.ln();
         let system = self.system(&z)?;
-        z.rows_mut(0, n).copy_from(&orbit.unknowns(&system));
+        z.rows_mut(0, n).copy_from(&system.unknowns(&orbit.pairs()));
         let mut along = DVector::zeros(n + 1);
         along[n] = 1.0;
         let tangent = self.tangent(&z, &along)?.ok_or_else(|| {

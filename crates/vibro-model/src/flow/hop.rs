@@ -48,18 +48,6 @@ fn at<const N: usize>(terms: &[f64; N], t: f64) -> (f64, f64) {
     (value, rate)
 }
 
-/// A short flight at its beginning.
-struct Begun {
-    /// Time in s within which it is looked for.
-    longest: f64,
-    /// Speed of the separation in m/s.
-    separation: f64,
-    /// Acceleration in m/s² that brings the masses together again.
-    pressed: f64,
-    /// Rounding error of the gap in m.
-    rounding: f64,
-}
-
 impl Flight {
     /// The landing of a short flight that begins at contact; nothing where the series proves none within `duration`.
     ///
@@ -69,7 +57,7 @@ impl Flight {
     #[inline]
     pub(super) fn hop(&self, duration: f64, rounding: f64) -> Option<Landing> {
         let [first, second] = &self.free;
-        let [x, v, a, ..] = self.waves.start();
+        let [x, v, a, ..] = self.waves.at(0.0);
         let w = second.v - first.v - v;
         let pressed = first.oscillator.acceleration(first.x, first.v) + a
             - second.oscillator.acceleration(second.x, second.v);
@@ -79,19 +67,17 @@ impl Flight {
         if !(touches && w > 0.0 && pressed > 0.0 && longest * fastest < LONGEST) {
             return None;
         }
-        let begun = Begun { longest, separation: w, pressed, rounding };
         let landing = match longest * fastest {
-            span if span < SHORTEST => self.summed::<6>(&begun),
-            span if span < SHORT => self.summed::<11>(&begun),
-            _ => self.summed::<20>(&begun),
+            span if span < SHORTEST => self.summed::<6>(longest, [w, pressed], rounding),
+            span if span < SHORT => self.summed::<11>(longest, [w, pressed], rounding),
+            _ => self.summed::<20>(longest, [w, pressed], rounding),
         };
         landing.filter(|l| l.time <= duration)
     }
 
-    /// The landing by series of `N` terms.
+    /// The landing within `longest` seconds by series of `N` terms, after a separation at `w` (m/s) against an acceleration `pressed` (m/s²).
     #[inline]
-    fn summed<const N: usize>(&self, begun: &Begun) -> Option<Landing> {
-        let Begun { longest, separation: w, pressed, rounding } = *begun;
+    fn summed<const N: usize>(&self, longest: f64, [w, pressed]: [f64; 2], rounding: f64) -> Option<Landing> {
         let [(mut one, first), (two, second)] = [self.free[0].terms::<N>(), self.free[1].terms::<N>()];
         let forced = self.waves.terms(&const { weights::<N>() }, &mut one);
         one[0] += self.rest;

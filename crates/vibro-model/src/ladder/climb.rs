@@ -23,27 +23,25 @@ pub struct Climb<'a> {
     /// `None` for a mass that is loose on its spring, of which no motion is known before.
     motions: Option<Motions>,
     rungs: Vec<Rung>,
-    stiffness: Option<f64>,
 }
 
 impl<'a> Climb<'a> {
     pub fn new(stage: Stage<'a>) -> Result<Climb<'a>> {
-        let stiffness = keys(stage.scene).stiffness;
         if stage.scene.buffer.is_some() {
-            let loose = || vec![Finding::note("spring-loose")];
-            let mut rungs: Vec<Rung> = Model::ALL.map(|model| Rung::without(model, loose())).into();
-            rungs[Model::LooseMass as usize] =
-                stage.loose_mass(stiffness.filter(|_| !is_curved(stage.scene)));
-            return Ok(Climb { stage, motions: None, rungs, stiffness });
+            let stiffness = keys(stage.scene).stiffness.filter(|_| !is_curved(stage.scene));
+            let rung = |model| match model {
+                Model::LooseMass => Rung::of(model, stage.loose_mass(stiffness)),
+                _ => Rung::of(model, Err(Finding::note("spring-loose").into())),
+            };
+            return Ok(Climb { stage, motions: None, rungs: Model::ALL.map(rung).into() });
         }
         let mut motions = Motions::new(&stage)?;
-        let (linear, closed) = (stage.linear(&motions), stage.closed_form(&motions));
-        let soft = stage.soft_corrected(&motions, closed.valid);
-        let followed = [stage.kelvin_voigt(&mut motions), stage.hunt_crossley(&mut motions)];
-        let restitution = Stage::restitution(&motions);
-        let [spring, curved] = followed;
-        let rungs = vec![linear, closed, soft, restitution, spring, curved, stage.loose_mass(None)];
-        Ok(Climb { stage, motions: Some(motions), rungs, stiffness })
+        let mut rungs: Vec<Rung> = Vec::new();
+        for model in Model::ALL {
+            let closed = rungs.iter().any(|rung| rung.model == Model::ClosedForm && rung.valid);
+            rungs.push(stage.rung(model, &mut motions, closed));
+        }
+        Ok(Climb { stage, motions: Some(motions), rungs })
     }
 
     fn of(&self, model: Model) -> &Rung {
@@ -90,7 +88,7 @@ impl<'a> Climb<'a> {
                 }
                 // What lies above a law that is stated is another law.
                 Model::KelvinVoigt | Model::HuntCrossley => true,
-                Model::LooseMass => self.stiffness.is_some(),
+                Model::LooseMass => keys(scene).stiffness.is_some(),
             };
         // What curved bodies change is said of the choice.
         let audited = rung.changes.iter().filter(|c| c.at != Model::HuntCrossley).map(|c| {
@@ -112,7 +110,7 @@ impl<'a> Climb<'a> {
     /// Whether no law of the contact matters: masses stay in contact, and no spring between them is stated, or a curved contact is stated and
     /// nothing strikes.
     fn is_lawless(&self) -> bool {
-        self.motions.as_ref().is_some_and(|Motions { reading, .. }| match self.stiffness {
+        self.motions.as_ref().is_some_and(|Motions { reading, .. }| match keys(self.stage.scene).stiffness {
             None => reading.end == End::Pressed,
             Some(_) => is_curved(self.stage.scene) && reading.speed == 0.0,
         })
@@ -126,23 +124,18 @@ impl<'a> Climb<'a> {
     pub fn choose(mut self, bend: bool) -> Choice {
         let mut choice = Choice {
             frequency: self.stage.excitation.frequency(),
-            chosen: None,
             rungs: Model::ALL.iter().map(|model| self.rung(*model)).collect(),
-            needs: Vec::new(),
-            audit: None,
-            law: None,
-            gap: Vec::new(),
-            sensitivity: Vec::new(),
-            motions: self.motions.as_ref().map_or(Vec::new(), |m| m.known.clone()),
-            followed: self.motions.as_ref().and_then(|m| m.followed),
-            findings: Vec::new(),
+            ..Choice::default()
         };
+        if let Some(motions) = &self.motions {
+            (choice.motions, choice.followed) = (motions.known.clone(), motions.followed);
+        }
         if self.motions.as_ref().is_some_and(|m| m.on == On::Open) {
             choice.needs.push(Need::History);
             return choice;
         }
         choice.chosen = choice.rungs.iter().find(|r| r.sufficient).map(|r| r.model);
-        if choice.chosen.is_none() && self.stiffness.is_none() {
+        if choice.chosen.is_none() && keys(self.stage.scene).stiffness.is_none() {
             self.without_stiffness(&mut choice);
         }
         match choice.chosen {
@@ -163,7 +156,8 @@ impl<'a> Climb<'a> {
     /// Compares the spring of a rung that was chosen with curved bodies.
     fn bend(&mut self, chosen: Model, choice: &mut Choice) {
         let Some(motions) = &self.motions else { return };
-        self.rungs[Model::HuntCrossley as usize] = self.stage.curved_alike(motions);
+        let curved = Rung::of(Model::HuntCrossley, self.stage.curved_alike(motions));
+        self.rungs[Model::HuntCrossley as usize] = curved;
         for model in [Model::KelvinVoigt, Model::HuntCrossley] {
             choice.rungs[model as usize] = self.rung(model);
         }
@@ -199,7 +193,7 @@ impl<'a> Climb<'a> {
             let Law::KelvinVoigt { damping, .. } = law else { return None };
             let answer = match &self.motions {
                 Some(motions) => self.stage.with(motions, law).ok()?.0.answer,
-                None => self.stage.loose_mass(Some(stiffness)).full()?,
+                None => self.stage.loose_mass(Some(stiffness)).ok()?.full()?,
             };
             let ratio = damping / (2.0 * (stiffness * mass).sqrt());
             let Change { change, enough, .. } = base.change(&answer, Model::KelvinVoigt, self.stage.question);

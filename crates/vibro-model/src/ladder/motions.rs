@@ -9,7 +9,7 @@ use crate::regime::Strike;
 use crate::{Motion, Orbit, Orbits, Regime, Simulation, State, orbits_of};
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
-use vibro_record::{Error, Result};
+use vibro_record::{Error, Finding, Result};
 
 /// Cycles up to which motions with one impact are looked for in closed form.
 pub(crate) const MOST_CYCLES: u32 = 6;
@@ -105,7 +105,7 @@ impl Motions {
             Some(way) => way.rigid()?,
             None => Simulation::new(rig, excitation)?,
         };
-        let reader = Reader::new(rig, excitation.frequency(), question).clear_by(clearance);
+        let reader = Reader { clearance, ..Reader::new(rig, excitation.frequency(), question) };
         let (reading, cost) = timed(|| reader.read(&mut end));
         let (reading, on, known, followed) = (reading?, On::Other, Vec::new(), None);
         let mut motions =
@@ -215,6 +215,12 @@ impl Motions {
             known.extend(found.orbits.iter().filter(|o| o.validity.admissible).map(known_as));
         }
         (self.known, self.on) = (known, on);
+    }
+
+    /// The speed in m/s at which the masses meet.
+    pub fn speed(&self) -> std::result::Result<f64, Finding> {
+        let speed = self.reading.speed;
+        if speed > 0.0 { Ok(speed) } else { Err(Finding::note("impacts-missing")) }
     }
 
     /// The orbit to speak of: the one the rig is in, else the first that can be and stay, else the first that exists.

@@ -11,7 +11,7 @@ const FINEST: f64 = 1e-4;
 /// A mass that moves less than this part of what the other does is not measured by its own motion.
 const STILL: f64 = 1e-3;
 /// Standard errors by which a change between two rungs may be due to means over motions that do not repeat.
-const TOLD: f64 = 2.0;
+const SAME: f64 = 2.0;
 /// Standard errors beyond which two means are of two motions. Of a normal distribution less than e^{−z²/2} lies farther than z on either
 /// side; a search compares some thirty pairs, so that one motion is taken for two in 1 % of the searches at most.
 pub const APART: f64 = 4.0;
@@ -109,7 +109,7 @@ impl Answer {
         // What is hardly known bears nothing out. Nor does a motion on its way somewhere widen what is allowed.
         let known = self.known(question) && other.known(question);
         let (ratio, change) =
-            self.farthest(other, question, if known { TOLD } else { 0.0 }).unwrap_or_default();
+            self.farthest(other, question, if known { SAME } else { 0.0 }).unwrap_or_default();
         Change { at, change, enough: known && ratio <= 1.0 }
     }
 

@@ -15,8 +15,8 @@ const MULTIPLE: f64 = 50.0;
 const DECAY: f64 = 0.3;
 /// Blocks at most, and at least where a cycle holds many swings of a mass.
 const BLOCKS: (usize, usize) = (6, 64);
-/// Blocks at most of motions whose contacts are integrated.
-const BRIEF: usize = 12;
+/// Blocks at most of motions whose contacts are integrated: no more than can be had in a second or so.
+pub const BRIEF: usize = 12;
 /// Swings of the faster mass that are followed at most, where that leaves enough blocks: as many as with five in a cycle.
 const SWINGS: f64 = 5.0 * 60.0 * 64.0;
 /// The motion has settled where what is left of its way is this part of the tolerance, and of no more than this tolerance.
@@ -28,7 +28,7 @@ const LONGEST: usize = 32;
 /// Differences below this part of the state are roundings and what integrators leave.
 const ROUNDING: f64 = 1e-11;
 /// Standard deviations below its expectation from which von Neumann's ratio tells a drift: of a hundred steady motions less than one.
-const TOLD: f64 = 2.5;
+const DRIFT: f64 = 2.5;
 
 /// What a motion shows.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,14 +61,15 @@ pub enum End {
 /// How motions are read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reader {
-    observable: Observable,
-    tolerance: f64,
+    pub observable: Observable,
+    pub tolerance: f64,
     /// Cycles of a block.
-    block: u32,
+    pub block: u32,
     /// Blocks at most.
-    blocks: usize,
-    /// How far the motion without impacts stays clear of the other mass, in m, where that is known: below 0 there is none.
-    clearance: Option<f64>,
+    pub blocks: usize,
+    /// How far the motion without impacts stays clear of the other mass, in m, where that is known: below 0 there is none. No motion without
+    /// impacts is taken as settled that may yet come nearer.
+    pub clearance: Option<f64>,
 }
 
 /// What a block of cycles shows.
@@ -94,20 +95,9 @@ impl Reader {
         Reader { observable, tolerance, block, blocks, clearance: None }
     }
 
-    /// The same, for a rig whose motion without impacts stays clear of the other mass by `clearance` (m): no motion without impacts is
-    /// taken as settled that may yet come nearer.
-    pub fn clear_by(self, clearance: Option<f64>) -> Reader {
-        Reader { clearance, ..self }
-    }
-
     /// The part of the tolerance to which motions settle.
     pub fn fine(&self) -> f64 {
         SETTLED * self.tolerance.min(SETTLED)
-    }
-
-    /// The same, for motions whose contacts are integrated: no more blocks than can be had in a second or so.
-    pub fn brief(self) -> Reader {
-        Reader { blocks: self.blocks.min(BRIEF), ..self }
     }
 
     /// Follows `motion` until its state, once a cycle, has nearly come to where it goes, and what is shown of it holds still; where it does
@@ -177,7 +167,7 @@ impl Reader {
         };
         let mut gauge = Gauge::new(read, motion.rig());
         let (mut with, mut speeds, mut impulses) = (0.0, 0.0, 0.0);
-        watch.restart(motion);
+        *watch = Watch::new(motion);
         for _ in 0..self.block {
             let (start, phase) = (motion.time(), motion.phase());
             let mut strongest: Option<(f64, f64)> = None;
@@ -314,7 +304,7 @@ fn mean(values: &[[f64; 2]], steady: bool) -> Answer {
 /// 4(n − 2)/(n² − 1) for independent ones (J. von Neumann, 1941).
 fn drifts(values: &[[f64; 2]]) -> bool {
     let n = values.len() as f64;
-    let least = 2.0 - TOLD * (4.0 * (n - 2.0) / (n * n - 1.0)).sqrt();
+    let least = 2.0 - DRIFT * (4.0 * (n - 2.0) / (n * n - 1.0)).sqrt();
     (0..2).any(|i| {
         let (_, square, eta) = scatter(values, i);
         square > 0.0 && eta < least

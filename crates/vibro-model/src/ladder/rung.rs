@@ -2,6 +2,7 @@
 
 use super::question::{Answer, Change};
 use super::reading::{End, Reading};
+use super::stage::keys;
 use crate::Scene;
 use serde::Serialize;
 use vibro_record::{Error, Finding};
@@ -39,28 +40,25 @@ impl Model {
         Model::LooseMass,
     ];
 
+    /// The name of each, and the parameters that it needs beside those of mass 1, the gap and the excitation; in their order.
+    const TABLE: [(&'static str, &'static [Need]); 7] = [
+        ("linear", &[]),
+        ("closed-form", &[Need::Mass2, Need::Restitution]),
+        ("soft-corrected", &[Need::Mass2, Need::Rebound, Need::Stiffness]),
+        ("restitution", &[Need::Mass2, Need::Restitution]),
+        ("kelvin-voigt", &[Need::Mass2, Need::Rebound, Need::Stiffness]),
+        ("hunt-crossley", &[Need::Mass2, Need::Rebound, Need::Stiffness, Need::Exponent]),
+        ("loose-mass", &[Need::Mass2, Need::Restitution, Need::Buffer]),
+    ];
+
     /// `linear`, `closed-form`, `soft-corrected`, `restitution`, `kelvin-voigt`, `hunt-crossley` or `loose-mass`.
     pub fn name(self) -> &'static str {
-        match self {
-            Model::Linear => "linear",
-            Model::ClosedForm => "closed-form",
-            Model::SoftCorrected => "soft-corrected",
-            Model::Restitution => "restitution",
-            Model::KelvinVoigt => "kelvin-voigt",
-            Model::HuntCrossley => "hunt-crossley",
-            Model::LooseMass => "loose-mass",
-        }
+        Model::TABLE[self as usize].0
     }
 
     /// Parameters that it needs beside those of mass 1, the gap and the excitation.
     pub fn needs(self) -> &'static [Need] {
-        match self {
-            Model::Linear => &[],
-            Model::ClosedForm | Model::Restitution => &[Need::Mass2, Need::Restitution],
-            Model::SoftCorrected | Model::KelvinVoigt => &[Need::Mass2, Need::Rebound, Need::Stiffness],
-            Model::HuntCrossley => &[Need::Mass2, Need::Rebound, Need::Stiffness, Need::Exponent],
-            Model::LooseMass => &[Need::Mass2, Need::Restitution, Need::Buffer],
-        }
+        Model::TABLE[self as usize].1
     }
 }
 
@@ -87,18 +85,21 @@ pub enum Need {
 }
 
 impl Need {
+    /// Its key, or what it is, and whether a scene has it; in the order of the parameters.
+    const TABLE: [(&'static str, fn(&Scene) -> bool); 8] = [
+        ("mass 2", |_| true),
+        ("restitution", |_| true),
+        ("restitution or contact.damping", |s| keys(s).damping.is_some() || s.rig.restitution > 0.0),
+        ("contact.stiffness", |scene| keys(scene).stiffness.is_some()),
+        ("contact.damping", |scene| keys(scene).damping.is_some()),
+        ("contact.exponent", |scene| keys(scene).exponent.is_some()),
+        ("buffer.gap", |scene| scene.buffer.is_some()),
+        ("history", |_| false),
+    ];
+
     /// Its key, or what it is.
     pub fn name(self) -> &'static str {
-        match self {
-            Need::Mass2 => "mass 2",
-            Need::Restitution => "restitution",
-            Need::Rebound => "restitution or contact.damping",
-            Need::Stiffness => "contact.stiffness",
-            Need::Damping => "contact.damping",
-            Need::Exponent => "contact.exponent",
-            Need::Buffer => "buffer.gap",
-            Need::History => "history",
-        }
+        Need::TABLE[self as usize].0
     }
 
     /// The names of several, with commas.
@@ -108,16 +109,7 @@ impl Need {
 
     /// Whether a scene has it.
     pub(super) fn known(self, scene: &Scene) -> bool {
-        let contact = scene.contact.unwrap_or_default();
-        match self {
-            Need::Mass2 | Need::Restitution => true,
-            Need::Rebound => contact.damping.is_some() || scene.rig.restitution > 0.0,
-            Need::Stiffness => contact.stiffness.is_some(),
-            Need::Damping => contact.damping.is_some(),
-            Need::Exponent => contact.exponent.is_some(),
-            Need::Buffer => scene.buffer.is_some(),
-            Need::History => false,
-        }
+        Need::TABLE[self as usize].1(scene)
     }
 }
 
@@ -168,25 +160,52 @@ pub struct Rung {
     pub changes: Vec<Change>,
 }
 
+/// A rung, its model left out, or why it has no answer.
+pub(super) type Found = Result<Rung, Miss>;
+
+/// Why a rung has no answer: for a reason, or since it cannot be computed.
+pub(super) enum Miss {
+    Reason(Finding),
+    Refused(String),
+}
+
+impl From<Finding> for Miss {
+    fn from(reason: Finding) -> Miss {
+        Miss::Reason(reason)
+    }
+}
+
+impl From<Error> for Miss {
+    fn from(error: Error) -> Miss {
+        Miss::from(&error)
+    }
+}
+
+impl From<&Error> for Miss {
+    fn from(error: &Error) -> Miss {
+        Miss::Refused(error.to_string().lines().next().unwrap_or_default().to_owned())
+    }
+}
+
 impl Rung {
-    /// A rung without an answer, for these reasons.
-    pub(super) fn without(model: Model, reasons: Vec<Finding>) -> Rung {
-        Rung { model, reasons, ..Rung::default() }
+    /// The rung of a model.
+    pub(super) fn of(model: Model, found: Found) -> Rung {
+        let rung = found.unwrap_or_else(|miss| match miss {
+            Miss::Reason(reason) => Rung { reasons: vec![reason], ..Rung::default() },
+            Miss::Refused(text) => Rung { refused: Some(text), ..Rung::default() },
+        });
+        Rung { model, ..rung }
     }
 
-    /// A rung that cannot be computed.
-    pub(super) fn refused(model: Model, error: &Error) -> Rung {
-        let refused = error.to_string().lines().next().map(str::to_owned);
-        Rung { model, refused, ..Rung::default() }
-    }
-
-    /// The same with an answer, which took this time in ns.
-    pub(super) fn answering(self, Answer { value, spread, steady }: Answer, cost: f64, valid: bool) -> Rung {
-        Rung { valid, answer: Some(value), spread, settled: steady, cost_ns: Some(cost), ..self }
+    /// One with an answer, which took this time in ns.
+    pub(super) fn answering(answer: Answer, cost: f64, valid: bool, reasons: Vec<Finding>) -> Rung {
+        let Answer { value, spread, steady } = answer;
+        let (answer, cost_ns) = (Some(value), Some(cost));
+        Rung { valid, answer, spread, settled: steady, cost_ns, reasons, ..Rung::default() }
     }
 
     /// What was read of a motion, with how it was read after other reasons.
-    pub(super) fn read(model: Model, reading: &Reading, cost: f64, mut reasons: Vec<Finding>) -> Rung {
+    pub(super) fn read(reading: &Reading, cost: f64, mut reasons: Vec<Finding>) -> Rung {
         let Answer { value, spread, .. } = reading.answer;
         let part = |i: usize| if value[i] == 0.0 { 0.0 } else { spread[i] / value[i].abs() };
         let how = match reading.end {
@@ -195,7 +214,7 @@ impl Rung {
             End::Steady => Finding::note("mean-of-cycles").number("error", part(0).max(part(1))),
         };
         reasons.push(how.count("cycles", reading.cycles as usize));
-        Rung::without(model, reasons).answering(reading.answer, cost, true)
+        Rung::answering(reading.answer, cost, true, reasons)
     }
 
     /// Its answer with all that is known of it.

@@ -2,12 +2,12 @@
 
 use super::motions::{Motions, On};
 use super::question::{Answer, Question};
-use super::reading::{End, Reader, Reading};
-use super::rung::{Model, Rung};
+use super::reading::{BRIEF, End, Reader, Reading};
+use super::rung::{Found, Model, Rung};
 use crate::contact::conversion;
 use crate::{
     Compliance, Compliant, ContactKeys, Excitation, Law, Motion, Observable, Orbit, Rig, Scene, Simulation,
-    no_impact, orbits_of, softened,
+    Softened, no_impact, orbits_of, softened,
 };
 use std::f64::consts::TAU;
 use std::time::Instant;
@@ -59,7 +59,7 @@ pub fn curved(scene: &Scene, speed: f64) -> Result<Law> {
 /// The contact of two curved bodies that lasts as long as this spring and damper where it is met at `speed` (m/s), and rebounds alike.
 ///
 /// Without losses it lasts 2.9432 (5Mv²/4k)^{2/5}/v, which gives k.
-fn alike(rig: &Rig, law: Law, speed: f64) -> Result<Law> {
+fn as_long(rig: &Rig, law: Law, speed: f64) -> Result<Law> {
     let Law::KelvinVoigt { stiffness, damping } = law else { return Ok(law) };
     let mass = rig.reduced_mass();
     let ratio = damping / (2.0 * (stiffness * mass).sqrt());
@@ -88,13 +88,24 @@ impl Stage<'_> {
         &self.scene.rig
     }
 
-    /// Mass 1 alone.
-    pub fn linear(&self, motions: &Motions) -> Rung {
-        let (found, cost) = timed(|| no_impact(self.rig(), self.excitation));
-        let found = match found {
-            Ok(found) => found,
-            Err(error) => return Rung::refused(Model::Linear, &error),
+    /// What a rung answers; `closed` says whether the closed form is valid.
+    pub fn rung(&self, model: Model, motions: &mut Motions, closed: bool) -> Rung {
+        let found = match model {
+            Model::Linear => self.linear(motions),
+            Model::ClosedForm => self.closed_form(motions),
+            Model::SoftCorrected => self.soft_corrected(motions, closed),
+            Model::Restitution => Ok(Rung::read(&motions.reading, motions.cost, vec![into(motions)])),
+            Model::KelvinVoigt => self.kelvin_voigt(motions),
+            Model::HuntCrossley => self.hunt_crossley(motions),
+            Model::LooseMass => self.loose_mass(None),
         };
+        Rung::of(model, found)
+    }
+
+    /// Mass 1 alone.
+    fn linear(&self, motions: &Motions) -> Found {
+        let (found, cost) = timed(|| no_impact(self.rig(), self.excitation));
+        let found = found?;
         let value = match self.question.observable {
             Observable::Fundamental => {
                 let [l1, _] = self.rig().receptances(TAU * self.excitation.frequency());
@@ -103,29 +114,25 @@ impl Stage<'_> {
             other => other.of_no_impact(&found),
         };
         let (gap, std) = (self.rig().gap, self.question.gap_std);
-        let sized = |reason: Finding| reason.number("largest", found.largest).number("gap", gap);
-        let (clear, met) = (gap - found.largest, sized(Finding::note("masses-stay-clear")));
+        let sized = |code| Finding::note(code).number("largest", found.largest).number("gap", gap);
+        let clear = gap - found.largest;
+        let met = || sized("masses-stay-clear");
         let (valid, reasons) = match motions.on {
-            _ if !found.possible => (false, vec![sized(Finding::note("masses-meet"))]),
+            _ if !found.possible => (false, vec![sized("masses-meet")]),
             _ if clear <= std => {
                 let unsure = Finding::note("clearance-not-sure").number("clearance", clear);
                 (false, vec![unsure.number("std", std)])
             }
-            On::Open => (true, vec![met]),
-            On::Free => (true, vec![met, into(motions)]),
-            On::Orbit(_) | On::Other => (false, vec![met, Finding::note("other-motion"), into(motions)]),
+            On::Open => (true, vec![met()]),
+            On::Free => (true, vec![met(), into(motions)]),
+            On::Orbit(_) | On::Other => (false, vec![met(), Finding::note("other-motion"), into(motions)]),
         };
-        Rung::without(Model::Linear, reasons).answering(Answer::exact(value), cost, valid)
+        Ok(Rung::answering(Answer::exact(value), cost, valid, reasons))
     }
 
     /// One impact a cycle.
-    pub fn closed_form(&self, motions: &Motions) -> Rung {
-        let model = Model::ClosedForm;
-        let orbit = match motions.orbit() {
-            Err(error) => return Rung::refused(model, error),
-            Ok(None) => return Rung::without(model, vec![Finding::note("orbit-missing")]),
-            Ok(Some(orbit)) => orbit,
-        };
+    fn closed_form(&self, motions: &Motions) -> Found {
+        let orbit = motions.orbit()?.ok_or_else(|| Finding::note("orbit-missing"))?;
         let v = &orbit.validity;
         let radius = orbit.spectral_radius().unwrap_or(f64::NAN);
         let std = self.question.gap_std;
@@ -133,7 +140,7 @@ impl Stage<'_> {
         let mut reasons = vec![if !v.admissible {
             Finding::note("orbit-overlaps").number("depth", v.min_gap.abs())
         } else if v.stable != Some(true) {
-            Finding::note("orbit-not-stable").name("stability", v.stability.name()).number("radius", radius)
+            Finding::note("orbit-not-stable").name("stability", v.stability()).number("radius", radius)
         } else if !real {
             Finding::note("orbit-near-grazing").number("distance", v.grazing_distance).number("std", std)
         } else {
@@ -146,7 +153,7 @@ impl Stage<'_> {
         }
         let valid = real && matches!(motions.on, On::Orbit(_) | On::Open);
         let answer = Answer::exact(self.question.observable.of_orbit(orbit));
-        Rung::without(model, reasons).answering(answer, motions.closed_cost, valid)
+        Ok(Rung::answering(answer, motions.closed_cost, valid, reasons))
     }
 
     /// Stiffness in N/m of the spring that the contact is.
@@ -159,95 +166,67 @@ impl Stage<'_> {
     }
 
     /// The same with the contact's duration; the closed form is valid or not.
-    pub fn soft_corrected(&self, motions: &Motions, valid: bool) -> Rung {
-        let model = Model::SoftCorrected;
-        let stiffness = match self.stiffness() {
-            Ok(stiffness) => stiffness,
-            Err(reason) => return Rung::without(model, vec![reason]),
-        };
-        let orbit = match motions.orbit() {
-            Ok(Some(orbit)) if valid => orbit,
-            _ => return Rung::without(model, vec![Finding::note("nothing-to-correct")]),
-        };
+    fn soft_corrected(&self, motions: &Motions, valid: bool) -> Found {
+        let stiffness = self.stiffness()?;
+        let orbit = motions.orbit().ok().flatten().filter(|_| valid);
+        let orbit = orbit.ok_or_else(|| Finding::note("nothing-to-correct"))?;
         let (soft, cost) = timed(|| self.soften(orbit, stiffness));
-        let rung = match soft {
-            Err(error) => Rung::refused(model, &error),
-            Ok(None) => Rung::without(model, vec![Finding::note("corrected-motion-missing")]),
-            Ok(Some((answer, share))) => {
-                let reason = Finding::note("contact-short-enough").number("share", share);
-                Rung::without(model, vec![reason]).answering(answer, cost, true)
-            }
-        };
-        Rung { cost_ns: Some(cost), ..rung }
+        let soft = soft?.ok_or_else(|| Finding::note("corrected-motion-missing"))?;
+        let reason = Finding::note("contact-short-enough").number("share", soft.share);
+        let answer = Answer::exact(self.question.observable.of_softened(&soft));
+        Ok(Rung::answering(answer, cost, true, vec![reason]))
     }
 
-    /// Answer and part of the cycle in contact.
-    fn soften(&self, orbit: &Orbit, stiffness: f64) -> Result<Option<(Answer, f64)>> {
+    fn soften(&self, orbit: &Orbit, stiffness: f64) -> Result<Option<Softened>> {
         let contact = Compliance::new(self.rig(), stiffness, keys(self.scene).damping)?;
         let rig = Rig { restitution: contact.restitution, ..*self.rig() };
         let found = orbits_of(&rig, self.excitation, 1)?;
         let soft = softened(&rig, self.excitation, &found, &contact)?;
         let same = orbit.continued(&found.orbits);
-        let own = found.orbits.iter().zip(soft).find(|(o, _)| Some(*o) == same).and_then(|(_, soft)| soft);
-        Ok(own.map(|soft| (Answer::exact(self.question.observable.of_softened(&soft)), soft.share)))
+        Ok(found.orbits.iter().zip(soft).find(|(o, _)| Some(*o) == same).and_then(|(_, soft)| soft))
     }
 
     /// Spring and damper.
-    pub fn kelvin_voigt(&self, motions: &mut Motions) -> Rung {
-        match self.stiffness() {
-            Err(reason) => Rung::without(Model::KelvinVoigt, vec![reason]),
-            Ok(stiffness) => self.contact(Model::KelvinVoigt, motions, self.scene.spring(stiffness)),
-        }
+    fn kelvin_voigt(&self, motions: &mut Motions) -> Found {
+        let law = self.scene.spring(self.stiffness()?)?;
+        self.contact(Model::KelvinVoigt, motions, law)
     }
 
     /// A curved contact that is stated.
-    pub fn hunt_crossley(&self, motions: &mut Motions) -> Rung {
-        let (model, speed) = (Model::HuntCrossley, motions.reading.speed);
+    fn hunt_crossley(&self, motions: &mut Motions) -> Found {
         if !is_curved(self.scene) {
-            return Rung::without(model, vec![Finding::note("exponent-unknown")]);
+            return Err(Finding::note("exponent-unknown").into());
         }
-        if speed <= 0.0 {
-            return Rung::without(model, vec![Finding::note("impacts-missing")]);
-        }
-        self.contact(model, motions, curved(self.scene, speed))
+        let speed = motions.speed()?;
+        self.contact(Model::HuntCrossley, motions, curved(self.scene, speed)?)
     }
 
     /// Curved bodies that meet for as long as the spring that is stated and rebound alike, in place of an exponent that is not stated.
-    pub fn curved_alike(&self, motions: &Motions) -> Rung {
-        let (model, speed) = (Model::HuntCrossley, motions.reading.speed);
-        let Some(stiffness) = keys(self.scene).stiffness.filter(|_| speed > 0.0) else {
-            return Rung::without(model, vec![Finding::note("impacts-missing")]);
-        };
-        let law = self.scene.spring(stiffness).and_then(|law| alike(self.rig(), law, speed));
-        match law.and_then(|law| self.with(motions, law)) {
-            Err(error) => Rung::refused(model, &error),
-            Ok((reading, cost)) => {
-                let reason = Finding::note("exponent-assumed").number("exponent", HERTZ);
-                Rung::without(model, vec![reason]).answering(reading.answer, cost, false)
-            }
-        }
+    pub fn curved_alike(&self, motions: &Motions) -> Found {
+        let speed = motions.speed()?;
+        let stiffness = keys(self.scene).stiffness.ok_or_else(|| Finding::note("impacts-missing"))?;
+        let law = as_long(self.rig(), self.scene.spring(stiffness)?, speed)?;
+        let (reading, cost) = self.with(motions, law)?;
+        let reason = Finding::note("exponent-assumed").number("exponent", HERTZ);
+        Ok(Rung::answering(reading.answer, cost, false, vec![reason]))
     }
 
     /// A contact whose law is known: followed the way the rig came, else from where the motion with impacts at once had settled and from rest.
-    fn contact(&self, model: Model, motions: &mut Motions, law: Result<Law>) -> Rung {
-        let follow = || -> Result<Rung> {
-            let law = law?;
-            if let Some(way) = &motions.way {
-                let (reading, cost) = self.follow(motions, way.with(law)?)?;
-                return Ok(Rung::read(model, &reading, cost, Vec::new()));
-            }
-            let (reading, cost) = self.with(motions, law)?;
-            let mut found = Rung::read(model, &reading, cost, Vec::new());
-            let rest = Simulation::at_rest(self.rig());
-            let rest = Compliant::new(self.rig(), self.excitation, law, rest, 0.0)?;
-            let (rest, _) = self.follow(motions, rest)?;
-            if rest.end == End::Under {
-                found.reasons.push(Finding::caution("rest-unclear").count("cycles", rest.cycles as usize));
-            }
-            motions.differs(&reading.answer, &rest, model, self.question);
-            Ok(found)
-        };
-        follow().unwrap_or_else(|error| Rung::refused(model, &error))
+    fn contact(&self, model: Model, motions: &mut Motions, law: Law) -> Found {
+        if let Some(way) = &motions.way {
+            let (reading, cost) = self.follow(motions, way.with(law)?)?;
+            return Ok(Rung::read(&reading, cost, Vec::new()));
+        }
+        let (reading, cost) = self.with(motions, law)?;
+        let mut found = Rung::read(&reading, cost, Vec::new());
+        let rest = Simulation::at_rest(self.rig());
+        let rest = Compliant::new(self.rig(), self.excitation, law, rest, 0.0)?;
+        let (rest, _) = self.follow(motions, rest)?;
+        if rest.end == End::Under {
+            found.reasons.push(Finding::caution("rest-unclear").count("cycles", rest.cycles as usize));
+        }
+        motions.differs(&reading.answer, &rest, model, self.question);
+        Ok(found)
     }
 
     /// What a contact of this law shows, from where the motion with impacts at once had settled, and the time in ns that it took.
@@ -257,8 +236,10 @@ impl Stage<'_> {
     }
 
     fn follow(&self, motions: &Motions, mut start: Compliant) -> Result<(Reading, f64)> {
-        let reader = self.reader().clear_by(motions.clearance);
-        let reader = if start.integrates() { reader.brief() } else { reader };
+        let mut reader = Reader { clearance: motions.clearance, ..self.reader() };
+        if start.integrates() {
+            reader.blocks = reader.blocks.min(BRIEF);
+        }
         let (reading, cost) = timed(|| reader.read(&mut start));
         Ok((reading?, cost))
     }
@@ -268,31 +249,16 @@ impl Stage<'_> {
     }
 
     /// A mass 1 loose on its spring, from rest; with the contact's spring and damper where they are known.
-    pub fn loose_mass(&self, stiffness: Option<f64>) -> Rung {
-        let Some(buffer) = self.scene.buffer else {
-            return Rung::without(Model::LooseMass, vec![Finding::note("buffer-missing")]);
-        };
-        let run = || -> Result<(Reading, f64)> {
-            let (rig, rest) = (self.rig(), Simulation::at_rest(self.rig()));
-            let law = stiffness.map(|k| self.scene.spring(k)).transpose()?;
-            let mut motion = Compliant::loose(rig, self.excitation, buffer.gap, law, rest, 0.0)?;
-            let (reading, cost) = timed(|| self.reader().read(&mut motion));
-            Ok((reading?, cost))
-        };
-        match run() {
-            Err(error) => Rung::refused(Model::LooseMass, &error),
-            Ok((reading, cost)) => {
-                let mut reasons = vec![Finding::note("spring-only-pushes").number("gap", buffer.gap)];
-                if self.question.history.is_some() {
-                    reasons.push(Finding::caution("history-not-followed"));
-                }
-                Rung::read(Model::LooseMass, &reading, cost, reasons)
-            }
+    pub fn loose_mass(&self, stiffness: Option<f64>) -> Found {
+        let buffer = self.scene.buffer.ok_or_else(|| Finding::note("buffer-missing"))?;
+        let (rig, rest) = (self.rig(), Simulation::at_rest(self.rig()));
+        let law = stiffness.map(|k| self.scene.spring(k)).transpose()?;
+        let mut motion = Compliant::loose(rig, self.excitation, buffer.gap, law, rest, 0.0)?;
+        let (reading, cost) = timed(|| self.reader().read(&mut motion));
+        let mut reasons = vec![Finding::note("spring-only-pushes").number("gap", buffer.gap)];
+        if self.question.history.is_some() {
+            reasons.push(Finding::caution("history-not-followed"));
         }
-    }
-
-    /// Impacts at once.
-    pub fn restitution(motions: &Motions) -> Rung {
-        Rung::read(Model::Restitution, &motions.reading, motions.cost, vec![into(motions)])
+        Ok(Rung::read(&reading?, cost, reasons))
     }
 }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::{Flight, Rig, Sine, Steady};
+use crate::{Rig, Sine, Steady};
 
 /// Product of two 5×5 matrices.
 fn product(p: &[[f64; 5]; 5], q: &[[f64; 5]; 5]) -> [[f64; 5]; 5] {
@@ -36,11 +36,11 @@ fn exponential(mode: &Linear, t: f64) -> [[f64; 5]; 5] {
 }
 
 fn fly_far(mode: &Linear, start: State, t: f64) -> State {
-    let pieces = (t * mode.rate()).ceil();
+    let pieces = (t * mode.rate).ceil();
     let mut state = start;
     for _ in 0..pieces as usize {
         let piece = mode.fly(&state, &[0.0; ORDER + 1], t / pieces);
-        state = piece.state(piece.duration());
+        state = piece.state(piece.duration);
     }
     state
 }
@@ -62,14 +62,14 @@ fn a_mode_is_the_matrix_exponential_at_any_damping() {
             );
             let start = State { x1: 2e-3, v1: -0.3, x2: -1e-3, v2: 0.2 };
             for turns in [0.3, 1.0, 7.0] {
-                let t = turns / mode.rate();
+                let t = turns / mode.rate;
                 let e = exponential(&mode, t);
                 let y = [start.x1, start.v1, start.x2, start.v2, 1.0];
                 let expected: [f64; 4] =
                     std::array::from_fn(|i| y[i] + (0..5).map(|j| e[i][j] * y[j]).sum::<f64>());
                 let found = fly_far(&mode, start, t);
                 // In the norm of max(s|x|, |v|), 0.5 + s·2 mm: some 30 squarings of the oracle, each with a few roundings.
-                let s = mode.rate();
+                let s = mode.rate;
                 let size = (0.5 + 3e-3 * s) * f64::max(1.0, turns);
                 let tolerance = 200.0 * f64::EPSILON * size;
                 for (x, i) in [(found.x1, 0), (found.x2, 2)] {
@@ -93,8 +93,8 @@ fn a_driven_flight_is_the_closed_form() {
     );
     let start = State { x1: 1e-3, v1: -0.1, x2: 2e-3, v2: 0.3 };
     let steady = Steady::new(&rig, &sine).unwrap();
-    let flight = Flight::new(rig.oscillators(), &steady, rig.gap, &start, 0.7);
-    let longest = 1.0 / mode.rate().max(sine.omega());
+    let flight = crate::flow::tests::flight(&rig, &steady, rig.gap, &start, 0.7);
+    let longest = 1.0 / mode.rate.max(sine.omega());
     let (mut state, mut time) = (start, 0.0);
     for _ in 0..40 {
         // The force in powers of the time.

@@ -14,13 +14,13 @@ fn plan(n: usize) -> Plan {
 #[test]
 fn cells_are_the_simulation_and_the_orbit() {
     let plan = plan(7);
-    let mut rows = Rows::none(&plan);
+    let mut rows = Vec::new();
     plan.run(&mut rows, |_, _| Ok(())).unwrap();
     let mut settled = 0;
     for (row, column) in (0..7).flat_map(|row| (0..7).map(move |column| (row, column))) {
         let (rig, excitation) = plan.at(column, row);
         let Excitation::Sine(sine) = excitation else { panic!("{excitation:?}") };
-        let cell = rows.get(row).unwrap()[column];
+        let cell = rows[row][column];
         let mut motion = Simulation::new(&rig, &sine).unwrap();
         let Ok(long) = regime(&mut motion, 4000, 200) else { continue };
         if let (true, Regime::Periodic { cycles, .. }) = (long.settled, long.regime) {
@@ -55,17 +55,17 @@ fn one_settled_cell_has_the_radius_of_the_closed_form() {
 #[test]
 fn a_map_that_was_cut_short_is_taken_up_again() {
     let plan = Plan { cycles: 40, ..plan(5) };
-    let mut text = Rows::header(&plan).unwrap();
-    let mut all = Rows::none(&plan);
+    let mut text = plan.header().unwrap();
+    let mut all = Vec::new();
     plan.run(&mut all, |row, cells| {
-        text += &Rows::lines(&plan, row, cells);
+        text += &plan.lines(row, cells);
         Ok(())
     })
     .unwrap();
-    assert_eq!(Rows::read(&plan, &text).unwrap(), all);
-    for cut in [Rows::header(&plan).unwrap().len(), text.len() / 2, text.len() - 1, text.len() - 9] {
-        let mut rows = Rows::read(&plan, &text[..cut]).unwrap();
-        let missing = 5 - rows.done();
+    assert_eq!(plan.rows(&text).unwrap(), all);
+    for cut in [plan.header().unwrap().len(), text.len() / 2, text.len() - 1, text.len() - 9] {
+        let mut rows = plan.rows(&text[..cut]).unwrap();
+        let missing = 5 - rows.len();
         assert!(missing > 0);
         let mut computed = 0;
         plan.run(&mut rows, |_, _| {
@@ -76,7 +76,7 @@ fn a_map_that_was_cut_short_is_taken_up_again() {
         assert_eq!((computed, &rows), (missing, &all));
     }
     let other = Plan { cycles: 41, ..plan.clone() };
-    assert!(Rows::read(&other, &text).unwrap_err().to_string().contains("another map"));
+    assert!(other.rows(&text).unwrap_err().to_string().contains("another map"));
 }
 
 #[test]

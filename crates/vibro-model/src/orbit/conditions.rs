@@ -1,7 +1,8 @@
 //! What all orbits of a rig at one period share.
 
 use super::{Course, Orbit};
-use crate::{Excitation, Green, Rig, Validity, floquet, scales};
+use crate::validity::Judged;
+use crate::{Excitation, Green, Rig, scales};
 use num_complex::Complex64;
 use vibro_record::{Error, Result};
 
@@ -67,29 +68,18 @@ impl Conditions {
 
     /// T in s.
     pub fn period(&self) -> f64 {
-        self.greens[0].period()
+        self.greens[0].period
     }
 
     /// The orbit of a root, with its verdicts; without an excitation a free motion.
     pub fn orbit(&self, root: &Root, course: Course, excitation: Option<Excitation>) -> Orbit {
-        let (rig, period) = (&self.rig, self.period());
-        let (mut multipliers, mut stable) = (None, Some(false));
-        if excitation.is_none() {
-            // One of a family of free motions: it neither dies away nor grows.
-            stable = None;
-        } else if root.impulse > 0.0 {
-            let (before, after) = course.rates();
-            let monodromy = floquet::monodromy(rig, period, &before, &after);
-            multipliers = floquet::multipliers(&monodromy).ok();
-            // Roundings of the terms reach the impulse through its sensitivity.
-            let amplified = 1.0 + root.size * root.sensitivity / root.impulse;
-            let rounding = amplified * floquet::rounding(rig, period, &before, &after);
-            stable = multipliers.as_ref().map_or(stable, |m| floquet::inside(&monodromy, m, rounding));
-        }
-        let survey = course.survey();
-        let exists = root.impulse > 0.0;
-        let own = root.impulse.abs() / root.sensitivity;
-        let (closest, noise) = (survey.closest, course.noise());
+        let rig = &self.rig;
+        // Roundings of the terms reach the impulse through its sensitivity.
+        let amplified = excitation.is_some().then(|| 1.0 + root.size * root.sensitivity / root.impulse);
+        let (exists, own) = (root.impulse > 0.0, root.impulse.abs() / root.sensitivity);
+        let courses = std::slice::from_ref(&course);
+        let Judged { validity, multipliers, peak_to_peak, .. } =
+            Judged::new(rig, courses, exists, Some(root.upper), own, amplified);
         let mut orbit = Orbit {
             frequency: self.frequency,
             cycles: self.cycles,
@@ -98,9 +88,9 @@ impl Conditions {
             force_phase: root.force_phase,
             approach_velocity: root.impulse / rig.exchange(),
             fundamental: [Complex64::ZERO; 2],
-            peak_to_peak: survey.ranges.map(|(low, high)| high - low),
-            validity: Validity::judge(exists, root.upper, own, closest, noise, stable, multipliers.as_ref()),
+            peak_to_peak,
             multipliers,
+            validity,
             upper: root.upper,
             rig: *rig,
             excitation,

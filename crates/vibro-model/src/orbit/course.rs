@@ -3,7 +3,7 @@
 use super::turns::Signal;
 use crate::{Flight, State};
 
-/// Flightes without an impulse or a step of the force inside, one after the other.
+/// Flights without an impulse or a step of the force inside, one after the other.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Course {
     /// Time from impact to impact in s.
@@ -30,15 +30,6 @@ impl Course {
         self.stretches[last].1.state(t)
     }
 
-    /// Visits the stretches with their starts and durations, in order.
-    pub fn each(&self, mut visit: impl FnMut(f64, f64, &Flight)) {
-        let mut start = 0.0;
-        for (duration, stretch) in &self.stretches {
-            visit(start, *duration, stretch);
-            start += duration;
-        }
-    }
-
     /// Rates of the state just before and just after the impact.
     pub fn rates(&self) -> ([f64; 4], [f64; 4]) {
         let (duration, last) = &self.stretches[self.stretches.len() - 1];
@@ -56,8 +47,9 @@ impl Course {
         let margin = 1e-9 * self.period;
         let inside = |t: f64| t > margin && t < self.period - margin;
         let mut survey = Survey { ranges: [(f64::INFINITY, f64::NEG_INFINITY); 2], closest: None };
-        let mut before = None::<f64>;
-        self.each(|start, duration, stretch| {
+        let (mut before, mut start) = (None::<f64>, 0.0);
+        for (duration, stretch) in &self.stretches {
+            let duration = *duration;
             let (first, last) = (stretch.series(0.0), stretch.series(duration));
             // A corner or a smooth least gap on the border of two stretches.
             if inside(start) && before.is_some_and(|rate| rate < 0.0 && first[1][1] >= first[0][1]) {
@@ -75,7 +67,8 @@ impl Course {
                 Signal::Gap if bend > 0.0 && inside(start + t) => survey.near(value),
                 Signal::Gap => {}
             });
-        });
+            start += duration;
+        }
         survey
     }
 }

@@ -2,7 +2,6 @@
 
 use crate::{Green, NoImpact};
 use vibro_math::Oscillator;
-use vibro_math::swing::passages;
 use vibro_record::Result;
 
 /// The steady motion, piece by piece free: during the pulse about f/k₁, after it about 0. An impulse is a pulse of no width.
@@ -93,7 +92,7 @@ impl Response {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for piece in self.pieces().iter().filter(|p| p.duration > 0.0) {
             let (x, v) = piece.free;
-            let inner = passages(&self.oscillator, v, self.oscillator.acceleration(x, v), piece.duration);
+            let inner = self.oscillator.passages(v, self.oscillator.acceleration(x, v), piece.duration);
             for t in [0.0, piece.duration].into_iter().chain(inner) {
                 let at = piece.rest + self.oscillator.free(x, v, t).0;
                 (low, high) = (low.min(at), high.max(at));

@@ -6,8 +6,7 @@ use super::{Course, Orbit};
 use crate::waves::Waves;
 use crate::{Excitation, Flight};
 use std::f64::consts::TAU;
-use vibro_math::bracket::bracketed;
-use vibro_math::swing::passages;
+use vibro_math::root::bracketed;
 
 /// Orbits under the excitation whose steady motion is `response`, in the order of their timing τ in 0 < τ < T.
 ///
@@ -81,7 +80,7 @@ fn each_root(conditions: &Conditions, response: &Response, mut visit: impl FnMut
             (z - level, dz)
         };
         let mut left = (0.0, g(0.0).0);
-        let turns = passages(oscillator, dz, oscillator.acceleration(z, dz), duration);
+        let turns = oscillator.passages(dz, oscillator.acceleration(z, dz), duration);
         for t in turns.chain(std::iter::once(duration)) {
             let here = g(t).0;
             // A root on the border belongs to the piece that begins there.

@@ -73,7 +73,7 @@ impl Flight {
     /// Rates and slopes of both masses, with bounds on the curvature of the rates for all later times.
     fn rates(&self, free: [(f64, f64); 2], t: f64) -> Rates {
         let [_, v, a, ..] = self.waves.at(t);
-        let limit = self.waves.limits().jerk;
+        let limit = self.waves.limits.jerk;
         let mut rates = Rates { rate: [v, 0.0], slope: [a, 0.0], limit: [limit, 0.0] };
         for (i, (part, (x, v))) in self.free.iter().zip(free).enumerate() {
             let a = part.oscillator.acceleration(x, v);

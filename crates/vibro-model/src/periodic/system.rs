@@ -45,6 +45,13 @@ impl System {
         self.length * self.omega / self.contact
     }
 
+    /// Unknowns of impacts with these phases (rad) and impulses (N s).
+    pub fn unknowns(&self, impacts: &[(f64, f64)]) -> DVector<f64> {
+        let (phases, impulses): (Vec<f64>, Vec<f64>) =
+            impacts.iter().map(|(phase, impulse)| (phase, impulse / self.impulse())).unzip();
+        DVector::from_vec([phases, impulses].concat())
+    }
+
     /// χ, χ̇, χ̈ of both masses together, `t` in 0..T.
     fn chi(&self, t: f64) -> [f64; 3] {
         let mut sum = [0.0; 3];
@@ -52,7 +59,7 @@ impl System {
             let (x, v) = green.at(t);
             sum[0] += x;
             sum[1] += v;
-            sum[2] += green.oscillator().acceleration(x, v);
+            sum[2] += green.oscillator.acceleration(x, v);
         }
         sum
     }
@@ -78,16 +85,16 @@ impl System {
             jacobian[(p + i, p + i)] = (self.contact + slope) * unit * fast;
             for j in (0..p).filter(|j| *j != i) {
                 let t = ((u[i] - u[j]) / self.omega).rem_euclid(self.period);
-                let [x, v, a] = self.chi(t).map(|c| c * u[p + j] * unit);
+                let chi = self.chi(t);
+                let [x, v, a] = chi.map(|c| c * u[p + j] * unit);
                 gap += x;
                 speed += v;
                 gap_turn += v;
                 speed_turn += a;
                 jacobian[(i, j)] = -v / self.omega * far;
                 jacobian[(p + i, j)] = -a / self.omega * fast;
-                let [x, v, _] = self.chi(t);
-                jacobian[(i, p + j)] = x * unit * far;
-                jacobian[(p + i, p + j)] = v * unit * fast;
+                jacobian[(i, p + j)] = chi[0] * unit * far;
+                jacobian[(p + i, p + j)] = chi[1] * unit * fast;
             }
             left[i] = gap * far;
             left[p + i] = speed * fast;

@@ -25,6 +25,7 @@ const CAMPAIGN: [&str; 11] =
 /// All keys that a scene has; none is needed to read it.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(dead_code, reason = "of most, what is read is that each is known and of its kind")]
 struct Keys {
     m1: Option<f64>,
     m2: Option<f64>,
@@ -34,7 +35,6 @@ struct Keys {
     c2: Option<f64>,
     gap: Option<f64>,
     restitution: Option<f64>,
-    #[expect(dead_code, reason = "read by its kind")]
     excitation: Option<Driven>,
     contact: Option<ContactKeys>,
     buffer: Option<Buffer>,
@@ -174,17 +174,8 @@ impl Draft {
     /// where it stands in the file.
     pub fn scene(&self) -> Result<Scene> {
         let keys = Keys::deserialize(self.table.clone()).map_err(|e| complaint(&e, ""))?;
-        let thesis = Rig::thesis();
-        let rig = Rig {
-            m1: keys.m1.unwrap_or(thesis.m1),
-            m2: keys.m2.unwrap_or(thesis.m2),
-            k1: keys.k1.unwrap_or(thesis.k1),
-            k2: keys.k2.unwrap_or(thesis.k2),
-            c1: keys.c1.unwrap_or(thesis.c1),
-            c2: keys.c2.unwrap_or(thesis.c2),
-            gap: keys.gap.unwrap_or(thesis.gap),
-            restitution: keys.restitution.unwrap_or(thesis.restitution),
-        };
+        let own = self.table.clone().into_iter().filter(|(key, _)| Rig::KEYS.contains(&key.as_str()));
+        let rig = Rig::deserialize(own.collect::<Table>()).map_err(|e| complaint(&e, ""))?;
         if let Some((key, error)) = rig.fault() {
             return Err(self.at(key, error));
         }

@@ -4,7 +4,7 @@ use crate::{Event, Flight, Pair, Path, State};
 use serde::Serialize;
 
 /// One impact.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Impact {
     /// Time in s.
     pub time: f64,
@@ -67,8 +67,6 @@ impl Leg {
 pub struct Counts {
     /// Stretches of motion in closed form.
     pub flights: u64,
-    /// Impacts, those below the end of a chatter left out.
-    pub impacts: u64,
     /// Impacts below the grazing speed after which the masses part by themselves: a little more gap and there is none. What
     /// follows depends on them more than on anything else.
     pub grazing: u64,

@@ -1,7 +1,7 @@
 //! Impacts, rests and kicks: what changes a simulated motion at an instant.
 
 use super::{Hold, Impact, Simulation};
-use crate::clock::Tick;
+use crate::forcing::Tick;
 use crate::stick::Press;
 use crate::{Event, State};
 use std::f64::consts::TAU;
@@ -21,29 +21,23 @@ impl Simulation {
         self.state.v1 -= impulse / self.rig.m1;
         self.state.v2 += impulse / self.rig.m2;
         self.hold = Hold::Apart;
-        self.counts.impacts += 1;
         if approach < SLOW.max(self.grazing_speed).max(SLOW_PART * self.speed())
             || self.rig.restitution == 0.0
         {
-            self.settle(approach)?;
+            self.end_chatter(approach)?;
         }
-        Ok(Impact {
-            time: self.time,
-            phase: self.drive.forcing.phase(),
-            approach_velocity: approach,
-            impulse,
-        })
+        Ok(Impact { time: self.time, phase: self.drive.forcing.phase, approach_velocity: approach, impulse })
     }
 
     /// Scale of the speeds in m/s: of velocities and of displacements times ω.
     #[inline]
     fn speed(&self) -> f64 {
         let State { x1, v1, x2, v2 } = self.state;
-        v1.abs() + v2.abs() + TAU * self.drive.forcing.frequency() * (x1.abs() + x2.abs())
+        v1.abs() + v2.abs() + TAU * self.drive.forcing.frequency * (x1.abs() + x2.abs())
     }
 
     /// Looks after an impact whether the masses come to rest against each other, at once or after a chatter.
-    fn settle(&mut self, approach: f64) -> Result<()> {
+    fn end_chatter(&mut self, approach: f64) -> Result<()> {
         let press = Press::of(&self.flight());
         if press.acceleration <= 0.0 && approach < self.grazing_speed {
             self.counts.grazing += 1;
@@ -82,7 +76,7 @@ impl Simulation {
 
     /// Does what the excitation does now.
     pub(super) fn tick(&mut self, tick: Tick) -> Result<Event> {
-        self.drive.forcing.clock.tick(tick);
+        self.drive.forcing.tick(tick);
         if let Tick::Kick(impulse) = tick {
             self.state.v1 += impulse / self.rig.m1;
             if impulse != 0.0 {

@@ -63,21 +63,6 @@ impl Sums {
     }
 }
 
-/// What was read since the last [`Gauge::clear`].
-#[derive(Debug, Clone, Copy)]
-struct Readings {
-    /// The cycle under way.
-    cycle: Sums,
-    /// All cycles.
-    total: Sums,
-    /// Number of cycles, and sum of the values and of their squares.
-    cycles: f64,
-    scatter: [(f64, f64); 2],
-}
-
-const NOTHING: Readings =
-    Readings { cycle: Sums::NONE, total: Sums::NONE, cycles: 0.0, scatter: [(0.0, 0.0); 2] };
-
 /// Reads one observable of both masses, cycle by cycle.
 #[derive(Debug, Clone)]
 pub struct Gauge {
@@ -86,7 +71,13 @@ pub struct Gauge {
     natural: f64,
     /// Running mean square.
     square: [f64; 2],
-    read: Readings,
+    /// The cycle under way.
+    cycle: Sums,
+    /// All cycles since the last [`Gauge::clear`].
+    total: Sums,
+    /// Their number, and sum of the values and of their squares.
+    cycles: f64,
+    scatter: [(f64, f64); 2],
 }
 
 impl Gauge {
@@ -94,7 +85,8 @@ impl Gauge {
     pub fn new(observable: Observable, rig: &Rig) -> Gauge {
         let natural = rig.oscillators().map(|o| o.omega2().sqrt());
         let natural = natural.into_iter().filter(|n| n.is_finite()).fold(0.0, f64::max);
-        Gauge { observable, natural, square: [0.0; 2], read: NOTHING }
+        let (cycle, total, scatter) = (Sums::NONE, Sums::NONE, [(0.0, 0.0); 2]);
+        Gauge { observable, natural, square: [0.0; 2], cycle, total, cycles: 0.0, scatter }
     }
 
     /// Whether it must see the whole motion, not only the cycles measured.
@@ -104,7 +96,8 @@ impl Gauge {
 
     /// Forgets the cycles read, not the running mean square.
     pub fn clear(&mut self) {
-        self.read = NOTHING;
+        (self.cycle, self.total, self.cycles) = (Sums::NONE, Sums::NONE, 0.0);
+        self.scatter = [(0.0, 0.0); 2];
     }
 
     /// Takes a piece of `duration` s that begins at `phase` (rad) under `omega` (rad/s).
@@ -116,7 +109,7 @@ impl Gauge {
         }
         let turn = Complex64::cis(-omega * h);
         let fade = (-LOW_PASS * h).exp();
-        let cycle = &mut self.read.cycle;
+        let cycle = &mut self.cycle;
         let mut before = path.state(0.0);
         let mut wave = Complex64::cis(-phase);
         for i in 1..=n as u64 {
@@ -151,9 +144,9 @@ impl Gauge {
 
     /// Ends a cycle.
     pub fn close_cycle(&mut self) {
-        let Readings { cycle, total, cycles, scatter } = &mut self.read;
+        let Gauge { observable, cycle, total, cycles, scatter, .. } = self;
         for (mass, (sum, squares)) in scatter.iter_mut().enumerate() {
-            let value = cycle.value(self.observable, mass);
+            let value = cycle.value(*observable, mass);
             *sum += value;
             *squares += value * value;
             total.integral[mass] += cycle.integral[mass];
@@ -168,11 +161,11 @@ impl Gauge {
 
     /// Value over all cycles since [`Gauge::clear`] and standard deviation from cycle to cycle, for each mass.
     pub fn read(&self) -> [(f64, f64); 2] {
-        let Readings { total, cycles, scatter, .. } = &self.read;
+        let Gauge { observable, total, cycles, scatter, .. } = self;
         [0, 1].map(|mass| {
             let (sum, squares) = scatter[mass];
             let variance = (squares - sum * sum / cycles) / (cycles - 1.0).max(1.0);
-            (total.value(self.observable, mass), variance.max(0.0).sqrt())
+            (total.value(*observable, mass), variance.max(0.0).sqrt())
         })
     }
 }

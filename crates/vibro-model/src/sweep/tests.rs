@@ -1,6 +1,10 @@
 use super::*;
 use crate::{Compliant, Excitation, Law, Pulses, Rig, Simulation, Sine, State, orbits, orbits_of};
 
+fn both<M: Motion + Sync>(plan: &Plan, motion: &M, force: f64, directions: &[Direction]) -> Result<Swept> {
+    apart(directions, |direction| plan.frequency(&mut motion.clone(), force, direction))
+}
+
 const BOTH: [Direction; 2] = [Direction::Up, Direction::Down];
 
 /// The thesis' contact: c₃ = 0.1 N s/m on k₃ = 1e5 N/m, so ζ = c₃/2√(k₃M) and R = exp(−ζ(π − 2 asin ζ)/√(1 − ζ²)).

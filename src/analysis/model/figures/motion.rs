@@ -134,7 +134,7 @@ pub fn orbit(title: &str, rig: &Rig, orbit: &Orbit) -> Figure {
             -1e3 * v.min_gap
         ),
         (.., Some(loss)) => format!("It is unstable ({}).", loss.name()),
-        _ => format!("It is possible and {}.", v.stability.name()),
+        _ => format!("It is possible and {}.", v.stability()),
     };
     let figure = Figure::double(title).columns(2).panel(traces).panel(plane);
     lettered(figure.caption(format!(

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::model::Regime;
-use crate::model::map::{Axis, Cell, Plan, Rows};
+use crate::model::map::{Axis, Cell, Plan};
 use crate::report::layout::{capital, lettered};
 use crate::report::{AxisSpec, Figure, Heatmap, Legend, Plot};
 use ndarray::Array2;
@@ -14,15 +14,17 @@ const OWN: usize = 3;
 ///
 /// # Errors
 /// As [`Heatmap::new`].
-pub fn regimes(plan: &Plan, rows: &Rows) -> Result<Figure> {
+pub fn regimes(plan: &Plan, rows: &[Vec<Cell>]) -> Result<Figure> {
     let (x, y) = (plan.x.values(), plan.y.values());
     let cells = |of: &dyn Fn(&Cell) -> f64| {
         Array2::from_shape_fn((y.len(), x.len()), |(row, column)| {
             rows.get(row).map_or(f64::NAN, |cells| of(&cells[column]))
         })
     };
-    let all = (0..y.len()).filter_map(|row| rows.get(row)).flatten();
-    let patterns = counted(all).into_iter().map(|c| c.0).filter(|r| matches!(r, Regime::Periodic { .. }));
+    let patterns = counted(rows.iter().flatten())
+        .into_iter()
+        .map(|c| c.0)
+        .filter(|r| matches!(r, Regime::Periodic { .. }));
     let own: Vec<Regime> = patterns.take(OWN).collect();
     let names: Vec<String> = own.iter().map(Regime::to_string).collect();
     let others = ["other patterns", "irregular or not settled", "chatter", "no impact"];

@@ -1,19 +1,17 @@
-use super::{End, Reader, drifts, mean};
+use super::{BRIEF, End, Reader, drifts, mean};
 use crate::Motion;
 use crate::ladder::Question;
 use crate::ladder::question::APART;
 use crate::ladder::tests::fastest;
 use crate::{Excitation, Observable, Rig, Simulation, Sine, State, no_impact};
 use std::f64::consts::TAU;
+use vibro_math::Noise;
 use vibro_math::runge_kutta::{Dop853, Integrator, Tolerance};
 
-/// Values x ← ρx + noise, noise from a linear congruence: an autoregression whose mean of n has the variance σ²(1 + ρ)/(1 − ρ)/n.
+/// Values x ← ρx + noise, uniform noise: an autoregression whose mean of n has the variance σ²(1 + ρ)/(1 − ρ)/n.
 fn correlated(seed: u64, n: usize, rho: f64) -> Vec<[f64; 2]> {
-    let mut state = seed;
-    let mut even = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-    };
+    let mut noise = Noise::new(seed);
+    let mut even = || noise.uniform() - 0.5;
     let mut x = 0.0;
     let all: Vec<f64> = (0..n + 100)
         .map(|_| {
@@ -105,7 +103,8 @@ fn a_slow_growth_towards_the_gap_is_not_the_end() {
     // The amplitude grows by bA a second: a cycle earlier or later, and what the detuning of a damped resonance leaves.
     assert!((touched / closed - 1.0).abs() < 0.01 && touched * sine.frequency > 1800.0, "{touched} {closed}");
     let question = Question::new(Observable::ImpactSpeed);
-    let reader = Reader::new(&rig, sine.frequency, &question).clear_by(Some(rig.gap - found.largest));
+    let clearance = Some(rig.gap - found.largest);
+    let reader = Reader { clearance, ..Reader::new(&rig, sine.frequency, &question) };
     let mut motion = Simulation::new(&rig, &sine).unwrap();
     let reading = reader.read(&mut motion).unwrap();
     assert!(f64::from(reading.cycles) > touched * sine.frequency && reading.speed > 0.0, "{reading:?}");
@@ -121,7 +120,8 @@ fn a_motion_that_ends_a_thousandth_beyond_the_gap_does_not_settle_without_impact
     let question = Question::new(Observable::ImpactSpeed);
     let read = |part: f64| {
         let sine = Sine { force: part * rig.gap / unit, frequency: 9.0 };
-        let reader = Reader::new(&rig, 9.0, &question).clear_by(Some(rig.gap * (1.0 - part)));
+        let clearance = Some(rig.gap * (1.0 - part));
+        let reader = Reader { clearance, ..Reader::new(&rig, 9.0, &question) };
         reader.read(&mut Simulation::new(&rig, &sine).unwrap()).unwrap()
     };
     let over = read(1.001);
@@ -160,7 +160,8 @@ fn a_pattern_longer_than_a_brief_reading_is_read_to_its_end() {
     let mut motion = Simulation::new(&rig, &Sine { force: 0.9, frequency }).unwrap();
     motion.run(6000.0 / frequency, |_| {}).unwrap();
     let question = Question::new(Observable::ImpactSpeed);
-    let reading = Reader::new(&rig, frequency, &question).brief().read(&mut motion).unwrap();
+    let reader = Reader::new(&rig, frequency, &question);
+    let reading = Reader { blocks: reader.blocks.min(BRIEF), ..reader }.read(&mut motion).unwrap();
     assert_eq!((reading.end, reading.regime.to_string().as_str()), (End::Settled, "9/13"));
     let speeds = fastest(&mut motion, 13);
     let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;

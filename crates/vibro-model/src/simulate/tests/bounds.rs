@@ -37,14 +37,14 @@ fn masses_pressed_together_at_rest_stay_so() {
     let rig = Rig { gap: -5e-4, ..Rig::thesis() };
     // Pressed with k₁k₂·0.5 mm/(k₁ + k₂) = 0.033 N.
     let mut motion = Simulation::new(&rig, &Sine { force: 0.0, frequency: 5.0 }).unwrap();
-    assert!(motion.together());
+    assert_eq!(motion.hold, Hold::Together);
     motion.run(3.0, |leg| assert_eq!(leg.event, Event::Reached)).unwrap();
     let at_rest = rig.k2 * rig.gap / (rig.k1 + rig.k2);
     assert!((motion.state().x1 - at_rest).abs() < 1e-18 && motion.state().v1.abs() < 1e-17);
     // A force that never lifts mass 1 off: |N| swings by less than 0.033 N.
     let mut motion = Simulation::new(&rig, &Sine { force: 0.004, frequency: 2.0 }).unwrap();
     motion.run(30.0, |leg| assert_eq!(leg.event, Event::Reached)).unwrap();
-    assert!(motion.together() && motion.counts().impacts == 0);
+    assert_eq!(motion.hold, Hold::Together);
 }
 
 #[test]

@@ -3,18 +3,10 @@
 use super::*;
 use crate::Orbit;
 use crate::orbit::orbits;
+use vibro_math::Noise;
 
-/// splitmix64, uniform in 0..1.
-fn uniform(seed: &mut u64) -> f64 {
-    *seed = seed.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    let mut z = *seed;
-    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    ((z ^ (z >> 31)) >> 11) as f64 * f64::powi(2.0, -53)
-}
-
-fn random(seed: &mut u64) -> (Rig, Sine) {
-    let mut between = |low: f64, high: f64| low + (high - low) * uniform(seed);
+fn random(noise: &mut Noise) -> (Rig, Sine) {
+    let mut between = |low: f64, high: f64| low + (high - low) * noise.uniform();
     let rig = Rig {
         m1: between(0.05, 0.3),
         m2: between(0.05, 0.3),
@@ -44,11 +36,10 @@ fn on(orbit: &Orbit, impulses: &[f64]) -> bool {
 
 #[test]
 fn two_hundred_random_rigs_settle_where_the_closed_form_is_real_and_nowhere_else() {
-    let mut seed = 20_250;
-    println!("seed {seed}");
+    let mut noise = Noise::new(20_250);
     let (mut settled, mut elsewhere, mut not) = (0, 0, 0);
     while settled + elsewhere < 200 || not < 200 {
-        let (rig, sine) = random(&mut seed);
+        let (rig, sine) = random(&mut noise);
         let found = orbits(&rig, sine.force, sine.frequency).unwrap();
         let is_real = |o: &&Orbit| o.validity.admissible && o.validity.stable == Some(true);
         let real: Vec<&Orbit> = found.orbits.iter().filter(is_real).collect();
