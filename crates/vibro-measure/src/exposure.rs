@@ -67,7 +67,7 @@ fn weighted(values: &[f64], rate: f64) -> Result<Vec<f64>> {
     let sections = analogue().into_iter().zip(corners).map(|((b, a), exact)| Analogue { b, a, exact });
     let filter = Filter::analogue(&sections.collect::<Vec<Analogue>>(), rate)?;
     let mut out = values.to_vec();
-    filter.settled_at(values.first().copied().unwrap_or(0.0)).apply(&mut out);
+    filter.causal(&mut out, values.first().copied().unwrap_or(0.0));
     Ok(out)
 }
 

@@ -111,26 +111,21 @@ impl Filter {
             .product()
     }
 
-    /// The filter at rest, to be given samples block by block.
-    pub fn from_rest(&self) -> Running {
-        Running { sections: self.sections.clone(), states: vec![[0.0; 2]; self.sections.len()] }
-    }
-
-    /// The filter as if the input had had this value for ever.
-    pub fn settled_at(&self, value: f64) -> Running {
-        let mut level = value;
-        let states = self
-            .sections
-            .iter()
-            .map(|s| {
-                let out = level * (s.b[0] + s.b[1] + s.b[2]) / (1.0 + s.a[0] + s.a[1]);
-                let second = s.b[2] * level - s.a[1] * out;
-                let first = s.b[1] * level - s.a[0] * out + second;
-                level = out;
-                [first, second]
-            })
-            .collect();
-        Running { sections: self.sections.clone(), states }
+    /// Filters forwards, as if the input had had the value `before` for ever; 0 is a filter at rest.
+    pub fn causal(&self, values: &mut [f64], before: f64) {
+        let mut level = before;
+        for Section { b, a } in &self.sections {
+            let out = level * (b[0] + b[1] + b[2]) / (1.0 + a[0] + a[1]);
+            let mut second = b[2] * level - a[1] * out;
+            let mut first = b[1] * level - a[0] * out + second;
+            level = out;
+            for v in &mut *values {
+                let out = b[0] * *v + first;
+                first = b[1] * *v - a[0] * out + second;
+                second = b[2] * *v - a[1] * out;
+                *v = out;
+            }
+        }
     }
 
     /// Filters forwards and backwards, so that nothing is delayed. Both ends are continued by their mirror image about the
@@ -157,7 +152,8 @@ impl Filter {
         out.extend_from_slice(values);
         out.extend(values[n - 1 - pad..n - 1].iter().rev().map(|v| 2.0 * last - v));
         for _ in 0..2 {
-            self.settled_at(out[0]).apply(&mut out);
+            let before = out[0];
+            self.causal(&mut out, before);
             out.reverse();
         }
         out.truncate(n + pad);
@@ -176,29 +172,6 @@ impl Filter {
 impl std::fmt::Display for Filter {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(&self.name)
-    }
-}
-
-/// A causal filter between two blocks: what it remembers.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Running {
-    sections: Vec<Section>,
-    states: Vec<[f64; 2]>,
-}
-
-impl Running {
-    /// Filters the next samples in place.
-    pub fn apply(&mut self, values: &mut [f64]) {
-        for (s, state) in self.sections.iter().zip(&mut self.states) {
-            let [mut first, mut second] = *state;
-            for v in &mut *values {
-                let out = s.b[0] * *v + first;
-                first = s.b[1] * *v - s.a[0] * out + second;
-                second = s.b[2] * *v - s.a[1] * out;
-                *v = out;
-            }
-            *state = [first, second];
-        }
     }
 }
 

@@ -48,9 +48,7 @@ pub fn plain(trace: &Trace, window: Window, scaling: Scaling, detrend: bool) -> 
     let weights = window::samples(window, n);
     let transform = Transform::new(n);
     let mut work = transform.workspace();
-    for ((to, v), w) in work.input.iter_mut().zip(&trace.values).zip(&weights) {
-        *to = (v - mean) * w;
-    }
+    work.load(&trace.values, mean, &weights);
     transform.run(&mut work);
     let (sum, squares) = (weights.iter().sum::<f64>(), weights.iter().map(|w| w * w).sum::<f64>());
     let mut values = match scaling {

@@ -131,7 +131,7 @@ impl Corner {
             SmoothingKind::Exponential => {
                 let mut out = values.to_vec();
                 let first = values.first().copied().unwrap_or(0.0);
-                Filter::smoothing(self.corner, rate)?.settled_at(first).apply(&mut out);
+                Filter::smoothing(self.corner, rate)?.causal(&mut out, first);
                 Ok(out)
             }
         }
