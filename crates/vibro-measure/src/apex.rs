@@ -1,11 +1,10 @@
 //! The apex of a resonance between the points of a response curve.
 
-use super::bisection::border;
-use super::peaks::{Vertex, vertex};
+use super::jump::Point;
+use super::peaks::{Vertex, lowest, vertex};
 use std::ops::RangeInclusive;
 
-/// Top of a curve over rising frequency near its highest point `i`, from the points `range` around it, each with its standard
-/// uncertainty.
+/// Top of a curve over rising frequency near its highest point `i`, from the points `range` around it.
 ///
 /// 1/a² of a damped mode is a parabola in f² (its receptance squared); what further modes and contacts add bends it. So the
 /// polynomial in f² through up to two points on each side is taken: exact for one mode at any spacing. Its uncertainty is made of
@@ -14,27 +13,20 @@ use std::ops::RangeInclusive;
 /// lean, and what is beyond a polynomial then falls off slowly: two orders that happen to agree prove nothing.) Where the points
 /// beside `i` are below half of it, where there are three only, or where the polynomial has no single top, the answer is that
 /// of [`vertex`], with the uncertainty of a lean that three points cannot show.
-pub(crate) fn apex(
-    frequency: &[f64],
-    heights: &[f64],
-    std: &[f64],
-    i: usize,
-    range: RangeInclusive<usize>,
-) -> Option<Vertex> {
-    let near = i.checked_sub(1)?..=i + 1;
-    let of = |v: &[f64]| -> Option<[f64; 3]> { v.get(near.clone())?.try_into().ok() };
-    let (f, a, s) = (of(frequency)?, of(heights)?, of(std)?);
-    let simple = || vertex(f, a, s).map(|v| leaning(v, f, a));
+pub(crate) fn apex(curve: &[Point], i: usize, range: RangeInclusive<usize>) -> Option<Vertex> {
+    let near: [Point; 3] = curve.get(i.checked_sub(1)?..=i + 1)?.try_into().ok()?;
+    let (f, a) = (near.map(|p| p.0), near.map(|p| p.1));
+    let simple = || vertex(f, a, near.map(|p| p.2)).map(|v| leaning(v, f, a));
     let (low, high) = ((*range.start()).max(i.saturating_sub(2)), (*range.end()).min(i + 2));
     if high < low + 3 || low >= i || high <= i || a[0] < 0.5 * a[1] || a[2] < 0.5 * a[1] {
         return simple();
     }
-    let point = |k: usize| {
-        let ratio = frequency.get(k)? / f[1];
-        let (x, height, std) = ((ratio - 1.0) * (ratio + 1.0), heights.get(k)? / a[1], std.get(k)? / a[1]);
-        Some(Point { x, height, std, beside: k.abs_diff(i) <= 1 })
+    let relative = |k: usize| {
+        let (f_k, height, std) = curve.get(k)?;
+        let x = (f_k / f[1] - 1.0) * (f_k / f[1] + 1.0);
+        Some(Relative { x, height: height / a[1], std: std / a[1], beside: k.abs_diff(i) <= 1 })
     };
-    let points: Option<Vec<Point>> = (low..=high).map(point).collect();
+    let points: Option<Vec<Relative>> = (low..=high).map(relative).collect();
     let Some([x, height]) = points.and_then(|points| fitted(&points)) else { return simple() };
     let ratio = (1.0 + x.0).sqrt();
     Some(Vertex {
@@ -64,7 +56,7 @@ fn leaning(vertex: Vertex, f: [f64; 3], a: [f64; 3]) -> Vertex {
 
 /// A point relative to the highest: x = f²/f₀² − 1.
 #[derive(Clone, Copy)]
-struct Point {
+struct Relative {
     x: f64,
     height: f64,
     std: f64,
@@ -72,9 +64,9 @@ struct Point {
 }
 
 /// Place and height of the top with their uncertainties; `None` where the polynomial through all points has no single one.
-fn fitted(points: &[Point]) -> Option<[(f64, f64); 2]> {
+fn fitted(points: &[Relative]) -> Option<[(f64, f64); 2]> {
     let found = extremum(points)?;
-    let near: Vec<Point> = points.iter().filter(|p| p.beside).copied().collect();
+    let near: Vec<Relative> = points.iter().filter(|p| p.beside).copied().collect();
     let mut open = [0.0f64; 2];
     for fewer in [near.as_slice(), &points[1..], &points[..points.len() - 1]] {
         // Without a neighbour of the highest point it would be extrapolated.
@@ -101,26 +93,10 @@ fn fitted(points: &[Point]) -> Option<[(f64, f64); 2]> {
 }
 
 /// Where the polynomial through 1/height² is lowest between the points beside the highest, and the height there.
-fn extremum(points: &[Point]) -> Option<[f64; 2]> {
-    let x: Vec<f64> = points.iter().map(|p| p.x).collect();
-    // Newton's divided differences.
-    let mut c: Vec<f64> = points.iter().map(|p| 1.0 / (p.height * p.height)).collect();
-    for order in 1..c.len() {
-        for k in (order..c.len()).rev() {
-            c[k] = (c[k] - c[k - 1]) / (x[k] - x[k - order]);
-        }
-    }
-    // Value and slope, by Horner's scheme.
-    let at = |t: f64| {
-        c.iter().zip(&x).rev().fold((0.0, 0.0), |(p, slope), (c, x)| (p * (t - x) + c, slope * (t - x) + p))
-    };
+fn extremum(points: &[Relative]) -> Option<[f64; 2]> {
+    let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|p| (p.x, 1.0 / (p.height * p.height))).unzip();
     let mut beside = points.iter().filter(|p| p.beside).map(|p| p.x);
-    let (low, high) = (beside.next()?, beside.next_back()?);
-    if !(at(low).1 < 0.0 && at(high).1 > 0.0) {
-        return None;
-    }
-    let place = border(low, high, |t| at(t).1 < 0.0);
-    let inverse = at(place).0;
+    let (place, inverse) = lowest(&x, &y, (beside.next()?, beside.next_back()?))?;
     (inverse > 0.0).then(|| [place, 1.0 / inverse.sqrt()])
 }
 
@@ -129,6 +105,10 @@ mod tests {
     use super::*;
     use crate::synthetic::Normal;
     use num_complex::Complex64;
+
+    fn curve(f: &[f64], a: &[f64], std: &[f64]) -> Vec<Point> {
+        f.iter().zip(a).zip(std).map(|((f, a), std)| (*f, *a, *std)).collect()
+    }
 
     /// One or two modes with a free weight and sign of the second.
     struct Modes {
@@ -208,7 +188,9 @@ mod tests {
             }
             let Some(truth) = highest(&*height, f[i - 2], f[i + 2]) else { continue };
             let reach = points / 2;
-            let Some(found) = apex(&f, &a, &std, i, i - reach..=i + points - 1 - reach) else { continue };
+            let Some(found) = apex(&curve(&f, &a, &std), i, i - reach..=i + points - 1 - reach) else {
+                continue;
+            };
             n += 1;
             let off = [(found.frequency - truth.0).abs(), (found.height - truth.1).abs()];
             // The search for the truth ends where rounding of a flat top does.
@@ -238,7 +220,7 @@ mod tests {
         let modes = Modes { f: [5.6, 9.0], zeta: [0.02, 0.02], weight: 0.0 };
         let f = [5.40, 5.51, 5.63, 5.69, 5.80];
         let a = f.map(|f| modes.at(f));
-        let found = apex(&f, &a, &[0.0; 5], 2, 0..=4).unwrap();
+        let found = apex(&curve(&f, &a, &[0.0; 5]), 2, 0..=4).unwrap();
         let truth = 5.6 * f64::sqrt(1.0 - 2.0 * 0.02f64.powi(2));
         // Rounding, divided by the spacing of the points to the fourth power of the polynomial.
         assert!((found.frequency - truth).abs() < 1e-11, "{}", found.frequency - truth);

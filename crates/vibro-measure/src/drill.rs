@@ -38,7 +38,7 @@ pub(crate) use edges::Edges;
 pub use faults::FaultCount;
 pub use floor::NoiseFloor;
 pub use groups::{Group, Impact};
-pub use options::{Beam, Corner, DrillOptions, From, Smoothing, SmoothingKind};
+pub use options::{Beam, Corner, DrillOptions, From, Smoothing};
 pub use result::{Displacement, Drill, Pulses};
 pub(crate) use survey::levels;
 pub(crate) use turns::Numbered;

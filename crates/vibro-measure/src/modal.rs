@@ -19,7 +19,7 @@ pub use result::{ByMethod, ModalOptions, ModalResult, Mode};
 
 use bands::{Group, groups};
 use rational::{Rational, rational};
-use report::Report;
+use report::Candidate;
 use selection::{chosen, together};
 use vibro_record::{Error, Finding, FrfKind, Result};
 
@@ -67,11 +67,14 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
         together(&lines, lines.within(band), &mut fits, &mut unsupported);
     }
     refine(&lines, &mut fits);
-    let mut report = Report { measured: &lines, options, modes: Vec::new(), findings };
+    let mut modes = Vec::new();
     for (at, (group, fit)) in fits.iter().enumerate() {
-        report.add(group, fit, &poles_beside(&fits, at));
+        let others = poles_beside(&fits, at);
+        for (m, sound) in fit.sound(&lines, &group.peaks).into_iter().enumerate() {
+            let candidate = Candidate { measured: &lines, options, group, fit, m };
+            modes.extend(candidate.mode(sound, &others, &mut findings));
+        }
     }
-    let Report { mut modes, mut findings, .. } = report;
     if modes.is_empty() {
         return Err(Error::refused("no peak of the function is supported as a mode")
             .hint("choose a band around one peak, or check the sign of the phase")

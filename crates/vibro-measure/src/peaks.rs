@@ -1,5 +1,7 @@
 //! Local maxima of a curve, and their vertices between samples.
 
+use super::bisection::border;
+
 /// A maximum of a curve over frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Vertex {
@@ -68,10 +70,11 @@ pub fn vertex(f: [f64; 3], a: [f64; 3], std: [f64; 3]) -> Option<Vertex> {
     if a[0] < 0.5 || a[2] < 0.5 {
         return Some(unresolved);
     }
-    let place = |a: [f64; 3]| parabola(f, a.map(|v| 1.0 / (v * v))).filter(|v| v.1 > 0.0);
+    let parabola = |y: [f64; 3]| lowest(&f, &y, (f[0], f[2]));
+    let place = |a: [f64; 3]| parabola(a.map(|v| 1.0 / (v * v))).filter(|v| v.1 > 0.0);
     let Some((frequency, inverse)) = place(a) else { return Some(unresolved) };
     let height = 1.0 / inverse.sqrt();
-    let (rival_f, rival_h) = parabola(f, a.map(f64::ln)).map_or((f[1], 1.0), |(f, h)| (f, h.exp()));
+    let (rival_f, rival_h) = parabola(a.map(|v| -v.ln())).map_or((f[1], 1.0), |(f, h)| (f, (-h).exp()));
     let beyond = spacing * spacing / frequency;
     // The height moves by as much of the fall beside it.
     let fall = (1.0 / a[0].min(a[2]) - 1.0) * beyond / spacing;
@@ -92,15 +95,24 @@ pub fn vertex(f: [f64; 3], a: [f64; 3], std: [f64; 3]) -> Option<Vertex> {
     Some(Vertex { frequency, frequency_std, height: height * top, height_std: height_std * top })
 }
 
-/// Extremum of the parabola through three points, inside their range.
-fn parabola(x: [f64; 3], y: [f64; 3]) -> Option<(f64, f64)> {
-    let (h0, h1) = (x[1] - x[0], x[2] - x[1]);
-    let (s0, s1) = ((y[1] - y[0]) / h0, (y[2] - y[1]) / h1);
-    let curvature = (s1 - s0) / (h0 + h1);
-    let slope = (s0 * h1 + s1 * h0) / (h0 + h1);
-    let step = -slope / (2.0 * curvature);
-    let vertex = x[1] + step;
-    (vertex >= x[0] && vertex <= x[2]).then(|| (vertex, y[1] + slope * step + curvature * step * step))
+/// Where the polynomial through points (`x`, `y`) of rising `x` is lowest between `low` and `high`, and its value there. `None` unless it
+/// falls at the one and rises at the other.
+pub(crate) fn lowest(x: &[f64], y: &[f64], (low, high): (f64, f64)) -> Option<(f64, f64)> {
+    // Newton's divided differences.
+    let mut c = y.to_vec();
+    for order in 1..c.len() {
+        for k in (order..c.len()).rev() {
+            c[k] = (c[k] - c[k - 1]) / (x[k] - x[k - order]);
+        }
+    }
+    // Value and slope, by Horner's scheme.
+    let at = |t: f64| {
+        c.iter().zip(x).rev().fold((0.0, 0.0), |(p, slope), (c, x)| (p * (t - x) + c, slope * (t - x) + p))
+    };
+    (at(low).1 < 0.0 && at(high).1 > 0.0).then(|| {
+        let place = border(low, high, |t| at(t).1 < 0.0);
+        (place, at(place).0)
+    })
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use super::excitation::{Excitation, excitations};
 use super::jump::Jump;
 use super::limit::upper_limit;
 use super::line::{SubLine, amplitude_at, interpolate, nearest};
-use super::resonance::Resonance;
+use super::resonance::{NamedCurve, Resonance};
 use super::{Estimate, noise};
 use findings::{direction, repeated, wrong_window};
 use serde::Serialize;
@@ -159,17 +159,9 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
     }
     let (mut jumps, mut resonances) = (Vec::new(), Vec::new());
     if let Some(direction) = direction.filter(|_| points.len() >= 3) {
-        let curve = |order: &[usize]| {
-            let of = |value: &dyn Fn(usize) -> f64| order.iter().map(|i| value(*i)).collect::<Vec<f64>>();
-            let std = |i: usize| points[i].amplitude.std.unwrap_or(f64::NAN);
-            [of(&|i| frequency[i]), of(&|i| points[i].amplitude.value), of(&std)]
-        };
-        let mut order: Vec<usize> = (0..points.len()).collect();
-        let [f, amplitude, std] = curve(&order);
-        jumps = super::jump::jumps(&f, &amplitude, &std, direction);
-        order.sort_by(|a, b| frequency[*a].total_cmp(&frequency[*b]));
-        let [f, amplitude, std] = curve(&order);
-        resonances = super::resonance::resonances(&f, &amplitude, &std, &jumps, sweep.mass);
+        let at = |p: &ResponsePoint| (p.excitation, p.amplitude.value, p.amplitude.std.unwrap_or(f64::NAN));
+        let curve = NamedCurve::new(points.iter().map(at).collect(), direction, sweep.mass);
+        (jumps, resonances) = (curve.jumps, curve.resonances);
     } else {
         findings.push(Finding::caution("sweep-too-few-points").count("n", points.len()));
     }

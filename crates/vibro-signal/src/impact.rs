@@ -31,8 +31,6 @@ const ROUNDED: f64 = 8.0;
 /// Steps in a record of which only few different values are known: at least so many up to its extreme.
 const COARSEST: f64 = 250.0;
 
-
-
 const CUT_OFF: &str = "the record cuts it off";
 const DOUBLE: &str = "double hit";
 const OVERLOAD: &str = "overload";

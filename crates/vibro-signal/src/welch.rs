@@ -202,7 +202,6 @@ impl Kernel {
             )
             .collect()
     }
-
 }
 
 /// Independent segments that scatter as little as `count` overlapping ones: count/(1 + 2 Σⱼ (1 − j/K) ρⱼ), ρⱼ the squared

@@ -1,5 +1,7 @@
 //! Where a sampled signal crosses a level, and its value, between samples.
 
+use crate::bisection::border;
+
 /// Lagrange's cubic through four samples at −1, 0, 1 and 2.
 fn cubic([before, a, b, after]: [f64; 4], s: f64) -> f64 {
     let (m, p, q) = (s + 1.0, s - 1.0, s - 2.0);
@@ -22,13 +24,8 @@ pub(super) fn between(values: &[f64], i: usize, level: f64) -> Option<f64> {
         return Some(i as f64 + a / (a - b));
     };
     let four = four.map(|v| v - level);
-    let (mut low, mut high) = (0.0f64, 1.0f64);
-    // Halved to 1e-9 of a sample, far below any noise; a change of sign between 0 and 1 is certain.
-    for _ in 0..30 {
-        let middle = 0.5 * (low + high);
-        if cubic(four, middle) * a > 0.0 { low = middle } else { high = middle }
-    }
-    Some(i as f64 + 0.5 * (low + high))
+    // A change of sign between 0 and 1 is certain.
+    Some(i as f64 + border(0.0, 1.0, |s| cubic(four, s) * a > 0.0))
 }
 
 /// Value at a place between samples, on the cubic through the four samples around it; a straight line at the ends. `None`

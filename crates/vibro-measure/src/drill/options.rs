@@ -82,23 +82,14 @@ pub enum Smoothing {
     Exponential(f64),
 }
 
-/// A smoothing and its corner.
+/// A smoothing and its corner in Hz.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Corner {
-    /// Kind of smoothing.
-    pub kind: SmoothingKind,
-    /// Corner in Hz: half the amplitude of the zero-phase low-pass, 1/√2 of exponential smoothing.
-    pub corner: f64,
-}
-
-/// Kind of a smoothing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum SmoothingKind {
-    /// Butterworth low-pass of second order, forward and backward.
-    ZeroPhaseLowPass,
-    /// First-order low-pass, forward only.
-    Exponential,
+#[serde(tag = "kind", content = "corner", rename_all = "kebab-case")]
+pub enum Corner {
+    /// Butterworth low-pass of second order, forward and backward: the corner is at half the amplitude.
+    ZeroPhaseLowPass(f64),
+    /// First-order low-pass, forward only: the corner is at 1/√2 of the amplitude.
+    Exponential(f64),
 }
 
 impl Smoothing {
@@ -106,32 +97,30 @@ impl Smoothing {
     /// smoothed.
     ///
     /// ```
-    /// use vibro_measure::drill::Smoothing;
-    /// assert_eq!(Smoothing::Phases.corner(720, 0.02, 102_400.0).unwrap().corner, 18_000.0);
-    /// assert_eq!(Smoothing::Phases.corner(720, 0.02, 20_000.0).unwrap().corner, 5_000.0);
+    /// use vibro_measure::drill::{Corner, Smoothing};
+    /// assert_eq!(Smoothing::Phases.corner(720, 0.02, 102_400.0), Some(Corner::ZeroPhaseLowPass(18_000.0)));
+    /// assert_eq!(Smoothing::Phases.corner(720, 0.02, 20_000.0), Some(Corner::ZeroPhaseLowPass(5_000.0)));
     /// ```
     pub fn corner(self, points: usize, turn: f64, rate: f64) -> Option<Corner> {
-        use SmoothingKind::{Exponential, ZeroPhaseLowPass};
         let highest = (0.5 * points as f64).max(HARMONICS) / turn;
-        let (kind, corner) = match self {
-            Smoothing::Off => return None,
-            Smoothing::Phases => (ZeroPhaseLowPass, highest.min(HIGHEST * rate)),
-            Smoothing::LowPass(corner) => (ZeroPhaseLowPass, corner),
-            Smoothing::Exponential(time) => (Exponential, 1.0 / (std::f64::consts::TAU * time)),
-        };
-        Some(Corner { kind, corner })
+        match self {
+            Smoothing::Off => None,
+            Smoothing::Phases => Some(Corner::ZeroPhaseLowPass(highest.min(HIGHEST * rate))),
+            Smoothing::LowPass(corner) => Some(Corner::ZeroPhaseLowPass(corner)),
+            Smoothing::Exponential(time) => Some(Corner::Exponential(1.0 / (std::f64::consts::TAU * time))),
+        }
     }
 }
 
 impl Corner {
     /// Smooths a velocity.
     pub(super) fn smooth(self, values: &[f64], rate: f64) -> Result<Vec<f64>> {
-        match self.kind {
-            SmoothingKind::ZeroPhaseLowPass => Filter::low_pass(self.corner, 2, rate)?.zero_phase(values),
-            SmoothingKind::Exponential => {
+        match self {
+            Corner::ZeroPhaseLowPass(corner) => Filter::low_pass(corner, 2, rate)?.zero_phase(values),
+            Corner::Exponential(corner) => {
                 let mut out = values.to_vec();
                 let first = values.first().copied().unwrap_or(0.0);
-                Filter::smoothing(self.corner, rate)?.causal(&mut out, first);
+                Filter::smoothing(corner, rate)?.causal(&mut out, first);
                 Ok(out)
             }
         }

@@ -5,7 +5,7 @@ use super::locate::Located;
 use super::result::{PulseCurve, PulseFit, PulsePicture, propagated};
 use super::{ContactModel, HuntCrossley, LowPass};
 use crate::Estimate;
-use crate::residuals::{Whiteness, aicc};
+use crate::residuals::aicc;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use vibro_record::units::Quantity;
@@ -87,15 +87,15 @@ impl<'a> Normalised<'a> {
     /// # Errors
     /// If there are too few samples, or no contact of spring and damper fits the pulse, as `unlike` says.
     pub fn window(&self, findings: &mut Vec<Finding>, unlike: impl Fn(Error) -> Error) -> Result<Window<'_>> {
-        let delay = self.seen.filter.as_ref().map_or(0.0, LowPass::delay);
+        let delay = self.seen.delay();
         let from = self.index(-BESIDE - delay);
         let (first, used) = self.samples(from..self.found.low);
         if used.len() < FEWEST {
-            return Err(Error::refused(format!(
-                "the pulse has {} usable samples, and {FEWEST} are needed for five parameters",
-                used.len()
-            ))
-            .hint("sample faster, and record some of the baseline before the pulse"));
+            let n = used.len();
+            let why =
+                format!("the pulse has {n} usable samples, and {FEWEST} are needed for five parameters");
+            let hint = "sample faster, and record some of the baseline before the pulse";
+            return Err(Error::refused(why).hint(hint));
         }
         self.faults(from..self.found.low, findings);
         let fitted = first.fit(ContactModel::KelvinVoigt).map_err(unlike)?;
@@ -153,18 +153,18 @@ impl<'a> Normalised<'a> {
     }
 
     /// A fit in SI units; without uncertainties unless the instrument is `known`.
-    pub fn report(&self, samples: &Samples<'_>, fitted: &Fitted, mass: Option<f64>, known: bool) -> PulseFit {
-        let whiteness = Whiteness::of(&[&fitted.fit.residuals]);
-        let n = fitted.fit.residuals.len();
-        let method = "least squares";
-        let widening = samples.widening(fitted, &whiteness);
-        let valued = |value: f64| widening.map_or(f64::NAN, |_| value);
+    pub fn report(&self, fitted: &Fitted, mass: Option<f64>, known: bool) -> PulseFit {
+        let Fitted { model, fit, whiteness, widening, .. } = fitted;
+        let n = fit.residuals.len();
         let widened = widening.filter(|_| known).unwrap_or(f64::NAN);
+        let estimate = |value: f64, std: f64, unit| {
+            let value = widening.map_or(f64::NAN, |_| value);
+            Estimate::new(value, Some(std), unit, n, "least squares")
+        };
         let mut parameters = BTreeMap::new();
         let mut put = |name, i: usize, factor: f64, shift: f64, unit| {
-            let value = shift + factor * fitted.fit.parameters[i];
-            let std = factor.abs() * fitted.fit.std(i) * widened;
-            parameters.insert(name, Estimate::new(valued(value), Some(std), unit, n, method));
+            let std = factor.abs() * fit.std(i) * widened;
+            parameters.insert(name, estimate(shift + factor * fit.parameters[i], std, unit));
         };
         put("onset", 0, self.length, self.seconds(0.0), "s");
         let unit = self.trace.meta.quantity.symbol();
@@ -172,7 +172,7 @@ impl<'a> Normalised<'a> {
         if let Some(factor) = self.to_velocity(mass) {
             put("initial_velocity", 2, factor * self.found.height.signum(), 0.0, "m/s");
         }
-        match fitted.model {
+        match model {
             ContactModel::KelvinVoigt => {
                 put("xi", 3, 1.0, 0.0, "1");
                 put("frequency", 4, 1.0 / self.length, 0.0, "Hz");
@@ -182,17 +182,16 @@ impl<'a> Normalised<'a> {
                 put("duration", 3, self.length, 0.0, "s");
                 put("alpha", 4, 1.0, 0.0, "1");
                 let restitution = |p: &[f64]| HuntCrossley::new(p[0]).map(|c| c.restitution());
-                let variance = |_, _| (fitted.fit.std(4) * widened).powi(2);
-                let found = propagated(&fitted.fit.parameters[4..], &[1e3], variance, restitution);
-                if let Some((r, std)) = found {
-                    parameters.insert("restitution", Estimate::new(valued(r), Some(std), "1", n, method));
+                let variance = |_, _| (fit.std(4) * widened).powi(2);
+                if let Some((r, std)) = propagated(&fit.parameters[4..], &[1e3], variance, restitution) {
+                    parameters.insert("restitution", estimate(r, std, "1"));
                 }
             }
         }
         PulseFit {
-            model: fitted.model,
-            residual: self.height * (fitted.fit.sum_of_squares() / n as f64).sqrt(),
-            aicc: aicc(fitted.fit.sum_of_squares(), n, fitted.fit.parameters.len()),
+            model: *model,
+            residual: self.height * (fit.sum_of_squares() / n as f64).sqrt(),
+            aicc: aicc(fit.sum_of_squares(), n, fit.parameters.len()),
             whiteness: whiteness.p_value,
             n,
             parameters,
