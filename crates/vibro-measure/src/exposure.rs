@@ -58,10 +58,8 @@ struct Axis {
 /// If the rate is below four times the upper corner of the weighting.
 fn weighted(values: &[f64], rate: f64) -> Result<Vec<f64>> {
     if !(rate >= LOWEST_RATE && rate.is_finite()) {
-        return Err(Error::refused(format!(
-            "a rate of {rate} Hz is too low for the weighting W_h, which reaches to 1259 Hz"
-        ))
-        .hint(format!("sample the handle at {LOWEST_RATE:.0} Hz or more")));
+        let why = format!("a rate of {rate} Hz is too low for the weighting W_h, which reaches to 1259 Hz");
+        return Err(Error::refused(why).hint(format!("sample the handle at {LOWEST_RATE:.0} Hz or more")));
     }
     let corners = [BAND[0], BAND[1], TRANSITION];
     let sections = analogue().into_iter().zip(corners).map(|((b, a), exact)| Analogue { b, a, exact });

@@ -109,11 +109,11 @@ pub struct ContactTimes {
 /// Where the file has a header, the trace no sampling rate or no maximum: the script stopped there.
 pub fn contact_times(trace: &Trace) -> Result<ContactTimes> {
     if let Some((key, value)) = trace.meta.notes.first() {
-        return Err(Error::refused(format!(
+        let why = format!(
             "timeav stops at a file with a header (\"{}\"): it finds no number in the first line",
             format!("{key} {value}").trim()
-        ))
-        .hint("without `legacy` header lines are skipped"));
+        );
+        return Err(Error::refused(why).hint("without `legacy` header lines are skipped"));
     }
     let rate = super::impacts::rate_of(trace)?;
     let s = &trace.values;

@@ -132,13 +132,13 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
     let fmin = options.fmin.unwrap_or_else(|| default_cutoff(df, &excitations));
     let quantity = sweep.unit().times_seconds(options.integrate).quantity();
     if quantity == Quantity::Other {
-        return Err(Error::refused(format!(
+        let why = format!(
             "values in {}, integrated {} times, are no displacement, velocity or acceleration",
             sweep.unit(),
             options.integrate
-        ))
-        .hint("integrate once from velocity to displacement, twice from acceleration")
-        .setting("integrate"));
+        );
+        let hint = "integrate once from velocity to displacement, twice from acceleration";
+        return Err(Error::refused(why).hint(hint).setting("integrate"));
     }
     let unit = quantity.symbol();
     let wrong = wrong_window(sweep, &excitations, df);

@@ -28,10 +28,9 @@ pub fn in_time(trace: &Trace, times: u8) -> Result<Differentiated> {
     }
     let rate = rate_of(trace)?;
     if trace.values.len() < 5 {
-        return Err(Error::refused(format!(
-            "{} samples are too few to differentiate: at least 5 are needed",
-            trace.values.len()
-        )));
+        let why =
+            format!("{} samples are too few to differentiate: at least 5 are needed", trace.values.len());
+        return Err(Error::refused(why));
     }
     no_gaps(&trace.values, &trace.meta.name, 0)?;
     let mut values = trace.values.clone();

@@ -137,10 +137,9 @@ impl Filter {
         let pad = self.padding();
         let n = values.len();
         if n <= pad {
-            return Err(Error::refused(format!(
-                "{n} samples are too few for the zero-phase {self}: more than {pad} are needed"
-            ))
-            .hint("filter a longer record, or with a lower order"));
+            let why =
+                format!("{n} samples are too few for the zero-phase {self}: more than {pad} are needed");
+            return Err(Error::refused(why).hint("filter a longer record, or with a lower order"));
         }
         if let Some(i) = values.iter().position(|v| !v.is_finite()) {
             return Err(Error::refused(format!("sample {i} is missing: a filter would spread it"))

@@ -115,12 +115,12 @@ pub fn transfer(
 ) -> Result<Transfer> {
     // Sums of squares may take two segments that do not overlap a hair below.
     if averages.effective < LEAST - 1e-9 {
-        return Err(Error::refused(format!(
+        let why = format!(
             "{} averages are as good as {:.2} independent ones, two are needed: the coherence of one is always 1",
             averages.count, averages.effective
-        ))
-        .hint("take a longer record or shorter segments, for ten averages or more")
-        .setting("segment"));
+        );
+        let hint = "take a longer record or shorter segments, for ten averages or more";
+        return Err(Error::refused(why).hint(hint).setting("segment"));
     }
     let (Some(reference), Some(response)) = (metas.first(), metas.get(channel)) else {
         return Err(Error::usage(format!("channel {}", channel + 1), "a channel of the record"));

@@ -71,11 +71,10 @@ impl Welch {
         let length = self.segments.length;
         let (frames, rate) = (traces.frames(), traces.rate());
         if frames < length {
-            return Err(Error::refused(format!(
-                "the record has {frames} samples: not one segment of {length} fits into it"
-            ))
-            .hint(format!("take segments of at most {frames} samples"))
-            .setting("segment"));
+            let why = format!("the record has {frames} samples: not one segment of {length} fits into it");
+            return Err(Error::refused(why)
+                .hint(format!("take segments of at most {frames} samples"))
+                .setting("segment"));
         }
         let names: Vec<String> = traces.channels().iter().map(|m| m.name.clone()).collect();
         let transform = Transform::new(length);

@@ -65,11 +65,10 @@ pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Ve
     if peaks.is_empty() {
         let [first, last] = [f[0], f[f.len() - 1]].map(shortest);
         let between = band.map_or_else(String::new, |(low, high)| format!(" between {low} and {high} Hz"));
-        return Err(Error::refused(format!(
+        let why = format!(
             "no peak{between} stands a factor of {PROMINENCE} above its valleys and clear of the noise; the function runs from {first} to {last} Hz"
-        ))
-        .hint("choose a band around a peak")
-        .setting("band"));
+        );
+        return Err(Error::refused(why).hint("choose a band around a peak").setting("band"));
     }
     let mut groups: Vec<Vec<Peak>> = Vec::new();
     for peak in peaks {

@@ -184,11 +184,10 @@ pub(super) fn rational(
     };
     let (numbers, parameters) = (scaled.rows(), scaled.free().len());
     if numbers < parameters + 3 {
-        return Err(Error::refused(format!(
+        let why = format!(
             "{lines} lines hold {numbers} numbers, too few for {parameters} parameters and their uncertainty"
-        ))
-        .hint("take a wider band")
-        .setting("band"));
+        );
+        return Err(Error::refused(why).hint("take a wider band").setting("band"));
     }
     let width = (f[f.len() - 1] - f[0]) / (f.len() - 1) as f64;
     let equal = vec![1.0; lines];

@@ -105,11 +105,12 @@ impl Measured {
         let near = |(i, f): (usize, &f64)| (coherence.axis.at(i) - f).abs() <= 1e-3 * width;
         let same = values.len() == self.frequency.len() && self.frequency.iter().enumerate().all(near);
         if !same {
-            return Err(Error::refused(format!(
+            let why = format!(
                 "the coherence has other lines ({}) than the function ({})",
                 values.len(),
                 self.frequency.len()
-            )));
+            );
+            return Err(Error::refused(why));
         }
         self.coherence = Some(values.clone());
         Ok(self)
@@ -159,10 +160,8 @@ impl Measured {
         }
         let kept: Vec<usize> = (0..n).filter(|i| self.frequency[*i] > 0.0 && wrong(*i).is_none()).collect();
         if kept.len() < 5 {
-            return Err(Error::refused(format!(
-                "{} of {n} lines can be used: there is nothing to fit",
-                kept.len()
-            )));
+            let why = format!("{} of {n} lines can be used: there is nothing to fit", kept.len());
+            return Err(Error::refused(why));
         }
         let take = |all: &[f64]| kept.iter().map(|i| all[*i]).collect::<Vec<f64>>();
         Ok(Measured {

@@ -50,11 +50,12 @@ pub(super) fn locate(values: &[f64]) -> Result<Located> {
     let peak = (0..values.len()).max_by(|a, b| far(&values[*a]).total_cmp(&far(&values[*b]))).unwrap_or(0);
     let height = values[peak] - baseline;
     if height.abs() < LEAST * noise {
-        return Err(Error::refused(format!(
+        let why = format!(
             "no pulse stands out: the largest excursion is {:.1} times the noise, {LEAST} times are needed",
             height.abs() / noise
-        ))
-        .hint("choose a record with one clean pulse and its baseline"));
+        );
+        let hint = "choose a record with one clean pulse and its baseline";
+        return Err(Error::refused(why).hint(hint));
     }
     let part = |i: usize| (values[i] - baseline) / height;
     let before = (0..peak).rev().find(|i| part(*i) < 0.5);

@@ -37,12 +37,11 @@ pub fn two_times(
     }
     let rho = time_to_peak / duration;
     if rho >= 0.5 {
-        return Err(Error::refused(format!(
+        let why = format!(
             "time to peak / duration is ρ = {rho:.4}: a contact of spring and damper has its peak in the first half of the pulse (ρ < 1/2); the times may be swapped"
-        ))
-            .hint("count both times from the onset of the pulse")
-            .setting("time_to_peak")
-            .setting("duration"));
+        );
+        let hint = "count both times from the onset of the pulse";
+        return Err(Error::refused(why).hint(hint).setting("time_to_peak").setting("duration"));
     }
     // Two instants cannot show whether the contact is one of spring and damper.
     let mut findings = vec![Finding::note("pulse-two-instants")];

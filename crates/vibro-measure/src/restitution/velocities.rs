@@ -30,10 +30,10 @@ impl Velocities {
         }
         let approach = v1 - v2;
         if approach <= 0.0 {
-            return Err(Error::refused(format!(
-                "before the impact mass 1 has {v1} m/s and mass 2 {v2} m/s: they do not approach"
-            ))
-            .hint("mass 1 behind mass 2, velocities positive from mass 1 to mass 2"));
+            let why =
+                format!("before the impact mass 1 has {v1} m/s and mass 2 {v2} m/s: they do not approach");
+            let hint = "mass 1 behind mass 2, velocities positive from mass 1 to mass 2";
+            return Err(Error::refused(why).hint(hint));
         }
         if let Some((m1, m2)) = self.masses {
             above_zero("a mass", m1)?;
