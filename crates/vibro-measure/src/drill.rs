@@ -45,7 +45,7 @@ pub(crate) use turns::Numbered;
 
 use crate::Estimate;
 use crate::exposure::exposure;
-use crate::mean::Mean;
+use crate::mean::{Mean, scatter};
 use cycles::Cycles;
 use faults::State;
 use jumps::Jumps;
@@ -136,7 +136,7 @@ pub fn drill_each(
     let slow: Vec<&str> = slow.into_iter().filter(|(_, wanders)| *wanders).map(|(name, _)| name).collect();
     let mut result = Drill {
         speed,
-        speed_variation: cycles::scatter(&speeds),
+        speed_variation: scatter(&speeds),
         cycles: whole.len(),
         averaged,
         reference: Pulses {

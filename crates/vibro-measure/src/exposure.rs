@@ -74,20 +74,16 @@ impl Axis {
         let refused = |why: String, hint| Err(Error::refused(why).hint(hint).setting("handle"));
         let missing = values.iter().filter(|v| !v.is_finite()).count();
         if missing > 0 {
-            return refused(
-                format!("{missing} accelerations of the handle are missing"),
-                "mend the cable or the sensor, cut the record, or leave the handle out",
-            );
+            let hint = "mend the cable or the sensor, cut the record, or leave the handle out";
+            return refused(format!("{missing} accelerations of the handle are missing"), hint);
         }
-        let weighted = weighted(values, rate)?;
         let (settle, span) = ((SETTLED * rate).ceil() as usize, (SPAN * rate) as usize);
-        let Some((_, counted)) = weighted.split_at_checked(settle).filter(|(_, counted)| !counted.is_empty())
-        else {
-            return refused(
-                format!("the handle is shorter than {SETTLED} s, in which the weighting W_h settles"),
-                "measure longer, or leave the handle out",
-            );
-        };
+        let weighted = weighted(values, rate)?;
+        let counted = weighted.get(settle..).unwrap_or_default();
+        if counted.is_empty() {
+            let why = format!("the handle is shorter than {SETTLED} s, in which the weighting W_h settles");
+            return refused(why, "measure longer, or leave the handle out");
+        }
         let mean_square = |part: &[f64]| part.iter().map(|v| v * v).sum::<f64>() / part.len() as f64;
         let largest =
             |values: &[f64], mean: f64| values.iter().fold(0.0, |top: f64, v| top.max((v - mean).abs()));
@@ -158,17 +154,15 @@ pub fn exposure(rate: f64, handles: &[&[f64]], hours: Option<f64>) -> Result<Exp
         let part = (h / 8.0).sqrt();
         Estimate::new(part * a_hv.value, a_hv.std.map(|s| part * s), "m/s²", a_hv.n, "a_hv √(T/8 h)")
     });
-    let mut findings = vec![Finding::note("exposure-understates-shocks")];
-    if handles.len() < 3 {
-        findings.push(Finding::caution("exposure-axes-missing").count("axes", handles.len()));
-    }
-    if together.wanders {
-        findings.push(Finding::caution("exposure-slow-changes"));
-    }
     let duration = all.iter().map(|a| a.duration).fold(f64::INFINITY, f64::min);
-    if duration < SHORT {
-        findings.push(Finding::caution("exposure-record-short").number("duration", duration));
-    }
+    let missing = Finding::caution("exposure-axes-missing").count("axes", handles.len());
+    let short = Finding::caution("exposure-record-short").number("duration", duration);
+    let findings = [
+        (true, Finding::note("exposure-understates-shocks")),
+        (handles.len() < 3, missing),
+        (together.wanders, Finding::caution("exposure-slow-changes")),
+        (duration < SHORT, short),
+    ];
     let crest = all.iter().map(|a| a.peak / a.mean_square.sqrt()).filter(|c| c.is_finite());
     Ok(Exposure {
         crest_factor: crest.fold(0.0, f64::max),
@@ -177,7 +171,7 @@ pub fn exposure(rate: f64, handles: &[&[f64]], hours: Option<f64>) -> Result<Exp
         a_hv,
         a8,
         hours,
-        findings,
+        findings: findings.into_iter().filter(|f| f.0).map(|f| f.1).collect(),
     })
 }
 
@@ -186,13 +180,9 @@ pub fn exposure(rate: f64, handles: &[&[f64]], hours: Option<f64>) -> Result<Exp
 /// # Errors
 /// If they are not above 0 and at most 24.
 pub(crate) fn check_hours(hours: Option<f64>) -> Result<()> {
-    match hours.filter(|h| !(*h > 0.0 && *h <= 24.0)) {
-        Some(h) => {
-            Err(Error::usage(format!("an exposure of {h} hours a day"), "a number above 0, at most 24")
-                .setting("exposure"))
-        }
-        None => Ok(()),
-    }
+    let Some(h) = hours.filter(|h| !(*h > 0.0 && *h <= 24.0)) else { return Ok(()) };
+    let found = format!("an exposure of {h} hours a day");
+    Err(Error::usage(found, "a number above 0, at most 24").setting("exposure"))
 }
 
 #[cfg(test)]

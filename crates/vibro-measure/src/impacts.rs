@@ -24,6 +24,7 @@ pub use options::ImpactsOptions;
 pub(crate) use options::rate_of;
 
 use super::Estimate;
+use super::mean::scatter;
 use background::median;
 use count::{Counted, count, evened, pattern};
 use serde::Serialize;
@@ -148,10 +149,7 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
 fn spread(times: &[f64], counted: &Counted) -> Option<f64> {
     let pairs = times.windows(2).zip(counted.index.windows(2));
     let single: Vec<f64> = pairs.filter(|(_, k)| k[1] - k[0] == 1).map(|(t, _)| t[1] - t[0]).collect();
-    let n = single.len() as f64;
-    let mean = single.iter().sum::<f64>() / n;
-    let squares: f64 = single.iter().map(|d| (d - mean).powi(2)).sum();
-    (single.len() >= 2).then(|| (squares / (n - 1.0)).sqrt())
+    Some(scatter(&single)).filter(|s| s.is_finite())
 }
 
 /// Findings on the count of the impacts and the spread of their intervals.

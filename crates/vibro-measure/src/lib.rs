@@ -12,7 +12,6 @@ pub mod legacy;
 mod limit;
 mod line;
 mod mean;
-mod median;
 pub mod modal;
 mod noise;
 pub mod peaks;

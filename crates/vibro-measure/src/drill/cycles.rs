@@ -4,6 +4,7 @@ use super::crossing;
 use super::faults::State;
 use super::survey::median;
 use super::turns::Turn;
+use crate::mean::average;
 use serde::Serialize;
 
 /// The velocity of one turn at the phases of the average.
@@ -73,13 +74,6 @@ impl Running {
     fn std(&self) -> f64 {
         if self.n < 2 { f64::NAN } else { (self.squares / (self.n - 1) as f64).sqrt() }
     }
-}
-
-/// Standard deviation of some values.
-pub(super) fn scatter(values: &[f64]) -> f64 {
-    let mut running = Running::default();
-    values.iter().copied().for_each(|v| running.push(v));
-    running.std()
 }
 
 /// Turns as they come.
@@ -183,14 +177,13 @@ impl Cycles {
 /// Displacement over the phase of a turn of `period` seconds, from velocities at equal phases: its mean is 0, and so is what
 /// it gains over a turn.
 pub(super) fn displacement(velocity: &[f64], period: f64) -> Vec<f64> {
-    let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len().max(1) as f64;
-    let (drift, step) = (mean(velocity), period / velocity.len().max(1) as f64);
+    let (drift, step) = (average(velocity), period / velocity.len().max(1) as f64);
     let (mut x, mut path) = (0.0, Vec::with_capacity(velocity.len()));
     for (v, next) in velocity.iter().zip(velocity.iter().cycle().skip(1)) {
         path.push(x);
         x += (0.5 * (v + next) - drift) * step;
     }
-    let middle = mean(&path);
+    let middle = average(&path);
     path.iter().map(|x| x - middle).collect()
 }
 #[cfg(test)]

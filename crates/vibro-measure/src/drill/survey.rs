@@ -1,6 +1,6 @@
 //! What a channel looks like: extremes, levels, noise.
 
-use crate::median::upper_median;
+use crate::mean::upper_median;
 use vibro_record::{Error, Result};
 
 /// Groups whose extremes show the levels of a pulse, however short its pulses are.
@@ -94,22 +94,16 @@ pub(crate) fn check_pulses(
     if pulsed(reference, stands) {
         return Ok(());
     }
+    let refused = |why: &str, hint| Err(Error::refused(why).hint(hint).setting("reference"));
     if pulsed(velocity, levels(velocity).unwrap_or_default()) {
-        return Err(Error::refused(
-            "the velocity stands on two levels as a pulse does, the reference does not",
-        )
-        .hint("are the two channels swapped?")
-        .setting("velocity")
-        .setting("reference"));
+        let why = "the velocity stands on two levels as a pulse does, the reference does not";
+        return refused(why, "are the two channels swapped?").map_err(|error| error.setting("velocity"));
     }
     let steps: Vec<f64> = edges.windows(2).map(|w| w[1] - w[0]).collect();
     let change = median(steps.windows(2).map(|w| (w[1] - w[0]).abs()));
     if change > UNEVEN * median(steps.iter().copied()) {
-        return Err(Error::refused(
-            "the reference is no pulse of a shaft: its edges come at uneven distances",
-        )
-        .hint("name the channel of the pulse; `vibro info` lists the channels")
-        .setting("reference"));
+        let why = "the reference is no pulse of a shaft: its edges come at uneven distances";
+        return refused(why, "name the channel of the pulse; `vibro info` lists the channels");
     }
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! Which lines belong to which peak.
 
 use super::Measured;
-use crate::median::upper_median;
+use crate::mean::upper_median;
 use crate::peaks::local_maxima;
 use std::ops::Range;
 use vibro_record::units::notation::shortest;

@@ -1,6 +1,6 @@
 //! Where in a record the pulse is.
 
-use crate::median::upper_median;
+use crate::mean::upper_median;
 use vibro_record::{Error, Result};
 
 /// The largest pulse of a record.

@@ -2,7 +2,7 @@
 
 use crate::excitation::Excitation;
 use crate::line::deviation;
-use crate::median::upper_median;
+use crate::mean::upper_median;
 use std::cmp::Ordering;
 use vibro_record::{Direction, Finding, Sweep, SweepPoint, Window};
 

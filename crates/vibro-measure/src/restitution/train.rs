@@ -34,10 +34,9 @@ impl Train {
             found.heights.drain(..first);
         }
         if found.times.len() < 2 {
-            return Err(Error::refused("one impact found: restitution from a drop needs two")
-                .hint("a lower threshold, or a shorter pause between impacts")
-                .setting("threshold")
-                .setting("refractory"));
+            let few = Error::refused("one impact found: restitution from a drop needs two");
+            let few = few.hint("a lower threshold, or a shorter pause between impacts");
+            return Err(few.setting("threshold").setting("refractory"));
         }
         let intervals = found.times.windows(2).map(|w| w[1] - w[0]).collect();
         Ok((Train { intervals, onset_std: found.onset_std }, found))
@@ -68,20 +67,16 @@ pub(super) fn answer(trains: &[Train], findings: &mut Vec<Finding>) -> Result<Op
                     .number("expected", expected),
             );
         }
-        let grows = |flight: &Flight| {
-            let flight = flight.place + 1;
-            Error::refused(format!(
-                "flight times grow, at flight {flight} of train {train}: R would not be below 1"
-            ))
-            .hint("the intervals in the order of the bounces, all of one train")
-        };
-        if let Some(flight) = grown(&flights, t.onset_std.unwrap_or(0.0)) {
-            return Err(grows(flight));
-        }
+        let noise = t.onset_std.unwrap_or(0.0);
         let (log, std) = fit(&flights, t.onset_std)
             .ok_or_else(|| Error::refused("flight times from which no ratio follows"))?;
-        if let Some(last) = flights.last().filter(|_| log >= 0.0) {
-            return Err(grows(last));
+        if let Some(flight) = grown(&flights, noise).or(flights.last().filter(|_| log >= 0.0)) {
+            let flight = flight.place + 1;
+            let why =
+                format!("flight times grow, at flight {flight} of train {train}: R would not be below 1");
+            return Err(
+                Error::refused(why).hint("the intervals in the order of the bounces, all of one train")
+            );
         }
         n += flights.len();
         logs.push(log);
