@@ -91,7 +91,11 @@ pub fn drill_each(
         volts.iter().map(|v| v * (options.sensitivity * options.beam.factor)).collect()
     };
     let mut velocity = scaled(record.channels[0]);
-    let survey = moving(&velocity)?;
+    let survey = Survey::of(&velocity);
+    if survey.low >= survey.high {
+        let error = Error::refused("the velocity is constant, or missing");
+        return Err(error.hint("check that the laser sees the target").setting("velocity"));
+    }
     let (edges, turns) = turns(reference, &velocity, options, options.delay * rate)?;
     let edge = edges.std(survey::noise(reference));
     let whole = &turns.whole;
@@ -200,17 +204,6 @@ fn check(record: &Slices<'_>) -> Result<()> {
         [_, _, ..] => Ok(()),
         few => Err(Error::usage(format!("{} channels", few.len()), "a velocity and a reference")),
     }
-}
-
-/// What a velocity looks like.
-///
-/// # Errors
-/// If it does not move.
-fn moving(velocity: &[f64]) -> Result<Survey> {
-    let survey = Survey::of(velocity);
-    let error = Error::refused("the velocity is constant, or missing");
-    let error = error.hint("check that the laser sees the target").setting("velocity");
-    if survey.low < survey.high { Ok(survey) } else { Err(error) }
 }
 
 /// Edges and turns in the clock of the velocity, which comes `delay` samples late.

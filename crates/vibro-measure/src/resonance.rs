@@ -44,13 +44,7 @@ pub enum ResonanceKind {
 impl ResonanceKind {
     /// Its name, as in JSON.
     pub fn name(self) -> &'static str {
-        match self {
-            ResonanceKind::Resonance => "resonance",
-            ResonanceKind::Grazing => "grazing",
-            ResonanceKind::Clapping => "clapping",
-            ResonanceKind::Antiresonance => "antiresonance",
-            ResonanceKind::Minimum => "minimum",
-        }
+        ["resonance", "grazing", "clapping", "antiresonance", "minimum"][self as usize]
     }
 
     /// Whether it is a maximum.

@@ -105,10 +105,8 @@ impl Filter {
     /// Complex factor of one pass on a sine of `frequency` Hz.
     pub fn response(&self, frequency: f64) -> Complex64 {
         let z = Complex64::cis(-2.0 * PI * frequency / self.rate);
-        self.sections
-            .iter()
-            .map(|s| (s.b[0] + z * (s.b[1] + z * s.b[2])) / (1.0 + z * (s.a[0] + z * s.a[1])))
-            .product()
+        let one = |s: &Section| (s.b[0] + z * (s.b[1] + z * s.b[2])) / (1.0 + z * (s.a[0] + z * s.a[1]));
+        self.sections.iter().map(one).product()
     }
 
     /// Filters forwards, as if the input had had the value `before` for ever; 0 is a filter at rest.

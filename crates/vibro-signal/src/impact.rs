@@ -150,12 +150,8 @@ pub fn from_blows(
         transfer,
         blows,
         added_decay: decay,
-        window: match (how.force_window.is_some(), how.left_at_end.is_some()) {
-            (false, false) => "rectangular",
-            (true, false) => "force",
-            (false, true) => "exponential",
-            (true, true) => "force and exponential",
-        },
+        window: ["rectangular", "force", "exponential", "force and exponential"]
+            [usize::from(how.force_window.is_some()) + 2 * usize::from(how.left_at_end.is_some())],
         enbw: how.length as f64 * squares / (sum * sum),
     })
 }

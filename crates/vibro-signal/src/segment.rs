@@ -27,12 +27,10 @@ impl Segments {
                 .setting("segment"));
         }
         if !(0.0..1.0).contains(&overlap) {
-            return Err(Error::usage(
-                format!("an overlap of {overlap}"),
-                "a part of the segment from 0 to below 1",
-            )
-            .setting("overlap")
-            .hint("0.5 for Hann, 0.75 for a flat top, 0 without a window"));
+            let error =
+                Error::usage(format!("an overlap of {overlap}"), "a part of the segment from 0 to below 1");
+            let hint = "0.5 for Hann, 0.75 for a flat top, 0 without a window";
+            return Err(error.setting("overlap").hint(hint));
         }
         let shared = (overlap * length as f64).floor() as usize;
         Ok(Segments { length, hop: (length - shared.min(length)).max(1) })

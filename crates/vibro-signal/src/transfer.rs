@@ -39,11 +39,7 @@ pub enum Estimator {
 impl Estimator {
     /// Name, as in JSON.
     pub fn name(self) -> &'static str {
-        match self {
-            Estimator::H1 => "h1",
-            Estimator::H2 => "h2",
-            Estimator::Hv => "hv",
-        }
+        ["h1", "h2", "hv"][self as usize]
     }
 }
 

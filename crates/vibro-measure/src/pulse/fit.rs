@@ -64,15 +64,13 @@ impl Samples<'_> {
             ContactModel::KelvinVoigt => {
                 let contact = KelvinVoigt::new(p[3], p[4])?;
                 let end = contact.duration();
+                let inside = |(i, t): (usize, f64)| {
+                    let begun = first.map_or(t >= 0.0, |first| i >= first);
+                    if begun && t <= end { contact.unbounded(t) } else { 0.0 }
+                };
                 match filter {
                     Some(filter) => since.map(|t| contact.filtered(filter, t)).collect(),
-                    None => since
-                        .enumerate()
-                        .map(|(i, t)| {
-                            let begun = first.map_or(t >= 0.0, |first| i >= first);
-                            if begun && t <= end { contact.unbounded(t) } else { 0.0 }
-                        })
-                        .collect(),
+                    None => since.enumerate().map(inside).collect(),
                 }
             }
             ContactModel::Hertz if p[3] > 0.0 => {

@@ -21,11 +21,7 @@ pub enum ContactModel {
 impl ContactModel {
     /// Its name, as in JSON.
     pub fn name(self) -> &'static str {
-        match self {
-            ContactModel::KelvinVoigt => "kelvin-voigt",
-            ContactModel::Hertz => "hertz",
-            ContactModel::HuntCrossley => "hunt-crossley",
-        }
+        ["kelvin-voigt", "hertz", "hunt-crossley"][self as usize]
     }
 }
 

@@ -81,22 +81,25 @@ impl SpectralResult {
         fmin: f64,
         mut findings: Vec<Finding>,
     ) -> SpectralResult {
-        let (meta, axis) = match &found {
-            Lines::Spectrum(spectrum) => (&spectrum.meta, &spectrum.axis),
-            Lines::Transfer(found) => (&found.frf.meta, &found.frf.axis),
+        let (meta, axis, value, scaling, enbw) = match &found {
+            Lines::Spectrum(s) => (&s.meta, &s.axis, s.values.magnitudes(), s.scaling.name(), s.enbw),
+            Lines::Transfer(Transfer { frf, .. }) => {
+                let value = frf.values.iter().map(|v| v.norm()).collect();
+                (&frf.meta, &frf.axis, value, "frf", Some(options.window().enbw()))
+            }
         };
         let mut result = SpectralResult {
             name: meta.name.clone(),
             frequency: axis.values(),
-            value: Vec::new(),
+            value,
             value_std: Vec::new(),
-            scaling: "frf",
+            scaling,
             unit: meta.unit.symbol().to_owned(),
             quantity: meta.quantity.name(),
             level: Vec::new(),
             level_unit: None,
             window: options.window().name(),
-            enbw: options.window().enbw(),
+            enbw: enbw.unwrap_or(f64::NAN),
             detrend: if options.detrended() { "mean" } else { "none" },
             averages: 0,
             response: None,
@@ -104,24 +107,17 @@ impl SpectralResult {
             findings: Vec::new(),
             found,
         };
-        match &result.found {
-            Lines::Spectrum(spectrum) => {
-                (result.value, result.scaling) = (spectrum.values.magnitudes(), spectrum.scaling.name());
-                result.enbw = spectrum.enbw.unwrap_or(f64::NAN);
-            }
-            Lines::Transfer(found) => {
-                result.value = found.frf.values.iter().map(|v| v.norm()).collect();
-                result.value_std.clone_from(&found.magnitude_std);
-                result.averages = found.averages;
-                result.response = Some(Response {
-                    estimator: options.estimator.map_or("", Estimator::name),
-                    phase: found.frf.values.iter().map(|v| v.arg().to_degrees()).collect(),
-                    phase_std: found.phase_std.iter().map(|v| v.to_degrees()).collect(),
-                    coherence: found.coherence.clone(),
-                    blows: Vec::new(),
-                });
-                findings.extend(found.findings.iter().cloned());
-            }
+        if let Lines::Transfer(found) = &result.found {
+            result.value_std.clone_from(&found.magnitude_std);
+            result.averages = found.averages;
+            result.response = Some(Response {
+                estimator: options.estimator.map_or("", Estimator::name),
+                phase: found.frf.values.iter().map(|v| v.arg().to_degrees()).collect(),
+                phase_std: found.phase_std.iter().map(|v| v.to_degrees()).collect(),
+                coherence: found.coherence.clone(),
+                blows: Vec::new(),
+            });
+            findings.extend(found.findings.iter().cloned());
         }
         if options.integrate > 0 {
             // Integrated, lines below would be noise divided by the frequency.
