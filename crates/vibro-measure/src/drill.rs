@@ -18,7 +18,6 @@
 //! # Ok::<(), vibro_record::Error>(())
 //! ```
 
-mod crossing;
 mod cycles;
 mod edges;
 mod faults;

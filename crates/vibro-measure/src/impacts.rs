@@ -12,7 +12,6 @@ mod hum;
 mod interval;
 mod onset;
 mod options;
-mod ringing;
 mod shape;
 
 pub use detect::{Detected, detect};

@@ -1,7 +1,7 @@
 //! Answers from records: every number an [`Estimate`].
 
 mod apex;
-mod bisection;
+
 pub mod crossing;
 pub mod drill;
 pub mod excitation;
@@ -9,7 +9,7 @@ pub mod exposure;
 pub mod impacts;
 pub mod jump;
 pub mod legacy;
-mod limit;
+
 mod line;
 mod mean;
 pub mod modal;

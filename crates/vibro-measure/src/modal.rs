@@ -6,16 +6,15 @@
 
 mod bands;
 mod classical;
-mod pole;
+
 mod rational;
 mod report;
 mod response;
 mod result;
 mod selection;
 
-pub use pole::Pole;
 pub use response::Measured;
-pub use result::{ByMethod, ModalOptions, ModalResult, Mode};
+pub use result::{ByMethod, ModalOptions, ModalResult, Mode, Pole};
 
 use bands::{Group, groups};
 use rational::{Rational, rational};

@@ -1,6 +1,6 @@
 //! Local maxima of a curve, and their vertices between samples.
 
-use super::bisection::border;
+use super::noise::border;
 
 /// A maximum of a curve over frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,8 +4,8 @@ mod findings;
 
 use super::excitation::{Excitation, excitations};
 use super::jump::Jump;
-use super::limit::upper_limit;
 use super::line::{SubLine, amplitude_at, interpolate, nearest};
+use super::noise::upper_limit;
 use super::resonance::{NamedCurve, Resonance};
 use super::{Estimate, noise};
 use findings::{direction, repeated, wrong_window};

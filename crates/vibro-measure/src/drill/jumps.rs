@@ -9,7 +9,7 @@ use super::faults::State;
 use super::fit::{FEWEST, Parabola};
 use super::survey::median;
 use super::turns::Turn;
-use super::{Impact, crossing};
+use super::{Impact, edges};
 use crate::residuals::Whiteness;
 
 /// Most impacts in a turn: two, in front and behind, where two pulses of a turn are counted as one.
@@ -118,7 +118,7 @@ impl<'a> Jumps<'a> {
             let after = Parabola::through(values, states, at, right..=right + length)?;
             let middle = 0.5 * (before.value + after.value);
             let crossings: Vec<(usize, f64)> = (left.max(0) as usize..right as usize)
-                .filter_map(|i| crossing::between(values, i, middle).map(|t| (i, t)))
+                .filter_map(|i| edges::between(values, i, middle).map(|t| (i, t)))
                 .collect();
             let (&(i, first), &(_, last)) = (crossings.first()?, crossings.last()?);
             at = 0.5 * (first + last);

@@ -1,9 +1,8 @@
 //! Impacts of a trace: bursts above the noise, timed below a sample.
 
-use super::background::{background, median};
+use super::background::{background, bursts, median};
 use super::onset::{Onsets, onsets};
 use super::options::{check, rate_of};
-use super::ringing::bursts;
 use super::shape::Shape;
 use super::{Hum, ImpactsOptions, hum};
 use std::ops::Range;

@@ -1,7 +1,6 @@
 //! Mains hum: a sine of 50 or 60 Hz with its harmonics, fitted between the impacts and removed.
 
-use super::background::{background, median};
-use super::ringing::bursts;
+use super::background::{background, bursts, median};
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 use std::f64::consts::TAU;
