@@ -207,7 +207,7 @@ impl Fit {
         }
         let mut omega: Vec<f64> = start.iter().map(|f| TAU * f * half).collect();
         let mut linear = vec![0.0; 2 * count + 1];
-        let mut row = vec![0.0; size];
+        let mut row = DVector::<f64>::zeros(size);
         let all: f64 = trace.values.iter().map(|v| v * v).sum();
         for step in 0..STEPS {
             let (mut normal, mut right) = (DMatrix::<f64>::zeros(size, size), DVector::<f64>::zeros(size));
@@ -217,15 +217,11 @@ impl Fit {
                     let (sin, cos) = (w * t).sin_cos();
                     let (a, b) = (linear[2 * k], linear[2 * k + 1]);
                     let slope = if step == 0 { 0.0 } else { t * (b * cos - a * sin) / a.hypot(b) };
-                    row[3 * k..3 * k + 3].copy_from_slice(&[cos, sin, slope]);
+                    row.as_mut_slice()[3 * k..3 * k + 3].copy_from_slice(&[cos, sin, slope]);
                 }
                 row[size - 1] = 1.0;
-                for (j, x) in row.iter().enumerate() {
-                    right[j] += x * v;
-                    for (l, y) in row[..=j].iter().enumerate() {
-                        normal[(j, l)] += x * y;
-                    }
-                }
+                normal.syger(1.0, &row, &row, 1.0);
+                right.axpy(*v, &row, 1.0);
             }
             normal.fill_upper_triangle_with_lower_triangle();
             if step == 0 {

@@ -58,9 +58,7 @@ impl Filter {
     /// # Errors
     /// If the corner does not lie between 0 and half the sampling rate, or the order is not 1 to 16.
     pub fn low_pass(corner: f64, order: usize, rate: f64) -> Result<Filter> {
-        let w = warped(corner, rate)?;
-        let pair = |p: Complex64| section([w * w, 0.0, 0.0], [w * w, -2.0 * p.re * w, 1.0]);
-        butterworth("low-pass", order, corner, rate, first([w, 0.0], [w, 1.0]), pair)
+        butterworth("low-pass", |w| ([w * w, 0.0, 0.0], [w, 0.0]), (corner, order, rate))
     }
 
     /// Butterworth high-pass of this corner and sampling rate in Hz.
@@ -68,9 +66,7 @@ impl Filter {
     /// # Errors
     /// As [`Filter::low_pass`].
     pub fn high_pass(corner: f64, order: usize, rate: f64) -> Result<Filter> {
-        let w = warped(corner, rate)?;
-        let pair = |p: Complex64| section([0.0, 0.0, 1.0], [w * w, -2.0 * p.re * w, 1.0]);
-        butterworth("high-pass", order, corner, rate, first([0.0, 1.0], [w, 1.0]), pair)
+        butterworth("high-pass", |_| ([0.0, 0.0, 1.0], [0.0, 1.0]), (corner, order, rate))
     }
 
     /// Exponential smoothing yₙ = yₙ₋₁ + α(xₙ − yₙ₋₁), α such that the corner lies at `corner` Hz exactly.
@@ -172,23 +168,22 @@ impl std::fmt::Display for Filter {
     }
 }
 
-/// A Butterworth filter from the section of the real pole of an odd order and those of each pair of poles.
+/// A Butterworth filter from the numerators of a pair of poles and of the real pole of an odd order, at a warped corner.
 fn butterworth(
     kind: &str,
-    order: usize,
-    corner: f64,
-    rate: f64,
-    real: Section,
-    pair: impl Fn(Complex64) -> Section,
+    numerators: fn(f64) -> ([f64; 3], [f64; 2]),
+    (corner, order, rate): (f64, usize, f64),
 ) -> Result<Filter> {
+    let w = warped(corner, rate)?;
     if !(1..=MOST).contains(&order) {
         return Err(Error::usage(format!("a filter of order {order}"), format!("an order of 1 to {MOST}")));
     }
-    let angle = |k: usize| PI * (2 * k + order - 1) as f64 / (2 * order) as f64;
-    let pairs = (1..=order / 2).rev().map(|k| pair(Complex64::cis(angle(k))));
-    let sections = (order % 2 == 1).then_some(real).into_iter().chain(pairs).collect();
+    let (pair, real) = numerators(w);
+    let cosine = |k: usize| (PI * (2 * k + order - 1) as f64 / (2 * order) as f64).cos();
+    let pairs = (1..=order / 2).rev().map(|k| section(pair, [w * w, -2.0 * cosine(k) * w, 1.0]));
+    let real = (order % 2 == 1).then(|| first(real, [w, 1.0]));
     let name = format!("Butterworth {kind} of order {order}, corner {} Hz", shortest(corner));
-    Ok(Filter { name, rate, sections })
+    Ok(Filter { name, rate, sections: real.into_iter().chain(pairs).collect() })
 }
 
 /// Corner in the analogue plane, s = (1 − z⁻¹)/(1 + z⁻¹).

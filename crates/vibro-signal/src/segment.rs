@@ -75,7 +75,17 @@ impl<'a> Batches<'a> {
             if new == 0 {
                 break;
             }
-            self.look(batch, new)?;
+            // Missing samples are refused, for a transform would spread them over all lines.
+            for (channel, (column, range)) in batch.iter().zip(&mut self.ranges).enumerate() {
+                let values = &column[column.len() - new..];
+                let seen = lanes::survey(values);
+                (range.low, range.high) = (range.low.min(seen.low), range.high.max(seen.high));
+                if !seen.finite {
+                    let name = self.traces.channels().get(channel).map_or("", |m| m.name.as_str());
+                    no_gaps(values, name, self.frames)?;
+                }
+            }
+            self.frames += new;
         }
         Ok(self.segments.count(batch.first().map_or(0, Vec::len)))
     }
@@ -97,21 +107,6 @@ impl<'a> Batches<'a> {
     /// Smallest and largest value of each channel so far.
     pub fn ranges(&self) -> &[Survey] {
         &self.ranges
-    }
-
-    /// Range of the `new` samples at the end; missing ones are refused, for a transform would spread them over all lines.
-    fn look(&mut self, batch: &[Vec<f64>], new: usize) -> Result<()> {
-        for (channel, (column, range)) in batch.iter().zip(&mut self.ranges).enumerate() {
-            let values = &column[column.len() - new..];
-            let seen = lanes::survey(values);
-            (range.low, range.high) = (range.low.min(seen.low), range.high.max(seen.high));
-            if !seen.finite {
-                let name = self.traces.channels().get(channel).map_or("", |m| m.name.as_str());
-                no_gaps(values, name, self.frames)?;
-            }
-        }
-        self.frames += new;
-        Ok(())
     }
 }
 

@@ -46,16 +46,7 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
     let unit = trace.meta.unit.symbol();
     let mut values = trace.values.clone();
     let mut findings = Vec::new();
-    let hum = if options.hum { hum::remove(&mut values, rate, &mut findings) } else { None };
-    if let Some(h) = &hum {
-        findings.push(
-            Finding::note("mains-hum-removed")
-                .number("frequency", h.frequency)
-                .number("amplitude", h.amplitude)
-                .name("unit", unit)
-                .count("harmonics", h.harmonics),
-        );
-    }
+    let hum = if options.hum { hum::remove(&mut values, (rate, unit), &mut findings) } else { None };
     let quiet = background(&values);
     for v in &mut values {
         *v -= quiet.level;
@@ -124,11 +115,9 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
 fn recorded(pulse: &Trace, rate: f64) -> Result<Shape> {
     let own = rate_of(pulse).map_err(|error| error.setting("shape_rate"))?;
     Shape::recorded(&pulse.values, rate / own).ok_or_else(|| {
-        Error::refused(format!(
-            "{:?} is no shape of a pulse: its samples have no rising flank",
-            pulse.meta.name
-        ))
-        .hint("cut the record to one pulse with its level before it, without missing values")
+        let name = &pulse.meta.name;
+        Error::refused(format!("{name:?} is no shape of a pulse: its samples have no rising flank"))
+            .hint("cut the record to one pulse with its level before it, without missing values")
     })
 }
 

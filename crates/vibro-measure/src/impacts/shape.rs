@@ -2,7 +2,7 @@
 
 use super::background::median;
 use super::onset::Onset;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 use std::ops::Range;
 
 /// Time and height of a matched pulse.
@@ -141,28 +141,26 @@ impl Shape {
         }
         for _ in 0..50 {
             // Normal equations of (time, height): J = (−h s', s).
-            let (mut tt, mut th, mut hh, mut tr, mut hr, mut rr) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+            let (mut normal, mut right, mut rr) = (Matrix2::zeros(), Vector2::zeros(), 0.0);
             for i in window.clone() {
                 let (s, slope) = self.at(i as f64 - time);
-                let (jt, r) = (-height * slope, values[i] - height * s);
-                tt += jt * jt;
-                th += jt * s;
-                hh += s * s;
-                tr += jt * r;
-                hr += s * r;
+                let (j, r) = (Vector2::new(-height * slope, s), values[i] - height * s);
+                normal += j * j.transpose();
+                right += j * r;
                 rr += r * r;
             }
-            let det = tt * hh - th * th;
-            if det <= 1e-12 * tt * hh || !det.is_finite() {
+            let det = normal.determinant();
+            if det <= 1e-12 * normal[(0, 0)] * normal[(1, 1)] || !det.is_finite() {
                 return None;
             }
-            let step = (hh * tr - th * hr) / det;
-            if step.abs() < 1e-7 {
+            let inverse = normal.try_inverse()?;
+            let step = inverse * right;
+            if step[0].abs() < 1e-7 {
                 let variance = rr / (window.len() - 2) as f64;
-                return Some(Matched { time, height, cofactor: hh / det, variance });
+                return Some(Matched { time, height, cofactor: inverse[(0, 0)], variance });
             }
-            time += step.clamp(-0.5, 0.5);
-            height = (height + (tt * hr - th * tr) / det).max(0.1 * height);
+            time += step[0].clamp(-0.5, 0.5);
+            height = (height + step[1]).max(0.1 * height);
             if (time - t).abs() > span.end - span.start {
                 return None;
             }
