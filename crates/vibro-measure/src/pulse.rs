@@ -22,7 +22,7 @@ use super::Estimate;
 use fit::Fitted;
 use hunt_crossley::HuntCrossley;
 use locate::locate;
-use normalised::{Normalised, Window};
+use normalised::Normalised;
 use result::contact_estimates;
 use vibro_record::units::notation::shortest;
 use vibro_record::{Error, Finding, Result, Trace};
@@ -129,7 +129,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
             .setting("low_pass")
     };
     let scale = Normalised::new(trace, rate, &located, filter)?;
-    let Window { samples, used, level } = scale.window(&mut found, unlike)?;
+    let (samples, level) = scale.window(&mut found, unlike)?;
     known = known && level;
     let main = samples.fit(ContactModel::KelvinVoigt).map_err(unlike)?;
 
@@ -187,7 +187,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
         }
     }
     result.findings = found;
-    result.picture = Some(scale.picture(&samples, &used, &fits));
+    result.picture = Some(scale.picture(&samples, &fits));
     Ok(result)
 }
 

@@ -52,16 +52,11 @@ fn once(values: &[f64], factor: f64) -> Vec<f64> {
         factor * part.iter().zip(weights).map(|(v, w)| v * w).sum::<f64>()
     };
     let [first, second, middle] = &WEIGHTS;
-    // At the other end the same weights, from the end and with the other sign.
-    let backwards = |weights: &[f64; 5]| {
-        let mut turned = weights.map(|w| -w);
-        turned.reverse();
-        turned
-    };
-    let (head, tail) = (&values[..5], &values[values.len() - 5..]);
-    let mut out = vec![sum(head, first), sum(head, second)];
+    let mut out = vec![sum(&values[..5], first), sum(&values[..5], second)];
     out.extend(values.windows(5).map(|part| sum(part, middle)));
-    out.extend([sum(tail, &backwards(second)), sum(tail, &backwards(first))]);
+    // At the other end the same weights, from the end and with the other sign.
+    let tail: Vec<f64> = values.iter().rev().take(5).map(|v| -v).collect();
+    out.extend([sum(&tail, second), sum(&tail, first)]);
     out
 }
 

@@ -276,18 +276,15 @@ fn overloaded(values: &[f64], before: usize) -> Option<f64> {
 /// Decay in 1/s, and the weights of force and response.
 fn windows(how: &Blows, rate: f64) -> Result<(f64, [Vec<f64>; 2])> {
     let after = (how.length - how.before) as f64 / rate;
-    let decay = match how.left_at_end {
-        Some(left) if left > 0.0 && left <= 1.0 => -left.ln() / after,
-        Some(left) => {
-            return Err(Error::usage(format!("an exponential window that leaves {left}"), "above 0 to 1"));
-        }
-        None => 0.0,
-    };
-    let width = match how.force_window {
-        Some(width) if width > 0.0 => width,
-        Some(width) => return Err(Error::usage(format!("a force window of {width} s"), "a width above 0")),
-        None => f64::INFINITY,
-    };
+    let outside = |value: Option<f64>, most: f64| value.filter(|v| !(*v > 0.0 && *v <= most));
+    if let Some(left) = outside(how.left_at_end, 1.0) {
+        return Err(Error::usage(format!("an exponential window that leaves {left}"), "above 0 to 1"));
+    }
+    if let Some(width) = outside(how.force_window, f64::INFINITY) {
+        return Err(Error::usage(format!("a force window of {width} s"), "a width above 0"));
+    }
+    let decay = how.left_at_end.map_or(0.0, |left| -left.ln() / after);
+    let width = how.force_window.unwrap_or(f64::INFINITY);
     let exponential: Vec<f64> =
         (0..how.length).map(|i| (-decay * (i as f64 - how.before as f64).max(0.0) / rate).exp()).collect();
     let force = exponential.iter().enumerate().map(|(i, weight)| {

@@ -77,9 +77,9 @@ impl Transfer {
         };
         let result = integrate::in_frequency(&spectrum, times, fmin)?;
         let gone = spectrum.axis.len() - result.axis.len();
-        self.coherence.drain(..gone);
-        self.phase_std.drain(..gone);
-        self.magnitude_std.drain(..gone);
+        for column in [&mut self.coherence, &mut self.phase_std, &mut self.magnitude_std] {
+            column.drain(..gone);
+        }
         for (k, std) in self.magnitude_std.iter_mut().enumerate() {
             *std *= (TAU * result.axis.at(k)).powi(-i32::from(times));
         }

@@ -192,10 +192,10 @@ impl DrillOptions {
     /// # Errors
     /// With the first one that cannot be as its setting.
     pub fn check(&self) -> Result<()> {
-        let smoothing = match self.smoothing {
-            Smoothing::LowPass(corner) => ("low_pass", Some(corner)),
-            Smoothing::Exponential(time) => ("smoothing", Some(time)),
-            Smoothing::Phases | Smoothing::Off => ("low_pass", None),
+        let (low_pass, smoothing) = match self.smoothing {
+            Smoothing::LowPass(corner) => (Some(corner), None),
+            Smoothing::Exponential(time) => (None, Some(time)),
+            Smoothing::Phases | Smoothing::Off => (None, None),
         };
         let positive = [
             ("mass", self.mass),
@@ -204,11 +204,11 @@ impl DrillOptions {
             ("fit", Some(self.fit)),
             ("longest_dropout", Some(self.longest_dropout)),
             ("instrument", self.instrument),
-            smoothing,
+            ("low_pass", low_pass),
+            ("smoothing", smoothing),
         ];
-        let above = |v: f64| v.is_finite() && v > 0.0;
-        let positive =
-            positive.map(|(key, v)| (key, v.unwrap_or(1.0), v.is_none_or(above), "a finite number above 0"));
+        let positive = positive.into_iter().filter_map(|(key, value)| Some((key, value?)));
+        let positive = positive.map(|(key, v)| (key, v, v.is_finite() && v > 0.0, "a finite number above 0"));
         let (sensitivity, pulses, points) = (self.sensitivity, self.pulses_per_turn, self.points);
         let others = [
             ("sensitivity", sensitivity, sensitivity.is_normal(), "a finite number, not 0"),
@@ -217,7 +217,7 @@ impl DrillOptions {
             ("pulses_per_turn", pulses as f64, (1..=MOST_PULSES).contains(&pulses), "1 to 10000"),
             ("points", points as f64, (2..=MOST_POINTS).contains(&points), "2 to 100000"),
         ];
-        if let Some((key, value, _, expected)) = positive.into_iter().chain(others).find(|check| !check.2) {
+        if let Some((key, value, _, expected)) = positive.chain(others).find(|check| !check.2) {
             let found = format!("{} = {value}", key.replace('_', " "));
             return Err(Error::usage(found, expected).setting(key));
         }

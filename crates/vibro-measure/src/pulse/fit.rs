@@ -23,6 +23,8 @@ impl Seen {
 /// Samples in units of about the pulse: time from its rising flank over its length, value over its height.
 pub(super) struct Samples<'a> {
     pub seen: &'a Seen,
+    /// Places in the record.
+    pub places: Vec<usize>,
     pub times: Vec<f64>,
     pub values: Vec<f64>,
 }

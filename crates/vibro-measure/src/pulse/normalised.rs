@@ -5,6 +5,7 @@ use super::locate::Located;
 use super::result::{PulseCurve, PulseFit, PulsePicture, propagated};
 use super::{ContactModel, HuntCrossley, LowPass};
 use crate::Estimate;
+use crate::mean::average;
 use crate::residuals::aicc;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -22,16 +23,6 @@ pub(super) struct Normalised<'a> {
     /// Unit of the values.
     height: f64,
     seen: Seen,
-}
-
-/// What is fitted of a record.
-pub(super) struct Window<'a> {
-    /// The samples.
-    pub samples: Samples<'a>,
-    /// Their places in the record.
-    pub used: Vec<usize>,
-    /// Whether the record comes back to the level before the pulse.
-    pub level: bool,
 }
 
 /// A mean of this part of the root mean square is another level; what rings is on both sides of its own.
@@ -73,25 +64,30 @@ impl<'a> Normalised<'a> {
         self.trace.axis.start() + self.found.flanks.0 * self.step + time * self.length
     }
 
-    /// The usable samples of a part of the record, and their places.
-    fn samples(&self, range: Range<usize>) -> (Samples<'_>, Vec<usize>) {
+    /// The usable samples of a part of the record.
+    fn samples(&self, range: Range<usize>) -> Samples<'_> {
         let usable = |i: &usize| self.trace.values[*i].is_finite() && !self.found.clipped.contains(i);
-        let used: Vec<usize> = range.filter(usable).collect();
-        let times = used.iter().map(|i| self.time(*i)).collect();
-        let values = used.iter().map(|i| self.trace.values[*i] / self.height).collect();
-        (Samples { seen: &self.seen, times, values }, used)
+        let places: Vec<usize> = range.filter(usable).collect();
+        let times = places.iter().map(|i| self.time(*i)).collect();
+        let values = places.iter().map(|i| self.trace.values[*i] / self.height).collect();
+        Samples { seen: &self.seen, places, times, values }
     }
 
-    /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record does not rest after it.
+    /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record does not rest after it;
+    /// and whether the record comes back to the level before the pulse.
     ///
     /// # Errors
     /// If there are too few samples, or no contact of spring and damper fits the pulse, as `unlike` says.
-    pub fn window(&self, findings: &mut Vec<Finding>, unlike: impl Fn(Error) -> Error) -> Result<Window<'_>> {
+    pub fn window(
+        &self,
+        findings: &mut Vec<Finding>,
+        unlike: impl Fn(Error) -> Error,
+    ) -> Result<(Samples<'_>, bool)> {
         let delay = self.seen.delay();
         let from = self.index(-BESIDE - delay);
-        let (first, used) = self.samples(from..self.found.low);
-        if used.len() < FEWEST {
-            let n = used.len();
+        let first = self.samples(from..self.found.low);
+        let n = first.times.len();
+        if n < FEWEST {
             let why =
                 format!("the pulse has {n} usable samples, and {FEWEST} are needed for five parameters");
             let hint = "sample faster, and record some of the baseline before the pulse";
@@ -101,27 +97,21 @@ impl<'a> Normalised<'a> {
         let fitted = first.fit(ContactModel::KelvinVoigt).map_err(unlike)?;
         let settled = self.index(fitted.end() + 3.0 * delay);
         let far = self.index(fitted.end() + 3.0 * delay + BESIDE);
-        let (after, _) = self.samples(settled..far);
+        let after = self.samples(settled..far);
         // Mean and root of the mean square of what is left after the pulse.
-        let n = after.times.len() as f64;
-        let left: Vec<f64> = fitted
-            .at(&after, &after.times)
-            .map_or_else(Vec::new, |model| model.iter().zip(&after.values).map(|(m, v)| v - m).collect());
-        let mean = left.iter().sum::<f64>() / n;
-        let rms = (left.iter().map(|d| d * d).sum::<f64>() / n).sqrt();
-        let inside = (fitted.fit.sum_of_squares() / used.len() as f64).sqrt().max(1e-6);
+        let model = fitted.at(&after, &after.times).unwrap_or_default();
+        let left: Vec<f64> = model.iter().zip(&after.values).map(|(m, v)| v - m).collect();
+        let mean = average(&left);
+        let rms = average(&left.iter().map(|d| d * d).collect::<Vec<f64>>()).sqrt();
+        let inside = (fitted.fit.sum_of_squares() / n as f64).sqrt().max(1e-6);
         let restless = left.len() >= 4 && rms > 4.0 * inside;
         let level = !restless || mean.abs() <= LEVEL * rms;
         if restless {
-            findings.push(if level {
-                Finding::caution("pulse-no-rest-after")
-            } else {
-                Finding::doubt("pulse-level-changes")
-            });
+            let caution = Finding::caution("pulse-no-rest-after");
+            findings.push(if level { caution } else { Finding::doubt("pulse-level-changes") });
         }
         let end = if restless { self.index(fitted.end()).max(self.found.low) } else { far };
-        let (samples, used) = self.samples(from..end);
-        Ok(Window { samples, used, level })
+        Ok((self.samples(from..end), level))
     }
 
     /// What is wrong with the record around the pulse.
@@ -199,11 +189,12 @@ impl<'a> Normalised<'a> {
     }
 
     /// What a figure needs.
-    pub fn picture(&self, samples: &Samples<'_>, used: &[usize], fits: &[Fitted]) -> PulsePicture {
+    pub fn picture(&self, samples: &Samples<'_>, fits: &[Fitted]) -> PulsePicture {
         let from = self.index(-1.5);
         let end = fits.iter().map(Fitted::end).fold(1.0, f64::max);
         let to = self.index(end + 1.5);
-        let shown = |i: usize| (self.trace.axis.at(i), self.trace.values[i], used.binary_search(&i).is_ok());
+        let fitted = |i: usize| samples.places.binary_search(&i).is_ok();
+        let shown = |i: usize| (self.trace.axis.at(i), self.trace.values[i], fitted(i));
         let (a, b) = (self.time(from), self.time(to));
         let times: Vec<f64> = (0..=600).map(|i| a + (b - a) * f64::from(i) / 600.0).collect();
         let si = |times: &[f64], values: &[f64]| {

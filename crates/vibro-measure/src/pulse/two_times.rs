@@ -62,10 +62,7 @@ pub fn two_times(
             findings.push(Finding::caution("pulse-no-damping").number("xi", damping(rho)));
         }
     }
-    let contact = |times: &[f64]| {
-        let rho = times[0] / times[1];
-        KelvinVoigt::lasting(times[1], damping(rho))
-    };
+    let contact = |times: &[f64]| KelvinVoigt::lasting(times[1], damping(times[0] / times[1]));
     let covariance = |i: usize, j: usize| if i == j { variance } else { 0.0 };
     let times = [time_to_peak, duration];
     contact_estimates((&times, &times), covariance, contact, mass, 2, "closed form from two times")
