@@ -19,10 +19,7 @@
 //! ```
 
 mod cycles;
-mod edges;
 mod faults;
-mod findings;
-mod fit;
 mod floor;
 mod groups;
 mod jumps;
@@ -32,15 +29,14 @@ mod survey;
 mod turns;
 
 pub use cycles::{Bandwidth, Cycle, Phases};
-pub use edges::Edge;
-pub(crate) use edges::Edges;
 pub use faults::FaultCount;
 pub use floor::NoiseFloor;
 pub use groups::{Group, Impact};
 pub use options::{Beam, Corner, DrillOptions, From, Smoothing};
 pub use result::{Displacement, Drill, Pulses};
 pub(crate) use survey::levels;
-pub(crate) use turns::Numbered;
+pub use turns::Edge;
+pub(crate) use turns::{Edges, Numbered};
 
 use crate::Estimate;
 use crate::exposure::exposure;
@@ -179,7 +175,7 @@ pub fn drill_each(
         excerpt_reference,
         findings: Vec::new(),
     };
-    result.findings = findings::findings(&result, options, &edges, &survey, still.is_some());
+    result.findings = result::findings(&result, options, &edges, &survey, still.is_some());
     if !slow.is_empty() {
         result.findings.push(Finding::caution("drill-slow-changes").name("quantities", slow.join(", ")));
     }

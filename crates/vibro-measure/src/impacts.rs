@@ -5,27 +5,22 @@
 //! excitation. What was assumed and what is doubtful is in [`Impacts::findings`].
 
 mod background;
-mod count;
 mod detect;
 mod excitation;
 mod hum;
 mod interval;
 mod onset;
-mod options;
-mod shape;
 
-pub use detect::{Detected, detect};
+pub(crate) use detect::rate_of;
+pub use detect::{Detected, ImpactsOptions, detect};
 pub use excitation::{PerCycle, Phase};
 pub use hum::Hum;
 pub use interval::{Interval, interval};
-pub use options::ImpactsOptions;
-
-pub(crate) use options::rate_of;
 
 use super::Estimate;
 use super::mean::scatter;
 use background::median;
-use count::{Counted, count, evened, pattern};
+use interval::{Counted, count, evened, pattern};
 use serde::Serialize;
 use vibro_record::{Error, Finding, Result, Severity, Trace};
 

@@ -1,7 +1,5 @@
 //! Answers from records: every number an [`Estimate`].
 
-mod apex;
-
 pub mod crossing;
 pub mod drill;
 pub mod excitation;

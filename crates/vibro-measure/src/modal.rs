@@ -4,7 +4,6 @@
 //! lies below and above, in the kind of the function itself (a receptance times iω for a mobility, −ω² for an accelerance).
 //! Beside it stand the largest line, the half-power bandwidth and the circle fit, to be compared.
 
-mod bands;
 mod classical;
 
 mod rational;
@@ -16,10 +15,9 @@ mod selection;
 pub use response::Measured;
 pub use result::{ByMethod, ModalOptions, ModalResult, Mode, Pole};
 
-use bands::{Group, groups};
 use rational::{Rational, rational};
 use report::Candidate;
-use selection::{chosen, together};
+use selection::{Group, chosen, groups, together};
 use vibro_record::{Error, Finding, FrfKind, Result};
 
 /// Peaks and the modes that were fitted to them.

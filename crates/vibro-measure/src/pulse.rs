@@ -3,24 +3,23 @@
 //! The model of spring and damper (Kelvin–Voigt) gives the answer; those of Hertz and of Hunt and Crossley are fitted beside it,
 //! to see whether the record prefers them. The instrument's low-pass is applied to the models in closed form.
 
+mod contact;
 mod fit;
-mod hunt_crossley;
-mod kelvin_voigt;
 mod locate;
 mod low_pass;
 mod normalised;
 mod result;
 mod two_times;
 
-pub use kelvin_voigt::KelvinVoigt;
+pub use contact::KelvinVoigt;
 pub use low_pass::LowPass;
 pub use result::{ContactModel, PulseCurve, PulseFit, PulsePicture, PulseResult};
 pub use two_times::two_times;
 
 use super::Estimate;
 
+use contact::HuntCrossley;
 use fit::Fitted;
-use hunt_crossley::HuntCrossley;
 use locate::locate;
 use normalised::Normalised;
 use result::contact_estimates;

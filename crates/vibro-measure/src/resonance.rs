@@ -1,9 +1,8 @@
 //! Resonances and antiresonances of a response curve.
 
-use super::apex::apex;
 use super::crossing::at;
 use super::jump::{Jump, Point, SIGMA, differ, echo, jumps, known};
-use super::peaks::{Maximum, Vertex, local_maxima};
+use super::peaks::{Maximum, Vertex, apex, local_maxima};
 use serde::Serialize;
 
 use vibro_record::Direction;

@@ -3,7 +3,6 @@
 //! Each method that the data allow gives its own answer. Where answers differ by more than their uncertainties, that is the result:
 //! nothing is averaged.
 
-mod bounces;
 mod drop;
 mod train;
 mod velocities;

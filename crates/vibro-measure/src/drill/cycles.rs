@@ -1,8 +1,8 @@
 //! Turns over their phase: the time-synchronous average, the displacement, and the bandwidth that the motion needs.
 
-use super::edges;
 use super::faults::State;
 use super::survey::median;
+use super::turns;
 use super::turns::Turn;
 use crate::mean::average;
 use serde::Serialize;
@@ -106,7 +106,7 @@ impl Cycles {
             let at = start + k as f64 * step;
             let i = at as usize;
             let good = states.get(i..i + 2).is_some_and(|s| s.iter().all(|s| s.measured()));
-            let value = edges::value(values, at).filter(|_| good);
+            let value = turns::value(values, at).filter(|_| good);
             if let Some(v) = value {
                 point.push(v);
             }
@@ -133,7 +133,7 @@ impl Cycles {
     /// what drifts.
     pub fn integrate(&mut self, values: &[f64], turn: Turn) {
         let Turn { start, end } = turn;
-        let (Some(first), Some(last)) = (edges::value(values, start), edges::value(values, end)) else {
+        let (Some(first), Some(last)) = (turns::value(values, start), turns::value(values, end)) else {
             return;
         };
         let inside = (start.ceil() as usize..=end.floor() as usize).map(|i| (i as f64, values[i]));

@@ -1,7 +1,7 @@
 //! Impacts that belong together, those of one direction: their means and their restitution.
 
 use super::DrillOptions;
-use super::fit::LackOfFit;
+use super::jumps::LackOfFit;
 use crate::Estimate;
 use crate::mean::Mean;
 use serde::Serialize;

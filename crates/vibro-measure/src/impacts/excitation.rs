@@ -1,7 +1,7 @@
 //! Impacts against their excitation: phases, the fraction that they keep, or the beat by which they miss it.
 
 use super::background::median;
-use super::count::Counted;
+use super::interval::Counted;
 use super::interval::interval;
 use super::{Impacts, ImpactsOptions};
 use crate::Estimate;

@@ -1,6 +1,6 @@
 //! Modes and residual terms fitted to a part of a frequency response function in the complex plane.
 
-use super::bands::Peak;
+use super::selection::Peak;
 use super::{Measured, Pole};
 use crate::residuals::{Whiteness, aicc, student};
 use nalgebra::{DMatrix, DVector};

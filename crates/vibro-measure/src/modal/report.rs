@@ -1,8 +1,8 @@
 //! Fitted modes with their uncertainties, beside what the classical methods give.
 
-use super::bands::Group;
 use super::classical::{circle, half_power};
 use super::rational::Rational;
+use super::selection::Group;
 use super::selection::support_for_two;
 use super::{ByMethod, Measured, ModalOptions, Mode, Pole};
 use crate::Estimate;
