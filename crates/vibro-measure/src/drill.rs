@@ -19,7 +19,6 @@
 //! ```
 
 mod cycles;
-mod faults;
 mod floor;
 mod groups;
 mod jumps;
@@ -29,11 +28,11 @@ mod survey;
 mod turns;
 
 pub use cycles::{Bandwidth, Cycle, Phases};
-pub use faults::FaultCount;
 pub use floor::NoiseFloor;
 pub use groups::{Group, Impact};
 pub use options::{Beam, Corner, DrillOptions, From, Smoothing};
 pub use result::{Displacement, Drill, Pulses};
+pub use survey::FaultCount;
 pub(crate) use survey::levels;
 pub use turns::Edge;
 pub(crate) use turns::{Edges, Numbered};
@@ -42,9 +41,8 @@ use crate::Estimate;
 use crate::exposure::exposure;
 use crate::mean::{Mean, scatter};
 use cycles::Cycles;
-use faults::State;
 use jumps::Jumps;
-use survey::{Survey, median};
+use survey::{State, Survey, median};
 use turns::{Turn, Turns};
 use vibro_record::{Error, Finding, Result};
 
@@ -97,7 +95,7 @@ pub fn drill_each(
     let typical = median(whole.iter().map(|t| (t.end - t.start) / rate));
     options.check_turn(typical)?;
     let (drawn, excerpt, excerpt_reference) = excerpt(whole, &velocity, reference, options.delay * rate);
-    let (states, faults) = faults::repair(&mut velocity, &survey, (options.longest_dropout * rate) as usize);
+    let (states, faults) = survey::repair(&mut velocity, &survey, (options.longest_dropout * rate) as usize);
     let smoothing = options.smoothing.corner(options.points, typical, rate);
     let smooth = smoothing.map(|corner| corner.smooth(&velocity, rate)).transpose()?;
     let smooth = smooth.as_deref().unwrap_or(&velocity);

@@ -5,23 +5,19 @@
 
 mod contact;
 mod fit;
-mod locate;
 mod low_pass;
 mod normalised;
 mod result;
-mod two_times;
 
 pub use contact::KelvinVoigt;
 pub use low_pass::LowPass;
-pub use result::{ContactModel, PulseCurve, PulseFit, PulsePicture, PulseResult};
-pub use two_times::two_times;
+pub use result::{ContactModel, PulseCurve, PulseFit, PulsePicture, PulseResult, two_times};
 
 use super::Estimate;
 
 use contact::HuntCrossley;
 use fit::Fitted;
-use locate::locate;
-use normalised::Normalised;
+use normalised::{Normalised, locate};
 use result::contact_estimates;
 use vibro_record::units::notation::shortest;
 use vibro_record::{Error, Finding, Result, Trace};

@@ -1,7 +1,6 @@
 //! Turns over their phase: the time-synchronous average, the displacement, and the bandwidth that the motion needs.
 
-use super::faults::State;
-use super::survey::median;
+use super::survey::{State, median};
 use super::turns;
 use super::turns::Turn;
 use crate::mean::average;

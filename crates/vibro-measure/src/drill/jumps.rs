@@ -5,8 +5,7 @@
 //! hold for the balance of momentum. A straight line would be more precise in noise but wrong where the drive accelerates
 //! the striker: over 0.5 ms of a 7.5 m/s stroke at 50 Hz by 0.04 m/s.
 
-use super::faults::State;
-use super::survey::median;
+use super::survey::{State, median};
 use super::turns::Turn;
 use super::{Impact, turns};
 use crate::residuals::Whiteness;
