@@ -1,7 +1,7 @@
 //! Hand-arm vibration: the weighting `W_h` of ISO 5349-1 as a digital filter, `a_hv` and A(8).
 
 use super::Estimate;
-use super::mean::Mean;
+use super::mean::{Mean, average};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibro_record::{Error, Finding, Result};
@@ -91,7 +91,7 @@ impl Axis {
             mean_square: mean_square(counted),
             seconds: counted.chunks_exact(span).map(mean_square).collect(),
             peak: largest(counted, 0.0),
-            unweighted_peak: largest(values, values.iter().sum::<f64>() / values.len() as f64),
+            unweighted_peak: largest(values, average(values)),
             duration: counted.len() as f64 / rate,
         })
     }

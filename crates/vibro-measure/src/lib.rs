@@ -1,4 +1,12 @@
 //! Answers from records: every number an [`Estimate`].
+//!
+//! ```
+//! use vibro_measure::restitution::{Measured, Train, restitution};
+//! let bounces = Train { intervals: vec![0.300, 0.181, 0.109, 0.066], onset_std: Some(1e-4) };
+//! let found = restitution(&Measured { trains: vec![bounces], ..Measured::default() })?;
+//! assert!((found.restitution.value - 0.60).abs() < 0.01 && found.restitution.std.is_some());
+//! # Ok::<(), vibro_record::Error>(())
+//! ```
 
 pub mod crossing;
 pub mod drill;

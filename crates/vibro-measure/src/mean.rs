@@ -31,6 +31,18 @@ pub(crate) fn upper_median(values: impl IntoIterator<Item = f64>) -> Option<f64>
     (!finite.is_empty()).then(|| *finite.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
+/// Mean of `estimates` (logarithm of the weight, value, variance), and its variance: the mean of their variances and the variance of
+/// their values.
+pub(crate) fn mixture(estimates: &[(f64, f64, f64)]) -> (f64, f64) {
+    let highest = estimates.iter().map(|e| e.0).fold(f64::NEG_INFINITY, f64::max);
+    let total: f64 = estimates.iter().map(|e| (e.0 - highest).exp()).sum();
+    let over = |of: &dyn Fn(f64, f64) -> f64| {
+        estimates.iter().map(|e| (e.0 - highest).exp() * of(e.1, e.2)).sum::<f64>() / total
+    };
+    let mean = over(&|value, _| value);
+    (mean, over(&|value, variance| variance + (value - mean).powi(2)))
+}
+
 /// A mean and its standard uncertainty.
 ///
 /// Values that follow each other are rarely independent: speed and stroke of a machine wander. The variance of their mean is

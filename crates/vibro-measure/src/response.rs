@@ -176,11 +176,10 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
             (resonance.frequency_std, resonance.amplitude_std) = (None, None);
         }
     }
-    let undone = sweep.analyser_integrated;
     let taken: [(_, &dyn std::fmt::Display); 4] = [
         ("band", &options.band),
         ("integrate", &options.integrate),
-        ("analyser_integrated", &undone),
+        ("analyser_integrated", &sweep.analyser_integrated),
         ("fmin", &fmin),
     ];
     Ok(Response {

@@ -1,6 +1,7 @@
 //! Level and noise of a trace between its impacts, and its bursts with the ringing that each impact leaves behind.
 
 use std::ops::Range;
+use vibro_math::lanes::{Survey, survey};
 
 /// An impact rises above what is left of the ringing before it by this factor.
 const RISE: f64 = 2.0;
@@ -105,8 +106,7 @@ const MEDIAN: f64 = 0.674_489_750_196_081_7;
 /// Starts from the median and the lower quartile of the distances from it, so that impacts may fill half of the record; then
 /// leaves out the samples beyond the noise limit with their neighbours, and repeats.
 pub fn background(values: &[f64]) -> Background {
-    let (low, high) =
-        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let Survey { low, high, .. } = survey(values);
     // P(|x| > zσ) < exp(−z²/2), for each of n samples.
     let z = (2.0 * (values.len().max(1) as f64 / 1e-3).ln()).sqrt();
     let of = |quiet: &[f64], part: f64, normal: f64| {

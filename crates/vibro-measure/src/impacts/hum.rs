@@ -2,6 +2,7 @@
 
 use super::background::{background, bursts, median};
 use nalgebra::{DMatrix, DVector};
+use num_complex::Complex64;
 use serde::Serialize;
 use std::f64::consts::TAU;
 use vibro_record::Finding;
@@ -99,9 +100,8 @@ fn fitted(values: &[f64], rate: f64) -> Option<(Hum, Vec<f64>)> {
 
 /// Squared amplitude of the sine of `f` cycles a sample.
 fn power(values: &[f64], f: f64) -> f64 {
-    let turn = num_complex::Complex64::cis(-TAU * f);
-    let mut z = num_complex::Complex64::new(1.0, 0.0);
-    let mut sum = num_complex::Complex64::default();
+    let turn = Complex64::cis(-TAU * f);
+    let (mut z, mut sum) = (Complex64::ONE, Complex64::ZERO);
     for v in values {
         sum += z * v;
         z *= turn;

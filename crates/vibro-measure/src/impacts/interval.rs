@@ -26,7 +26,7 @@
 //! ±1.96 u then hold T in 93.8, 93.8 and 92.6 %, with 0.9 in 89 %, most of which are found to wander.
 
 use super::background::median;
-use crate::mean::Mean;
+use crate::mean::{Mean, average, mixture};
 use crate::residuals::student;
 use std::f64::consts::FRAC_PI_2;
 
@@ -56,14 +56,9 @@ pub fn interval(times: &[f64], indices: &[usize]) -> Option<Interval> {
     if d.len() == 1 {
         return Some(Interval { mean: d[0] / m[0], std: f64::NAN, correlation: f64::NAN, wanders: false });
     }
-    let nodes = nodes(&d, &m);
-    let highest = nodes.iter().map(|n| n.likelihood).fold(f64::NEG_INFINITY, f64::max);
-    let parts: Vec<f64> = nodes.iter().map(|n| (n.likelihood - highest).exp()).collect();
-    let total: f64 = parts.iter().sum();
-    let over = |f: &dyn Fn(&Gls) -> f64| nodes.iter().zip(&parts).map(|(n, p)| p * f(n)).sum::<f64>() / total;
-    let mean = over(&|g| g.mean);
     let widened = widened(d.len() - 1).powi(2);
-    let variance = over(&|g| widened * g.variance * g.cofactor + (g.mean - mean).powi(2));
+    let fits = nodes(&d, &m).into_iter().map(|g| (g.likelihood, g.mean, widened * g.variance * g.cofactor));
+    let (mean, variance) = mixture(&fits.collect::<Vec<_>>());
     let correlation = correlation(&d, &m);
     let each: Vec<f64> = d.iter().zip(&m).map(|(d, m)| d / m).collect();
     let slow = (correlation > 0.0).then(|| Mean::of(&each));
@@ -129,8 +124,7 @@ fn widened(free: usize) -> f64 {
 /// that is the usual quotient of sums, whose neighbours are one fewer than its squares.
 fn correlation(d: &[f64], m: &[f64]) -> f64 {
     let single: Vec<f64> = d.iter().zip(m).filter(|(_, m)| **m == 1.0).map(|(d, _)| *d).collect();
-    let n = single.len() as f64;
-    let mean = single.iter().sum::<f64>() / n;
+    let (n, mean) = (single.len() as f64, average(&single));
     let squares: f64 = single.iter().map(|d| (d - mean).powi(2)).sum();
     let neighbours = d.windows(2).zip(m.windows(2)).filter(|(_, m)| m[0] == 1.0 && m[1] == 1.0);
     let (pairs, products) =

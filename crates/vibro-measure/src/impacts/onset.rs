@@ -1,6 +1,7 @@
 //! When each burst begins, below a sample: by its flank, or matched to the shape of all pulses.
 
 use super::background::median;
+use crate::mean::average;
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 use std::ops::Range;
 
@@ -80,10 +81,9 @@ fn by_average(values: &[f64], lobes: &[Lobe], whole: &[&Lobe], sigma: f64) -> Op
     // A pulse is alike where its residual is noise, or little beside its height.
     let residual =
         |m: &Matched| (m.variance.sqrt() / (2.0 * sigma)).min(m.variance.sqrt() / (0.1 * m.height));
-    let near = |m: &Option<Matched>, flank: &Onset| m.filter(|m| (m.time - flank.time).abs() < width);
-    let pairs: Vec<(Onset, Option<Matched>)> =
-        flanks.iter().zip(&matched).map(|(flank, m)| (*flank, near(m, flank))).collect();
-    let residuals: Vec<f64> = pairs.iter().map(|(_, m)| m.as_ref().map_or(f64::INFINITY, residual)).collect();
+    let near = |(m, flank): (&Option<Matched>, &Onset)| m.filter(|m| (m.time - flank.time).abs() < width);
+    let own: Vec<Option<Matched>> = matched.iter().zip(&flanks).map(near).collect();
+    let residuals: Vec<f64> = own.iter().map(|m| m.as_ref().map_or(f64::INFINITY, residual)).collect();
     if median(&residuals) > 1.0 {
         return None;
     }
@@ -91,12 +91,12 @@ fn by_average(values: &[f64], lobes: &[Lobe], whole: &[&Lobe], sigma: f64) -> Op
     let mut left: Vec<f64> = matched.iter().flatten().map(|m| m.variance).collect();
     let most = 4.0 * median(&left);
     left.retain(|v| *v <= most);
-    let variance = left.iter().sum::<f64>() / left.len() as f64;
-    let onset = |(lobe, (_, m)): (&Lobe, (Onset, Option<Matched>))| match m {
+    let variance = average(&left);
+    let onset = |(lobe, m): (&Lobe, Option<Matched>)| match m {
         Some(m) => Some(Onset { time: m.time, std: (m.cofactor * variance).sqrt(), height: m.height }),
         None => Some(lobe.onset).filter(|o| o.time.is_finite()),
     };
-    Some(lobes.iter().zip(pairs).filter_map(onset).collect())
+    Some(lobes.iter().zip(own).filter_map(onset).collect())
 }
 
 /// First lobe of a burst, up to the first maximum that reaches half of the largest value.

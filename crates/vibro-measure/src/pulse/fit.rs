@@ -1,6 +1,7 @@
 //! Models of a contact fitted to the samples of a pulse.
 
 use super::{ContactModel, HuntCrossley, KelvinVoigt, LowPass};
+use crate::mean::average;
 use crate::residuals::{Whiteness, student};
 use vibro_math::{Fit, least_squares};
 use vibro_record::{Error, Result};
@@ -229,8 +230,7 @@ impl Samples<'_> {
         (times, y): (&[f64], &[f64]),
     ) -> Option<(f64, Vec<f64>)> {
         let x = self.model(model, &p, times, None)?;
-        let n = x.len() as f64;
-        let (mx, my) = (x.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
+        let (mx, my) = (average(&x), average(y));
         let sxx: f64 = x.iter().map(|x| (x - mx).powi(2)).sum();
         let sxy: f64 = x.iter().zip(y).map(|(x, y)| (x - mx) * (y - my)).sum();
         let slope = sxy / sxx;

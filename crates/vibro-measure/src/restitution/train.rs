@@ -14,6 +14,7 @@
 use super::{Way, above_zero, not_negative, repeated, together};
 use crate::Estimate;
 use crate::impacts::{Detected, ImpactsOptions, detect};
+use crate::mean::mixture;
 use crate::residuals::student;
 use nalgebra::{DMatrix, DVector};
 use vibro_record::{Error, Finding, Result, Trace};
@@ -202,14 +203,8 @@ pub fn fit(flights: &[Flight], onset_std: Option<f64>) -> Option<(f64, Option<f6
         let total: f64 = nodes.iter().map(|(prior, _)| prior).sum();
         nodes.push((total * SCATTER_ALONE / (1.0 - SCATTER_ALONE), scatter_alone?));
     }
-    let best = nodes.iter().map(|(_, node)| node.likelihood).fold(f64::NEG_INFINITY, f64::max);
-    let parts: Vec<f64> = nodes.iter().map(|(prior, node)| prior * (node.likelihood - best).exp()).collect();
-    let total: f64 = parts.iter().sum();
-    let over = |f: &dyn Fn(&Node) -> f64| {
-        nodes.iter().zip(&parts).map(|((_, node), part)| part * f(node)).sum::<f64>() / total
-    };
-    let log_r = over(&|node| node.log_r);
-    let variance = over(&|node| node.variance + (node.log_r - log_r).powi(2));
+    let estimates = nodes.iter().map(|(prior, n)| (prior.ln() + n.likelihood, n.log_r, n.variance));
+    let (log_r, variance) = mixture(&estimates.collect::<Vec<_>>());
     Some((log_r, Some(variance.sqrt()).filter(|s| s.is_finite())))
 }
 
