@@ -179,7 +179,7 @@ impl Keys {
         let options = ModalOptions {
             band: self.band,
             mass: self.mass,
-            least_coherence: self.least_coherence.unwrap_or(ModalOptions::default().least_coherence),
+            least_coherence: self.least_coherence,
             decay: meta.added_decay(),
             from_blows: meta.from_blows(),
         };

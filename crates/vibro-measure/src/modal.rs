@@ -32,7 +32,7 @@ type Fitted = (Group, Rational);
 /// # Errors
 /// If the band is not one, holds no peak or fewer lines than the parameters of a mode, or no line can be used.
 pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult> {
-    let least = options.least_coherence;
+    let least = options.least_coherence.unwrap_or(0.5);
     if !(0.0..1.0).contains(&least) {
         return Err(Error::usage(format!("a least coherence of {least}"), "a number from 0 to below 1"));
     }

@@ -150,13 +150,10 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
         wrong.iter().chain(&sweep.findings).cloned().chain(repeated(sweep)).collect();
     let direction = direction(&frequency, sweep.direction, &mut findings);
     let faint = points.iter().filter(|p| p.upper_limit.is_some()).count();
-    if faint > 0 {
-        findings.push(Finding::caution("sweep-below-noise").count("n", faint));
-    }
     let below = points.iter().filter(|p| p.amplitude.value.is_nan()).count();
-    if below > 0 {
-        findings.push(Finding::caution("sweep-below-cutoff").count("n", below).number("fmin", fmin));
-    }
+    let below_cutoff = Finding::caution("sweep-below-cutoff").count("n", below).number("fmin", fmin);
+    findings.extend((faint > 0).then(|| Finding::caution("sweep-below-noise").count("n", faint)));
+    findings.extend((below > 0).then_some(below_cutoff));
     let (mut jumps, mut resonances) = (Vec::new(), Vec::new());
     if let Some(direction) = direction.filter(|_| points.len() >= 3) {
         let at = |p: &ResponsePoint| (p.excitation, p.amplitude.value, p.amplitude.std.unwrap_or(f64::NAN));

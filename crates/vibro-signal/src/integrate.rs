@@ -198,13 +198,9 @@ fn drift(values: &[f64], edge: usize, period: Option<usize>) -> f64 {
         return mean(&inner[n - p..]) - mean(&inner[..p]);
     }
     let (middle, centre) = (mean(inner), 0.5 * (n as f64 - 1.0));
-    let (mut product, mut square) = (0.0, 0.0);
-    for (i, v) in inner.iter().enumerate() {
-        let x = i as f64 - centre;
-        product += x * (v - middle);
-        square += x * x;
-    }
-    product / square * (n as f64 - 1.0)
+    let about = || inner.iter().enumerate().map(|(i, v)| (i as f64 - centre, v - middle));
+    let product: f64 = about().map(|(x, v)| x * v).sum();
+    product / about().map(|(x, _)| x * x).sum::<f64>() * (n as f64 - 1.0)
 }
 
 #[cfg(test)]

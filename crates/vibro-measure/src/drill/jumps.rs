@@ -117,10 +117,10 @@ impl<'a> Jumps<'a> {
             let before = Parabola::through(values, states, at, left - length..=left)?;
             let after = Parabola::through(values, states, at, right..=right + length)?;
             let middle = 0.5 * (before.value + after.value);
-            let crossings: Vec<(usize, f64)> = (left.max(0) as usize..right as usize)
-                .filter_map(|i| turns::between(values, i, middle).map(|t| (i, t)))
-                .collect();
-            let (&(i, first), &(_, last)) = (crossings.first()?, crossings.last()?);
+            let inside = left.max(0) as usize..right as usize;
+            let mut crossings = inside.filter_map(|i| Some((i, turns::between(values, i, middle)?)));
+            let (i, first) = crossings.next()?;
+            let last = crossings.next_back().map_or(first, |crossing| crossing.1);
             at = 0.5 * (first + last);
             let reached = (left - length).max(0) as usize..=(right + length) as usize;
             found = Some(Jump {

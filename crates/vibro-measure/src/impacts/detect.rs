@@ -8,6 +8,8 @@ use std::ops::Range;
 use vibro_record::units::notation::{quantity, shortest};
 use vibro_record::{Error, Finding, Grid, Result, Trace};
 
+/// Lowest impact as a part of the median one.
+const THRESHOLD: f64 = 0.125;
 /// The number of impacts must not change while the assumed decay of their ringing does by this factor.
 const STABLE: f64 = 2.0;
 /// Standard deviations of the noise by which the median height must exceed the noise limit: below them one impact in 700 or more is
@@ -45,7 +47,7 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
     let unit = trace.meta.unit.symbol();
     let mut values = trace.values.clone();
     let mut findings = Vec::new();
-    let hum = if options.hum { hum::remove(&mut values, (rate, unit), &mut findings) } else { None };
+    let hum = if options.keep_hum { None } else { hum::remove(&mut values, (rate, unit), &mut findings) };
     let quiet = background(&values);
     for v in &mut values {
         *v -= quiet.level;
@@ -59,7 +61,7 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
         }
     }
     let all = heights(&values, &bursts, 1.0);
-    let least = (options.threshold * median(&all)).max(quiet.reach);
+    let least = (options.threshold.unwrap_or(THRESHOLD) * median(&all)).max(quiet.reach);
     let mut high = all.iter().map(|h| *h > least);
     bursts.retain(|_| high.next() == Some(true));
     let low = all.len() - bursts.len();
@@ -126,14 +128,14 @@ fn heights(values: &[f64], bursts: &[Range<usize>], sign: f64) -> Vec<f64> {
 }
 
 /// How impacts are found.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct ImpactsOptions {
-    /// Lowest impact as a part of the median one. Default 1/8.
-    pub threshold: f64,
+    /// Lowest impact as a part of the median one; 1/8 where `None`.
+    pub threshold: Option<f64>,
     /// Pause in s that separates two impacts. Default: from the pauses of the trace.
     pub refractory: Option<f64>,
-    /// Whether mains hum is removed. Default true.
-    pub hum: bool,
+    /// Whether mains hum stays. Default: it is removed.
+    pub keep_hum: bool,
     /// One recorded pulse of the shape that all have. Default: the average of the pulses.
     pub shape: Option<Trace>,
     /// Whether no impact is missed and none is too many, however uneven the intervals. Default false.
@@ -144,25 +146,11 @@ pub struct ImpactsOptions {
     pub reference: Option<Vec<f64>>,
 }
 
-impl Default for ImpactsOptions {
-    fn default() -> ImpactsOptions {
-        ImpactsOptions {
-            threshold: 0.125,
-            refractory: None,
-            hum: true,
-            shape: None,
-            complete: false,
-            excitation: None,
-            reference: None,
-        }
-    }
-}
-
 /// Checks options and trace, and gives the sampling rate in Hz.
 pub(super) fn check(trace: &Trace, options: &ImpactsOptions) -> Result<f64> {
     let rate = rate_of(trace)?;
-    if !(0.0..1.0).contains(&options.threshold) {
-        let found = format!("a threshold of {}", options.threshold);
+    if let Some(threshold) = options.threshold.filter(|t| !(0.0..1.0).contains(t)) {
+        let found = format!("a threshold of {threshold}");
         return Err(Error::usage(found, "a part of the median height, from 0 to 1"));
     }
     for (name, value) in [("a refractory time", options.refractory), ("an excitation", options.excitation)] {

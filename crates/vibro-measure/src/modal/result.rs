@@ -7,25 +7,19 @@ use std::f64::consts::TAU;
 use vibro_record::Finding;
 
 /// How modes are looked for.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct ModalOptions {
     /// Band in Hz whose peaks are fitted together. Default: a band around each peak.
     pub band: Option<(f64, f64)>,
     /// Mass in kg for the stiffness k = m(2πf)², taken as exact. Default: none.
     pub mass: Option<f64>,
-    /// Lines of a coherence below this are left out. Default 0.5.
-    pub least_coherence: f64,
+    /// Lines of a coherence below this are left out; 0.5 where `None`.
+    pub least_coherence: Option<f64>,
     /// Decay in 1/s that an exponential window added to the response, to be subtracted. Default: none.
     pub decay: Option<f64>,
     /// Whether the function was averaged over the blows of a hammer, each a record as long as one over the distance of the lines.
     /// Default: false.
     pub from_blows: bool,
-}
-
-impl Default for ModalOptions {
-    fn default() -> ModalOptions {
-        ModalOptions { band: None, mass: None, least_coherence: 0.5, decay: None, from_blows: false }
-    }
 }
 
 /// The modes of a frequency response function.

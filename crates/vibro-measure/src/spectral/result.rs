@@ -144,9 +144,10 @@ impl SpectralResult {
     /// Spectrum, or function and coherence, without the lines that have no value: files have no word for them.
     pub fn records(&self) -> Vec<Record> {
         let known = |spectrum: Spectrum| {
-            let (axis, values) = match &spectrum.values {
-                Values::Real(v) => finite(&spectrum.axis, v, Values::Real, |v| v.is_finite()),
-                Values::Complex(v) => finite(&spectrum.axis, v, Values::Complex, |v| v.is_finite()),
+            let (axis, kept) = finite(&spectrum.axis, |k| spectrum.values.magnitude(k).is_finite());
+            let values = match &spectrum.values {
+                Values::Real(v) => Values::Real(kept.iter().map(|k| v[*k]).collect()),
+                Values::Complex(v) => Values::Complex(kept.iter().map(|k| v[*k]).collect()),
             };
             Record::Spectrum(Spectrum { axis, values, ..spectrum })
         };
@@ -162,7 +163,8 @@ impl SpectralResult {
                     window: None,
                     enbw: None,
                 };
-                let (axis, values) = finite(&frf.axis, &frf.values, |v| v, |v| v.is_finite());
+                let (axis, kept) = finite(&frf.axis, |k| frf.values[k].is_finite());
+                let values = kept.iter().map(|k| frf.values[*k]).collect();
                 vec![Record::Frf(Frf { axis, values, ..frf }), known(coherence)]
             }
         }
@@ -180,14 +182,9 @@ impl SpectralResult {
     }
 }
 
-/// Lines with a value, evenly spaced where none is missing between them.
-fn finite<T: Copy, V>(
-    axis: &Axis,
-    values: &[T],
-    of: fn(Vec<T>) -> V,
-    is_finite: impl Fn(&T) -> bool,
-) -> (Axis, V) {
-    let kept: Vec<usize> = (0..values.len()).filter(|k| is_finite(&values[*k])).collect();
+/// Lines with a value, evenly spaced where none is missing between them, and their places.
+fn finite(axis: &Axis, is_finite: impl Fn(usize) -> bool) -> (Axis, Vec<usize>) {
+    let kept: Vec<usize> = (0..axis.len()).filter(|k| is_finite(*k)).collect();
     let [first, last] = [kept.first(), kept.last()].map(|k| k.copied().unwrap_or(0));
     let grid = match axis.step() {
         Some(step) if last + 1 - first == kept.len() => {
@@ -195,5 +192,5 @@ fn finite<T: Copy, V>(
         }
         _ => Grid::Uneven(kept.iter().map(|k| axis.at(*k)).collect()),
     };
-    (Axis { kind: axis.kind.clone(), grid }, of(kept.iter().map(|k| values[*k]).collect()))
+    (Axis { kind: axis.kind.clone(), grid }, kept)
 }
