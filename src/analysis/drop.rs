@@ -181,9 +181,9 @@ impl Series {
         let recording = source.recording()?;
         let trace = source.trace(&recording)?;
         let how = ImpactsOptions {
-            threshold: keys.threshold.unwrap_or(Train::THRESHOLD),
+            threshold: Some(keys.threshold.unwrap_or(Train::THRESHOLD)),
             refractory: keys.refractory,
-            hum: !keys.keep_hum,
+            keep_hum: keys.keep_hum,
             ..ImpactsOptions::default()
         };
         let (train, found) = Train::of(&trace, &how)?;

@@ -150,10 +150,8 @@ impl Keys {
             let found = self.taken().lines(source)?;
             told.tell("", &found.findings);
             let records = found.records();
-            let [Record::Frf(frf), Record::Spectrum(coherence)] = records.as_slice() else {
-                return Ok(Vec::new());
-            };
-            let measured = Measured::complex(frf).with_coherence(coherence)?;
+            let Some(Record::Frf(frf)) = records.first() else { return Ok(Vec::new()) };
+            let measured = Measured::complex(frf).with_coherence_of(&records)?;
             return Ok(vec![Function { meta: frf.meta.clone(), measured, records }]);
         }
         let recording = source.reader()?.from_path(source.path)?;
@@ -181,7 +179,7 @@ impl Keys {
         let options = ModalOptions {
             band: self.band,
             mass: self.mass,
-            least_coherence: self.least_coherence.unwrap_or(ModalOptions::default().least_coherence),
+            least_coherence: self.least_coherence,
             decay: meta.added_decay(),
             from_blows: meta.from_blows(),
         };

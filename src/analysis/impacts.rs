@@ -68,12 +68,12 @@ impl Keys {
         let reference = self.reference.as_ref().map(|channel| recording.trace(Some(channel), None));
         let shape = source.further("shape", self.shape.as_ref())?;
         let shape = shape.map(|path| Reader::new().rate(self.shape_rate).from_path(path)?.trace(None, None));
-        let default = ImpactsOptions::default();
+
         let options = ImpactsOptions {
-            threshold: self.threshold.unwrap_or(default.threshold),
+            threshold: self.threshold,
             refractory: self.refractory,
             excitation: self.excitation,
-            hum: !self.keep_hum,
+            keep_hum: self.keep_hum,
             reference: reference.transpose()?.map(|r| r.values),
             shape: shape.transpose()?,
             complete: self.none_missed,

@@ -2,8 +2,8 @@
 
 use crate::model::sweep::{Point, Swept};
 use serde::Serialize;
-use vibro_measure::jump::{Jump, jumps};
-use vibro_measure::resonance::{NamedCurve, Resonance, ResonanceKind, name_modes, resonances};
+use vibro_measure::jump::Jump;
+use vibro_measure::resonance::{NamedCurve, Resonance, ResonanceKind, name_modes};
 use vibro_record::Direction;
 
 /// Something found on the curve of one mass.
@@ -23,24 +23,15 @@ pub struct Named<T> {
 /// The scatter from cycle to cycle counts as the uncertainty of a point, so that irregular stretches are not full of peaks.
 pub fn named(swept: &Swept) -> (Vec<Named<Resonance>>, Vec<Named<Jump>>) {
     let sides = [(&swept.up, Direction::Up), (&swept.down, Direction::Down)];
-    let mut curves: Vec<Found> = sides
+    let mut curves: Vec<NamedCurve> = sides
         .into_iter()
         .filter(|(points, _)| points.len() > 2)
-        .flat_map(|(points, direction)| [1, 2].map(|mass| Found::on(points, mass, direction)))
+        .flat_map(|(points, direction)| [1, 2].map(|mass| curve(points, mass, direction)))
         .collect();
-    let mut named: Vec<NamedCurve<'_>> = curves
-        .iter_mut()
-        .map(|c| NamedCurve {
-            mass: c.mass,
-            direction: c.direction,
-            curve: c.curve.clone(),
-            jumps: &mut c.jumps,
-            resonances: &mut c.resonances,
-        })
-        .collect();
-    name_modes(&mut named);
+    name_modes(&mut curves);
     let mut all = (Vec::new(), Vec::new());
-    for Found { mass, direction, resonances, jumps, .. } in curves {
+    for NamedCurve { mass, direction, resonances, jumps, .. } in curves {
+        let mass = mass.unwrap_or_default();
         let tops = resonances.into_iter().filter(|r| r.kind != ResonanceKind::Minimum);
         all.0.extend(tops.map(|found| Named { mass, direction, found }));
         all.1.extend(jumps.into_iter().map(|found| Named { mass, direction, found }));
@@ -49,35 +40,12 @@ pub fn named(swept: &Swept) -> (Vec<Named<Resonance>>, Vec<Named<Jump>>) {
 }
 
 /// One mass in one direction.
-struct Found {
-    mass: u8,
-    direction: Direction,
-    curve: Vec<(f64, f64, f64)>,
-    jumps: Vec<Jump>,
-    resonances: Vec<Resonance>,
-}
-
-impl Found {
-    fn on(points: &[Point], mass: u8, direction: Direction) -> Found {
-        let read = |p: &Point| match mass {
-            1 => (p.frequency, p.x1, p.x1_scatter),
-            _ => (p.frequency, p.x2, p.x2_scatter),
-        };
-        let mut curve: Vec<_> = points.iter().map(read).collect();
-        let columns = |curve: &[(f64, f64, f64)]| -> [Vec<f64>; 3] {
-            [
-                curve.iter().map(|p| p.0).collect(),
-                curve.iter().map(|p| p.1).collect(),
-                curve.iter().map(|p| p.2).collect(),
-            ]
-        };
-        let [f, a, std] = columns(&curve);
-        let jumps = jumps(&f, &a, &std, direction);
-        curve.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let [f, a, std] = columns(&curve);
-        let resonances = resonances(&f, &a, &std, &jumps, Some(mass));
-        Found { mass, direction, curve, jumps, resonances }
-    }
+fn curve(points: &[Point], mass: u8, direction: Direction) -> NamedCurve {
+    let read = |p: &Point| match mass {
+        1 => (p.frequency, p.x1, p.x1_scatter),
+        _ => (p.frequency, p.x2, p.x2_scatter),
+    };
+    NamedCurve::new(points.iter().map(read).collect(), direction, Some(mass))
 }
 
 #[cfg(test)]

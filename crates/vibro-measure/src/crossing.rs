@@ -1,13 +1,13 @@
 //! Where two response curves cross.
 
-use super::jump::{Jump, known};
+use super::jump::{Jump, Point, known};
 use std::collections::BTreeMap;
 
 /// Two points of a curve, and their weights in its logarithm between them.
 type Between = [(usize, f64); 2];
 
 /// The points between which `f` lies in a rising curve; `None` outside.
-fn between(curve: &[(f64, f64, f64)], f: f64) -> Option<Between> {
+fn between(curve: &[Point], f: f64) -> Option<Between> {
     let i = curve.partition_point(|p| p.0 < f);
     let b = curve.get(i)?;
     if b.0 == f {
@@ -19,7 +19,7 @@ fn between(curve: &[(f64, f64, f64)], f: f64) -> Option<Between> {
 }
 
 /// A curve between its points, linear in the logarithm; `None` outside.
-pub(super) fn at(curve: &[(f64, f64, f64)], f: f64) -> Option<f64> {
+pub(super) fn at(curve: &[Point], f: f64) -> Option<f64> {
     Some(between(curve, f)?.iter().map(|(i, weight)| weight * curve[*i].1.ln()).sum::<f64>().exp())
 }
 
@@ -34,28 +34,24 @@ pub struct Crossing {
     pub second_above: bool,
 }
 
-/// Where two curves over frequency cross. Each is given as (frequency, amplitude, its standard uncertainty) in any order;
+/// Where two curves over frequency cross. Each is given by its points in any order;
 /// between its points it is a straight line in the logarithm, but not across a jump of its own.
 ///
 /// The uncertainty is that of the amplitudes, carried through the interpolation. Where the curves change places at a jump, the
 /// crossing is that jump: it lies anywhere between the points beside it with equal chance.
-pub fn crossings(
-    mut first: Vec<(f64, f64, f64)>,
-    mut second: Vec<(f64, f64, f64)>,
-    jumps: &[Jump],
-) -> Vec<Crossing> {
+pub fn crossings(mut first: Vec<Point>, mut second: Vec<Point>, jumps: &[Jump]) -> Vec<Crossing> {
     first.sort_by(|a, b| a.0.total_cmp(&b.0));
     second.sort_by(|a, b| a.0.total_cmp(&b.0));
     let curves = [&first, &second];
     let mut frequencies: Vec<f64> = curves.iter().flat_map(|c| c.iter().map(|p| p.0)).collect();
     frequencies.sort_by(f64::total_cmp);
     frequencies.dedup();
-    let range = |j: &Jump| (j.from.min(j.to), j.from.max(j.to));
+
     // The points of both curves behind a frequency. Within a jump of its own a curve has no value.
     let places = |f: f64| -> Option<[Between; 2]> {
         let places = [between(&first, f)?, between(&second, f)?];
-        let within = |(curve, [a, b]): (&&Vec<(f64, f64, f64)>, &Between)| {
-            jumps.iter().any(|j| range(j) == (curve[a.0].0, curve[b.0].0))
+        let within = |(curve, [a, b]): (&&Vec<Point>, &Between)| {
+            jumps.iter().any(|j| j.span() == (curve[a.0].0, curve[b.0].0))
         };
         (!curves.iter().zip(&places).any(within)).then_some(places)
     };
@@ -73,9 +69,9 @@ pub fn crossings(
             let (width, turn) = (high.0 - low.0, low.1 - high.1);
             let second_above = high.1 > 0.0;
             // A jump belongs to the stretch that holds more than half of its step: both masses seldom have quite the same frequencies.
-            let held =
-                jumps.iter().map(range).filter(|j| j.1.min(high.0) - j.0.max(low.0) > 0.5 * (j.1 - j.0));
-            if let Some(jump) = held.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) {
+            let spans = jumps.iter().map(Jump::span);
+            let own = spans.filter(|j| j.1.min(high.0) - j.0.max(low.0) > 0.5 * (j.1 - j.0));
+            if let Some(jump) = own.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) {
                 let frequency_std = Some((jump.1 - jump.0) / f64::sqrt(12.0));
                 return Crossing { frequency: f64::midpoint(jump.0, jump.1), frequency_std, second_above };
             }

@@ -18,12 +18,7 @@
 //! # Ok::<(), vibro_record::Error>(())
 //! ```
 
-mod crossing;
 mod cycles;
-mod edges;
-mod faults;
-mod findings;
-mod fit;
 mod floor;
 mod groups;
 mod jumps;
@@ -33,23 +28,21 @@ mod survey;
 mod turns;
 
 pub use cycles::{Bandwidth, Cycle, Phases};
-pub use edges::Edge;
-pub(crate) use edges::Edges;
-pub use faults::FaultCount;
 pub use floor::NoiseFloor;
 pub use groups::{Group, Impact};
-pub use options::{Beam, Corner, DrillOptions, From, Smoothing, SmoothingKind};
+pub use options::{Beam, Corner, DrillOptions, From, Smoothing};
 pub use result::{Displacement, Drill, Pulses};
+pub use survey::FaultCount;
 pub(crate) use survey::levels;
-pub(crate) use turns::Numbered;
+pub use turns::Edge;
+pub(crate) use turns::{Edges, Numbered};
 
 use crate::Estimate;
 use crate::exposure::exposure;
-use crate::mean::Mean;
+use crate::mean::{Mean, scatter};
 use cycles::Cycles;
-use faults::State;
 use jumps::Jumps;
-use survey::{Survey, median};
+use survey::{State, Survey, median};
 use turns::{Turn, Turns};
 use vibro_record::{Error, Finding, Result};
 
@@ -91,14 +84,18 @@ pub fn drill_each(
         volts.iter().map(|v| v * (options.sensitivity * options.beam.factor)).collect()
     };
     let mut velocity = scaled(record.channels[0]);
-    let survey = moving(&velocity)?;
+    let survey = Survey::of(&velocity);
+    if survey.low >= survey.high {
+        let error = Error::refused("the velocity is constant, or missing");
+        return Err(error.hint("check that the laser sees the target").setting("velocity"));
+    }
     let (edges, turns) = turns(reference, &velocity, options, options.delay * rate)?;
     let edge = edges.std(survey::noise(reference));
     let whole = &turns.whole;
     let typical = median(whole.iter().map(|t| (t.end - t.start) / rate));
     options.check_turn(typical)?;
     let (drawn, excerpt, excerpt_reference) = excerpt(whole, &velocity, reference, options.delay * rate);
-    let (states, faults) = faults::repair(&mut velocity, &survey, (options.longest_dropout * rate) as usize);
+    let (states, faults) = survey::repair(&mut velocity, &survey, (options.longest_dropout * rate) as usize);
     let smoothing = options.smoothing.corner(options.points, typical, rate);
     let smooth = smoothing.map(|corner| corner.smooth(&velocity, rate)).transpose()?;
     let smooth = smooth.as_deref().unwrap_or(&velocity);
@@ -136,7 +133,7 @@ pub fn drill_each(
     let slow: Vec<&str> = slow.into_iter().filter(|(_, wanders)| *wanders).map(|(name, _)| name).collect();
     let mut result = Drill {
         speed,
-        speed_variation: cycles::scatter(&speeds),
+        speed_variation: scatter(&speeds),
         cycles: whole.len(),
         averaged,
         reference: Pulses {
@@ -176,7 +173,7 @@ pub fn drill_each(
         excerpt_reference,
         findings: Vec::new(),
     };
-    result.findings = findings::findings(&result, options, &edges, &survey, still.is_some());
+    result.findings = result::findings(&result, options, &edges, &survey, still.is_some());
     if !slow.is_empty() {
         result.findings.push(Finding::caution("drill-slow-changes").name("quantities", slow.join(", ")));
     }
@@ -200,17 +197,6 @@ fn check(record: &Slices<'_>) -> Result<()> {
         [_, _, ..] => Ok(()),
         few => Err(Error::usage(format!("{} channels", few.len()), "a velocity and a reference")),
     }
-}
-
-/// What a velocity looks like.
-///
-/// # Errors
-/// If it does not move.
-fn moving(velocity: &[f64]) -> Result<Survey> {
-    let survey = Survey::of(velocity);
-    let error = Error::refused("the velocity is constant, or missing");
-    let error = error.hint("check that the laser sees the target").setting("velocity");
-    if survey.low < survey.high { Ok(survey) } else { Err(error) }
 }
 
 /// Edges and turns in the clock of the velocity, which comes `delay` samples late.

@@ -86,9 +86,8 @@ fn largest(force: &[f64], window: Option<Window>, first: usize) -> std::result::
     }
     if k + 2 >= n {
         let which = if k + 1 == n { "last one" } else { "last but one" };
-        return Err(format!(
-            "the largest line of the force is the {which}: the excitation may lie above the base band, or its image moves it"
-        ));
+        let may = "the excitation may lie above the base band, or its image moves it";
+        return Err(format!("the largest line of the force is the {which}: {may}"));
     }
     let floor = noise::around(force, k, noise::REACH, window);
     if floor.is_some_and(|floor| force[k] < ABOVE_FLOOR * floor) {

@@ -1,7 +1,7 @@
 //! Hand-arm vibration: the weighting `W_h` of ISO 5349-1 as a digital filter, `a_hv` and A(8).
 
 use super::Estimate;
-use super::mean::Mean;
+use super::mean::{Mean, average};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibro_record::{Error, Finding, Result};
@@ -58,16 +58,14 @@ struct Axis {
 /// If the rate is below four times the upper corner of the weighting.
 fn weighted(values: &[f64], rate: f64) -> Result<Vec<f64>> {
     if !(rate >= LOWEST_RATE && rate.is_finite()) {
-        return Err(Error::refused(format!(
-            "a rate of {rate} Hz is too low for the weighting W_h, which reaches to 1259 Hz"
-        ))
-        .hint(format!("sample the handle at {LOWEST_RATE:.0} Hz or more")));
+        let why = format!("a rate of {rate} Hz is too low for the weighting W_h, which reaches to 1259 Hz");
+        return Err(Error::refused(why).hint(format!("sample the handle at {LOWEST_RATE:.0} Hz or more")));
     }
     let corners = [BAND[0], BAND[1], TRANSITION];
     let sections = analogue().into_iter().zip(corners).map(|((b, a), exact)| Analogue { b, a, exact });
     let filter = Filter::analogue(&sections.collect::<Vec<Analogue>>(), rate)?;
     let mut out = values.to_vec();
-    filter.settled_at(values.first().copied().unwrap_or(0.0)).apply(&mut out);
+    filter.causal(&mut out, values.first().copied().unwrap_or(0.0));
     Ok(out)
 }
 
@@ -76,20 +74,16 @@ impl Axis {
         let refused = |why: String, hint| Err(Error::refused(why).hint(hint).setting("handle"));
         let missing = values.iter().filter(|v| !v.is_finite()).count();
         if missing > 0 {
-            return refused(
-                format!("{missing} accelerations of the handle are missing"),
-                "mend the cable or the sensor, cut the record, or leave the handle out",
-            );
+            let hint = "mend the cable or the sensor, cut the record, or leave the handle out";
+            return refused(format!("{missing} accelerations of the handle are missing"), hint);
         }
-        let weighted = weighted(values, rate)?;
         let (settle, span) = ((SETTLED * rate).ceil() as usize, (SPAN * rate) as usize);
-        let Some((_, counted)) = weighted.split_at_checked(settle).filter(|(_, counted)| !counted.is_empty())
-        else {
-            return refused(
-                format!("the handle is shorter than {SETTLED} s, in which the weighting W_h settles"),
-                "measure longer, or leave the handle out",
-            );
-        };
+        let weighted = weighted(values, rate)?;
+        let counted = weighted.get(settle..).unwrap_or_default();
+        if counted.is_empty() {
+            let why = format!("the handle is shorter than {SETTLED} s, in which the weighting W_h settles");
+            return refused(why, "measure longer, or leave the handle out");
+        }
         let mean_square = |part: &[f64]| part.iter().map(|v| v * v).sum::<f64>() / part.len() as f64;
         let largest =
             |values: &[f64], mean: f64| values.iter().fold(0.0, |top: f64, v| top.max((v - mean).abs()));
@@ -97,7 +91,7 @@ impl Axis {
             mean_square: mean_square(counted),
             seconds: counted.chunks_exact(span).map(mean_square).collect(),
             peak: largest(counted, 0.0),
-            unweighted_peak: largest(values, values.iter().sum::<f64>() / values.len() as f64),
+            unweighted_peak: largest(values, average(values)),
             duration: counted.len() as f64 / rate,
         })
     }
@@ -160,17 +154,15 @@ pub fn exposure(rate: f64, handles: &[&[f64]], hours: Option<f64>) -> Result<Exp
         let part = (h / 8.0).sqrt();
         Estimate::new(part * a_hv.value, a_hv.std.map(|s| part * s), "m/s²", a_hv.n, "a_hv √(T/8 h)")
     });
-    let mut findings = vec![Finding::note("exposure-understates-shocks")];
-    if handles.len() < 3 {
-        findings.push(Finding::caution("exposure-axes-missing").count("axes", handles.len()));
-    }
-    if together.wanders {
-        findings.push(Finding::caution("exposure-slow-changes"));
-    }
     let duration = all.iter().map(|a| a.duration).fold(f64::INFINITY, f64::min);
-    if duration < SHORT {
-        findings.push(Finding::caution("exposure-record-short").number("duration", duration));
-    }
+    let missing = Finding::caution("exposure-axes-missing").count("axes", handles.len());
+    let short = Finding::caution("exposure-record-short").number("duration", duration);
+    let findings = [
+        (true, Finding::note("exposure-understates-shocks")),
+        (handles.len() < 3, missing),
+        (together.wanders, Finding::caution("exposure-slow-changes")),
+        (duration < SHORT, short),
+    ];
     let crest = all.iter().map(|a| a.peak / a.mean_square.sqrt()).filter(|c| c.is_finite());
     Ok(Exposure {
         crest_factor: crest.fold(0.0, f64::max),
@@ -179,7 +171,7 @@ pub fn exposure(rate: f64, handles: &[&[f64]], hours: Option<f64>) -> Result<Exp
         a_hv,
         a8,
         hours,
-        findings,
+        findings: findings.into_iter().filter(|f| f.0).map(|f| f.1).collect(),
     })
 }
 
@@ -188,13 +180,9 @@ pub fn exposure(rate: f64, handles: &[&[f64]], hours: Option<f64>) -> Result<Exp
 /// # Errors
 /// If they are not above 0 and at most 24.
 pub(crate) fn check_hours(hours: Option<f64>) -> Result<()> {
-    match hours.filter(|h| !(*h > 0.0 && *h <= 24.0)) {
-        Some(h) => {
-            Err(Error::usage(format!("an exposure of {h} hours a day"), "a number above 0, at most 24")
-                .setting("exposure"))
-        }
-        None => Ok(()),
-    }
+    let Some(h) = hours.filter(|h| !(*h > 0.0 && *h <= 24.0)) else { return Ok(()) };
+    let found = format!("an exposure of {h} hours a day");
+    Err(Error::usage(found, "a number above 0, at most 24").setting("exposure"))
 }
 
 #[cfg(test)]

@@ -5,27 +5,22 @@
 //! excitation. What was assumed and what is doubtful is in [`Impacts::findings`].
 
 mod background;
-mod count;
 mod detect;
 mod excitation;
 mod hum;
 mod interval;
 mod onset;
-mod options;
-mod ringing;
-mod shape;
 
-pub use detect::{Detected, detect};
+pub(crate) use detect::rate_of;
+pub use detect::{Detected, ImpactsOptions, detect};
 pub use excitation::{PerCycle, Phase};
 pub use hum::Hum;
 pub use interval::{Interval, interval};
-pub use options::ImpactsOptions;
-
-pub(crate) use options::rate_of;
 
 use super::Estimate;
+use super::mean::scatter;
 use background::median;
-use count::{Counted, count, evened, pattern};
+use interval::{Counted, count, evened, pattern};
 use serde::Serialize;
 use vibro_record::{Error, Finding, Result, Severity, Trace};
 
@@ -148,10 +143,7 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
 fn spread(times: &[f64], counted: &Counted) -> Option<f64> {
     let pairs = times.windows(2).zip(counted.index.windows(2));
     let single: Vec<f64> = pairs.filter(|(_, k)| k[1] - k[0] == 1).map(|(t, _)| t[1] - t[0]).collect();
-    let n = single.len() as f64;
-    let mean = single.iter().sum::<f64>() / n;
-    let squares: f64 = single.iter().map(|d| (d - mean).powi(2)).sum();
-    (single.len() >= 2).then(|| (squares / (n - 1.0)).sqrt())
+    Some(scatter(&single)).filter(|s| s.is_finite())
 }
 
 /// Findings on the count of the impacts and the spread of their intervals.

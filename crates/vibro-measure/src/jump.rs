@@ -40,39 +40,47 @@ pub(super) fn known(std: f64) -> Option<f64> {
 /// Differences below this many standard deviations are noise.
 pub(super) const SIGMA: f64 = 4.0;
 
+/// A point of a response curve: excitation frequency in Hz, amplitude, and its standard uncertainty.
+pub type Point = (f64, f64, f64);
+
 /// Whether two amplitudes differ by more than noise. Unknown uncertainties count as none.
-pub(super) fn differ(amplitude: &[f64], std: &[f64], i: usize, k: usize) -> bool {
-    let noise = [std[i], std[k]].map(|s| if s.is_finite() { s } else { 0.0 });
-    (amplitude[i] - amplitude[k]).abs() > SIGMA * noise[0].hypot(noise[1])
+pub(super) fn differ(a: &Point, b: &Point) -> bool {
+    let noise = [a.2, b.2].map(|s| if s.is_finite() { s } else { 0.0 });
+    (a.1 - b.1).abs() > SIGMA * noise[0].hypot(noise[1])
 }
 
 /// Jumps between neighbouring steps, in the order in which the sweep was run.
-pub fn jumps(frequency: &[f64], amplitude: &[f64], std: &[f64], direction: Direction) -> Vec<Jump> {
-    let n = amplitude.len();
-    let step = |i: usize| (amplitude[i + 1] / amplitude[i]).ln();
-    let width = |i: usize| (frequency[i + 1] - frequency[i]).abs();
-    (0..n.saturating_sub(1))
-        .filter(|&i| {
-            // What the curve does on its own over this distance: the steepest of two steps on each side. Without a step on both sides,
-            // and where a sharp peak stands beside the step, a jump cannot be parted from a flank.
-            let sides = [i.saturating_sub(2)..i, i + 1..(i + 3).min(n - 1)];
-            let usual = sides.map(|side| {
-                side.filter(|k| width(*k) > 1e-5 * frequency[*k])
-                    .map(|k| (step(k) * width(i) / width(k)).abs())
-                    .fold(f64::NAN, f64::max)
-            });
-            let s = step(i).abs();
-            s.is_finite()
-                && s > JUMP.ln()
-                && usual.iter().all(|u| s > JUMP_AGAINST_NEIGHBOURS * u)
-                && differ(amplitude, std, i, i + 1)
-        })
-        .map(|i| jump([i, i + 1].map(|k| (frequency[k], amplitude[k], std[k])), direction))
-        .collect()
+pub(crate) fn jumps(curve: &[Point], direction: Direction) -> Vec<Jump> {
+    let step = |i: usize| (curve[i + 1].1 / curve[i].1).ln();
+    let width = |i: usize| (curve[i + 1].0 - curve[i].0).abs();
+    let steps = curve.len().saturating_sub(1);
+    let is_jump = |i: &usize| {
+        let i = *i;
+        // What the curve does on its own over this distance: the steepest of two steps on each side. Without a step on both sides,
+        // and where a sharp peak stands beside the step, a jump cannot be parted from a flank.
+        let usual = [i.saturating_sub(2)..i, i + 1..(i + 3).min(steps)].map(|side| {
+            side.filter(|k| width(*k) > 1e-5 * curve[*k].0)
+                .map(|k| (step(k) * width(i) / width(k)).abs())
+                .fold(f64::NAN, f64::max)
+        });
+        let s = step(i).abs();
+        s.is_finite()
+            && s > JUMP.ln()
+            && usual.iter().all(|u| s > JUMP_AGAINST_NEIGHBOURS * u)
+            && differ(&curve[i], &curve[i + 1])
+    };
+    (0..steps).filter(is_jump).map(|i| jump([curve[i], curve[i + 1]], direction)).collect()
+}
+
+impl Jump {
+    /// Frequencies beside it in Hz, the lower first.
+    pub(super) fn span(&self) -> (f64, f64) {
+        (self.from.min(self.to), self.from.max(self.to))
+    }
 }
 
 /// The jump between two neighbouring steps.
-pub(super) fn jump([before, after]: [(f64, f64, f64); 2], direction: Direction) -> Jump {
+pub(super) fn jump([before, after]: [Point; 2], direction: Direction) -> Jump {
     Jump {
         from: before.0,
         to: after.0,
@@ -92,11 +100,11 @@ const SIGMA_OF_BOTH: f64 = 5.0;
 
 /// The jump of a rising curve where the other mass of the same sweep has one: the change across it lies outside what the steps on both
 /// sides predict. `None` where it does not, or where there is no step on a side.
-pub(super) fn echo(curve: &[(f64, f64, f64)], other: &Jump) -> Option<Jump> {
+pub(super) fn echo(curve: &[Point], other: &Jump) -> Option<Jump> {
     let high = curve.partition_point(|p| p.0 < other.frequency);
     let [a, b, c, d]: [_; 4] = curve.get(high.checked_sub(2)?..=high + 1)?.try_into().ok()?;
     // Change from `near` to `across` less what the step from `far` to `near` predicts, if it is beyond noise.
-    let excess = |far: (f64, f64, f64), near: (f64, f64, f64), across: (f64, f64, f64)| {
+    let excess = |far: Point, near: Point, across: Point| {
         let stretch = (across.0 - near.0) / (near.0 - far.0);
         let excess = across.1 - near.1 - stretch * (near.1 - far.1);
         let std = across.2.hypot((1.0 + stretch) * near.2).hypot(stretch * far.2);

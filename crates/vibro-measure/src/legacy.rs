@@ -6,35 +6,31 @@
 
 use std::fmt::Write as _;
 use std::path::Path;
-use vibro_record::{Error, Place, Result, Sweep, Trace};
+use vibro_record::{Error, Place, Result, Sweep, SweepPoint, Trace};
 
 /// sineswpf: the frequency of the largest line of each force spectrum, 0 Hz included; hand-over frequencies as given.
 ///
 /// # Errors
 /// Where two lines are equally large the script stops, and so does this.
 pub fn excitation(sweep: &Sweep) -> Result<Vec<f64>> {
-    sweep
-        .points
-        .iter()
-        .map(|point| {
-            if let Some(given) = point.given {
-                return Ok(given);
+    let one = |point: &SweepPoint| {
+        if let Some(given) = point.given {
+            return Ok(given);
+        }
+        let place = Place::file(point.force_path.clone().unwrap_or_default());
+        let largest = point.force.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let mut at = (0..point.force.len()).filter(|k| point.force[*k] == largest);
+        match (at.next(), at.next()) {
+            (Some(k), None) => Ok(sweep.axis.at(k)),
+            (Some(a), Some(b)) => {
+                let found = format!("lines {a} and {b} of the force are equally large: sineswpf stops here");
+                let hint = "without `legacy` the frequency between the two lines is found";
+                Err(Error::input(place, found, "one largest line").hint(hint))
             }
-            let place = || Place::file(point.force_path.clone().unwrap_or_default());
-            let largest = point.force.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            let mut at = (0..point.force.len()).filter(|k| point.force[*k] == largest);
-            match (at.next(), at.next()) {
-                (Some(k), None) => Ok(sweep.axis.at(k)),
-                (Some(a), Some(b)) => Err(Error::input(
-                    place(),
-                    format!("lines {a} and {b} of the force are equally large: sineswpf stops here"),
-                    "one largest line",
-                )
-                .hint("without `legacy` the frequency between the two lines is found")),
-                _ => Err(Error::input(place(), "no force spectrum", "one a point")),
-            }
-        })
-        .collect()
+            _ => Err(Error::input(place, "no force spectrum", "one a point")),
+        }
+    };
+    sweep.points.iter().map(one).collect()
 }
 
 /// Frequencies as the hand-over file keeps them: four decimals.
@@ -74,18 +70,14 @@ pub fn waterfall(sweep: &Sweep) -> Vec<Vec<f64>> {
 /// As [`excitation`].
 pub fn response(sweep: &Sweep) -> Result<Vec<(f64, f64)>> {
     let x = rounded(&excitation(sweep)?);
-    Ok((0..x.len())
-        .map(|i| {
-            let low = if i == 0 { f64::NEG_INFINITY } else { f64::midpoint(x[i - 1], x[i]) };
-            let high = x.get(i + 1).map_or(f64::INFINITY, |next| f64::midpoint(x[i], *next));
-            let spectrum = &sweep.points[i].response.values;
-            let largest = (0..spectrum.len())
-                .filter(|k| (low..=high).contains(&sweep.axis.at(*k)))
-                .map(|k| spectrum.magnitude(k))
-                .fold(f64::NAN, f64::max);
-            (x[i], largest)
-        })
-        .collect())
+    let largest = |i: usize| {
+        let low = if i == 0 { f64::NEG_INFINITY } else { f64::midpoint(x[i - 1], x[i]) };
+        let high = x.get(i + 1).map_or(f64::INFINITY, |next| f64::midpoint(x[i], *next));
+        let spectrum = &sweep.points[i].response.values;
+        let near = (0..spectrum.len()).filter(|k| (low..=high).contains(&sweep.axis.at(*k)));
+        near.map(|k| spectrum.magnitude(k)).fold(f64::NAN, f64::max)
+    };
+    Ok((0..x.len()).map(|i| (x[i], largest(i))).collect())
 }
 
 /// What timeav printed of a contact trace.
@@ -109,20 +101,16 @@ pub struct ContactTimes {
 /// Where the file has a header, the trace no sampling rate or no maximum: the script stopped there.
 pub fn contact_times(trace: &Trace) -> Result<ContactTimes> {
     if let Some((key, value)) = trace.meta.notes.first() {
-        return Err(Error::refused(format!(
+        let why = format!(
             "timeav stops at a file with a header (\"{}\"): it finds no number in the first line",
             format!("{key} {value}").trim()
-        ))
-        .hint("without `legacy` header lines are skipped"));
+        );
+        return Err(Error::refused(why).hint("without `legacy` header lines are skipped"));
     }
     let rate = super::impacts::rate_of(trace)?;
     let s = &trace.values;
-    let maxima: Vec<(usize, f64)> = s
-        .windows(3)
-        .enumerate()
-        .filter(|(_, w)| w[0] > 0.0 && w[1] > w[0] && w[1] > w[2])
-        .map(|(i, w)| (i + 1, w[1]))
-        .collect();
+    let rises = |i: &usize| s[i - 1] > 0.0 && s[*i] > s[i - 1] && s[*i] > s[i + 1];
+    let maxima: Vec<(usize, f64)> = (1..s.len().saturating_sub(1)).filter(rises).map(|i| (i, s[i])).collect();
     let big = maxima.iter().take(2).map(|m| m.1).fold(f64::NEG_INFINITY, f64::max);
     // Octave counts from 1, and the script took the count for the time.
     let times: Vec<f64> =

@@ -1,7 +1,13 @@
 //! Answers from records: every number an [`Estimate`].
+//!
+//! ```
+//! use vibro_measure::restitution::{Measured, Train, restitution};
+//! let bounces = Train { intervals: vec![0.300, 0.181, 0.109, 0.066], onset_std: None };
+//! let found = restitution(&Measured { trains: vec![bounces], ..Measured::default() })?;
+//! assert!((found.restitution.value - 0.60).abs() < 0.01);
+//! # Ok::<(), vibro_record::Error>(())
+//! ```
 
-mod apex;
-mod bisection;
 pub mod crossing;
 pub mod drill;
 pub mod excitation;
@@ -9,10 +15,9 @@ pub mod exposure;
 pub mod impacts;
 pub mod jump;
 pub mod legacy;
-mod limit;
+
 mod line;
 mod mean;
-mod median;
 pub mod modal;
 mod noise;
 pub mod peaks;

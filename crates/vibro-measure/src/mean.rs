@@ -1,4 +1,4 @@
-//! Mean of values in a row that may depend on those before.
+//! Means and medians; the mean of values in a row that may depend on those before.
 
 use crate::residuals::student;
 use std::f64::consts::PI;
@@ -11,6 +11,37 @@ const MOST: usize = 30;
 const STEEP: f64 = 0.5;
 /// Largest dependence on the value before that is reckoned with.
 const CLOSEST: f64 = 0.97;
+
+/// Arithmetic mean; NaN of none.
+pub(crate) fn average(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Standard deviation; NaN of fewer than two.
+pub(crate) fn scatter(values: &[f64]) -> f64 {
+    let mean = average(values);
+    let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
+    if values.len() < 2 { f64::NAN } else { (squares / (values.len() - 1) as f64).sqrt() }
+}
+
+/// The upper median of finite values; `None` of none.
+pub(crate) fn upper_median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let mut finite: Vec<f64> = values.into_iter().filter(|v| v.is_finite()).collect();
+    let middle = finite.len() / 2;
+    (!finite.is_empty()).then(|| *finite.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+/// Mean of `estimates` (logarithm of the weight, value, variance), and its variance: the mean of their variances and the variance of
+/// their values.
+pub(crate) fn mixture(estimates: &[(f64, f64, f64)]) -> (f64, f64) {
+    let highest = estimates.iter().map(|e| e.0).fold(f64::NEG_INFINITY, f64::max);
+    let total: f64 = estimates.iter().map(|e| (e.0 - highest).exp()).sum();
+    let over = |of: &dyn Fn(f64, f64) -> f64| {
+        estimates.iter().map(|e| (e.0 - highest).exp() * of(e.1, e.2)).sum::<f64>() / total
+    };
+    let mean = over(&|value, _| value);
+    (mean, over(&|value, variance| variance + (value - mean).powi(2)))
+}
 
 /// A mean and its standard uncertainty.
 ///
@@ -42,7 +73,7 @@ impl Mean {
     /// Mean of values in the order of time, as a sequence without gaps; the caller leaves out what is missing.
     pub fn of(values: &[f64]) -> Mean {
         let n = values.len();
-        let value = if n == 0 { f64::NAN } else { values.iter().sum::<f64>() / n as f64 };
+        let value = average(values);
         if n < FEWEST {
             return Mean { value, std: None, n, wanders: false };
         }

@@ -4,23 +4,20 @@
 //! lies below and above, in the kind of the function itself (a receptance times iω for a mobility, −ω² for an accelerance).
 //! Beside it stand the largest line, the half-power bandwidth and the circle fit, to be compared.
 
-mod bands;
 mod classical;
-mod pole;
+
 mod rational;
 mod report;
 mod response;
 mod result;
 mod selection;
 
-pub use pole::Pole;
 pub use response::Measured;
-pub use result::{ByMethod, ModalOptions, ModalResult, Mode};
+pub use result::{ByMethod, ModalOptions, ModalResult, Mode, Pole};
 
-use bands::{Group, groups};
 use rational::{Rational, rational};
-use report::Report;
-use selection::{chosen, together};
+use report::Candidate;
+use selection::{Group, chosen, groups, together};
 use vibro_record::{Error, Finding, FrfKind, Result};
 
 /// Peaks and the modes that were fitted to them.
@@ -35,7 +32,7 @@ type Fitted = (Group, Rational);
 /// # Errors
 /// If the band is not one, holds no peak or fewer lines than the parameters of a mode, or no line can be used.
 pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult> {
-    let least = options.least_coherence;
+    let least = options.least_coherence.unwrap_or(0.5);
     if !(0.0..1.0).contains(&least) {
         return Err(Error::usage(format!("a least coherence of {least}"), "a number from 0 to below 1"));
     }
@@ -67,11 +64,14 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
         together(&lines, lines.within(band), &mut fits, &mut unsupported);
     }
     refine(&lines, &mut fits);
-    let mut report = Report { measured: &lines, options, modes: Vec::new(), findings };
+    let mut modes = Vec::new();
     for (at, (group, fit)) in fits.iter().enumerate() {
-        report.add(group, fit, &poles_beside(&fits, at));
+        let others = poles_beside(&fits, at);
+        for (m, sound) in fit.sound(&lines, &group.peaks).into_iter().enumerate() {
+            let candidate = Candidate { measured: &lines, options, group, fit, m };
+            modes.extend(candidate.mode(sound, &others, &mut findings));
+        }
     }
-    let Report { mut modes, mut findings, .. } = report;
     if modes.is_empty() {
         return Err(Error::refused("no peak of the function is supported as a mode")
             .hint("choose a band around one peak, or check the sign of the phase")

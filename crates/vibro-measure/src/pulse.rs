@@ -3,26 +3,21 @@
 //! The model of spring and damper (Kelvin–Voigt) gives the answer; those of Hertz and of Hunt and Crossley are fitted beside it,
 //! to see whether the record prefers them. The instrument's low-pass is applied to the models in closed form.
 
+mod contact;
 mod fit;
-mod hunt_crossley;
-mod kelvin_voigt;
-mod locate;
 mod low_pass;
 mod normalised;
 mod result;
-mod two_times;
 
-pub use kelvin_voigt::KelvinVoigt;
+pub use contact::KelvinVoigt;
 pub use low_pass::LowPass;
-pub use result::{ContactModel, PulseCurve, PulseFit, PulsePicture, PulseResult};
-pub use two_times::two_times;
+pub use result::{ContactModel, PulseCurve, PulseFit, PulsePicture, PulseResult, two_times};
 
 use super::Estimate;
-use super::residuals::Whiteness;
+
+use contact::HuntCrossley;
 use fit::Fitted;
-use hunt_crossley::HuntCrossley;
-use locate::locate;
-use normalised::{Normalised, Window};
+use normalised::{Normalised, locate};
 use result::contact_estimates;
 use vibro_record::units::notation::shortest;
 use vibro_record::{Error, Finding, Result, Trace};
@@ -54,20 +49,24 @@ impl Instrument {
     /// # Errors
     /// If corner and order do not come together; as [`LowPass::new`].
     pub fn stated(low_pass: Option<Option<f64>>, order: Option<usize>) -> Result<Instrument> {
-        let without = |found: String, key, expected| Err(Error::usage(found, expected).setting(key));
-        match (low_pass, order) {
-            (None, None) => Ok(Instrument::Unknown),
-            (Some(None), None) => Ok(Instrument::Flat),
-            (Some(Some(corner)), Some(order)) => Ok(Instrument::LowPass(LowPass::new(corner, order)?)),
-            (Some(Some(corner)), None) => {
-                let found = format!("a low-pass of {corner} Hz without its order");
-                without(found, "order", "the order of the low-pass, 1 to 10")
+        let (found, key, expected) = match (low_pass, order) {
+            (None, None) => return Ok(Instrument::Unknown),
+            (Some(None), None) => return Ok(Instrument::Flat),
+            (Some(Some(corner)), Some(order)) => {
+                return Ok(Instrument::LowPass(LowPass::new(corner, order)?));
             }
-            (_, Some(order)) => {
-                let found = format!("a low-pass of order {order} without its corner");
-                without(found, "low_pass", "the corner of the low-pass in Hz")
-            }
-        }
+            (Some(Some(corner)), None) => (
+                format!("a low-pass of {corner} Hz without its order"),
+                "order",
+                "the order of the low-pass, 1 to 10",
+            ),
+            (_, Some(order)) => (
+                format!("a low-pass of order {order} without its corner"),
+                "low_pass",
+                "the corner of the low-pass in Hz",
+            ),
+        };
+        Err(Error::usage(found, expected).setting(key))
     }
 
     /// The low-pass, if there is one.
@@ -101,10 +100,10 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let located = locate(&trace.values)?;
     let seen = located.flanks.1 - located.flanks.0;
     if seen < FEWEST {
-        return Err(Error::refused(format!(
+        let why = format!(
             "the pulse has {seen:.1} samples above half its height, and at least {FEWEST:.1} are needed"
-        ))
-        .hint("sample faster"));
+        );
+        return Err(Error::refused(why).hint("sample faster"));
     }
     let filter = options.instrument.low_pass();
     let (mut found, mut known) = (Vec::new(), true);
@@ -125,10 +124,10 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
             .setting("low_pass")
     };
     let scale = Normalised::new(trace, rate, &located, filter)?;
-    let Window { samples, used, level } = scale.window(&mut found, unlike)?;
+    let (samples, level) = scale.window(&mut found, unlike)?;
     known = known && level;
     let main = samples.fit(ContactModel::KelvinVoigt).map_err(unlike)?;
-    let whiteness = Whiteness::of(&[&main.fit.residuals]);
+
     let n = samples.times.len();
     let through = |f: &LowPass| {
         format!(" through a Butterworth low-pass of order {} at {} Hz", f.order, shortest(f.corner))
@@ -136,15 +135,14 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let method = format!("least squares, spring and damper{}", filter.map_or_else(String::new, through));
     let unit = [1.0, 1.0 / scale.length];
     let shape = [main.fit.parameters[3], main.fit.parameters[4] * unit[1]];
-    let widening = samples.widening(&main, &whiteness);
+    let (widening, whiteness) = (main.widening, main.whiteness);
     let widened = widening.filter(|_| known).unwrap_or(f64::NAN);
     let covariance =
         |i: usize, j: usize| widened.powi(2) * unit[i] * unit[j] * main.fit.covariance(3 + i, 3 + j);
     let contact = |p: &[f64]| KelvinVoigt::new(p[0], p[1]);
+    let border = || Error::refused("the fitted contact lies at the border of what is possible (ξ near 1)");
     let mut result = contact_estimates((&shape, &unit), covariance, contact, options.mass, n, &method)
-        .ok_or_else(|| {
-            Error::refused("the fitted contact lies at the border of what is possible (ξ near 1)")
-        })?;
+        .ok_or_else(border)?;
     result.initial_velocity = scale.to_velocity(options.mass).map(|factor| {
         let std = factor * main.fit.std(2) * widened;
         Estimate::new(factor * main.fit.parameters[2].abs(), Some(std), "m/s", n, method)
@@ -175,7 +173,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let rivals = [ContactModel::Hertz, ContactModel::HuntCrossley];
     let fits: Vec<Fitted> =
         std::iter::once(main).chain(rivals.into_iter().filter_map(|m| samples.fit(m).ok())).collect();
-    result.fits = fits.iter().map(|f| scale.report(&samples, f, options.mass, known)).collect();
+    result.fits = fits.iter().map(|f| scale.report(f, options.mass, known)).collect();
     if let Some(best) = result.fits.iter().min_by(|a, b| a.aicc.total_cmp(&b.aicc)) {
         let ahead = result.fits[0].aicc - best.aicc;
         if ahead > NO_SUPPORT {
@@ -184,7 +182,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
         }
     }
     result.findings = found;
-    result.picture = Some(scale.picture(&samples, &used, &fits));
+    result.picture = Some(scale.picture(&samples, &fits));
     Ok(result)
 }
 

@@ -1,11 +1,10 @@
 //! Resonances and antiresonances of a response curve.
 
-use super::apex::apex;
 use super::crossing::at;
-use super::jump::{Jump, SIGMA, differ, echo, known};
-use super::peaks::{Maximum, Vertex, local_maxima};
+use super::jump::{Jump, Point, SIGMA, differ, echo, jumps, known};
+use super::peaks::{Maximum, Vertex, apex, local_maxima};
 use serde::Serialize;
-use std::ops::RangeInclusive;
+
 use vibro_record::Direction;
 
 /// A maximum or minimum of a response curve.
@@ -44,13 +43,7 @@ pub enum ResonanceKind {
 impl ResonanceKind {
     /// Its name, as in JSON.
     pub fn name(self) -> &'static str {
-        match self {
-            ResonanceKind::Resonance => "resonance",
-            ResonanceKind::Grazing => "grazing",
-            ResonanceKind::Clapping => "clapping",
-            ResonanceKind::Antiresonance => "antiresonance",
-            ResonanceKind::Minimum => "minimum",
-        }
+        ["resonance", "grazing", "clapping", "antiresonance", "minimum"][self as usize]
     }
 
     /// Whether it is a maximum.
@@ -62,28 +55,24 @@ impl ResonanceKind {
 /// A maximum must stand this factor above its valleys.
 const PROMINENCE: f64 = 1.2;
 
-/// Resonances and minima of a curve with rising `frequency`, given amplitudes, their uncertainties, jumps, and the mass where it
-/// is known.
+/// Resonances and minima of a curve of rising frequency, given its jumps, and the mass where it is known.
 ///
 /// The excited mass (1) has an antiresonance between two resonances. The response of another point may pass between them without
 /// a zero: its minimum is called an antiresonance only where it is deep (less than half of the curve half-way to its neighbours).
-pub fn resonances(
-    frequency: &[f64],
-    amplitude: &[f64],
-    std: &[f64],
-    jumps: &[Jump],
-    mass: Option<u8>,
-) -> Vec<Resonance> {
-    let curve = Curve { frequency, amplitude, std, jumps };
-    let rising = |m: &Maximum| m.valleys.iter().all(|k| differ(amplitude, std, m.at, *k));
-    let maxima = local_maxima(amplitude, PROMINENCE).into_iter().filter(rising);
-    let mut found: Vec<Resonance> = maxima.map(|m| curve.maximum(m.at)).collect();
-    let inverse: Vec<f64> = amplitude.iter().map(|a| 1.0 / a).collect();
-    let minima = local_maxima(&inverse, PROMINENCE).into_iter().filter(rising);
-    found.extend(minima.filter_map(|m| {
+pub(crate) fn resonances(points: &[Point], jumps: &[Jump], mass: Option<u8>) -> Vec<Resonance> {
+    let inverted = |p: &Point| (p.0, 1.0 / p.1, p.2 / (p.1 * p.1));
+    let inverse: Vec<Point> = points.iter().map(inverted).collect();
+    let curve = Curve { points, inverse: &inverse, jumps };
+    let tops = |of: &[Point]| {
+        let heights: Vec<f64> = of.iter().map(|p| p.1).collect();
+        let rises = |m: &Maximum| m.valleys.iter().all(|k| differ(&points[m.at], &points[*k]));
+        local_maxima(&heights, PROMINENCE).into_iter().filter(rises)
+    };
+    let mut found: Vec<Resonance> = tops(points).map(|m| curve.maximum(m.at)).collect();
+    found.extend(tops(&inverse).filter_map(|m| {
         let antiresonance = mass == Some(1) || curve.is_deep(&m);
         let kind = if antiresonance { ResonanceKind::Antiresonance } else { ResonanceKind::Minimum };
-        curve.minimum(m.at, &inverse, kind)
+        curve.minimum(m.at, kind)
     }));
     found.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
     found
@@ -108,58 +97,44 @@ impl Resonance {
 
 /// A response curve of rising frequency.
 struct Curve<'a> {
-    frequency: &'a [f64],
-    amplitude: &'a [f64],
-    std: &'a [f64],
+    points: &'a [Point],
+    /// Its inverse.
+    inverse: &'a [Point],
     jumps: &'a [Jump],
 }
 
 impl Curve<'_> {
     fn jump_between(&self, i: usize, k: usize) -> bool {
-        let (low, high) = (self.frequency[i.min(k)], self.frequency[i.max(k)]);
-        self.jumps.iter().any(|j| j.from.min(j.to) < high && j.from.max(j.to) > low)
+        let (low, high) = (self.points[i.min(k)].0, self.points[i.max(k)].0);
+        self.jumps.iter().map(Jump::span).any(|j| j.0 < high && j.1 > low)
     }
 
-    /// Whether a jump ends or begins at point `i`.
+    /// The jump that ends or begins at point `i`.
     fn jump_at(&self, i: usize) -> Option<&Jump> {
-        let f = &self.frequency[i - 1..=i + 1];
+        let [low, f, high] = [i - 1, i, i + 1].map(|k| self.points[k].0);
         self.jumps.iter().find(|j| {
-            let (low, high) = (j.from.min(j.to), j.from.max(j.to));
-            high >= f[0] && low <= f[2] && (low == f[1] || high == f[1])
+            let j = j.span();
+            j.1 >= low && j.0 <= high && (j.0 == f || j.1 == f)
         })
     }
 
-    /// Points on both sides of `i` over which `values` fall without a jump, two at most.
-    fn flanks(&self, values: &[f64], i: usize) -> RangeInclusive<usize> {
-        let falls = |from: usize, to: usize| {
-            values[to] < values[from] && values[to] > 0.0 && !self.jump_between(from, to)
-        };
+    /// The top of this curve or its inverse between the points around the highest, `i`, and up to two on each side over which it falls
+    /// without a jump; `None` where they do not determine it.
+    fn interpolated(&self, of: &[Point], i: usize) -> Option<Vertex> {
+        let falls =
+            |from: usize, to: usize| of[to].1 < of[from].1 && of[to].1 > 0.0 && !self.jump_between(from, to);
         let low = if i >= 2 && falls(i - 1, i - 2) { i - 2 } else { i - 1 };
-        let high = if i + 2 < values.len() && falls(i + 1, i + 2) { i + 2 } else { i + 1 };
-        low..=high
-    }
-
-    /// The top between the points around the highest, `i`; `None` where they do not determine it.
-    fn interpolated(&self, values: &[f64], i: usize) -> Option<Vertex> {
-        let range = self.flanks(values, i);
-        let stretch = self.frequency.get(range.clone())?;
-        if !stretch.windows(2).all(|f| f[0] < f[1]) {
-            return None;
-        }
-        // Relative uncertainties are the same for a value and its inverse.
-        let std: Vec<f64> =
-            values.iter().zip(self.std).zip(self.amplitude).map(|((v, s), a)| v * s / a).collect();
-        apex(self.frequency, values, &std, i, range)
+        let high = if i + 2 < of.len() && falls(i + 1, i + 2) { i + 2 } else { i + 1 };
+        let rises = of.get(low..=high)?.windows(2).all(|p| p[0].0 < p[1].0);
+        if rises { apex(of, i, low..=high) } else { None }
     }
 
     fn maximum(&self, i: usize) -> Resonance {
-        let (jump, kind) = (self.jump_at(i), ResonanceKind::Resonance);
-        if let Some(jump) = jump {
-            let std = at_a_jump(self.frequency, self.amplitude, self.std, i, jump);
-            return Resonance { at_jump: true, ..self.point(i, [i - 1, i + 1], kind, std) };
+        let here = self.point(i, [i - 1, i + 1], ResonanceKind::Resonance, None);
+        match self.jump_at(i) {
+            Some(jump) => Resonance { at_jump: true, amplitude_std: self.std_at_jump(i, jump), ..here },
+            None => self.interpolated(self.points, i).map_or(here.clone(), |top| here.moved(top)),
         }
-        let here = self.point(i, [i - 1, i + 1], kind, None);
-        self.interpolated(self.amplitude, i).map_or(here.clone(), |top| here.moved(top))
     }
 
     /// The maximum or minimum at point `i`, which lies anywhere between those on its two `sides`.
@@ -170,67 +145,77 @@ impl Curve<'_> {
         kind: ResonanceKind,
         amplitude_std: Option<f64>,
     ) -> Resonance {
-        let [a, b] = sides.map(|k| (self.frequency[k] - self.frequency[i]).abs());
-        let (frequency, amplitude) = (self.frequency[i], self.amplitude[i]);
+        let (frequency, amplitude, _) = self.points[i];
+        let [a, b] = sides.map(|k| (self.points[k].0 - frequency).abs());
         let frequency_std = Some(a.max(b) / f64::sqrt(3.0));
         Resonance { frequency, frequency_std, amplitude, amplitude_std, kind, at_jump: false }
     }
 
     /// `None` at the foot of a jump.
-    fn minimum(&self, i: usize, inverse: &[f64], kind: ResonanceKind) -> Option<Resonance> {
-        if self.amplitude[i] < SIGMA * self.std[i] {
+    fn minimum(&self, i: usize, kind: ResonanceKind) -> Option<Resonance> {
+        let (_, amplitude, std) = self.points[i];
+        if amplitude < SIGMA * std {
             // In the noise its place is not known: between the points that stand out on both sides.
-            let out = |k: &usize| differ(self.amplitude, self.std, i, *k);
-            let sides = [(0..i).rev().find(out)?, (i + 1..self.amplitude.len()).find(out)?];
-            let here = self.point(i, sides, kind, known(self.std[i]));
+            let out = |k: &usize| differ(&self.points[i], &self.points[*k]);
+            let sides = [(0..i).rev().find(out)?, (i + 1..self.points.len()).find(out)?];
+            let here = self.point(i, sides, kind, known(std));
             return (!self.jump_between(sides[0], sides[1])).then_some(here);
         }
         if self.jump_at(i).is_some() {
             return None;
         }
         let here = self.point(i, [i - 1, i + 1], kind, None);
-        let Some(top) = self.interpolated(inverse, i) else { return Some(here) };
+        let Some(top) = self.interpolated(self.inverse, i) else { return Some(here) };
         let (height, height_std) = (1.0 / top.height, top.height_std / (top.height * top.height));
         Some(here.moved(Vertex { height, height_std, ..top }))
     }
 
     /// Whether the curve stands [`DEEP`] above a minimum at the last point before half-way to its neighbours, on both sides.
     fn is_deep(&self, minimum: &Maximum) -> bool {
-        let square = |k: usize| self.frequency[k].powi(2);
+        let square = |k: usize| self.points[k].0.powi(2);
         minimum.valleys.iter().all(|&end| {
             let half_way = f64::midpoint(square(minimum.at), square(end));
             let before = |k: &usize| (square(*k) - half_way) * (square(end) - half_way) <= 0.0;
             let (low, high) = (minimum.at.min(end), minimum.at.max(end));
-            let highest = (low..=high).filter(before).map(|k| self.amplitude[k]).fold(0.0, f64::max);
-            highest > DEEP * self.amplitude[minimum.at]
+            let highest = (low..=high).filter(before).map(|k| self.points[k].1).fold(0.0, f64::max);
+            highest > DEEP * self.points[minimum.at].1
         })
+    }
+
+    /// Uncertainty of the height of a branch that ends in a jump beside point `i`: the slope towards it, carried on over the
+    /// distance to the point behind the jump.
+    fn std_at_jump(&self, i: usize, jump: &Jump) -> Option<f64> {
+        let (f, amplitude, std) = self.points[i];
+        let behind = if (jump.from - f).abs() < (jump.to - f).abs() { jump.to } else { jump.from };
+        let before = self.points.get(if behind > f { i.checked_sub(1)? } else { i + 1 })?;
+        let slope = (amplitude - before.1) / (f - before.0);
+        known((slope * (behind - f) / f64::sqrt(3.0)).hypot(std))
     }
 }
 
-/// Uncertainty of the height of a branch that ends in a jump beside point `i`: the slope towards it, carried on over the
-/// distance to the point behind the jump.
-fn at_a_jump(frequency: &[f64], amplitude: &[f64], std: &[f64], i: usize, jump: &Jump) -> Option<f64> {
-    let behind =
-        if (jump.from - frequency[i]).abs() < (jump.to - frequency[i]).abs() { jump.to } else { jump.from };
-    let before = if behind > frequency[i] { i.checked_sub(1)? } else { i + 1 };
-    let slope = (amplitude[i] - amplitude.get(before)?) / (frequency[i] - frequency.get(before)?);
-    let reach = slope * (behind - frequency[i]) / f64::sqrt(3.0);
-    Some(reach.hypot(std[i])).filter(|s| s.is_finite())
-}
-
-/// A response curve whose resonances are to be named: excited (1) or passive (2) mass.
-#[derive(Debug)]
-pub struct NamedCurve<'a> {
-    /// 1 excited, 2 passive.
-    pub mass: u8,
+/// A response curve with its jumps and resonances.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedCurve {
+    /// 1 excited, 2 passive; `None` where that is not known.
+    pub mass: Option<u8>,
     /// Direction of the sweep.
     pub direction: Direction,
-    /// Excitation frequency in Hz, amplitude and its standard uncertainty, rising in frequency.
-    pub curve: Vec<(f64, f64, f64)>,
+    /// Its points, rising in frequency.
+    pub curve: Vec<Point>,
     /// Its jumps.
-    pub jumps: &'a mut Vec<Jump>,
+    pub jumps: Vec<Jump>,
     /// Its resonances.
-    pub resonances: &'a mut Vec<Resonance>,
+    pub resonances: Vec<Resonance>,
+}
+
+impl NamedCurve {
+    /// Finds jumps and resonances of a curve whose points come in the order in which they were measured.
+    pub fn new(mut curve: Vec<Point>, direction: Direction, mass: Option<u8>) -> NamedCurve {
+        let jumps = jumps(&curve, direction);
+        curve.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let resonances = resonances(&curve, &jumps, mass);
+        NamedCurve { mass, direction, curve, jumps, resonances }
+    }
 }
 
 /// The other mass must move at least this fraction of the one that resonates, or they do not resonate together.
@@ -243,8 +228,8 @@ const TOGETHER: f64 = 0.1;
 /// its jumps, and resonances are found again with the jumps of both. A maximum at which the other mass of the same sweep rests keeps
 /// its kind, as do all where the other mass was not measured. A sweep without an antiresonance of mass 1 uses that of the other
 /// direction.
-pub fn name_modes(curves: &mut [NamedCurve<'_>]) {
-    let partner = |curves: &[NamedCurve<'_>], i: usize| {
+pub fn name_modes(curves: &mut [NamedCurve]) {
+    let partner = |curves: &[NamedCurve], i: usize| {
         let own = &curves[i];
         curves.iter().position(|c| c.mass != own.mass && c.direction == own.direction)
     };
@@ -259,12 +244,10 @@ pub fn name_modes(curves: &mut [NamedCurve<'_>]) {
             own.jumps.extend(echo(&own.curve, jump).filter(|_| !known));
         }
         let all = [own.jumps.as_slice(), &foreign].concat();
-        let column = |of: fn(&(f64, f64, f64)) -> f64| own.curve.iter().map(of).collect::<Vec<f64>>();
-        *own.resonances =
-            resonances(&column(|p| p.0), &column(|p| p.1), &column(|p| p.2), &all, Some(own.mass));
+        own.resonances = resonances(&own.curve, &all, own.mass);
     }
-    let between =
-        |direction| deepest(curves.iter().find(|c| c.mass == 1 && c.direction == direction)?.resonances);
+    let excited = |c: &&NamedCurve, direction| c.mass == Some(1) && c.direction == direction;
+    let between = |direction| deepest(&curves.iter().find(|c| excited(c, direction))?.resonances);
     let (up, down) = (between(Direction::Up), between(Direction::Down));
     for i in 0..curves.len() {
         let between = if curves[i].direction == Direction::Up { up.or(down) } else { down.or(up) };

@@ -1,15 +1,15 @@
 //! Response at the excitation, step by step (the job of the thesis' sinesw3).
 
-mod findings;
-
 use super::excitation::{Excitation, excitations};
 use super::jump::Jump;
-use super::limit::upper_limit;
 use super::line::{SubLine, amplitude_at, interpolate, nearest};
-use super::resonance::Resonance;
+use super::noise::upper_limit;
+use super::resonance::{NamedCurve, Resonance};
 use super::{Estimate, noise};
-use findings::{direction, repeated, wrong_window};
+use crate::line::deviation;
+use crate::mean::upper_median;
 use serde::Serialize;
+use std::cmp::Ordering;
 use std::f64::consts::TAU;
 use vibro_record::units::Quantity;
 use vibro_record::{Direction, Error, Finding, Result, Step, Sweep, SweepPoint, Window};
@@ -132,13 +132,13 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
     let fmin = options.fmin.unwrap_or_else(|| default_cutoff(df, &excitations));
     let quantity = sweep.unit().times_seconds(options.integrate).quantity();
     if quantity == Quantity::Other {
-        return Err(Error::refused(format!(
+        let why = format!(
             "values in {}, integrated {} times, are no displacement, velocity or acceleration",
             sweep.unit(),
             options.integrate
-        ))
-        .hint("integrate once from velocity to displacement, twice from acceleration")
-        .setting("integrate"));
+        );
+        let hint = "integrate once from velocity to displacement, twice from acceleration";
+        return Err(Error::refused(why).hint(hint).setting("integrate"));
     }
     let unit = quantity.symbol();
     let wrong = wrong_window(sweep, &excitations, df);
@@ -150,26 +150,15 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
         wrong.iter().chain(&sweep.findings).cloned().chain(repeated(sweep)).collect();
     let direction = direction(&frequency, sweep.direction, &mut findings);
     let faint = points.iter().filter(|p| p.upper_limit.is_some()).count();
-    if faint > 0 {
-        findings.push(Finding::caution("sweep-below-noise").count("n", faint));
-    }
     let below = points.iter().filter(|p| p.amplitude.value.is_nan()).count();
-    if below > 0 {
-        findings.push(Finding::caution("sweep-below-cutoff").count("n", below).number("fmin", fmin));
-    }
+    let below_cutoff = Finding::caution("sweep-below-cutoff").count("n", below).number("fmin", fmin);
+    findings.extend((faint > 0).then(|| Finding::caution("sweep-below-noise").count("n", faint)));
+    findings.extend((below > 0).then_some(below_cutoff));
     let (mut jumps, mut resonances) = (Vec::new(), Vec::new());
     if let Some(direction) = direction.filter(|_| points.len() >= 3) {
-        let curve = |order: &[usize]| {
-            let of = |value: &dyn Fn(usize) -> f64| order.iter().map(|i| value(*i)).collect::<Vec<f64>>();
-            let std = |i: usize| points[i].amplitude.std.unwrap_or(f64::NAN);
-            [of(&|i| frequency[i]), of(&|i| points[i].amplitude.value), of(&std)]
-        };
-        let mut order: Vec<usize> = (0..points.len()).collect();
-        let [f, amplitude, std] = curve(&order);
-        jumps = super::jump::jumps(&f, &amplitude, &std, direction);
-        order.sort_by(|a, b| frequency[*a].total_cmp(&frequency[*b]));
-        let [f, amplitude, std] = curve(&order);
-        resonances = super::resonance::resonances(&f, &amplitude, &std, &jumps, sweep.mass);
+        let at = |p: &ResponsePoint| (p.excitation, p.amplitude.value, p.amplitude.std.unwrap_or(f64::NAN));
+        let curve = NamedCurve::new(points.iter().map(at).collect(), direction, sweep.mass);
+        (jumps, resonances) = (curve.jumps, curve.resonances);
     } else {
         findings.push(Finding::caution("sweep-too-few-points").count("n", points.len()));
     }
@@ -184,11 +173,10 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
             (resonance.frequency_std, resonance.amplitude_std) = (None, None);
         }
     }
-    let undone = sweep.analyser_integrated;
     let taken: [(_, &dyn std::fmt::Display); 4] = [
         ("band", &options.band),
         ("integrate", &options.integrate),
-        ("analyser_integrated", &undone),
+        ("analyser_integrated", &sweep.analyser_integrated),
         ("fmin", &fmin),
     ];
     Ok(Response {
@@ -332,6 +320,69 @@ fn faint(
     let std = window.and(floor);
     let limit = std.and_then(|f| upper_limit(line, f));
     (line / gain, std.map(|s| s / gain), limit.map(|l| l / gain))
+}
+
+/// Force lines further than this part of the largest from their window's shape are not under that window: a clean sine under Hann,
+/// read as under any other window, is off by more.
+const WRONG_SHAPE: f64 = 0.02;
+
+/// Where the force lines, which hold one strong sine, have not the shape that the window gives them.
+pub(crate) fn wrong_window(sweep: &Sweep, excitations: &[Excitation], df: f64) -> Option<Finding> {
+    let window = sweep.points.first()?.response.window?;
+    let typical = |window: Window| {
+        upper_median(sweep.points.iter().zip(excitations).filter_map(|(p, e)| {
+            let k = ((e.frequency - sweep.axis.start()) / df).round().max(0.0) as usize;
+            Some(deviation(&p.force, k, 1, window)? / p.force[k])
+        }))
+    };
+    let off = typical(window).filter(|off| *off > WRONG_SHAPE)?;
+    let finding = Finding::doubt("sweep-window-unlike").name("window", window.name()).number("off", off);
+    let others = Window::ALL.into_iter().filter_map(|w| Some((typical(w)?, w)));
+    let better = others.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|b| b.0 < off / 3.0);
+    Some(match better {
+        Some((off, window)) => finding.name("better", window.name()).number("left", off),
+        None => finding,
+    })
+}
+
+/// Steps that share a file or hold the same values: a name was typed twice.
+pub(crate) fn repeated(sweep: &Sweep) -> Option<Finding> {
+    let points = &sweep.points;
+    let same = |a: &SweepPoint, b: &SweepPoint| {
+        a.response_path == b.response_path
+            || a.force_path.is_some() && a.force_path == b.force_path
+            || a.response.values == b.response.values && a.force == b.force && a.given == b.given
+    };
+    let earlier = |k: usize| Some((points[..k].iter().position(|p| same(p, &points[k]))? + 1, k + 1));
+    let repeats: Vec<(usize, usize)> = (0..points.len()).filter_map(earlier).collect();
+    let (first, second) = *repeats.first()?;
+    let finding = Finding::caution("sweep-steps-repeated").count("n", repeats.len());
+    Some(finding.count("first", first).count("second", second))
+}
+
+/// Direction of a sweep from its frequencies, with findings where they are not in order.
+pub(crate) fn direction(
+    frequency: &[f64],
+    stated: Option<Direction>,
+    findings: &mut Vec<Finding>,
+) -> Option<Direction> {
+    let count = |falls: bool| frequency.windows(2).filter(|w| w[0] != w[1] && (w[1] < w[0]) == falls).count();
+    let (rising, falling) = (count(false), count(true));
+    let found = match rising.cmp(&falling) {
+        Ordering::Greater => Some(Direction::Up),
+        Ordering::Less => Some(Direction::Down),
+        Ordering::Equal => None,
+    };
+    let against = rising.min(falling);
+    if against > 0 {
+        let steps = frequency.len() - 1;
+        findings.push(Finding::caution("sweep-out-of-order").count("n", against).count("steps", steps));
+    }
+    if let Some((stated, found)) = stated.zip(found).filter(|(stated, found)| stated != found) {
+        let contradicted = Finding::caution("sweep-direction-contradicted");
+        findings.push(contradicted.name("stated", stated.name()).name("found", found.name()));
+    }
+    stated.or(found)
 }
 
 #[cfg(test)]

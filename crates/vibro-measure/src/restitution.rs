@@ -3,7 +3,6 @@
 //! Each method that the data allow gives its own answer. Where answers differ by more than their uncertainties, that is the result:
 //! nothing is averaged.
 
-mod bounces;
 mod drop;
 mod train;
 mod velocities;
@@ -13,6 +12,7 @@ pub use train::Train;
 pub use velocities::Velocities;
 
 use super::Estimate;
+use crate::mean::{average, scatter};
 use crate::residuals::student;
 use serde::Serialize;
 use vibro_record::{Error, Finding, Result};
@@ -141,9 +141,7 @@ fn agreement(by: &[Way], findings: &mut Vec<Finding>) -> Option<bool> {
 /// Mean of repeated values and its standard uncertainty: the larger of their scatter (Student's, from four values on) and of what is `stated` of
 /// one value. Two or three have one only where what is stated explains how they scatter (95 %).
 fn repeated(values: &[f64], stated: Option<f64>) -> (f64, Option<f64>) {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    let scatter = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
+    let (n, mean, scatter) = (values.len() as f64, average(values), scatter(values));
     let one = match student(values.len().saturating_sub(1)) {
         Some(factor) => Some((factor * scatter).max(stated.unwrap_or(0.0))),
         None => stated.filter(|u| n < 2.0 || scatter <= 1.96 * u),

@@ -158,21 +158,19 @@ impl Lines {
         let visible = (2.0 * (magnitudes.len() as f64 / BY_CHANCE).ln()).sqrt();
         let floor = noise::around(magnitudes, largest, noise::REACH, Some(Window::Hann));
         if let Some(floor) = floor.filter(|n| magnitudes[largest] < visible * n) {
-            return Err(Error::refused(format!(
+            let why = format!(
                 "no sine stands out of the noise: the largest line, {:.6} Hz, has {}, the noise of a line is {}",
                 largest as f64 * spacing,
                 quantity(magnitudes[largest], "1", 3),
                 quantity(floor, "1", 3)
-            ))
-            .hint("take a longer record, or state the frequency"));
+            );
+            return Err(Error::refused(why).hint("take a longer record, or state the frequency"));
         }
         let line = interpolate(magnitudes, largest, Some(Window::Hann), None);
         let position = line.map_or(largest as f64, |l| l.position);
         if position < 1.5 {
-            return Err(Error::refused(format!(
-                "the record holds {position:.2} periods: a mean and a sine cannot be parted"
-            ))
-            .hint("take a longer record"));
+            let why = format!("the record holds {position:.2} periods: a mean and a sine cannot be parted");
+            return Err(Error::refused(why).hint("take a longer record"));
         }
         Ok(spacing * position)
     }
@@ -209,7 +207,7 @@ impl Fit {
         }
         let mut omega: Vec<f64> = start.iter().map(|f| TAU * f * half).collect();
         let mut linear = vec![0.0; 2 * count + 1];
-        let mut row = vec![0.0; size];
+        let mut row = DVector::<f64>::zeros(size);
         let all: f64 = trace.values.iter().map(|v| v * v).sum();
         for step in 0..STEPS {
             let (mut normal, mut right) = (DMatrix::<f64>::zeros(size, size), DVector::<f64>::zeros(size));
@@ -219,15 +217,11 @@ impl Fit {
                     let (sin, cos) = (w * t).sin_cos();
                     let (a, b) = (linear[2 * k], linear[2 * k + 1]);
                     let slope = if step == 0 { 0.0 } else { t * (b * cos - a * sin) / a.hypot(b) };
-                    row[3 * k..3 * k + 3].copy_from_slice(&[cos, sin, slope]);
+                    row.as_mut_slice()[3 * k..3 * k + 3].copy_from_slice(&[cos, sin, slope]);
                 }
                 row[size - 1] = 1.0;
-                for (j, x) in row.iter().enumerate() {
-                    right[j] += x * v;
-                    for (l, y) in row[..=j].iter().enumerate() {
-                        normal[(j, l)] += x * y;
-                    }
-                }
+                normal.syger(1.0, &row, &row, 1.0);
+                right.axpy(*v, &row, 1.0);
             }
             normal.fill_upper_triangle_with_lower_triangle();
             if step == 0 {
@@ -257,10 +251,10 @@ impl Fit {
                 let highest = omega.iter().copied().fold(0.0, f64::max);
                 let short = 0.5 * n as f64 - highest / TAU * 2.0;
                 if short < IMAGE {
-                    return Err(Error::refused(format!(
+                    let why = format!(
                         "the sine stands {short:.2} lines from half the sampling rate, where phase and amplitude cannot be parted"
-                    ))
-                    .hint("sample faster"));
+                    );
+                    return Err(Error::refused(why).hint("sample faster"));
                 }
                 let mut fit = Fit { omega, linear, inverse, noise: 0.0, half };
                 let squares: f64 = fit.rest(trace).values.iter().map(|v| v * v).sum();

@@ -4,7 +4,7 @@ use super::excitation::excitations;
 use super::response::{ResponseOptions, default_cutoff};
 use ndarray::Array2;
 use std::f64::consts::PI;
-use vibro_record::{Error, Finding, Result, Sweep};
+use vibro_record::{Finding, Result, Sweep};
 
 /// Spectra over excitation frequency.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,9 +32,8 @@ pub struct Waterfall {
 /// # Errors
 /// As [`super::response::response`].
 pub fn waterfall(sweep: &Sweep, options: &ResponseOptions) -> Result<Waterfall> {
-    let df =
-        sweep.line_width().ok_or_else(|| Error::refused("the lines of the sweep are not evenly spaced"))?;
     let excitations = excitations(sweep, options.fmin.unwrap_or(0.0))?;
+    let df = sweep.line_width().unwrap_or(f64::NAN);
     let cutoff = options.fmin.unwrap_or_else(|| default_cutoff(df, &excitations));
     Ok(gathered(sweep, options, excitations.iter().map(|e| e.frequency).collect(), cutoff))
 }

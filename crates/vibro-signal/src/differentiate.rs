@@ -28,10 +28,9 @@ pub fn in_time(trace: &Trace, times: u8) -> Result<Differentiated> {
     }
     let rate = rate_of(trace)?;
     if trace.values.len() < 5 {
-        return Err(Error::refused(format!(
-            "{} samples are too few to differentiate: at least 5 are needed",
-            trace.values.len()
-        )));
+        let why =
+            format!("{} samples are too few to differentiate: at least 5 are needed", trace.values.len());
+        return Err(Error::refused(why));
     }
     no_gaps(&trace.values, &trace.meta.name, 0)?;
     let mut values = trace.values.clone();
@@ -53,16 +52,11 @@ fn once(values: &[f64], factor: f64) -> Vec<f64> {
         factor * part.iter().zip(weights).map(|(v, w)| v * w).sum::<f64>()
     };
     let [first, second, middle] = &WEIGHTS;
-    // At the other end the same weights, from the end and with the other sign.
-    let backwards = |weights: &[f64; 5]| {
-        let mut turned = weights.map(|w| -w);
-        turned.reverse();
-        turned
-    };
-    let (head, tail) = (&values[..5], &values[values.len() - 5..]);
-    let mut out = vec![sum(head, first), sum(head, second)];
+    let mut out = vec![sum(&values[..5], first), sum(&values[..5], second)];
     out.extend(values.windows(5).map(|part| sum(part, middle)));
-    out.extend([sum(tail, &backwards(second)), sum(tail, &backwards(first))]);
+    // At the other end the same weights, from the end and with the other sign.
+    let tail: Vec<f64> = values.iter().rev().take(5).map(|v| -v).collect();
+    out.extend([sum(&tail, second), sum(&tail, first)]);
     out
 }
 

@@ -34,6 +34,15 @@ pub struct Workspace {
     scratch: Vec<Complex64>,
 }
 
+impl Workspace {
+    /// Takes a record, weighted, without a level.
+    pub(crate) fn load(&mut self, values: &[f64], level: f64, weights: &[f64]) {
+        for ((to, v), w) in self.input.iter_mut().zip(values).zip(weights) {
+            *to = (v - level) * w;
+        }
+    }
+}
+
 impl Transform {
     /// The transform of records of `n` samples; a quick one where `n` has small factors only.
     pub fn new(n: usize) -> Transform {

@@ -58,9 +58,7 @@ impl Filter {
     /// # Errors
     /// If the corner does not lie between 0 and half the sampling rate, or the order is not 1 to 16.
     pub fn low_pass(corner: f64, order: usize, rate: f64) -> Result<Filter> {
-        let w = warped(corner, rate)?;
-        let pair = |p: Complex64| section([w * w, 0.0, 0.0], [w * w, -2.0 * p.re * w, 1.0]);
-        butterworth("low-pass", order, corner, rate, first([w, 0.0], [w, 1.0]), pair)
+        butterworth("low-pass", |w| ([w * w, 0.0, 0.0], [w, 0.0]), (corner, order, rate))
     }
 
     /// Butterworth high-pass of this corner and sampling rate in Hz.
@@ -68,9 +66,7 @@ impl Filter {
     /// # Errors
     /// As [`Filter::low_pass`].
     pub fn high_pass(corner: f64, order: usize, rate: f64) -> Result<Filter> {
-        let w = warped(corner, rate)?;
-        let pair = |p: Complex64| section([0.0, 0.0, 1.0], [w * w, -2.0 * p.re * w, 1.0]);
-        butterworth("high-pass", order, corner, rate, first([0.0, 1.0], [w, 1.0]), pair)
+        butterworth("high-pass", |_| ([0.0, 0.0, 1.0], [0.0, 1.0]), (corner, order, rate))
     }
 
     /// Exponential smoothing yₙ = yₙ₋₁ + α(xₙ − yₙ₋₁), α such that the corner lies at `corner` Hz exactly.
@@ -105,32 +101,25 @@ impl Filter {
     /// Complex factor of one pass on a sine of `frequency` Hz.
     pub fn response(&self, frequency: f64) -> Complex64 {
         let z = Complex64::cis(-2.0 * PI * frequency / self.rate);
-        self.sections
-            .iter()
-            .map(|s| (s.b[0] + z * (s.b[1] + z * s.b[2])) / (1.0 + z * (s.a[0] + z * s.a[1])))
-            .product()
+        let one = |s: &Section| (s.b[0] + z * (s.b[1] + z * s.b[2])) / (1.0 + z * (s.a[0] + z * s.a[1]));
+        self.sections.iter().map(one).product()
     }
 
-    /// The filter at rest, to be given samples block by block.
-    pub fn from_rest(&self) -> Running {
-        Running { sections: self.sections.clone(), states: vec![[0.0; 2]; self.sections.len()] }
-    }
-
-    /// The filter as if the input had had this value for ever.
-    pub fn settled_at(&self, value: f64) -> Running {
-        let mut level = value;
-        let states = self
-            .sections
-            .iter()
-            .map(|s| {
-                let out = level * (s.b[0] + s.b[1] + s.b[2]) / (1.0 + s.a[0] + s.a[1]);
-                let second = s.b[2] * level - s.a[1] * out;
-                let first = s.b[1] * level - s.a[0] * out + second;
-                level = out;
-                [first, second]
-            })
-            .collect();
-        Running { sections: self.sections.clone(), states }
+    /// Filters forwards, as if the input had had the value `before` for ever; 0 is a filter at rest.
+    pub fn causal(&self, values: &mut [f64], before: f64) {
+        let mut level = before;
+        for Section { b, a } in &self.sections {
+            let out = level * (b[0] + b[1] + b[2]) / (1.0 + a[0] + a[1]);
+            let mut second = b[2] * level - a[1] * out;
+            let mut first = b[1] * level - a[0] * out + second;
+            level = out;
+            for v in &mut *values {
+                let out = b[0] * *v + first;
+                first = b[1] * *v - a[0] * out + second;
+                second = b[2] * *v - a[1] * out;
+                *v = out;
+            }
+        }
     }
 
     /// Filters forwards and backwards, so that nothing is delayed. Both ends are continued by their mirror image about the
@@ -142,10 +131,9 @@ impl Filter {
         let pad = self.padding();
         let n = values.len();
         if n <= pad {
-            return Err(Error::refused(format!(
-                "{n} samples are too few for the zero-phase {self}: more than {pad} are needed"
-            ))
-            .hint("filter a longer record, or with a lower order"));
+            let why =
+                format!("{n} samples are too few for the zero-phase {self}: more than {pad} are needed");
+            return Err(Error::refused(why).hint("filter a longer record, or with a lower order"));
         }
         if let Some(i) = values.iter().position(|v| !v.is_finite()) {
             return Err(Error::refused(format!("sample {i} is missing: a filter would spread it"))
@@ -157,7 +145,8 @@ impl Filter {
         out.extend_from_slice(values);
         out.extend(values[n - 1 - pad..n - 1].iter().rev().map(|v| 2.0 * last - v));
         for _ in 0..2 {
-            self.settled_at(out[0]).apply(&mut out);
+            let before = out[0];
+            self.causal(&mut out, before);
             out.reverse();
         }
         out.truncate(n + pad);
@@ -179,46 +168,22 @@ impl std::fmt::Display for Filter {
     }
 }
 
-/// A causal filter between two blocks: what it remembers.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Running {
-    sections: Vec<Section>,
-    states: Vec<[f64; 2]>,
-}
-
-impl Running {
-    /// Filters the next samples in place.
-    pub fn apply(&mut self, values: &mut [f64]) {
-        for (s, state) in self.sections.iter().zip(&mut self.states) {
-            let [mut first, mut second] = *state;
-            for v in &mut *values {
-                let out = s.b[0] * *v + first;
-                first = s.b[1] * *v - s.a[0] * out + second;
-                second = s.b[2] * *v - s.a[1] * out;
-                *v = out;
-            }
-            *state = [first, second];
-        }
-    }
-}
-
-/// A Butterworth filter from the section of the real pole of an odd order and those of each pair of poles.
+/// A Butterworth filter from the numerators of a pair of poles and of the real pole of an odd order, at a warped corner.
 fn butterworth(
     kind: &str,
-    order: usize,
-    corner: f64,
-    rate: f64,
-    real: Section,
-    pair: impl Fn(Complex64) -> Section,
+    numerators: fn(f64) -> ([f64; 3], [f64; 2]),
+    (corner, order, rate): (f64, usize, f64),
 ) -> Result<Filter> {
+    let w = warped(corner, rate)?;
     if !(1..=MOST).contains(&order) {
         return Err(Error::usage(format!("a filter of order {order}"), format!("an order of 1 to {MOST}")));
     }
-    let angle = |k: usize| PI * (2 * k + order - 1) as f64 / (2 * order) as f64;
-    let pairs = (1..=order / 2).rev().map(|k| pair(Complex64::cis(angle(k))));
-    let sections = (order % 2 == 1).then_some(real).into_iter().chain(pairs).collect();
+    let (pair, real) = numerators(w);
+    let cosine = |k: usize| (PI * (2 * k + order - 1) as f64 / (2 * order) as f64).cos();
+    let pairs = (1..=order / 2).rev().map(|k| section(pair, [w * w, -2.0 * cosine(k) * w, 1.0]));
+    let real = (order % 2 == 1).then(|| first(real, [w, 1.0]));
     let name = format!("Butterworth {kind} of order {order}, corner {} Hz", shortest(corner));
-    Ok(Filter { name, rate, sections })
+    Ok(Filter { name, rate, sections: real.into_iter().chain(pairs).collect() })
 }
 
 /// Corner in the analogue plane, s = (1 − z⁻¹)/(1 + z⁻¹).

@@ -7,11 +7,13 @@ mod left;
 
 use super::fft::Transform;
 use super::segment::Segments;
+use super::sound::{no_gaps, rate_of};
 use super::transfer::{Estimator, Transfer, transfer};
 use super::welch::Sums;
 use left::Left;
 use serde::Serialize;
 use std::f64::consts::PI;
+use vibro_math::lanes;
 use vibro_record::units::notation::shortest;
 use vibro_record::{Error, Finding, Meta, Result, Trace};
 
@@ -28,9 +30,6 @@ const RAIL: f64 = 0.1;
 const ROUNDED: f64 = 8.0;
 /// Steps in a record of which only few different values are known: at least so many up to its extreme.
 const COARSEST: f64 = 250.0;
-
-/// Less than this part of a response at the end of its record is not worth a finding: sensors are not as good.
-const TOLD: f64 = 1e-3;
 
 const CUT_OFF: &str = "the record cuts it off";
 const DOUBLE: &str = "double hit";
@@ -58,6 +57,9 @@ pub struct Blow {
     pub peak: f64,
     /// Why it was left out; `None` where it counts.
     pub rejected: Option<&'static str>,
+    /// First sample of its record.
+    #[serde(skip)]
+    pub(crate) start: usize,
 }
 
 /// A function from blows.
@@ -86,22 +88,14 @@ pub fn from_blows(
     how: &Blows,
     estimator: Estimator,
 ) -> Result<BlowTransfer> {
-    let (Some(rate), Some(other)) = (force.rate(), response.rate()) else {
-        return Err(Error::refused("the sampling rate is not known").hint("state it with --rate"));
-    };
-    let n = force.values.len();
+    let (rate, other, n) = (rate_of(force)?, rate_of(response)?, force.values.len());
     if rate != other || n != response.values.len() {
-        return Err(Error::refused(format!(
-            "the force has {n} samples at {} Hz, the response {} at {} Hz",
-            shortest(rate),
-            response.values.len(),
-            shortest(other)
-        )));
+        let (rate, other, m) = (shortest(rate), shortest(other), response.values.len());
+        let why = format!("the force has {n} samples at {rate} Hz, the response {m} at {other} Hz");
+        return Err(Error::refused(why));
     }
-    if let Some(i) =
-        force.values.iter().zip(&response.values).position(|(f, r)| !(f.is_finite() && r.is_finite()))
-    {
-        return Err(Error::refused(format!("sample {i} is missing")).hint("cut the record before the gap"));
+    for trace in [force, response] {
+        no_gaps(&trace.values, &trace.meta.name, 0)?;
     }
     if how.length < 8 || how.before >= how.length {
         return Err(Error::usage(
@@ -110,24 +104,17 @@ pub fn from_blows(
         ));
     }
     if how.length > n {
-        return Err(Error::refused(format!(
-            "blows of {} samples each in a record of {n} samples",
-            how.length
-        ))
-        .hint("take shorter records, or measure longer"));
+        let why = format!("blows of {} samples each in a record of {n} samples", how.length);
+        return Err(Error::refused(why).hint("take shorter records, or measure longer"));
     }
     let blows = find(force, response, how, rate);
-    let kept: Vec<usize> =
-        blows.iter().filter(|(_, b)| b.rejected.is_none()).map(|(start, _)| *start).collect();
+    let kept: Vec<usize> = blows.iter().filter(|b| b.rejected.is_none()).map(|b| b.start).collect();
     if kept.len() < 2 {
-        let named = |(_, b): &(usize, Blow)| b.rejected.map(|why| format!("{:.3} s: {why}", b.time));
+        let named = |b: &Blow| b.rejected.map(|why| format!("{:.3} s: {why}", b.time));
         let why: Vec<String> = blows.iter().filter_map(named).take(8).collect();
-        return Err(Error::refused(format!(
-            "{} of {} blows are clean, two are needed at least; {}",
-            kept.len(),
-            blows.len(),
-            why.join(", ")
-        )));
+        let (clean, all, why) = (kept.len(), blows.len(), why.join(", "));
+        let found = format!("{clean} of {all} blows are clean, two are needed at least; {why}");
+        return Err(Error::refused(found));
     }
     let (decay, weights) = windows(how, rate)?;
     let transform = Transform::new(how.length);
@@ -138,9 +125,7 @@ pub fn from_blows(
             let part = trace.values.get(*start..start + how.length).unwrap_or_default();
             // The level before the blow is the zero of this record.
             let level = part[..how.before].iter().sum::<f64>() / how.before.max(1) as f64;
-            for ((to, v), w) in work.input.iter_mut().zip(part).zip(weights) {
-                *to = (v - level) * w;
-            }
+            work.load(part, level, weights);
             transform.run(work);
         }
         sums.add(&work);
@@ -152,7 +137,7 @@ pub fn from_blows(
     transfer.frf.meta.step("blows", &[("length", &how.length), ("before", &how.before)]);
     transfer.findings.extend(left_out(&blows));
     if let Some(left) = Left::of(&response.values, &kept, how, &weights[1]) {
-        unfinished(&mut transfer, &left);
+        left.widen(&mut transfer);
     }
     if decay > 0.0 {
         let ratio = decay / (2.0 * PI);
@@ -163,47 +148,26 @@ pub fn from_blows(
     let [sum, squares] = weights[1].iter().fold([0.0, 0.0], |[s, q], w| [s + w, q + w * w]);
     Ok(BlowTransfer {
         transfer,
-        blows: blows.into_iter().map(|(_, b)| b).collect(),
+        blows,
         added_decay: decay,
-        window: match (how.force_window.is_some(), how.left_at_end.is_some()) {
-            (false, false) => "rectangular",
-            (true, false) => "force",
-            (false, true) => "exponential",
-            (true, true) => "force and exponential",
-        },
+        window: ["rectangular", "force", "exponential", "force and exponential"]
+            [usize::from(how.force_window.is_some()) + 2 * usize::from(how.left_at_end.is_some())],
         enbw: how.length as f64 * squares / (sum * sum),
     })
 }
 
 /// How many blows are left out, and why.
-fn left_out(blows: &[(usize, Blow)]) -> Option<Finding> {
-    let count = |why| blows.iter().filter(|(_, b)| b.rejected == Some(why)).count();
+fn left_out(blows: &[Blow]) -> Option<Finding> {
+    let count = |why| blows.iter().filter(|b| b.rejected == Some(why)).count();
     let reasons = [("double", DOUBLE), ("overload", OVERLOAD), ("cut_off", CUT_OFF)];
     let counts = reasons.map(|(name, why)| (name, count(why))).into_iter().filter(|(_, n)| *n > 0);
     let all = Finding::caution("blows-left-out").count("all", blows.len());
     let found = counts.fold(all, |found, (name, n)| found.count(name, n));
-    blows.iter().any(|(_, b)| b.rejected.is_some()).then_some(found)
+    blows.iter().any(|b| b.rejected.is_some()).then_some(found)
 }
 
-/// Takes what is left of the response into the standard deviations, with a finding where it is most.
-fn unfinished(transfer: &mut Transfer, left: &Left) {
-    let (mut most, mut finding) = (0.0, None);
-    for (k, h) in transfer.frf.values.iter().enumerate() {
-        // The first line of a function is one above 0 Hz.
-        let part = left.at(k + 1);
-        transfer.magnitude_std[k] = transfer.magnitude_std[k].hypot(part * h.norm());
-        transfer.phase_std[k] = transfer.phase_std[k].hypot(part);
-        if part > TOLD && left.strong(k + 1) && part * h.norm() > most {
-            most = part * h.norm();
-            let here = Finding::caution("response-cut-off").number("frequency", transfer.frf.axis.at(k));
-            finding = Some(here.number("left", part));
-        }
-    }
-    transfer.findings.extend(finding);
-}
-
-/// First sample of each record, and its blow.
-fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<(usize, Blow)> {
+/// All blows of a force.
+fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<Blow> {
     let values = &force.values;
     // Blows are short: what the force is most of the time is its zero, whatever the amplifier adds.
     let rest = Quiet::of(values);
@@ -250,14 +214,14 @@ fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<(usize, 
             None
         };
         let time = force.axis.start() + trigger as f64 / rate;
-        found.push((start, Blow { time, peak: sign * peak, rejected }));
+        found.push(Blow { time, peak: sign * peak, rejected, start });
         i = end.max(trigger + 1);
     }
     // One sample at the value where another blow was clipped is clipped as well.
-    for (start, blow) in &mut found {
+    for blow in &mut found {
         let reaches = |(channel, rails): (&&Vec<f64>, &Vec<f64>)| {
-            let (lowest, highest) = extremes(&channel[*start..*start + how.length]);
-            rails.iter().any(|rail| *rail == lowest || *rail == highest)
+            let part = lanes::survey(&channel[blow.start..blow.start + how.length]);
+            rails.iter().any(|rail| *rail == part.low || *rail == part.high)
         };
         if blow.rejected.is_none() && channels.iter().zip(&rails).any(reaches) {
             blow.rejected = Some(OVERLOAD);
@@ -286,11 +250,6 @@ fn median(mut values: Vec<f64>) -> f64 {
     if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
-/// Lowest and highest value.
-fn extremes(values: &[f64]) -> (f64, f64) {
-    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)))
-}
-
 /// The highest or lowest value of a record, quiet in its first `before` samples, where it stays there: each rail on its own, since
 /// an offset takes a signal to one of them first.
 ///
@@ -298,7 +257,7 @@ fn extremes(values: &[f64]) -> (f64, f64) {
 /// as it came.
 fn overloaded(values: &[f64], before: usize) -> Option<f64> {
     let level = Quiet::of(if before > 0 { &values[..before] } else { values }).level;
-    let (lowest, highest) = extremes(values);
+    let lanes::Survey { low: lowest, high: highest, .. } = lanes::survey(values);
     let reach = (highest - level).max(level - lowest);
     let step =
         values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|d| *d > 0.0).fold(reach / COARSEST, f64::min);
@@ -317,18 +276,15 @@ fn overloaded(values: &[f64], before: usize) -> Option<f64> {
 /// Decay in 1/s, and the weights of force and response.
 fn windows(how: &Blows, rate: f64) -> Result<(f64, [Vec<f64>; 2])> {
     let after = (how.length - how.before) as f64 / rate;
-    let decay = match how.left_at_end {
-        Some(left) if left > 0.0 && left <= 1.0 => -left.ln() / after,
-        Some(left) => {
-            return Err(Error::usage(format!("an exponential window that leaves {left}"), "above 0 to 1"));
-        }
-        None => 0.0,
-    };
-    let width = match how.force_window {
-        Some(width) if width > 0.0 => width,
-        Some(width) => return Err(Error::usage(format!("a force window of {width} s"), "a width above 0")),
-        None => f64::INFINITY,
-    };
+    let outside = |value: Option<f64>, most: f64| value.filter(|v| !(*v > 0.0 && *v <= most));
+    if let Some(left) = outside(how.left_at_end, 1.0) {
+        return Err(Error::usage(format!("an exponential window that leaves {left}"), "above 0 to 1"));
+    }
+    if let Some(width) = outside(how.force_window, f64::INFINITY) {
+        return Err(Error::usage(format!("a force window of {width} s"), "a width above 0"));
+    }
+    let decay = how.left_at_end.map_or(0.0, |left| -left.ln() / after);
+    let width = how.force_window.unwrap_or(f64::INFINITY);
     let exponential: Vec<f64> =
         (0..how.length).map(|i| (-decay * (i as f64 - how.before as f64).max(0.0) / rate).exp()).collect();
     let force = exponential.iter().enumerate().map(|(i, weight)| {

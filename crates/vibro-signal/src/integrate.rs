@@ -26,10 +26,11 @@ pub fn in_frequency(spectrum: &Spectrum, times: i8, fmin: f64) -> Result<Spectru
         f >= fmin - 1e-9 * step && !(times > 0 && f <= 0.0)
     });
     let Some(first) = first else {
-        return Err(Error::refused(format!(
+        let why = format!(
             "no line is left at or above {fmin} Hz: the highest is {} Hz",
             spectrum.axis.at(n.saturating_sub(1))
-        )));
+        );
+        return Err(Error::refused(why));
     };
     let omega = |k: usize| TAU * (start + k as f64 * step);
     let power = match spectrum.scaling {
@@ -124,12 +125,13 @@ pub fn in_time(trace: &Trace, how: &InTime) -> Result<Integrated> {
     let filter = Filter::high_pass(how.corner, how.order, rate)?;
     let band = band(how, rate);
     if band[0] >= band[1] {
-        return Err(Error::refused(format!(
+        let why = format!(
             "a corner of {} Hz at a sampling rate of {} Hz leaves no band in which an integral is right within 1 %",
             shortest(how.corner),
             shortest(rate)
-        ))
-        .hint("a lower corner, a higher order, or integration in frequency"));
+        );
+        let hint = "a lower corner, a higher order, or integration in frequency";
+        return Err(Error::refused(why).hint(hint));
     }
     let whole = whole_periods(trace.values.len(), how.period, rate)?;
     let mut values = trace.values.clone();
@@ -181,9 +183,8 @@ fn whole_periods(n: usize, period: Option<f64>, rate: f64) -> Result<usize> {
     let Some(period) = period else { return Ok(n.max(1)) };
     let cycles = (n as f64 / rate / period).floor();
     if !(cycles >= 1.0 && cycles.is_finite() && period * rate >= 2.0) {
-        return Err(Error::refused(format!(
-            "{n} samples at {rate} Hz do not hold one whole period of {period} s"
-        )));
+        let why = format!("{n} samples at {rate} Hz do not hold one whole period of {period} s");
+        return Err(Error::refused(why));
     }
     Ok(((cycles * period * rate).round() as usize).clamp(1, n))
 }
@@ -197,13 +198,9 @@ fn drift(values: &[f64], edge: usize, period: Option<usize>) -> f64 {
         return mean(&inner[n - p..]) - mean(&inner[..p]);
     }
     let (middle, centre) = (mean(inner), 0.5 * (n as f64 - 1.0));
-    let (mut product, mut square) = (0.0, 0.0);
-    for (i, v) in inner.iter().enumerate() {
-        let x = i as f64 - centre;
-        product += x * (v - middle);
-        square += x * x;
-    }
-    product / square * (n as f64 - 1.0)
+    let about = || inner.iter().enumerate().map(|(i, v)| (i as f64 - centre, v - middle));
+    let product: f64 = about().map(|(x, v)| x * v).sum();
+    product / about().map(|(x, _)| x * x).sum::<f64>() * (n as f64 - 1.0)
 }
 
 #[cfg(test)]

@@ -27,12 +27,10 @@ impl Segments {
                 .setting("segment"));
         }
         if !(0.0..1.0).contains(&overlap) {
-            return Err(Error::usage(
-                format!("an overlap of {overlap}"),
-                "a part of the segment from 0 to below 1",
-            )
-            .setting("overlap")
-            .hint("0.5 for Hann, 0.75 for a flat top, 0 without a window"));
+            let error =
+                Error::usage(format!("an overlap of {overlap}"), "a part of the segment from 0 to below 1");
+            let hint = "0.5 for Hann, 0.75 for a flat top, 0 without a window";
+            return Err(error.setting("overlap").hint(hint));
         }
         let shared = (overlap * length as f64).floor() as usize;
         Ok(Segments { length, hop: (length - shared.min(length)).max(1) })
@@ -77,7 +75,17 @@ impl<'a> Batches<'a> {
             if new == 0 {
                 break;
             }
-            self.look(batch, new)?;
+            // Missing samples are refused, for a transform would spread them over all lines.
+            for (channel, (column, range)) in batch.iter().zip(&mut self.ranges).enumerate() {
+                let values = &column[column.len() - new..];
+                let seen = lanes::survey(values);
+                (range.low, range.high) = (range.low.min(seen.low), range.high.max(seen.high));
+                if !seen.finite {
+                    let name = self.traces.channels().get(channel).map_or("", |m| m.name.as_str());
+                    no_gaps(values, name, self.frames)?;
+                }
+            }
+            self.frames += new;
         }
         Ok(self.segments.count(batch.first().map_or(0, Vec::len)))
     }
@@ -99,21 +107,6 @@ impl<'a> Batches<'a> {
     /// Smallest and largest value of each channel so far.
     pub fn ranges(&self) -> &[Survey] {
         &self.ranges
-    }
-
-    /// Range of the `new` samples at the end; missing ones are refused, for a transform would spread them over all lines.
-    fn look(&mut self, batch: &[Vec<f64>], new: usize) -> Result<()> {
-        for (channel, (column, range)) in batch.iter().zip(&mut self.ranges).enumerate() {
-            let values = &column[column.len() - new..];
-            let seen = lanes::survey(values);
-            (range.low, range.high) = (range.low.min(seen.low), range.high.max(seen.high));
-            if !seen.finite {
-                let name = self.traces.channels().get(channel).map_or("", |m| m.name.as_str());
-                no_gaps(values, name, self.frames)?;
-            }
-        }
-        self.frames += new;
-        Ok(())
     }
 }
 

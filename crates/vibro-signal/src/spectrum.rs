@@ -6,8 +6,9 @@
 //! (Heinzel, Rüdiger & Schilling, Spectrum and spectral density estimation by the DFT, 2002, section 9).
 
 use super::fft::Transform;
+use super::segment::Segments;
 use super::sound::{constant, no_gaps, rate_of};
-use super::welch::Averages;
+use super::welch::{Averages, Sums};
 use super::window;
 use num_complex::Complex64;
 use vibro_record::units::Unit;
@@ -48,28 +49,24 @@ pub fn plain(trace: &Trace, window: Window, scaling: Scaling, detrend: bool) -> 
     let weights = window::samples(window, n);
     let transform = Transform::new(n);
     let mut work = transform.workspace();
-    for ((to, v), w) in work.input.iter_mut().zip(&trace.values).zip(&weights) {
-        *to = (v - mean) * w;
-    }
+    work.load(&trace.values, mean, &weights);
     transform.run(&mut work);
-    let (sum, squares) = (weights.iter().sum::<f64>(), weights.iter().map(|w| w * w).sum::<f64>());
-    let mut values = match scaling {
-        Scaling::Peak | Scaling::Rms => {
-            let lines = work.output.iter().enumerate();
-            let c = |k| if scaling == Scaling::Peak { sides(k, n) } else { sides(k, n).sqrt() };
-            Values::Complex(lines.map(|(k, x)| x * (c(k) / sum)).collect())
-        }
-        _ => {
-            let squared: Vec<f64> = work.output.iter().map(Complex64::norm_sqr).collect();
-            Values::Real(scaled(&squared, n, scaling, rate, sum, squares)?)
-        }
-    };
-    if detrend {
-        without_mean(&mut values);
-    }
-    let (mut meta, enbw) = (trace.meta.clone(), n as f64 * squares / (sum * sum));
+    let mut sums = Sums::new(1, false, transform.lines());
+    sums.add(std::slice::from_ref(&work));
+    let averages = sums.mean(&weights, Segments { length: n, hop: n }, rate, detrend);
+    let mut meta = trace.meta.clone();
     meta.step("spectrum", &[("window", &window.name()), ("scaling", &scaling.name()), ("detrend", &detrend)]);
-    finished(meta, rate / n as f64, values, scaling, window, enbw)
+    let mut found = finished(&averages, &averages.auto[0], meta, window, scaling)?;
+    if matches!(scaling, Scaling::Peak | Scaling::Rms) {
+        let c = |k| if scaling == Scaling::Peak { sides(k, n) } else { sides(k, n).sqrt() };
+        let lines = work.output.iter().enumerate().map(|(k, x)| x * (c(k) / averages.sum));
+        let mut lines: Vec<Complex64> = lines.collect();
+        if detrend {
+            lines[0] = Complex64::new(f64::NAN, f64::NAN);
+        }
+        found.values = Values::Complex(lines);
+    }
+    Ok(found)
 }
 
 /// The spectrum of one channel from averaged squares. The line at 0 Hz is NaN where segments lost their mean.
@@ -84,28 +81,21 @@ pub fn averaged(
     scaling: Scaling,
 ) -> Result<Spectrum> {
     let Some(squared) = averages.auto.get(channel) else {
-        return Err(Error::usage(
-            format!("channel {}", channel + 1),
-            format!("1 to {}", averages.auto.len()),
-        ));
+        let found = format!("channel {}", channel + 1);
+        return Err(Error::usage(found, format!("1 to {}", averages.auto.len())));
     };
-    let Averages { length, rate, sum, squares, .. } = *averages;
-    let mut values = Values::Real(scaled(squared, length, scaling, rate, sum, squares)?);
-    if averages.detrended {
-        without_mean(&mut values);
-    }
     let mut meta = meta.clone();
     meta.step(
         "welch",
         &[
-            ("segment", &length),
+            ("segment", &averages.length),
             ("averages", &averages.count),
             ("window", &window.name()),
             ("scaling", &scaling.name()),
             ("detrend", &averages.detrended),
         ],
     );
-    finished(meta, averages.step(), values, scaling, window, length as f64 * squares / (sum * sum))
+    finished(averages, squared, meta, window, scaling)
 }
 
 /// So many independent segments are needed before the scatter of a line is stated.
@@ -122,45 +112,30 @@ pub fn scatter(averages: &Averages, scaling: Scaling) -> Vec<f64> {
     (0..lines).map(|k| order * (2.0 / sides(k, averages.length) / n).sqrt()).collect()
 }
 
-/// The line at 0 Hz of a record whose mean was taken out says nothing.
-fn without_mean(values: &mut Values) {
-    match values {
-        Values::Real(v) => v[0] = f64::NAN,
-        Values::Complex(v) => v[0] = Complex64::new(f64::NAN, f64::NAN),
-    }
-}
-
+/// Lines in a scaling from the |X|² of a channel. The line at 0 Hz of a record whose mean was taken out says nothing.
 fn finished(
+    averages: &Averages,
+    squared: &[f64],
     mut meta: Meta,
-    step: f64,
-    values: Values,
-    scaling: Scaling,
     window: Window,
-    enbw: f64,
+    scaling: Scaling,
 ) -> Result<Spectrum> {
+    let Averages { length: n, rate, sum, squares, .. } = *averages;
     meta.unit = unit(&meta.unit, scaling)?;
     meta.declared_n = None;
-    let axis = Axis::frequency(0.0, step, values.len());
-    Ok(Spectrum { meta, axis, values, scaling, window: Some(window), enbw: Some(enbw) })
-}
-
-/// Line values from |X|².
-fn scaled(
-    squared: &[f64],
-    n: usize,
-    scaling: Scaling,
-    rate: f64,
-    sum: f64,
-    squares: f64,
-) -> Result<Vec<f64>> {
-    let lines = squared.iter().enumerate();
-    Ok(match scaling {
-        Scaling::Peak => lines.map(|(k, x)| sides(k, n) * x.sqrt() / sum).collect(),
-        Scaling::Rms => lines.map(|(k, x)| (sides(k, n) * x).sqrt() / sum).collect(),
-        Scaling::Power => lines.map(|(k, x)| sides(k, n) * x / (sum * sum)).collect(),
-        Scaling::Psd => lines.map(|(k, x)| sides(k, n) * x / (rate * squares)).collect(),
-        Scaling::Energy | Scaling::Coherence | Scaling::Unknown => return Err(no_scaling(scaling)),
-    })
+    let value = |(k, x): (usize, &f64)| match scaling {
+        Scaling::Peak => sides(k, n) * x.sqrt() / sum,
+        Scaling::Rms => (sides(k, n) * x).sqrt() / sum,
+        Scaling::Power => sides(k, n) * x / (sum * sum),
+        _ => sides(k, n) * x / (rate * squares),
+    };
+    let mut values: Vec<f64> = squared.iter().enumerate().map(value).collect();
+    if averages.detrended {
+        values[0] = f64::NAN;
+    }
+    let axis = Axis::frequency(0.0, averages.step(), values.len());
+    let enbw = Some(n as f64 * squares / (sum * sum));
+    Ok(Spectrum { meta, axis, values: Values::Real(values), scaling, window: Some(window), enbw })
 }
 
 /// How many lines of a two-sided spectrum of `n` samples line `k` stands for.
@@ -180,12 +155,10 @@ pub fn unit(unit: &Unit, scaling: Scaling) -> Result<Unit> {
         Scaling::Peak | Scaling::Rms => Ok(unit.clone()),
         Scaling::Power => Ok(Unit::parse_or_opaque(&format!("{base}²"))),
         Scaling::Psd => Ok(Unit::parse_or_opaque(&format!("{base}²/Hz"))),
-        Scaling::Energy | Scaling::Coherence | Scaling::Unknown => Err(no_scaling(scaling)),
+        Scaling::Energy | Scaling::Coherence | Scaling::Unknown => {
+            Err(Error::usage(format!("the scaling {:?}", scaling.name()), "peak, rms, power or psd"))
+        }
     }
-}
-
-fn no_scaling(scaling: Scaling) -> Error {
-    Error::usage(format!("the scaling {:?}", scaling.name()), "peak, rms, power or psd")
 }
 
 #[cfg(test)]

@@ -39,11 +39,7 @@ pub enum Estimator {
 impl Estimator {
     /// Name, as in JSON.
     pub fn name(self) -> &'static str {
-        match self {
-            Estimator::H1 => "h1",
-            Estimator::H2 => "h2",
-            Estimator::Hv => "hv",
-        }
+        ["h1", "h2", "hv"][self as usize]
     }
 }
 
@@ -81,9 +77,9 @@ impl Transfer {
         };
         let result = integrate::in_frequency(&spectrum, times, fmin)?;
         let gone = spectrum.axis.len() - result.axis.len();
-        self.coherence.drain(..gone);
-        self.phase_std.drain(..gone);
-        self.magnitude_std.drain(..gone);
+        for column in [&mut self.coherence, &mut self.phase_std, &mut self.magnitude_std] {
+            column.drain(..gone);
+        }
         for (k, std) in self.magnitude_std.iter_mut().enumerate() {
             *std *= (TAU * result.axis.at(k)).powi(-i32::from(times));
         }
@@ -115,12 +111,12 @@ pub fn transfer(
 ) -> Result<Transfer> {
     // Sums of squares may take two segments that do not overlap a hair below.
     if averages.effective < LEAST - 1e-9 {
-        return Err(Error::refused(format!(
+        let why = format!(
             "{} averages are as good as {:.2} independent ones, two are needed: the coherence of one is always 1",
             averages.count, averages.effective
-        ))
-        .hint("take a longer record or shorter segments, for ten averages or more")
-        .setting("segment"));
+        );
+        let hint = "take a longer record or shorter segments, for ten averages or more";
+        return Err(Error::refused(why).hint(hint).setting("segment"));
     }
     let (Some(reference), Some(response)) = (metas.first(), metas.get(channel)) else {
         return Err(Error::usage(format!("channel {}", channel + 1), "a channel of the record"));
@@ -135,58 +131,31 @@ pub fn transfer(
     }
     let degrees = averages.effective - 1.0;
     let lines = xx.len().saturating_sub(1);
-    let mut result = Transfer {
-        frf: Frf {
-            meta: named(reference, response),
-            axis: Axis::frequency(averages.step(), averages.step(), lines),
-            values: Vec::with_capacity(lines),
-            kind: FrfKind::Other,
-        },
-        coherence: Vec::with_capacity(lines),
-        magnitude_std: Vec::with_capacity(lines),
-        phase_std: Vec::with_capacity(lines),
-        averages: averages.count,
-        findings: Vec::new(),
-    };
-    result.frf.kind = FrfKind::of(result.frf.meta.quantity);
-    let mut silent = 0;
-    for ((xx, yy), xy) in xx.iter().zip(yy).zip(xy).skip(1) {
-        let (h, coherence) = if *xx <= NOTHING * most || *yy <= NOTHING * loudest {
-            silent += 1;
-            (NOWHERE, f64::NAN)
-        } else {
-            // Rounding may take it a hair above 1.
-            let coherence = (xy.norm_sqr() / (xx * yy)).min(1.0);
-            let h = match estimator {
-                Estimator::H1 => xy / xx,
-                Estimator::H2 => yy / xy.conj(),
-                Estimator::Hv => xy / xy.norm() * (yy / xx).sqrt(),
-            };
-            if h.is_finite() { (h, coherence) } else { (NOWHERE, f64::NAN) }
+    let empty = |xx: &f64, yy: &f64| *xx <= NOTHING * most || *yy <= NOTHING * loudest;
+    let line = |((xx, yy), xy): ((&f64, &f64), &Complex64)| {
+        let h = match estimator {
+            Estimator::H1 => xy / xx,
+            Estimator::H2 => yy / xy.conj(),
+            Estimator::Hv => xy / xy.norm() * (yy / xx).sqrt(),
         };
-        let error = ((1.0 - coherence) / (2.0 * degrees * coherence)).sqrt();
-        let error = if error < 1.0 { error } else { f64::NAN };
-        let of_magnitude = if estimator == Estimator::Hv { error * coherence.sqrt() } else { error };
-        result.frf.values.push(h);
-        result.coherence.push(coherence);
-        result.magnitude_std.push(h.norm() * of_magnitude);
-        result.phase_std.push(error.asin());
-    }
-    if silent > 0 {
-        result.findings.push(Finding::caution("frf-lines-empty").count("n", silent).count("lines", lines));
-    }
-    if averages.effective < ENOUGH {
-        result.findings.push(
-            Finding::caution("frf-few-averages")
-                .count("averages", averages.count)
-                .number("independent", averages.effective),
-        );
-    }
-    let poor = result.coherence.iter().filter(|c| **c < 0.5).count();
-    if 2 * poor > lines {
-        result.findings.push(Finding::caution("frf-low-coherence").count("n", poor).count("lines", lines));
-    }
-    result.frf.meta.step(
+        // Rounding may take the coherence a hair above 1.
+        let coherence = (xy.norm_sqr() / (xx * yy)).min(1.0);
+        if empty(xx, yy) || !h.is_finite() { (NOWHERE, f64::NAN) } else { (h, coherence) }
+    };
+    let (values, coherence): (Vec<Complex64>, Vec<f64>) = xx.iter().zip(yy).zip(xy).skip(1).map(line).unzip();
+    let error =
+        |c: &f64| Some(((1.0 - c) / (2.0 * degrees * c)).sqrt()).filter(|e| *e < 1.0).unwrap_or(f64::NAN);
+    let of_magnitude = |c: &f64| if estimator == Estimator::Hv { error(c) * c.sqrt() } else { error(c) };
+    let silent = xx.iter().zip(yy).skip(1).filter(|(xx, yy)| empty(xx, yy)).count();
+    let poor = coherence.iter().filter(|c| **c < 0.5).count();
+    let few = Finding::caution("frf-few-averages").count("averages", averages.count);
+    let findings = [
+        (silent > 0, Finding::caution("frf-lines-empty").count("n", silent).count("lines", lines)),
+        (averages.effective < ENOUGH, few.number("independent", averages.effective)),
+        (2 * poor > lines, Finding::caution("frf-low-coherence").count("n", poor).count("lines", lines)),
+    ];
+    let mut meta = named(reference, response);
+    meta.step(
         "transfer",
         &[
             ("estimator", &estimator.name()),
@@ -195,7 +164,15 @@ pub fn transfer(
             ("segment", &averages.length),
         ],
     );
-    Ok(result)
+    let axis = Axis::frequency(averages.step(), averages.step(), lines);
+    Ok(Transfer {
+        magnitude_std: values.iter().zip(&coherence).map(|(h, c)| h.norm() * of_magnitude(c)).collect(),
+        phase_std: coherence.iter().map(|c| error(c).asin()).collect(),
+        averages: averages.count,
+        findings: findings.into_iter().filter(|f| f.0).map(|f| f.1).collect(),
+        frf: Frf { kind: FrfKind::of(meta.quantity), meta, axis, values },
+        coherence,
+    })
 }
 
 fn largest(values: &[f64]) -> f64 {

@@ -24,16 +24,8 @@ pub fn samples(window: Window, n: usize) -> Vec<f64> {
 pub fn line_shape(window: Window, offset: f64) -> f64 {
     let a = window.coefficients();
     // Each cosine term is half a Dirichlet kernel at δ − k and half at δ + k; (−1)ᵏ of the window cancels (−1)ᵏ of the shift.
-    a.iter()
-        .enumerate()
-        .map(|(k, ak)| {
-            let k = k as f64;
-            let term =
-                if k == 0.0 { sinc(offset) } else { f64::midpoint(sinc(offset - k), sinc(offset + k)) };
-            ak * term
-        })
-        .sum::<f64>()
-        / a[0]
+    let kernel = |k: f64| f64::midpoint(sinc(offset - k), sinc(offset + k));
+    a.iter().enumerate().map(|(k, ak)| ak * kernel(k as f64)).sum::<f64>() / a[0]
 }
 
 /// sin(πx)/(πx).

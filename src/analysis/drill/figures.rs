@@ -1,6 +1,6 @@
 //! Hammer drills: the average turn, a few turns as measured, motion against noise, speed over time.
 
-use crate::measure::drill::{Drill, Impact};
+use crate::measure::drill::{Corner, Drill, Impact};
 use crate::report::layout::lettered;
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 
@@ -50,9 +50,12 @@ fn average(name: &str, drill: &Drill) -> Figure {
             .ink(Ink::Nth(0))
             .stroke(Stroke::Solid),
     );
-    let smoothed = drill
-        .smoothing
-        .map_or("not smoothed".to_owned(), |s| format!("low-pass with a corner at {:.0} Hz", s.corner));
+    let smoothed = match drill.smoothing {
+        Some(Corner::ZeroPhaseLowPass(f) | Corner::Exponential(f)) => {
+            format!("low-pass with a corner at {f:.0} Hz")
+        }
+        None => "not smoothed".to_owned(),
+    };
     lettered(Figure::double(format!("Average turn, {name}")).height(130.0).shared_x().panel(above).panel(below)).caption(format!(
         "Mean of {} turns at {:.2} Hz with the scatter from turn to turn; {smoothed}. Displacement by integration over whole turns. {marked} of {} impacts are marked.{}",
         drill.averaged,

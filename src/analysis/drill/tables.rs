@@ -1,7 +1,7 @@
 //! Tables of drills.
 
 use crate::measure::Estimate;
-use crate::measure::drill::{Drill, Group, SmoothingKind};
+use crate::measure::drill::{Corner, Drill, Group};
 use crate::report::layout::headed;
 use crate::report::{Cell, Table};
 
@@ -28,9 +28,11 @@ pub fn drill(name: &str, d: &Drill) -> Table {
     row("f1", Cell::Number(b.f1), "Hz", d.averaged);
     row("f2", Cell::Number(b.f2), "Hz", d.averaged);
     if let Some(s) = &d.smoothing {
-        let exponential = s.kind == SmoothingKind::Exponential;
-        let what = if exponential { "smoothing of the average" } else { "low-pass of the average" };
-        row(what, Cell::Number(s.corner), "Hz", d.averaged);
+        let (what, corner) = match *s {
+            Corner::ZeroPhaseLowPass(corner) => ("low-pass of the average", corner),
+            Corner::Exponential(corner) => ("smoothing of the average", corner),
+        };
+        row(what, Cell::Number(corner), "Hz", d.averaged);
     }
     let mut count = |what: &str, number: usize, n: usize| row(what, Cell::from(number.to_string()), "", n);
     if d.clipped > 0 {

@@ -7,6 +7,7 @@ use crate::measure::response::Response;
 use crate::record::{Direction, Finding};
 use crate::report::words::About;
 use serde::Serialize;
+use std::mem::take;
 
 /// Where the curves of both masses cross.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -41,16 +42,19 @@ fn by_level<'a>(responses: impl Iterator<Item = &'a Response>) -> Vec<Vec<usize>
 pub(super) fn name(responses: &mut [&mut Response]) {
     for level in by_level(responses.iter().map(|r| &**r)) {
         let members = responses.iter_mut().enumerate().filter(|(i, _)| level.contains(i));
-        let mut curves: Vec<NamedCurve<'_>> = members
-            .filter_map(|(_, r)| {
-                let (mass, direction) = (r.mass?, r.direction?);
-                let mut curve = curve(r);
-                curve.sort_by(|a, b| a.0.total_cmp(&b.0));
-                let (jumps, resonances) = (&mut r.jumps, &mut r.resonances);
-                Some(NamedCurve { mass, direction, curve, jumps, resonances })
-            })
-            .collect();
+        let mut members: Vec<&mut Response> =
+            members.map(|(_, r)| &mut **r).filter(|r| r.mass.is_some() && r.direction.is_some()).collect();
+        let named = |r: &mut &mut Response| {
+            let mut curve = curve(r);
+            curve.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let (jumps, resonances) = (take(&mut r.jumps), take(&mut r.resonances));
+            Some(NamedCurve { mass: r.mass, direction: r.direction?, curve, jumps, resonances })
+        };
+        let mut curves: Vec<NamedCurve> = members.iter_mut().filter_map(named).collect();
         name_modes(&mut curves);
+        for (response, curve) in members.into_iter().zip(curves) {
+            (response.jumps, response.resonances) = (curve.jumps, curve.resonances);
+        }
     }
 }
 

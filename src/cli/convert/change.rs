@@ -89,7 +89,7 @@ impl Change {
                 return Err(Error::refused(found).hint("cut the record before the gap"));
             }
             if let Some(first) = trace.values.first().copied() {
-                filter.settled_at(first).apply(&mut trace.values);
+                filter.causal(&mut trace.values, first);
             }
             trace.meta.step("filter", &[("filter", &filter), ("passes", &1)]);
             done.push(was(Finding::caution("smoothed")).number("time", time).number("corner", corner));

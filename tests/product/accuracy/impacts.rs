@@ -48,7 +48,7 @@ fn bound(at: f64, height: f64, sigma: f64) -> f64 {
 fn onset_times_reach_their_bound() {
     let (sigma, per_record) = (0.03, 20);
     let (mut sum, mut squares, mut inside, mut n) = (0.0, 0.0, 0, 0);
-    let options = ImpactsOptions { hum: false, ..ImpactsOptions::default() };
+    let options = ImpactsOptions { keep_hum: true, ..ImpactsOptions::default() };
     for seed in 0..CASES / per_record {
         let mut noise = Noise::new(1000 + seed);
         let at: Vec<f64> = (0..per_record).map(|k| 100.0 + 150.0 * k as f64 + noise.uniform()).collect();
@@ -182,7 +182,7 @@ fn onsets_of_single_flanks_are_covered() {
         let mut noise = Noise::new(30_000 + seed);
         let at: Vec<f64> = (0..per_record).map(|k| 100.0 + 150.0 * f64::from(k) + noise.uniform()).collect();
         let heights: Vec<f64> = at.iter().map(|_| 0.8 + 0.4 * noise.uniform()).collect();
-        let options = ImpactsOptions { hum: false, ..ImpactsOptions::default() };
+        let options = ImpactsOptions { keep_hum: true, ..ImpactsOptions::default() };
         let found = impacts(&trace(&mut noise, &at, &heights, 1100, sigma), &options).unwrap();
         assert_eq!(found.n, at.len(), "seed {seed}: {:?}", found.findings);
         assert!(
@@ -219,7 +219,7 @@ fn phases_of_impacts_are_covered() {
             .collect();
         let heights = vec![1.0; at.len()];
         let options =
-            ImpactsOptions { hum: false, excitation: Some(1.0 / period), ..ImpactsOptions::default() };
+            ImpactsOptions { keep_hum: true, excitation: Some(1.0 / period), ..ImpactsOptions::default() };
         let found = impacts(&trace(&mut noise, &at, &heights, 3500, sigma), &options).unwrap();
         assert_eq!((found.n, found.phases.len()), (at.len(), 1), "seed {seed}: {:?}", found.findings);
         let u = found.onset_std.unwrap() / period;

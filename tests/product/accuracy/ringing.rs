@@ -71,7 +71,7 @@ fn ringing_impacts_are_counted_once(draws: Draws) {
         let times: Vec<f64> = (0..30).map(|k| 0.02 + f64::from(k) / 30.0 + 1e-4 * noise.normal()).collect();
         let heights: Vec<f64> = times.iter().map(|_| (1.0 + 0.2 * noise.normal()).max(0.3)).collect();
         let trace = ring.trace(&mut noise, &times, &heights, 1.02);
-        let options = ImpactsOptions { hum: false, ..ImpactsOptions::default() };
+        let options = ImpactsOptions { keep_hum: true, ..ImpactsOptions::default() };
         let found = impacts(&trace, &options);
         let good = found.as_ref().is_ok_and(|f| f.n == times.len() && ring.fits(&f.times, &times));
         let doubt = found.as_ref().map_or(true, doubted);
@@ -107,7 +107,8 @@ fn ringing_bounces_are_counted_once(draws: Draws) {
             flight *= r;
         }
         let trace = ring.trace(&mut noise, &times, &heights, times[6] + 0.1);
-        let options = ImpactsOptions { hum: false, threshold: Train::THRESHOLD, ..ImpactsOptions::default() };
+        let options =
+            ImpactsOptions { keep_hum: true, threshold: Some(Train::THRESHOLD), ..ImpactsOptions::default() };
         let found = Train::of(&trace, &options).map(|(_, found)| found);
         // Bounces that are lost are the last.
         let good = found.as_ref().is_ok_and(|f| f.times.len() <= times.len() && ring.fits(&f.times, &times));

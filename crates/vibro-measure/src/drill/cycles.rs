@@ -1,9 +1,9 @@
 //! Turns over their phase: the time-synchronous average, the displacement, and the bandwidth that the motion needs.
 
-use super::crossing;
-use super::faults::State;
-use super::survey::median;
+use super::survey::{State, median};
+use super::turns;
 use super::turns::Turn;
+use crate::mean::average;
 use serde::Serialize;
 
 /// The velocity of one turn at the phases of the average.
@@ -75,13 +75,6 @@ impl Running {
     }
 }
 
-/// Standard deviation of some values.
-pub(super) fn scatter(values: &[f64]) -> f64 {
-    let mut running = Running::default();
-    values.iter().copied().for_each(|v| running.push(v));
-    running.std()
-}
-
 /// Turns as they come.
 #[derive(Debug, Default)]
 pub(super) struct Cycles {
@@ -112,7 +105,7 @@ impl Cycles {
             let at = start + k as f64 * step;
             let i = at as usize;
             let good = states.get(i..i + 2).is_some_and(|s| s.iter().all(|s| s.measured()));
-            let value = crossing::value(values, at).filter(|_| good);
+            let value = turns::value(values, at).filter(|_| good);
             if let Some(v) = value {
                 point.push(v);
             }
@@ -139,7 +132,7 @@ impl Cycles {
     /// what drifts.
     pub fn integrate(&mut self, values: &[f64], turn: Turn) {
         let Turn { start, end } = turn;
-        let (Some(first), Some(last)) = (crossing::value(values, start), crossing::value(values, end)) else {
+        let (Some(first), Some(last)) = (turns::value(values, start), turns::value(values, end)) else {
             return;
         };
         let inside = (start.ceil() as usize..=end.floor() as usize).map(|i| (i as f64, values[i]));
@@ -183,14 +176,13 @@ impl Cycles {
 /// Displacement over the phase of a turn of `period` seconds, from velocities at equal phases: its mean is 0, and so is what
 /// it gains over a turn.
 pub(super) fn displacement(velocity: &[f64], period: f64) -> Vec<f64> {
-    let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len().max(1) as f64;
-    let (drift, step) = (mean(velocity), period / velocity.len().max(1) as f64);
+    let (drift, step) = (average(velocity), period / velocity.len().max(1) as f64);
     let (mut x, mut path) = (0.0, Vec::with_capacity(velocity.len()));
     for (v, next) in velocity.iter().zip(velocity.iter().cycle().skip(1)) {
         path.push(x);
         x += (0.5 * (v + next) - drift) * step;
     }
-    let middle = mean(&path);
+    let middle = average(&path);
     path.iter().map(|x| x - middle).collect()
 }
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Impacts that belong together, those of one direction: their means and their restitution.
 
 use super::DrillOptions;
-use super::fit::LackOfFit;
+use super::jumps::LackOfFit;
 use crate::Estimate;
 use crate::mean::Mean;
 use serde::Serialize;
@@ -138,6 +138,9 @@ impl Group {
         let estimate = |mean: Mean, open: bool, unit, method| {
             Estimate::new(mean.value, mean.std.filter(|_| !open), unit, mean.n, method)
         };
+        let energy = |squares: &dyn Fn(&Impact) -> f64, open, method| {
+            options.mass.map(|m| estimate(mean(&|i| 0.5 * m * squares(i)), open, "J", method))
+        };
         // Along the circle from the point opposite to the mean direction.
         let vectors = own.iter().map(|i| (TAU * i.phase).sin_cos());
         let (sin, cos) = vectors.fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
@@ -157,14 +160,12 @@ impl Group {
             phase: estimate(phase, undirected, "1", "turns after the edge, mean over impacts on the circle"),
             before: estimate(before, open_before, "m/s", "parabola up to the contact, mean over impacts"),
             after: estimate(after, open_after, "m/s", "parabola from the contact on, mean over impacts"),
-            energy: options.mass.map(|m| {
-                let all = mean(&|i| 0.5 * m * i.before * i.before);
-                estimate(all, open_before, "J", "½ m v² before, mean over impacts")
-            }),
-            energy_given: options.mass.map(|m| {
-                let all = mean(&|i| 0.5 * m * (i.before * i.before - i.after * i.after));
-                estimate(all, open, "J", "½ m (v² before − v² after), mean over impacts")
-            }),
+            energy: energy(&|i| i.before * i.before, open_before, "½ m v² before, mean over impacts"),
+            energy_given: energy(
+                &|i| i.before * i.before - i.after * i.after,
+                open,
+                "½ m (v² before − v² after), mean over impacts",
+            ),
             restitution: restitution.map(|r| Estimate { std: r.std.filter(|_| !open), ..r }),
             findings,
             wanders: before.wanders || after.wanders || along.wanders,

@@ -82,23 +82,14 @@ pub enum Smoothing {
     Exponential(f64),
 }
 
-/// A smoothing and its corner.
+/// A smoothing and its corner in Hz.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Corner {
-    /// Kind of smoothing.
-    pub kind: SmoothingKind,
-    /// Corner in Hz: half the amplitude of the zero-phase low-pass, 1/√2 of exponential smoothing.
-    pub corner: f64,
-}
-
-/// Kind of a smoothing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum SmoothingKind {
-    /// Butterworth low-pass of second order, forward and backward.
-    ZeroPhaseLowPass,
-    /// First-order low-pass, forward only.
-    Exponential,
+#[serde(tag = "kind", content = "corner", rename_all = "kebab-case")]
+pub enum Corner {
+    /// Butterworth low-pass of second order, forward and backward: the corner is at half the amplitude.
+    ZeroPhaseLowPass(f64),
+    /// First-order low-pass, forward only: the corner is at 1/√2 of the amplitude.
+    Exponential(f64),
 }
 
 impl Smoothing {
@@ -106,32 +97,30 @@ impl Smoothing {
     /// smoothed.
     ///
     /// ```
-    /// use vibro_measure::drill::Smoothing;
-    /// assert_eq!(Smoothing::Phases.corner(720, 0.02, 102_400.0).unwrap().corner, 18_000.0);
-    /// assert_eq!(Smoothing::Phases.corner(720, 0.02, 20_000.0).unwrap().corner, 5_000.0);
+    /// use vibro_measure::drill::{Corner, Smoothing};
+    /// assert_eq!(Smoothing::Phases.corner(720, 0.02, 102_400.0), Some(Corner::ZeroPhaseLowPass(18_000.0)));
+    /// assert_eq!(Smoothing::Phases.corner(720, 0.02, 20_000.0), Some(Corner::ZeroPhaseLowPass(5_000.0)));
     /// ```
     pub fn corner(self, points: usize, turn: f64, rate: f64) -> Option<Corner> {
-        use SmoothingKind::{Exponential, ZeroPhaseLowPass};
         let highest = (0.5 * points as f64).max(HARMONICS) / turn;
-        let (kind, corner) = match self {
-            Smoothing::Off => return None,
-            Smoothing::Phases => (ZeroPhaseLowPass, highest.min(HIGHEST * rate)),
-            Smoothing::LowPass(corner) => (ZeroPhaseLowPass, corner),
-            Smoothing::Exponential(time) => (Exponential, 1.0 / (std::f64::consts::TAU * time)),
-        };
-        Some(Corner { kind, corner })
+        match self {
+            Smoothing::Off => None,
+            Smoothing::Phases => Some(Corner::ZeroPhaseLowPass(highest.min(HIGHEST * rate))),
+            Smoothing::LowPass(corner) => Some(Corner::ZeroPhaseLowPass(corner)),
+            Smoothing::Exponential(time) => Some(Corner::Exponential(1.0 / (std::f64::consts::TAU * time))),
+        }
     }
 }
 
 impl Corner {
     /// Smooths a velocity.
     pub(super) fn smooth(self, values: &[f64], rate: f64) -> Result<Vec<f64>> {
-        match self.kind {
-            SmoothingKind::ZeroPhaseLowPass => Filter::low_pass(self.corner, 2, rate)?.zero_phase(values),
-            SmoothingKind::Exponential => {
+        match self {
+            Corner::ZeroPhaseLowPass(corner) => Filter::low_pass(corner, 2, rate)?.zero_phase(values),
+            Corner::Exponential(corner) => {
                 let mut out = values.to_vec();
                 let first = values.first().copied().unwrap_or(0.0);
-                Filter::smoothing(self.corner, rate)?.settled_at(first).apply(&mut out);
+                Filter::smoothing(corner, rate)?.causal(&mut out, first);
                 Ok(out)
             }
         }
@@ -203,10 +192,10 @@ impl DrillOptions {
     /// # Errors
     /// With the first one that cannot be as its setting.
     pub fn check(&self) -> Result<()> {
-        let smoothing = match self.smoothing {
-            Smoothing::LowPass(corner) => ("low_pass", Some(corner)),
-            Smoothing::Exponential(time) => ("smoothing", Some(time)),
-            Smoothing::Phases | Smoothing::Off => ("low_pass", None),
+        let (low_pass, smoothing) = match self.smoothing {
+            Smoothing::LowPass(corner) => (Some(corner), None),
+            Smoothing::Exponential(time) => (None, Some(time)),
+            Smoothing::Phases | Smoothing::Off => (None, None),
         };
         let positive = [
             ("mass", self.mass),
@@ -215,11 +204,11 @@ impl DrillOptions {
             ("fit", Some(self.fit)),
             ("longest_dropout", Some(self.longest_dropout)),
             ("instrument", self.instrument),
-            smoothing,
+            ("low_pass", low_pass),
+            ("smoothing", smoothing),
         ];
-        let above = |v: f64| v.is_finite() && v > 0.0;
-        let positive =
-            positive.map(|(key, v)| (key, v.unwrap_or(1.0), v.is_none_or(above), "a finite number above 0"));
+        let positive = positive.into_iter().filter_map(|(key, value)| Some((key, value?)));
+        let positive = positive.map(|(key, v)| (key, v, v.is_finite() && v > 0.0, "a finite number above 0"));
         let (sensitivity, pulses, points) = (self.sensitivity, self.pulses_per_turn, self.points);
         let others = [
             ("sensitivity", sensitivity, sensitivity.is_normal(), "a finite number, not 0"),
@@ -228,7 +217,7 @@ impl DrillOptions {
             ("pulses_per_turn", pulses as f64, (1..=MOST_PULSES).contains(&pulses), "1 to 10000"),
             ("points", points as f64, (2..=MOST_POINTS).contains(&points), "2 to 100000"),
         ];
-        if let Some((key, value, _, expected)) = positive.into_iter().chain(others).find(|check| !check.2) {
+        if let Some((key, value, _, expected)) = positive.chain(others).find(|check| !check.2) {
             let found = format!("{} = {value}", key.replace('_', " "));
             return Err(Error::usage(found, expected).setting(key));
         }

@@ -1,15 +1,15 @@
 //! Impacts of a trace: bursts above the noise, timed below a sample.
 
-use super::background::{background, median};
+use super::background::{background, bursts, median};
+use super::onset::Shape;
 use super::onset::{Onsets, onsets};
-use super::options::{check, rate_of};
-use super::ringing::bursts;
-use super::shape::Shape;
-use super::{Hum, ImpactsOptions, hum};
+use super::{Hum, hum};
 use std::ops::Range;
-use vibro_record::units::notation::quantity;
-use vibro_record::{Error, Finding, Result, Trace};
+use vibro_record::units::notation::{quantity, shortest};
+use vibro_record::{Error, Finding, Grid, Result, Trace};
 
+/// Lowest impact as a part of the median one.
+const THRESHOLD: f64 = 0.125;
 /// The number of impacts must not change while the assumed decay of their ringing does by this factor.
 const STABLE: f64 = 2.0;
 /// Standard deviations of the noise by which the median height must exceed the noise limit: below them one impact in 700 or more is
@@ -47,16 +47,7 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
     let unit = trace.meta.unit.symbol();
     let mut values = trace.values.clone();
     let mut findings = Vec::new();
-    let hum = if options.hum { hum::remove(&mut values, rate, &mut findings) } else { None };
-    if let Some(h) = &hum {
-        findings.push(
-            Finding::note("mains-hum-removed")
-                .number("frequency", h.frequency)
-                .number("amplitude", h.amplitude)
-                .name("unit", unit)
-                .count("harmonics", h.harmonics),
-        );
-    }
+    let hum = if options.keep_hum { None } else { hum::remove(&mut values, (rate, unit), &mut findings) };
     let quiet = background(&values);
     for v in &mut values {
         *v -= quiet.level;
@@ -70,7 +61,7 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
         }
     }
     let all = heights(&values, &bursts, 1.0);
-    let least = (options.threshold * median(&all)).max(quiet.reach);
+    let least = (options.threshold.unwrap_or(THRESHOLD) * median(&all)).max(quiet.reach);
     let mut high = all.iter().map(|h| *h > least);
     bursts.retain(|_| high.next() == Some(true));
     let low = all.len() - bursts.len();
@@ -125,15 +116,84 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
 fn recorded(pulse: &Trace, rate: f64) -> Result<Shape> {
     let own = rate_of(pulse).map_err(|error| error.setting("shape_rate"))?;
     Shape::recorded(&pulse.values, rate / own).ok_or_else(|| {
-        Error::refused(format!(
-            "{:?} is no shape of a pulse: its samples have no rising flank",
-            pulse.meta.name
-        ))
-        .hint("cut the record to one pulse with its level before it, without missing values")
+        let name = &pulse.meta.name;
+        Error::refused(format!("{name:?} is no shape of a pulse: its samples have no rising flank"))
+            .hint("cut the record to one pulse with its level before it, without missing values")
     })
 }
 
 /// Largest value of each burst, of −`values` with a `sign` of −1.
 fn heights(values: &[f64], bursts: &[Range<usize>], sign: f64) -> Vec<f64> {
     bursts.iter().map(|b| values[b.clone()].iter().map(|v| sign * v).fold(0.0, f64::max)).collect()
+}
+
+/// How impacts are found.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ImpactsOptions {
+    /// Lowest impact as a part of the median one; 1/8 where `None`.
+    pub threshold: Option<f64>,
+    /// Pause in s that separates two impacts. Default: from the pauses of the trace.
+    pub refractory: Option<f64>,
+    /// Whether mains hum stays. Default: it is removed.
+    pub keep_hum: bool,
+    /// One recorded pulse of the shape that all have. Default: the average of the pulses.
+    pub shape: Option<Trace>,
+    /// Whether no impact is missed and none is too many, however uneven the intervals. Default false.
+    pub complete: bool,
+    /// Frequency of the excitation in Hz, for impacts per cycle.
+    pub excitation: Option<f64>,
+    /// Samples of a channel that rises once a cycle of the excitation, recorded with the trace.
+    pub reference: Option<Vec<f64>>,
+}
+
+/// Checks options and trace, and gives the sampling rate in Hz.
+pub(super) fn check(trace: &Trace, options: &ImpactsOptions) -> Result<f64> {
+    let rate = rate_of(trace)?;
+    if let Some(threshold) = options.threshold.filter(|t| !(0.0..1.0).contains(t)) {
+        let found = format!("a threshold of {threshold}");
+        return Err(Error::usage(found, "a part of the median height, from 0 to 1"));
+    }
+    for (name, value) in [("a refractory time", options.refractory), ("an excitation", options.excitation)] {
+        if let Some(v) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
+            return Err(Error::usage(format!("{name} of {v}"), "a finite number above 0"));
+        }
+    }
+    no_gaps(trace, &trace.values, "the trace")?;
+    if trace.values.iter().all(|v| Some(v) == trace.values.first()) {
+        return Err(Error::refused("all values of the trace are equal: it has no impacts"));
+    }
+    if let Some(reference) = &options.reference {
+        let (n, expected) = (reference.len(), trace.values.len());
+        if n != expected {
+            let why = format!("the reference channel has {n} samples, the trace {expected}");
+            return Err(Error::refused(why));
+        }
+        no_gaps(trace, reference, "the reference channel")?;
+    }
+    Ok(rate)
+}
+
+/// Sampling rate of a trace in Hz.
+///
+/// # Errors
+/// Where it has none.
+pub(crate) fn rate_of(trace: &Trace) -> Result<f64> {
+    trace.rate().filter(|r| r.is_finite() && *r > 0.0).ok_or_else(|| match trace.axis.grid {
+        Grid::Uneven(_) => Error::refused("the trace is sampled unevenly: it has no sampling rate")
+            .hint("cut the file where samples are lost, or write them"),
+        Grid::Even { .. } => Error::usage("the sampling rate of the trace is not known", "")
+            .hint("state the sampling rate in Hz, or the base band of an analyser: it samples at 2.56 times that")
+            .setting("rate")
+            .setting("base_band"),
+    })
+}
+
+/// Refuses missing values: an impact, or the begin of a cycle, may stand in any of them.
+fn no_gaps(trace: &Trace, values: &[f64], name: &str) -> Result<()> {
+    let missing: Vec<usize> = (0..values.len()).filter(|i| !values[*i].is_finite()).collect();
+    let (Some(first), Some(last)) = (missing.first(), missing.last()) else { return Ok(()) };
+    let [first, last] = [first, last].map(|i| shortest(trace.axis.at(*i)));
+    let n = missing.len();
+    let why = format!("{n} values of {name} are missing or infinite, from {first} s to {last} s");
+    Err(Error::refused(why).hint("cut the file before or behind them"))
 }

@@ -1,7 +1,7 @@
 //! Impacts against their excitation: phases, the fraction that they keep, or the beat by which they miss it.
 
 use super::background::median;
-use super::count::Counted;
+use super::interval::Counted;
 use super::interval::interval;
 use super::{Impacts, ImpactsOptions};
 use crate::Estimate;
@@ -42,15 +42,20 @@ pub fn compare(
     (start, rate): (f64, f64),
     options: &ImpactsOptions,
 ) -> Result<()> {
-    let (frequency, part, at): (f64, f64, Vec<f64>) = if let Some(channel) = &options.reference {
-        let reference = Reference::new(channel)?;
-        answer.findings.extend(reference.finding());
-        let at = answer.times.iter().map(|t| reference.counted((t - start) * rate)).collect();
-        (rate / reference.mean_cycle(), reference.part(), at)
-    } else if let Some(frequency) = options.excitation {
-        (frequency, last_digit(frequency) / frequency, answer.times.iter().map(|t| t * frequency).collect())
-    } else {
-        return Ok(());
+    let (frequency, part, at): (f64, f64, Vec<f64>) = match (&options.reference, options.excitation) {
+        (Some(channel), _) => {
+            let reference = Reference::new(channel)?;
+            let Reference { missing, extra, .. } = reference;
+            let odd = Finding::caution("reference-edges").count("missing", missing).count("extra", extra);
+            answer.findings.extend((missing + extra > 0).then_some(odd));
+            // First and last edge lie each anywhere within a sample.
+            let [first, last] = reference.ends();
+            let part = 1.0 / (6f64.sqrt() * (last.1 - first.1));
+            let at = answer.times.iter().map(|t| reference.counted((t - start) * rate)).collect();
+            (rate / reference.mean_cycle(), part, at)
+        }
+        (None, Some(f)) => (f, last_digit(f) / f, answer.times.iter().map(|t| t * f).collect()),
+        (None, None) => return Ok(()),
     };
     let kept: Vec<f64> = counted.kept.iter().map(|i| at[*i]).collect();
     // Samples, too, leave the interval unsure.
@@ -182,36 +187,26 @@ impl Reference {
             .setting("excitation"))
     }
 
-    /// Edges that were missing or too many.
-    fn finding(&self) -> Option<Finding> {
-        let odd =
-            Finding::caution("reference-edges").count("missing", self.missing).count("extra", self.extra);
-        (self.missing + self.extra > 0).then_some(odd)
+    fn ends(&self) -> [(usize, f64); 2] {
+        [self.edges[0], self.edges[self.edges.len() - 1]]
     }
 
     /// Position `t` in samples, counted in cycles; beyond the first and last edge by the mean cycle.
     fn counted(&self, t: f64) -> f64 {
         let after = self.edges.partition_point(|e| e.1 <= t);
-        let before = after.checked_sub(1).and_then(|i| self.edges.get(i));
-        match (before, self.edges.get(after)) {
-            (Some(a), Some(b)) => a.0 as f64 + (b.0 - a.0) as f64 * (t - a.1) / (b.1 - a.1),
-            (Some(e), None) | (None, Some(e)) => e.0 as f64 + (t - e.1) / self.mean_cycle(),
-            (None, None) => f64::NAN,
-        }
-    }
-
-    /// Relative standard uncertainty of the mean cycle: first and last edge lie each anywhere within a sample.
-    fn part(&self) -> f64 {
-        let span = self.edges.last().map_or(0.0, |e| e.1) - self.edges.first().map_or(0.0, |e| e.1);
-        1.0 / (6f64.sqrt() * span)
+        let [first, last] = self.ends();
+        let [a, b] = match self.edges.get(after) {
+            _ if after == 0 => return first.0 as f64 + (t - first.1) / self.mean_cycle(),
+            None => return last.0 as f64 + (t - last.1) / self.mean_cycle(),
+            Some(b) => [self.edges[after - 1], *b],
+        };
+        a.0 as f64 + (b.0 - a.0) as f64 * (t - a.1) / (b.1 - a.1)
     }
 
     /// Mean length of a cycle in samples.
     fn mean_cycle(&self) -> f64 {
-        match self.edges.as_slice() {
-            [first, .., last] => (last.1 - first.1) / (last.0 - first.0) as f64,
-            _ => f64::NAN,
-        }
+        let [first, last] = self.ends();
+        (last.1 - first.1) / (last.0 - first.0) as f64
     }
 }
 

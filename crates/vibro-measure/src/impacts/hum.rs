@@ -1,8 +1,8 @@
 //! Mains hum: a sine of 50 or 60 Hz with its harmonics, fitted between the impacts and removed.
 
-use super::background::{background, median};
-use super::ringing::bursts;
+use super::background::{background, bursts, median};
 use nalgebra::{DMatrix, DVector};
+use num_complex::Complex64;
 use serde::Serialize;
 use std::f64::consts::TAU;
 use vibro_record::Finding;
@@ -28,12 +28,12 @@ const PIECE: f64 = 10.0;
 /// The noise between impacts must fall to this part of what it was, or it was no hum.
 const WORTH: f64 = 0.8;
 
-/// Removes the hum from `values`, sampled at `rate` in Hz, where there is any that matters, and gives it.
+/// Removes the hum from `values` in a `unit`, sampled at `rate` in Hz, where there is any that matters, and gives it.
 ///
 /// Each piece of at least five cycles is fitted by least squares with bisquare weights (Beaton and Tukey 1974), so impacts do not
 /// count; nothing is removed where that does not lower the noise between impacts by a fifth. Where impacts come as often as the hum
 /// or half as often, a sine with its harmonics fits them as well: the hum stays, and a finding says so.
-pub fn remove(values: &mut [f64], rate: f64, findings: &mut Vec<Finding>) -> Option<Hum> {
+pub fn remove(values: &mut [f64], (rate, unit): (f64, &str), findings: &mut Vec<Finding>) -> Option<Hum> {
     let piece = (PIECE * rate).min(values.len() as f64) as usize;
     if (piece as f64) < 0.1 * rate || piece < 32 {
         return None;
@@ -61,6 +61,8 @@ pub fn remove(values: &mut [f64], rate: f64, findings: &mut Vec<Finding>) -> Opt
         return None;
     }
     values.copy_from_slice(&cleaned);
+    let removed = Finding::note("mains-hum-removed").number("frequency", found.frequency).name("unit", unit);
+    findings.push(removed.number("amplitude", found.amplitude).count("harmonics", harmonics));
     Some(found)
 }
 
@@ -98,9 +100,8 @@ fn fitted(values: &[f64], rate: f64) -> Option<(Hum, Vec<f64>)> {
 
 /// Squared amplitude of the sine of `f` cycles a sample.
 fn power(values: &[f64], f: f64) -> f64 {
-    let turn = num_complex::Complex64::cis(-TAU * f);
-    let mut z = num_complex::Complex64::new(1.0, 0.0);
-    let mut sum = num_complex::Complex64::default();
+    let turn = Complex64::cis(-TAU * f);
+    let (mut z, mut sum) = (Complex64::ONE, Complex64::ZERO);
     for v in values {
         sum += z * v;
         z *= turn;
@@ -165,7 +166,7 @@ mod tests {
             1.5 * (x + 0.4).sin() + 0.3 * (3.0 * x).cos()
         };
         let mut values: Vec<f64> = clean.iter().enumerate().map(|(i, v)| v + hum(i)).collect();
-        let found = remove(&mut values, rate, &mut Vec::new()).unwrap();
+        let found = remove(&mut values, (rate, "V"), &mut Vec::new()).unwrap();
         // A sine of amplitude A in N samples of noise σ: u(f) = √6 σ/(π A T √N) = 2e-5 Hz, u(A) = σ√(2/N) = 2.2e-4.
         // Bisquare weights cost 5 %, impacts in the tails of the weights more: five times as much.
         assert!((found.frequency - 50.07).abs() < 1e-4, "{found:?}");
@@ -181,7 +182,7 @@ mod tests {
         let values: Vec<f64> =
             (0..4000).map(|i| 0.01 * noise.normal() + if i % 125 < 4 { 1.0 } else { 0.0 }).collect();
         let mut after = values.clone();
-        assert_eq!(remove(&mut after, 1000.0, &mut Vec::new()), None);
+        assert_eq!(remove(&mut after, (1000.0, "V"), &mut Vec::new()), None);
         assert_eq!(values, after);
     }
 
@@ -193,7 +194,7 @@ mod tests {
         let values: Vec<f64> =
             (0..10_000).map(|i| 0.01 * noise.normal() + (-f64::from(i % 100) / 20.0).exp()).collect();
         let (mut after, mut findings) = (values.clone(), Vec::new());
-        assert_eq!(remove(&mut after, rate, &mut findings), None);
+        assert_eq!(remove(&mut after, (rate, "V"), &mut findings), None);
         assert_eq!(values, after);
         assert!(findings.iter().any(|f| f.code == "hum-or-impacts"), "{findings:?}");
     }

@@ -194,8 +194,11 @@ fn edges_within_one_sample_leave_the_interval_unsure() {
                 let at = edge.ceil() as usize;
                 values[at..at + 12].iter_mut().for_each(|v| *v += 5.0);
             }
-            let options =
-                ImpactsOptions { excitation: Some(rate / period), hum: false, ..ImpactsOptions::default() };
+            let options = ImpactsOptions {
+                excitation: Some(rate / period),
+                keep_hum: true,
+                ..ImpactsOptions::default()
+            };
             let found = impacts(&trace(values, rate), &options).unwrap();
             assert!(has(&found, "onset-within-sample"), "{:?}", found.findings);
             assert!(found.onset_std.unwrap() > 0.28 / rate, "{:?}", found.onset_std);
@@ -212,7 +215,7 @@ fn edges_within_one_sample_leave_the_interval_unsure() {
     // What is wrong by more than the samples hide does drift, by a beat that is stated.
     let mut values = vec![0.0; 4400];
     (0..n as usize).for_each(|k| values[200 + 100 * k..212 + 100 * k].fill(5.0));
-    let options = ImpactsOptions { excitation: Some(10.1), hum: false, ..ImpactsOptions::default() };
+    let options = ImpactsOptions { excitation: Some(10.1), keep_hum: true, ..ImpactsOptions::default() };
     let found = impacts(&trace(values, rate), &options).unwrap();
     let beat = found.beat.as_ref().unwrap();
     assert!((beat.value - 0.1).abs() < 1e-9 && beat.std.is_some(), "{beat:?}");

@@ -87,17 +87,12 @@ fn on_circle(points: &[(f64, Complex64)], near: &Pole) -> Option<(Pole, usize)> 
 fn pratt(points: &[Complex64]) -> Option<(Complex64, f64)> {
     let n = points.len() as f64;
     let mean = points.iter().sum::<Complex64>() / n;
-    let (mut xx, mut yy, mut xy, mut xz, mut yz, mut zz) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-    for p in points {
-        let (x, y) = ((p - mean).re, (p - mean).im);
-        let z = x * x + y * y;
-        xx += x * x / n;
-        yy += y * y / n;
-        xy += x * y / n;
-        xz += x * z / n;
-        yz += y * z / n;
-        zz += z * z / n;
-    }
+    let moment = |of: fn(f64, f64, f64) -> f64| {
+        let centred = points.iter().map(|p| p - mean);
+        centred.map(|p| of(p.re, p.im, p.norm_sqr())).sum::<f64>() / n
+    };
+    let (xx, yy, xy) = (moment(|x, _, _| x * x), moment(|_, y, _| y * y), moment(|x, y, _| x * y));
+    let (xz, yz, zz) = (moment(|x, _, z| x * z), moment(|_, y, z| y * z), moment(|_, _, z| z * z));
     let sum = xx + yy;
     let area = xx * yy - xy * xy;
     let a2 = 4.0 * area - 3.0 * sum * sum - zz;

@@ -1,6 +1,6 @@
 //! Modes and residual terms fitted to a part of a frequency response function in the complex plane.
 
-use super::bands::Peak;
+use super::selection::Peak;
 use super::{Measured, Pole};
 use crate::residuals::{Whiteness, aicc, student};
 use nalgebra::{DMatrix, DVector};
@@ -60,6 +60,12 @@ impl Scaled<'_> {
         sum + self.factor[i] * (above + below / (self.x[i] * self.x[i]))
     }
 
+    /// What the model leaves of line `i`.
+    fn left(&self, p: &[f64], i: usize) -> Complex64 {
+        let model = self.at(p, i);
+        if self.magnitude_only { (self.values[i].re - model.norm()).into() } else { self.values[i] - model }
+    }
+
     /// Numbers that the lines hold.
     fn rows(&self) -> usize {
         if self.magnitude_only { self.x.len() } else { 2 * self.x.len() }
@@ -69,16 +75,14 @@ impl Scaled<'_> {
     fn linear(&self, p: &mut [f64], weight: &[f64]) -> Option<f64> {
         let modes = self.starts.len();
         let columns = modes + 2;
-        let mut a = DMatrix::<Complex64>::zeros(self.x.len(), columns);
-        let mut b = DVector::<Complex64>::zeros(self.x.len());
-        for i in 0..self.x.len() {
-            for m in 0..modes {
-                a[(i, m)] = self.mode(i, self.shape(p, m)) / weight[i];
-            }
-            a[(i, modes)] = self.factor[i] / weight[i];
-            a[(i, modes + 1)] = self.factor[i] / (self.x[i] * self.x[i]) / weight[i];
-            b[i] = self.values[i] / weight[i];
-        }
+        let column = |i: usize, j: usize| match j.checked_sub(modes) {
+            None => self.mode(i, self.shape(p, j)),
+            Some(0) => self.factor[i],
+            Some(_) => self.factor[i] / (self.x[i] * self.x[i]),
+        };
+        let n = self.x.len();
+        let mut a = DMatrix::<Complex64>::from_fn(n, columns, |i, j| column(i, j) / weight[i]);
+        let b = DVector::<Complex64>::from_fn(n, |i, _| self.values[i] / weight[i]);
         let size: Vec<f64> = a.column_iter().map(|c| c.norm()).collect();
         a.column_iter_mut().zip(&size).for_each(|(mut c, s)| c.unscale_mut(*s));
         let adjoint = a.adjoint();
@@ -124,12 +128,10 @@ impl Scaled<'_> {
         let residuals = |q: &[f64], out: &mut [f64]| {
             let p = expand(q);
             for i in 0..n {
-                let model = self.at(&p, i);
-                if self.magnitude_only {
-                    out[i] = (self.values[i].re - model.norm()) / weight[i];
-                } else {
-                    let left = (self.values[i] - model) / weight[i];
-                    (out[i], out[n + i]) = (left.re, left.im);
+                let left = self.left(&p, i) / weight[i];
+                out[i] = left.re;
+                if !self.magnitude_only {
+                    out[n + i] = left.im;
                 }
             }
         };
@@ -184,11 +186,10 @@ pub(super) fn rational(
     };
     let (numbers, parameters) = (scaled.rows(), scaled.free().len());
     if numbers < parameters + 3 {
-        return Err(Error::refused(format!(
+        let why = format!(
             "{lines} lines hold {numbers} numbers, too few for {parameters} parameters and their uncertainty"
-        ))
-        .hint("take a wider band")
-        .setting("band"));
+        );
+        return Err(Error::refused(why).hint("take a wider band").setting("band"));
     }
     let width = (f[f.len() - 1] - f[0]) / (f.len() - 1) as f64;
     let equal = vec![1.0; lines];
@@ -299,12 +300,7 @@ impl Scaled<'_> {
 
     fn result(&self, fit: &Fit, noise: &'static str, weight: &[f64]) -> Rational {
         let n = self.x.len();
-        let whiteness = if self.magnitude_only {
-            Whiteness::of(&[&fit.residuals])
-        } else {
-            let (re, im) = fit.residuals.split_at(n);
-            Whiteness::of(&[re, im])
-        };
+        let whiteness = Whiteness::of(&fit.residuals.chunks(n).collect::<Vec<_>>());
         let free = self.free();
         let place = |i: usize| free.iter().position(|f| *f == i);
         let covariance =
@@ -335,20 +331,15 @@ impl Scaled<'_> {
         let mut found: Vec<(Pole, [f64; 4])> = self.starts.iter().enumerate().map(mode).collect();
         found.sort_by(|a, b| a.0.frequency.total_cmp(&b.0.frequency));
         let (modes, std) = found.into_iter().unzip();
-        let fitted: Vec<Complex64> = (0..n).map(|i| self.at(p, i)).collect();
         // Without weights, so that fits with different weights can be compared.
-        let sum: f64 = fitted
-            .iter()
-            .zip(&self.values)
-            .map(|(m, v)| if self.magnitude_only { (v.re - m.norm()).powi(2) } else { (v - m).norm_sqr() })
-            .sum();
+        let sum: f64 = (0..n).map(|i| self.left(p, i).norm_sqr()).sum();
         Rational {
             unexplained: (sum / n as f64).sqrt(),
             modes,
             std,
             aicc: aicc(fit.sum_of_squares(), fit.residuals.len(), free.len())
                 + spread(weight, fit.residuals.len()),
-            fitted: fitted.iter().map(|v| v * self.height).collect(),
+            fitted: (0..n).map(|i| self.at(p, i) * self.height).collect(),
             whiteness,
             noise,
         }

@@ -69,7 +69,7 @@ impl Measured {
                 .hint("`vibro info` lists what is in the file"));
         }
         if let [(_, only)] = found.as_mut_slice()
-            && records.iter().filter(|r| is_coherence(r)).count() == 1
+            && records.iter().filter_map(coherence).count() == 1
         {
             *only = only.clone().with_coherence_of(records)?;
         }
@@ -79,37 +79,24 @@ impl Measured {
     /// Adds the coherence among records.
     ///
     /// # Errors
-    /// If there is none or several, or one of other lines.
-    pub fn with_coherence_of(self, records: &[Record]) -> Result<Measured> {
-        let all: Vec<&Record> = records.iter().filter(|r| is_coherence(r)).collect();
-        match all.as_slice() {
-            [Record::Spectrum(coherence)] => self.with_coherence(coherence),
-            _ => Err(Error::input(
-                Place::default(),
-                format!("{} coherences", all.len()),
-                "one: a column `coherence` of real values between 0 and 1 over frequency",
-            )
-            .hint("name the column coherence, without a unit")),
-        }
-    }
-
-    /// Adds the coherence of the same lines.
-    ///
-    /// # Errors
-    /// If it has another number of lines, or lines elsewhere.
-    pub fn with_coherence(mut self, coherence: &Spectrum) -> Result<Measured> {
-        let Values::Real(values) = &coherence.values else {
+    /// If there is none or several, or it has another number of lines, or lines elsewhere.
+    pub fn with_coherence_of(mut self, records: &[Record]) -> Result<Measured> {
+        let all: Vec<&Spectrum> = records.iter().filter_map(coherence).collect();
+        let [Spectrum { axis, values, .. }] = all.as_slice() else {
+            let found = format!("{} coherences", all.len());
+            let expected = "one: a column `coherence` of real values between 0 and 1 over frequency";
+            let error = Error::input(Place::default(), found, expected);
+            return Err(error.hint("name the column coherence, without a unit"));
+        };
+        let Values::Real(values) = values else {
             return Err(Error::refused("the coherence is complex: it is no coherence"));
         };
         let width = self.frequency.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
-        let near = |(i, f): (usize, &f64)| (coherence.axis.at(i) - f).abs() <= 1e-3 * width;
-        let same = values.len() == self.frequency.len() && self.frequency.iter().enumerate().all(near);
-        if !same {
-            return Err(Error::refused(format!(
-                "the coherence has other lines ({}) than the function ({})",
-                values.len(),
-                self.frequency.len()
-            )));
+        let near = |(i, f): (usize, &f64)| (axis.at(i) - f).abs() <= 1e-3 * width;
+        let (own, other) = (self.frequency.len(), values.len());
+        if own != other || !self.frequency.iter().enumerate().all(near) {
+            let why = format!("the coherence has other lines ({other}) than the function ({own})");
+            return Err(Error::refused(why));
         }
         self.coherence = Some(values.clone());
         Ok(self)
@@ -159,10 +146,8 @@ impl Measured {
         }
         let kept: Vec<usize> = (0..n).filter(|i| self.frequency[*i] > 0.0 && wrong(*i).is_none()).collect();
         if kept.len() < 5 {
-            return Err(Error::refused(format!(
-                "{} of {n} lines can be used: there is nothing to fit",
-                kept.len()
-            )));
+            let why = format!("{} of {n} lines can be used: there is nothing to fit", kept.len());
+            return Err(Error::refused(why));
         }
         let take = |all: &[f64]| kept.iter().map(|i| all[*i]).collect::<Vec<f64>>();
         Ok(Measured {
@@ -177,10 +162,10 @@ impl Measured {
 /// Most lines that a finding names.
 const NAMED: usize = 6;
 
-/// Whether a record says that it is a coherence, or is named so and has no unit.
-fn is_coherence(record: &Record) -> bool {
-    let Record::Spectrum(s) = record else { return false };
+/// A record that says that it is a coherence, or is named so and has no unit.
+fn coherence(record: &Record) -> Option<&Spectrum> {
+    let Record::Spectrum(s) = record else { return None };
     let named = s.meta.name.to_lowercase().contains("coherence") && matches!(s.meta.unit.symbol(), "" | "1");
     let real = matches!(s.values, Values::Real(_));
-    s.scaling == Scaling::Coherence || (s.scaling == Scaling::Unknown && named && real)
+    Some(s).filter(|s| s.scaling == Scaling::Coherence || (s.scaling == Scaling::Unknown && named && real))
 }

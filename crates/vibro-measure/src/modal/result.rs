@@ -1,29 +1,25 @@
 //! What is known of each mode.
 
 use crate::Estimate;
+use num_complex::Complex64;
 use serde::{Serialize, Serializer};
+use std::f64::consts::TAU;
 use vibro_record::Finding;
 
 /// How modes are looked for.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct ModalOptions {
     /// Band in Hz whose peaks are fitted together. Default: a band around each peak.
     pub band: Option<(f64, f64)>,
     /// Mass in kg for the stiffness k = m(2πf)², taken as exact. Default: none.
     pub mass: Option<f64>,
-    /// Lines of a coherence below this are left out. Default 0.5.
-    pub least_coherence: f64,
+    /// Lines of a coherence below this are left out; 0.5 where `None`.
+    pub least_coherence: Option<f64>,
     /// Decay in 1/s that an exponential window added to the response, to be subtracted. Default: none.
     pub decay: Option<f64>,
     /// Whether the function was averaged over the blows of a hammer, each a record as long as one over the distance of the lines.
     /// Default: false.
     pub from_blows: bool,
-}
-
-impl Default for ModalOptions {
-    fn default() -> ModalOptions {
-        ModalOptions { band: None, mass: None, least_coherence: 0.5, decay: None, from_blows: false }
-    }
 }
 
 /// The modes of a frequency response function.
@@ -80,4 +76,40 @@ pub struct ByMethod {
 #[allow(clippy::ref_option)]
 fn code<S: Serializer>(note: &Option<Finding>, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(note.as_ref().map_or("", |n| n.code))
+}
+
+/// A mode of viscous damping: receptance A/(ωᵣ² − ω² + 2iζωᵣω).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pole {
+    /// Undamped natural frequency in Hz.
+    pub frequency: f64,
+    /// Damping ratio.
+    pub zeta: f64,
+    /// Modal constant A, 1/kg for a response over a force.
+    pub constant: Complex64,
+}
+
+impl Pole {
+    /// Its part of the response at `f`, whose kind is a receptance times (iω)^`power`.
+    pub fn at(&self, f: f64, power: i32) -> Complex64 {
+        let (omega, own) = (TAU * f, TAU * self.frequency);
+        let factor = Complex64::new(0.0, omega).powi(power);
+        factor * self.constant / Complex64::new(own * own - omega * omega, 2.0 * self.zeta * own * omega)
+    }
+
+    /// The mode without a decay σ in 1/s that an exponential window added to a response of (iω)^`power` times the receptance.
+    ///
+    /// The window moves the pole s = −ζωᵣ ± iωᵣ√(1 − ζ²) by −σ and leaves its residue, which is `s^power` A/(2iωᵣ√(1 − ζ²)).
+    /// `None` where it decays by less than σ, or does not oscillate (ζ of 1 and more).
+    pub(crate) fn without_decay(&self, decay: f64, power: i32) -> Option<Pole> {
+        if self.zeta.is_nan() || self.zeta.abs() >= 1.0 {
+            return None;
+        }
+        let own = TAU * self.frequency;
+        let with = Complex64::new(-self.zeta * own, own * (1.0 - self.zeta * self.zeta).sqrt());
+        let pole = with + decay;
+        let zeta = -pole.re / pole.norm();
+        let constant = self.constant * (with / pole).powi(power);
+        (zeta > 0.0).then(|| Pole { frequency: pole.norm() / TAU, zeta, constant })
+    }
 }

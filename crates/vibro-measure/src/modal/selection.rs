@@ -1,10 +1,12 @@
-//! Which peaks are modes, and on which lines they are fitted.
+//! Which lines belong to which peak, which peaks are modes, and on which lines they are fitted.
 
-use super::bands::{Group, Peak};
 use super::rational::{Rational, rational};
 use super::{Measured, Pole};
+use crate::mean::upper_median;
+use crate::peaks::local_maxima;
 use std::ops::Range;
-use vibro_record::Result;
+use vibro_record::units::notation::shortest;
+use vibro_record::{Error, Result};
 
 /// Modes of one group at most: beyond, parameters outgrow the lines.
 const TOGETHER: usize = 6;
@@ -139,4 +141,161 @@ pub(super) fn support_for_two(
     let both = rational(lines, group.lines.clone(), &starts, others).ok()?;
     let better = fit.aicc - both.aicc;
     (better > SPLIT && both.modes.iter().all(|m| m.zeta > 0.0)).then_some(better)
+}
+
+/// A peak: its line, its bandwidth in Hz as far as the lines show it, and its height above the higher of its valleys.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Peak {
+    pub at: usize,
+    pub width: f64,
+    pub rise: f64,
+}
+
+/// Peaks that are fitted together, and the lines to which they are.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Group {
+    pub peaks: Vec<Peak>,
+    pub lines: Range<usize>,
+}
+
+/// A peak must stand this factor above its valleys.
+const PROMINENCE: f64 = 2.0;
+
+/// A peak must rise above its valleys by this many standard deviations of the noise of one component of a line: of 3 000 lines of noise one does.
+const ABOVE_NOISE: f64 = 4.0;
+
+/// Lines on either side of a peak that are at least fitted, and bandwidths on either side.
+const LINES: usize = 16;
+const BANDWIDTHS: f64 = 6.0;
+
+impl Peak {
+    /// First guess of frequency and damping ratio.
+    pub fn start(&self, measured: &Measured) -> (f64, f64) {
+        let f = measured.frequency[self.at];
+        (f, self.width / (2.0 * f))
+    }
+}
+
+/// The peaks, those too near each other in one group, each with the lines around it; only those of `band` where there is one.
+pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Vec<Group>> {
+    let f = &measured.frequency;
+    let magnitude: Vec<f64> = measured.values.iter().map(|v| v.norm()).collect();
+    let mut peaks: Vec<Peak> = local_maxima(&magnitude, PROMINENCE)
+        .into_iter()
+        .map(|m| Peak {
+            at: m.at,
+            width: width(f, &magnitude, m.at, m.valleys),
+            rise: magnitude[m.at] - magnitude[m.valleys[0]].max(magnitude[m.valleys[1]]),
+        })
+        .filter(|p| p.rise > ABOVE_NOISE * noise(measured, p.at))
+        .collect();
+    let mut within = 0..f.len();
+    if let Some((low, high)) = band {
+        if !(low >= 0.0 && high > low && high.is_finite()) {
+            return Err(Error::usage(format!("a band from {low} to {high} Hz"), "LO:HI in Hz, LO below HI")
+                .setting("band"));
+        }
+        within = measured.within((low, high));
+        peaks.retain(|p| within.contains(&p.at));
+    }
+    if peaks.is_empty() {
+        let [first, last] = [f[0], f[f.len() - 1]].map(shortest);
+        let between = band.map_or_else(String::new, |(low, high)| format!(" between {low} and {high} Hz"));
+        let why = format!(
+            "no peak{between} stands a factor of {PROMINENCE} above its valleys and clear of the noise; the function runs from {first} to {last} Hz"
+        );
+        return Err(Error::refused(why).hint("choose a band around a peak").setting("band"));
+    }
+    let mut groups: Vec<Vec<Peak>> = Vec::new();
+    for peak in peaks {
+        match groups.last_mut() {
+            Some(group) if group.last().is_some_and(|last| near(f, last, &peak)) => group.push(peak),
+            _ => groups.push(vec![peak]),
+        }
+    }
+    let reach = |p: &Peak| {
+        let wide = BANDWIDTHS * p.width;
+        let low = f.partition_point(|v| *v < f[p.at] - wide).min(p.at.saturating_sub(LINES));
+        let high = f.partition_point(|v| *v <= f[p.at] + wide).max(p.at + LINES + 1).min(f.len());
+        low..high
+    };
+    let spans: Vec<(usize, usize)> = groups.iter().map(|g| (g[0].at, g[g.len() - 1].at)).collect();
+    let group = |(i, peaks): (usize, Vec<Peak>)| {
+        let low = peaks.iter().map(|p| reach(p).start).min().unwrap_or(0);
+        let high = peaks.iter().map(|p| reach(p).end).max().unwrap_or(f.len());
+        // No further than half-way to the groups beside it.
+        let below = i.checked_sub(1).map_or(0, |before| usize::midpoint(spans[before].1, spans[i].0));
+        let above = spans.get(i + 1).map_or(f.len(), |after| usize::midpoint(after.0, spans[i].1) + 1);
+        let lines = low.max(below).max(within.start)..high.min(above).min(within.end);
+        Group { peaks, lines }
+    };
+    Ok(groups.into_iter().enumerate().map(group).collect())
+}
+
+/// Standard deviation of the noise of one component of the lines around `at`, from the median of their second differences, in which what is smooth
+/// vanishes; 0 where there are too few lines.
+fn noise(measured: &Measured, at: usize) -> f64 {
+    let around = at.saturating_sub(LINES)..(at + LINES + 1).min(measured.values.len());
+    let differences = measured.values[around].windows(3).map(|v| (v[0] - 2.0 * v[1] + v[2]).norm());
+    // A second difference of lines of σ has 6σ² a component. The median of a Rayleigh variable is √(2 ln 2) of its scale; that of the size of a
+    // normal one 0.6745, and magnitudes of noise alone scatter by 0.655σ.
+    let median = if measured.magnitude_only { 0.6745 * 0.655 } else { (2.0 * f64::ln(2.0)).sqrt() };
+    upper_median(differences).map_or(0.0, |d| d / (median * f64::sqrt(6.0)))
+}
+
+/// Whether there are too few lines, or bandwidths, between two peaks to fit each alone.
+fn near(f: &[f64], a: &Peak, b: &Peak) -> bool {
+    b.at - a.at < 2 * LINES - 8 || f[b.at] - f[a.at] < 3.0 * (a.width + b.width)
+}
+
+/// Half-power bandwidth as the lines show it: at least half a line.
+fn width(f: &[f64], magnitude: &[f64], at: usize, valleys: [usize; 2]) -> f64 {
+    let half = magnitude[at] / f64::sqrt(2.0);
+    let cross = |a: usize, b: usize| {
+        let share = (magnitude[a] - half) / (magnitude[a] - magnitude[b]);
+        f[a] + share * (f[b] - f[a])
+    };
+    let left =
+        (valleys[0]..at).rev().find(|i| magnitude[*i] < half).map_or(f[valleys[0]], |i| cross(i + 1, i));
+    let right =
+        (at + 1..=valleys[1]).find(|i| magnitude[*i] < half).map_or(f[valleys[1]], |i| cross(i - 1, i));
+    (right - left).max((f[at + 1] - f[at - 1]) / 4.0)
+}
+
+#[cfg(test)]
+mod bands {
+    use super::*;
+    use crate::synthetic::Twelve;
+    use num_complex::Complex64;
+    use vibro_record::FrfKind;
+
+    /// Lines of noise of 0.3 a component, and one line of 3.
+    fn measured(magnitude_only: bool) -> Measured {
+        let mut noise = Twelve(3);
+        let mut values: Vec<Complex64> =
+            (0..2000).map(|_| Complex64::new(0.3 * noise.next(), 0.3 * noise.next())).collect();
+        values[1000] = Complex64::new(3.0, 0.0);
+        if magnitude_only {
+            for v in &mut values {
+                *v = Complex64::new(v.norm(), 0.0);
+            }
+        }
+        let frequency = (0..2000).map(f64::from).collect();
+        Measured { frequency, values, magnitude_only, kind: FrfKind::Receptance, coherence: None }
+    }
+
+    #[test]
+    fn noise_has_few_peaks_and_what_stands_out_of_it_is_one() {
+        let found = measured(false);
+        // The median of 31 correlated values scatters by a fifth or so; their mean over many places is good to a few per cent.
+        let mean = (0..100).map(|k| noise(&found, 30 + 9 * k)).sum::<f64>() / 100.0;
+        assert!((mean / 0.3 - 1.0).abs() < 0.1, "{mean}");
+        let all = groups(&found, None).unwrap();
+        let peaks: Vec<usize> = all.iter().flat_map(|g| g.peaks.iter().map(|p| p.at)).collect();
+        // A third of 2000 lines are local maxima; fewer than one line of noise in 3000 passes four deviations, where those are right within a
+        // quarter one in 90 does.
+        assert!(peaks.contains(&1000) && peaks.len() < 22, "{peaks:?}");
+        let sizes = measured(true);
+        assert!(groups(&sizes, None).unwrap().iter().any(|g| g.peaks.iter().any(|p| p.at == 1000)));
+    }
 }

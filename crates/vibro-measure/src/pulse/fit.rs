@@ -1,6 +1,7 @@
 //! Models of a contact fitted to the samples of a pulse.
 
 use super::{ContactModel, HuntCrossley, KelvinVoigt, LowPass};
+use crate::mean::average;
 use crate::residuals::{Whiteness, student};
 use vibro_math::{Fit, least_squares};
 use vibro_record::{Error, Result};
@@ -13,9 +14,18 @@ pub(super) struct Seen {
     pub hertz: HuntCrossley,
 }
 
+impl Seen {
+    /// Delay of the low-pass.
+    pub fn delay(&self) -> f64 {
+        self.filter.as_ref().map_or(0.0, LowPass::delay)
+    }
+}
+
 /// Samples in units of about the pulse: time from its rising flank over its length, value over its height.
 pub(super) struct Samples<'a> {
     pub seen: &'a Seen,
+    /// Places in the record.
+    pub places: Vec<usize>,
     pub times: Vec<f64>,
     pub values: Vec<f64>,
 }
@@ -25,6 +35,10 @@ pub(super) struct Samples<'a> {
 pub(super) struct Fitted {
     pub model: ContactModel,
     pub fit: Fit,
+    pub whiteness: Whiteness,
+    /// Factor for the uncertainties by the fit's covariance. `None` where more is left around the onset than elsewhere, and is not
+    /// white noise: the pulse begins otherwise than the model can, and the parameters may be anything.
+    pub widening: Option<f64>,
     /// First sample inside the contact, where the model begins with a jump.
     first: Option<usize>,
 }
@@ -53,15 +67,13 @@ impl Samples<'_> {
             ContactModel::KelvinVoigt => {
                 let contact = KelvinVoigt::new(p[3], p[4])?;
                 let end = contact.duration();
+                let inside = |(i, t): (usize, f64)| {
+                    let begun = first.map_or(t >= 0.0, |first| i >= first);
+                    if begun && t <= end { contact.unbounded(t) } else { 0.0 }
+                };
                 match filter {
                     Some(filter) => since.map(|t| contact.filtered(filter, t)).collect(),
-                    None => since
-                        .enumerate()
-                        .map(|(i, t)| {
-                            let begun = first.map_or(t >= 0.0, |first| i >= first);
-                            if begun && t <= end { contact.unbounded(t) } else { 0.0 }
-                        })
-                        .collect(),
+                    None => since.enumerate().map(inside).collect(),
                 }
             }
             ContactModel::Hertz if p[3] > 0.0 => {
@@ -108,30 +120,26 @@ impl Samples<'_> {
         };
         let fits = from.into_iter().filter_map(|(start, first)| self.from(model, &start, first));
         let fits = fits.map(|fit| (outside(&fit), fit.fit.sum_of_squares(), fit));
-        let best = fits.min_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        best.map(|f| f.2)
-            .ok_or_else(|| Error::refused(format!("the fit of the model {} does not converge", model.name())))
-    }
-
-    /// Factor for the uncertainties by the fit's covariance. `None` where more is left around the onset than elsewhere, and is not
-    /// white noise: the pulse begins otherwise than the model can, and the parameters may be anything.
-    pub(crate) fn widening(&self, fitted: &Fitted, whiteness: &Whiteness) -> Option<f64> {
-        let onset = fitted.fit.parameters[0];
-        let delay = self.seen.filter.as_ref().map_or(0.0, LowPass::delay);
-        let around = onset - AROUND..=onset + AROUND + delay;
-        if whiteness.rejected() && self.more_left(fitted, |t| around.contains(&t)) {
-            return None;
+        let Some((.., mut best)) = fits.min_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))) else {
+            return Err(Error::refused(format!("the fit of the model {} does not converge", model.name())));
+        };
+        best.whiteness = Whiteness::of(&[&best.fit.residuals]);
+        if !(best.whiteness.rejected() && self.more_left_at_onset(&best.fit)) {
+            // At least nine samples leave four degrees of freedom.
+            let student = student(best.fit.degrees_of_freedom()).unwrap_or(f64::NAN);
+            best.widening = Some(best.whiteness.inflation * student);
         }
-        // At least nine samples leave four degrees of freedom.
-        Some(whiteness.inflation * student(fitted.fit.degrees_of_freedom()).unwrap_or(f64::NAN))
+        Ok(best)
     }
 
-    /// Whether the residuals at some times have more than twice the variance of the others, and more than chance gives: the
+    /// Whether the residuals around the onset have more than twice the variance of the others, and more than chance gives: the
     /// variance of n samples of noise scatters by √(2/n).
-    fn more_left(&self, fitted: &Fitted, there: impl Fn(f64) -> bool) -> bool {
+    fn more_left_at_onset(&self, fit: &Fit) -> bool {
+        let onset = fit.parameters[0];
+        let around = onset - AROUND..=onset + AROUND + self.seen.delay();
         let (mut near, mut far) = ((0.0, 0.0), (0.0, 0.0));
-        for (t, r) in self.times.iter().zip(&fitted.fit.residuals) {
-            let part = if there(*t) { &mut near } else { &mut far };
+        for (t, r) in self.times.iter().zip(&fit.residuals) {
+            let part = if around.contains(t) { &mut near } else { &mut far };
             *part = (part.0 + r * r, part.1 + 1.0);
         }
         let limit = (1.0 + 4.0 * (2.0_f64 / near.1).sqrt()).max(2.0);
@@ -148,7 +156,8 @@ impl Samples<'_> {
             None => out.fill(f64::NAN),
         };
         let fit = least_squares(residuals, self.times.len(), start, &scale).ok()?;
-        fit.converged.then_some(Fitted { model, fit, first })
+        let whiteness = Whiteness { p_value: None, inflation: 1.0 };
+        fit.converged.then_some(Fitted { model, fit, whiteness, widening: None, first })
     }
 
     /// A contact of spring and damper nearer to the pulse, from a finer grid around a guess, on all samples.
@@ -182,7 +191,7 @@ impl Samples<'_> {
         let stride = self.times.len().div_ceil(COARSE).max(1);
         let thin = |all: &[f64]| all.iter().copied().step_by(stride).collect::<Vec<f64>>();
         let (times, values) = (thin(&self.times), thin(&self.values));
-        let delay = self.seen.filter.as_ref().map_or(0.0, LowPass::delay);
+        let delay = self.seen.delay();
         let shapes: &[f64] = match model {
             ContactModel::KelvinVoigt => &[0.03, 0.15, 0.3, 0.5, 0.75],
             ContactModel::Hertz => &[0.0],
@@ -221,8 +230,7 @@ impl Samples<'_> {
         (times, y): (&[f64], &[f64]),
     ) -> Option<(f64, Vec<f64>)> {
         let x = self.model(model, &p, times, None)?;
-        let n = x.len() as f64;
-        let (mx, my) = (x.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
+        let (mx, my) = (average(&x), average(y));
         let sxx: f64 = x.iter().map(|x| (x - mx).powi(2)).sum();
         let sxy: f64 = x.iter().zip(y).map(|(x, y)| (x - mx) * (y - my)).sum();
         let slope = sxy / sxx;

@@ -35,15 +35,12 @@ impl LowPass {
         let n = order as f64;
         let unit: Vec<Complex64> =
             (1..=order).map(|k| Complex64::cis(PI * (2.0 * k as f64 + n - 1.0) / (2.0 * n))).collect();
-        let parts = unit
-            .iter()
-            .enumerate()
-            .map(|(k, pole)| {
-                let others = unit.iter().enumerate().filter(|(j, _)| *j != k);
-                let product: Complex64 = others.map(|(_, other)| pole - other).product();
-                (pole * TAU * corner, TAU * corner / product)
-            })
-            .collect();
+        let part = |(k, pole): (usize, &Complex64)| {
+            let others = unit.iter().enumerate().filter(|(j, _)| *j != k);
+            let product: Complex64 = others.map(|(_, other)| pole - other).product();
+            (pole * TAU * corner, TAU * corner / product)
+        };
+        let parts = unit.iter().enumerate().map(part).collect();
         Ok(LowPass { corner, order, parts })
     }
 
@@ -59,20 +56,17 @@ impl LowPass {
         }
         let (inside, after) = (t.min(length), (t - length).max(0.0));
         let driven = (s * inside).exp();
-        let sum: Complex64 = self
-            .parts
-            .iter()
-            .map(|(p, r)| {
-                let z = (s - p) * inside;
-                // (e^{su} − e^{pu})/(s − p) cancels where the exponents are near each other.
-                let sum = if z.norm() < 1e-2 {
-                    (p * inside).exp() * inside * mean_exponential(z)
-                } else {
-                    (driven - (p * inside).exp()) / (s - p)
-                };
-                r * sum * (p * after).exp()
-            })
-            .sum();
+        let one = |(p, r): &(Complex64, Complex64)| {
+            let z = (s - p) * inside;
+            // (e^{su} − e^{pu})/(s − p) cancels where the exponents are near each other.
+            let sum = if z.norm() < 1e-2 {
+                (p * inside).exp() * inside * mean_exponentials(z).0
+            } else {
+                (driven - (p * inside).exp()) / (s - p)
+            };
+            r * sum * (p * after).exp()
+        };
+        let sum: Complex64 = self.parts.iter().map(one).sum();
         sum * c
     }
 
@@ -118,13 +112,7 @@ struct Advance {
 impl Advance {
     fn over(p: Complex64, h: f64) -> Advance {
         let z = p * h;
-        let first = mean_exponential(z);
-        // (e^z − 1 − z)/z², by its series where that cancels.
-        let second = if z.norm() < 0.1 {
-            0.5 + z * (1.0 / 6.0 + z * (1.0 / 24.0 + z * (1.0 / 120.0 + z * (1.0 / 720.0 + z / 5040.0))))
-        } else {
-            (first - 1.0) / z
-        };
+        let (first, second) = mean_exponentials(z);
         Advance { decay: z.exp(), first: h * (first - second), second: h * second }
     }
 
@@ -133,13 +121,15 @@ impl Advance {
     }
 }
 
-/// (e^z − 1)/z.
-fn mean_exponential(z: Complex64) -> Complex64 {
+/// (e^z − 1)/z and (e^z − 1 − z)/z², by their series where they cancel.
+fn mean_exponentials(z: Complex64) -> (Complex64, Complex64) {
     if z.norm() < 0.1 {
-        1.0 + z
-            * (0.5 + z * (1.0 / 6.0 + z * (1.0 / 24.0 + z * (1.0 / 120.0 + z * (1.0 / 720.0 + z / 5040.0)))))
+        let second =
+            0.5 + z * (1.0 / 6.0 + z * (1.0 / 24.0 + z * (1.0 / 120.0 + z * (1.0 / 720.0 + z / 5040.0))));
+        (1.0 + z * second, second)
     } else {
-        (z.exp() - 1.0) / z
+        let first = (z.exp() - 1.0) / z;
+        (first, (first - 1.0) / z)
     }
 }
 

@@ -1,11 +1,11 @@
-//! A record in units of its pulse, and the way back.
+//! Where in a record the pulse is; the record in units of its pulse, and the way back.
 
 use super::fit::{Fitted, Samples, Seen};
-use super::locate::Located;
 use super::result::{PulseCurve, PulseFit, PulsePicture, propagated};
 use super::{ContactModel, HuntCrossley, LowPass};
 use crate::Estimate;
-use crate::residuals::{Whiteness, aicc};
+use crate::mean::{average, upper_median};
+use crate::residuals::aicc;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use vibro_record::units::Quantity;
@@ -22,16 +22,6 @@ pub(super) struct Normalised<'a> {
     /// Unit of the values.
     height: f64,
     seen: Seen,
-}
-
-/// What is fitted of a record.
-pub(super) struct Window<'a> {
-    /// The samples.
-    pub samples: Samples<'a>,
-    /// Their places in the record.
-    pub used: Vec<usize>,
-    /// Whether the record comes back to the level before the pulse.
-    pub level: bool,
 }
 
 /// A mean of this part of the root mean square is another level; what rings is on both sides of its own.
@@ -73,55 +63,54 @@ impl<'a> Normalised<'a> {
         self.trace.axis.start() + self.found.flanks.0 * self.step + time * self.length
     }
 
-    /// The usable samples of a part of the record, and their places.
-    fn samples(&self, range: Range<usize>) -> (Samples<'_>, Vec<usize>) {
+    /// The usable samples of a part of the record.
+    fn samples(&self, range: Range<usize>) -> Samples<'_> {
         let usable = |i: &usize| self.trace.values[*i].is_finite() && !self.found.clipped.contains(i);
-        let used: Vec<usize> = range.filter(usable).collect();
-        let times = used.iter().map(|i| self.time(*i)).collect();
-        let values = used.iter().map(|i| self.trace.values[*i] / self.height).collect();
-        (Samples { seen: &self.seen, times, values }, used)
+        let places: Vec<usize> = range.filter(usable).collect();
+        let times = places.iter().map(|i| self.time(*i)).collect();
+        let values = places.iter().map(|i| self.trace.values[*i] / self.height).collect();
+        Samples { seen: &self.seen, places, times, values }
     }
 
-    /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record does not rest after it.
+    /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record does not rest after it;
+    /// and whether the record comes back to the level before the pulse.
     ///
     /// # Errors
     /// If there are too few samples, or no contact of spring and damper fits the pulse, as `unlike` says.
-    pub fn window(&self, findings: &mut Vec<Finding>, unlike: impl Fn(Error) -> Error) -> Result<Window<'_>> {
-        let delay = self.seen.filter.as_ref().map_or(0.0, LowPass::delay);
+    pub fn window(
+        &self,
+        findings: &mut Vec<Finding>,
+        unlike: impl Fn(Error) -> Error,
+    ) -> Result<(Samples<'_>, bool)> {
+        let delay = self.seen.delay();
         let from = self.index(-BESIDE - delay);
-        let (first, used) = self.samples(from..self.found.low);
-        if used.len() < FEWEST {
-            return Err(Error::refused(format!(
-                "the pulse has {} usable samples, and {FEWEST} are needed for five parameters",
-                used.len()
-            ))
-            .hint("sample faster, and record some of the baseline before the pulse"));
+        let first = self.samples(from..self.found.low);
+        let n = first.times.len();
+        if n < FEWEST {
+            let why =
+                format!("the pulse has {n} usable samples, and {FEWEST} are needed for five parameters");
+            let hint = "sample faster, and record some of the baseline before the pulse";
+            return Err(Error::refused(why).hint(hint));
         }
         self.faults(from..self.found.low, findings);
         let fitted = first.fit(ContactModel::KelvinVoigt).map_err(unlike)?;
         let settled = self.index(fitted.end() + 3.0 * delay);
         let far = self.index(fitted.end() + 3.0 * delay + BESIDE);
-        let (after, _) = self.samples(settled..far);
+        let after = self.samples(settled..far);
         // Mean and root of the mean square of what is left after the pulse.
-        let n = after.times.len() as f64;
-        let left: Vec<f64> = fitted
-            .at(&after, &after.times)
-            .map_or_else(Vec::new, |model| model.iter().zip(&after.values).map(|(m, v)| v - m).collect());
-        let mean = left.iter().sum::<f64>() / n;
-        let rms = (left.iter().map(|d| d * d).sum::<f64>() / n).sqrt();
-        let inside = (fitted.fit.sum_of_squares() / used.len() as f64).sqrt().max(1e-6);
+        let model = fitted.at(&after, &after.times).unwrap_or_default();
+        let left: Vec<f64> = model.iter().zip(&after.values).map(|(m, v)| v - m).collect();
+        let mean = average(&left);
+        let rms = average(&left.iter().map(|d| d * d).collect::<Vec<f64>>()).sqrt();
+        let inside = (fitted.fit.sum_of_squares() / n as f64).sqrt().max(1e-6);
         let restless = left.len() >= 4 && rms > 4.0 * inside;
         let level = !restless || mean.abs() <= LEVEL * rms;
         if restless {
-            findings.push(if level {
-                Finding::caution("pulse-no-rest-after")
-            } else {
-                Finding::doubt("pulse-level-changes")
-            });
+            let caution = Finding::caution("pulse-no-rest-after");
+            findings.push(if level { caution } else { Finding::doubt("pulse-level-changes") });
         }
         let end = if restless { self.index(fitted.end()).max(self.found.low) } else { far };
-        let (samples, used) = self.samples(from..end);
-        Ok(Window { samples, used, level })
+        Ok((self.samples(from..end), level))
     }
 
     /// What is wrong with the record around the pulse.
@@ -153,18 +142,18 @@ impl<'a> Normalised<'a> {
     }
 
     /// A fit in SI units; without uncertainties unless the instrument is `known`.
-    pub fn report(&self, samples: &Samples<'_>, fitted: &Fitted, mass: Option<f64>, known: bool) -> PulseFit {
-        let whiteness = Whiteness::of(&[&fitted.fit.residuals]);
-        let n = fitted.fit.residuals.len();
-        let method = "least squares";
-        let widening = samples.widening(fitted, &whiteness);
-        let valued = |value: f64| widening.map_or(f64::NAN, |_| value);
+    pub fn report(&self, fitted: &Fitted, mass: Option<f64>, known: bool) -> PulseFit {
+        let Fitted { model, fit, whiteness, widening, .. } = fitted;
+        let n = fit.residuals.len();
         let widened = widening.filter(|_| known).unwrap_or(f64::NAN);
+        let estimate = |value: f64, std: f64, unit| {
+            let value = widening.map_or(f64::NAN, |_| value);
+            Estimate::new(value, Some(std), unit, n, "least squares")
+        };
         let mut parameters = BTreeMap::new();
         let mut put = |name, i: usize, factor: f64, shift: f64, unit| {
-            let value = shift + factor * fitted.fit.parameters[i];
-            let std = factor.abs() * fitted.fit.std(i) * widened;
-            parameters.insert(name, Estimate::new(valued(value), Some(std), unit, n, method));
+            let std = factor.abs() * fit.std(i) * widened;
+            parameters.insert(name, estimate(shift + factor * fit.parameters[i], std, unit));
         };
         put("onset", 0, self.length, self.seconds(0.0), "s");
         let unit = self.trace.meta.quantity.symbol();
@@ -172,7 +161,7 @@ impl<'a> Normalised<'a> {
         if let Some(factor) = self.to_velocity(mass) {
             put("initial_velocity", 2, factor * self.found.height.signum(), 0.0, "m/s");
         }
-        match fitted.model {
+        match model {
             ContactModel::KelvinVoigt => {
                 put("xi", 3, 1.0, 0.0, "1");
                 put("frequency", 4, 1.0 / self.length, 0.0, "Hz");
@@ -182,17 +171,16 @@ impl<'a> Normalised<'a> {
                 put("duration", 3, self.length, 0.0, "s");
                 put("alpha", 4, 1.0, 0.0, "1");
                 let restitution = |p: &[f64]| HuntCrossley::new(p[0]).map(|c| c.restitution());
-                let variance = |_, _| (fitted.fit.std(4) * widened).powi(2);
-                let found = propagated(&fitted.fit.parameters[4..], &[1e3], variance, restitution);
-                if let Some((r, std)) = found {
-                    parameters.insert("restitution", Estimate::new(valued(r), Some(std), "1", n, method));
+                let variance = |_, _| (fit.std(4) * widened).powi(2);
+                if let Some((r, std)) = propagated(&fit.parameters[4..], &[1e3], variance, restitution) {
+                    parameters.insert("restitution", estimate(r, std, "1"));
                 }
             }
         }
         PulseFit {
-            model: fitted.model,
-            residual: self.height * (fitted.fit.sum_of_squares() / n as f64).sqrt(),
-            aicc: aicc(fitted.fit.sum_of_squares(), n, fitted.fit.parameters.len()),
+            model: *model,
+            residual: self.height * (fit.sum_of_squares() / n as f64).sqrt(),
+            aicc: aicc(fit.sum_of_squares(), n, fit.parameters.len()),
             whiteness: whiteness.p_value,
             n,
             parameters,
@@ -200,11 +188,12 @@ impl<'a> Normalised<'a> {
     }
 
     /// What a figure needs.
-    pub fn picture(&self, samples: &Samples<'_>, used: &[usize], fits: &[Fitted]) -> PulsePicture {
+    pub fn picture(&self, samples: &Samples<'_>, fits: &[Fitted]) -> PulsePicture {
         let from = self.index(-1.5);
         let end = fits.iter().map(Fitted::end).fold(1.0, f64::max);
         let to = self.index(end + 1.5);
-        let shown = |i: usize| (self.trace.axis.at(i), self.trace.values[i], used.binary_search(&i).is_ok());
+        let fitted = |i: usize| samples.places.binary_search(&i).is_ok();
+        let shown = |i: usize| (self.trace.axis.at(i), self.trace.values[i], fitted(i));
         let (a, b) = (self.time(from), self.time(to));
         let times: Vec<f64> = (0..=600).map(|i| a + (b - a) * f64::from(i) / 600.0).collect();
         let si = |times: &[f64], values: &[f64]| {
@@ -219,5 +208,168 @@ impl<'a> Normalised<'a> {
             samples: (from..to).map(shown).collect(),
             curves: fits.iter().filter_map(curve).collect(),
         }
+    }
+}
+
+/// The largest pulse of a record.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Located {
+    /// Value without a pulse.
+    pub baseline: f64,
+    /// Largest excursion from it, with its sign.
+    pub height: f64,
+    /// Places, in samples, where the flanks cross half the height.
+    pub flanks: (f64, f64),
+    /// Place, in samples, where the falling flank has come down to a fifth of the height.
+    pub low: usize,
+    /// Samples of a flat top.
+    pub clipped: Vec<usize>,
+}
+
+/// Fewest samples of a flat top.
+const FLAT: f64 = 3.0;
+
+/// Standard deviations of the noise within which samples count as equal to the largest.
+const BAND: f64 = 8.0;
+
+/// Standard deviations of the noise that a pulse must stand above the baseline: white noise of 10⁶ samples reaches 5.
+const LEAST: f64 = 6.0;
+
+/// Finds the largest pulse.
+///
+/// # Errors
+/// If no pulse stands out of the noise, or its onset or end is not in the record.
+pub(super) fn locate(values: &[f64]) -> Result<Located> {
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    let (Some(least), Some(most)) = (sorted.first(), sorted.last()) else {
+        return Err(Error::refused("the record holds no value"));
+    };
+    if least == most {
+        return Err(Error::refused(format!("all samples are {least}: there is no pulse"))
+            .hint("choose the channel that holds the pulse")
+            .setting("channel"));
+    }
+    let baseline = mode(&sorted);
+    // Median to standard deviation of a normal distribution, and of a difference to that of a value.
+    let differences = values.windows(2).map(|w| (w[1] - w[0]).abs());
+    let noise = 1.4826 * upper_median(differences).unwrap_or(0.0) / f64::sqrt(2.0);
+    let far = |v: &f64| if v.is_finite() { (v - baseline).abs() } else { -1.0 };
+    let peak = (0..values.len()).max_by(|a, b| far(&values[*a]).total_cmp(&far(&values[*b]))).unwrap_or(0);
+    let height = values[peak] - baseline;
+    if height.abs() < LEAST * noise {
+        let why = format!(
+            "no pulse stands out: the largest excursion is {:.1} times the noise, {LEAST} times are needed",
+            height.abs() / noise
+        );
+        let hint = "choose a record with one clean pulse and its baseline";
+        return Err(Error::refused(why).hint(hint));
+    }
+    let part = |i: usize| (values[i] - baseline) / height;
+    let before = (0..peak).rev().find(|i| part(*i) < 0.5);
+    let after = (peak + 1..values.len()).find(|i| part(*i) < 0.5);
+    let missing = |which: &str, end: &str| {
+        Error::refused(format!("the record {which} inside the pulse: its {end} is missing"))
+            .hint("record with a pre-trigger, and long enough")
+    };
+    let Some(before) = before else { return Err(missing("begins", "onset")) };
+    let Some(after) = after else { return Err(missing("stops", "end")) };
+    let cross = |a: usize, b: usize| a as f64 + (0.5 - part(a)) / (part(b) - part(a)) * (b as f64 - a as f64);
+    let low = (after..values.len()).find(|i| part(*i) < 0.2).unwrap_or(after);
+    let flanks = (cross(before, before + 1), cross(after - 1, after));
+    let depth = BAND * noise;
+    let near = |i: &usize| height.abs() * (1.0 - part(*i)) <= depth;
+    let from = (before..=peak).rev().take_while(near).last().unwrap_or(peak);
+    let to = (peak..after).take_while(near).last().unwrap_or(peak);
+    let run = (to + 1 - from) as f64;
+    let is_flat = flat(run, flanks.1 - flanks.0, depth / height.abs());
+    let clipped = if is_flat { (from..=to).collect() } else { Vec::new() };
+    Ok(Located { baseline, height, flanks, low, clipped })
+}
+
+/// Whether `run` samples within `depth` (a part of the height) of the largest are a flat top of a pulse `width` samples wide at half
+/// its height.
+///
+/// The top of a half sine, 1.5 widths long, is within a part x of its height for (3/π) acos(1 − x) widths. Three times that, and an
+/// eighth of the width at least, is the shape of no contact.
+fn flat(run: f64, width: f64, depth: f64) -> bool {
+    let round = 3.0 / std::f64::consts::PI * (1.0 - depth).max(-1.0).acos() * width;
+    run > 3.0 * round + FLAT && run > width / 8.0
+}
+
+/// Middle of the shortest interval that holds a quarter of the values: the baseline, also of a record that is mostly pulse.
+fn mode(sorted: &[f64]) -> f64 {
+    let quarter = (sorted.len() / 4).clamp(1, sorted.len().max(2) - 1);
+    sorted
+        .windows(quarter + 1)
+        .min_by(|a, b| (a[quarter] - a[0]).total_cmp(&(b[quarter] - b[0])))
+        .map_or(f64::NAN, |w| w[w.len() / 2])
+}
+
+#[cfg(test)]
+mod located {
+    use super::*;
+
+    /// A half sine of 40 samples after 60 of nothing and before 30, over 2, of height `h`.
+    fn record(h: f64) -> Vec<f64> {
+        let half = |i: i32| {
+            if (0..=40).contains(&i) { (f64::from(i) * std::f64::consts::PI / 40.0).sin() } else { 0.0 }
+        };
+        (-60..70).map(|i| 2.0 + h * half(i) + 1e-4 * f64::from(i % 3)).collect()
+    }
+
+    #[test]
+    fn a_pulse_of_either_sign_over_a_baseline() {
+        for h in [5.0, -5.0] {
+            let found = locate(&record(h)).unwrap();
+            assert!(
+                (found.baseline - 2.0).abs() < 1e-3 && (found.height / h - 1.0).abs() < 1e-3,
+                "{found:?}"
+            );
+            // A half sine is above half its height from 1/6 to 5/6 of its length.
+            let (rise, fall) = found.flanks;
+            assert!(
+                (rise - 60.0 - 40.0 / 6.0).abs() < 0.1 && (fall - 60.0 - 200.0 / 6.0).abs() < 0.1,
+                "{found:?}"
+            );
+            assert!(found.clipped.is_empty());
+        }
+    }
+
+    #[test]
+    fn a_flat_top_is_seen() {
+        let clipped: Vec<f64> = record(5.0).iter().map(|v| v.min(6.0)).collect();
+        let found = locate(&clipped).unwrap();
+        // sin > 0.8 from 0.295 to 0.705 of 40 samples.
+        assert!((16..=18).contains(&found.clipped.len()), "{found:?}");
+    }
+
+    #[test]
+    fn a_flat_top_with_noise_is_seen_and_a_round_one_is_not() {
+        // A deterministic noise of 0.05 % of the height; the pulse 200 samples long.
+        let noise = |i: i32| 2.5e-3 * (f64::from(i * i) * 0.7).sin() * f64::sqrt(2.0);
+        let half = |i: i32| {
+            if (0..=200).contains(&i) { (f64::from(i) * std::f64::consts::PI / 200.0).sin() } else { 0.0 }
+        };
+        let record =
+            |limit: f64| (-200..400).map(|i| (5.0 * half(i)).min(limit) + noise(i)).collect::<Vec<f64>>();
+        assert!(locate(&record(9.0)).unwrap().clipped.is_empty());
+        // With this noise 11 samples of a round top count as equal to its peak; a flat part of three times that, a cut of 4 %, is told.
+        for part in [0.8, 0.9] {
+            let n = locate(&record(5.0 * part)).unwrap().clipped.len() as f64;
+            // 200/π · 2 acos(part) samples at the limit, and those within eight deviations of noise and their own noise beside them.
+            let flat = 400.0 / std::f64::consts::PI * f64::acos(part);
+            assert!(n > 0.9 * flat && n < flat + 20.0, "{part}: {n} {flat}");
+        }
+    }
+
+    #[test]
+    fn records_without_a_whole_pulse_are_refused() {
+        assert!(locate(&[3.0; 50]).unwrap_err().to_string().contains("all samples are 3"));
+        assert!(locate(&[f64::NAN; 5]).is_err() && locate(&[]).is_err());
+        assert!(locate(&record(5.0)[80..]).unwrap_err().to_string().contains("onset"));
+        assert!(locate(&record(5.0)[..80]).unwrap_err().to_string().contains("end is missing"));
+        let noise: Vec<f64> = (0..200).map(|i| f64::from(i * 7919 % 201)).collect();
+        assert!(locate(&noise).unwrap_err().to_string().contains("stands out"));
     }
 }

@@ -2,8 +2,20 @@
 
 use super::*;
 use crate::crossing::crossings;
-use crate::jump::{jump, jumps};
+use crate::jump::jump;
 use num_complex::Complex64;
+
+fn points(f: &[f64], a: &[f64], std: &[f64]) -> Vec<Point> {
+    f.iter().zip(a).zip(std).map(|((f, a), std)| (*f, *a, *std)).collect()
+}
+
+fn jumps(f: &[f64], a: &[f64], std: &[f64], direction: Direction) -> Vec<Jump> {
+    crate::jump::jumps(&points(f, a, std), direction)
+}
+
+fn resonances(f: &[f64], a: &[f64], std: &[f64], jumps: &[Jump], mass: Option<u8>) -> Vec<Resonance> {
+    super::resonances(&points(f, a, std), jumps, mass)
+}
 
 #[test]
 fn a_mass_that_moves_alone_does_not_clap() {
@@ -15,33 +27,24 @@ fn a_mass_that_moves_alone_does_not_clap() {
         kind,
         at_jump: false,
     };
-    let mut first = vec![
+    let first = vec![
         resonance(5.5, 10.0, ResonanceKind::Resonance),
         resonance(7.5, 0.1, ResonanceKind::Antiresonance),
         resonance(10.6, 2.0, ResonanceKind::Resonance),
     ];
-    let mut second = vec![resonance(5.5, 9.0, ResonanceKind::Resonance)];
+    let second = vec![resonance(5.5, 9.0, ResonanceKind::Resonance)];
     let curve = |above| vec![(4.0, 1.0, 0.0), (5.5, 9.0, 0.0), (9.0, above, 0.0), (13.0, above, 0.0)];
     for (above, expected) in [(1e-6, ResonanceKind::Resonance), (1.0, ResonanceKind::Clapping)] {
-        first[2].kind = ResonanceKind::Resonance;
-        first[0].kind = ResonanceKind::Resonance;
-        let direction = Direction::Up;
-        name_modes(&mut [
-            NamedCurve {
-                mass: 1,
-                direction,
-                curve: curve(1.0),
-                jumps: &mut Vec::new(),
-                resonances: &mut first,
-            },
-            NamedCurve {
-                mass: 2,
-                direction,
-                curve: curve(above),
-                jumps: &mut Vec::new(),
-                resonances: &mut second,
-            },
-        ]);
+        let of = |mass, curve, resonances: &Vec<Resonance>| NamedCurve {
+            mass: Some(mass),
+            direction: Direction::Up,
+            curve,
+            jumps: Vec::new(),
+            resonances: resonances.clone(),
+        };
+        let mut both = [of(1, curve(1.0), &first), of(2, curve(above), &second)];
+        name_modes(&mut both);
+        let [first, second] = both.map(|c| c.resonances);
         assert_eq!((first[0].kind, first[2].kind), (ResonanceKind::Grazing, expected));
         assert_eq!(second[0].kind, ResonanceKind::Grazing);
     }
@@ -238,17 +241,18 @@ fn where_one_mass_jumps_the_other_does_if_its_slopes_do_not_tell() {
             .iter()
             .map(|f| (*f, 3.0 - 0.1 * f - if *f < 5.5 { fall } else { 0.0 } + noise(*f), 0.01))
             .collect();
-        let mut found = [down(&first), down(&second)];
-        assert_eq!((found[0].len(), found[1].len()), (0, 1), "{fall}");
-        let (mut none, mut nor) = (Vec::new(), Vec::new());
-        let direction = Direction::Down;
-        let [own, other] = &mut found;
-        name_modes(&mut [
-            NamedCurve { mass: 1, direction, curve: first, jumps: own, resonances: &mut none },
-            NamedCurve { mass: 2, direction, curve: second.clone(), jumps: other, resonances: &mut nor },
-        ]);
-        assert_eq!((found[0].len(), found[1].len()), (expected, 1), "{fall}");
-        for jump in &found[0] {
+        let of = |mass, curve: &[Point]| NamedCurve {
+            mass: Some(mass),
+            direction: Direction::Down,
+            curve: curve.to_vec(),
+            jumps: down(curve),
+            resonances: Vec::new(),
+        };
+        let mut found = [of(1, &first), of(2, &second)];
+        assert_eq!((found[0].jumps.len(), found[1].jumps.len()), (0, 1), "{fall}");
+        name_modes(&mut found);
+        assert_eq!((found[0].jumps.len(), found[1].jumps.len()), (expected, 1), "{fall}");
+        for jump in &found[0].jumps {
             assert_eq!((jump.from, jump.to, jump.change), (6.0, 5.0, "drop"));
         }
     }

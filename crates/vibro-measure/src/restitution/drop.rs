@@ -2,6 +2,7 @@
 
 use super::{Train, Way, above_zero, not_negative, repeated, together};
 use crate::Estimate;
+use crate::mean::scatter;
 use vibro_record::units::notation::quantity;
 use vibro_record::{Error, Finding, Result};
 
@@ -67,16 +68,14 @@ impl Drop {
             above_zero("an interval", *interval)?;
             let r = self.restitution(*interval);
             if r > 1.0 {
-                return Err(Error::refused(format!(
-                    "the interval of drop {}, {}, gives R = {r:.3}: after a fall of {} m it is {} at most",
-                    i + 1,
-                    quantity(*interval, "s", 4),
-                    self.height,
-                    quantity(interval / r, "s", 4)
-                ))
-                .hint(
-                    "the height in metres, and the interval in seconds from the first impact to the second",
-                ));
+                let (drop, height) = (i + 1, self.height);
+                let [interval, most] = [*interval, interval / r].map(|time| quantity(time, "s", 4));
+                let why = format!(
+                    "the interval of drop {drop}, {interval}, gives R = {r:.3}: after a fall of {height} m it is {most} at most"
+                );
+                let hint =
+                    "the height in metres, and the interval in seconds from the first impact to the second";
+                return Err(Error::refused(why).hint(hint));
             }
         }
         Ok(())
@@ -111,19 +110,13 @@ impl Drop {
     pub(super) fn bootstrap(&self) -> Option<f64> {
         const DRAWINGS: usize = 2000;
         let n = self.intervals.len();
-        if n < 5 {
-            return None;
-        }
         // Knuth's generator for MMIX, whose upper bits are the better ones.
         let mut state = 1979u64;
         let mut draw = || {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             self.intervals.get((state >> 33) as usize % n).copied().unwrap_or(f64::NAN)
         };
-        let values: Vec<f64> =
-            (0..DRAWINGS).map(|_| self.restitution((0..n).map(|_| draw()).sum::<f64>() / n as f64)).collect();
-        let mean = values.iter().sum::<f64>() / DRAWINGS as f64;
-        let sum: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
-        Some((sum / (DRAWINGS - 1) as f64).sqrt())
+        let mut mean = || (0..n).map(|_| draw()).sum::<f64>() / n as f64;
+        (n >= 5).then(|| scatter(&(0..DRAWINGS).map(|_| self.restitution(mean())).collect::<Vec<f64>>()))
     }
 }

@@ -1,9 +1,22 @@
 //! Restitution from a train of bounces: flight times shrink by R from bounce to bounce, `ln Δt_n = ln Δt₁ + (n − 1) ln R`.
+//!
+//! ln R comes from ratios of successive flights, where R scatters from bounce to bounce and the onsets carry noise.
+//!
+//! Ratios `y = ln(Δt_b/Δt_a)` have the covariance `s²·(b − a) + σ²AAᵀ`, with A the derivative of y by the onsets, s the scatter of ln R from
+//! bounce to bounce and σ that of an onset. ln R follows by generalised least squares (Aitken 1935), averaged over s², or s²/σ² where σ is not
+//! stated, which the restricted likelihood (Patterson and Thompson 1971) weighs with its reference prior, the root of its information (Jeffreys
+//! 1946; Berger and Bernardo, *Bayesian Statistics 4*, 1992, 35): it knows that s shows in the first flights and σ in the last. Where σ is not
+//! stated, scatter of R alone has a probability of one half, and the scale that the residuals give makes Student's distribution.
+//!
+//! Where R does not scatter at all the uncertainty is some four times what the onsets alone would make of it: they rule the last flights, and a
+//! scatter that few flights hardly show rules the first.
 
-use super::bounces::{Flight, fit};
 use super::{Way, above_zero, not_negative, repeated, together};
 use crate::Estimate;
 use crate::impacts::{Detected, ImpactsOptions, detect};
+use crate::mean::mixture;
+use crate::residuals::student;
+use nalgebra::{DMatrix, DVector};
 use vibro_record::{Error, Finding, Result, Trace};
 
 /// Flight times of one train of bounces.
@@ -34,10 +47,9 @@ impl Train {
             found.heights.drain(..first);
         }
         if found.times.len() < 2 {
-            return Err(Error::refused("one impact found: restitution from a drop needs two")
-                .hint("a lower threshold, or a shorter pause between impacts")
-                .setting("threshold")
-                .setting("refractory"));
+            let few = Error::refused("one impact found: restitution from a drop needs two");
+            let few = few.hint("a lower threshold, or a shorter pause between impacts");
+            return Err(few.setting("threshold").setting("refractory"));
         }
         let intervals = found.times.windows(2).map(|w| w[1] - w[0]).collect();
         Ok((Train { intervals, onset_std: found.onset_std }, found))
@@ -68,20 +80,16 @@ pub(super) fn answer(trains: &[Train], findings: &mut Vec<Finding>) -> Result<Op
                     .number("expected", expected),
             );
         }
-        let grows = |flight: &Flight| {
-            let flight = flight.place + 1;
-            Error::refused(format!(
-                "flight times grow, at flight {flight} of train {train}: R would not be below 1"
-            ))
-            .hint("the intervals in the order of the bounces, all of one train")
-        };
-        if let Some(flight) = grown(&flights, t.onset_std.unwrap_or(0.0)) {
-            return Err(grows(flight));
-        }
+        let noise = t.onset_std.unwrap_or(0.0);
         let (log, std) = fit(&flights, t.onset_std)
             .ok_or_else(|| Error::refused("flight times from which no ratio follows"))?;
-        if let Some(last) = flights.last().filter(|_| log >= 0.0) {
-            return Err(grows(last));
+        if let Some(flight) = grown(&flights, noise).or(flights.last().filter(|_| log >= 0.0)) {
+            let flight = flight.place + 1;
+            let why =
+                format!("flight times grow, at flight {flight} of train {train}: R would not be below 1");
+            return Err(
+                Error::refused(why).hint("the intervals in the order of the bounces, all of one train")
+            );
         }
         n += flights.len();
         logs.push(log);
@@ -151,4 +159,131 @@ fn worst(flights: &[Flight]) -> Option<(usize, f64)> {
     };
     let worst = (0..flights.len()).filter_map(scored).max_by(|a, b| a.1.total_cmp(&b.1))?;
     (worst.1 > 1.0).then_some((worst.0, worst.2))
+}
+
+/// One flight: place in the train, logarithm of its time.
+#[derive(Clone, Copy)]
+pub struct Flight {
+    pub place: usize,
+    pub log: f64,
+}
+
+/// Prior probability that R alone scatters, where nothing is stated of the onsets.
+const SCATTER_ALONE: f64 = 0.5;
+/// Variances of R are averaged over from where they show in ln R to where they outdo all else, and this factor beyond.
+const WIDE: f64 = 1e3;
+/// Steps of the logarithm (to base 10) of a variance.
+const STEP: f64 = 0.15;
+
+/// ln R of one train and its standard uncertainty, which three degrees of freedom show; `None` without a ratio.
+pub fn fit(flights: &[Flight], onset_std: Option<f64>) -> Option<(f64, Option<f64>)> {
+    let ratios = Ratios::new(flights);
+    let n = ratios.y.len() as f64;
+    let free = ratios.y.len().checked_sub(1)?;
+    let stated = onset_std.filter(|s| *s > 0.0).map(|s| s * s);
+    let scaled = stated.is_none();
+    let sigma2 = stated.unwrap_or_else(|| n / ratios.timing.trace());
+    let scatter_alone = ratios.node(1.0, 0.0, true);
+    let onsets_alone = ratios.node(0.0, sigma2, scaled)?;
+    if free < 3 {
+        return Some((if scaled { scatter_alone? } else { onsets_alone }.log_r, None));
+    }
+    let least = n / onsets_alone.information / WIDE;
+    let noisiest = sigma2 * ratios.timing.diagonal().max();
+    let shown = if scaled { 0.0 } else { ratios.scatter() / free as f64 };
+    let steps = ((WIDE * noisiest.max(shown) / least).log10() / STEP).ceil().clamp(0.0, 1e3) as usize;
+    let grid = (0..=steps).map(|i| {
+        let s2 = least * 10f64.powf(STEP * i as f64);
+        let node = ratios.node(s2, sigma2, scaled)?;
+        // Even steps of the logarithm: the density of s² times s².
+        Some((s2 * node.prior, node))
+    });
+    let mut nodes: Vec<(f64, Node)> = grid.collect::<Option<_>>()?;
+    if scaled {
+        let total: f64 = nodes.iter().map(|(prior, _)| prior).sum();
+        nodes.push((total * SCATTER_ALONE / (1.0 - SCATTER_ALONE), scatter_alone?));
+    }
+    let estimates = nodes.iter().map(|(prior, n)| (prior.ln() + n.likelihood, n.log_r, n.variance));
+    let (log_r, variance) = mixture(&estimates.collect::<Vec<_>>());
+    Some((log_r, Some(variance.sqrt()).filter(|s| s.is_finite())))
+}
+
+/// A fit for one s² and σ².
+struct Node {
+    log_r: f64,
+    /// Its variance, Student's where the scale is that of the residuals.
+    variance: f64,
+    /// `mᵀC⁻¹m`.
+    information: f64,
+    /// Restricted log-likelihood but for a constant.
+    likelihood: f64,
+    /// Root of the information on s².
+    prior: f64,
+}
+
+/// Ratios of successive flights.
+struct Ratios {
+    /// Their logarithms.
+    y: DVector<f64>,
+    /// Bounces between them.
+    m: DVector<f64>,
+    /// `AAᵀ`, in 1/s².
+    timing: DMatrix<f64>,
+}
+
+impl Ratios {
+    fn new(flights: &[Flight]) -> Ratios {
+        let of = |f: &dyn Fn(&Flight, &Flight) -> f64| {
+            DVector::from_vec(flights.windows(2).map(|w| f(&w[0], &w[1])).collect())
+        };
+        let y = of(&|a, b| b.log - a.log);
+        let mut by_onset = DMatrix::<f64>::zeros(y.len(), flights.last().map_or(0, |f| f.place + 2));
+        for (i, pair) in flights.windows(2).enumerate() {
+            // Each flight is the later onset less the earlier.
+            for (flight, sign) in pair.iter().zip([-1.0, 1.0]) {
+                let slope = sign * (-flight.log).exp();
+                by_onset[(i, flight.place)] -= slope;
+                by_onset[(i, flight.place + 1)] += slope;
+            }
+        }
+        let timing = &by_onset * by_onset.transpose();
+        Ratios { y, m: of(&|a, b| (b.place - a.place) as f64), timing }
+    }
+
+    /// Generalised least squares; with `scaled`, all variances are multiplied by what the residuals say.
+    fn node(&self, s2: f64, sigma2: f64, scaled: bool) -> Option<Node> {
+        let by = DMatrix::from_diagonal(&self.m);
+        let cholesky = (&by * s2 + &self.timing * sigma2).cholesky()?;
+        let (wm, wy) = (cholesky.solve(&self.m), cholesky.solve(&self.y));
+        let (mm, my, yy) = (self.m.dot(&wm), self.m.dot(&wy), self.y.dot(&wy));
+        let log_det = 2.0 * cholesky.l().diagonal().iter().map(|d| d.ln()).sum::<f64>();
+        let log_r = my / mm;
+        // Roundings of the ratios are no scatter.
+        let rest = (yy - log_r * my).max(1e-15 * yy.abs());
+        let free = self.y.len() as f64 - 1.0;
+        // Twice Fisher's information of the restricted likelihood on s², tr(PDPD) with P = C⁻¹ − C⁻¹mmᵀC⁻¹/mᵀC⁻¹m and D the derivative of C by
+        // s² (D. Harville, J. Am. Stat. Assoc. 72 (1977) 320); with a scale of C that is not known, what that leaves of it.
+        let pd = (cholesky.inverse() - &wm * wm.transpose() / mm) * by;
+        let squares = pd.component_mul(&pd.transpose()).sum();
+        let (scale, factor, misfit, taken) = if scaled {
+            let scale = rest / free.max(1.0);
+            let factor = student(self.y.len() - 1).unwrap_or(f64::NAN);
+            (scale, factor, free * scale.max(f64::MIN_POSITIVE).ln(), pd.trace().powi(2) / free)
+        } else {
+            (1.0, 1.0, rest, 0.0)
+        };
+        Some(Node {
+            log_r,
+            variance: factor * factor * scale / mm,
+            information: mm,
+            likelihood: -0.5 * (log_det + mm.ln() + misfit),
+            prior: (squares - taken).max(0.0).sqrt(),
+        })
+    }
+
+    /// Sum of squares of the ratios about their mean, one bounce each.
+    fn scatter(&self) -> f64 {
+        let mean = self.y.sum() / self.m.sum();
+        self.y.iter().zip(self.m.iter()).map(|(y, m)| (y - mean * m).powi(2) / m).sum()
+    }
 }

@@ -30,10 +30,10 @@ impl Velocities {
         }
         let approach = v1 - v2;
         if approach <= 0.0 {
-            return Err(Error::refused(format!(
-                "before the impact mass 1 has {v1} m/s and mass 2 {v2} m/s: they do not approach"
-            ))
-            .hint("mass 1 behind mass 2, velocities positive from mass 1 to mass 2"));
+            let why =
+                format!("before the impact mass 1 has {v1} m/s and mass 2 {v2} m/s: they do not approach");
+            let hint = "mass 1 behind mass 2, velocities positive from mass 1 to mass 2";
+            return Err(Error::refused(why).hint(hint));
         }
         if let Some((m1, m2)) = self.masses {
             above_zero("a mass", m1)?;
@@ -59,19 +59,18 @@ impl Velocities {
             let std = self.std.map(|u| u * slopes.iter().map(|d| d * d).sum::<f64>().sqrt());
             // Beyond twice its uncertainty it is no restitution; roundings of equal numbers are no velocity.
             if (-r).max(r - 1.0) > std.map_or(0.0, |u| 2.0 * u).max(1e-12) {
-                return Err(Error::refused(format!("R = {r:.4} by the {method}: outside 0 to 1")).hint(
-                    "all velocities positive in one direction, and the masses in the order of the velocities",
-                ));
+                let why = format!("R = {r:.4} by the {method}: outside 0 to 1");
+                let hint =
+                    "all velocities positive in one direction, and the masses in the order of the velocities";
+                return Err(Error::refused(why).hint(hint));
             }
             let restitution = Estimate::new(r, std, "1", all.iter().flatten().count(), how);
             ways.push(Way { method, restitution });
         }
         if ways.is_empty() {
             let expected = "both velocities after the impact, or masses";
-            return Err(Error::usage("velocities of one mass without masses", expected)
-                .hint("state what is missing")
-                .setting("after")
-                .setting("masses"));
+            let error = Error::usage("velocities of one mass without masses", expected);
+            return Err(error.hint("state what is missing").setting("after").setting("masses"));
         }
         Ok(ways)
     }

@@ -71,9 +71,9 @@ impl SpectralOptions {
         self.fmin.unwrap_or(if self.integrate > 0 { 2.0 * step } else { 0.0 })
     }
 
-    /// Names of what may contradict another option, and whether it is given.
-    fn given(&self) -> [(&'static str, bool); 13] {
-        [
+    /// Names of what is given that may contradict another option.
+    fn given(&self) -> impl Iterator<Item = &'static str> {
+        let all = [
             ("method", self.method.is_some()),
             ("reference", self.estimator.is_some()),
             ("segment", self.segment.is_some()),
@@ -87,12 +87,13 @@ impl SpectralOptions {
             ("force_window", self.force_window.is_some()),
             ("left_at_end", self.left_at_end.is_some()),
             ("delay", self.delay.is_some()),
-        ]
+        ];
+        all.into_iter().filter(|(_, given)| *given).map(|(name, _)| name)
     }
 
     /// The first of these that is given.
     pub fn first(&self) -> Option<&'static str> {
-        self.given().into_iter().find(|(_, given)| *given).map(|(name, _)| name)
+        self.given().next()
     }
 
     /// Checks that no option contradicts another.
@@ -123,30 +124,26 @@ impl SpectralOptions {
             (function, &["scaling"], "with a reference", "a function has no scaling"),
         ];
         for (holds, names, with, expected) in rules {
-            let clash =
-                self.given().into_iter().find(|(name, given)| holds && *given && names.contains(name));
-            if let Some((name, _)) = clash {
+            if let Some(name) = self.given().find(|name| holds && names.contains(name)) {
                 return Err(Error::usage(format!("{name} {with}"), expected).setting(name));
             }
         }
-        let above_zero = |v: &f64| v.is_finite() && *v > 0.0;
-        let known = [Scaling::Peak, Scaling::Rms, Scaling::Power, Scaling::Psd];
-        let wrong = |value: Option<f64>, holds: bool| value.filter(|_| !holds).map(|v| v.to_string());
-        let scaling = self.scaling.filter(|s| !known.contains(s)).map(|s| s.name().to_owned());
-        let times = wrong(Some(f64::from(self.integrate)), (-2..=2).contains(&self.integrate));
-        let values = [
-            ("delay", wrong(self.delay, self.delay.is_none_or(f64::is_finite)), "seconds"),
-            (
-                "decibel",
-                wrong(self.decibel, self.decibel.as_ref().is_none_or(above_zero)),
-                "a reference above 0, such as 1e-6",
-            ),
-            ("integrate", times, "-2 to 2"),
-            ("fmin", wrong(self.fmin, self.fmin.as_ref().is_none_or(above_zero)), "a finite number above 0"),
-            ("scaling", scaling, "peak, rms, power or psd"),
+        let wrong = |v: &f64| !(v.is_finite() && *v > 0.0);
+        let numbers = [
+            ("delay", self.delay.filter(|v| !v.is_finite()), "seconds"),
+            ("decibel", self.decibel.filter(wrong), "a reference above 0, such as 1e-6"),
+            ("integrate", Some(f64::from(self.integrate)).filter(|times| times.abs() > 2.0), "-2 to 2"),
+            ("fmin", self.fmin.filter(wrong), "a finite number above 0"),
         ];
-        let Some((name, value, expected)) = values.into_iter().find(|v| v.1.is_some()) else { return Ok(()) };
-        let found = format!("{name} = {}", value.unwrap_or_default());
-        Err(Error::usage(found, expected).setting(name))
+        if let Some((name, Some(value), expected)) = numbers.into_iter().find(|n| n.1.is_some()) {
+            return Err(Error::usage(format!("{name} = {value}"), expected).setting(name));
+        }
+        match self.scaling {
+            None | Some(Scaling::Peak | Scaling::Rms | Scaling::Power | Scaling::Psd) => Ok(()),
+            Some(other) => {
+                let found = format!("scaling = {}", other.name());
+                Err(Error::usage(found, "peak, rms, power or psd").setting("scaling"))
+            }
+        }
     }
 }

@@ -81,22 +81,25 @@ impl SpectralResult {
         fmin: f64,
         mut findings: Vec<Finding>,
     ) -> SpectralResult {
-        let (meta, axis) = match &found {
-            Lines::Spectrum(spectrum) => (&spectrum.meta, &spectrum.axis),
-            Lines::Transfer(found) => (&found.frf.meta, &found.frf.axis),
+        let (meta, axis, value, scaling, enbw) = match &found {
+            Lines::Spectrum(s) => (&s.meta, &s.axis, s.values.magnitudes(), s.scaling.name(), s.enbw),
+            Lines::Transfer(Transfer { frf, .. }) => {
+                let value = frf.values.iter().map(|v| v.norm()).collect();
+                (&frf.meta, &frf.axis, value, "frf", Some(options.window().enbw()))
+            }
         };
         let mut result = SpectralResult {
             name: meta.name.clone(),
             frequency: axis.values(),
-            value: Vec::new(),
+            value,
             value_std: Vec::new(),
-            scaling: "frf",
+            scaling,
             unit: meta.unit.symbol().to_owned(),
             quantity: meta.quantity.name(),
             level: Vec::new(),
             level_unit: None,
             window: options.window().name(),
-            enbw: options.window().enbw(),
+            enbw: enbw.unwrap_or(f64::NAN),
             detrend: if options.detrended() { "mean" } else { "none" },
             averages: 0,
             response: None,
@@ -104,24 +107,17 @@ impl SpectralResult {
             findings: Vec::new(),
             found,
         };
-        match &result.found {
-            Lines::Spectrum(spectrum) => {
-                (result.value, result.scaling) = (spectrum.values.magnitudes(), spectrum.scaling.name());
-                result.enbw = spectrum.enbw.unwrap_or(f64::NAN);
-            }
-            Lines::Transfer(found) => {
-                result.value = found.frf.values.iter().map(|v| v.norm()).collect();
-                result.value_std.clone_from(&found.magnitude_std);
-                result.averages = found.averages;
-                result.response = Some(Response {
-                    estimator: options.estimator.map_or("", Estimator::name),
-                    phase: found.frf.values.iter().map(|v| v.arg().to_degrees()).collect(),
-                    phase_std: found.phase_std.iter().map(|v| v.to_degrees()).collect(),
-                    coherence: found.coherence.clone(),
-                    blows: Vec::new(),
-                });
-                findings.extend(found.findings.iter().cloned());
-            }
+        if let Lines::Transfer(found) = &result.found {
+            result.value_std.clone_from(&found.magnitude_std);
+            result.averages = found.averages;
+            result.response = Some(Response {
+                estimator: options.estimator.map_or("", Estimator::name),
+                phase: found.frf.values.iter().map(|v| v.arg().to_degrees()).collect(),
+                phase_std: found.phase_std.iter().map(|v| v.to_degrees()).collect(),
+                coherence: found.coherence.clone(),
+                blows: Vec::new(),
+            });
+            findings.extend(found.findings.iter().cloned());
         }
         if options.integrate > 0 {
             // Integrated, lines below would be noise divided by the frequency.
@@ -148,9 +144,10 @@ impl SpectralResult {
     /// Spectrum, or function and coherence, without the lines that have no value: files have no word for them.
     pub fn records(&self) -> Vec<Record> {
         let known = |spectrum: Spectrum| {
-            let (axis, values) = match &spectrum.values {
-                Values::Real(v) => finite(&spectrum.axis, v, Values::Real, |v| v.is_finite()),
-                Values::Complex(v) => finite(&spectrum.axis, v, Values::Complex, |v| v.is_finite()),
+            let (axis, kept) = finite(&spectrum.axis, |k| spectrum.values.magnitude(k).is_finite());
+            let values = match &spectrum.values {
+                Values::Real(v) => Values::Real(kept.iter().map(|k| v[*k]).collect()),
+                Values::Complex(v) => Values::Complex(kept.iter().map(|k| v[*k]).collect()),
             };
             Record::Spectrum(Spectrum { axis, values, ..spectrum })
         };
@@ -166,7 +163,8 @@ impl SpectralResult {
                     window: None,
                     enbw: None,
                 };
-                let (axis, values) = finite(&frf.axis, &frf.values, |v| v, |v| v.is_finite());
+                let (axis, kept) = finite(&frf.axis, |k| frf.values[k].is_finite());
+                let values = kept.iter().map(|k| frf.values[*k]).collect();
                 vec![Record::Frf(Frf { axis, values, ..frf }), known(coherence)]
             }
         }
@@ -184,14 +182,9 @@ impl SpectralResult {
     }
 }
 
-/// Lines with a value, evenly spaced where none is missing between them.
-fn finite<T: Copy, V>(
-    axis: &Axis,
-    values: &[T],
-    of: fn(Vec<T>) -> V,
-    is_finite: impl Fn(&T) -> bool,
-) -> (Axis, V) {
-    let kept: Vec<usize> = (0..values.len()).filter(|k| is_finite(&values[*k])).collect();
+/// Lines with a value, evenly spaced where none is missing between them, and their places.
+fn finite(axis: &Axis, is_finite: impl Fn(usize) -> bool) -> (Axis, Vec<usize>) {
+    let kept: Vec<usize> = (0..axis.len()).filter(|k| is_finite(*k)).collect();
     let [first, last] = [kept.first(), kept.last()].map(|k| k.copied().unwrap_or(0));
     let grid = match axis.step() {
         Some(step) if last + 1 - first == kept.len() => {
@@ -199,5 +192,5 @@ fn finite<T: Copy, V>(
         }
         _ => Grid::Uneven(kept.iter().map(|k| axis.at(*k)).collect()),
     };
-    (Axis { kind: axis.kind.clone(), grid }, of(kept.iter().map(|k| values[*k]).collect()))
+    (Axis { kind: axis.kind.clone(), grid }, kept)
 }

@@ -2,7 +2,9 @@
 
 use super::Blows;
 use crate::fft::Transform;
+use crate::transfer::Transfer;
 use std::f64::consts::TAU;
+use vibro_record::Finding;
 
 /// Parts of a record after the blow; the first and the last are compared.
 const PARTS: usize = 4;
@@ -12,12 +14,14 @@ const FEWEST: usize = 16;
 const BEYOND: f64 = 6.0;
 /// Lines with less than this part of the highest power are not those of the response.
 const STRONG: f64 = 0.01;
+/// Less than this part of a response at the end of its record is not worth a finding: sensors are not as good.
+const LEAST: f64 = 1e-3;
 
 /// Line by line, what is left of a response when its weighted record ends, relative to its beginning.
 pub(super) struct Left {
-    /// From 0 Hz on, in steps of `samples of a part / samples of a record` lines; 0 where it is within the noise.
-    parts: Vec<f64>,
-    strong: Vec<bool>,
+    /// From 0 Hz on, in steps of `samples of a part / samples of a record` lines; 0 where it is within the noise. And whether the line
+    /// is one of the response, no noise and no hum.
+    parts: Vec<(f64, bool)>,
     step: f64,
 }
 
@@ -56,8 +60,8 @@ impl Left {
         let [(_, head), (from, tail)] = powers;
         let weight = weights.get(from).copied().unwrap_or(1.0);
         let (squares, sum) = hann.iter().fold((0.0, 0.0), |(q, s), h| (q + h * h, s + h));
-        let highest = head.iter().copied().fold(0.0, f64::max);
-        let left = |(k, (head, tail)): (usize, (&f64, &f64))| {
+        let strong = STRONG * head.iter().copied().fold(0.0, f64::max);
+        let part = |(k, (head, tail)): (usize, (&f64, &f64))| {
             // The level that was taken off is uncertain, which a Hann window spreads over two lines.
             let level = if k < 2 { sum * sum / how.before as f64 } else { 0.0 };
             let noise = noise * weight * weight * (squares + level);
@@ -70,23 +74,26 @@ impl Left {
             (excess * n / head).sqrt().powf(whole).min(1.0)
         };
         Some(Left {
-            parts: head.iter().zip(&tail).enumerate().map(left).collect(),
-            strong: head.iter().map(|p| *p > STRONG * highest).collect(),
+            parts: head.iter().zip(&tail).enumerate().map(|line| (part(line), *line.1.0 > strong)).collect(),
             step: how.length as f64 / quarter as f64,
         })
     }
 
-    fn place(&self, line: usize) -> usize {
-        ((line as f64 / self.step).round() as usize).min(self.parts.len().saturating_sub(1))
-    }
-
-    /// At a line of the whole record, counted from 0 Hz.
-    pub fn at(&self, line: usize) -> f64 {
-        self.parts.get(self.place(line)).copied().unwrap_or(0.0)
-    }
-
-    /// Whether a line is one of the response, no noise and no hum.
-    pub fn strong(&self, line: usize) -> bool {
-        self.strong.get(self.place(line)).copied().unwrap_or(false)
+    /// Takes what is left into the standard deviations of a function, with a finding where it is most.
+    pub fn widen(&self, transfer: &mut Transfer) {
+        let (mut most, mut finding) = (0.0, None);
+        for (k, h) in transfer.frf.values.iter().enumerate() {
+            // The first line of a function is one above 0 Hz.
+            let place = ((k + 1) as f64 / self.step).round() as usize;
+            let Some((part, strong)) = self.parts.get(place).or(self.parts.last()) else { continue };
+            transfer.magnitude_std[k] = transfer.magnitude_std[k].hypot(part * h.norm());
+            transfer.phase_std[k] = transfer.phase_std[k].hypot(*part);
+            if *part > LEAST && *strong && part * h.norm() > most {
+                most = part * h.norm();
+                let here = Finding::caution("response-cut-off").number("frequency", transfer.frf.axis.at(k));
+                finding = Some(here.number("left", *part));
+            }
+        }
+        transfer.findings.extend(finding);
     }
 }

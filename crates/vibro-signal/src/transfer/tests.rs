@@ -38,7 +38,7 @@ fn a_lagging_system_has_its_magnitude_and_a_negative_phase() {
     let filter = Filter::low_pass(60.0, 2, RATE).unwrap();
     let force = Noise(3).record(60_000);
     let mut velocity = force.clone();
-    filter.from_rest().apply(&mut velocity);
+    filter.causal(&mut velocity, 0.0);
     let (averages, metas) = measured([("N", force), ("m/s", velocity)], 1024).unwrap();
     for estimator in [Estimator::H1, Estimator::H2, Estimator::Hv] {
         let found = transfer(&averages, 1, &metas, estimator).unwrap();
