@@ -12,6 +12,6 @@ pub use html::Page;
 pub use output::Output;
 pub use table::{Cell, Column, Table};
 pub use vibro_figure::{
-    AxisSpec, Drawing, Figure, Grid, Heatmap, Ink, Key, Kind, Legend, Marker, Note, Panel, Peak, Plot, Row,
-    Scale, Series, Shape, Stroke, Waterfall, colour,
+    AxisSpec, Drawing, Figure, Grid, Heatmap, Ink, Kind, Legend, Marker, Note, Panel, Plot, Scale, Series,
+    Shape, Stroke, Waterfall, colour,
 };

@@ -5,8 +5,8 @@ use ndarray::Array2;
 use proptest::prelude::*;
 use resvg::usvg::{self, roxmltree};
 use vibroimpact::report::{
-    AxisSpec, Drawing, Figure, Heatmap, Legend, Output, Page, Panel, Peak, Plot, Series, Shape, Stroke,
-    Table, Waterfall,
+    AxisSpec, Drawing, Figure, Heatmap, Legend, Output, Page, Panel, Plot, Series, Shape, Stroke, Table,
+    Waterfall,
 };
 
 /// Parses a drawing as XML and as a picture, and returns the texts it shows.
@@ -61,8 +61,7 @@ fn everything() -> Figure {
         .heatmap(Heatmap::new(&frequency, &excitation, &magnitude, level).unwrap());
     let waterfall = Waterfall::new(&frequency, &excitation, &magnitude, AxisSpec::new("Displacement", "m"))
         .unwrap()
-        .title("(c) Spectra")
-        .peak(Peak { frequency: 3.0, excitation: 3.0, magnitude: 1e-3 });
+        .title("(c) Spectra");
     Figure::double("Everything").height(160.0).columns(2).panel(plot).panel(map).panel(waterfall)
 }
 

@@ -32,8 +32,6 @@ pub struct Figure {
     pub columns: usize,
     /// Whether the panels of a column have one abscissa, named under the lowest.
     pub shared_x: bool,
-    /// Whether all frames are square, so that axes of one span show circles as circles.
-    pub square: bool,
     /// Panels, row by row.
     pub panels: Vec<Panel>,
 }
@@ -103,7 +101,6 @@ impl Figure {
             height: 62.0,
             columns: 1,
             shared_x: false,
-            square: false,
             panels: Vec::new(),
         }
     }
@@ -134,12 +131,6 @@ impl Figure {
     /// Gives the panels of a column one abscissa, named under the lowest.
     pub fn shared_x(mut self) -> Figure {
         self.shared_x = true;
-        self
-    }
-
-    /// Makes all frames square.
-    pub fn square(mut self) -> Figure {
-        self.square = true;
         self
     }
 

@@ -133,18 +133,16 @@ impl Series {
     /// Line of a phase in degrees between −180 and 180: broken where it goes round the circle, rather than
     /// drawn across the frame.
     pub fn phase(name: impl Into<String>, x: &[f64], degrees: &[f64]) -> Series {
-        let (mut at, mut shown) = (Vec::new(), Vec::new());
-        let mut before = f64::NAN;
+        let mut line = Series::line(name, [], []);
         for (x, phase) in x.iter().zip(degrees) {
-            if (phase - before).abs() > 180.0 {
-                at.push(*x);
-                shown.push(f64::NAN);
+            if line.y.last().is_some_and(|before| (phase - before).abs() > 180.0) {
+                line.x.push(*x);
+                line.y.push(f64::NAN);
             }
-            at.push(*x);
-            shown.push(*phase);
-            before = *phase;
+            line.x.push(*x);
+            line.y.push(*phase);
         }
-        Series::line(name, at, shown)
+        line
     }
 
     /// Markers in the next form, without bars.

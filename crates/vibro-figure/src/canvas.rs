@@ -70,11 +70,6 @@ impl Canvas {
         self.shape(&path(parts, false), None, Some(pen));
     }
 
-    /// The sides of a rectangle.
-    pub fn outline(&mut self, r: Rect, pen: Pen) {
-        self.shape(&path(&[r.corners()], true), None, Some(pen));
-    }
-
     /// One straight line.
     pub fn line(&mut self, a: Point, b: Point, pen: Pen) {
         self.lines(&[vec![a, b]], pen);
@@ -85,9 +80,9 @@ impl Canvas {
         self.shape(&path(parts, true), Some(fill), outline);
     }
 
-    /// A filled rectangle.
-    pub fn rect(&mut self, r: Rect, fill: Rgb, outline: Option<Pen>) {
-        self.areas(&[r.corners()], fill, outline);
+    /// A rectangle.
+    pub fn rect(&mut self, r: Rect, fill: Option<Rgb>, outline: Option<Pen>) {
+        self.shape(&path(&[r.corners()], true), fill, outline);
     }
 
     /// Circles of one radius.
@@ -217,18 +212,11 @@ fn path(parts: &[Vec<Point>], closed: bool) -> String {
     let mut data = String::new();
     for part in parts.iter().filter(|p| p.len() >= 2) {
         let mut before = None;
-        for &(x, y) in part {
-            let now = (hundredths(x), hundredths(y));
-            match before {
-                None => {
-                    data.push('M');
-                    pair(&mut data, now.0, now.1);
-                }
-                Some((x, y)) if (x, y) == now => continue,
-                Some((x, y)) => {
-                    data.push('l');
-                    pair(&mut data, now.0 - x, now.1 - y);
-                }
+        for now in part.iter().map(|&(x, y)| (hundredths(x), hundredths(y))) {
+            let (step, (x, y)) = before.map_or(('M', (0, 0)), |at| ('l', at));
+            if before != Some(now) {
+                data.push(step);
+                pair(&mut data, now.0 - x, now.1 - y);
             }
             before = Some(now);
         }
