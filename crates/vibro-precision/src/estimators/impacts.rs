@@ -1,8 +1,7 @@
 //! Impacts of a contact trace: how often, and when.
 
-use super::bound::bounds;
 use super::trial::{Answer, Case, Change, Kind, Method, each, measured, questions, trace};
-use super::{rivals, scene};
+use super::{bounds, rivals, scene};
 use crate::Scene;
 use crate::failure::Question;
 use std::f64::consts::TAU;
@@ -86,9 +85,9 @@ fn onset_bound(noise: f64) -> f64 {
 }
 
 const RATES: [Method<Trace>; 3] = [
-    Method::rival("timeav", |t| contact_times(t).map_or(f64::NAN, |f| f.frequency)),
-    Method::rival("threshold", |t| RATE * rivals::mean_rate(&rivals::threshold(&t.values))),
-    Method::own("onset fit", |t| {
+    Method::Rival("timeav", |t| contact_times(t).map_or(f64::NAN, |f| f.frequency)),
+    Method::Rival("threshold", |t| RATE * rivals::mean_rate(&rivals::threshold(&t.values))),
+    Method::Own("onset fit", |t| {
         let found = impacts(t, &ImpactsOptions::default())?;
         Ok(Answer::found(&found.frequency, &found.findings))
     }),
@@ -103,11 +102,11 @@ fn middle(times: &[f64]) -> f64 {
 }
 
 const TIMES: [Method<Trace>; 3] = [
-    Method::rival("threshold, sample", |t| middle(&rivals::threshold(&t.values)) / RATE),
-    Method::rival("threshold, between", |t| {
+    Method::Rival("threshold, sample", |t| middle(&rivals::threshold(&t.values)) / RATE),
+    Method::Rival("threshold, between", |t| {
         middle(&rivals::passages(&t.values, rivals::half(&t.values))) / RATE
     }),
-    Method::own("fit of the average", |t| {
+    Method::Own("fit of the average", |t| {
         let found = impacts(t, &ImpactsOptions::default())?;
         let std = found.onset_std.map(|s| s * f64::sqrt(2.0));
         Ok(Answer { value: middle(&found.times), std, doubt: None })
@@ -195,7 +194,7 @@ pub(crate) fn borders(quick: bool) -> Vec<Question> {
         ("one sample missing", |t| t.values[300] = f64::NAN),
         ("all equal", |t| t.values.fill(0.25)),
     ];
-    let faults = changes.map(|(name, change)| Kind::changed(name, 32_000, PLAIN.rate(), change));
+    let faults = changes.map(|(name, change)| Kind::new(name, 32_000, PLAIN.rate()).changed(change));
     let mut all = questions("impact rate: ringing", &RATES, ringing, quick);
     all.extend(questions("impact rate: missing", &RATES, counts, quick));
     all.extend(questions("impact rate: heights", &RATES, heights, quick));

@@ -1,8 +1,7 @@
 //! Damping ratio of a contact from the pulse of its force.
 
-use super::bound::bounds;
 use super::trial::{Answer, Case, Change, Kind, Method, each, measured, questions, trace};
-use super::{rivals, scene};
+use super::{bounds, rivals, scene};
 use crate::Scene;
 use crate::failure::Question;
 use std::f64::consts::{PI, TAU};
@@ -22,22 +21,22 @@ struct Pulse {
 }
 
 const BY_HAND: Method<Pulse> =
-    Method::rival("two instants", |p| closed_form(rivals::instants(&p.trace.values)));
+    Method::Rival("two instants", |p| closed_form(rivals::instants(&p.trace.values)));
 
-const WHOLE: Method<Pulse> = Method::own("whole pulse", |p| {
+const WHOLE: Method<Pulse> = Method::Own("whole pulse", |p| {
     let found = pulse(&p.trace, &PulseOptions { instrument: p.instrument.clone(), mass: None })?;
     Ok(Answer::found(&found.xi, &found.findings))
 });
 
 /// ξ from two times that come with an uncertainty, as `vibro pulse --peak --end` gives it.
-const TWO_TIMES: Method<Pulse> = Method::own("two times", |p| {
+const TWO_TIMES: Method<Pulse> = Method::Own("two times", |p| {
     let [peak, end, std] = p.times;
     let found = two_times(peak, end, Some(std), None)?;
     Ok(Answer::found(&found.xi, &found.findings))
 });
 
 /// The same from a spreadsheet, which asks for no domain.
-const FORMULA: Method<Pulse> = Method::rival("formula of ρ", |p| closed_form(p.times[0] / p.times[1]));
+const FORMULA: Method<Pulse> = Method::Rival("formula of ρ", |p| closed_form(p.times[0] / p.times[1]));
 
 const METHODS: [Method<Pulse>; 2] = [BY_HAND, WHOLE];
 const FOUR: [Method<Pulse>; 4] = [FORMULA, BY_HAND, TWO_TIMES, WHOLE];
@@ -176,7 +175,8 @@ pub(crate) fn borders(quick: bool) -> Vec<Question> {
         ("one sample missing", |p| p.trace.values[100] = f64::NAN),
         ("all equal", |p| p.trace.values.fill(1.0)),
     ];
-    let faults = changes.map(|(name, change)| Kind::changed(name, 51_000, pulses(0.2, 40.0, 0.01), change));
+    let faults =
+        changes.map(|(name, change)| Kind::new(name, 51_000, pulses(0.2, 40.0, 0.01)).changed(change));
     let mut all = questions("contact ξ: ρ → 1/2", &FOUR, light, quick);
     all.extend(questions("contact ξ: ρ → 0", &FOUR, heavy, quick));
     all.extend(questions("contact ξ: noise", &METHODS, noise, quick));

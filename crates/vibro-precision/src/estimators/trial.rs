@@ -28,38 +28,28 @@ impl Answer {
     }
 }
 
-/// A way to get a number from a record.
-pub struct Method<D: 'static> {
-    /// Name in charts.
-    pub name: &'static str,
-    way: Way<D>,
-}
-
-enum Way<D: 'static> {
-    Own(fn(&D) -> Result<Answer>),
-    Rival(fn(&D) -> f64),
+/// A way to get a number from a record, by its name in charts.
+pub enum Method<D: 'static> {
+    /// One of this library's.
+    Own(&'static str, fn(&D) -> Result<Answer>),
+    /// What is written by hand: a number without a word, not a number where it finds none.
+    Rival(&'static str, fn(&D) -> f64),
 }
 
 impl<D> Method<D> {
-    /// One of this library's.
-    pub const fn own(name: &'static str, way: fn(&D) -> Result<Answer>) -> Method<D> {
-        Method { name, way: Way::Own(way) }
-    }
-
-    /// What is written by hand: a number without a word, not a number where it finds none.
-    pub const fn rival(name: &'static str, way: fn(&D) -> f64) -> Method<D> {
-        Method { name, way: Way::Rival(way) }
-    }
-
-    fn ours(&self) -> bool {
-        matches!(self.way, Way::Own(_))
+    /// Its name, and whether it is one of this library's.
+    fn name(&self) -> (&'static str, bool) {
+        match *self {
+            Method::Own(name, _) => (name, true),
+            Method::Rival(name, _) => (name, false),
+        }
     }
 
     /// The answer to a record, or why there is none.
     fn answer(&self, record: &D) -> std::result::Result<Answer, String> {
-        let answer = match self.way {
-            Way::Own(way) => way(record).map_err(|error| Found::from(error).why)?,
-            Way::Rival(way) => Answer { value: way(record), std: None, doubt: None },
+        let answer = match self {
+            Method::Own(_, way) => way(record).map_err(|error| Found::from(error).why)?,
+            Method::Rival(_, way) => Answer { value: way(record), std: None, doubt: None },
         };
         if answer.value.is_finite() { Ok(answer) } else { Err("it gives no number".to_owned()) }
     }
@@ -102,12 +92,8 @@ impl<D: 'static> Kind<D> {
     }
 
     /// The same, each record changed after it was made.
-    pub fn changed(
-        name: &str,
-        seed: u64,
-        make: impl Fn(&mut Noise) -> Case<D> + Send + Sync + 'static,
-        change: impl Fn(&mut D) + Send + Sync + 'static,
-    ) -> Kind<D> {
+    pub fn changed(self, change: impl Fn(&mut D) + Send + Sync + 'static) -> Kind<D> {
+        let Kind { name, seed, make } = self;
         Kind::new(name, seed, move |noise| {
             let mut case = make(noise);
             change(&mut case.data);
@@ -161,8 +147,7 @@ pub fn measured<D: 'static>(methods: &[Method<D>], settings: &[Kind<D>], quick: 
         } else {
             Ok((squares.iter().sum::<f64>() / n as f64).sqrt())
         };
-        let name = (method.name, method.ours());
-        Measured { why, ..Measured::new(name, setting.name.clone(), median(&mut times), answer) }
+        Measured { why, ..Measured::new(method.name(), setting.name.clone(), median(&mut times), answer) }
     };
     methods.iter().flat_map(|m| settings.iter().enumerate().map(move |(place, s)| one(m, place, s))).collect()
 }
@@ -183,12 +168,10 @@ pub fn questions<D: Send + 'static>(
     kinds: impl IntoIterator<Item = Kind<D>>,
     quick: bool,
 ) -> Vec<Question> {
-    let question = |method: &'static Method<D>, kind: Arc<Kind<D>>| Question {
-        method: method.name,
-        ours: method.ours(),
-        border,
-        scene: kind.name.clone(),
-        ask: Box::new(move || asked(method, &kind, quick)),
+    let question = |method: &'static Method<D>, kind: Arc<Kind<D>>| {
+        let ((method_name, ours), scene) = (method.name(), kind.name.clone());
+        let ask = Box::new(move || asked(method, &kind, quick));
+        Question { method: method_name, ours, border, scene, ask }
     };
     let kinds = kinds.into_iter().map(Arc::new);
     kinds.flat_map(|k| methods.iter().map(move |m| question(m, Arc::clone(&k)))).collect()

@@ -2,7 +2,6 @@
 
 #[cfg(feature = "diffsol")]
 mod diffsol;
-mod loops;
 mod stages;
 mod stepper;
 
@@ -14,13 +13,13 @@ use diffsol::{
     Diffsol::{Bdf, Tsit45},
     followed,
 };
-use loops::{classical, euler, marched, moreau};
 use stages::through;
 pub use stages::{Course, Locate, events};
 pub use stepper::Kind;
 use stepper::Kind::{Dop853, Rk4, Rk45};
 #[cfg(test)]
 pub use stepper::Stepper;
+use stepper::{classical, euler, marched, moreau};
 
 /// A way to follow a motion.
 #[derive(Clone, Copy)]

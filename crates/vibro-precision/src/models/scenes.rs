@@ -1,20 +1,58 @@
 //! Scenes of models: what is asked, of which methods with which settings, and what is true.
 
-use super::ask::{Ask, Asked, Verdict};
-use super::rivals::{self as by, Kind, Locate, events};
+use super::rivals::{self as by, Kind, Locate, Method, events};
 use super::task::{Task, Told};
 use super::{ours, truth};
-use crate::Scene;
+use crate::failure::Found;
+use crate::scene::{median, timed};
+use crate::{Family, Measured, Scene};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use vibro_model::{Compliance, Rig, Sine, Steady};
 use vibro_record::{Error, Result};
 
+/// What a judge says of the motions that are told: their error, or why there is none.
+type Verdict = std::result::Result<f64, String>;
+type Judge = dyn Fn(&[Told]) -> Verdict;
+
+/// A method with its settings.
+type Asked = (Method, &'static [f64]);
+
+/// A scene before it is measured.
+struct Ask {
+    scene: Scene,
+    /// Motions that are followed one after another; the time of one answer is the mean.
+    tasks: Vec<Task>,
+    methods: Vec<Asked>,
+    judge: Box<Judge>,
+}
+
+/// Repeats of an answer: in full, and quick.
+const REPEATS: [usize; 2] = [15, 3];
+
+impl Ask {
+    /// Runs, times and judges every method; `quick` with the first half of its settings.
+    fn measured(self, quick: bool) -> Scene {
+        let one = |method: &Method, setting: f64| {
+            let follow = || self.tasks.iter().map(|task| (method.follow)(task, setting)).collect();
+            let (told, time) = timed(REPEATS[usize::from(quick)], quick, follow);
+            let fault = |f: Found| format!("{}: {}", f.outcome.name(), f.why);
+            let told: std::result::Result<Vec<_>, Found> = told;
+            let answer = told.map_err(fault).and_then(|told| (self.judge)(&told));
+            let (name, setting) = ((method.name, method.ours), method.words(setting));
+            Measured::new(name, setting, time / self.tasks.len() as f64, answer)
+        };
+        let of = |settings: &[f64]| if quick { settings.len().div_ceil(2) } else { settings.len() };
+        let methods = self.methods.iter().flat_map(|(m, all)| all[..of(all)].iter().map(|s| one(m, *s)));
+        Scene { methods: methods.collect(), ..self.scene }
+    }
+}
+
 /// Every scene of the models, each method measured; `quick` takes fewer settings, repeats and scenes.
 pub fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Vec<Scene>> {
     let mut found = Vec::new();
     let mut add = |ask: Ask| {
-        progress(&ask.name);
+        progress(&ask.scene.name);
         found.push(ask.measured(quick));
     };
     add(scene_b(2.0)?);
@@ -91,14 +129,19 @@ fn scene_b(seconds: f64) -> Result<Ask> {
         Ok(times.iter().zip(&truth).map(|(t, [time, off])| (t - time).abs() - off).fold(least, f64::max))
     };
     Ok(Ask {
-        name: format!("scene B, {seconds} s"),
-        says: format!(
-            "From rest under 0.5 N at ν 2.1, every impact crossed at speed: the times of the impacts up to {seconds} s."
-        ),
-        error_of: "largest error of an impact time (s)",
-        truth: format!(
-            "impacts 1, 2, 3, 22 and 1098: Newton's method on the equations of motion with 40 digits; all others: integration of \
+        scene: Scene::new(
+            Family::Models,
+            [
+                format!("scene B, {seconds} s"),
+                format!(
+                    "From rest under 0.5 N at ν 2.1, every impact crossed at speed: the times of the impacts up to {seconds} s."
+                ),
+                "largest error of an impact time (s)".to_owned(),
+                format!(
+                    "impacts 1, 2, 3, 22 and 1098: Newton's method on the equations of motion with 40 digits; all others: integration of \
              order 8 to 1e-13, beyond {FOLLOWED:.0e} s; smaller errors than {least:.0e} s, the rounding of the time, are told as that"
+                ),
+            ],
         ),
         tasks: vec![task],
         methods: [
@@ -160,16 +203,21 @@ fn grazing(depth: f64) -> Result<Ask> {
                 "{missed} of {STARTS} impacts are not seen, {invented} of {STARTS} seen that are none"
             ));
         }
-        Ok(crate::scene::median(&mut errors))
+        Ok(median(&mut errors))
     };
     Ok(Ask {
-        name: format!("grazing {depth:.0e} m"),
-        says: format!(
-            "A motion that reaches {depth:.0e} m into the other mass, and one that misses it by as much, each from {STARTS} starts: is \
+        scene: Scene::new(
+            Family::Models,
+            [
+                format!("grazing {depth:.0e} m"),
+                format!(
+                    "A motion that reaches {depth:.0e} m into the other mass, and one that misses it by as much, each from {STARTS} starts: is \
              the impact seen, and when?"
+                ),
+                "median error of the impact's time (s)".to_owned(),
+                "the forced motion A cos ω(t − tₚ) meets the gap A − d at tₚ − 2 asin(√(d/2A))/ω".to_owned(),
+            ],
         ),
-        error_of: "median error of the impact's time (s)",
-        truth: "the forced motion A cos ω(t − tₚ) meets the gap A − d at tₚ − 2 asin(√(d/2A))/ω".to_owned(),
         tasks,
         methods: [&[(by::FLIGHTS, ONE)], &LOOPS[..], &[(by::RK4_ENDS, &[100.0, 1e3, 1e4])], EVENTS].concat(),
         judge: Box::new(judge),
@@ -202,12 +250,14 @@ fn scene_c() -> Ask {
         Ok(found.iter().zip(&GOLDEN_C).map(|(f, g)| (f - g).abs()).fold(1e-17, f64::max))
     };
     Ask {
-        name: "scene C".to_owned(),
-        says: "Pressed together by their springs, the masses chatter to rest, are released and chatter again: the times of both ends \
+        scene: Scene::new(Family::Models, [
+            "scene C".to_owned(),
+            "Pressed together by their springs, the masses chatter to rest, are released and chatter again: the times of both ends \
                and of the release. Methods with events let the masses rest below the speed that their tolerance resolves."
             .to_owned(),
-        error_of: "largest error of the three times (s)",
-        truth: "arithmetic with 40 digits".to_owned(),
+            "largest error of the three times (s)".to_owned(),
+            "arithmetic with 40 digits".to_owned(),
+        ]),
         tasks: vec![task_c()],
         methods: [
             &[
@@ -251,14 +301,19 @@ fn soft(stiffness: f64, cycles: f64) -> Result<Ask> {
         if error < 100.0 { Ok(error.max(1e-16)) } else { Err(grows.to_owned()) }
     };
     Ok(Ask {
-        name: format!("soft contact {stiffness:.0e} N m⁻¹"),
-        says: format!(
-            "Spring and damper in the contact, {:.2} % of the period in contact: the approach speed once the motion has settled \
+        scene: Scene::new(
+            Family::Models,
+            [
+                format!("soft contact {stiffness:.0e} N m⁻¹"),
+                format!(
+                    "Spring and damper in the contact, {:.2} % of the period in contact: the approach speed once the motion has settled \
              ({cycles} cycles).",
-            100.0 * share
+                    100.0 * share
+                ),
+                "relative error of the settled approach speed".to_owned(),
+                "the motion that repeats, by Newton's method on integration of order 8 to 1e-13".to_owned(),
+            ],
         ),
-        error_of: "relative error of the settled approach speed",
-        truth: "the motion that repeats, by Newton's method on integration of order 8 to 1e-13".to_owned(),
         tasks: vec![task],
         methods: vec![
             (by::CLOSED, ONE),
@@ -338,15 +393,20 @@ fn chaos() -> Result<Ask> {
     let (restitution, force, frequency) = WINDOW;
     let [mean, std] = scatter.map(|s| 100.0 * s);
     Ok(Ask {
-        name: "chaotic window".to_owned(),
-        says: format!(
-            "At R {restitution}, {force} N and {frequency} Hz no two computations agree for long: mean and standard deviation of the \
+        scene: Scene::new(
+            Family::Models,
+            [
+                "chaotic window".to_owned(),
+                format!(
+                    "At R {restitution}, {force} N and {frequency} Hz no two computations agree for long: mean and standard deviation of the \
              approach speeds over {CYCLES} cycles, whose standard errors are {mean:.1} and {std:.1} %. Below them errors are chance, and told as \
              them; beyond {ALLOWED} of them it is another motion."
-        ),
-        error_of: "larger relative error of mean and deviation",
-        truth: format!(
-            "order 8, tolerance 1e-12, from {OTHERS} other starts; standard errors from their scatter"
+                ),
+                "larger relative error of mean and deviation".to_owned(),
+                format!(
+                    "order 8, tolerance 1e-12, from {OTHERS} other starts; standard errors from their scatter"
+                ),
+            ],
         ),
         tasks: vec![irregular(0.0, CYCLES)],
         methods: vec![
@@ -378,14 +438,19 @@ fn slow_sweep() -> Result<Ask> {
         if speed > 0.0 { Ok((speed / truth - 1.0).abs().max(apart)) } else { Err("no impacts".to_owned()) }
     };
     Ok(Ask {
-        name: "slow sweep".to_owned(),
-        says: format!(
-            "Up from {FROM} to {TO} Hz at {RATE} Hz/s, over the peak of the motion with one impact a cycle: the largest approach speed."
-        ),
-        error_of: "relative error of the largest approach speed",
-        truth: format!(
-            "order 8 with located events, tolerance 1e-13; exact flights in fine steps differ from it by {apart:.0e}, so smaller errors are told as \
+        scene: Scene::new(
+            Family::Models,
+            [
+                "slow sweep".to_owned(),
+                format!(
+                    "Up from {FROM} to {TO} Hz at {RATE} Hz/s, over the peak of the motion with one impact a cycle: the largest approach speed."
+                ),
+                "relative error of the largest approach speed".to_owned(),
+                format!(
+                    "order 8 with located events, tolerance 1e-13; exact flights in fine steps differ from it by {apart:.0e}, so smaller errors are told as \
              that"
+                ),
+            ],
         ),
         tasks: vec![task],
         methods: [
