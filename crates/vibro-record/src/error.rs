@@ -129,8 +129,22 @@ impl Error {
 
     /// The text of the error with settings named as `typed` says, such as `low_pass` as `--low-pass`.
     pub fn spoken(&self, typed: impl Fn(&str) -> String) -> String {
-        let named: Vec<String> = self.settings().iter().map(|key| typed(key)).collect();
-        if named.is_empty() { format!("{self:#}") } else { format!("{self:#} ({})", named.join(", ")) }
+        let Inner { kind, hint, settings } = &*self.0;
+        let part = |before: &str, text: &str, after: &str| {
+            if text.is_empty() { String::new() } else { [before, text, after].concat() }
+        };
+        let what = match kind {
+            ErrorKind::Io { path, action, source } => {
+                format!("cannot {action} {}: {}", path.display(), plain_io(source))
+            }
+            ErrorKind::Input(Fault { place, found, expected, excerpt }) => {
+                let place = part("", &place.to_string(), ": ");
+                place + found + &part("; expected ", expected, "") + &part("\n", excerpt, "")
+            }
+            ErrorKind::Refused(why) => why.clone(),
+        };
+        let settings: Vec<String> = settings.iter().map(|key| typed(key)).collect();
+        what + &part("\n  try: ", hint, "") + &part(" (", &settings.join(", "), ")")
     }
 
     /// Adds what to try.
@@ -174,14 +188,9 @@ impl Error {
             let width = source[start..end].trim_end().chars().count().max(1);
             fault.place.line = Some(number);
             fault.place.column = Some(before as u64 + 1);
-            let gutter = number.to_string().len();
-            fault.excerpt = format!(
-                "{:gutter$} |\n{number} | {text}\n{:gutter$} | {}{}",
-                "",
-                "",
-                " ".repeat(before),
-                "^".repeat(width)
-            );
+            let gutter = " ".repeat(number.to_string().len());
+            let caret = " ".repeat(before) + &"^".repeat(width);
+            fault.excerpt = format!("{gutter} |\n{number} | {text}\n{gutter} | {caret}");
         }
         self
     }
@@ -242,33 +251,7 @@ impl fmt::Display for Place {
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Inner { kind, hint, settings } = &*self.0;
-        match kind {
-            ErrorKind::Io { path, action, source } => {
-                write!(f, "cannot {action} {}: {}", path.display(), plain_io(source))?;
-            }
-            ErrorKind::Input(fault) => {
-                if fault.place != Place::default() {
-                    write!(f, "{}: ", fault.place)?;
-                }
-                f.write_str(&fault.found)?;
-                if !fault.expected.is_empty() {
-                    write!(f, "; expected {}", fault.expected)?;
-                }
-                if !fault.excerpt.is_empty() {
-                    write!(f, "\n{}", fault.excerpt)?;
-                }
-            }
-            ErrorKind::Refused(why) => f.write_str(why)?,
-        }
-        if !hint.is_empty() {
-            write!(f, "\n  try: {hint}")?;
-            // The alternate form leaves the settings to who has other names for them.
-            if !settings.is_empty() && !f.alternate() {
-                write!(f, " ({})", settings.join(", "))?;
-            }
-        }
-        Ok(())
+        f.write_str(&self.spoken(str::to_owned))
     }
 }
 

@@ -201,26 +201,13 @@ pub fn labelled(label: &str, unit: &str) -> String {
     }
 }
 
+/// A unit whose quotient in brackets, if it is one of time, is written as a product.
 fn unbracketed(unit: &str) -> String {
-    let product = || {
-        let (before, rest) = unit.split_once('(')?;
-        let (quotient, after) = rest.split_once(')')?;
-        let (over, under) = quotient.split_once('/')?;
-        let (symbol, power) = match under.strip_suffix(['²', '³']) {
-            Some(symbol) => (symbol, &under[symbol.len()..]),
-            None => (under, "¹"),
-        };
-        let plain = symbol.chars().all(char::is_alphabetic);
-        // A square of the whole is one of its parts.
-        let (square, power, after) = match (after.strip_prefix('²'), power) {
-            (Some(after), "¹") => ("²", "²", after),
-            (Some(after), "²") => ("²", "⁴", after),
-            (Some(_), _) => return None,
-            (None, power) => ("", power, after),
-        };
-        plain.then(|| format!("{before}{over}{square} {symbol}⁻{power}{after}"))
-    };
-    product().unwrap_or_else(|| unit.to_owned())
+    const PRODUCTS: [(&str, &str); 4] =
+        [("/s)²", "² s⁻²"), ("/s²)²", "² s⁻⁴"), ("/s)", " s⁻¹"), ("/s²)", " s⁻²")];
+    let product = PRODUCTS.iter().find(|(quotient, _)| unit.contains(quotient));
+    product
+        .map_or(unit.to_owned(), |(quotient, product)| unit.replacen('(', "", 1).replace(quotient, product))
 }
 
 /// Rounds to `places` decimals, or to tens, hundreds, … where negative.
