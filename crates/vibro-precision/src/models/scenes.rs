@@ -31,6 +31,16 @@ struct Ask {
 const REPEATS: [usize; 2] = [15, 3];
 
 impl Ask {
+    /// Name, what it is, what the error is and where the truth comes from; tasks, methods and the judge.
+    fn new(
+        texts: [String; 4],
+        tasks: Vec<Task>,
+        methods: Vec<Asked>,
+        judge: impl Fn(&[Told]) -> Verdict + 'static,
+    ) -> Ask {
+        Ask { scene: Scene::new(Family::Models, texts), tasks, methods, judge: Box::new(judge) }
+    }
+
     /// Runs, times and judges every method; `quick` with the first half of its settings.
     fn measured(self, quick: bool) -> Scene {
         let one = |method: &Method, setting: f64| {
@@ -128,32 +138,26 @@ fn scene_b(seconds: f64) -> Result<Ask> {
         }
         Ok(times.iter().zip(&truth).map(|(t, [time, off])| (t - time).abs() - off).fold(least, f64::max))
     };
-    Ok(Ask {
-        scene: Scene::new(
-            Family::Models,
-            [
-                format!("scene B, {seconds} s"),
-                format!(
-                    "From rest under 0.5 N at ν 2.1, every impact crossed at speed: the times of the impacts up to {seconds} s."
-                ),
-                "largest error of an impact time (s)".to_owned(),
-                format!(
-                    "impacts 1, 2, 3, 22 and 1098: Newton's method on the equations of motion with 40 digits; all others: integration of \
-             order 8 to 1e-13, beyond {FOLLOWED:.0e} s; smaller errors than {least:.0e} s, the rounding of the time, are told as that"
-                ),
-            ],
+    let texts = [
+        format!("scene B, {seconds} s"),
+        format!(
+            "From rest under 0.5 N at ν 2.1, every impact crossed at speed: the times of the impacts up to {seconds} s."
         ),
-        tasks: vec![task],
-        methods: [
-            &[(by::FLIGHTS, ONE)],
-            &LOOPS[..],
-            &[(by::RK4_ENDS, &[30.0, 100.0, 300.0, 1e3])],
-            EVENTS,
-            &[(by::STIFF_SPRING, &[1e5, 1e6, 1e8])],
-        ]
-        .concat(),
-        judge: Box::new(judge),
-    })
+        "largest error of an impact time (s)".to_owned(),
+        format!(
+            "impacts 1, 2, 3, 22 and 1098: Newton's method on the equations of motion with 40 digits; all others: integration of \
+     order 8 to 1e-13, beyond {FOLLOWED:.0e} s; smaller errors than {least:.0e} s, the rounding of the time, are told as that"
+        ),
+    ];
+    let methods = [
+        &[(by::FLIGHTS, ONE)],
+        &LOOPS[..],
+        &[(by::RK4_ENDS, &[30.0, 100.0, 300.0, 1e3])],
+        EVENTS,
+        &[(by::STIFF_SPRING, &[1e5, 1e6, 1e8])],
+    ]
+    .concat();
+    Ok(Ask::new(texts, vec![task], methods, judge))
 }
 
 /// Starts in each direction of a grazing motion.
@@ -205,23 +209,17 @@ fn grazing(depth: f64) -> Result<Ask> {
         }
         Ok(median(&mut errors))
     };
-    Ok(Ask {
-        scene: Scene::new(
-            Family::Models,
-            [
-                format!("grazing {depth:.0e} m"),
-                format!(
-                    "A motion that reaches {depth:.0e} m into the other mass, and one that misses it by as much, each from {STARTS} starts: is \
-             the impact seen, and when?"
-                ),
-                "median error of the impact's time (s)".to_owned(),
-                "the forced motion A cos ω(t − tₚ) meets the gap A − d at tₚ − 2 asin(√(d/2A))/ω".to_owned(),
-            ],
+    let texts = [
+        format!("grazing {depth:.0e} m"),
+        format!(
+            "A motion that reaches {depth:.0e} m into the other mass, and one that misses it by as much, each from {STARTS} starts: is \
+     the impact seen, and when?"
         ),
-        tasks,
-        methods: [&[(by::FLIGHTS, ONE)], &LOOPS[..], &[(by::RK4_ENDS, &[100.0, 1e3, 1e4])], EVENTS].concat(),
-        judge: Box::new(judge),
-    })
+        "median error of the impact's time (s)".to_owned(),
+        "the forced motion A cos ω(t − tₚ) meets the gap A − d at tₚ − 2 asin(√(d/2A))/ω".to_owned(),
+    ];
+    let methods = [&[(by::FLIGHTS, ONE)], &LOOPS[..], &[(by::RK4_ENDS, &[100.0, 1e3, 1e4])], EVENTS].concat();
+    Ok(Ask::new(texts, tasks, methods, judge))
 }
 
 /// End of the first chatter of scene C, release, and end of the second chatter in s, by arithmetic with 40 digits.
@@ -249,30 +247,22 @@ fn scene_c() -> Ask {
         let found = [first[0], first[1], second[0]];
         Ok(found.iter().zip(&GOLDEN_C).map(|(f, g)| (f - g).abs()).fold(1e-17, f64::max))
     };
-    Ask {
-        scene: Scene::new(Family::Models, [
-            "scene C".to_owned(),
-            "Pressed together by their springs, the masses chatter to rest, are released and chatter again: the times of both ends \
-               and of the release. Methods with events let the masses rest below the speed that their tolerance resolves."
-            .to_owned(),
-            "largest error of the three times (s)".to_owned(),
-            "arithmetic with 40 digits".to_owned(),
-        ]),
-        tasks: vec![task_c()],
-        methods: [
-            &[
-                (by::FLIGHTS, ONE),
-                (by::EULER, &[1e3, 1e4, 1e5]),
-                (by::RK4_LOOP, &[1e3, 1e4, 1e5]),
-                (by::MOREAU, &[1e3, 1e4, 1e5]),
-                (by::RK45_RESTLESS, &[1e-6]),
-                (by::RK4_ENDS, &[100.0, 1e3]),
-            ],
-            EVENTS,
-        ]
-        .concat(),
-        judge: Box::new(judge),
-    }
+    let texts = [
+        "scene C",
+        "Pressed together by their springs, the masses chatter to rest, are released and chatter again: the times of both ends \
+         and of the release. Methods with events let the masses rest below the speed that their tolerance resolves.",
+        "largest error of the three times (s)",
+        "arithmetic with 40 digits",
+    ];
+    let first = [
+        (by::FLIGHTS, ONE),
+        (by::EULER, &[1e3, 1e4, 1e5]),
+        (by::RK4_LOOP, &[1e3, 1e4, 1e5]),
+        (by::MOREAU, &[1e3, 1e4, 1e5]),
+        (by::RK45_RESTLESS, &[1e-6]),
+        (by::RK4_ENDS, &[100.0, 1e3]),
+    ];
+    Ask::new(texts.map(str::to_owned), vec![task_c()], [&first, EVENTS].concat(), judge)
 }
 
 /// Stiffness in N/m of contacts, and cycles until the motion is read: the slowest multiplier of the rigid orbit, 0.970, is then below
@@ -300,37 +290,31 @@ fn soft(stiffness: f64, cycles: f64) -> Result<Ask> {
         let grows = "the steps are too long: it grows beyond all bounds";
         if error < 100.0 { Ok(error.max(1e-16)) } else { Err(grows.to_owned()) }
     };
-    Ok(Ask {
-        scene: Scene::new(
-            Family::Models,
-            [
-                format!("soft contact {stiffness:.0e} N m⁻¹"),
-                format!(
-                    "Spring and damper in the contact, {:.2} % of the period in contact: the approach speed once the motion has settled \
-             ({cycles} cycles).",
-                    100.0 * share
-                ),
-                "relative error of the settled approach speed".to_owned(),
-                "the motion that repeats, by Newton's method on integration of order 8 to 1e-13".to_owned(),
-            ],
+    let texts = [
+        format!("soft contact {stiffness:.0e} N m⁻¹"),
+        format!(
+            "Spring and damper in the contact, {:.2} % of the period in contact: the approach speed once the motion has settled \
+     ({cycles} cycles).",
+            100.0 * share
         ),
-        tasks: vec![task],
-        methods: vec![
-            (by::CLOSED, ONE),
-            (by::SOFT, ONE),
-            (by::RIGID, ONE),
-            (by::KELVIN_VOIGT, ONE),
-            (by::RK45_THROUGH, &[1e-3, 1e-6, 1e-9]),
-            (by::RK4_THROUGH, &[1e3, 1e4]),
-            (by::RK45_TOUCH, &[1e-3, 1e-6, 1e-9, 1e-12]),
-            (by::DOP853_TOUCH, &[1e-6, 1e-9, 1e-12]),
-            #[cfg(feature = "diffsol")]
-            (by::TSIT45_TOUCH, &[1e-4, 1e-6, 1e-9, 1e-12]),
-            #[cfg(feature = "diffsol")]
-            (by::BDF_TOUCH, &[1e-4, 1e-6, 1e-9, 1e-12]),
-        ],
-        judge: Box::new(judge),
-    })
+        "relative error of the settled approach speed".to_owned(),
+        "the motion that repeats, by Newton's method on integration of order 8 to 1e-13".to_owned(),
+    ];
+    let methods = vec![
+        (by::CLOSED, ONE),
+        (by::SOFT, ONE),
+        (by::RIGID, ONE),
+        (by::KELVIN_VOIGT, ONE),
+        (by::RK45_THROUGH, &[1e-3, 1e-6, 1e-9]),
+        (by::RK4_THROUGH, &[1e3, 1e4]),
+        (by::RK45_TOUCH, &[1e-3, 1e-6, 1e-9, 1e-12]),
+        (by::DOP853_TOUCH, &[1e-6, 1e-9, 1e-12]),
+        #[cfg(feature = "diffsol")]
+        (by::TSIT45_TOUCH, &[1e-4, 1e-6, 1e-9, 1e-12]),
+        #[cfg(feature = "diffsol")]
+        (by::BDF_TOUCH, &[1e-4, 1e-6, 1e-9, 1e-12]),
+    ];
+    Ok(Ask::new(texts, vec![task], methods, judge))
 }
 
 /// Restitution, force in N and frequency in Hz of a window that has been irregular for 200 000 cycles: no method can follow the motion,
@@ -392,34 +376,26 @@ fn chaos() -> Result<Ask> {
     };
     let (restitution, force, frequency) = WINDOW;
     let [mean, std] = scatter.map(|s| 100.0 * s);
-    Ok(Ask {
-        scene: Scene::new(
-            Family::Models,
-            [
-                "chaotic window".to_owned(),
-                format!(
-                    "At R {restitution}, {force} N and {frequency} Hz no two computations agree for long: mean and standard deviation of the \
-             approach speeds over {CYCLES} cycles, whose standard errors are {mean:.1} and {std:.1} %. Below them errors are chance, and told as \
-             them; beyond {ALLOWED} of them it is another motion."
-                ),
-                "larger relative error of mean and deviation".to_owned(),
-                format!(
-                    "order 8, tolerance 1e-12, from {OTHERS} other starts; standard errors from their scatter"
-                ),
-            ],
+    let texts = [
+        "chaotic window".to_owned(),
+        format!(
+            "At R {restitution}, {force} N and {frequency} Hz no two computations agree for long: mean and standard deviation of the \
+     approach speeds over {CYCLES} cycles, whose standard errors are {mean:.1} and {std:.1} %. Below them errors are chance, and told as \
+     them; beyond {ALLOWED} of them it is another motion."
         ),
-        tasks: vec![irregular(0.0, CYCLES)],
-        methods: vec![
-            (by::FLIGHTS, ONE),
-            (by::EULER, &[100.0, 1e3]),
-            (by::RK4_LOOP, &[100.0, 1e3]),
-            (by::MOREAU, &[100.0, 1e3]),
-            (by::RK45_ENDS, &[1e-3, 1e-6, 1e-9]),
-            (by::DOP853_DENSE, &[1e-6, 1e-9]),
-            (by::ROUGH_SPRING, &[1e6]),
-        ],
-        judge: Box::new(judge),
-    })
+        "larger relative error of mean and deviation".to_owned(),
+        format!("order 8, tolerance 1e-12, from {OTHERS} other starts; standard errors from their scatter"),
+    ];
+    let methods = vec![
+        (by::FLIGHTS, ONE),
+        (by::EULER, &[100.0, 1e3]),
+        (by::RK4_LOOP, &[100.0, 1e3]),
+        (by::MOREAU, &[100.0, 1e3]),
+        (by::RK45_ENDS, &[1e-3, 1e-6, 1e-9]),
+        (by::DOP853_DENSE, &[1e-6, 1e-9]),
+        (by::ROUGH_SPRING, &[1e6]),
+    ];
+    Ok(Ask::new(texts, vec![irregular(0.0, CYCLES)], methods, judge))
 }
 
 /// Ends in Hz and rate in Hz/s of a slow sweep over a vibro-impact resonance, and the time in s before which its start is still felt.
@@ -437,30 +413,24 @@ fn slow_sweep() -> Result<Ask> {
         let speed = largest(&told[0]);
         if speed > 0.0 { Ok((speed / truth - 1.0).abs().max(apart)) } else { Err("no impacts".to_owned()) }
     };
-    Ok(Ask {
-        scene: Scene::new(
-            Family::Models,
-            [
-                "slow sweep".to_owned(),
-                format!(
-                    "Up from {FROM} to {TO} Hz at {RATE} Hz/s, over the peak of the motion with one impact a cycle: the largest approach speed."
-                ),
-                "relative error of the largest approach speed".to_owned(),
-                format!(
-                    "order 8 with located events, tolerance 1e-13; exact flights in fine steps differ from it by {apart:.0e}, so smaller errors are told as \
-             that"
-                ),
-            ],
+    let texts = [
+        "slow sweep".to_owned(),
+        format!(
+            "Up from {FROM} to {TO} Hz at {RATE} Hz/s, over the peak of the motion with one impact a cycle: the largest approach speed."
         ),
-        tasks: vec![task],
-        methods: [
-            &[(by::STANDING, &[11.0, 61.0][..]), (by::SWEPT, &[0.1, 1e-2, 1e-3, 1e-4, 1e-5])],
-            &LOOPS[..],
-            &[(by::RK45_ENDS, &[1e-3, 1e-6, 1e-9, 1e-12]), (by::DOP853_DENSE, &[1e-6, 1e-9, 1e-12])],
-        ]
-        .concat(),
-        judge: Box::new(judge),
-    })
+        "relative error of the largest approach speed".to_owned(),
+        format!(
+            "order 8 with located events, tolerance 1e-13; exact flights in fine steps differ from it by {apart:.0e}, so smaller errors are told as \
+     that"
+        ),
+    ];
+    let methods = [
+        &[(by::STANDING, &[11.0, 61.0][..]), (by::SWEPT, &[0.1, 1e-2, 1e-3, 1e-4, 1e-5])],
+        &LOOPS[..],
+        &[(by::RK45_ENDS, &[1e-3, 1e-6, 1e-9, 1e-12]), (by::DOP853_DENSE, &[1e-6, 1e-9, 1e-12])],
+    ]
+    .concat();
+    Ok(Ask::new(texts, vec![task], methods, judge))
 }
 
 #[cfg(test)]
