@@ -248,16 +248,10 @@ fn decimal(value: f64) -> String {
 
 /// A count of hundredths as a decimal without needless zeros.
 fn number(out: &mut String, hundredths: i64) {
-    if hundredths < 0 {
-        out.push('-');
-    }
-    let (whole, part) = (hundredths.unsigned_abs() / 100, hundredths.unsigned_abs() % 100);
-    if whole > 0 || part == 0 {
-        let _ = write!(out, "{whole}");
-    }
-    if part > 0 {
-        let _ = if part % 10 == 0 { write!(out, ".{}", part / 10) } else { write!(out, ".{part:02}") };
-    }
+    let text = (hundredths as f64 / 100.0).to_string();
+    let (sign, size) = text.split_at(usize::from(hundredths < 0));
+    out.push_str(sign);
+    out.push_str(if size.starts_with("0.") { &size[1..] } else { size });
 }
 
 #[cfg(test)]

@@ -133,16 +133,15 @@ impl FailureMap {
 
     /// The map of each quantity, which its borders name before a colon, with that name; the whole where none does.
     pub fn parts(&self) -> Vec<(&str, FailureMap)> {
-        let mut parts: Vec<(&str, FailureMap)> = Vec::new();
-        for cell in &self.cells {
-            let (quantity, border) = cell.border.split_once(": ").unwrap_or(("", &cell.border));
-            let cell = Cell { border: border.to_owned(), ..cell.clone() };
-            match parts.last_mut() {
-                Some(part) if part.0 == quantity => part.1.cells.push(cell),
-                _ => parts.push((quantity, FailureMap { cells: vec![cell] })),
-            }
+        fn split(cell: &Cell) -> (&str, &str) {
+            cell.border.split_once(": ").unwrap_or(("", &cell.border))
         }
-        parts
+        let part = |cells: &[Cell]| {
+            let short = |cell: &Cell| Cell { border: split(cell).1.to_owned(), ..cell.clone() };
+            FailureMap { cells: cells.iter().map(short).collect() }
+        };
+        let parts = self.cells.chunk_by(|a, b| split(a).0 == split(b).0);
+        parts.map(|cells| (split(&cells[0]).0, part(cells))).collect()
     }
 
     /// Names of the methods, in the order in which they come.

@@ -167,14 +167,12 @@ fn borders(quick: bool) -> Result<Vec<Border>> {
 fn truth(border: &Border, soft: bool) -> Option<Told> {
     let task = &border.task;
     let contact = soft.then(|| task.spring());
-    let impacts =
-        |impact: Option<(f64, f64)>| Told { impacts: impact.into_iter().collect(), ..Told::default() };
     match border.asks {
         // No damper of a contact stops a rebound altogether.
         _ if soft && task.rig.restitution == 0.0 => None,
         Asks::Motion | Asks::Contact => motion(task, contact).ok(),
-        Asks::Speed => Some(impacts(Some((0.0, settled(task, contact, check::SETTLED).ok()??.speed())))),
-        Asks::First(time) => Some(impacts(time.map(|t| (t, 0.0)))),
+        Asks::Speed => Some(Told::of([(0.0, settled(task, contact, check::SETTLED).ok()??.speed())])),
+        Asks::First(time) => Some(Told::of(time.map(|t| (t, 0.0)))),
         Asks::Orbits => None,
     }
 }

@@ -55,15 +55,13 @@ pub fn kelvin_voigt(task: &Task) -> Result<Told, Found> {
 /// The motion with one impact a cycle in closed form, told by its impact.
 pub fn closed_form(task: &Task) -> Result<Told, Found> {
     let found = orbits(&task.rig, task.force, task.frequency)?;
-    let impacts = found.orbits.iter().map(|o| (0.0, o.approach_velocity)).take(1).collect();
-    Ok(Told { impacts, ..Told::default() })
+    Ok(Told::of(found.orbits.iter().take(1).map(|o| (0.0, o.approach_velocity))))
 }
 
 /// The same with the contact that the task has.
 pub fn soft_form(task: &Task) -> Result<Told, Found> {
     let (_, soft, _) = soft_forms(task)?;
-    let impacts = soft.iter().take(1).flatten().map(|o| (0.0, o.approach_velocity)).collect();
-    Ok(Told { impacts, ..Told::default() })
+    Ok(Told::of(soft.iter().take(1).flatten().map(|o| (0.0, o.approach_velocity))))
 }
 
 /// All orbits, their corrections, and the contact that these are for.

@@ -41,6 +41,11 @@ pub struct Told {
 }
 
 impl Told {
+    /// Impacts without rests.
+    pub fn of(impacts: impl IntoIterator<Item = (f64, f64)>) -> Told {
+        Told { impacts: impacts.into_iter().collect(), sticks: Vec::new() }
+    }
+
     /// The last rest ends.
     pub fn release(&mut self, time: f64) {
         if let Some(rest) = self.sticks.last_mut() {
