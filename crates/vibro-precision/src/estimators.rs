@@ -36,7 +36,7 @@ pub(crate) fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Vec<Scene> 
 /// an uncertainty that is stated. A method is wrong where more answers are off than chance allows, or one by more than 5.2 standard uncertainties: limits that methods
 /// whose errors are as they state them pass in fewer than one of a hundred full maps.
 pub fn failures(quick: bool) -> FailureMap {
-    FailureMap::asked(Family::Estimators, questions(quick))
+    FailureMap::answered(Family::Estimators, questions(quick))
 }
 
 fn questions(quick: bool) -> Vec<Question> {
@@ -107,7 +107,7 @@ mod tests {
     /// The whole map takes long: here the borders of one quantity stand for it.
     #[test]
     fn displacements_are_right_or_refused_at_their_borders() {
-        let map = FailureMap::asked(Family::Estimators, integration::borders(true));
+        let map = FailureMap::answered(Family::Estimators, integration::borders(true));
         assert_eq!(map.broken().collect::<Vec<_>>(), Vec::<&Cell>::new());
         // Neither a map of refusals nor a check that all methods pass.
         let count =

@@ -58,7 +58,7 @@ pub struct Cell {
     pub why: String,
     /// Of estimators the answers that were held to the uncertainty that they state, and those that lie beyond three of it.
     #[serde(skip)]
-    pub held: [usize; 2],
+    pub stated: [usize; 2],
 }
 
 /// What each method did at each border, border by border.
@@ -74,12 +74,12 @@ pub struct FailureMap {
 pub(crate) struct Found {
     pub outcome: Outcome,
     pub why: String,
-    pub held: [usize; 2],
+    pub stated: [usize; 2],
 }
 
 impl Found {
     pub fn new(outcome: Outcome, why: impl Into<String>) -> Found {
-        Found { outcome, why: why.into(), held: [0; 2] }
+        Found { outcome, why: why.into(), stated: [0; 2] }
     }
 
     /// Right where `kept`, wrong otherwise.
@@ -106,17 +106,18 @@ pub(crate) struct Question {
     pub ours: bool,
     pub border: &'static str,
     pub scene: String,
-    pub ask: Box<dyn FnOnce() -> Found + Send>,
+    pub answer: Box<dyn FnOnce() -> Found + Send>,
 }
 
 impl FailureMap {
     /// Asks every question, as many side by side as there are cores.
-    pub(crate) fn asked(family: Family, questions: Vec<Question>) -> FailureMap {
-        let cell = |Question { method, ours, border, scene, ask }: Question| {
+    pub(crate) fn answered(family: Family, questions: Vec<Question>) -> FailureMap {
+        let cell = |Question { method, ours, border, scene, answer }: Question| {
             let panicked = |_| Found::new(Outcome::Crashed, "it panicked, with its message printed");
-            let Found { outcome, why, held } = catch_unwind(AssertUnwindSafe(ask)).unwrap_or_else(panicked);
+            let Found { outcome, why, stated } =
+                catch_unwind(AssertUnwindSafe(answer)).unwrap_or_else(panicked);
             let (method, border) = (method.to_owned(), border.to_owned());
-            Cell { family, method, ours, border, scene, outcome, why, held }
+            Cell { family, method, ours, border, scene, outcome, why, stated }
         };
         FailureMap { cells: questions.into_par_iter().map(cell).collect() }
     }
@@ -168,16 +169,16 @@ mod tests {
 
     #[test]
     fn a_panic_is_a_cell() {
-        let question = |scene: &str, ask: Box<dyn FnOnce() -> Found + Send>| Question {
+        let question = |scene: &str, answer: Box<dyn FnOnce() -> Found + Send>| Question {
             method: "one",
             ours: true,
             border: "panics",
             scene: scene.to_owned(),
-            ask,
+            answer,
         };
         let right = question("answers", Box::new(|| Found::new(Outcome::Right, "")));
         let wrong = question("panics", Box::new(|| panic!("on purpose")));
-        let map = FailureMap::asked(Family::Models, vec![right, wrong]);
+        let map = FailureMap::answered(Family::Models, vec![right, wrong]);
         let outcomes: Vec<_> = map.cells.iter().map(|c| c.outcome).collect();
         assert_eq!(outcomes, [Outcome::Right, Outcome::Crashed]);
         assert_eq!(map.broken().count(), 1);

@@ -170,8 +170,8 @@ pub fn questions<D: Send + 'static>(
 ) -> Vec<Question> {
     let question = |method: &'static Method<D>, kind: Arc<Kind<D>>| {
         let ((method_name, ours), scene) = (method.name(), kind.name.clone());
-        let ask = Box::new(move || asked(method, &kind, quick));
-        Question { method: method_name, ours, border, scene, ask }
+        let answer = Box::new(move || judged(method, &kind, quick));
+        Question { method: method_name, ours, border, scene, answer }
     };
     let kinds = kinds.into_iter().map(Arc::new);
     kinds.flat_map(|k| methods.iter().map(move |m| question(m, Arc::clone(&k)))).collect()
@@ -191,22 +191,19 @@ fn off(answer: &Answer, truth: f64, tolerance: f64) -> std::result::Result<f64, 
     }
 }
 
-fn asked<D: 'static>(method: &Method<D>, kind: &Kind<D>, quick: bool) -> Found {
+fn judged<D: 'static>(method: &Method<D>, kind: &Kind<D>, quick: bool) -> Found {
     let trials = TRIALS[usize::from(quick)];
-    let (mut right, mut wrong, mut worst) = (0, 0, 0.0_f64);
-    let (mut refusal, mut held) = (None, [0; 2]);
-    for number in 0..trials {
+    // How far off each answer is, and whether it states an uncertainty.
+    let one = |number: usize| {
         let Case { data, truth, tolerance, .. } = kind.case(number);
-        let stated = method.answer(&data).and_then(|a| Ok((off(&a, truth, tolerance)?, a.std.is_some())));
-        match stated {
-            Ok((off, states)) => {
-                let beyond = usize::from(off > 1.0);
-                (right, wrong, worst) = (right + 1 - beyond, wrong + beyond, worst.max(off));
-                held = [held[0] + usize::from(states), held[1] + beyond * usize::from(states)];
-            }
-            Err(why) => refusal = refusal.or(Some(why)),
-        }
-    }
+        method.answer(&data).and_then(|a| Ok((off(&a, truth, tolerance)?, a.std.is_some())))
+    };
+    let answers: Vec<_> = (0..trials).map(one).collect();
+    let count =
+        |which: fn(f64, bool) -> bool| answers.iter().flatten().filter(|(o, s)| which(*o, *s)).count();
+    let (right, wrong) = (count(|off, _| off <= 1.0), count(|off, _| off > 1.0));
+    let stated = [count(|_, states| states), count(|off, states| states && off > 1.0)];
+    let worst = answers.iter().flatten().map(|a| a.0).fold(0.0, f64::max);
     let found = if WITHIN * worst > FAR || wrong > OUTLIERS[usize::from(quick)] {
         let why = format!(
             "{wrong} of {trials} answers beyond what they state or is allowed, the worst {worst:.3} times"
@@ -218,9 +215,10 @@ fn asked<D: 'static>(method: &Method<D>, kind: &Kind<D>, quick: bool) -> Found {
             format!("{right} of {trials} answers within what they state or is allowed"),
         )
     } else {
+        let refusal = answers.into_iter().find_map(std::result::Result::err);
         Found::new(Outcome::Refused, refusal.unwrap_or_else(|| "too few answers are right".to_owned()))
     };
-    Found { held, ..found }
+    Found { stated, ..found }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Steps: loops of a fixed size without events, as everybody writes first, the time stepping of non-smooth dynamics, and steps of
 //! a fixed or a controlled size behind one face.
 
-use super::super::task::{Task, Told};
+use super::super::task::{Log, Task};
 use crate::failure::Found;
 use vibro_math::runge_kutta::{Dop853, DormandPrince, Integrator, Step, Tolerance};
 
@@ -147,29 +147,29 @@ pub type Stride = fn(&Task, f64, &[f64; 4], f64) -> ([f64; 4], Option<(f64, f64)
 
 /// Follows the motion with `n` strides a cycle. Where impacts come step after step for twenty steps or more, the masses count as
 /// resting against each other.
-pub fn marched(task: &Task, stride: Stride, n: f64) -> Result<Told, Found> {
+pub fn marched(task: &Task, stride: Stride, n: f64) -> Result<Log, Found> {
     let h = task.cycle() / n;
     let steps = (task.until / h).ceil();
     if steps > task.most as f64 {
         return Err(task.stalled(task.most as f64 * h));
     }
-    let (mut y, mut told) = (task.start, Told::default());
+    let (mut y, mut log) = (task.start, Log::default());
     for i in 0..steps as u64 {
         let (next, impact) = stride(task, i as f64 * h, &y, h);
         y = next;
-        told.impacts.extend(impact);
+        log.impacts.extend(impact);
     }
     // Stretches without more than four steps from impact to impact.
-    for pair in told.impacts.windows(2) {
+    for pair in log.impacts.windows(2) {
         let (from, to) = (pair[0].0, pair[1].0);
-        match told.sticks.last_mut() {
+        match log.sticks.last_mut() {
             _ if to - from > 4.5 * h => {}
             Some(rest) if rest[1] == from => rest[1] = to,
-            _ => told.sticks.push([from, to]),
+            _ => log.sticks.push([from, to]),
         }
     }
-    told.sticks.retain(|r| r[1] - r[0] >= 20.0 * h);
-    Ok(told)
+    log.sticks.retain(|r| r[1] - r[0] >= 20.0 * h);
+    Ok(log)
 }
 
 /// Velocities by Euler's step, displacements by the new velocities.
