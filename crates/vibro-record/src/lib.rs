@@ -16,7 +16,7 @@ pub mod units;
 mod window;
 
 pub use axis::{Axis, AxisKind, Grid};
-pub use error::{Error, ErrorKind, Fault, Place, Result};
+pub use error::{Error, Place, Result};
 pub use finding::{Estimate, Fact, Finding, Severity};
 pub use meta::{ADDED_DECAY, FROM_BLOWS, Meta, Step};
 pub use spectrum::{Frf, FrfKind, Scaling, Spectrum, Values};
