@@ -59,9 +59,8 @@ fn everything() -> Figure {
     let map = Plot::new(AxisSpec::frequency(), AxisSpec::new("Excitation", "Hz"))
         .title("(b) Map")
         .heatmap(Heatmap::new(&frequency, &excitation, &magnitude, level).unwrap());
-    let waterfall = Waterfall::new(&frequency, &excitation, &magnitude, AxisSpec::new("Displacement", "m"))
-        .unwrap()
-        .title("(c) Spectra");
+    let waterfall =
+        Waterfall::new(&frequency, &excitation, &magnitude, AxisSpec::new("Displacement", "m")).unwrap();
     Figure::double("Everything").height(160.0).columns(2).panel(plot).panel(map).panel(waterfall)
 }
 

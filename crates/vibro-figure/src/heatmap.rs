@@ -57,13 +57,7 @@ impl Heatmap {
     }
 
     fn of(x: &[f64], y: &[f64], values: &ArrayRef2<f64>, key: Key) -> Result<Heatmap> {
-        if values.dim() != (y.len(), x.len()) {
-            let (rows, columns) = values.dim();
-            return Err(Error::usage(
-                format!("a map of {rows} × {columns} values"),
-                format!("{} × {}, one for each row and column position", y.len(), x.len()),
-            ));
-        }
+        fits("a map", values, y, x)?;
         ascending(x, "column positions of a map")?;
         ascending(y, "row positions of a map")?;
         Ok(Heatmap { x: x.to_vec(), y: y.to_vec(), values: values.to_owned(), key })
@@ -145,6 +139,17 @@ pub(super) fn draw_bar(canvas: &mut Canvas, bar: &Axis, frame: Rect) {
     canvas.rect(place, None, Some(FRAME));
     let x = place.right() + TICK + 1.0 + frame::widest(&ticks) + GAP + 0.85 * LARGE;
     frame::along(canvas, &bar.title, x, frame, 2.0 * LEADING);
+}
+
+/// # Errors
+/// If there is not one value for each row and column.
+pub(super) fn fits(what: &str, values: &ArrayRef2<f64>, rows: &[f64], columns: &[f64]) -> Result<()> {
+    let ((down, across), expected) = (values.dim(), (rows.len(), columns.len()));
+    if (down, across) == expected {
+        return Ok(());
+    }
+    let expected = format!("{} × {}, one for each row and column", expected.0, expected.1);
+    Err(Error::usage(format!("{what} of {down} × {across} values"), expected))
 }
 
 /// # Errors

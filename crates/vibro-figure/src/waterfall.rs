@@ -1,15 +1,15 @@
 //! Spectra behind each other: frequency to the right, excitation frequency to the back, amplitude up.
 
-use super::axis::{Axis, AxisSpec, Extent, Room};
+use super::axis::{Axis, AxisSpec, Extent, Room, Scale};
 use super::canvas::{Anchor, Canvas, Pen, Text};
 use super::colour::{BLACK, WHITE};
 use super::font;
 use super::frame::{self, Ruler, Side, fitted};
-use super::heatmap::ascending;
+use super::heatmap::{ascending, fits};
 use super::path::{Point, Rect, thinned};
 use super::style::{DESCENT, FLOOR, FRAME, GAP, LARGE, LEADING, SMALL, TICK, TICKS};
 use ndarray::ArrayRef2;
-use vibro_record::{Error, Result};
+use vibro_record::Result;
 
 /// Room for numbers and a name at either side, before these are known.
 const SIDE: f64 = 34.0;
@@ -30,14 +30,10 @@ struct Cube {
 /// Spectra in oblique projection with hidden lines, one for each excitation frequency.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Waterfall {
-    /// Title; empty for none.
-    pub title: String,
     /// Axis to the right.
-    pub x: AxisSpec,
-    /// Axis to the back.
-    pub depth: AxisSpec,
+    x: AxisSpec,
     /// Axis upwards.
-    pub height: AxisSpec,
+    height: AxisSpec,
     frequency: Vec<f64>,
     rows: Vec<(f64, Vec<f64>)>,
 }
@@ -55,13 +51,7 @@ impl Waterfall {
         magnitude: &ArrayRef2<f64>,
         height: AxisSpec,
     ) -> Result<Waterfall> {
-        if magnitude.dim() != (excitation.len(), frequency.len()) {
-            let (rows, columns) = magnitude.dim();
-            return Err(Error::usage(
-                format!("a waterfall of {rows} spectra with {columns} lines"),
-                format!("{} spectra with {} lines, as its axes have", excitation.len(), frequency.len()),
-            ));
-        }
+        fits("a waterfall", magnitude, excitation, frequency)?;
         ascending(frequency, "line frequencies of a waterfall (Hz)")?;
         let mut rows: Vec<(f64, Vec<f64>)> = excitation
             .iter()
@@ -70,14 +60,7 @@ impl Waterfall {
             .map(|(e, row)| (*e, row.to_vec()))
             .collect();
         rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-        Ok(Waterfall {
-            title: String::new(),
-            x: AxisSpec::frequency(),
-            depth: AxisSpec::new("Excitation frequency", "Hz"),
-            height,
-            frequency: frequency.to_vec(),
-            rows,
-        })
+        Ok(Waterfall { x: AxisSpec::frequency(), height, frequency: frequency.to_vec(), rows })
     }
 
     /// Shows this range of frequencies (Hz) only.
@@ -86,18 +69,12 @@ impl Waterfall {
         self
     }
 
-    /// Sets the title.
-    pub fn title(mut self, title: impl Into<String>) -> Waterfall {
-        self.title = title.into();
-        self
-    }
-
     /// Settles the axes and brings everything to their scale; `None` where there is nothing to show.
     fn cube(&self) -> Option<Cube> {
         let x = Axis::new(&self.x, Extent::of(self.x.scale, self.frequency.iter().copied()), Room::Tight)?;
-        let depths = Extent::of(self.depth.scale, self.rows.iter().map(|r| r.0));
+        let depths = Extent::of(Scale::Linear, self.rows.iter().map(|r| r.0));
         // Not on the axes, so that the outer spectra can be read.
-        let depth = Axis::new(&self.depth, depths, Room::Margin)?;
+        let depth = Axis::new(&AxisSpec::new("Excitation frequency", "Hz"), depths, Room::Margin)?;
         let shown = |axis: &Axis, value: f64| Some(axis.at(value)).filter(|at| (0.0..=1.0).contains(at));
         let rows: Vec<(f64, Vec<(f64, f64)>)> = self
             .rows
@@ -118,15 +95,12 @@ impl Waterfall {
 
     /// Draws it into a cell of the page.
     pub(super) fn draw(&self, canvas: &mut Canvas, cell: Rect) {
-        let title = if self.title.is_empty() { 0.0 } else { 1.5 * LARGE };
-        let (name, size) = fitted(&self.title, LARGE, cell.w);
-        canvas.label(&name, (cell.x, cell.y + LARGE), size, Anchor::Start);
         let bottom = 2.0 * GAP + LEADING + 1.3 * LARGE;
         let framed = |left: f64, right: f64| Rect {
             x: cell.x + left,
-            y: cell.y + title + SMALL / 2.0,
+            y: cell.y + SMALL / 2.0,
             w: (cell.w - left - right).max(20.0),
-            h: (cell.h - title - bottom - SMALL / 2.0).max(20.0),
+            h: (cell.h - bottom - SMALL / 2.0).max(20.0),
         };
         let rough = framed(SIDE, SIDE);
         let Some(cube) = self.cube() else {
