@@ -3,6 +3,7 @@
 use super::Family;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::collections::HashSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use vibro_record::Error;
 
@@ -147,13 +148,8 @@ impl FailureMap {
 
     /// Names of the methods, in the order in which they come.
     pub fn methods(&self) -> Vec<&str> {
-        let mut names: Vec<&str> = Vec::new();
-        for cell in &self.cells {
-            if !names.contains(&cell.method.as_str()) {
-                names.push(&cell.method);
-            }
-        }
-        names
+        let mut known = HashSet::new();
+        self.cells.iter().map(|c| c.method.as_str()).filter(|name| known.insert(*name)).collect()
     }
 
     /// The cells of this library's methods that should not be: wrong, stalled or crashed.

@@ -2,8 +2,8 @@
 
 use super::trial::{Answer, Case, Change, Kind, Method, each, measured, questions, trace};
 use super::{bounds, one_point, rivals, scene};
-use crate::Scene;
 use crate::failure::Question;
+use crate::{Measured, Scene};
 use std::f64::consts::TAU;
 use vibro_math::Noise;
 use vibro_measure::excitation::{Excitation, excitations};
@@ -121,37 +121,6 @@ fn pair(apart: f64) -> impl Fn(&mut Noise) -> Case<Trace> {
     }
 }
 
-/// Where the truth comes from.
-const TRUTH: &str = "the sine that was written into the record";
-
-/// The scenes of sines.
-const SCENES: [[&str; 4]; 4] = [
-    [
-        "sine-noise",
-        "The frequency of one sine between two lines of a record of 1024 samples, from a signal as strong as the noise (0 dB) to one of 80 dB.",
-        "frequency: error (rms) over its Cramér–Rao bound",
-        TRUTH,
-    ],
-    [
-        "sine-length",
-        "The frequency of one sine, 40 dB above the noise, at 1024 samples a second, from 64 to 16 384 samples; the bound is that of the longest record.",
-        "frequency: error (rms), Hz",
-        TRUTH,
-    ],
-    [
-        "sine-amplitude",
-        "The amplitude of one sine on a line, a quarter of a line off and half-way between two, 60 dB above the noise.",
-        "amplitude: relative error (rms)",
-        TRUTH,
-    ],
-    [
-        "two-sines",
-        "The frequency of the weaker of two sines, of half the other's amplitude and 34 dB above the noise, from 0.7 to 16 lines beside it.",
-        "frequency: error (rms) over its Cramér–Rao bound",
-        TRUTH,
-    ],
-];
-
 /// Every scene of sines, measured.
 pub fn scenes(quick: bool) -> Vec<Scene> {
     let noise = [0.0, 20.0, 40.0, 60.0, 80.0]
@@ -167,8 +136,31 @@ pub fn scenes(quick: bool) -> Vec<Scene> {
     });
     let pairs = [0.7, 1.0, 1.5, 2.0, 4.0, 16.0]
         .map(|apart| Kind::new(format!("{apart} lines apart"), 4_000, pair(apart)));
-    let [in_noise, of_length, of_amplitude, of_two] = SCENES;
+    let in_noise = [
+        "sine-noise",
+        "The frequency of one sine between two lines of a record of 1024 samples, from a signal as strong as the noise (0 dB) to one of 80 dB.",
+        "frequency: error (rms) over its Cramér–Rao bound",
+    ];
+    let of_length = [
+        "sine-length",
+        "The frequency of one sine, 40 dB above the noise, at 1024 samples a second, from 64 to 16 384 samples; the bound is that of the longest record.",
+        "frequency: error (rms), Hz",
+    ];
+    let of_amplitude = [
+        "sine-amplitude",
+        "The amplitude of one sine on a line, a quarter of a line off and half-way between two, 60 dB above the noise.",
+        "amplitude: relative error (rms)",
+    ];
+    let of_two = [
+        "two-sines",
+        "The frequency of the weaker of two sines, of half the other's amplitude and 34 dB above the noise, from 0.7 to 16 lines beside it.",
+        "frequency: error (rms) over its Cramér–Rao bound",
+    ];
     let (longest, amplitude) = (bound(16_384, 40.0) * RATE / 16_384.0, sigma(60.0) * (2.0 / N as f64).sqrt());
+    // All are known by what was written into the record.
+    let scene = |[name, says, error_of]: [&str; 3], bound: f64, methods: Vec<Measured>| {
+        scene([name, says, error_of, "the sine that was written into the record"], bound, methods)
+    };
     vec![
         scene(in_noise, 1.0, measured(&FREQUENCY, &noise, quick)),
         scene(of_length, longest, measured(&FREQUENCY, &length, quick)),

@@ -13,20 +13,14 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
+/// Digits of exponents.
+pub(super) const RAISED: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+
 /// `10ⁿ` in superscript digits.
 pub fn power_of_ten(exponent: i32) -> String {
-    let mut text = String::from("10");
-    for c in exponent.to_string().chars() {
-        text.push(match c {
-            '-' => '⁻',
-            '1' => '¹',
-            '2' => '²',
-            '3' => '³',
-            '4'..='9' => char::from_u32(c as u32 - '4' as u32 + '⁴' as u32).unwrap_or(c),
-            _ => '⁰',
-        });
-    }
-    text
+    let raised =
+        |c: char| RAISED.chars().zip('0'..='9').find(|(_, digit)| *digit == c).map_or('⁻', |(r, _)| r);
+    "10".chars().chain(exponent.to_string().chars().map(raised)).collect()
 }
 
 /// A text whose numbers are written as programs write them, with powers of ten and true minus signs: `1e-9 m` becomes `10⁻⁹ m`.
@@ -98,18 +92,10 @@ pub fn estimate(value: f64, std: Option<f64>) -> String {
         // No number of a measurement has more digits.
         return format!("{} ± {}", significant(value, DIGITS as usize), significant(std, 2));
     }
-    if (-3..=3).contains(&exponent) {
-        let places = 1 - decade(std, 2);
-        return format!("{} ± {}", rounded(value, places), rounded(std, places));
-    }
-    let scale = 10f64.powi(-exponent);
+    let scale = if (-3..=3).contains(&exponent) { 1.0 } else { 10f64.powi(-exponent) };
     let places = 1 - decade(std * scale, 2);
-    format!(
-        "({} ± {})×{}",
-        rounded(value * scale, places),
-        rounded(std * scale, places),
-        power_of_ten(exponent)
-    )
+    let both = format!("{} ± {}", rounded(value * scale, places), rounded(std * scale, places));
+    if scale == 1.0 { both } else { format!("({both})×{}", power_of_ten(exponent)) }
 }
 
 /// Decimals that show `value` to `digits` significant digits, none of them a trailing zero.

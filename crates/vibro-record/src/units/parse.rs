@@ -5,6 +5,7 @@
 //! writes `m/s-2` may mean either power.
 
 use super::Dimension;
+use super::notation::RAISED;
 
 /// Symbols of a unit with their dimension (m, kg, s, A, K, rad; not doubled), factor to SI, and whether a prefix may stand before them.
 const SYMBOLS: &[(&str, [i8; 6], f64, bool)] = &[
@@ -170,7 +171,6 @@ impl<'a> Reader<'a> {
 
     /// Exponent in halves: 2 where none is written.
     fn power(&mut self) -> Option<i8> {
-        const RAISED: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹";
         let text = if self.one(&['^']).is_some() {
             let bracket = self.one(&['(']).is_some();
             let text = self.take(|c| c.is_ascii_digit() || matches!(c, '-' | '.'));
@@ -218,8 +218,7 @@ pub(crate) fn spell(dimension: Dimension) -> String {
         .filter(|(_, e)| *e != 0)
         .map(|(name, e)| match e {
             2 => (*name).to_owned(),
-            e if e % 2 == 0 => format!("{name}^{}", e / 2),
-            e => format!("{name}^{:.1}", f64::from(e) / 2.0),
+            e => format!("{name}^{}", f64::from(e) / 2.0),
         })
         .collect();
     if parts.is_empty() { "1".to_owned() } else { parts.join("·") }
