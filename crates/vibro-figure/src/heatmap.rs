@@ -128,12 +128,8 @@ pub(super) fn draw_bar(canvas: &mut Canvas, bar: &Axis, frame: Rect) {
     let shades = Array2::from_shape_fn((256, 1), |(i, _)| Some(colour::viridis(1.0 - i as f64 / 255.0)));
     canvas.image(place, &shades);
     let ticks = frame::upward(bar, frame.h);
-    let ruler = Ruler {
-        axis: bar,
-        ticks: &ticks,
-        from: (place.right(), place.bottom()),
-        to: (place.right(), place.y),
-    };
+    let (from, to) = ((place.right(), place.bottom()), (place.right(), place.y));
+    let ruler = Ruler { axis: bar, ticks: &ticks, from, to };
     canvas.lines(&ruler.marks((1.0, 0.0)), TICKS);
     ruler.numbers(canvas, Side::Right, TICK + 1.5);
     canvas.rect(place, None, Some(FRAME));

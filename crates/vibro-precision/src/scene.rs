@@ -54,16 +54,9 @@ impl Measured {
         time_ns: f64,
         answer: Result<f64, String>,
     ) -> Measured {
-        Measured {
-            method: method.to_owned(),
-            setting,
-            ours,
-            error: answer.as_ref().ok().copied(),
-            time_ns,
-            failed: answer.is_err(),
-            why: answer.err(),
-            front: false,
-        }
+        let (method, failed) = (method.to_owned(), answer.is_err());
+        let (error, why) = (answer.as_ref().ok().copied(), answer.err());
+        Measured { method, setting, ours, error, time_ns, failed, why, front: false }
     }
 }
 

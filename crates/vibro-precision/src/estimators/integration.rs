@@ -104,12 +104,8 @@ impl Made {
                 size * (sine + level + drift * i as f64 / n as f64) + sigma * noise.normal()
             };
             let velocity = trace("laser", "m/s", 1.0 / RATE, (0..n).map(value).collect());
-            Case {
-                data: Vibration { velocity, frequency },
-                truth: AMPLITUDE,
-                unit: AMPLITUDE,
-                tolerance: 0.05 * AMPLITUDE,
-            }
+            let data = Vibration { velocity, frequency };
+            Case { data, truth: AMPLITUDE, unit: AMPLITUDE, tolerance: 0.05 * AMPLITUDE }
         })
     }
 }

@@ -81,16 +81,10 @@ fn pulses(xi: f64, samples: f64, part: f64) -> impl Fn(&mut Noise) -> Case<Pulse
         let values = shape.iter().map(|v| 3.0 * (v + part * height * noise.normal())).collect();
         let std = 0.005 * length;
         let peak = KelvinVoigt::new(xi, FREQUENCY).and_then(|k| k.time_to_peak()).unwrap_or(0.0);
-        Case {
-            data: Pulse {
-                trace: trace("bit", "m/s²", dt, values),
-                instrument: Instrument::Flat,
-                times: [peak + std * noise.normal(), length + std * noise.normal(), std],
-            },
-            truth: xi,
-            unit: 1.0,
-            tolerance: 0.02,
-        }
+        let times = [peak + std * noise.normal(), length + std * noise.normal(), std];
+        let trace = trace("bit", "m/s²", dt, values);
+        let data = Pulse { trace, instrument: Instrument::Flat, times };
+        Case { data, truth: xi, unit: 1.0, tolerance: 0.02 }
     }
 }
 

@@ -204,16 +204,12 @@ fn judged<D: 'static>(method: &Method<D>, kind: &Kind<D>, quick: bool) -> Found 
     let (right, wrong) = (count(|off, _| off <= 1.0), count(|off, _| off > 1.0));
     let stated = [count(|_, states| states), count(|off, states| states && off > 1.0)];
     let worst = answers.iter().flatten().map(|a| a.0).fold(0.0, f64::max);
+    let allowed = "what they state or is allowed";
     let found = if WITHIN * worst > FAR || wrong > OUTLIERS[usize::from(quick)] {
-        let why = format!(
-            "{wrong} of {trials} answers beyond what they state or is allowed, the worst {worst:.3} times"
-        );
+        let why = format!("{wrong} of {trials} answers beyond {allowed}, the worst {worst:.3} times");
         Found::new(Outcome::Wrong, why)
     } else if 2 * right >= trials {
-        Found::new(
-            Outcome::Right,
-            format!("{right} of {trials} answers within what they state or is allowed"),
-        )
+        Found::new(Outcome::Right, format!("{right} of {trials} answers within {allowed}"))
     } else {
         let refusal = answers.into_iter().find_map(std::result::Result::err);
         Found::new(Outcome::Refused, refusal.unwrap_or_else(|| "too few answers are right".to_owned()))

@@ -36,10 +36,10 @@ pub fn motion(log: &Log, truth: &Log, task: &Task) -> Found {
     let impacts = in_order(&truth.impacts, &log.impacts, counts, close);
     let rests = in_order(&truth.sticks, &log.sticks, lasts, same);
     match (impacts, rests) {
-        (Ok(n), Ok(m)) => Found::new(
-            Outcome::Right,
-            format!("{n} impacts within {off:.0e} s and {speed:.0e} m/s, {m} rests"),
-        ),
+        (Ok(n), Ok(m)) => {
+            let why = format!("{n} impacts within {off:.0e} s and {speed:.0e} m/s, {m} rests");
+            Found::new(Outcome::Right, why)
+        }
         (Err(why), _) => Found::new(Outcome::Wrong, format!("impacts (s, m/s): {why}")),
         (_, Err(why)) => Found::new(Outcome::Wrong, format!("rests (s): {why}")),
     }
