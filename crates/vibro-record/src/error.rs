@@ -99,6 +99,8 @@ impl Error {
     }
 
     /// The system refused `action` on `path`.
+    // By value, as `map_err` hands it out.
+    #[allow(clippy::needless_pass_by_value)]
     pub fn io(action: &str, path: impl AsRef<Path>, source: std::io::Error) -> Self {
         let source = source.to_string();
         // Without Rust's ` (os error 2)`.
